@@ -1,0 +1,18 @@
+//! Tracking error of jointed arms, from their logs.
+//!
+//! hydrotrace reads planned and measured joint angles from MCAP logs, finds the instants at
+//! which a joint is asked to leave rest (static-to-dynamic transitions), and says by how much
+//! and how late the machine followed. See `ARCHITECTURE.md` for the layers.
+
+// ground
+pub mod math;
+pub mod remark;
+pub mod rng;
+pub mod units;
+
+// nouns
+pub mod series;
+
+// abilities
+pub mod log;
+pub mod replay;

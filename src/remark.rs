@@ -1,0 +1,139 @@
+//! Doubts about data: what was dropped, repaired or looks wrong, counted and never silent.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+/// What kind of doubt a [`Remark`] states. The serialised name is stable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Code {
+    /// The recording has no end marker: power loss or a kill while recording.
+    NotClosed,
+    /// Bytes that are no record, skipped.
+    DamagedBytes,
+    /// A chunk whose checksum or compression is broken, dropped.
+    DamagedChunk,
+    /// A cut or broken chunk, of which the whole messages before the break were kept.
+    PartialChunk,
+    /// Messages of a channel that the file does not define.
+    UnknownChannel,
+    /// A channel whose schema is missing or cannot be understood, skipped.
+    UnreadableSchema,
+    /// Messages that do not fit their schema, skipped.
+    UndecodableMessage,
+    /// A file of a split recording that is named but absent.
+    MissingFile,
+    /// Arrays whose length differs from the list of joint names.
+    LengthMismatch,
+    /// Samples that are NaN or infinite, dropped.
+    NotFinite,
+    /// Angles that look like degrees.
+    LooksLikeDegrees,
+    /// Header stamps that are zero or stand still, so another clock was used.
+    UnusableStamp,
+    /// Samples with the stamp of their predecessor, dropped.
+    DuplicateStamp,
+    /// Samples logged out of order, sorted.
+    Reordered,
+    /// The clock jumped backwards; the run was split there.
+    ClockJump,
+    /// Longer silence than the sampling explains; the run was split there.
+    Gap,
+    /// A sensor that repeats one value while the plan moves.
+    FrozenSensor,
+    /// A joint whose angle wraps by a full turn.
+    Wrapped,
+    /// The controller was paused or slowed (speed scaling below one).
+    Paused,
+    /// The order or set of joints changes within a topic.
+    JointsChange,
+    /// Planned joints that were never measured, or the other way round.
+    UnpairedJoint,
+    /// Samples outside the time in which both planned and measured exist.
+    Unmatched,
+    /// A start time known only from the receipt of a message.
+    StartOnReceipt,
+    /// A trajectory that was cut short by the next one or by a cancel.
+    TrajectoryReplaced,
+    /// A limit of what this program understands.
+    NotSupported,
+}
+
+impl Code {
+    /// The stable name, as in JSON.
+    pub fn name(self) -> String {
+        serde_json::to_value(self).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
+    }
+}
+
+/// One doubt, with how often it arose.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Remark {
+    /// Kind.
+    pub code: Code,
+    /// What was found and what was done about it, for a person.
+    pub message: String,
+    /// How many samples, messages, bytes or joints it concerns; the message says which.
+    pub count: u64,
+}
+
+/// Remarks in the order of their first appearance, equal ones summed.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Remarks {
+    list: Vec<Remark>,
+    index: BTreeMap<(Code, String), usize>,
+}
+
+impl Remarks {
+    /// Adds `count` cases of a doubt; none if `count` is zero.
+    pub fn add(&mut self, code: Code, count: u64, message: impl Into<String>) {
+        if count == 0 {
+            return;
+        }
+        let message = message.into();
+        if let Some(&at) = self.index.get(&(code, message.clone())) {
+            self.list[at].count = self.list[at].count.saturating_add(count);
+            return;
+        }
+        self.index.insert((code, message.clone()), self.list.len());
+        self.list.push(Remark { code, message, count });
+    }
+
+    /// Adds all of another list.
+    pub fn extend(&mut self, other: Remarks) {
+        for remark in other.list {
+            self.add(remark.code, remark.count, remark.message);
+        }
+    }
+
+    /// The remarks, in order of first appearance.
+    pub fn as_slice(&self) -> &[Remark] {
+        &self.list
+    }
+
+    /// Whether there is nothing to remark.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_remarks_are_summed_and_zero_is_none() {
+        let mut remarks = Remarks::default();
+        remarks.add(Code::Gap, 1, "a gap");
+        remarks.add(Code::NotFinite, 0, "nothing");
+        remarks.add(Code::Gap, 2, "a gap");
+        assert_eq!(remarks.as_slice(), [Remark { code: Code::Gap, message: "a gap".into(), count: 3 }]);
+    }
+
+    #[test]
+    fn codes_have_kebab_names() {
+        assert_eq!(Code::NotClosed.name(), "not-closed");
+    }
+}

@@ -1,0 +1,111 @@
+//! Lays a plan onto measured stamps.
+
+use std::ops::Range;
+
+use super::Track;
+
+/// Planned and measured angle of one joint at the same instants.
+///
+/// All arrays are `[n]`, n >= 1; times strictly increase; `segments` cover `0..n` and are cut
+/// wherever either track was, and where samples found no plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pair {
+    /// The joint.
+    pub name: String,
+    /// Measured stamps, s since the start of the log.
+    pub t_s: Vec<f64>,
+    /// Plan at these stamps, rad.
+    pub planned_rad: Vec<f64>,
+    /// Speed of the plan, rad/s, where the plan gives one.
+    pub planned_rad_s: Option<Vec<f64>>,
+    /// Measured angle, rad.
+    pub measured_rad: Vec<f64>,
+    /// Continuous stretches.
+    pub segments: Vec<Range<usize>>,
+    /// Measured samples for which there is a plan: n.
+    pub matched: usize,
+    /// Measured samples for which there is none, left out.
+    pub unmatched: usize,
+}
+
+/// Interpolates `planned` onto the stamps of `measured`; `None` if they never overlap.
+pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
+    let n = measured.len();
+    let mut pair = Pair {
+        name: measured.name().to_owned(),
+        t_s: Vec::with_capacity(n),
+        planned_rad: Vec::with_capacity(n),
+        planned_rad_s: None,
+        measured_rad: Vec::with_capacity(n),
+        segments: Vec::new(),
+        matched: 0,
+        unmatched: 0,
+    };
+    let mut speed_rad_s = Vec::with_capacity(n);
+    let mut cursor = 0;
+    for segment in measured.segments() {
+        let mut start = pair.t_s.len();
+        let mut plan_segment = None;
+        for i in segment.clone() {
+            let t_s = measured.t_s()[i];
+            let found = planned.at_after(&mut cursor, t_s);
+            let inside = found.map(|_| planned.segment_of(cursor));
+            if inside != plan_segment && pair.t_s.len() > start {
+                pair.segments.push(start..pair.t_s.len());
+                start = pair.t_s.len();
+            }
+            plan_segment = inside;
+            match found {
+                Some(plan) => {
+                    pair.t_s.push(t_s);
+                    pair.planned_rad.push(plan.position);
+                    speed_rad_s.push(plan.velocity);
+                    pair.measured_rad.push(measured.position_rad()[i]);
+                }
+                None => pair.unmatched += 1,
+            }
+        }
+        if pair.t_s.len() > start {
+            pair.segments.push(start..pair.t_s.len());
+        }
+    }
+    pair.matched = pair.t_s.len();
+    pair.planned_rad_s = planned.velocity_rad_s().map(|_| speed_rad_s);
+    (pair.matched > 0).then_some(pair)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn track(t_s: Vec<f64>, cuts: &[usize]) -> Track {
+        let position = t_s.iter().map(|t| 2.0 * t).collect();
+        Track::new("a", t_s, position, cuts).unwrap()
+    }
+
+    #[test]
+    fn equal_motion_sampled_differently_has_no_error() {
+        let planned = track((0..11).map(|k| f64::from(k) * 0.1).collect(), &[]);
+        let measured = track((0..30).map(|k| 0.013 + f64::from(k) * 0.03).collect(), &[]);
+        let pair = align(&planned, &measured).unwrap();
+        assert_eq!((pair.matched, pair.unmatched, pair.segments.len()), (30, 0, 1));
+        for (r, y) in pair.planned_rad.iter().zip(&pair.measured_rad) {
+            assert!((r - y).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn samples_without_a_plan_are_counted_and_cut_the_run() {
+        let planned = track(vec![0.0, 1.0, 3.0, 4.0], &[2]);
+        let measured = track((0..=50).map(|k| f64::from(k) * 0.1).collect(), &[]);
+        let pair = align(&planned, &measured).unwrap();
+        assert_eq!(pair.matched + pair.unmatched, 51);
+        assert_eq!(pair.segments, [0..11, 11..22]);
+        assert!(pair.t_s[11] > 2.99);
+    }
+
+    #[test]
+    fn a_plan_elsewhere_in_time_is_no_pair() {
+        assert_eq!(align(&track(vec![0.0, 1.0], &[]), &track(vec![2.0, 3.0], &[])), None);
+    }
+}

@@ -1,0 +1,26 @@
+//! The one place where radians become degrees and nanoseconds become seconds.
+//!
+//! Inside the crate angles are radians; only the edges (`cli`, `report`, `viewer`, task files)
+//! call these conversions, and a test keeps it so.
+
+/// Nanoseconds in a second.
+pub const NS_PER_S: f64 = 1e9;
+
+/// One degree, rad. Thresholds that the literature states in degrees are written as multiples.
+pub const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
+
+/// Degrees as people read them, from radians.
+pub fn degrees_from_radians(rad: f64) -> f64 {
+    rad.to_degrees()
+}
+
+/// Radians, from degrees as people type them.
+pub fn radians_from_degrees(deg: f64) -> f64 {
+    deg.to_radians()
+}
+
+/// Seconds from `epoch_ns` to `stamp_ns`, s. Exact to below a nanosecond within 104 days.
+#[expect(clippy::cast_possible_truncation, reason = "a difference of clock readings fits i64 for 292 years")]
+pub fn seconds_since(epoch_ns: i64, stamp_ns: i64) -> f64 {
+    (i128::from(stamp_ns) - i128::from(epoch_ns)) as i64 as f64 / NS_PER_S
+}
