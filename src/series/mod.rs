@@ -11,7 +11,7 @@ mod track;
 mod trajectory;
 
 pub use align::{Pair, align};
-pub use clock::{Clock, Row, continuous_clock};
+pub use clock::{Clock, continuous_clock};
 pub use derivative::{LocalFit, local_quadratic};
 pub use noise::{Noise, noise};
 pub use track::{Series, Track, TrackError, split_at_gaps, velocity_agrees};

@@ -1,0 +1,104 @@
+//! From what the user named to the files of one recording, in order.
+
+use std::path::{Path, PathBuf};
+
+use yaml_rust2::{Yaml, YamlLoader};
+
+use super::LogError;
+use crate::remark::{Code, Remarks};
+
+/// The files that together are one recording: files as given, bag directories opened.
+pub(super) fn files(paths: &[PathBuf], remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogError> {
+    let mut files = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            files.extend(directory(path, remarks)?);
+        } else {
+            files.push(path.clone());
+        }
+    }
+    Ok(files)
+}
+
+fn directory(path: &Path, remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogError> {
+    let description = path.join("metadata.yaml");
+    if description.is_file() {
+        let named = named_files(&description)?;
+        let (there, missing): (Vec<_>, Vec<_>) = named.into_iter().map(|name| path.join(name)).partition(|p| p.is_file());
+        for absent in &missing {
+            let name = absent.file_name().unwrap_or_default().to_string_lossy();
+            remarks.add(Code::MissingFile, 1, format!("metadata.yaml names {name}, which is not there; read without it"));
+        }
+        if !there.is_empty() {
+            return Ok(there);
+        }
+    }
+    let entries = std::fs::read_dir(path).map_err(LogError::file("read", path))?;
+    let mut found: Vec<PathBuf> = entries
+        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
+        .filter(|path| path.extension().is_some_and(|extension| extension == "mcap"))
+        .collect();
+    found.sort_by_key(|path| natural_key(path));
+    if found.is_empty() {
+        return Err(LogError::EmptyBag { path: path.to_owned() });
+    }
+    Ok(found)
+}
+
+/// `relative_file_paths` of a rosbag2 description.
+fn named_files(description: &Path) -> Result<Vec<String>, LogError> {
+    let bad = |reason: String| LogError::BagMetadata { path: description.to_owned(), reason };
+    let text = std::fs::read_to_string(description).map_err(LogError::file("read", description))?;
+    let documents = YamlLoader::load_from_str(&text).map_err(|error| bad(error.to_string()))?;
+    let Some(root) = documents.first() else { return Err(bad("it is empty".into())) };
+    let information = &root["rosbag2_bagfile_information"];
+    if let Some(storage) = information["storage_identifier"].as_str()
+        && storage != "mcap"
+    {
+        return Err(bad(format!(
+            "storage is {storage:?}, expected \"mcap\"; convert with `ros2 bag convert` to MCAP storage"
+        )));
+    }
+    match &information["relative_file_paths"] {
+        Yaml::Array(paths) => Ok(paths.iter().filter_map(|path| path.as_str().map(str::to_owned)).collect()),
+        _ => Err(bad("rosbag2_bagfile_information.relative_file_paths is no list".into())),
+    }
+}
+
+/// Orders `run_2` before `run_10`.
+fn natural_key(path: &Path) -> Vec<(u64, String)> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut key = Vec::new();
+    let mut rest = name.as_str();
+    while !rest.is_empty() {
+        let text_end = rest.find(|c: char| c.is_ascii_digit()).unwrap_or(rest.len());
+        let (text, after) = rest.split_at(text_end);
+        let digits_end = after.find(|c: char| !c.is_ascii_digit()).unwrap_or(after.len());
+        let (digits, after) = after.split_at(digits_end);
+        key.push((0, text.to_owned()));
+        key.push((digits.parse().unwrap_or(u64::MAX), String::new()));
+        rest = after;
+    }
+    key
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_ordered_as_people_count() {
+        let mut names: Vec<PathBuf> = ["run_10.mcap", "run_2.mcap", "run_1.mcap"].map(PathBuf::from).to_vec();
+        names.sort_by_key(|path| natural_key(path));
+        assert_eq!(names, ["run_1.mcap", "run_2.mcap", "run_10.mcap"].map(PathBuf::from));
+    }
+
+    #[test]
+    fn a_bag_of_another_storage_says_how_to_convert_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let text = "rosbag2_bagfile_information:\n  storage_identifier: sqlite3\n  relative_file_paths: [a.db3]\n";
+        std::fs::write(folder.path().join("metadata.yaml"), text).unwrap();
+        let error = files(&[folder.path().to_owned()], &mut Remarks::default()).unwrap_err().to_string();
+        assert!(error.contains("sqlite3") && error.contains("ros2 bag convert"), "{error}");
+    }
+}

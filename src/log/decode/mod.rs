@@ -1,0 +1,14 @@
+//! From message bytes to the few numbers and texts somebody asked for.
+//!
+//! A [`Program`] is compiled once per schema and walks CDR bytes without building values;
+//! [`Tree`] does the same for JSON and Protobuf by way of a parsed value. Both report to a
+//! [`Sink`] by slot number.
+
+mod program;
+mod run;
+mod sink;
+mod tree;
+
+pub(super) use program::{Program, ProgramError, Want, shape_at};
+pub(super) use sink::{Numbers, Sink, Slot, Texts};
+pub(super) use tree::Tree;

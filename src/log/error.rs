@@ -1,0 +1,126 @@
+//! What can stop the reading or writing of a log.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// Why a log yields nothing at all; doubts about parts of it are remarks instead.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LogError {
+    /// The file system said no.
+    #[error("cannot {action} {}", path.display())]
+    File {
+        /// What was tried: "open", "read", "write".
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Neither magic bytes nor any record.
+    #[error("{} is not an MCAP file: found {found}, expected the bytes 89 4D 43 41 50 30 0D 0A; {fix}", path.display())]
+    NotMcap {
+        /// The file.
+        path: PathBuf,
+        /// What it starts with.
+        found: String,
+        /// What to do.
+        fix: &'static str,
+    },
+    /// A directory without a recording.
+    #[error("{} holds no .mcap file; give a recording or a ROS 2 bag directory in MCAP format", path.display())]
+    EmptyBag {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// `metadata.yaml` is no bag description.
+    #[error("{} is no rosbag2 description: {reason}", path.display())]
+    BagMetadata {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A topic that the caller asked for.
+    #[error("no topic {topic:?}{}; the log has {present}", suggestion(nearest.as_deref()))]
+    NoTopic {
+        /// Topic looked for.
+        topic: String,
+        /// A topic of nearly that name.
+        nearest: Option<String>,
+        /// Topics found.
+        present: String,
+    },
+    /// A topic that the caller asked for holds no joint angles in that field.
+    #[error("topic {topic:?} ({type_name}) has no joint angles{}; it has {present}", field.as_ref().map(|f| format!(" in field {f:?}")).unwrap_or_default())]
+    NoField {
+        /// The topic.
+        topic: String,
+        /// Its type.
+        type_name: String,
+        /// The field asked for.
+        field: Option<String>,
+        /// Fields that are there.
+        present: String,
+    },
+    /// Nothing in the log is a plan, or nothing a measurement.
+    #[error("found no {missing} joint angles; the log has {present}; name them with {flag} TOPIC[:FIELD]")]
+    Missing {
+        /// "planned" or "measured".
+        missing: &'static str,
+        /// Topics found.
+        present: String,
+        /// The option that names them.
+        flag: &'static str,
+    },
+    /// Planned and measured joints have no name in common.
+    #[error(
+        "planned joints ({planned}) and measured joints ({measured}) have no name in common; \
+         choose other topics with --planned and --measured, or name the joints with --joints"
+    )]
+    NoCommonJoint {
+        /// Planned joints.
+        planned: String,
+        /// Measured joints.
+        measured: String,
+    },
+    /// A joint that the caller asked for.
+    #[error("no joint {joint:?}{}; the log has {present}", suggestion(nearest.as_deref()))]
+    NoJoint {
+        /// Joint looked for.
+        joint: String,
+        /// A joint of nearly that name.
+        nearest: Option<String>,
+        /// Joints found.
+        present: String,
+    },
+    /// A clock that the caller asked for.
+    #[error("the {clock} time of topic {topic:?} is zero or stands still; try --time log or leave it out")]
+    NoClock {
+        /// "header", "publish" or "log".
+        clock: &'static str,
+        /// The topic.
+        topic: String,
+    },
+    /// The writer of a recovered log failed.
+    #[error("cannot write the recovered log {}", path.display())]
+    Recover {
+        /// The output.
+        path: PathBuf,
+        /// Why.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+}
+
+impl LogError {
+    /// Wraps an I/O failure; use with `map_err`.
+    pub(super) fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::File { action, path, source }
+    }
+}
+
+fn suggestion(nearest: Option<&str>) -> String {
+    nearest.map(|name| format!(", did you mean {name:?}?")).unwrap_or_default()
+}

@@ -1,0 +1,68 @@
+//! A run of messages: a chunk, or messages that stand outside chunks.
+
+use super::{
+    compression::{Decompressor, Yield},
+    record::{ChunkRecord, Record},
+};
+
+/// A run of messages in a file.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::log) enum Block<'a> {
+    /// A chunk's body; `cut` if the file ends within it.
+    Chunk { body: &'a [u8], cut: bool },
+    /// Records that stand outside chunks.
+    Loose(&'a [u8]),
+}
+
+/// What a block lost.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(in crate::log) enum Loss {
+    Nothing,
+    /// The file ends within the block; records before the cut are there.
+    Cut,
+    /// The block is unusable, and why.
+    Dropped(String),
+}
+
+/// Opens blocks one after another, reusing buffers; one for each thread.
+pub(in crate::log) struct Blocks(Decompressor);
+
+impl Blocks {
+    pub(in crate::log) fn new() -> Self {
+        Self(Decompressor::new())
+    }
+
+    /// The bytes of the block's records, decompressed and checked.
+    pub(in crate::log) fn open<'a>(&'a mut self, block: Block<'a>) -> (&'a [u8], Loss) {
+        let (body, cut) = match block {
+            Block::Loose(bytes) => return (bytes, Loss::Nothing),
+            Block::Chunk { body, cut } => (body, cut),
+        };
+        let Some(chunk) = ChunkRecord::parse(body) else {
+            return (&[], Loss::Dropped("its header is broken".into()));
+        };
+        match self.0.run(chunk.compression, chunk.records, chunk.uncompressed_size) {
+            Err(reason) => (&[], Loss::Dropped(reason)),
+            Ok((bytes, _)) if cut => (bytes, Loss::Cut),
+            Ok((_, Yield::Part)) => (&[], Loss::Dropped("its compressed data are broken".into())),
+            Ok((bytes, Yield::Whole)) => {
+                let crc = if chunk.crc == 0 { 0 } else { crc32fast::hash(bytes) };
+                if crc == chunk.crc {
+                    (bytes, Loss::Nothing)
+                } else {
+                    (&[], Loss::Dropped(format!("its checksum is {crc:08X}, {:08X} expected", chunk.crc)))
+                }
+            }
+        }
+    }
+}
+
+/// The records of an opened block, in order; stops where no whole record follows.
+pub(in crate::log) fn records(bytes: &[u8]) -> impl Iterator<Item = Record<'_>> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let record = Record::at(bytes, at)?;
+        at = record.end;
+        Some(record)
+    })
+}

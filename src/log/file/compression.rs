@@ -1,0 +1,120 @@
+//! Chunk decompression: whole, or as far as a cut chunk goes.
+
+use std::io::Read;
+
+/// Buffers and contexts of one thread, reused from chunk to chunk.
+pub(super) struct Decompressor {
+    zstd: Option<zstd::bulk::Decompressor<'static>>,
+    out: Vec<u8>,
+}
+
+/// How much of a chunk came out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Yield {
+    /// Everything the chunk promised.
+    Whole,
+    /// Less: the compressed bytes end early or are broken.
+    Part,
+}
+
+/// No compressor in use expands further than this (zstd on constant data), so a chunk that
+/// promises more is not believed: a few bytes cannot ask for gigabytes.
+const MAX_EXPANSION: u64 = 1000;
+const ALWAYS_ALLOWED: u64 = 1 << 20;
+const NEVER_MORE: u64 = 1 << 30;
+
+impl Decompressor {
+    pub(super) fn new() -> Self {
+        Self { zstd: None, out: Vec::new() }
+    }
+
+    /// Decompresses up to the promised size. `Err` names a compression that is not understood
+    /// or a size that is not believed.
+    pub(super) fn run<'a>(
+        &'a mut self,
+        compression: &[u8],
+        compressed: &'a [u8],
+        promised: u64,
+    ) -> Result<(&'a [u8], Yield), String> {
+        if compression.is_empty() {
+            let whole = if compressed.len() as u64 >= promised { Yield::Whole } else { Yield::Part };
+            let end = usize::try_from(promised).unwrap_or(usize::MAX).min(compressed.len());
+            return Ok((&compressed[..end], whole));
+        }
+        let allowed = (compressed.len() as u64).saturating_mul(MAX_EXPANSION).saturating_add(ALWAYS_ALLOWED);
+        let size = match usize::try_from(promised) {
+            Ok(size) if promised <= allowed.min(NEVER_MORE) => size,
+            _ => return Err(format!("{promised} bytes promised by {} compressed ones", compressed.len())),
+        };
+        self.out.clear();
+        match compression {
+            b"zstd" => self.zstd(compressed, size),
+            b"lz4" => read_up_to(lz4_flex::frame::FrameDecoder::new(compressed), size, &mut self.out),
+            other => return Err(format!("compression {:?}", String::from_utf8_lossy(other))),
+        }
+        let whole = if self.out.len() == size { Yield::Whole } else { Yield::Part };
+        Ok((&self.out, whole))
+    }
+
+    fn zstd(&mut self, compressed: &[u8], size: usize) {
+        if self.zstd.is_none() {
+            self.zstd = zstd::bulk::Decompressor::new().ok();
+        }
+        self.out.reserve(size);
+        let Some(context) = &mut self.zstd else { return };
+        // The one-shot call is faster than streaming; it fails on cut, broken or oversized
+        // frames, which are then streamed to keep what is whole.
+        if context.decompress_to_buffer(compressed, &mut self.out).is_ok() && self.out.len() >= size {
+            self.out.truncate(size);
+            return;
+        }
+        self.out.clear();
+        if let Ok(decoder) = zstd::stream::read::Decoder::with_buffer(compressed) {
+            read_up_to(decoder, size, &mut self.out);
+        }
+    }
+}
+
+/// Appends until `size` bytes are there, the input ends, or it proves broken.
+fn read_up_to(from: impl Read, size: usize, out: &mut Vec<u8>) {
+    // An error ends the reading; what came before it stays in `out`.
+    let _ = from.take(size as u64).read_to_end(out);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noise() -> Vec<u8> {
+        (0..4_000_000_u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 24) as u8 & 0x1f).collect()
+    }
+
+    #[test]
+    fn a_cut_zstd_chunk_yields_what_lies_before_the_cut() {
+        let plain = noise();
+        let packed = zstd::bulk::compress(&plain, 3).unwrap();
+        let mut decompressor = Decompressor::new();
+        let (out, amount) =
+            decompressor.run(b"zstd", &packed[..packed.len() * 2 / 3], plain.len() as u64).unwrap();
+        assert_eq!(amount, Yield::Part);
+        assert!(out.len() > plain.len() / 3, "only {} bytes", out.len());
+        assert_eq!(out, &plain[..out.len()]);
+        let (out, amount) = decompressor.run(b"zstd", &packed, plain.len() as u64).unwrap();
+        assert_eq!((out.len(), amount), (plain.len(), Yield::Whole));
+    }
+
+    #[test]
+    fn a_bomb_costs_no_more_than_it_promises_and_promises_are_bounded() {
+        let bomb = zstd::bulk::compress(&vec![0; 64 << 20], 19).unwrap();
+        let mut decompressor = Decompressor::new();
+        let (out, _) = decompressor.run(b"zstd", &bomb, 1 << 20).unwrap();
+        assert_eq!(out.len(), 1 << 20);
+        assert!(decompressor.out.capacity() < 4 << 20);
+        assert!(decompressor.run(b"zstd", &bomb, 8 << 30).is_err());
+    }
+
+    #[test]
+    fn an_unknown_compression_is_named() {
+        assert_eq!(Decompressor::new().run(b"xz", &[], 0).unwrap_err(), "compression \"xz\"");
+    }
+}

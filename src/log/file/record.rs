@@ -1,0 +1,239 @@
+//! MCAP records, parsed with every length checked (<https://mcap.dev/spec>).
+
+use std::collections::BTreeMap;
+
+/// Record types by their byte in the file.
+pub(in crate::log) struct Opcode;
+
+impl Opcode {
+    pub(in crate::log) const HEADER: u8 = 0x01;
+    pub(in crate::log) const FOOTER: u8 = 0x02;
+    pub(in crate::log) const SCHEMA: u8 = 0x03;
+    pub(in crate::log) const CHANNEL: u8 = 0x04;
+    pub(in crate::log) const MESSAGE: u8 = 0x05;
+    pub(in crate::log) const CHUNK: u8 = 0x06;
+    pub(in crate::log) const ATTACHMENT: u8 = 0x09;
+    pub(in crate::log) const STATISTICS: u8 = 0x0B;
+    pub(in crate::log) const METADATA: u8 = 0x0C;
+    pub(in crate::log) const DATA_END: u8 = 0x0F;
+}
+
+/// One record: its type, its body, and where the next one starts.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::log) struct Record<'a> {
+    pub(in crate::log) opcode: u8,
+    pub(in crate::log) body: &'a [u8],
+    pub(in crate::log) end: usize,
+}
+
+/// Opcode and length.
+const HEAD: usize = 9;
+
+impl<'a> Record<'a> {
+    /// The record at `at`, if all of it is there.
+    #[inline]
+    pub(in crate::log) fn at(bytes: &'a [u8], at: usize) -> Option<Self> {
+        let head = bytes.get(at..)?.first_chunk::<HEAD>()?;
+        let [opcode, length @ ..] = head;
+        let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
+        let start = at + HEAD;
+        let end = start.checked_add(length)?;
+        Some(Self { opcode: *opcode, body: bytes.get(start..end)?, end })
+    }
+
+    /// What is there of a record that the file ends within: its type and the cut body.
+    pub(in crate::log) fn cut_at(bytes: &'a [u8], at: usize) -> Option<(u8, &'a [u8])> {
+        let rest = bytes.get(at..)?;
+        let [opcode, length @ ..] = rest.first_chunk::<HEAD>()?;
+        let body = &rest[HEAD..];
+        (u64::from_le_bytes(*length) > body.len() as u64).then_some((*opcode, body))
+    }
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::log) struct SchemaRecord<'a> {
+    pub(in crate::log) id: u16,
+    pub(in crate::log) name: String,
+    pub(in crate::log) encoding: String,
+    pub(in crate::log) data: &'a [u8],
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::log) struct ChannelRecord {
+    pub(in crate::log) id: u16,
+    pub(in crate::log) schema_id: u16,
+    pub(in crate::log) topic: String,
+    pub(in crate::log) encoding: String,
+    pub(in crate::log) metadata: BTreeMap<String, String>,
+}
+
+#[derive(Debug, Clone, Copy)]
+pub(in crate::log) struct MessageRecord<'a> {
+    pub(in crate::log) channel_id: u16,
+    pub(in crate::log) sequence: u32,
+    pub(in crate::log) log_time_ns: u64,
+    pub(in crate::log) publish_time_ns: u64,
+    pub(in crate::log) data: &'a [u8],
+}
+
+#[derive(Debug, Clone)]
+pub(in crate::log) struct ChunkRecord<'a> {
+    pub(in crate::log) uncompressed_size: u64,
+    pub(in crate::log) crc: u32,
+    pub(in crate::log) compression: &'a [u8],
+    /// As many compressed bytes as are there.
+    pub(in crate::log) records: &'a [u8],
+    /// As many as the chunk says there are.
+    pub(in crate::log) compressed_size: u64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::log) struct AttachmentRecord<'a> {
+    pub(in crate::log) log_time_ns: u64,
+    pub(in crate::log) create_time_ns: u64,
+    pub(in crate::log) name: String,
+    pub(in crate::log) media_type: String,
+    pub(in crate::log) data: &'a [u8],
+    pub(in crate::log) crc_holds: bool,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::log) struct MetadataRecord {
+    pub(in crate::log) name: String,
+    pub(in crate::log) entries: BTreeMap<String, String>,
+}
+
+/// Reads little-endian fields off the front; `None` once bytes run out.
+struct Fields<'a>(&'a [u8]);
+
+impl<'a> Fields<'a> {
+    fn bytes(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (head, rest) = self.0.split_at_checked(count)?;
+        self.0 = rest;
+        Some(head)
+    }
+
+    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+        self.bytes(N)?.try_into().ok()
+    }
+
+    fn u16(&mut self) -> Option<u16> {
+        self.array().map(u16::from_le_bytes)
+    }
+
+    fn u32(&mut self) -> Option<u32> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    fn u64(&mut self) -> Option<u64> {
+        self.array().map(u64::from_le_bytes)
+    }
+
+    /// A u32 length and that many bytes.
+    fn block(&mut self) -> Option<&'a [u8]> {
+        let length = self.u32()? as usize;
+        self.bytes(length)
+    }
+
+    fn text(&mut self) -> Option<String> {
+        self.block().map(|text| String::from_utf8_lossy(text).into_owned())
+    }
+
+    fn map(&mut self) -> Option<BTreeMap<String, String>> {
+        let mut entries = Self(self.block()?);
+        let mut map = BTreeMap::new();
+        while !entries.0.is_empty() {
+            map.insert(entries.text()?, entries.text()?);
+        }
+        Some(map)
+    }
+}
+
+impl<'a> SchemaRecord<'a> {
+    pub(in crate::log) fn parse(body: &'a [u8]) -> Option<Self> {
+        let mut f = Fields(body);
+        Some(Self { id: f.u16()?, name: f.text()?, encoding: f.text()?, data: f.block()? })
+    }
+}
+
+impl ChannelRecord {
+    pub(in crate::log) fn parse(body: &[u8]) -> Option<Self> {
+        let mut f = Fields(body);
+        Some(Self { id: f.u16()?, schema_id: f.u16()?, topic: f.text()?, encoding: f.text()?, metadata: f.map()? })
+    }
+}
+
+impl<'a> MessageRecord<'a> {
+    #[inline]
+    pub(in crate::log) fn parse(body: &'a [u8]) -> Option<Self> {
+        let (head, data) = body.split_first_chunk::<22>()?;
+        let mut f = Fields(head);
+        Some(Self {
+            channel_id: f.u16()?,
+            sequence: f.u32()?,
+            log_time_ns: f.u64()?,
+            publish_time_ns: f.u64()?,
+            data,
+        })
+    }
+}
+
+impl<'a> ChunkRecord<'a> {
+    /// Parses a chunk's head; `records` may be cut short by the end of the file.
+    pub(in crate::log) fn parse(body: &'a [u8]) -> Option<Self> {
+        let mut f = Fields(body);
+        f.bytes(16)?; // first and last log time: recomputed from the messages
+        let (uncompressed_size, crc, compression, compressed_size) = (f.u64()?, f.u32()?, f.block()?, f.u64()?);
+        let there = usize::try_from(compressed_size).map_or(f.0.len(), |size| size.min(f.0.len()));
+        Some(Self { uncompressed_size, crc, compression, records: &f.0[..there], compressed_size })
+    }
+}
+
+impl<'a> AttachmentRecord<'a> {
+    pub(in crate::log) fn parse(body: &'a [u8]) -> Option<Self> {
+        let mut f = Fields(body);
+        let (log_time_ns, create_time_ns, name, media_type) = (f.u64()?, f.u64()?, f.text()?, f.text()?);
+        let length = usize::try_from(f.u64()?).ok()?;
+        let data = f.bytes(length)?;
+        let checked = body.len() - f.0.len();
+        let crc = f.u32()?;
+        let crc_holds = crc == 0 || crc == crc32fast::hash(&body[..checked]);
+        Some(Self { log_time_ns, create_time_ns, name, media_type, data, crc_holds })
+    }
+}
+
+impl MetadataRecord {
+    pub(in crate::log) fn parse(body: &[u8]) -> Option<Self> {
+        let mut f = Fields(body);
+        Some(Self { name: f.text()?, entries: f.map()? })
+    }
+}
+
+/// Channel count of a statistics record.
+pub(super) fn channel_count(body: &[u8]) -> Option<u32> {
+    let mut f = Fields(body);
+    f.bytes(10)?; // message count, schema count
+    f.u32()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_record_longer_than_the_file_is_none_and_recognised_as_cut() {
+        let mut bytes = vec![Opcode::CHUNK];
+        bytes.extend(u64::MAX.to_le_bytes());
+        bytes.extend([1, 2, 3]);
+        assert!(Record::at(&bytes, 0).is_none());
+        assert_eq!(Record::cut_at(&bytes, 0), Some((Opcode::CHUNK, &[1_u8, 2, 3][..])));
+        assert!(Record::at(&bytes, 4).is_none());
+    }
+
+    #[test]
+    fn a_text_longer_than_its_record_is_refused() {
+        let mut body = 7_u16.to_le_bytes().to_vec();
+        body.extend(u32::MAX.to_le_bytes());
+        assert_eq!(SchemaRecord::parse(&body), None);
+    }
+}

@@ -1,0 +1,245 @@
+//! Which fields of which message types are joint angles, and whether they are plan or measurement.
+
+use super::{Selector, slot};
+use crate::log::{
+    decode::{Slot, Want, shape_at},
+    schema::{Definition, Shape, plain_name},
+};
+
+/// What a field says of a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::log) enum Role {
+    Planned,
+    Measured,
+    /// Depends on the topic.
+    Either,
+}
+
+/// A field of a table: one number a joint and message.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(in crate::log) struct Field {
+    /// Path in the message, or name of the interface.
+    pub(in crate::log) path: String,
+    pub(in crate::log) role: Role,
+    /// Index of the field that holds the velocity of this position; `None` for velocities and
+    /// for positions without.
+    pub(in crate::log) velocity: Option<usize>,
+    /// Whether this is a velocity.
+    pub(in crate::log) is_velocity: bool,
+}
+
+/// How messages of a type are laid out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::log) enum Form {
+    /// Names once, arrays in parallel.
+    Table,
+    /// A list of joints, each with its name and numbers.
+    Groups,
+    /// Names once, and for each a list of named values.
+    Interfaces,
+    /// Values whose names come in another topic, joined by a version number.
+    Versioned,
+    /// The names for [`Form::Versioned`].
+    VersionedNames,
+    /// Whole trajectories.
+    Plans,
+}
+
+/// How to read one type of message.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(in crate::log) struct Spec {
+    pub(in crate::log) form: Form,
+    pub(in crate::log) fields: Vec<Field>,
+    pub(in crate::log) wants: Vec<Want>,
+}
+
+const SECONDS: [&str; 3] = ["sec", "secs", "seconds"];
+const NANOSECONDS: [&str; 4] = ["nanosec", "nsec", "nsecs", "nanos"];
+const STAMPS: [&str; 3] = ["header.stamp", "stamp", "timestamp"];
+const NAMES: [&str; 3] = ["joint_names", "names", "name"];
+
+/// How to read messages of this type, `None` if it holds no joints and `selectors` name none of
+/// its fields. Without a definition (JSON, Protobuf) every spelling is tried on each message.
+pub(in crate::log) fn spec_for(
+    type_name: &str,
+    definition: Option<&Definition>,
+    selectors: &[(Role, &Selector)],
+) -> Option<Spec> {
+    let plain = plain_name(&type_name.replace('.', "/"));
+    let mut builder = Builder { definition, spec: Spec { form: Form::Table, fields: Vec::new(), wants: Vec::new() } };
+    match plain.as_str() {
+        "control_msgs/JointTrajectoryControllerState" => builder.controller(""),
+        "control_msgs/FollowJointTrajectory_FeedbackMessage" => builder.controller("feedback."),
+        "control_msgs/FollowJointTrajectory_Feedback" => builder.controller(""),
+        "sensor_msgs/JointState" => builder.position("position", "velocity", Role::Either),
+        "std_msgs/Float64MultiArray" => builder.position("data", "", Role::Either),
+        "trajectory_msgs/JointTrajectory" => builder.plans("", None),
+        "moveit_msgs/DisplayTrajectory" => builder.plans("trajectory.joint_trajectory.", Some("trajectory")),
+        "foxglove/JointStates" | "foxglove_msgs/JointStates" => {
+            builder.spec.form = Form::Groups;
+            builder.want("joints", slot::GROUP);
+            builder.want("joints.name", slot::NAMES);
+            builder.position("joints.position", "joints.velocity", Role::Either);
+        }
+        "control_msgs/DynamicJointState" => {
+            builder.spec.form = Form::Interfaces;
+            builder.want("joint_names", slot::NAMES);
+            builder.want("interface_values", slot::GROUP);
+            builder.want("interface_values.interface_names", slot::INTERFACES);
+            builder.want("interface_values.values", slot::VALUES);
+            builder.stamp_near("interface_values");
+            builder.interface("position", Some("velocity"), Role::Measured);
+        }
+        "pal_statistics_msgs/StatisticsNames" => {
+            builder.spec.form = Form::VersionedNames;
+            builder.want("names", slot::NAMES);
+            builder.want("names_version", slot::VERSION);
+        }
+        "pal_statistics_msgs/StatisticsValues" => {
+            builder.spec.form = Form::Versioned;
+            builder.want("values", slot::VALUES);
+            builder.want("names_version", slot::VERSION);
+            builder.stamp_near("values");
+        }
+        _ => {}
+    }
+    for (role, selector) in selectors {
+        builder.select(*role, selector);
+    }
+    (!builder.spec.wants.is_empty()).then_some(builder.spec)
+}
+
+struct Builder<'a> {
+    definition: Option<&'a Definition>,
+    spec: Spec,
+}
+
+impl Builder<'_> {
+    fn has(&self, path: &str) -> bool {
+        self.definition.is_none_or(|definition| shape_at(definition, path).is_some())
+    }
+
+    fn want(&mut self, path: &str, slot: Slot) {
+        if self.has(path) && !self.spec.wants.iter().any(|want| want.path == path) {
+            self.spec.wants.push(Want { path: path.to_owned(), slot });
+        }
+    }
+
+    fn controller(&mut self, prefix: &str) {
+        for (point, role) in [
+            ("reference", Role::Planned),
+            ("desired", Role::Planned),
+            ("feedback", Role::Measured),
+            ("actual", Role::Measured),
+        ] {
+            let (position, velocity) = (format!("{prefix}{point}.positions"), format!("{prefix}{point}.velocities"));
+            self.position(&position, if role == Role::Planned { &velocity } else { "" }, role);
+        }
+        self.want(&format!("{prefix}speed_scaling_factor"), slot::SPEED_SCALING);
+    }
+
+    fn plans(&mut self, prefix: &str, group: Option<&str>) {
+        self.spec.form = Form::Plans;
+        if let Some(group) = group {
+            self.want(group, slot::GROUP);
+        }
+        self.stamp_near(&format!("{prefix}points"));
+        self.want(&format!("{prefix}joint_names"), slot::NAMES);
+        self.want(&format!("{prefix}points"), slot::POINT);
+        for (name, slot) in [
+            ("positions", slot::POSITIONS),
+            ("velocities", slot::VELOCITIES),
+            ("accelerations", slot::ACCELERATIONS),
+        ] {
+            self.want(&format!("{prefix}points.{name}"), slot);
+        }
+        let since = format!("{prefix}points.time_from_start");
+        SECONDS.iter().for_each(|leaf| self.want(&format!("{since}.{leaf}"), slot::POINT_SECOND));
+        NANOSECONDS.iter().for_each(|leaf| self.want(&format!("{since}.{leaf}"), slot::POINT_NANOSECOND));
+    }
+
+    fn interface(&mut self, position: &str, velocity: Option<&str>, role: Role) {
+        let at = self.spec.fields.len();
+        self.spec.fields.push(Field {
+            path: position.to_owned(),
+            role,
+            velocity: velocity.map(|_| at + 1),
+            is_velocity: false,
+        });
+        if let Some(velocity) = velocity {
+            self.spec.fields.push(Field { path: velocity.to_owned(), role, velocity: None, is_velocity: true });
+        }
+    }
+
+    /// Adds a position field with its velocity, where the type has them, and finds the names and
+    /// the stamp that go with it.
+    fn position(&mut self, path: &str, velocity: &str, role: Role) {
+        if self.spec.fields.iter().any(|field| field.path == path) || !self.has(path) {
+            return;
+        }
+        let with_velocity = !velocity.is_empty() && self.has(velocity);
+        let at = self.spec.fields.len();
+        let fields = 1 + usize::from(with_velocity);
+        let Ok(first) = u8::try_from(at + fields) else { return };
+        let slot = slot::FIELD.saturating_add(first - u8::from(with_velocity) - 1);
+        self.interface(path, with_velocity.then_some(velocity), role);
+        self.want(path, slot);
+        if with_velocity {
+            self.want(velocity, slot + 1);
+        }
+        self.near(path, &NAMES, slot::NAMES, |shape| {
+            matches!(shape, Shape::Sequence(of) if **of == Shape::Text)
+        });
+        self.stamp_near(path);
+    }
+
+    fn stamp_near(&mut self, path: &str) {
+        for stamp in STAMPS {
+            let seconds = SECONDS.map(|leaf| format!("{stamp}.{leaf}"));
+            let nanoseconds = NANOSECONDS.map(|leaf| format!("{stamp}.{leaf}"));
+            let number = |shape: &Shape<usize>| matches!(shape, Shape::Number(_));
+            self.near(path, &seconds.each_ref().map(String::as_str), slot::SECOND, number);
+            self.near(path, &nanoseconds.each_ref().map(String::as_str), slot::NANOSECOND, number);
+        }
+    }
+
+    /// Wants the first of `leaves` that lies beside the path or beside one of its ancestors.
+    fn near(&mut self, path: &str, leaves: &[&str], slot: Slot, fits: impl Fn(&Shape<usize>) -> bool) {
+        if self.definition.is_some() && self.spec.wants.iter().any(|want| want.slot == slot) {
+            return;
+        }
+        let mut ancestor = path;
+        while !ancestor.is_empty() {
+            ancestor = ancestor.rsplit_once('.').map_or("", |(parent, _)| parent);
+            for leaf in leaves {
+                let path = if ancestor.is_empty() { (*leaf).to_owned() } else { format!("{ancestor}.{leaf}") };
+                match self.definition {
+                    None => self.want(&path, slot),
+                    Some(definition) if shape_at(definition, &path).is_some_and(&fits) => {
+                        self.want(&path, slot);
+                        return;
+                    }
+                    Some(_) => {}
+                }
+            }
+        }
+    }
+
+    /// Adds a field that the caller named.
+    fn select(&mut self, role: Role, selector: &Selector) {
+        let Some(path) = &selector.field else { return };
+        if self.spec.fields.iter().any(|field| &field.path == path) {
+            return;
+        }
+        if self.spec.form == Form::Interfaces {
+            self.interface(path, None, role);
+        } else if matches!(self.spec.form, Form::Table | Form::Groups) {
+            let velocity = match path.rsplit_once('.') {
+                Some((parent, "positions")) => format!("{parent}.velocities"),
+                Some((parent, "position")) => format!("{parent}.velocity"),
+                _ => String::new(),
+            };
+            self.position(path, &velocity, role);
+        }
+    }
+}

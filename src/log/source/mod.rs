@@ -1,0 +1,55 @@
+//! Topics that carry joints: which messages are read, for which fields, into what.
+
+mod kind;
+mod plans;
+mod table;
+mod versioned;
+
+pub(super) use kind::{Field, Form, Role, Spec, spec_for};
+pub(super) use plans::{Plans, RawTrajectory};
+pub(super) use table::{Stamps, Table};
+pub(super) use versioned::Versioned;
+
+/// Slots of fields that every form shares.
+pub(super) mod slot {
+    use crate::log::decode::Slot;
+
+    pub(in crate::log) const SECOND: Slot = 0;
+    pub(in crate::log) const NANOSECOND: Slot = 1;
+    pub(in crate::log) const NAMES: Slot = 2;
+    /// Element of a list of structs: one joint, or one trajectory of several.
+    pub(in crate::log) const GROUP: Slot = 3;
+    /// Names of the values of one joint.
+    pub(in crate::log) const INTERFACES: Slot = 4;
+    /// Values of one joint.
+    pub(in crate::log) const VALUES: Slot = 5;
+    pub(in crate::log) const SPEED_SCALING: Slot = 6;
+    pub(in crate::log) const POINT: Slot = 7;
+    pub(in crate::log) const POINT_SECOND: Slot = 8;
+    pub(in crate::log) const POINT_NANOSECOND: Slot = 9;
+    pub(in crate::log) const POSITIONS: Slot = 10;
+    pub(in crate::log) const VELOCITIES: Slot = 11;
+    pub(in crate::log) const ACCELERATIONS: Slot = 12;
+    pub(in crate::log) const VERSION: Slot = 13;
+    /// The first of a table's own fields.
+    pub(in crate::log) const FIELD: Slot = 32;
+}
+
+/// A topic with joint angles, as a caller names it: `TOPIC` or `TOPIC:FIELD`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Selector {
+    /// Topic name.
+    pub topic: String,
+    /// Path of the position field within the message, where the topic has several.
+    pub field: Option<String>,
+}
+
+impl Selector {
+    /// Splits at the last colon; topic names have none.
+    pub fn parse(text: &str) -> Self {
+        match text.rsplit_once(':') {
+            Some((topic, field)) if !field.is_empty() => Self { topic: topic.into(), field: Some(field.into()) },
+            _ => Self { topic: text.trim_end_matches(':').into(), field: None },
+        }
+    }
+}

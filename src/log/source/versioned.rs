@@ -1,0 +1,124 @@
+//! Values whose names come in another topic, joined by a version number
+//! (`pal_statistics_msgs`, as the ROS 2 controller manager publishes its interfaces).
+
+use std::collections::BTreeMap;
+
+use super::{Field, Form, Role, Stamps, Table, slot, table::stamp_ns};
+use crate::log::decode::{Numbers, Sink, Slot, Texts};
+
+/// Either half: the lists of names by version, or the values.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(in crate::log) struct Versioned {
+    names: BTreeMap<u64, Vec<String>>,
+    stamps: Stamps,
+    versions: Vec<u64>,
+    values: Vec<Vec<f64>>,
+    message: Message,
+}
+
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Message {
+    second: f64,
+    nanosecond: f64,
+    version: f64,
+    names: Vec<String>,
+    values: Vec<f64>,
+}
+
+impl Versioned {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float to integer cast saturates")]
+    pub(in crate::log) fn commit(&mut self, publish_ns: u64, log_ns: u64) {
+        let message = std::mem::take(&mut self.message);
+        let version = message.version as u64;
+        if !message.names.is_empty() {
+            self.names.insert(version, message.names);
+        }
+        if !message.values.is_empty() {
+            self.stamps.push(stamp_ns(message.second, message.nanosecond), publish_ns, log_ns);
+            self.versions.push(version);
+            self.values.push(message.values);
+        }
+    }
+
+    pub(in crate::log) fn append(&mut self, other: &mut Self) {
+        self.names.append(&mut other.names);
+        self.stamps.append(&other.stamps);
+        other.stamps.clear();
+        self.versions.append(&mut other.versions);
+        self.values.append(&mut other.values);
+    }
+
+    /// The values as samples of joints: `command_interface.<joint>/position` is the plan,
+    /// `state_interface.<joint>/position` the measurement. `None` without such names.
+    pub(in crate::log) fn to_table(&self, names: &Self) -> Option<Table> {
+        let field = |path: &str, role, velocity, is_velocity| Field { path: path.into(), role, velocity, is_velocity };
+        let fields = [
+            field("command.position", Role::Planned, Some(1), false),
+            field("command.velocity", Role::Planned, None, true),
+            field("state.position", Role::Measured, None, false),
+        ];
+        let mut table = Table::new(Form::Versioned, &fields, &[]);
+        let mut known: BTreeMap<u64, Vec<(usize, String, usize)>> = BTreeMap::new();
+        for (version, names) in &names.names {
+            let places = names.iter().enumerate().filter_map(|(place, name)| {
+                let (kind, rest) = name.split_once(['.', '/'])?;
+                let (joint, quantity) = rest.rsplit_once('/')?;
+                let field = match (kind, quantity) {
+                    ("command_interface", "position") => 0,
+                    ("command_interface", "velocity") => 1,
+                    ("state_interface", "position") => 2,
+                    _ => return None,
+                };
+                Some((place, joint.to_owned(), field))
+            });
+            known.insert(*version, places.collect());
+        }
+        for (row, (version, values)) in self.versions.iter().zip(&self.values).enumerate() {
+            let Some(places) = known.get(version) else { continue };
+            let (header, publish, log) =
+                (self.stamps.header_ns[row], self.stamps.publish_ns[row], self.stamps.log_ns[row]);
+            let cells = places.iter().filter_map(|(place, joint, field)| {
+                values.get(*place).map(|&value| (joint.as_str(), *field, value))
+            });
+            table.push_row(header, publish, log, cells);
+        }
+        (table.len() > 0).then_some(table)
+    }
+}
+
+impl Sink for Versioned {
+    fn number(&mut self, slot: Slot, value: f64) {
+        match slot {
+            slot::SECOND => self.message.second = value,
+            slot::NANOSECOND => self.message.nanosecond = value,
+            slot::VERSION => self.message.version = value,
+            _ => {}
+        }
+    }
+
+    fn text(&mut self, _slot: Slot, _text: &[u8]) {}
+
+    fn numbers(&mut self, slot: Slot, values: Numbers<'_>) {
+        if slot == slot::VALUES {
+            self.message.values = values.to_vec();
+        }
+    }
+
+    fn texts(&mut self, slot: Slot, values: Texts<'_>) {
+        if slot == slot::NAMES {
+            self.message.names = values.to_vec();
+        }
+    }
+
+    fn element(&mut self, slot: Slot) {
+        if slot == Slot::MAX {
+            self.message = Message::default();
+        }
+    }
+
+    fn expected_texts(&self, _slot: Slot) -> Option<&[u8]> {
+        None
+    }
+
+    fn same_texts(&mut self, _slot: Slot) {}
+}
