@@ -73,8 +73,8 @@ impl LogWriter<BufWriter<File>> {
         options: Options,
     ) -> Result<Self, WriteError> {
         let path = path.as_ref();
-        let file = File::create_new(path)
-            .map_err(|source| WriteError::Create { path: path.to_owned(), source })?;
+        let file =
+            File::create_new(path).map_err(|source| WriteError::Create { path: path.to_owned(), source })?;
         Self::new(BufWriter::new(file), joint_names, options)
     }
 }

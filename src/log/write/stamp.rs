@@ -16,8 +16,9 @@ pub(super) struct Stamp {
 impl Stamp {
     pub(super) fn new(stamp_ns: i64) -> Result<Self, WriteError> {
         let (seconds, nanoseconds) = split(stamp_ns, "stamp")?;
-        let log_time_ns =
-            stamp_ns.try_into().map_err(|_| WriteError::TimeRange { quantity: "stamp", value_ns: stamp_ns })?;
+        let log_time_ns = stamp_ns
+            .try_into()
+            .map_err(|_| WriteError::TimeRange { quantity: "stamp", value_ns: stamp_ns })?;
         Ok(Self { seconds, nanoseconds, log_time_ns })
     }
 
