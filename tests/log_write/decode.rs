@@ -85,7 +85,9 @@ impl<'a> Reader<'a> {
     }
 
     fn count(&mut self) -> usize {
-        u32::from_le_bytes(self.take()) as usize
+        let count = u32::from_le_bytes(self.take()) as usize;
+        assert!(count <= self.body.len(), "{count} elements in {} bytes", self.body.len());
+        count
     }
 
     fn record(&mut self, name: &str) -> Value {
