@@ -5,6 +5,7 @@
 //! and how late the machine followed. See `ARCHITECTURE.md` for the layers.
 
 // ground
+pub mod atomic;
 pub mod math;
 pub mod remark;
 pub mod rng;

@@ -24,10 +24,15 @@ fn directory(path: &Path, remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogErro
     let description = path.join("metadata.yaml");
     if description.is_file() {
         let named = named_files(&description)?;
-        let (there, missing): (Vec<_>, Vec<_>) = named.into_iter().map(|name| path.join(name)).partition(|p| p.is_file());
+        let (there, missing): (Vec<_>, Vec<_>) =
+            named.into_iter().map(|name| path.join(name)).partition(|p| p.is_file());
         for absent in &missing {
             let name = absent.file_name().unwrap_or_default().to_string_lossy();
-            remarks.add(Code::MissingFile, 1, format!("metadata.yaml names {name}, which is not there; read without it"));
+            remarks.add(
+                Code::MissingFile,
+                1,
+                format!("metadata.yaml names {name}, which is not there; read without it"),
+            );
         }
         if !there.is_empty() {
             return Ok(there);
@@ -96,7 +101,8 @@ mod tests {
     #[test]
     fn a_bag_of_another_storage_says_how_to_convert_it() {
         let folder = tempfile::tempdir().unwrap();
-        let text = "rosbag2_bagfile_information:\n  storage_identifier: sqlite3\n  relative_file_paths: [a.db3]\n";
+        let text =
+            "rosbag2_bagfile_information:\n  storage_identifier: sqlite3\n  relative_file_paths: [a.db3]\n";
         std::fs::write(folder.path().join("metadata.yaml"), text).unwrap();
         let error = files(&[folder.path().to_owned()], &mut Remarks::default()).unwrap_err().to_string();
         assert!(error.contains("sqlite3") && error.contains("ros2 bag convert"), "{error}");

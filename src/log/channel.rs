@@ -49,7 +49,9 @@ impl Definitions {
         let mut all = Self { schemas: BTreeMap::new(), channels: BTreeMap::new() };
         layout.schemas.iter().for_each(|schema| all.add_schema(schema));
         layout.channels.iter().for_each(|channel| all.add_channel(channel.clone()));
-        if layout.channels_complete && all.channels.values().all(|c| c.schema_id == 0 || all.schemas.contains_key(&c.schema_id)) {
+        if layout.channels_complete
+            && all.channels.values().all(|c| c.schema_id == 0 || all.schemas.contains_key(&c.schema_id))
+        {
             return all;
         }
         let inside: Vec<Self> = layout
@@ -106,12 +108,16 @@ impl Definitions {
             .iter()
             .map(|(&id, record)| {
                 let schema = self.schemas.get(&record.schema_id).unwrap_or(&empty);
-                let mine: Vec<_> =
-                    selectors.iter().filter(|(_, s)| s.topic == record.topic).map(|(role, s)| (*role, s)).collect();
+                let mine: Vec<_> = selectors
+                    .iter()
+                    .filter(|(_, s)| s.topic == record.topic)
+                    .map(|(role, s)| (*role, s))
+                    .collect();
                 let (reader, problem) = match record.encoding.as_str() {
                     "cdr" => {
                         let definition = definitions.entry(record.schema_id).or_insert_with(|| {
-                            Definition::parse(&schema.name, &schema.encoding, &schema.data).map_err(|e| e.to_string())
+                            Definition::parse(&schema.name, &schema.encoding, &schema.data)
+                                .map_err(|e| e.to_string())
                         });
                         cdr(schema, definition, &mine)
                     }

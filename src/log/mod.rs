@@ -1,7 +1,8 @@
 //! MCAP logs: the only part of the crate that sees the format.
 //!
-//! Bytes become records (`file`), records become fields (`schema`, `decode`), fields become
-//! samples of topics (`source`, `read`), and two topics become planned and measured series.
+//! Reading: bytes become records (`file`), records become fields (`schema`, `decode`), fields
+//! become samples of topics (`source`, `read`), and two topics become planned and measured
+//! series. Writing: samples become messages of ROS 2 types (`write`).
 
 mod bag;
 mod channel;
@@ -11,7 +12,9 @@ mod file;
 mod read;
 mod schema;
 mod source;
+mod write;
 
 pub use error::LogError;
 pub use read::{Attachment, FileInfo};
 pub use source::Selector;
+pub use write::{ControllerState, LogWriter, Options as WriteOptions, Point, Role, Topics, WriteError};

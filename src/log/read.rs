@@ -52,7 +52,9 @@ impl Content {
         macro_rules! read {
             ($sink:expr) => {{
                 match decoder {
-                    Decoder::Program(program) => program.run(message.data, $sink).map_err(|e| e.to_string())?,
+                    Decoder::Program(program) => {
+                        program.run(message.data, $sink).map_err(|e| e.to_string())?
+                    }
                     Decoder::Tree(tree) => tree.run(message.data, $sink)?,
                 }
                 $sink.commit(message.publish_time_ns, message.log_time_ns);
@@ -161,7 +163,9 @@ fn not_mcap(path: &std::path::Path, bytes: &[u8]) -> LogError {
     let fix = match bytes {
         [] => "the file is empty",
         [b'#', b'R', b'O', b'S', ..] => "convert the ROS 1 bag first, for example with rosbags-convert",
-        [b'S', b'Q', b'L', b'i', ..] => "convert the SQLite bag first, with `ros2 bag convert` to MCAP storage",
+        [b'S', b'Q', b'L', b'i', ..] => {
+            "convert the SQLite bag first, with `ros2 bag convert` to MCAP storage"
+        }
         [0x28, 0xB5, 0x2F, 0xFD, ..] => "decompress it first, with `zstd -d`",
         _ => "give an .mcap recording or a ROS 2 bag directory",
     };
@@ -184,7 +188,11 @@ fn describe(path: &std::path::Path, bytes: &[u8], layout: &Layout<'_>, out: &mut
         damage.skipped_bytes,
         format!("bytes of {name} that are no record, skipped"),
     );
-    out.remarks.add(Code::DamagedBytes, damage.broken_attachments, format!("attachments of {name} with a wrong checksum"));
+    out.remarks.add(
+        Code::DamagedBytes,
+        damage.broken_attachments,
+        format!("attachments of {name} with a wrong checksum"),
+    );
     out.files.push(FileInfo {
         name,
         bytes: bytes.len() as u64,
@@ -222,7 +230,8 @@ fn routes(
             out.topics.len() - 1
         });
         let read = channel.reader.as_ref().map(|(spec, decoder)| {
-            let known = out.sources.iter().zip(specs.iter()).position(|(s, known)| s.topic == topic && known == spec);
+            let known =
+                out.sources.iter().zip(specs.iter()).position(|(s, known)| s.topic == topic && known == spec);
             let source = known.unwrap_or_else(|| {
                 out.sources.push(Source { topic, content: Content::new(spec, joints) });
                 specs.push(spec.clone());
@@ -303,13 +312,20 @@ impl Progress<'_> {
                 total.add(&std::mem::take(part));
             }
             let remarks = &mut self.out.remarks;
-            remarks.add(Code::UnknownChannel, std::mem::take(&mut piece.unknown), "messages of channels that the file does not define");
+            remarks.add(
+                Code::UnknownChannel,
+                std::mem::take(&mut piece.unknown),
+                "messages of channels that the file does not define",
+            );
             match std::mem::replace(&mut piece.loss, Loss::Nothing) {
                 Loss::Nothing => {}
                 Loss::Cut => remarks.add(
                     Code::PartialChunk,
                     1,
-                    format!("the file ends within a chunk; {} whole messages before the cut were kept", piece.messages),
+                    format!(
+                        "the file ends within a chunk; {} whole messages before the cut were kept",
+                        piece.messages
+                    ),
                 ),
                 Loss::Dropped(reason) => {
                     remarks.add(Code::DamagedChunk, 1, format!("a chunk was dropped: {reason}"));
@@ -392,14 +408,20 @@ fn finish(out: &mut Extracted) {
             out.remarks.add(
                 Code::UndecodableMessage,
                 topic.undecodable,
-                format!("messages of {} that do not fit their schema, skipped; the first: {error}", topic.topic),
+                format!(
+                    "messages of {} that do not fit their schema, skipped; the first: {error}",
+                    topic.topic
+                ),
             );
         }
     }
-    let (halves, mut sources): (Vec<_>, Vec<_>) =
-        std::mem::take(&mut out.sources).into_iter().partition(|s| matches!(s.content, Content::Versioned(_)));
+    let (halves, mut sources): (Vec<_>, Vec<_>) = std::mem::take(&mut out.sources)
+        .into_iter()
+        .partition(|s| matches!(s.content, Content::Versioned(_)));
     for values in &halves {
-        let stem = |source: &Source| out.topics[source.topic].topic.rsplit_once('/').map(|(stem, _)| stem.to_owned());
+        let stem = |source: &Source| {
+            out.topics[source.topic].topic.rsplit_once('/').map(|(stem, _)| stem.to_owned())
+        };
         for names in &halves {
             if let (Content::Versioned(v), Content::Versioned(n)) = (&values.content, &names.content)
                 && stem(values) == stem(names)

@@ -45,8 +45,12 @@ pub fn plan_tracks(trajectories: &[PlannedTrajectory], measured: &Series) -> (Se
         let start = track.t_s().partition_point(|&t| t < from_s);
         let t_s = &track.t_s()[start..];
         let states: Vec<State> = t_s.iter().map(|&t| state_at(&pieces, t)).collect();
-        let cuts: Vec<usize> =
-            track.segments().iter().filter_map(|s| s.start.checked_sub(start)).filter(|&cut| cut > 0).collect();
+        let cuts: Vec<usize> = track
+            .segments()
+            .iter()
+            .filter_map(|s| s.start.checked_sub(start))
+            .filter(|&cut| cut > 0)
+            .collect();
         let planned = Track::new(track.name(), t_s, states.iter().map(|s| s.position).collect(), &cuts)
             .and_then(|planned| planned.with_velocity(states.iter().map(|s| s.velocity).collect()));
         tracks.extend(planned.ok());
@@ -98,7 +102,8 @@ fn pieces(trajectories: &[PlannedTrajectory], measured: &Track) -> Vec<Piece> {
             })
             .collect();
         if knots.first().is_none_or(|first| first.t_s > start_s) {
-            let fallback = knots.first().map(|first| State { position: first.state.position, ..State::default() });
+            let fallback =
+                knots.first().map(|first| State { position: first.state.position, ..State::default() });
             let running = (!pieces.is_empty()).then(|| state_at(&pieces, start_s));
             let resting = measured.at(start_s).map(|s| State { position: s.position, ..State::default() });
             let Some(mut state) = running.or(resting).or(fallback) else { continue };

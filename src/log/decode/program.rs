@@ -17,19 +17,37 @@ pub(in crate::log) struct Want {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Step {
     /// Fixed bytes nobody asked for.
-    Skip { align: u8, bytes: u32 },
+    Skip {
+        align: u8,
+        bytes: u32,
+    },
     SkipText,
     SkipWideText,
     /// A sequence of numbers nobody asked for.
     SkipNumbers(Number),
-    Number { slot: Slot, number: Number },
+    Number {
+        slot: Slot,
+        number: Number,
+    },
     Text(Slot),
     /// A sequence, or an array of `count`.
-    Numbers { slot: Slot, number: Number, count: Option<u32> },
-    Texts { slot: Slot, count: Option<u32> },
+    Numbers {
+        slot: Slot,
+        number: Number,
+        count: Option<u32>,
+    },
+    Texts {
+        slot: Slot,
+        count: Option<u32>,
+    },
     /// The following `steps` steps for each element of a sequence or an array of `count`;
     /// an element has at least `least` bytes.
-    Repeat { slot: Option<Slot>, count: Option<u32>, steps: u32, least: u64 },
+    Repeat {
+        slot: Option<Slot>,
+        count: Option<u32>,
+        steps: u32,
+        least: u64,
+    },
     /// In the delimited form of XCDR2 a struct is preceded by its size.
     StructStart,
 }

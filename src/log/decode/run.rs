@@ -52,12 +52,14 @@ impl Program {
             // XCDR2, plain: lists of structs carry their size; some writers leave it out.
             (0, 0x06 | 0x07 | 0x10 | 0x11) => {
                 let little = kind & 1 == 1;
-                walk(little, 4, NO_SIZES).or_else(|_| walk(little, 4, Sizes { of_structs: false, of_lists: true }))
+                walk(little, 4, NO_SIZES)
+                    .or_else(|_| walk(little, 4, Sizes { of_structs: false, of_lists: true }))
             }
             // XCDR2, delimited: structs carry theirs too.
             (0, 0x08 | 0x09 | 0x14 | 0x15) => {
                 let little = kind & 1 == 1;
-                walk(little, 4, Sizes { of_structs: true, of_lists: true }).or_else(|_| walk(little, 4, NO_SIZES))
+                walk(little, 4, Sizes { of_structs: true, of_lists: true })
+                    .or_else(|_| walk(little, 4, NO_SIZES))
             }
             _ => Err(RunError::Encapsulation { kind: u16::from_be_bytes([zero, kind]) }),
         }

@@ -88,7 +88,8 @@ impl Texts<'_> {
                     at = (at + 3) & !3;
                     let Some(length) = raw.get(at..at + 4).and_then(|b| b.first_chunk::<4>()) else { break };
                     let length =
-                        if little_endian { u32::from_le_bytes(*length) } else { u32::from_be_bytes(*length) } as usize;
+                        if little_endian { u32::from_le_bytes(*length) } else { u32::from_be_bytes(*length) }
+                            as usize;
                     let Some(text) = raw.get(at + 4..at + 4 + length) else { break };
                     texts.push(String::from_utf8_lossy(without_terminator(text)).into_owned());
                     at += 4 + length;

@@ -159,7 +159,13 @@ impl<'a> SchemaRecord<'a> {
 impl ChannelRecord {
     pub(in crate::log) fn parse(body: &[u8]) -> Option<Self> {
         let mut f = Fields(body);
-        Some(Self { id: f.u16()?, schema_id: f.u16()?, topic: f.text()?, encoding: f.text()?, metadata: f.map()? })
+        Some(Self {
+            id: f.u16()?,
+            schema_id: f.u16()?,
+            topic: f.text()?,
+            encoding: f.text()?,
+            metadata: f.map()?,
+        })
     }
 }
 
@@ -183,7 +189,8 @@ impl<'a> ChunkRecord<'a> {
     pub(in crate::log) fn parse(body: &'a [u8]) -> Option<Self> {
         let mut f = Fields(body);
         f.bytes(16)?; // first and last log time: recomputed from the messages
-        let (uncompressed_size, crc, compression, compressed_size) = (f.u64()?, f.u32()?, f.block()?, f.u64()?);
+        let (uncompressed_size, crc, compression, compressed_size) =
+            (f.u64()?, f.u32()?, f.block()?, f.u64()?);
         let there = usize::try_from(compressed_size).map_or(f.0.len(), |size| size.min(f.0.len()));
         Some(Self { uncompressed_size, crc, compression, records: &f.0[..there], compressed_size })
     }

@@ -64,7 +64,9 @@ pub(in crate::log) fn scan(bytes: &[u8]) -> Option<Layout<'_>> {
                 continue;
             }
             match Record::cut_at(bytes, at) {
-                Some((Opcode::CHUNK, body)) if ChunkRecord::parse(body).is_some_and(|c| known(c.compression)) => {
+                Some((Opcode::CHUNK, body))
+                    if ChunkRecord::parse(body).is_some_and(|c| known(c.compression)) =>
+                {
                     layout.blocks.push(Block::Chunk { body, cut: true });
                 }
                 _ => layout.damage.skipped_bytes += (bytes.len() - at) as u64,
@@ -209,7 +211,10 @@ mod tests {
     fn a_cut_chunk_is_found_as_such() {
         let whole = file(&[chunk(b"aaaa"), chunk(&[7; 100])]);
         let layout = scan(&whole[..whole.len() - 50]).unwrap();
-        assert!(matches!(layout.blocks[..], [Block::Chunk { cut: false, .. }, Block::Chunk { cut: true, .. }]));
+        assert!(matches!(
+            layout.blocks[..],
+            [Block::Chunk { cut: false, .. }, Block::Chunk { cut: true, .. }]
+        ));
     }
 
     #[test]

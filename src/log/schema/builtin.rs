@@ -34,7 +34,13 @@ pub(super) fn basics() -> [Struct<String>; 5] {
             ("frame_id".to_owned(), Shape::Text),
         ],
     };
-    [stamp("builtin_interfaces/Time"), stamp("builtin_interfaces/Duration"), header, stamp("time"), stamp("duration")]
+    [
+        stamp("builtin_interfaces/Time"),
+        stamp("builtin_interfaces/Duration"),
+        header,
+        stamp("time"),
+        stamp("duration"),
+    ]
 }
 
 #[cfg(test)]

@@ -160,7 +160,9 @@ fn resolve(root: &str, mut structs: Vec<Struct<String>>) -> Result<Definition, S
             .get(name)
             .or_else(|| by_name.get(&format!("{package}/{name}")))
             .or_else(|| if name.contains('/') { None } else { by_last.get(name) });
-        found.copied().ok_or_else(|| SchemaError::Undefined { name: name.to_owned(), within: within.to_owned() })
+        found
+            .copied()
+            .ok_or_else(|| SchemaError::Undefined { name: name.to_owned(), within: within.to_owned() })
     };
     let structs = structs
         .iter()

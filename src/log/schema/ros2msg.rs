@@ -132,7 +132,10 @@ mod tests {
         let rule = "=".repeat(80);
         let text = format!("Inner inner\n{rule}\nMSG: pkg/Inner\nfloat64 x\n{rule}\nMSG: other/msg/Empty\n");
         let structs = parse("pkg/Outer", &text).unwrap();
-        assert_eq!(structs.iter().map(|s| s.name.as_str()).collect::<Vec<_>>(), ["pkg/Outer", "pkg/Inner", "other/Empty"]);
+        assert_eq!(
+            structs.iter().map(|s| s.name.as_str()).collect::<Vec<_>>(),
+            ["pkg/Outer", "pkg/Inner", "other/Empty"]
+        );
         assert_eq!(structs[2].fields.len(), 1);
     }
 }

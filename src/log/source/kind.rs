@@ -66,7 +66,8 @@ pub(in crate::log) fn spec_for(
     selectors: &[(Role, &Selector)],
 ) -> Option<Spec> {
     let plain = plain_name(&type_name.replace('.', "/"));
-    let mut builder = Builder { definition, spec: Spec { form: Form::Table, fields: Vec::new(), wants: Vec::new() } };
+    let mut builder =
+        Builder { definition, spec: Spec { form: Form::Table, fields: Vec::new(), wants: Vec::new() } };
     match plain.as_str() {
         "control_msgs/JointTrajectoryControllerState" => builder.controller(""),
         "control_msgs/FollowJointTrajectory_FeedbackMessage" => builder.controller("feedback."),
@@ -132,7 +133,8 @@ impl Builder<'_> {
             ("feedback", Role::Measured),
             ("actual", Role::Measured),
         ] {
-            let (position, velocity) = (format!("{prefix}{point}.positions"), format!("{prefix}{point}.velocities"));
+            let (position, velocity) =
+                (format!("{prefix}{point}.positions"), format!("{prefix}{point}.velocities"));
             self.position(&position, if role == Role::Planned { &velocity } else { "" }, role);
         }
         self.want(&format!("{prefix}speed_scaling_factor"), slot::SPEED_SCALING);
@@ -167,7 +169,12 @@ impl Builder<'_> {
             is_velocity: false,
         });
         if let Some(velocity) = velocity {
-            self.spec.fields.push(Field { path: velocity.to_owned(), role, velocity: None, is_velocity: true });
+            self.spec.fields.push(Field {
+                path: velocity.to_owned(),
+                role,
+                velocity: None,
+                is_velocity: true,
+            });
         }
     }
 
@@ -187,9 +194,12 @@ impl Builder<'_> {
         if with_velocity {
             self.want(velocity, slot + 1);
         }
-        self.near(path, &NAMES, slot::NAMES, |shape| {
-            matches!(shape, Shape::Sequence(of) if **of == Shape::Text)
-        });
+        self.near(
+            path,
+            &NAMES,
+            slot::NAMES,
+            |shape| matches!(shape, Shape::Sequence(of) if **of == Shape::Text),
+        );
         self.stamp_near(path);
     }
 
@@ -212,7 +222,8 @@ impl Builder<'_> {
         while !ancestor.is_empty() {
             ancestor = ancestor.rsplit_once('.').map_or("", |(parent, _)| parent);
             for leaf in leaves {
-                let path = if ancestor.is_empty() { (*leaf).to_owned() } else { format!("{ancestor}.{leaf}") };
+                let path =
+                    if ancestor.is_empty() { (*leaf).to_owned() } else { format!("{ancestor}.{leaf}") };
                 match self.definition {
                     None => self.want(&path, slot),
                     Some(definition) if shape_at(definition, &path).is_some_and(&fits) => {

@@ -48,7 +48,9 @@ impl Selector {
     /// Splits at the last colon; topic names have none.
     pub fn parse(text: &str) -> Self {
         match text.rsplit_once(':') {
-            Some((topic, field)) if !field.is_empty() => Self { topic: topic.into(), field: Some(field.into()) },
+            Some((topic, field)) if !field.is_empty() => {
+                Self { topic: topic.into(), field: Some(field.into()) }
+            }
             _ => Self { topic: text.trim_end_matches(':').into(), field: None },
         }
     }

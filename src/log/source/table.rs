@@ -293,7 +293,9 @@ impl Sink for Table {
                 into.resize(message.groups - usize::from(message.groups > 0), f64::NAN);
                 into.push(place.and_then(|place| values.get(place).copied()).unwrap_or(f64::NAN));
             }
-        } else if let Some(into) = slot.checked_sub(slot::FIELD).and_then(|k| message.values.get_mut(usize::from(k))) {
+        } else if let Some(into) =
+            slot.checked_sub(slot::FIELD).and_then(|k| message.values.get_mut(usize::from(k)))
+        {
             if message.groups > 0 {
                 into.resize(message.groups - 1, f64::NAN);
                 into.push(values.to_vec().first().copied().unwrap_or(f64::NAN));
@@ -319,8 +321,11 @@ impl Sink for Table {
             }
             slot::INTERFACES => {
                 let names = values.to_vec();
-                self.message.interface_places =
-                    self.fields.iter().map(|field| names.iter().position(|name| *name == field.path)).collect();
+                self.message.interface_places = self
+                    .fields
+                    .iter()
+                    .map(|field| names.iter().position(|name| *name == field.path))
+                    .collect();
             }
             _ => {}
         }

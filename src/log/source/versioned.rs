@@ -26,7 +26,11 @@ struct Message {
 }
 
 impl Versioned {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a float to integer cast saturates")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a float to integer cast saturates"
+    )]
     pub(in crate::log) fn commit(&mut self, publish_ns: u64, log_ns: u64) {
         let message = std::mem::take(&mut self.message);
         let version = message.version as u64;
@@ -51,7 +55,12 @@ impl Versioned {
     /// The values as samples of joints: `command_interface.<joint>/position` is the plan,
     /// `state_interface.<joint>/position` the measurement. `None` without such names.
     pub(in crate::log) fn to_table(&self, names: &Self) -> Option<Table> {
-        let field = |path: &str, role, velocity, is_velocity| Field { path: path.into(), role, velocity, is_velocity };
+        let field = |path: &str, role, velocity, is_velocity| Field {
+            path: path.into(),
+            role,
+            velocity,
+            is_velocity,
+        };
         let fields = [
             field("command.position", Role::Planned, Some(1), false),
             field("command.velocity", Role::Planned, None, true),

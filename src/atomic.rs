@@ -1,0 +1,153 @@
+//! Files that appear whole or not at all.
+
+use std::{
+    fs::{self, File},
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicU64, Ordering},
+};
+
+use thiserror::Error;
+
+/// Why a file did not appear.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum AtomicError {
+    /// The target is a directory, a device or a pipe, which cannot be replaced whole.
+    #[error("{path} is not a file")]
+    NotAFile {
+        /// The target.
+        path: PathBuf,
+    },
+    /// The file system refused.
+    #[error("cannot {action} {path}")]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// With which file.
+        path: PathBuf,
+        /// Why it failed.
+        source: io::Error,
+    },
+}
+
+/// Has `write` fill a new file beside `target` and then puts it in the place of `target`, which
+/// holds its old content, or does not exist, until the new content is on the disk. On failure
+/// the new file is removed. A symbolic link stays one; the file it leads to is replaced.
+///
+/// # Errors
+///
+/// What `write` returns, or [`AtomicError`].
+pub fn write_atomically<T, E: From<AtomicError>>(
+    target: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> Result<T, E>,
+) -> Result<T, E> {
+    let target = resolve(target)?;
+    let partial = Partial::beside(&target)?;
+    let file = File::create_new(&partial.0).map_err(failed("create", &partial.0))?;
+    let mut output = BufWriter::new(file);
+    let value = write(&mut output)?;
+    output.flush().and_then(|()| output.get_ref().sync_all()).map_err(failed("write", &partial.0))?;
+    drop(output);
+    fs::rename(&partial.0, &target).map_err(failed("replace", &target))?;
+    Ok(value)
+}
+
+/// The file that a path leads to.
+fn resolve(target: &Path) -> Result<PathBuf, AtomicError> {
+    match fs::metadata(target) {
+        Ok(found) if found.is_file() => fs::canonicalize(target).map_err(failed("find", target)),
+        Ok(_) => Err(AtomicError::NotAFile { path: target.to_owned() }),
+        Err(_) => Ok(target.to_owned()),
+    }
+}
+
+fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> AtomicError {
+    move |source| AtomicError::Io { action, path: path.to_owned(), source }
+}
+
+/// A name that no other writer uses, and no file once it goes out of scope.
+struct Partial(PathBuf);
+
+impl Partial {
+    fn beside(target: &Path) -> Result<Self, AtomicError> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let Some(name) = target.file_name() else {
+            return Err(AtomicError::NotAFile { path: target.to_owned() });
+        };
+        let mut partial = std::ffi::OsString::from(".");
+        partial.push(name);
+        partial.push(format!(".{}-{}.partial", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
+        Ok(Self(target.with_file_name(partial)))
+    }
+}
+
+impl Drop for Partial {
+    fn drop(&mut self) {
+        // After a rename there is nothing left to remove, and no one to tell of a failure.
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    }
+
+    #[test]
+    fn a_failure_leaves_the_old_content_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("run.mcap");
+        fs::write(&target, "old").unwrap();
+        let refused: Result<(), AtomicError> = write_atomically(&target, |file| {
+            file.write_all(b"half of the new").map_err(failed("write", &target))?;
+            Err(AtomicError::NotAFile { path: "given up".into() })
+        });
+        assert!(refused.is_err());
+        assert_eq!(fs::read_to_string(&target).unwrap(), "old");
+        assert_eq!(names(folder.path()), ["run.mcap"]);
+    }
+
+    #[test]
+    fn until_the_last_moment_the_old_content_stands_and_then_the_new() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("run.mcap");
+        fs::write(&target, "old").unwrap();
+        let written: Result<(), AtomicError> = write_atomically(&target, |file| {
+            file.write_all(b"new").and_then(|()| file.flush()).map_err(failed("write", &target))?;
+            assert_eq!(fs::read_to_string(&target).unwrap(), "old");
+            Ok(())
+        });
+        assert!(written.is_ok());
+        assert_eq!(fs::read_to_string(&target).unwrap(), "new");
+        assert_eq!(names(folder.path()), ["run.mcap"]);
+    }
+
+    #[test]
+    fn a_folder_is_not_replaced_and_a_missing_one_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let onto_folder: Result<(), AtomicError> = write_atomically(folder.path(), |_| Ok(()));
+        assert!(matches!(onto_folder, Err(AtomicError::NotAFile { .. })));
+        let nowhere = folder.path().join("missing").join("run.mcap");
+        let into_nowhere: Result<(), AtomicError> = write_atomically(&nowhere, |_| Ok(()));
+        assert!(matches!(into_nowhere, Err(AtomicError::Io { action: "create", .. })));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_symbolic_link_stays_and_its_file_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        let written: Result<(), AtomicError> =
+            write_atomically(&link, |output| output.write_all(b"new").map_err(failed("write", &link)));
+        assert!(written.is_ok());
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+    }
+}

@@ -1,0 +1,101 @@
+//! One topic of a log being written.
+
+use std::{collections::BTreeMap, io::Write};
+
+use mcap::{
+    McapResult,
+    records::MessageHeader,
+    write::{NoSeek, Writer},
+};
+
+use super::{definition, stamp::Stamp};
+
+/// Quality of service that replaying tools offer again: keep the last ten, reliable, volatile,
+/// no deadlines. Integers and not names, because ROS 2 before jazzy knows only these.
+const OFFERED_QOS_PROFILES: &str = "\
+- history: 1
+  depth: 10
+  reliability: 1
+  durability: 2
+  deadline: {sec: 9223372036, nsec: 854775807}
+  lifespan: {sec: 9223372036, nsec: 854775807}
+  liveliness: 1
+  liveliness_lease_duration: {sec: 9223372036, nsec: 854775807}
+  avoid_ros_namespace_conventions: false
+";
+
+/// A message type and the hash of its definition by REP 2016.
+#[derive(Debug)]
+pub(super) struct MessageType {
+    package: &'static str,
+    name: &'static str,
+    hash: &'static str,
+}
+
+pub(super) const JOINT_STATE: MessageType = MessageType {
+    package: "sensor_msgs",
+    name: "JointState",
+    hash: "RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e",
+};
+
+pub(super) const JOINT_TRAJECTORY: MessageType = MessageType {
+    package: "trajectory_msgs",
+    name: "JointTrajectory",
+    hash: "RIHS01_179b33eba59d676f6d967ac71fe35e7ca2f64b2f3928f4a018cec115e213796e",
+};
+
+pub(super) const CONTROLLER_STATE: MessageType = MessageType {
+    package: "control_msgs",
+    name: "JointTrajectoryControllerState",
+    hash: "RIHS01_51d8dd89cc624cbe9daaeeb4d80d6de9b86168ffdc3be41fefc0953e3c26e480",
+};
+
+/// A topic; the log learns of it with its first message.
+#[derive(Debug)]
+pub(super) struct Channel {
+    topic: String,
+    message_type: &'static MessageType,
+    id: Option<u16>,
+    sequence: u32,
+}
+
+impl Channel {
+    pub(super) fn new(topic: String, message_type: &'static MessageType) -> Self {
+        Self { topic, message_type, id: None, sequence: 0 }
+    }
+
+    pub(super) fn topic(&self) -> &str {
+        &self.topic
+    }
+
+    pub(super) fn send<W: Write>(
+        &mut self,
+        log: &mut Writer<NoSeek<W>>,
+        stamp: Stamp,
+        data: &[u8],
+    ) -> McapResult<()> {
+        let channel_id = match self.id {
+            Some(id) => id,
+            None => *self.id.insert(self.register(log)?),
+        };
+        let header = MessageHeader {
+            channel_id,
+            sequence: self.sequence,
+            log_time: stamp.log_time_ns,
+            publish_time: stamp.log_time_ns,
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        log.write_to_known_channel(&header, data)
+    }
+
+    fn register<W: Write>(&self, log: &mut Writer<NoSeek<W>>) -> McapResult<u16> {
+        let MessageType { package, name, hash } = self.message_type;
+        let text = definition::ros2msg(&format!("{package}/{name}"));
+        let schema = log.add_schema(&format!("{package}/msg/{name}"), "ros2msg", text.as_bytes())?;
+        let metadata = BTreeMap::from([
+            ("offered_qos_profiles".to_owned(), OFFERED_QOS_PROFILES.to_owned()),
+            ("topic_type_hash".to_owned(), (*hash).to_owned()),
+        ]);
+        log.add_channel(schema, &self.topic, "cdr", &metadata)
+    }
+}

@@ -1,0 +1,281 @@
+//! Writing a run as an MCAP log of ROS 2 messages that the usual tools open.
+
+mod cdr;
+mod channel;
+mod definition;
+mod error;
+mod message;
+mod options;
+mod stamp;
+
+use std::{
+    borrow::Cow,
+    collections::{BTreeMap, BTreeSet},
+    fs::File,
+    io::{BufWriter, Write},
+    path::Path,
+};
+
+use mcap::{
+    Attachment, Compression, WriteOptions,
+    records::Metadata,
+    write::{NoSeek, Writer},
+};
+
+pub use error::WriteError;
+pub use message::{ControllerState, Point};
+pub use options::{Options, Role, Topics};
+
+use cdr::Cdr;
+use channel::{CONTROLLER_STATE, Channel, JOINT_STATE, JOINT_TRAJECTORY};
+use message::check_length;
+use stamp::Stamp;
+
+/// Writes samples of one set of joints, one call a sample.
+///
+/// Equal calls give equal bytes. Once every topic had its first message and while a chunk lasts,
+/// a call allocates nothing but the amortised growth of that chunk's index. Output happens when
+/// a chunk ends and in whole chunks: a process killed at any instant leaves a log that reads back
+/// up to the last [`flush`](Self::flush). A power failure takes what the operating system has
+/// not stored yet; give an output whose `flush` waits for the disk if that matters.
+///
+/// Times are nanoseconds since 1970; they become the header stamp, the log time and the publish
+/// time alike. Values are written as given, NaN and infinities too: a log says what happened.
+///
+/// Call [`finish`](Self::finish); dropping the writer closes the log too, but hides failures.
+pub struct LogWriter<W: Write> {
+    mcap: Writer<NoSeek<W>>,
+    joint_names: Vec<String>,
+    cdr: Cdr,
+    channels: Channels,
+    flush_interval_ns: Option<u64>,
+    unflushed_since_ns: Option<u64>,
+}
+
+struct Channels {
+    planned: Channel,
+    measured: Channel,
+    command: Channel,
+    controller_state: Channel,
+    trajectory: Channel,
+}
+
+impl LogWriter<BufWriter<File>> {
+    /// Creates a file and writes to it as samples come; for logs of a machine that moves.
+    /// An existing file is left alone.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::Create`], or as [`LogWriter::new`].
+    pub fn create<S: AsRef<str>>(
+        path: impl AsRef<Path>,
+        joint_names: &[S],
+        options: Options,
+    ) -> Result<Self, WriteError> {
+        let path = path.as_ref();
+        let file =
+            File::create_new(path).map_err(|source| WriteError::Create { path: path.to_owned(), source })?;
+        Self::new(BufWriter::new(file), joint_names, options)
+    }
+}
+
+impl<W: Write> LogWriter<W> {
+    /// Starts a log on any output.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`] if joint names or topics are missing, unusable or repeated, or if the
+    /// output takes nothing.
+    pub fn new<S: AsRef<str>>(output: W, joint_names: &[S], options: Options) -> Result<Self, WriteError> {
+        let joint_names: Vec<String> = joint_names.iter().map(|name| name.as_ref().to_owned()).collect();
+        check_joint_names(&joint_names)?;
+        let channels = Channels::new(options.topics)?;
+        let mcap = WriteOptions::new()
+            .profile("ros2")
+            .library(concat!("hydrotrace ", env!("CARGO_PKG_VERSION")))
+            .compression(Some(Compression::Zstd))
+            .compression_level(options.compression_level)
+            .compression_threads(0)
+            .chunk_size(Some(options.chunk_bytes.min(Options::MAX_CHUNK_BYTES).into()))
+            // A chunk is built in memory and written whole, so a killed writer leaves no torn one.
+            .disable_seeking(true)
+            .create(NoSeek::new(output))?;
+        Ok(Self {
+            mcap,
+            joint_names,
+            cdr: Cdr::default(),
+            channels,
+            flush_interval_ns: options.flush_interval_ns,
+            unflushed_since_ns: None,
+        })
+    }
+
+    /// Writes where joints should be, are, or were sent: `sensor_msgs/msg/JointState`. One value
+    /// a joint in the order of the joint names, or empty slices where nothing is known.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::LengthMismatch`], [`WriteError::TimeRange`] or [`WriteError::Output`].
+    pub fn joint_sample(
+        &mut self,
+        role: Role,
+        stamp_ns: i64,
+        position_rad: &[f64],
+        velocity_rad_s: &[f64],
+        effort_n_m: &[f64],
+    ) -> Result<(), WriteError> {
+        let joints = self.joint_names.len();
+        check_length("position", position_rad, joints)?;
+        check_length("velocity", velocity_rad_s, joints)?;
+        check_length("effort", effort_n_m, joints)?;
+        let stamp = Stamp::new(stamp_ns)?;
+        message::encode_header(&mut self.cdr, stamp, &self.joint_names);
+        message::encode_joint_state(&mut self.cdr, [position_rad, velocity_rad_s, effort_n_m]);
+        let channel = match role {
+            Role::Planned => &mut self.channels.planned,
+            Role::Measured => &mut self.channels.measured,
+            Role::Command => &mut self.channels.command,
+        };
+        channel.send(&mut self.mcap, stamp, self.cdr.bytes())?;
+        self.flush_if_due(stamp)
+    }
+
+    /// Writes plan, measurement and error in one message:
+    /// `control_msgs/msg/JointTrajectoryControllerState`.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::LengthMismatch`], [`WriteError::TimeRange`] or [`WriteError::Output`].
+    pub fn controller_state(&mut self, stamp_ns: i64, state: &ControllerState) -> Result<(), WriteError> {
+        for point in [&state.reference, &state.feedback, &state.output] {
+            point.check(self.joint_names.len())?;
+        }
+        let stamp = Stamp::new(stamp_ns)?;
+        message::encode_header(&mut self.cdr, stamp, &self.joint_names);
+        message::encode_controller_state(&mut self.cdr, state)?;
+        self.channels.controller_state.send(&mut self.mcap, stamp, self.cdr.bytes())?;
+        self.flush_if_due(stamp)
+    }
+
+    /// Writes a whole plan that starts at the stamp: `trajectory_msgs/msg/JointTrajectory`. No
+    /// points at all cancel the plan before.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::LengthMismatch`], [`WriteError::NotIncreasing`], [`WriteError::TimeRange`]
+    /// or [`WriteError::Output`].
+    pub fn trajectory(&mut self, stamp_ns: i64, points: &[Point]) -> Result<(), WriteError> {
+        let mut previous_ns = None;
+        for (index, point) in points.iter().enumerate() {
+            point.check(self.joint_names.len())?;
+            let next_ns = point.time_from_start_ns;
+            if let Some(previous_ns) = previous_ns.replace(next_ns).filter(|&previous| next_ns <= previous) {
+                return Err(WriteError::NotIncreasing { index, previous_ns, next_ns });
+            }
+        }
+        let stamp = Stamp::new(stamp_ns)?;
+        message::encode_header(&mut self.cdr, stamp, &self.joint_names);
+        message::encode_trajectory(&mut self.cdr, points)?;
+        self.channels.trajectory.send(&mut self.mcap, stamp, self.cdr.bytes())?;
+        self.flush_if_due(stamp)
+    }
+
+    /// Writes named texts, outside the messages. Ends the chunk.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::Output`].
+    pub fn metadata(&mut self, name: &str, entries: &BTreeMap<String, String>) -> Result<(), WriteError> {
+        Ok(self.mcap.write_metadata(&Metadata { name: name.to_owned(), metadata: entries.clone() })?)
+    }
+
+    /// Writes a file into the log, outside the messages. Ends the chunk.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::TimeRange`] or [`WriteError::Output`].
+    pub fn attach(
+        &mut self,
+        name: &str,
+        media_type: &str,
+        data: &[u8],
+        stamp_ns: i64,
+    ) -> Result<(), WriteError> {
+        let stamp = Stamp::new(stamp_ns)?;
+        Ok(self.mcap.attach(&Attachment {
+            log_time: stamp.log_time_ns,
+            create_time: stamp.log_time_ns,
+            name: name.to_owned(),
+            media_type: media_type.to_owned(),
+            data: Cow::Borrowed(data),
+        })?)
+    }
+
+    /// Ends the chunk and flushes the output: from here on a killed process loses nothing of what
+    /// was written so far.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::Output`].
+    pub fn flush(&mut self) -> Result<(), WriteError> {
+        self.unflushed_since_ns = None;
+        Ok(self.mcap.flush()?)
+    }
+
+    /// Closes the log and hands back its output, flushed.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::Output`].
+    pub fn finish(mut self) -> Result<W, WriteError> {
+        self.mcap.finish()?;
+        Ok(self.mcap.into_inner().into_inner())
+    }
+
+    fn flush_if_due(&mut self, stamp: Stamp) -> Result<(), WriteError> {
+        let since_ns = *self.unflushed_since_ns.get_or_insert(stamp.log_time_ns);
+        match self.flush_interval_ns {
+            Some(interval_ns) if stamp.log_time_ns.abs_diff(since_ns) >= interval_ns => self.flush(),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Channels {
+    fn new(topics: Topics) -> Result<Self, WriteError> {
+        let channels = Self {
+            planned: Channel::new(topics.planned, &JOINT_STATE),
+            measured: Channel::new(topics.measured, &JOINT_STATE),
+            command: Channel::new(topics.command, &JOINT_STATE),
+            controller_state: Channel::new(topics.controller_state, &CONTROLLER_STATE),
+            trajectory: Channel::new(topics.trajectory, &JOINT_TRAJECTORY),
+        };
+        let Self { planned, measured, command, controller_state, trajectory } = &channels;
+        check_distinct(
+            "topic",
+            [planned, measured, command, controller_state, trajectory].map(Channel::topic),
+        )?;
+        Ok(channels)
+    }
+}
+
+fn check_joint_names(joint_names: &[String]) -> Result<(), WriteError> {
+    if joint_names.is_empty() {
+        return Err(WriteError::NoJoints);
+    }
+    if let Some(index) = joint_names.iter().position(|name| name.is_empty() || name.contains('\0')) {
+        return Err(WriteError::BadJointName { index, name: joint_names[index].clone() });
+    }
+    check_distinct("joint", joint_names.iter().map(String::as_str))
+}
+
+fn check_distinct<'a>(
+    kind: &'static str,
+    names: impl IntoIterator<Item = &'a str>,
+) -> Result<(), WriteError> {
+    let mut seen = BTreeSet::new();
+    match names.into_iter().find(|name| !seen.insert(*name)) {
+        Some(name) => Err(WriteError::Duplicate { kind, name: name.to_owned() }),
+        None => Ok(()),
+    }
+}

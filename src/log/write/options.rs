@@ -1,0 +1,77 @@
+//! How a log is written.
+
+/// How a log is written. The default suits a log that is written in one go; see
+/// [`Options::live`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Options {
+    /// Uncompressed size at which a chunk is closed, bytes; at most 64 MiB.
+    pub chunk_bytes: u32,
+    /// Span of stamps after which everything is handed to the operating system, ns; `None`
+    /// leaves it to [`flush`](super::LogWriter::flush). Every flush closes a chunk, so a short
+    /// interval compresses worse.
+    pub flush_interval_ns: Option<u64>,
+    /// Compression level of zstd, 1 to 22.
+    pub compression_level: u32,
+    /// Where messages go.
+    pub topics: Topics,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            chunk_bytes: 1 << 20,
+            flush_interval_ns: None,
+            // Joint angles compress no better at the usual level 3, which takes half as long again.
+            compression_level: 1,
+            topics: Topics::default(),
+        }
+    }
+}
+
+impl Options {
+    /// Chunks are built in memory, so they have a limit.
+    pub(super) const MAX_CHUNK_BYTES: u32 = 1 << 26;
+
+    /// For recording while a machine moves: at most one second is lost with the process.
+    pub fn live() -> Self {
+        Self { flush_interval_ns: Some(1_000_000_000), ..Self::default() }
+    }
+}
+
+/// Names of topics, all different. A topic appears in the log with its first message.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Topics {
+    /// `sensor_msgs/msg/JointState` of [`Role::Planned`].
+    pub planned: String,
+    /// `sensor_msgs/msg/JointState` of [`Role::Measured`].
+    pub measured: String,
+    /// `sensor_msgs/msg/JointState` of [`Role::Command`].
+    pub command: String,
+    /// `control_msgs/msg/JointTrajectoryControllerState`.
+    pub controller_state: String,
+    /// `trajectory_msgs/msg/JointTrajectory`.
+    pub trajectory: String,
+}
+
+impl Default for Topics {
+    fn default() -> Self {
+        Self {
+            planned: "/planned/joint_states".into(),
+            measured: "/joint_states".into(),
+            command: "/command/joint_states".into(),
+            controller_state: "/arm_controller/controller_state".into(),
+            trajectory: "/arm_controller/joint_trajectory".into(),
+        }
+    }
+}
+
+/// What a joint sample says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// Where the plan wants the joints.
+    Planned,
+    /// Where the sensors say they are.
+    Measured,
+    /// What was sent to the machine, where that differs from the plan.
+    Command,
+}
