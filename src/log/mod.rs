@@ -4,17 +4,25 @@
 //! become samples of topics (`source`, `read`), and two topics become planned and measured
 //! series. Writing: samples become messages of ROS 2 types (`write`).
 
+mod assemble;
 mod bag;
 mod channel;
+mod choose;
 mod decode;
+mod doubt;
 mod error;
 mod file;
+mod parallel;
 mod read;
+mod recording;
 mod schema;
 mod source;
 mod write;
 
 pub use error::LogError;
 pub use read::{Attachment, FileInfo};
+pub use recording::{
+    ReadOptions, Recording, SourceInfo, Survey, TimeBase, TopicInfo, read_recording, survey,
+};
 pub use source::Selector;
 pub use write::{ControllerState, LogWriter, Options as WriteOptions, Point, Role, Topics, WriteError};

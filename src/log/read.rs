@@ -2,17 +2,15 @@
 
 use std::{
     collections::BTreeMap,
-    path::PathBuf,
-    sync::{
-        Condvar, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicUsize, Ordering},
-    },
+    path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use super::{
     LogError, bag,
     channel::{Channel, Decoder, Definitions},
-    file::{Block, Blocks, Layout, Loss, MappedFile, MessageRecord, Opcode, records, scan},
+    file::{Layout, MappedFile, MessageRecord, scan},
+    parallel::read_blocks,
     source::{Form, Plans, Role, Selector, Spec, Table, Versioned},
 };
 use crate::remark::{Code, Remarks};
@@ -40,7 +38,7 @@ pub(super) enum Content {
 }
 
 impl Content {
-    fn new(spec: &Spec, joints: &[String]) -> Self {
+    pub(super) fn new(spec: &Spec, joints: &[String]) -> Self {
         match spec.form {
             Form::Plans => Self::Plans(Plans::default()),
             Form::Versioned | Form::VersionedNames => Self::Versioned(Versioned::default()),
@@ -48,7 +46,7 @@ impl Content {
         }
     }
 
-    fn read(&mut self, decoder: &Decoder, message: &MessageRecord<'_>) -> Result<(), String> {
+    pub(super) fn read(&mut self, decoder: &Decoder, message: &MessageRecord<'_>) -> Result<(), String> {
         macro_rules! read {
             ($sink:expr) => {{
                 match decoder {
@@ -68,7 +66,7 @@ impl Content {
         Ok(())
     }
 
-    fn append(&mut self, other: &mut Self) {
+    pub(super) fn append(&mut self, other: &mut Self) {
         match (self, other) {
             (Self::Table(mine), Self::Table(theirs)) => mine.append(theirs),
             (Self::Plans(mine), Self::Plans(theirs)) => mine.append(theirs),
@@ -122,9 +120,9 @@ pub struct Attachment {
 }
 
 /// What to do with one channel of one file.
-struct Route {
-    topic: usize,
-    read: Option<(usize, Decoder)>,
+pub(super) struct Route {
+    pub(super) topic: usize,
+    pub(super) read: Option<(usize, Decoder)>,
 }
 
 /// Maps, scans and reads the files; `selectors` are the fields that the caller named, `joints`
@@ -150,7 +148,7 @@ pub(super) fn extract(
     let mut work = Vec::new();
     for layout in &layouts {
         let routes = routes(&Definitions::gather(layout).plan(selectors), joints, &mut specs, &mut out);
-        let routes = std::sync::Arc::new(routes);
+        let routes = Arc::new(routes);
         work.extend(layout.blocks.iter().map(|block| (*block, routes.clone())));
     }
     read_blocks(&work, &specs, joints, &mut out);
@@ -158,7 +156,7 @@ pub(super) fn extract(
     Ok(out)
 }
 
-fn not_mcap(path: &std::path::Path, bytes: &[u8]) -> LogError {
+fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
     let start: Vec<String> = bytes.iter().take(8).map(|byte| format!("{byte:02X}")).collect();
     let fix = match bytes {
         [] => "the file is empty",
@@ -173,7 +171,7 @@ fn not_mcap(path: &std::path::Path, bytes: &[u8]) -> LogError {
     LogError::NotMcap { path: path.to_owned(), found, fix }
 }
 
-fn describe(path: &std::path::Path, bytes: &[u8], layout: &Layout<'_>, out: &mut Extracted) {
+fn describe(path: &Path, bytes: &[u8], layout: &Layout<'_>, out: &mut Extracted) {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let damage = layout.damage;
     if damage.not_closed {
@@ -242,156 +240,6 @@ fn routes(
         routes.insert(id, Route { topic, read });
     }
     routes
-}
-
-type Work<'a> = (Block<'a>, std::sync::Arc<BTreeMap<u16, Route>>);
-
-/// What one block yields; emptied and reused.
-struct Piece {
-    contents: Vec<Content>,
-    topics: Vec<TopicCount>,
-    unknown: u64,
-    loss: Loss,
-    messages: u64,
-}
-
-struct Progress<'a> {
-    next: usize,
-    waiting: BTreeMap<usize, Piece>,
-    spare: Vec<Piece>,
-    out: &'a mut Extracted,
-}
-
-/// Decodes blocks on all threads and appends them in the order of the file, so that the result
-/// does not depend on the number of threads.
-fn read_blocks(work: &[Work<'_>], specs: &[Spec], joints: &[String], out: &mut Extracted) {
-    let topics = out.topics.len();
-    let fresh = || Piece {
-        contents: specs.iter().map(|spec| Content::new(spec, joints)).collect(),
-        topics: vec![TopicCount::default(); topics],
-        unknown: 0,
-        loss: Loss::Nothing,
-        messages: 0,
-    };
-    let threads = rayon::current_num_threads();
-    let counter = AtomicUsize::new(0);
-    let progress = Mutex::new(Progress { next: 0, waiting: BTreeMap::new(), spare: Vec::new(), out });
-    let moved = Condvar::new();
-    rayon::broadcast(|_| {
-        let mut blocks = Blocks::new();
-        loop {
-            let index = counter.fetch_add(1, Ordering::Relaxed);
-            let Some((block, routes)) = work.get(index) else { return };
-            let mut piece = lock(&progress).spare.pop().unwrap_or_else(fresh);
-            read_block(&mut blocks, *block, routes, &mut piece);
-            let mut state = lock(&progress);
-            // A thread may run ahead of the slowest by a few blocks only: memory stays bounded.
-            while index > state.next + 4 * threads {
-                state = moved.wait(state).unwrap_or_else(PoisonError::into_inner);
-            }
-            state.waiting.insert(index, piece);
-            state.append_ready();
-            drop(state);
-            moved.notify_all();
-        }
-    });
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-impl Progress<'_> {
-    fn append_ready(&mut self) {
-        while let Some(mut piece) = self.waiting.remove(&self.next) {
-            self.next += 1;
-            for (source, content) in self.out.sources.iter_mut().zip(&mut piece.contents) {
-                source.content.append(content);
-            }
-            for (total, part) in self.out.topics.iter_mut().zip(&mut piece.topics) {
-                total.add(&std::mem::take(part));
-            }
-            let remarks = &mut self.out.remarks;
-            remarks.add(
-                Code::UnknownChannel,
-                std::mem::take(&mut piece.unknown),
-                "messages of channels that the file does not define",
-            );
-            match std::mem::replace(&mut piece.loss, Loss::Nothing) {
-                Loss::Nothing => {}
-                Loss::Cut => remarks.add(
-                    Code::PartialChunk,
-                    1,
-                    format!(
-                        "the file ends within a chunk; {} whole messages before the cut were kept",
-                        piece.messages
-                    ),
-                ),
-                Loss::Dropped(reason) => {
-                    remarks.add(Code::DamagedChunk, 1, format!("a chunk was dropped: {reason}"));
-                }
-            }
-            piece.messages = 0;
-            self.spare.push(piece);
-        }
-    }
-}
-
-impl TopicCount {
-    fn add(&mut self, part: &Self) {
-        if part.messages == 0 {
-            return;
-        }
-        let first = self.messages == 0;
-        self.first_log_ns = if first { part.first_log_ns } else { self.first_log_ns.min(part.first_log_ns) };
-        self.last_log_ns = self.last_log_ns.max(part.last_log_ns);
-        self.messages += part.messages;
-        self.undecodable += part.undecodable;
-        if self.first_error.is_none() {
-            self.first_error.clone_from(&part.first_error);
-        }
-    }
-
-    fn count(&mut self, log_ns: u64) {
-        self.first_log_ns = if self.messages == 0 { log_ns } else { self.first_log_ns.min(log_ns) };
-        self.last_log_ns = self.last_log_ns.max(log_ns);
-        self.messages += 1;
-    }
-}
-
-fn read_block(blocks: &mut Blocks, block: Block<'_>, routes: &BTreeMap<u16, Route>, piece: &mut Piece) {
-    let (bytes, loss) = blocks.open(block);
-    piece.loss = loss;
-    let mut end = 0;
-    let mut last: Option<(u16, &Route)> = None;
-    for record in records(bytes) {
-        end = record.end;
-        if record.opcode != Opcode::MESSAGE {
-            continue;
-        }
-        let Some(message) = MessageRecord::parse(record.body) else { continue };
-        piece.messages += 1;
-        let route = match last {
-            Some((id, route)) if id == message.channel_id => Some(route),
-            _ => routes.get(&message.channel_id),
-        };
-        let Some(route) = route else {
-            piece.unknown += 1;
-            continue;
-        };
-        last = Some((message.channel_id, route));
-        let topic = &mut piece.topics[route.topic];
-        topic.count(message.log_time_ns);
-        if let Some((source, decoder)) = &route.read
-            && let Err(error) = piece.contents[*source].read(decoder, &message)
-        {
-            topic.undecodable += 1;
-            topic.first_error.get_or_insert(error);
-        }
-    }
-    if end < bytes.len() && piece.loss == Loss::Nothing {
-        piece.loss = Loss::Dropped(format!("its last {} bytes are no record", bytes.len() - end));
-    }
 }
 
 /// Turns counts into remarks, and versioned values into tables.

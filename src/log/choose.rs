@@ -1,0 +1,287 @@
+//! Finds the plan and the measurement among the topics of a log, and says why.
+
+use std::collections::BTreeSet;
+
+use super::{
+    LogError, ReadOptions, Selector, TopicInfo,
+    read::{Content, Extracted, TopicCount},
+    source::{Form, Role},
+};
+
+/// A topic and field that could serve.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Candidate {
+    /// Index into the sources.
+    pub(super) source: usize,
+    /// Field of the table; `None` for whole trajectories.
+    pub(super) field: Option<usize>,
+    /// How well its type and name fit, 0 best.
+    rank: u32,
+    pub(super) joints: Vec<String>,
+    messages: usize,
+    topic: String,
+}
+
+/// What was chosen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Choice {
+    pub(super) planned: Vec<Candidate>,
+    pub(super) measured: Vec<Candidate>,
+    pub(super) why: String,
+}
+
+/// Rank of what is only used when the caller names it.
+const ONLY_IF_NAMED: u32 = 9;
+
+const PLAN_WORDS: [&str; 8] =
+    ["planned", "plan", "desired", "reference", "ref", "target", "setpoint", "goal"];
+const COMMAND_WORDS: [&str; 3] = ["command", "commands", "cmd"];
+
+fn has_word(topic: &str, words: &[&str]) -> bool {
+    topic.to_ascii_lowercase().split(['/', '_', '-', '.']).any(|word| words.contains(&word))
+}
+
+pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
+    let planned = candidates(extracted, &options.planned, Role::Planned)?;
+    let measured = candidates(extracted, &options.measured, Role::Measured)?;
+    let missing = |missing, flag| LogError::Missing { missing, present: present(extracted), flag };
+    if planned.is_empty() {
+        return Err(missing("planned", "--planned"));
+    }
+    if measured.is_empty() {
+        return Err(missing("measured", "--measured"));
+    }
+    let measured_joints: BTreeSet<&String> = measured.iter().flat_map(|c| &c.joints).collect();
+    let first = planned.iter().find(|c| c.joints.iter().any(|joint| measured_joints.contains(joint)));
+    let Some(first) = first else {
+        let list = |all: &[Candidate]| {
+            let names: BTreeSet<&str> = all.iter().flat_map(|c| &c.joints).map(String::as_str).collect();
+            names.into_iter().collect::<Vec<_>>().join(", ")
+        };
+        return Err(LogError::NoCommonJoint { planned: list(&planned), measured: list(&measured) });
+    };
+    // Several controllers each plan joints of their own: all of one kind are used.
+    let explicit = !options.planned.is_empty();
+    let planned = cover(planned.iter().filter(|c| explicit || c.rank == first.rank), None, Some(first));
+    let wanted: BTreeSet<&String> = planned.iter().flat_map(|c| &c.joints).collect();
+    // The message that holds the plan holds the measurement of the same instant, if any does.
+    let mut ordered: Vec<&Candidate> = measured.iter().collect();
+    ordered.sort_by_key(|c| !planned.iter().any(|p| p.source == c.source));
+    let measured = cover(ordered.into_iter(), Some(&wanted), None);
+    let why = why(extracted, options, &planned, &measured);
+    Ok(Choice { planned, measured, why })
+}
+
+/// Takes candidates in order as long as each adds joints that no earlier one had.
+fn cover<'a>(
+    candidates: impl Iterator<Item = &'a Candidate>,
+    wanted: Option<&BTreeSet<&String>>,
+    first: Option<&'a Candidate>,
+) -> Vec<Candidate> {
+    let mut covered: BTreeSet<&String> = BTreeSet::new();
+    let mut chosen = Vec::new();
+    for candidate in first.into_iter().chain(candidates) {
+        let adds =
+            |joint: &&String| !covered.contains(joint) && wanted.is_none_or(|wanted| wanted.contains(joint));
+        let overlaps = candidate.joints.iter().any(|joint| covered.contains(joint));
+        if candidate.joints.iter().any(|joint| adds(&joint))
+            && (chosen.is_empty() || !overlaps || wanted.is_some())
+        {
+            covered.extend(&candidate.joints);
+            chosen.push(candidate.clone());
+        }
+    }
+    chosen
+}
+
+fn why(
+    extracted: &Extracted,
+    options: &ReadOptions,
+    planned: &[Candidate],
+    measured: &[Candidate],
+) -> String {
+    let topic = |c: &Candidate| extracted.topics[extracted.sources[c.source].topic].topic.as_str();
+    let list = |all: &[Candidate]| all.iter().map(topic).collect::<Vec<_>>().join(", ");
+    let same =
+        planned.len() == measured.len() && planned.iter().zip(measured).all(|(p, m)| p.source == m.source);
+    let plan = match (options.planned.is_empty(), planned.first().map(|c| c.rank)) {
+        (false, _) => "plan as given".to_owned(),
+        (true, Some(1)) => format!("plan from {}, by its name", list(planned)),
+        (true, Some(3 | 6)) if planned.iter().all(|c| c.field.is_none()) => {
+            format!("plan sampled from the trajectory messages of {}", list(planned))
+        }
+        _ => format!("plan from {}", list(planned)),
+    };
+    match (options.measured.is_empty(), same) {
+        (false, _) => format!("{plan}; measurement as given"),
+        (true, true) => format!("{plan}; each message holds plan and measurement of the same instant"),
+        (true, false) => format!("{plan}; measurement from {}", list(measured)),
+    }
+}
+
+/// All that could serve in a role, best first; those the caller named, if any.
+fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<Vec<Candidate>, LogError> {
+    let mut found = Vec::new();
+    if named.is_empty() {
+        for source in 0..extracted.sources.len() {
+            found.extend(
+                of_source(extracted, source, role, None).into_iter().filter(|c| c.rank < ONLY_IF_NAMED),
+            );
+        }
+        found.sort_by(|a, b| {
+            (a.rank, b.messages, &a.topic, a.source, a.field)
+                .cmp(&(b.rank, a.messages, &b.topic, b.source, b.field))
+        });
+        return Ok(found);
+    }
+    for selector in named {
+        let topic = extracted.topics.iter().position(|t| t.topic == selector.topic).ok_or_else(|| {
+            LogError::NoTopic {
+                topic: selector.topic.clone(),
+                nearest: nearest(&selector.topic, extracted.topics.iter().map(|t| t.topic.as_str())),
+                present: present(extracted),
+            }
+        })?;
+        let sources = (0..extracted.sources.len()).filter(|&s| extracted.sources[s].topic == topic);
+        let mut fitting: Vec<Candidate> =
+            sources.flat_map(|s| of_source(extracted, s, role, selector.field.as_deref())).collect();
+        fitting.sort_by_key(|c| (c.rank, c.field));
+        let TopicCount { topic: name, type_name, .. } = &extracted.topics[topic];
+        let none = || LogError::NoField {
+            topic: name.clone(),
+            type_name: type_name.clone(),
+            field: selector.field.clone(),
+            present: match topic_info(extracted, topic).joint_fields {
+                fields if fields.is_empty() => "none".to_owned(),
+                fields => fields.join(", "),
+            },
+        };
+        found.push(fitting.into_iter().next().ok_or_else(none)?);
+    }
+    Ok(found)
+}
+
+fn of_source(extracted: &Extracted, source: usize, role: Role, field: Option<&str>) -> Vec<Candidate> {
+    let topic = &extracted.topics[extracted.sources[source].topic];
+    let candidate = |field, rank, joints, messages| Candidate {
+        source,
+        field,
+        rank,
+        joints,
+        messages,
+        topic: topic.topic.clone(),
+    };
+    match &extracted.sources[source].content {
+        Content::Versioned(_) => Vec::new(),
+        Content::Plans(plans) => {
+            let joints: BTreeSet<&String> = plans.trajectories.iter().flat_map(|t| &t.joints).collect();
+            let joints: Vec<String> = joints.into_iter().cloned().collect();
+            if role == Role::Measured || joints.is_empty() {
+                return Vec::new();
+            }
+            let rank = if topic.type_name.ends_with("JointTrajectory") { 3 } else { 6 };
+            vec![candidate(None, rank, joints, plans.trajectories.len())]
+        }
+        Content::Table(table) => {
+            let positions = table.fields.iter().enumerate().filter(|(_, f)| !f.is_velocity);
+            positions
+                .filter(|(_, f)| field.is_none_or(|path| f.path == path))
+                .filter_map(|(k, f)| {
+                    let filled = |j: &usize| table.column(k, *j).iter().any(|v| v.is_finite());
+                    let joints: Vec<String> =
+                        (0..table.joints.len()).filter(filled).map(|j| table.joints[j].clone()).collect();
+                    let rank = rank(topic, table.form, f.role, role);
+                    (!joints.is_empty()).then(|| candidate(Some(k), rank, joints, table.len()))
+                })
+                .collect()
+        }
+    }
+}
+
+/// How well a field fits a role, 1 best, [`ONLY_IF_NAMED`] worst.
+fn rank(topic: &TopicCount, form: Form, field: Role, role: Role) -> u32 {
+    let feedback = topic.type_name.contains("Feedback");
+    let array = topic.type_name.ends_with("Float64MultiArray");
+    let (plan, command) = (has_word(&topic.topic, &PLAN_WORDS), has_word(&topic.topic, &COMMAND_WORDS));
+    match (role, field) {
+        (Role::Planned, Role::Planned) => match form {
+            _ if feedback => 4,
+            Form::Versioned => 5,
+            // Of two topics of one controller the newer name is the one that is always filled.
+            _ => 2,
+        },
+        (Role::Planned, Role::Either) if plan && !array => 1,
+        (Role::Planned, Role::Either) if plan || command => 8,
+        (Role::Measured, Role::Measured) => match form {
+            _ if feedback => 6,
+            Form::Versioned => 5,
+            Form::Interfaces => 4,
+            _ => 3,
+        },
+        (Role::Measured, Role::Either) if !plan && !command && !array => {
+            if has_word(&topic.topic, &["error"]) { ONLY_IF_NAMED } else { 2 }
+        }
+        _ => ONLY_IF_NAMED,
+    }
+}
+
+/// Topics with joints, for messages; all topics if there is none.
+fn present(extracted: &Extracted) -> String {
+    let with_joints: BTreeSet<usize> = extracted.sources.iter().map(|s| s.topic).collect();
+    let describe = |index: usize| {
+        let topic = &extracted.topics[index];
+        format!("{} ({}, {} messages)", topic.topic, topic.type_name, topic.messages)
+    };
+    let listed: Vec<String> = if with_joints.is_empty() {
+        (0..extracted.topics.len()).map(describe).collect()
+    } else {
+        with_joints.into_iter().map(describe).collect()
+    };
+    if listed.is_empty() { "no topics at all".to_owned() } else { listed.join(", ") }
+}
+
+/// What `info` says of a topic.
+pub(super) fn topic_info(extracted: &Extracted, index: usize) -> TopicInfo {
+    let count = &extracted.topics[index];
+    let mut info = TopicInfo {
+        topic: count.topic.clone(),
+        type_name: count.type_name.clone(),
+        encoding: count.encoding.clone(),
+        messages: count.messages,
+        rate_hz: 0.0,
+        joint_fields: Vec::new(),
+        joints: Vec::new(),
+    };
+    let spread_s = count.last_log_ns.saturating_sub(count.first_log_ns) as f64 / crate::units::NS_PER_S;
+    if count.messages > 1 && spread_s > 0.0 {
+        info.rate_hz = (count.messages - 1) as f64 / spread_s;
+    }
+    for source in extracted.sources.iter().filter(|s| s.topic == index) {
+        match &source.content {
+            Content::Table(table) => {
+                info.joints.extend(table.joints.iter().cloned());
+                for (k, field) in table.fields.iter().enumerate() {
+                    if !field.is_velocity && (0..table.joints.len()).any(|j| !table.column(k, j).is_empty()) {
+                        info.joint_fields.push(field.path.clone());
+                    }
+                }
+            }
+            Content::Plans(plans) => {
+                let joints: BTreeSet<&String> = plans.trajectories.iter().flat_map(|t| &t.joints).collect();
+                info.joints.extend(joints.into_iter().cloned());
+                info.joint_fields.push("points.positions".to_owned());
+            }
+            Content::Versioned(_) => {}
+        }
+    }
+    info
+}
+
+/// The name most like the one looked for, if any is like it.
+pub(super) fn nearest<'a>(name: &str, present: impl Iterator<Item = &'a str>) -> Option<String> {
+    present
+        .map(|other| (strsim::jaro_winkler(name, other), other))
+        .filter(|(likeness, _)| *likeness > 0.8)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, other)| other.to_owned())
+}

@@ -1,0 +1,248 @@
+//! What looks wrong inside the data, said and counted.
+
+use std::f64::consts::{PI, TAU};
+
+use super::{TimeBase, source::Table};
+use crate::{
+    math::quantile_sorted,
+    remark::{Code, Remarks},
+    series::{Clock, Series, Track},
+    units::{DEGREE_RAD, NS_PER_S},
+};
+
+pub(super) fn of_clock(topic: &str, base: TimeBase, clock: &Clock, remarks: &mut Remarks) {
+    let base = base.name();
+    remarks.add(
+        Code::UnusableStamp,
+        clock.unstamped,
+        format!("messages of {topic} without a {base} stamp, left out"),
+    );
+    remarks.add(
+        Code::DuplicateStamp,
+        clock.duplicates,
+        format!("samples of {topic} that repeat a {base} stamp, dropped"),
+    );
+    remarks.add(
+        Code::Reordered,
+        clock.reordered,
+        format!("samples of {topic} that came late, put in order of their {base} stamps"),
+    );
+    let jump_s = clock.longest_jump_ns as f64 / NS_PER_S;
+    remarks.add(
+        Code::ClockJump,
+        clock.cuts.len() as u64,
+        format!(
+            "backward jumps of the {base} clock in {topic}, by up to {jump_s:.3} s; the run is split there and \
+             time goes on by the recorder's clock"
+        ),
+    );
+}
+
+pub(super) fn of_table(topic: &str, table: &Table, remarks: &mut Remarks) {
+    for (k, field) in table.fields.iter().enumerate().filter(|(_, field)| !field.is_velocity) {
+        let path = &field.path;
+        remarks.add(
+            Code::NotFinite,
+            table.not_finite[k],
+            format!("values of {topic}:{path} that are NaN or infinite, dropped"),
+        );
+        remarks.add(
+            Code::LengthMismatch,
+            table.length_mismatch[k],
+            format!("messages of {topic} whose {path} is not as long as its list of joints, left out"),
+        );
+    }
+    remarks.add(
+        Code::JointsChange,
+        table.layout_changes,
+        format!("changes of order or set of the joints within {topic}; joined by name"),
+    );
+    let (paused, slowed) = scaling(&table.speed_scaling);
+    remarks.add(
+        Code::Paused,
+        paused,
+        format!("samples of {topic} with the controller paused (speed scaling 0)"),
+    );
+    remarks.add(
+        Code::Paused,
+        slowed,
+        format!("samples of {topic} with the controller slowed (speed scaling below 1)"),
+    );
+}
+
+/// Samples paused and slowed; none where the field is never filled.
+fn scaling(factors: &[f64]) -> (u64, u64) {
+    if !factors.iter().any(|&f| f > 0.0) {
+        return (0, 0);
+    }
+    let full = factors.iter().copied().fold(0.0, f64::max).min(1.0);
+    let paused = factors.iter().filter(|&&f| f <= 0.0).count();
+    let slowed = factors.iter().filter(|&&f| f > 0.0 && f < full - 1e-6).count();
+    (paused as u64, slowed as u64)
+}
+
+/// Undoes full turns of joints declared continuous; remarks on them elsewhere.
+pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: &mut Remarks) {
+    for track in &mut series.tracks {
+        let turns = turns(track);
+        if turns == 0 {
+            continue;
+        }
+        let name = track.name().to_owned();
+        if continuous.iter().any(|joint| *joint == name) {
+            if let Some(unwrapped) = unwrapped(track) {
+                *track = unwrapped;
+            }
+        } else {
+            remarks.add(
+                Code::Wrapped,
+                turns,
+                format!(
+                    "steps of a full turn in {name}; if the joint has no end stops, say --continuous {name}"
+                ),
+            );
+        }
+    }
+}
+
+/// Steps between neighbouring samples that are nearer to a full turn than to nothing.
+fn turns(track: &Track) -> u64 {
+    let steps = track.position_rad().windows(2);
+    steps.filter(|w| (w[1] - w[0]).abs() > PI && ((w[1] - w[0]).abs() - TAU).abs() < 1.0).count() as u64
+}
+
+fn unwrapped(track: &Track) -> Option<Track> {
+    let mut turns_rad = 0.0;
+    let mut previous: Option<f64> = None;
+    let position = track.position_rad().iter().map(|&q| {
+        if let Some(before) = previous {
+            turns_rad -= TAU * ((q - before) / TAU).round();
+        }
+        previous = Some(q);
+        q + turns_rad
+    });
+    let cuts: Vec<usize> = track.segments().iter().skip(1).map(|s| s.start).collect();
+    Track::new(track.name(), track.t_s(), position.collect(), &cuts).ok()
+}
+
+pub(super) fn of_pairs(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+    for track in &planned.tracks {
+        match measured.track(track.name()) {
+            None => remarks.add(
+                Code::UnpairedJoint,
+                1,
+                format!("{} is planned but was not measured; left out", track.name()),
+            ),
+            Some(measured) => of_pair(track, measured, remarks),
+        }
+    }
+}
+
+/// Ratios of measured to planned range that mean degrees in place of radians, or the reverse.
+const DEGREES_IN_RADIAN: f64 = 1.0 / DEGREE_RAD;
+const RATIO_TOLERANCE: f64 = 0.15;
+
+fn of_pair(planned: &Track, measured: &Track, remarks: &mut Remarks) {
+    let (plan_rad, angle_rad) = (span(planned.position_rad()), span(measured.position_rad()));
+    let near = |ratio: f64| (ratio / DEGREES_IN_RADIAN - 1.0).abs() < RATIO_TOLERANCE;
+    let name = planned.name();
+    if near(angle_rad / plan_rad) {
+        let message =
+            format!("{name} spans 57.3 times its plan: measured in degrees? then say --measured-degrees");
+        remarks.add(Code::LooksLikeDegrees, 1, message);
+    } else if near(plan_rad / angle_rad) {
+        let message = format!(
+            "the plan of {name} spans 57.3 times the measurement: in degrees? then say --planned-degrees"
+        );
+        remarks.add(Code::LooksLikeDegrees, 1, message);
+    }
+    if let Some((from_s, to_s, samples)) = frozen(planned, measured) {
+        remarks.add(
+            Code::FrozenSensor,
+            samples,
+            format!(
+                "samples of {name} repeat one value from {from_s:.2} s to {to_s:.2} s while the plan moves: \
+                 frozen sensor, or a joint that did not answer"
+            ),
+        );
+    }
+}
+
+/// Range without the outermost hundredth at either end, rad.
+fn span(position_rad: &[f64]) -> f64 {
+    let mut sorted = position_rad.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    quantile_sorted(&sorted, 0.99) - quantile_sorted(&sorted, 0.01)
+}
+
+/// A plan that moves by this much while the sensor repeats one value is beyond any dead-band.
+const FROZEN_PLAN_RAD: f64 = 3.0 * DEGREE_RAD;
+const FROZEN_S: f64 = 0.5;
+
+/// The longest stretch of exactly one measured value while the plan moves: from, to, samples.
+fn frozen(planned: &Track, measured: &Track) -> Option<(f64, f64, u64)> {
+    let (t_s, q) = (measured.t_s(), measured.position_rad());
+    let mut longest: Option<(usize, usize)> = None;
+    let mut start = 0;
+    for i in 1..=q.len() {
+        if i < q.len() && q[i].to_bits() == q[start].to_bits() {
+            continue;
+        }
+        let long = t_s[i - 1] - t_s[start] > FROZEN_S && longest.is_none_or(|(a, b)| i - start > b - a);
+        if long && plan_moves(planned, t_s[start], t_s[i - 1]) {
+            longest = Some((start, i));
+        }
+        start = i;
+    }
+    longest.map(|(start, end)| (t_s[start], t_s[end - 1], (end - start) as u64))
+}
+
+fn plan_moves(planned: &Track, from_s: f64, to_s: f64) -> bool {
+    let range = |t: f64| planned.t_s().partition_point(|&s| s < t);
+    let plan = &planned.position_rad()[range(from_s)..range(to_s)];
+    let (least, most) = plan.iter().fold((f64::MAX, f64::MIN), |(a, b), &q| (a.min(q), b.max(q)));
+    most - least > FROZEN_PLAN_RAD
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn track(position: impl Fn(f64) -> f64) -> Track {
+        let t_s: Vec<f64> = (0..500).map(|k| f64::from(k) * 0.01).collect();
+        let q = t_s.iter().map(|&t| position(t)).collect();
+        Track::new("a", t_s, q, &[]).unwrap()
+    }
+
+    fn codes(planned: Track, measured: Track) -> Vec<Code> {
+        let mut remarks = Remarks::default();
+        of_pairs(&Series { tracks: vec![planned] }, &Series { tracks: vec![measured] }, &mut remarks);
+        remarks.as_slice().iter().map(|r| r.code).collect()
+    }
+
+    #[test]
+    fn degrees_against_radians_are_noticed_and_equal_units_are_not() {
+        let plan = |t: f64| (t * 1.3).sin();
+        assert_eq!(codes(track(plan), track(move |t| plan(t) / DEGREE_RAD)), [Code::LooksLikeDegrees]);
+        assert_eq!(codes(track(move |t| plan(t) / DEGREE_RAD), track(plan)), [Code::LooksLikeDegrees]);
+        assert_eq!(codes(track(plan), track(move |t| plan(t) * 0.8)), []);
+    }
+
+    #[test]
+    fn a_sensor_that_stands_still_while_the_plan_moves_is_noticed() {
+        let frozen = |t: f64| if (1.0..2.0).contains(&t) { 0.1 } else { 0.1 * t };
+        assert_eq!(codes(track(|t| 0.1 * t), track(frozen)), [Code::FrozenSensor]);
+        assert_eq!(codes(track(|_| 0.0), track(|_| 0.0)), []);
+    }
+
+    #[test]
+    fn a_full_turn_is_undone_only_for_a_joint_declared_continuous() {
+        let wrapped = |t: f64| (t * 2.0 + PI).rem_euclid(TAU) - PI;
+        let mut series = Series { tracks: vec![track(wrapped)] };
+        let mut remarks = Remarks::default();
+        unwrap_turns(&mut series, &[], &mut remarks);
+        assert_eq!(remarks.as_slice()[0].code, Code::Wrapped);
+        unwrap_turns(&mut series, &["a".into()], &mut remarks);
+        assert!((series.tracks[0].position_rad()[499] - 2.0 * 4.99).abs() < 1e-9);
+    }
+}
