@@ -23,8 +23,11 @@ pub(super) enum Step {
     },
     SkipText,
     SkipWideText,
-    /// A sequence of numbers nobody asked for.
-    SkipNumbers(Number),
+    /// So many sequences of numbers nobody asked for.
+    SkipNumbers {
+        number: Number,
+        sequences: u32,
+    },
     Number {
         slot: Slot,
         number: Number,
@@ -78,6 +81,8 @@ pub enum ProgramError {
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::log) struct Program {
     pub(super) steps: Vec<Step>,
+    /// The same for the delimited form of XCDR2, with [`Step::StructStart`].
+    pub(super) delimited: Vec<Step>,
     /// Whether bytes may follow the last step.
     pub(super) open_ended: bool,
 }
@@ -88,8 +93,20 @@ const MAX_DEPTH: usize = 64;
 impl Program {
     /// Compiles; a wanted path that the definition lacks is an error.
     pub(in crate::log) fn compile(definition: &Definition, wants: &[Want]) -> Result<Self, ProgramError> {
-        let mut compiler = Compiler { definition, wants, found: vec![false; wants.len()], steps: Vec::new() };
-        compiler.structure(0, "", 0)?;
+        let compiled = |delimited| {
+            let mut compiler = Compiler {
+                definition,
+                wants,
+                found: vec![false; wants.len()],
+                steps: Vec::new(),
+                closed: 0,
+                delimited,
+            };
+            compiler.structure(0, "", 0).map(|_| compiler)
+        };
+        // First the form in which every struct has a step: MAX_STEPS bounds the work of both.
+        let delimited = compiled(true)?.steps;
+        let compiler = compiled(false)?;
         if let Some(missing) = compiler.found.iter().position(|found| !found) {
             let root = &definition.structs[0];
             return Err(ProgramError::NoField {
@@ -98,7 +115,7 @@ impl Program {
                 present: root.fields.iter().map(|(name, _)| name.clone()).collect(),
             });
         }
-        Ok(Self { steps: compiler.steps, open_ended: definition.open_ended })
+        Ok(Self { steps: compiler.steps, delimited, open_ended: definition.open_ended })
     }
 }
 
@@ -128,6 +145,9 @@ struct Compiler<'a> {
     wants: &'a [Want],
     found: Vec<bool>,
     steps: Vec<Step>,
+    /// Steps that belong to a closed [`Step::Repeat`]; nothing after it may join them.
+    closed: usize,
+    delimited: bool,
 }
 
 impl Compiler<'_> {
@@ -144,7 +164,9 @@ impl Compiler<'_> {
         if depth > MAX_DEPTH || self.steps.len() > MAX_STEPS {
             return Err(ProgramError::TooLarge { name: one.name.clone() });
         }
-        self.push(Step::StructStart);
+        if self.delimited {
+            self.steps.push(Step::StructStart);
+        }
         let mut least = 0_u64;
         for (name, shape) in &one.fields {
             let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
@@ -180,7 +202,7 @@ impl Compiler<'_> {
             (Shape::Number(number), None) => {
                 let size = u32::from(number.size());
                 match count {
-                    None => self.push(Step::SkipNumbers(*number)),
+                    None => self.push(Step::SkipNumbers { number: *number, sequences: 1 }),
                     Some(n) => match n.checked_mul(size) {
                         Some(bytes) => self.push(Step::Skip { align: number.size(), bytes }),
                         None => return Err(ProgramError::TooLarge { name: path.to_owned() }),
@@ -204,6 +226,7 @@ impl Compiler<'_> {
                 };
                 let steps = u32::try_from(self.steps.len() - at - 1).unwrap_or(u32::MAX);
                 self.steps[at] = Step::Repeat { slot: wanted, count, steps, least: each.max(1) };
+                self.closed = self.steps.len();
                 minimum(each)
             }
         })
@@ -242,16 +265,27 @@ impl Compiler<'_> {
         })
     }
 
-    /// Appends a step, merging neighbouring skips whose padding is known to be none.
+    /// Appends a step, merging neighbouring skips of sequences, and of bytes whose padding is
+    /// known to be none.
     fn push(&mut self, step: Step) {
-        if let Step::Skip { align, bytes } = step
-            && let Some(Step::Skip { align: before, bytes: sum }) = self.steps.last_mut()
-            && *before >= align
-            && sum.is_multiple_of(u32::from(align))
-            && let Some(both) = sum.checked_add(bytes)
-        {
-            *sum = both;
-            return;
+        let last = self.steps.get_mut(self.closed..).and_then(<[Step]>::last_mut);
+        match (last, &step) {
+            (Some(Step::Skip { align: before, bytes: sum }), Step::Skip { align, bytes })
+                if *before >= *align && sum.is_multiple_of(u32::from(*align)) =>
+            {
+                if let Some(both) = sum.checked_add(*bytes) {
+                    *sum = both;
+                    return;
+                }
+            }
+            (
+                Some(Step::SkipNumbers { number: before, sequences }),
+                Step::SkipNumbers { number, sequences: 1 },
+            ) if before == number => {
+                *sequences += 1;
+                return;
+            }
+            _ => {}
         }
         self.steps.push(step);
     }

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::{
     program::{Program, Step},
-    sink::{Numbers, Sink, Texts, number_from, without_terminator},
+    sink::{Numbers, Sink, Slot, Texts, number_from, without_terminator},
 };
 
 /// Why the bytes of a message do not fit its program.
@@ -73,171 +73,182 @@ impl Program {
         sizes: Sizes,
         sink: &mut S,
     ) -> Result<(), RunError> {
-        let mut reader = Reader { body, at: 0, widest, sizes };
-        sink.element(super::sink::Slot::MAX);
-        if little_endian {
-            reader.steps::<true, S>(&self.steps, sink)?;
+        let reader = Reader { body, widest: usize::from(widest), sizes };
+        sink.element(Slot::MAX);
+        let steps = if sizes.of_structs { &self.delimited } else { &self.steps };
+        let end = if little_endian {
+            reader.steps::<true, S>(0, steps, sink)?
         } else {
-            reader.steps::<false, S>(&self.steps, sink)?;
-        }
-        let left = body.len() - reader.at;
+            reader.steps::<false, S>(0, steps, sink)?
+        };
+        let left = body.len().saturating_sub(end);
         if left > MAX_PADDING && !self.open_ended { Err(RunError::Long { left }) } else { Ok(()) }
     }
 }
 
+/// The bytes of a message. Every method takes the place at which it starts and returns the one
+/// at which it ends, so that the place stays in a register.
+#[derive(Clone, Copy)]
 struct Reader<'a> {
     body: &'a [u8],
-    at: usize,
-    widest: u8,
+    widest: usize,
     sizes: Sizes,
 }
 
 impl<'a> Reader<'a> {
     #[inline]
-    fn align(&mut self, to: u8) {
-        let mask = usize::from(to.min(self.widest)) - 1;
-        self.at = (self.at + mask) & !mask;
+    fn align(self, at: usize, to: u8) -> usize {
+        let mask = usize::from(to).min(self.widest) - 1;
+        (at + mask) & !mask
     }
 
     #[inline]
-    fn take(&mut self, bytes: u64) -> Result<&'a [u8], RunError> {
-        let found = usize::try_from(bytes).ok().and_then(|n| self.body.get(self.at..)?.get(..n));
-        match found {
-            Some(piece) => {
-                self.at += piece.len();
-                Ok(piece)
-            }
-            None => Err(RunError::Short { at: self.at, needed: bytes, end: self.body.len() }),
+    fn take(self, at: usize, bytes: u64) -> Result<(&'a [u8], usize), RunError> {
+        let end = usize::try_from(bytes).ok().and_then(|bytes| at.checked_add(bytes));
+        match end.and_then(|end| Some((self.body.get(at..end)?, end))) {
+            Some(found) => Ok(found),
+            None => Err(RunError::Short { at, needed: bytes, end: self.body.len() }),
         }
     }
 
     #[inline]
-    fn length<const LITTLE: bool>(&mut self) -> Result<u32, RunError> {
-        self.align(4);
-        let bytes = self.take(4)?.try_into().unwrap_or_default();
-        Ok(if LITTLE { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) })
+    fn skip(self, at: usize, bytes: u64) -> Result<usize, RunError> {
+        self.take(at, bytes).map(|(_, end)| end)
     }
 
-    fn count<const LITTLE: bool>(&mut self, fixed: Option<u32>) -> Result<u32, RunError> {
+    #[inline]
+    fn length<const LITTLE: bool>(self, at: usize) -> Result<(u32, usize), RunError> {
+        let (bytes, end) = self.take(self.align(at, 4), 4)?;
+        let bytes = bytes.try_into().unwrap_or_default();
+        Ok((if LITTLE { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) }, end))
+    }
+
+    #[inline]
+    fn count<const LITTLE: bool>(self, at: usize, fixed: Option<u32>) -> Result<(u32, usize), RunError> {
         match fixed {
-            Some(count) => Ok(count),
-            None => self.length::<LITTLE>(),
+            Some(count) => Ok((count, at)),
+            None => self.length::<LITTLE>(at),
         }
     }
 
-    fn numbers(&mut self, size: u8, count: u32) -> Result<&'a [u8], RunError> {
+    #[inline]
+    fn numbers(self, at: usize, size: u8, count: u32) -> Result<(&'a [u8], usize), RunError> {
         if count == 0 {
-            return Ok(&[]); // No padding before an element that is not there.
+            return Ok((&[], at)); // No padding before an element that is not there.
         }
-        self.align(size);
-        self.take(u64::from(count) * u64::from(size))
+        self.take(self.align(at, size), u64::from(count) * u64::from(size))
     }
 
-    fn steps<const LITTLE: bool, S: Sink>(&mut self, steps: &[Step], sink: &mut S) -> Result<(), RunError> {
+    fn steps<const LITTLE: bool, S: Sink>(
+        self,
+        mut at: usize,
+        steps: &[Step],
+        sink: &mut S,
+    ) -> Result<usize, RunError> {
         let mut next = 0;
         while let Some(step) = steps.get(next) {
             next += 1;
             match *step {
-                Step::Skip { align, bytes } => {
-                    self.align(align);
-                    self.take(u64::from(bytes))?;
-                }
+                Step::Skip { align, bytes } => at = self.skip(self.align(at, align), u64::from(bytes))?,
                 Step::SkipText => {
-                    let length = self.length::<LITTLE>()?;
-                    self.take(u64::from(length))?;
+                    let (length, text) = self.length::<LITTLE>(at)?;
+                    at = self.skip(text, u64::from(length))?;
                 }
                 Step::SkipWideText => {
-                    let length = self.length::<LITTLE>()?;
-                    self.take(2 * u64::from(length))?;
+                    let (length, text) = self.length::<LITTLE>(at)?;
+                    at = self.skip(text, 2 * u64::from(length))?;
                 }
-                Step::SkipNumbers(number) => {
-                    let count = self.length::<LITTLE>()?;
-                    self.numbers(number.size(), count)?;
-                }
-                Step::Number { slot, number } => {
-                    let piece = self.numbers(number.size(), 1)?;
-                    sink.number(slot, number_from(number, LITTLE, piece));
-                }
-                Step::Text(slot) => {
-                    let length = self.length::<LITTLE>()?;
-                    sink.text(slot, without_terminator(self.take(u64::from(length))?));
-                }
-                Step::Numbers { slot, number, count } => {
-                    let count = self.count::<LITTLE>(count)?;
-                    let bytes = self.numbers(number.size(), count)?;
-                    sink.numbers(slot, Numbers::Wire { number, little_endian: LITTLE, bytes });
-                }
-                Step::Texts { slot, count } => self.texts::<LITTLE, S>(slot, count, sink)?,
-                Step::Repeat { slot, count, steps: inner, least } => {
-                    let end = next + inner as usize;
-                    self.repeat::<LITTLE, S>(slot, count, least, &steps[next..end.min(steps.len())], sink)?;
-                    next = end;
-                }
-                Step::StructStart => {
-                    if self.sizes.of_structs {
-                        self.length::<LITTLE>()?;
+                Step::SkipNumbers { number, sequences } => {
+                    let size = number.size();
+                    for _ in 0..sequences {
+                        let (count, first) = self.length::<LITTLE>(at)?;
+                        at = self.numbers(first, size, count)?.1;
                     }
                 }
+                Step::Number { slot, number } => {
+                    let (piece, end) = self.numbers(at, number.size(), 1)?;
+                    sink.number(slot, number_from(number, LITTLE, piece));
+                    at = end;
+                }
+                Step::Text(slot) => {
+                    let (length, text) = self.length::<LITTLE>(at)?;
+                    let (text, end) = self.take(text, u64::from(length))?;
+                    sink.text(slot, without_terminator(text));
+                    at = end;
+                }
+                Step::Numbers { slot, number, count } => {
+                    let (count, first) = self.count::<LITTLE>(at, count)?;
+                    let (bytes, end) = self.numbers(first, number.size(), count)?;
+                    sink.numbers(slot, Numbers::Wire { number, little_endian: LITTLE, bytes });
+                    at = end;
+                }
+                Step::Texts { slot, count } => at = self.texts::<LITTLE, S>(at, slot, count, sink)?,
+                Step::Repeat { slot, count, steps: inner, least } => {
+                    let end = next + inner as usize;
+                    let inner = &steps[next..end.min(steps.len())];
+                    at = self.repeat::<LITTLE, S>(at, (slot, count, least), inner, sink)?;
+                    next = end;
+                }
+                Step::StructStart => at = self.length::<LITTLE>(at)?.1,
             }
         }
-        Ok(())
+        Ok(at)
     }
 
     fn texts<const LITTLE: bool, S: Sink>(
-        &mut self,
-        slot: u8,
+        self,
+        mut at: usize,
+        slot: Slot,
         fixed: Option<u32>,
         sink: &mut S,
-    ) -> Result<(), RunError> {
+    ) -> Result<usize, RunError> {
         if self.sizes.of_lists {
-            self.length::<LITTLE>()?;
+            at = self.length::<LITTLE>(at)?.1;
         }
-        self.align(4);
-        let start = self.at;
+        let start = self.align(at, 4);
         if fixed.is_none()
             && let Some(expected) = sink.expected_texts(slot)
             && self.body.get(start..).is_some_and(|rest| rest.starts_with(expected))
         {
-            self.at += expected.len();
+            let end = start + expected.len();
             sink.same_texts(slot);
-            return Ok(());
+            return Ok(end);
         }
-        let count = self.count::<LITTLE>(fixed)?;
+        let (count, mut at) = self.count::<LITTLE>(start, fixed)?;
         for _ in 0..count {
-            let length = self.length::<LITTLE>()?;
-            self.take(u64::from(length))?;
+            let (length, text) = self.length::<LITTLE>(at)?;
+            at = self.skip(text, u64::from(length))?;
         }
         if fixed.is_none() {
-            let raw = &self.body[start..self.at];
+            let raw = &self.body[start..at];
             sink.texts(slot, Texts::Wire { little_endian: LITTLE, count: count as usize, raw });
         }
-        Ok(())
+        Ok(at)
     }
 
+    #[inline]
     fn repeat<const LITTLE: bool, S: Sink>(
-        &mut self,
-        slot: Option<u8>,
-        fixed: Option<u32>,
-        least: u64,
+        self,
+        mut at: usize,
+        (slot, fixed, least): (Option<Slot>, Option<u32>, u64),
         steps: &[Step],
         sink: &mut S,
-    ) -> Result<(), RunError> {
+    ) -> Result<usize, RunError> {
         if self.sizes.of_lists {
-            self.length::<LITTLE>()?;
+            at = self.length::<LITTLE>(at)?.1;
         }
-        let count = self.count::<LITTLE>(fixed)?;
+        let (count, mut at) = self.count::<LITTLE>(at, fixed)?;
         // Checked before walking: a count cannot ask for more elements than bytes can hold.
         let needed = u64::from(count).saturating_mul(least);
-        let left = (self.body.len() - self.at.min(self.body.len())) as u64;
-        if needed > left {
-            return Err(RunError::Short { at: self.at, needed, end: self.body.len() });
+        if needed > self.body.len().saturating_sub(at) as u64 {
+            return Err(RunError::Short { at, needed, end: self.body.len() });
         }
         for _ in 0..count {
             if let Some(slot) = slot {
                 sink.element(slot);
             }
-            self.steps::<LITTLE, S>(steps, sink)?;
+            at = self.steps::<LITTLE, S>(at, steps, sink)?;
         }
-        Ok(())
+        Ok(at)
     }
 }
