@@ -1,21 +1,19 @@
 //! From samples of topics to planned and measured series on one clock.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::collections::BTreeMap;
 
 use super::{
     LogError, ReadOptions, Recording, SourceInfo, TimeBase,
     choose::{Candidate, Choice, nearest},
     doubt,
     read::{Content, Extracted},
-    source::{Plans, RawTrajectory, Stamps, Table},
+    source::{Plans, RawTrajectory, Stamps},
+    track::{Axis, tracks},
 };
 use crate::{
     math::median,
     remark::{Code, Remarks},
-    series::{
-        Clock, PlannedPoint, PlannedTrajectory, Series, Track, continuous_clock, plan_tracks, split_at_gaps,
-        velocity_agrees,
-    },
+    series::{Clock, PlannedPoint, PlannedTrajectory, Series, Track, continuous_clock, plan_tracks},
     units::{radians_from_degrees, seconds_since},
 };
 
@@ -38,22 +36,18 @@ pub(super) fn assemble(
         }
     }
     let epoch_ns = clocks.values().filter_map(|clock| clock.t_ns.first()).min().copied().unwrap_or(0);
-    let gather = |chosen: &[Candidate], degrees: bool, remarks: &mut Remarks| {
-        let mut series = Series::default();
-        for candidate in chosen {
-            if let (Content::Table(table), Some(field), Some(clock)) =
-                (&extracted.sources[candidate.source].content, candidate.field, clocks.get(&candidate.source))
-            {
-                let tracks =
-                    tracks(table, field, clock, epoch_ns, degrees, topic(&extracted, candidate), remarks);
-                let new = tracks.into_iter().filter(|t| series.track(t.name()).is_none()).collect::<Vec<_>>();
-                series.tracks.extend(new);
-            }
-        }
-        series
-    };
-    let mut measured = gather(&choice.measured, options.measured_in_degrees, &mut remarks);
-    let mut planned = gather(&choice.planned, options.planned_in_degrees, &mut remarks);
+    let axes: BTreeMap<usize, Axis> =
+        clocks.into_iter().map(|(source, clock)| (source, Axis::new(clock, epoch_ns))).collect();
+    let mut measured = gather(
+        &mut extracted,
+        &choice.measured,
+        &choice.planned,
+        options.measured_in_degrees,
+        &axes,
+        &mut remarks,
+    );
+    let mut planned =
+        gather(&mut extracted, &choice.planned, &[], options.planned_in_degrees, &axes, &mut remarks);
     for candidate in &choice.planned {
         if let Content::Plans(plans) = &extracted.sources[candidate.source].content {
             let receipt = Receipt::new(&extracted, choice, base, epoch_ns);
@@ -84,6 +78,34 @@ pub(super) fn assemble(
         attachments: extracted.attachments,
         metadata: extracted.metadata,
     })
+}
+
+/// The tracks of the chosen fields; of joints that several have, those of the first.
+///
+/// Moves samples out of what was extracted, but for fields that are `needed_later`.
+fn gather(
+    extracted: &mut Extracted,
+    chosen: &[Candidate],
+    needed_later: &[Candidate],
+    degrees: bool,
+    axes: &BTreeMap<usize, Axis>,
+    remarks: &mut Remarks,
+) -> Series {
+    let mut series = Series::default();
+    for (place, candidate) in chosen.iter().enumerate() {
+        let name = topic(extracted, candidate).to_owned();
+        let (Content::Table(table), Some(field), Some(axis)) =
+            (&mut extracted.sources[candidate.source].content, candidate.field, axes.get(&candidate.source))
+        else {
+            continue;
+        };
+        let same = |c: &Candidate| c.source == candidate.source && c.field == candidate.field;
+        let last = !chosen[place + 1..].iter().chain(needed_later).any(same);
+        let tracks = tracks(table, field, axis, degrees, last, &name, remarks);
+        let new: Vec<Track> = tracks.into_iter().filter(|t| series.track(t.name()).is_none()).collect();
+        series.tracks.extend(new);
+    }
+    series
 }
 
 fn topic<'a>(extracted: &'a Extracted, candidate: &Candidate) -> &'a str {
@@ -140,97 +162,6 @@ fn moves(stamp_ns: &[i64]) -> bool {
     let set = stamp_ns.iter().filter(|&&ns| ns != 0).count();
     let steps = stamp_ns.windows(2).filter(|w| w[0] != w[1]).count();
     2 * set > stamp_ns.len() && 2 * steps >= stamp_ns.len().saturating_sub(1)
-}
-
-/// One track a joint of a table's field.
-fn tracks(
-    table: &Table,
-    field: usize,
-    clock: &Clock,
-    epoch_ns: i64,
-    degrees: bool,
-    topic: &str,
-    remarks: &mut Remarks,
-) -> Vec<Track> {
-    let all_t_s: Vec<f64> = clock.t_ns.iter().map(|&ns| seconds_since(epoch_ns, ns)).collect();
-    let shared: Arc<[f64]> = all_t_s.into();
-    let all_cuts = cuts(&shared, &clock.cuts);
-    let unit = |value: f64| if degrees { radians_from_degrees(value) } else { value };
-    let mut tracks = Vec::new();
-    let mut gap = Gaps::default();
-    for (joint, name) in table.joints.iter().enumerate() {
-        let column = table.column(field, joint);
-        let at = |row: usize| column.get(row).copied().unwrap_or(f64::NAN);
-        let velocity = table.fields[field].velocity.map(|v| table.column(v, joint)).filter(|v| !v.is_empty());
-        let speed_at = |row: usize| velocity.and_then(|v| v.get(row).copied()).unwrap_or(f64::NAN);
-        let kept: Vec<usize> = (0..clock.rows.len()).filter(|&i| at(clock.rows[i]).is_finite()).collect();
-        if kept.is_empty() {
-            continue;
-        }
-        let position = kept.iter().map(|&i| unit(at(clock.rows[i]))).collect::<Vec<_>>();
-        let speed = kept.iter().map(|&i| unit(speed_at(clock.rows[i]))).collect::<Vec<_>>();
-        let (t_s, cuts) = if kept.len() == clock.rows.len() {
-            (shared.clone(), all_cuts.clone())
-        } else {
-            let t_s: Arc<[f64]> = kept.iter().map(|&i| shared[i]).collect();
-            let jumps: Vec<usize> = clock.cuts.iter().map(|cut| kept.partition_point(|i| i < cut)).collect();
-            let cuts = cuts(&t_s, &jumps);
-            (t_s, cuts)
-        };
-        gap.note(&t_s, &cuts, &clock.cuts);
-        let usable = speed.iter().all(|v| v.is_finite()) && velocity_agrees(&t_s, &position, &speed, &cuts);
-        let track = Track::new(name, t_s, position, &cuts);
-        let track = if usable { track.and_then(|track| track.with_velocity(speed)) } else { track };
-        tracks.extend(track.ok());
-    }
-    gap.remark(topic, remarks);
-    tracks
-}
-
-/// Clock jumps and gaps together, ascending, inside the samples.
-fn cuts(t_s: &[f64], jumps: &[usize]) -> Vec<usize> {
-    let mut cuts: Vec<usize> = split_at_gaps(t_s)
-        .into_iter()
-        .chain(jumps.iter().copied())
-        .filter(|&cut| cut > 0 && cut < t_s.len())
-        .collect();
-    cuts.sort_unstable();
-    cuts.dedup();
-    cuts
-}
-
-/// Silences of the joint that has most of them.
-#[derive(Default)]
-struct Gaps {
-    count: u64,
-    longest_s: f64,
-    at_s: f64,
-}
-
-impl Gaps {
-    fn note(&mut self, t_s: &[f64], cuts: &[usize], jumps: &[usize]) {
-        let mut here = Self::default();
-        for &cut in cuts.iter().filter(|cut| !jumps.contains(cut)) {
-            here.count += 1;
-            let length_s = t_s[cut] - t_s[cut - 1];
-            if length_s > here.longest_s {
-                here.longest_s = length_s;
-                here.at_s = t_s[cut - 1];
-            }
-        }
-        if here.count > self.count {
-            *self = here;
-        }
-    }
-
-    fn remark(&self, topic: &str, remarks: &mut Remarks) {
-        let Self { longest_s, at_s, .. } = self;
-        remarks.add(
-            Code::Gap,
-            self.count,
-            format!("gaps in {topic}, the longest {longest_s:.2} s after {at_s:.2} s; nothing is computed across them"),
-        );
-    }
 }
 
 /// Turns a receipt on the recorder's clock into a time on the header's.

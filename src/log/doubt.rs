@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::{TimeBase, source::Table};
 use crate::{
-    math::quantile_sorted,
+    math::quantile,
     remark::{Code, Remarks},
     series::{Clock, Series, Track},
     units::{DEGREE_RAD, NS_PER_S},
@@ -170,9 +170,7 @@ fn of_pair(planned: &Track, measured: &Track, remarks: &mut Remarks) {
 
 /// Range without the outermost hundredth at either end, rad.
 fn span(position_rad: &[f64]) -> f64 {
-    let mut sorted = position_rad.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    quantile_sorted(&sorted, 0.99) - quantile_sorted(&sorted, 0.01)
+    quantile(position_rad.to_vec(), 0.99) - quantile(position_rad.to_vec(), 0.01)
 }
 
 /// A plan that moves by this much while the sensor repeats one value is beyond any dead-band.

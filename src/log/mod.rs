@@ -17,6 +17,7 @@ mod read;
 mod recording;
 mod schema;
 mod source;
+mod track;
 mod write;
 
 pub use error::LogError;

@@ -3,20 +3,29 @@
 /// The `p` quantile of ascending values by linear interpolation between order statistics
 /// (Hyndman and Fan's type 7, as NumPy's default); NaN for no values.
 pub fn quantile_sorted(ascending: &[f64], p: f64) -> f64 {
-    let Some(last) = ascending.len().checked_sub(1) else {
+    let Some((below, part)) = place(ascending.len(), p) else {
         return f64::NAN;
     };
-    let place = p.clamp(0.0, 1.0) * last as f64;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 <= place <= last")]
-    let below = place.floor() as usize;
-    let above = (below + 1).min(last);
-    ascending[below] + (place - below as f64) * (ascending[above] - ascending[below])
+    let above = (below + 1).min(ascending.len() - 1);
+    ascending[below] + part * (ascending[above] - ascending[below])
 }
 
-/// The `p` quantile of values in any order; NaN for no values. O(n log n).
+/// The `p` quantile of values in any order, as [`quantile_sorted`]; NaN for no values. O(n).
 pub fn quantile(mut values: Vec<f64>, p: f64) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    quantile_sorted(&values, p)
+    let Some((below, part)) = place(values.len(), p) else {
+        return f64::NAN;
+    };
+    let (_, &mut low, above) = values.select_nth_unstable_by(below, f64::total_cmp);
+    let high = above.iter().copied().min_by(f64::total_cmp).unwrap_or(low);
+    low + part * (high - low)
+}
+
+/// The order statistic below the `p` quantile of `n` values, and the part of the way to the next.
+fn place(n: usize, p: f64) -> Option<(usize, f64)> {
+    let place = p.clamp(0.0, 1.0) * n.checked_sub(1)? as f64;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 <= place < n")]
+    let below = place.floor() as usize;
+    Some((below, place - below as f64))
 }
 
 /// The median; NaN for no values.
@@ -42,6 +51,17 @@ mod tests {
             [0.25, 0.5, 0.95].map(|p| quantile_sorted(&values, p)),
             [1.75, 3.0, 7.399_999_999_999_999]
         );
+    }
+
+    #[test]
+    fn the_order_of_values_does_not_matter() {
+        let values: Vec<f64> = (0..101).map(|k| f64::from(k * 37 % 101).sqrt()).collect();
+        let mut ascending = values.clone();
+        ascending.sort_unstable_by(f64::total_cmp);
+        for p in [0.0, 0.01, 0.333, 0.5, 0.995, 1.0] {
+            assert_eq!(quantile(values.clone(), p), quantile_sorted(&ascending, p));
+        }
+        assert!(quantile(Vec::new(), 0.5).is_nan());
     }
 
     #[test]

@@ -252,3 +252,47 @@ impl<'a> Reader<'a> {
         Ok(at)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::{decode::Want, schema::Definition};
+
+    #[derive(Default)]
+    struct Seen(Vec<f64>);
+
+    impl Sink for Seen {
+        fn number(&mut self, _slot: Slot, value: f64) {
+            self.0.push(value);
+        }
+        fn text(&mut self, _slot: Slot, _text: &[u8]) {}
+        fn numbers(&mut self, _slot: Slot, _values: Numbers<'_>) {}
+        fn texts(&mut self, _slot: Slot, _values: Texts<'_>) {}
+        fn element(&mut self, _slot: Slot) {}
+        fn expected_texts(&self, _slot: Slot) -> Option<&[u8]> {
+            None
+        }
+        fn same_texts(&mut self, _slot: Slot) {}
+    }
+
+    #[test]
+    fn what_follows_a_list_is_no_part_of_its_elements() {
+        let line = "=".repeat(80);
+        let text =
+            format!("Pair[] pairs\nint32 skipped\nfloat64 wanted\n{line}\nMSG: p/Pair\nfloat64 x\nint32 y\n");
+        let definition = Definition::parse("p/msg/List", "ros2msg", text.as_bytes()).unwrap();
+        let program = Program::compile(&definition, &[Want { path: "wanted".into(), slot: 0 }]).unwrap();
+        for pairs in 0..4_u32 {
+            let mut body = pairs.to_le_bytes().to_vec();
+            for _ in 0..pairs {
+                body.resize(body.len().next_multiple_of(8) + 12, 0);
+            }
+            body.extend(7_i32.to_le_bytes());
+            body.resize(body.len().next_multiple_of(8), 0);
+            body.extend(2.5_f64.to_le_bytes());
+            let mut seen = Seen::default();
+            program.run(&[&[0, 1, 0, 0], &body[..]].concat(), &mut seen).unwrap();
+            assert_eq!(seen.0, [2.5], "{pairs} pairs");
+        }
+    }
+}

@@ -128,6 +128,12 @@ impl Table {
         self.columns.get(field).and_then(|joints| joints.get(joint)).map_or(&[], Vec::as_slice)
     }
 
+    /// Moves a column out.
+    pub(in crate::log) fn take_column(&mut self, field: usize, joint: usize) -> Vec<f64> {
+        let column = self.columns.get_mut(field).and_then(|joints| joints.get_mut(joint));
+        column.map(std::mem::take).unwrap_or_default()
+    }
+
     /// Takes the message that was just read into the samples.
     pub(in crate::log) fn commit(&mut self, publish_ns: u64, log_ns: u64) {
         if self.form == Form::Groups {

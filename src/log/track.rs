@@ -1,0 +1,136 @@
+//! From the samples of a table to tracks.
+
+use std::sync::Arc;
+
+use super::source::Table;
+use crate::{
+    remark::{Code, Remarks},
+    series::{Clock, Track, split_at_gaps, velocity_agrees},
+    units::{radians_from_degrees, seconds_since},
+};
+
+/// The time axis that all joints of a table share.
+pub(super) struct Axis {
+    t_s: Arc<[f64]>,
+    /// Rows of the table at these times.
+    rows: Vec<usize>,
+    /// Backward jumps of the clock.
+    jumps: Vec<usize>,
+    /// Jumps and gaps.
+    cuts: Vec<usize>,
+    /// Whether the rows are all there, as they lie in the table.
+    as_read: bool,
+}
+
+impl Axis {
+    pub(super) fn new(clock: Clock, epoch_ns: i64) -> Self {
+        let t_s: Arc<[f64]> = clock.t_ns.iter().map(|&ns| seconds_since(epoch_ns, ns)).collect();
+        let as_read = clock.rows.iter().enumerate().all(|(i, &row)| i == row);
+        Self { cuts: cuts(&t_s, &clock.cuts), t_s, rows: clock.rows, jumps: clock.cuts, as_read }
+    }
+
+    /// The axis without the samples that are missing in a column.
+    fn kept(&self, kept: &[usize]) -> (Arc<[f64]>, Vec<usize>) {
+        let t_s: Arc<[f64]> = kept.iter().map(|&i| self.t_s[i]).collect();
+        let jumps: Vec<usize> = self.jumps.iter().map(|cut| kept.partition_point(|i| i < cut)).collect();
+        let cuts = cuts(&t_s, &jumps);
+        (t_s, cuts)
+    }
+}
+
+/// One track a joint of a table's field; `last` if nobody asks the table for this field again,
+/// so that samples may be moved out of it.
+pub(super) fn tracks(
+    table: &mut Table,
+    field: usize,
+    axis: &Axis,
+    degrees: bool,
+    last: bool,
+    topic: &str,
+    remarks: &mut Remarks,
+) -> Vec<Track> {
+    let mut tracks = Vec::new();
+    let mut gap = Gaps::default();
+    let velocity_field = table.fields[field].velocity;
+    for (joint, name) in table.joints.clone().iter().enumerate() {
+        let mut column =
+            |field| if last { table.take_column(field, joint) } else { table.column(field, joint).to_vec() };
+        let (position, speed) = (column(field), velocity_field.map(column).unwrap_or_default());
+        let whole =
+            axis.as_read && position.len() == axis.rows.len() && position.iter().all(|q| q.is_finite());
+        let (t_s, cuts, mut position, mut speed) = if whole {
+            (axis.t_s.clone(), axis.cuts.clone(), position, speed)
+        } else {
+            let at = |i: usize| position.get(axis.rows[i]).copied().unwrap_or(f64::NAN);
+            let kept: Vec<usize> = (0..axis.rows.len()).filter(|&i| at(i).is_finite()).collect();
+            if kept.is_empty() {
+                continue;
+            }
+            let (t_s, cuts) = if kept.len() == axis.rows.len() {
+                (axis.t_s.clone(), axis.cuts.clone())
+            } else {
+                axis.kept(&kept)
+            };
+            let speed = kept.iter().map_while(|&i| speed.get(axis.rows[i]).copied()).collect();
+            (t_s, cuts, kept.iter().map(|&i| at(i)).collect(), speed)
+        };
+        if degrees {
+            position.iter_mut().chain(&mut speed).for_each(|value| *value = radians_from_degrees(*value));
+        }
+        gap.note(&t_s, &cuts, &axis.jumps);
+        let usable = speed.len() == position.len()
+            && speed.iter().all(|v| v.is_finite())
+            && velocity_agrees(&t_s, &position, &speed, &cuts);
+        let track = Track::new(name, t_s, position, &cuts);
+        let track = if usable { track.and_then(|track| track.with_velocity(speed)) } else { track };
+        tracks.extend(track.ok());
+    }
+    gap.remark(topic, remarks);
+    tracks
+}
+
+/// Clock jumps and gaps together, ascending, inside the samples.
+fn cuts(t_s: &[f64], jumps: &[usize]) -> Vec<usize> {
+    let mut cuts: Vec<usize> = split_at_gaps(t_s)
+        .into_iter()
+        .chain(jumps.iter().copied())
+        .filter(|&cut| cut > 0 && cut < t_s.len())
+        .collect();
+    cuts.sort_unstable();
+    cuts.dedup();
+    cuts
+}
+
+/// Silences of the joint that has most of them.
+#[derive(Default)]
+struct Gaps {
+    count: u64,
+    longest_s: f64,
+    at_s: f64,
+}
+
+impl Gaps {
+    fn note(&mut self, t_s: &[f64], cuts: &[usize], jumps: &[usize]) {
+        let mut here = Self::default();
+        for &cut in cuts.iter().filter(|cut| !jumps.contains(cut)) {
+            here.count += 1;
+            let length_s = t_s[cut] - t_s[cut - 1];
+            if length_s > here.longest_s {
+                here.longest_s = length_s;
+                here.at_s = t_s[cut - 1];
+            }
+        }
+        if here.count > self.count {
+            *self = here;
+        }
+    }
+
+    fn remark(&self, topic: &str, remarks: &mut Remarks) {
+        let Self { longest_s, at_s, .. } = self;
+        remarks.add(
+            Code::Gap,
+            self.count,
+            format!("gaps in {topic}, the longest {longest_s:.2} s after {at_s:.2} s; nothing is computed across them"),
+        );
+    }
+}
