@@ -12,8 +12,7 @@ use std::path::Path;
 
 use hydrotrace::log::{ReadOptions, Selector, read_recording};
 
-use log::Chunk;
-use measure::{Best, peak_anonymous_mb};
+use measure::{Time, child, peak_anonymous_mb, timed};
 
 /// Position and velocity of the plan and position of the measurement for six joints, speed
 /// scaling, and the three clocks of every message.
@@ -30,14 +29,30 @@ fn main() {
     let quick = arguments.iter().any(|argument| argument == "--quick");
     let number = |flag: &str, default: usize| value(flag).map_or(default, |text| text.parse().unwrap());
     let reps = number("--reps", if quick { 3 } else { 7 });
-    if let Some(path) = value("--peak-read") {
-        println!("{}", peak_anonymous_mb(|| read_only(path.as_ref())));
-    } else if let Some(path) = value("--peak-recording") {
-        println!("{}", peak_anonymous_mb(|| recording(path.as_ref())));
+    if let (Some(name), Some(path)) = (value("--task"), arguments.last()) {
+        task(&name, number("--threads", 1), path.as_ref());
     } else if let Some(path) = value("--file") {
-        one_file(path.as_ref(), reps);
+        println!("{HEAD}");
+        compare("", path.as_ref(), reps);
     } else {
         synthetic(number("--mb", if quick { 50 } else { 1000 }), reps);
+    }
+}
+
+/// What a child process does: one run, measured from within.
+fn task(name: &str, threads: usize, path: &Path) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let run = |what: fn(&Path)| pool.install(|| what(path));
+    match name {
+        "decompress" => {
+            let chunks = log::chunks(path);
+            println!("{}", Time::of(|| log::decompress(&chunks)));
+        }
+        "read" => println!("{}", Time::of(|| run(read_only))),
+        "recording" => println!("{}", Time::of(|| run(recording))),
+        "read-memory" => println!("{}", peak_anonymous_mb(|| run(read_only))),
+        "recording-memory" => println!("{}", peak_anonymous_mb(|| run(recording))),
+        other => panic!("unknown task {other}"),
     }
 }
 
@@ -53,37 +68,19 @@ fn recording(path: &Path) {
     assert!(!recording.planned.tracks.is_empty());
 }
 
-fn pool(threads: usize) -> rayon::ThreadPool {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap()
-}
-
-fn one_file(path: &Path, reps: usize) {
-    let (one, mut read, mut whole) = (pool(1), Best::default(), Best::default());
-    for _ in 0..reps {
-        read.take(|| one.install(|| read_only(path)));
-        whole.take(|| one.install(|| recording(path)));
-    }
-    println!("{}, one thread, best of {reps}: read {read}, recording {whole}", path.display());
-}
+const HEAD: &str = "\
+           MB packed |  pure |  read  wall  user | ratio  user | 2 threads 1/2 CPU | recording ratio";
 
 fn synthetic(mb: usize, reps: usize) {
     let folder = tempfile::tempdir().unwrap();
     let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    let load = load.split(' ').next().unwrap_or_default();
     let written = log::write(folder.path(), mb * 1_000_000);
     let cores = std::thread::available_parallelism().unwrap();
-    println!("{} messages of 6 joints, {reps} interleaved repetitions, the best of each;", written.messages);
-    println!("{cores} cores, load before: {}", load.split(' ').next().unwrap_or_default());
-    println!(
-        "rates in MB/s (1e6 B of uncompressed chunks); per thread by CPU time, two threads by wall time"
-    );
-    println!(
-        "{:<5} {:>6} {:>7} | {:>6} | {:>6} {:>6} {:>5} | {:>6} {:>6} {:>6} {:>5} | {:>6} {:>6}",
-        "", "MB", "packed", "pure", "read", "wall", "ratio", "2 thr.", "1/2", "1/2", "1/2", "record", "ratio"
-    );
-    println!(
-        "{:<5} {:>6} {:>7} | {:>6} | {:>6} {:>6} {:>5} | {:>6} {:>6} {:>6} {:>5} | {:>6} {:>6}",
-        "", "", "", "cpu", "cpu", "", "", "wall", "wall", "2w/c1", "", "cpu", ""
-    );
+    println!("{} messages of 6 joints; {cores} cores, load before {load}", written.messages);
+    println!("each figure the best of {reps} runs, interleaved, each in a process of its own");
+    println!("MB/s of uncompressed chunks by CPU time, or by wall time where it says wall or threads");
+    println!("{HEAD}");
     let mut zstd_cpu_s = f64::NAN;
     for (name, path) in &written.files {
         let cpu_s = compare(name, path, reps);
@@ -92,25 +89,23 @@ fn synthetic(mb: usize, reps: usize) {
         }
     }
     let zstd = &written.files[0].1;
-    for (what, flag, numbers) in
-        [("read", "--peak-read", NUMBERS_READ), ("recording", "--peak-recording", NUMBERS_KEPT)]
-    {
+    for (what, numbers) in [("read", NUMBERS_READ), ("recording", NUMBERS_KEPT)] {
         let numbers_mb = (written.messages * numbers * 8) as f64 / 1e6;
-        let peak_mb = measure::child(flag, zstd);
+        let peak_mb = child(&format!("{what}-memory"), 2, zstd)[0];
+        let beyond_mb = peak_mb - numbers_mb;
         println!(
-            "memory of {what}, zstd, {cores} threads: peak {peak_mb:.0} MB anonymous, {numbers_mb:.0} MB of numbers, {:.0} MB beyond",
-            peak_mb - numbers_mb
+            "memory of {what}: {peak_mb:.0} MB anonymous, {numbers_mb:.0} MB of numbers, {beyond_mb:.0} MB beyond"
         );
     }
     let sample = written.messages.min(if mb < 100 { 5_000 } else { 30_000 });
     match peer::rosbags(zstd, sample) {
-        Some(per_message_s) => {
+        Some(theirs_s) => {
             let ours_s = zstd_cpu_s / written.messages as f64;
             println!(
-                "rosbags: {:.1} us of CPU a message (of the first {sample}, start-up left out), ours {:.3} us: {:.0}x a core",
-                per_message_s * 1e6,
+                "rosbags: {:.1} us of CPU a message (from the first {sample}, start-up left out), ours {:.3} us: {:.0}x a core",
+                theirs_s * 1e6,
                 ours_s * 1e6,
-                per_message_s / ours_s
+                theirs_s / ours_s
             );
         }
         None => println!("rosbags: not run (needs python3 with rosbags 0.11)"),
@@ -119,32 +114,38 @@ fn synthetic(mb: usize, reps: usize) {
 
 /// Measures one file; returns the CPU time of reading it in one thread, s.
 fn compare(name: &str, path: &Path, reps: usize) -> f64 {
-    let chunks: Vec<Chunk> = log::chunks(path);
+    let chunks = log::chunks(path);
     let bytes = chunks.iter().map(|chunk| chunk.plain_bytes).sum::<usize>() as f64;
     let packed = chunks.iter().map(|chunk| chunk.packed.len()).sum::<usize>() as f64;
-    let (one, two) = (pool(1), pool(2));
-    let [mut pure, mut read, mut read_two, mut whole] = [Best::default(); 4];
-    for _ in 0..reps {
-        pure.take(|| log::decompress(&chunks));
-        read.take(|| one.install(|| read_only(path)));
-        read_two.take(|| two.install(|| read_only(path)));
-        whole.take(|| one.install(|| recording(path)));
-    }
+    drop(chunks);
+    let tasks = [("decompress", 1), ("read", 1), ("read", 2), ("recording", 1)];
+    let runs: Vec<[Time; 4]> =
+        (0..reps).map(|_| tasks.map(|(task, threads)| timed(task, threads, path))).collect();
+    let [pure, read, two, whole] =
+        [0, 1, 2, 3].map(|task| Time::best(&runs.iter().map(|run| run[task]).collect::<Vec<_>>()));
     let rate = |seconds: f64| bytes / seconds / 1e6;
     println!(
-        "{name:<5} {:>6.0} {:>7.2} | {:>6.0} | {:>6.0} {:>6.0} {:>5.2} | {:>6.0} {:>6.2} {:>6.2} {:>5.2} | {:>6.0} {:>6.2}",
+        "{name:<5} {:>7.1} {:>6.2} | {:>5.0} | {:>5.0} {:>5.0} {:>5.0} | {:>5.2} {:>5.2} | {:>5.0} {:>5.2} {:>5.2} | {:>9.0} {:>5.2}",
         bytes / 1e6,
         bytes / packed,
         rate(pure.cpu_s),
         rate(read.cpu_s),
         rate(read.wall_s),
+        rate(read.user_s()),
         pure.cpu_s / read.cpu_s,
-        rate(read_two.wall_s),
-        read.wall_s / read_two.wall_s,
-        read.cpu_s / read_two.wall_s,
-        read.cpu_s / read_two.cpu_s,
+        pure.cpu_s / read.user_s(),
+        rate(two.wall_s),
+        read.wall_s / two.wall_s,
+        read.cpu_s / two.cpu_s,
         rate(whole.cpu_s),
         pure.cpu_s / whole.cpu_s,
+    );
+    println!(
+        "      CPU ms: decompression {:.1}, read {:.1} ({:.1} in the kernel), recording {:.1}",
+        pure.cpu_s * 1e3,
+        read.cpu_s * 1e3,
+        read.kernel_s * 1e3,
+        whole.cpu_s * 1e3
     );
     read.cpu_s
 }

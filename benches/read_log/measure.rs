@@ -10,37 +10,56 @@ use std::{
 
 use cpu_time::ProcessTime;
 
-/// The least time of several runs, wall and CPU apart.
+/// What one run took.
 #[derive(Clone, Copy)]
-pub(crate) struct Best {
+pub(crate) struct Time {
     pub(crate) wall_s: f64,
     /// User and system time of all threads.
     pub(crate) cpu_s: f64,
+    /// System time, counted in ticks of 10 ms.
+    pub(crate) kernel_s: f64,
 }
 
-impl Default for Best {
-    fn default() -> Self {
-        Self { wall_s: f64::INFINITY, cpu_s: f64::INFINITY }
-    }
-}
-
-impl Best {
-    pub(crate) fn take(&mut self, run: impl FnOnce()) {
-        let (start, before_s) = (Instant::now(), cpu_s());
+impl Time {
+    pub(crate) fn of(run: impl FnOnce()) -> Self {
+        let (start, cpu_s, kernel_s) = (Instant::now(), cpu_s(), kernel_s());
         run();
-        self.wall_s = self.wall_s.min(start.elapsed().as_secs_f64());
-        self.cpu_s = self.cpu_s.min(cpu_s() - before_s);
+        Self {
+            wall_s: start.elapsed().as_secs_f64(),
+            cpu_s: self::cpu_s() - cpu_s,
+            kernel_s: self::kernel_s() - kernel_s,
+        }
+    }
+
+    /// CPU time outside the kernel.
+    pub(crate) fn user_s(self) -> f64 {
+        self.cpu_s - self.kernel_s
+    }
+
+    /// The least of each of several runs.
+    pub(crate) fn best(runs: &[Self]) -> Self {
+        let least = |of: fn(&Self) -> f64| runs.iter().map(of).fold(f64::INFINITY, f64::min);
+        let cpu_s = least(|run| run.cpu_s);
+        let kernel_s = runs.iter().map(|run| run.kernel_s).sum::<f64>() / runs.len() as f64;
+        Self { wall_s: least(|run| run.wall_s), cpu_s, kernel_s }
     }
 }
 
-impl fmt::Display for Best {
+/// As the child prints it and [`timed`] reads it.
+impl fmt::Display for Time {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:.1} ms of CPU ({:.1} ms wall)", self.cpu_s * 1e3, self.wall_s * 1e3)
+        write!(f, "{} {} {}", self.wall_s, self.cpu_s, self.kernel_s)
     }
 }
 
 fn cpu_s() -> f64 {
     ProcessTime::now().as_duration().as_secs_f64()
+}
+
+fn kernel_s() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap();
+    let (_, after_name) = stat.rsplit_once(')').unwrap();
+    after_name.split_whitespace().nth(12).unwrap().parse::<f64>().unwrap() / 100.0
 }
 
 fn anonymous_mb() -> f64 {
@@ -68,9 +87,20 @@ pub(crate) fn peak_anonymous_mb(run: impl FnOnce()) -> f64 {
     })
 }
 
-/// Runs this benchmark again with one flag, in a process whose memory is untouched; the number
-/// it prints.
-pub(crate) fn child(flag: &str, path: &Path) -> f64 {
-    let output = Command::new(std::env::current_exe().unwrap()).arg(flag).arg(path).output().unwrap();
-    String::from_utf8(output.stdout).unwrap().trim().parse().unwrap()
+/// Runs this benchmark again with one task, in a process of its own: allocators keep memory from
+/// one run for the next, so only the first is what a user sees. The numbers it prints.
+pub(crate) fn child(task: &str, threads: usize, path: &Path) -> Vec<f64> {
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    let output =
+        command.args(["--task", task, "--threads", &threads.to_string()]).arg(path).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.split_whitespace().map(|number| number.parse().unwrap()).collect()
+}
+
+/// The time of a task in a process of its own.
+pub(crate) fn timed(task: &str, threads: usize, path: &Path) -> Time {
+    match child(task, threads, path)[..] {
+        [wall_s, cpu_s, kernel_s] => Time { wall_s, cpu_s, kernel_s },
+        _ => panic!("{task} of {} failed", path.display()),
+    }
 }
