@@ -7,11 +7,17 @@ use super::{encode, file::Channel, *};
 /// Measured stamps as given, logged 40 ms after they should have been taken; published after 10.
 fn log_of(header_ns: impl Fn(i64) -> i64) -> Log {
     let mut log = Log::default();
-    for (topic, values) in [("/planned/joint_states", plan as fn(i64) -> Vec<f64>), ("/joint_states", measurement)] {
+    for (topic, values) in
+        [("/planned/joint_states", plan as fn(i64) -> Vec<f64>), ("/joint_states", measurement)]
+    {
         let channel = log.channel(Channel::cdr(topic, "sensor_msgs/msg/JointState"));
         for k in 0..SAMPLES {
             let stamp_ns = if topic == "/joint_states" { header_ns(k) } else { stamp(k) };
-            log.send(channel, stamp(k), encode::joint_state(cdr::Kind::LittleEndian, stamp_ns, &NAMES, &values(k), &[]));
+            log.send(
+                channel,
+                stamp(k),
+                encode::joint_state(cdr::Kind::LittleEndian, stamp_ns, &NAMES, &values(k), &[]),
+            );
         }
     }
     for message in &mut log.messages {
@@ -33,8 +39,11 @@ fn the_header_is_used_where_it_moves_and_the_delay_is_said() {
 
 #[test]
 fn each_clock_can_be_asked_for() {
-    for (base, after_ns) in [(TimeBase::Header, 0), (TimeBase::Publish, 10_000_000), (TimeBase::Log, 40_000_000)] {
-        let recording = read_with(&log_of(stamp), &ReadOptions { time_base: Some(base), ..ReadOptions::default() });
+    for (base, after_ns) in
+        [(TimeBase::Header, 0), (TimeBase::Publish, 10_000_000), (TimeBase::Log, 40_000_000)]
+    {
+        let recording =
+            read_with(&log_of(stamp), &ReadOptions { time_base: Some(base), ..ReadOptions::default() });
         assert_eq!((recording.source.time_base, recording.source.epoch_ns), (base, START_NS + after_ns));
         assert_values(&recording.measured, measurement);
     }
@@ -75,7 +84,10 @@ fn repeated_stamps_are_dropped_and_counted() {
     let recording = read(&log_of(|k| if k % 10 == 3 { stamp(k - 1) } else { stamp(k) }));
     assert_eq!(count(&recording.remarks, Code::DuplicateStamp), 5);
     let track = &recording.measured.tracks[0];
-    assert_eq!((track.len(), track.position_rad()[2], track.position_rad()[3]), (45, measurement(2)[0], measurement(4)[0]));
+    assert_eq!(
+        (track.len(), track.position_rad()[2], track.position_rad()[3]),
+        (45, measurement(2)[0], measurement(4)[0])
+    );
 }
 
 #[test]
@@ -118,7 +130,8 @@ fn a_jump_is_no_gap_for_a_joint_that_misses_samples_before_it() {
         message.log_ns += pause_ns;
         let stamp_ns = if k < 25 { stamp(k) } else { stamp(k) - 5_000_000_000 };
         if k < 10 {
-            message.data = encode::joint_state(cdr::Kind::LittleEndian, stamp_ns, &["a"], &measurement(k)[..1], &[]);
+            message.data =
+                encode::joint_state(cdr::Kind::LittleEndian, stamp_ns, &["a"], &measurement(k)[..1], &[]);
         }
         k += 1;
     }
@@ -142,12 +155,17 @@ fn stamps_from_before_the_clock_was_set_cost_no_other_sample() {
 
 #[test]
 fn the_farthest_stamps_are_still_times() {
-    let far = |k: i64| if k < 25 { i64::from(i32::MAX) * 1_000_000_000 + k } else { i64::from(i32::MIN) * 1_000_000_000 + k };
+    let far = |k: i64| {
+        if k < 25 { i64::from(i32::MAX) * 1_000_000_000 + k } else { i64::from(i32::MIN) * 1_000_000_000 + k }
+    };
     let recording = read(&log_of(far));
     assert_eq!(recording.measured.tracks.len(), 2, "{:?}", recording.remarks);
     let mut log = log_of(stamp);
     for (k, message) in log.messages.iter_mut().enumerate() {
         message.log_ns = if k % 2 == 0 { u64::MAX } else { 0 };
     }
-    let _ = read_bytes(&log.bytes(mcap::WriteOptions::new()), &ReadOptions { time_base: Some(TimeBase::Log), ..ReadOptions::default() });
+    let _ = read_bytes(
+        &log.bytes(mcap::WriteOptions::new()),
+        &ReadOptions { time_base: Some(TimeBase::Log), ..ReadOptions::default() },
+    );
 }

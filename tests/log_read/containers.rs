@@ -88,12 +88,19 @@ fn a_missing_file_is_said_and_the_rest_read() {
 
 #[test]
 fn hostile_descriptions_are_refused() {
-    let laughs = (1..30).fold("a0: &a0 [x, x]\n".to_owned(), |text, k| text + &format!("a{k}: &a{k} [*a{0}, *a{0}]\n", k - 1));
+    let laughs = (1..30).fold("a0: &a0 [x, x]\n".to_owned(), |text, k| {
+        text + &format!("a{k}: &a{k} [*a{0}, *a{0}]\n", k - 1)
+    });
     let deep = format!("rosbag2_bagfile_information: {}", "[".repeat(200_000));
     let steps = "- ".repeat(200_000);
-    for text in [laughs.as_str(), &deep, &steps, "", "\0", "a: *nowhere", "? ? ? ?", "rosbag2_bagfile_information: 5"] {
+    for text in
+        [laughs.as_str(), &deep, &steps, "", "\0", "a: *nowhere", "? ? ? ?", "rosbag2_bagfile_information: 5"]
+    {
         let stored = store(&[("metadata.yaml", text.as_bytes())]);
-        let message = hydrotrace::log::read_recording(&[stored.folder.path().to_owned()], &ReadOptions::default()).unwrap_err().to_string();
+        let message =
+            hydrotrace::log::read_recording(&[stored.folder.path().to_owned()], &ReadOptions::default())
+                .unwrap_err()
+                .to_string();
         assert!(message.contains("metadata.yaml"), "{message}");
     }
 }
@@ -101,9 +108,19 @@ fn hostile_descriptions_are_refused() {
 #[test]
 fn attachments_and_metadata_are_handed_on() {
     let mut writer = mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
-    writer.attach(&mcap::Attachment { log_time: 1, create_time: 1, name: "task.json".into(), media_type: "application/json".into(), data: b"{}"[..].into() }).unwrap();
+    writer
+        .attach(&mcap::Attachment {
+            log_time: 1,
+            create_time: 1,
+            name: "task.json".into(),
+            media_type: "application/json".into(),
+            data: b"{}"[..].into(),
+        })
+        .unwrap();
     let metadata = std::collections::BTreeMap::from([("arm".to_owned(), "left".to_owned())]);
-    writer.write_metadata(&mcap::records::Metadata { name: "site".into(), metadata: metadata.clone() }).unwrap();
+    writer
+        .write_metadata(&mcap::records::Metadata { name: "site".into(), metadata: metadata.clone() })
+        .unwrap();
     writer.finish().unwrap();
     let other = writer.into_inner().into_inner();
     let stored = store(&[("a", &plain_log().bytes(WriteOptions::new())), ("b", &other)]);

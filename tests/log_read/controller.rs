@@ -1,6 +1,11 @@
 //! The state of a joint trajectory controller, five layouts under one name.
 
-use super::{cdr::KINDS, encode::{Point, controller_state}, file::Channel, *};
+use super::{
+    cdr::KINDS,
+    encode::{Point, controller_state},
+    file::Channel,
+    *,
+};
 
 const TYPE: &str = "control_msgs/msg/JointTrajectoryControllerState";
 const HUMBLE: [&str; 6] = ["reference", "feedback", "error", "output", "desired", "actual"];
@@ -8,7 +13,14 @@ const IRON: [&str; 4] = ["reference", "feedback", "error", "output"];
 const OLD: [&str; 3] = ["desired", "actual", "error"];
 
 /// A topic of this layout; points that are not listed in `filled` are empty.
-fn add(log: &mut Log, topic: &str, points: &[&str], more: (bool, Option<f64>), filled: &[&str], kind: cdr::Kind) {
+fn add(
+    log: &mut Log,
+    topic: &str,
+    points: &[&str],
+    more: (bool, Option<f64>),
+    filled: &[&str],
+    kind: cdr::Kind,
+) {
     let schema = schema::controller_state(points, more.0, more.1.is_some());
     let channel = log.channel(Channel::cdr(topic, TYPE).with_schema("ros2msg", schema));
     for k in 0..SAMPLES {
@@ -66,7 +78,14 @@ fn the_two_topics_of_humble_are_not_counted_twice() {
     let mut log = Log::default();
     let kind = cdr::Kind::LittleEndian;
     add(&mut log, "/arm/state", &HUMBLE, (true, None), &["desired", "actual", "error"], kind);
-    add(&mut log, "/arm/controller_state", &HUMBLE, (true, None), &["reference", "feedback", "error", "output"], kind);
+    add(
+        &mut log,
+        "/arm/controller_state",
+        &HUMBLE,
+        (true, None),
+        &["reference", "feedback", "error", "output"],
+        kind,
+    );
     add_joint_state(&mut log, "/joint_states", |k| vec![k as f64, 0.0]);
     let recording = read(&log);
     assert_eq!(recording.source.planned_topic, "/arm/controller_state");
@@ -80,10 +99,16 @@ fn the_two_topics_of_humble_are_not_counted_twice() {
 fn two_controllers_of_different_joints_are_both_read() {
     let mut log = Log::default();
     for (topic, names) in [("/left/controller_state", ["a", "b"]), ("/right/controller_state", ["c", "d"])] {
-        let channel = log.channel(Channel::cdr(topic, TYPE).with_schema("ros2msg", schema::controller_state(&IRON, true, false)));
+        let channel = log.channel(
+            Channel::cdr(topic, TYPE).with_schema("ros2msg", schema::controller_state(&IRON, true, false)),
+        );
         for k in 0..SAMPLES {
             let points = [plan(k), measurement(k), vec![], vec![]].map(|q| Point::at(&q));
-            log.send(channel, stamp(k), controller_state(cdr::Kind::LittleEndian, stamp(k), &names, &points, true, None));
+            log.send(
+                channel,
+                stamp(k),
+                controller_state(cdr::Kind::LittleEndian, stamp(k), &names, &points, true, None),
+            );
         }
     }
     let recording = read(&log);
@@ -99,17 +124,23 @@ fn action_feedback_without_a_schema_is_read() {
         let name = "control_msgs/action/FollowJointTrajectory_FeedbackMessage";
         let channel = log.channel(Channel::cdr(topic, name).with_schema(stored, ""));
         for k in 0..SAMPLES {
-            log.send(channel, stamp(k), cdr::Cdr::message(kind, |cdr| {
-                cdr.record(|cdr| (0..16).for_each(|byte| cdr.u8(byte)));
-                cdr.record(|cdr| {
-                    cdr.header(stamp(k));
-                    cdr.texts(&NAMES);
-                    [plan(k), measurement(k), vec![0.005; 2]].iter().for_each(|q| Point::at(q).write(cdr));
-                    // Later versions go on.
-                    cdr.u32(0);
-                    cdr.u32(0);
-                });
-            }));
+            log.send(
+                channel,
+                stamp(k),
+                cdr::Cdr::message(kind, |cdr| {
+                    cdr.record(|cdr| (0..16).for_each(|byte| cdr.u8(byte)));
+                    cdr.record(|cdr| {
+                        cdr.header(stamp(k));
+                        cdr.texts(&NAMES);
+                        [plan(k), measurement(k), vec![0.005; 2]]
+                            .iter()
+                            .for_each(|q| Point::at(q).write(cdr));
+                        // Later versions go on.
+                        cdr.u32(0);
+                        cdr.u32(0);
+                    });
+                }),
+            );
         }
         if stored == "none" {
             // Without a schema record there is no type name either.
@@ -121,4 +152,16 @@ fn action_feedback_without_a_schema_is_read() {
         assert_values(&recording.planned, plan);
         assert_values(&recording.measured, measurement);
     }
+}
+
+#[test]
+fn any_point_can_be_named() {
+    let mut log = Log::default();
+    add(&mut log, "/arm/controller_state", &IRON, (true, Some(1.0)), &IRON, cdr::Kind::LittleEndian);
+    let topic = |field| format!("/arm/controller_state:{field}.positions");
+    let recording = read_with(&log, &options(&[&topic("output")], &[&topic("error")], &[]));
+    assert_eq!(recording.source.planned_field, "output.positions");
+    assert_values(&recording.measured, |_| vec![0.005, 0.005]);
+    let absent = error(&log, &options(&[&topic("desired")], &[], &[]));
+    assert!(absent.ends_with("in field \"desired.positions\"; it has reference.positions, feedback.positions"), "{absent}");
 }

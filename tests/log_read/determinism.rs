@@ -15,7 +15,13 @@ fn unruly() -> Vec<u8> {
         for channel in [planned, measured] {
             let mut data = encode::joint_state(Kind::LittleEndian, stamp(k), &names, &values, &[]);
             if k % 13 == 0 || (k / 16) % 9 == 0 {
-                data = encode::joint_state(Kind::LittleEndian, stamp(k), &[&format!("phantom{k}"), "j3"], &[0.0; 2], &[]);
+                data = encode::joint_state(
+                    Kind::LittleEndian,
+                    stamp(k),
+                    &[&format!("phantom{k}"), "j3"],
+                    &[0.0; 2],
+                    &[],
+                );
                 data.truncate(data.len() - 9);
             }
             log.send(channel, stamp(k), data);

@@ -9,7 +9,11 @@ fn log_of(message: impl Fn(i64) -> (Vec<&'static str>, Vec<f64>)) -> Log {
     let channel = log.channel(Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
     for k in 0..SAMPLES {
         let (names, position) = message(k);
-        log.send(channel, stamp(k), encode::joint_state(Kind::LittleEndian, stamp(k), &names, &position, &[]));
+        log.send(
+            channel,
+            stamp(k),
+            encode::joint_state(Kind::LittleEndian, stamp(k), &names, &position, &[]),
+        );
     }
     log
 }
@@ -30,14 +34,16 @@ fn nan_is_dropped_for_its_joint_alone() {
 
 #[test]
 fn arrays_of_another_length_than_the_names_are_left_out() {
-    let recording = read(&log_of(|k| (NAMES.to_vec(), if k % 10 == 0 { vec![0.0; 3] } else { measurement(k) })));
+    let recording =
+        read(&log_of(|k| (NAMES.to_vec(), if k % 10 == 0 { vec![0.0; 3] } else { measurement(k) })));
     assert_eq!(recording.measured.tracks[0].len(), 45);
     assert_eq!(count(&recording.remarks, Code::LengthMismatch), 5);
 }
 
 #[test]
 fn a_list_of_no_names_does_not_borrow_those_of_the_message_before() {
-    let recording = read(&log_of(|k| if k == 20 { (vec![], vec![9.0, 8.0]) } else { (NAMES.to_vec(), measurement(k)) }));
+    let recording =
+        read(&log_of(|k| if k == 20 { (vec![], vec![9.0, 8.0]) } else { (NAMES.to_vec(), measurement(k)) }));
     for track in recording.measured.tracks.iter().filter(|track| NAMES.contains(&track.name())) {
         assert_eq!(track.len(), 49, "{}", track.name());
     }
@@ -45,7 +51,8 @@ fn a_list_of_no_names_does_not_borrow_those_of_the_message_before() {
 
 #[test]
 fn degrees_are_noticed_never_rescaled_unless_told() {
-    let degrees = |k| (NAMES.to_vec(), measurement(k).iter().map(|q| q * 180.0 / std::f64::consts::PI).collect());
+    let degrees =
+        |k| (NAMES.to_vec(), measurement(k).iter().map(|q| q * 180.0 / std::f64::consts::PI).collect());
     let recording = read(&log_of(degrees));
     assert_eq!(count(&recording.remarks, Code::LooksLikeDegrees), 2);
     assert!(recording.measured.tracks[0].position_rad()[49] > 20.0);
@@ -102,10 +109,12 @@ fn pauses_and_slow_stretches_are_counted() {
             _ => 1.0,
         };
         let points = [plan(k), measurement(k), vec![], vec![]].map(|q| encode::Point::at(&q));
-        let data = encode::controller_state(Kind::LittleEndian, stamp(k), &NAMES, &points, true, Some(factor));
+        let data =
+            encode::controller_state(Kind::LittleEndian, stamp(k), &NAMES, &points, true, Some(factor));
         log.send(channel, stamp(k), data);
     }
-    let counts: Vec<u64> = read(&log).remarks.as_slice().iter().filter(|r| r.code == Code::Paused).map(|r| r.count).collect();
+    let counts: Vec<u64> =
+        read(&log).remarks.as_slice().iter().filter(|r| r.code == Code::Paused).map(|r| r.count).collect();
     assert_eq!(counts, [5, 3]);
 }
 
@@ -121,12 +130,18 @@ fn messages_that_do_not_fit_are_skipped_and_the_first_is_explained() {
     assert_eq!(recording.measured.tracks[0].len(), 45);
     assert_eq!(codes(&recording.remarks), [Code::UndecodableMessage]);
     assert_eq!(recording.remarks.as_slice()[0].count, 5);
-    assert!(recording.remarks.as_slice()[0].message.contains("message ends at byte"), "{:?}", recording.remarks);
+    assert!(
+        recording.remarks.as_slice()[0].message.contains("message ends at byte"),
+        "{:?}",
+        recording.remarks
+    );
 }
 
 #[test]
 fn what_a_broken_message_said_of_joints_does_not_count() {
-    let mut log = log_of(|k| if k == 20 { (vec!["phantom", "a"], vec![1.0, 2.0]) } else { (NAMES.to_vec(), measurement(k)) });
+    let mut log = log_of(|k| {
+        if k == 20 { (vec!["phantom", "a"], vec![1.0, 2.0]) } else { (NAMES.to_vec(), measurement(k)) }
+    });
     let broken = &mut log.messages[(SAMPLES + 20) as usize].data;
     broken.truncate(broken.len() - 20);
     let recording = read(&log);
@@ -140,7 +155,8 @@ fn what_a_broken_message_said_of_joints_does_not_count() {
 fn a_broken_schema_costs_its_channel_and_says_why() {
     let mut log = log_of(|k| (NAMES.to_vec(), measurement(k)));
     let odd = log.channel(Channel::cdr("/odd", "odd_msgs/msg/Odd").with_schema("ros2msg", "float64[ x\n"));
-    let ros1 = log.channel(Channel::cdr("/ros1", "sensor_msgs/msg/JointState").with_schema("ros1msg", "float64 x\n"));
+    let ros1 = log
+        .channel(Channel::cdr("/ros1", "sensor_msgs/msg/JointState").with_schema("ros1msg", "float64 x\n"));
     let secret = log.channel(Channel::cdr("/secret", "sensor_msgs/msg/JointState").encoded("xml"));
     for channel in [odd, odd, ros1, secret] {
         log.send(channel, stamp(5), vec![0; 9]);
@@ -162,7 +178,8 @@ fn names_that_change_from_chunk_to_chunk_are_counted_too() {
         _ => (vec!["b", "a"], measurement(k).into_iter().rev().collect()),
     };
     for per_chunk in [1, 7, 1000] {
-        let recording = read_bytes(&log_of(order).by_hand("zstd", per_chunk), &ReadOptions::default()).unwrap();
+        let recording =
+            read_bytes(&log_of(order).by_hand("zstd", per_chunk), &ReadOptions::default()).unwrap();
         assert_eq!(count(&recording.remarks, Code::JointsChange), 49, "{per_chunk} messages a chunk");
     }
 }

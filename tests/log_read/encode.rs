@@ -2,7 +2,13 @@
 
 use super::cdr::{Cdr, Kind};
 
-pub(crate) fn joint_state(kind: Kind, ns: i64, names: &[&str], position: &[f64], velocity: &[f64]) -> Vec<u8> {
+pub(crate) fn joint_state(
+    kind: Kind,
+    ns: i64,
+    names: &[&str],
+    position: &[f64],
+    velocity: &[f64],
+) -> Vec<u8> {
     Cdr::message(kind, |cdr| {
         cdr.header(ns);
         cdr.texts(names);

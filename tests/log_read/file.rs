@@ -66,14 +66,18 @@ impl Log {
     /// As the crate `mcap` writes it.
     pub(crate) fn bytes(&self, options: WriteOptions) -> Vec<u8> {
         let mut writer = Writer::with_options(Cursor::new(Vec::new()), options).unwrap();
-        let ids: Vec<u16> = self.channels.iter().map(|channel| {
-            let schema = if channel.schema_encoding == "none" {
-                0
-            } else {
-                writer.add_schema(&channel.type_name, &channel.schema_encoding, &channel.schema).unwrap()
-            };
-            writer.add_channel(schema, &channel.topic, &channel.encoding, &BTreeMap::new()).unwrap()
-        }).collect();
+        let ids: Vec<u16> = self
+            .channels
+            .iter()
+            .map(|channel| {
+                let schema = if channel.schema_encoding == "none" {
+                    0
+                } else {
+                    writer.add_schema(&channel.type_name, &channel.schema_encoding, &channel.schema).unwrap()
+                };
+                writer.add_channel(schema, &channel.topic, &channel.encoding, &BTreeMap::new()).unwrap()
+            })
+            .collect();
         for (sequence, message) in self.messages.iter().enumerate() {
             let header = MessageHeader {
                 channel_id: ids[message.channel],
@@ -115,7 +119,10 @@ impl Log {
     }
 
     pub(crate) fn message_records(&self, messages: &[Message]) -> Vec<u8> {
-        messages.iter().flat_map(|m| message_record(m.channel as u16 + 1, m.log_ns, m.publish_ns, &m.data)).collect()
+        messages
+            .iter()
+            .flat_map(|m| message_record(m.channel as u16 + 1, m.log_ns, m.publish_ns, &m.data))
+            .collect()
     }
 }
 

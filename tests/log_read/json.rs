@@ -72,7 +72,8 @@ fn words_for_what_json_cannot_express_are_not_finite() {
     let recording = read(&log);
     assert_eq!(recording.measured.track("b").unwrap().len(), 45);
     // A number beyond f64 is no JSON number: that message is lost as a whole.
-    let (lost, unfinite) = (count(&recording.remarks, Code::UndecodableMessage), count(&recording.remarks, Code::NotFinite));
+    let (lost, unfinite) =
+        (count(&recording.remarks, Code::UndecodableMessage), count(&recording.remarks, Code::NotFinite));
     assert_eq!(lost + unfinite, 5, "{:?}", recording.remarks);
 }
 

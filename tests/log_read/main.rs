@@ -5,7 +5,11 @@
     clippy::cast_possible_wrap,
     reason = "counts and stamps of tests are small"
 )]
-#![allow(clippy::unwrap_used, clippy::float_cmp, reason = "what fails here fails the test; values are copied, not computed")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    reason = "what fails here fails the test; values are copied, not computed"
+)]
 
 mod cdr;
 mod choice;

@@ -34,7 +34,8 @@ const MESSAGE: u64 = 11;
 /// A `FieldDescriptorProto`.
 pub(crate) fn field(name: &str, number: u64, repeated: bool, kind: u64, of: &str) -> Vec<u8> {
     let label = if repeated { 3 } else { 1 };
-    let mut bytes = [nested(1, name.as_bytes()), integer(3, number), integer(4, label), integer(5, kind)].concat();
+    let mut bytes =
+        [nested(1, name.as_bytes()), integer(3, number), integer(4, label), integer(5, kind)].concat();
     if !of.is_empty() {
         bytes.extend(nested(6, of.as_bytes()));
     }
@@ -58,25 +59,38 @@ pub(crate) fn descriptor_file(name: &str, package: &str, imports: &[&str], messa
 
 /// The descriptors of `foxglove.JointStates`.
 pub(crate) fn joint_states() -> Vec<u8> {
-    let timestamp = message("Timestamp", &[field("seconds", 1, false, INT64, ""), field("nanos", 2, false, INT32, "")]);
-    let joint = message("JointState", &[
-        field("name", 1, false, TEXT, ""),
-        field("position", 2, false, DOUBLE, ""),
-        field("velocity", 3, false, DOUBLE, ""),
-    ]);
-    let joints = message("JointStates", &[
-        field("timestamp", 1, false, MESSAGE, ".google.protobuf.Timestamp"),
-        field("joints", 2, true, MESSAGE, ".foxglove.JointState"),
-    ]);
+    let timestamp =
+        message("Timestamp", &[field("seconds", 1, false, INT64, ""), field("nanos", 2, false, INT32, "")]);
+    let joint = message(
+        "JointState",
+        &[
+            field("name", 1, false, TEXT, ""),
+            field("position", 2, false, DOUBLE, ""),
+            field("velocity", 3, false, DOUBLE, ""),
+        ],
+    );
+    let joints = message(
+        "JointStates",
+        &[
+            field("timestamp", 1, false, MESSAGE, ".google.protobuf.Timestamp"),
+            field("joints", 2, true, MESSAGE, ".foxglove.JointState"),
+        ],
+    );
     [
         descriptor_file("google/protobuf/timestamp.proto", "google.protobuf", &[], &[timestamp]),
-        descriptor_file("foxglove/JointStates.proto", "foxglove", &["google/protobuf/timestamp.proto"], &[joint, joints]),
+        descriptor_file(
+            "foxglove/JointStates.proto",
+            "foxglove",
+            &["google/protobuf/timestamp.proto"],
+            &[joint, joints],
+        ),
     ]
     .concat()
 }
 
 pub(crate) fn joint_states_message(k: i64, q: &[f64]) -> Vec<u8> {
-    let time = [integer(1, (stamp(k) / 1_000_000_000) as u64), integer(2, (stamp(k) % 1_000_000_000) as u64)].concat();
+    let time = [integer(1, (stamp(k) / 1_000_000_000) as u64), integer(2, (stamp(k) % 1_000_000_000) as u64)]
+        .concat();
     let joint = |name: &str, q: f64| nested(2, &[nested(1, name.as_bytes()), double(2, q)].concat());
     [nested(1, &time), joint("a", q[0]), joint("b", q[1])].concat()
 }
@@ -84,7 +98,8 @@ pub(crate) fn joint_states_message(k: i64, q: &[f64]) -> Vec<u8> {
 pub(crate) fn log_of(schema: &[u8]) -> Log {
     let mut log = Log::default();
     add_joint_state(&mut log, "/planned/joint_states", plan);
-    let channel = Channel::cdr("/joints", "foxglove.JointStates").with_schema("protobuf", schema).encoded("protobuf");
+    let channel =
+        Channel::cdr("/joints", "foxglove.JointStates").with_schema("protobuf", schema).encoded("protobuf");
     let channel = log.channel(channel);
     (0..SAMPLES).for_each(|k| log.send(channel, stamp(k), joint_states_message(k, &measurement(k))));
     log

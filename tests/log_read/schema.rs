@@ -4,28 +4,64 @@ const DEFINITIONS: &[(&str, &str)] = &[
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"),
     ("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"),
     ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"),
-    ("sensor_msgs/JointState", "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n"),
-    ("trajectory_msgs/JointTrajectoryPoint", "float64[] positions\nfloat64[] velocities\nfloat64[] accelerations\nfloat64[] effort\nbuiltin_interfaces/Duration time_from_start\n"),
-    ("trajectory_msgs/JointTrajectory", "std_msgs/Header header\nstring[] joint_names\nJointTrajectoryPoint[] points\n"),
+    (
+        "sensor_msgs/JointState",
+        "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n",
+    ),
+    (
+        "trajectory_msgs/JointTrajectoryPoint",
+        "float64[] positions\nfloat64[] velocities\nfloat64[] accelerations\nfloat64[] effort\nbuiltin_interfaces/Duration time_from_start\n",
+    ),
+    (
+        "trajectory_msgs/JointTrajectory",
+        "std_msgs/Header header\nstring[] joint_names\nJointTrajectoryPoint[] points\n",
+    ),
     ("geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"),
     ("geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"),
     ("geometry_msgs/Transform", "Vector3 translation\nQuaternion rotation\n"),
     ("geometry_msgs/Twist", "Vector3 linear\nVector3 angular\n"),
     ("geometry_msgs/Wrench", "Vector3 force\nVector3 torque\n"),
-    ("trajectory_msgs/MultiDOFJointTrajectoryPoint", "geometry_msgs/Transform[] transforms\ngeometry_msgs/Twist[] velocities\ngeometry_msgs/Twist[] accelerations\nbuiltin_interfaces/Duration time_from_start\n"),
-    ("trajectory_msgs/MultiDOFJointTrajectory", "std_msgs/Header header\nstring[] joint_names\nMultiDOFJointTrajectoryPoint[] points\n"),
-    ("sensor_msgs/MultiDOFJointState", "std_msgs/Header header\nstring[] joint_names\ngeometry_msgs/Transform[] transforms\ngeometry_msgs/Twist[] twist\ngeometry_msgs/Wrench[] wrench\n"),
-    ("moveit_msgs/RobotTrajectory", "trajectory_msgs/JointTrajectory joint_trajectory\ntrajectory_msgs/MultiDOFJointTrajectory multi_dof_joint_trajectory\n"),
-    ("moveit_msgs/RobotState", "sensor_msgs/JointState joint_state\nsensor_msgs/MultiDOFJointState multi_dof_joint_state\nbool is_diff\n"),
-    ("moveit_msgs/DisplayTrajectory", "# The model id\nstring model_id\n\nRobotTrajectory[] trajectory\n\nRobotState trajectory_start\n"),
+    (
+        "trajectory_msgs/MultiDOFJointTrajectoryPoint",
+        "geometry_msgs/Transform[] transforms\ngeometry_msgs/Twist[] velocities\ngeometry_msgs/Twist[] accelerations\nbuiltin_interfaces/Duration time_from_start\n",
+    ),
+    (
+        "trajectory_msgs/MultiDOFJointTrajectory",
+        "std_msgs/Header header\nstring[] joint_names\nMultiDOFJointTrajectoryPoint[] points\n",
+    ),
+    (
+        "sensor_msgs/MultiDOFJointState",
+        "std_msgs/Header header\nstring[] joint_names\ngeometry_msgs/Transform[] transforms\ngeometry_msgs/Twist[] twist\ngeometry_msgs/Wrench[] wrench\n",
+    ),
+    (
+        "moveit_msgs/RobotTrajectory",
+        "trajectory_msgs/JointTrajectory joint_trajectory\ntrajectory_msgs/MultiDOFJointTrajectory multi_dof_joint_trajectory\n",
+    ),
+    (
+        "moveit_msgs/RobotState",
+        "sensor_msgs/JointState joint_state\nsensor_msgs/MultiDOFJointState multi_dof_joint_state\nbool is_diff\n",
+    ),
+    (
+        "moveit_msgs/DisplayTrajectory",
+        "# The model id\nstring model_id\n\nRobotTrajectory[] trajectory\n\nRobotState trajectory_start\n",
+    ),
     ("control_msgs/InterfaceValue", "string[] interface_names\nfloat64[] values\n"),
-    ("control_msgs/DynamicJointState", "std_msgs/Header header\nstring[] joint_names\nInterfaceValue[] interface_values\n"),
+    (
+        "control_msgs/DynamicJointState",
+        "std_msgs/Header header\nstring[] joint_names\nInterfaceValue[] interface_values\n",
+    ),
     ("pal_statistics_msgs/StatisticsNames", "std_msgs/Header header\nstring[] names\nuint32 names_version\n"),
-    ("pal_statistics_msgs/StatisticsValues", "std_msgs/Header header\nfloat64[] values\nuint32 names_version\n"),
+    (
+        "pal_statistics_msgs/StatisticsValues",
+        "std_msgs/Header header\nfloat64[] values\nuint32 names_version\n",
+    ),
     ("std_msgs/MultiArrayDimension", "string label\nuint32 size\nuint32 stride\n"),
     ("std_msgs/MultiArrayLayout", "MultiArrayDimension[] dim\nuint32 data_offset\n"),
     ("std_msgs/Float64MultiArray", "MultiArrayLayout  layout\nfloat64[] data\n"),
-    ("foxglove_msgs/JointState", "string name\nfloat64 position\nfloat64 velocity\nfloat64 acceleration\nfloat64 effort\n"),
+    (
+        "foxglove_msgs/JointState",
+        "string name\nfloat64 position\nfloat64 velocity\nfloat64 acceleration\nfloat64 effort\n",
+    ),
     ("foxglove_msgs/JointStates", "builtin_interfaces/Time timestamp\nJointState[] joints\n"),
 ];
 

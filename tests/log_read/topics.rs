@@ -14,7 +14,11 @@ fn joints_are_joined_by_name_whatever_their_order_and_subset() {
             1 => (&["b", "other", "a"], vec![q[1], 7.0, q[0]]),
             _ => (&["b"], vec![q[1]]),
         };
-        log.send(channel, stamp(k), encode::joint_state(cdr::Kind::LittleEndian, stamp(k), names, &values, &[]));
+        log.send(
+            channel,
+            stamp(k),
+            encode::joint_state(cdr::Kind::LittleEndian, stamp(k), names, &values, &[]),
+        );
     }
     let recording = read(&log);
     let (a, b) = (recording.measured.track("a").unwrap(), recording.measured.track("b").unwrap());
@@ -50,7 +54,17 @@ fn subsets_on_several_topics_are_put_together() {
     for (j, topic) in ["/left/joint_states", "/right/joint_states"].into_iter().enumerate() {
         let channel = log.channel(Channel::cdr(topic, "sensor_msgs/msg/JointState"));
         for k in 0..SAMPLES {
-            log.send(channel, stamp(k), encode::joint_state(cdr::Kind::LittleEndian, stamp(k), &NAMES[j..=j], &measurement(k)[j..=j], &[]));
+            log.send(
+                channel,
+                stamp(k),
+                encode::joint_state(
+                    cdr::Kind::LittleEndian,
+                    stamp(k),
+                    &NAMES[j..=j],
+                    &measurement(k)[j..=j],
+                    &[],
+                ),
+            );
         }
     }
     let recording = read(&log);
@@ -64,7 +78,8 @@ fn dynamic_joint_states_yield_positions_and_other_interfaces_by_name() {
     for kind in KINDS {
         let mut log = Log::default();
         add_joint_state(&mut log, "/planned/joint_states", plan);
-        let channel = log.channel(Channel::cdr("/dynamic_joint_states", "control_msgs/msg/DynamicJointState"));
+        let channel =
+            log.channel(Channel::cdr("/dynamic_joint_states", "control_msgs/msg/DynamicJointState"));
         for k in 0..SAMPLES {
             let q = measurement(k);
             let joints: [(&str, &[(&str, f64)]); 4] = [
@@ -102,25 +117,35 @@ fn send_versioned(log: &mut Log, names: usize, values: usize, k: i64) {
         rows.reverse();
     }
     if k % 20 == 0 {
-        log.send(names, stamp(k), cdr::Cdr::message(cdr::Kind::LittleEndian, |cdr| {
-            cdr.header(stamp(k));
-            cdr.texts(&rows.iter().map(|(name, _)| *name).collect::<Vec<_>>());
-            cdr.u32(version);
-        }));
+        log.send(
+            names,
+            stamp(k),
+            cdr::Cdr::message(cdr::Kind::LittleEndian, |cdr| {
+                cdr.header(stamp(k));
+                cdr.texts(&rows.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+                cdr.u32(version);
+            }),
+        );
     }
-    log.send(values, stamp(k), cdr::Cdr::message(cdr::Kind::LittleEndian, |cdr| {
-        cdr.header(stamp(k));
-        cdr.f64s(&rows.iter().map(|(_, value)| *value).collect::<Vec<_>>());
-        cdr.u32(version);
-    }));
+    log.send(
+        values,
+        stamp(k),
+        cdr::Cdr::message(cdr::Kind::LittleEndian, |cdr| {
+            cdr.header(stamp(k));
+            cdr.f64s(&rows.iter().map(|(_, value)| *value).collect::<Vec<_>>());
+            cdr.u32(version);
+        }),
+    );
 }
 
 #[test]
 fn introspection_values_are_joined_to_their_names_by_version() {
     let mut log = Log::default();
     let stem = "/controller_manager/introspection_data";
-    let names = log.channel(Channel::cdr(&format!("{stem}/names"), "pal_statistics_msgs/msg/StatisticsNames"));
-    let values = log.channel(Channel::cdr(&format!("{stem}/values"), "pal_statistics_msgs/msg/StatisticsValues"));
+    let names =
+        log.channel(Channel::cdr(&format!("{stem}/names"), "pal_statistics_msgs/msg/StatisticsNames"));
+    let values =
+        log.channel(Channel::cdr(&format!("{stem}/values"), "pal_statistics_msgs/msg/StatisticsValues"));
     (0..SAMPLES).for_each(|k| send_versioned(&mut log, names, values, k));
     let recording = read(&log);
     let sorted = |mut series: Series| {
@@ -155,15 +180,19 @@ fn foxglove_joint_states_of_ros_are_read_in_every_encoding() {
         let channel = log.channel(Channel::cdr("/joints", "foxglove_msgs/msg/JointStates"));
         for k in 0..SAMPLES {
             let q = measurement(k);
-            log.send(channel, stamp(k), cdr::Cdr::message(kind, |cdr| {
-                cdr.time(stamp(k));
-                cdr.list(&[("a", q[0]), ("b", q[1])], |cdr, (name, position)| {
-                    cdr.record(|cdr| {
-                        cdr.text(name);
-                        [*position, 0.0, 0.0, 0.0].iter().for_each(|v| cdr.f64(*v));
+            log.send(
+                channel,
+                stamp(k),
+                cdr::Cdr::message(kind, |cdr| {
+                    cdr.time(stamp(k));
+                    cdr.list(&[("a", q[0]), ("b", q[1])], |cdr, (name, position)| {
+                        cdr.record(|cdr| {
+                            cdr.text(name);
+                            [*position, 0.0, 0.0, 0.0].iter().for_each(|v| cdr.f64(*v));
+                        });
                     });
-                });
-            }));
+                }),
+            );
         }
         let recording = read(&log);
         assert_values(&recording.measured, measurement);

@@ -1,6 +1,11 @@
 //! Whole plans in one message.
 
-use super::{cdr::KINDS, encode::{Point, display, trajectory}, file::Channel, *};
+use super::{
+    cdr::KINDS,
+    encode::{Point, display, trajectory},
+    file::Channel,
+    *,
+};
 
 const TOPIC: &str = "/arm/joint_trajectory";
 
@@ -9,7 +14,7 @@ fn log_of(plans: &[(i64, i64, &[&str], Vec<Point>)], kind: cdr::Kind) -> Log {
     let mut log = Log::default();
     let channel = log.channel(Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
     for k in 0..500 {
-        let data = encode::joint_state(kind, stamp(k), &NAMES, &[0.0, 1e-4 * k as f64], &[]);
+        let data = encode::joint_state(kind, stamp(k), &NAMES, &[1e-6 * k as f64, 1e-4 * k as f64], &[]);
         log.send(channel, stamp(k), data);
     }
     let channel = log.channel(Channel::cdr(TOPIC, "trajectory_msgs/msg/JointTrajectory"));
@@ -75,11 +80,17 @@ fn a_stamp_of_zero_starts_on_receipt_and_is_said() {
 fn a_newer_plan_replaces_and_an_empty_one_cancels() {
     let long = points(&[(0.0, 0.0, None, None), (4.0, 4.0, None, None)]);
     let back = points(&[(1.0, 0.0, None, None)]);
-    let replaced = read(&log_of(&[(stamp(0), stamp(50), &NAMES, long.clone()), (stamp(90), stamp(100), &NAMES, back)], cdr::Kind::LittleEndian));
+    let replaced = read(&log_of(
+        &[(stamp(0), stamp(50), &NAMES, long.clone()), (stamp(90), stamp(100), &NAMES, back)],
+        cdr::Kind::LittleEndian,
+    ));
     assert_plan(&replaced, 2.0, 1.0);
     assert_plan(&replaced, 3.0, 0.0);
     assert_eq!(count(&replaced.remarks, Code::TrajectoryReplaced), 1);
-    let cancelled = read(&log_of(&[(stamp(0), stamp(50), &NAMES, long), (stamp(100), stamp(100), &[], vec![])], cdr::Kind::LittleEndian));
+    let cancelled = read(&log_of(
+        &[(stamp(0), stamp(50), &NAMES, long), (stamp(100), stamp(100), &[], vec![])],
+        cdr::Kind::LittleEndian,
+    ));
     assert_plan(&cancelled, 1.5, 0.5);
     assert_plan(&cancelled, 5.0, 1.0);
     assert_eq!(count(&cancelled.remarks, Code::TrajectoryReplaced), 1);
@@ -108,8 +119,10 @@ fn trajectories_that_do_not_fit_are_skipped_and_counted() {
 #[test]
 fn a_planned_joint_that_no_topic_measures_is_said() {
     let given = vec![Point::at(&[0.0, 0.0, 0.0])];
-    let recording = read(&log_of(&[(stamp(50), stamp(50), &["a", "boom", "b"], given)], cdr::Kind::LittleEndian));
-    let unpaired: Vec<_> = recording.remarks.as_slice().iter().filter(|r| r.code == Code::UnpairedJoint).collect();
+    let recording =
+        read(&log_of(&[(stamp(50), stamp(50), &["a", "boom", "b"], given)], cdr::Kind::LittleEndian));
+    let unpaired: Vec<_> =
+        recording.remarks.as_slice().iter().filter(|r| r.code == Code::UnpairedJoint).collect();
     assert_eq!(unpaired.len(), 1, "{:?}", recording.remarks);
     assert!(unpaired[0].message.contains("boom"), "{unpaired:?}");
 }
