@@ -163,5 +163,8 @@ fn any_point_can_be_named() {
     assert_eq!(recording.source.planned_field, "output.positions");
     assert_values(&recording.measured, |_| vec![0.005, 0.005]);
     let absent = error(&log, &options(&[&topic("desired")], &[], &[]));
-    assert!(absent.ends_with("in field \"desired.positions\"; it has reference.positions, feedback.positions"), "{absent}");
+    assert!(
+        absent.ends_with("in field \"desired.positions\"; it has reference.positions, feedback.positions"),
+        "{absent}"
+    );
 }

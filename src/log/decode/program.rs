@@ -80,15 +80,24 @@ pub(in crate::log) struct Program {
     pub(super) steps: Vec<Step>,
     /// Whether bytes may follow the last step.
     pub(super) open_ended: bool,
+    /// What compiling took: steps, and fields looked at.
+    pub(in crate::log) cost: usize,
 }
 
-const MAX_STEPS: usize = 20_000;
+const MAX_COST: usize = 20_000;
 const MAX_DEPTH: usize = 64;
 
 impl Program {
-    /// Compiles; a wanted path that the definition lacks is an error.
-    pub(in crate::log) fn compile(definition: &Definition, wants: &[Want]) -> Result<Self, ProgramError> {
-        let mut compiler = Compiler { definition, wants, found: vec![false; wants.len()], steps: Vec::new() };
+    /// Compiles; a wanted path that the definition lacks is an error, and so is a cost above
+    /// the caller's or the usual limit.
+    pub(in crate::log) fn compile(
+        definition: &Definition,
+        wants: &[Want],
+        most: usize,
+    ) -> Result<Self, ProgramError> {
+        let found = vec![false; wants.len()];
+        let most = most.min(MAX_COST);
+        let mut compiler = Compiler { definition, wants, found, steps: Vec::new(), most, cost: 0 };
         compiler.structure(0, "", 0)?;
         if let Some(missing) = compiler.found.iter().position(|found| !found) {
             let root = &definition.structs[0];
@@ -98,7 +107,7 @@ impl Program {
                 present: root.fields.iter().map(|(name, _)| name.clone()).collect(),
             });
         }
-        Ok(Self { steps: compiler.steps, open_ended: definition.open_ended })
+        Ok(Self { steps: compiler.steps, open_ended: definition.open_ended, cost: compiler.cost })
     }
 }
 
@@ -128,6 +137,8 @@ struct Compiler<'a> {
     wants: &'a [Want],
     found: Vec<bool>,
     steps: Vec<Step>,
+    most: usize,
+    cost: usize,
 }
 
 impl Compiler<'_> {
@@ -141,7 +152,9 @@ impl Compiler<'_> {
     fn structure(&mut self, index: usize, path: &str, depth: usize) -> Result<u64, ProgramError> {
         let definition = self.definition;
         let one = &definition.structs[index];
-        if depth > MAX_DEPTH || self.steps.len() > MAX_STEPS {
+        // Small texts can describe enormous structs.
+        self.cost = self.cost.saturating_add(1 + one.fields.len());
+        if depth > MAX_DEPTH || self.cost > self.most {
             return Err(ProgramError::TooLarge { name: one.name.clone() });
         }
         self.push(Step::StructStart);
