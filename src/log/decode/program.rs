@@ -97,7 +97,7 @@ impl Program {
     ) -> Result<Self, ProgramError> {
         let found = vec![false; wants.len()];
         let most = most.min(MAX_COST);
-        let mut compiler = Compiler { definition, wants, found, steps: Vec::new(), most, cost: 0 };
+        let mut compiler = Compiler { definition, wants, found, steps: Vec::new(), closed: 0, most, cost: 0 };
         compiler.structure(0, "", 0)?;
         if let Some(missing) = compiler.found.iter().position(|found| !found) {
             let root = &definition.structs[0];
@@ -137,6 +137,8 @@ struct Compiler<'a> {
     wants: &'a [Want],
     found: Vec<bool>,
     steps: Vec<Step>,
+    /// Steps before this one are those of a list's elements, not to be lengthened.
+    closed: usize,
     most: usize,
     cost: usize,
 }
@@ -217,6 +219,7 @@ impl Compiler<'_> {
                 };
                 let steps = u32::try_from(self.steps.len() - at - 1).unwrap_or(u32::MAX);
                 self.steps[at] = Step::Repeat { slot: wanted, count, steps, least: each.max(1) };
+                self.closed = self.steps.len();
                 minimum(each)
             }
         })
@@ -258,6 +261,7 @@ impl Compiler<'_> {
     /// Appends a step, merging neighbouring skips whose padding is known to be none.
     fn push(&mut self, step: Step) {
         if let Step::Skip { align, bytes } = step
+            && self.steps.len() > self.closed
             && let Some(Step::Skip { align: before, bytes: sum }) = self.steps.last_mut()
             && *before >= align
             && sum.is_multiple_of(u32::from(align))
