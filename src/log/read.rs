@@ -136,16 +136,28 @@ pub(super) fn extract(
     selectors: &[(Role, Selector)],
     joints: &[String],
 ) -> Result<Extracted, LogError> {
-    let mut out = Extracted::default();
-    let paths = bag::files(paths, &mut out.remarks)?;
+    let mut remarks = Remarks::default();
+    let paths = bag::files(paths, &mut remarks)?;
     let maps = paths
         .iter()
         .map(|path| MappedFile::open(path).map_err(LogError::file("open", path)))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut layouts = Vec::with_capacity(maps.len());
-    for (path, map) in paths.iter().zip(&maps) {
-        let layout = scan(map).ok_or_else(|| not_mcap(path, map))?;
-        describe(path, map, &layout, &mut out);
+    let files: Vec<(&Path, &[u8])> = paths.iter().zip(&maps).map(|(path, map)| (&**path, &**map)).collect();
+    extract_bytes(&files, selectors, joints, remarks)
+}
+
+/// The same for files in memory.
+pub(super) fn extract_bytes(
+    files: &[(&Path, &[u8])],
+    selectors: &[(Role, Selector)],
+    joints: &[String],
+    remarks: Remarks,
+) -> Result<Extracted, LogError> {
+    let mut out = Extracted { remarks, ..Extracted::default() };
+    let mut layouts = Vec::with_capacity(files.len());
+    for (path, bytes) in files {
+        let layout = scan(bytes).ok_or_else(|| not_mcap(path, bytes))?;
+        describe(path, bytes, &layout, &mut out);
         layouts.push(layout);
     }
     let before = out.remarks.clone();

@@ -163,7 +163,11 @@ pub(crate) fn compressed(compression: &str, records: &[u8]) -> Vec<u8> {
     match compression {
         "zstd" => zstd::bulk::compress(records, 3).unwrap(),
         "lz4" => {
-            let mut encoder = lz4_flex::frame::FrameEncoder::new(Vec::new());
+            let mut encoder = lz4_flex::frame::FrameEncoder::with_frame_info(
+                // As the C library does unless told otherwise.
+                lz4_flex::frame::FrameInfo::new().block_size(lz4_flex::frame::BlockSize::Max64KB),
+                Vec::new(),
+            );
             std::io::Write::write_all(&mut encoder, records).unwrap();
             encoder.finish().unwrap()
         }
