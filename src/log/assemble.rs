@@ -1,6 +1,6 @@
 //! From samples of topics to planned and measured series on one clock.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
     LogError, ReadOptions, Recording, SourceInfo, TimeBase,
@@ -61,7 +61,13 @@ pub(super) fn assemble(
                 replaced,
                 format!("trajectories of {name} that the next one, or a cancel, cut short"),
             );
-            planned.tracks.extend(series.tracks);
+            let joints: BTreeSet<&str> =
+                trajectories.iter().flat_map(|t| &t.joints).map(|(joint, _)| joint.as_str()).collect();
+            for joint in joints.into_iter().filter(|joint| measured.track(joint).is_none()) {
+                doubt::unmeasured(joint, &mut remarks);
+            }
+            let new = series.tracks.into_iter().filter(|t| planned.track(t.name()).is_none());
+            planned.tracks.extend(new.collect::<Vec<_>>());
         }
     }
     for series in [&mut planned, &mut measured] {

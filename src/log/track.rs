@@ -18,23 +18,27 @@ pub(super) struct Axis {
     jumps: Vec<usize>,
     /// Jumps and gaps.
     cuts: Vec<usize>,
-    /// Whether the rows are all there, as they lie in the table.
+    /// Whether the rows are all there, as they lie in the table, and times increase.
     as_read: bool,
 }
 
 impl Axis {
     pub(super) fn new(clock: Clock, epoch_ns: i64) -> Self {
         let t_s: Arc<[f64]> = clock.t_ns.iter().map(|&ns| seconds_since(epoch_ns, ns)).collect();
-        let as_read = clock.rows.iter().enumerate().all(|(i, &row)| i == row);
+        let as_read =
+            clock.rows.iter().enumerate().all(|(i, &row)| i == row) && t_s.windows(2).all(|w| w[0] < w[1]);
         Self { cuts: cuts(&t_s, &clock.cuts), t_s, rows: clock.rows, jumps: clock.cuts, as_read }
     }
 
-    /// The axis without the samples that are missing in a column.
-    fn kept(&self, kept: &[usize]) -> (Arc<[f64]>, Vec<usize>) {
-        let t_s: Arc<[f64]> = kept.iter().map(|&i| self.t_s[i]).collect();
+    /// The axis without the samples that are missing in a column: times, cuts and jumps.
+    fn kept(&self, kept: &[usize]) -> (Arc<[f64]>, Vec<usize>, Vec<usize>) {
         let jumps: Vec<usize> = self.jumps.iter().map(|cut| kept.partition_point(|i| i < cut)).collect();
+        if kept.len() == self.rows.len() {
+            return (self.t_s.clone(), self.cuts.clone(), jumps);
+        }
+        let t_s: Arc<[f64]> = kept.iter().map(|&i| self.t_s[i]).collect();
         let cuts = cuts(&t_s, &jumps);
-        (t_s, cuts)
+        (t_s, cuts, jumps)
     }
 }
 
@@ -58,26 +62,23 @@ pub(super) fn tracks(
         let (position, speed) = (column(field), velocity_field.map(column).unwrap_or_default());
         let whole =
             axis.as_read && position.len() == axis.rows.len() && position.iter().all(|q| q.is_finite());
-        let (t_s, cuts, mut position, mut speed) = if whole {
-            (axis.t_s.clone(), axis.cuts.clone(), position, speed)
+        let ((t_s, cuts, jumps), mut position, mut speed) = if whole {
+            ((axis.t_s.clone(), axis.cuts.clone(), axis.jumps.clone()), position, speed)
         } else {
             let at = |i: usize| position.get(axis.rows[i]).copied().unwrap_or(f64::NAN);
-            let kept: Vec<usize> = (0..axis.rows.len()).filter(|&i| at(i).is_finite()).collect();
+            let mut kept: Vec<usize> = (0..axis.rows.len()).filter(|&i| at(i).is_finite()).collect();
+            // Far from the epoch neighbouring nanoseconds are the same second.
+            kept.dedup_by(|later, earlier| axis.t_s[*later] <= axis.t_s[*earlier]);
             if kept.is_empty() {
                 continue;
             }
-            let (t_s, cuts) = if kept.len() == axis.rows.len() {
-                (axis.t_s.clone(), axis.cuts.clone())
-            } else {
-                axis.kept(&kept)
-            };
             let speed = kept.iter().map_while(|&i| speed.get(axis.rows[i]).copied()).collect();
-            (t_s, cuts, kept.iter().map(|&i| at(i)).collect(), speed)
+            (axis.kept(&kept), kept.iter().map(|&i| at(i)).collect(), speed)
         };
         if degrees {
             position.iter_mut().chain(&mut speed).for_each(|value| *value = radians_from_degrees(*value));
         }
-        gap.note(&t_s, &cuts, &axis.jumps);
+        gap.note(&t_s, &cuts, &jumps);
         let usable = speed.len() == position.len()
             && speed.iter().all(|v| v.is_finite())
             && velocity_agrees(&t_s, &position, &speed, &cuts);
@@ -110,9 +111,10 @@ struct Gaps {
 }
 
 impl Gaps {
+    /// `jumps` ascend.
     fn note(&mut self, t_s: &[f64], cuts: &[usize], jumps: &[usize]) {
         let mut here = Self::default();
-        for &cut in cuts.iter().filter(|cut| !jumps.contains(cut)) {
+        for &cut in cuts.iter().filter(|cut| jumps.binary_search(cut).is_err()) {
             here.count += 1;
             let length_s = t_s[cut] - t_s[cut - 1];
             if length_s > here.longest_s {

@@ -85,14 +85,21 @@ pub(in crate::log) struct Program {
     pub(super) delimited: Vec<Step>,
     /// Whether bytes may follow the last step.
     pub(super) open_ended: bool,
+    /// What compiling took: steps, and fields looked at.
+    pub(in crate::log) cost: usize,
 }
 
-const MAX_STEPS: usize = 20_000;
+const MAX_COST: usize = 20_000;
 const MAX_DEPTH: usize = 64;
 
 impl Program {
-    /// Compiles; a wanted path that the definition lacks is an error.
-    pub(in crate::log) fn compile(definition: &Definition, wants: &[Want]) -> Result<Self, ProgramError> {
+    /// Compiles; a wanted path that the definition lacks is an error, and so is a cost above
+    /// the caller's or the usual limit.
+    pub(in crate::log) fn compile(
+        definition: &Definition,
+        wants: &[Want],
+        most: usize,
+    ) -> Result<Self, ProgramError> {
         let compiled = |delimited| {
             let mut compiler = Compiler {
                 definition,
@@ -101,12 +108,12 @@ impl Program {
                 steps: Vec::new(),
                 closed: 0,
                 delimited,
+                most: most.min(MAX_COST),
+                cost: 0,
             };
             compiler.structure(0, "", 0).map(|_| compiler)
         };
-        // First the form in which every struct has a step: MAX_STEPS bounds the work of both.
-        let delimited = compiled(true)?.steps;
-        let compiler = compiled(false)?;
+        let (compiler, delimited) = (compiled(false)?, compiled(true)?.steps);
         if let Some(missing) = compiler.found.iter().position(|found| !found) {
             let root = &definition.structs[0];
             return Err(ProgramError::NoField {
@@ -115,7 +122,7 @@ impl Program {
                 present: root.fields.iter().map(|(name, _)| name.clone()).collect(),
             });
         }
-        Ok(Self { steps: compiler.steps, delimited, open_ended: definition.open_ended })
+        Ok(Self { steps: compiler.steps, delimited, open_ended: definition.open_ended, cost: compiler.cost })
     }
 }
 
@@ -145,9 +152,11 @@ struct Compiler<'a> {
     wants: &'a [Want],
     found: Vec<bool>,
     steps: Vec<Step>,
-    /// Steps that belong to a closed [`Step::Repeat`]; nothing after it may join them.
+    /// Steps before this one are those of a list's elements, not to be lengthened.
     closed: usize,
     delimited: bool,
+    most: usize,
+    cost: usize,
 }
 
 impl Compiler<'_> {
@@ -161,7 +170,9 @@ impl Compiler<'_> {
     fn structure(&mut self, index: usize, path: &str, depth: usize) -> Result<u64, ProgramError> {
         let definition = self.definition;
         let one = &definition.structs[index];
-        if depth > MAX_DEPTH || self.steps.len() > MAX_STEPS {
+        // Small texts can describe enormous structs.
+        self.cost = self.cost.saturating_add(1 + one.fields.len());
+        if depth > MAX_DEPTH || self.cost > self.most {
             return Err(ProgramError::TooLarge { name: one.name.clone() });
         }
         if self.delimited {

@@ -20,6 +20,9 @@ pub(in crate::log) enum RunError {
     /// Bytes run out.
     #[error("message ends at byte {end} where {needed} more bytes belong at {at}")]
     Short { at: usize, needed: u64, end: usize },
+    /// A list is not as long as it says.
+    #[error("the list that ends at byte {at} should end at {end}")]
+    ListSize { at: usize, end: usize },
     /// Bytes are left over.
     #[error("{left} bytes follow the last field")]
     Long { left: usize },
@@ -52,8 +55,8 @@ impl Program {
             // XCDR2, plain: lists of structs carry their size; some writers leave it out.
             (0, 0x06 | 0x07 | 0x10 | 0x11) => {
                 let little = kind & 1 == 1;
-                walk(little, 4, NO_SIZES)
-                    .or_else(|_| walk(little, 4, Sizes { of_structs: false, of_lists: true }))
+                walk(little, 4, Sizes { of_structs: false, of_lists: true })
+                    .or_else(|_| walk(little, 4, NO_SIZES))
             }
             // XCDR2, delimited: structs carry theirs too.
             (0, 0x08 | 0x09 | 0x14 | 0x15) => {
@@ -197,14 +200,12 @@ impl<'a> Reader<'a> {
 
     fn texts<const LITTLE: bool, S: Sink>(
         self,
-        mut at: usize,
+        at: usize,
         slot: Slot,
         fixed: Option<u32>,
         sink: &mut S,
     ) -> Result<usize, RunError> {
-        if self.sizes.of_lists {
-            at = self.length::<LITTLE>(at)?.1;
-        }
+        let (list_end, at) = self.list_end::<LITTLE>(at)?;
         let start = self.align(at, 4);
         if fixed.is_none()
             && let Some(expected) = sink.expected_texts(slot)
@@ -212,7 +213,7 @@ impl<'a> Reader<'a> {
         {
             let end = start + expected.len();
             sink.same_texts(slot);
-            return Ok(end);
+            return self.check_end(end, list_end);
         }
         let (count, mut at) = self.count::<LITTLE>(start, fixed)?;
         for _ in 0..count {
@@ -223,20 +224,18 @@ impl<'a> Reader<'a> {
             let raw = &self.body[start..at];
             sink.texts(slot, Texts::Wire { little_endian: LITTLE, count: count as usize, raw });
         }
-        Ok(at)
+        self.check_end(at, list_end)
     }
 
     #[inline]
     fn repeat<const LITTLE: bool, S: Sink>(
         self,
-        mut at: usize,
+        at: usize,
         (slot, fixed, least): (Option<Slot>, Option<u32>, u64),
         steps: &[Step],
         sink: &mut S,
     ) -> Result<usize, RunError> {
-        if self.sizes.of_lists {
-            at = self.length::<LITTLE>(at)?.1;
-        }
+        let (list_end, at) = self.list_end::<LITTLE>(at)?;
         let (count, mut at) = self.count::<LITTLE>(at, fixed)?;
         // Checked before walking: a count cannot ask for more elements than bytes can hold.
         let needed = u64::from(count).saturating_mul(least);
@@ -249,50 +248,24 @@ impl<'a> Reader<'a> {
             }
             at = self.steps::<LITTLE, S>(at, steps, sink)?;
         }
-        Ok(at)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::log::{decode::Want, schema::Definition};
-
-    #[derive(Default)]
-    struct Seen(Vec<f64>);
-
-    impl Sink for Seen {
-        fn number(&mut self, _slot: Slot, value: f64) {
-            self.0.push(value);
-        }
-        fn text(&mut self, _slot: Slot, _text: &[u8]) {}
-        fn numbers(&mut self, _slot: Slot, _values: Numbers<'_>) {}
-        fn texts(&mut self, _slot: Slot, _values: Texts<'_>) {}
-        fn element(&mut self, _slot: Slot) {}
-        fn expected_texts(&self, _slot: Slot) -> Option<&[u8]> {
-            None
-        }
-        fn same_texts(&mut self, _slot: Slot) {}
+        self.check_end(at, list_end)
     }
 
-    #[test]
-    fn what_follows_a_list_is_no_part_of_its_elements() {
-        let line = "=".repeat(80);
-        let text =
-            format!("Pair[] pairs\nint32 skipped\nfloat64 wanted\n{line}\nMSG: p/Pair\nfloat64 x\nint32 y\n");
-        let definition = Definition::parse("p/msg/List", "ros2msg", text.as_bytes()).unwrap();
-        let program = Program::compile(&definition, &[Want { path: "wanted".into(), slot: 0 }]).unwrap();
-        for pairs in 0..4_u32 {
-            let mut body = pairs.to_le_bytes().to_vec();
-            for _ in 0..pairs {
-                body.resize(body.len().next_multiple_of(8) + 12, 0);
-            }
-            body.extend(7_i32.to_le_bytes());
-            body.resize(body.len().next_multiple_of(8), 0);
-            body.extend(2.5_f64.to_le_bytes());
-            let mut seen = Seen::default();
-            program.run(&[&[0, 1, 0, 0], &body[..]].concat(), &mut seen).unwrap();
-            assert_eq!(seen.0, [2.5], "{pairs} pairs");
+    /// Where a list ends, if its size precedes it, and where it starts.
+    #[inline]
+    fn list_end<const LITTLE: bool>(self, at: usize) -> Result<(Option<usize>, usize), RunError> {
+        if !self.sizes.of_lists {
+            return Ok((None, at));
+        }
+        let (size, at) = self.length::<LITTLE>(at)?;
+        Ok((Some(at.saturating_add(size as usize)), at))
+    }
+
+    #[inline]
+    fn check_end(self, at: usize, list_end: Option<usize>) -> Result<usize, RunError> {
+        match list_end {
+            Some(end) if end != at => Err(RunError::ListSize { at, end }),
+            _ => Ok(at),
         }
     }
 }
