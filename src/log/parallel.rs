@@ -9,6 +9,7 @@ use std::{
 };
 
 use super::{
+    decode::Recall,
     file::{Block, Blocks, Loss, MessageRecord, Opcode, records},
     read::{Content, Extracted, Route, TopicCount},
     source::Spec,
@@ -166,6 +167,7 @@ fn read_block(
     piece.loss = loss;
     let mut end = 0;
     let mut last: Option<(u16, &Route)> = None;
+    let mut recalls: BTreeMap<u16, Recall> = BTreeMap::new();
     for record in records(bytes) {
         end = record.end;
         if record.opcode != Opcode::MESSAGE {
@@ -194,7 +196,9 @@ fn read_block(
                 piece.touched_contents.push(*source);
             }
             let content = piece.contents[*source].get_or_insert_with(|| new(*source));
-            if let Err(error) = content.read(decoder, &message) {
+            if let Err(error) =
+                content.read(decoder, recalls.entry(message.channel_id).or_default(), &message)
+            {
                 topic.undecodable += 1;
                 topic.first_error.get_or_insert(error);
             }

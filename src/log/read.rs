@@ -9,6 +9,7 @@ use std::{
 use super::{
     LogError, bag,
     channel::{Channel, Decoder, Definitions},
+    decode::Recall,
     file::{Layout, MappedFile, MessageRecord, scan},
     parallel::read_blocks,
     source::{Form, Plans, Role, Selector, Spec, Table, Versioned},
@@ -48,12 +49,17 @@ impl Content {
         }
     }
 
-    pub(super) fn read(&mut self, decoder: &Decoder, message: &MessageRecord<'_>) -> Result<(), String> {
+    pub(super) fn read(
+        &mut self,
+        decoder: &Decoder,
+        recall: &mut Recall,
+        message: &MessageRecord<'_>,
+    ) -> Result<(), String> {
         macro_rules! read {
             ($sink:expr) => {{
                 match decoder {
                     Decoder::Program(program) => {
-                        program.run(message.data, $sink).map_err(|e| e.to_string())?
+                        program.run(message.data, recall, $sink).map_err(|e| e.to_string())?
                     }
                     Decoder::Tree(tree) => tree.run(message.data, $sink)?,
                 }

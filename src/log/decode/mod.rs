@@ -5,10 +5,12 @@
 //! [`Sink`] by slot number.
 
 mod program;
+mod recall;
 mod run;
 mod sink;
 mod tree;
 
 pub(super) use program::{Program, ProgramError, Want, shape_at};
+pub(super) use recall::Recall;
 pub(super) use sink::{Numbers, Sink, Slot, Texts};
 pub(super) use tree::Tree;

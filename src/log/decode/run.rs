@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::{
     program::{Program, Step},
+    recall::{Found, Recall},
     sink::{Numbers, Sink, Slot, Texts, number_from, without_terminator},
 };
 
@@ -43,12 +44,25 @@ const MAX_PADDING: usize = 7;
 impl Program {
     /// Reports the wanted fields of one message to `sink`.
     ///
-    /// On an error some fields may have been reported already; the sink must drop them.
-    pub(in crate::log) fn run(&self, message: &[u8], sink: &mut impl Sink) -> Result<(), RunError> {
+    /// On an error some fields may have been reported already; the sink must drop them. `recall`
+    /// is what was learnt from earlier messages of the same channel.
+    pub(in crate::log) fn run(
+        &self,
+        message: &[u8],
+        recall: &mut Recall,
+        sink: &mut impl Sink,
+    ) -> Result<(), RunError> {
         let Some((&[zero, kind, _, _], body)) = message.split_first_chunk::<4>() else {
             return Err(RunError::NoHeader { bytes: message.len() });
         };
-        let mut walk = |little_endian, widest, sizes| self.walk(body, little_endian, widest, sizes, sink);
+        if zero == 0 && recall.report(kind, body, sink) {
+            return Ok(());
+        }
+        recall.start(kind, body.len());
+        let mut walk = |little_endian, widest, sizes| {
+            let reader = Reader { body, widest, sizes, recall: &mut *recall };
+            self.walk(reader, little_endian, sink)
+        };
         match (zero, kind) {
             (0, 0) => walk(false, 8, NO_SIZES),
             (0, 1) => walk(true, 8, NO_SIZES),
@@ -70,43 +84,44 @@ impl Program {
 
     fn walk<S: Sink>(
         &self,
-        body: &[u8],
+        mut reader: Reader<'_>,
         little_endian: bool,
-        widest: u8,
-        sizes: Sizes,
         sink: &mut S,
     ) -> Result<(), RunError> {
-        let reader = Reader { body, widest: usize::from(widest), sizes };
         sink.element(Slot::MAX);
-        let steps = if sizes.of_structs { &self.delimited } else { &self.steps };
+        let steps = if reader.sizes.of_structs { &self.delimited } else { &self.steps };
         let end = if little_endian {
             reader.steps::<true, S>(0, steps, sink)?
         } else {
             reader.steps::<false, S>(0, steps, sink)?
         };
-        let left = body.len().saturating_sub(end);
-        if left > MAX_PADDING && !self.open_ended { Err(RunError::Long { left }) } else { Ok(()) }
+        let left = reader.body.len().saturating_sub(end);
+        if left > MAX_PADDING && !self.open_ended {
+            return Err(RunError::Long { left });
+        }
+        reader.recall.finish();
+        Ok(())
     }
 }
 
 /// The bytes of a message. Every method takes the place at which it starts and returns the one
 /// at which it ends, so that the place stays in a register.
-#[derive(Clone, Copy)]
 struct Reader<'a> {
     body: &'a [u8],
     widest: usize,
     sizes: Sizes,
+    recall: &'a mut Recall,
 }
 
 impl<'a> Reader<'a> {
     #[inline]
-    fn align(self, at: usize, to: u8) -> usize {
+    fn align(&self, at: usize, to: u8) -> usize {
         let mask = usize::from(to).min(self.widest) - 1;
         (at + mask) & !mask
     }
 
     #[inline]
-    fn take(self, at: usize, bytes: u64) -> Result<(&'a [u8], usize), RunError> {
+    fn take(&self, at: usize, bytes: u64) -> Result<(&'a [u8], usize), RunError> {
         let end = usize::try_from(bytes).ok().and_then(|bytes| at.checked_add(bytes));
         match end.and_then(|end| Some((self.body.get(at..end)?, end))) {
             Some(found) => Ok(found),
@@ -115,19 +130,20 @@ impl<'a> Reader<'a> {
     }
 
     #[inline]
-    fn skip(self, at: usize, bytes: u64) -> Result<usize, RunError> {
+    fn skip(&self, at: usize, bytes: u64) -> Result<usize, RunError> {
         self.take(at, bytes).map(|(_, end)| end)
     }
 
     #[inline]
-    fn length<const LITTLE: bool>(self, at: usize) -> Result<(u32, usize), RunError> {
+    fn length<const LITTLE: bool>(&mut self, at: usize) -> Result<(u32, usize), RunError> {
         let (bytes, end) = self.take(self.align(at, 4), 4)?;
         let bytes = bytes.try_into().unwrap_or_default();
+        self.recall.note_count(end - 4, bytes);
         Ok((if LITTLE { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) }, end))
     }
 
     #[inline]
-    fn count<const LITTLE: bool>(self, at: usize, fixed: Option<u32>) -> Result<(u32, usize), RunError> {
+    fn count<const LITTLE: bool>(&mut self, at: usize, fixed: Option<u32>) -> Result<(u32, usize), RunError> {
         match fixed {
             Some(count) => Ok((count, at)),
             None => self.length::<LITTLE>(at),
@@ -135,7 +151,7 @@ impl<'a> Reader<'a> {
     }
 
     #[inline]
-    fn numbers(self, at: usize, size: u8, count: u32) -> Result<(&'a [u8], usize), RunError> {
+    fn numbers(&self, at: usize, size: u8, count: u32) -> Result<(&'a [u8], usize), RunError> {
         if count == 0 {
             return Ok((&[], at)); // No padding before an element that is not there.
         }
@@ -143,7 +159,7 @@ impl<'a> Reader<'a> {
     }
 
     fn steps<const LITTLE: bool, S: Sink>(
-        self,
+        &mut self,
         mut at: usize,
         steps: &[Step],
         sink: &mut S,
@@ -170,18 +186,21 @@ impl<'a> Reader<'a> {
                 }
                 Step::Number { slot, number } => {
                     let (piece, end) = self.numbers(at, number.size(), 1)?;
+                    self.recall.note(Found::Number(slot, number, end - piece.len(), end));
                     sink.number(slot, number_from(number, LITTLE, piece));
                     at = end;
                 }
                 Step::Text(slot) => {
                     let (length, text) = self.length::<LITTLE>(at)?;
                     let (text, end) = self.take(text, u64::from(length))?;
+                    self.recall.note(Found::Text(slot, end - text.len(), end));
                     sink.text(slot, without_terminator(text));
                     at = end;
                 }
                 Step::Numbers { slot, number, count } => {
                     let (count, first) = self.count::<LITTLE>(at, count)?;
                     let (bytes, end) = self.numbers(first, number.size(), count)?;
+                    self.recall.note(Found::Numbers(slot, number, end - bytes.len(), end));
                     sink.numbers(slot, Numbers::Wire { number, little_endian: LITTLE, bytes });
                     at = end;
                 }
@@ -199,7 +218,7 @@ impl<'a> Reader<'a> {
     }
 
     fn texts<const LITTLE: bool, S: Sink>(
-        self,
+        &mut self,
         at: usize,
         slot: Slot,
         fixed: Option<u32>,
@@ -212,6 +231,7 @@ impl<'a> Reader<'a> {
             && self.body.get(start..).is_some_and(|rest| rest.starts_with(expected))
         {
             let end = start + expected.len();
+            self.recall.note(Found::Texts(slot, start, end));
             sink.same_texts(slot);
             return self.check_end(end, list_end);
         }
@@ -221,6 +241,7 @@ impl<'a> Reader<'a> {
             at = self.skip(text, u64::from(length))?;
         }
         if fixed.is_none() {
+            self.recall.note(Found::Texts(slot, start, at));
             let raw = &self.body[start..at];
             sink.texts(slot, Texts::Wire { little_endian: LITTLE, count: count as usize, raw });
         }
@@ -229,7 +250,7 @@ impl<'a> Reader<'a> {
 
     #[inline]
     fn repeat<const LITTLE: bool, S: Sink>(
-        self,
+        &mut self,
         at: usize,
         (slot, fixed, least): (Option<Slot>, Option<u32>, u64),
         steps: &[Step],
@@ -244,6 +265,7 @@ impl<'a> Reader<'a> {
         }
         for _ in 0..count {
             if let Some(slot) = slot {
+                self.recall.note(Found::Element(slot));
                 sink.element(slot);
             }
             at = self.steps::<LITTLE, S>(at, steps, sink)?;
@@ -253,7 +275,7 @@ impl<'a> Reader<'a> {
 
     /// Where a list ends, if its size precedes it, and where it starts.
     #[inline]
-    fn list_end<const LITTLE: bool>(self, at: usize) -> Result<(Option<usize>, usize), RunError> {
+    fn list_end<const LITTLE: bool>(&mut self, at: usize) -> Result<(Option<usize>, usize), RunError> {
         if !self.sizes.of_lists {
             return Ok((None, at));
         }
@@ -262,7 +284,7 @@ impl<'a> Reader<'a> {
     }
 
     #[inline]
-    fn check_end(self, at: usize, list_end: Option<usize>) -> Result<usize, RunError> {
+    fn check_end(&self, at: usize, list_end: Option<usize>) -> Result<usize, RunError> {
         match list_end {
             Some(end) if end != at => Err(RunError::ListSize { at, end }),
             _ => Ok(at),
