@@ -17,9 +17,6 @@ use measure::{Time, child, peak_anonymous_mb, timed};
 /// Position and velocity of the plan and position of the measurement for six joints, speed
 /// scaling, and the three clocks of every message.
 const NUMBERS_READ: usize = 3 * 6 + 1 + 3;
-/// The same fields as tracks, which share one axis of time.
-const NUMBERS_KEPT: usize = 3 * 6 + 1;
-
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let value = |flag: &str| {
@@ -68,8 +65,8 @@ fn recording(path: &Path) {
     assert!(!recording.planned.tracks.is_empty());
 }
 
-const HEAD: &str = "\
-           MB packed |  pure |  read  wall  user | ratio  user | 2 threads 1/2 CPU | recording ratio";
+const HEAD: &str =
+    "           MB packed |  pure |  read  wall  user | ratio  user | 2 threads 1/2 CPU | recording ratio";
 
 fn synthetic(mb: usize, reps: usize) {
     let folder = tempfile::tempdir().unwrap();
@@ -89,13 +86,11 @@ fn synthetic(mb: usize, reps: usize) {
         }
     }
     let zstd = &written.files[0].1;
-    for (what, numbers) in [("read", NUMBERS_READ), ("recording", NUMBERS_KEPT)] {
-        let numbers_mb = (written.messages * numbers * 8) as f64 / 1e6;
-        let peak_mb = child(&format!("{what}-memory"), 2, zstd)[0];
-        let beyond_mb = peak_mb - numbers_mb;
-        println!(
-            "memory of {what}: {peak_mb:.0} MB anonymous, {numbers_mb:.0} MB of numbers, {beyond_mb:.0} MB beyond"
-        );
+    let numbers_mb = (written.messages * NUMBERS_READ * 8) as f64 / 1e6;
+    println!("memory, two threads: {numbers_mb:.0} MB of numbers extracted, and beyond them");
+    for what in ["read", "recording"] {
+        let beyond_mb = child(&format!("{what}-memory"), 2, zstd)[0] - numbers_mb;
+        println!("      {what}: {beyond_mb:.0} MB of anonymous memory at the most");
     }
     let sample = written.messages.min(if mb < 100 { 5_000 } else { 30_000 });
     match peer::rosbags(zstd, sample) {

@@ -12,6 +12,7 @@ use cpu_time::ProcessTime;
 
 /// What one run took.
 #[derive(Clone, Copy)]
+#[expect(clippy::struct_field_names, reason = "the unit is part of a name")]
 pub(crate) struct Time {
     pub(crate) wall_s: f64,
     /// User and system time of all threads.

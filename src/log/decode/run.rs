@@ -233,7 +233,7 @@ impl<'a> Reader<'a> {
             let end = start + expected.len();
             self.recall.note(Found::Texts(slot, start, end));
             sink.same_texts(slot);
-            return self.check_end(end, list_end);
+            return Self::check_end(end, list_end);
         }
         let (count, mut at) = self.count::<LITTLE>(start, fixed)?;
         for _ in 0..count {
@@ -245,7 +245,7 @@ impl<'a> Reader<'a> {
             let raw = &self.body[start..at];
             sink.texts(slot, Texts::Wire { little_endian: LITTLE, count: count as usize, raw });
         }
-        self.check_end(at, list_end)
+        Self::check_end(at, list_end)
     }
 
     #[inline]
@@ -270,7 +270,7 @@ impl<'a> Reader<'a> {
             }
             at = self.steps::<LITTLE, S>(at, steps, sink)?;
         }
-        self.check_end(at, list_end)
+        Self::check_end(at, list_end)
     }
 
     /// Where a list ends, if its size precedes it, and where it starts.
@@ -284,7 +284,7 @@ impl<'a> Reader<'a> {
     }
 
     #[inline]
-    fn check_end(&self, at: usize, list_end: Option<usize>) -> Result<usize, RunError> {
+    fn check_end(at: usize, list_end: Option<usize>) -> Result<usize, RunError> {
         match list_end {
             Some(end) if end != at => Err(RunError::ListSize { at, end }),
             _ => Ok(at),
