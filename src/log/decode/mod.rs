@@ -5,10 +5,11 @@
 //! [`Sink`] by slot number.
 
 mod program;
+mod protobuf;
 mod run;
 mod sink;
 mod tree;
 
-pub(super) use program::{Program, ProgramError, Want, shape_at};
+pub(super) use program::{Program, Want, shape_at};
 pub(super) use sink::{Numbers, Sink, Slot, Texts};
 pub(super) use tree::Tree;
