@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::{
     Attachment, FileInfo, LogError, Selector,
     assemble::assemble,
-    choose::{Choice, choose},
+    choose::{Choice, choose, topic_infos},
     read::{Extracted, extract, extract_bytes},
     source,
 };
@@ -173,9 +173,7 @@ pub fn survey_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Survey, LogEr
 }
 
 fn survey_of(extracted: Extracted, options: &ReadOptions) -> Survey {
-    let mut topics: Vec<TopicInfo> =
-        (0..extracted.topics.len()).map(|index| super::choose::topic_info(&extracted, index)).collect();
-    topics.sort_by(|a, b| (&a.topic, &a.type_name).cmp(&(&b.topic, &b.type_name)));
+    let topics = topic_infos(&extracted);
     let files = extracted.files.clone();
     let attachments = extracted.attachments.iter().map(|a| a.name.clone()).collect();
     let remarks = extracted.remarks.clone();

@@ -98,9 +98,8 @@ pub(in crate::log) fn scan(bytes: &[u8]) -> Option<Layout<'_>> {
             Opcode::STATISTICS => channels_promised = channel_count(record.body),
             Opcode::DATA_END => {
                 before_summary = Some((layout.schemas.len(), layout.channels.len()));
-                layout.damage.broken_data |= layout.blocks.iter().any(|b| matches!(b, Block::Loose(_)))
-                    && data_crc(record.body)
-                        .is_some_and(|crc| crc != 0 && crc != crc32fast::hash(&bytes[..at]));
+                let loose = layout.blocks.iter().any(|block| matches!(block, Block::Loose(_)));
+                layout.damage.broken_data |= loose && !data_holds(&bytes[..at], record.body);
             }
             Opcode::FOOTER => {
                 footer = true;
@@ -134,6 +133,15 @@ fn close_loose<'a>(layout: &mut Layout<'a>, bytes: &'a [u8], loose: &mut Option<
     if let Some(start) = loose.take() {
         layout.blocks.push(Block::Loose(&bytes[start..end]));
     }
+}
+
+/// Whether the data before a `DataEnd` are as they were written, or have no checksum. Some
+/// writers leave the magic out.
+fn data_holds(data: &[u8], data_end: &[u8]) -> bool {
+    let holds = |crc| {
+        [0, MAGIC.len()].iter().any(|&from| crc == crc32fast::hash(data.get(from..).unwrap_or_default()))
+    };
+    data_crc(data_end).is_none_or(|crc| crc == 0 || holds(crc))
 }
 
 /// Whether the summary before the footer at `at` is as it was written, or has no checksum.
