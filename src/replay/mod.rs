@@ -13,7 +13,9 @@ mod onset;
 mod outcome;
 mod path;
 mod rules;
+mod score;
 mod signals;
+mod synthetic;
 mod tracking;
 mod transition;
 
@@ -24,6 +26,8 @@ pub use outcome::{
     TrackingError, Transition, Verdict, WholeRun,
 };
 pub use rules::Rules;
+pub use score::{Score, Spread, conditions, detector_score};
+pub use synthetic::{Sensing, SyntheticRun, TrueMotion, synthetic_run};
 
 use crate::series::Pair;
 use concentration::{JointError, concentration};
