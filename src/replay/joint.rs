@@ -69,7 +69,7 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
     let matched = answers.iter().flatten().count();
     let replay = JointReplay {
         name: pair.name.clone(),
-        moves: !signals.measured.is_empty(),
+        moves: matched > 0 || signals.measured.iter().any(|m| travel_rad(pair, m) >= rules.moves_travel_rad),
         plan_moves: !signals.planned.is_empty(),
         tracking_error: tracking,
         standstill_error: tracking_error(standing),
@@ -88,6 +88,11 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
         unplanned_starts: measured.len() - matched,
     };
     Some(Joint { replay, transitions, stops, error, moving })
+}
+
+/// Travel of a measured motion, rad.
+fn travel_rad(pair: &Pair, motion: &Motion) -> f64 {
+    (pair.measured_rad[motion.samples.end - 1] - pair.measured_rad[motion.samples.start]).abs()
 }
 
 /// For each planned start the measured one that answers it.
@@ -117,8 +122,8 @@ fn answers(
     answers
 }
 
-/// Dynamic-to-static events; a measured stop belongs to the latest planned one of its direction
-/// that it could follow.
+/// Dynamic-to-static events; a measured stop belongs to the latest planned one that it could
+/// follow, whatever its direction: a joint that overshoots comes to rest on its way back.
 fn stops(pair: &Pair, signals: &Signals, error: &[Sample], rules: &Rules) -> Vec<Stop> {
     let planned: Vec<&Motion> = signals.planned.iter().filter(|m| m.stops()).collect();
     let mut stops: Vec<Stop> = planned
@@ -135,8 +140,7 @@ fn stops(pair: &Pair, signals: &Signals, error: &[Sample], rules: &Rules) -> Vec
     for motion in signals.measured.iter().filter(|m| m.stops()) {
         let ended = planned.partition_point(|p| p.end_s - rules.match_before_s <= motion.end_s);
         let cause = (0..ended).rev().take(2).find(|&p| {
-            planned[p].direction == motion.direction
-                && planned[p].segment == motion.segment
+            planned[p].segment == motion.segment
                 && motion.end_s <= planned[p].end_s + rules.transition_window_s
                 && stops[p].measured_s.is_none()
         });

@@ -67,14 +67,17 @@ pub(super) fn onset(
     let (back, on) = (steps(before_s), steps(window_s));
     #[expect(clippy::cast_possible_truncation, reason = "clamped above")]
     let grid: Vec<f64> = (-(back as i64)..=on as i64).map(|k| k as f64 * rules.onset_step_s).collect();
-    let misfit: Vec<f64> = grid
+    let fits: Vec<Fit> = grid
         .iter()
-        .map(|&t0| {
-            RISES.iter().map(|&rise| squared_residuals(&t, &x, t0, rise)).fold(f64::INFINITY, f64::min)
+        .filter_map(|&t0| {
+            let fits = RISES.map(|rise| Fit::new(&t, &x, t0, rise));
+            fits.into_iter().min_by(|a, b| a.squares.total_cmp(&b.squares))
         })
         .collect();
+    let misfit: Vec<f64> = fits.iter().map(|fit| fit.squares).collect();
     let best = (0..misfit.len()).min_by(|&a, &b| misfit[a].total_cmp(&misfit[b]))?;
-    let limit = misfit[best] * (1.0 + CHI_SQUARED_95 / (t.len() as f64 - 4.0).max(1.0));
+    let freedom = (t.len() as f64 - 4.0).max(1.0) / fits[best].redundancy(&t, &x);
+    let limit = misfit[best] * (1.0 + CHI_SQUARED_95 / freedom.max(1.0));
     let inside = |k: &usize| misfit[*k] <= limit;
     let low = (0..misfit.len()).find(inside).unwrap_or(best);
     let high = (0..misfit.len()).rev().find(inside).unwrap_or(best);
@@ -84,26 +87,50 @@ pub(super) fn onset(
     })
 }
 
-/// Sum of squared residuals of the best rest level and rise that begins at `t0`.
-fn squared_residuals(t: &[f64], x: &[f64], t0: f64, rise: Rise) -> f64 {
-    let n = t.len() as f64;
-    let from = t.partition_point(|&t| t <= t0);
-    let (mut f1, mut f2, mut fx) = (0.0, 0.0, 0.0);
-    for (t, x) in t[from..].iter().zip(&x[from..]) {
-        let f = rise.travel(t - t0);
-        f1 += f;
-        f2 += f * f;
-        fx += f * x;
+/// The best rest level and scale of a rise that begins at `t0`.
+#[derive(Clone, Copy)]
+struct Fit {
+    t0: f64,
+    rise: Rise,
+    level: f64,
+    slope: f64,
+    /// Sum of squared residuals.
+    squares: f64,
+}
+
+impl Fit {
+    /// Fits values of zero mean.
+    fn new(t: &[f64], x: &[f64], t0: f64, rise: Rise) -> Self {
+        let n = t.len() as f64;
+        let from = t.partition_point(|&t| t <= t0);
+        let (mut f1, mut f2, mut fx) = (0.0, 0.0, 0.0);
+        for (t, x) in t[from..].iter().zip(&x[from..]) {
+            let f = rise.travel(t - t0);
+            f1 += f;
+            f2 += f * f;
+            fx += f * x;
+        }
+        let spread = f2 - f1 * f1 / n;
+        // The values have zero mean, so the covariance needs no correction.
+        let slope = if spread > 0.0 { (fx / spread).max(0.0) } else { 0.0 };
+        let mut fit = Self { t0, rise, level: -slope * f1 / n, slope, squares: 0.0 };
+        fit.squares = t.iter().zip(x).map(|(&t, &x)| fit.residual(t, x).powi(2)).sum();
+        fit
     }
-    let spread = f2 - f1 * f1 / n;
-    // The values have zero mean, so the covariance needs no correction.
-    let slope = if spread > 0.0 { (fx / spread).max(0.0) } else { 0.0 };
-    let level = -slope * f1 / n;
-    let residual = |(t, x): (&f64, &f64)| {
-        let r = x - level - if *t > t0 { slope * rise.travel(t - t0) } else { 0.0 };
-        r * r
-    };
-    t.iter().zip(x).map(residual).sum()
+
+    fn residual(&self, t: f64, x: f64) -> f64 {
+        let risen = if t > self.t0 { self.slope * self.rise.travel(t - self.t0) } else { 0.0 };
+        x - self.level - risen
+    }
+
+    /// How many samples carry the information of one, at least 1, from the correlation of
+    /// neighbouring residuals: rounding and a wrong shape repeat themselves.
+    fn redundancy(&self, t: &[f64], x: &[f64]) -> f64 {
+        let r: Vec<f64> = t.iter().zip(x).map(|(&t, &x)| self.residual(t, x)).collect();
+        let neighbours: f64 = r.windows(2).map(|w| w[0] * w[1]).sum();
+        let correlation = if self.squares > 0.0 { (neighbours / self.squares).clamp(0.0, 0.95) } else { 0.0 };
+        (1.0 + correlation) / (1.0 - correlation)
+    }
 }
 
 /// Where the parabola through a minimum and its neighbours has its vertex, in steps.

@@ -25,7 +25,8 @@ pub struct Replay {
 pub struct JointReplay {
     /// The joint.
     pub name: String,
-    /// Whether a motion was detected in the measured angle.
+    /// Whether the measured angle moves: it answers a planned start, or one of its motions travels
+    /// [`Rules::moves_travel_rad`].
     pub moves: bool,
     /// Whether the plan moves.
     pub plan_moves: bool,
@@ -124,11 +125,11 @@ pub enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OnsetMethod {
-    /// The plan starts sharply: where it leaves rest, and where a rising curve fitted to the
-    /// measured angle does.
+    /// The plan starts steeply: where a curve that rests and then rises, fitted to each angle,
+    /// leaves rest.
     Departure,
-    /// The plan starts smoothly: mean of the instants at which both speeds, equally smoothed,
-    /// cross the measured stop and start thresholds.
+    /// The plan starts gently or turns: mean of the instants at which both speeds, equally
+    /// smoothed, cross the measured stop and start thresholds.
     Crossing,
 }
 

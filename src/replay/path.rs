@@ -17,7 +17,7 @@ struct Path {
 ///
 /// For every measured joint vector the nearest point on the planned polyline in joint space is
 /// sought within [`Rules::path_window_s`]; the components of that distance are each joint's.
-/// Taken at the first joint's stamps, thinned to [`Rules::path_rate_hz`], where every joint has
+/// Taken at the first joint's stamps, thinned to about [`Rules::path_rate_hz`], where every joint has
 /// data; `None` where there is none. O(n window).
 pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError>, PathError)> {
     let path = Path::new(pairs, rules);
@@ -70,8 +70,8 @@ impl Path {
         let Some(lead) = pairs.first() else {
             return path;
         };
-        // A hair less than the step, so that stamps on the step are not lost to rounding.
-        let step_s = 0.999 / rules.path_rate_hz;
+        // Less than the step, so that jitter around it loses no stamps.
+        let step_s = 0.75 / rules.path_rate_hz;
         let mut cursors = vec![Cursor::default(); pairs.len()];
         let mut last_s = f64::NEG_INFINITY;
         let mut last_places: Vec<usize> = Vec::new();

@@ -33,6 +33,9 @@ pub struct Rules {
     pub min_travel_sigmas: f64,
     /// Net travel of a measured motion, at least, in encoder steps.
     pub min_travel_lsbs: f64,
+    /// A joint without an answered start moves if one of its motions travels this far; less is
+    /// being shaken by the others, rad.
+    pub moves_travel_rad: f64,
     /// Rest shorter than this joins two motions of the same direction, and makes a reversal of
     /// two motions of opposite direction, s.
     pub min_rest_s: f64,
@@ -46,8 +49,9 @@ pub struct Rules {
     pub onset_after_s: f64,
     /// Step of the onset search, s.
     pub onset_step_s: f64,
-    /// A planned start that reaches half its speed this soon is sharp, s.
-    pub sharp_rise_s: f64,
+    /// A planned start is steep if it passes this multiple of the measured start threshold within
+    /// the half window of the velocity fit.
+    pub steep_ratio: f64,
     /// A measured start may precede its planned one by this, s.
     pub match_before_s: f64,
     /// A measured start may follow the window of its planned one by this, s.
@@ -96,13 +100,14 @@ impl Default for Rules {
             min_travel_rad: 0.05 * DEGREE_RAD,
             min_travel_sigmas: 5.0,
             min_travel_lsbs: 2.0,
+            moves_travel_rad: 0.2 * DEGREE_RAD,
             min_rest_s: 0.20,
             opening_rest_s: 0.10,
             onset_before_s: 0.70,
             onset_rest_share: 0.9,
             onset_after_s: 0.12,
             onset_step_s: 0.005,
-            sharp_rise_s: 0.12,
+            steep_ratio: 4.0,
             match_before_s: 0.3,
             match_after_s: 1.0,
             transition_window_s: 4.0,
