@@ -216,6 +216,11 @@ impl MetadataRecord {
     }
 }
 
+/// Profile of a header record.
+pub(super) fn profile(body: &[u8]) -> Option<String> {
+    Fields(body).text()
+}
+
 /// Channel count of a statistics record.
 pub(super) fn channel_count(body: &[u8]) -> Option<u32> {
     let mut f = Fields(body);
