@@ -23,6 +23,7 @@ pub(crate) const WINDOW_S: f64 = 4.0;
 
 /// One joint of the machine.
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_field_names, reason = "names end in units")]
 pub(crate) struct Joint {
     /// Time from being asked to leaving standstill, s, towards larger and towards smaller angles.
     pub(crate) dead_time_s: [f64; 2],
@@ -35,7 +36,10 @@ pub(crate) struct Joint {
 }
 
 /// Integral gain of the position loop, 1/s². It works only while the plan moves.
-pub(crate) const INTEGRAL_GAIN_1_S2: f64 = 0.5;
+pub(crate) const INTEGRAL_GAIN_1_S2: f64 = 0.2;
+
+/// Pressure builds up while a joint sticks; what it is late by then becomes extra speed, 1/s.
+pub(crate) const JUMP_1_S: f64 = 8.0;
 
 const fn joint(dead_time_s: [f64; 2], lag_s: f64, dead_band_deg_s: f64, gain_1_s: f64) -> Joint {
     Joint { dead_time_s, lag_s, dead_band_rad_s: dead_band_deg_s * DEGREE_RAD, gain_1_s }
@@ -43,12 +47,12 @@ const fn joint(dead_time_s: [f64; 2], lag_s: f64, dead_band_deg_s: f64, gain_1_s
 
 /// `joint_1` to `joint_6`.
 pub(crate) const JOINTS: [Joint; 6] = [
-    joint([0.16, 0.18], 0.060, 0.42, 1.5),
-    joint([0.15, 0.17], 0.055, 0.40, 1.5),
-    joint([0.25, 0.22], 0.080, 0.60, 1.9),
-    joint([0.13, 0.15], 0.040, 0.38, 1.5),
-    joint([0.12, 0.14], 0.035, 0.36, 1.4),
-    joint([0.14, 0.13], 0.030, 0.40, 1.5),
+    joint([0.16, 0.18], 0.060, 0.50, 1.5),
+    joint([0.15, 0.17], 0.055, 0.48, 1.5),
+    joint([0.25, 0.22], 0.070, 1.15, 2.3),
+    joint([0.13, 0.15], 0.045, 0.42, 1.5),
+    joint([0.12, 0.14], 0.035, 0.40, 1.4),
+    joint([0.14, 0.13], 0.040, 0.44, 1.5),
 ];
 
 /// One departure of a joint from standstill; times since the start of the run.
@@ -88,7 +92,7 @@ pub(crate) fn follow(plan: &JointPlan, joint: &Joint, offset_rad: f64) -> Motion
     let mut angle_rad = plan.at(0.0).angle_rad + offset_rad;
     let (mut speed_rad_s, mut integral_rad_s) = (0.0_f64, 0.0);
     let mut stuck = true;
-    let (mut direction, mut asked_s) = (0.0, 0.0);
+    let (mut direction, mut asked_s, mut asked_rad) = (0, 0.0, 0.0);
     let mut motion = Motion { angle_rad: Vec::with_capacity(steps), starts: Vec::new() };
     let mut errors_rad = Vec::with_capacity(steps);
     for step in 0..steps {
@@ -99,20 +103,25 @@ pub(crate) fn follow(plan: &JointPlan, joint: &Joint, offset_rad: f64) -> Motion
         errors_rad.push(error_rad);
 
         let asks = planned.speed_rad_s.abs() > ASKED_RAD_S;
-        let wanted = if asks { planned.speed_rad_s.signum() } else { 0.0 };
+        let wanted = if !asks {
+            0_i8
+        } else if planned.speed_rad_s > 0.0 {
+            1
+        } else {
+            -1
+        };
         if wanted != direction {
-            (direction, asked_s) = (wanted, t_s);
+            (direction, asked_s, asked_rad) = (wanted, t_s, planned.angle_rad);
         }
         let command_rad_s = planned.speed_rad_s + joint.gain_1_s * error_rad + integral_rad_s;
         let valve_rad_s = beyond(command_rad_s, joint.dead_band_rad_s);
-        let dead_time_s = joint.dead_time_s[usize::from(wanted < 0.0)];
+        let dead_time_s = joint.dead_time_s[usize::from(wanted < 0)];
         // Half a step keeps rounding from deciding at which step the dead time is over.
-        if stuck && valve_rad_s * wanted > 0.0 && t_s - asked_s > dead_time_s - 0.5 * STEP_S {
-            // What built up behind the joint lets it start at full speed.
+        if stuck && valve_rad_s * f64::from(wanted) > 0.0 && t_s - asked_s > dead_time_s - 0.5 * STEP_S {
             stuck = false;
-            speed_rad_s = valve_rad_s;
+            speed_rad_s = valve_rad_s + JUMP_1_S * (planned.angle_rad - asked_rad);
             motion.starts.push(Start { asked_s, leaves_s: t_s, peak_rad: 0.0 });
-        } else if speed_rad_s.abs() < STICKS_RAD_S && speed_rad_s * wanted <= 0.0 {
+        } else if speed_rad_s.abs() < STICKS_RAD_S && speed_rad_s * f64::from(wanted) <= 0.0 {
             stuck = true;
         }
         if stuck {

@@ -6,7 +6,7 @@ use hydrotrace::units::degrees_from_radians;
 
 use super::{
     SampleLog,
-    machine::{INTEGRAL_GAIN_1_S2, JOINTS},
+    machine::{INTEGRAL_GAIN_1_S2, JOINTS, JUMP_1_S},
     plan::DWELL_S,
     recorder::{COUNT_RAD, JITTER_S, LOSS, NOISE_RAD, START_NS},
 };
@@ -38,10 +38,11 @@ A six-joint arm takes up a curtain-wall panel and installs it: moves of 3 to 4 s
 not influence each other. What a joint does:
 
 * it leaves standstill no earlier than its dead time after the plan's speed exceeds 0.05 deg/s, and only
-  when its command leaves the dead-band of the valve; then it starts at once with the speed commanded;
+  when its command leaves the dead-band of the valve; then it jumps: it starts at once with the speed let
+  through, plus {JUMP} 1/s times what the plan moved on while it stuck;
 * command = planned speed + gain x error + integral; the integral works only while the plan moves;
 * the speed follows the opening of the valve with a first-order lag;
-* it stops where the command falls into the dead-band and stays there, some tenths of a degree off.
+* it stops where the command falls into the dead-band and stays there, up to two tenths of a degree off.
 
 ";
 
@@ -49,7 +50,7 @@ not influence each other. What a joint does:
 pub(crate) fn text(logs: &[SampleLog]) -> String {
     let mut text = HEAD.to_owned();
     summary(&mut text, logs);
-    text.push_str(MACHINE);
+    text.push_str(&MACHINE.replace("{JUMP}", &JUMP_1_S.to_string()));
     machine(&mut text);
     text.push_str(COLUMNS);
     for log in logs {
