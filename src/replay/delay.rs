@@ -1,12 +1,12 @@
-//! Planned and measured onset of one transition, found alike on both sides.
+//! Planned and measured onset of one transition: when each speed first passed the same threshold.
 
 use super::{
     OnsetMethod, Rules,
     motion::Motion,
-    onset::{Onset, onset},
+    onset::{Onset, Search, onset},
     signals::Signals,
 };
-use crate::series::{Pair, local_quadratic};
+use crate::series::Pair;
 
 /// Of the standard normal distribution, 97.5 %.
 const NORMAL_975: f64 = 1.959_963_984_540_054;
@@ -26,25 +26,41 @@ pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, ru
     if motion.reversal {
         return at_crossing;
     }
-    let shape = (motion.start_s, motion.rest_before_s, signals.thresholds.window_s);
-    onset(&pair.t_s, &pair.measured_rad, &motion.segment, motion.direction, shape, rules)
-        .unwrap_or(at_crossing)
+    let search = Search {
+        segment: motion.segment.clone(),
+        direction: motion.direction,
+        crossing_s: motion.start_s,
+        rest_s: motion.rest_before_s,
+        window_s: signals.thresholds.window_s,
+    };
+    onset_of(pair, &search, rules).unwrap_or(at_crossing)
 }
 
-/// When the plan starts: where a steep one leaves rest, found as for the measurement, or where a
-/// gentle one crosses the stop threshold.
+/// When the speed of the plan passes the threshold.
+///
+/// Between a sample at rest and the first one above the threshold the plan is taken to
+/// accelerate evenly, which its travel and its speed then date.
 pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> f64 {
-    if motion.reversal || !is_steep(pair, signals, motion, rules) {
-        return motion.start_s;
-    }
-    let plan = SmoothPlan::around(pair, signals, motion, rules);
-    let level = signals.thresholds.measured_stop_rad_s;
-    let Some((crossing_s, _)) = upward(plan.t_s, &plan.along_rad_s, level, motion.start_s) else {
+    let above =
+        motion.samples.clone().find(|&i| along(motion, signals.planned_rad_s[i]) > rules.stop_floor_rad_s);
+    let Some(above) = above.filter(|&i| i > motion.segment.start && !motion.reversal) else {
         return motion.start_s;
     };
-    let shape = (crossing_s, motion.rest_before_s, signals.thresholds.window_s);
-    let found = onset(&pair.t_s, &pair.planned_rad, &motion.segment, motion.direction, shape, rules);
-    found.map_or(motion.start_s, |onset| onset.at_s)
+    let (before_s, after_s) = (pair.t_s[above - 1], pair.t_s[above]);
+    let speed_rad_s = along(motion, signals.planned_rad_s[above]);
+    let travel_rad = along(motion, pair.planned_rad[above] - pair.planned_rad[above - 1]);
+    if along(motion, signals.planned_rad_s[above - 1]).abs() > 0.1 * rules.stop_floor_rad_s
+        || travel_rad <= 0.0
+    {
+        return motion.start_s;
+    }
+    let lasted_s = 2.0 * travel_rad / speed_rad_s;
+    let passes_s = lasted_s * rules.stop_floor_rad_s / speed_rad_s;
+    (after_s - lasted_s + passes_s).clamp(before_s, after_s)
+}
+
+fn along(motion: &Motion, value: f64) -> f64 {
+    f64::from(motion.direction) * value
 }
 
 /// Delay of one transition.
@@ -56,19 +72,16 @@ pub(super) fn delay(
     rules: &Rules,
 ) -> Delay {
     let planned_s = planned_onset_s(pair, signals, planned, rules);
-    let steep = !planned.reversal && is_steep(pair, signals, planned, rules);
-    let method = if steep { OnsetMethod::Departure } else { OnsetMethod::Crossing };
     let Some((motion, onset)) = measured else {
-        return Delay { method, planned_s, measured_s: None, interval_s: None };
+        return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     };
-    if (!steep || motion.reversal)
-        && let Some(delay) = crossing_delay(pair, signals, planned, motion, rules)
-    {
-        return delay;
-    }
     let blind_s = blind_s(pair, signals, planned);
+    if motion.reversal {
+        return reversal(pair, signals, planned, motion, blind_s);
+    }
+    let onset = unshaken(pair, signals, motion, onset, planned_s, rules).unwrap_or(onset);
     Delay {
-        method: OnsetMethod::Departure,
+        method: OnsetMethod::Fit,
         planned_s,
         measured_s: Some(onset.at_s),
         interval_s: Some([
@@ -78,74 +91,56 @@ pub(super) fn delay(
     }
 }
 
-/// Whether the plan is well above the measured start threshold before smoothing could blur it.
-fn is_steep(pair: &Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> bool {
-    let enough_rad_s = rules.steep_ratio * signals.thresholds.measured_start_rad_s;
-    let soon_s = motion.start_s + signals.thresholds.window_s;
-    let mut soon = motion.samples.clone().take_while(|&i| pair.t_s[i] <= soon_s);
-    soon.any(|i| signals.planned_rad_s[i].abs() >= enough_rad_s)
-}
-
-/// The plan around the start of a motion, smoothed as the measurement is.
-struct SmoothPlan<'a> {
-    t_s: &'a [f64],
-    /// Speed along the motion, rad/s.
-    along_rad_s: Vec<f64>,
-}
-
-impl<'a> SmoothPlan<'a> {
-    fn around(pair: &'a Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> Self {
-        let window_s = signals.thresholds.window_s;
-        let reach_s = 3.0 * window_s + rules.min_rest_s;
-        let times = &pair.t_s[motion.segment.clone()];
-        let first = motion.segment.start + times.partition_point(|&t| t < motion.start_s - reach_s);
-        let until_s = motion.end_s.min(motion.start_s + 2.0) + 2.0 * window_s;
-        let end = motion.segment.start + times.partition_point(|&t| t <= until_s);
-        let t_s = &pair.t_s[first..end];
-        let whole = 0..t_s.len();
-        let fits = local_quadratic(
-            t_s,
-            &pair.planned_rad[first..end],
-            std::slice::from_ref(&whole),
-            window_s,
-            rules.window_points,
-        );
-        let along_rad_s = fits.iter().map(|fit| f64::from(motion.direction) * fit.velocity_rad_s).collect();
-        Self { t_s, along_rad_s }
-    }
-}
-
-/// Both speeds, equally smoothed, cross the same two thresholds; `None` where one does not.
-fn crossing_delay(
+/// A joint that is shaken by the others just before it is asked to move seems to answer early; its
+/// onset is then looked for after the plan's. `None` if it was not early, or went a way before.
+fn unshaken(
     pair: &Pair,
     signals: &Signals,
-    planned: &Motion,
-    measured: &Motion,
+    motion: &Motion,
+    onset: Onset,
+    planned_s: f64,
     rules: &Rules,
-) -> Option<Delay> {
-    let plan = SmoothPlan::around(pair, signals, planned, rules);
-    let first = measured.segment.start.max(measured.samples.start.saturating_sub(1));
-    let end = measured.segment.end.min(measured.samples.end + 1);
-    let along: Vec<f64> =
-        (first..end).map(|i| f64::from(measured.direction) * signals.measured_rad_s[i]).collect();
+) -> Option<Onset> {
+    let times = &pair.t_s[motion.segment.clone()];
+    let at = |t_s: f64| motion.segment.start + times.partition_point(|&t| t < t_s);
+    let (from, asked) = (at(onset.at_s), at(planned_s));
+    let early_rad = pair.measured_rad.get(asked)? - pair.measured_rad.get(from)?;
+    if onset.interval_s[1] >= planned_s || early_rad.abs() >= rules.displacement_rad {
+        return None;
+    }
+    let level_rad_s = signals.thresholds.measured_start_rad_s;
+    let crossing =
+        (asked..motion.samples.end).find(|&i| along(motion, signals.measured_rad_s[i]) > level_rad_s)?;
+    let search = Search {
+        segment: motion.segment.clone(),
+        direction: motion.direction,
+        crossing_s: pair.t_s[crossing],
+        rest_s: pair.t_s[crossing] - planned_s + signals.thresholds.window_s,
+        window_s: signals.thresholds.window_s,
+    };
+    onset_of(pair, &search, rules)
+}
 
-    let plan_s = |level| Some(upward(plan.t_s, &plan.along_rad_s, level, planned.start_s)?.0);
-    let joint_s = |level| upward(&pair.t_s[first..end], &along, level, measured.start_s);
-    let (stop, start) = (signals.thresholds.measured_stop_rad_s, signals.thresholds.measured_start_rad_s);
-    let planned_s = 0.5 * (plan_s(stop)? + plan_s(start)?);
-    let ((low_s, low), (high_s, _)) = (joint_s(stop)?, joint_s(start)?);
-    let measured_s = 0.5 * (low_s + high_s);
-    // Noise of the speed over its slope between the two thresholds is noise of the instant.
-    let climb_s = (high_s - low_s).max(0.0);
-    let deviation_s = signals.deviation_rad_s[first + low] * climb_s / (start - stop).max(f64::MIN_POSITIVE);
+/// A joint that turns without resting: both speeds cross the measured stop threshold.
+fn reversal(pair: &Pair, signals: &Signals, planned: &Motion, measured: &Motion, blind_s: f64) -> Delay {
+    let level_rad_s = signals.thresholds.measured_stop_rad_s;
+    let speeds = |motion: &Motion, of: &[f64]| {
+        let first = motion.segment.start.max(motion.samples.start.saturating_sub(1));
+        let speeds: Vec<f64> = (first..motion.samples.end).map(|i| along(motion, of[i])).collect();
+        upward(&pair.t_s[first..motion.samples.end], &speeds, level_rad_s)
+    };
+    let (planned_s, _) = speeds(planned, &signals.planned_rad_s).unwrap_or((planned.start_s, 0.0));
+    let (measured_s, slope) = speeds(measured, &signals.measured_rad_s).unwrap_or((measured.start_s, 0.0));
+    // Noise of the speed over its slope is noise of the instant.
+    let deviation_s = signals.deviation_rad_s[measured.samples.start] / slope;
+    let half_s = blind_s + if deviation_s.is_finite() { NORMAL_975 * deviation_s } else { 0.0 };
     let delay_s = measured_s - planned_s;
-    let half_s = NORMAL_975 * deviation_s + blind_s(pair, signals, planned);
-    Some(Delay {
+    Delay {
         method: OnsetMethod::Crossing,
         planned_s,
         measured_s: Some(measured_s),
         interval_s: Some([delay_s - half_s, delay_s + half_s]),
-    })
+    }
 }
 
 /// How long a motion cannot be seen for want of samples and encoder steps, s: a sample interval
@@ -158,13 +153,14 @@ fn blind_s(pair: &Pair, signals: &Signals, planned: &Motion) -> f64 {
     signals.sample_interval_s + pair.t_s[seen] - pair.t_s[first]
 }
 
-/// The upward crossing of `level` nearest to a time: when, s, and the sample above.
-fn upward(t_s: &[f64], speed: &[f64], level: f64, near_s: f64) -> Option<(f64, usize)> {
-    (1..speed.len())
-        .filter(|&i| speed[i - 1] <= level && speed[i] > level)
-        .map(|i| {
-            let share = (level - speed[i - 1]) / (speed[i] - speed[i - 1]);
-            (t_s[i - 1] + share * (t_s[i] - t_s[i - 1]), i)
-        })
-        .min_by(|a, b| (a.0 - near_s).abs().total_cmp(&(b.0 - near_s).abs()))
+/// The first upward crossing of `level`: when, s, and the slope there, rad/s².
+fn upward(t_s: &[f64], speed_rad_s: &[f64], level_rad_s: f64) -> Option<(f64, f64)> {
+    let i = (1..speed_rad_s.len())
+        .find(|&i| speed_rad_s[i - 1] <= level_rad_s && speed_rad_s[i] > level_rad_s)?;
+    let slope = (speed_rad_s[i] - speed_rad_s[i - 1]) / (t_s[i] - t_s[i - 1]);
+    Some((t_s[i - 1] + (level_rad_s - speed_rad_s[i - 1]) / slope, slope))
+}
+
+fn onset_of(pair: &Pair, search: &Search, rules: &Rules) -> Option<Onset> {
+    onset(&pair.t_s, &pair.measured_rad, search, rules)
 }

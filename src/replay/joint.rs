@@ -55,7 +55,7 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
         .filter(|m| m.starts())
         .map(|m| (m, measured_onset(pair, &signals, m, rules)))
         .collect();
-    let answers = answers(&planned, &untils_s, &measured, rules);
+    let answers = answers(pair, &planned, &untils_s, &measured, rules);
     let transitions: Vec<Transition> = planned
         .iter()
         .zip(&untils_s)
@@ -69,7 +69,8 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
     let matched = answers.iter().flatten().count();
     let replay = JointReplay {
         name: pair.name.clone(),
-        moves: matched > 0 || signals.measured.iter().any(|m| travel_rad(pair, m) >= rules.moves_travel_rad),
+        moves: matched > 0
+            || signals.measured.iter().any(|m| travel_rad(&pair.measured_rad, m) >= rules.moves_travel_rad),
         plan_moves: !signals.planned.is_empty(),
         tracking_error: tracking,
         standstill_error: tracking_error(standing),
@@ -90,16 +91,18 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
     Some(Joint { replay, transitions, stops, error, moving })
 }
 
-/// Travel of a measured motion, rad.
-fn travel_rad(pair: &Pair, motion: &Motion) -> f64 {
-    (pair.measured_rad[motion.samples.end - 1] - pair.measured_rad[motion.samples.start]).abs()
+/// Travel of a motion, rad.
+fn travel_rad(angle_rad: &[f64], motion: &Motion) -> f64 {
+    (angle_rad[motion.samples.end - 1] - angle_rad[motion.samples.start]).abs()
 }
 
 /// For each planned start the measured one that answers it.
 ///
 /// A measured start answers the latest planned start of its direction that could have caused
-/// it; of several, the first answers.
+/// it; of several, the first answers. A joint that moves before it is asked to is shaken by the
+/// others, unless it goes on to cover a good part of the planned travel.
 fn answers(
+    pair: &Pair,
     planned: &[&Motion],
     untils_s: &[f64],
     measured: &[(&Motion, Onset)],
@@ -114,6 +117,9 @@ fn answers(
                 && planned[p].segment == motion.segment
                 && onset.at_s <= window_end_s + rules.match_after_s
                 && answers[p].is_none()
+                && (onset.interval_s[1] >= planned[p].start_s
+                    || travel_rad(&pair.measured_rad, motion)
+                        >= rules.early_travel_share * travel_rad(&pair.planned_rad, planned[p]))
         });
         if let Some(cause) = cause {
             answers[cause] = Some(k);

@@ -1,7 +1,10 @@
-//! When a motion began: before any speed threshold can tell.
+//! When a joint left rest: the instant at which its speed first passed a stated threshold, found
+//! below the noise of any speed.
 //!
-//! A curve that rests until t0 and then rises is fitted to the angle for every t0; the best
-//! fit is the onset and the fits almost as good are its interval.
+//! Curves that rest and then rise, steeply or gently, are fitted to the angle for every instant
+//! of departure. Each says when its own speed passes the threshold; the best fit is the onset,
+//! and all fits almost as good span its interval. A speed smoothed enough to show the threshold
+//! would blur a sharp start over the width of the smoothing.
 
 use std::ops::Range;
 
@@ -18,72 +21,94 @@ pub(super) struct Onset {
 /// Of chi-squared with one degree of freedom, 95 %.
 const CHI_SQUARED_95: f64 = 3.841_458_820_694_124;
 
-/// How a joint leaves rest, as travel over time since the onset.
+/// More samples than this are averaged in blocks: blocks of 5 ms lose nothing at this resolution.
+const MOST_POINTS: usize = 200;
+
+/// How a joint leaves rest, as travel over time since the departure.
 #[derive(Clone, Copy)]
 enum Rise {
-    /// Constant acceleration for this long, then constant speed.
+    /// Constant acceleration for this long, then constant speed, s.
     Ramp(f64),
-    /// Constant acceleration.
-    Quadratic,
+    /// A power of time: constant acceleration, constant jerk, constant snap.
+    Power(i32),
 }
 
-const RISES: [Rise; 4] = [Rise::Ramp(0.03), Rise::Ramp(0.08), Rise::Ramp(0.16), Rise::Quadratic];
+/// From a breakaway with a jump of speed to the gentle start of a spline at rest.
+const RISES: [Rise; 6] =
+    [Rise::Ramp(0.03), Rise::Ramp(0.08), Rise::Ramp(0.16), Rise::Power(2), Rise::Power(3), Rise::Power(4)];
 
 impl Rise {
     fn travel(self, since_s: f64) -> f64 {
         match self {
-            Rise::Ramp(ramp_s) if since_s > ramp_s => ramp_s * (since_s - 0.5 * ramp_s),
-            Rise::Ramp(_) | Rise::Quadratic => 0.5 * since_s * since_s,
+            Rise::Ramp(ramp_s) if since_s >= ramp_s => since_s - 0.5 * ramp_s,
+            Rise::Ramp(ramp_s) => 0.5 * since_s * since_s / ramp_s,
+            Rise::Power(power) => since_s.powi(power),
+        }
+    }
+
+    /// How long after the departure a rise of this scale passes a speed; `None` if never.
+    fn passes_s(self, scale: f64, speed_rad_s: f64) -> Option<f64> {
+        let unit = speed_rad_s / scale;
+        match self {
+            Rise::Ramp(ramp_s) => (unit <= 1.0).then_some(unit * ramp_s),
+            Rise::Power(power) => Some((unit / f64::from(power)).powf(1.0 / f64::from(power - 1))),
         }
     }
 }
 
-/// Refines the start of a motion in direction `direction` whose speed crossed a threshold at
-/// `crossing_s` after `rest_s` at rest.
-///
-/// `window_s` is the half width of the smoothing that found the crossing. `None` with fewer
-/// than six samples to fit.
-pub(super) fn onset(
-    t_s: &[f64],
-    position_rad: &[f64],
-    segment: &Range<usize>,
-    direction: i8,
-    (crossing_s, rest_s, window_s): (f64, f64, f64),
-    rules: &Rules,
-) -> Option<Onset> {
-    let before_s = (rules.onset_rest_share * rest_s).min(rules.onset_before_s);
+/// Where to look: a motion in `direction` whose smoothed speed crossed a threshold at
+/// `crossing_s` after `rest_s` at rest, found with smoothing of half width `window_s`.
+#[derive(Debug, Clone)]
+pub(super) struct Search {
+    pub(super) segment: Range<usize>,
+    pub(super) direction: i8,
+    pub(super) crossing_s: f64,
+    pub(super) rest_s: f64,
+    pub(super) window_s: f64,
+}
+
+/// When the speed of a motion first passed [`Rules::stop_floor_rad_s`]. `None` with fewer than
+/// six samples to fit.
+pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &Rules) -> Option<Onset> {
+    let Search { segment, crossing_s, window_s, .. } = search;
+    let before_s = (rules.onset_rest_share * search.rest_s).min(rules.onset_before_s);
     let times = &t_s[segment.clone()];
     let first = times.partition_point(|&t| t < crossing_s - before_s);
     let end = times.partition_point(|&t| t <= crossing_s + window_s + rules.onset_after_s);
     if end < first + 6 {
         return None;
     }
-    let t: Vec<f64> = times[first..end].iter().map(|t| t - crossing_s).collect();
-    let x = &position_rad[segment.start + first..segment.start + end];
-    let mean = x.iter().sum::<f64>() / x.len() as f64;
-    let x: Vec<f64> = x.iter().map(|x| f64::from(direction) * (x - mean)).collect();
+    let block = (end - first).div_ceil(MOST_POINTS);
+    let mean_of = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let t: Vec<f64> = times[first..end].chunks(block).map(|t| mean_of(t) - crossing_s).collect();
+    let x: Vec<f64> =
+        position_rad[segment.start + first..segment.start + end].chunks(block).map(mean_of).collect();
+    let mean = mean_of(&x);
+    let x: Vec<f64> = x.iter().map(|x| f64::from(search.direction) * (x - mean)).collect();
 
+    // The crossing of a smoothed speed may lie closer to the segment's start than the rest does.
+    let before_s = before_s.min(crossing_s - times[first]);
+    let on_s = window_s.min(times[end - 1] - crossing_s);
     let steps = |span_s: f64| (span_s / rules.onset_step_s).floor().clamp(0.0, 10_000.0);
-    let (back, on) = (steps(before_s), steps(window_s));
+    let (back, on) = (steps(before_s), steps(on_s));
     #[expect(clippy::cast_possible_truncation, reason = "clamped above")]
-    let grid: Vec<f64> = (-(back as i64)..=on as i64).map(|k| k as f64 * rules.onset_step_s).collect();
+    let grid = (-(back as i64)..=on as i64).map(|k| k as f64 * rules.onset_step_s);
     let fits: Vec<Fit> = grid
-        .iter()
-        .filter_map(|&t0| {
-            let fits = RISES.map(|rise| Fit::new(&t, &x, t0, rise));
-            fits.into_iter().min_by(|a, b| a.squares.total_cmp(&b.squares))
-        })
+        .flat_map(|t0| RISES.map(|rise| Fit::new(&t, &x, t0, rise)))
+        .filter(|fit| fit.onset_s(rules.stop_floor_rad_s).is_some_and(|s| s <= times[end - 1] - crossing_s))
         .collect();
-    let misfit: Vec<f64> = fits.iter().map(|fit| fit.squares).collect();
-    let best = (0..misfit.len()).min_by(|&a, &b| misfit[a].total_cmp(&misfit[b]))?;
-    let freedom = (t.len() as f64 - 4.0).max(1.0) / fits[best].redundancy(&t, &x);
-    let limit = misfit[best] * (1.0 + CHI_SQUARED_95 / freedom.max(1.0));
-    let inside = |k: &usize| misfit[*k] <= limit;
-    let low = (0..misfit.len()).find(inside).unwrap_or(best);
-    let high = (0..misfit.len()).rev().find(inside).unwrap_or(best);
+    let best = fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares))?;
+    let freedom = ((t.len() as f64 - 4.0).max(1.0) / best.redundancy(&t, &x)).max(1.0);
+    let limit = best.squares * (1.0 + CHI_SQUARED_95 / freedom);
+    let close = fits.iter().filter(|fit| fit.squares <= limit);
+    let onsets = close.filter_map(|fit| fit.onset_s(rules.stop_floor_rad_s));
+    let (low, high) = onsets.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (a.min(s), b.max(s)));
+    let at_s = best.onset_s(rules.stop_floor_rad_s)?;
+    // Departures are tried at steps; the shapes between the ones tried are not.
+    let step_s = rules.onset_step_s;
     Some(Onset {
-        at_s: crossing_s + grid[best] + vertex(&misfit, best) * rules.onset_step_s,
-        interval_s: [crossing_s + grid[low], crossing_s + grid[high]],
+        at_s: crossing_s + at_s,
+        interval_s: [crossing_s + low - step_s, crossing_s + high + step_s],
     })
 }
 
@@ -93,7 +118,7 @@ struct Fit {
     t0: f64,
     rise: Rise,
     level: f64,
-    slope: f64,
+    scale: f64,
     /// Sum of squared residuals.
     squares: f64,
 }
@@ -112,14 +137,22 @@ impl Fit {
         }
         let spread = f2 - f1 * f1 / n;
         // The values have zero mean, so the covariance needs no correction.
-        let slope = if spread > 0.0 { (fx / spread).max(0.0) } else { 0.0 };
-        let mut fit = Self { t0, rise, level: -slope * f1 / n, slope, squares: 0.0 };
+        let scale = if spread > 0.0 { (fx / spread).max(0.0) } else { 0.0 };
+        let mut fit = Self { t0, rise, level: -scale * f1 / n, scale, squares: 0.0 };
         fit.squares = t.iter().zip(x).map(|(&t, &x)| fit.residual(t, x).powi(2)).sum();
         fit
     }
 
+    /// When its speed passes the threshold; `None` if it never does.
+    fn onset_s(&self, speed_rad_s: f64) -> Option<f64> {
+        if self.scale <= 0.0 {
+            return None;
+        }
+        Some(self.t0 + self.rise.passes_s(self.scale, speed_rad_s)?)
+    }
+
     fn residual(&self, t: f64, x: f64) -> f64 {
-        let risen = if t > self.t0 { self.slope * self.rise.travel(t - self.t0) } else { 0.0 };
+        let risen = if t > self.t0 { self.scale * self.rise.travel(t - self.t0) } else { 0.0 };
         x - self.level - risen
     }
 
@@ -131,13 +164,4 @@ impl Fit {
         let correlation = if self.squares > 0.0 { (neighbours / self.squares).clamp(0.0, 0.95) } else { 0.0 };
         (1.0 + correlation) / (1.0 - correlation)
     }
-}
-
-/// Where the parabola through a minimum and its neighbours has its vertex, in steps.
-fn vertex(y: &[f64], k: usize) -> f64 {
-    if k == 0 || k + 1 >= y.len() {
-        return 0.0;
-    }
-    let bend = y[k - 1] - 2.0 * y[k] + y[k + 1];
-    if bend > 0.0 { (0.5 * (y[k - 1] - y[k + 1]) / bend).clamp(-0.5, 0.5) } else { 0.0 }
 }

@@ -121,15 +121,14 @@ pub enum Kind {
     Reversal,
 }
 
-/// How the two onsets of a transition were made comparable.
+/// How the onsets of a transition were found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OnsetMethod {
-    /// The plan starts steeply: where a curve that rests and then rises, fitted to each angle,
-    /// leaves rest.
-    Departure,
-    /// The plan starts gently or turns: mean of the instants at which both speeds, equally
-    /// smoothed, cross the measured stop and start thresholds.
+    /// From rest: where a curve that rests and then rises, fitted to the angle, passes the speed
+    /// threshold at which the plan's onset is taken.
+    Fit,
+    /// Out of the opposite motion: where both speeds cross the measured stop threshold.
     Crossing,
 }
 

@@ -49,11 +49,10 @@ pub struct Rules {
     pub onset_after_s: f64,
     /// Step of the onset search, s.
     pub onset_step_s: f64,
-    /// A planned start is steep if it passes this multiple of the measured start threshold within
-    /// the half window of the velocity fit.
-    pub steep_ratio: f64,
     /// A measured start may precede its planned one by this, s.
     pub match_before_s: f64,
+    /// A measured start before its planned one must cover this share of the planned travel.
+    pub early_travel_share: f64,
     /// A measured start may follow the window of its planned one by this, s.
     pub match_after_s: f64,
     /// Longest window of a transition, s.
@@ -107,8 +106,8 @@ impl Default for Rules {
             onset_rest_share: 0.9,
             onset_after_s: 0.12,
             onset_step_s: 0.005,
-            steep_ratio: 4.0,
             match_before_s: 0.3,
+            early_travel_share: 0.3,
             match_after_s: 1.0,
             transition_window_s: 4.0,
             displacement_rad: 0.1 * DEGREE_RAD,
