@@ -3,7 +3,7 @@
 use super::{
     OnsetMethod, Rules,
     motion::Motion,
-    onset::{Onset, onset},
+    onset::{MEASURED_RISES, Onset, PLANNED_RISES, onset},
     signals::Signals,
 };
 use crate::series::{Pair, local_quadratic};
@@ -27,7 +27,7 @@ pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, ru
         return at_crossing;
     }
     let shape = (motion.start_s, motion.rest_before_s, signals.thresholds.window_s);
-    onset(&pair.t_s, &pair.measured_rad, &motion.segment, motion.direction, shape, rules)
+    onset(&pair.t_s, &pair.measured_rad, &motion.segment, motion.direction, shape, MEASURED_RISES, rules)
         .unwrap_or(at_crossing)
 }
 
@@ -43,7 +43,8 @@ pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion, r
         return motion.start_s;
     };
     let shape = (crossing_s, motion.rest_before_s, signals.thresholds.window_s);
-    let found = onset(&pair.t_s, &pair.planned_rad, &motion.segment, motion.direction, shape, rules);
+    let found =
+        onset(&pair.t_s, &pair.planned_rad, &motion.segment, motion.direction, shape, PLANNED_RISES, rules);
     found.map_or(motion.start_s, |onset| onset.at_s)
 }
 

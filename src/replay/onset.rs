@@ -18,22 +18,31 @@ pub(super) struct Onset {
 /// Of chi-squared with one degree of freedom, 95 %.
 const CHI_SQUARED_95: f64 = 3.841_458_820_694_124;
 
+/// More samples than this are averaged in blocks: blocks of 5 ms lose nothing at this resolution.
+const MOST_POINTS: usize = 200;
+
 /// How a joint leaves rest, as travel over time since the onset.
 #[derive(Clone, Copy)]
-enum Rise {
-    /// Constant acceleration for this long, then constant speed.
+pub(super) enum Rise {
+    /// Constant acceleration for this long, perhaps no time at all, then constant speed, s.
     Ramp(f64),
     /// Constant acceleration.
     Quadratic,
 }
 
-const RISES: [Rise; 4] = [Rise::Ramp(0.03), Rise::Ramp(0.08), Rise::Ramp(0.16), Rise::Quadratic];
+/// Joints have mass; plans need not respect it.
+pub(super) const MEASURED_RISES: &[Rise] =
+    &[Rise::Ramp(0.03), Rise::Ramp(0.08), Rise::Ramp(0.16), Rise::Quadratic];
+/// As for a joint, or straight to speed.
+pub(super) const PLANNED_RISES: &[Rise] =
+    &[Rise::Ramp(0.0), Rise::Ramp(0.03), Rise::Ramp(0.08), Rise::Ramp(0.16), Rise::Quadratic];
 
 impl Rise {
     fn travel(self, since_s: f64) -> f64 {
         match self {
-            Rise::Ramp(ramp_s) if since_s > ramp_s => ramp_s * (since_s - 0.5 * ramp_s),
-            Rise::Ramp(_) | Rise::Quadratic => 0.5 * since_s * since_s,
+            Rise::Ramp(ramp_s) if since_s >= ramp_s => since_s - 0.5 * ramp_s,
+            Rise::Ramp(ramp_s) => 0.5 * since_s * since_s / ramp_s,
+            Rise::Quadratic => since_s * since_s,
         }
     }
 }
@@ -49,6 +58,7 @@ pub(super) fn onset(
     segment: &Range<usize>,
     direction: i8,
     (crossing_s, rest_s, window_s): (f64, f64, f64),
+    rises: &[Rise],
     rules: &Rules,
 ) -> Option<Onset> {
     let before_s = (rules.onset_rest_share * rest_s).min(rules.onset_before_s);
@@ -58,20 +68,26 @@ pub(super) fn onset(
     if end < first + 6 {
         return None;
     }
-    let t: Vec<f64> = times[first..end].iter().map(|t| t - crossing_s).collect();
-    let x = &position_rad[segment.start + first..segment.start + end];
-    let mean = x.iter().sum::<f64>() / x.len() as f64;
+    let block = (end - first).div_ceil(MOST_POINTS);
+    let mean_of = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let t: Vec<f64> = times[first..end].chunks(block).map(|t| mean_of(t) - crossing_s).collect();
+    let x: Vec<f64> =
+        position_rad[segment.start + first..segment.start + end].chunks(block).map(mean_of).collect();
+    let mean = mean_of(&x);
     let x: Vec<f64> = x.iter().map(|x| f64::from(direction) * (x - mean)).collect();
 
+    // The crossing of a smoothed speed may lie closer to the segment's start than the rest does.
+    let before_s = before_s.min(crossing_s - times[first]);
+    let on_s = window_s.min(times[end - 1] - crossing_s);
     let steps = |span_s: f64| (span_s / rules.onset_step_s).floor().clamp(0.0, 10_000.0);
-    let (back, on) = (steps(before_s), steps(window_s));
+    let (back, on) = (steps(before_s), steps(on_s));
     #[expect(clippy::cast_possible_truncation, reason = "clamped above")]
     let grid: Vec<f64> = (-(back as i64)..=on as i64).map(|k| k as f64 * rules.onset_step_s).collect();
     let fits: Vec<Fit> = grid
         .iter()
         .filter_map(|&t0| {
-            let fits = RISES.map(|rise| Fit::new(&t, &x, t0, rise));
-            fits.into_iter().min_by(|a, b| a.squares.total_cmp(&b.squares))
+            let fits = rises.iter().map(|&rise| Fit::new(&t, &x, t0, rise));
+            fits.min_by(|a, b| a.squares.total_cmp(&b.squares))
         })
         .collect();
     let misfit: Vec<f64> = fits.iter().map(|fit| fit.squares).collect();
