@@ -48,15 +48,14 @@ pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion, r
     found.map_or(motion.start_s, |onset| onset.at_s)
 }
 
-/// Delay of one transition.
+/// Delay of one transition, whose plan starts at `planned_s`.
 pub(super) fn delay(
     pair: &Pair,
     signals: &Signals,
-    planned: &Motion,
+    (planned, planned_s): (&Motion, f64),
     measured: Option<(&Motion, Onset)>,
     rules: &Rules,
 ) -> Delay {
-    let planned_s = planned_onset_s(pair, signals, planned, rules);
     let steep = !planned.reversal && is_steep(pair, signals, planned, rules);
     let method = if steep { OnsetMethod::Departure } else { OnsetMethod::Crossing };
     let Some((motion, onset)) = measured else {

@@ -83,10 +83,11 @@ pub(super) fn onset(
     let (back, on) = (steps(before_s), steps(on_s));
     #[expect(clippy::cast_possible_truncation, reason = "clamped above")]
     let grid: Vec<f64> = (-(back as i64)..=on as i64).map(|k| k as f64 * rules.onset_step_s).collect();
+    let total = x.iter().map(|x| x * x).sum();
     let fits: Vec<Fit> = grid
         .iter()
         .filter_map(|&t0| {
-            let fits = rises.iter().map(|&rise| Fit::new(&t, &x, t0, rise));
+            let fits = rises.iter().map(|&rise| Fit::new(&t, &x, total, t0, rise));
             fits.min_by(|a, b| a.squares.total_cmp(&b.squares))
         })
         .collect();
@@ -115,8 +116,8 @@ struct Fit {
 }
 
 impl Fit {
-    /// Fits values of zero mean.
-    fn new(t: &[f64], x: &[f64], t0: f64, rise: Rise) -> Self {
+    /// Fits values of zero mean, whose squares sum to `total`.
+    fn new(t: &[f64], x: &[f64], total: f64, t0: f64, rise: Rise) -> Self {
         let n = t.len() as f64;
         let from = t.partition_point(|&t| t <= t0);
         let (mut f1, mut f2, mut fx) = (0.0, 0.0, 0.0);
@@ -129,9 +130,8 @@ impl Fit {
         let spread = f2 - f1 * f1 / n;
         // The values have zero mean, so the covariance needs no correction.
         let slope = if spread > 0.0 { (fx / spread).max(0.0) } else { 0.0 };
-        let mut fit = Self { t0, rise, level: -slope * f1 / n, slope, squares: 0.0 };
-        fit.squares = t.iter().zip(x).map(|(&t, &x)| fit.residual(t, x).powi(2)).sum();
-        fit
+        // What the rise explains is gone from the sum of squares.
+        Self { t0, rise, level: -slope * f1 / n, slope, squares: (total - slope * fx).max(0.0) }
     }
 
     fn residual(&self, t: f64, x: f64) -> f64 {
