@@ -83,7 +83,10 @@ pub(super) fn onset(
     let (back, on) = (steps(before_s), steps(on_s));
     #[expect(clippy::cast_possible_truncation, reason = "clamped above")]
     let grid: Vec<f64> = (-(back as i64)..=on as i64).map(|k| k as f64 * rules.onset_step_s).collect();
-    let total = x.iter().map(|x| x * x).sum();
+    let total: f64 = x.iter().map(|x| x * x).sum();
+    if !total.is_finite() {
+        return None;
+    }
     let fits: Vec<Fit> = grid
         .iter()
         .filter_map(|&t0| {
