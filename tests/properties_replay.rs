@@ -222,6 +222,26 @@ fn a_joint_that_ignores_its_plan_has_an_unmatched_start_without_onset() {
 }
 
 #[test]
+fn a_stop_across_a_cut_answers_nothing() {
+    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
+    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
+    let measured: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.6)).collect();
+    let found = of(&recorded(t_s, planned, measured, vec![0..520, 520..800]));
+    let stops: Vec<_> = found.stops.iter().map(|s| (s.planned_s.is_some(), s.measured_s.is_some())).collect();
+    assert_eq!(stops, [(true, false), (false, true)]);
+}
+
+#[test]
+fn a_joint_that_moves_the_other_way_answers_nothing() {
+    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
+    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
+    let measured = t_s.iter().map(|&t| -ramp(t, 2.1)).collect();
+    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..800).collect()));
+    assert_eq!((found.joints[0].unmatched_starts, found.joints[0].unplanned_starts), (1, 1));
+    assert_eq!(found.transitions[0].measured_onset_s, None);
+}
+
+#[test]
 fn a_known_start_has_the_metrics_worked_out_by_hand() {
     // The joint waits 0.2 s, then follows at the planned speed: the error grows to 0.8 degrees.
     let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
@@ -240,6 +260,8 @@ fn a_known_start_has_the_metrics_worked_out_by_hand() {
     near(transition.error_area_rad_s, 2.4 * DEGREE_RAD, 0.01 * DEGREE_RAD);
     near(transition.settling_time_s.unwrap(), 3.2, 0.05);
     assert_eq!(transition.overshoot_rad, 0.0);
+    // Being late at the end is no standstill error.
+    assert!(found.joints[0].standstill_error.unwrap().peak_rad < 1e-12);
 }
 
 #[test]

@@ -102,7 +102,7 @@ impl Speed<'_> {
                 start_s: self.crossing_s(first, first.checked_sub(1).filter(|&k| k >= segment.start), rules),
                 end_s: self.crossing_s(last, Some(last + 1).filter(|&k| k < segment.end), rules),
                 rest_before_s: 0.0,
-                opens: first == segment.start,
+                opens: false,
                 closes: last + 1 == segment.end,
                 reversal: false,
                 reversed: false,
@@ -130,18 +130,19 @@ impl Speed<'_> {
         motion.end_s - motion.start_s >= rules.min_motion_s && travel_rad >= self.min_travel_rad
     }
 
+    /// Tells openings and reversals, which need the motion before.
     fn relate(&self, motions: &mut [Motion], rules: &Rules) {
         for k in 0..motions.len() {
             let (before, rest) = motions.split_at_mut(k);
             let motion = &mut rest[0];
             if let Some(previous) = before.last_mut() {
                 motion.rest_before_s = motion.start_s - previous.end_s;
-                motion.reversal =
-                    motion.direction != previous.direction && motion.rest_before_s < rules.min_rest_s;
+                // Of one direction they would have been joined.
+                motion.reversal = motion.rest_before_s < rules.min_rest_s;
                 previous.reversed = motion.reversal;
             } else {
                 motion.rest_before_s = motion.start_s - self.t_s[motion.segment.start];
-                motion.opens |= motion.rest_before_s < rules.opening_rest_s;
+                motion.opens = motion.rest_before_s < rules.opening_rest_s;
             }
         }
     }

@@ -187,7 +187,7 @@ mod tests {
     #[test]
     fn being_late_on_the_path_is_no_path_error() {
         let (joints, norm) =
-            path_error(&[pair(500, 0.2, 0.0), pair(500, 0.2, 0.0)], &Rules::default()).unwrap();
+            path_error(&[pair(500, 0.213, 0.0), pair(500, 0.213, 0.0)], &Rules::default()).unwrap();
         assert!(norm.peak_rad < 1e-12 && joints.iter().all(|j| j.peak_rad < 1e-12), "{norm:?}");
     }
 
