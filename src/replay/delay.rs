@@ -6,7 +6,7 @@ use super::{
     onset::{Onset, Search, onset},
     signals::Signals,
 };
-use crate::series::Pair;
+use crate::series::{Pair, local_quadratic};
 
 /// Of the standard normal distribution, 97.5 %.
 const NORMAL_975: f64 = 1.959_963_984_540_054;
@@ -67,17 +67,16 @@ fn along(motion: &Motion, value: f64) -> f64 {
 pub(super) fn delay(
     pair: &Pair,
     signals: &Signals,
-    planned: &Motion,
+    (planned, planned_s): (&Motion, f64),
     measured: Option<(&Motion, Onset)>,
     rules: &Rules,
 ) -> Delay {
-    let planned_s = planned_onset_s(pair, signals, planned, rules);
     let Some((motion, onset)) = measured else {
         return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     };
     let blind_s = blind_s(pair, signals, planned);
     if motion.reversal {
-        return reversal(pair, signals, planned, motion, blind_s);
+        return reversal(pair, signals, (planned, planned_s), motion, blind_s, rules);
     }
     let onset = unshaken(pair, signals, motion, onset, planned_s, rules).unwrap_or(onset);
     Delay {
@@ -121,26 +120,67 @@ fn unshaken(
     onset_of(pair, &search, rules)
 }
 
-/// A joint that turns without resting: both speeds cross the measured stop threshold.
-fn reversal(pair: &Pair, signals: &Signals, planned: &Motion, measured: &Motion, blind_s: f64) -> Delay {
-    let level_rad_s = signals.thresholds.measured_stop_rad_s;
-    let speeds = |motion: &Motion, of: &[f64]| {
-        let first = motion.segment.start.max(motion.samples.start.saturating_sub(1));
-        let speeds: Vec<f64> = (first..motion.samples.end).map(|i| along(motion, of[i])).collect();
-        upward(&pair.t_s[first..motion.samples.end], &speeds, level_rad_s)
+/// A joint that turns without resting: the plan is smoothed as the measurement is, and both speeds
+/// cross the measured stop and start thresholds.
+fn reversal(
+    pair: &Pair,
+    signals: &Signals,
+    (planned, asked_s): (&Motion, f64),
+    measured: &Motion,
+    blind_s: f64,
+    rules: &Rules,
+) -> Delay {
+    let (stop, start) = (signals.thresholds.measured_stop_rad_s, signals.thresholds.measured_start_rad_s);
+    let first = measured.segment.start.max(measured.samples.start.saturating_sub(1));
+    let times = &pair.t_s[first..measured.samples.end];
+    let speeds: Vec<f64> =
+        (first..measured.samples.end).map(|i| along(measured, signals.measured_rad_s[i])).collect();
+    let (plan_s, plan) = smoothed_plan(pair, signals, planned, rules);
+    let crossings = || {
+        let planned_s =
+            0.5 * (upward(plan_s, &plan, stop, asked_s)? + upward(plan_s, &plan, start, asked_s)?);
+        let low_s = upward(times, &speeds, stop, measured.start_s)?;
+        Some((planned_s, low_s, upward(times, &speeds, start, measured.start_s)?))
     };
-    let (planned_s, _) = speeds(planned, &signals.planned_rad_s).unwrap_or((planned.start_s, 0.0));
-    let (measured_s, slope) = speeds(measured, &signals.measured_rad_s).unwrap_or((measured.start_s, 0.0));
-    // Noise of the speed over its slope is noise of the instant.
-    let deviation_s = signals.deviation_rad_s[measured.samples.start] / slope;
-    let half_s = blind_s + if deviation_s.is_finite() { NORMAL_975 * deviation_s } else { 0.0 };
+    let crossing = OnsetMethod::Crossing;
+    let Some((planned_s, low_s, high_s)) = crossings() else {
+        return Delay {
+            method: crossing,
+            planned_s: asked_s,
+            measured_s: Some(measured.start_s),
+            interval_s: None,
+        };
+    };
+    let measured_s = 0.5 * (low_s + high_s);
+    // Noise of the speed over its slope between the two thresholds is noise of the instant.
+    let climb_s = (high_s - low_s).max(0.0);
+    let deviation_rad_s = signals.deviation_rad_s[measured.samples.start];
+    let deviation_s = deviation_rad_s * climb_s / (start - stop).max(f64::MIN_POSITIVE);
     let delay_s = measured_s - planned_s;
-    Delay {
-        method: OnsetMethod::Crossing,
-        planned_s,
-        measured_s: Some(measured_s),
-        interval_s: Some([delay_s - half_s, delay_s + half_s]),
-    }
+    let half_s = NORMAL_975 * deviation_s + blind_s;
+    let interval_s = Some([delay_s - half_s, delay_s + half_s]);
+    Delay { method: crossing, planned_s, measured_s: Some(measured_s), interval_s }
+}
+
+/// Times and speeds along the motion, rad/s, of the plan around the start of a motion, smoothed
+/// as the measurement is.
+fn smoothed_plan<'a>(
+    pair: &'a Pair,
+    signals: &Signals,
+    motion: &Motion,
+    rules: &Rules,
+) -> (&'a [f64], Vec<f64>) {
+    let window_s = signals.thresholds.window_s;
+    let reach_s = 3.0 * window_s + rules.min_rest_s;
+    let times = &pair.t_s[motion.segment.clone()];
+    let first = motion.segment.start + times.partition_point(|&t| t < motion.start_s - reach_s);
+    let until_s = motion.end_s.min(motion.start_s + 2.0) + 2.0 * window_s;
+    let end = motion.segment.start + times.partition_point(|&t| t <= until_s);
+    let t_s = &pair.t_s[first..end];
+    let whole = 0..t_s.len();
+    let angle_rad = &pair.planned_rad[first..end];
+    let fits = local_quadratic(t_s, angle_rad, std::slice::from_ref(&whole), window_s, rules.window_points);
+    (t_s, fits.iter().map(|fit| along(motion, fit.velocity_rad_s)).collect())
 }
 
 /// How long a motion cannot be seen for want of samples and encoder steps, s: a sample interval
@@ -153,12 +193,15 @@ fn blind_s(pair: &Pair, signals: &Signals, planned: &Motion) -> f64 {
     signals.sample_interval_s + pair.t_s[seen] - pair.t_s[first]
 }
 
-/// The first upward crossing of `level`: when, s, and the slope there, rad/s².
-fn upward(t_s: &[f64], speed_rad_s: &[f64], level_rad_s: f64) -> Option<(f64, f64)> {
-    let i = (1..speed_rad_s.len())
-        .find(|&i| speed_rad_s[i - 1] <= level_rad_s && speed_rad_s[i] > level_rad_s)?;
-    let slope = (speed_rad_s[i] - speed_rad_s[i - 1]) / (t_s[i] - t_s[i - 1]);
-    Some((t_s[i - 1] + (level_rad_s - speed_rad_s[i - 1]) / slope, slope))
+/// The upward crossing of a level nearest to a time, s.
+fn upward(t_s: &[f64], speed_rad_s: &[f64], level_rad_s: f64, near_s: f64) -> Option<f64> {
+    (1..speed_rad_s.len())
+        .filter(|&i| speed_rad_s[i - 1] <= level_rad_s && speed_rad_s[i] > level_rad_s)
+        .map(|i| {
+            let share = (level_rad_s - speed_rad_s[i - 1]) / (speed_rad_s[i] - speed_rad_s[i - 1]);
+            t_s[i - 1] + share * (t_s[i] - t_s[i - 1])
+        })
+        .min_by(|a, b| (a - near_s).abs().total_cmp(&(b - near_s).abs()))
 }
 
 fn onset_of(pair: &Pair, search: &Search, rules: &Rules) -> Option<Onset> {

@@ -39,16 +39,10 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
     let lag = lag(&speeds, &signals.planned, signals.sample_interval_s, rules);
 
     let planned: Vec<&Motion> = signals.planned.iter().filter(|m| m.starts()).collect();
-    let untils_s: Vec<f64> = planned
-        .iter()
-        .enumerate()
-        .map(|(k, motion)| {
-            let closes_s = pair.t_s[motion.segment.end - 1];
-            planned
-                .get(k + 1)
-                .map_or(closes_s, |next| closes_s.min(planned_onset_s(pair, &signals, next, rules)))
-        })
-        .collect();
+    let starts_s: Vec<f64> = planned.iter().map(|m| planned_onset_s(pair, &signals, m, rules)).collect();
+    let closes_s = |k: usize| pair.t_s[planned[k].segment.end - 1];
+    let until_s = |k: usize| starts_s.get(k + 1).map_or(closes_s(k), |next_s| closes_s(k).min(*next_s));
+    let untils_s: Vec<f64> = (0..planned.len()).map(until_s).collect();
     let measured: Vec<(&Motion, Onset)> = signals
         .measured
         .iter()
@@ -56,13 +50,10 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
         .map(|m| (m, measured_onset(pair, &signals, m, rules)))
         .collect();
     let answers = answers(pair, &planned, &untils_s, &measured, rules);
-    let transitions: Vec<Transition> = planned
-        .iter()
-        .zip(&untils_s)
-        .zip(&answers)
-        .map(|((&motion, &until_s), answer)| {
-            let answer = answer.and_then(|k| measured.get(k).copied());
-            transition(pair, &signals, &error, (motion, until_s), answer, rules)
+    let transitions: Vec<Transition> = (0..planned.len())
+        .map(|k| {
+            let answer = answers[k].and_then(|answer: usize| measured.get(answer).copied());
+            transition(pair, &signals, &error, (planned[k], starts_s[k], untils_s[k]), answer, rules)
         })
         .collect();
     let stops = stops(pair, &signals, &error, rules);
@@ -75,7 +66,7 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
         tracking_error: tracking,
         standstill_error: tracking_error(standing),
         path_error: None,
-        lag_s: lag.lag_s,
+        lag_s: lag.shift_s,
         lag_correlation: lag.correlation,
         lag_interval_s: lag.interval_s,
         lag_motions: lag.motions,

@@ -7,13 +7,14 @@ use super::{Rules, motion::Motion};
 /// The lag of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Lag {
-    pub(super) lag_s: Option<f64>,
+    pub(super) shift_s: Option<f64>,
     pub(super) correlation: Option<f64>,
     pub(super) interval_s: Option<[f64; 2]>,
     pub(super) motions: usize,
 }
 
 /// Speeds of one joint, `[n]`.
+#[expect(clippy::struct_field_names, reason = "the postfix is the unit")]
 pub(super) struct Speeds<'a> {
     pub(super) t_s: &'a [f64],
     pub(super) planned_rad_s: &'a [f64],
@@ -47,7 +48,7 @@ pub(super) fn lag(speeds: &Speeds, planned: &[Motion], sample_interval_s: f64, r
         let half_s = standard_error(&single_s)?;
         Some([lag_s - half_s, lag_s + half_s])
     });
-    Lag { lag_s, correlation: Some(correlation), interval_s, motions: single_s.len() }
+    Lag { shift_s: lag_s, correlation: Some(correlation), interval_s, motions: single_s.len() }
 }
 
 impl Correlation {
@@ -176,7 +177,7 @@ mod tests {
         let measured: Vec<f64> = t_s.iter().map(|&t| hump(4.133, t)).collect();
         let speeds = Speeds { t_s: &t_s, planned_rad_s: &planned, measured_rad_s: &measured };
         let found = lag(&speeds, &[motion(3.0, 5.0, 0..400)], 0.02, &Rules::default());
-        assert!((found.lag_s.unwrap() - 0.133).abs() < 0.002, "{found:?}");
+        assert!((found.shift_s.unwrap() - 0.133).abs() < 0.002, "{found:?}");
         assert!(found.correlation.unwrap() > 0.999);
         assert_eq!(found.interval_s, None);
     }
@@ -187,7 +188,7 @@ mod tests {
         let planned: Vec<f64> = t_s.iter().map(|&t| hump(3.0, t)).collect();
         let measured: Vec<f64> = t_s.iter().map(|&t| hump(4.4, t)).collect();
         let speeds = Speeds { t_s: &t_s, planned_rad_s: &planned, measured_rad_s: &measured };
-        assert_eq!(lag(&speeds, &[motion(2.0, 4.0, 0..400)], 0.02, &Rules::default()).lag_s, None);
+        assert_eq!(lag(&speeds, &[motion(2.0, 4.0, 0..400)], 0.02, &Rules::default()).shift_s, None);
         assert_eq!(lag(&speeds, &[], 0.02, &Rules::default()), Lag::default());
     }
 }

@@ -37,7 +37,10 @@ use joint::{Joint, joint};
 ///
 /// Nothing is differentiated, matched or detected across the cuts between segments.
 pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
-    let mut joints: Vec<Joint> = pairs.par_iter().filter_map(|pair| joint(pair, rules)).collect();
+    let (mut joints, path): (Vec<Joint>, _) = rayon::join(
+        || pairs.par_iter().filter_map(|pair| joint(pair, rules)).collect(),
+        || path::path_error(pairs, rules),
+    );
     let windows_s: Vec<Vec<[f64; 2]>> =
         joints.iter().map(|joint| joint.transitions.iter().map(|t| t.window_s).collect()).collect();
     let errors: Vec<JointError> = joints
@@ -48,7 +51,6 @@ pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
         .collect();
     let concentration = concentration(&errors, rules);
     let tracking_error = tracking::tracking_error(joints.iter().flat_map(|joint| &joint.error));
-    let path = path::path_error(pairs, rules);
     let norm = path.map(|(of_joints, norm)| {
         for (joint, path_error) in joints.iter_mut().zip(of_joints) {
             joint.replay.path_error = Some(path_error);

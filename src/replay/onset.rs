@@ -2,8 +2,8 @@
 //! below the noise of any speed.
 //!
 //! Curves that rest and then rise, steeply or gently, are fitted to the angle for every instant
-//! of departure. Each says when its own speed passes the threshold; the best fit is the onset,
-//! and all fits almost as good span its interval. A speed smoothed enough to show the threshold
+//! of departure. Each says when its own speed passes the threshold; weighted with their likelihood
+//! they give the onset and its interval. A speed smoothed enough to show the threshold
 //! would blur a sharp start over the width of the smoothing.
 
 use std::ops::Range;
@@ -17,9 +17,6 @@ pub(super) struct Onset {
     /// 95 %, without the time resolution, s.
     pub(super) interval_s: [f64; 2],
 }
-
-/// Of chi-squared with one degree of freedom, 95 %.
-const CHI_SQUARED_95: f64 = 3.841_458_820_694_124;
 
 /// More samples than this are averaged in blocks: blocks of 5 ms lose nothing at this resolution.
 const MOST_POINTS: usize = 200;
@@ -86,6 +83,10 @@ pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &
     let mean = mean_of(&x);
     let x: Vec<f64> = x.iter().map(|x| f64::from(search.direction) * (x - mean)).collect();
 
+    if !x.iter().map(|x| x * x).sum::<f64>().is_finite() {
+        return None;
+    }
+
     // The crossing of a smoothed speed may lie closer to the segment's start than the rest does.
     let before_s = before_s.min(crossing_s - times[first]);
     let on_s = window_s.min(times[end - 1] - crossing_s);
@@ -99,16 +100,29 @@ pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &
         .collect();
     let best = fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares))?;
     let freedom = ((t.len() as f64 - 4.0).max(1.0) / best.redundancy(&t, &x)).max(1.0);
-    let limit = best.squares * (1.0 + CHI_SQUARED_95 / freedom);
-    let close = fits.iter().filter(|fit| fit.squares <= limit);
-    let onsets = close.filter_map(|fit| fit.onset_s(rules.stop_floor_rad_s));
-    let (low, high) = onsets.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (a.min(s), b.max(s)));
-    let at_s = best.onset_s(rules.stop_floor_rad_s)?;
+    let variance = (best.squares / freedom).max(f64::MIN_POSITIVE);
+    let mut onsets: Vec<(f64, f64)> = fits
+        .iter()
+        .filter_map(|fit| {
+            let at_s = fit.onset_s(rules.stop_floor_rad_s)?;
+            Some((at_s, (0.5 * (best.squares - fit.squares) / variance).exp()))
+        })
+        .collect();
+    onsets.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let total: f64 = onsets.iter().map(|(_, weight)| weight).sum();
+    let quantile = |p: f64| {
+        let mut sum = 0.0;
+        let passed = onsets.iter().find(|(_, weight)| {
+            sum += weight;
+            sum >= p * total
+        });
+        passed.map_or(0.0, |(at_s, _)| *at_s)
+    };
     // Departures are tried at steps; the shapes between the ones tried are not.
     let step_s = rules.onset_step_s;
     Some(Onset {
-        at_s: crossing_s + at_s,
-        interval_s: [crossing_s + low - step_s, crossing_s + high + step_s],
+        at_s: crossing_s + quantile(0.5),
+        interval_s: [crossing_s + quantile(0.025) - step_s, crossing_s + quantile(0.975) + step_s],
     })
 }
 

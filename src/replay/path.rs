@@ -75,7 +75,7 @@ impl Path {
         let mut cursors = vec![Cursor::default(); pairs.len()];
         let mut last_s = f64::NEG_INFINITY;
         let mut last_places: Vec<usize> = Vec::new();
-        for &t_s in lead.t_s.iter() {
+        for &t_s in &lead.t_s {
             if t_s - last_s < step_s {
                 continue;
             }
@@ -171,7 +171,7 @@ mod tests {
 
     fn pair(n: u32, late_s: f64, off_rad: f64) -> Pair {
         let t_s: Vec<f64> = (0..n).map(|k| 0.02 * f64::from(k)).collect();
-        let angle = |t: f64| 0.5 * (t - 3.0).max(0.0).min(4.0);
+        let angle = |t: f64| 0.5 * (t - 3.0).clamp(0.0, 4.0);
         Pair {
             name: "a".into(),
             planned_rad: t_s.iter().map(|&t| angle(t)).collect(),
@@ -187,7 +187,7 @@ mod tests {
     #[test]
     fn being_late_on_the_path_is_no_path_error() {
         let (joints, norm) =
-            path_error(&[pair(500, 0.2, 0.0), pair(500, 0.2, 0.0)], &Rules::default()).unwrap();
+            path_error(&[pair(500, 0.213, 0.0), pair(500, 0.213, 0.0)], &Rules::default()).unwrap();
         assert!(norm.peak_rad < 1e-12 && joints.iter().all(|j| j.peak_rad < 1e-12), "{norm:?}");
     }
 

@@ -81,7 +81,9 @@ pub fn detector_score(seed: u64, runs: u64, sensing: &Sensing, rules: &Rules) ->
     let found: Vec<Tally> =
         (0..runs).into_par_iter().map(|k| Tally::of(seed.wrapping_add(k), sensing, rules)).collect();
     let mut all = Tally::default();
-    found.into_iter().for_each(|one| all.add(one));
+    for one in found {
+        all.add(one);
+    }
     let share = |a: usize, b: usize| if b > 0 { a as f64 / b as f64 } else { f64::NAN };
     let [onset_sharp, onset_smooth, onset_reversal] = all.onset_s.map(|errors| spread(&errors));
     let [delay_sharp, delay_smooth, delay_reversal] = all.delay_s.map(|errors| spread(&errors));

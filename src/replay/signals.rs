@@ -37,7 +37,9 @@ impl Signals {
         let measured_rad_s = of(|fit| fit.velocity_rad_s);
         let mut deviation_rad_s = of(|fit| fit.velocity_gain_per_s);
         drop(fits);
-        deviation_rad_s.iter_mut().for_each(|d| *d *= noise.sigma_rad);
+        for deviation in &mut deviation_rad_s {
+            *deviation *= noise.sigma_rad;
+        }
 
         let planned_rad_s = pair.planned_rad_s.clone().unwrap_or_else(|| {
             let fits = local_quadratic(t_s, &pair.planned_rad, segments, rules.planned_window_s, PLAN_POINTS);

@@ -165,8 +165,8 @@ mod tests {
     fn numbers_are_aligned_to_the_right_and_control_characters_are_gone() {
         let text = text(&[sheet()]);
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[0], "joint        peak deg");
-        assert_eq!(lines[1], "a                 0.5");
+        assert_eq!(lines[0], "joint      peak deg");
+        assert_eq!(lines[1], "a               0.5");
         assert!(!text.contains('\u{1b}'));
     }
 

@@ -87,7 +87,7 @@ fn widen(t: &[f64], i: usize, mut window: Range<usize>, min_points: usize) -> Ra
     window
 }
 
-/// Power sums of u = (t - t_ref) / scale and of x - x_ref.
+/// Sums of powers of time since a reference over a scale, alone and with the angle.
 #[derive(Default)]
 struct Sums {
     t_ref_s: f64,
@@ -177,7 +177,7 @@ mod tests {
         let t_s = uneven(4000);
         let x: Vec<f64> = t_s.iter().map(|t| 3.0 - 2.0 * t + 0.7 * t * t).collect();
         let n = t_s.len();
-        for (i, fit) in local_quadratic(&t_s, &x, &[0..n], 0.1, 7).iter().enumerate() {
+        for (i, fit) in local_quadratic(&t_s, &x, std::slice::from_ref(&(0..n)), 0.1, 7).iter().enumerate() {
             assert!((fit.velocity_rad_s - (-2.0 + 1.4 * t_s[i])).abs() < 1e-7, "{i} {fit:?}");
             assert!((fit.acceleration_rad_s2 - 1.4).abs() < 1e-6, "{i} {fit:?}");
         }
@@ -188,7 +188,7 @@ mod tests {
         let t_s = uneven(500);
         let x: Vec<f64> = t_s.iter().map(|t| (9.0 * t).sin() + 1e3).collect();
         let n = t_s.len();
-        let all = local_quadratic(&t_s, &x, &[0..n], 0.06, 7);
+        let all = local_quadratic(&t_s, &x, std::slice::from_ref(&(0..n)), 0.06, 7);
         for i in 0..n {
             let window = widen(&t_s, i, slide(&t_s, i, &(0..0), 0.06), 7);
             let alone = Sums::around(&t_s, &x, i, &window).fit(t_s[i], window.len());
@@ -201,7 +201,7 @@ mod tests {
     fn the_gain_of_an_even_window_is_the_textbook_one() {
         // Slope of a symmetric window of 2m + 1 samples: 1 / (dt sqrt(2 (1 + 4 + ... + m^2))).
         let t_s: Vec<f64> = (0..21).map(|k| f64::from(k) * 0.5).collect();
-        let fit = local_quadratic(&t_s, &[0.0; 21], &[0..21], 2.6, 7)[10];
+        let fit = local_quadratic(&t_s, &[0.0; 21], std::slice::from_ref(&(0..21)), 2.6, 7)[10];
         assert!((fit.velocity_gain_per_s - 1.0 / (0.5 * 110.0_f64.sqrt())).abs() < 1e-12);
     }
 

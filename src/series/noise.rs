@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn noise_on_a_swing_is_found_to_a_twentieth() {
         let (t_s, x) = swing(0.0);
-        let found = noise(&t_s, &x, &[0..4000]);
+        let found = noise(&t_s, &x, std::slice::from_ref(&(0..4000)));
         assert!((found.sigma_rad / SIGMA_RAD - 1.0).abs() < 0.05, "{found:?}");
         assert_eq!(found.lsb_rad, None);
     }
@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn a_coarse_encoder_shows_its_step_and_counts_as_noise() {
         let (t_s, x) = swing(1e-3);
-        let found = noise(&t_s, &x, &[0..4000]);
+        let found = noise(&t_s, &x, std::slice::from_ref(&(0..4000)));
         assert!((found.lsb_rad.unwrap() / 1e-3 - 1.0).abs() < 1e-6, "{found:?}");
         assert!(found.sigma_rad >= 1e-3 / 12.0_f64.sqrt());
     }
