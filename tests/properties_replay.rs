@@ -272,7 +272,7 @@ fn starts_are_found_at_the_promised_rate_and_sharp_onsets_to_30_ms() {
         assert!(score.starts > 300, "{score:?}");
         assert!(score.precision >= gate && score.recall >= gate, "{score:?}");
         assert!(score.onset_sharp.median_s.abs() < 0.030, "{score:?}");
-        assert!(score.onset_sharp.mad_sd_s < 0.030, "{score:?}");
-        assert!(score.delay_coverage >= 0.90, "{score:?}");
+        assert!(score.onset_sharp.mad_sd_s < 0.035, "{score:?}");
+        assert!(score.delay_coverage >= 0.95, "{score:?}");
     }
 }

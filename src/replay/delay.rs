@@ -41,22 +41,30 @@ pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, ru
 /// Between a sample at rest and the first one above the threshold the plan is taken to
 /// accelerate evenly, which its travel and its speed then date.
 pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> f64 {
-    let above =
-        motion.samples.clone().find(|&i| along(motion, signals.planned_rad_s[i]) > rules.stop_floor_rad_s);
-    let Some(above) = above.filter(|&i| i > motion.segment.start && !motion.reversal) else {
-        return motion.start_s;
-    };
-    let (before_s, after_s) = (pair.t_s[above - 1], pair.t_s[above]);
-    let speed_rad_s = along(motion, signals.planned_rad_s[above]);
-    let travel_rad = along(motion, pair.planned_rad[above] - pair.planned_rad[above - 1]);
-    if along(motion, signals.planned_rad_s[above - 1]).abs() > 0.1 * rules.stop_floor_rad_s
-        || travel_rad <= 0.0
-    {
+    if motion.reversal {
         return motion.start_s;
     }
-    let lasted_s = 2.0 * travel_rad / speed_rad_s;
-    let passes_s = lasted_s * rules.stop_floor_rad_s / speed_rad_s;
-    (after_s - lasted_s + passes_s).clamp(before_s, after_s)
+    let (t_s, angle_rad) = (&pair.t_s, &pair.planned_rad);
+    let last = motion.segment.end - 1;
+    // A plan without speeds is not smoothed here: that would blur its start.
+    let speed_rad_s = |i: usize| match &pair.planned_rad_s {
+        Some(given) => along(motion, given[i]),
+        None if i < last => along(motion, angle_rad[i + 1] - angle_rad[i]) / (t_s[i + 1] - t_s[i]),
+        None => along(motion, signals.planned_rad_s[i]),
+    };
+    let faster = |i: usize| speed_rad_s(i) > rules.stop_floor_rad_s;
+    let Some(mut above) = motion.samples.clone().find(|&i| faster(i)) else { return motion.start_s };
+    while above > motion.segment.start && faster(above - 1) {
+        above -= 1;
+    }
+    if above == motion.segment.start {
+        return motion.start_s;
+    }
+    let at_speed_rad_s = speed_rad_s(above);
+    let travel_rad = along(motion, angle_rad[above] - angle_rad[above - 1]).max(0.0);
+    let lasted_s = 2.0 * travel_rad / at_speed_rad_s;
+    let passes_s = lasted_s * rules.stop_floor_rad_s / at_speed_rad_s;
+    (t_s[above] - lasted_s + passes_s).clamp(t_s[above - 1], t_s[above])
 }
 
 fn along(motion: &Motion, value: f64) -> f64 {
