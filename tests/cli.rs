@@ -172,3 +172,21 @@ fn write_measured_only(path: &Path) {
     }
     log.finish().unwrap();
 }
+
+#[test]
+fn reports_are_as_their_schema_says() {
+    let schema =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("schemas/report.v1.schema.json"))
+            .unwrap();
+    let schema: serde_json::Value = serde_json::from_str(&schema).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    for log in [CLEAN, DOUBTFUL, CUT] {
+        let run =
+            hydrotrace(&["report", log, "--json", "--max-rms-deg", "90", "--max-start-delay-ms", "900"]);
+        let report: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+        let faults: Vec<String> =
+            validator.iter_errors(&report).map(|e| format!("{}: {e}", e.instance_path())).collect();
+        assert!(faults.is_empty(), "{log}: {faults:?}");
+        assert_eq!(report["format"], "hydrotrace.report.v1");
+    }
+}

@@ -22,6 +22,7 @@ pub struct Replay {
 
 /// One joint over the whole run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointReplay {
     /// The joint.
     pub name: String,
@@ -64,6 +65,7 @@ pub struct JointReplay {
 
 /// Detector settings of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Thresholds {
     /// Start threshold on the plan, rad/s.
     pub planned_start_rad_s: f64,
@@ -79,6 +81,7 @@ pub struct Thresholds {
 
 /// Statistics of the error at equal instants, each sample weighted with the time it stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TrackingError {
     /// Root mean square, rad.
     pub rms_rad: f64,
@@ -100,6 +103,7 @@ pub struct TrackingError {
 
 /// Distance from measured joint vectors to the planned joint path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PathError {
     /// Root mean square, rad.
     pub rms_rad: f64,
@@ -113,6 +117,7 @@ pub struct PathError {
 
 /// From rest, or out of the opposite motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// Static-to-dynamic.
@@ -123,6 +128,7 @@ pub enum Kind {
 
 /// How the onsets of a transition were found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum OnsetMethod {
     /// From rest: where a curve that rests and then rises, fitted to the angle, passes the speed
@@ -137,6 +143,7 @@ pub enum OnsetMethod {
 /// The error is planned minus measured; "signed along the motion" is that times the direction,
 /// so positive means that the joint is behind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Transition {
     /// The joint.
     pub joint: String,
@@ -184,6 +191,7 @@ pub struct Transition {
 
 /// A dynamic-to-static event, planned and measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Stop {
     /// The joint.
     pub joint: String,
@@ -199,6 +207,7 @@ pub struct Stop {
 
 /// All joints together.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct WholeRun {
     /// Error pooled over joints; `None` without joints.
     pub tracking_error: Option<TrackingError>,
@@ -211,6 +220,7 @@ pub struct WholeRun {
 
 /// Error inside transition windows against elsewhere, over joints whose plan moves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Concentration {
     /// Root mean square error inside, rad.
     pub rms_inside_rad: f64,
@@ -235,6 +245,7 @@ pub struct Concentration {
 /// Joints that start together are not independent, so values that begin within
 /// [`Rules::same_event_s`] are averaged into one event.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ConcentrationTest {
     /// Events inside.
     pub inside_count: usize,
@@ -248,6 +259,7 @@ pub struct ConcentrationTest {
 
 /// Where the error lives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// In the transitions.

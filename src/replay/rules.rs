@@ -6,6 +6,7 @@ use crate::units::DEGREE_RAD;
 
 /// Thresholds and windows. The default is for arms that move at 0.4 to 25 degrees per second.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Rules {
     /// Speed above which a joint has started, at least, rad/s.
     pub start_floor_rad_s: f64,

@@ -8,6 +8,7 @@ use crate::math::{mad, median};
 
 /// Noise and step size of one angle signal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Noise {
     /// Standard deviation of white noise on the angle, at least that of rounding, rad.
     pub sigma_rad: f64,

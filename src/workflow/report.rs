@@ -43,6 +43,7 @@ pub struct Gates {
 
 /// A limit and the worst that was found against it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct GateResult {
     /// Which limit.
     pub gate: Gate,
@@ -61,6 +62,7 @@ pub struct GateResult {
 
 /// A quantity that can be limited.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Gate {
     /// Peak error in a transition, rad.
@@ -79,6 +81,7 @@ pub enum Gate {
 
 /// How the plan of one joint met its measurement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Alignment {
     /// The joint.
     pub joint: String,
