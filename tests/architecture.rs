@@ -1,5 +1,7 @@
 //! The form of the crate: layers, length of files, where degrees may occur.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
+
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},

@@ -1,5 +1,7 @@
 //! The built binary as an operator meets it: exit codes, streams, files.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
+
 use std::{
     fs,
     path::Path,

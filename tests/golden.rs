@@ -1,5 +1,7 @@
 //! What every sample log reports, kept as snapshots; `INSTA_UPDATE=always` blesses new ones.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
+
 use std::{collections::BTreeSet, path::Path, process::Command};
 
 fn hydrotrace(args: &[&str]) -> String {

@@ -1,5 +1,6 @@
 //! Laws of the replay that hold for every run, and the gates of its detector.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use std::ops::Range;

@@ -4,6 +4,8 @@
 //! near 34.6 to 35.2 s, the seventh never moves, the error peaks at 0.0788 rad on the sixth,
 //! dead times are 0.10 to 0.16 s, lags 60 ms (joints 1 to 4) and 120 ms (5 and 6).
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::float_cmp)]
+
 use std::process::Command;
 
 use serde_json::Value;

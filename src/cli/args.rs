@@ -139,7 +139,6 @@ pub struct ReportArgs {
 /// At most one of these.
 #[derive(Debug, clap::Args)]
 #[group(multiple = false)]
-#[expect(clippy::struct_excessive_bools, reason = "mutually exclusive flags of the command line")]
 pub struct ReportFormat {
     /// One JSON document, as schemas/report.v1.schema.json describes it
     #[arg(long)]

@@ -114,13 +114,13 @@ fn copy<W: Write + Seek>(
             let Some(message) = MessageRecord::parse(record.body) else { continue };
             let channel_id = match channels.entry(message.channel_id) {
                 Entry::Occupied(known) => *known.get(),
-                Entry::Vacant(new) => match add_channel(&mut writer, &definitions, message.channel_id)? {
-                    Some(id) => *new.insert(id),
-                    None => {
+                Entry::Vacant(new) => {
+                    let Some(id) = add_channel(&mut writer, &definitions, message.channel_id)? else {
                         unknown += 1;
                         continue;
-                    }
-                },
+                    };
+                    *new.insert(id)
+                }
             };
             writer.write_to_known_channel(
                 &mcap::records::MessageHeader {

@@ -1,5 +1,7 @@
 //! Transitions as comma-separated values, SI units.
 
+use std::fmt::Write as _;
+
 use crate::{replay::Kind, workflow::report::Report};
 
 const HEAD: [&str; 22] = [
@@ -67,7 +69,7 @@ pub fn transitions_csv(report: &Report) -> String {
     let mut text = String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default();
     for remark in report.remarks.as_slice() {
         let message = remark.message.replace(['\n', '\r'], " ");
-        text.push_str(&format!("# {} x{}: {message}\n", remark.code.name(), remark.count));
+        let _ = writeln!(text, "# {} x{}: {message}", remark.code.name(), remark.count);
     }
     text
 }

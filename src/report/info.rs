@@ -39,7 +39,7 @@ pub fn info_json(survey: &Survey) -> String {
 /// The joints that a report would cover.
 fn joints(survey: &Survey) -> Vec<&str> {
     let Ok(recording) = &survey.recording else { return Vec::new() };
-    let planned = recording.planned.tracks.iter().map(|t| t.name());
+    let planned = recording.planned.tracks.iter().map(crate::series::Track::name);
     planned.filter(|name| recording.measured.track(name).is_some()).collect()
 }
 

@@ -1,5 +1,7 @@
 //! The few shapes a report is made of, and their two renderings.
 
+use std::fmt::Write as _;
+
 use comfy_table::{CellAlignment, Table, presets};
 
 /// A piece of a report.
@@ -45,7 +47,7 @@ pub fn text(parts: &[Part]) -> String {
             Part::Facts(facts) => {
                 let width = facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
                 for (name, value) in facts {
-                    out.push_str(&format!("{:width$}  {}", clean(name), clean(value)));
+                    let _ = write!(out, "{:width$}  {}", clean(name), clean(value));
                     out.push('\n');
                 }
             }
@@ -69,7 +71,7 @@ pub fn markdown(parts: &[Part]) -> String {
             Part::Line(line) => out.push_str(&format!("{}\n\n", escaped(line))),
             Part::Facts(facts) => {
                 for (name, value) in facts {
-                    out.push_str(&format!("- **{}**: {}\n", escaped(name), escaped(value)));
+                    let _ = write!(out, "- **{}**: {}\n", escaped(name), escaped(value));
                 }
                 out.push('\n');
             }

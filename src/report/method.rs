@@ -25,7 +25,9 @@ pub(super) fn method_parts(report: &Report, parts: &mut Vec<Part>) {
         fact("error", "planned minus measured at the same instant; rms and mean weighted by time".into()),
         fact(
             "matching",
-            format!("plan interpolated at measured stamps: {matched} samples matched, {unmatched} without a plan; {segments} stretches without a gap at most"),
+            format!("plan interpolated at measured stamps: {matched} samples matched, {unmatched} without a plan; {}",
+                if segments == 1 { "no gaps".to_owned() } else { format!("{segments} stretches between gaps") }
+            ),
         ),
         fact(
             "start",
