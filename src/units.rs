@@ -20,7 +20,6 @@ pub fn radians_from_degrees(deg: f64) -> f64 {
 }
 
 /// Seconds from `epoch_ns` to `stamp_ns`, s. Exact to below a nanosecond within 104 days.
-#[expect(clippy::cast_possible_truncation, reason = "a difference of clock readings fits i64 for 292 years")]
 pub fn seconds_since(epoch_ns: i64, stamp_ns: i64) -> f64 {
-    (i128::from(stamp_ns) - i128::from(epoch_ns)) as i64 as f64 / NS_PER_S
+    (i128::from(stamp_ns) - i128::from(epoch_ns)) as f64 / NS_PER_S
 }

@@ -1,6 +1,9 @@
 //! From samples of topics to planned and measured series on one clock.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use super::{
     LogError, ReadOptions, Recording, SourceInfo, TimeBase,
@@ -67,7 +70,13 @@ pub(super) fn assemble(
                 replaced,
                 format!("trajectories of {name} that the next one, or a cancel, cut short"),
             );
-            planned.tracks.extend(series.tracks);
+            let joints: BTreeSet<&str> =
+                trajectories.iter().flat_map(|t| &t.joints).map(|(joint, _)| joint.as_str()).collect();
+            for joint in joints.into_iter().filter(|joint| measured.track(joint).is_none()) {
+                doubt::unmeasured(joint, &mut remarks);
+            }
+            let new = series.tracks.into_iter().filter(|t| planned.track(t.name()).is_none());
+            planned.tracks.extend(new.collect::<Vec<_>>());
         }
     }
     for series in [&mut planned, &mut measured] {
@@ -163,21 +172,23 @@ fn tracks(
         let at = |row: usize| column.get(row).copied().unwrap_or(f64::NAN);
         let velocity = table.fields[field].velocity.map(|v| table.column(v, joint)).filter(|v| !v.is_empty());
         let speed_at = |row: usize| velocity.and_then(|v| v.get(row).copied()).unwrap_or(f64::NAN);
-        let kept: Vec<usize> = (0..clock.rows.len()).filter(|&i| at(clock.rows[i]).is_finite()).collect();
+        let mut kept: Vec<usize> = (0..clock.rows.len()).filter(|&i| at(clock.rows[i]).is_finite()).collect();
+        // Far from the epoch neighbouring nanoseconds are the same second.
+        kept.dedup_by(|later, earlier| shared[*later] <= shared[*earlier]);
         if kept.is_empty() {
             continue;
         }
         let position = kept.iter().map(|&i| unit(at(clock.rows[i]))).collect::<Vec<_>>();
         let speed = kept.iter().map(|&i| unit(speed_at(clock.rows[i]))).collect::<Vec<_>>();
+        let jumps: Vec<usize> = clock.cuts.iter().map(|cut| kept.partition_point(|i| i < cut)).collect();
         let (t_s, cuts) = if kept.len() == clock.rows.len() {
             (shared.clone(), all_cuts.clone())
         } else {
             let t_s: Arc<[f64]> = kept.iter().map(|&i| shared[i]).collect();
-            let jumps: Vec<usize> = clock.cuts.iter().map(|cut| kept.partition_point(|i| i < cut)).collect();
             let cuts = cuts(&t_s, &jumps);
             (t_s, cuts)
         };
-        gap.note(&t_s, &cuts, &clock.cuts);
+        gap.note(&t_s, &cuts, &jumps);
         let usable = speed.iter().all(|v| v.is_finite()) && velocity_agrees(&t_s, &position, &speed, &cuts);
         let track = Track::new(name, t_s, position, &cuts);
         let track = if usable { track.and_then(|track| track.with_velocity(speed)) } else { track };
@@ -208,9 +219,10 @@ struct Gaps {
 }
 
 impl Gaps {
+    /// `jumps` ascend.
     fn note(&mut self, t_s: &[f64], cuts: &[usize], jumps: &[usize]) {
         let mut here = Self::default();
-        for &cut in cuts.iter().filter(|cut| !jumps.contains(cut)) {
+        for &cut in cuts.iter().filter(|cut| jumps.binary_search(cut).is_err()) {
             here.count += 1;
             let length_s = t_s[cut] - t_s[cut - 1];
             if length_s > here.longest_s {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use yaml_rust2::{Yaml, YamlLoader};
+use yaml_rust2::parser::{Event, Parser};
 
 use super::LogError;
 use crate::remark::{Code, Remarks};
@@ -54,21 +54,34 @@ fn directory(path: &Path, remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogErro
 fn named_files(description: &Path) -> Result<Vec<String>, LogError> {
     let bad = |reason: String| LogError::BagMetadata { path: description.to_owned(), reason };
     let text = std::fs::read_to_string(description).map_err(LogError::file("read", description))?;
-    let documents = YamlLoader::load_from_str(&text).map_err(|error| bad(error.to_string()))?;
-    let Some(root) = documents.first() else { return Err(bad("it is empty".into())) };
-    let information = &root["rosbag2_bagfile_information"];
-    if let Some(storage) = information["storage_identifier"].as_str()
-        && storage != "mcap"
-    {
-        return Err(bad(format!(
-            "storage is {storage:?}, expected \"mcap\"; convert with `ros2 bag convert` to MCAP storage"
-        )));
+    let mut names = None;
+    let mut key = String::new();
+    // Walked as events: a tree would let aliases and nesting ask for any amount of memory.
+    let mut parser = Parser::new_from_str(&text);
+    loop {
+        match parser.next_token().map_err(|error| bad(error.to_string()))?.0 {
+            Event::StreamEnd => break,
+            Event::Scalar(value, ..) => match key.as_str() {
+                LIST => names.get_or_insert_with(Vec::new).push(value),
+                "storage_identifier" if value != "mcap" => {
+                    return Err(bad(format!(
+                        "storage is {value:?}, expected \"mcap\"; convert with `ros2 bag convert` to MCAP storage"
+                    )));
+                }
+                "storage_identifier" => key.clear(),
+                _ => key = value,
+            },
+            Event::SequenceStart(..) if key == LIST => names = Some(Vec::new()),
+            Event::SequenceStart(..) | Event::SequenceEnd | Event::MappingStart(..) | Event::MappingEnd => {
+                key.clear();
+            }
+            _ => {}
+        }
     }
-    match &information["relative_file_paths"] {
-        Yaml::Array(paths) => Ok(paths.iter().filter_map(|path| path.as_str().map(str::to_owned)).collect()),
-        _ => Err(bad("rosbag2_bagfile_information.relative_file_paths is no list".into())),
-    }
+    names.ok_or_else(|| bad(format!("it has no list {LIST}")))
 }
+
+const LIST: &str = "relative_file_paths";
 
 /// Orders `run_2` before `run_10`.
 fn natural_key(path: &Path) -> Vec<(u64, String)> {

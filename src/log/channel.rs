@@ -1,6 +1,6 @@
 //! From the channels of a file to how each is read.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 use rayon::prelude::*;
 
@@ -14,8 +14,8 @@ use super::{
 /// How the messages of one channel are read.
 #[derive(Debug, Clone)]
 pub(super) enum Decoder {
-    Program(Program),
-    Tree(Tree),
+    Program(Arc<Program>),
+    Tree(Arc<Tree>),
 }
 
 /// One channel of one file.
@@ -25,7 +25,7 @@ pub(super) struct Channel {
     pub(super) type_name: String,
     pub(super) encoding: String,
     /// How to read it, if it holds joints.
-    pub(super) reader: Option<(Spec, Decoder)>,
+    pub(super) reader: Option<(Arc<Spec>, Decoder)>,
     /// Why it cannot be read, though its type may hold joints.
     pub(super) problem: Option<String>,
 }
@@ -44,12 +44,14 @@ pub(super) struct OwnedSchema {
 }
 
 impl Definitions {
-    /// Gathers definitions outside chunks, and those inside if the former may be incomplete.
-    pub(super) fn gather(layout: &Layout<'_>) -> Self {
+    /// Gathers definitions outside chunks, and those inside if the former may be incomplete or
+    /// the caller says so.
+    pub(super) fn gather(layout: &Layout<'_>, look_inside: bool) -> Self {
         let mut all = Self { schemas: BTreeMap::new(), channels: BTreeMap::new() };
         layout.schemas.iter().for_each(|schema| all.add_schema(schema));
         layout.channels.iter().for_each(|channel| all.add_channel(channel.clone()));
-        if layout.channels_complete
+        if !look_inside
+            && layout.channels_complete
             && all.channels.values().all(|c| c.schema_id == 0 || all.schemas.contains_key(&c.schema_id))
         {
             return all;
@@ -101,85 +103,83 @@ impl Definitions {
     }
 
     /// Decides for every channel whether and how it is read.
-    pub(super) fn plan(&self, selectors: &[(Role, Selector)]) -> BTreeMap<u16, Channel> {
-        let mut definitions: BTreeMap<u16, Result<Definition, String>> = BTreeMap::new();
+    pub(super) fn plan(self, selectors: &[(Role, Selector)]) -> BTreeMap<u16, Channel> {
         let empty = OwnedSchema { name: String::new(), encoding: String::new(), data: Vec::new() };
-        self.channels
-            .iter()
-            .map(|(&id, record)| {
-                let schema = self.schemas.get(&record.schema_id).unwrap_or(&empty);
-                let mine: Vec<_> = selectors
-                    .iter()
-                    .filter(|(_, s)| s.topic == record.topic)
-                    .map(|(role, s)| (*role, s))
-                    .collect();
-                let (reader, problem) = match record.encoding.as_str() {
-                    "cdr" => {
-                        let definition = definitions.entry(record.schema_id).or_insert_with(|| {
-                            Definition::parse(&schema.name, &schema.encoding, &schema.data)
-                                .map_err(|e| e.to_string())
-                        });
-                        cdr(schema, definition, &mine)
-                    }
-                    "json" => {
-                        let tree = |spec: &Spec| Ok(Tree::json(&spec.wants));
-                        tree_reader(&schema.name, &mine, tree)
-                    }
-                    "protobuf" => {
-                        let tree = |spec: &Spec| Tree::protobuf(&schema.name, &schema.data, &spec.wants);
-                        tree_reader(&schema.name, &mine, tree)
-                    }
-                    other => {
-                        let problem = spec_for(&schema.name, None, &mine)
-                            .map(|_| format!("its messages are encoded as {other:?}, which is not read"));
-                        (None, problem)
-                    }
-                };
-                let channel = Channel {
-                    topic: record.topic.clone(),
-                    type_name: schema.name.clone(),
-                    encoding: record.encoding.clone(),
-                    reader,
-                    problem,
-                };
-                (id, channel)
-            })
-            .collect()
+        // Channels of one schema share their reader: files may have many of both.
+        let mut readers: BTreeMap<(u16, String, Option<String>), Reader> = BTreeMap::new();
+        let mut steps_left = MAX_STEPS;
+        let Self { schemas, channels } = self;
+        let plan = channels.into_iter().map(|(id, record)| {
+            let schema = schemas.get(&record.schema_id).unwrap_or(&empty);
+            let mine = selectors.iter().filter(|(_, s)| s.topic == record.topic);
+            let mine: Vec<_> = mine.map(|(role, s)| (*role, s)).collect();
+            let topic = (!mine.is_empty()).then(|| record.topic.clone());
+            let key = (record.schema_id, record.encoding.clone(), topic);
+            let (reader, problem) = readers
+                .entry(key)
+                .or_insert_with(|| reader(schema, &record.encoding, &mine, &mut steps_left))
+                .clone();
+            let type_name = schema.name.clone();
+            let channel =
+                Channel { topic: record.topic, type_name, encoding: record.encoding, reader, problem };
+            (id, channel)
+        });
+        plan.collect()
     }
 }
 
-type Reader = (Option<(Spec, Decoder)>, Option<String>);
+/// All programs of a file together; one of the joints of an arm takes some hundred steps.
+const MAX_STEPS: usize = 1_000_000;
 
-fn cdr(
+/// How to read a channel, or why it cannot be read though it may hold joints.
+type Reader = (Option<(Arc<Spec>, Decoder)>, Option<String>);
+
+fn reader(
     schema: &OwnedSchema,
-    definition: &Result<Definition, String>,
+    encoding: &str,
     selectors: &[(Role, &Selector)],
+    steps_left: &mut usize,
 ) -> Reader {
-    match definition {
+    match encoding {
+        "cdr" => cdr(schema, selectors, steps_left),
+        "json" => tree(schema, selectors, |spec| Ok(Tree::json(&spec.wants))),
+        "protobuf" => tree(schema, selectors, |spec| Tree::protobuf(&schema.name, &schema.data, &spec.wants)),
+        other => {
+            let problem = spec_for(&schema.name, None, selectors)
+                .map(|_| format!("its messages are encoded as {other:?}, which is not read"));
+            (None, problem)
+        }
+    }
+}
+
+fn cdr(schema: &OwnedSchema, selectors: &[(Role, &Selector)], steps_left: &mut usize) -> Reader {
+    let definition = match Definition::parse(&schema.name, &schema.encoding, &schema.data) {
+        Ok(definition) => definition,
         Err(problem) => {
             // A type that a recorder left undescribed matters only where joints may be lost.
             let matters = !schema.data.is_empty() || spec_for(&schema.name, None, selectors).is_some();
-            (None, matters.then(|| problem.clone()))
+            return (None, matters.then(|| problem.to_string()));
         }
-        Ok(definition) => match spec_for(&schema.name, Some(definition), selectors) {
-            None => (None, None),
-            Some(spec) => match Program::compile(definition, &spec.wants) {
-                Ok(program) => (Some((spec, Decoder::Program(program))), None),
-                Err(error) => (None, Some(error.to_string())),
-            },
-        },
+    };
+    let Some(spec) = spec_for(&schema.name, Some(&definition), selectors) else { return (None, None) };
+    match Program::compile(&definition, &spec.wants, *steps_left) {
+        Ok(program) => {
+            *steps_left -= program.cost.min(*steps_left);
+            (Some((Arc::new(spec), Decoder::Program(Arc::new(program)))), None)
+        }
+        Err(error) => (None, Some(error.to_string())),
     }
 }
 
-fn tree_reader(
-    name: &str,
+fn tree(
+    schema: &OwnedSchema,
     selectors: &[(Role, &Selector)],
     tree: impl Fn(&Spec) -> Result<Tree, String>,
 ) -> Reader {
-    match spec_for(name, None, selectors) {
+    match spec_for(&schema.name, None, selectors) {
         None => (None, None),
         Some(spec) => match tree(&spec) {
-            Ok(tree) => (Some((spec, Decoder::Tree(tree))), None),
+            Ok(tree) => (Some((Arc::new(spec), Decoder::Tree(Arc::new(tree)))), None),
             Err(problem) => (None, Some(problem)),
         },
     }

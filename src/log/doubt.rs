@@ -2,7 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::{TimeBase, source::Table};
+use super::{
+    TimeBase,
+    source::{MAX_JOINTS, Table},
+};
 use crate::{
     math::quantile_sorted,
     remark::{Code, Remarks},
@@ -56,6 +59,11 @@ pub(super) fn of_table(topic: &str, table: &Table, remarks: &mut Remarks) {
         Code::JointsChange,
         table.layout_changes,
         format!("changes of order or set of the joints within {topic}; joined by name"),
+    );
+    remarks.add(
+        Code::NotSupported,
+        table.too_many,
+        format!("messages or joints of {topic} beyond the first {MAX_JOINTS} joints, left out"),
     );
     let (paused, slowed) = scaling(&table.speed_scaling);
     remarks.add(
@@ -128,14 +136,21 @@ fn unwrapped(track: &Track) -> Option<Track> {
 pub(super) fn of_pairs(planned: &Series, measured: &Series, remarks: &mut Remarks) {
     for track in &planned.tracks {
         match measured.track(track.name()) {
-            None => remarks.add(
-                Code::UnpairedJoint,
-                1,
-                format!("{} is planned but was not measured; left out", track.name()),
-            ),
+            None => unmeasured(track.name(), remarks),
             Some(measured) => of_pair(track, measured, remarks),
         }
     }
+    let unplanned = measured.tracks.iter().map(Track::name).filter(|name| planned.track(name).is_none());
+    let unplanned: Vec<&str> = unplanned.collect();
+    remarks.add(
+        Code::UnpairedJoint,
+        unplanned.len() as u64,
+        format!("joints measured but not planned: {}; left out", unplanned.join(", ")),
+    );
+}
+
+pub(super) fn unmeasured(joint: &str, remarks: &mut Remarks) {
+    remarks.add(Code::UnpairedJoint, 1, format!("{joint} is planned but was not measured; left out"));
 }
 
 /// Ratios of measured to planned range that mean degrees in place of radians, or the reverse.

@@ -18,12 +18,18 @@ use crate::remark::Code;
 /// A block and the channels of its file.
 pub(super) type Work<'a> = (Block<'a>, Arc<BTreeMap<u16, Route>>);
 
-/// What one block yields; emptied and reused.
+/// What one block yields; emptied and reused. Only what the block touches costs anything: files
+/// may have many channels and many blocks.
 struct Piece {
-    contents: Vec<Content>,
+    contents: Vec<Option<Content>>,
     topics: Vec<TopicCount>,
+    is_touched: Vec<bool>,
+    touched_contents: Vec<usize>,
+    touched_topics: Vec<usize>,
     unknown: u64,
     loss: Loss,
+    /// Whether bytes follow the last whole record.
+    has_tail: bool,
     messages: u64,
 }
 
@@ -31,23 +37,29 @@ struct Progress<'a> {
     next: usize,
     waiting: BTreeMap<usize, Piece>,
     spare: Vec<Piece>,
+    unknown: u64,
     out: &'a mut Extracted,
 }
 
 /// Decodes blocks on all threads and appends them in the order of the file, so that the result
-/// does not depend on the number of threads.
-pub(super) fn read_blocks(work: &[Work<'_>], specs: &[Spec], joints: &[String], out: &mut Extracted) {
+/// does not depend on the number of threads. Returns how many messages are of no known channel.
+pub(super) fn read_blocks(work: &[Work<'_>], specs: &[Spec], joints: &[String], out: &mut Extracted) -> u64 {
     let topics = out.topics.len();
     let fresh = || Piece {
-        contents: specs.iter().map(|spec| Content::new(spec, joints)).collect(),
+        contents: vec![None; specs.len()],
         topics: vec![TopicCount::default(); topics],
+        is_touched: vec![false; specs.len()],
+        touched_contents: Vec::new(),
+        touched_topics: Vec::new(),
         unknown: 0,
         loss: Loss::Nothing,
+        has_tail: false,
         messages: 0,
     };
     let threads = rayon::current_num_threads();
     let counter = AtomicUsize::new(0);
-    let progress = Mutex::new(Progress { next: 0, waiting: BTreeMap::new(), spare: Vec::new(), out });
+    let progress =
+        Mutex::new(Progress { next: 0, waiting: BTreeMap::new(), spare: Vec::new(), unknown: 0, out });
     let moved = Condvar::new();
     rayon::broadcast(|_| {
         let mut blocks = Blocks::new();
@@ -55,7 +67,8 @@ pub(super) fn read_blocks(work: &[Work<'_>], specs: &[Spec], joints: &[String], 
             let index = counter.fetch_add(1, Ordering::Relaxed);
             let Some((block, routes)) = work.get(index) else { return };
             let mut piece = lock(&progress).spare.pop().unwrap_or_else(fresh);
-            read_block(&mut blocks, *block, routes, &mut piece);
+            let new = |source: usize| Content::new(&specs[source], joints);
+            read_block(&mut blocks, *block, routes, &new, &mut piece);
             let mut state = lock(&progress);
             // A thread may run ahead of the slowest by a few blocks only: memory stays bounded.
             while index > state.next + 4 * threads {
@@ -67,6 +80,7 @@ pub(super) fn read_blocks(work: &[Work<'_>], specs: &[Spec], joints: &[String], 
             moved.notify_all();
         }
     });
+    lock(&progress).unknown
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -77,12 +91,16 @@ impl Progress<'_> {
     fn append_ready(&mut self) {
         while let Some(mut piece) = self.waiting.remove(&self.next) {
             self.next += 1;
-            for (source, content) in self.out.sources.iter_mut().zip(&mut piece.contents) {
-                source.content.append(content);
+            for source in piece.touched_contents.drain(..) {
+                piece.is_touched[source] = false;
+                if let Some(content) = &mut piece.contents[source] {
+                    self.out.sources[source].content.append(content);
+                }
             }
-            for (total, part) in self.out.topics.iter_mut().zip(&mut piece.topics) {
-                total.add(&std::mem::take(part));
+            for topic in piece.touched_topics.drain(..) {
+                self.out.topics[topic].add(&std::mem::take(&mut piece.topics[topic]));
             }
+            self.unknown += piece.unknown;
             let remarks = &mut self.out.remarks;
             remarks.add(
                 Code::UnknownChannel,
@@ -103,6 +121,11 @@ impl Progress<'_> {
                     remarks.add(Code::DamagedChunk, 1, format!("a chunk was dropped: {reason}"));
                 }
             }
+            remarks.add(
+                Code::PartialChunk,
+                u64::from(std::mem::take(&mut piece.has_tail)),
+                "chunks that end in bytes that are no record; the messages before these were kept",
+            );
             piece.messages = 0;
             self.spare.push(piece);
         }
@@ -119,6 +142,7 @@ impl TopicCount {
         self.last_log_ns = self.last_log_ns.max(part.last_log_ns);
         self.messages += part.messages;
         self.undecodable += part.undecodable;
+        self.unread += part.unread;
         if self.first_error.is_none() {
             self.first_error.clone_from(&part.first_error);
         }
@@ -131,7 +155,13 @@ impl TopicCount {
     }
 }
 
-fn read_block(blocks: &mut Blocks, block: Block<'_>, routes: &BTreeMap<u16, Route>, piece: &mut Piece) {
+fn read_block(
+    blocks: &mut Blocks,
+    block: Block<'_>,
+    routes: &BTreeMap<u16, Route>,
+    new: &impl Fn(usize) -> Content,
+    piece: &mut Piece,
+) {
     let (bytes, loss) = blocks.open(block);
     piece.loss = loss;
     let mut end = 0;
@@ -153,15 +183,24 @@ fn read_block(blocks: &mut Blocks, block: Block<'_>, routes: &BTreeMap<u16, Rout
         };
         last = Some((message.channel_id, route));
         let topic = &mut piece.topics[route.topic];
+        if topic.messages == 0 {
+            piece.touched_topics.push(route.topic);
+        }
         topic.count(message.log_time_ns);
-        if let Some((source, decoder)) = &route.read
-            && let Err(error) = piece.contents[*source].read(decoder, &message)
-        {
-            topic.undecodable += 1;
-            topic.first_error.get_or_insert(error);
+        topic.unread += u64::from(route.unreadable);
+        if let Some((source, decoder)) = &route.read {
+            if !piece.is_touched[*source] {
+                piece.is_touched[*source] = true;
+                piece.touched_contents.push(*source);
+            }
+            let content = piece.contents[*source].get_or_insert_with(|| new(*source));
+            if let Err(error) = content.read(decoder, &message) {
+                topic.undecodable += 1;
+                topic.first_error.get_or_insert(error);
+            }
         }
     }
-    if end < bytes.len() && piece.loss == Loss::Nothing {
-        piece.loss = Loss::Dropped(format!("its last {} bytes are no record", bytes.len() - end));
+    if piece.loss == Loss::Nothing {
+        piece.has_tail = end < bytes.len();
     }
 }

@@ -26,7 +26,9 @@ pub(super) struct TopicCount {
     pub(super) first_error: Option<String>,
     pub(super) first_log_ns: u64,
     pub(super) last_log_ns: u64,
+    /// Why messages of it were not read, and how many.
     pub(super) problem: Option<String>,
+    pub(super) unread: u64,
 }
 
 /// What was read of one topic.
@@ -123,6 +125,8 @@ pub struct Attachment {
 pub(super) struct Route {
     pub(super) topic: usize,
     pub(super) read: Option<(usize, Decoder)>,
+    /// Its messages may hold joints but cannot be read.
+    pub(super) unreadable: bool,
 }
 
 /// Maps, scans and reads the files; `selectors` are the fields that the caller named, `joints`
@@ -132,28 +136,59 @@ pub(super) fn extract(
     selectors: &[(Role, Selector)],
     joints: &[String],
 ) -> Result<Extracted, LogError> {
-    let mut out = Extracted::default();
-    let paths = bag::files(paths, &mut out.remarks)?;
+    let mut remarks = Remarks::default();
+    let paths = bag::files(paths, &mut remarks)?;
     let maps = paths
         .iter()
         .map(|path| MappedFile::open(path).map_err(LogError::file("open", path)))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut layouts = Vec::with_capacity(maps.len());
-    for (path, map) in paths.iter().zip(&maps) {
-        let layout = scan(map).ok_or_else(|| not_mcap(path, map))?;
-        describe(path, map, &layout, &mut out);
+    let files: Vec<(&Path, &[u8])> = paths.iter().zip(&maps).map(|(path, map)| (&**path, &**map)).collect();
+    extract_bytes(&files, selectors, joints, remarks)
+}
+
+/// The same for files in memory.
+pub(super) fn extract_bytes(
+    files: &[(&Path, &[u8])],
+    selectors: &[(Role, Selector)],
+    joints: &[String],
+    remarks: Remarks,
+) -> Result<Extracted, LogError> {
+    let mut out = Extracted { remarks, ..Extracted::default() };
+    let mut layouts = Vec::with_capacity(files.len());
+    for (path, bytes) in files {
+        let layout = scan(bytes).ok_or_else(|| not_mcap(path, bytes))?;
+        describe(path, bytes, &layout, &mut out);
         layouts.push(layout);
     }
-    let mut specs: Vec<Spec> = Vec::new();
-    let mut work = Vec::new();
-    for layout in &layouts {
-        let routes = routes(&Definitions::gather(layout).plan(selectors), joints, &mut specs, &mut out);
-        let routes = Arc::new(routes);
-        work.extend(layout.blocks.iter().map(|block| (*block, routes.clone())));
+    let before = out.remarks.clone();
+    let unknown = read_layouts(&layouts, selectors, joints, false, &mut out);
+    if unknown > 0 && layouts.iter().any(|layout| layout.channels_complete) {
+        // A summary that leaves out channels is no summary: look for them in the chunks.
+        out.topics.clear();
+        out.sources.clear();
+        out.remarks = before;
+        read_layouts(&layouts, selectors, joints, true, &mut out);
     }
-    read_blocks(&work, &specs, joints, &mut out);
     finish(&mut out);
     Ok(out)
+}
+
+/// Reads all blocks; returns how many messages are of no known channel.
+fn read_layouts(
+    layouts: &[Layout<'_>],
+    selectors: &[(Role, Selector)],
+    joints: &[String],
+    look_inside: bool,
+    out: &mut Extracted,
+) -> u64 {
+    let mut known = Known::default();
+    let mut work = Vec::new();
+    for layout in layouts {
+        let channels = Definitions::gather(layout, look_inside).plan(selectors);
+        let routes = Arc::new(routes(channels, joints, &mut known, out));
+        work.extend(layout.blocks.iter().map(|block| (*block, routes.clone())));
+    }
+    read_blocks(&work, &known.specs, joints, out)
 }
 
 pub(super) fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
@@ -210,39 +245,61 @@ pub(super) fn describe_damage(name: &str, layout: &Layout<'_>, remarks: &mut Rem
         damage.broken_attachments,
         format!("attachments of {name} with a wrong checksum, dropped"),
     );
+    remarks.add(
+        Code::DamagedBytes,
+        u64::from(damage.broken_summary),
+        format!("summary of {name} with a wrong checksum, not used"),
+    );
+    remarks.add(
+        Code::DamagedBytes,
+        u64::from(damage.broken_data),
+        format!("data of {name} with a wrong checksum and no chunks to tell where; numbers may be wrong"),
+    );
+}
+
+/// Topics by name and type, and the sources of each.
+#[derive(Default)]
+struct Known {
+    topics: BTreeMap<(String, String), usize>,
+    sources: BTreeMap<usize, Vec<usize>>,
+    specs: Vec<Spec>,
 }
 
 /// Joins the channels of a file to the topics and sources of the recording.
 fn routes(
-    channels: &BTreeMap<u16, Channel>,
+    channels: BTreeMap<u16, Channel>,
     joints: &[String],
-    specs: &mut Vec<Spec>,
+    known: &mut Known,
     out: &mut Extracted,
 ) -> BTreeMap<u16, Route> {
     let mut routes = BTreeMap::new();
-    for (&id, channel) in channels {
-        let same = |t: &TopicCount| t.topic == channel.topic && t.type_name == channel.type_name;
-        let topic = out.topics.iter().position(same).unwrap_or_else(|| {
+    for (id, channel) in channels {
+        let name = (channel.topic.clone(), channel.type_name.clone());
+        let topic = *known.topics.entry(name).or_insert_with(|| {
             out.topics.push(TopicCount {
-                topic: channel.topic.clone(),
-                type_name: channel.type_name.clone(),
-                encoding: channel.encoding.clone(),
-                problem: channel.problem.clone(),
+                topic: channel.topic,
+                type_name: channel.type_name,
+                encoding: channel.encoding,
                 ..TopicCount::default()
             });
             out.topics.len() - 1
         });
-        let read = channel.reader.as_ref().map(|(spec, decoder)| {
-            let known =
-                out.sources.iter().zip(specs.iter()).position(|(s, known)| s.topic == topic && known == spec);
-            let source = known.unwrap_or_else(|| {
-                out.sources.push(Source { topic, content: Content::new(spec, joints) });
-                specs.push(spec.clone());
-                specs.len() - 1
+        let unreadable = channel.problem.is_some();
+        if out.topics[topic].problem.is_none() {
+            out.topics[topic].problem = channel.problem;
+        }
+        let read = channel.reader.map(|(spec, decoder)| {
+            let of_topic = known.sources.entry(topic).or_default();
+            let same = of_topic.iter().copied().find(|&source| known.specs[source] == *spec);
+            let source = same.unwrap_or_else(|| {
+                out.sources.push(Source { topic, content: Content::new(&spec, joints) });
+                known.specs.push((*spec).clone());
+                of_topic.push(known.specs.len() - 1);
+                known.specs.len() - 1
             });
-            (source, decoder.clone())
+            (source, decoder)
         });
-        routes.insert(id, Route { topic, read });
+        routes.insert(id, Route { topic, read, unreadable });
     }
     routes
 }
@@ -253,7 +310,7 @@ fn finish(out: &mut Extracted) {
         if let Some(problem) = &topic.problem {
             out.remarks.add(
                 Code::UnreadableSchema,
-                topic.messages.max(1),
+                topic.unread.max(1),
                 format!("messages of {} ({}) skipped: {problem}", topic.topic, topic.type_name),
             );
         }
@@ -271,17 +328,21 @@ fn finish(out: &mut Extracted) {
     let (halves, mut sources): (Vec<_>, Vec<_>) = std::mem::take(&mut out.sources)
         .into_iter()
         .partition(|s| matches!(s.content, Content::Versioned(_)));
-    for values in &halves {
-        let stem = |source: &Source| {
-            out.topics[source.topic].topic.rsplit_once('/').map(|(stem, _)| stem.to_owned())
-        };
-        for names in &halves {
-            if let (Content::Versioned(v), Content::Versioned(n)) = (&values.content, &names.content)
-                && stem(values) == stem(names)
-                && let Some(table) = v.to_table(n)
-            {
-                sources.push(Source { topic: values.topic, content: Content::Table(table) });
-            }
+    let stem =
+        |source: &Source| out.topics[source.topic].topic.rsplit_once('/').map(|(stem, _)| stem.to_owned());
+    let mut by_stem: BTreeMap<_, Vec<&Versioned>> = BTreeMap::new();
+    for half in &halves {
+        if let Content::Versioned(versioned) = &half.content
+            && versioned.has_names()
+        {
+            by_stem.entry(stem(half)).or_default().push(versioned);
+        }
+    }
+    for half in &halves {
+        if let Content::Versioned(values) = &half.content
+            && let Some(table) = by_stem.get(&stem(half)).and_then(|names| values.to_table(names))
+        {
+            sources.push(Source { topic: half.topic, content: Content::Table(table) });
         }
     }
     out.sources = sources;

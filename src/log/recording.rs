@@ -1,6 +1,9 @@
 //! From the files of a run to planned and measured series, and what was chosen on the way.
 
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 use serde::Serialize;
 
@@ -8,7 +11,7 @@ use super::{
     Attachment, FileInfo, LogError, Selector,
     assemble::assemble,
     choose::{Choice, choose},
-    read::{Extracted, extract},
+    read::{Extracted, extract, extract_bytes},
     source,
 };
 use crate::{remark::Remarks, series::Series};
@@ -157,7 +160,21 @@ pub fn read_recording(paths: &[PathBuf], options: &ReadOptions) -> Result<Record
 ///
 /// [`LogError`] if a file cannot be opened or is no log.
 pub fn survey(paths: &[PathBuf], options: &ReadOptions) -> Result<Survey, LogError> {
-    let extracted = extract(paths, &selectors(options), &options.joints)?;
+    Ok(survey_of(extract(paths, &selectors(options), &options.joints)?, options))
+}
+
+/// As [`survey`] of one file in memory, for fuzzing.
+///
+/// # Errors
+///
+/// [`LogError`] if the bytes are no log.
+#[doc(hidden)]
+pub fn survey_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Survey, LogError> {
+    let files = [(Path::new("memory.mcap"), bytes)];
+    Ok(survey_of(extract_bytes(&files, &selectors(options), &options.joints, Remarks::default())?, options))
+}
+
+fn survey_of(extracted: Extracted, options: &ReadOptions) -> Survey {
     let mut topics: Vec<TopicInfo> =
         (0..extracted.topics.len()).map(|index| super::choose::topic_info(&extracted, index)).collect();
     topics.sort_by(|a, b| (&a.topic, &a.type_name).cmp(&(&b.topic, &b.type_name)));
@@ -166,7 +183,7 @@ pub fn survey(paths: &[PathBuf], options: &ReadOptions) -> Result<Survey, LogErr
     let remarks = extracted.remarks.clone();
     let recording = recording(extracted, options);
     let remarks = recording.as_ref().map_or(remarks, |r| r.remarks.clone());
-    Ok(Survey { files, topics, attachments, recording, remarks })
+    Survey { files, topics, attachments, recording, remarks }
 }
 
 fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {

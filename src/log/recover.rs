@@ -77,7 +77,7 @@ fn copy<W: Write + Seek>(
     file: &mut BufWriter<W>,
     saved: &mut Recovered,
 ) -> Result<(), Failure> {
-    let definitions = Definitions::gather(layout);
+    let definitions = Definitions::gather(layout, true);
     let mut writer = mcap::WriteOptions::new()
         .profile(layout.profile.as_str())
         .library(concat!("hydrotrace ", env!("CARGO_PKG_VERSION")))

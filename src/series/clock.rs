@@ -53,14 +53,14 @@ pub fn continuous_clock(stamp_ns: &[i64], log_ns: &[i64]) -> Clock {
             && t_ns < latest_ns
         {
             let ahead = &order[place + 1..order.len().min(place + 1 + LATE_ROWS)];
-            let late = latest_ns - t_ns < LATE_NS
+            let late = latest_ns.saturating_sub(t_ns) < LATE_NS
                 && ahead.iter().any(|&i| stamp_ns[i].saturating_add(offset_ns) > latest_ns);
             if late {
                 clock.reordered += 1;
             } else {
                 let previous = order[place - 1];
                 let passed_ns = log_ns[row].saturating_sub(log_ns[previous]).max(1);
-                clock.longest_jump_ns = clock.longest_jump_ns.max(latest_ns - t_ns);
+                clock.longest_jump_ns = clock.longest_jump_ns.max(latest_ns.saturating_sub(t_ns));
                 close(&mut clock, start);
                 start = clock.rows.len();
                 clock.cuts.push(start);

@@ -80,15 +80,24 @@ pub(in crate::log) struct Program {
     pub(super) steps: Vec<Step>,
     /// Whether bytes may follow the last step.
     pub(super) open_ended: bool,
+    /// What compiling took: steps, and fields looked at.
+    pub(in crate::log) cost: usize,
 }
 
-const MAX_STEPS: usize = 20_000;
+const MAX_COST: usize = 20_000;
 const MAX_DEPTH: usize = 64;
 
 impl Program {
-    /// Compiles; a wanted path that the definition lacks is an error.
-    pub(in crate::log) fn compile(definition: &Definition, wants: &[Want]) -> Result<Self, ProgramError> {
-        let mut compiler = Compiler { definition, wants, found: vec![false; wants.len()], steps: Vec::new() };
+    /// Compiles; a wanted path that the definition lacks is an error, and so is a cost above
+    /// the caller's or the usual limit.
+    pub(in crate::log) fn compile(
+        definition: &Definition,
+        wants: &[Want],
+        most: usize,
+    ) -> Result<Self, ProgramError> {
+        let found = vec![false; wants.len()];
+        let most = most.min(MAX_COST);
+        let mut compiler = Compiler { definition, wants, found, steps: Vec::new(), closed: 0, most, cost: 0 };
         compiler.structure(0, "", 0)?;
         if let Some(missing) = compiler.found.iter().position(|found| !found) {
             let root = &definition.structs[0];
@@ -98,7 +107,7 @@ impl Program {
                 present: root.fields.iter().map(|(name, _)| name.clone()).collect(),
             });
         }
-        Ok(Self { steps: compiler.steps, open_ended: definition.open_ended })
+        Ok(Self { steps: compiler.steps, open_ended: definition.open_ended, cost: compiler.cost })
     }
 }
 
@@ -128,6 +137,10 @@ struct Compiler<'a> {
     wants: &'a [Want],
     found: Vec<bool>,
     steps: Vec<Step>,
+    /// Steps before this one are those of a list's elements, not to be lengthened.
+    closed: usize,
+    most: usize,
+    cost: usize,
 }
 
 impl Compiler<'_> {
@@ -141,7 +154,9 @@ impl Compiler<'_> {
     fn structure(&mut self, index: usize, path: &str, depth: usize) -> Result<u64, ProgramError> {
         let definition = self.definition;
         let one = &definition.structs[index];
-        if depth > MAX_DEPTH || self.steps.len() > MAX_STEPS {
+        // Small texts can describe enormous structs.
+        self.cost = self.cost.saturating_add(1 + one.fields.len());
+        if depth > MAX_DEPTH || self.cost > self.most {
             return Err(ProgramError::TooLarge { name: one.name.clone() });
         }
         self.push(Step::StructStart);
@@ -204,6 +219,7 @@ impl Compiler<'_> {
                 };
                 let steps = u32::try_from(self.steps.len() - at - 1).unwrap_or(u32::MAX);
                 self.steps[at] = Step::Repeat { slot: wanted, count, steps, least: each.max(1) };
+                self.closed = self.steps.len();
                 minimum(each)
             }
         })
@@ -245,6 +261,7 @@ impl Compiler<'_> {
     /// Appends a step, merging neighbouring skips whose padding is known to be none.
     fn push(&mut self, step: Step) {
         if let Step::Skip { align, bytes } = step
+            && self.steps.len() > self.closed
             && let Some(Step::Skip { align: before, bytes: sum }) = self.steps.last_mut()
             && *before >= align
             && sum.is_multiple_of(u32::from(align))

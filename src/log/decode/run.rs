@@ -20,6 +20,9 @@ pub(in crate::log) enum RunError {
     /// Bytes run out.
     #[error("message ends at byte {end} where {needed} more bytes belong at {at}")]
     Short { at: usize, needed: u64, end: usize },
+    /// A list is not as long as it says.
+    #[error("the list that ends at byte {at} should end at {end}")]
+    ListSize { at: usize, end: usize },
     /// Bytes are left over.
     #[error("{left} bytes follow the last field")]
     Long { left: usize },
@@ -52,8 +55,8 @@ impl Program {
             // XCDR2, plain: lists of structs carry their size; some writers leave it out.
             (0, 0x06 | 0x07 | 0x10 | 0x11) => {
                 let little = kind & 1 == 1;
-                walk(little, 4, NO_SIZES)
-                    .or_else(|_| walk(little, 4, Sizes { of_structs: false, of_lists: true }))
+                walk(little, 4, Sizes { of_structs: false, of_lists: true })
+                    .or_else(|_| walk(little, 4, NO_SIZES))
             }
             // XCDR2, delimited: structs carry theirs too.
             (0, 0x08 | 0x09 | 0x14 | 0x15) => {
@@ -80,7 +83,7 @@ impl Program {
         } else {
             reader.steps::<false, S>(&self.steps, sink)?;
         }
-        let left = body.len() - reader.at;
+        let left = body.len().saturating_sub(reader.at);
         if left > MAX_PADDING && !self.open_ended { Err(RunError::Long { left }) } else { Ok(()) }
     }
 }
@@ -189,9 +192,7 @@ impl<'a> Reader<'a> {
         fixed: Option<u32>,
         sink: &mut S,
     ) -> Result<(), RunError> {
-        if self.sizes.of_lists {
-            self.length::<LITTLE>()?;
-        }
+        let end = self.list_end::<LITTLE>()?;
         self.align(4);
         let start = self.at;
         if fixed.is_none()
@@ -200,7 +201,7 @@ impl<'a> Reader<'a> {
         {
             self.at += expected.len();
             sink.same_texts(slot);
-            return Ok(());
+            return self.check_end(end);
         }
         let count = self.count::<LITTLE>(fixed)?;
         for _ in 0..count {
@@ -211,7 +212,7 @@ impl<'a> Reader<'a> {
             let raw = &self.body[start..self.at];
             sink.texts(slot, Texts::Wire { little_endian: LITTLE, count: count as usize, raw });
         }
-        Ok(())
+        self.check_end(end)
     }
 
     fn repeat<const LITTLE: bool, S: Sink>(
@@ -222,9 +223,7 @@ impl<'a> Reader<'a> {
         steps: &[Step],
         sink: &mut S,
     ) -> Result<(), RunError> {
-        if self.sizes.of_lists {
-            self.length::<LITTLE>()?;
-        }
+        let end = self.list_end::<LITTLE>()?;
         let count = self.count::<LITTLE>(fixed)?;
         // Checked before walking: a count cannot ask for more elements than bytes can hold.
         let needed = u64::from(count).saturating_mul(least);
@@ -238,6 +237,22 @@ impl<'a> Reader<'a> {
             }
             self.steps::<LITTLE, S>(steps, sink)?;
         }
-        Ok(())
+        self.check_end(end)
+    }
+
+    /// Where a list ends, if its size precedes it.
+    fn list_end<const LITTLE: bool>(&mut self) -> Result<Option<usize>, RunError> {
+        if !self.sizes.of_lists {
+            return Ok(None);
+        }
+        let size = self.length::<LITTLE>()? as usize;
+        Ok(Some(self.at.saturating_add(size)))
+    }
+
+    fn check_end(&self, end: Option<usize>) -> Result<(), RunError> {
+        match end {
+            Some(end) if end != self.at => Err(RunError::ListSize { at: self.at, end }),
+            _ => Ok(()),
+        }
     }
 }

@@ -41,7 +41,7 @@ impl Tree {
             Some(descriptor) => {
                 let message =
                     DynamicMessage::decode(descriptor.clone(), message).map_err(|error| error.to_string())?;
-                object(&message)
+                self.root.object(&message)
             }
         };
         sink.element(Slot::MAX);
@@ -127,29 +127,34 @@ fn number(value: &Value) -> Option<f64> {
     }
 }
 
-fn object(message: &DynamicMessage) -> Value {
-    let mut fields = Map::new();
-    for field in message.descriptor().fields() {
-        if !field.supports_presence() || message.has_field(&field) {
-            fields.insert(field.name().to_owned(), plain(&message.get_field(&field)));
+impl Node {
+    /// The wanted fields of a message; all of them could be far more than the message has bytes.
+    fn object(&self, message: &DynamicMessage) -> Value {
+        let mut fields = Map::new();
+        for (name, child) in &self.children {
+            if let Some(field) = message.descriptor().get_field_by_name(name)
+                && (!field.supports_presence() || message.has_field(&field))
+            {
+                fields.insert(name.clone(), child.plain(&message.get_field(&field)));
+            }
         }
+        Value::Object(fields)
     }
-    Value::Object(fields)
-}
 
-fn plain(value: &Proto) -> Value {
-    match value {
-        Proto::Bool(v) => Value::Bool(*v),
-        Proto::I32(v) | Proto::EnumNumber(v) => (*v).into(),
-        Proto::I64(v) => (*v).into(),
-        Proto::U32(v) => (*v).into(),
-        Proto::U64(v) => (*v).into(),
-        Proto::F32(v) => float(f64::from(*v)),
-        Proto::F64(v) => float(*v),
-        Proto::String(v) => Value::String(v.clone()),
-        Proto::Message(v) => object(v),
-        Proto::List(v) => v.iter().map(plain).collect(),
-        Proto::Bytes(_) | Proto::Map(_) => Value::Null,
+    fn plain(&self, value: &Proto) -> Value {
+        match value {
+            Proto::Bool(v) => Value::Bool(*v),
+            Proto::I32(v) | Proto::EnumNumber(v) => (*v).into(),
+            Proto::I64(v) => (*v).into(),
+            Proto::U32(v) => (*v).into(),
+            Proto::U64(v) => (*v).into(),
+            Proto::F32(v) => float(f64::from(*v)),
+            Proto::F64(v) => float(*v),
+            Proto::String(v) => Value::String(v.clone()),
+            Proto::Message(v) => self.object(v),
+            Proto::List(v) => v.iter().map(|v| self.plain(v)).collect(),
+            Proto::Bytes(_) | Proto::Map(_) => Value::Null,
+        }
     }
 }
 

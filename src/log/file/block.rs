@@ -41,27 +41,27 @@ impl Blocks {
         let Some(chunk) = ChunkRecord::parse(body) else {
             return (&[], Loss::Dropped("its header is broken".into()));
         };
-        match self.0.run(chunk.compression, chunk.records, chunk.uncompressed_size) {
+        match self.0.run(chunk.compression, chunk.records, chunk.uncompressed_size, cut) {
             Err(reason) => (&[], Loss::Dropped(reason)),
             Ok((bytes, _)) if cut => (bytes, Loss::Cut),
             Ok((_, Yield::Part)) => (&[], Loss::Dropped("its compressed data are broken".into())),
             Ok((bytes, Yield::Whole)) => {
-                let crc = if chunk.crc == 0 { 0 } else { crc32fast::hash(bytes) };
-                if crc == chunk.crc {
+                if chunk.crc == 0 || chunk.crc == crc32fast::hash(bytes) {
                     (bytes, Loss::Nothing)
                 } else {
-                    (&[], Loss::Dropped(format!("its checksum is {crc:08X}, {:08X} expected", chunk.crc)))
+                    (&[], Loss::Dropped("its checksum does not hold".into()))
                 }
             }
         }
     }
 }
 
-/// The records of an opened block, in order; stops where no whole record follows.
+/// The records of an opened block, in order; stops where no whole record follows (none has the
+/// opcode 0, which is what lost pages hold).
 pub(in crate::log) fn records(bytes: &[u8]) -> impl Iterator<Item = Record<'_>> {
     let mut at = 0;
     std::iter::from_fn(move || {
-        let record = Record::at(bytes, at)?;
+        let record = Record::at(bytes, at).filter(|record| record.opcode != 0)?;
         at = record.end;
         Some(record)
     })

@@ -17,8 +17,8 @@ pub(super) enum Yield {
     Part,
 }
 
-/// No compressor in use expands further than this (zstd on constant data), so a chunk that
-/// promises more is not believed: a few bytes cannot ask for gigabytes.
+/// Messages differ at least in their times, which keeps real chunks far below this; one that
+/// promises more is not believed, so that a few bytes cannot ask for gigabytes.
 const MAX_EXPANSION: u64 = 1000;
 const ALWAYS_ALLOWED: u64 = 1 << 20;
 const NEVER_MORE: u64 = 1 << 30;
@@ -29,12 +29,13 @@ impl Decompressor {
     }
 
     /// Decompresses up to the promised size. `Err` names a compression that is not understood
-    /// or a size that is not believed.
+    /// or a size that is not believed; that of a cut chunk is only lowered.
     pub(super) fn run<'a>(
         &'a mut self,
         compression: &[u8],
         compressed: &'a [u8],
         promised: u64,
+        cut: bool,
     ) -> Result<(&'a [u8], Yield), String> {
         if compression.is_empty() {
             let whole = if compressed.len() as u64 >= promised { Yield::Whole } else { Yield::Part };
@@ -42,9 +43,12 @@ impl Decompressor {
             return Ok((&compressed[..end], whole));
         }
         let allowed = (compressed.len() as u64).saturating_mul(MAX_EXPANSION).saturating_add(ALWAYS_ALLOWED);
-        let size = match usize::try_from(promised) {
-            Ok(size) if promised <= allowed.min(NEVER_MORE) => size,
-            _ => return Err(format!("{promised} bytes promised by {} compressed ones", compressed.len())),
+        let allowed = allowed.min(NEVER_MORE);
+        let size = match usize::try_from(if cut { promised.min(allowed) } else { promised }) {
+            Ok(size) if size as u64 <= allowed => size,
+            _ => {
+                return Err(format!("it promises over {MAX_EXPANSION} times its size or {NEVER_MORE} bytes"));
+            }
         };
         self.out.clear();
         match compression {
@@ -64,8 +68,8 @@ impl Decompressor {
         let Some(context) = &mut self.zstd else { return };
         // The one-shot call is faster than streaming; it fails on cut, broken or oversized
         // frames, which are then streamed to keep what is whole.
-        if context.decompress_to_buffer(compressed, &mut self.out).is_ok() && self.out.len() >= size {
-            self.out.truncate(size);
+        // So is a frame of more than was promised: whether it fits depends on earlier chunks.
+        if context.decompress_to_buffer(compressed, &mut self.out).is_ok() && self.out.len() == size {
             return;
         }
         self.out.clear();
@@ -95,11 +99,11 @@ mod tests {
         let packed = zstd::bulk::compress(&plain, 3).unwrap();
         let mut decompressor = Decompressor::new();
         let (out, amount) =
-            decompressor.run(b"zstd", &packed[..packed.len() * 2 / 3], plain.len() as u64).unwrap();
+            decompressor.run(b"zstd", &packed[..packed.len() * 2 / 3], plain.len() as u64, false).unwrap();
         assert_eq!(amount, Yield::Part);
         assert!(out.len() > plain.len() / 3, "only {} bytes", out.len());
         assert_eq!(out, &plain[..out.len()]);
-        let (out, amount) = decompressor.run(b"zstd", &packed, plain.len() as u64).unwrap();
+        let (out, amount) = decompressor.run(b"zstd", &packed, plain.len() as u64, false).unwrap();
         assert_eq!((out.len(), amount), (plain.len(), Yield::Whole));
     }
 
@@ -107,14 +111,14 @@ mod tests {
     fn a_bomb_costs_no_more_than_it_promises_and_promises_are_bounded() {
         let bomb = zstd::bulk::compress(&vec![0; 64 << 20], 19).unwrap();
         let mut decompressor = Decompressor::new();
-        let (out, _) = decompressor.run(b"zstd", &bomb, 1 << 20).unwrap();
+        let (out, _) = decompressor.run(b"zstd", &bomb, 1 << 20, false).unwrap();
         assert_eq!(out.len(), 1 << 20);
         assert!(decompressor.out.capacity() < 4 << 20);
-        assert!(decompressor.run(b"zstd", &bomb, 8 << 30).is_err());
+        assert!(decompressor.run(b"zstd", &bomb, 8 << 30, false).is_err());
     }
 
     #[test]
     fn an_unknown_compression_is_named() {
-        assert_eq!(Decompressor::new().run(b"xz", &[], 0).unwrap_err(), "compression \"xz\"");
+        assert_eq!(Decompressor::new().run(b"xz", &[], 0, false).unwrap_err(), "compression \"xz\"");
     }
 }

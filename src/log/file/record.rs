@@ -221,6 +221,19 @@ pub(super) fn profile(body: &[u8]) -> Option<String> {
     Fields(body).text()
 }
 
+/// Where the summary starts (0: there is none) and its checksum, from a footer.
+pub(super) fn summary_start_and_crc(body: &[u8]) -> Option<(u64, u32)> {
+    let mut f = Fields(body);
+    let start = f.u64()?;
+    f.u64()?; // start of the summary offsets
+    Some((start, f.u32()?))
+}
+
+/// Checksum of everything before a `DataEnd` record; 0: none.
+pub(super) fn data_crc(body: &[u8]) -> Option<u32> {
+    Fields(body).u32()
+}
+
 /// Channel count of a statistics record.
 pub(super) fn channel_count(body: &[u8]) -> Option<u32> {
     let mut f = Fields(body);

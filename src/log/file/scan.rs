@@ -4,7 +4,7 @@ use super::{
     block::Block,
     record::{
         AttachmentRecord, ChannelRecord, ChunkRecord, MetadataRecord, Opcode, Record, SchemaRecord,
-        channel_count, profile,
+        channel_count, data_crc, profile, summary_start_and_crc,
     },
 };
 
@@ -40,6 +40,10 @@ pub(in crate::log) struct Damage {
     pub(in crate::log) skipped_bytes: u64,
     /// Attachments whose checksum does not hold.
     pub(in crate::log) broken_attachments: u64,
+    /// The checksum of the summary does not hold; it is not used.
+    pub(in crate::log) broken_summary: bool,
+    /// The checksum of the data does not hold, and no chunk has one of its own that tells where.
+    pub(in crate::log) broken_data: bool,
 }
 
 /// Walks a file; `None` if nothing in it looks like MCAP.
@@ -50,11 +54,17 @@ pub(in crate::log) fn scan(bytes: &[u8]) -> Option<Layout<'_>> {
     let mut loose: Option<usize> = None;
     let mut channels_promised = None;
     let mut footer = false;
+    let mut before_summary = None;
     layout.damage.not_closed = true;
     while at < bytes.len() {
         if footer && bytes[at..].starts_with(MAGIC) {
             layout.damage.not_closed = false;
             layout.damage.skipped_bytes += (bytes.len() - at - MAGIC.len()) as u64;
+            break;
+        }
+        if let Some(body) = cut_chunk(bytes, at) {
+            close_loose(&mut layout, bytes, &mut loose, at);
+            layout.blocks.push(Block::Chunk { body, cut: true });
             break;
         }
         let found = Record::at(bytes, at).filter(plausible).or_else(|| chunk_by_inner_length(bytes, at));
@@ -89,7 +99,23 @@ pub(in crate::log) fn scan(bytes: &[u8]) -> Option<Layout<'_>> {
             Opcode::CHUNK => layout.blocks.push(Block::Chunk { body: record.body, cut: false }),
             Opcode::METADATA => layout.metadata.extend(MetadataRecord::parse(record.body)),
             Opcode::STATISTICS => channels_promised = channel_count(record.body),
-            Opcode::FOOTER => footer = true,
+            Opcode::DATA_END => {
+                before_summary = Some((layout.schemas.len(), layout.channels.len()));
+                layout.damage.broken_data |= layout.blocks.iter().any(|b| matches!(b, Block::Loose(_)))
+                    && data_crc(record.body)
+                        .is_some_and(|crc| crc != 0 && crc != crc32fast::hash(&bytes[..at]));
+            }
+            Opcode::FOOTER => {
+                footer = true;
+                if let Some((schemas, channels)) =
+                    before_summary.filter(|_| !summary_holds(bytes, at, record.body))
+                {
+                    layout.damage.broken_summary = true;
+                    layout.schemas.truncate(schemas);
+                    layout.channels.truncate(channels);
+                    channels_promised = None;
+                }
+            }
             Opcode::ATTACHMENT => match AttachmentRecord::parse(record.body) {
                 Some(attachment) if attachment.crc_holds => layout.attachments.push(attachment),
                 _ => layout.damage.broken_attachments += 1,
@@ -111,6 +137,24 @@ fn close_loose<'a>(layout: &mut Layout<'a>, bytes: &'a [u8], loose: &mut Option<
     if let Some(start) = loose.take() {
         layout.blocks.push(Block::Loose(&bytes[start..end]));
     }
+}
+
+/// Whether the summary before the footer at `at` is as it was written, or has no checksum.
+fn summary_holds(bytes: &[u8], at: usize, footer: &[u8]) -> bool {
+    // The checksum ends before itself: a record's head and two offsets into the footer.
+    const CHECKED: usize = 9 + 16;
+    let Some((start, crc)) = summary_start_and_crc(footer) else { return false };
+    let summary = usize::try_from(start).ok().and_then(|start| bytes.get(start..at + CHECKED));
+    start == 0 || crc == 0 || summary.is_some_and(|summary| crc == crc32fast::hash(summary))
+}
+
+/// A chunk that goes on beyond the end of the file, as both its lengths say.
+fn cut_chunk(bytes: &[u8], at: usize) -> Option<&[u8]> {
+    let (opcode, body) = Record::cut_at(bytes, at)?;
+    let length = u64::from_le_bytes(*bytes.get(at + 1..)?.first_chunk()?);
+    let chunk = (opcode == Opcode::CHUNK).then(|| ChunkRecord::parse(body)).flatten()?;
+    let inner = chunk.compressed_size.checked_add(40 + chunk.compression.len() as u64)?;
+    (known(chunk.compression) && inner == length).then_some(body)
 }
 
 fn known(compression: &[u8]) -> bool {

@@ -101,6 +101,14 @@ pub enum SchemaError {
         /// The struct that uses it.
         within: String,
     },
+    /// More text than any message type has.
+    #[error("schema {name:?} of {bytes} bytes is longer than {MAX_TEXT} bytes")]
+    TooLong {
+        /// The schema's name.
+        name: String,
+        /// Length of its text.
+        bytes: usize,
+    },
     /// No struct at all.
     #[error("schema {name:?} has no text")]
     Empty {
@@ -109,6 +117,9 @@ pub enum SchemaError {
     },
 }
 
+/// Longest schema text, bytes; the longest of ROS 2 have some ten thousand.
+const MAX_TEXT: usize = 1 << 20;
+
 impl Definition {
     /// Parses the text of a schema record.
     ///
@@ -116,6 +127,9 @@ impl Definition {
     ///
     /// [`SchemaError`] with the line or word that is not understood.
     pub(super) fn parse(name: &str, encoding: &str, text: &[u8]) -> Result<Self, SchemaError> {
+        if text.len() > MAX_TEXT {
+            return Err(SchemaError::TooLong { name: name.to_owned(), bytes: text.len() });
+        }
         let text = String::from_utf8_lossy(text);
         if text.trim().is_empty() {
             return builtin(name).ok_or_else(|| SchemaError::Empty { name: name.to_owned() });

@@ -69,8 +69,9 @@ struct Parser<'a> {
     aliases: BTreeMap<String, Shape<String>>,
 }
 
-/// Deepest nesting of modules and types; ROS 2 generates three.
-const MAX_DEPTH: usize = 32;
+/// Deepest nesting of modules and types; ROS 2 generates three. Low, because a name of three
+/// letters can stand for all of it.
+const MAX_DEPTH: usize = 8;
 
 impl<'a> Parser<'a> {
     fn peek(&self) -> &'a str {
@@ -261,7 +262,7 @@ fn unexpected(found: &str, expected: &'static str) -> SchemaError {
 /// Replaces typedef names by what they stand for.
 fn expand(shape: &mut Shape<String>, aliases: &BTreeMap<String, Shape<String>>, depth: usize) {
     match shape {
-        Shape::Array(_, of) | Shape::Sequence(of) => expand(of, aliases, depth),
+        Shape::Array(_, of) | Shape::Sequence(of) if depth < MAX_DEPTH => expand(of, aliases, depth + 1),
         Shape::Struct(name) if depth < MAX_DEPTH => {
             let last = name.rsplit('/').next().unwrap_or_default();
             if let Some(meaning) = aliases.get(last) {

@@ -17,9 +17,10 @@ pub(super) fn parse(root: &str, text: &str) -> Result<Vec<Struct<String>>, Schem
             if let Some(name) = line.strip_prefix("MSG:") {
                 let name = plain_name(name.trim());
                 // Some writers give the root its own header; it is the same struct then.
-                match structs.iter().position(|one| one.name == name && one.fields.is_empty()) {
-                    Some(0) if structs.len() == 1 => {}
-                    _ => structs.push(Struct { name, fields: Vec::new() }),
+                let root_again =
+                    matches!(&structs[..], [root] if root.name == name && root.fields.is_empty());
+                if !root_again {
+                    structs.push(Struct { name, fields: Vec::new() });
                 }
                 continue;
             }

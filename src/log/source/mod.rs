@@ -7,7 +7,7 @@ mod versioned;
 
 pub(super) use kind::{Field, Form, Role, Spec, spec_for};
 pub(super) use plans::{Plans, RawTrajectory};
-pub(super) use table::{Stamps, Table};
+pub(super) use table::{MAX_JOINTS, Stamps, Table};
 pub(super) use versioned::Versioned;
 
 /// Slots of fields that every form shares.

@@ -52,9 +52,13 @@ impl Versioned {
         self.values.append(&mut other.values);
     }
 
+    pub(in crate::log) fn has_names(&self) -> bool {
+        !self.names.is_empty()
+    }
+
     /// The values as samples of joints: `command_interface.<joint>/position` is the plan,
     /// `state_interface.<joint>/position` the measurement. `None` without such names.
-    pub(in crate::log) fn to_table(&self, names: &Self) -> Option<Table> {
+    pub(in crate::log) fn to_table(&self, halves: &[&Self]) -> Option<Table> {
         let field = |path: &str, role, velocity, is_velocity| Field {
             path: path.into(),
             role,
@@ -68,7 +72,7 @@ impl Versioned {
         ];
         let mut table = Table::new(Form::Versioned, &fields, &[]);
         let mut known: BTreeMap<u64, Vec<(usize, String, usize)>> = BTreeMap::new();
-        for (version, names) in &names.names {
+        for (version, names) in halves.iter().flat_map(|half| &half.names) {
             let places = names.iter().enumerate().filter_map(|(place, name)| {
                 let (kind, rest) = name.split_once(['.', '/'])?;
                 let (joint, quantity) = rest.rsplit_once('/')?;

@@ -1,0 +1,144 @@
+//! Whole plans in one message.
+
+use super::{
+    cdr::KINDS,
+    encode::{Point, display, trajectory},
+    file::Channel,
+    *,
+};
+
+const TOPIC: &str = "/arm/joint_trajectory";
+
+/// A measurement of ten seconds at rest, and a plan as the points say, sent at `at_ns`.
+fn log_of(plans: &[(i64, i64, &[&str], Vec<Point>)], kind: cdr::Kind) -> Log {
+    let mut log = Log::default();
+    let channel = log.channel(Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
+    for k in 0..500 {
+        let data = encode::joint_state(kind, stamp(k), &NAMES, &[1e-6 * k as f64, 1e-4 * k as f64], &[]);
+        log.send(channel, stamp(k), data);
+    }
+    let channel = log.channel(Channel::cdr(TOPIC, "trajectory_msgs/msg/JointTrajectory"));
+    for (at_ns, header_ns, names, points) in plans {
+        log.send(channel, *at_ns, trajectory(kind, *header_ns, names, points));
+    }
+    log
+}
+
+fn points(of: &[(f64, f64, Option<f64>, Option<f64>)]) -> Vec<Point> {
+    of.iter()
+        .map(|&(since_s, q, v, a)| Point {
+            position: vec![q, -q],
+            velocity: v.map(|v| vec![v, -v]).unwrap_or_default(),
+            acceleration: a.map(|a| vec![a, -a]).unwrap_or_default(),
+            since_ns: (since_s * 1e9) as i64,
+        })
+        .collect()
+}
+
+#[track_caller]
+fn assert_plan(recording: &Recording, t_s: f64, position: f64) {
+    let state = recording.planned.track("a").unwrap().at(t_s).unwrap();
+    assert!((state.position - position).abs() < 1e-9, "at {t_s} s {} for {position}", state.position);
+    let mirrored = recording.planned.track("b").unwrap().at(t_s).unwrap();
+    assert!((mirrored.position + position).abs() < 1e-9);
+}
+
+#[test]
+fn lines_cubics_and_quintics_are_sampled_as_the_controller_does() {
+    let end = |v, a| points(&[(0.0, 0.0, v, a), (2.0, 1.0, v, a)]);
+    for kind in KINDS {
+        // Smooth steps of half a second in: s = 0.25.
+        for (given, at_quarter) in [
+            (end(None, None), 0.25),
+            (end(Some(0.0), None), 0.25 * 0.25 * (3.0 - 0.5)),
+            (end(Some(0.0), Some(0.0)), 0.25_f64.powi(3) * (10.0 - 15.0 * 0.25 + 6.0 * 0.0625)),
+        ] {
+            let recording = read(&log_of(&[(stamp(40), stamp(50), &NAMES, given)], kind));
+            assert_plan(&recording, 1.5, at_quarter);
+            assert_plan(&recording, 0.5, 0.0);
+            assert_plan(&recording, 9.0, 1.0);
+            assert_eq!(recording.source.planned_field, "points.positions");
+            assert!(recording.remarks.is_empty(), "{:?}", recording.remarks);
+        }
+    }
+}
+
+#[test]
+fn a_stamp_of_zero_starts_on_receipt_and_is_said() {
+    let given = points(&[(0.0, 0.0, None, None), (2.0, 1.0, None, None)]);
+    let mut log = log_of(&[(stamp(50), 0, &NAMES, given)], cdr::Kind::LittleEndian);
+    // The recorder is late by 30 ms, the trajectory too.
+    for message in &mut log.messages {
+        message.log_ns += 30_000_000;
+    }
+    let recording = read(&log);
+    assert_plan(&recording, 2.0, 0.5);
+    assert_eq!(codes(&recording.remarks), [Code::StartOnReceipt]);
+}
+
+#[test]
+fn a_newer_plan_replaces_and_an_empty_one_cancels() {
+    let long = points(&[(0.0, 0.0, None, None), (4.0, 4.0, None, None)]);
+    let back = points(&[(1.0, 0.0, None, None)]);
+    let replaced = read(&log_of(
+        &[(stamp(0), stamp(50), &NAMES, long.clone()), (stamp(90), stamp(100), &NAMES, back)],
+        cdr::Kind::LittleEndian,
+    ));
+    assert_plan(&replaced, 2.0, 1.0);
+    assert_plan(&replaced, 3.0, 0.0);
+    assert_eq!(count(&replaced.remarks, Code::TrajectoryReplaced), 1);
+    let cancelled = read(&log_of(
+        &[(stamp(0), stamp(50), &NAMES, long), (stamp(100), stamp(100), &[], vec![])],
+        cdr::Kind::LittleEndian,
+    ));
+    assert_plan(&cancelled, 1.5, 0.5);
+    assert_plan(&cancelled, 5.0, 1.0);
+    assert_eq!(count(&cancelled.remarks, Code::TrajectoryReplaced), 1);
+}
+
+#[test]
+fn trajectories_that_do_not_fit_are_skipped_and_counted() {
+    let good = points(&[(0.0, 0.0, None, None), (2.0, 1.0, None, None)]);
+    let backwards = points(&[(2.0, 0.0, None, None), (1.0, 1.0, None, None)]);
+    let not_finite = points(&[(0.0, f64::NAN, None, None)]);
+    let short = vec![Point::at(&[1.0])];
+    let log = log_of(
+        &[
+            (stamp(0), stamp(10), &NAMES, backwards),
+            (stamp(1), stamp(20), &NAMES, short),
+            (stamp(2), stamp(50), &NAMES, good),
+            (stamp(3), stamp(90), &NAMES, not_finite),
+        ],
+        cdr::Kind::LittleEndian,
+    );
+    let recording = read(&log);
+    assert_plan(&recording, 2.0, 0.5);
+    assert_eq!(count(&recording.remarks, Code::LengthMismatch), 3);
+}
+
+#[test]
+fn a_planned_joint_that_no_topic_measures_is_said() {
+    let given = vec![Point::at(&[0.0, 0.0, 0.0])];
+    let recording =
+        read(&log_of(&[(stamp(50), stamp(50), &["a", "boom", "b"], given)], cdr::Kind::LittleEndian));
+    let unpaired: Vec<_> =
+        recording.remarks.as_slice().iter().filter(|r| r.code == Code::UnpairedJoint).collect();
+    assert_eq!(unpaired.len(), 1, "{:?}", recording.remarks);
+    assert!(unpaired[0].message.contains("boom"), "{unpaired:?}");
+}
+
+#[test]
+fn a_displayed_plan_of_several_parts_is_read_in_every_encoding() {
+    for kind in KINDS {
+        let mut log = log_of(&[], kind);
+        log.channels.pop();
+        let channel = log.channel(Channel::cdr("/display_planned_path", "moveit_msgs/msg/DisplayTrajectory"));
+        let there = points(&[(0.0, 0.0, None, None), (2.0, 1.0, None, None)]);
+        let on = points(&[(0.0, 1.0, None, None), (2.0, 2.0, None, None)]);
+        log.send(channel, stamp(50), display(kind, &[(0, &NAMES, there), (0, &NAMES, on)]));
+        let recording = read(&log);
+        assert_plan(&recording, 2.0, 0.5);
+        assert_plan(&recording, 4.0, 1.5);
+        assert_eq!(codes(&recording.remarks), [Code::StartOnReceipt], "{kind:?} {:?}", recording.remarks);
+    }
+}
