@@ -179,7 +179,7 @@ pub struct Transition {
     pub rms_error_rad: f64,
     /// Largest error of the opposite sign after the peak, rad; 0 if there is none.
     pub overshoot_rad: f64,
-    /// Time from the planned onset until the error stays in the settling band, s.
+    /// Time from the planned onset until the error, past its peak, stays in the settling band, s.
     pub settling_time_s: Option<f64>,
     /// The window: from the planned onset to the next one, the segment's end or the longest.
     pub window_s: [f64; 2],

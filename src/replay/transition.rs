@@ -62,17 +62,21 @@ pub(super) fn transition(
         error_area_rad_s: inside.iter().map(|s| s.weight_s * s.error_rad.abs()).sum(),
         rms_error_rad: (square / time_s).sqrt(),
         overshoot_rad: inside[peak..].iter().map(|s| -sign * s.error_rad).fold(0.0, f64::max),
-        settling_time_s: settled_s(inside, band_rad, rules).map(|at_s| at_s - planned_s),
+        settling_time_s: settled_s(inside, peak, band_rad, rules).map(|at_s| at_s - planned_s),
         window_s: [planned_s, end_s],
         samples: inside.len(),
         time_resolution_s: if steps.is_empty() { signals.sample_interval_s } else { median(steps) },
     }
 }
 
-/// When the error enters the band for long enough; `None` if it does not before the window ends.
-fn settled_s(inside: &[Sample], band_rad: f64, rules: &Rules) -> Option<f64> {
+/// When the error enters the band for long enough after its peak, the start if the peak lies in
+/// the band; `None` if it does not before the window ends.
+fn settled_s(inside: &[Sample], peak: usize, band_rad: f64, rules: &Rules) -> Option<f64> {
+    if inside[peak].error_rad.abs() <= band_rad {
+        return Some(inside[0].t_s);
+    }
     let mut since_s = None;
-    for sample in inside {
+    for sample in &inside[peak..] {
         if sample.error_rad.abs() > band_rad {
             since_s = None;
         } else if sample.t_s - *since_s.get_or_insert(sample.t_s) >= rules.settle_hold_s {

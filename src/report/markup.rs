@@ -7,6 +7,8 @@ use comfy_table::{CellAlignment, Table, presets};
 /// A piece of a report.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Part {
+    /// What the whole is about.
+    Title(String),
     /// A heading.
     Heading(String),
     /// A paragraph of one line.
@@ -33,22 +35,20 @@ pub fn text(parts: &[Part]) -> String {
     let mut out = String::new();
     for part in parts {
         match part {
+            Part::Title(title) => {
+                let _ = writeln!(out, "{}", clean(title));
+            }
             Part::Heading(title) => {
-                if !out.is_empty() {
-                    out.push('\n');
-                }
-                out.push_str(&clean(title).to_uppercase());
-                out.push('\n');
+                let gap = if out.is_empty() { "" } else { "\n" };
+                let _ = writeln!(out, "{gap}{}", clean(title).to_uppercase());
             }
             Part::Line(line) => {
-                out.push_str(&clean(line));
-                out.push('\n');
+                let _ = writeln!(out, "{}", clean(line));
             }
             Part::Facts(facts) => {
                 let width = facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
                 for (name, value) in facts {
-                    let _ = write!(out, "{:width$}  {}", clean(name), clean(value));
-                    out.push('\n');
+                    let _ = writeln!(out, "{:width$}  {}", clean(name), clean(value));
                 }
             }
             Part::Sheet(sheet) => {
@@ -67,11 +67,18 @@ pub fn markdown(parts: &[Part]) -> String {
     let mut out = String::new();
     for part in parts {
         match part {
-            Part::Heading(title) => out.push_str(&format!("## {}\n\n", escaped(title))),
-            Part::Line(line) => out.push_str(&format!("{}\n\n", escaped(line))),
+            Part::Title(title) => {
+                let _ = writeln!(out, "# {}\n", escaped(title));
+            }
+            Part::Heading(title) => {
+                let _ = writeln!(out, "## {}\n", escaped(title));
+            }
+            Part::Line(line) => {
+                let _ = writeln!(out, "{}\n", escaped(line));
+            }
             Part::Facts(facts) => {
                 for (name, value) in facts {
-                    let _ = write!(out, "- **{}**: {}\n", escaped(name), escaped(value));
+                    let _ = writeln!(out, "- **{}**: {}", escaped(name), escaped(value));
                 }
                 out.push('\n');
             }
@@ -135,9 +142,16 @@ fn clean(text: &str) -> String {
 
 /// Names come from logs: nothing in them is markup.
 fn escaped(text: &str) -> String {
+    let text = clean(text);
     let mut out = String::with_capacity(text.len());
-    for c in clean(text).chars() {
+    let mut before = ' ';
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
+        // An underscore inside a word emphasises nothing.
+        let inside = before.is_alphanumeric() && rest.peek().is_some_and(|next| next.is_alphanumeric());
+        before = c;
         match c {
+            '_' if inside => out.push(c),
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '&' => out.push_str("&amp;"),

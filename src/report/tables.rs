@@ -9,7 +9,7 @@ use crate::{
 
 /// Everything a person reads of a report; `most` is how many transitions to list.
 pub fn report_parts(name: &str, report: &Report, most: usize) -> Vec<Part> {
-    let mut parts = vec![Part::Heading(name.to_owned()), Part::Facts(source_facts(report))];
+    let mut parts = vec![Part::Title(name.to_owned()), Part::Facts(source_facts(report))];
     parts.push(Part::Heading("In short".into()));
     parts.extend(in_short(report).into_iter().map(Part::Line));
     transition_parts(&report.replay, most, &mut parts);
@@ -25,7 +25,8 @@ fn source_facts(report: &Report) -> Vec<(String, String)> {
     let samples = report.alignment.iter().map(|a| a.matched).max().unwrap_or(0);
     let interval_s = report.replay.joints.iter().map(|j| j.sample_interval_s).fold(0.0, f64::max);
     let rate = if interval_s > 0.0 { format!(" at {:.0} Hz", 1.0 / interval_s) } else { String::new() };
-    let delay = source.recorder_delay_s.map_or(String::new(), |[median_s, most_s]| {
+    let delay = source.recorder_delay_s.filter(|[_, most_s]| *most_s >= 1e-3);
+    let delay = delay.map_or(String::new(), |[median_s, most_s]| {
         format!("; the recorder was {} ms behind it, at most {} ms", ms(median_s), ms(most_s))
     });
     vec![
