@@ -37,6 +37,7 @@ pub struct ReadOptions {
 
 /// Which clock the times of a run come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum TimeBase {
     /// The stamp in the message: when the sample was taken.
@@ -60,6 +61,7 @@ impl TimeBase {
 
 /// Where the series come from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SourceInfo {
     /// Topic and field of the plan; several are joined by a comma.
     pub planned_topic: String,

@@ -4,7 +4,7 @@ use super::{
     block::Block,
     record::{
         AttachmentRecord, ChannelRecord, ChunkRecord, MetadataRecord, Opcode, Record, SchemaRecord,
-        channel_count, data_crc, summary_start_and_crc,
+        channel_count, data_crc, profile, summary_start_and_crc,
     },
 };
 
@@ -27,6 +27,8 @@ pub(in crate::log) struct Layout<'a> {
     pub(in crate::log) attachments: Vec<AttachmentRecord<'a>>,
     pub(in crate::log) metadata: Vec<MetadataRecord>,
     pub(in crate::log) damage: Damage,
+    /// Of the header; empty if it is damaged.
+    pub(in crate::log) profile: String,
 }
 
 /// What is wrong with the outer structure of a file.
@@ -91,6 +93,7 @@ pub(in crate::log) fn scan(bytes: &[u8]) -> Option<Layout<'_>> {
             loose = Some(at);
         }
         match record.opcode {
+            Opcode::HEADER => layout.profile = profile(record.body).unwrap_or_default(),
             Opcode::SCHEMA => layout.schemas.extend(SchemaRecord::parse(record.body)),
             Opcode::CHANNEL => layout.channels.extend(ChannelRecord::parse(record.body)),
             Opcode::CHUNK => layout.blocks.push(Block::Chunk { body: record.body, cut: false }),
