@@ -7,6 +7,7 @@
     clippy::cast_possible_wrap,
     reason = "counts and stamps of tests are small"
 )]
+#![allow(clippy::format_push_string, clippy::needless_for_each, reason = "texts are written as they read")]
 #![allow(clippy::unwrap_used, reason = "what fails here fails the test")]
 #![allow(dead_code, reason = "encoders are shared with tests that use more of them")]
 
@@ -27,7 +28,7 @@ use std::{
 use allocation_counter::measure;
 use cdr::Kind;
 use encode::Point;
-use file::{Channel, Log, MAGIC, chunk, end, record};
+use file::{Channel, Log, MAGIC, chunk, end, message_records, record};
 use hydrotrace::log::{ReadOptions, survey_bytes};
 
 const START_NS: i64 = 1_700_000_000_000_000_000;
@@ -170,7 +171,7 @@ enum Base {
 fn bases() -> Vec<Base> {
     let little = everything(Kind::LittleEndian, false);
     let options = || mcap::WriteOptions::new().chunk_size(Some(4000));
-    let records = |log: &Log| [log.definitions(), log.message_records(&log.messages)].concat();
+    let records = |log: &Log| [log.definitions(), message_records(&log.messages)].concat();
     vec![
         Base::File(little.bytes(options())),
         Base::File(little.by_hand("lz4", 20)),

@@ -166,7 +166,7 @@ fn tracks(
     let all_cuts = cuts(&shared, &clock.cuts);
     let unit = |value: f64| if degrees { radians_from_degrees(value) } else { value };
     let mut tracks = Vec::new();
-    let mut gap = Gaps::default();
+    let mut gap = doubt::Gaps::default();
     for (joint, name) in table.joints.iter().enumerate() {
         let column = table.column(field, joint);
         let at = |row: usize| column.get(row).copied().unwrap_or(f64::NAN);
@@ -208,41 +208,6 @@ fn cuts(t_s: &[f64], jumps: &[usize]) -> Vec<usize> {
     cuts.sort_unstable();
     cuts.dedup();
     cuts
-}
-
-/// Silences of the joint that has most of them.
-#[derive(Default)]
-struct Gaps {
-    count: u64,
-    longest_s: f64,
-    at_s: f64,
-}
-
-impl Gaps {
-    /// `jumps` ascend.
-    fn note(&mut self, t_s: &[f64], cuts: &[usize], jumps: &[usize]) {
-        let mut here = Self::default();
-        for &cut in cuts.iter().filter(|cut| jumps.binary_search(cut).is_err()) {
-            here.count += 1;
-            let length_s = t_s[cut] - t_s[cut - 1];
-            if length_s > here.longest_s {
-                here.longest_s = length_s;
-                here.at_s = t_s[cut - 1];
-            }
-        }
-        if here.count > self.count {
-            *self = here;
-        }
-    }
-
-    fn remark(&self, topic: &str, remarks: &mut Remarks) {
-        let Self { longest_s, at_s, .. } = self;
-        remarks.add(
-            Code::Gap,
-            self.count,
-            format!("gaps in {topic}, the longest {longest_s:.2} s after {at_s:.2} s; nothing is computed across them"),
-        );
-    }
 }
 
 /// Turns a receipt on the recorder's clock into a time on the header's.

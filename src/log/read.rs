@@ -34,7 +34,7 @@ pub(super) struct TopicCount {
 /// What was read of one topic.
 #[derive(Debug, Clone)]
 pub(super) enum Content {
-    Table(Table),
+    Table(Box<Table>),
     Plans(Plans),
     Versioned(Versioned),
 }
@@ -44,7 +44,7 @@ impl Content {
         match spec.form {
             Form::Plans => Self::Plans(Plans::default()),
             Form::Versioned | Form::VersionedNames => Self::Versioned(Versioned::default()),
-            form => Self::Table(Table::new(form, &spec.fields, joints)),
+            form => Self::Table(Box::new(Table::new(form, &spec.fields, joints))),
         }
     }
 
@@ -61,7 +61,10 @@ impl Content {
             }};
         }
         match self {
-            Self::Table(table) => read!(table),
+            Self::Table(table) => {
+                let table = &mut **table;
+                read!(table);
+            }
             Self::Plans(plans) => read!(plans),
             Self::Versioned(versioned) => read!(versioned),
         }
@@ -342,7 +345,7 @@ fn finish(out: &mut Extracted) {
         if let Content::Versioned(values) = &half.content
             && let Some(table) = by_stem.get(&stem(half)).and_then(|names| values.to_table(names))
         {
-            sources.push(Source { topic: half.topic, content: Content::Table(table) });
+            sources.push(Source { topic: half.topic, content: Content::Table(Box::new(table)) });
         }
     }
     out.sources = sources;

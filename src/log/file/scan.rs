@@ -173,7 +173,6 @@ fn known(compression: &[u8]) -> bool {
 fn plausible(record: &Record<'_>) -> bool {
     let length = record.body.len();
     match record.opcode {
-        Opcode::HEADER => length >= 8,
         Opcode::FOOTER => length == 20,
         Opcode::SCHEMA | Opcode::CHANNEL => length >= 12,
         Opcode::MESSAGE => length >= 22,
@@ -182,7 +181,7 @@ fn plausible(record: &Record<'_>) -> bool {
             head as u64 + chunk.compressed_size == length as u64
         }),
         Opcode::DATA_END => length == 4,
-        0x07..=0x0E => length >= 8,
+        Opcode::HEADER | 0x07..=0x0E => length >= 8,
         0x80.. => true,
         _ => false,
     }
