@@ -17,3 +17,10 @@ pub mod series;
 // abilities
 pub mod log;
 pub mod replay;
+
+// workflow
+pub mod workflow;
+
+// edges
+pub mod cli;
+pub mod report;

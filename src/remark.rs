@@ -6,6 +6,7 @@ use serde::Serialize;
 
 /// What kind of doubt a [`Remark`] states. The serialised name is stable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Code {
@@ -70,6 +71,7 @@ impl Code {
 
 /// One doubt, with how often it arose.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Remark {
     /// Kind.
     pub code: Code,

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::{
     LogError, ReadOptions, Selector, TopicInfo,
-    read::{Content, Extracted, TopicCount},
+    read::{Content, Extracted, Source, TopicCount},
     source::{Form, Role},
 };
 
@@ -72,6 +72,9 @@ pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Cho
     Ok(Choice { planned, measured, why })
 }
 
+/// Most topics that one side is put together from.
+const MAX_TOPICS: usize = 64;
+
 /// Takes candidates in order as long as each adds joints that no earlier one had.
 fn cover<'a>(
     candidates: impl Iterator<Item = &'a Candidate>,
@@ -81,6 +84,9 @@ fn cover<'a>(
     let mut covered: BTreeSet<&String> = BTreeSet::new();
     let mut chosen = Vec::new();
     for candidate in first.into_iter().chain(candidates) {
+        if chosen.len() == MAX_TOPICS {
+            break;
+        }
         let adds =
             |joint: &&String| !covered.contains(joint) && wanted.is_none_or(|wanted| wanted.contains(joint));
         let overlaps = candidate.joints.iter().any(|joint| covered.contains(joint));
@@ -151,7 +157,7 @@ fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<V
             topic: name.clone(),
             type_name: type_name.clone(),
             field: selector.field.clone(),
-            present: match topic_info(extracted, topic).joint_fields {
+            present: match topic_info(extracted, topic, of_topic(extracted, topic)).joint_fields {
                 fields if fields.is_empty() => "none".to_owned(),
                 fields => fields.join(", "),
             },
@@ -240,8 +246,26 @@ fn present(extracted: &Extracted) -> String {
     if listed.is_empty() { "no topics at all".to_owned() } else { listed.join(", ") }
 }
 
-/// What `info` says of a topic.
-pub(super) fn topic_info(extracted: &Extracted, index: usize) -> TopicInfo {
+fn of_topic(extracted: &Extracted, topic: usize) -> impl Iterator<Item = &Source> {
+    extracted.sources.iter().filter(move |source| source.topic == topic)
+}
+
+/// What `info` says of each topic, by name.
+pub(super) fn topic_infos(extracted: &Extracted) -> Vec<TopicInfo> {
+    let mut sources: Vec<Vec<&Source>> = vec![Vec::new(); extracted.topics.len()];
+    extracted.sources.iter().for_each(|source| sources[source.topic].push(source));
+    let infos = sources.into_iter().enumerate();
+    let mut infos: Vec<TopicInfo> =
+        infos.map(|(index, sources)| topic_info(extracted, index, sources.into_iter())).collect();
+    infos.sort_by(|a, b| (&a.topic, &a.type_name).cmp(&(&b.topic, &b.type_name)));
+    infos
+}
+
+fn topic_info<'a>(
+    extracted: &Extracted,
+    index: usize,
+    sources: impl Iterator<Item = &'a Source>,
+) -> TopicInfo {
     let count = &extracted.topics[index];
     let mut info = TopicInfo {
         topic: count.topic.clone(),
@@ -256,7 +280,7 @@ pub(super) fn topic_info(extracted: &Extracted, index: usize) -> TopicInfo {
     if count.messages > 1 && spread_s > 0.0 {
         info.rate_hz = (count.messages - 1) as f64 / spread_s;
     }
-    for source in extracted.sources.iter().filter(|s| s.topic == index) {
+    for source in sources {
         match &source.content {
             Content::Table(table) => {
                 info.joints.extend(table.joints.iter().cloned());

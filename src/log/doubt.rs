@@ -78,6 +78,41 @@ pub(super) fn of_table(topic: &str, table: &Table, remarks: &mut Remarks) {
     );
 }
 
+/// Silences of the joint that has most of them.
+#[derive(Default)]
+pub(super) struct Gaps {
+    count: u64,
+    longest_s: f64,
+    at_s: f64,
+}
+
+impl Gaps {
+    /// `jumps` ascend.
+    pub(super) fn note(&mut self, t_s: &[f64], cuts: &[usize], jumps: &[usize]) {
+        let mut here = Self::default();
+        for &cut in cuts.iter().filter(|cut| jumps.binary_search(cut).is_err()) {
+            here.count += 1;
+            let length_s = t_s[cut] - t_s[cut - 1];
+            if length_s > here.longest_s {
+                here.longest_s = length_s;
+                here.at_s = t_s[cut - 1];
+            }
+        }
+        if here.count > self.count {
+            *self = here;
+        }
+    }
+
+    pub(super) fn remark(&self, topic: &str, remarks: &mut Remarks) {
+        let Self { longest_s, at_s, .. } = self;
+        remarks.add(
+            Code::Gap,
+            self.count,
+            format!("gaps in {topic}, the longest {longest_s:.2} s after {at_s:.2} s; nothing is computed across them"),
+        );
+    }
+}
+
 /// Samples paused and slowed; none where the field is never filled.
 fn scaling(factors: &[f64]) -> (u64, u64) {
     if !factors.iter().any(|&f| f > 0.0) {
@@ -97,7 +132,7 @@ pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: 
             continue;
         }
         let name = track.name().to_owned();
-        if continuous.iter().any(|joint| *joint == name) {
+        if continuous.contains(&name) {
             if let Some(unwrapped) = unwrapped(track) {
                 *track = unwrapped;
             }

@@ -15,6 +15,7 @@ mod file;
 mod parallel;
 mod read;
 mod recording;
+mod recover;
 mod schema;
 mod source;
 mod track;
@@ -25,5 +26,6 @@ pub use read::{Attachment, FileInfo};
 pub use recording::{
     ReadOptions, Recording, SourceInfo, Survey, TimeBase, TopicInfo, read_recording, survey, survey_bytes,
 };
+pub use recover::{Recovered, recover};
 pub use source::Selector;
 pub use write::{ControllerState, LogWriter, Options as WriteOptions, Point, Role, Topics, WriteError};

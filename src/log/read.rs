@@ -35,7 +35,7 @@ pub(super) struct TopicCount {
 /// What was read of one topic.
 #[derive(Debug, Clone)]
 pub(super) enum Content {
-    Table(Table),
+    Table(Box<Table>),
     Plans(Plans),
     Versioned(Versioned),
 }
@@ -45,7 +45,7 @@ impl Content {
         match spec.form {
             Form::Plans => Self::Plans(Plans::default()),
             Form::Versioned | Form::VersionedNames => Self::Versioned(Versioned::default()),
-            form => Self::Table(Table::new(form, &spec.fields, joints)),
+            form => Self::Table(Box::new(Table::new(form, &spec.fields, joints))),
         }
     }
 
@@ -67,7 +67,10 @@ impl Content {
             }};
         }
         match self {
-            Self::Table(table) => read!(table),
+            Self::Table(table) => {
+                let table = &mut **table;
+                read!(table);
+            }
             Self::Plans(plans) => read!(plans),
             Self::Versioned(versioned) => read!(versioned),
         }
@@ -104,7 +107,7 @@ pub(super) struct Extracted {
 }
 
 /// A file of the recording.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct FileInfo {
     /// Its name without the path.
     pub name: String,
@@ -197,7 +200,7 @@ fn read_layouts(
     read_blocks(&work, &known.specs, joints, out)
 }
 
-fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
+pub(super) fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
     let start: Vec<String> = bytes.iter().take(8).map(|byte| format!("{byte:02X}")).collect();
     let fix = match bytes {
         [] => "the file is empty",
@@ -214,39 +217,12 @@ fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
 
 fn describe(path: &Path, bytes: &[u8], layout: &Layout<'_>, out: &mut Extracted) {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let damage = layout.damage;
-    if damage.not_closed {
-        out.remarks.add(
-            Code::NotClosed,
-            1,
-            format!("{name} was not closed (power loss or kill while recording); read up to its last whole message"),
-        );
-    }
-    out.remarks.add(
-        Code::DamagedBytes,
-        damage.skipped_bytes,
-        format!("bytes of {name} that are no record, skipped"),
-    );
-    out.remarks.add(
-        Code::DamagedBytes,
-        damage.broken_attachments,
-        format!("attachments of {name} with a wrong checksum"),
-    );
-    out.remarks.add(
-        Code::DamagedBytes,
-        u64::from(damage.broken_summary),
-        format!("summary of {name} with a wrong checksum, not used"),
-    );
-    out.remarks.add(
-        Code::DamagedBytes,
-        u64::from(damage.broken_data),
-        format!("data of {name} with a wrong checksum and no chunks to tell where; numbers may be wrong"),
-    );
+    describe_damage(&name, layout, &mut out.remarks);
     out.files.push(FileInfo {
         name,
         bytes: bytes.len() as u64,
         blocks: layout.blocks.len(),
-        closed: !damage.not_closed,
+        closed: !layout.damage.not_closed,
     });
     out.attachments.extend(layout.attachments.iter().map(|a| Attachment {
         name: a.name.clone(),
@@ -256,6 +232,38 @@ fn describe(path: &Path, bytes: &[u8], layout: &Layout<'_>, out: &mut Extracted)
     for one in &layout.metadata {
         out.metadata.entry(one.name.clone()).or_default().extend(one.entries.clone());
     }
+}
+
+/// Remarks on the outer structure of a file.
+pub(super) fn describe_damage(name: &str, layout: &Layout<'_>, remarks: &mut Remarks) {
+    let damage = layout.damage;
+    remarks.add(
+        Code::NotClosed,
+        u64::from(damage.not_closed),
+        format!(
+            "{name} was not closed (power loss, or a kill while recording); read up to its last whole message"
+        ),
+    );
+    remarks.add(
+        Code::DamagedBytes,
+        damage.skipped_bytes,
+        format!("bytes of {name} that are no record, skipped"),
+    );
+    remarks.add(
+        Code::DamagedBytes,
+        damage.broken_attachments,
+        format!("attachments of {name} with a wrong checksum, dropped"),
+    );
+    remarks.add(
+        Code::DamagedBytes,
+        u64::from(damage.broken_summary),
+        format!("summary of {name} with a wrong checksum, not used"),
+    );
+    remarks.add(
+        Code::DamagedBytes,
+        u64::from(damage.broken_data),
+        format!("data of {name} with a wrong checksum and no chunks to tell where; numbers may be wrong"),
+    );
 }
 
 /// Topics by name and type, and the sources of each.
@@ -343,7 +351,7 @@ fn finish(out: &mut Extracted) {
         if let Content::Versioned(values) = &half.content
             && let Some(table) = by_stem.get(&stem(half)).and_then(|names| values.to_table(names))
         {
-            sources.push(Source { topic: half.topic, content: Content::Table(table) });
+            sources.push(Source { topic: half.topic, content: Content::Table(Box::new(table)) });
         }
     }
     out.sources = sources;

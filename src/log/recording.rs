@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::{
     Attachment, FileInfo, LogError, Selector,
     assemble::assemble,
-    choose::{Choice, choose},
+    choose::{Choice, choose, topic_infos},
     read::{Extracted, extract, extract_bytes},
     source,
 };
@@ -37,6 +37,7 @@ pub struct ReadOptions {
 
 /// Which clock the times of a run come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum TimeBase {
     /// The stamp in the message: when the sample was taken.
@@ -60,6 +61,7 @@ impl TimeBase {
 
 /// Where the series come from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SourceInfo {
     /// Topic and field of the plan; several are joined by a comma.
     pub planned_topic: String,
@@ -173,9 +175,7 @@ pub fn survey_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Survey, LogEr
 }
 
 fn survey_of(extracted: Extracted, options: &ReadOptions) -> Survey {
-    let mut topics: Vec<TopicInfo> =
-        (0..extracted.topics.len()).map(|index| super::choose::topic_info(&extracted, index)).collect();
-    topics.sort_by(|a, b| (&a.topic, &a.type_name).cmp(&(&b.topic, &b.type_name)));
+    let topics = topic_infos(&extracted);
     let files = extracted.files.clone();
     let attachments = extracted.attachments.iter().map(|a| a.name.clone()).collect();
     let remarks = extracted.remarks.clone();

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::source::Table;
+use super::{doubt::Gaps, source::Table};
 use crate::{
-    remark::{Code, Remarks},
+    remark::Remarks,
     series::{Clock, Track, split_at_gaps, velocity_agrees},
     units::{radians_from_degrees, seconds_since},
 };
@@ -100,39 +100,4 @@ fn cuts(t_s: &[f64], jumps: &[usize]) -> Vec<usize> {
     cuts.sort_unstable();
     cuts.dedup();
     cuts
-}
-
-/// Silences of the joint that has most of them.
-#[derive(Default)]
-struct Gaps {
-    count: u64,
-    longest_s: f64,
-    at_s: f64,
-}
-
-impl Gaps {
-    /// `jumps` ascend.
-    fn note(&mut self, t_s: &[f64], cuts: &[usize], jumps: &[usize]) {
-        let mut here = Self::default();
-        for &cut in cuts.iter().filter(|cut| jumps.binary_search(cut).is_err()) {
-            here.count += 1;
-            let length_s = t_s[cut] - t_s[cut - 1];
-            if length_s > here.longest_s {
-                here.longest_s = length_s;
-                here.at_s = t_s[cut - 1];
-            }
-        }
-        if here.count > self.count {
-            *self = here;
-        }
-    }
-
-    fn remark(&self, topic: &str, remarks: &mut Remarks) {
-        let Self { longest_s, at_s, .. } = self;
-        remarks.add(
-            Code::Gap,
-            self.count,
-            format!("gaps in {topic}, the longest {longest_s:.2} s after {at_s:.2} s; nothing is computed across them"),
-        );
-    }
 }

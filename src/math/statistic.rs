@@ -1,7 +1,7 @@
 //! Order statistics.
 
 /// The `p` quantile of ascending values by linear interpolation between order statistics
-/// (Hyndman and Fan's type 7, as NumPy's default); NaN for no values.
+/// (Hyndman and Fan's type 7, as `numpy.quantile`); NaN for no values.
 pub fn quantile_sorted(ascending: &[f64], p: f64) -> f64 {
     let Some((below, part)) = place(ascending.len(), p) else {
         return f64::NAN;
@@ -40,6 +40,7 @@ pub fn mad(values: &[f64]) -> f64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "exact by construction")]
 mod tests {
     use super::*;
 

@@ -1,1 +1,73 @@
-//! stub
+//! What the joints did with the plan: tracking error, and the transitions where it arises.
+//!
+//! A static-to-dynamic transition is the plan leaving rest. [`replay`] finds the transitions
+//! of every joint in plan and measurement, measures the answer to each, and says whether the
+//! error lives there. It knows angles over time and nothing of files, controllers or pressure.
+
+mod concentration;
+mod delay;
+mod joint;
+mod lag;
+mod motion;
+mod onset;
+mod outcome;
+mod path;
+mod rules;
+mod score;
+mod signals;
+mod synthetic;
+mod tracking;
+mod transition;
+
+use rayon::prelude::*;
+
+pub use outcome::{
+    Concentration, ConcentrationTest, JointReplay, Kind, OnsetMethod, PathError, Replay, Stop, Thresholds,
+    TrackingError, Transition, Verdict, WholeRun,
+};
+pub use rules::Rules;
+pub use score::{Score, Spread, conditions, detector_score};
+pub use synthetic::{Sensing, SyntheticRun, TrueMotion, synthetic_run};
+
+use crate::series::Pair;
+use concentration::{JointError, concentration};
+use joint::{Joint, joint};
+
+/// Analyses one run, a pair a joint. O(n log n) in samples.
+///
+/// Nothing is differentiated, matched or detected across the cuts between segments.
+pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
+    let (mut joints, path): (Vec<Joint>, _) = rayon::join(
+        || pairs.par_iter().filter_map(|pair| joint(pair, rules)).collect(),
+        || path::path_error(pairs, rules),
+    );
+    let windows_s: Vec<Vec<[f64; 2]>> =
+        joints.iter().map(|joint| joint.transitions.iter().map(|t| t.window_s).collect()).collect();
+    let errors: Vec<JointError> = joints
+        .iter()
+        .zip(&windows_s)
+        .filter(|(joint, _)| joint.replay.plan_moves)
+        .map(|(joint, windows_s)| JointError { samples: &joint.error, moving: &joint.moving, windows_s })
+        .collect();
+    let concentration = concentration(&errors, rules);
+    let tracking_error = tracking::tracking_error(joints.iter().flat_map(|joint| &joint.error));
+    let norm = path.map(|(of_joints, norm)| {
+        for (joint, path_error) in joints.iter_mut().zip(of_joints) {
+            joint.replay.path_error = Some(path_error);
+        }
+        norm
+    });
+    let mut found = Replay {
+        rules: rules.clone(),
+        joints: Vec::with_capacity(joints.len()),
+        transitions: Vec::new(),
+        stops: Vec::new(),
+        whole_run: WholeRun { tracking_error, path_error: norm, concentration },
+    };
+    for mut joint in joints {
+        found.joints.push(joint.replay);
+        found.transitions.append(&mut joint.transitions);
+        found.stops.append(&mut joint.stops);
+    }
+    found
+}

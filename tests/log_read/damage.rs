@@ -6,7 +6,7 @@ use super::{file::*, *};
 
 /// Chunks of ten messages.
 fn chunks(compression: &str, log: &Log) -> Vec<Vec<u8>> {
-    log.messages.chunks(10).map(|messages| chunk(compression, &log.message_records(messages))).collect()
+    log.messages.chunks(10).map(|messages| chunk(compression, &message_records(messages))).collect()
 }
 
 /// A file of these chunks after all definitions.
@@ -52,7 +52,7 @@ fn one_bad_chunk_in_the_middle_costs_that_chunk_and_no_more() {
         assert_costs_one_chunk(compression, |chunk| chunk.fill(0), Code::DamagedBytes);
         assert_costs_one_chunk(compression, |chunk| chunk[0] = 0x77, Code::DamagedBytes);
     }
-    let inside = plain_log().message_records(&plain_log().messages[40..50]);
+    let inside = message_records(&plain_log().messages[40..50]);
     let packed = compressed("zstd", &inside);
     let size = inside.len() as u64;
     assert_costs_one_chunk("zstd", |chunk| *chunk = chunk_with("xz", size, 0, &packed), Code::DamagedChunk);
@@ -88,7 +88,7 @@ fn a_wrong_length_inside_a_chunk_costs_what_follows_it_there() {
     for length in [1_u64 << 40, u64::MAX, u64::MAX - 8] {
         let log = plain_log();
         let mut chunks = chunks("zstd", &log);
-        let mut inside = log.message_records(&log.messages[40..50]);
+        let mut inside = message_records(&log.messages[40..50]);
         let third = inside.len() / 10 * 3;
         inside[third + 1..third + 9].copy_from_slice(&length.to_le_bytes());
         chunks[4] = chunk_with("zstd", inside.len() as u64, 0, &compressed("zstd", &inside));
@@ -103,19 +103,12 @@ fn a_cut_chunk_yields_the_messages_before_the_cut() {
     for compression in ["", "zstd", "lz4"] {
         let mut log = plain_log();
         // Enough that a compressed block ends before the cut.
-        let message = log.messages[0].clone();
         log.messages = (0..6000)
             .map(|k| {
                 let ns = stamp(k / 2);
                 let values = [(k as f64 * 0.1).sin(), (k as f64 * 0.7).cos()];
                 let data = encode::joint_state(cdr::Kind::LittleEndian, ns, &NAMES, &values, &[]);
-                Message {
-                    channel: k as usize % 2,
-                    log_ns: ns as u64,
-                    publish_ns: ns as u64,
-                    data,
-                    ..message.clone()
-                }
+                Message { channel: k as usize % 2, log_ns: ns as u64, publish_ns: ns as u64, data }
             })
             .collect();
         let bytes = log.by_hand(compression, 6000);

@@ -30,7 +30,7 @@ fn unruly() -> Vec<u8> {
     let mut bytes = [&MAGIC[..], &log.definitions()].concat();
     for (n, messages) in log.messages.chunks(16).enumerate() {
         let compression = ["zstd", "lz4", ""][n % 3];
-        let mut packed = chunk(compression, &log.message_records(messages));
+        let mut packed = chunk(compression, &message_records(messages));
         if n % 17 == 3 {
             let middle = packed.len() / 2;
             packed[middle] ^= 0x40;

@@ -98,7 +98,7 @@ impl Log {
         bytes.extend(record(1, &[text(""), text("")].concat()));
         bytes.extend(self.definitions());
         for messages in self.messages.chunks(per_chunk) {
-            let inside = self.message_records(messages);
+            let inside = message_records(messages);
             match compression {
                 "loose" => bytes.extend(inside),
                 _ => bytes.extend(chunk(compression, &inside)),
@@ -117,13 +117,13 @@ impl Log {
         }
         bytes
     }
+}
 
-    pub(crate) fn message_records(&self, messages: &[Message]) -> Vec<u8> {
-        messages
-            .iter()
-            .flat_map(|m| message_record(m.channel as u16 + 1, m.log_ns, m.publish_ns, &m.data))
-            .collect()
-    }
+pub(crate) fn message_records(messages: &[Message]) -> Vec<u8> {
+    messages
+        .iter()
+        .flat_map(|m| message_record(m.channel as u16 + 1, m.log_ns, m.publish_ns, &m.data))
+        .collect()
 }
 
 pub(crate) const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";

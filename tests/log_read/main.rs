@@ -6,6 +6,12 @@
     reason = "counts and stamps of tests are small"
 )]
 #![allow(
+    clippy::format_push_string,
+    clippy::format_collect,
+    clippy::needless_for_each,
+    reason = "texts are written as they read"
+)]
+#![allow(
     clippy::unwrap_used,
     clippy::float_cmp,
     reason = "what fails here fails the test; values are copied, not computed"

@@ -105,7 +105,7 @@ fn dynamic_joint_states_yield_positions_and_other_interfaces_by_name() {
 fn send_versioned(log: &mut Log, names: usize, values: usize, k: i64) {
     let q: [Vec<f64>; 2] = [plan(k), measurement(k)];
     let version = 1 + (k / 20) as u32;
-    let mut rows = vec![
+    let mut rows = [
         ("command_interface.a/position", q[0][0]),
         ("command_interface.b/position", q[0][1]),
         ("state_interface.a/position", q[1][0]),

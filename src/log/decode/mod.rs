@@ -5,12 +5,13 @@
 //! [`Sink`] by slot number.
 
 mod program;
+mod protobuf;
 mod recall;
 mod run;
 mod sink;
 mod tree;
 
-pub(super) use program::{Program, ProgramError, Want, shape_at};
+pub(super) use program::{Program, Want, shape_at};
 pub(super) use recall::Recall;
 pub(super) use sink::{Numbers, Sink, Slot, Texts};
 pub(super) use tree::Tree;

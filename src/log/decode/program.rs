@@ -58,7 +58,7 @@ pub(super) enum Step {
 /// Why a definition does not compile.
 #[derive(Debug, Clone, Error, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum ProgramError {
+pub(in crate::log) enum ProgramError {
     /// A struct that contains itself, or a tree of structs without end.
     #[error("schema nests too deep or too wide at {name:?}")]
     TooLarge {

@@ -33,7 +33,7 @@ pub(in crate::log) enum Numbers<'a> {
     Parsed(&'a [f64]),
 }
 
-impl<'a> Numbers<'a> {
+impl Numbers<'_> {
     pub(in crate::log) fn len(self) -> usize {
         match self {
             Self::Wire { number, bytes, .. } => bytes.len() / usize::from(number.size()),

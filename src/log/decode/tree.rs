@@ -1,10 +1,10 @@
 //! Wanted fields of messages that come as a parsed value: JSON, and Protobuf by its descriptor.
 
-use prost_reflect::{DescriptorPool, DynamicMessage, MessageDescriptor, ReflectMessage, Value as Proto};
-use serde_json::{Map, Number, Value};
+use serde_json::Value;
 
 use super::{
     program::Want,
+    protobuf::{Descriptors, Planned, object},
     sink::{Numbers, Sink, Slot, Texts},
 };
 
@@ -12,7 +12,7 @@ use super::{
 #[derive(Debug, Clone)]
 pub(in crate::log) struct Tree {
     root: Node,
-    protobuf: Option<MessageDescriptor>,
+    protobuf: Option<Vec<Planned>>,
 }
 
 #[derive(Debug, Clone, Default)]
@@ -29,20 +29,18 @@ impl Tree {
 
     /// For messages in Protobuf, described by a file descriptor set; `Err` says what is wrong.
     pub(in crate::log) fn protobuf(name: &str, descriptors: &[u8], wants: &[Want]) -> Result<Self, String> {
-        let pool = DescriptorPool::decode(descriptors).map_err(|error| error.to_string())?;
-        let message = pool.get_message_by_name(name).ok_or_else(|| format!("no message {name:?} in it"))?;
-        Ok(Self { root: Node::of(wants), protobuf: Some(message) })
+        let root = Node::of(wants);
+        let plan = Descriptors::parse(descriptors)?
+            .plan(name, &root, &|node: &Node| &node.children)
+            .ok_or_else(|| format!("no message {name:?} in its descriptors"))?;
+        Ok(Self { root, protobuf: Some(plan) })
     }
 
     /// Reports the wanted fields that the message has; `Err` says why it is no message.
     pub(in crate::log) fn run(&self, message: &[u8], sink: &mut impl Sink) -> Result<(), String> {
         let value = match &self.protobuf {
             None => serde_json::from_slice(message).map_err(|error| error.to_string())?,
-            Some(descriptor) => {
-                let message =
-                    DynamicMessage::decode(descriptor.clone(), message).map_err(|error| error.to_string())?;
-                self.root.object(&message)
-            }
+            Some(plan) => object(plan, message)?,
         };
         sink.element(Slot::MAX);
         self.root.visit(&value, sink);
@@ -125,39 +123,4 @@ fn number(value: &Value) -> Option<f64> {
         },
         _ => None,
     }
-}
-
-impl Node {
-    /// The wanted fields of a message; all of them could be far more than the message has bytes.
-    fn object(&self, message: &DynamicMessage) -> Value {
-        let mut fields = Map::new();
-        for (name, child) in &self.children {
-            if let Some(field) = message.descriptor().get_field_by_name(name)
-                && (!field.supports_presence() || message.has_field(&field))
-            {
-                fields.insert(name.clone(), child.plain(&message.get_field(&field)));
-            }
-        }
-        Value::Object(fields)
-    }
-
-    fn plain(&self, value: &Proto) -> Value {
-        match value {
-            Proto::Bool(v) => Value::Bool(*v),
-            Proto::I32(v) | Proto::EnumNumber(v) => (*v).into(),
-            Proto::I64(v) => (*v).into(),
-            Proto::U32(v) => (*v).into(),
-            Proto::U64(v) => (*v).into(),
-            Proto::F32(v) => float(f64::from(*v)),
-            Proto::F64(v) => float(*v),
-            Proto::String(v) => Value::String(v.clone()),
-            Proto::Message(v) => self.object(v),
-            Proto::List(v) => v.iter().map(|v| self.plain(v)).collect(),
-            Proto::Bytes(_) | Proto::Map(_) => Value::Null,
-        }
-    }
-}
-
-fn float(value: f64) -> Value {
-    Number::from_f64(value).map_or_else(|| Value::String("NaN".to_owned()), Value::Number)
 }

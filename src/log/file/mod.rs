@@ -10,7 +10,5 @@ mod scan;
 
 pub(super) use block::{Block, Blocks, Loss, records};
 pub(super) use map::MappedFile;
-pub(super) use record::{
-    AttachmentRecord, ChannelRecord, MessageRecord, MetadataRecord, Opcode, SchemaRecord,
-};
+pub(super) use record::{ChannelRecord, MessageRecord, Opcode, SchemaRecord};
 pub(super) use scan::{Layout, scan};

@@ -216,6 +216,11 @@ impl MetadataRecord {
     }
 }
 
+/// Profile of a header record.
+pub(super) fn profile(body: &[u8]) -> Option<String> {
+    Fields(body).text()
+}
+
 /// Where the summary starts (0: there is none) and its checksum, from a footer.
 pub(super) fn summary_start_and_crc(body: &[u8]) -> Option<(u64, u32)> {
     let mut f = Fields(body);

@@ -4,7 +4,7 @@ use super::{
     block::Block,
     record::{
         AttachmentRecord, ChannelRecord, ChunkRecord, MetadataRecord, Opcode, Record, SchemaRecord,
-        channel_count, data_crc, summary_start_and_crc,
+        channel_count, data_crc, profile, summary_start_and_crc,
     },
 };
 
@@ -27,6 +27,8 @@ pub(in crate::log) struct Layout<'a> {
     pub(in crate::log) attachments: Vec<AttachmentRecord<'a>>,
     pub(in crate::log) metadata: Vec<MetadataRecord>,
     pub(in crate::log) damage: Damage,
+    /// Of the header; empty if it is damaged.
+    pub(in crate::log) profile: String,
 }
 
 /// What is wrong with the outer structure of a file.
@@ -91,6 +93,7 @@ pub(in crate::log) fn scan(bytes: &[u8]) -> Option<Layout<'_>> {
             loose = Some(at);
         }
         match record.opcode {
+            Opcode::HEADER => layout.profile = profile(record.body).unwrap_or_default(),
             Opcode::SCHEMA => layout.schemas.extend(SchemaRecord::parse(record.body)),
             Opcode::CHANNEL => layout.channels.extend(ChannelRecord::parse(record.body)),
             Opcode::CHUNK => layout.blocks.push(Block::Chunk { body: record.body, cut: false }),
@@ -98,9 +101,8 @@ pub(in crate::log) fn scan(bytes: &[u8]) -> Option<Layout<'_>> {
             Opcode::STATISTICS => channels_promised = channel_count(record.body),
             Opcode::DATA_END => {
                 before_summary = Some((layout.schemas.len(), layout.channels.len()));
-                layout.damage.broken_data |= layout.blocks.iter().any(|b| matches!(b, Block::Loose(_)))
-                    && data_crc(record.body)
-                        .is_some_and(|crc| crc != 0 && crc != crc32fast::hash(&bytes[..at]));
+                let loose = layout.blocks.iter().any(|block| matches!(block, Block::Loose(_)));
+                layout.damage.broken_data |= loose && !data_holds(&bytes[..at], record.body);
             }
             Opcode::FOOTER => {
                 footer = true;
@@ -136,6 +138,15 @@ fn close_loose<'a>(layout: &mut Layout<'a>, bytes: &'a [u8], loose: &mut Option<
     }
 }
 
+/// Whether the data before a `DataEnd` are as they were written, or have no checksum. Some
+/// writers leave the magic out.
+fn data_holds(data: &[u8], data_end: &[u8]) -> bool {
+    let holds = |crc| {
+        [0, MAGIC.len()].iter().any(|&from| crc == crc32fast::hash(data.get(from..).unwrap_or_default()))
+    };
+    data_crc(data_end).is_none_or(|crc| crc == 0 || holds(crc))
+}
+
 /// Whether the summary before the footer at `at` is as it was written, or has no checksum.
 fn summary_holds(bytes: &[u8], at: usize, footer: &[u8]) -> bool {
     // The checksum ends before itself: a record's head and two offsets into the footer.
@@ -162,7 +173,6 @@ fn known(compression: &[u8]) -> bool {
 fn plausible(record: &Record<'_>) -> bool {
     let length = record.body.len();
     match record.opcode {
-        Opcode::HEADER => length >= 8,
         Opcode::FOOTER => length == 20,
         Opcode::SCHEMA | Opcode::CHANNEL => length >= 12,
         Opcode::MESSAGE => length >= 22,
@@ -171,7 +181,7 @@ fn plausible(record: &Record<'_>) -> bool {
             head as u64 + chunk.compressed_size == length as u64
         }),
         Opcode::DATA_END => length == 4,
-        0x07..=0x0E => length >= 8,
+        Opcode::HEADER | 0x07..=0x0E => length >= 8,
         0x80.. => true,
         _ => false,
     }

@@ -68,7 +68,7 @@ pub(super) struct Definition {
 /// Why a schema text yields no definition.
 #[derive(Debug, Clone, Error, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum SchemaError {
+pub(super) enum SchemaError {
     /// The text is of a kind that is not read.
     #[error("schema encoding {encoding:?} of {name:?} is not one of ros2msg, ros2idl")]
     Encoding {

@@ -69,9 +69,10 @@ pub(in crate::log) fn spec_for(
     let mut builder =
         Builder { definition, spec: Spec { form: Form::Table, fields: Vec::new(), wants: Vec::new() } };
     match plain.as_str() {
-        "control_msgs/JointTrajectoryControllerState" => builder.controller(""),
+        "control_msgs/JointTrajectoryControllerState" | "control_msgs/FollowJointTrajectory_Feedback" => {
+            builder.controller("");
+        }
         "control_msgs/FollowJointTrajectory_FeedbackMessage" => builder.controller("feedback."),
-        "control_msgs/FollowJointTrajectory_Feedback" => builder.controller(""),
         "sensor_msgs/JointState" => builder.position("position", "velocity", Role::Either),
         "std_msgs/Float64MultiArray" => builder.position("data", "", Role::Either),
         "trajectory_msgs/JointTrajectory" => builder.plans("", None),
@@ -156,8 +157,12 @@ impl Builder<'_> {
             self.want(&format!("{prefix}points.{name}"), slot);
         }
         let since = format!("{prefix}points.time_from_start");
-        SECONDS.iter().for_each(|leaf| self.want(&format!("{since}.{leaf}"), slot::POINT_SECOND));
-        NANOSECONDS.iter().for_each(|leaf| self.want(&format!("{since}.{leaf}"), slot::POINT_NANOSECOND));
+        for leaf in SECONDS {
+            self.want(&format!("{since}.{leaf}"), slot::POINT_SECOND);
+        }
+        for leaf in NANOSECONDS {
+            self.want(&format!("{since}.{leaf}"), slot::POINT_NANOSECOND);
+        }
     }
 
     fn interface(&mut self, position: &str, velocity: Option<&str>, role: Role) {

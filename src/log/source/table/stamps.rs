@@ -2,6 +2,7 @@
 
 /// The three clocks of every message of a topic, in the order of the file.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "units are in names")]
 pub(in crate::log) struct Stamps {
     /// From the message itself; 0 where it has none.
     pub(in crate::log) header_ns: Vec<i64>,

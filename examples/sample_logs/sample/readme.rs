@@ -1,0 +1,134 @@
+//! The README of the sample logs, with the truth as tables.
+
+use std::fmt::Write as _;
+
+use hydrotrace::units::degrees_from_radians;
+
+use super::{
+    SampleLog,
+    machine::{INTEGRAL_GAIN_1_S2, JOINTS, JUMP_1_S},
+    plan::DWELL_S,
+    recorder::{COUNT_RAD, JITTER_S, LOSS, NOISE_RAD, START_NS},
+};
+
+const HEAD: &str = "\
+# Sample logs
+
+Small logs of a made-up machine whose truth is known. Written, this file included, by
+
+    cargo run --release --example sample_logs -- sample-logs
+
+The same source gives the same bytes; `tests/sample_logs.rs` compares them. Each log also carries its
+truth as MCAP metadata named `truth`.
+";
+
+const COLUMNS: &str = "
+## Columns
+
+Asked: the plan's speed begins to exceed 0.05 deg/s. Late: from there until the joint leaves standstill. Peak:
+largest plan minus angle, without noise, until the next start and for at most 4 s. Offset: angle minus plan
+before the first start. A start is listed whether or not the log still shows it.
+";
+
+const MACHINE: &str = "
+## The machine
+
+A six-joint arm takes up a curtain-wall panel and installs it: moves of 3 to 4 s from rest to rest
+(minimum-jerk quintics), with reversals. It is **not the hydraulic plant**: no oil, no load, joints do
+not influence each other. What a joint does:
+
+* it leaves standstill no earlier than its dead time after the plan's speed exceeds 0.05 deg/s, and only
+  when its command leaves the dead-band of the valve; then it jumps: it starts at once with the speed let
+  through, plus {JUMP} 1/s times what the plan moved on while it stuck;
+* command = planned speed + gain x error + integral; the integral works only while the plan moves;
+* the speed follows the opening of the valve with a first-order lag;
+* it stops where the command falls into the dead-band and stays there, up to two tenths of a degree off.
+
+";
+
+/// The whole text.
+pub(crate) fn text(logs: &[SampleLog]) -> String {
+    let mut text = HEAD.to_owned();
+    summary(&mut text, logs);
+    text.push_str(&MACHINE.replace("{JUMP}", &JUMP_1_S.to_string()));
+    machine(&mut text);
+    text.push_str(COLUMNS);
+    for log in logs {
+        starts(&mut text, log);
+    }
+    text
+}
+
+fn summary(text: &mut String, logs: &[SampleLog]) {
+    text.push_str("\n| log | bytes | seed | what it holds |\n|---|---|---|---|\n");
+    for log in logs {
+        line(text, &format!("| `{}` | {} | {} | {} |", log.name, log.bytes.len(), log.run.seed, log.story));
+    }
+}
+
+fn machine(text: &mut String) {
+    text.push_str(
+        "| joint | dead time up, s | down, s | lag, s | dead-band, deg/s | gain, 1/s |\n|---|---|---|---|---|---|\n",
+    );
+    for (index, joint) in JOINTS.iter().enumerate() {
+        let [up_s, down_s] = joint.dead_time_s;
+        let dead_band_deg_s = degrees_from_radians(joint.dead_band_rad_s);
+        line(
+            text,
+            &format!(
+                "| joint_{} | {up_s:.2} | {down_s:.2} | {:.3} | {dead_band_deg_s:.2} | {:.1} |",
+                index + 1,
+                joint.lag_s,
+                joint.gain_1_s
+            ),
+        );
+    }
+    let [from_s, to_s] = DWELL_S;
+    line(
+        text,
+        &format!(
+            "
+Integral gain {INTEGRAL_GAIN_1_S2} 1/s². No joint is asked to move from {from_s} to {to_s} s, while the panel is gripped.
+The control loop runs at 100 Hz with {:.1} ms jitter (1 sigma); {:.1} % of the messages of each joint topic are
+lost. Encoders: noise {:.3} deg (1 sigma), then rounded to counts of {:.5} deg (16 bit). Angles and speeds are
+held as `f32`. Times below count from the first stamp, {START_NS} ns.",
+            JITTER_S * 1e3,
+            LOSS * 1e2,
+            degrees_from_radians(NOISE_RAD),
+            degrees_from_radians(COUNT_RAD),
+        ),
+    );
+}
+
+fn starts(text: &mut String, log: &SampleLog) {
+    line(text, &format!("\n## {}\n", log.name));
+    for (key, value) in &log.defects {
+        line(text, &format!("* {}: {value}", key.replace('_', " ")));
+    }
+    if !log.defects.is_empty() {
+        text.push('\n');
+    }
+    text.push_str(
+        "| joint | offset, deg | starts: asked s, late s, peak deg |
+|---|---|---|
+",
+    );
+    for (place, name) in log.run.joint_names().iter().enumerate() {
+        let starts: Vec<String> = log.run.motions[place]
+            .starts
+            .iter()
+            .map(|start| {
+                let late_s = start.leaves_s - start.asked_s;
+                let peak_deg = degrees_from_radians(start.peak_rad);
+                format!("{:.3}, {late_s:.3}, {peak_deg:+.2}", start.asked_s)
+            })
+            .collect();
+        let starts = if starts.is_empty() { "never asked".to_owned() } else { starts.join("; ") };
+        let offset_deg = degrees_from_radians(log.run.offsets_rad[place]);
+        line(text, &format!("| {name} | {offset_deg:+.3} | {starts} |"));
+    }
+}
+
+fn line(text: &mut String, line: &str) {
+    let _ = writeln!(text, "{line}");
+}

@@ -1,0 +1,317 @@
+//! Clap definitions only. Degrees and milliseconds are accepted here and turned into SI here.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+
+use crate::{
+    log::{ReadOptions, Selector, TimeBase},
+    units::radians_from_degrees,
+    workflow::report::Gates,
+};
+
+/// Where a jointed arm leaves its plan: tracking error at every start from rest, from its logs.
+///
+/// Reads ROS 2 bags and other MCAP logs with planned and measured joint angles; finds both by
+/// itself. Times are seconds from the start of the log.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    max_term_width = 100,
+    after_help = "Exit codes: 0 finished, 1 failed, 2 bad usage, 3 finished with remarks on the data, \
+                  4 finished but a limit (--max-...) was not kept."
+)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// One verb for each question.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Tracking error of every joint, and of every start from rest
+    #[command(
+        after_help = "Examples:\n  hydrotrace report run.mcap\n  hydrotrace report run.mcap --json -o report.json\n  \
+                            hydrotrace report run.mcap --max-transition-peak-deg 0.5\n  \
+                            hydrotrace report run.mcap --planned /arm/controller_state:output.positions"
+    )]
+    Report(ReportArgs),
+    /// What is in a log, what a report would use, and whether it is damaged
+    Info(InfoArgs),
+    /// Save everything that is whole in a damaged log
+    Recover(RecoverArgs),
+    /// Measure hydrotrace itself
+    Bench(BenchArgs),
+}
+
+/// What to read, where the log alone does not tell.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Reading")]
+pub struct ReadArgs {
+    /// Topic of the plan, with a field where it has several; repeat for several topics
+    #[arg(long, value_name = "TOPIC[:FIELD]", value_parser = selector)]
+    pub planned: Vec<Selector>,
+
+    /// Topic of the measurement, with a field where it has several; repeat for several topics
+    #[arg(long, value_name = "TOPIC[:FIELD]", value_parser = selector)]
+    pub measured: Vec<Selector>,
+
+    /// Joints to use, in this order; also the names for topics that carry none
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub joints: Vec<String>,
+
+    /// Clock to use; by default the header's stamps where they move
+    #[arg(long, value_enum, value_name = "CLOCK")]
+    pub time: Option<Time>,
+
+    /// The plan is in degrees
+    #[arg(long)]
+    pub planned_degrees: bool,
+
+    /// The measurement is in degrees
+    #[arg(long)]
+    pub measured_degrees: bool,
+
+    /// Joints without end stops, whose angle wraps by full turns
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub continuous: Vec<String>,
+}
+
+/// Clocks of a message.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Time {
+    /// When the sample was taken
+    Header,
+    /// When the message was published
+    Publish,
+    /// When the recorder received it
+    Log,
+}
+
+impl ReadArgs {
+    /// The same for the library.
+    pub fn options(&self) -> ReadOptions {
+        ReadOptions {
+            planned: self.planned.clone(),
+            measured: self.measured.clone(),
+            joints: self.joints.clone(),
+            time_base: self.time.map(|time| match time {
+                Time::Header => TimeBase::Header,
+                Time::Publish => TimeBase::Publish,
+                Time::Log => TimeBase::Log,
+            }),
+            planned_in_degrees: self.planned_degrees,
+            measured_in_degrees: self.measured_degrees,
+            continuous: self.continuous.clone(),
+        }
+    }
+}
+
+/// Arguments of `report`.
+#[derive(Debug, clap::Args)]
+pub struct ReportArgs {
+    /// Logs of one run: MCAP files (parts of a split bag count as one) or ROS 2 bag directories
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+
+    /// Form of the report
+    #[command(flatten)]
+    pub format: ReportFormat,
+
+    /// Write to FILE instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+
+    /// List every transition, not only the worst
+    #[arg(long)]
+    pub all: bool,
+
+    /// What to read.
+    #[command(flatten)]
+    pub read: ReadArgs,
+
+    /// What must hold.
+    #[command(flatten)]
+    pub gates: GateArgs,
+}
+
+/// At most one of these.
+#[derive(Debug, clap::Args)]
+#[group(multiple = false)]
+pub struct ReportFormat {
+    /// One JSON document, as schemas/report.v1.schema.json describes it
+    #[arg(long)]
+    pub json: bool,
+
+    /// The transitions as comma-separated values
+    #[arg(long)]
+    pub csv: bool,
+
+    /// The report as Markdown
+    #[arg(long)]
+    pub markdown: bool,
+}
+
+/// Limits; exit code 4 if one is not kept.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Limits (exit code 4 if not kept)")]
+pub struct GateArgs {
+    /// Peak error in any transition
+    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    pub max_transition_peak_deg: Option<f64>,
+
+    /// Root mean square error of any joint over the run
+    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    pub max_rms_deg: Option<f64>,
+
+    /// Peak error of any joint over the run
+    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    pub max_peak_deg: Option<f64>,
+
+    /// Root mean square error of any joint while its plan rests
+    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    pub max_standstill_rms_deg: Option<f64>,
+
+    /// Delay of any start; a start without an answer breaks it
+    #[arg(long, value_name = "MS", value_parser = milliseconds)]
+    pub max_start_delay_ms: Option<f64>,
+
+    /// Velocity lag of any joint
+    #[arg(long, value_name = "MS", value_parser = milliseconds)]
+    pub max_lag_ms: Option<f64>,
+}
+
+impl GateArgs {
+    /// The same in SI units; the parsers have converted already.
+    pub fn gates(&self) -> Gates {
+        Gates {
+            max_transition_peak_rad: self.max_transition_peak_deg,
+            max_rms_rad: self.max_rms_deg,
+            max_peak_rad: self.max_peak_deg,
+            max_standstill_rms_rad: self.max_standstill_rms_deg,
+            max_onset_delay_s: self.max_start_delay_ms,
+            max_lag_s: self.max_lag_ms,
+        }
+    }
+}
+
+/// Arguments of `info`.
+#[derive(Debug, clap::Args)]
+pub struct InfoArgs {
+    /// Logs of one run: MCAP files or ROS 2 bag directories
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+
+    /// One JSON document
+    #[arg(long)]
+    pub json: bool,
+
+    /// What to read.
+    #[command(flatten)]
+    pub read: ReadArgs,
+}
+
+/// Arguments of `recover`.
+#[derive(Debug, clap::Args)]
+pub struct RecoverArgs {
+    /// The damaged log
+    pub log: PathBuf,
+
+    /// The sound log to write
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+
+    /// Say what was saved as one JSON document
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `bench`.
+#[derive(Debug, clap::Args)]
+pub struct BenchArgs {
+    /// What to measure.
+    #[command(subcommand)]
+    pub what: Bench,
+}
+
+/// What can be measured.
+#[derive(Debug, Subcommand)]
+pub enum Bench {
+    /// Precision and recall of the transition detector on synthetic joints with known motions
+    Detector(DetectorArgs),
+}
+
+/// Arguments of `bench detector`.
+#[derive(Debug, clap::Args)]
+pub struct DetectorArgs {
+    /// Seed of the synthetic joints
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+
+    /// Runs of one minute for each row
+    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    pub runs: u64,
+
+    /// One JSON document
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "the form of a clap parser")]
+fn selector(text: &str) -> Result<Selector, String> {
+    Ok(Selector::parse(text))
+}
+
+fn not_negative(text: &str, what: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err(format!("{text:?} is not a non-negative {what}")),
+    }
+}
+
+/// Degrees, as radians.
+fn degrees(text: &str) -> Result<f64, String> {
+    not_negative(text, "angle in degrees").map(radians_from_degrees)
+}
+
+/// Milliseconds, as seconds.
+fn milliseconds(text: &str) -> Result<f64, String> {
+    not_negative(text, "time in milliseconds").map(|ms| ms / 1e3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn definitions_are_consistent() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn degrees_and_milliseconds_become_si_at_the_edge() {
+        let args = Args::try_parse_from([
+            "hydrotrace",
+            "report",
+            "a.mcap",
+            "--max-rms-deg",
+            "180",
+            "--max-start-delay-ms",
+            "250",
+        ]);
+        let Command::Report(report) = args.unwrap().command else { panic!("not a report") };
+        assert_eq!(report.gates.gates().max_rms_rad, Some(std::f64::consts::PI));
+        assert_eq!(report.gates.gates().max_onset_delay_s, Some(0.25));
+    }
+
+    #[test]
+    fn a_topic_is_split_from_its_field_at_the_colon() {
+        let selector = selector("/arm/state:output.positions").unwrap();
+        assert_eq!(
+            (selector.topic.as_str(), selector.field.as_deref()),
+            ("/arm/state", Some("output.positions"))
+        );
+    }
+}

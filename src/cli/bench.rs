@@ -1,0 +1,31 @@
+//! `bench`: measures, shows progress on a terminal.
+
+use std::io::Write;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{
+    CliError, Outcome,
+    args::{Bench, BenchArgs},
+    output::deliver,
+};
+use crate::{
+    replay::conditions,
+    report::{score_json, score_parts, text},
+    workflow::detector::{Inputs, run as score},
+};
+
+pub(super) fn run(args: &BenchArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
+    let Bench::Detector(args) = &args.what;
+    // Drawn on standard error, and not at all where that is no terminal.
+    let bar = ProgressBar::new(conditions().len() as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} conditions, {eta} left") {
+        bar.set_style(style);
+    }
+    let scores = score(&Inputs { seed: args.seed, runs: args.runs }, || bar.inc(1));
+    bar.finish_and_clear();
+    let rendered =
+        if args.json { score_json(args.seed, &scores) } else { text(&score_parts(args.seed, &scores)) };
+    deliver(&rendered, None, out)?;
+    Ok(Outcome::Clean)
+}

@@ -1,0 +1,24 @@
+//! `info`: looks, renders.
+
+use std::io::Write;
+
+use super::{
+    CliError, Outcome,
+    args::InfoArgs,
+    output::{deliver, say_remarks},
+};
+use crate::{
+    report::{info_json, info_parts, text},
+    workflow::info::{Inputs, run as look},
+};
+
+pub(super) fn run(args: &InfoArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
+    let survey = look(&Inputs { logs: args.logs.clone(), read: args.read.options() })?;
+    if args.json {
+        deliver(&info_json(&survey), None, out)?;
+        say_remarks(&survey.remarks, err);
+    } else {
+        deliver(&text(&info_parts(&survey)), None, out)?;
+    }
+    Ok(if survey.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}

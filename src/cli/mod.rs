@@ -1,0 +1,67 @@
+//! The command line: arguments in, an exit code out. No arithmetic lives here.
+
+pub mod args;
+mod bench;
+mod info;
+mod output;
+mod recover;
+mod report;
+
+use std::io::Write;
+
+use thiserror::Error;
+
+pub use args::{Args, Command};
+
+use crate::{atomic::AtomicError, log::LogError};
+
+/// How a run that did not fail ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    /// Nothing to remark.
+    Clean,
+    /// Finished, but with doubts about the data.
+    Remarks,
+    /// Finished, and a limit that the caller set was not kept.
+    GateFailed,
+}
+
+/// Why a command did not finish.
+#[derive(Debug, Error)]
+enum CliError {
+    #[error(transparent)]
+    Log(#[from] LogError),
+    #[error(transparent)]
+    Atomic(#[from] AtomicError),
+    #[error("cannot write the output")]
+    Output(#[from] std::io::Error),
+}
+
+/// Runs one command: results to `out`, errors and remarks to `err`; returns the exit code.
+///
+/// 0 finished, 1 failed, 3 finished with remarks on the data, 4 finished but a limit was not
+/// kept; 2 is bad usage, which clap reports. A reader of `out` that goes away is success.
+pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
+    let result = match &args.command {
+        Command::Report(report) => report::run(report, out, err),
+        Command::Info(info) => info::run(info, out, err),
+        Command::Recover(recover) => recover::run(recover, out, err),
+        Command::Bench(bench) => bench::run(bench, out),
+    };
+    match result.and_then(|outcome| Ok(out.flush().map(|()| outcome)?)) {
+        Ok(Outcome::Clean) => 0,
+        Ok(Outcome::Remarks) => 3,
+        Ok(Outcome::GateFailed) => 4,
+        Err(CliError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => 0,
+        Err(error) => {
+            // Nothing is left to tell it to if standard error is gone.
+            let _ = writeln!(err, "error: {error}");
+            let mut cause = std::error::Error::source(&error);
+            while let Some(error) = cause {
+                let _ = writeln!(err, "  because: {error}");
+                cause = error.source();
+            }
+            1
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Where results go: standard output, or a file that appears whole or not at all.
+
+use std::{io::Write, path::Path};
+
+use super::CliError;
+use crate::{atomic::write_atomically, remark::Remarks};
+
+/// Writes a result to `file`, or to `out`.
+pub(super) fn deliver(text: &str, file: Option<&Path>, out: &mut impl Write) -> Result<(), CliError> {
+    match file {
+        None => Ok(out.write_all(text.as_bytes())?),
+        Some(path) => write_atomically(path, |file| Ok(file.write_all(text.as_bytes())?)),
+    }
+}
+
+/// Says remarks where a person sees them, whatever the format of the result.
+pub(super) fn say_remarks(remarks: &Remarks, err: &mut impl Write) {
+    for remark in remarks.as_slice() {
+        let text: String =
+            remark.message.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+        // A closed standard error does not make the result wrong.
+        let _ = writeln!(err, "remark: {} x{}: {text}", remark.code.name(), remark.count);
+    }
+}

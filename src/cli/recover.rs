@@ -1,0 +1,29 @@
+//! `recover`: saves, says what was lost.
+
+use std::io::Write;
+
+use super::{
+    CliError, Outcome,
+    args::RecoverArgs,
+    output::{deliver, say_remarks},
+};
+use crate::{
+    report::{recovered_json, recovered_parts, text},
+    workflow::recover::{Inputs, run as recover},
+};
+
+pub(super) fn run(
+    args: &RecoverArgs,
+    out: &mut impl Write,
+    err: &mut impl Write,
+) -> Result<Outcome, CliError> {
+    let recovered = recover(&Inputs { log: args.log.clone(), output: args.output.clone() })?;
+    if args.json {
+        deliver(&recovered_json(&recovered), None, out)?;
+        say_remarks(&recovered.remarks, err);
+    } else {
+        let output = args.output.to_string_lossy();
+        deliver(&text(&recovered_parts(&output, &recovered)), None, out)?;
+    }
+    Ok(if recovered.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}

@@ -1,0 +1,217 @@
+//! Planned and measured onset of one transition: when each speed first passed the same threshold.
+
+use super::{
+    OnsetMethod, Rules,
+    motion::Motion,
+    onset::{Onset, Search, onset},
+    signals::Signals,
+};
+use crate::series::{Pair, local_quadratic};
+
+/// Of the standard normal distribution, 97.5 %.
+const NORMAL_975: f64 = 1.959_963_984_540_054;
+
+/// The two onsets of a transition.
+pub(super) struct Delay {
+    pub(super) method: OnsetMethod,
+    pub(super) planned_s: f64,
+    pub(super) measured_s: Option<f64>,
+    /// 95 % interval of the difference, widened by the time resolution, s.
+    pub(super) interval_s: Option<[f64; 2]>,
+}
+
+/// Start of a measured motion; the crossing of the stop threshold where no better is known.
+pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> Onset {
+    let at_crossing = Onset { at_s: motion.start_s, interval_s: [motion.start_s; 2] };
+    if motion.reversal {
+        return at_crossing;
+    }
+    let search = Search {
+        segment: motion.segment.clone(),
+        direction: motion.direction,
+        crossing_s: motion.start_s,
+        rest_s: motion.rest_before_s,
+        window_s: signals.thresholds.window_s,
+    };
+    onset_of(pair, &search, rules).unwrap_or(at_crossing)
+}
+
+/// When the speed of the plan passes the threshold.
+///
+/// Between a sample at rest and the first one above the threshold the plan is taken to
+/// accelerate evenly, which its travel and its speed then date.
+pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> f64 {
+    if motion.reversal {
+        return motion.start_s;
+    }
+    let (t_s, angle_rad) = (&pair.t_s, &pair.planned_rad);
+    let last = motion.segment.end - 1;
+    // A plan without speeds is not smoothed here: that would blur its start.
+    let speed_rad_s = |i: usize| match &pair.planned_rad_s {
+        Some(given) => along(motion, given[i]),
+        None if i < last => along(motion, angle_rad[i + 1] - angle_rad[i]) / (t_s[i + 1] - t_s[i]),
+        None => along(motion, signals.planned_rad_s[i]),
+    };
+    let faster = |i: usize| speed_rad_s(i) > rules.stop_floor_rad_s;
+    let Some(mut above) = motion.samples.clone().find(|&i| faster(i)) else { return motion.start_s };
+    while above > motion.segment.start && faster(above - 1) {
+        above -= 1;
+    }
+    if above == motion.segment.start {
+        return motion.start_s;
+    }
+    let at_speed_rad_s = speed_rad_s(above);
+    let travel_rad = along(motion, angle_rad[above] - angle_rad[above - 1]).max(0.0);
+    let lasted_s = 2.0 * travel_rad / at_speed_rad_s;
+    let passes_s = lasted_s * rules.stop_floor_rad_s / at_speed_rad_s;
+    (t_s[above] - lasted_s + passes_s).clamp(t_s[above - 1], t_s[above])
+}
+
+fn along(motion: &Motion, value: f64) -> f64 {
+    f64::from(motion.direction) * value
+}
+
+/// Delay of one transition.
+pub(super) fn delay(
+    pair: &Pair,
+    signals: &Signals,
+    (planned, planned_s): (&Motion, f64),
+    measured: Option<(&Motion, Onset)>,
+    rules: &Rules,
+) -> Delay {
+    let Some((motion, onset)) = measured else {
+        return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
+    };
+    let blind_s = blind_s(pair, signals, planned);
+    if motion.reversal {
+        return reversal(pair, signals, (planned, planned_s), motion, blind_s, rules);
+    }
+    let onset = unshaken(pair, signals, motion, onset, planned_s, rules).unwrap_or(onset);
+    Delay {
+        method: OnsetMethod::Fit,
+        planned_s,
+        measured_s: Some(onset.at_s),
+        interval_s: Some([
+            onset.interval_s[0].min(onset.at_s) - planned_s - blind_s,
+            onset.interval_s[1].max(onset.at_s) - planned_s + blind_s,
+        ]),
+    }
+}
+
+/// A joint that is shaken by the others just before it is asked to move seems to answer early; its
+/// onset is then looked for after the plan's. `None` if it was not early, or went a way before.
+fn unshaken(
+    pair: &Pair,
+    signals: &Signals,
+    motion: &Motion,
+    onset: Onset,
+    planned_s: f64,
+    rules: &Rules,
+) -> Option<Onset> {
+    let times = &pair.t_s[motion.segment.clone()];
+    let at = |t_s: f64| motion.segment.start + times.partition_point(|&t| t < t_s);
+    let (from, asked) = (at(onset.at_s), at(planned_s));
+    let early_rad = pair.measured_rad.get(asked)? - pair.measured_rad.get(from)?;
+    if onset.interval_s[1] >= planned_s || early_rad.abs() >= rules.displacement_rad {
+        return None;
+    }
+    let level_rad_s = signals.thresholds.measured_start_rad_s;
+    let crossing =
+        (asked..motion.samples.end).find(|&i| along(motion, signals.measured_rad_s[i]) > level_rad_s)?;
+    let search = Search {
+        segment: motion.segment.clone(),
+        direction: motion.direction,
+        crossing_s: pair.t_s[crossing],
+        rest_s: pair.t_s[crossing] - planned_s + signals.thresholds.window_s,
+        window_s: signals.thresholds.window_s,
+    };
+    onset_of(pair, &search, rules)
+}
+
+/// A joint that turns without resting: the plan is smoothed as the measurement is, and both speeds
+/// cross the measured stop and start thresholds.
+fn reversal(
+    pair: &Pair,
+    signals: &Signals,
+    (planned, asked_s): (&Motion, f64),
+    measured: &Motion,
+    blind_s: f64,
+    rules: &Rules,
+) -> Delay {
+    let (stop, start) = (signals.thresholds.measured_stop_rad_s, signals.thresholds.measured_start_rad_s);
+    let first = measured.segment.start.max(measured.samples.start.saturating_sub(1));
+    let times = &pair.t_s[first..measured.samples.end];
+    let speeds: Vec<f64> =
+        (first..measured.samples.end).map(|i| along(measured, signals.measured_rad_s[i])).collect();
+    let (plan_s, plan) = smoothed_plan(pair, signals, planned, rules);
+    let crossings = || {
+        let planned_s =
+            0.5 * (upward(plan_s, &plan, stop, asked_s)? + upward(plan_s, &plan, start, asked_s)?);
+        let low_s = upward(times, &speeds, stop, measured.start_s)?;
+        Some((planned_s, low_s, upward(times, &speeds, start, measured.start_s)?))
+    };
+    let crossing = OnsetMethod::Crossing;
+    let Some((planned_s, low_s, high_s)) = crossings() else {
+        return Delay {
+            method: crossing,
+            planned_s: asked_s,
+            measured_s: Some(measured.start_s),
+            interval_s: None,
+        };
+    };
+    let measured_s = 0.5 * (low_s + high_s);
+    // Noise of the speed over its slope between the two thresholds is noise of the instant.
+    let climb_s = (high_s - low_s).max(0.0);
+    let deviation_rad_s = signals.deviation_rad_s[measured.samples.start];
+    let deviation_s = deviation_rad_s * climb_s / (start - stop).max(f64::MIN_POSITIVE);
+    let delay_s = measured_s - planned_s;
+    let half_s = NORMAL_975 * deviation_s + blind_s;
+    let interval_s = Some([delay_s - half_s, delay_s + half_s]);
+    Delay { method: crossing, planned_s, measured_s: Some(measured_s), interval_s }
+}
+
+/// Times and speeds along the motion, rad/s, of the plan around the start of a motion, smoothed
+/// as the measurement is.
+fn smoothed_plan<'a>(
+    pair: &'a Pair,
+    signals: &Signals,
+    motion: &Motion,
+    rules: &Rules,
+) -> (&'a [f64], Vec<f64>) {
+    let window_s = signals.thresholds.window_s;
+    let reach_s = 3.0 * window_s + rules.min_rest_s;
+    let times = &pair.t_s[motion.segment.clone()];
+    let first = motion.segment.start + times.partition_point(|&t| t < motion.start_s - reach_s);
+    let until_s = motion.end_s.min(motion.start_s + 2.0) + 2.0 * window_s;
+    let end = motion.segment.start + times.partition_point(|&t| t <= until_s);
+    let t_s = &pair.t_s[first..end];
+    let whole = 0..t_s.len();
+    let angle_rad = &pair.planned_rad[first..end];
+    let fits = local_quadratic(t_s, angle_rad, std::slice::from_ref(&whole), window_s, rules.window_points);
+    (t_s, fits.iter().map(|fit| along(motion, fit.velocity_rad_s)).collect())
+}
+
+/// How long a motion cannot be seen for want of samples and encoder steps, s: a sample interval
+/// and the time in which the plan travels half a step.
+fn blind_s(pair: &Pair, signals: &Signals, planned: &Motion) -> f64 {
+    let step_rad = 0.5 * signals.noise.lsb_rad.unwrap_or(0.0);
+    let first = planned.samples.start;
+    let travelled = |i: &usize| (pair.planned_rad[*i] - pair.planned_rad[first]).abs() >= step_rad;
+    let seen = planned.samples.clone().find(travelled).unwrap_or(first);
+    signals.sample_interval_s + pair.t_s[seen] - pair.t_s[first]
+}
+
+/// The upward crossing of a level nearest to a time, s.
+fn upward(t_s: &[f64], speed_rad_s: &[f64], level_rad_s: f64, near_s: f64) -> Option<f64> {
+    (1..speed_rad_s.len())
+        .filter(|&i| speed_rad_s[i - 1] <= level_rad_s && speed_rad_s[i] > level_rad_s)
+        .map(|i| {
+            let share = (level_rad_s - speed_rad_s[i - 1]) / (speed_rad_s[i] - speed_rad_s[i - 1]);
+            t_s[i - 1] + share * (t_s[i] - t_s[i - 1])
+        })
+        .min_by(|a, b| (a - near_s).abs().total_cmp(&(b - near_s).abs()))
+}
+
+fn onset_of(pair: &Pair, search: &Search, rules: &Rules) -> Option<Onset> {
+    onset(&pair.t_s, &pair.measured_rad, search, rules)
+}

@@ -1,0 +1,159 @@
+//! One joint: signals, motions, matching of planned with measured starts, and figures.
+
+use super::{
+    JointReplay, Rules, Stop, Transition,
+    delay::{measured_onset, planned_onset_s},
+    lag::{Speeds, lag},
+    motion::Motion,
+    onset::Onset,
+    signals::Signals,
+    tracking::{Sample, at_standstill, samples, tracking_error},
+    transition::transition,
+};
+use crate::series::Pair;
+
+/// What is found in one pair, before joints are compared.
+pub(super) struct Joint {
+    pub(super) replay: JointReplay,
+    pub(super) transitions: Vec<Transition>,
+    pub(super) stops: Vec<Stop>,
+    pub(super) error: Vec<Sample>,
+    /// For each sample, whether the plan moves.
+    pub(super) moving: Vec<bool>,
+}
+
+/// Analyses one joint; `None` for a pair without samples, which no constructor makes.
+pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
+    let error = samples(pair);
+    let tracking = tracking_error(error.iter())?;
+    let signals = Signals::new(pair, rules);
+    let rest = at_standstill(&pair.t_s, &pair.segments, &signals.planned, rules);
+    let standing = error.iter().zip(&rest).filter(|(_, rest)| **rest).map(|(sample, _)| sample);
+    let mut moving = vec![false; error.len()];
+    signals.planned.iter().for_each(|motion| moving[motion.samples.clone()].fill(true));
+    let speeds = Speeds {
+        t_s: &pair.t_s,
+        planned_rad_s: &signals.planned_rad_s,
+        measured_rad_s: &signals.measured_rad_s,
+    };
+    let lag = lag(&speeds, &signals.planned, signals.sample_interval_s, rules);
+
+    let planned: Vec<&Motion> = signals.planned.iter().filter(|m| m.starts()).collect();
+    let starts_s: Vec<f64> = planned.iter().map(|m| planned_onset_s(pair, &signals, m, rules)).collect();
+    let closes_s = |k: usize| pair.t_s[planned[k].segment.end - 1];
+    let until_s = |k: usize| starts_s.get(k + 1).map_or(closes_s(k), |next_s| closes_s(k).min(*next_s));
+    let untils_s: Vec<f64> = (0..planned.len()).map(until_s).collect();
+    let measured: Vec<(&Motion, Onset)> = signals
+        .measured
+        .iter()
+        .filter(|m| m.starts())
+        .map(|m| (m, measured_onset(pair, &signals, m, rules)))
+        .collect();
+    let answers = answers(pair, &planned, &untils_s, &measured, rules);
+    let transitions: Vec<Transition> = (0..planned.len())
+        .map(|k| {
+            let answer = answers[k].and_then(|answer: usize| measured.get(answer).copied());
+            transition(pair, &signals, &error, (planned[k], starts_s[k], untils_s[k]), answer, rules)
+        })
+        .collect();
+    let stops = stops(pair, &signals, &error, rules);
+    let matched = answers.iter().flatten().count();
+    let replay = JointReplay {
+        name: pair.name.clone(),
+        moves: matched > 0
+            || signals.measured.iter().any(|m| travel_rad(&pair.measured_rad, m) >= rules.moves_travel_rad),
+        plan_moves: !signals.planned.is_empty(),
+        tracking_error: tracking,
+        standstill_error: tracking_error(standing),
+        path_error: None,
+        lag_s: lag.shift_s,
+        lag_correlation: lag.correlation,
+        lag_interval_s: lag.interval_s,
+        lag_motions: lag.motions,
+        noise: signals.noise,
+        sample_interval_s: signals.sample_interval_s,
+        thresholds: signals.thresholds,
+        starts: planned.len(),
+        reversals: planned.iter().filter(|m| m.reversal).count(),
+        stops: stops.iter().filter(|s| s.planned_s.is_some()).count(),
+        unmatched_starts: planned.len() - matched,
+        unplanned_starts: measured.len() - matched,
+    };
+    Some(Joint { replay, transitions, stops, error, moving })
+}
+
+/// Travel of a motion, rad.
+fn travel_rad(angle_rad: &[f64], motion: &Motion) -> f64 {
+    (angle_rad[motion.samples.end - 1] - angle_rad[motion.samples.start]).abs()
+}
+
+/// For each planned start the measured one that answers it.
+///
+/// A measured start answers the latest planned start of its direction that could have caused
+/// it; of several, the first answers. A joint that moves before it is asked to is shaken by the
+/// others, unless it goes on to cover a good part of the planned travel.
+fn answers(
+    pair: &Pair,
+    planned: &[&Motion],
+    untils_s: &[f64],
+    measured: &[(&Motion, Onset)],
+    rules: &Rules,
+) -> Vec<Option<usize>> {
+    let mut answers = vec![None; planned.len()];
+    for (k, (motion, onset)) in measured.iter().enumerate() {
+        let begun = planned.partition_point(|p| p.start_s - rules.match_before_s <= onset.at_s);
+        let cause = (0..begun).rev().take(4).find(|&p| {
+            let window_end_s = untils_s[p].min(planned[p].start_s + rules.transition_window_s);
+            planned[p].direction == motion.direction
+                && planned[p].segment == motion.segment
+                && onset.at_s <= window_end_s + rules.match_after_s
+                && answers[p].is_none()
+                && (onset.interval_s[1] >= planned[p].start_s
+                    || travel_rad(&pair.measured_rad, motion)
+                        >= rules.early_travel_share * travel_rad(&pair.planned_rad, planned[p]))
+        });
+        if let Some(cause) = cause {
+            answers[cause] = Some(k);
+        }
+    }
+    answers
+}
+
+/// Dynamic-to-static events; a measured stop belongs to the latest planned one that it could
+/// follow, whatever its direction: a joint that overshoots comes to rest on its way back.
+fn stops(pair: &Pair, signals: &Signals, error: &[Sample], rules: &Rules) -> Vec<Stop> {
+    let planned: Vec<&Motion> = signals.planned.iter().filter(|m| m.stops()).collect();
+    let mut stops: Vec<Stop> = planned
+        .iter()
+        .map(|motion| Stop {
+            joint: pair.name.clone(),
+            direction: motion.direction,
+            planned_s: Some(motion.end_s),
+            measured_s: None,
+            error_rad: error.get(motion.samples.end - 1).map(|s| s.error_rad),
+        })
+        .collect();
+    let mut unplanned = Vec::new();
+    for motion in signals.measured.iter().filter(|m| m.stops()) {
+        let ended = planned.partition_point(|p| p.end_s - rules.match_before_s <= motion.end_s);
+        let cause = (0..ended).rev().take(2).find(|&p| {
+            planned[p].segment == motion.segment
+                && motion.end_s <= planned[p].end_s + rules.transition_window_s
+                && stops[p].measured_s.is_none()
+        });
+        match cause {
+            Some(cause) => stops[cause].measured_s = Some(motion.end_s),
+            None => unplanned.push(Stop {
+                joint: pair.name.clone(),
+                direction: motion.direction,
+                planned_s: None,
+                measured_s: Some(motion.end_s),
+                error_rad: None,
+            }),
+        }
+    }
+    stops.append(&mut unplanned);
+    let time_s = |stop: &Stop| stop.planned_s.or(stop.measured_s).unwrap_or(0.0);
+    stops.sort_by(|a, b| time_s(a).total_cmp(&time_s(b)));
+    stops
+}

@@ -1,0 +1,194 @@
+//! Velocity lag: the time shift at which planned and measured speed agree best.
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::{Rules, motion::Motion};
+
+/// The lag of one joint.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Lag {
+    pub(super) shift_s: Option<f64>,
+    pub(super) correlation: Option<f64>,
+    pub(super) interval_s: Option<[f64; 2]>,
+    pub(super) motions: usize,
+}
+
+/// Speeds of one joint, `[n]`.
+#[expect(clippy::struct_field_names, reason = "the postfix is the unit")]
+pub(super) struct Speeds<'a> {
+    pub(super) t_s: &'a [f64],
+    pub(super) planned_rad_s: &'a [f64],
+    pub(super) measured_rad_s: &'a [f64],
+}
+
+/// Sums for every shift from -shifts to +shifts.
+struct Correlation {
+    product: Vec<f64>,
+    planned_energy: Vec<f64>,
+    measured_energy: Vec<f64>,
+}
+
+/// Correlates the speeds around every planned motion, on a common grid; no motion, no lag.
+pub(super) fn lag(speeds: &Speeds, planned: &[Motion], sample_interval_s: f64, rules: &Rules) -> Lag {
+    let step_s = (1.0 / rules.lag_rate_hz).max(sample_interval_s);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+    let shifts = (rules.lag_max_s / step_s).clamp(0.0, 1e4) as usize;
+    let mut total = Correlation::zero(shifts);
+    let mut single_s = Vec::new();
+    for motion in planned {
+        let one = Correlation::around(speeds, motion, step_s, shifts);
+        single_s.extend(one.best().and_then(|best| best.0).map(|shift| shift * step_s));
+        total.add(&one);
+    }
+    let Some((shift, correlation)) = total.best() else {
+        return Lag::default();
+    };
+    let lag_s = shift.map(|shift| shift * step_s);
+    let interval_s = lag_s.and_then(|lag_s| {
+        let half_s = standard_error(&single_s)?;
+        Some([lag_s - half_s, lag_s + half_s])
+    });
+    Lag { shift_s: lag_s, correlation: Some(correlation), interval_s, motions: single_s.len() }
+}
+
+impl Correlation {
+    fn zero(shifts: usize) -> Self {
+        let zeros = || vec![0.0; 2 * shifts + 1];
+        Self { product: zeros(), planned_energy: zeros(), measured_energy: zeros() }
+    }
+
+    fn around(speeds: &Speeds, motion: &Motion, step_s: f64, shifts: usize) -> Self {
+        let mut sums = Self::zero(shifts);
+        let t = &speeds.t_s[motion.segment.clone()];
+        let (Some(&opens_s), Some(&closes_s)) = (t.first(), t.last()) else {
+            return sums;
+        };
+        // The plan is taken a lag around the motion, the measurement two.
+        let reach_s = shifts as f64 * step_s;
+        let start_s = opens_s.max(motion.start_s - 2.0 * reach_s);
+        let end_s = closes_s.min(motion.end_s + 2.0 * reach_s);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the segment")]
+        let place = |at_s: f64| ((at_s - start_s) / step_s).max(0.0) as usize;
+        let n = place(end_s) + 1;
+        let grid = |values: &[f64]| resample(t, &values[motion.segment.clone()], start_s, step_s, n);
+        let (p, m) = (grid(speeds.planned_rad_s), grid(speeds.measured_rad_s));
+        let plan = place(motion.start_s - reach_s)..(place(motion.end_s + reach_s) + 1).min(n);
+        for (k, shift) in (0..=2 * shifts).enumerate() {
+            // The measured sample `shift - shifts` after the planned one.
+            let first = plan.start.max(shifts.saturating_sub(shift));
+            let end = plan.end.min((n + shifts).saturating_sub(shift));
+            for i in first..end {
+                let (p, m) = (p[i], m[i + shift - shifts]);
+                sums.product[k] += p * m;
+                sums.planned_energy[k] += p * p;
+                sums.measured_energy[k] += m * m;
+            }
+        }
+        sums
+    }
+
+    fn add(&mut self, other: &Self) {
+        for (to, from) in [
+            (&mut self.product, &other.product),
+            (&mut self.planned_energy, &other.planned_energy),
+            (&mut self.measured_energy, &other.measured_energy),
+        ] {
+            to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+        }
+    }
+
+    /// The best shift in steps, refined by a parabola, and its correlation. No shift where the
+    /// best is at the end of the range; nothing where no shift correlates.
+    fn best(&self) -> Option<(Option<f64>, f64)> {
+        let correlation = |k: usize| {
+            let energy = (self.planned_energy[k] * self.measured_energy[k]).sqrt();
+            if energy > 0.0 { self.product[k] / energy } else { 0.0 }
+        };
+        let all: Vec<f64> = (0..self.product.len()).map(correlation).collect();
+        let best = (0..all.len()).max_by(|&a, &b| all[a].total_cmp(&all[b]))?;
+        if !(all[best] > 0.0 && all[best].is_finite()) {
+            return None;
+        }
+        if best == 0 || best + 1 == all.len() {
+            return Some((None, all[best]));
+        }
+        let bend = all[best - 1] - 2.0 * all[best] + all[best + 1];
+        let beyond = if bend < 0.0 { 0.5 * (all[best - 1] - all[best + 1]) / bend } else { 0.0 };
+        let shifts = (self.product.len() / 2) as f64;
+        Some((Some(best as f64 - shifts + beyond.clamp(-0.5, 0.5)), all[best].min(1.0)))
+    }
+}
+
+/// Values at `start_s + k step_s` for `n` instants, linear between samples.
+fn resample(t: &[f64], x: &[f64], start_s: f64, step_s: f64, n: usize) -> Vec<f64> {
+    let last = t.len() - 1;
+    let mut i = t.partition_point(|&t| t <= start_s).saturating_sub(1);
+    (0..n)
+        .map(|k| {
+            let at_s = start_s + k as f64 * step_s;
+            while i < last && t[i + 1] <= at_s {
+                i += 1;
+            }
+            let j = (i + 1).min(last);
+            let share = if j > i { ((at_s - t[i]) / (t[j] - t[i])).clamp(0.0, 1.0) } else { 0.0 };
+            x[i] + share * (x[j] - x[i])
+        })
+        .collect()
+}
+
+/// Half the 95 % interval of a mean (Student's t); needs three values.
+fn standard_error(values: &[f64]) -> Option<f64> {
+    let n = values.len() as f64;
+    let t = (values.len() >= 3).then(|| StudentsT::new(0.0, 1.0, n - 1.0).ok())??;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0);
+    Some(t.inverse_cdf(0.975) * (variance / n).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::Range;
+
+    use super::*;
+
+    fn hump(at_s: f64, t_s: f64) -> f64 {
+        (-((t_s - at_s) / 0.4).powi(2)).exp()
+    }
+
+    fn motion(start_s: f64, end_s: f64, segment: Range<usize>) -> Motion {
+        Motion {
+            direction: 1,
+            samples: segment.clone(),
+            segment,
+            start_s,
+            end_s,
+            rest_before_s: 1.0,
+            opens: false,
+            closes: false,
+            reversal: false,
+            reversed: false,
+        }
+    }
+
+    #[test]
+    fn a_shift_between_two_samples_is_found_to_a_tenth_of_a_sample() {
+        let t_s: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.02 + 0.003 * f64::from(k % 3)).collect();
+        let planned: Vec<f64> = t_s.iter().map(|&t| hump(4.0, t)).collect();
+        let measured: Vec<f64> = t_s.iter().map(|&t| hump(4.133, t)).collect();
+        let speeds = Speeds { t_s: &t_s, planned_rad_s: &planned, measured_rad_s: &measured };
+        let found = lag(&speeds, &[motion(3.0, 5.0, 0..400)], 0.02, &Rules::default());
+        assert!((found.shift_s.unwrap() - 0.133).abs() < 0.002, "{found:?}");
+        assert!(found.correlation.unwrap() > 0.999);
+        assert_eq!(found.interval_s, None);
+    }
+
+    #[test]
+    fn a_lag_beyond_the_range_is_not_named() {
+        let t_s: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.02).collect();
+        let planned: Vec<f64> = t_s.iter().map(|&t| hump(3.0, t)).collect();
+        let measured: Vec<f64> = t_s.iter().map(|&t| hump(4.4, t)).collect();
+        let speeds = Speeds { t_s: &t_s, planned_rad_s: &planned, measured_rad_s: &measured };
+        assert_eq!(lag(&speeds, &[motion(2.0, 4.0, 0..400)], 0.02, &Rules::default()).shift_s, None);
+        assert_eq!(lag(&speeds, &[], 0.02, &Rules::default()), Lag::default());
+    }
+}

@@ -1,0 +1,181 @@
+//! When a joint left rest: the instant at which its speed first passed a stated threshold, found
+//! below the noise of any speed.
+//!
+//! Curves that rest and then rise, steeply or gently, are fitted to the angle for every instant
+//! of departure. Each says when its own speed passes the threshold; weighted with their likelihood
+//! they give the onset and its interval. A speed smoothed enough to show the threshold
+//! would blur a sharp start over the width of the smoothing.
+
+use std::ops::Range;
+
+use super::Rules;
+
+/// An onset with its interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Onset {
+    pub(super) at_s: f64,
+    /// 95 %, without the time resolution, s.
+    pub(super) interval_s: [f64; 2],
+}
+
+/// More samples than this are averaged in blocks: blocks of 5 ms lose nothing at this resolution.
+const MOST_POINTS: usize = 200;
+
+/// How a joint leaves rest, as travel over time since the departure.
+#[derive(Clone, Copy)]
+enum Rise {
+    /// Constant acceleration for this long, then constant speed, s.
+    Ramp(f64),
+    /// A power of time: constant acceleration, constant jerk, constant snap.
+    Power(i32),
+}
+
+/// From a breakaway with a jump of speed to the gentle start of a spline at rest.
+const RISES: [Rise; 6] =
+    [Rise::Ramp(0.03), Rise::Ramp(0.08), Rise::Ramp(0.16), Rise::Power(2), Rise::Power(3), Rise::Power(4)];
+
+impl Rise {
+    fn travel(self, since_s: f64) -> f64 {
+        match self {
+            Rise::Ramp(ramp_s) if since_s >= ramp_s => since_s - 0.5 * ramp_s,
+            Rise::Ramp(ramp_s) => 0.5 * since_s * since_s / ramp_s,
+            Rise::Power(power) => since_s.powi(power),
+        }
+    }
+
+    /// How long after the departure a rise of this scale passes a speed; `None` if never.
+    fn passes_s(self, scale: f64, speed_rad_s: f64) -> Option<f64> {
+        let unit = speed_rad_s / scale;
+        match self {
+            Rise::Ramp(ramp_s) => (unit <= 1.0).then_some(unit * ramp_s),
+            Rise::Power(power) => Some((unit / f64::from(power)).powf(1.0 / f64::from(power - 1))),
+        }
+    }
+}
+
+/// Where to look: a motion in `direction` whose smoothed speed crossed a threshold at
+/// `crossing_s` after `rest_s` at rest, found with smoothing of half width `window_s`.
+#[derive(Debug, Clone)]
+pub(super) struct Search {
+    pub(super) segment: Range<usize>,
+    pub(super) direction: i8,
+    pub(super) crossing_s: f64,
+    pub(super) rest_s: f64,
+    pub(super) window_s: f64,
+}
+
+/// When the speed of a motion first passed [`Rules::stop_floor_rad_s`]. `None` with fewer than
+/// six samples to fit.
+pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &Rules) -> Option<Onset> {
+    let Search { segment, crossing_s, window_s, .. } = search;
+    let before_s = (rules.onset_rest_share * search.rest_s).min(rules.onset_before_s);
+    let times = &t_s[segment.clone()];
+    let first = times.partition_point(|&t| t < crossing_s - before_s);
+    let end = times.partition_point(|&t| t <= crossing_s + window_s + rules.onset_after_s);
+    if end < first + 6 {
+        return None;
+    }
+    let block = (end - first).div_ceil(MOST_POINTS);
+    let mean_of = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let t: Vec<f64> = times[first..end].chunks(block).map(|t| mean_of(t) - crossing_s).collect();
+    let x: Vec<f64> =
+        position_rad[segment.start + first..segment.start + end].chunks(block).map(mean_of).collect();
+    let mean = mean_of(&x);
+    let x: Vec<f64> = x.iter().map(|x| f64::from(search.direction) * (x - mean)).collect();
+
+    if !x.iter().map(|x| x * x).sum::<f64>().is_finite() {
+        return None;
+    }
+
+    // The crossing of a smoothed speed may lie closer to the segment's start than the rest does.
+    let before_s = before_s.min(crossing_s - times[first]);
+    let on_s = window_s.min(times[end - 1] - crossing_s);
+    let steps = |span_s: f64| (span_s / rules.onset_step_s).floor().clamp(0.0, 10_000.0);
+    let (back, on) = (steps(before_s), steps(on_s));
+    #[expect(clippy::cast_possible_truncation, reason = "clamped above")]
+    let grid = (-(back as i64)..=on as i64).map(|k| k as f64 * rules.onset_step_s);
+    let fits: Vec<Fit> = grid
+        .flat_map(|t0| RISES.map(|rise| Fit::new(&t, &x, t0, rise)))
+        .filter(|fit| fit.onset_s(rules.stop_floor_rad_s).is_some_and(|s| s <= times[end - 1] - crossing_s))
+        .collect();
+    let best = fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares))?;
+    let freedom = ((t.len() as f64 - 4.0).max(1.0) / best.redundancy(&t, &x)).max(1.0);
+    let variance = (best.squares / freedom).max(f64::MIN_POSITIVE);
+    let mut onsets: Vec<(f64, f64)> = fits
+        .iter()
+        .filter_map(|fit| {
+            let at_s = fit.onset_s(rules.stop_floor_rad_s)?;
+            Some((at_s, (0.5 * (best.squares - fit.squares) / variance).exp()))
+        })
+        .collect();
+    onsets.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let total: f64 = onsets.iter().map(|(_, weight)| weight).sum();
+    let quantile = |p: f64| {
+        let mut sum = 0.0;
+        let passed = onsets.iter().find(|(_, weight)| {
+            sum += weight;
+            sum >= p * total
+        });
+        passed.map_or(0.0, |(at_s, _)| *at_s)
+    };
+    // Departures are tried at steps; the shapes between the ones tried are not.
+    let step_s = rules.onset_step_s;
+    Some(Onset {
+        at_s: crossing_s + quantile(0.5),
+        interval_s: [crossing_s + quantile(0.025) - step_s, crossing_s + quantile(0.975) + step_s],
+    })
+}
+
+/// The best rest level and scale of a rise that begins at `t0`.
+#[derive(Clone, Copy)]
+struct Fit {
+    t0: f64,
+    rise: Rise,
+    level: f64,
+    scale: f64,
+    /// Sum of squared residuals.
+    squares: f64,
+}
+
+impl Fit {
+    /// Fits values of zero mean.
+    fn new(t: &[f64], x: &[f64], t0: f64, rise: Rise) -> Self {
+        let n = t.len() as f64;
+        let from = t.partition_point(|&t| t <= t0);
+        let (mut f1, mut f2, mut fx) = (0.0, 0.0, 0.0);
+        for (t, x) in t[from..].iter().zip(&x[from..]) {
+            let f = rise.travel(t - t0);
+            f1 += f;
+            f2 += f * f;
+            fx += f * x;
+        }
+        let spread = f2 - f1 * f1 / n;
+        // The values have zero mean, so the covariance needs no correction.
+        let scale = if spread > 0.0 { (fx / spread).max(0.0) } else { 0.0 };
+        let mut fit = Self { t0, rise, level: -scale * f1 / n, scale, squares: 0.0 };
+        fit.squares = t.iter().zip(x).map(|(&t, &x)| fit.residual(t, x).powi(2)).sum();
+        fit
+    }
+
+    /// When its speed passes the threshold; `None` if it never does.
+    fn onset_s(&self, speed_rad_s: f64) -> Option<f64> {
+        if self.scale <= 0.0 {
+            return None;
+        }
+        Some(self.t0 + self.rise.passes_s(self.scale, speed_rad_s)?)
+    }
+
+    fn residual(&self, t: f64, x: f64) -> f64 {
+        let risen = if t > self.t0 { self.scale * self.rise.travel(t - self.t0) } else { 0.0 };
+        x - self.level - risen
+    }
+
+    /// How many samples carry the information of one, at least 1, from the correlation of
+    /// neighbouring residuals: rounding and a wrong shape repeat themselves.
+    fn redundancy(&self, t: &[f64], x: &[f64]) -> f64 {
+        let r: Vec<f64> = t.iter().zip(x).map(|(&t, &x)| self.residual(t, x)).collect();
+        let neighbours: f64 = r.windows(2).map(|w| w[0] * w[1]).sum();
+        let correlation = if self.squares > 0.0 { (neighbours / self.squares).clamp(0.0, 0.95) } else { 0.0 };
+        (1.0 + correlation) / (1.0 - correlation)
+    }
+}

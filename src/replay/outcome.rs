@@ -1,0 +1,271 @@
+//! What a replay found. Field names are those of the JSON report.
+
+use serde::Serialize;
+
+use super::Rules;
+use crate::series::Noise;
+
+/// Analysis of one run; error is planned minus measured throughout.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Replay {
+    /// Thresholds and windows used.
+    pub rules: Rules,
+    /// One entry a joint, in the order given.
+    pub joints: Vec<JointReplay>,
+    /// Planned starts and reversals, by joint, then time.
+    pub transitions: Vec<Transition>,
+    /// Dynamic-to-static events, by joint, then time.
+    pub stops: Vec<Stop>,
+    /// All joints together.
+    pub whole_run: WholeRun,
+}
+
+/// One joint over the whole run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct JointReplay {
+    /// The joint.
+    pub name: String,
+    /// Whether the measured angle moves: it answers a planned start, or one of its motions travels
+    /// [`Rules::moves_travel_rad`].
+    pub moves: bool,
+    /// Whether the plan moves.
+    pub plan_moves: bool,
+    /// Planned minus measured at the same instant, over the whole run.
+    pub tracking_error: TrackingError,
+    /// The same while the plan has been at rest for a while; `None` if it never is.
+    pub standstill_error: Option<TrackingError>,
+    /// This joint's share of the distance to the planned path, ignoring time.
+    pub path_error: Option<PathError>,
+    /// Time shift at the maximum of the speed correlation, s; positive if the joint is late.
+    pub lag_s: Option<f64>,
+    /// Correlation of planned and measured speed at that shift.
+    pub lag_correlation: Option<f64>,
+    /// 95 % interval of the lag from its spread over single motions, s; needs three of them.
+    pub lag_interval_s: Option<[f64; 2]>,
+    /// Number of motions behind the interval.
+    pub lag_motions: usize,
+    /// Noise of the measured angle.
+    pub noise: Noise,
+    /// Median time between samples, s: nothing in time is known better than this.
+    pub sample_interval_s: f64,
+    /// Detector settings that resulted from noise and sampling.
+    pub thresholds: Thresholds,
+    /// Planned starts, reversals included.
+    pub starts: usize,
+    /// Planned reversals.
+    pub reversals: usize,
+    /// Planned stops.
+    pub stops: usize,
+    /// Planned starts that no measured start answers.
+    pub unmatched_starts: usize,
+    /// Measured starts that no planned start asks for.
+    pub unplanned_starts: usize,
+}
+
+/// Detector settings of one joint.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Thresholds {
+    /// Start threshold on the plan, rad/s.
+    pub planned_start_rad_s: f64,
+    /// Stop threshold on the plan, rad/s.
+    pub planned_stop_rad_s: f64,
+    /// Start threshold on the measurement, median over samples, rad/s.
+    pub measured_start_rad_s: f64,
+    /// Stop threshold on the measurement, median over samples, rad/s.
+    pub measured_stop_rad_s: f64,
+    /// Half window of the velocity fit, s.
+    pub window_s: f64,
+}
+
+/// Statistics of the error at equal instants, each sample weighted with the time it stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct TrackingError {
+    /// Root mean square, rad.
+    pub rms_rad: f64,
+    /// Mean magnitude, rad.
+    pub mean_abs_rad: f64,
+    /// Largest magnitude, rad.
+    pub peak_rad: f64,
+    /// When that was, s.
+    pub peak_time_s: f64,
+    /// Magnitude exceeded for 5 % of the time, rad.
+    pub p95_rad: f64,
+    /// Mean with its sign, rad.
+    pub bias_rad: f64,
+    /// Number of samples.
+    pub samples: usize,
+    /// Time they stand for, s.
+    pub duration_s: f64,
+}
+
+/// Distance from measured joint vectors to the planned joint path.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct PathError {
+    /// Root mean square, rad.
+    pub rms_rad: f64,
+    /// Largest, rad.
+    pub peak_rad: f64,
+    /// Number of measured joint vectors compared.
+    pub samples: usize,
+    /// Time between them, s.
+    pub sample_interval_s: f64,
+}
+
+/// From rest, or out of the opposite motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// Static-to-dynamic.
+    Start,
+    /// Dynamic to dynamic with the opposite sign.
+    Reversal,
+}
+
+/// How the onsets of a transition were found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum OnsetMethod {
+    /// From rest: where a curve that rests and then rises, fitted to the angle, passes the speed
+    /// threshold at which the plan's onset is taken.
+    Fit,
+    /// Out of the opposite motion: where both speeds cross the measured stop threshold.
+    Crossing,
+}
+
+/// One planned start or reversal and how the joint answered.
+///
+/// The error is planned minus measured; "signed along the motion" is that times the direction,
+/// so positive means that the joint is behind.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Transition {
+    /// The joint.
+    pub joint: String,
+    /// From rest or not.
+    pub kind: Kind,
+    /// Sign of the planned motion, +1 or -1.
+    pub direction: i8,
+    /// When the plan starts, s.
+    pub planned_onset_s: f64,
+    /// When the joint starts, s; `None` if it never does.
+    pub measured_onset_s: Option<f64>,
+    /// How the onsets were found.
+    pub onset_method: OnsetMethod,
+    /// Measured minus planned onset (dead time, IEC 60050 351-50-31), s.
+    pub onset_delay_s: Option<f64>,
+    /// 95 % interval of it, widened by the time resolution, s.
+    pub onset_delay_interval_s: Option<[f64; 2]>,
+    /// Time between plan and joint having travelled the displacement threshold, s.
+    pub displacement_delay_s: Option<f64>,
+    /// Error at the measured onset, signed along the motion, rad.
+    pub breakaway_error_rad: Option<f64>,
+    /// Largest excess of measured over planned speed soon after the onset, rad/s.
+    pub jump_rad_s: Option<f64>,
+    /// Largest error magnitude in the window, rad.
+    pub peak_error_rad: f64,
+    /// The same with the sign of planned minus measured, rad.
+    pub peak_error_signed_rad: f64,
+    /// Time from the planned onset to that peak, s.
+    pub time_to_peak_s: f64,
+    /// Integral of the error magnitude over the window, rad s.
+    pub error_area_rad_s: f64,
+    /// Root mean square error in the window, rad.
+    pub rms_error_rad: f64,
+    /// Largest error of the opposite sign after the peak, rad; 0 if there is none.
+    pub overshoot_rad: f64,
+    /// Time from the planned onset until the error, past its peak, stays in the settling band, s.
+    pub settling_time_s: Option<f64>,
+    /// The window: from the planned onset to the next one, the segment's end or the longest.
+    pub window_s: [f64; 2],
+    /// Samples in the window.
+    pub samples: usize,
+    /// Median time between them, s.
+    pub time_resolution_s: f64,
+}
+
+/// A dynamic-to-static event, planned and measured.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Stop {
+    /// The joint.
+    pub joint: String,
+    /// Sign of the motion that ends, +1 or -1.
+    pub direction: i8,
+    /// When the plan comes to rest, s; `None` for a stop nobody planned.
+    pub planned_s: Option<f64>,
+    /// When the joint comes to rest, s.
+    pub measured_s: Option<f64>,
+    /// Error when the plan comes to rest, planned minus measured, rad.
+    pub error_rad: Option<f64>,
+}
+
+/// All joints together.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct WholeRun {
+    /// Error pooled over joints; `None` without joints.
+    pub tracking_error: Option<TrackingError>,
+    /// Norm over joints of the distance to the planned path, ignoring time; `None` where the
+    /// joints have no instants in common.
+    pub path_error: Option<PathError>,
+    /// Whether the error lives in the transitions; `None` if no plan moves.
+    pub concentration: Option<Concentration>,
+}
+
+/// Error inside transition windows against elsewhere, over joints whose plan moves.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Concentration {
+    /// Root mean square error inside, rad.
+    pub rms_inside_rad: f64,
+    /// Root mean square error elsewhere, rad.
+    pub rms_outside_rad: f64,
+    /// Root mean square error elsewhere while the plan moves, rad.
+    pub rms_outside_moving_rad: Option<f64>,
+    /// Share of joint time inside.
+    pub time_share_inside: f64,
+    /// Share of the squared error inside.
+    pub squared_error_share_inside: f64,
+    /// The test; `None` if one side is empty.
+    pub test: Option<ConcentrationTest>,
+    /// What the test says.
+    pub verdict: Verdict,
+}
+
+/// Mann-Whitney test on root mean square errors of windows and of the stretches between them.
+///
+/// Samples of one window are not independent, so each window and each stretch counts once.
+/// Joints differ in scale, so each value is divided by its joint's root mean square error.
+/// Joints that start together are not independent, so values that begin within
+/// [`Rules::same_event_s`] are averaged into one event.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct ConcentrationTest {
+    /// Events inside.
+    pub inside_count: usize,
+    /// Events elsewhere.
+    pub outside_count: usize,
+    /// Two-sided probability of such a difference by chance (normal approximation).
+    pub p_value: f64,
+    /// Probability that an event inside has the larger error: 0.5 is no difference.
+    pub effect: f64,
+}
+
+/// Where the error lives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// In the transitions.
+    Transitions,
+    /// Elsewhere.
+    Elsewhere,
+    /// The run does not say.
+    Undecided,
+}

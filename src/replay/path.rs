@@ -1,0 +1,214 @@
+//! Path error: how far the arm was from where it was to pass, whenever it passed.
+
+use super::{PathError, Rules};
+use crate::series::Pair;
+
+/// Joint vectors at common instants, `[n, joints]` row-major.
+struct Path {
+    joints: usize,
+    t_s: Vec<f64>,
+    planned_rad: Vec<f64>,
+    measured_rad: Vec<f64>,
+    /// Whether the plan runs on from the instant before.
+    connected: Vec<bool>,
+}
+
+/// Path error of each joint and their norm.
+///
+/// For every measured joint vector the nearest point on the planned polyline in joint space is
+/// sought within [`Rules::path_window_s`]; the components of that distance are each joint's.
+/// Taken at the first joint's stamps, thinned to about [`Rules::path_rate_hz`], where every joint has
+/// data; `None` where there is none. O(n window).
+pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError>, PathError)> {
+    let path = Path::new(pairs, rules);
+    let n = path.t_s.len();
+    if n == 0 {
+        return None;
+    }
+    let mut squares = vec![0.0; path.joints + 1];
+    let mut peaks = vec![0.0_f64; path.joints + 1];
+    let (mut first, mut end) = (0, 0);
+    for i in 0..n {
+        while path.t_s[i] - path.t_s[first] > rules.path_window_s {
+            first += 1;
+        }
+        while end < n && path.t_s[end] - path.t_s[i] <= rules.path_window_s {
+            end += 1;
+        }
+        let (at, share) = path.nearest(i, first, end);
+        let mut square = 0.0;
+        for j in 0..path.joints {
+            let off = path.offset(i, j, at, share);
+            square += off * off;
+            squares[j] += off * off;
+            peaks[j] = peaks[j].max(off.abs());
+        }
+        squares[path.joints] += square;
+        peaks[path.joints] = peaks[path.joints].max(square.sqrt());
+    }
+    let sample_interval_s = if n > 1 { (path.t_s[n - 1] - path.t_s[0]) / (n - 1) as f64 } else { 0.0 };
+    let of = |(square, peak_rad): (&f64, &f64)| PathError {
+        rms_rad: (square / n as f64).sqrt(),
+        peak_rad: *peak_rad,
+        samples: n,
+        sample_interval_s,
+    };
+    let mut errors: Vec<PathError> = squares.iter().zip(&peaks).map(of).collect();
+    let norm = errors.pop()?;
+    Some((errors, norm))
+}
+
+impl Path {
+    fn new(pairs: &[Pair], rules: &Rules) -> Self {
+        let mut path = Path {
+            joints: pairs.len(),
+            t_s: Vec::new(),
+            planned_rad: Vec::new(),
+            measured_rad: Vec::new(),
+            connected: Vec::new(),
+        };
+        let Some(lead) = pairs.first() else {
+            return path;
+        };
+        // Less than the step, so that jitter around it loses no stamps.
+        let step_s = 0.75 / rules.path_rate_hz;
+        let mut cursors = vec![Cursor::default(); pairs.len()];
+        let mut last_s = f64::NEG_INFINITY;
+        let mut last_places: Vec<usize> = Vec::new();
+        for &t_s in &lead.t_s {
+            if t_s - last_s < step_s {
+                continue;
+            }
+            let found: Option<Vec<_>> =
+                pairs.iter().zip(&mut cursors).map(|(pair, cursor)| cursor.at(pair, t_s)).collect();
+            let Some(found) = found else {
+                continue;
+            };
+            let places: Vec<usize> = cursors.iter().map(|c| c.segment).collect();
+            last_s = t_s;
+            path.t_s.push(t_s);
+            path.connected.push(places == last_places);
+            last_places = places;
+            for (planned, measured) in found {
+                path.planned_rad.push(planned);
+                path.measured_rad.push(measured);
+            }
+        }
+        path
+    }
+
+    /// The piece of plan from sample `at` on that passes nearest to measured vector `i`, and
+    /// the share of the piece up to the nearest point.
+    fn nearest(&self, i: usize, first: usize, end: usize) -> (usize, f64) {
+        let (mut best, mut place) = (f64::INFINITY, (i, 0.0));
+        for at in first..end {
+            let whole = at + 1 < end && self.connected[at + 1];
+            let (mut along, mut length) = (0.0, 0.0);
+            let mut from_start = 0.0;
+            for j in 0..self.joints {
+                let r = self.planned_rad[at * self.joints + j];
+                let off = self.measured_rad[i * self.joints + j] - r;
+                from_start += off * off;
+                if whole {
+                    let piece = self.planned_rad[(at + 1) * self.joints + j] - r;
+                    along += off * piece;
+                    length += piece * piece;
+                }
+            }
+            let share = if length > 0.0 { (along / length).clamp(0.0, 1.0) } else { 0.0 };
+            let square = from_start + share * (share * length - 2.0 * along);
+            if square < best {
+                (best, place) = (square, (at, share));
+            }
+        }
+        place
+    }
+
+    fn offset(&self, i: usize, j: usize, at: usize, share: f64) -> f64 {
+        let r = self.planned_rad[at * self.joints + j];
+        let piece = if share > 0.0 { self.planned_rad[(at + 1) * self.joints + j] - r } else { 0.0 };
+        r + share * piece - self.measured_rad[i * self.joints + j]
+    }
+}
+
+/// A place in one pair that only moves forward.
+#[derive(Clone, Default)]
+struct Cursor {
+    sample: usize,
+    segment: usize,
+}
+
+impl Cursor {
+    /// Planned and measured angle at a time inside a segment, linear between samples, rad.
+    fn at(&mut self, pair: &Pair, t_s: f64) -> Option<(f64, f64)> {
+        let t = &pair.t_s;
+        while self.sample + 1 < t.len() && t[self.sample + 1] <= t_s {
+            self.sample += 1;
+        }
+        while pair.segments.get(self.segment).is_some_and(|s| s.end <= self.sample) {
+            self.segment += 1;
+        }
+        let segment = pair.segments.get(self.segment)?;
+        let i = self.sample;
+        if t[i] > t_s || !segment.contains(&i) {
+            return None;
+        }
+        if t[i] >= t_s {
+            return Some((pair.planned_rad[i], pair.measured_rad[i]));
+        }
+        if i + 1 >= segment.end {
+            return None;
+        }
+        let share = (t_s - t[i]) / (t[i + 1] - t[i]);
+        let between = |x: &[f64]| x[i] + share * (x[i + 1] - x[i]);
+        Some((between(&pair.planned_rad), between(&pair.measured_rad)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pair(n: u32, late_s: f64, off_rad: f64) -> Pair {
+        let t_s: Vec<f64> = (0..n).map(|k| 0.02 * f64::from(k)).collect();
+        let angle = |t: f64| 0.5 * (t - 3.0).clamp(0.0, 4.0);
+        Pair {
+            name: "a".into(),
+            planned_rad: t_s.iter().map(|&t| angle(t)).collect(),
+            planned_rad_s: None,
+            measured_rad: t_s.iter().map(|&t| angle(t - late_s) + off_rad).collect(),
+            segments: std::iter::once(0..t_s.len()).collect(),
+            matched: t_s.len(),
+            unmatched: 0,
+            t_s,
+        }
+    }
+
+    #[test]
+    fn being_late_on_the_path_is_no_path_error() {
+        let (joints, norm) =
+            path_error(&[pair(500, 0.213, 0.0), pair(500, 0.213, 0.0)], &Rules::default()).unwrap();
+        assert!(norm.peak_rad < 1e-12 && joints.iter().all(|j| j.peak_rad < 1e-12), "{norm:?}");
+    }
+
+    #[test]
+    fn standing_off_the_path_is_a_path_error_of_that_joint() {
+        let still = |off_rad: f64| {
+            let mut pair = pair(500, 0.0, off_rad);
+            pair.planned_rad.fill(0.0);
+            pair.measured_rad.fill(off_rad);
+            pair
+        };
+        let (joints, norm) = path_error(&[pair(500, 0.1, 0.0), still(0.03)], &Rules::default()).unwrap();
+        assert!(joints[0].peak_rad < 1e-12);
+        assert!((joints[1].rms_rad - 0.03).abs() < 1e-12 && (norm.rms_rad - 0.03).abs() < 1e-12);
+    }
+
+    #[test]
+    fn joints_without_a_common_instant_have_no_path_error() {
+        let mut later = pair(10, 0.0, 0.0);
+        later.t_s.iter_mut().for_each(|t| *t += 100.0);
+        assert_eq!(path_error(&[pair(10, 0.0, 0.0), later], &Rules::default()), None);
+        assert_eq!(path_error(&[], &Rules::default()), None);
+    }
+}

@@ -1,0 +1,94 @@
+//! Planned and measured speed of one joint, and the motions in each.
+
+use super::{
+    Rules, Thresholds,
+    motion::{Motion, Speed},
+};
+use crate::{
+    math::median,
+    series::{LocalFit, Noise, Pair, local_quadratic, noise},
+};
+
+/// Fewest samples in the velocity fit to a plan that gives no speeds.
+const PLAN_POINTS: usize = 5;
+
+/// What the detector derives from a pair; arrays are `[n]`.
+pub(super) struct Signals {
+    pub(super) noise: Noise,
+    pub(super) sample_interval_s: f64,
+    pub(super) thresholds: Thresholds,
+    pub(super) planned_rad_s: Vec<f64>,
+    pub(super) measured_rad_s: Vec<f64>,
+    pub(super) deviation_rad_s: Vec<f64>,
+    pub(super) planned: Vec<Motion>,
+    pub(super) measured: Vec<Motion>,
+}
+
+impl Signals {
+    pub(super) fn new(pair: &Pair, rules: &Rules) -> Self {
+        let (t_s, segments) = (&pair.t_s, &pair.segments);
+        let noise = noise(t_s, &pair.measured_rad, segments);
+        let sample_interval_s = sample_interval_s(pair);
+        let window_s = rules.window_s(sample_interval_s, noise.sigma_rad);
+
+        let fits = local_quadratic(t_s, &pair.measured_rad, segments, window_s, rules.window_points);
+        let of = |value: fn(&LocalFit) -> f64| fits.iter().map(value).collect::<Vec<f64>>();
+        let smooth_rad = of(|fit| fit.position_rad);
+        let measured_rad_s = of(|fit| fit.velocity_rad_s);
+        let mut deviation_rad_s = of(|fit| fit.velocity_gain_per_s);
+        drop(fits);
+        for deviation in &mut deviation_rad_s {
+            *deviation *= noise.sigma_rad;
+        }
+
+        let planned_rad_s = pair.planned_rad_s.clone().unwrap_or_else(|| {
+            let fits = local_quadratic(t_s, &pair.planned_rad, segments, rules.planned_window_s, PLAN_POINTS);
+            fits.iter().map(|fit| fit.velocity_rad_s).collect()
+        });
+
+        let planned = Speed {
+            t_s,
+            position_rad: &pair.planned_rad,
+            velocity_rad_s: &planned_rad_s,
+            deviation_rad_s: None,
+            segments,
+            min_travel_rad: rules.min_travel_rad,
+        };
+        let measured = Speed {
+            position_rad: &smooth_rad,
+            velocity_rad_s: &measured_rad_s,
+            deviation_rad_s: Some(&deviation_rad_s),
+            min_travel_rad: rules
+                .min_travel_rad
+                .max(rules.min_travel_sigmas * noise.sigma_rad)
+                .max(rules.min_travel_lsbs * noise.lsb_rad.unwrap_or(0.0)),
+            ..planned
+        };
+        let usual = median(deviation_rad_s.clone());
+        let thresholds = Thresholds {
+            planned_start_rad_s: rules.start_floor_rad_s,
+            planned_stop_rad_s: rules.stop_floor_rad_s,
+            measured_start_rad_s: rules.start_floor_rad_s.max(rules.start_sigmas * usual),
+            measured_stop_rad_s: rules.stop_floor_rad_s.max(rules.stop_sigmas * usual),
+            window_s,
+        };
+        let (planned, measured) = (planned.motions(rules), measured.motions(rules));
+        Self {
+            noise,
+            sample_interval_s,
+            thresholds,
+            planned_rad_s,
+            measured_rad_s,
+            deviation_rad_s,
+            planned,
+            measured,
+        }
+    }
+}
+
+/// Median time between neighbours inside segments, s; 0 where there are none.
+fn sample_interval_s(pair: &Pair) -> f64 {
+    let steps = pair.segments.iter().flat_map(|s| pair.t_s[s.clone()].windows(2).map(|w| w[1] - w[0]));
+    let steps: Vec<f64> = steps.collect();
+    if steps.is_empty() { 0.0 } else { median(steps) }
+}

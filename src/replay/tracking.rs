@@ -1,0 +1,106 @@
+//! Error at equal instants: tracking error, and standstill error apart.
+
+use std::ops::Range;
+
+use super::{Rules, TrackingError, motion::Motion};
+use crate::series::Pair;
+
+/// A sample of error: stamp s, planned minus measured rad, time it stands for s.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    pub(super) t_s: f64,
+    pub(super) error_rad: f64,
+    pub(super) weight_s: f64,
+}
+
+/// The 95 % quantile is taken over at most about this many samples, evenly thinned.
+const ENOUGH: usize = 1_000_000;
+/// A lone sample stands for next to no time.
+const LONE_S: f64 = 1e-9;
+
+/// The error of a joint; each sample stands for half the way to its neighbours in its segment.
+pub(super) fn samples(pair: &Pair) -> Vec<Sample> {
+    let mut samples = Vec::with_capacity(pair.t_s.len());
+    for segment in &pair.segments {
+        let (first, last) = (segment.start, segment.end.saturating_sub(1));
+        for i in segment.clone() {
+            let span_s = pair.t_s[(i + 1).min(last)] - pair.t_s[i.saturating_sub(1).max(first)];
+            samples.push(Sample {
+                t_s: pair.t_s[i],
+                error_rad: pair.planned_rad[i] - pair.measured_rad[i],
+                weight_s: (0.5 * span_s).max(LONE_S),
+            });
+        }
+    }
+    samples
+}
+
+/// Statistics of samples; `None` of none.
+pub(super) fn tracking_error<'a>(samples: impl Iterator<Item = &'a Sample> + Clone) -> Option<TrackingError> {
+    let (mut count, mut time, mut sum, mut magnitude, mut square) = (0, 0.0, 0.0, 0.0, 0.0);
+    let (mut peak_rad, mut peak_time_s) = (-1.0, 0.0);
+    for s in samples.clone() {
+        count += 1;
+        time += s.weight_s;
+        sum += s.weight_s * s.error_rad;
+        magnitude += s.weight_s * s.error_rad.abs();
+        square += s.weight_s * s.error_rad * s.error_rad;
+        if s.error_rad.abs() > peak_rad {
+            (peak_rad, peak_time_s) = (s.error_rad.abs(), s.t_s);
+        }
+    }
+    (count > 0).then(|| TrackingError {
+        rms_rad: (square / time).sqrt(),
+        mean_abs_rad: magnitude / time,
+        peak_rad,
+        peak_time_s,
+        p95_rad: weighted_quantile(samples.step_by(count / ENOUGH + 1), 0.95),
+        bias_rad: sum / time,
+        samples: count,
+        duration_s: time,
+    })
+}
+
+/// The smallest magnitude that at least the share `p` of the time does not exceed.
+fn weighted_quantile<'a>(samples: impl Iterator<Item = &'a Sample>, p: f64) -> f64 {
+    let mut magnitudes: Vec<(f64, f64)> = samples.map(|s| (s.error_rad.abs(), s.weight_s)).collect();
+    magnitudes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let wanted = p * magnitudes.iter().map(|m| m.1).sum::<f64>();
+    let mut time = 0.0;
+    for &(magnitude, weight) in &magnitudes {
+        time += weight;
+        if time >= wanted {
+            return magnitude;
+        }
+    }
+    magnitudes.last().map_or(0.0, |m| m.0)
+}
+
+/// For every sample, whether the plan has been at rest for long enough, in its segment.
+pub(super) fn at_standstill(
+    t_s: &[f64],
+    segments: &[Range<usize>],
+    planned: &[Motion],
+    rules: &Rules,
+) -> Vec<bool> {
+    let mut rest = vec![false; t_s.len()];
+    let mut motions = planned.iter().peekable();
+    for segment in segments {
+        let mut since_s = t_s.get(segment.start).copied().unwrap_or(0.0);
+        let mut i = segment.start;
+        while i < segment.end {
+            match motions.peek() {
+                Some(motion) if motion.samples.contains(&i) => {
+                    since_s = motion.end_s;
+                    i = motion.samples.end;
+                    motions.next();
+                }
+                _ => {
+                    rest[i] = t_s[i] - since_s > rules.standstill_after_s;
+                    i += 1;
+                }
+            }
+        }
+    }
+    rest
+}

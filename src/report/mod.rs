@@ -1,0 +1,41 @@
+//! Renders what a workflow found: text, Markdown, JSON, CSV. Nothing is computed here; degrees
+//! and milliseconds are.
+
+mod csv;
+mod info;
+mod json;
+mod markup;
+mod method;
+mod recover;
+mod score;
+mod tables;
+
+pub use csv::transitions_csv;
+pub use info::{info_json, info_parts};
+pub use json::report_json;
+pub use markup::{Part, Sheet, markdown, text};
+pub use recover::{recovered_json, recovered_parts};
+pub use score::{score_json, score_parts};
+pub use tables::{gate_lines, report_parts};
+
+use crate::units::degrees_from_radians;
+
+/// Degrees with three decimals.
+fn deg(rad: f64) -> String {
+    let text = format!("{:.3}", degrees_from_radians(rad));
+    if text == "-0.000" { "0.000".to_owned() } else { text }
+}
+
+/// Whole milliseconds.
+fn ms(s: f64) -> String {
+    let text = format!("{:.0}", s * 1e3);
+    if text == "-0" { "0".to_owned() } else { text }
+}
+
+/// A cell for what is not there.
+const NONE: &str = "-";
+
+/// `one start`, `3 starts`.
+fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("one {noun}") } else { format!("{count} {noun}s") }
+}

@@ -1,0 +1,259 @@
+//! The report as headings, sentences and tables, worst first.
+
+use super::{NONE, Part, Sheet, counted, deg, method::method_parts, ms};
+use crate::{
+    remark::Remarks,
+    replay::{JointReplay, Kind, Replay, Transition, Verdict},
+    workflow::report::{Gate, GateResult, Report},
+};
+
+/// Everything a person reads of a report; `most` is how many transitions to list.
+pub fn report_parts(name: &str, report: &Report, most: usize) -> Vec<Part> {
+    let mut parts = vec![Part::Title(name.to_owned()), Part::Facts(source_facts(report))];
+    parts.push(Part::Heading("In short".into()));
+    parts.extend(in_short(report).into_iter().map(Part::Line));
+    transition_parts(&report.replay, most, &mut parts);
+    joint_parts(&report.replay, &mut parts);
+    remark_parts(&report.remarks, &mut parts);
+    method_parts(report, &mut parts);
+    parts
+}
+
+fn source_facts(report: &Report) -> Vec<(String, String)> {
+    let source = &report.source;
+    let fact = |name: &str, value: String| (name.to_owned(), value);
+    let samples = report.alignment.iter().map(|a| a.matched).max().unwrap_or(0);
+    let interval_s = report.replay.joints.iter().map(|j| j.sample_interval_s).fold(0.0, f64::max);
+    let rate = if interval_s > 0.0 { format!(" at {:.0} Hz", 1.0 / interval_s) } else { String::new() };
+    let delay = source.recorder_delay_s.filter(|[_, most_s]| *most_s >= 1e-3);
+    let delay = delay.map_or(String::new(), |[median_s, most_s]| {
+        format!("; the recorder was {} ms behind it, at most {} ms", ms(median_s), ms(most_s))
+    });
+    vec![
+        fact(
+            "run",
+            format!(
+                "{:.2} s, {}, {samples} samples{rate}",
+                source.duration_s,
+                counted(report.alignment.len(), "joint")
+            ),
+        ),
+        fact("planned", format!("{}  {}", source.planned_topic, source.planned_field)),
+        fact("measured", format!("{}  {}", source.measured_topic, source.measured_field)),
+        fact("clock", format!("{} stamps{delay}", source.time_base.name())),
+    ]
+}
+
+fn in_short(report: &Report) -> Vec<String> {
+    let replay = &report.replay;
+    let mut lines = Vec::new();
+    match by_peak(replay).first() {
+        Some(worst) => lines.push(format!("Worst {}: {}", kind(worst.kind), worst_sentence(worst))),
+        None if replay.joints.iter().all(|j| !j.plan_moves) => {
+            lines.push("No joint is asked to move: there is no transition to judge.".to_owned());
+        }
+        None => lines.push("No planned start from rest was found.".to_owned()),
+    }
+    if let Some(c) = &replay.whole_run.concentration {
+        let place = match c.verdict {
+            Verdict::Transitions => "The error lives in the transitions",
+            Verdict::Elsewhere => "The error lives outside the transitions",
+            Verdict::Undecided => "Whether the error lives in the transitions is open",
+        };
+        let test = c.test.map_or("too few stretches to test".to_owned(), |t| {
+            format!(
+                "p = {:.2e}, {} transition events against {} other stretches",
+                t.p_value, t.inside_count, t.outside_count
+            )
+        });
+        lines.push(format!(
+            "{place}: rms {} deg inside, {} deg elsewhere; {:.0} % of the squared error in {:.0} % of the time ({test}).",
+            deg(c.rms_inside_rad),
+            deg(c.rms_outside_rad),
+            100.0 * c.squared_error_share_inside,
+            100.0 * c.time_share_inside,
+        ));
+    }
+    if let Some(path) = &replay.whole_run.path_error {
+        lines.push(format!(
+            "Path error, which ignores time: rms {} deg, peak {} deg over all joints (single run).",
+            deg(path.rms_rad),
+            deg(path.peak_rad)
+        ));
+    }
+    for joint in &replay.joints {
+        match (joint.plan_moves, joint.moves) {
+            (false, false) => lines.push(format!("{} does not move and is not asked to.", joint.name)),
+            (true, false) => {
+                lines.push(format!(
+                    "{} is asked to move and does not: {}.",
+                    joint.name,
+                    counted(joint.starts, "planned start")
+                ));
+            }
+            (false, true) => lines.push(format!("{} moves although its plan rests.", joint.name)),
+            (true, true) => {}
+        }
+    }
+    lines.extend(gate_lines(report));
+    lines
+}
+
+fn worst_sentence(worst: &Transition) -> String {
+    let lateness = match worst.onset_delay_s {
+        Some(delay_s) if delay_s >= 0.0 => format!("leaves {} ms after its plan", ms(delay_s)),
+        Some(delay_s) => format!("leaves {} ms before its plan", ms(-delay_s)),
+        None => "never answers its plan".to_owned(),
+    };
+    format!(
+        "{} at {:.2} s {lateness}; its error peaks at {} deg, {} ms after the planned start.",
+        worst.joint,
+        worst.planned_onset_s,
+        deg(worst.peak_error_rad),
+        ms(worst.time_to_peak_s)
+    )
+}
+
+fn by_peak(replay: &Replay) -> Vec<&Transition> {
+    let mut worst: Vec<&Transition> = replay.transitions.iter().collect();
+    worst.sort_by(|a, b| b.peak_error_rad.total_cmp(&a.peak_error_rad));
+    worst
+}
+
+fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Start => "start",
+        Kind::Reversal => "reversal",
+    }
+}
+
+fn optional(value: Option<f64>, format: fn(f64) -> String) -> String {
+    value.map_or(NONE.to_owned(), format)
+}
+
+fn transition_parts(replay: &Replay, most: usize, parts: &mut Vec<Part>) {
+    let all = by_peak(replay);
+    if all.is_empty() {
+        return;
+    }
+    let rows = all.iter().take(most).map(|t| {
+        let interval =
+            t.onset_delay_interval_s.map_or(NONE.to_owned(), |[a, b]| format!("{}..{}", ms(a), ms(b)));
+        vec![
+            t.joint.clone(),
+            kind(t.kind).to_owned(),
+            if t.direction < 0 { "-" } else { "+" }.to_owned(),
+            format!("{:.2}", t.planned_onset_s),
+            t.onset_delay_s.map_or("never".to_owned(), ms),
+            interval,
+            deg(t.peak_error_rad),
+            ms(t.time_to_peak_s),
+            deg(t.rms_error_rad),
+            optional(t.breakaway_error_rad, deg),
+            deg(t.overshoot_rad),
+            optional(t.settling_time_s, ms),
+        ]
+    });
+    let head = vec![
+        "joint",
+        "kind",
+        "dir",
+        "at s",
+        "late ms",
+        "95 %",
+        "peak deg",
+        "after ms",
+        "rms deg",
+        "break deg",
+        "over deg",
+        "settled ms",
+    ];
+    parts.push(Part::Heading("Transitions, worst first".into()));
+    parts.push(Part::Sheet(Sheet { head, left: 3, rows: rows.collect() }));
+    if all.len() > most {
+        parts
+            .push(Part::Line(format!("and {} more with smaller peaks (--all lists them)", all.len() - most)));
+    }
+}
+
+fn joint_parts(replay: &Replay, parts: &mut Vec<Part>) {
+    let rows = replay.joints.iter().map(|j| {
+        let error = &j.tracking_error;
+        vec![
+            j.name.clone(),
+            deg(error.rms_rad),
+            deg(error.mean_abs_rad),
+            deg(error.p95_rad),
+            deg(error.peak_rad),
+            format!("{:.2}", error.peak_time_s),
+            deg(error.bias_rad),
+            optional(j.standstill_error.map(|e| e.rms_rad), deg),
+            lag(j),
+            optional(j.lag_correlation, |c| format!("{c:.3}")),
+            j.starts.to_string(),
+            j.reversals.to_string(),
+            j.unmatched_starts.to_string(),
+            j.unplanned_starts.to_string(),
+        ]
+    });
+    let head = vec![
+        "joint",
+        "rms deg",
+        "mean",
+        "p95",
+        "peak",
+        "at s",
+        "bias",
+        "at rest",
+        "lag ms",
+        "corr",
+        "starts",
+        "rev",
+        "no answer",
+        "unasked",
+    ];
+    parts.push(Part::Heading("Joints".into()));
+    parts.push(Part::Sheet(Sheet { head, left: 1, rows: rows.collect() }));
+}
+
+fn lag(joint: &JointReplay) -> String {
+    match (joint.lag_s, joint.lag_interval_s) {
+        (Some(lag_s), Some([a, b])) => format!("{} ({}..{})", ms(lag_s), ms(a), ms(b)),
+        (lag_s, _) => optional(lag_s, ms),
+    }
+}
+
+/// Remarks as a table, or the good news.
+pub(super) fn remark_parts(remarks: &Remarks, parts: &mut Vec<Part>) {
+    if remarks.is_empty() {
+        return;
+    }
+    let rows = remarks.as_slice().iter().map(|r| vec![r.code.name(), r.count.to_string(), r.message.clone()]);
+    parts.push(Part::Heading("Remarks on the data".into()));
+    parts.push(Part::Facts(rows.map(|row| (format!("{} x{}", row[0], row[1]), row[2].clone())).collect()));
+}
+
+/// One line for each limit that was set.
+pub fn gate_lines(report: &Report) -> Vec<String> {
+    report.gates.iter().map(gate_line).collect()
+}
+
+fn gate_line(result: &GateResult) -> String {
+    let (name, unit, show): (_, _, fn(f64) -> String) = match result.gate {
+        Gate::TransitionPeak => ("transition peak", "deg", deg),
+        Gate::Rms => ("rms error", "deg", deg),
+        Gate::Peak => ("peak error", "deg", deg),
+        Gate::StandstillRms => ("rms error at standstill", "deg", deg),
+        Gate::OnsetDelay => ("start delay", "ms", ms),
+        Gate::Lag => ("lag", "ms", ms),
+    };
+    let verdict = if result.kept { "kept" } else { "NOT KEPT" };
+    let limit = format!("{} {unit} allowed", show(result.limit));
+    let Some(joint) = &result.joint else {
+        return format!("Limit on {name} {verdict}: nothing to measure, {limit}.");
+    };
+    let time = result.time_s.map_or(String::new(), |t| format!(" at {t:.2} s"));
+    let worst =
+        result.worst.map_or("a start without an answer".to_owned(), |w| format!("{} {unit}", show(w)));
+    format!("Limit on {name} {verdict}: {joint}{time} has {worst}, {limit}.")
+}

@@ -1,0 +1,6 @@
+//! One file per verb: what the caller wants in, what was found out. No printing, no clap.
+
+pub mod detector;
+pub mod info;
+pub mod recover;
+pub mod report;

@@ -1,0 +1,23 @@
+//! `recover`: everything of a damaged log that is whole, as a sound log.
+
+use std::path::PathBuf;
+
+use crate::log::{LogError, Recovered, recover};
+
+/// What to recover, and to where.
+#[derive(Debug, Clone)]
+pub struct Inputs {
+    /// The damaged log.
+    pub log: PathBuf,
+    /// The log to write; it appears whole or not at all.
+    pub output: PathBuf,
+}
+
+/// Recovers a log.
+///
+/// # Errors
+///
+/// [`LogError`] if the log cannot be read at all or the new one not written.
+pub fn run(inputs: &Inputs) -> Result<Recovered, LogError> {
+    recover(&inputs.log, &inputs.output)
+}

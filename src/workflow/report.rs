@@ -1,0 +1,231 @@
+//! `report`: from a log to the tracking error of every joint and transition.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use crate::{
+    log::{LogError, ReadOptions, SourceInfo, read_recording},
+    remark::{Code, Remarks},
+    replay::{Replay, Rules, replay},
+    series::{Pair, align},
+};
+
+/// What to analyse, how, and what must hold.
+#[derive(Debug, Clone, Default)]
+pub struct Inputs {
+    /// Files or bag directories of one run.
+    pub logs: Vec<PathBuf>,
+    /// What to read, where the log alone does not tell.
+    pub read: ReadOptions,
+    /// Thresholds and windows.
+    pub rules: Rules,
+    /// Limits that the caller sets.
+    pub gates: Gates,
+}
+
+/// Limits that a run must keep; `None` is no limit.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Gates {
+    /// Peak error in any transition, rad.
+    pub max_transition_peak_rad: Option<f64>,
+    /// Root mean square error of any joint over the run, rad.
+    pub max_rms_rad: Option<f64>,
+    /// Peak error of any joint over the run, rad.
+    pub max_peak_rad: Option<f64>,
+    /// Root mean square error of any joint at standstill, rad.
+    pub max_standstill_rms_rad: Option<f64>,
+    /// Delay of any start, s; a start that is not answered exceeds every limit.
+    pub max_onset_delay_s: Option<f64>,
+    /// Velocity lag of any joint, s.
+    pub max_lag_s: Option<f64>,
+}
+
+/// A limit and the worst that was found against it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct GateResult {
+    /// Which limit.
+    pub gate: Gate,
+    /// The limit, in SI units.
+    pub limit: f64,
+    /// The worst value, in the unit of the limit; `None` where nothing could be measured, or a
+    /// start was never answered.
+    pub worst: Option<f64>,
+    /// The joint it was found at.
+    pub joint: Option<String>,
+    /// When, s.
+    pub time_s: Option<f64>,
+    /// Whether the limit is kept.
+    pub kept: bool,
+}
+
+/// A quantity that can be limited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Gate {
+    /// Peak error in a transition, rad.
+    TransitionPeak,
+    /// Root mean square error of a joint, rad.
+    Rms,
+    /// Peak error of a joint, rad.
+    Peak,
+    /// Root mean square error of a joint at standstill, rad.
+    StandstillRms,
+    /// Delay of a start, s.
+    OnsetDelay,
+    /// Velocity lag, s.
+    Lag,
+}
+
+/// How the plan of one joint met its measurement.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Alignment {
+    /// The joint.
+    pub joint: String,
+    /// Measured samples with a plan.
+    pub matched: usize,
+    /// Measured samples without one, left out.
+    pub unmatched: usize,
+    /// Continuous stretches.
+    pub segments: usize,
+}
+
+/// A report, before it is rendered.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Where the data come from.
+    pub source: SourceInfo,
+    /// How plan and measurement were matched, by joint.
+    pub alignment: Vec<Alignment>,
+    /// What was found.
+    pub replay: Replay,
+    /// The limits that were set, each with its outcome.
+    pub gates: Vec<GateResult>,
+    /// What was doubtful.
+    pub remarks: Remarks,
+    /// The aligned samples, for plots.
+    pub pairs: Vec<Pair>,
+}
+
+impl Report {
+    /// Whether every limit is kept.
+    pub fn gates_kept(&self) -> bool {
+        self.gates.iter().all(|gate| gate.kept)
+    }
+}
+
+/// Analyses one run.
+///
+/// # Errors
+///
+/// [`LogError`] if the log cannot be read or holds no planned and measured joints.
+pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
+    let recording = read_recording(&inputs.logs, &inputs.read)?;
+    let mut remarks = recording.remarks;
+    let mut pairs = Vec::new();
+    let mut alignment = Vec::new();
+    for planned in &recording.planned.tracks {
+        let Some(measured) = recording.measured.track(planned.name()) else { continue };
+        let Some(pair) = align(planned, measured) else {
+            let message = format!("{} has no plan while it was measured; left out", planned.name());
+            remarks.add(Code::UnpairedJoint, 1, message);
+            continue;
+        };
+        alignment.push(Alignment {
+            joint: pair.name.clone(),
+            matched: pair.matched,
+            unmatched: pair.unmatched,
+            segments: pair.segments.len(),
+        });
+        pairs.push(pair);
+    }
+    let replay = replay(&pairs, &inputs.rules);
+    let gates = gates(&inputs.gates, &replay);
+    Ok(Report { source: recording.source, alignment, replay, gates, remarks, pairs })
+}
+
+/// Where a limited quantity was found: value, joint, time.
+type Found<'a> = (Option<f64>, &'a str, Option<f64>);
+
+fn gates(limits: &Gates, replay: &Replay) -> Vec<GateResult> {
+    let joints = || replay.joints.iter();
+    let transitions = || replay.transitions.iter();
+    let mut results = Vec::new();
+    let mut check = |gate, limit: Option<f64>, found: Vec<Found<'_>>| {
+        if let Some(limit) = limit {
+            results.push(worst(gate, limit, found));
+        }
+    };
+    check(
+        Gate::TransitionPeak,
+        limits.max_transition_peak_rad,
+        transitions()
+            .map(|t| (Some(t.peak_error_rad), t.joint.as_str(), Some(t.planned_onset_s + t.time_to_peak_s)))
+            .collect(),
+    );
+    check(
+        Gate::Rms,
+        limits.max_rms_rad,
+        joints().map(|j| (Some(j.tracking_error.rms_rad), j.name.as_str(), None)).collect(),
+    );
+    check(
+        Gate::Peak,
+        limits.max_peak_rad,
+        joints()
+            .map(|j| (Some(j.tracking_error.peak_rad), j.name.as_str(), Some(j.tracking_error.peak_time_s)))
+            .collect(),
+    );
+    check(
+        Gate::StandstillRms,
+        limits.max_standstill_rms_rad,
+        joints().filter_map(|j| Some((Some(j.standstill_error?.rms_rad), j.name.as_str(), None))).collect(),
+    );
+    check(
+        Gate::OnsetDelay,
+        limits.max_onset_delay_s,
+        transitions().map(|t| (t.onset_delay_s, t.joint.as_str(), Some(t.planned_onset_s))).collect(),
+    );
+    check(
+        Gate::Lag,
+        limits.max_lag_s,
+        joints().filter_map(|j| Some((Some(j.lag_s?), j.name.as_str(), None))).collect(),
+    );
+    results
+}
+
+/// The worst of what was found; what could not be measured is worse than any number.
+fn worst(gate: Gate, limit: f64, found: Vec<Found<'_>>) -> GateResult {
+    let of = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
+    let worst = found.into_iter().max_by(|a, b| of(a.0).total_cmp(&of(b.0)));
+    match worst {
+        Some((value, joint, time_s)) => GateResult {
+            gate,
+            limit,
+            worst: value,
+            joint: Some(joint.to_owned()),
+            time_s,
+            kept: of(value) <= limit,
+        },
+        None => GateResult { gate, limit, worst: None, joint: None, time_s: None, kept: true },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_start_that_was_never_answered_breaks_every_limit_on_delay() {
+        let found = vec![(Some(0.1), "a", Some(1.0)), (None, "b", Some(2.0))];
+        let result = worst(Gate::OnsetDelay, 10.0, found);
+        assert_eq!((result.kept, result.worst, result.joint.as_deref()), (false, None, Some("b")));
+    }
+
+    #[test]
+    fn the_limit_itself_is_kept() {
+        assert!(worst(Gate::Rms, 0.1, vec![(Some(0.1), "a", None)]).kept);
+    }
+}

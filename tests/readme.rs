@@ -1,0 +1,90 @@
+//! The README's commands give what the README shows.
+//!
+//! In a block marked `console` a line `$ hydrotrace ...` is run and the lines after it are what it
+//! prints; a line `...` stands for any number of lines.
+
+#![allow(clippy::unwrap_used)]
+
+use std::{path::Path, process::Command};
+
+fn readme() -> String {
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).unwrap()
+}
+
+/// Commands and what the README says they print.
+fn examples(text: &str) -> Vec<(String, Vec<String>)> {
+    let mut examples: Vec<(String, Vec<String>)> = Vec::new();
+    let mut inside = false;
+    for line in text.lines() {
+        match line {
+            "```console" => inside = true,
+            "```" => inside = false,
+            _ if !inside => {}
+            _ => match (line.strip_prefix("$ "), examples.last_mut()) {
+                (Some(command), _) => examples.push((command.to_owned(), Vec::new())),
+                (None, Some((_, shown))) => shown.push(line.to_owned()),
+                (None, None) => panic!("output before any command: {line}"),
+            },
+        }
+    }
+    examples
+}
+
+/// Whether printed lines are the shown ones, `...` standing for any.
+fn agree(shown: &[String], printed: &[String]) -> bool {
+    match shown.split_first() {
+        None => printed.is_empty(),
+        Some((first, rest)) if first == "..." => {
+            (0..=printed.len()).any(|skip| agree(rest, &printed[skip..]))
+        }
+        Some((first, rest)) => printed.split_first().is_some_and(|(p, left)| p == first && agree(rest, left)),
+    }
+}
+
+#[test]
+fn every_command_prints_what_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let examples = examples(&readme());
+    assert!(examples.len() >= 5, "only {} commands found", examples.len());
+    for (command, shown) in examples {
+        let words: Vec<&str> = command.split_whitespace().collect();
+        assert_eq!(words[0], "hydrotrace", "{command}");
+        // Outputs go to a scratch folder that sees the sample logs.
+        let link = folder.path().join("sample-logs");
+        if !link.exists() {
+            std::fs::create_dir(&link).unwrap();
+            for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs")).unwrap()
+            {
+                let path = entry.unwrap().path();
+                std::fs::copy(&path, link.join(path.file_name().unwrap())).unwrap();
+            }
+        }
+        let run = Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
+            .current_dir(folder.path())
+            .args(&words[1..])
+            .output()
+            .unwrap();
+        let printed = [run.stdout, run.stderr].concat();
+        let printed: Vec<String> = String::from_utf8(printed).unwrap().lines().map(str::to_owned).collect();
+        assert!(agree(&shown, &printed), "{command} prints\n{}", printed.join("\n"));
+    }
+}
+
+#[test]
+fn the_two_first_commands_are_there() {
+    let text = readme();
+    let run = text.find("cargo run --release -- report sample-logs/panel-install.mcap").unwrap();
+    let test = text.find("cargo test").unwrap();
+    assert!(run < test && run < 2500, "{run} {test}");
+}
+
+#[test]
+fn every_local_link_leads_somewhere() {
+    let text = readme();
+    for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+        if !link.contains("://") && !link.starts_with('#') {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(link);
+            assert!(path.exists(), "README links to {link}");
+        }
+    }
+}
