@@ -17,6 +17,9 @@ use measure::{Time, child, peak_anonymous_mb, timed};
 /// Position and velocity of the plan and position of the measurement for six joints, speed
 /// scaling, and the three clocks of every message.
 const NUMBERS_READ: usize = 3 * 6 + 1 + 3;
+/// The same as series, which share one axis of time.
+const NUMBERS_KEPT: usize = 3 * 6 + 1;
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let value = |flag: &str| {
@@ -86,11 +89,18 @@ fn synthetic(mb: usize, reps: usize) {
         }
     }
     let zstd = &written.files[0].1;
-    let numbers_mb = (written.messages * NUMBERS_READ * 8) as f64 / 1e6;
-    println!("memory, two threads: {numbers_mb:.0} MB of numbers extracted, and beyond them");
+    let numbers_mb = |each: usize| (written.messages * each * 8) as f64 / 1e6;
+    let (read_mb, kept_mb) = (numbers_mb(NUMBERS_READ), numbers_mb(NUMBERS_KEPT));
+    println!(
+        "memory, zstd, two threads: {read_mb:.0} MB of numbers extracted, {kept_mb:.0} MB kept as series"
+    );
     for what in ["read", "recording"] {
-        let beyond_mb = child(&format!("{what}-memory"), 2, zstd)[0] - numbers_mb;
-        println!("      {what}: {beyond_mb:.0} MB of anonymous memory at the most");
+        let peak_mb = child(&format!("{what}-memory"), 2, zstd)[0];
+        println!(
+            "      {what}: {peak_mb:.0} MB of anonymous memory at the most, {:.0} beyond those extracted, {:.0} beyond those kept",
+            peak_mb - read_mb,
+            peak_mb - kept_mb
+        );
     }
     let sample = written.messages.min(if mb < 100 { 5_000 } else { 30_000 });
     match peer::rosbags(zstd, sample) {
@@ -116,8 +126,11 @@ fn compare(name: &str, path: &Path, reps: usize) -> f64 {
     let tasks = [("decompress", 1), ("read", 1), ("read", 2), ("recording", 1)];
     let runs: Vec<[Time; 4]> =
         (0..reps).map(|_| tasks.map(|(task, threads)| timed(task, threads, path))).collect();
-    let [pure, read, two, whole] =
-        [0, 1, 2, 3].map(|task| Time::best(&runs.iter().map(|run| run[task]).collect::<Vec<_>>()));
+    let [pures, reads, twos, wholes] =
+        [0, 1, 2, 3].map(|task| runs.iter().map(|run| run[task]).collect::<Vec<_>>());
+    let [pure, read, two, whole] = [&pures, &reads, &twos, &wholes].map(|runs| Time::least_cpu(runs));
+    let [pure_user_s, read_user_s] = [&pures, &reads].map(|runs| Time::median_user_s(runs));
+    let [read_wall_s, two_wall_s] = [&reads, &twos].map(|runs| Time::least_wall_s(runs));
     let rate = |seconds: f64| bytes / seconds / 1e6;
     println!(
         "{name:<5} {:>7.1} {:>6.2} | {:>5.0} | {:>5.0} {:>5.0} {:>5.0} | {:>5.2} {:>5.2} | {:>5.0} {:>5.2} {:>5.2} | {:>9.0} {:>5.2}",
@@ -125,18 +138,18 @@ fn compare(name: &str, path: &Path, reps: usize) -> f64 {
         bytes / packed,
         rate(pure.cpu_s),
         rate(read.cpu_s),
-        rate(read.wall_s),
-        rate(read.user_s()),
+        rate(read_wall_s),
+        rate(read_user_s),
         pure.cpu_s / read.cpu_s,
-        pure.cpu_s / read.user_s(),
-        rate(two.wall_s),
-        read.wall_s / two.wall_s,
+        pure_user_s / read_user_s,
+        rate(two_wall_s),
+        read_wall_s / two_wall_s,
         read.cpu_s / two.cpu_s,
         rate(whole.cpu_s),
         pure.cpu_s / whole.cpu_s,
     );
     println!(
-        "      CPU ms: decompression {:.1}, read {:.1} ({:.1} in the kernel), recording {:.1}",
+        "      CPU ms: decompression {:.1}, read {:.1} ({:.0} in the kernel in that run), recording {:.1}",
         pure.cpu_s * 1e3,
         read.cpu_s * 1e3,
         read.kernel_s * 1e3,

@@ -33,16 +33,23 @@ impl Time {
     }
 
     /// CPU time outside the kernel.
-    pub(crate) fn user_s(self) -> f64 {
+    fn user_s(&self) -> f64 {
         self.cpu_s - self.kernel_s
     }
 
-    /// The least of each of several runs.
-    pub(crate) fn best(runs: &[Self]) -> Self {
-        let least = |of: fn(&Self) -> f64| runs.iter().map(of).fold(f64::INFINITY, f64::min);
-        let cpu_s = least(|run| run.cpu_s);
-        let kernel_s = runs.iter().map(|run| run.kernel_s).sum::<f64>() / runs.len() as f64;
-        Self { wall_s: least(|run| run.wall_s), cpu_s, kernel_s }
+    /// The run that took the least CPU time, whole: its kernel time goes with its CPU time.
+    pub(crate) fn least_cpu(runs: &[Self]) -> Self {
+        runs.iter().copied().min_by(|a, b| a.cpu_s.total_cmp(&b.cpu_s)).unwrap()
+    }
+
+    /// The least wall time of several runs, s.
+    pub(crate) fn least_wall_s(runs: &[Self]) -> f64 {
+        runs.iter().map(|run| run.wall_s).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The median CPU time outside the kernel, s: single runs are counted in coarse ticks.
+    pub(crate) fn median_user_s(runs: &[Self]) -> f64 {
+        hydrotrace::math::median(runs.iter().map(Self::user_s).collect())
     }
 }
 
