@@ -187,6 +187,19 @@ fn bases() -> Vec<Base> {
     ]
 }
 
+impl Base {
+    fn into_bytes(self) -> Vec<u8> {
+        match self {
+            Self::File(bytes) => bytes,
+            Self::Records(records, compression) => in_chunk(&records, compression),
+        }
+    }
+}
+
+fn in_chunk(records: &[u8], compression: &str) -> Vec<u8> {
+    [MAGIC.to_vec(), record(1, &[0; 8]), chunk(compression, records), end()].concat()
+}
+
 /// Numbers that lengths, counts and stamps do not expect.
 const ODD: [u64; 12] =
     [0, 1, 7, 8, 255, 1 << 15, 1 << 31, (1 << 32) - 1, 1 << 40, 1 << 63, u64::MAX - 8, u64::MAX];
@@ -241,7 +254,7 @@ fn mutant(bases: &[Base], dice: &mut Dice) -> Vec<u8> {
         Base::Records(records, compression) => {
             let mut records = records.clone();
             spoil(&mut records, dice);
-            [MAGIC.to_vec(), record(1, &[0; 8]), chunk(compression, &records), end()].concat()
+            in_chunk(&records, compression)
         }
     }
 }
@@ -305,4 +318,14 @@ fn no_mutant_ends_exhausts_or_confuses_the_reader() {
         low.2.max(high.2),
         low.3.max(high.3)
     );
+}
+
+#[test]
+#[ignore = "writes seeds for the fuzzer into HYDROTRACE_CORPUS"]
+fn seeds() {
+    let folder = std::path::PathBuf::from(std::env::var_os("HYDROTRACE_CORPUS").unwrap());
+    std::fs::create_dir_all(&folder).unwrap();
+    for (k, base) in bases().into_iter().enumerate() {
+        std::fs::write(folder.join(format!("base_{k}.mcap")), base.into_bytes()).unwrap();
+    }
 }

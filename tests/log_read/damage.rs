@@ -272,3 +272,48 @@ fn noise_is_no_log_and_does_no_harm() {
         assert_eq!(survey.remarks.as_slice().first().map(|r| r.code), Some(Code::NotClosed));
     }
 }
+
+#[test]
+fn inner_lengths_of_a_chunk_may_say_anything() {
+    for length in [u64::MAX, u64::MAX - 9, u64::MAX - 40, 1 << 63, 1 << 32] {
+        let log = plain_log();
+        let mut chunks = chunks("zstd", &log);
+        let place = 9 + 16 + 8 + 4 + 4 + "zstd".len();
+        chunks[4][place..place + 8].copy_from_slice(&length.to_le_bytes());
+        let (samples, remarks) = samples(&file_of(&log, &chunks));
+        assert_eq!(samples, 90, "{remarks:?}");
+        chunks.truncate(5);
+        let _ = read_bytes(&file_of(&log, &chunks), &ReadOptions::default());
+    }
+}
+
+#[test]
+fn zeros_inside_a_chunk_are_no_records() {
+    let log = plain_log();
+    let mut chunks = chunks("", &log);
+    let mut inside = message_records(&log.messages[40..50]);
+    let (third, length) = (inside.len() / 10 * 3, inside.len());
+    let end = third + (length - third) / 9 * 9;
+    inside[third..].fill(0);
+    inside.truncate(end);
+    chunks[4] = chunk_with("", inside.len() as u64, 0, &inside);
+    let (samples, remarks) = samples(&file_of(&log, &chunks));
+    assert_eq!((samples, codes(&remarks)), (93, vec![Code::PartialChunk]));
+}
+
+#[test]
+fn a_cut_chunk_may_promise_far_more_than_is_left_of_it() {
+    let mut log = plain_log();
+    log.messages = (0..400).flat_map(|_| log.messages.clone()).collect();
+    let inside = message_records(&log.messages);
+    let packed = chunk("zstd", &inside);
+    assert!(
+        inside.len() > (4 << 20) && packed.len() < inside.len() / 1000,
+        "{} {}",
+        inside.len(),
+        packed.len()
+    );
+    let bytes = [MAGIC.to_vec(), log.definitions(), packed].concat();
+    let (samples, remarks) = samples(&bytes[..bytes.len() - 40]);
+    assert!(samples > 0 && count(&remarks, Code::PartialChunk) == 1, "{remarks:?}");
+}

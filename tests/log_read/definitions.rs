@@ -234,3 +234,23 @@ fn a_random_type_of_each_kind_is_written_as_the_standard_says() {
     ];
     assert_eq!(xcdr2, by_hand.concat());
 }
+
+#[test]
+fn forms_of_xcdr2_are_told_apart_by_the_sizes_of_lists() {
+    for kind in [Kind::Xcdr2, Kind::Xcdr2NoSizes] {
+        let mut log = Log::default();
+        add_joint_state(&mut log, "/planned/joint_states", plan);
+        let schema = "string[] empty\nfloat64[] angle\n";
+        let channel = log.channel(Channel::cdr("/m", "x/msg/M").with_schema("ros2msg", schema));
+        for k in 0..3 {
+            // Read with sizes that are not there, this is two empty texts and no angles.
+            let data = Cdr::message(kind, |cdr| {
+                cdr.texts(&[]);
+                cdr.f64s(&[0.0, 0.0]);
+            });
+            log.send(channel, stamp(k), data);
+        }
+        let recording = read_with(&log, &options(&[], &["/m:angle"], &NAMES));
+        assert_eq!(joints(&recording.measured), NAMES, "{kind:?}");
+    }
+}

@@ -178,7 +178,7 @@ fn plausible(record: &Record<'_>) -> bool {
         Opcode::MESSAGE => length >= 22,
         Opcode::CHUNK => ChunkRecord::parse(record.body).is_some_and(|chunk| {
             let head = 40 + chunk.compression.len();
-            head as u64 + chunk.compressed_size == length as u64
+            chunk.compressed_size.checked_add(head as u64) == Some(length as u64)
         }),
         Opcode::DATA_END => length == 4,
         Opcode::HEADER | 0x07..=0x0E => length >= 8,
