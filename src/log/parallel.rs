@@ -64,6 +64,7 @@ pub(super) fn read_blocks(work: &[Work<'_>], specs: &[Spec], joints: &[String], 
     let moved = Condvar::new();
     rayon::broadcast(|_| {
         let mut blocks = Blocks::new();
+        let _release = ReleaseOnPanic { progress: &progress, moved: &moved };
         loop {
             let index = counter.fetch_add(1, Ordering::Relaxed);
             let Some((block, routes)) = work.get(index) else { return };
@@ -86,6 +87,21 @@ pub(super) fn read_blocks(work: &[Work<'_>], specs: &[Spec], joints: &[String], 
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A thread that panics never hands over its block; those that wait for it must not wait forever.
+struct ReleaseOnPanic<'a, 'b> {
+    progress: &'a Mutex<Progress<'b>>,
+    moved: &'a Condvar,
+}
+
+impl Drop for ReleaseOnPanic<'_, '_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            lock(self.progress).next = usize::MAX / 2;
+            self.moved.notify_all();
+        }
+    }
 }
 
 impl Progress<'_> {

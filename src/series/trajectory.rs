@@ -141,6 +141,7 @@ fn state_at(pieces: &[Piece], t_s: f64) -> State {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "exact by construction")]
 mod tests {
     use super::*;
 
