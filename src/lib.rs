@@ -13,6 +13,7 @@ pub mod units;
 
 // nouns
 pub mod series;
+pub mod task;
 
 // abilities
 pub mod log;

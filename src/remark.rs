@@ -60,6 +60,8 @@ pub enum Code {
     TrajectoryReplaced,
     /// A limit of what this program understands.
     NotSupported,
+    /// A ceiling so high that it binds nothing.
+    InactiveBound,
 }
 
 impl Code {

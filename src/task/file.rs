@@ -1,0 +1,394 @@
+//! The task file as it is written: degrees, names, lines.
+
+use std::{collections::BTreeMap, ops::Range};
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{ArmSource, Boundary, Bounds, JointLimits, KeyPoint, Place, Task, TaskError, Weights};
+use crate::units::radians_from_degrees;
+
+/// Values by joint.
+type ByJoint = BTreeMap<String, f64>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    title: String,
+    arm: String,
+    joints: Spanned<Vec<String>>,
+    degree: Option<Spanned<u8>>,
+    #[serde(default)]
+    payload_kg: f64,
+    interval_s: Option<Spanned<[f64; 2]>>,
+    times_s: Option<Spanned<Vec<f64>>>,
+    #[serde(rename = "point")]
+    points: Vec<Spanned<Point>>,
+    start: Option<End>,
+    end: Option<End>,
+    #[serde(default)]
+    limits: Limits,
+    #[serde(default)]
+    objectives: Objectives,
+    weights: Option<Spanned<FileWeights>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Point {
+    #[serde(default)]
+    name: String,
+    angles_deg: Option<Spanned<ByJoint>>,
+    tool: Option<Tool>,
+    dwell_s: Option<Spanned<f64>>,
+    payload_kg: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Tool {
+    x_m: f64,
+    z_m: f64,
+    pitch_deg: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct End {
+    speed_deg_s: Option<Spanned<ByJoint>>,
+    acceleration_deg_s2: Option<Spanned<ByJoint>>,
+    jerk_deg_s3: Option<Spanned<ByJoint>>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct Limits {
+    range_deg: Option<Spanned<BTreeMap<String, [f64; 2]>>>,
+    speed_deg_s: Option<Spanned<ByJoint>>,
+    acceleration_deg_s2: Option<Spanned<ByJoint>>,
+    jerk_deg_s3: Option<Spanned<ByJoint>>,
+    torque_n_m: Option<Spanned<ByJoint>>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+struct Objectives {
+    max_duration_s: Option<Spanned<f64>>,
+    max_rms_jerk_deg_s3: Option<Spanned<f64>>,
+    max_rms_power_w: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileWeights {
+    duration: f64,
+    rms_jerk: f64,
+    rms_power: f64,
+}
+
+/// Shortest and longest interval where the file gives none, s.
+const INTERVAL_S: [f64; 2] = [0.3, 20.0];
+
+pub(super) fn parse(text: &str) -> Result<Task, TaskError> {
+    let file: File = toml::from_str(text).map_err(|error| TaskError::Syntax {
+        line: line_of(text, &error.span().unwrap_or(0..0)),
+        message: syntax(error.message()),
+    })?;
+    let reader = Reader { text, joints: file.joints.get_ref() };
+    reader.joints(&file.joints)?;
+    let degree = match &file.degree {
+        None => 6,
+        Some(degree) if (5..=7).contains(degree.get_ref()) => *degree.get_ref(),
+        Some(degree) => return Err(reader.value("degree", degree, "5, 6 or 7 is expected")),
+    };
+    let payload_kg = file.payload_kg;
+    if !(payload_kg.is_finite() && payload_kg >= 0.0) {
+        let expected = "a mass of zero or more is expected";
+        return Err(TaskError::Value {
+            line: 1,
+            key: "payload_kg".into(),
+            found: payload_kg.to_string(),
+            expected,
+        });
+    }
+    let interval_s = match &file.interval_s {
+        None => INTERVAL_S,
+        Some(given) => {
+            let [low, high] = *given.get_ref();
+            if !(low > 0.0 && high.is_finite() && high >= low) {
+                let found = format!("[{low}, {high}]");
+                let expected = "0 < shortest <= longest is expected";
+                let line = line_of(text, &given.span());
+                return Err(TaskError::Value { line, key: "interval_s".into(), found, expected });
+            }
+            [low, high]
+        }
+    };
+    let points = file.points.iter().map(|point| reader.point(point)).collect::<Result<Vec<_>, _>>()?;
+    if points.len() < 2 {
+        let (key, why) = ("point".to_owned(), "a plan leads from one key point to another");
+        return Err(TaskError::Length { line: 1, key, found: points.len(), expected: 2, why });
+    }
+    let times_s = match &file.times_s {
+        None => None,
+        Some(times) => Some(reader.times(times, points.len())?),
+    };
+    let weights = match &file.weights {
+        None => None,
+        Some(given) => {
+            let FileWeights { duration, rms_jerk, rms_power } = *given.get_ref();
+            let all = [duration, rms_jerk, rms_power];
+            if all.iter().any(|w| !(w.is_finite() && *w >= 0.0)) || all.iter().sum::<f64>() <= 0.0 {
+                let expected = "weights of zero or more, not all zero, are expected";
+                let line = line_of(text, &given.span());
+                return Err(TaskError::Value {
+                    line,
+                    key: "weights".into(),
+                    found: format!("{all:?}"),
+                    expected,
+                });
+            }
+            Some(Weights { duration, rms_jerk, rms_power })
+        }
+    };
+    let bound = |key, value: &Option<Spanned<f64>>| match value {
+        Some(given) => reader.positive(key, given).map(Some),
+        None => Ok(None),
+    };
+    Ok(Task {
+        title: file.title,
+        arm: if file.arm == "sample" { ArmSource::Sample } else { ArmSource::File(file.arm) },
+        joints: file.joints.get_ref().clone(),
+        degree,
+        points,
+        payload_kg,
+        start: reader.boundary("start", file.start.as_ref())?,
+        end: reader.boundary("end", file.end.as_ref())?,
+        interval_s,
+        limits: reader.limits(&file.limits)?,
+        bounds: Bounds {
+            duration_s: bound("max_duration_s", &file.objectives.max_duration_s)?,
+            rms_jerk_rad_s3: bound("max_rms_jerk_deg_s3", &file.objectives.max_rms_jerk_deg_s3)?
+                .map(radians_from_degrees),
+            rms_power_w: bound("max_rms_power_w", &file.objectives.max_rms_power_w)?,
+        },
+        weights,
+        times_s,
+    })
+}
+
+/// The line, from 1, in which a span starts.
+fn line_of(text: &str, span: &Range<usize>) -> usize {
+    let start = span.start.min(text.len());
+    1 + text.as_bytes()[..start].iter().filter(|byte| **byte == b'\n').count()
+}
+
+/// A key without its unit is the commonest slip: say which keys there are.
+fn syntax(message: &str) -> String {
+    let mut message = message.trim().replace('\n', " ");
+    if message.contains("unknown field") {
+        message.push_str("; every quantity carries its unit in its key");
+    }
+    message
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    joints: &'a [String],
+}
+
+impl Reader<'_> {
+    fn declared(&self) -> String {
+        self.joints.join(", ")
+    }
+
+    fn value<T: std::fmt::Display>(
+        &self,
+        key: &str,
+        given: &Spanned<T>,
+        expected: &'static str,
+    ) -> TaskError {
+        let line = line_of(self.text, &given.span());
+        TaskError::Value { line, key: key.to_owned(), found: given.get_ref().to_string(), expected }
+    }
+
+    fn positive(&self, key: &str, given: &Spanned<f64>) -> Result<f64, TaskError> {
+        let value = *given.get_ref();
+        if value.is_finite() && value > 0.0 {
+            Ok(value)
+        } else {
+            Err(self.value(key, given, "a number above zero is expected"))
+        }
+    }
+
+    fn joints(&self, given: &Spanned<Vec<String>>) -> Result<(), TaskError> {
+        let line = line_of(self.text, &given.span());
+        let key = "joints".to_owned();
+        if given.get_ref().is_empty() {
+            return Err(TaskError::Length { line, key, found: 0, expected: 1, why: "an arm has joints" });
+        }
+        let mut sorted = given.get_ref().clone();
+        sorted.sort_unstable();
+        match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => {
+                let expected = "every joint is expected once";
+                Err(TaskError::Value { line, key, found: format!("{:?} twice", pair[0]), expected })
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Values in the order of the joints; `otherwise` for those left out, an error if it is none.
+    fn by_joint<T: Copy>(
+        &self,
+        key: &str,
+        given: &Spanned<BTreeMap<String, T>>,
+        otherwise: Option<T>,
+    ) -> Result<Vec<T>, TaskError> {
+        let line = line_of(self.text, &given.span());
+        let values = given.get_ref();
+        if let Some(joint) = values.keys().find(|name| !self.joints.contains(name)) {
+            let (key, joint) = (key.to_owned(), joint.clone());
+            return Err(TaskError::UnknownJoint { line, key, joint, declared: self.declared() });
+        }
+        let of = |joint: &String| {
+            values.get(joint).copied().or(otherwise).ok_or_else(|| TaskError::MissingJoint {
+                line,
+                key: key.to_owned(),
+                joint: joint.clone(),
+                declared: self.declared(),
+            })
+        };
+        self.joints.iter().map(of).collect()
+    }
+
+    /// As [`Self::by_joint`], finite and in radians.
+    fn angles(
+        &self,
+        key: &str,
+        given: &Spanned<ByJoint>,
+        otherwise: Option<f64>,
+    ) -> Result<Vec<f64>, TaskError> {
+        let values = self.by_joint(key, given, otherwise)?;
+        match values.iter().find(|value| !value.is_finite()) {
+            Some(value) => {
+                let line = line_of(self.text, &given.span());
+                let expected = "finite numbers are expected";
+                Err(TaskError::Value { line, key: key.to_owned(), found: value.to_string(), expected })
+            }
+            None => Ok(values.into_iter().map(radians_from_degrees).collect()),
+        }
+    }
+
+    fn point(&self, given: &Spanned<Point>) -> Result<KeyPoint, TaskError> {
+        let line = line_of(self.text, &given.span());
+        let point = given.get_ref();
+        let place = match (&point.angles_deg, &point.tool) {
+            (Some(angles), None) => Place::Joints(self.angles("angles_deg", angles, None)?),
+            (None, Some(tool)) => {
+                let Tool { x_m, z_m, pitch_deg } = *tool;
+                if ![x_m, z_m, pitch_deg].iter().all(|v| v.is_finite()) {
+                    let found = format!("{x_m}, {z_m}, {pitch_deg}");
+                    let expected = "finite numbers are expected";
+                    return Err(TaskError::Value { line, key: "tool".into(), found, expected });
+                }
+                Place::Tool { x_m, z_m, pitch_rad: radians_from_degrees(pitch_deg) }
+            }
+            (Some(_), Some(_)) => return Err(TaskError::Place { line, found: "both" }),
+            (None, None) => return Err(TaskError::Place { line, found: "neither" }),
+        };
+        let dwell_s = point.dwell_s.as_ref().map(|dwell| self.positive("dwell_s", dwell)).transpose()?;
+        let payload_kg = match &point.payload_kg {
+            Some(payload) if !(payload.get_ref().is_finite() && *payload.get_ref() >= 0.0) => {
+                return Err(self.value("payload_kg", payload, "a mass of zero or more is expected"));
+            }
+            Some(payload) if dwell_s.is_none() => {
+                return Err(self.value(
+                    "payload_kg",
+                    payload,
+                    "a payload changes at a dwell: give dwell_s too",
+                ));
+            }
+            payload => payload.as_ref().map(|p| *p.get_ref()),
+        };
+        Ok(KeyPoint { name: point.name.clone(), place, dwell_s, payload_kg })
+    }
+
+    fn times(&self, given: &Spanned<Vec<f64>>, points: usize) -> Result<Vec<f64>, TaskError> {
+        let times = given.get_ref();
+        let line = line_of(self.text, &given.span());
+        let key = "times_s".to_owned();
+        if times.len() != points {
+            let why = "one for each key point: its arrival, dwells counted";
+            return Err(TaskError::Length { line, key, found: times.len(), expected: points, why });
+        }
+        if let Some(pair) = times.windows(2).find(|pair| !(pair[1] > pair[0] && pair[1].is_finite())) {
+            let found = format!("{} after {}", pair[1], pair[0]);
+            return Err(TaskError::Value { line, key, found, expected: "increasing times are expected" });
+        }
+        Ok(times.clone())
+    }
+
+    fn boundary(&self, end: &str, given: Option<&End>) -> Result<Boundary, TaskError> {
+        let rest = vec![0.0; self.joints.len()];
+        let of = |quantity: &str, values: Option<&Spanned<ByJoint>>| match values {
+            None => Ok(rest.clone()),
+            Some(values) => self.angles(&format!("{end}.{quantity}"), values, Some(0.0)),
+        };
+        Ok(Boundary {
+            velocity_rad_s: of("speed_deg_s", given.and_then(|e| e.speed_deg_s.as_ref()))?,
+            acceleration_rad_s2: of(
+                "acceleration_deg_s2",
+                given.and_then(|e| e.acceleration_deg_s2.as_ref()),
+            )?,
+            jerk_rad_s3: of("jerk_deg_s3", given.and_then(|e| e.jerk_deg_s3.as_ref()))?,
+        })
+    }
+
+    fn limits(&self, given: &Limits) -> Result<Vec<JointLimits>, TaskError> {
+        let of = |key: &str, values: &Option<Spanned<ByJoint>>| -> Result<Vec<f64>, TaskError> {
+            let Some(values) = values else { return Ok(vec![f64::INFINITY; self.joints.len()]) };
+            let found = self.by_joint(key, values, Some(f64::INFINITY))?;
+            match found.iter().find(|value| value.is_nan() || **value <= 0.0) {
+                Some(value) => {
+                    let line = line_of(self.text, &values.span());
+                    let expected = "limits above zero are expected";
+                    Err(TaskError::Value { line, key: key.to_owned(), found: value.to_string(), expected })
+                }
+                None => Ok(found),
+            }
+        };
+        let ranges = match &given.range_deg {
+            None => vec![None; self.joints.len()],
+            Some(ranges) => {
+                let wide = [f64::NEG_INFINITY, f64::INFINITY];
+                let found = self.by_joint("range_deg", ranges, Some(wide))?;
+                if let Some([low, high]) =
+                    found.iter().find(|[low, high]| low >= high || low.is_nan() || high.is_nan())
+                {
+                    let line = line_of(self.text, &ranges.span());
+                    let found = format!("[{low}, {high}]");
+                    let expected = "the lowest angle is expected first";
+                    return Err(TaskError::Value { line, key: "range_deg".into(), found, expected });
+                }
+                found
+                    .into_iter()
+                    .map(|range| (range != wide).then(|| range.map(radians_from_degrees)))
+                    .collect()
+            }
+        };
+        let speed = of("limits.speed_deg_s", &given.speed_deg_s)?;
+        let acceleration = of("limits.acceleration_deg_s2", &given.acceleration_deg_s2)?;
+        let jerk = of("limits.jerk_deg_s3", &given.jerk_deg_s3)?;
+        let torque = of("limits.torque_n_m", &given.torque_n_m)?;
+        Ok((0..self.joints.len())
+            .map(|j| JointLimits {
+                range_rad: ranges[j],
+                velocity_rad_s: radians_from_degrees(speed[j]),
+                acceleration_rad_s2: radians_from_degrees(acceleration[j]),
+                jerk_rad_s3: radians_from_degrees(jerk[j]),
+                torque_n_m: torque[j],
+            })
+            .collect())
+    }
+}

@@ -1,0 +1,143 @@
+//! What the arm is to do: key points, dwells, payload, limits, and how to weigh the objectives.
+//!
+//! A task file is TOML with angles in degrees, as the paper's tables have them; this folder is the
+//! edge where they become radians. A task knows the names of joints and nothing of links.
+
+mod error;
+mod file;
+mod weigh;
+
+pub use error::TaskError;
+pub use weigh::{Bounds, Weights};
+
+use std::path::Path;
+
+/// Where the arm's description is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ArmSource {
+    /// The sample arm that comes with hydrotrace.
+    Sample,
+    /// A file, relative to the task file.
+    File(String),
+}
+
+/// A pose of the arm that the plan passes through.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeyPoint {
+    /// What people call it; may be empty.
+    pub name: String,
+    /// Where it is.
+    pub place: Place,
+    /// How long the arm rests here, s; `None` if it passes through.
+    pub dwell_s: Option<f64>,
+    /// Payload carried from the end of the dwell on, kg; `None` if it stays as it was.
+    pub payload_kg: Option<f64>,
+}
+
+/// Where a key point is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Place {
+    /// Joint angles, rad, in the order of [`Task::joints`].
+    Joints(Vec<f64>),
+    /// Position and pitch of the tool in the arm's plane, to be solved for the joints.
+    Tool {
+        /// Forward, m.
+        x_m: f64,
+        /// Up, m.
+        z_m: f64,
+        /// Pitch, rad; positive turns forward to down, as the joints do.
+        pitch_rad: f64,
+    },
+}
+
+/// Speed, acceleration and jerk at one end of the plan, `[joint]`; zero unless given.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Boundary {
+    /// Speed, rad/s.
+    pub velocity_rad_s: Vec<f64>,
+    /// Acceleration, rad/s².
+    pub acceleration_rad_s2: Vec<f64>,
+    /// Jerk, rad/s³.
+    pub jerk_rad_s3: Vec<f64>,
+}
+
+/// Limits of one joint; infinite where none is given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointLimits {
+    /// Lowest and highest angle, rad; `None` leaves the arm's own.
+    pub range_rad: Option<[f64; 2]>,
+    /// Speed, rad/s.
+    pub velocity_rad_s: f64,
+    /// Acceleration, rad/s².
+    pub acceleration_rad_s2: f64,
+    /// Jerk, rad/s³.
+    pub jerk_rad_s3: f64,
+    /// Torque, N m; the cylinders' own limits hold besides.
+    pub torque_n_m: f64,
+}
+
+/// A task, checked: arrays are as long as the joints, times increase, everything is finite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Task {
+    /// What people call it.
+    pub title: String,
+    /// The arm.
+    pub arm: ArmSource,
+    /// Joint names; the order of every array.
+    pub joints: Vec<String>,
+    /// Degree of the spline: 5, 6 or 7.
+    pub degree: u8,
+    /// At least two key points.
+    pub points: Vec<KeyPoint>,
+    /// Payload before the first change, kg.
+    pub payload_kg: f64,
+    /// State in which the plan starts.
+    pub start: Boundary,
+    /// State in which the plan ends.
+    pub end: Boundary,
+    /// Shortest and longest time from one key point to the next, s; dwells excluded.
+    pub interval_s: [f64; 2],
+    /// Limits, `[joint]`.
+    pub limits: Vec<JointLimits>,
+    /// Ceilings on the objectives.
+    pub bounds: Bounds,
+    /// How the objectives weigh against each other once the ceilings hold.
+    pub weights: Option<Weights>,
+    /// A time for each key point, s, if the plan is not to be optimised but evaluated.
+    pub times_s: Option<Vec<f64>>,
+}
+
+impl Task {
+    /// Reads the text of a task file.
+    ///
+    /// # Errors
+    ///
+    /// [`TaskError`], naming the line, what was found and what belongs there.
+    pub fn parse(text: &str) -> Result<Self, TaskError> {
+        file::parse(text)
+    }
+
+    /// Reads a task file.
+    ///
+    /// # Errors
+    ///
+    /// [`TaskError`] if the file cannot be read or is no task.
+    pub fn read(path: &Path) -> Result<Self, TaskError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| TaskError::Read { path: path.to_owned(), reason: source.to_string() })?;
+        Self::parse(&text)
+    }
+
+    /// Number of joints.
+    pub fn joint_count(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Total time of the dwells, s.
+    pub fn dwell_s(&self) -> f64 {
+        self.points.iter().filter_map(|point| point.dwell_s).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests;
