@@ -262,7 +262,8 @@ fn gate_line(result: &GateResult) -> String {
         return format!("Limit on {name} {verdict}: nothing to measure, {limit}.");
     };
     let time = result.time_s.map_or(String::new(), |t| format!(" at {t:.2} s"));
-    let worst =
-        result.worst.map_or("a start without an answer".to_owned(), |w| format!("{} {unit}", show(w)));
+    let missing =
+        if result.gate == Gate::Lag { "no lag in the range looked at" } else { "a start without an answer" };
+    let worst = result.worst.map_or(missing.to_owned(), |w| format!("{} {unit}", show(w)));
     format!("Limit on {name} {verdict}: {joint}{time} has {worst}, {limit}.")
 }
