@@ -309,15 +309,16 @@ fn hop(degree: Degree, points: usize, at: usize) -> Spline {
 }
 
 #[test]
-fn a_disturbance_dies_out_by_a_factor_of_two_or_more_an_interval() {
-    for degree in DEGREES {
+fn a_disturbance_dies_out_by_about_half_an_interval() {
+    // Equal intervals: spectral radii near 0.431, 0.488 and 0.535.
+    for (degree, most) in DEGREES.into_iter().zip([0.44, 0.5, 0.55]) {
         let spline = hop(degree, 31, 15);
         let swing = |i: usize| {
             let within = (spline.t_s()[i], spline.t_s()[i + 1]);
             spline.extrema_within(0, Quantity::Position, within).peak().value.abs()
         };
         for i in 16..28 {
-            assert!(swing(i + 1) < 0.6 * swing(i), "{degree:?} {i}: {} {}", swing(i), swing(i + 1));
+            assert!(swing(i + 1) < most * swing(i), "{degree:?} {i}: {} {}", swing(i), swing(i + 1));
         }
     }
 }

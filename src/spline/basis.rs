@@ -42,12 +42,28 @@ pub(super) fn raise<const L: usize>(
     row[to.min(WIDTH - 1)] = saved;
 }
 
-/// The row of degree `degree`.
+/// The row of degree `DEGREE`.
 #[inline]
-pub(super) fn row<const L: usize>(degree: usize, knots: &Knots, piece: usize, t_s: &[f64; L]) -> Row<L> {
+pub(super) fn row<const DEGREE: usize, const L: usize>(
+    knots: &Knots,
+    piece: usize,
+    t_s: &[f64; L],
+) -> Row<L> {
     let mut row = constant();
-    for to in 1..=degree {
+    for to in 1..=DEGREE {
         raise(&mut row, to, knots, piece, t_s);
     }
     row
+}
+
+/// Sums of control points times basis functions.
+#[inline]
+pub(super) fn weigh<const L: usize>(control: &[f64], row: &Row<L>) -> [f64; L] {
+    let mut sum = [0.0; L];
+    for (c, weights) in control.iter().zip(row) {
+        for l in 0..L {
+            sum[l] += c * weights[l];
+        }
+    }
+    sum
 }

@@ -127,13 +127,14 @@ impl Bernstein {
             } else {
                 high = x;
             }
-            let newton = x - value / slope;
-            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            let moved = (next - x).abs();
-            x = next;
-            if moved < 1e-9 {
-                break;
+            let step = value / slope;
+            // Such a step squares what is left; testing it against the bracket would fail by
+            // rounding and send the search away.
+            if step.abs() < 1e-9 {
+                return (x - step).clamp(low, high);
             }
+            let newton = x - step;
+            x = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         }
         x
     }

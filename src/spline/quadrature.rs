@@ -1,9 +1,6 @@
 //! Integrals over time by Gauss-Legendre quadrature on every polynomial piece.
 
-use super::{
-    Quantity, Spline,
-    basis::{self, Row},
-};
+use super::{Spline, basis};
 
 /// Number of nodes on every piece; n nodes integrate degree 2n - 1 exactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,27 +66,22 @@ impl Spline {
     #[inline]
     pub fn add_squared_jerk(&self, integral: &mut [f64]) {
         match self.knots.degree {
-            5 => self.add_squared_jerk_by(&THREE, integral),
-            6 => self.add_squared_jerk_by(&FOUR, integral),
-            _ => self.add_squared_jerk_by(&FIVE, integral),
+            5 => self.add_squared_jerk_by::<2, 3>(&THREE, integral),
+            6 => self.add_squared_jerk_by::<3, 4>(&FOUR, integral),
+            _ => self.add_squared_jerk_by::<4, 5>(&FIVE, integral),
         }
     }
 
+    /// By a rule of `L` nodes for jerk of degree `DEGREE`.
     #[inline]
-    fn add_squared_jerk_by<const L: usize>(&self, rule: &Rule<L>, integral: &mut [f64]) {
-        let degree = self.knots.degree - 3;
+    fn add_squared_jerk_by<const DEGREE: usize, const L: usize>(&self, rule: &Rule<L>, integral: &mut [f64]) {
+        let stride = self.knots.controls() - 3;
         for (piece, ends) in self.knots.breaks().windows(2).enumerate() {
             let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
             let t_s = rule.map(|(node, _)| middle + half * node);
-            let row: Row<L> = basis::row(degree, &self.knots, piece, &t_s);
-            for (joint, integral) in integral.iter_mut().enumerate().take(self.joints()) {
-                let control = &self.control(joint, Quantity::Jerk)[piece..=piece + degree];
-                let mut jerk = [0.0; L];
-                for (c, weights) in control.iter().zip(&row) {
-                    for (jerk, weight) in jerk.iter_mut().zip(weights) {
-                        *jerk += c * weight;
-                    }
-                }
+            let row = basis::row::<DEGREE, L>(&self.knots, piece, &t_s);
+            for (control, integral) in self.controls[3].chunks_exact(stride).zip(&mut *integral) {
+                let jerk = basis::weigh(&control[piece..=piece + DEGREE], &row);
                 let mean: f64 = jerk.iter().zip(rule).map(|(jerk, (_, weight))| weight * jerk * jerk).sum();
                 *integral += half * mean;
             }

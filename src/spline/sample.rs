@@ -126,45 +126,46 @@ impl Spline {
                 instants[count] = t;
                 count += 1;
             }
-            self.lanes(piece, &instants, count, through.order(), samples, first + done);
+            let column = first + done..first + done + count;
+            // The degree as a constant lets the compiler unroll.
+            match self.knots.degree {
+                5 => self.lanes::<5>(piece, &instants, through.order(), samples, column),
+                6 => self.lanes::<6>(piece, &instants, through.order(), samples, column),
+                _ => self.lanes::<7>(piece, &instants, through.order(), samples, column),
+            }
             done += count;
         }
     }
 
-    /// Fills `count` columns from instants of one piece.
+    /// Fills columns from instants of one piece.
     #[inline]
-    fn lanes(
+    fn lanes<const DEGREE: usize>(
         &self,
         piece: usize,
         t_s: &[f64; LANES],
-        count: usize,
         through: usize,
         samples: &mut Samples,
-        column: usize,
+        columns: Range<usize>,
     ) {
-        let degree = self.knots.degree;
-        let stride = samples.instants;
-        let mut row: Row<LANES> = basis::row(degree - through, &self.knots, piece, t_s);
-        for order in (0..=through).rev() {
-            let functions = degree + 1 - order;
-            let quantity = Quantity::ALL[order];
-            for joint in 0..self.joints() {
-                let control = &self.control(joint, quantity)[piece..piece + functions];
-                let mut sum = [0.0; LANES];
-                for (c, weights) in control.iter().zip(&row) {
-                    for (sum, weight) in sum.iter_mut().zip(weights) {
-                        *sum += c * weight;
-                    }
-                }
-                let start = joint * stride + column;
-                if count == LANES {
-                    samples.values[order][start..start + LANES].copy_from_slice(&sum);
-                } else {
-                    samples.values[order][start..start + count].copy_from_slice(&sum[..count]);
-                }
+        let mut row: Row<LANES> = basis::constant();
+        for degree in 0..=DEGREE {
+            if degree > 0 {
+                basis::raise(&mut row, degree, &self.knots, piece, t_s);
             }
-            if order > 0 {
-                basis::raise(&mut row, functions, &self.knots, piece, t_s);
+            let order = DEGREE - degree;
+            if order > through || order > 3 {
+                continue;
+            }
+            let stride = self.knots.controls() - order;
+            let controls = self.controls[order].chunks_exact(stride);
+            let lines = samples.values[order].chunks_exact_mut(samples.instants);
+            for (control, line) in controls.zip(lines) {
+                let sum = basis::weigh(&control[piece..=piece + degree], &row);
+                let line = &mut line[columns.clone()];
+                match line.first_chunk_mut() {
+                    Some(line) => *line = sum,
+                    None => line.copy_from_slice(&sum[..line.len()]),
+                }
             }
         }
     }

@@ -33,9 +33,17 @@ impl Band {
     ///
     /// [`SplineError::IllConditioned`].
     pub(super) fn factor(&mut self, knots: &Knots, t_s: &[f64]) -> Result<(), SplineError> {
+        match knots.degree {
+            5 => self.factor_of::<5>(knots, t_s),
+            6 => self.factor_of::<6>(knots, t_s),
+            _ => self.factor_of::<7>(knots, t_s),
+        }
+    }
+
+    fn factor_of<const DEGREE: usize>(&mut self, knots: &Knots, t_s: &[f64]) -> Result<(), SplineError> {
         let (half, width) = (self.half, 2 * self.half + 1);
         for r in 0..self.reciprocal_pivots.len() {
-            let row = basis::row(knots.degree, knots, r + 1, &[t_s[r + 1]]);
+            let row = basis::row::<DEGREE, 1>(knots, r + 1, &[t_s[r + 1]]);
             let (above, rest) = self.rows.split_at_mut(r * width);
             let entries = &mut rest[..width];
             for (entry, [value]) in entries.iter_mut().zip(row) {
@@ -66,47 +74,57 @@ impl Band {
         let (half, width) = (self.half, 2 * self.half + 1);
         let rows = || self.rows.chunks_exact(width).zip(&self.reciprocal_pivots).enumerate();
         for (r, (row, _)) in rows() {
-            let known: f64 = row[..half].iter().zip(&control[r + 1..]).map(|(a, x)| a * x).sum();
+            let known: f64 = row[..half].iter().zip(&control[r + 1..][..half]).map(|(a, x)| a * x).sum();
             control[r + 1 + half] -= known;
         }
         for (r, (row, reciprocal)) in rows().rev() {
-            let known: f64 = row[half + 1..].iter().zip(&control[r + 2 + half..]).map(|(a, x)| a * x).sum();
+            let known: f64 =
+                row[half + 1..].iter().zip(&control[r + 2 + half..][..half]).map(|(a, x)| a * x).sum();
             control[r + 1 + half] = (control[r + 1 + half] - known) * reciprocal;
         }
     }
 }
 
-/// Control points at the start from position and `derivatives` there, in closed form.
-pub(super) fn start(knots: &Knots, position: f64, derivatives: [f64; 3], control: &mut [f64]) {
-    fix(knots.degree, position, derivatives, control.iter_mut(), |k, r| {
-        knots.u[k + knots.degree + 1] - knots.u[k + r]
-    });
+/// How far each derivative reaches on the way from one control point to the next, by control
+/// point and order, s; equal for all joints.
+pub(super) type Reach = [[f64; 3]; 4];
+
+/// Reaches from the start inwards.
+pub(super) fn reach_from_start(knots: &Knots) -> Reach {
+    reach(knots.degree, |k, r| knots.u[k + knots.degree + 1] - knots.u[k + r])
 }
 
-/// Control points at the end, likewise: the start of the time-reversed curve.
-pub(super) fn end(knots: &Knots, position: f64, [v, a, j]: [f64; 3], control: &mut [f64]) {
+/// Reaches from the end inwards: those of the time-reversed knots.
+pub(super) fn reach_from_end(knots: &Knots) -> Reach {
     let last = knots.u.len() - 1;
-    fix(knots.degree, position, [-v, a, -j], control.iter_mut().rev(), |k, r| {
-        knots.u[last - k - r] - knots.u[last - k - knots.degree - 1]
-    });
+    reach(knots.degree, |k, r| knots.u[last - k - r] - knots.u[last - k - knots.degree - 1])
 }
 
-/// Walks from the end inwards. `tower` holds the control points of derivative 0, 1, 2, 3 at
-/// the current place; `width(k, r)` is the knot difference below control point k of
-/// derivative r.
-fn fix<'a>(
-    degree: usize,
+fn reach(degree: usize, width: impl Fn(usize, usize) -> f64) -> Reach {
+    let mut reach = [[0.0; 3]; 4];
+    for (k, row) in reach.iter_mut().enumerate() {
+        for (r, reach) in row.iter_mut().enumerate() {
+            *reach = width(k, r + 1) / (degree - r) as f64;
+        }
+    }
+    reach
+}
+
+/// Control points from an end inwards, in closed form, from position and derivatives there;
+/// odd derivatives change sign at the end.
+pub(super) fn fix<'a>(
+    reach: &Reach,
     position: f64,
     [v, a, j]: [f64; 3],
     control: impl Iterator<Item = &'a mut f64>,
-    width: impl Fn(usize, usize) -> f64,
 ) {
+    // Control points of derivative 0, 1, 2, 3 at the current place.
     let mut tower = [position, v, a, j];
-    for (k, control) in control.enumerate() {
+    for (control, reach) in control.zip(reach) {
         *control = tower[0];
         for r in 0..3 {
             // Entries too high up are never used: there are at most four control points.
-            tower[r] += tower[r + 1] * width(k, r + 1) / (degree - r) as f64;
+            tower[r] += tower[r + 1] * reach[r];
         }
     }
 }

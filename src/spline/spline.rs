@@ -19,7 +19,7 @@ pub struct Spline {
     t_s: Vec<f64>,
     pub(super) knots: Knots,
     /// Control points of position, velocity, acceleration, jerk, each `[joint][control]`.
-    controls: [Vec<f64>; 4],
+    pub(super) controls: [Vec<f64>; 4],
     // Workspace: the times being tried, their knots, the factored system.
     tried_s: Vec<f64>,
     tried: Knots,
@@ -85,14 +85,13 @@ impl Spline {
         std::mem::swap(&mut self.t_s, &mut self.tried_s);
         let (knots, fixed) = (&self.knots, self.degree.fixed());
         let (controls, last) = (knots.controls(), self.points.len() - 1);
+        let (from_start, from_end) = (solve::reach_from_start(knots), solve::reach_from_end(knots));
         for (joint, control) in self.controls[0].chunks_exact_mut(controls).enumerate() {
-            solve::start(knots, self.points.of(0)[joint], self.ends.start(joint), &mut control[..fixed]);
-            solve::end(
-                knots,
-                self.points.of(last)[joint],
-                self.ends.end(joint),
-                &mut control[controls - fixed..],
-            );
+            let [v, a, j] = self.ends.end(joint);
+            let (head, tail) = (self.ends.start(joint), [-v, a, -j]);
+            solve::fix(&from_start, self.points.of(0)[joint], head, control[..fixed].iter_mut());
+            let end = control[controls - fixed..].iter_mut().rev();
+            solve::fix(&from_end, self.points.of(last)[joint], tail, end);
             for (i, interior) in control[fixed..controls - fixed].iter_mut().enumerate() {
                 *interior = self.points.of(i + 1)[joint];
             }
@@ -103,8 +102,11 @@ impl Spline {
             let count = controls - order;
             let (width, factor) = (knots.degree + 1 - order, (knots.degree + 1 - order) as f64);
             for (from, to) in below[order - 1].chunks_exact(count + 1).zip(above[0].chunks_exact_mut(count)) {
-                for (k, (to, pair)) in to.iter_mut().zip(from.windows(2)).enumerate() {
-                    *to = factor * (pair[1] - pair[0]) * knots.reciprocal(k + order, width);
+                let reciprocals = knots.reciprocals(order, width);
+                for (((to, low), high), reciprocal) in
+                    to.iter_mut().zip(from).zip(&from[1..]).zip(reciprocals)
+                {
+                    *to = factor * (high - low) * reciprocal;
                 }
             }
         }
