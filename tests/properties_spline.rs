@@ -255,6 +255,10 @@ proptest! {
                 let mut rms = [0.0];
                 spline.rms_jerk(&mut rms);
                 prop_assert!(rms[0].is_finite());
+                for (i, t) in spline.t_s().iter().enumerate() {
+                    let off = spline.at(*t).of(Quantity::Position, 0)[0] - spline.points().of(i)[0];
+                    prop_assert!(off.abs() <= 1e-4 * scale, "missed by {off:e} of {scale:e}");
+                }
                 for quantity in Quantity::ALL {
                     let extrema = spline.extrema(0, quantity);
                     prop_assert!(extrema.least.value <= extrema.greatest.value);
@@ -275,6 +279,11 @@ proptest! {
         let rest = Ends::at_rest(JOINTS);
         let motion = Motion::new(case.degree, case.points.clone(), &rest, &[dwell], &t_s).unwrap();
         let total = case.t_s[case.last()] + length_s;
+        let slow: Vec<f64> = t_s.iter().map(|t| 2.0 * t).collect();
+        let mut retimed = Motion::new(case.degree, case.points.clone(), &rest, &[dwell], &slow).unwrap();
+        retimed.retime(&t_s).unwrap();
+        prop_assert!(retimed.retime(&vec![1.0; t_s.len()]).is_err());
+        prop_assert_eq!(retimed.at(share * total), motion.at(share * total));
         prop_assert!((motion.duration_s() - total).abs() < 1e-12 * total);
         let resting = motion.at(t_s[point] + share * length_s);
         for joint in 0..JOINTS {
