@@ -257,7 +257,7 @@ proptest! {
                 prop_assert!(rms[0].is_finite());
                 for (i, t) in spline.t_s().iter().enumerate() {
                     let off = spline.at(*t).of(Quantity::Position, 0)[0] - spline.points().of(i)[0];
-                    prop_assert!(off.abs() <= 1e-4 * scale, "missed by {off:e} of {scale:e}");
+                    prop_assert!(off.abs() <= 1e-6 * scale, "missed by {off:e} of {scale:e}");
                 }
                 for quantity in Quantity::ALL {
                     let extrema = spline.extrema(0, quantity);

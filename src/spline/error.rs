@@ -46,12 +46,10 @@ pub enum SplineError {
         arrive_s: f64,
     },
     /// Intervals so unequal that rounding hides the solution.
-    #[error("intervals around key point {index} are too unequal (pivot {pivot:e})")]
+    #[error("intervals are too unequal: rounding would grow {inverse:.1e} times")]
     IllConditioned {
-        /// Index of the key point.
-        index: usize,
-        /// The pivot that vanished.
-        pivot: f64,
+        /// Norm of the system's inverse.
+        inverse: f64,
     },
     /// Dwells are not at distinct key points in ascending order.
     #[error("dwell {index} is at key point {point}: dwells ascend and lie within the {points} key points")]

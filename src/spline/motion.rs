@@ -263,9 +263,6 @@ fn elsewhere(error: SplineError, first: usize, start_s: f64) -> SplineError {
             leave_s: leave_s + start_s,
             arrive_s: arrive_s + start_s,
         },
-        SplineError::IllConditioned { index, pivot } => {
-            SplineError::IllConditioned { index: index + first, pivot }
-        }
         other => other,
     }
 }
