@@ -58,6 +58,10 @@ pub enum Code {
     StartOnReceipt,
     /// A trajectory that was cut short by the next one or by a cancel.
     TrajectoryReplaced,
+    /// Another topic would have served as well.
+    Ambiguous,
+    /// Values that no joint can have, dropped.
+    Implausible,
     /// A limit of what this program understands.
     NotSupported,
     /// A ceiling so high that it binds nothing.

@@ -83,7 +83,28 @@ fn uses(line: &str) -> Vec<String> {
     let code = line.split("//").next().unwrap_or_default();
     let ident =
         |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
-    let mut found: Vec<String> = code.split("crate::").skip(1).map(ident).collect();
+    let mut found = Vec::new();
+    for rest in code.split("crate::").skip(1) {
+        match rest.strip_prefix('{') {
+            // `use crate::{log::X, math::Y};` on one line: names at the first level of braces.
+            Some(group) => {
+                let mut depth = 0_i32;
+                let mut start = true;
+                for (at, c) in group.char_indices() {
+                    if start && depth == 0 && !c.is_whitespace() {
+                        found.push(ident(&group[at..]));
+                        start = false;
+                    }
+                    depth += i32::from(c == '{') - i32::from(c == '}');
+                    start |= c == ',' && depth == 0;
+                    if depth < 0 {
+                        break;
+                    }
+                }
+            }
+            None => found.push(ident(rest)),
+        }
+    }
     // Lines inside `use crate::{ ... }` start with the module's name.
     let start = ident(code.trim_start());
     if code.starts_with("    ")
@@ -128,6 +149,7 @@ fn every_rule_finds_its_fault() {
         (("series/a.rs", "use crate::log::read;"), "lies above"),
         (("series/a.rs", "use crate::{\n    log::read,\n};"), "lies above"),
         (("replay/a.rs", "use crate::log::Recording;"), "meet in workflow"),
+        (("replay/a.rs", "use crate::{series::{A, B}, log::Recording};"), "meet in workflow"),
         (("workflow/a.rs", "crate::cli::run()"), "lies above"),
         (("replay/a.rs", "let deg = x.to_degrees();"), "degrees"),
         (("replay/a.rs", "use mcap::Writer;"), "only log"),

@@ -192,3 +192,63 @@ fn reports_are_as_their_schema_says() {
         assert_eq!(report["format"], "hydrotrace.report.v1");
     }
 }
+
+#[test]
+fn a_report_never_replaces_the_log_it_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("run.mcap");
+    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(CLEAN), &log).unwrap();
+    let before = fs::read(&log).unwrap();
+    let name = log.to_str().unwrap();
+    for args in [&["report", name, "-o", name][..], &["recover", name, "-o", name]] {
+        let run = hydrotrace(args);
+        assert_eq!(run.status.code(), Some(2), "{}", stderr(&run));
+        assert!(stderr(&run).contains("is the log that is read"));
+    }
+    assert_eq!(fs::read(&log).unwrap(), before);
+}
+
+#[test]
+fn a_field_is_not_compared_with_itself() {
+    let same = ["report", CLEAN, "--planned", "/joint_states", "--measured", "/joint_states"];
+    let run = hydrotrace(&same);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(stderr(&run).contains("given as plan and as measurement"), "{}", stderr(&run));
+}
+
+#[test]
+fn a_joint_without_a_lag_in_range_does_not_keep_a_limit_on_lag() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("dead.mcap");
+    write_joint_states(&log, |t_s| (0.3 * (t_s - 2.0).clamp(0.0, 2.0), 0.0), 0);
+    let run = hydrotrace(&["report", log.to_str().unwrap(), "--max-lag-ms", "100"]);
+    assert_eq!(run.status.code(), Some(4), "{}{}", stdout(&run), stderr(&run));
+    let report = hydrotrace(&["report", log.to_str().unwrap(), "--json"]);
+    let report: serde_json::Value = serde_json::from_slice(&report.stdout).unwrap();
+    assert_eq!(report["joints"][0]["lag_s"], serde_json::Value::Null);
+    assert_eq!(report["joints"][0]["moves"], false);
+}
+
+#[test]
+fn a_plan_of_another_time_is_an_error_that_names_both() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("apart.mcap");
+    write_joint_states(&log, |t_s| (t_s.sin(), t_s.sin()), 3_600_000_000_000);
+    let run = hydrotrace(&["report", log.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(stderr(&run).contains("they have no time in common"), "{}", stderr(&run));
+}
+
+/// Ten seconds of one joint at 100 Hz; the plan is stamped `later_ns` later than the measurement.
+fn write_joint_states(path: &Path, angles_at: impl Fn(f64) -> (f64, f64), later_ns: i64) {
+    use hydrotrace::log::{LogWriter, Role, WriteOptions};
+    let mut log = LogWriter::create(path, &["a"], WriteOptions::default()).unwrap();
+    for (role, shift_ns) in [(Role::Measured, 0), (Role::Planned, later_ns)] {
+        for k in 0..1000_i64 {
+            let (planned, measured) = angles_at(k as f64 * 0.01);
+            let angle = if role == Role::Planned { planned } else { measured };
+            log.joint_sample(role, 1_000_000_000 + k * 10_000_000 + shift_ns, &[angle], &[], &[]).unwrap();
+        }
+    }
+    log.finish().unwrap();
+}

@@ -33,6 +33,8 @@ enum CliError {
     Log(#[from] LogError),
     #[error(transparent)]
     Atomic(#[from] AtomicError),
+    #[error("{} is the log that is read; give another name to --output", .0.display())]
+    Overwrite(std::path::PathBuf),
     #[error("cannot write the output")]
     Output(#[from] std::io::Error),
 }
@@ -57,11 +59,11 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
             // Nothing is left to tell it to if standard error is gone.
             let _ = writeln!(err, "error: {error}");
             let mut cause = std::error::Error::source(&error);
-            while let Some(error) = cause {
-                let _ = writeln!(err, "  because: {error}");
-                cause = error.source();
+            while let Some(inner) = cause {
+                let _ = writeln!(err, "  because: {inner}");
+                cause = inner.source();
             }
-            1
+            if matches!(error, CliError::Overwrite(_)) { 2 } else { 1 }
         }
     }
 }

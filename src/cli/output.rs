@@ -22,3 +22,12 @@ pub(super) fn say_remarks(remarks: &Remarks, err: &mut impl Write) {
         let _ = writeln!(err, "remark: {} x{}: {text}", remark.code.name(), remark.count);
     }
 }
+
+/// Refuses to write over what is read: a log may be the only copy of a run.
+pub(super) fn spare_inputs(output: Option<&Path>, inputs: &[std::path::PathBuf]) -> Result<(), CliError> {
+    let same = |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
+    match output.filter(|output| inputs.iter().any(|input| same(input, output))) {
+        Some(output) => Err(CliError::Overwrite(output.to_owned())),
+        None => Ok(()),
+    }
+}

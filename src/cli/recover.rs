@@ -5,7 +5,7 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::RecoverArgs,
-    output::{deliver, say_remarks},
+    output::{deliver, say_remarks, spare_inputs},
 };
 use crate::{
     report::{recovered_json, recovered_parts, text},
@@ -17,6 +17,7 @@ pub(super) fn run(
     out: &mut impl Write,
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
+    spare_inputs(Some(&args.output), std::slice::from_ref(&args.log))?;
     let recovered = recover(&Inputs { log: args.log.clone(), output: args.output.clone() })?;
     if args.json {
         deliver(&recovered_json(&recovered), None, out)?;

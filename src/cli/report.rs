@@ -5,7 +5,7 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::ReportArgs,
-    output::{deliver, say_remarks},
+    output::{deliver, say_remarks, spare_inputs},
 };
 use crate::{
     report::{gate_lines, markdown, report_json, report_parts, text, transitions_csv},
@@ -20,6 +20,7 @@ pub(super) fn run(
     out: &mut impl Write,
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
+    spare_inputs(args.output.as_deref(), &args.logs)?;
     let inputs = Inputs {
         logs: args.logs.clone(),
         read: args.read.options(),

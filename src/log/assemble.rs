@@ -24,11 +24,17 @@ pub(super) fn assemble(
 ) -> Result<Recording, LogError> {
     let mut remarks = std::mem::take(&mut extracted.remarks);
     let (base, base_why) = time_base(&extracted, choice, options, &mut remarks)?;
+    for rival in &choice.rivals {
+        let message = format!("{rival} measures the same joints and was not used; choose with --measured");
+        remarks.add(Code::Ambiguous, 1, message);
+    }
     let mut clocks: BTreeMap<usize, Clock> = BTreeMap::new();
+    let mut jumps_ns: Vec<i64> = Vec::new();
     for candidate in choice.measured.iter().chain(&choice.planned) {
         if let Content::Table(table) = &extracted.sources[candidate.source].content {
             clocks.entry(candidate.source).or_insert_with(|| {
-                let clock = continuous_clock(stamps_of(&table.stamps, base), &table.stamps.log_ns);
+                let clock = continuous_clock(stamps_of(&table.stamps, base), &table.stamps.log_ns, &jumps_ns);
+                jumps_ns.extend(&clock.offsets_ns);
                 doubt::of_clock(topic(&extracted, candidate), base, &clock, &mut remarks);
                 doubt::of_table(topic(&extracted, candidate), table, &mut remarks);
                 clock
@@ -74,7 +80,7 @@ pub(super) fn assemble(
         keep_joints(series, &options.joints)?;
         doubt::unwrap_turns(series, &options.continuous, &mut remarks);
     }
-    doubt::of_pairs(&planned, &measured, &mut remarks);
+    doubt::of_pairs(&planned, &measured, &options.continuous, &mut remarks);
     let source = source_info(&extracted, choice, base, base_why, epoch_ns, &measured, &planned);
     Ok(Recording {
         planned,

@@ -28,6 +28,8 @@ pub(super) struct Choice {
     pub(super) planned: Vec<Candidate>,
     pub(super) measured: Vec<Candidate>,
     pub(super) why: String,
+    /// Topics of another namespace that measure the same joints as well, and were not chosen.
+    pub(super) rivals: Vec<String>,
 }
 
 /// Rank of what is only used when the caller names it.
@@ -66,10 +68,41 @@ pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Cho
     let wanted: BTreeSet<&String> = planned.iter().flat_map(|c| &c.joints).collect();
     // The message that holds the plan holds the measurement of the same instant, if any does.
     let mut ordered: Vec<&Candidate> = measured.iter().collect();
-    ordered.sort_by_key(|c| !planned.iter().any(|p| p.source == c.source));
+    let kinship =
+        |c: &Candidate| planned.iter().map(|p| shared_namespace(&p.topic, &c.topic)).max().unwrap_or(0);
+    ordered.sort_by_key(|c| (!planned.iter().any(|p| p.source == c.source), std::cmp::Reverse(kinship(c))));
+    let all_measured = measured.clone();
     let measured = cover(ordered.into_iter(), Some(&wanted), None);
+    if let (Some(p), Some(m)) = (planned.first(), measured.first())
+        && (p.source, p.field) == (m.source, m.field)
+    {
+        return Err(LogError::SameField { field: p.topic.clone() });
+    }
     let why = why(extracted, options, &planned, &measured);
-    Ok(Choice { planned, measured, why })
+    let rivals = rivals(&all_measured, &measured, &wanted);
+    Ok(Choice { planned, measured, why, rivals })
+}
+
+/// Leading parts of their names that two topics share.
+fn shared_namespace(a: &str, b: &str) -> usize {
+    namespace(a).zip(namespace(b)).take_while(|(a, b)| a == b).count()
+}
+
+/// The parts of a topic's name but the last.
+fn namespace(topic: &str) -> impl Iterator<Item = &str> {
+    let stem = topic.rsplit_once('/').map_or("", |(stem, _)| stem);
+    stem.split('/').filter(|part| !part.is_empty())
+}
+
+/// What would have served as well as what was chosen, elsewhere.
+fn rivals(all: &[Candidate], chosen: &[Candidate], wanted: &BTreeSet<&String>) -> Vec<String> {
+    let same_home = |a: &Candidate, b: &Candidate| namespace(&a.topic).eq(namespace(&b.topic));
+    let rival = |c: &&Candidate| {
+        chosen.iter().all(|m| m.source != c.source)
+            && chosen.iter().any(|m| m.rank == c.rank && !same_home(m, c))
+            && c.joints.iter().any(|joint| wanted.contains(joint))
+    };
+    all.iter().filter(rival).map(|c| c.topic.clone()).collect()
 }
 
 /// Most topics that one side is put together from.

@@ -21,6 +21,11 @@ pub(super) fn of_clock(topic: &str, base: TimeBase, clock: &Clock, remarks: &mut
         format!("messages of {topic} without a {base} stamp, left out"),
     );
     remarks.add(
+        Code::UnusableStamp,
+        clock.misfits,
+        format!("messages of {topic} whose {base} stamp fits neither their neighbours nor the recorder's clock, dropped"),
+    );
+    remarks.add(
         Code::DuplicateStamp,
         clock.duplicates,
         format!("samples of {topic} that repeat a {base} stamp, dropped"),
@@ -35,7 +40,7 @@ pub(super) fn of_clock(topic: &str, base: TimeBase, clock: &Clock, remarks: &mut
         Code::ClockJump,
         clock.cuts.len() as u64,
         format!(
-            "backward jumps of the {base} clock in {topic}, by up to {jump_s:.3} s; the run is split there and \
+            "jumps of the {base} clock in {topic}, by up to {jump_s:.3} s; the run is split there and \
              time goes on by the recorder's clock"
         ),
     );
@@ -168,20 +173,13 @@ fn unwrapped(track: &Track) -> Option<Track> {
     Track::new(track.name(), track.t_s(), position.collect(), &cuts).ok()
 }
 
-pub(super) fn of_pairs(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+pub(super) fn of_pairs(planned: &Series, measured: &Series, continuous: &[String], remarks: &mut Remarks) {
     for track in &planned.tracks {
         match measured.track(track.name()) {
             None => unmeasured(track.name(), remarks),
-            Some(measured) => of_pair(track, measured, remarks),
+            Some(measured) => of_pair(track, measured, continuous, remarks),
         }
     }
-    let unplanned = measured.tracks.iter().map(Track::name).filter(|name| planned.track(name).is_none());
-    let unplanned: Vec<&str> = unplanned.collect();
-    remarks.add(
-        Code::UnpairedJoint,
-        unplanned.len() as u64,
-        format!("joints measured but not planned: {}; left out", unplanned.join(", ")),
-    );
 }
 
 pub(super) fn unmeasured(joint: &str, remarks: &mut Remarks) {
@@ -191,8 +189,10 @@ pub(super) fn unmeasured(joint: &str, remarks: &mut Remarks) {
 /// Ratios of measured to planned range that mean degrees in place of radians, or the reverse.
 const DEGREES_IN_RADIAN: f64 = 1.0 / DEGREE_RAD;
 const RATIO_TOLERANCE: f64 = 0.15;
+/// Joints with end stops span less.
+const TURN_AND_A_HALF_RAD: f64 = 1.5 * TAU;
 
-fn of_pair(planned: &Track, measured: &Track, remarks: &mut Remarks) {
+fn of_pair(planned: &Track, measured: &Track, continuous: &[String], remarks: &mut Remarks) {
     let (plan_rad, angle_rad) = (span(planned.position_rad()), span(measured.position_rad()));
     let near = |ratio: f64| (ratio / DEGREES_IN_RADIAN - 1.0).abs() < RATIO_TOLERANCE;
     let name = planned.name();
@@ -203,6 +203,12 @@ fn of_pair(planned: &Track, measured: &Track, remarks: &mut Remarks) {
     } else if near(plan_rad / angle_rad) {
         let message = format!(
             "the plan of {name} spans 57.3 times the measurement: in degrees? then say --planned-degrees"
+        );
+        remarks.add(Code::LooksLikeDegrees, 1, message);
+    } else if plan_rad.min(angle_rad) > TURN_AND_A_HALF_RAD && !continuous.iter().any(|c| c == name) {
+        let message = format!(
+            "{name} spans {angle_rad:.1} rad in plan and measurement: both in degrees? then say \
+             --planned-degrees --measured-degrees; or, if it has no end stops, --continuous {name}"
         );
         remarks.add(Code::LooksLikeDegrees, 1, message);
     }
@@ -264,7 +270,7 @@ mod tests {
 
     fn codes(planned: Track, measured: Track) -> Vec<Code> {
         let mut remarks = Remarks::default();
-        of_pairs(&Series { tracks: vec![planned] }, &Series { tracks: vec![measured] }, &mut remarks);
+        of_pairs(&Series { tracks: vec![planned] }, &Series { tracks: vec![measured] }, &[], &mut remarks);
         remarks.as_slice().iter().map(|r| r.code).collect()
     }
 

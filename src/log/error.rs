@@ -85,6 +85,24 @@ pub enum LogError {
         /// Measured joints.
         measured: String,
     },
+    /// Plan and measurement are of different times.
+    #[error(
+        "the plan covers {:.2} to {:.2} s, the measurement {:.2} to {:.2} s: they have no time in common; \
+         if their clocks differ, try --time log",
+        planned_s[0], planned_s[1], measured_s[0], measured_s[1]
+    )]
+    NoOverlap {
+        /// First and last sample of the plan, s.
+        planned_s: [f64; 2],
+        /// First and last sample of the measurement, s.
+        measured_s: [f64; 2],
+    },
+    /// One field given as plan and as measurement.
+    #[error("{field} is given as plan and as measurement; their difference would be nothing")]
+    SameField {
+        /// Topic and field.
+        field: String,
+    },
     /// A joint that the caller asked for.
     #[error("no joint {joint:?}{}; the log has {present}", suggestion(nearest.as_deref()))]
     NoJoint {

@@ -1,10 +1,10 @@
 //! From the samples of a table to tracks.
 
-use std::sync::Arc;
+use std::{f64::consts::TAU, sync::Arc};
 
 use super::{doubt::Gaps, source::Table};
 use crate::{
-    remark::Remarks,
+    remark::{Code, Remarks},
     series::{Clock, Track, split_at_gaps, velocity_agrees},
     units::{radians_from_degrees, seconds_since},
 };
@@ -55,6 +55,7 @@ pub(super) fn tracks(
 ) -> Vec<Track> {
     let mut tracks = Vec::new();
     let mut gap = Gaps::default();
+    let mut spikes = 0;
     let velocity_field = table.fields[field].velocity;
     for (joint, name) in table.joints.clone().iter().enumerate() {
         let mut column =
@@ -62,6 +63,8 @@ pub(super) fn tracks(
         let (position, speed) = (column(field), velocity_field.map(column).unwrap_or_default());
         let whole =
             axis.as_read && position.len() == axis.rows.len() && position.iter().all(|q| q.is_finite());
+        let whole = whole
+            && !(0..position.len()).any(|k| is_spike(k, position.len(), |i| axis.t_s[i], |i| position[i]));
         let ((t_s, cuts, jumps), mut position, mut speed) = if whole {
             ((axis.t_s.clone(), axis.cuts.clone(), axis.jumps.clone()), position, speed)
         } else {
@@ -69,6 +72,7 @@ pub(super) fn tracks(
             let mut kept: Vec<usize> = (0..axis.rows.len()).filter(|&i| at(i).is_finite()).collect();
             // Far from the epoch neighbouring nanoseconds are the same second.
             kept.dedup_by(|later, earlier| axis.t_s[*later] <= axis.t_s[*earlier]);
+            spikes += drop_spikes(&mut kept, &axis.t_s, at);
             if kept.is_empty() {
                 continue;
             }
@@ -87,7 +91,42 @@ pub(super) fn tracks(
         tracks.extend(track.ok());
     }
     gap.remark(topic, remarks);
+    let message =
+        format!("values of {topic} that no joint can have (a jump there and back at once), dropped");
+    remarks.add(Code::Implausible, spikes, message);
     tracks
+}
+
+/// Faster than any joint, rad/s (deg/s where the log is in degrees).
+const FASTEST: f64 = 200.0;
+/// Larger than any angle, in radians or degrees.
+const LARGEST: f64 = 1e6;
+
+/// Whether sample `k` of `n` is no angle: too large, or off both its neighbours faster than any
+/// joint moves. A full turn there and back is a joint without end stops.
+fn is_spike(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usize) -> f64) -> bool {
+    if at(k).abs() > LARGEST {
+        return true;
+    }
+    if k == 0 || k + 1 >= n {
+        return false;
+    }
+    let (there, back) = (at(k) - at(k - 1), at(k + 1) - at(k));
+    let turn = [TAU, 360.0].iter().any(|turn| (there.abs() - turn).abs() < 0.1 * turn);
+    let (before_s, after_s) = (t_s(k) - t_s(k - 1), t_s(k + 1) - t_s(k));
+    there * back < 0.0 && !turn && there.abs() > FASTEST * before_s && back.abs() > FASTEST * after_s
+}
+
+/// Drops samples that no joint can have; returns how many.
+fn drop_spikes(kept: &mut Vec<usize>, t_s: &[f64], at: impl Fn(usize) -> f64) -> u64 {
+    let spike = |k: usize| is_spike(k, kept.len(), |k| t_s[kept[k]], |k| at(kept[k]));
+    let spikes: Vec<usize> = (0..kept.len()).filter(|&k| spike(k)).collect();
+    let mut k = 0;
+    kept.retain(|_| {
+        k += 1;
+        spikes.binary_search(&(k - 1)).is_err()
+    });
+    spikes.len() as u64
 }
 
 /// Clock jumps and gaps together, ascending, inside the samples.

@@ -76,7 +76,10 @@ pub(super) fn concentration(joints: &[JointError], rules: &Rules) -> Option<Conc
         let Some(scale) = whole.rms().filter(|&rms| rms > 0.0) else {
             continue;
         };
-        let relative = |block: Block| Some((block.start_s, block.sum.rms()? / scale));
+        let relative = |block: Block| {
+            let rms_rad = block.sum.rms().filter(|_| block.sum.time_s >= rules.min_stretch_s)?;
+            Some((block.start_s, rms_rad / scale))
+        };
         inside_blocks.extend(joint_inside.into_iter().filter_map(relative));
         outside_blocks.extend(joint_outside.into_iter().filter_map(relative));
     }
@@ -85,16 +88,22 @@ pub(super) fn concentration(joints: &[JointError], rules: &Rules) -> Option<Conc
         return None;
     }
     let test = test(&events(inside_blocks, rules), &events(outside_blocks, rules));
+    let (rms_inside_rad, rms_outside_rad) = (inside.rms().unwrap_or(0.0), outside.rms().unwrap_or(0.0));
+    // Elsewhere is mostly rest; a plan that also moves there must be followed better there.
+    let beats_moving = moving.rms().is_none_or(|rms_rad| rms_inside_rad > rms_rad);
     Some(Concentration {
-        rms_inside_rad: inside.rms().unwrap_or(0.0),
-        rms_outside_rad: outside.rms().unwrap_or(0.0),
+        rms_inside_rad,
+        rms_outside_rad,
         rms_outside_moving_rad: moving.rms(),
         time_share_inside: inside.time_s / time_s,
         squared_error_share_inside: if square > 0.0 { inside.square / square } else { 0.0 },
         test,
         verdict: match test {
-            Some(test) if test.p_value < rules.significance && test.effect > 0.5 => Verdict::Transitions,
-            Some(test) if test.p_value < rules.significance && test.effect < 0.5 => Verdict::Elsewhere,
+            Some(test) if test.p_value >= rules.significance => Verdict::Undecided,
+            Some(test) if test.effect > 0.5 && rms_inside_rad > rms_outside_rad && beats_moving => {
+                Verdict::Transitions
+            }
+            Some(test) if test.effect < 0.5 && rms_outside_rad > rms_inside_rad => Verdict::Elsewhere,
             _ => Verdict::Undecided,
         },
     })

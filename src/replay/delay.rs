@@ -191,14 +191,14 @@ fn smoothed_plan<'a>(
     (t_s, fits.iter().map(|fit| along(motion, fit.velocity_rad_s)).collect())
 }
 
-/// How long a motion cannot be seen for want of samples and encoder steps, s: a sample interval
-/// and the time in which the plan travels half a step.
+/// How long a motion cannot be seen for want of samples and encoder steps, s: the longer sample
+/// interval of plan and measurement, and the time in which the plan travels half a step.
 fn blind_s(pair: &Pair, signals: &Signals, planned: &Motion) -> f64 {
     let step_rad = 0.5 * signals.noise.lsb_rad.unwrap_or(0.0);
     let first = planned.samples.start;
     let travelled = |i: &usize| (pair.planned_rad[*i] - pair.planned_rad[first]).abs() >= step_rad;
     let seen = planned.samples.clone().find(travelled).unwrap_or(first);
-    signals.sample_interval_s + pair.t_s[seen] - pair.t_s[first]
+    signals.sample_interval_s.max(pair.planned_interval_s) + pair.t_s[seen] - pair.t_s[first]
 }
 
 /// The upward crossing of a level nearest to a time, s.

@@ -3,7 +3,7 @@
 use super::{
     JointReplay, Rules, Stop, Transition,
     delay::{measured_onset, planned_onset_s},
-    lag::{Speeds, lag},
+    lag::{Lag, Speeds, lag},
     motion::Motion,
     onset::Onset,
     signals::Signals,
@@ -58,10 +58,13 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
         .collect();
     let stops = stops(pair, &signals, &error, rules);
     let matched = answers.iter().flatten().count();
+    let moves = matched > 0
+        || signals.measured.iter().any(|m| travel_rad(&pair.measured_rad, m) >= rules.moves_travel_rad);
+    // What does not move has no lag, however well its noise fits.
+    let lag = if moves { lag } else { Lag::default() };
     let replay = JointReplay {
         name: pair.name.clone(),
-        moves: matched > 0
-            || signals.measured.iter().any(|m| travel_rad(&pair.measured_rad, m) >= rules.moves_travel_rad),
+        moves,
         plan_moves: !signals.planned.is_empty(),
         tracking_error: tracking,
         standstill_error: tracking_error(standing),

@@ -37,10 +37,10 @@ pub(super) fn lag(speeds: &Speeds, planned: &[Motion], sample_interval_s: f64, r
     let mut single_s = Vec::new();
     for motion in planned {
         let one = Correlation::around(speeds, motion, step_s, shifts);
-        single_s.extend(one.best().and_then(|best| best.0).map(|shift| shift * step_s));
+        single_s.extend(one.best(rules).and_then(|best| best.0).map(|shift| shift * step_s));
         total.add(&one);
     }
-    let Some((shift, correlation)) = total.best() else {
+    let Some((shift, correlation)) = total.best(rules) else {
         return Lag::default();
     };
     let lag_s = shift.map(|shift| shift * step_s);
@@ -98,8 +98,8 @@ impl Correlation {
     }
 
     /// The best shift in steps, refined by a parabola, and its correlation. No shift where the
-    /// best is at the end of the range; nothing where no shift correlates.
-    fn best(&self) -> Option<(Option<f64>, f64)> {
+    /// best is at the end of the range or correlates too little; nothing where none correlates.
+    fn best(&self, rules: &Rules) -> Option<(Option<f64>, f64)> {
         let correlation = |k: usize| {
             let energy = (self.planned_energy[k] * self.measured_energy[k]).sqrt();
             if energy > 0.0 { self.product[k] / energy } else { 0.0 }
@@ -109,7 +109,7 @@ impl Correlation {
         if !(all[best] > 0.0 && all[best].is_finite()) {
             return None;
         }
-        if best == 0 || best + 1 == all.len() {
+        if best == 0 || best + 1 == all.len() || all[best] < rules.lag_min_correlation {
             return Some((None, all[best]));
         }
         let bend = all[best - 1] - 2.0 * all[best] + all[best + 1];

@@ -27,6 +27,7 @@ pub use outcome::{
 };
 pub use rules::Rules;
 pub use score::{Score, Spread, conditions, detector_score};
+pub use signals::planned_starts;
 pub use synthetic::{Sensing, SyntheticRun, TrueMotion, synthetic_run};
 
 use crate::series::Pair;

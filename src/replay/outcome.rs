@@ -185,7 +185,7 @@ pub struct Transition {
     pub window_s: [f64; 2],
     /// Samples in the window.
     pub samples: usize,
-    /// Median time between them, s.
+    /// Median time between them, or between those of the plan if that is longer, s.
     pub time_resolution_s: f64,
 }
 

@@ -178,6 +178,7 @@ mod tests {
             planned_rad_s: None,
             measured_rad: t_s.iter().map(|&t| angle(t - late_s) + off_rad).collect(),
             segments: std::iter::once(0..t_s.len()).collect(),
+            planned_interval_s: 0.01,
             matched: t_s.len(),
             unmatched: 0,
             t_s,

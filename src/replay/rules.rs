@@ -72,6 +72,8 @@ pub struct Rules {
     pub standstill_after_s: f64,
     /// Rate at which speeds are compared for the lag, at most, Hz.
     pub lag_rate_hz: f64,
+    /// Least correlation of the speeds at which a shift is a lag.
+    pub lag_min_correlation: f64,
     /// Largest lag looked for, either way, s.
     pub lag_max_s: f64,
     /// Rate at which the path error is taken, at most, Hz.
@@ -80,6 +82,8 @@ pub struct Rules {
     pub path_window_s: f64,
     /// Starts closer together than this, over all joints, are one event of the test, s.
     pub same_event_s: f64,
+    /// Stretches shorter than this are left out of the test, s.
+    pub min_stretch_s: f64,
     /// Probability of error below which the test decides.
     pub significance: f64,
 }
@@ -118,10 +122,12 @@ impl Default for Rules {
             settle_hold_s: 0.3,
             standstill_after_s: 1.0,
             lag_rate_hz: 100.0,
+            lag_min_correlation: 0.5,
             lag_max_s: 1.0,
             path_rate_hz: 50.0,
             path_window_s: 2.0,
             same_event_s: 1.0,
+            min_stretch_s: 0.1,
             significance: 0.05,
         }
     }

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     math::median,
-    series::{LocalFit, Noise, Pair, local_quadratic, noise},
+    series::{LocalFit, Noise, Pair, Track, local_quadratic, noise},
 };
 
 /// Fewest samples in the velocity fit to a plan that gives no speeds.
@@ -84,6 +84,26 @@ impl Signals {
             measured,
         }
     }
+}
+
+/// When a plan leaves rest, by its own samples, s.
+pub fn planned_starts(planned: &Track, rules: &Rules) -> Vec<f64> {
+    let (t_s, segments) = (planned.t_s(), planned.segments());
+    let sloped = |angle_rad: &[f64]| -> Vec<f64> {
+        let fits = local_quadratic(t_s, angle_rad, segments, rules.planned_window_s, PLAN_POINTS);
+        fits.iter().map(|fit| fit.velocity_rad_s).collect()
+    };
+    let velocity_rad_s =
+        planned.velocity_rad_s().map_or_else(|| sloped(planned.position_rad()), <[f64]>::to_vec);
+    let speed = Speed {
+        t_s,
+        position_rad: planned.position_rad(),
+        velocity_rad_s: &velocity_rad_s,
+        deviation_rad_s: None,
+        segments,
+        min_travel_rad: rules.min_travel_rad,
+    };
+    speed.motions(rules).iter().filter(|m| m.starts()).map(|m| m.start_s).collect()
 }
 
 /// Median time between neighbours inside segments, s; 0 where there are none.

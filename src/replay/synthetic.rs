@@ -88,6 +88,7 @@ pub fn synthetic_run(seed: u64, sensing: &Sensing) -> SyntheticRun {
         planned_rad_s: Some(t_s.iter().map(|&t| state(&motions, t).1).collect()),
         measured_rad: t_s.iter().map(|&t| state(&motions, t - sensing.delay_s).0).map(sense).collect(),
         segments: std::iter::once(0..n).collect(),
+        planned_interval_s: 1.0 / sensing.rate_hz,
         matched: n,
         unmatched: 0,
         t_s,

@@ -65,7 +65,8 @@ pub(super) fn transition(
         settling_time_s: settled_s(inside, peak, band_rad, rules).map(|at_s| at_s - planned_s),
         window_s: [planned_s, end_s],
         samples: inside.len(),
-        time_resolution_s: if steps.is_empty() { signals.sample_interval_s } else { median(steps) },
+        time_resolution_s: if steps.is_empty() { signals.sample_interval_s } else { median(steps) }
+            .max(pair.planned_interval_s),
     }
 }
 

@@ -19,13 +19,18 @@ pub fn report_parts(name: &str, report: &Report, most: usize) -> Vec<Part> {
     parts
 }
 
+/// Recorder and header on clocks that have nothing to do with each other (simulated time), s.
+const A_CLOCK_APART_S: f64 = 3600.0;
+
 fn source_facts(report: &Report) -> Vec<(String, String)> {
     let source = &report.source;
     let fact = |name: &str, value: String| (name.to_owned(), value);
     let samples = report.alignment.iter().map(|a| a.matched).max().unwrap_or(0);
     let interval_s = report.replay.joints.iter().map(|j| j.sample_interval_s).fold(0.0, f64::max);
     let rate = if interval_s > 0.0 { format!(" at {:.0} Hz", 1.0 / interval_s) } else { String::new() };
-    let delay = source.recorder_delay_s.filter(|[_, most_s]| *most_s >= 1e-3);
+    let delay = source
+        .recorder_delay_s
+        .filter(|[median_s, most_s]| *most_s >= 1e-3 && median_s.abs() < A_CLOCK_APART_S);
     let delay = delay.map_or(String::new(), |[median_s, most_s]| {
         format!("; the recorder was {} ms behind it, at most {} ms", ms(median_s), ms(most_s))
     });
@@ -66,8 +71,11 @@ fn in_short(report: &Report) -> Vec<String> {
                 t.p_value, t.inside_count, t.outside_count
             )
         });
+        let moving = c
+            .rms_outside_moving_rad
+            .map_or("rest".to_owned(), |rms_rad| format!("{} while moving", deg(rms_rad)));
         lines.push(format!(
-            "{place}: rms {} deg inside, {} deg elsewhere; {:.0} % of the squared error in {:.0} % of the time ({test}).",
+            "{place}: rms {} deg inside, {} deg elsewhere ({moving}); {:.0} % of the squared error in {:.0} % of the time ({test}).",
             deg(c.rms_inside_rad),
             deg(c.rms_outside_rad),
             100.0 * c.squared_error_share_inside,
@@ -76,9 +84,10 @@ fn in_short(report: &Report) -> Vec<String> {
     }
     if let Some(path) = &replay.whole_run.path_error {
         lines.push(format!(
-            "Path error, which ignores time: rms {} deg, peak {} deg over all joints (single run).",
+            "Path error, which ignores time: rms {} deg, peak {} deg over all joints ({} instants, single run).",
             deg(path.rms_rad),
-            deg(path.peak_rad)
+            deg(path.peak_rad),
+            path.samples
         ));
     }
     for joint in &replay.joints {
@@ -86,7 +95,7 @@ fn in_short(report: &Report) -> Vec<String> {
             (false, false) => lines.push(format!("{} does not move and is not asked to.", joint.name)),
             (true, false) => {
                 lines.push(format!(
-                    "{} is asked to move and does not: {}.",
+                    "{} is asked to move and does not ({}).",
                     joint.name,
                     counted(joint.starts, "planned start")
                 ));
@@ -223,7 +232,7 @@ fn lag(joint: &JointReplay) -> String {
     }
 }
 
-/// Remarks as a table, or the good news.
+/// Remarks, if there are any.
 pub(super) fn remark_parts(remarks: &Remarks, parts: &mut Vec<Part>) {
     if remarks.is_empty() {
         return;
@@ -253,7 +262,8 @@ fn gate_line(result: &GateResult) -> String {
         return format!("Limit on {name} {verdict}: nothing to measure, {limit}.");
     };
     let time = result.time_s.map_or(String::new(), |t| format!(" at {t:.2} s"));
-    let worst =
-        result.worst.map_or("a start without an answer".to_owned(), |w| format!("{} {unit}", show(w)));
+    let missing =
+        if result.gate == Gate::Lag { "no lag in the range looked at" } else { "a start without an answer" };
+    let worst = result.worst.map_or(missing.to_owned(), |w| format!("{} {unit}", show(w)));
     format!("Limit on {name} {verdict}: {joint}{time} has {worst}, {limit}.")
 }

@@ -22,6 +22,8 @@ pub struct Pair {
     pub measured_rad: Vec<f64>,
     /// Continuous stretches.
     pub segments: Vec<Range<usize>>,
+    /// Median time between samples of the plan itself, s: its starts are known no better.
+    pub planned_interval_s: f64,
     /// Measured samples for which there is a plan: n.
     pub matched: usize,
     /// Measured samples for which there is none, left out.
@@ -38,6 +40,7 @@ pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
         planned_rad_s: None,
         measured_rad: Vec::with_capacity(n),
         segments: Vec::new(),
+        planned_interval_s: planned.sample_interval_s(),
         matched: 0,
         unmatched: 0,
     };

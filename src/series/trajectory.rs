@@ -58,7 +58,11 @@ pub fn plan_tracks(trajectories: &[PlannedTrajectory], measured: &Series) -> (Se
     let replaced = trajectories
         .windows(2)
         .filter(|pair| {
-            let ends = pair[0].joints.iter().filter_map(|(_, points)| points.last().map(|p| p.t_s));
+            // Trajectories of other joints run on; one without joints stops all.
+            let concerned =
+                |name: &String| pair[1].joints.is_empty() || pair[1].joints.iter().any(|(n, _)| n == name);
+            let joints = pair[0].joints.iter().filter(|(name, _)| concerned(name));
+            let ends = joints.filter_map(|(_, points)| points.last().map(|p| p.t_s));
             ends.fold(f64::NEG_INFINITY, f64::max) > pair[1].start_s
         })
         .count() as u64;

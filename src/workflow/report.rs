@@ -7,8 +7,8 @@ use serde::Serialize;
 use crate::{
     log::{LogError, ReadOptions, SourceInfo, read_recording},
     remark::{Code, Remarks},
-    replay::{Replay, Rules, replay},
-    series::{Pair, align},
+    replay::{Replay, Rules, planned_starts, replay},
+    series::{Pair, Series, align},
 };
 
 /// What to analyse, how, and what must hold.
@@ -54,7 +54,7 @@ pub struct GateResult {
     pub worst: Option<f64>,
     /// The joint it was found at.
     pub joint: Option<String>,
-    /// When, s.
+    /// When, s; for a mean over the run when the error peaked.
     pub time_s: Option<f64>,
     /// Whether the limit is kept.
     pub kept: bool,
@@ -142,9 +142,48 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
         });
         pairs.push(pair);
     }
+    if pairs.is_empty() {
+        return Err(no_overlap(&recording.planned, &recording.measured));
+    }
+    remark_unseen(&recording.planned, &pairs, inputs, &mut remarks);
     let replay = replay(&pairs, &inputs.rules);
     let gates = gates(&inputs.gates, &replay);
     Ok(Report { source: recording.source, alignment, replay, gates, remarks, pairs })
+}
+
+fn no_overlap(planned: &Series, measured: &Series) -> LogError {
+    let span_s = |series: &Series| {
+        let ends = series.tracks.iter().filter_map(|t| Some((*t.t_s().first()?, *t.t_s().last()?)));
+        ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], (first, last)| [a.min(first), b.max(last)])
+    };
+    LogError::NoOverlap { planned_s: span_s(planned), measured_s: span_s(measured) }
+}
+
+/// Measured samples without a plan are usual before and after a run; more than half is not.
+const MOST_UNMATCHED: f64 = 0.5;
+
+/// What the plan asked for and the measurement did not see, and the other way round.
+fn remark_unseen(planned: &Series, pairs: &[Pair], inputs: &Inputs, remarks: &mut Remarks) {
+    for pair in pairs {
+        let all = pair.matched + pair.unmatched;
+        if pair.unmatched as f64 > MOST_UNMATCHED * all as f64 {
+            let message = format!(
+                "measured samples of {} have no plan at their time, left out; a start is only seen where the \
+                 plan also shows the rest before it",
+                pair.name
+            );
+            remarks.add(Code::Unmatched, pair.unmatched as u64, message);
+        }
+        let Some(track) = planned.track(&pair.name) else { continue };
+        let hidden = planned_starts(track, &inputs.rules)
+            .into_iter()
+            .filter(|at_s| {
+                !pair.segments.iter().any(|s| (pair.t_s[s.start]..=pair.t_s[s.end - 1]).contains(at_s))
+            })
+            .count();
+        let message = format!("planned starts of {} lie where nothing was measured; not judged", pair.name);
+        remarks.add(Code::Unmatched, hidden as u64, message);
+    }
 }
 
 /// Where a limited quantity was found: value, joint, time.
@@ -169,7 +208,9 @@ fn gates(limits: &Gates, replay: &Replay) -> Vec<GateResult> {
     check(
         Gate::Rms,
         limits.max_rms_rad,
-        joints().map(|j| (Some(j.tracking_error.rms_rad), j.name.as_str(), None)).collect(),
+        joints()
+            .map(|j| (Some(j.tracking_error.rms_rad), j.name.as_str(), Some(j.tracking_error.peak_time_s)))
+            .collect(),
     );
     check(
         Gate::Peak,
@@ -181,7 +222,12 @@ fn gates(limits: &Gates, replay: &Replay) -> Vec<GateResult> {
     check(
         Gate::StandstillRms,
         limits.max_standstill_rms_rad,
-        joints().filter_map(|j| Some((Some(j.standstill_error?.rms_rad), j.name.as_str(), None))).collect(),
+        joints()
+            .filter_map(|j| {
+                let error = j.standstill_error?;
+                Some((Some(error.rms_rad), j.name.as_str(), Some(error.peak_time_s)))
+            })
+            .collect(),
     );
     check(
         Gate::OnsetDelay,
@@ -191,7 +237,8 @@ fn gates(limits: &Gates, replay: &Replay) -> Vec<GateResult> {
     check(
         Gate::Lag,
         limits.max_lag_s,
-        joints().filter_map(|j| Some((Some(j.lag_s?), j.name.as_str(), None))).collect(),
+        // A joint that is asked to move and shows no lag within the range looked at is later.
+        joints().filter(|j| j.plan_moves).map(|j| (j.lag_s, j.name.as_str(), None)).collect(),
     );
     results
 }
