@@ -12,6 +12,7 @@ pub mod rng;
 pub mod units;
 
 // nouns
+pub mod arm;
 pub mod series;
 pub mod spline;
 pub mod task;

@@ -35,7 +35,9 @@ fn the_committed_files_are_those_that_the_generator_writes() {
     let names: Vec<String> = files.keys().cloned().collect();
     let mut present: Vec<String> = fs::read_dir(folder())
         .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .map(Result::unwrap)
+        .filter(|entry| entry.file_type().unwrap().is_file())
+        .map(|entry| entry.file_name().into_string().unwrap())
         .collect();
     present.sort();
     assert_eq!(present, names, "{AGAIN}");

@@ -1,7 +1,9 @@
 //! Small numerics with no noun of the domain in them.
 
 mod hermite;
+mod sin_cos;
 mod statistic;
 
 pub use hermite::{State, cubic, linear, quintic};
+pub use sin_cos::sin_cos;
 pub use statistic::{mad, median, quantile, quantile_sorted};

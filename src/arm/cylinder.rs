@@ -1,0 +1,149 @@
+//! A hydraulic cylinder that turns a joint through a triangle of two mounts and the joint.
+
+use std::f64::consts::PI;
+
+/// The triangle: two mounts at fixed distances from the joint, the cylinder opposite the joint.
+///
+/// The angle at the joint is `offset_rad + sense * q`; the length follows from the law of cosines.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Linkage {
+    /// From the joint to the mount on the link before it, m.
+    pub inner_m: f64,
+    /// From the joint to the mount on the link after it, m.
+    pub outer_m: f64,
+    /// Angle between the mounts, seen from the joint, at joint angle zero, rad.
+    pub offset_rad: f64,
+    /// 1 where the angle between the mounts grows with the joint's angle, -1 where it shrinks.
+    pub sense: f64,
+}
+
+/// One or several like cylinders side by side, with the pressures they work between.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cylinder {
+    linkage: Linkage,
+    offset: (f64, f64),
+    push_area_m2: f64,
+    pull_area_m2: f64,
+    push_n: f64,
+    pull_n: f64,
+}
+
+/// What is wrong with a cylinder: quantity, what was found, what is expected.
+pub(super) type Flaw = (&'static str, String, &'static str);
+
+/// What a joint's state means for its cylinders.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Actuation {
+    /// From mount to mount, m.
+    pub length_m: f64,
+    /// Change of length by joint angle, m/rad; its size is the lever arm, negative where the joint's
+    /// positive sense retracts the cylinder.
+    pub lever_m: f64,
+    /// Speed of the rod, positive while it extends, m/s.
+    pub rod_speed_m_s: f64,
+    /// What all cylinders of the joint take from the pump, m³/s; not negative.
+    pub flow_m3_s: f64,
+    /// Force of all cylinders together, positive where they push, N.
+    pub force_n: f64,
+    /// Force as a share of what supply pressure gives in that direction; not negative.
+    pub force_share: f64,
+}
+
+impl Cylinder {
+    /// Checks the numbers and the triangle over the joint's range.
+    pub(super) fn new(
+        linkage: Linkage,
+        (bore_m, rod_m, count): (f64, f64, u32),
+        (supply_pa, return_pa, efficiency): (f64, f64, f64),
+        (lower_rad, upper_rad): (f64, f64),
+    ) -> Result<Self, Flaw> {
+        for (name, value) in [("a_m", linkage.inner_m), ("b_m", linkage.outer_m), ("bore_m", bore_m)] {
+            if !(1e-6..1e3).contains(&value) {
+                return Err((name, value.to_string(), "a length above 0, m"));
+            }
+        }
+        if !(rod_m >= 0.0 && rod_m < bore_m) {
+            return Err(("rod_m", format!("{rod_m}"), "a diameter below the bore's, m"));
+        }
+        if !(1..=64).contains(&count) {
+            return Err(("cylinders", count.to_string(), "1 to 64"));
+        }
+        if ![-1.0, 1.0].contains(&linkage.sense) {
+            return Err(("angle_sign", linkage.sense.to_string(), "1 or -1"));
+        }
+        let ends = [lower_rad, upper_rad].map(|q| linkage.offset_rad + linkage.sense * q);
+        if !ends.iter().all(|&angle| angle > 1e-3 && angle < PI - 1e-3) {
+            let found = format!("{:.4} to {:.4} rad over the joint's range", ends[0], ends[1]);
+            return Err(("delta_rad", found, "an angle between the mounts within 0 and pi: no dead centre"));
+        }
+        let area = |diameter: f64| 0.25 * PI * diameter * diameter * f64::from(count);
+        let (push_area_m2, pull_area_m2) = (area(bore_m), area(bore_m) - area(rod_m));
+        let push_n = efficiency * (supply_pa * push_area_m2 - return_pa * pull_area_m2);
+        let pull_n = efficiency * (supply_pa * pull_area_m2 - return_pa * push_area_m2);
+        if pull_n.is_nan() || pull_n <= 0.0 {
+            return Err(("rod_m", format!("{rod_m}"), "a rod so thin that supply pressure can pull it in"));
+        }
+        let offset = linkage.offset_rad.sin_cos();
+        Ok(Self { linkage, offset, push_area_m2, pull_area_m2, push_n, pull_n })
+    }
+
+    /// Length from mount to mount, m, and its change by joint angle, m/rad, from the sine and cosine
+    /// of the joint's angle. Without branches, for use in lanes.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
+    pub fn length_and_lever(&self, sin: f64, cos: f64) -> (f64, f64) {
+        let Linkage { inner_m: a, outer_m: b, sense, .. } = self.linkage;
+        let (sin_offset, cos_offset) = self.offset;
+        let sin_angle = sin_offset * cos + sense * cos_offset * sin;
+        let cos_angle = cos_offset * cos - sense * sin_offset * sin;
+        // Equal arms meet in a point; a micrometre keeps the quotient finite there.
+        let length_m = (a * a + b * b - 2.0 * a * b * cos_angle).max(1e-12).sqrt();
+        (length_m, sense * a * b * sin_angle / length_m)
+    }
+
+    /// The smallest and the largest torque at a lever, N m: by sense, what pulling and what pushing
+    /// at supply pressure gives.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
+    pub fn torque_range_nm(&self, lever_m: f64) -> (f64, f64) {
+        let (push, pull) = (self.push_n * lever_m, -self.pull_n * lever_m);
+        (push.min(pull), push.max(pull))
+    }
+
+    /// Everything at once, from the sine and cosine of the joint's angle, its speed, rad/s, and its
+    /// torque, N m.
+    ///
+    /// A lever below a micrometre, which no posture within the joint's range has, counts as one.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
+    pub fn actuation(&self, (sin, cos): (f64, f64), speed_rad_s: f64, torque_nm: f64) -> Actuation {
+        let (length_m, lever_m) = self.length_and_lever(sin, cos);
+        let rod_speed_m_s = lever_m * speed_rad_s;
+        let area_m2 = if rod_speed_m_s > 0.0 { self.push_area_m2 } else { self.pull_area_m2 };
+        let force_n = torque_nm / lever_m.abs().max(1e-6).copysign(lever_m);
+        let most_n = if force_n > 0.0 { self.push_n } else { self.pull_n };
+        Actuation {
+            length_m,
+            lever_m,
+            rod_speed_m_s,
+            flow_m3_s: area_m2 * rod_speed_m_s.abs(),
+            force_n,
+            force_share: force_n.abs() / most_n,
+        }
+    }
+
+    /// The triangle.
+    pub fn linkage(&self) -> &Linkage {
+        &self.linkage
+    }
+
+    /// Largest push of all cylinders together, N.
+    pub fn push_n(&self) -> f64 {
+        self.push_n
+    }
+
+    /// Largest pull of all cylinders together, N.
+    pub fn pull_n(&self) -> f64 {
+        self.pull_n
+    }
+}

@@ -1,0 +1,204 @@
+//! The cylinders of a chain's joints and the pump they share, from a file.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use super::{Actuation, ArmError, Chain, Cylinder, cylinder::Linkage, error::Witness};
+
+/// More than any file of cylinders.
+const LARGEST_TEXT: usize = 1 << 20;
+
+/// The file as it is written: SI units and radians.
+#[derive(Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+struct Document {
+    /// Where the numbers come from.
+    #[expect(dead_code, reason = "for people")]
+    #[serde(default)]
+    warning: Option<String>,
+    /// Pressure before the valves, Pa.
+    supply_pressure_pa: f64,
+    /// Pressure behind the valves, Pa.
+    return_pressure_pa: f64,
+    /// Force at the joint by force on the piston, above 0, at most 1.
+    mechanical_efficiency: f64,
+    /// Largest flow of the pump, m³/s.
+    pump_flow_m3_s: f64,
+    /// Cylinders by the name of their joint.
+    joint: BTreeMap<String, Entry>,
+}
+
+/// Cylinders of one joint.
+#[derive(Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    /// Inner diameter, m.
+    bore_m: f64,
+    /// Diameter of the rod, m.
+    rod_m: f64,
+    /// From the joint to the mount on the link before it, m.
+    a_m: f64,
+    /// From the joint to the mount on the link after it, m.
+    b_m: f64,
+    /// Angle between the mounts, seen from the joint, at joint angle zero, rad.
+    delta_rad: f64,
+    /// 1 where the angle between the mounts grows with the joint's angle, -1 where it shrinks.
+    angle_sign: i8,
+    /// How many like cylinders work side by side.
+    #[serde(default = "one")]
+    cylinders: u32,
+}
+
+fn one() -> u32 {
+    1
+}
+
+/// Cylinders of a chain, one or none a joint, and their pump.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hydraulics {
+    cylinders: Vec<Option<Cylinder>>,
+    pump_flow_m3_s: f64,
+}
+
+impl Hydraulics {
+    /// Reads the text of a file, TOML as `schemas/hydraulics.schema.json` describes it; `file`
+    /// stands for it in errors. Joints without an entry have no cylinder.
+    ///
+    /// # Errors
+    ///
+    /// [`ArmError`], naming joint and key: unknown joints, numbers out of range, a linkage that
+    /// passes its dead centre within the joint's range.
+    pub fn from_toml(text: &str, file: &str, chain: &Chain) -> Result<Self, ArmError> {
+        let at = Witness(file);
+        at.at_most("bytes", text.len(), LARGEST_TEXT)?;
+        let document: Document = toml::from_str(text).map_err(|error| at.syntax(&error))?;
+        let Document { supply_pressure_pa: supply, return_pressure_pa: back, .. } = document;
+        if !(back >= 0.0 && supply > back && supply < 1e9) {
+            let found = format!("supply {supply} Pa and return {back} Pa");
+            return Err(at.unexpected(
+                "supply_pressure_pa",
+                found,
+                "a supply above the return, which is not negative",
+            ));
+        }
+        let efficiency = document.mechanical_efficiency;
+        if !(efficiency > 0.0 && efficiency <= 1.0) {
+            return Err(at.unexpected("mechanical_efficiency", efficiency, "above 0, at most 1"));
+        }
+        let pump_flow_m3_s = document.pump_flow_m3_s;
+        if !(pump_flow_m3_s > 0.0 && pump_flow_m3_s.is_finite()) {
+            return Err(at.unexpected("pump_flow_m3_s", pump_flow_m3_s, "a flow above 0"));
+        }
+        let mut entries = document.joint;
+        let mut cylinders = Vec::with_capacity(chain.joint_count());
+        for joint in chain.joints() {
+            let Some(entry) = entries.remove(&joint.name) else {
+                cylinders.push(None);
+                continue;
+            };
+            let linkage = Linkage {
+                inner_m: entry.a_m,
+                outer_m: entry.b_m,
+                offset_rad: entry.delta_rad,
+                sense: f64::from(entry.angle_sign),
+            };
+            let size = (entry.bore_m, entry.rod_m, entry.cylinders);
+            let range = (joint.limit.lower_rad, joint.limit.upper_rad);
+            let cylinder = Cylinder::new(linkage, size, (supply, back, efficiency), range);
+            cylinders.push(Some(cylinder.map_err(|(key, found, expected)| {
+                at.unexpected(format!("[joint.{}] {key}", joint.name), found, expected)
+            })?));
+        }
+        if let Some(name) = entries.keys().next() {
+            let names: Vec<&str> = chain.joints().iter().map(|joint| joint.name.as_str()).collect();
+            let expected = format!("a joint of the chain ({})", names.join(", "));
+            return Err(at.unexpected("[joint]", name, expected));
+        }
+        Ok(Self { cylinders, pump_flow_m3_s })
+    }
+
+    /// The cylinders by joint.
+    pub fn cylinders(&self) -> &[Option<Cylinder>] {
+        &self.cylinders
+    }
+
+    /// Largest flow of the pump, m³/s.
+    pub fn pump_flow_m3_s(&self) -> f64 {
+        self.pump_flow_m3_s
+    }
+
+    /// What a state of the arm means for its cylinders, by joint, from angles, rad, speeds, rad/s,
+    /// and torques, N m; returns the flow that all take together, m³/s. Allocates nothing.
+    pub fn actuate(
+        &self,
+        position_rad: &[f64],
+        speed_rad_s: &[f64],
+        torque_nm: &[f64],
+        actuation: &mut [Option<Actuation>],
+    ) -> f64 {
+        let mut flow_m3_s = 0.0;
+        let state = position_rad.iter().zip(speed_rad_s).zip(torque_nm);
+        for ((cylinder, ((q, &qd), &tau)), out) in self.cylinders.iter().zip(state).zip(actuation) {
+            *out = cylinder.map(|cylinder| cylinder.actuation(q.sin_cos(), qd, tau));
+            flow_m3_s += out.map_or(0.0, |actuation| actuation.flow_m3_s);
+        }
+        flow_m3_s
+    }
+}
+
+/// An arm: its mechanics and what drives it.
+#[derive(Debug, Clone)]
+pub struct Arm {
+    /// Geometry and masses.
+    pub chain: Chain,
+    /// Cylinders and pump.
+    pub hydraulics: Hydraulics,
+}
+
+impl Arm {
+    /// Reads both texts, each named by the file it stands in; `tool` as in [`Chain::from_urdf`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Chain::from_urdf`] and [`Hydraulics::from_toml`].
+    pub fn new(urdf: (&str, &str), tool: Option<&str>, hydraulics: (&str, &str)) -> Result<Self, ArmError> {
+        let chain = Chain::from_urdf(urdf.1, urdf.0, tool)?;
+        let hydraulics = Hydraulics::from_toml(hydraulics.1, hydraulics.0, &chain)?;
+        Ok(Self { chain, hydraulics })
+    }
+
+    /// The sample arm of `sample-logs/arm`: an assumption of this project, no machine that exists.
+    ///
+    /// # Errors
+    ///
+    /// None: the files are part of the program, and a test reads them.
+    pub fn sample() -> Result<Self, ArmError> {
+        Self::new(
+            ("arm.urdf", include_str!("../../sample-logs/arm/arm.urdf")),
+            Some("tool"),
+            ("hydraulics.toml", include_str!("../../sample-logs/arm/hydraulics.toml")),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_file() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/schemas/hydraulics.schema.json");
+        let settings = schemars::generate::SchemaSettings::draft2020_12();
+        let mut schema = settings.into_generator().into_root_schema_for::<Document>();
+        schema.insert("title".to_owned(), "hydrotrace cylinders of an arm".into());
+        let text = serde_json::to_string_pretty(&schema).unwrap() + "\n";
+        if std::env::var_os("UPDATE_SCHEMA").is_some() {
+            std::fs::write(path, &text).unwrap();
+        }
+        let committed = std::fs::read_to_string(path).unwrap_or_default();
+        assert!(committed == text, "run `UPDATE_SCHEMA=1 cargo test the_committed_schema`");
+    }
+}

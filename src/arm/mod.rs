@@ -1,0 +1,29 @@
+//! Arms: what a URDF and a file of cylinders say, and the mechanics that follow.
+//!
+//! A [`Chain`] holds the geometry and the masses of any serial arm with turning joints: poses
+//! ([`Chain::tool_pose`]), the tool's speed, inverse dynamics ([`Chain::inverse_dynamics`], in lanes
+//! of several instants) and inverse kinematics ([`Chain::reach`]). [`Hydraulics`] holds the
+//! cylinders, which turn joint motion and torque into rod speed, flow and force. [`Arm`] is both.
+
+mod chain;
+mod cylinder;
+mod error;
+mod hydraulics;
+mod inertia;
+mod inverse_dynamics;
+mod kinematics;
+mod reach;
+mod urdf;
+
+pub use chain::{Chain, Joint, JointLimit};
+pub use cylinder::{Actuation, Cylinder, Linkage};
+pub use error::ArmError;
+pub use hydraulics::{Arm, Hydraulics};
+pub use inertia::Inertia;
+pub use inverse_dynamics::{LANES, Load, Motion, Workspace, inverse_dynamics};
+
+/// Place and orientation of a frame in another; lengths in m.
+pub type Pose = nalgebra::IsometryMatrix3<f64>;
+
+/// Standard gravity as used by every robot library, m/s².
+pub const GRAVITY_M_S2: f64 = 9.81;

@@ -1,0 +1,181 @@
+//! Postures that bring the tool where it is wanted: damped least squares (Nakamura and Hanafusa
+//! 1986, doi:10.1115/1.3143764) within the joint limits, with the freedom left over spent on
+//! staying near a posture (Liégeois 1977, doi:10.1109/TSMC.1977.4309644).
+
+use nalgebra::{DVector, Matrix6xX, SVD, UnitQuaternion, Vector6};
+
+use super::{ArmError, Chain, Pose};
+
+/// Starts: the posture asked for, then a sequence that fills the joint ranges evenly.
+const STARTS: u32 = 32;
+/// Starts while none has reached the pose.
+const MOST_STARTS: u32 = 256;
+const MOST_STEPS: usize = 200;
+/// Steps without progress after which a descent far from the pose is given up.
+const PATIENCE: usize = 25;
+/// Nearer than this a descent is not given up, m and rad.
+const FAR: f64 = 1e-3;
+/// A pose counts as reached, m and rad.
+const REACHED: f64 = 1e-11;
+/// Further than this the tool's motion is no longer nearly linear, m or rad.
+const LONGEST_ERROR: f64 = 0.3;
+/// Weight of the joints' motion in the least squares, by what is left to the pose.
+const DAMPING: f64 = 0.01;
+/// Share of the way back to the posture asked for that one step takes.
+const RETURN: f64 = 0.5;
+/// Directions that the tool can move in at less than this, against the easiest, it cannot.
+const RIGID: f64 = 1e-9;
+
+impl Chain {
+    /// The posture nearest to `near_rad` (root of the summed squares, rad) that has the tool at a
+    /// pose of the base's frame and all joints within their limits.
+    ///
+    /// Works for redundant arms and for arms that move in a plane, whose poses must lie in it. It is
+    /// the nearest of what descents from many starts find: for the sample arm the nearest of all, for
+    /// skew axes and narrow limits now and then (a few in a hundred) a farther one, or none at all.
+    /// `near_rad` has an entry a joint; missing ones count as zero.
+    ///
+    /// # Errors
+    ///
+    /// [`ArmError::Unreachable`] with what the nearest attempt leaves.
+    pub fn reach(&self, pose: &Pose, near_rad: &[f64]) -> Result<Vec<f64>, ArmError> {
+        let near = DVector::from_fn(self.joint_count(), |i, _| {
+            near_rad.get(i).copied().filter(|q| q.is_finite()).unwrap_or(0.0)
+        });
+        let mut best: Option<DVector<f64>> = None;
+        let mut least = (f64::INFINITY, f64::INFINITY);
+        for start in 0..MOST_STARTS {
+            if start >= STARTS && best.is_some() {
+                break;
+            }
+            let found = self.descend(pose, self.start(start, &near), &near);
+            let left = self.left(pose, &found);
+            let (distance_m, angle_rad) = (left.fixed_rows::<3>(0).norm(), left.fixed_rows::<3>(3).norm());
+            if distance_m + angle_rad < least.0 + least.1 || least.0.is_infinite() {
+                least = (distance_m, angle_rad);
+            }
+            let nearer = best.as_ref().is_none_or(|best| (&found - &near).norm() < (best - &near).norm());
+            if left.norm() < REACHED && nearer {
+                best = Some(found);
+            }
+        }
+        best.map(|found| found.iter().copied().collect())
+            .ok_or(ArmError::Unreachable { distance_m: least.0, angle_rad: least.1 })
+    }
+
+    /// Starts after the first follow the multiples of powers of the generalised golden ratio.
+    fn start(&self, number: u32, near: &DVector<f64>) -> DVector<f64> {
+        let dimensions = self.joint_count() as f64;
+        let ratio = (0..64).fold(2.0_f64, |x, _| (1.0 + x).powf(1.0 / (dimensions + 1.0)));
+        let mut power = 1.0;
+        DVector::from_fn(self.joint_count(), |i, _| {
+            power /= ratio;
+            let (lower, upper) = self.range(i, near[i]);
+            if number == 0 {
+                return near[i].clamp(lower, upper);
+            }
+            lower + (upper - lower) * (0.5 + f64::from(number - 1) * power).fract()
+        })
+    }
+
+    /// Limits of a joint; a turn about the posture where it has none.
+    fn range(&self, joint: usize, near_rad: f64) -> (f64, f64) {
+        let limit = self.joints[joint].limit;
+        let pi = std::f64::consts::PI;
+        match (limit.lower_rad.is_finite(), limit.upper_rad.is_finite()) {
+            (true, true) => (limit.lower_rad, limit.upper_rad),
+            (true, false) => (limit.lower_rad, limit.lower_rad.max(near_rad) + pi),
+            (false, true) => (limit.upper_rad.min(near_rad) - pi, limit.upper_rad),
+            (false, false) => (near_rad - pi, near_rad + pi),
+        }
+    }
+
+    /// What is left to the pose: distance, m, above the rotation vector, rad.
+    fn left(&self, pose: &Pose, position: &DVector<f64>) -> Vector6<f64> {
+        let now = self.tool_pose(position.as_slice());
+        let shift = pose.translation.vector - now.translation.vector;
+        // By way of the quaternion: exact for small turns, where the trace of the matrix is not.
+        let turn = pose.rotation * now.rotation.inverse();
+        let turn = UnitQuaternion::from_rotation_matrix(&turn).scaled_axis();
+        Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z)
+    }
+
+    fn descend(&self, pose: &Pose, start: DVector<f64>, near: &DVector<f64>) -> DVector<f64> {
+        let mut position = start;
+        let (mut least, mut progress) = (f64::INFINITY, 0);
+        for number in 0..MOST_STEPS {
+            let left = self.left(pose, &position);
+            let size = left.norm();
+            if size < 0.99 * least {
+                (least, progress) = (size, number);
+            }
+            if !size.is_finite() || (size > FAR && number > progress + PATIENCE) {
+                break;
+            }
+            // The last steps only approach the pose, wherever the return to the posture has got to.
+            let share = if number + 8 < MOST_STEPS { RETURN } else { 0.0 };
+            let back = (near - &position) * share;
+            let Some(step) = self.step(&position, &(left * (LONGEST_ERROR / size).min(1.0)), &back) else {
+                break;
+            };
+            position += &step;
+            if size < REACHED && step.norm() < REACHED {
+                break;
+            }
+        }
+        position
+    }
+
+    /// One step: joints that it would take beyond a limit stop there and the others do the rest.
+    fn step(
+        &self,
+        position: &DVector<f64>,
+        left: &Vector6<f64>,
+        back: &DVector<f64>,
+    ) -> Option<DVector<f64>> {
+        let whole = self.tool_jacobian(position.as_slice());
+        let (mut free, mut left, mut back) = (whole.clone(), *left, back.clone());
+        let mut stopped: Vec<Option<f64>> = vec![None; self.joint_count()];
+        loop {
+            let mut step = least_squares(&free, &left, &back)?;
+            let mut worst = (0.0, 0, 0.0);
+            for (i, joint) in self.joints.iter().enumerate() {
+                let (low, high) = (joint.limit.lower_rad - position[i], joint.limit.upper_rad - position[i]);
+                if let Some(stop) = stopped[i] {
+                    step[i] = stop;
+                } else if (low - step[i]).max(step[i] - high) > worst.0 {
+                    worst = ((low - step[i]).max(step[i] - high), i, step[i].clamp(low.min(high), high));
+                }
+            }
+            let (excess, joint, stop) = worst;
+            if excess <= 0.0 {
+                return Some(step);
+            }
+            stopped[joint] = Some(stop);
+            left -= whole.column(joint) * stop;
+            free.column_mut(joint).fill(0.0);
+            back[joint] = 0.0;
+        }
+    }
+}
+
+/// The joint step that best makes the tool's step and, where the tool does not care, goes `back`.
+fn least_squares(
+    jacobian: &Matrix6xX<f64>,
+    left: &Vector6<f64>,
+    back: &DVector<f64>,
+) -> Option<DVector<f64>> {
+    let svd = SVD::try_new(jacobian.clone(), true, true, f64::EPSILON, 1000)?;
+    let (u, v_t) = (svd.u?, svd.v_t?);
+    let strongest = svd.singular_values.max();
+    let damping = (DAMPING * left.norm()).powi(2);
+    let mut step = back.clone();
+    for (i, &strength) in svd.singular_values.iter().enumerate() {
+        if strength > RIGID * strongest {
+            let direction = v_t.row(i).transpose();
+            let wanted = u.column(i).dot(left) * strength / (strength * strength + damping);
+            step += &direction * (wanted - direction.dot(back));
+        }
+    }
+    step.iter().all(|q| q.is_finite()).then_some(step)
+}

@@ -1,0 +1,237 @@
+//! From the text of a URDF to a [`Chain`]: the path from the root link to the tool, with fixed
+//! joints folded and the masses of fixed side branches added to what carries them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::{Matrix3, Rotation3, Translation3, Unit, Vector3};
+use urdf_rs::JointType;
+
+use super::{ArmError, Chain, Inertia, Joint, JointLimit, Pose, chain::Builder, error::Witness};
+
+/// More than any description of an arm; meshes lie outside the text.
+const LARGEST_TEXT: usize = 4 << 20;
+/// The parser is recursive; a URDF nests five deep.
+const DEEPEST: usize = 32;
+/// Joints of one file, fixed ones included.
+const MOST_JOINTS: usize = 4096;
+
+impl Chain {
+    /// Reads the text of a URDF; `file` stands for it in errors.
+    ///
+    /// The tool is the link named, or the only link without children. Turning joints may be
+    /// `revolute` or `continuous`; axes need not be unit vectors.
+    ///
+    /// # Errors
+    ///
+    /// [`ArmError`], naming the element: text that is no URDF, links or joints that are missing,
+    /// double or in a loop, several possible tools, moving joints beside the path to the tool,
+    /// other kinds of joints, numbers that are not finite, limits upside down.
+    pub fn from_urdf(text: &str, file: &str, tool: Option<&str>) -> Result<Self, ArmError> {
+        let at = Witness(file);
+        at.at_most("bytes", text.len(), LARGEST_TEXT)?;
+        at.at_most("nested elements", nesting(text, &at)?, DEEPEST)?;
+        let robot = urdf_rs::read_from_string(text).map_err(|error| at.syntax(&error))?;
+        at.at_most("joints", robot.joints.len(), MOST_JOINTS)?;
+        let tree = Tree::new(&robot, at)?;
+        let tool = tree.tool(tool)?;
+        tree.chain(tool)
+    }
+}
+
+/// Depth of elements, by the parser that reads them.
+fn nesting(text: &str, at: &Witness<'_>) -> Result<usize, ArmError> {
+    let mut parser = xml::Parser::new();
+    parser.feed_str(text);
+    let (mut depth, mut deepest) = (0_usize, 0);
+    for event in parser {
+        match event.map_err(|error| at.syntax(&error))? {
+            xml::Event::ElementStart(_) => depth += 1,
+            xml::Event::ElementEnd(_) => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        deepest = deepest.max(depth);
+    }
+    Ok(deepest)
+}
+
+struct Tree<'a> {
+    at: Witness<'a>,
+    links: BTreeMap<&'a str, &'a urdf_rs::Link>,
+    /// The joint that leads to each link but the root.
+    above: BTreeMap<&'a str, &'a urdf_rs::Joint>,
+    /// The joints that leave each link.
+    below: BTreeMap<&'a str, Vec<&'a urdf_rs::Joint>>,
+    root: &'a str,
+}
+
+impl<'a> Tree<'a> {
+    fn new(robot: &'a urdf_rs::Robot, at: Witness<'a>) -> Result<Self, ArmError> {
+        let mut links = BTreeMap::new();
+        for link in &robot.links {
+            if links.insert(link.name.as_str(), link).is_some() {
+                return Err(at.unexpected(format!("<link {:?}>", link.name), "it twice", "distinct names"));
+            }
+        }
+        let mut names = BTreeSet::new();
+        let mut above = BTreeMap::new();
+        let mut below: BTreeMap<&str, Vec<&urdf_rs::Joint>> = BTreeMap::new();
+        for joint in &robot.joints {
+            let element = format!("<joint {:?}>", joint.name);
+            if !names.insert(joint.name.as_str()) {
+                return Err(at.unexpected(element, "it twice", "distinct names"));
+            }
+            for (end, name) in [("parent", &joint.parent.link), ("child", &joint.child.link)] {
+                if !links.contains_key(name.as_str()) {
+                    return Err(at.unexpected(format!("{element} <{end}>"), name, "a link of this file"));
+                }
+            }
+            let child = joint.child.link.as_str();
+            if let Some(other) = above.insert(child, joint) {
+                let found = format!("the joints {:?} and {:?} leading to it", other.name, joint.name);
+                return Err(at.unexpected(format!("<link {child:?}>"), found, "one parent"));
+            }
+            below.entry(joint.parent.link.as_str()).or_default().push(joint);
+        }
+        let roots: Vec<&str> = links.keys().copied().filter(|name| !above.contains_key(name)).collect();
+        let [root] = roots[..] else {
+            let found = match roots.len() {
+                0 if links.is_empty() => "no links".to_owned(),
+                0 => "a loop of joints".to_owned(),
+                n => format!("{n}: {}", roots.join(", ")),
+            };
+            return Err(at.unexpected("<robot>", found, "one link without parent"));
+        };
+        Ok(Self { at, links, above, below, root })
+    }
+
+    fn children(&self, link: &str) -> &[&'a urdf_rs::Joint] {
+        self.below.get(link).map_or(&[], Vec::as_slice)
+    }
+
+    /// The link asked for, or the only leaf of the tree.
+    fn tool(&self, wanted: Option<&str>) -> Result<&'a str, ArmError> {
+        if let Some(wanted) = wanted {
+            return self.links.get_key_value(wanted).map(|(name, _)| *name).ok_or_else(|| {
+                let names: Vec<&str> = self.links.keys().copied().collect();
+                self.at.unexpected("tool", wanted, format!("a link of this file ({})", names.join(", ")))
+            });
+        }
+        let leaves: Vec<&str> =
+            self.links.keys().copied().filter(|name| self.children(name).is_empty()).collect();
+        match leaves[..] {
+            [leaf] => Ok(leaf),
+            _ => Err(ArmError::SeveralTools {
+                file: self.at.0.to_owned(),
+                tools: leaves.iter().map(ToString::to_string).collect(),
+            }),
+        }
+    }
+
+    fn chain(&self, tool: &'a str) -> Result<Chain, ArmError> {
+        let mut path = Vec::new();
+        let mut link = tool;
+        while let Some(&joint) = self.above.get(link) {
+            path.push(joint);
+            link = joint.parent.link.as_str();
+            if path.len() > self.links.len() {
+                return Err(self.at.unexpected(format!("<link {tool:?}>"), "a loop of joints", "a tree"));
+            }
+        }
+        let mut builder = Builder::new(self.root);
+        while let Some(joint) = path.pop() {
+            let element = format!("<joint {:?}>", joint.name);
+            let origin = self.pose(&joint.origin, &element)?;
+            let child = joint.child.link.as_str();
+            if joint.joint_type == JointType::Fixed {
+                builder.fixed(&origin, child);
+            } else {
+                builder.turning(self.joint(joint, &element)?, &origin, &self.axis(joint, &element)?, child);
+            }
+            self.bodies(child, path.last().map(|next| next.name.as_str()), &mut builder)?;
+        }
+        if builder.joint_count() == 0 {
+            let found = format!("no turning joint between {:?} and {tool:?}", self.root);
+            return Err(self.at.unexpected("<robot>", found, "at least one"));
+        }
+        Ok(builder.finish())
+    }
+
+    /// Adds the masses of a link and of all that is fixed to it, but for the joint `onwards`.
+    fn bodies(&self, link: &'a str, onwards: Option<&str>, builder: &mut Builder) -> Result<(), ArmError> {
+        let mut waiting = vec![(link, Pose::identity())];
+        while let Some((link, place)) = waiting.pop() {
+            builder.body(&self.inertia(link)?.0, &(place * self.inertia(link)?.1));
+            for joint in self.children(link) {
+                if Some(joint.name.as_str()) == onwards {
+                    continue;
+                }
+                let element = format!("<joint {:?}>", joint.name);
+                if joint.joint_type != JointType::Fixed {
+                    let found = "a moving joint beside or beyond the path to the tool";
+                    return Err(self.at.unexpected(element, found, "a serial chain; name another tool"));
+                }
+                waiting.push((joint.child.link.as_str(), place * self.pose(&joint.origin, &element)?));
+            }
+        }
+        Ok(())
+    }
+
+    /// A link's mass and the frame of its inertial element.
+    fn inertia(&self, name: &str) -> Result<(Inertia, Pose), ArmError> {
+        let element = format!("<link {name:?}> <inertial>");
+        let Some(given) = self.links.get(name).map(|link| &link.inertial) else {
+            return Ok((Inertia::default(), Pose::identity()));
+        };
+        let i = &given.inertia;
+        let tensor = Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);
+        let body = Inertia::new(given.mass.value, Vector3::zeros(), tensor).ok_or_else(|| {
+            let found = format!("mass {} kg, inertia {i:?}", given.mass.value);
+            self.at.unexpected(&element, found, "finite numbers and a mass that is not negative")
+        })?;
+        Ok((body, self.pose(&given.origin, &element)?))
+    }
+
+    fn pose(&self, pose: &urdf_rs::Pose, element: &str) -> Result<Pose, ArmError> {
+        let ([x, y, z], [roll, pitch, yaw]) = (pose.xyz.0, pose.rpy.0);
+        // Beyond this, sums and products of lengths would overflow.
+        let sane = |v: &f64| v.abs() < 1e9;
+        if ![x, y, z, roll, pitch, yaw].iter().all(sane) {
+            let found = format!("xyz {:?}, rpy {:?}", pose.xyz.0, pose.rpy.0);
+            return Err(self.at.unexpected(format!("{element} <origin>"), found, "numbers below 1e9"));
+        }
+        let rotation = Rotation3::from_euler_angles(roll, pitch, yaw);
+        Ok(Pose::from_parts(Translation3::new(x, y, z), rotation))
+    }
+
+    fn axis(&self, joint: &urdf_rs::Joint, element: &str) -> Result<Unit<Vector3<f64>>, ArmError> {
+        let axis = Vector3::from(joint.axis.xyz.0);
+        Unit::try_new(axis, 1e-9).filter(|unit| unit.iter().all(|v| v.is_finite())).ok_or_else(|| {
+            self.at.unexpected(format!("{element} <axis>"), format!("{:?}", joint.axis.xyz.0), "a direction")
+        })
+    }
+
+    fn joint(&self, joint: &urdf_rs::Joint, element: &str) -> Result<Joint, ArmError> {
+        let given = &joint.limit;
+        let (lower_rad, upper_rad) = match joint.joint_type {
+            JointType::Continuous => (f64::NEG_INFINITY, f64::INFINITY),
+            JointType::Revolute => (given.lower, given.upper),
+            ref other => {
+                let expected = "revolute, continuous or fixed";
+                return Err(self.at.unexpected(element, format!("the type {other:?}"), expected));
+            }
+        };
+        if let Some(mimic) = &joint.mimic {
+            let found = format!("<mimic> of {:?}", mimic.joint);
+            return Err(self.at.unexpected(element, found, "joints that move on their own"));
+        }
+        if lower_rad.is_nan() || upper_rad.is_nan() || lower_rad >= upper_rad {
+            let found = format!("lower {lower_rad} and upper {upper_rad}");
+            return Err(self.at.unexpected(format!("{element} <limit>"), found, "lower below upper, rad"));
+        }
+        // The format's default, zero, means that nothing is said.
+        let said = |value: f64| if value > 0.0 { value } else { f64::INFINITY };
+        let (torque_nm, speed_rad_s) = (said(given.effort), said(given.velocity));
+        let limit = JointLimit { lower_rad, upper_rad, torque_nm, speed_rad_s };
+        Ok(Joint { name: joint.name.clone(), limit })
+    }
+}
