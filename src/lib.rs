@@ -12,6 +12,7 @@ pub mod rng;
 pub mod units;
 
 // nouns
+pub mod moea;
 pub mod series;
 
 // abilities
