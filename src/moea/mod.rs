@@ -1,10 +1,12 @@
 //! Optimises several objectives at once, by evolution.
 
 mod archive;
+pub mod benchmark;
 mod direction;
 mod evaluate;
 mod focus;
 mod genetic;
+pub mod indicator;
 mod mating;
 mod normalize;
 mod nsga3;

@@ -83,6 +83,13 @@ impl Population {
         first
     }
 
+    /// Feasible members of which only the objectives are known, `[n][objectives]` in one slice.
+    pub fn from_objectives(f: &[f64], objectives: usize) -> Self {
+        let n = f.len() / objectives.max(1);
+        let f = f[..n * objectives].to_vec();
+        Self { variables: 0, objectives, x: Vec::new(), f, violation: vec![0.0; n], fingerprint: vec![0; n] }
+    }
+
     pub(super) fn clear(&mut self) {
         self.x.clear();
         self.f.clear();
