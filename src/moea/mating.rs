@@ -83,11 +83,8 @@ impl Mating for Uniform {
         pairs: &mut Vec<(usize, usize)>,
     ) {
         let population = courtship.population;
-        self.permutation.draw(population, children.div_ceil(2), rng, &mut self.first);
+        self.permutation.draw(population, 2 * children.div_ceil(2), rng, &mut self.first);
         pairs.clear();
-        for &first in &self.first {
-            let second = below(population.len(), rng);
-            pairs.push((first, fitter(population, second, rng)));
-        }
+        pairs.extend(self.first.chunks_exact(2).map(|pair| (pair[0], pair[1])));
     }
 }

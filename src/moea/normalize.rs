@@ -107,8 +107,8 @@ impl Normalizer {
         if !solve(&mut self.matrix, &mut self.solution) {
             return false;
         }
-        // An intercept beyond a million ranges is no intercept.
-        if self.solution.iter().any(|&inverse| !(1e-6..1e6).contains(&inverse)) {
+        // Negative ones and those that vanish beside the range are no intercepts.
+        if self.solution.iter().any(|&inverse| !(1e-12..1e6).contains(&inverse)) {
             return false;
         }
         for k in 0..m {
