@@ -2,6 +2,7 @@
 
 mod archive;
 pub mod benchmark;
+pub mod compare;
 mod direction;
 mod evaluate;
 mod focus;
