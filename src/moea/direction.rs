@@ -131,6 +131,19 @@ fn fitting(objectives: usize, wanted: usize) -> Result<Vec<f64>, MoeaError> {
     if inner == 0 { das_dennis(objectives, outer) } else { layers(objectives, outer, inner) }
 }
 
+/// The `near` directions closest to each direction, itself first.
+pub(super) fn neighbours(directions: &[f64], m: usize, near: usize) -> Vec<usize> {
+    let all: Vec<&[f64]> = directions.chunks_exact(m.max(1)).collect();
+    let mut flat = Vec::with_capacity(all.len() * near);
+    for own in &all {
+        let apart = |j: usize| all[j].iter().zip(*own).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        order.sort_by(|&a, &b| apart(a).total_cmp(&apart(b)));
+        flat.extend_from_slice(&order[..near.min(order.len())]);
+    }
+    flat
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,9 @@
 use rand_chacha::ChaCha8Rng;
 
 use super::{
-    mating::{Courtship, Mating, Permutation, fitter},
+    direction::neighbours,
+    mating::{Courtship, Mating, Pair, Permutation, fitter},
+    survival::Standing,
     variation::{below, shuffle, unit},
 };
 
@@ -24,10 +26,15 @@ const SHARE: f64 = 0.20;
 /// Exponent with which the focus fades over the budget.
 const FADE: i32 = 2;
 
+/// Least rates of eq. 8 and 9 as a share of the largest.
+const LEAST_CROSSOVER: f64 = 0.6;
+const LEAST_MUTATION: f64 = 0.1;
+
 /// Mating with a focus.
 #[derive(Debug, Clone)]
 pub(super) struct Focused {
     focus: Focus,
+    adaptive_rates: bool,
     /// Directions near each direction, itself included, `[count][near]`.
     neighbours: Vec<usize>,
     near: usize,
@@ -39,11 +46,12 @@ pub(super) struct Focused {
 }
 
 impl Focused {
-    pub(super) fn new(focus: Focus, directions: &[f64], m: usize) -> Self {
+    pub(super) fn new(focus: Focus, adaptive_rates: bool, directions: &[f64], m: usize) -> Self {
         let count = directions.len() / m.max(1);
         let near = (m * m.saturating_sub(1) + 1).min(21).min(count);
         Self {
             focus,
+            adaptive_rates,
             neighbours: neighbours(directions, m, near),
             near,
             permutation: Permutation::default(),
@@ -91,17 +99,31 @@ impl Mating for Focused {
         courtship: &Courtship<'_>,
         children: usize,
         rng: &mut ChaCha8Rng,
-        pairs: &mut Vec<(usize, usize)>,
+        pairs: &mut Vec<Pair>,
     ) {
-        let population = courtship.population;
         self.rate(courtship, rng);
-        let n = population.len();
         pairs.clear();
+        self.choose(courtship, children, rng, pairs);
+        if self.adaptive_rates {
+            adapt(courtship.standing, pairs);
+        }
+    }
+
+    fn reserved(&self) -> usize {
+        1
+    }
+}
+
+impl Focused {
+    fn choose(&mut self, courtship: &Courtship<'_>, children: usize, rng: &mut ChaCha8Rng, pairs: &mut Vec<Pair>) {
+        let population = courtship.population;
+        let n = population.len();
         if self.focus == Focus::Literal {
             // All but the worst and the worse half of the rest mate among themselves.
             let better = (n.saturating_sub(2) / 2).max(2).min(n);
             for _ in 0..children.div_ceil(2) {
-                pairs.push((self.order[below(better, rng)], self.order[below(better, rng)]));
+                let (first, second) = (self.order[below(better, rng)], self.order[below(better, rng)]);
+                pairs.push(Pair::of(first, second));
             }
             return;
         }
@@ -115,24 +137,27 @@ impl Mating for Focused {
             } else {
                 fitter(population, below(n, rng), rng)
             };
-            pairs.push((first, second));
+            pairs.push(Pair::of(first, second));
         }
-    }
-
-    fn reserved(&self) -> usize {
-        1
     }
 }
 
-/// The `near` directions closest to each direction, itself first.
-fn neighbours(directions: &[f64], m: usize, near: usize) -> Vec<usize> {
-    let all: Vec<&[f64]> = directions.chunks_exact(m.max(1)).collect();
-    let mut flat = Vec::with_capacity(all.len() * near);
-    for own in &all {
-        let apart = |j: usize| all[j].iter().zip(*own).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-        let mut order: Vec<usize> = (0..all.len()).collect();
-        order.sort_by(|&a, &b| apart(a).total_cmp(&apart(b)));
-        flat.extend_from_slice(&order[..near.min(order.len())]);
+/// Rates of eq. 8 and 9 with the signed distance to the reference plane for a fitness, the
+/// better of the pair against the mean.
+///
+/// DIFFERENCE(eq. 8, 9): as printed, with the largest fitness of the population against the
+/// mean, the first case never holds and rates stay at their maximum.
+fn adapt(standing: &Standing, pairs: &mut [Pair]) {
+    let finite = || standing.plane.iter().copied().filter(|s| s.is_finite());
+    let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
+    let least = finite().fold(f64::INFINITY, f64::min);
+    for pair in pairs {
+        let better = standing.plane[pair.first].min(standing.plane[pair.second]);
+        if better > mean || mean <= least {
+            continue;
+        }
+        let share = ((mean - better) / (mean - least) * std::f64::consts::PI).cos().exp();
+        pair.crossover = 1.0 - (1.0 - LEAST_CROSSOVER) / (1.0 + share);
+        pair.mutation = 1.0 - (1.0 - LEAST_MUTATION) / (1.0 + share);
     }
-    flat
 }

@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::{
     Population,
-    mating::{Courtship, Mating},
+    mating::{Courtship, Mating, Pair},
     problem::Bounds,
     survival::{Standing, Survival},
     variation::{Operators, cross, mutate},
@@ -60,20 +60,21 @@ impl Breeding {
     pub(super) fn breed(
         &mut self,
         population: &Population,
-        parents: (usize, usize),
+        pair: Pair,
         wanted: usize,
         children: &mut Population,
         rng: &mut ChaCha8Rng,
     ) {
         let (first, second) = (&mut self.pair.0, &mut self.pair.1);
-        let parents = (population.x(parents.0), population.x(parents.1));
-        let rate = self.operators.crossover_rate;
+        let parents = (population.x(pair.first), population.x(pair.second));
+        let rate = self.operators.crossover_rate * pair.crossover;
+        let mutation_rate = self.mutation_rate * pair.mutation;
         cross(&self.operators, rate, &self.bounds, parents, (first, second), rng);
         for child in [first, second] {
             if children.len() >= wanted {
                 return;
             }
-            mutate(self.operators.mutation_eta, self.mutation_rate, &self.bounds, child, rng);
+            mutate(self.operators.mutation_eta, mutation_rate, &self.bounds, child, rng);
             for _ in 0..ATTEMPTS {
                 if !(population.contains(child) || children.contains(child)) {
                     break;
@@ -90,7 +91,7 @@ pub(super) struct Genetic {
     pub(super) mating: Box<dyn Mating + Send>,
     pub(super) survival: Box<dyn Survival + Send>,
     pub(super) breeding: Breeding,
-    pairs: Vec<(usize, usize)>,
+    pairs: Vec<Pair>,
     merged: Population,
     chosen: Vec<usize>,
     standing: Standing,
@@ -142,8 +143,8 @@ impl Method for Genetic {
     ) {
         let courtship = Courtship { population, standing: &self.standing, progress };
         self.mating.pair(&courtship, wanted, &mut streams.variation, &mut self.pairs);
-        for &parents in &self.pairs {
-            self.breeding.breed(population, parents, wanted, children, &mut streams.variation);
+        for &pair in &self.pairs {
+            self.breeding.breed(population, pair, wanted, children, &mut streams.variation);
         }
     }
 

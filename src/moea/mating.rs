@@ -16,6 +16,22 @@ pub(super) struct Courtship<'a> {
     pub(super) progress: Option<f64>,
 }
 
+/// Two parents, and factors on the rates of crossover and mutation of their children.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pair {
+    pub(super) first: usize,
+    pub(super) second: usize,
+    pub(super) crossover: f64,
+    pub(super) mutation: f64,
+}
+
+impl Pair {
+    /// Parents at full rates.
+    pub(super) fn of(first: usize, second: usize) -> Self {
+        Self { first, second, crossover: 1.0, mutation: 1.0 }
+    }
+}
+
 /// Chooses parents.
 pub(super) trait Mating {
     /// Writes pairs of parents for at least `children` children, two children a pair.
@@ -24,7 +40,7 @@ pub(super) trait Mating {
         courtship: &Courtship<'_>,
         children: usize,
         rng: &mut ChaCha8Rng,
-        pairs: &mut Vec<(usize, usize)>,
+        pairs: &mut Vec<Pair>,
     );
 
     /// Number of offspring slots that are not filled by new children.
@@ -80,11 +96,11 @@ impl Mating for Uniform {
         courtship: &Courtship<'_>,
         children: usize,
         rng: &mut ChaCha8Rng,
-        pairs: &mut Vec<(usize, usize)>,
+        pairs: &mut Vec<Pair>,
     ) {
         let population = courtship.population;
         self.permutation.draw(population, 2 * children.div_ceil(2), rng, &mut self.first);
         pairs.clear();
-        pairs.extend(self.first.chunks_exact(2).map(|pair| (pair[0], pair[1])));
+        pairs.extend(self.first.chunks_exact(2).map(|pair| Pair::of(pair[0], pair[1])));
     }
 }

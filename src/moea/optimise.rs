@@ -11,6 +11,9 @@ use super::{
     focus::Focused,
     genetic::{Breeding, Genetic, Method, Streams},
     mating::Uniform,
+    moead::Decomposition,
+    msops2::{NearMate, Targets},
+    nsga2::{Crowding, Tournament},
     nsga3::Niching,
     settings::{Checked, check},
     variation::unit,
@@ -183,9 +186,18 @@ fn method(checked: &Checked, settings: &Settings) -> Box<dyn Method> {
     let niching = || Box::new(Niching::new(directions, m));
     match settings.algorithm {
         Algorithm::Nsga3 => Box::new(Genetic::new(Box::<Uniform>::default(), niching(), breeding)),
-        Algorithm::Nsga3Fo { focus, .. } => {
-            Box::new(Genetic::new(Box::new(Focused::new(focus, directions, m)), niching(), breeding))
+        Algorithm::Nsga3Fo { focus, adaptive_rates } => {
+            let mating = Focused::new(focus, adaptive_rates, directions, m);
+            Box::new(Genetic::new(Box::new(mating), niching(), breeding))
         }
-        _ => Box::new(Genetic::new(Box::<Uniform>::default(), niching(), breeding)),
+        Algorithm::Nsga2 => {
+            Box::new(Genetic::new(Box::<Tournament>::default(), Box::<Crowding>::default(), breeding))
+        }
+        Algorithm::Moead { normalized } => {
+            Box::new(Decomposition::new(directions, m, normalized, breeding))
+        }
+        Algorithm::Msops2 => {
+            Box::new(Genetic::new(Box::<NearMate>::default(), Box::<Targets>::default(), breeding))
+        }
     }
 }
