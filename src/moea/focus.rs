@@ -12,7 +12,8 @@ use super::{
 /// How the focus operator reads "distance to the reference plane".
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Focus {
-    /// The printed text: smallest and largest absolute distance; the better half mates.
+    /// The printed text: the smallest absolute distance is kept,
+    /// the largest barred from mating, and the better half of the others by front mates.
     Literal,
     /// Signed distance, the whole population against itself.
     Signed,
@@ -119,11 +120,14 @@ impl Focused {
         let population = courtship.population;
         let n = population.len();
         if self.focus == Focus::Literal {
-            // All but the worst and the worse half of the rest mate among themselves.
-            let better = (n.saturating_sub(2) / 2).max(2).min(n);
+            // The worst is barred, and the better half of the others by front mates.
+            let (standing, barred) = (courtship.standing, self.order.pop());
+            shuffle(&mut self.order, rng);
+            self.order.sort_by_key(|&i| standing.rank[i]);
+            let better = n.saturating_sub(2).div_ceil(2).clamp(1, n.max(1));
             for _ in 0..children.div_ceil(2) {
-                let (first, second) = (self.order[below(better, rng)], self.order[below(better, rng)]);
-                pairs.push(Pair::of(first, second));
+                let mut draw = || self.order.get(below(better, rng)).copied().or(barred).unwrap_or(0);
+                pairs.push(Pair::of(draw(), draw()));
             }
             return;
         }

@@ -11,6 +11,9 @@ use super::{
     direction::neighbours,
     genetic::{Breeding, Method, Streams},
     mating::Pair,
+    normalize::Normalizer,
+    sorting::Sorting,
+    survival::Feasibility,
     variation::{below, shuffle},
 };
 
@@ -27,6 +30,9 @@ pub(super) struct Decomposition {
     normalized: bool,
     breeding: Breeding,
     ideal: Vec<f64>,
+    normalizer: Normalizer,
+    sorting: Sorting,
+    feasibility: Feasibility,
     span: Vec<f64>,
     /// Order of visits of this generation, and the place in it.
     visits: Vec<usize>,
@@ -49,6 +55,9 @@ impl Decomposition {
             normalized,
             breeding,
             ideal: vec![f64::INFINITY; m],
+            normalizer: Normalizer::new(m),
+            sorting: Sorting::default(),
+            feasibility: Feasibility::default(),
             span: vec![1.0; m],
             visits: Vec::new(),
             visit: 0,
@@ -63,12 +72,13 @@ impl Decomposition {
         }
     }
 
+    /// Spans to the intercepts, as NSGA-III finds them: the range of the population alone would
+    /// shrink with it.
     fn learn_span(&mut self, population: &Population) {
-        for k in 0..self.m {
-            let feasible = (0..population.len()).filter(|&i| population.is_feasible(i));
-            let span = feasible.map(|i| population.f(i)[k]).fold(f64::NEG_INFINITY, f64::max) - self.ideal[k];
-            self.span[k] = if span.is_finite() && span > 0.0 { span } else { 1.0 };
-        }
+        self.feasibility.split(population);
+        self.sorting.sort(population, &self.feasibility.feasible);
+        self.normalizer.update(population, &self.feasibility.feasible, self.sorting.front(0));
+        self.span.copy_from_slice(self.normalizer.span());
     }
 
     /// Distance along direction `j` and, penalised, aside from it.

@@ -118,20 +118,22 @@ impl Normalizer {
         self.span.iter().zip(&self.range).all(|(&span, &range)| span > 1e-6 * range)
     }
 
-    /// Worst of the front, or of the population where the front has no extent.
+    /// Worst of the front, or of the population where the front has next to no extent. That may
+    /// be tiny beside what was seen before: only so can a population that lost an objective's
+    /// extent (DTLZ4) find its way back, niche by niche.
     fn fall_back(&mut self, population: &Population, feasible: &[usize], front: &[usize]) {
         for k in 0..self.m {
             let worst = |of: &[usize]| of.iter().fold(f64::NEG_INFINITY, |w, &i| w.max(population.f(i)[k]));
             let least = LEAST_RANGE * (self.worst[k] - self.ideal[k]);
             let of_front = worst(front) - self.ideal[k];
-            let of_all = worst(feasible) - self.ideal[k];
-            self.span[k] = [of_front, of_all, self.range[k]].into_iter().find(|&s| s > least).unwrap_or(1.0);
+            let span = if of_front > least { of_front } else { worst(feasible) - self.ideal[k] };
+            self.span[k] = if span > 0.0 { span } else { 1.0 };
         }
     }
 
-    /// Best value ever seen of each objective, `[m]`; infinite before the first feasible member.
-    pub(super) fn ideal(&self) -> &[f64] {
-        &self.ideal
+    /// What one unit of each normalised objective is worth, `[m]`.
+    pub(super) fn span(&self) -> &[f64] {
+        &self.span
     }
 
     /// Normalises objectives `f` into `out`, both `[m]`: 0 is the ideal, 1 the intercept.

@@ -71,6 +71,7 @@ pub(super) struct Niching {
     feasibility: Feasibility,
     /// Members that may survive: fronts up to the one that overflows.
     candidates: Vec<usize>,
+    rank: Vec<u32>,
     normalised: Vec<f64>,
     direction: Vec<usize>,
     distance: Vec<f64>,
@@ -91,6 +92,7 @@ impl Niching {
             sorting: Sorting::default(),
             feasibility: Feasibility::default(),
             candidates: Vec::new(),
+            rank: Vec::new(),
             normalised: vec![0.0; m],
             direction: Vec::new(),
             distance: Vec::new(),
@@ -184,10 +186,12 @@ impl Survival for Niching {
         self.sorting.sort(merged, feasible);
         self.normalizer.update(merged, feasible, self.sorting.front(0));
         self.candidates.clear();
+        self.rank.clear();
         let (mut sure, mut rank) = (0, 0);
         while self.candidates.len() < keep && rank < self.sorting.count() {
             sure = self.candidates.len();
             self.candidates.extend_from_slice(self.sorting.front(rank));
+            self.rank.resize(self.candidates.len(), u32::try_from(rank).unwrap_or(u32::MAX));
             rank += 1;
         }
         self.associate(merged);
@@ -196,6 +200,7 @@ impl Survival for Niching {
         } else {
             self.fill(sure, keep, rng, chosen);
         }
+        standing.rank.extend(chosen.iter().map(|&place| self.rank[place]));
         standing.direction.extend(chosen.iter().map(|&place| self.direction[place]));
         standing.plane.extend(chosen.iter().map(|&place| self.plane[place]));
         for place in chosen.iter_mut() {
@@ -203,6 +208,7 @@ impl Survival for Niching {
         }
         let missing = keep.saturating_sub(chosen.len());
         chosen.extend(self.feasibility.infeasible.iter().take(missing));
+        standing.rank.resize(chosen.len(), u32::MAX);
         standing.direction.resize(chosen.len(), usize::MAX);
         standing.plane.resize(chosen.len(), f64::INFINITY);
     }
