@@ -75,16 +75,15 @@ impl Archive {
     /// time. O(n²) once, O(n) per solution dropped on average.
     fn thin(&mut self) {
         let (n, m) = (self.kept.len(), self.kept.objectives());
-        let mut scale = vec![(f64::INFINITY, f64::NEG_INFINITY); m];
+        let mut scale = Vec::with_capacity(m);
         let mut protected = vec![false; n];
         for k in 0..m {
             let best = (0..n).min_by(|&a, &b| self.kept.f(a)[k].total_cmp(&self.kept.f(b)[k]));
             if let Some(best) = best {
                 protected[best] = true;
             }
-            for i in 0..n {
-                scale[k] = (scale[k].0.min(self.kept.f(i)[k]), scale[k].1.max(self.kept.f(i)[k]));
-            }
+            let values = || (0..n).map(|i| self.kept.f(i)[k]);
+            scale.push((values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)));
         }
         let apart = |a: usize, b: usize| -> f64 {
             let squares = scale.iter().enumerate().map(|(k, &(low, high))| {

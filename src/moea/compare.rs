@@ -1,5 +1,7 @@
 //! Runs algorithms on problems with known fronts, and says whether they differ.
 
+use std::cmp::Ordering;
+
 use rayon::prelude::*;
 use statrs::stats_tests::{
     Alternative,
@@ -112,11 +114,22 @@ pub const SIGNIFICANT: f64 = 0.05;
 /// Compares two samples; p is 1 and A is 0.5 when one is empty or all values are equal.
 pub fn compare(first: &[f64], second: &[f64]) -> Comparison {
     let quartiles = |v: &[f64]| [0.25, 0.5, 0.75].map(|p| quantile(v.to_vec(), p));
-    let test = mannwhitneyu(first, second, MannWhitneyUMethod::AsymptoticInclContinuityCorrection, Alternative::TwoSided);
+    let test = mannwhitneyu(
+        first,
+        second,
+        MannWhitneyUMethod::AsymptoticInclContinuityCorrection,
+        Alternative::TwoSided,
+    );
     let p = test.map_or(1.0, |(_, p)| if p.is_finite() { p } else { 1.0 });
     let wins: f64 = first
         .iter()
-        .flat_map(|a| second.iter().map(move |b| if a > b { 1.0 } else { f64::from(u8::from(a == b)) * 0.5 }))
+        .flat_map(|a| {
+            second.iter().map(move |b| match a.partial_cmp(b) {
+                Some(Ordering::Greater) => 1.0,
+                Some(Ordering::Equal) => 0.5,
+                _ => 0.0,
+            })
+        })
         .sum();
     let pairs = (first.len() * second.len()) as f64;
     let a12 = if pairs > 0.0 { wins / pairs } else { 0.5 };

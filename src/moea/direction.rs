@@ -150,7 +150,9 @@ mod tests {
 
     #[test]
     fn counts_are_those_of_the_closed_form_and_of_deb_and_jain() {
-        for (objectives, divisions, count) in [(1, 5, 1), (2, 4, 5), (3, 4, 15), (3, 12, 91), (5, 6, 210), (3, 0, 1)] {
+        for (objectives, divisions, count) in
+            [(1, 5, 1), (2, 4, 5), (3, 4, 15), (3, 12, 91), (5, 6, 210), (3, 0, 1)]
+        {
             let points = das_dennis(objectives, divisions).unwrap();
             assert_eq!(points.len(), count * objectives);
             assert_eq!(direction_count(objectives, divisions), Some(count));

@@ -17,7 +17,7 @@ pub enum Focus {
     Literal,
     /// Signed distance, the whole population against itself.
     Signed,
-    /// Signed distance, each member against those of neighbouring directions.
+    /// DIFFERENCE(step 2): signed distance, each member against those of neighbouring directions.
     #[default]
     Local,
 }
@@ -79,7 +79,8 @@ impl Focused {
                 }
                 for (&j, &s) in standing.direction.iter().zip(&standing.plane) {
                     let near = self.neighbours.chunks_exact(self.near).nth(j);
-                    let ahead = near.map_or(s, |near| near.iter().fold(s, |least, &b| least.min(self.least[b])));
+                    let ahead =
+                        near.map_or(s, |near| near.iter().fold(s, |least, &b| least.min(self.least[b])));
                     self.lag.push(if s.is_finite() { s - ahead } else { 0.0 });
                 }
             }
@@ -116,7 +117,13 @@ impl Mating for Focused {
 }
 
 impl Focused {
-    fn choose(&mut self, courtship: &Courtship<'_>, children: usize, rng: &mut ChaCha8Rng, pairs: &mut Vec<Pair>) {
+    fn choose(
+        &mut self,
+        courtship: &Courtship<'_>,
+        children: usize,
+        rng: &mut ChaCha8Rng,
+        pairs: &mut Vec<Pair>,
+    ) {
         let population = courtship.population;
         let n = population.len();
         if self.focus == Focus::Literal {
@@ -133,6 +140,7 @@ impl Focused {
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of n")]
         let in_focus = ((SHARE * n as f64).ceil() as usize).clamp(1, n.max(1));
+        // DIFFERENCE(step 3): the focus fades over the budget.
         let pull = courtship.progress.map_or(0.5, |progress| 1.0 - progress.clamp(0.0, 1.0).powi(FADE));
         self.permutation.draw(population, children.div_ceil(2), rng, &mut self.first);
         for &first in &self.first {

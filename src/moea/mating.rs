@@ -58,7 +58,13 @@ pub(super) struct Permutation {
 impl Permutation {
     /// The next `count` members of endless random permutations, less feasible ones replaced
     /// by the winner against another.
-    pub(super) fn draw(&mut self, population: &Population, count: usize, rng: &mut ChaCha8Rng, out: &mut Vec<usize>) {
+    pub(super) fn draw(
+        &mut self,
+        population: &Population,
+        count: usize,
+        rng: &mut ChaCha8Rng,
+        out: &mut Vec<usize>,
+    ) {
         let n = population.len();
         out.clear();
         while out.len() < count && n > 0 {

@@ -159,7 +159,13 @@ pub(super) struct NearMate {
 }
 
 impl Mating for NearMate {
-    fn pair(&mut self, courtship: &Courtship<'_>, children: usize, rng: &mut ChaCha8Rng, pairs: &mut Vec<Pair>) {
+    fn pair(
+        &mut self,
+        courtship: &Courtship<'_>,
+        children: usize,
+        rng: &mut ChaCha8Rng,
+        pairs: &mut Vec<Pair>,
+    ) {
         let population = courtship.population;
         let feasible: Vec<usize> = (0..population.len()).filter(|&i| population.is_feasible(i)).collect();
         self.sorting.sort(population, &feasible);

@@ -91,7 +91,13 @@ pub(super) struct Tournament {
 }
 
 impl Mating for Tournament {
-    fn pair(&mut self, courtship: &Courtship<'_>, children: usize, rng: &mut ChaCha8Rng, pairs: &mut Vec<Pair>) {
+    fn pair(
+        &mut self,
+        courtship: &Courtship<'_>,
+        children: usize,
+        rng: &mut ChaCha8Rng,
+        pairs: &mut Vec<Pair>,
+    ) {
         let (population, standing) = (courtship.population, courtship.standing);
         self.permutation.draw(population, 2 * children.div_ceil(2), rng, &mut self.first);
         pairs.clear();

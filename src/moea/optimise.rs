@@ -83,12 +83,17 @@ pub fn optimise<P: Problem>(
     if let Some(archive) = &mut archive {
         archive.extend(&population);
     }
-    let mut run = Counted { evaluations: population.len() as u64, generation: 1, most, budget: settings.budget };
+    let mut run =
+        Counted { evaluations: population.len() as u64, generation: 1, most, budget: settings.budget };
     let mut method = method(&checked, settings);
     method.begin(&mut population, &mut streams);
     let mut children = Population::with_capacity(d, m, n);
-    let mut flow =
-        observer(&Progress { generation: 1, evaluations: run.evaluations, population: &population, archive: archive.as_ref() });
+    let mut flow = observer(&Progress {
+        generation: 1,
+        evaluations: run.evaluations,
+        population: &population,
+        archive: archive.as_ref(),
+    });
     while flow.is_continue() && !run.is_over() {
         // A generation may take several steps, each with its own evaluation of children.
         let batch = method.batch(n);
@@ -148,7 +153,8 @@ impl Counted {
         match self.budget {
             Budget::Evaluations(most) => Some(self.evaluations as f64 / most.max(1) as f64),
             Budget::Generations(most) => {
-                Some(self.evaluations as f64 / (most.max(1) as f64 * n.max(1) as f64)).map(|share| share.min(1.0))
+                Some(self.evaluations as f64 / (most.max(1) as f64 * n.max(1) as f64))
+                    .map(|share| share.min(1.0))
             }
             Budget::Observer => None,
         }
@@ -193,9 +199,7 @@ fn method(checked: &Checked, settings: &Settings) -> Box<dyn Method> {
         Algorithm::Nsga2 => {
             Box::new(Genetic::new(Box::<Tournament>::default(), Box::<Crowding>::default(), breeding))
         }
-        Algorithm::Moead { normalized } => {
-            Box::new(Decomposition::new(directions, m, normalized, breeding))
-        }
+        Algorithm::Moead { normalized } => Box::new(Decomposition::new(directions, m, normalized, breeding)),
         Algorithm::Msops2 => {
             Box::new(Genetic::new(Box::<NearMate>::default(), Box::<Targets>::default(), breeding))
         }

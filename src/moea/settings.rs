@@ -195,9 +195,13 @@ pub(super) fn check<P: Problem>(problem: &P, settings: &Settings) -> Result<Chec
     if wanted > MOST_MEMBERS {
         return Err(MoeaError::TooManyMembers { wanted, most: MOST_MEMBERS });
     }
+    let (directions, count) = match settings.algorithm {
+        // One member per direction, of which a single objective has but one.
+        Algorithm::Moead { .. } if objectives == 1 => (vec![1.0; wanted.max(4)], wanted.max(4)),
+        _ => (directions, count),
+    };
     let members = match settings.algorithm {
-        // One member per direction.
-        Algorithm::Moead { .. } if objectives > 1 => count,
+        Algorithm::Moead { .. } => count,
         _ => wanted.max(count).max(4).next_multiple_of(4),
     };
     Ok(Checked { bounds, objectives, directions, members, mutation_rate })

@@ -77,12 +77,10 @@ impl Sorting {
 /// worse by the order of visits. Later ones are closer and asked first.
 fn dominated_by_earlier(placed: &[f64], f: &[f64]) -> bool {
     match *f {
-        [f0, f1] => {
-            placed.rchunks_exact(2).any(|a| a[1] <= f1 && (a[1] < f1 || a[0] < f0))
+        [f0, f1] => placed.rchunks_exact(2).any(|a| a[1] <= f1 && (a[1] < f1 || a[0] < f0)),
+        [f0, f1, f2] => {
+            placed.rchunks_exact(3).any(|a| a[1] <= f1 && a[2] <= f2 && (a[1] < f1 || a[2] < f2 || a[0] < f0))
         }
-        [f0, f1, f2] => placed
-            .rchunks_exact(3)
-            .any(|a| (a[1] <= f1) & (a[2] <= f2) && (a[1] < f1 || a[2] < f2 || a[0] < f0)),
         _ => placed.rchunks_exact(f.len().max(1)).any(|a| dominates(a, f)),
     }
 }

@@ -58,7 +58,8 @@ impl Feasibility {
                 self.infeasible.push(i);
             }
         }
-        self.infeasible
-            .sort_unstable_by(|&a, &b| population.violation(a).total_cmp(&population.violation(b)).then(a.cmp(&b)));
+        self.infeasible.sort_unstable_by(|&a, &b| {
+            population.violation(a).total_cmp(&population.violation(b)).then(a.cmp(&b))
+        });
     }
 }

@@ -68,7 +68,8 @@ fn arc(m: usize, count: usize) -> Vec<f64> {
 
 /// DTLZ7: each position lies in one of two stretches.
 fn disconnected(m: usize, count: usize) -> Vec<f64> {
-    const STRETCHES: [f64; 4] = [0.0, 0.251_411_836_095_147_26, 0.631_626_530_700_032_4, 0.859_400_856_644_676_9];
+    const STRETCHES: [f64; 4] =
+        [0.0, 0.251_411_836_095_147_3, 0.631_626_530_700_032_4, 0.859_400_856_644_676_9];
     let first = STRETCHES[1] / (STRETCHES[1] + STRETCHES[3] - STRETCHES[2]);
     let mut flat = Vec::new();
     each_of_grid(m - 1, count as f64, |u| {

@@ -22,6 +22,7 @@ pub struct Benchmark {
     number: u8,
     objectives: usize,
     variables: usize,
+    positions: usize,
 }
 
 /// Every name that [`Benchmark::named`] knows.
@@ -47,16 +48,31 @@ impl Benchmark {
             (Family::Dtlz, 7) => 20,
             _ => 10,
         };
-        (objectives >= 2).then_some(Self { family, number, objectives, variables: objectives - 1 + distances })
+        (objectives >= 2).then_some(Self {
+            family,
+            number,
+            objectives,
+            variables: objectives - 1 + distances,
+            positions: objectives - 1,
+        })
     }
 
-    /// The same problem with another number of variables: at least as many as objectives, and
-    /// for WFG such that the distances can be paired; else `None`.
+    /// The same problem with other numbers of positions and distances; `None` where the family
+    /// does not allow them: DTLZ has m - 1 positions, WFG a multiple of it and an even number
+    /// of distances, both at least one distance.
     #[must_use]
-    pub fn with_variables(self, variables: usize) -> Option<Self> {
-        let distances = (variables + 1).checked_sub(self.objectives)?;
-        let paired = self.family == Family::Dtlz || distances % 2 == 0;
-        (distances >= 1 && paired).then_some(Self { variables, ..self })
+    pub fn with_variables(self, positions: usize, distances: usize) -> Option<Self> {
+        let groups = self.objectives - 1;
+        let fits = match self.family {
+            Family::Dtlz => positions == groups && distances >= 1,
+            Family::Wfg => {
+                positions >= 1
+                    && positions.is_multiple_of(groups)
+                    && distances >= 2
+                    && distances.is_multiple_of(2)
+            }
+        };
+        fits.then_some(Self { positions, variables: positions.checked_add(distances)?, ..self })
     }
 
     /// Name, as "DTLZ3".
@@ -98,7 +114,7 @@ impl Problem for Benchmark {
     fn evaluate(&self, x: &[f64], objectives: &mut [f64], workspace: &mut Vec<f64>) -> f64 {
         match self.family {
             Family::Dtlz => dtlz::evaluate(self.number, x, objectives),
-            Family::Wfg => wfg::evaluate(self.number, self.objectives - 1, x, objectives, workspace),
+            Family::Wfg => wfg::evaluate(self.number, self.positions, x, objectives, workspace),
         }
         0.0
     }

@@ -52,28 +52,29 @@ pub(super) fn evaluate(number: u8, k: usize, z: &[f64], f: &mut [f64], y: &mut V
         }
         7 => {
             let mut rest = Rest::new(y);
-            for i in 0..k {
-                y[i] = b_param(y[i], rest.mean_after(y[i]));
+            for v in &mut y[..k] {
+                *v = b_param(*v, rest.mean_after(*v));
             }
             shift_linear(y, k);
             reduce(y, k, f, |group, _| mean(group));
         }
         8 => {
             let mut sum = 0.0;
-            for i in 0..y.len() {
-                let v = y[i];
+            for (i, v) in y.iter_mut().enumerate() {
+                let before = *v;
                 if i >= k {
-                    y[i] = b_param(v, sum / i as f64);
+                    *v = b_param(before, sum / i as f64);
                 }
-                sum += v;
+                sum += before;
             }
             shift_linear(y, k);
             reduce(y, k, f, |group, _| mean(group));
         }
         _ => {
             let mut rest = Rest::new(y);
-            for i in 0..y.len() - 1 {
-                y[i] = b_param(y[i], rest.mean_after(y[i]));
+            let last = y.len() - 1;
+            for v in &mut y[..last] {
+                *v = b_param(*v, rest.mean_after(*v));
             }
             for (i, v) in y.iter_mut().enumerate() {
                 *v = if i < k { s_decept(*v, 0.35, 0.001, 0.05) } else { s_multi(*v, 30.0, 95.0, 0.35) };

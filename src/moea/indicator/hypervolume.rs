@@ -20,10 +20,10 @@ pub fn hypervolume(set: &[f64], reference: &[f64]) -> f64 {
         .flatten()
         .copied()
         .collect();
-    volume(points, m, reference)
+    volume(&points, m, reference)
 }
 
-fn volume(points: Vec<f64>, m: usize, reference: &[f64]) -> f64 {
+fn volume(points: &[f64], m: usize, reference: &[f64]) -> f64 {
     match m {
         1 => reference[0] - points.iter().fold(reference[0], |best, &p| best.min(p)),
         2 => area(&sorted(points, 2), reference),
@@ -33,7 +33,7 @@ fn volume(points: Vec<f64>, m: usize, reference: &[f64]) -> f64 {
 }
 
 /// Points in ascending order of their last objective.
-fn sorted(points: Vec<f64>, m: usize) -> Vec<f64> {
+fn sorted(points: &[f64], m: usize) -> Vec<f64> {
     let mut order: Vec<&[f64]> = points.chunks_exact(m).collect();
     order.sort_by(|a, b| a[m - 1].total_cmp(&b[m - 1]));
     order.concat()
@@ -93,7 +93,7 @@ fn slices(points: &[f64], m: usize, reference: &[f64]) -> f64 {
             .chunks_exact(m)
             .flat_map(|q| q[..flat].iter().zip(p).map(|(q, p)| q.max(*p)))
             .collect();
-        let shared = volume(undominated(&limited, flat), flat, below);
+        let shared = volume(&undominated(&limited, flat), flat, below);
         total += (own - shared) * (reference[flat] - p[flat]);
     }
     total
@@ -120,7 +120,10 @@ mod tests {
     fn boxes_have_their_volume_in_any_dimension() {
         for m in 1..7 {
             let reference = vec![1.0; m];
-            assert!((hypervolume(&vec![0.5; m], &reference) - 0.5_f64.powi(i32::try_from(m).unwrap())).abs() < 1e-15);
+            assert!(
+                (hypervolume(&vec![0.5; m], &reference) - 0.5_f64.powi(i32::try_from(m).unwrap())).abs()
+                    < 1e-15
+            );
         }
         // Two overlapping boxes in each dimension: union = sum - intersection.
         for m in 2..7 {
