@@ -13,6 +13,7 @@ pub mod units;
 
 // nouns
 pub mod arm;
+pub mod moea;
 pub mod series;
 pub mod spline;
 pub mod task;

@@ -11,6 +11,12 @@ pub enum Stream {
     SensorNoise = 2,
     /// Jitter and losses of a synthetic logger.
     Sampling = 3,
+    /// First population of an evolutionary run.
+    MoeaStart = 20,
+    /// Mating, crossover and mutation.
+    MoeaVariation = 21,
+    /// Ties in selection.
+    MoeaSurvival = 22,
 }
 
 /// The stream for one purpose: equal arguments give equal numbers on every platform, and

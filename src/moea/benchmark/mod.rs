@@ -1,0 +1,125 @@
+//! Problems with known fronts.
+
+mod dtlz;
+mod front;
+mod wfg;
+
+use super::problem::{Bounds, Problem};
+
+/// A family of problems that share their conventions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Family {
+    /// DTLZ1 to DTLZ7.
+    Dtlz,
+    /// WFG1 to WFG9.
+    Wfg,
+}
+
+/// One problem with its numbers of objectives and variables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Benchmark {
+    family: Family,
+    number: u8,
+    objectives: usize,
+    variables: usize,
+    positions: usize,
+}
+
+/// Every name that [`Benchmark::named`] knows.
+pub const NAMES: [&str; 16] = [
+    "DTLZ1", "DTLZ2", "DTLZ3", "DTLZ4", "DTLZ5", "DTLZ6", "DTLZ7", "WFG1", "WFG2", "WFG3", "WFG4", "WFG5",
+    "WFG6", "WFG7", "WFG8", "WFG9",
+];
+
+impl Benchmark {
+    /// The problem of a name such as "DTLZ3" or "wfg1" for at least two objectives, with the
+    /// usual number of variables: m + 4 for DTLZ1, m + 19 for DTLZ7, m + 9 for the other DTLZ,
+    /// m - 1 positions and 10 distances for WFG.
+    pub fn named(name: &str, objectives: usize) -> Option<Self> {
+        let upper = name.to_ascii_uppercase();
+        let (family, digits, last) = if let Some(digits) = upper.strip_prefix("DTLZ") {
+            (Family::Dtlz, digits, 7)
+        } else {
+            (Family::Wfg, upper.strip_prefix("WFG")?, 9)
+        };
+        let number: u8 = digits.parse().ok().filter(|number| (1..=last).contains(number))?;
+        let distances = match (family, number) {
+            (Family::Dtlz, 1) => 5,
+            (Family::Dtlz, 7) => 20,
+            _ => 10,
+        };
+        (objectives >= 2).then_some(Self {
+            family,
+            number,
+            objectives,
+            variables: objectives - 1 + distances,
+            positions: objectives - 1,
+        })
+    }
+
+    /// The same problem with other numbers of positions and distances; `None` where the family
+    /// does not allow them: DTLZ has m - 1 positions, WFG a multiple of it and an even number
+    /// of distances, both at least one distance.
+    #[must_use]
+    pub fn with_variables(self, positions: usize, distances: usize) -> Option<Self> {
+        let groups = self.objectives - 1;
+        let fits = match self.family {
+            Family::Dtlz => positions == groups && distances >= 1,
+            Family::Wfg => {
+                positions >= 1
+                    && positions.is_multiple_of(groups)
+                    && distances >= 2
+                    && distances.is_multiple_of(2)
+            }
+        };
+        fits.then_some(Self { positions, variables: positions.checked_add(distances)?, ..self })
+    }
+
+    /// Name, as "DTLZ3".
+    pub fn name(&self) -> String {
+        let family = match self.family {
+            Family::Dtlz => "DTLZ",
+            Family::Wfg => "WFG",
+        };
+        format!("{family}{}", self.number)
+    }
+
+    /// At most about `count` points spread over the true front, `[n][objectives]`.
+    pub fn front(&self, count: usize) -> Vec<f64> {
+        front::points(self, count)
+    }
+
+    /// Largest value of each objective on the front, `[objectives]`; the smallest is taken as 0.
+    pub fn nadir(&self) -> Vec<f64> {
+        let m = self.objectives;
+        let front = self.front(2000);
+        (0..m).map(|k| front.iter().skip(k).step_by(m).fold(0.0_f64, |most, &f| most.max(f))).collect()
+    }
+}
+
+impl Problem for Benchmark {
+    type Workspace = Vec<f64>;
+
+    fn bounds(&self) -> Vec<Bounds> {
+        match self.family {
+            Family::Dtlz => vec![(0.0, 1.0); self.variables],
+            Family::Wfg => (0..self.variables).map(|i| (0.0, 2.0 * (i as f64 + 1.0))).collect(),
+        }
+    }
+
+    fn objectives(&self) -> usize {
+        self.objectives
+    }
+
+    fn evaluate(&self, x: &[f64], objectives: &mut [f64], workspace: &mut Vec<f64>) -> f64 {
+        match self.family {
+            Family::Dtlz => dtlz::evaluate(self.number, x, objectives),
+            Family::Wfg => wfg::evaluate(self.number, self.positions, x, objectives, workspace),
+        }
+        0.0
+    }
+
+    fn is_cheap(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,157 @@
+//! One generation of an algorithm that merges parents and children and selects.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::{
+    Population,
+    mating::{Courtship, Mating, Pair},
+    problem::Bounds,
+    survival::{Standing, Survival},
+    variation::{Operators, cross, mutate},
+};
+
+/// Random numbers of a run, one stream a purpose.
+pub(super) struct Streams {
+    pub(super) variation: ChaCha8Rng,
+    pub(super) survival: ChaCha8Rng,
+}
+
+/// An algorithm as the engine drives it.
+pub(super) trait Method {
+    /// Takes the evaluated first population; may reorder it.
+    fn begin(&mut self, population: &mut Population, streams: &mut Streams);
+
+    /// Children per step for a population of `n`.
+    fn batch(&self, n: usize) -> usize;
+
+    /// Writes at most `wanted` children, not evaluated, into the empty `children`.
+    fn breed(
+        &mut self,
+        population: &Population,
+        progress: Option<f64>,
+        wanted: usize,
+        children: &mut Population,
+        streams: &mut Streams,
+    );
+
+    /// Takes evaluated children into the population.
+    fn advance(&mut self, population: &mut Population, children: &Population, streams: &mut Streams);
+}
+
+/// Rates and bounds, and how two parents become two children that nobody has been yet.
+#[derive(Debug, Clone)]
+pub(super) struct Breeding {
+    pub(super) operators: Operators,
+    pub(super) mutation_rate: f64,
+    pub(super) bounds: Vec<Bounds>,
+    pair: (Vec<f64>, Vec<f64>),
+}
+
+/// How often a child that repeats somebody is mutated again before it is let be.
+const ATTEMPTS: usize = 8;
+
+impl Breeding {
+    pub(super) fn new(operators: Operators, mutation_rate: f64, bounds: Vec<Bounds>) -> Self {
+        let zeros = vec![0.0; bounds.len()];
+        Self { operators, mutation_rate, bounds, pair: (zeros.clone(), zeros) }
+    }
+
+    /// Appends one or two children of two members, at most up to `wanted` children.
+    pub(super) fn breed(
+        &mut self,
+        population: &Population,
+        pair: Pair,
+        wanted: usize,
+        children: &mut Population,
+        rng: &mut ChaCha8Rng,
+    ) {
+        let (first, second) = (&mut self.pair.0, &mut self.pair.1);
+        let parents = (population.x(pair.first), population.x(pair.second));
+        let rate = self.operators.crossover_rate * pair.crossover;
+        let mutation_rate = self.mutation_rate * pair.mutation;
+        cross(&self.operators, rate, &self.bounds, parents, (first, second), rng);
+        for child in [first, second] {
+            if children.len() >= wanted {
+                return;
+            }
+            mutate(self.operators.mutation_eta, mutation_rate, &self.bounds, child, rng);
+            for _ in 0..ATTEMPTS {
+                if !(population.contains(child) || children.contains(child)) {
+                    break;
+                }
+                mutate(self.operators.mutation_eta, self.mutation_rate, &self.bounds, child, rng);
+            }
+            children.push_x(child);
+        }
+    }
+}
+
+/// A genetic algorithm: mating, variation, survival of the best of parents and children.
+pub(super) struct Genetic {
+    pub(super) mating: Box<dyn Mating + Send>,
+    pub(super) survival: Box<dyn Survival + Send>,
+    pub(super) breeding: Breeding,
+    pairs: Vec<Pair>,
+    merged: Population,
+    chosen: Vec<usize>,
+    standing: Standing,
+}
+
+impl Genetic {
+    pub(super) fn new(
+        mating: Box<dyn Mating + Send>,
+        survival: Box<dyn Survival + Send>,
+        breeding: Breeding,
+    ) -> Self {
+        Self {
+            mating,
+            survival,
+            breeding,
+            pairs: Vec::new(),
+            merged: Population::default(),
+            chosen: Vec::new(),
+            standing: Standing::default(),
+        }
+    }
+
+    fn select(&mut self, population: &mut Population, keep: usize, streams: &mut Streams) {
+        self.survival.select(&self.merged, keep, &mut streams.survival, &mut self.chosen, &mut self.standing);
+        population.clear();
+        for &i in &self.chosen {
+            population.push_from(&self.merged, i);
+        }
+    }
+}
+
+impl Method for Genetic {
+    fn begin(&mut self, population: &mut Population, streams: &mut Streams) {
+        self.merged = population.clone();
+        self.select(population, population.len(), streams);
+    }
+
+    fn batch(&self, n: usize) -> usize {
+        n.saturating_sub(self.mating.reserved()).max(1)
+    }
+
+    fn breed(
+        &mut self,
+        population: &Population,
+        progress: Option<f64>,
+        wanted: usize,
+        children: &mut Population,
+        streams: &mut Streams,
+    ) {
+        let courtship = Courtship { population, standing: &self.standing, progress };
+        self.mating.pair(&courtship, wanted, &mut streams.variation, &mut self.pairs);
+        for &pair in &self.pairs {
+            self.breeding.breed(population, pair, wanted, children, &mut streams.variation);
+        }
+    }
+
+    fn advance(&mut self, population: &mut Population, children: &Population, streams: &mut Streams) {
+        self.merged.clear();
+        self.merged.append(population);
+        self.merged.append(children);
+        self.select(population, population.len(), streams);
+    }
+}

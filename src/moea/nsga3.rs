@@ -1,0 +1,215 @@
+//! Survival of NSGA-III.
+//!
+//! # References
+//!
+//! Deb and Jain 2014, doi 10.1109/TEVC.2013.2281535; constraints after Jain and Deb 2014,
+//! doi 10.1109/TEVC.2013.2281534.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::{
+    Population,
+    normalize::Normalizer,
+    sorting::Sorting,
+    survival::{Feasibility, Standing, Survival},
+    variation::below,
+};
+
+/// Reference directions at unit length, objective by objective, so that projections on all of
+/// them are formed at once.
+#[derive(Debug, Clone)]
+struct Rays {
+    m: usize,
+    count: usize,
+    /// `[m][count]`.
+    by_objective: Vec<f64>,
+    dot: Vec<f64>,
+}
+
+impl Rays {
+    fn new(directions: &[f64], m: usize) -> Self {
+        let count = directions.len() / m;
+        let mut by_objective = vec![0.0; m * count];
+        for (j, direction) in directions.chunks_exact(m).enumerate() {
+            let length = direction.iter().map(|z| z * z).sum::<f64>().sqrt();
+            for k in 0..m {
+                by_objective[k * count + j] = direction[k] / length;
+            }
+        }
+        Self { m, count, by_objective, dot: vec![0.0; count] }
+    }
+
+    /// The direction nearest in angle to a point with no negative coordinate, and the distance
+    /// to it; the first of several.
+    fn nearest(&mut self, point: &[f64]) -> (usize, f64) {
+        self.dot.fill(0.0);
+        for (row, &value) in self.by_objective.chunks_exact(self.count).zip(point) {
+            for (dot, &z) in self.dot.iter_mut().zip(row) {
+                *dot += value * z;
+            }
+        }
+        let (mut best, mut longest) = (0, f64::NEG_INFINITY);
+        for (j, &dot) in self.dot.iter().enumerate() {
+            if dot > longest {
+                (best, longest) = (j, dot);
+            }
+        }
+        let longest = if longest.is_finite() { longest } else { 0.0 };
+        let aside = (0..self.m)
+            .map(|k| (point[k] - longest * self.by_objective[k * self.count + best]).powi(2))
+            .sum::<f64>();
+        (best, aside.sqrt())
+    }
+}
+
+/// Survival of NSGA-III for fixed reference directions.
+#[derive(Debug, Clone)]
+pub(super) struct Niching {
+    rays: Rays,
+    normalizer: Normalizer,
+    sorting: Sorting,
+    feasibility: Feasibility,
+    /// Members that may survive: fronts up to the one that overflows.
+    candidates: Vec<usize>,
+    rank: Vec<u32>,
+    normalised: Vec<f64>,
+    direction: Vec<usize>,
+    distance: Vec<f64>,
+    plane: Vec<f64>,
+    crowd: Vec<usize>,
+    tied: Vec<usize>,
+    /// Members of the overflowing front by direction, nearest last.
+    waiting: Vec<Vec<usize>>,
+}
+
+impl Niching {
+    pub(super) fn new(directions: &[f64], m: usize) -> Self {
+        let rays = Rays::new(directions, m);
+        let count = rays.count;
+        Self {
+            rays,
+            normalizer: Normalizer::new(m),
+            sorting: Sorting::default(),
+            feasibility: Feasibility::default(),
+            candidates: Vec::new(),
+            rank: Vec::new(),
+            normalised: vec![0.0; m],
+            direction: Vec::new(),
+            distance: Vec::new(),
+            plane: Vec::new(),
+            crowd: vec![0; count],
+            tied: Vec::with_capacity(count),
+            waiting: vec![Vec::new(); count],
+        }
+    }
+
+    /// Directions, distances to them and to the reference plane of all candidates.
+    fn associate(&mut self, merged: &Population) {
+        self.direction.clear();
+        self.distance.clear();
+        self.plane.clear();
+        let root = (self.normalised.len() as f64).sqrt();
+        for &i in &self.candidates {
+            self.normalizer.apply(merged.f(i), &mut self.normalised);
+            let (direction, distance) = self.rays.nearest(&self.normalised);
+            self.direction.push(direction);
+            self.distance.push(distance);
+            self.plane.push((self.normalised.iter().sum::<f64>() - 1.0) / root);
+        }
+    }
+
+    /// Fills `chosen` (places among the candidates) from those at `sure..`, one niche at a time.
+    fn fill(&mut self, sure: usize, keep: usize, rng: &mut ChaCha8Rng, chosen: &mut Vec<usize>) {
+        self.crowd.fill(0);
+        for &direction in &self.direction[..sure] {
+            self.crowd[direction] += 1;
+        }
+        for waiting in &mut self.waiting {
+            waiting.clear();
+        }
+        for place in sure..self.candidates.len() {
+            self.waiting[self.direction[place]].push(place);
+        }
+        let mut open: usize = self.waiting.iter().filter(|w| !w.is_empty()).count();
+        chosen.extend(0..sure);
+        while chosen.len() < keep && open > 0 {
+            let least = (0..self.crowd.len())
+                .filter(|&j| !self.waiting[j].is_empty())
+                .map(|j| self.crowd[j])
+                .min()
+                .unwrap_or(0);
+            self.tied.clear();
+            self.tied.extend(
+                (0..self.crowd.len()).filter(|&j| self.crowd[j] == least && !self.waiting[j].is_empty()),
+            );
+            // All niches that are least crowded get one member, in random order, before any
+            // gets a second: the same as drawing them one by one.
+            for taken in 0..self.tied.len().min(keep - chosen.len()) {
+                let other = taken + below(self.tied.len() - taken, rng);
+                self.tied.swap(taken, other);
+                let j = self.tied[taken];
+                let waiting = &mut self.waiting[j];
+                let pick = if least == 0 {
+                    let mut nearest = 0;
+                    for (at, &place) in waiting.iter().enumerate() {
+                        if self.distance[place] < self.distance[waiting[nearest]] {
+                            nearest = at;
+                        }
+                    }
+                    nearest
+                } else {
+                    below(waiting.len(), rng)
+                };
+                chosen.push(waiting.swap_remove(pick));
+                self.crowd[j] += 1;
+                if waiting.is_empty() {
+                    open -= 1;
+                }
+            }
+        }
+    }
+}
+
+impl Survival for Niching {
+    fn select(
+        &mut self,
+        merged: &Population,
+        keep: usize,
+        rng: &mut ChaCha8Rng,
+        chosen: &mut Vec<usize>,
+        standing: &mut Standing,
+    ) {
+        chosen.clear();
+        standing.clear();
+        self.feasibility.split(merged);
+        let feasible = &self.feasibility.feasible;
+        self.sorting.sort(merged, feasible);
+        self.normalizer.update(merged, feasible, self.sorting.front(0));
+        self.candidates.clear();
+        self.rank.clear();
+        let (mut sure, mut rank) = (0, 0);
+        while self.candidates.len() < keep && rank < self.sorting.count() {
+            sure = self.candidates.len();
+            self.candidates.extend_from_slice(self.sorting.front(rank));
+            self.rank.resize(self.candidates.len(), u32::try_from(rank).unwrap_or(u32::MAX));
+            rank += 1;
+        }
+        self.associate(merged);
+        if self.candidates.len() <= keep {
+            chosen.extend(0..self.candidates.len());
+        } else {
+            self.fill(sure, keep, rng, chosen);
+        }
+        standing.rank.extend(chosen.iter().map(|&place| self.rank[place]));
+        standing.direction.extend(chosen.iter().map(|&place| self.direction[place]));
+        standing.plane.extend(chosen.iter().map(|&place| self.plane[place]));
+        for place in chosen.iter_mut() {
+            *place = self.candidates[*place];
+        }
+        let missing = keep.saturating_sub(chosen.len());
+        chosen.extend(self.feasibility.infeasible.iter().take(missing));
+        standing.rank.resize(chosen.len(), u32::MAX);
+        standing.direction.resize(chosen.len(), usize::MAX);
+        standing.plane.resize(chosen.len(), f64::INFINITY);
+    }
+}

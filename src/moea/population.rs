@@ -1,0 +1,149 @@
+//! Solutions in flat arrays.
+
+/// Solutions with their objectives and violations, `[n]` of each, in flat arrays.
+///
+/// Objectives of a member whose violation is infinite are meaningless: it could not be
+/// evaluated.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Population {
+    variables: usize,
+    objectives: usize,
+    x: Vec<f64>,
+    f: Vec<f64>,
+    violation: Vec<f64>,
+    fingerprint: Vec<u64>,
+}
+
+impl Population {
+    /// An empty population with room for `capacity` members.
+    pub fn with_capacity(variables: usize, objectives: usize, capacity: usize) -> Self {
+        Self {
+            variables,
+            objectives,
+            x: Vec::with_capacity(variables * capacity),
+            f: Vec::with_capacity(objectives * capacity),
+            violation: Vec::with_capacity(capacity),
+            fingerprint: Vec::with_capacity(capacity),
+        }
+    }
+
+    /// Number of members.
+    pub fn len(&self) -> usize {
+        self.violation.len()
+    }
+
+    /// Whether there is no member.
+    pub fn is_empty(&self) -> bool {
+        self.violation.is_empty()
+    }
+
+    /// Number of variables of a member.
+    pub fn variables(&self) -> usize {
+        self.variables
+    }
+
+    /// Number of objectives of a member.
+    pub fn objectives(&self) -> usize {
+        self.objectives
+    }
+
+    /// Variables of member `i`, `[variables]`.
+    pub fn x(&self, i: usize) -> &[f64] {
+        &self.x[i * self.variables..][..self.variables]
+    }
+
+    /// Objectives of member `i`, `[objectives]`.
+    pub fn f(&self, i: usize) -> &[f64] {
+        &self.f[i * self.objectives..][..self.objectives]
+    }
+
+    /// Total violation of constraints of member `i`, 0 if feasible.
+    pub fn violation(&self, i: usize) -> f64 {
+        self.violation[i]
+    }
+
+    /// Whether member `i` violates nothing.
+    pub fn is_feasible(&self, i: usize) -> bool {
+        self.violation[i] <= 0.0
+    }
+
+    /// Objectives of all members, `[n][objectives]` in one slice.
+    pub fn all_f(&self) -> &[f64] {
+        &self.f
+    }
+
+    /// Members that are feasible and dominated by no feasible member, in order.
+    /// O(n log n) comparisons of members when few fronts stand behind one another, O(n²) at worst.
+    pub fn front(&self) -> Vec<usize> {
+        let feasible: Vec<usize> = (0..self.len()).filter(|&i| self.is_feasible(i)).collect();
+        let mut sorting = super::sorting::Sorting::default();
+        sorting.sort(self, &feasible);
+        let mut first = sorting.front(0).to_vec();
+        first.sort_unstable();
+        first
+    }
+
+    /// Feasible members of which only the objectives are known, `[n][objectives]` in one slice.
+    pub fn from_objectives(f: &[f64], objectives: usize) -> Self {
+        let n = f.len() / objectives.max(1);
+        let f = f[..n * objectives].to_vec();
+        Self { variables: 0, objectives, x: Vec::new(), f, violation: vec![0.0; n], fingerprint: vec![0; n] }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.x.clear();
+        self.f.clear();
+        self.violation.clear();
+        self.fingerprint.clear();
+    }
+
+    /// Adds a member that is still to be evaluated.
+    pub(super) fn push_x(&mut self, x: &[f64]) {
+        self.x.extend_from_slice(x);
+        self.f.resize(self.f.len() + self.objectives, f64::INFINITY);
+        self.violation.push(f64::INFINITY);
+        self.fingerprint.push(fingerprint(x));
+    }
+
+    /// Adds member `i` of another population of the same shape.
+    pub(super) fn push_from(&mut self, other: &Self, i: usize) {
+        self.x.extend_from_slice(other.x(i));
+        self.f.extend_from_slice(other.f(i));
+        self.violation.push(other.violation[i]);
+        self.fingerprint.push(other.fingerprint[i]);
+    }
+
+    pub(super) fn append(&mut self, other: &Self) {
+        self.x.extend_from_slice(&other.x);
+        self.f.extend_from_slice(&other.f);
+        self.violation.extend_from_slice(&other.violation);
+        self.fingerprint.extend_from_slice(&other.fingerprint);
+    }
+
+    /// Replaces member `i` by member `j` of `other`.
+    pub(super) fn replace(&mut self, i: usize, other: &Self, j: usize) {
+        let (d, m) = (self.variables, self.objectives);
+        self.x[i * d..][..d].copy_from_slice(other.x(j));
+        self.f[i * m..][..m].copy_from_slice(other.f(j));
+        self.violation[i] = other.violation[j];
+        self.fingerprint[i] = other.fingerprint[j];
+    }
+
+    /// Whether a member has exactly these variables.
+    pub(super) fn contains(&self, x: &[f64]) -> bool {
+        let wanted = fingerprint(x);
+        self.fingerprint.iter().enumerate().any(|(i, &print)| print == wanted && self.x(i) == x)
+    }
+
+    /// Variables of all members beside objectives and violations, for an evaluation.
+    pub(super) fn evaluation_parts(&mut self) -> (&[f64], &mut [f64], &mut [f64]) {
+        (&self.x, &mut self.f, &mut self.violation)
+    }
+}
+
+/// Equal variables give equal numbers; different ones almost never do.
+fn fingerprint(x: &[f64]) -> u64 {
+    x.iter().fold(0x9e37_79b9_7f4a_7c15, |hash: u64, v| {
+        (hash ^ v.to_bits()).wrapping_mul(0xff51_afd7_ed55_8ccd).rotate_left(29)
+    })
+}

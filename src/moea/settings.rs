@@ -1,0 +1,208 @@
+//! What a run is asked to do.
+
+use thiserror::Error;
+
+use super::{
+    direction::Directions,
+    focus::Focus,
+    problem::{Bounds, Problem},
+    variation::Operators,
+};
+
+/// Which algorithm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Algorithm {
+    /// Deb and Jain 2014.
+    Nsga3,
+    /// NSGA-III with the paper's focus operator.
+    Nsga3Fo {
+        /// Reading of the focus operator.
+        focus: Focus,
+        /// Rates of eq. 8 and 9 in place of fixed ones; harmful, see the module's list.
+        adaptive_rates: bool,
+    },
+    /// Deb, Pratap, Agarwal and Meyarivan 2002.
+    Nsga2,
+    /// Zhang and Li 2007 with boundary intersection (PBI, theta = 5).
+    Moead {
+        /// Whether objectives are divided by the range of the population first.
+        normalized: bool,
+    },
+    /// Hughes 2007.
+    Msops2,
+}
+
+impl Algorithm {
+    /// NSGA-III-FO as recommended: local focus, fixed rates.
+    pub const NSGA3_FO: Self = Self::Nsga3Fo { focus: Focus::Local, adaptive_rates: false };
+}
+
+/// When a run ends, if no observer ends it before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Budget {
+    /// After exactly this many evaluations.
+    Evaluations(u64),
+    /// After this many generations, the first population included.
+    Generations(u64),
+    /// Only when the observer says so.
+    Observer,
+}
+
+/// All that determines a run, beside the problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// The algorithm; NSGA-III-FO by default.
+    pub algorithm: Algorithm,
+    /// Reference directions.
+    pub directions: Directions,
+    /// Wanted number of members; by default the smallest multiple of four not below the number
+    /// of directions, and never fewer than directions.
+    pub population: Option<usize>,
+    /// Length of the run; 20 000 evaluations by default.
+    pub budget: Budget,
+    /// Rates and distribution indices.
+    pub operators: Operators,
+    /// Seed of every random number drawn.
+    pub seed: u64,
+    /// Members the archive of non-dominated solutions holds at most; 0 for no archive.
+    pub archive: usize,
+    /// First members; the rest are drawn at random. Values outside the bounds are moved to them.
+    pub initial: Vec<Vec<f64>>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            algorithm: Algorithm::NSGA3_FO,
+            directions: Directions::Usual,
+            population: None,
+            budget: Budget::Evaluations(20_000),
+            operators: Operators::default(),
+            seed: 1,
+            archive: 0,
+            initial: Vec::new(),
+        }
+    }
+}
+
+/// Why a problem cannot be run with these settings.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MoeaError {
+    /// Nothing to vary.
+    #[error("the problem has no variables")]
+    NoVariables,
+    /// Nothing to minimise.
+    #[error("the problem has no objectives")]
+    NoObjectives,
+    /// A bound is not a finite number, or lower and upper are swapped.
+    #[error("variable {index} cannot lie between {lower} and {upper}")]
+    Bounds {
+        /// Index of the variable.
+        index: usize,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
+    },
+    /// An initial member has the wrong length or a value that is not finite.
+    #[error("initial member {member} has {given} finite values, the problem has {wanted} variables")]
+    Initial {
+        /// Index of the member.
+        member: usize,
+        /// Number of finite values given.
+        given: usize,
+        /// Number of variables.
+        wanted: usize,
+    },
+    /// A rate is not a probability, or a distribution index is negative.
+    #[error("{name} is {value}; rates lie in 0 to 1, distribution indices in 0 to 1000")]
+    Operator {
+        /// Name of the setting.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// More directions than anyone can mean.
+    #[error("{divisions} divisions for {objectives} objectives give more than {most} directions")]
+    TooManyDirections {
+        /// Number of objectives.
+        objectives: usize,
+        /// Divisions asked for.
+        divisions: usize,
+        /// The limit.
+        most: usize,
+    },
+    /// A larger population than anyone can mean.
+    #[error("a population of {wanted} is more than {most}")]
+    TooManyMembers {
+        /// Members asked for.
+        wanted: usize,
+        /// The limit.
+        most: usize,
+    },
+}
+
+/// Largest population.
+const MOST_MEMBERS: usize = 1_000_000;
+
+/// Settings that fit a problem.
+#[derive(Debug, Clone)]
+pub(super) struct Checked {
+    pub(super) bounds: Vec<Bounds>,
+    pub(super) objectives: usize,
+    /// `[count][objectives]`.
+    pub(super) directions: Vec<f64>,
+    pub(super) members: usize,
+    pub(super) mutation_rate: f64,
+}
+
+pub(super) fn check<P: Problem>(problem: &P, settings: &Settings) -> Result<Checked, MoeaError> {
+    let (bounds, objectives) = (problem.bounds(), problem.objectives());
+    if bounds.is_empty() {
+        return Err(MoeaError::NoVariables);
+    }
+    if objectives == 0 {
+        return Err(MoeaError::NoObjectives);
+    }
+    for (index, &(lower, upper)) in bounds.iter().enumerate() {
+        if !(lower.is_finite() && upper.is_finite() && lower <= upper && (upper - lower).is_finite()) {
+            return Err(MoeaError::Bounds { index, lower, upper });
+        }
+    }
+    for (member, x) in settings.initial.iter().enumerate() {
+        let given = x.iter().filter(|v| v.is_finite()).count();
+        if given != bounds.len() || x.len() != bounds.len() {
+            return Err(MoeaError::Initial { member, given, wanted: bounds.len() });
+        }
+    }
+    let operators = &settings.operators;
+    let mutation_rate = operators.mutation_rate.unwrap_or(1.0 / bounds.len() as f64);
+    for (name, value, most) in [
+        ("crossover rate", operators.crossover_rate, 1.0),
+        ("mutation rate", mutation_rate, 1.0),
+        ("crossover distribution index", operators.crossover_eta, 1000.0),
+        ("mutation distribution index", operators.mutation_eta, 1000.0),
+    ] {
+        if !(0.0..=most).contains(&value) {
+            return Err(MoeaError::Operator { name, value });
+        }
+    }
+    let usual = 92;
+    let directions = settings.directions.points(objectives, settings.population.unwrap_or(usual))?;
+    let count = directions.len() / objectives;
+    let wanted = settings.population.unwrap_or(if objectives == 1 { usual } else { count });
+    if wanted > MOST_MEMBERS {
+        return Err(MoeaError::TooManyMembers { wanted, most: MOST_MEMBERS });
+    }
+    let (directions, count) = match settings.algorithm {
+        // One member per direction, of which a single objective has but one.
+        Algorithm::Moead { .. } if objectives == 1 => (vec![1.0; wanted.max(4)], wanted.max(4)),
+        _ => (directions, count),
+    };
+    let members = match settings.algorithm {
+        Algorithm::Moead { .. } => count,
+        _ => wanted.max(count).max(4).next_multiple_of(4),
+    };
+    Ok(Checked { bounds, objectives, directions, members, mutation_rate })
+}

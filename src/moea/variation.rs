@@ -1,0 +1,140 @@
+//! Simulated binary crossover and polynomial mutation.
+//!
+//! # References
+//!
+//! Deb and Agrawal 1995 (SBX, with the bounded spread of the authors' program); Deb and
+//! Goyal 1996 (mutation).
+
+use rand_chacha::{ChaCha8Rng, rand_core::Rng};
+
+use super::problem::Bounds;
+
+/// Rates and distribution indices of crossover and mutation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Operators {
+    /// Probability that a pair is crossed at all, 0 to 1.
+    pub crossover_rate: f64,
+    /// Distribution index of the crossover; children lie nearer to their parents when it is larger.
+    pub crossover_eta: f64,
+    /// Probability that a variable mutates, 0 to 1; one over the number of variables if absent.
+    pub mutation_rate: Option<f64>,
+    /// Distribution index of the mutation.
+    pub mutation_eta: f64,
+}
+
+impl Default for Operators {
+    /// Deb and Jain 2014, table II.
+    fn default() -> Self {
+        Self { crossover_rate: 1.0, crossover_eta: 30.0, mutation_rate: None, mutation_eta: 20.0 }
+    }
+}
+
+/// A number in `[0, 1)`.
+#[inline]
+pub(super) fn unit(rng: &mut ChaCha8Rng) -> f64 {
+    (rng.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+}
+
+/// An index below `n`; 0 for an empty range.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "the high half of the product is below n")]
+pub(super) fn below(n: usize, rng: &mut ChaCha8Rng) -> usize {
+    ((u128::from(rng.next_u64()) * n as u128) >> 64) as usize
+}
+
+/// A uniformly random order.
+pub(super) fn shuffle<T>(items: &mut [T], rng: &mut ChaCha8Rng) {
+    for i in (1..items.len()).rev() {
+        items.swap(i, below(i + 1, rng));
+    }
+}
+
+/// Crosses two parents into two children.
+///
+/// Each variable is blended with probability one half, and the blended values go to either
+/// child with equal probability.
+pub(super) fn cross(
+    operators: &Operators,
+    rate: f64,
+    bounds: &[Bounds],
+    parents: (&[f64], &[f64]),
+    children: (&mut [f64], &mut [f64]),
+    rng: &mut ChaCha8Rng,
+) {
+    let (first, second) = children;
+    first.copy_from_slice(parents.0);
+    second.copy_from_slice(parents.1);
+    if rate < 1.0 && unit(rng) >= rate {
+        return;
+    }
+    let exponent = Exponent::new(operators.crossover_eta);
+    let mut coins = 0u64;
+    for (k, (&(lower, upper), (a, b))) in bounds.iter().zip(first.iter_mut().zip(second)).enumerate() {
+        if k % 32 == 0 {
+            coins = rng.next_u64();
+        }
+        let (blended, swapped) = (coins & 1 == 1, coins & 2 == 2);
+        coins >>= 2;
+        let (low, high) = if *a < *b { (*a, *b) } else { (*b, *a) };
+        let gap = high - low;
+        if !blended || gap <= 1e-14 * (upper - lower) {
+            continue;
+        }
+        let u = unit(rng);
+        let low_child = 0.5 * (low + high - exponent.spread(u, (low - lower) / gap) * gap);
+        let high_child = 0.5 * (low + high + exponent.spread(u, (upper - high) / gap) * gap);
+        let pair = (low_child.clamp(lower, upper), high_child.clamp(lower, upper));
+        (*a, *b) = if swapped { (pair.1, pair.0) } else { pair };
+    }
+}
+
+/// The power `eta + 1`, fast when it is a whole number.
+#[derive(Clone, Copy)]
+struct Exponent {
+    power: f64,
+    whole: Option<i32>,
+}
+
+impl Exponent {
+    #[expect(clippy::cast_possible_truncation, reason = "checked to be whole and small")]
+    fn new(eta: f64) -> Self {
+        let power = eta + 1.0;
+        let whole = (power.fract().abs() < f64::EPSILON && power.abs() < 1000.0).then_some(power as i32);
+        Self { power, whole }
+    }
+
+    fn raise(self, base: f64) -> f64 {
+        self.whole.map_or_else(|| base.powf(self.power), |n| base.powi(n))
+    }
+
+    fn root(self, base: f64) -> f64 {
+        base.powf(1.0 / self.power)
+    }
+
+    /// The spread factor at quantile `u`, its distribution cut at the bound `room` gaps away.
+    fn spread(self, u: f64, room: f64) -> f64 {
+        let alpha = 2.0 - 1.0 / self.raise(1.0 + 2.0 * room);
+        let base = u * alpha;
+        if base <= 1.0 { self.root(base) } else { self.root(1.0 / (2.0 - base)) }
+    }
+}
+
+/// Mutates each variable with probability `rate`.
+pub(super) fn mutate(eta: f64, rate: f64, bounds: &[Bounds], x: &mut [f64], rng: &mut ChaCha8Rng) {
+    let exponent = Exponent::new(eta);
+    for (value, &(lower, upper)) in x.iter_mut().zip(bounds) {
+        if unit(rng) >= rate || upper <= lower {
+            continue;
+        }
+        let u = unit(rng);
+        let span = upper - lower;
+        let step = if u < 0.5 {
+            let rest = exponent.raise(1.0 - (*value - lower) / span);
+            exponent.root(2.0 * u + (1.0 - 2.0 * u) * rest) - 1.0
+        } else {
+            let rest = exponent.raise(1.0 - (upper - *value) / span);
+            1.0 - exponent.root(2.0 * (1.0 - u) + (2.0 * u - 1.0) * rest)
+        };
+        *value = (*value + step * span).clamp(lower, upper);
+    }
+}
