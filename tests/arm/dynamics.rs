@@ -84,7 +84,7 @@ proptest! {
         let angular = UnitQuaternion::from_rotation_matrix(&(after.rotation * before.rotation.inverse())).scaled_axis() / (2.0 * h);
         let slope = Vector6::new(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z);
         let twist = chain.tool_jacobian(&q) * nalgebra::DVector::from_column_slice(&qd);
-        prop_assert!((twist.clone() - slope).norm() < 1e-7 * (1.0 + slope.norm()));
+        prop_assert!((twist - slope).norm() < 1e-7 * (1.0 + slope.norm()));
         let speed_m_s = chain.tool_speed_m_s(&q, &qd);
         prop_assert!((twist.fixed_rows::<3>(0).norm() - speed_m_s).abs() < 1e-11);
     }
