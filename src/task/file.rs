@@ -72,6 +72,7 @@ struct Limits {
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
+#[expect(clippy::struct_field_names, reason = "the keys of the file")]
 struct Objectives {
     max_duration_s: Option<Spanned<f64>>,
     max_rms_jerk_deg_s3: Option<Spanned<f64>>,
@@ -180,7 +181,7 @@ pub(super) fn parse(text: &str) -> Result<Task, TaskError> {
 /// The line, from 1, in which a span starts.
 fn line_of(text: &str, span: &Range<usize>) -> usize {
     let start = span.start.min(text.len());
-    1 + text.as_bytes()[..start].iter().filter(|byte| **byte == b'\n').count()
+    1 + memchr::memchr_iter(b'\n', &text.as_bytes()[..start]).count()
 }
 
 /// A key without its unit is the commonest slip: say which keys there are.
@@ -322,8 +323,9 @@ impl Reader<'_> {
             let why = "one for each key point: its arrival, dwells counted";
             return Err(TaskError::Length { line, key, found: times.len(), expected: points, why });
         }
-        if let Some(pair) = times.windows(2).find(|pair| !(pair[1] > pair[0] && pair[1].is_finite())) {
-            let found = format!("{} after {}", pair[1], pair[0]);
+        let bad = |pair: &&[f64]| !(pair[1] > pair[0] && pair[1].is_finite());
+        if let Some([before, after]) = times.windows(2).find(bad) {
+            let found = format!("{after} after {before}");
             return Err(TaskError::Value { line, key, found, expected: "increasing times are expected" });
         }
         Ok(times.clone())
@@ -373,7 +375,7 @@ impl Reader<'_> {
                 }
                 found
                     .into_iter()
-                    .map(|range| (range != wide).then(|| range.map(radians_from_degrees)))
+                    .map(|range| range[0].max(-range[1]).is_finite().then(|| range.map(radians_from_degrees)))
                     .collect()
             }
         };
