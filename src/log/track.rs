@@ -112,9 +112,12 @@ fn is_spike(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usize) -
         return false;
     }
     let (there, back) = (at(k) - at(k - 1), at(k + 1) - at(k));
-    let turn = [TAU, 360.0].iter().any(|turn| (there.abs() - turn).abs() < 0.1 * turn);
+    if there * back >= 0.0 {
+        return false;
+    }
     let (before_s, after_s) = (t_s(k) - t_s(k - 1), t_s(k + 1) - t_s(k));
-    there * back < 0.0 && !turn && there.abs() > FASTEST * before_s && back.abs() > FASTEST * after_s
+    let turn = || [TAU, 360.0].iter().any(|turn| (there.abs() - turn).abs() < 0.1 * turn);
+    there.abs() > FASTEST * before_s && back.abs() > FASTEST * after_s && !turn()
 }
 
 /// Drops samples that no joint can have; returns how many.
