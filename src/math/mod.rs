@@ -6,4 +6,4 @@ mod statistic;
 
 pub use hermite::{State, cubic, linear, quintic};
 pub use sin_cos::sin_cos;
-pub use statistic::{mad, median, quantile, quantile_sorted};
+pub use statistic::{SIGMA_PER_MAD, mad, median, quantile, quantile_sorted};

@@ -33,6 +33,9 @@ pub fn median(values: Vec<f64>) -> f64 {
     quantile(values, 0.5)
 }
 
+/// Standard deviation of a normal distribution in units of its median absolute deviation.
+pub const SIGMA_PER_MAD: f64 = 1.4826;
+
 /// The median absolute deviation from the median, unscaled; NaN for no values.
 pub fn mad(values: &[f64]) -> f64 {
     let centre = median(values.to_vec());

@@ -12,14 +12,12 @@ use super::{
     synthetic::{Sensing, TrueMotion, synthetic_run},
 };
 use crate::{
-    math::{mad, median},
+    math::{SIGMA_PER_MAD, mad, median},
     units::DEGREE_RAD,
 };
 
 /// A start counts as found if one of the same direction is detected this near, s.
 const NEAR_S: f64 = 0.5;
-/// Standard deviations per median absolute deviation of a normal density.
-const SIGMA_PER_MAD: f64 = 1.4826;
 
 /// Errors of one kind of onset or delay.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

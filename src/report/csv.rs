@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::{replay::Kind, workflow::report::Report};
+use super::tables::kind;
+use crate::workflow::report::Report;
 
 const HEAD: [&str; 22] = [
     "joint",
@@ -37,13 +38,9 @@ pub fn transitions_csv(report: &Report) -> String {
     let _ = writer.write_record(HEAD);
     for t in &report.replay.transitions {
         let [low, high] = t.onset_delay_interval_s.map_or([None, None], |[a, b]| [Some(a), Some(b)]);
-        let kind = match t.kind {
-            Kind::Start => "start",
-            Kind::Reversal => "reversal",
-        };
         let _ = writer.write_record([
             t.joint.clone(),
-            kind.to_owned(),
+            kind(t.kind).to_owned(),
             t.direction.to_string(),
             number(Some(t.planned_onset_s)),
             number(t.measured_onset_s),

@@ -44,7 +44,7 @@ struct Document<'a> {
 pub fn report_json(report: &Report) -> String {
     pretty(&Document {
         format: "hydrotrace.report.v1",
-        program: super::json::PROGRAM,
+        program: PROGRAM,
         source: &report.source,
         alignment: &report.alignment,
         joints: &report.replay.joints,

@@ -129,7 +129,7 @@ fn by_peak(replay: &Replay) -> Vec<&Transition> {
     worst
 }
 
-fn kind(kind: Kind) -> &'static str {
+pub(super) fn kind(kind: Kind) -> &'static str {
     match kind {
         Kind::Start => "start",
         Kind::Reversal => "reversal",

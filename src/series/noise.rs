@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use crate::math::{mad, median};
+use crate::math::{SIGMA_PER_MAD, mad, median};
 
 /// Noise and step size of one angle signal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -21,8 +21,6 @@ pub struct Noise {
 const DUST_RAD: f64 = 2.5e-7;
 /// More samples than this add no precision; longer signals are thinned evenly.
 const ENOUGH: usize = 200_000;
-/// The middle 68 % of a normal density lie within 1 / 0.6745 median absolute deviations.
-const SIGMA_PER_MAD: f64 = 1.4826;
 
 /// Estimates noise from second differences over evenly spaced triples, which a smooth motion
 /// leaves near zero, and the encoder's step from the smallest common change.
