@@ -1,8 +1,12 @@
 //! Clap definitions only. Degrees and milliseconds are accepted here and turned into SI here.
 
+mod bench;
+
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
+
+pub use bench::{Bench, BenchArgs, DetectorArgs};
 
 use crate::{
     log::{ReadOptions, Selector, TimeBase},
@@ -223,37 +227,6 @@ pub struct RecoverArgs {
     pub output: PathBuf,
 
     /// Say what was saved as one JSON document
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// Arguments of `bench`.
-#[derive(Debug, clap::Args)]
-pub struct BenchArgs {
-    /// What to measure.
-    #[command(subcommand)]
-    pub what: Bench,
-}
-
-/// What can be measured.
-#[derive(Debug, Subcommand)]
-pub enum Bench {
-    /// Precision and recall of the transition detector on synthetic joints with known motions
-    Detector(DetectorArgs),
-}
-
-/// Arguments of `bench detector`.
-#[derive(Debug, clap::Args)]
-pub struct DetectorArgs {
-    /// Seed of the synthetic joints
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-
-    /// Runs of one minute for each row
-    #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=10_000))]
-    pub runs: u64,
-
-    /// One JSON document
     #[arg(long)]
     pub json: bool,
 }

@@ -1,22 +1,17 @@
-//! `bench`: measures, shows progress on a terminal.
+//! `bench detector`, with progress on a terminal.
 
 use std::io::Write;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{
-    CliError, Outcome,
-    args::{Bench, BenchArgs},
-    output::deliver,
-};
 use crate::{
+    cli::{CliError, Outcome, args::DetectorArgs, output::deliver},
     replay::conditions,
     report::{score_json, score_parts, text},
     workflow::detector::{Inputs, run as score},
 };
 
-pub(super) fn run(args: &BenchArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
-    let Bench::Detector(args) = &args.what;
+pub(super) fn run(args: &DetectorArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
     // Drawn on standard error, and not at all where that is no terminal.
     let bar = ProgressBar::new(conditions().len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} conditions, {eta} left") {
