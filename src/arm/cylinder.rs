@@ -132,6 +132,11 @@ impl Cylinder {
         }
     }
 
+    /// Piston areas of all cylinders together: that which pushes and that which pulls, m².
+    pub fn areas_m2(&self) -> (f64, f64) {
+        (self.push_area_m2, self.pull_area_m2)
+    }
+
     /// The triangle.
     pub fn linkage(&self) -> &Linkage {
         &self.linkage

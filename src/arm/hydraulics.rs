@@ -64,6 +64,11 @@ pub struct Hydraulics {
 }
 
 impl Hydraulics {
+    /// No cylinder on any of so many joints.
+    pub fn none(joints: usize) -> Self {
+        Self { cylinders: vec![None; joints], pump_flow_m3_s: f64::INFINITY }
+    }
+
     /// Reads the text of a file, TOML as `schemas/hydraulics.schema.json` describes it; `file`
     /// stands for it in errors. Joints without an entry have no cylinder.
     ///

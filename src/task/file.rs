@@ -1,97 +1,20 @@
-//! The task file as it is written: degrees, names, lines.
+//! From the document to a checked task: degrees become radians, names become indices.
 
 use std::{collections::BTreeMap, ops::Range};
 
-use serde::Deserialize;
 use toml::Spanned;
 
-use super::{ArmSource, Boundary, Bounds, JointLimits, KeyPoint, Place, Task, TaskError, Weights};
+use super::{
+    ArmSource, Boundary, Bounds, JointLimits, KeyPoint, Place, Task, TaskError, Weights,
+    document::{ByJoint, Document, End, FileWeights, Limits, Point, Tool},
+};
 use crate::units::radians_from_degrees;
-
-/// Values by joint.
-type ByJoint = BTreeMap<String, f64>;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    title: String,
-    arm: String,
-    joints: Spanned<Vec<String>>,
-    degree: Option<Spanned<u8>>,
-    #[serde(default)]
-    payload_kg: f64,
-    interval_s: Option<Spanned<[f64; 2]>>,
-    times_s: Option<Spanned<Vec<f64>>>,
-    #[serde(rename = "point")]
-    points: Vec<Spanned<Point>>,
-    start: Option<End>,
-    end: Option<End>,
-    #[serde(default)]
-    limits: Limits,
-    #[serde(default)]
-    objectives: Objectives,
-    weights: Option<Spanned<FileWeights>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Point {
-    #[serde(default)]
-    name: String,
-    angles_deg: Option<Spanned<ByJoint>>,
-    tool: Option<Tool>,
-    dwell_s: Option<Spanned<f64>>,
-    payload_kg: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Tool {
-    x_m: f64,
-    z_m: f64,
-    pitch_deg: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct End {
-    speed_deg_s: Option<Spanned<ByJoint>>,
-    acceleration_deg_s2: Option<Spanned<ByJoint>>,
-    jerk_deg_s3: Option<Spanned<ByJoint>>,
-}
-
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-struct Limits {
-    range_deg: Option<Spanned<BTreeMap<String, [f64; 2]>>>,
-    speed_deg_s: Option<Spanned<ByJoint>>,
-    acceleration_deg_s2: Option<Spanned<ByJoint>>,
-    jerk_deg_s3: Option<Spanned<ByJoint>>,
-    torque_n_m: Option<Spanned<ByJoint>>,
-}
-
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-#[expect(clippy::struct_field_names, reason = "the keys of the file")]
-struct Objectives {
-    max_duration_s: Option<Spanned<f64>>,
-    max_rms_jerk_deg_s3: Option<Spanned<f64>>,
-    max_rms_power_w: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FileWeights {
-    duration: f64,
-    rms_jerk: f64,
-    rms_power: f64,
-}
 
 /// Shortest and longest interval where the file gives none, s.
 const INTERVAL_S: [f64; 2] = [0.3, 20.0];
 
 pub(super) fn parse(text: &str) -> Result<Task, TaskError> {
-    let file: File = toml::from_str(text).map_err(|error| TaskError::Syntax {
+    let file: Document = toml::from_str(text).map_err(|error| TaskError::Syntax {
         line: line_of(text, &error.span().unwrap_or(0..0)),
         message: syntax(error.message()),
     })?;
@@ -156,17 +79,20 @@ pub(super) fn parse(text: &str) -> Result<Task, TaskError> {
         Some(given) => reader.positive(key, given).map(Some),
         None => Ok(None),
     };
+    let arm = reader.arm(&file)?;
     Ok(Task {
         title: file.title,
-        arm: if file.arm == "sample" { ArmSource::Sample } else { ArmSource::File(file.arm) },
+        arm,
         joints: file.joints.get_ref().clone(),
         degree,
         points,
         payload_kg,
+        payload_size_m: reader.size(file.payload_size_m.as_ref())?,
         start: reader.boundary("start", file.start.as_ref())?,
         end: reader.boundary("end", file.end.as_ref())?,
         interval_s,
         limits: reader.limits(&file.limits)?,
+        tool_speed_m_s: bound("limits.tool_speed_m_s", &file.limits.tool_speed_m_s)?.unwrap_or(f64::INFINITY),
         bounds: Bounds {
             duration_s: bound("max_duration_s", &file.objectives.max_duration_s)?,
             rms_jerk_rad_s3: bound("max_rms_jerk_deg_s3", &file.objectives.max_rms_jerk_deg_s3)?
@@ -220,6 +146,19 @@ impl Reader<'_> {
         } else {
             Err(self.value(key, given, "a number above zero is expected"))
         }
+    }
+
+    fn arm(&self, file: &Document) -> Result<ArmSource, TaskError> {
+        let name = file.arm.get_ref();
+        if name != "sample" {
+            let (urdf, hydraulics, tool) = (name.clone(), file.hydraulics.clone(), file.tool.clone());
+            return Ok(ArmSource::File { urdf, hydraulics, tool });
+        }
+        if file.hydraulics.is_some() || file.tool.is_some() {
+            let expected = "a URDF file is expected where hydraulics or tool are given";
+            return Err(self.value("arm", &file.arm, expected));
+        }
+        Ok(ArmSource::Sample)
     }
 
     fn joints(&self, given: &Spanned<Vec<String>>) -> Result<(), TaskError> {
@@ -315,6 +254,17 @@ impl Reader<'_> {
         Ok(KeyPoint { name: point.name.clone(), place, dwell_s, payload_kg })
     }
 
+    fn size(&self, given: Option<&Spanned<[f64; 3]>>) -> Result<[f64; 3], TaskError> {
+        let Some(given) = given else { return Ok([0.0; 3]) };
+        let size_m = *given.get_ref();
+        if size_m.iter().all(|m| (0.0..1e3).contains(m)) {
+            return Ok(size_m);
+        }
+        let (key, found) = ("payload_size_m".to_owned(), format!("{size_m:?}"));
+        let expected = "three lengths of zero or more are expected";
+        Err(TaskError::Value { line: line_of(self.text, &given.span()), key, found, expected })
+    }
+
     fn times(&self, given: &Spanned<Vec<f64>>, points: usize) -> Result<Vec<f64>, TaskError> {
         let times = given.get_ref();
         let line = line_of(self.text, &given.span());
@@ -383,6 +333,7 @@ impl Reader<'_> {
         let acceleration = of("limits.acceleration_deg_s2", &given.acceleration_deg_s2)?;
         let jerk = of("limits.jerk_deg_s3", &given.jerk_deg_s3)?;
         let torque = of("limits.torque_n_m", &given.torque_n_m)?;
+        let rod_speed = of("limits.rod_speed_m_s", &given.rod_speed_m_s)?;
         Ok((0..self.joints.len())
             .map(|j| JointLimits {
                 range_rad: ranges[j],
@@ -390,6 +341,7 @@ impl Reader<'_> {
                 acceleration_rad_s2: radians_from_degrees(acceleration[j]),
                 jerk_rad_s3: radians_from_degrees(jerk[j]),
                 torque_n_m: torque[j],
+                rod_speed_m_s: rod_speed[j],
             })
             .collect())
     }

@@ -3,6 +3,7 @@
 //! A task file is TOML with angles in degrees, as the paper's tables have them; this folder is the
 //! edge where they become radians. A task knows the names of joints and nothing of links.
 
+mod document;
 mod error;
 mod file;
 mod weigh;
@@ -17,8 +18,15 @@ use std::path::Path;
 pub enum ArmSource {
     /// The sample arm that comes with hydrotrace.
     Sample,
-    /// A file, relative to the task file.
-    File(String),
+    /// Files, relative to the task file.
+    File {
+        /// The URDF.
+        urdf: String,
+        /// Its cylinders and pump, if it has any.
+        hydraulics: Option<String>,
+        /// The link that is the tool, where the URDF leaves it open.
+        tool: Option<String>,
+    },
 }
 
 /// A pose of the arm that the plan passes through.
@@ -74,6 +82,8 @@ pub struct JointLimits {
     pub jerk_rad_s3: f64,
     /// Torque, N m; the cylinders' own limits hold besides.
     pub torque_n_m: f64,
+    /// Speed of the cylinder's rod, m/s.
+    pub rod_speed_m_s: f64,
 }
 
 /// A task, checked: arrays are as long as the joints, times increase, everything is finite.
@@ -91,6 +101,9 @@ pub struct Task {
     pub points: Vec<KeyPoint>,
     /// Payload before the first change, kg.
     pub payload_kg: f64,
+    /// Size of any payload, a box that reaches from the tool's origin forward along its x axis,
+    /// m; zeros for a point.
+    pub payload_size_m: [f64; 3],
     /// State in which the plan starts.
     pub start: Boundary,
     /// State in which the plan ends.
@@ -99,6 +112,8 @@ pub struct Task {
     pub interval_s: [f64; 2],
     /// Limits, `[joint]`.
     pub limits: Vec<JointLimits>,
+    /// Speed of the tool, m/s; infinite where none is given.
+    pub tool_speed_m_s: f64,
     /// Ceilings on the objectives.
     pub bounds: Bounds,
     /// How the objectives weigh against each other once the ceilings hold.

@@ -1,0 +1,200 @@
+//! One evaluation: the objectives of a plan and how near it comes to every limit.
+
+use super::{
+    Setup,
+    limit::Limit,
+    mesh::{LOADED, Mesh},
+};
+use crate::spline::{Motion, Quantity};
+
+/// What a plan costs; all three are minimised.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Objectives {
+    /// Total time, dwells included, s (f1).
+    pub duration_s: f64,
+    /// Sum over joints of the root mean square jerk, rad/s³ (f2).
+    pub rms_jerk_rad_s3: f64,
+    /// Sum over joints of the root mean square power, W (f3).
+    pub rms_power_w: f64,
+}
+
+impl Objectives {
+    /// In the order f1, f2, f3.
+    pub fn as_array(&self) -> [f64; 3] {
+        [self.duration_s, self.rms_jerk_rad_s3, self.rms_power_w]
+    }
+
+    /// From the order f1, f2, f3.
+    pub fn from_array([duration_s, rms_jerk_rad_s3, rms_power_w]: [f64; 3]) -> Self {
+        Self { duration_s, rms_jerk_rad_s3, rms_power_w }
+    }
+}
+
+/// Quantities that are splines, in the order of a joint's rows.
+const SPLINES: [Quantity; 4] = Quantity::ALL;
+
+/// Below this share of a limit the value at the nearest node serves, above `EXACT` the peak
+/// between the nodes; between them a blend, so that an evaluation is continuous in the times.
+/// Nodes miss peaks by about 1 %.
+const COARSE: f64 = 0.85;
+const EXACT: f64 = 0.95;
+/// From here on a limit is broken by so much that the node serves again.
+const BROKEN: f64 = 1.5;
+const HOPELESS: f64 = 2.0;
+
+/// Evaluates plans of one setup, one after the other; allocates nothing after the first.
+#[derive(Debug, Clone)]
+pub struct Evaluator {
+    pub(super) motion: Motion,
+    pub(super) mesh: Mesh,
+    t_s: Vec<f64>,
+    rms_jerk: Vec<f64>,
+    /// Share of each limit, by row.
+    pub(super) shares: Vec<f64>,
+}
+
+impl Evaluator {
+    /// Memory for a setup.
+    pub fn new(setup: &Setup) -> Self {
+        Self {
+            motion: setup.template.clone(),
+            mesh: Mesh::new(setup),
+            t_s: Vec::new(),
+            rms_jerk: vec![0.0; setup.joint_count()],
+            shares: vec![0.0; Limit::rows(setup.joint_count())],
+        }
+    }
+
+    /// Objectives of the plan with these times of movement between key points, s, under the setup
+    /// that this evaluator was made for; `None` if they make no motion.
+    ///
+    /// f2 is exact; f3 is by eight Gauss nodes a piece, to 1e-7. Power is joint speed times torque
+    /// (paper, eq. 5). `DIFFERENCE(eq. 4, 5)`: means over time in place of sums over sampling
+    /// points, which grow with their number.
+    pub fn evaluate(&mut self, setup: &Setup, interval_s: &[f64]) -> Option<Objectives> {
+        self.t_s.clear();
+        self.t_s.push(0.0);
+        let mut now_s = 0.0;
+        for (interval_s, dwell_s) in interval_s.iter().zip(&setup.dwell_before_s) {
+            now_s += dwell_s + interval_s;
+            self.t_s.push(now_s);
+        }
+        self.motion.retime(&self.t_s).ok()?;
+        self.motion.rms_jerk(&mut self.rms_jerk);
+        self.mesh.integrate(setup, &self.motion);
+        self.weigh(setup);
+        let duration_s = self.motion.duration_s();
+        Some(Objectives {
+            duration_s,
+            rms_jerk_rad_s3: self.rms_jerk.iter().sum(),
+            rms_power_w: self.mesh.squared_power.iter().map(|sum| (sum / duration_s).sqrt()).sum(),
+        })
+    }
+
+    /// Sum of what the plan evaluated last exceeds its limits by, each as a share of the limit.
+    pub fn violation(&self) -> f64 {
+        self.shares.iter().map(|share| (share - 1.0).max(0.0)).sum()
+    }
+
+    /// Root mean square jerk by joint of the plan evaluated last, rad/s³.
+    pub fn rms_jerk_rad_s3(&self) -> &[f64] {
+        &self.rms_jerk
+    }
+
+    /// Root mean square power by joint of the plan evaluated last, W.
+    pub fn rms_power_w(&self) -> Vec<f64> {
+        let duration_s = self.motion.duration_s();
+        self.mesh.squared_power.iter().map(|sum| (sum / duration_s).sqrt()).collect()
+    }
+
+    /// Work that the joints do and take up together in the plan evaluated last, J.
+    pub fn energy_j(&self) -> f64 {
+        self.mesh.energy_j
+    }
+
+    /// Shares of all limits.
+    fn weigh(&mut self, setup: &Setup) {
+        let width = Limit::OF_JOINT.len();
+        for (joint, limit) in setup.limits.iter().enumerate() {
+            let rows = &mut self.shares[joint * width..][..width];
+            let [low, high] = limit.range_rad;
+            let bounded = low.is_finite() && high.is_finite();
+            let (middle, half) =
+                if bounded { (0.5 * (low + high), 0.5 * (high - low)) } else { (0.0, f64::INFINITY) };
+            let each = [
+                (middle, half),
+                (0.0, limit.speed_rad_s),
+                (0.0, limit.acceleration_rad_s2),
+                (0.0, limit.jerk_rad_s3),
+            ];
+            for ((quantity, (middle, allowed)), row) in SPLINES.into_iter().zip(each).zip(&mut *rows) {
+                let values = self.mesh.samples.of(quantity, joint);
+                let (node, coarse) = peak(values.iter().map(|value| (value - middle).abs()));
+                let coarse = coarse / allowed;
+                *row = blend(coarse, || {
+                    let exact = near(&self.motion, &self.mesh, joint, quantity, node, values[node] >= middle);
+                    (exact - middle).abs() / allowed
+                });
+            }
+            for (k, row) in rows[SPLINES.len()..].iter_mut().enumerate() {
+                *row = sampled(&self.mesh, joint * LOADED + k);
+            }
+        }
+        let joints = setup.limits.len();
+        for (k, row) in self.shares[joints * width..].iter_mut().enumerate() {
+            *row = sampled(&self.mesh, joints * LOADED + k);
+        }
+    }
+}
+
+/// Index and value of the largest; zeros for none.
+fn peak(values: impl Iterator<Item = f64>) -> (usize, f64) {
+    values.enumerate().fold((0, 0.0), |best, next| if next.1 > best.1 { next } else { best })
+}
+
+/// The share between nodes, as far as it matters.
+fn blend(coarse: f64, exact: impl FnOnce() -> f64) -> f64 {
+    let weight = ((coarse - COARSE) / (EXACT - COARSE)).min((HOPELESS - coarse) / (HOPELESS - BROKEN));
+    if weight > 0.0 { coarse + weight.min(1.0) * (exact() - coarse).max(0.0) } else { coarse }
+}
+
+/// The greatest (or least) value between the neighbours of a node.
+fn near(motion: &Motion, mesh: &Mesh, joint: usize, quantity: Quantity, node: usize, greatest: bool) -> f64 {
+    let index = mesh.segment_of(node);
+    let (range, segment) = (&mesh.segment[index], &motion.segments()[index]);
+    let (start_s, end_s) = (segment.start_s, segment.start_s + segment.spline.duration_s());
+    let from_s = if node > range.start { mesh.t_s[node - 1] } else { start_s };
+    let to_s = if node + 1 < range.end { mesh.t_s[node + 1] } else { end_s };
+    let found = segment.spline.extrema_within(joint, quantity, (from_s - start_s, to_s - start_s));
+    if greatest { found.greatest.value } else { found.least.value }
+}
+
+/// Largest share of a sampled row, by the parabola through the largest and its neighbours.
+fn sampled(mesh: &Mesh, row: usize) -> f64 {
+    let values = mesh.row(row);
+    let (node, coarse) = peak(values.iter().copied());
+    blend(coarse, || {
+        let range = &mesh.segment[mesh.segment_of(node)];
+        if node == range.start || node + 1 >= range.end {
+            return coarse;
+        }
+        vertex([-1, 0, 1].map(|k: isize| {
+            let i = node.saturating_add_signed(k);
+            (mesh.t_s[i], values[i])
+        }))
+        .1
+    })
+}
+
+/// Vertex of the parabola through three points whose middle one is highest.
+pub(super) fn vertex([(t0, a), (t1, b), (t2, c)]: [(f64, f64); 3]) -> (f64, f64) {
+    let (left, right) = ((b - a) / (t1 - t0), (c - b) / (t2 - t1));
+    let bend = (right - left) / (t2 - t0);
+    if bend >= 0.0 {
+        return (t1, b);
+    }
+    // Slope at the middle point, from Newton's form.
+    let slope = left + bend * (t1 - t0);
+    let step = (-0.5 * slope / bend).clamp(t0 - t1, t2 - t1);
+    (t1 + step, b + step * (slope + step * bend))
+}

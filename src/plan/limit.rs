@@ -1,0 +1,77 @@
+//! What a plan must keep to.
+
+use serde::Serialize;
+
+/// A quantity with a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Limit {
+    /// Angle of a joint, rad.
+    Position,
+    /// Speed of a joint, rad/s.
+    Speed,
+    /// Acceleration of a joint, rad/s².
+    Acceleration,
+    /// Jerk of a joint, rad/s³.
+    Jerk,
+    /// Torque of a joint, N m.
+    Torque,
+    /// Speed of the rod of a joint's cylinder, m/s (the paper's linear velocity): by the task, and by
+    /// what the whole pump gives that joint alone.
+    RodSpeed,
+    /// Force of a joint's cylinders at supply pressure, N.
+    RodForce,
+    /// Flow that all cylinders take from the pump together, m³/s.
+    PumpFlow,
+    /// Speed of the tool, m/s.
+    ToolSpeed,
+}
+
+impl Limit {
+    /// Those that every joint has, in the order of the rows.
+    pub const OF_JOINT: [Self; 7] = [
+        Self::Position,
+        Self::Speed,
+        Self::Acceleration,
+        Self::Jerk,
+        Self::Torque,
+        Self::RodSpeed,
+        Self::RodForce,
+    ];
+
+    /// Those of the arm as a whole, after the joints' rows.
+    pub const OF_ARM: [Self; 2] = [Self::PumpFlow, Self::ToolSpeed];
+
+    /// Number of rows for so many joints.
+    pub(super) fn rows(joints: usize) -> usize {
+        joints * Self::OF_JOINT.len() + Self::OF_ARM.len()
+    }
+
+    /// What a row is about: a limit, and the joint if it is a joint's.
+    pub(super) fn of_row(row: usize, joints: usize) -> (Self, Option<usize>) {
+        let width = Self::OF_JOINT.len();
+        match row.checked_sub(joints * width) {
+            None => (Self::OF_JOINT[row % width], Some(row / width)),
+            Some(0) => (Self::PumpFlow, None),
+            Some(_) => (Self::ToolSpeed, None),
+        }
+    }
+}
+
+/// Where a limit comes nearest to being broken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Margin {
+    /// The quantity.
+    pub limit: Limit,
+    /// The joint, if it is a joint's.
+    pub joint: Option<usize>,
+    /// The value there, in the limit's unit; signed where the quantity is.
+    pub value: f64,
+    /// What is allowed in that direction.
+    pub allowed: f64,
+    /// Value by what is allowed; of a range, distance from its middle by half its width. Above 1 the
+    /// limit is broken.
+    pub share: f64,
+    /// When, s.
+    pub t_s: f64,
+}

@@ -1,0 +1,221 @@
+//! State, torque and load of the arm at many instants of a motion, in lanes.
+
+use multiversion::multiversion;
+
+use super::{Setup, setup::JointLimits};
+use crate::{
+    arm::{Chain, Cylinder, LANES, Load, Motion as ArmMotion, Workspace, inverse_dynamics},
+    spline::{Gauss, Motion, Quantity, Samples},
+};
+
+/// Rows of one joint that come from the mechanics: shares of torque, rod speed and rod force.
+pub(super) const LOADED: usize = 3;
+
+/// Instants and what the arm does there; reused, it allocates only to grow.
+#[derive(Debug, Clone)]
+pub(super) struct Mesh {
+    /// Instants, s, ascending; every segment has a multiple of `LANES`.
+    pub(super) t_s: Vec<f64>,
+    /// Instants of each segment.
+    pub(super) segment: Vec<std::ops::Range<usize>>,
+    pub(super) samples: Samples,
+    /// Shares of limits, `[joint * LOADED + row][instant]`, then pump flow, then tool speed.
+    pub(super) shares: Vec<f64>,
+    /// Integral of squared power over time by joint, W² s.
+    pub(super) squared_power: Vec<f64>,
+    /// Integral of the magnitude of power over time, all joints together, J.
+    pub(super) energy_j: f64,
+    weights_s: Vec<f64>,
+    lanes: Lanes,
+}
+
+/// One group of instants.
+#[derive(Debug, Clone)]
+struct Lanes {
+    dynamics: Workspace<LANES>,
+    /// Position, speed, acceleration, each by joint.
+    state: [Vec<[f64; LANES]>; 3],
+    torque_n_m: Vec<[f64; LANES]>,
+    squared_power: Vec<[f64; LANES]>,
+    power: [f64; LANES],
+}
+
+impl Mesh {
+    pub(super) fn new(setup: &Setup) -> Self {
+        let joints = setup.joint_count();
+        let zeros = || vec![[0.0; LANES]; joints];
+        Self {
+            t_s: Vec::new(),
+            segment: Vec::new(),
+            samples: Samples::default(),
+            shares: Vec::new(),
+            squared_power: vec![0.0; joints],
+            energy_j: 0.0,
+            weights_s: Vec::new(),
+            lanes: Lanes {
+                dynamics: Workspace::new(&setup.arm.chain),
+                state: [zeros(), zeros(), zeros()],
+                torque_n_m: zeros(),
+                squared_power: zeros(),
+                power: [0.0; LANES],
+            },
+        }
+    }
+
+    /// Looks at the nodes of eight-point quadrature on every piece.
+    pub(super) fn integrate(&mut self, setup: &Setup, motion: &Motion) {
+        self.t_s.clear();
+        self.weights_s.clear();
+        self.segment.clear();
+        for segment in motion.segments() {
+            let first = self.t_s.len();
+            segment.spline.quadrature(Gauss::Eight, &mut self.t_s, &mut self.weights_s);
+            for t in &mut self.t_s[first..] {
+                *t += segment.start_s;
+            }
+            self.segment.push(first..self.t_s.len());
+        }
+        self.fill(setup, motion);
+    }
+
+    /// Looks at `pieces * LANES` even steps of every segment, ends included; integrals are void.
+    pub(super) fn scan(&mut self, setup: &Setup, motion: &Motion, pieces: usize) {
+        self.t_s.clear();
+        self.segment.clear();
+        for segment in motion.segments() {
+            let (first, count) = (self.t_s.len(), pieces * LANES);
+            let step_s = segment.spline.duration_s() / (count - 1) as f64;
+            self.t_s.extend((0..count).map(|i| segment.start_s + step_s * i as f64));
+            self.segment.push(first..self.t_s.len());
+        }
+        self.weights_s.clear();
+        self.weights_s.resize(self.t_s.len(), 0.0);
+        self.fill(setup, motion);
+    }
+
+    /// Looks at one group of instants within a segment; integrals are void.
+    pub(super) fn look(&mut self, setup: &Setup, motion: &Motion, segment: usize, t_s: [f64; LANES]) {
+        self.t_s.clear();
+        self.t_s.extend(t_s);
+        self.segment.clear();
+        self.segment.resize(segment, 0..0);
+        self.segment.push(0..LANES);
+        self.weights_s.clear();
+        self.weights_s.resize(LANES, 0.0);
+        self.fill(setup, motion);
+    }
+
+    /// One row of shares, `[instant]`.
+    pub(super) fn row(&self, row: usize) -> &[f64] {
+        let count = self.t_s.len();
+        &self.shares[row * count..][..count]
+    }
+
+    /// The segment that an instant belongs to.
+    pub(super) fn segment_of(&self, instant: usize) -> usize {
+        self.segment.iter().position(|range| range.contains(&instant)).unwrap_or(0)
+    }
+
+    /// Torque of a joint at the first of the instants looked at last, N m.
+    pub(super) fn torque_n_m(&self, joint: usize) -> f64 {
+        self.lanes.torque_n_m[joint][0]
+    }
+
+    fn fill(&mut self, setup: &Setup, motion: &Motion) {
+        let (joints, count) = (setup.joint_count(), self.t_s.len());
+        // A rest is never asked for, but its bounds are: a share of a step inside the segment decides.
+        motion.sample(&self.t_s, Quantity::Jerk, &mut self.samples);
+        self.shares.resize((joints * LOADED + 2) * count, 0.0);
+        self.lanes.squared_power.fill([0.0; LANES]);
+        self.lanes.power.fill(0.0);
+        for (range, load) in self.segment.iter().zip(&setup.loads) {
+            let task = Task {
+                chain: &setup.arm.chain,
+                load,
+                cylinders: setup.arm.hydraulics.cylinders(),
+                limits: &setup.limits,
+                pump_flow_m3_s: setup.arm.hydraulics.pump_flow_m3_s(),
+                range: range.clone(),
+            };
+            dispatched(&task, &self.samples, &self.weights_s, &mut self.lanes, &mut self.shares);
+        }
+        for (sum, lanes) in self.squared_power.iter_mut().zip(&self.lanes.squared_power) {
+            *sum = lanes.iter().sum();
+        }
+        self.energy_j = self.lanes.power.iter().sum();
+        if setup.tool_speed_m_s.is_finite() {
+            self.tool_speed(setup);
+        }
+    }
+
+    fn tool_speed(&mut self, setup: &Setup) {
+        let (joints, count) = (setup.joint_count(), self.t_s.len());
+        let mut state = [vec![0.0; joints], vec![0.0; joints]];
+        for i in 0..count {
+            for (quantity, values) in [Quantity::Position, Quantity::Velocity].iter().zip(&mut state) {
+                for (joint, value) in values.iter_mut().enumerate() {
+                    *value = self.samples.of(*quantity, joint)[i];
+                }
+            }
+            let speed_m_s = setup.arm.chain.tool_speed_m_s(&state[0], &state[1]);
+            self.shares[(joints * LOADED + 1) * count + i] = speed_m_s / setup.tool_speed_m_s;
+        }
+    }
+}
+
+/// What one segment is judged by.
+struct Task<'a> {
+    chain: &'a Chain,
+    load: &'a Load,
+    cylinders: &'a [Option<Cylinder>],
+    limits: &'a [JointLimits],
+    pump_flow_m3_s: f64,
+    range: std::ops::Range<usize>,
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "x86_64+sse4.1"))]
+fn dispatched(task: &Task<'_>, samples: &Samples, weights_s: &[f64], lanes: &mut Lanes, shares: &mut [f64]) {
+    let (joints, count) = (task.limits.len(), weights_s.len());
+    let motion = [Quantity::Position, Quantity::Velocity, Quantity::Acceleration];
+    let mut first = task.range.start;
+    while first + LANES <= task.range.end {
+        for (quantity, to) in motion.iter().zip(&mut lanes.state) {
+            for (to, from) in to.iter_mut().zip(samples.all(*quantity).chunks_exact(count)) {
+                to.copy_from_slice(&from[first..first + LANES]);
+            }
+        }
+        let [position_rad, speed_rad_s, acceleration_rad_s2] = &lanes.state;
+        let state = ArmMotion { position_rad, speed_rad_s, acceleration_rad_s2 };
+        inverse_dynamics(task.chain, task.load, state, &mut lanes.dynamics, &mut lanes.torque_n_m);
+        let mut weights = [0.0; LANES];
+        weights.copy_from_slice(&weights_s[first..first + LANES]);
+        let mut flow_m3_s = [0.0; LANES];
+        for (j, (sin, cos)) in lanes.dynamics.sin_cos().enumerate().take(joints) {
+            let (torque, speed, limit) = (&lanes.torque_n_m[j], &speed_rad_s[j], &task.limits[j]);
+            let mut rows = [[0.0; LANES]; LOADED];
+            for l in 0..LANES {
+                let power = speed[l] * torque[l];
+                lanes.squared_power[j][l] += weights[l] * power * power;
+                lanes.power[l] += weights[l] * power.abs();
+                rows[0][l] = torque[l].abs() / limit.torque_n_m;
+            }
+            if let Some(cylinder) = &task.cylinders[j] {
+                let [extend_m_s, retract_m_s] = limit.rod_speed_m_s;
+                for l in 0..LANES {
+                    let found = cylinder.actuation((sin[l], cos[l]), speed[l], torque[l]);
+                    let most = if found.rod_speed_m_s > 0.0 { extend_m_s } else { retract_m_s };
+                    flow_m3_s[l] += found.flow_m3_s;
+                    rows[1][l] = found.rod_speed_m_s.abs() / most;
+                    rows[2][l] = found.force_share;
+                }
+            }
+            for (row, values) in rows.iter().enumerate() {
+                shares[(j * LOADED + row) * count + first..][..LANES].copy_from_slice(values);
+            }
+        }
+        for (share, flow) in shares[joints * LOADED * count + first..].iter_mut().zip(flow_m3_s) {
+            *share = flow / task.pump_flow_m3_s;
+        }
+        first += LANES;
+    }
+}

@@ -1,0 +1,286 @@
+//! A task on its arm, checked and in the form that an evaluation needs.
+
+use nalgebra::{Matrix3, Rotation3, Translation3, Vector3};
+
+use super::PlanError;
+use crate::{
+    arm::{Arm, Inertia, Load, Pose},
+    spline::{Degree, Dwell, Ends, KeyPoints, Motion},
+    task::{Boundary, Place, Task},
+};
+
+/// Slack of a key point at the end of a joint's range, rad; files round angles.
+const SLACK_RAD: f64 = 1e-6;
+
+/// Limits of a joint: the tighter of task and arm, infinite where there are none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct JointLimits {
+    /// Lowest and highest angle, rad.
+    pub(super) range_rad: [f64; 2],
+    pub(super) speed_rad_s: f64,
+    pub(super) acceleration_rad_s2: f64,
+    pub(super) jerk_rad_s3: f64,
+    pub(super) torque_n_m: f64,
+    /// Rod speeds while extending and while retracting, m/s.
+    pub(super) rod_speed_m_s: [f64; 2],
+}
+
+/// A task on its arm. All joint arrays are in the arm's order, base first.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    pub(super) arm: Arm,
+    pub(super) limits: Vec<JointLimits>,
+    pub(super) tool_speed_m_s: f64,
+    /// A motion with the task's key points, dwells and ends; its times are arbitrary.
+    pub(super) template: Motion,
+    /// Dwell that precedes each interval, s, `[points - 1]`; zero for none.
+    pub(super) dwell_before_s: Vec<f64>,
+    /// What the last joint carries in each segment.
+    pub(super) loads: Vec<Load>,
+    /// Shortest and longest interval, s.
+    pub(super) interval_s: [f64; 2],
+    /// Payload by segment, kg.
+    payload_kg: Vec<f64>,
+}
+
+impl Setup {
+    /// Puts a task on its arm: joints in the arm's order, key points by inverse kinematics where
+    /// they are given by the tool, limits merged.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError`] if the joints differ, a key point cannot be reached or lies outside a joint's
+    /// range, an end is beyond a limit, or a mass is none.
+    pub fn new(task: &Task, arm: Arm) -> Result<Self, PlanError> {
+        let joints = arm.chain.joint_count();
+        let names: Vec<&str> = arm.chain.joints().iter().map(|joint| joint.name.as_str()).collect();
+        let order: Option<Vec<usize>> =
+            names.iter().map(|name| task.joints.iter().position(|own| own == name)).collect();
+        let order = order
+            .filter(|_| task.joints.len() == joints)
+            .ok_or_else(|| PlanError::JointsDiffer { task: task.joints.join(", "), arm: names.join(", ") })?;
+        let limits: Vec<JointLimits> =
+            order.iter().enumerate().map(|(j, &own)| merged(task, &arm, j, own)).collect();
+        let points = key_points(task, &arm, &order, &limits)?;
+        let ends = ends(task, &order);
+        check_ends(&ends, &limits, &names)?;
+        let dwells: Vec<Dwell> = task
+            .points
+            .iter()
+            .enumerate()
+            .filter_map(|(point, key)| Some(Dwell { point, length_s: key.dwell_s? }))
+            .collect();
+        let mut dwell_before_s = vec![0.0; task.points.len() - 1];
+        for dwell in &dwells {
+            if let Some(before) = dwell_before_s.get_mut(dwell.point) {
+                *before = dwell.length_s;
+            }
+        }
+        let nominal_s = (task.interval_s[0] * task.interval_s[1]).sqrt();
+        let degree = match task.degree {
+            5 => Degree::Quintic,
+            7 => Degree::Septic,
+            _ => Degree::Sextic,
+        };
+        let t_s = arrivals(&vec![nominal_s; dwell_before_s.len()], &dwell_before_s);
+        let template = Motion::new(degree, points, &ends, &dwells, &t_s)?;
+        let payload_kg: Vec<f64> =
+            template.segments().iter().map(|segment| payload_from(task, segment.first_point)).collect();
+        let loads = payload_kg.iter().map(|&mass| load(task, &arm, mass)).collect::<Result<_, _>>()?;
+        Ok(Self {
+            arm,
+            limits,
+            tool_speed_m_s: task.tool_speed_m_s,
+            template,
+            dwell_before_s,
+            loads,
+            interval_s: task.interval_s,
+            payload_kg,
+        })
+    }
+
+    /// The arm.
+    pub fn arm(&self) -> &Arm {
+        &self.arm
+    }
+
+    /// Number of joints.
+    pub fn joint_count(&self) -> usize {
+        self.limits.len()
+    }
+
+    /// Names of the joints, base first.
+    pub fn joint_names(&self) -> Vec<String> {
+        self.arm.chain.joints().iter().map(|joint| joint.name.clone()).collect()
+    }
+
+    /// Number of intervals between key points: the variables of a plan.
+    pub fn interval_count(&self) -> usize {
+        self.dwell_before_s.len()
+    }
+
+    /// Arrival at each key point, s, from the times of movement between them, s.
+    pub fn times_s(&self, interval_s: &[f64]) -> Vec<f64> {
+        arrivals(interval_s, &self.dwell_before_s)
+    }
+
+    /// Times of movement between the key points, s, from the arrivals, s.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError::Times`] for another number of times than key points; what the intervals must be
+    /// is checked where they become a motion.
+    pub fn intervals_s(&self, times_s: &[f64]) -> Result<Vec<f64>, PlanError> {
+        if times_s.len() != self.interval_count() + 1 {
+            return Err(PlanError::Times { found: times_s.len(), expected: self.interval_count() + 1 });
+        }
+        Ok(times_s
+            .windows(2)
+            .zip(&self.dwell_before_s)
+            .map(|(pair, dwell_s)| pair[1] - pair[0] - dwell_s)
+            .collect())
+    }
+
+    /// The motion with these arrivals, s.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError`] if there are more or fewer than key points, or they leave no time to move.
+    pub fn motion(&self, times_s: &[f64]) -> Result<Motion, PlanError> {
+        self.intervals_s(times_s)?;
+        let mut motion = self.template.clone();
+        motion.retime(times_s)?;
+        Ok(motion)
+    }
+
+    /// Payload from the start of each segment of the motion on, kg.
+    pub fn payload_kg(&self) -> &[f64] {
+        &self.payload_kg
+    }
+}
+
+fn arrivals(interval_s: &[f64], dwell_before_s: &[f64]) -> Vec<f64> {
+    let mut t_s = Vec::with_capacity(interval_s.len() + 1);
+    t_s.push(0.0);
+    let mut now_s = 0.0;
+    for (interval_s, dwell_s) in interval_s.iter().zip(dwell_before_s) {
+        now_s += dwell_s + interval_s;
+        t_s.push(now_s);
+    }
+    t_s
+}
+
+fn merged(task: &Task, arm: &Arm, joint: usize, own: usize) -> JointLimits {
+    let (task, limit) = (&task.limits[own], &arm.chain.joints()[joint].limit);
+    let [lower, upper] = task.range_rad.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+    let cylinder = arm.hydraulics.cylinders()[joint];
+    let rod_speed_m_s = cylinder.map_or([f64::INFINITY; 2], |cylinder| {
+        let (push_m2, pull_m2) = cylinder.areas_m2();
+        [push_m2, pull_m2].map(|area_m2| task.rod_speed_m_s.min(arm.hydraulics.pump_flow_m3_s() / area_m2))
+    });
+    JointLimits {
+        range_rad: [lower.max(limit.lower_rad), upper.min(limit.upper_rad)],
+        speed_rad_s: task.velocity_rad_s.min(limit.speed_rad_s),
+        acceleration_rad_s2: task.acceleration_rad_s2,
+        jerk_rad_s3: task.jerk_rad_s3,
+        torque_n_m: task.torque_n_m.min(limit.torque_nm),
+        rod_speed_m_s,
+    }
+}
+
+/// Key points in the arm's order; those given by the tool are solved near the one before.
+fn key_points(
+    task: &Task,
+    arm: &Arm,
+    order: &[usize],
+    limits: &[JointLimits],
+) -> Result<KeyPoints, PlanError> {
+    let middle = |limits: &JointLimits| {
+        let [low, high] = limits.range_rad;
+        if low.is_finite() && high.is_finite() { 0.5 * (low + high) } else { 0.0 }
+    };
+    let mut near: Vec<f64> = limits.iter().map(middle).collect();
+    let mut position_rad = Vec::with_capacity(task.points.len() * order.len());
+    for (point, key) in task.points.iter().enumerate() {
+        near = match &key.place {
+            Place::Joints(angles) => order.iter().map(|&own| angles[own]).collect(),
+            Place::Tool { x_m, z_m, pitch_rad } => {
+                let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), *pitch_rad);
+                let pose = Pose::from_parts(Translation3::new(*x_m, 0.0, *z_m), turn);
+                arm.chain
+                    .reach(&pose, &near)
+                    .map_err(|source| PlanError::Unreachable { point: point + 1, source })?
+            }
+        };
+        for (j, (&found_rad, limit)) in near.iter().zip(limits).enumerate() {
+            let [lowest_rad, highest_rad] = limit.range_rad;
+            if found_rad < lowest_rad - SLACK_RAD || found_rad > highest_rad + SLACK_RAD {
+                let joint = arm.chain.joints()[j].name.clone();
+                return Err(PlanError::PointOutside {
+                    point: point + 1,
+                    joint,
+                    found_rad,
+                    lowest_rad,
+                    highest_rad,
+                });
+            }
+        }
+        position_rad.extend_from_slice(&near);
+    }
+    Ok(KeyPoints::new(order.len(), position_rad)?)
+}
+
+fn ends(task: &Task, order: &[usize]) -> Ends {
+    let pick = |values: &[f64]| order.iter().map(|&own| values[own]).collect();
+    let of =
+        |end: &Boundary| (pick(&end.velocity_rad_s), pick(&end.acceleration_rad_s2), pick(&end.jerk_rad_s3));
+    let (start, end) = (of(&task.start), of(&task.end));
+    Ends {
+        start_velocity_rad_s: start.0,
+        start_acceleration_rad_s2: start.1,
+        start_jerk_rad_s3: start.2,
+        end_velocity_rad_s: end.0,
+        end_acceleration_rad_s2: end.1,
+        end_jerk_rad_s3: end.2,
+    }
+}
+
+fn check_ends(ends: &Ends, limits: &[JointLimits], names: &[&str]) -> Result<(), PlanError> {
+    type Quantity = (&'static str, fn(&JointLimits) -> f64);
+    let quantities: [Quantity; 3] = [
+        ("speed", |limit| limit.speed_rad_s),
+        ("acceleration", |limit| limit.acceleration_rad_s2),
+        ("jerk", |limit| limit.jerk_rad_s3),
+    ];
+    let start = [&ends.start_velocity_rad_s, &ends.start_acceleration_rad_s2, &ends.start_jerk_rad_s3];
+    let last = [&ends.end_velocity_rad_s, &ends.end_acceleration_rad_s2, &ends.end_jerk_rad_s3];
+    for (end, values) in [("start", start), ("end", last)] {
+        for ((quantity, of), values) in quantities.iter().zip(values) {
+            for ((value, limit), joint) in values.iter().zip(limits).zip(names) {
+                let share = value.abs() / of(limit);
+                if share > 1.0 {
+                    return Err(PlanError::EndOutside { end, joint: (*joint).to_owned(), quantity, share });
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Payload when the arm leaves a key point, kg.
+fn payload_from(task: &Task, point: usize) -> f64 {
+    let mut changes = task.points[..=point].iter().filter_map(|key| key.payload_kg);
+    changes.next_back().unwrap_or(task.payload_kg)
+}
+
+/// The payload as a box before the tool.
+fn load(task: &Task, arm: &Arm, payload_kg: f64) -> Result<Load, PlanError> {
+    let [x_m, y_m, z_m] = task.payload_size_m;
+    let twelfth = payload_kg / 12.0;
+    let (xx, yy, zz) = (x_m * x_m, y_m * y_m, z_m * z_m);
+    let tensor = Vector3::new(twelfth * (yy + zz), twelfth * (xx + zz), twelfth * (xx + yy));
+    let centre_m = Vector3::new(0.5 * x_m, 0.0, 0.0);
+    let payload = Inertia::new(payload_kg, centre_m, Matrix3::from_diagonal(&tensor))
+        .ok_or(PlanError::Payload { payload_kg })?;
+    Ok(arm.chain.load((payload_kg > 0.0).then_some(&payload)))
+}

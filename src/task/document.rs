@@ -1,0 +1,188 @@
+//! The task file as it is written: degrees and names, every quantity with its unit in its key.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+/// Values by joint.
+pub(super) type ByJoint = BTreeMap<String, f64>;
+
+/// A task: what an arm is to do.
+#[derive(Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(super) struct Document {
+    /// What people call it.
+    pub(super) title: String,
+    /// "sample" for the arm that comes with hydrotrace, or a URDF file, relative to this file.
+    #[cfg_attr(test, schemars(with = "String"))]
+    pub(super) arm: Spanned<String>,
+    /// File of the arm's cylinders and pump, relative to this file; without it the arm has none.
+    pub(super) hydraulics: Option<String>,
+    /// The link of the URDF that is the tool, where it has several ends.
+    pub(super) tool: Option<String>,
+    /// Names of the joints, each once.
+    #[cfg_attr(test, schemars(with = "Vec<String>"))]
+    pub(super) joints: Spanned<Vec<String>>,
+    /// Degree of the spline: 5, 6 (default) or 7.
+    #[cfg_attr(test, schemars(with = "Option<u8>", range(min = 5, max = 7)))]
+    pub(super) degree: Option<Spanned<u8>>,
+    /// Payload at the start, kg.
+    #[serde(default)]
+    pub(super) payload_kg: f64,
+    /// Size of the payload, m: a box that reaches from the tool's origin forward along its x axis;
+    /// a point unless given.
+    #[cfg_attr(test, schemars(with = "Option<[f64; 3]>"))]
+    pub(super) payload_size_m: Option<Spanned<[f64; 3]>>,
+    /// Shortest and longest time from one key point to the next, s, dwells excluded; 0.3 to 20 unless given.
+    #[cfg_attr(test, schemars(with = "Option<[f64; 2]>"))]
+    pub(super) interval_s: Option<Spanned<[f64; 2]>>,
+    /// Arrival at each key point, s: the plan is evaluated and not optimised.
+    #[cfg_attr(test, schemars(with = "Option<Vec<f64>>"))]
+    pub(super) times_s: Option<Spanned<Vec<f64>>>,
+    /// Key points, at least two.
+    #[cfg_attr(test, schemars(with = "Vec<Point>"))]
+    #[serde(rename = "point")]
+    pub(super) points: Vec<Spanned<Point>>,
+    /// State in which the plan starts; at rest unless given.
+    pub(super) start: Option<End>,
+    /// State in which the plan ends; at rest unless given.
+    pub(super) end: Option<End>,
+    /// Limits beside the arm's own.
+    #[serde(default)]
+    pub(super) limits: Limits,
+    /// Ceilings on the objectives.
+    #[serde(default)]
+    pub(super) objectives: Objectives,
+    /// How the objectives weigh against each other, each scaled by its range over the front.
+    #[cfg_attr(test, schemars(with = "Option<FileWeights>"))]
+    pub(super) weights: Option<Spanned<FileWeights>>,
+}
+
+/// A pose that the plan passes through; give `angles_deg` or `tool`.
+#[derive(Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(super) struct Point {
+    /// What people call it.
+    #[serde(default)]
+    pub(super) name: String,
+    /// Angle of every joint.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) angles_deg: Option<Spanned<ByJoint>>,
+    /// Where the tool is; the joints follow by inverse kinematics, near the key point before.
+    pub(super) tool: Option<Tool>,
+    /// How long the arm rests here, s.
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
+    pub(super) dwell_s: Option<Spanned<f64>>,
+    /// Payload from the end of the dwell on, kg.
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
+    pub(super) payload_kg: Option<Spanned<f64>>,
+}
+
+/// The tool in the arm's plane.
+#[derive(Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(super) struct Tool {
+    /// Forward of the base, m.
+    pub(super) x_m: f64,
+    /// Above the base, m.
+    pub(super) z_m: f64,
+    /// Pitch, positive from forward to down.
+    pub(super) pitch_deg: f64,
+}
+
+/// State at one end of the plan; joints left out are at rest.
+#[derive(Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(super) struct End {
+    /// Speed by joint.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) speed_deg_s: Option<Spanned<ByJoint>>,
+    /// Acceleration by joint.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) acceleration_deg_s2: Option<Spanned<ByJoint>>,
+    /// Jerk by joint; a quintic takes none.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) jerk_deg_s3: Option<Spanned<ByJoint>>,
+}
+
+/// Limits; joints left out have those of the arm only.
+#[derive(Deserialize, Default)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(super) struct Limits {
+    /// Lowest and highest angle by joint.
+    #[cfg_attr(test, schemars(with = "Option<BTreeMap<String, [f64; 2]>>"))]
+    pub(super) range_deg: Option<Spanned<BTreeMap<String, [f64; 2]>>>,
+    /// Speed by joint.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) speed_deg_s: Option<Spanned<ByJoint>>,
+    /// Acceleration by joint.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) acceleration_deg_s2: Option<Spanned<ByJoint>>,
+    /// Jerk by joint.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) jerk_deg_s3: Option<Spanned<ByJoint>>,
+    /// Torque by joint, N m.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) torque_n_m: Option<Spanned<ByJoint>>,
+    /// Speed of a cylinder's rod by joint, m/s.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) rod_speed_m_s: Option<Spanned<ByJoint>>,
+    /// Speed of the tool, m/s.
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
+    pub(super) tool_speed_m_s: Option<Spanned<f64>>,
+}
+
+/// Ceilings on the objectives.
+#[derive(Deserialize, Default)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+#[expect(clippy::struct_field_names, reason = "the keys of the file")]
+pub(super) struct Objectives {
+    /// Total time, s.
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
+    pub(super) max_duration_s: Option<Spanned<f64>>,
+    /// Sum over joints of the root mean square jerk.
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
+    pub(super) max_rms_jerk_deg_s3: Option<Spanned<f64>>,
+    /// Sum over joints of the root mean square power, W.
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
+    pub(super) max_rms_power_w: Option<Spanned<f64>>,
+}
+
+/// Weights, not negative, not all zero.
+#[derive(Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileWeights {
+    /// Of the total time.
+    pub(super) duration: f64,
+    /// Of the root mean square jerk.
+    pub(super) rms_jerk: f64,
+    /// Of the root mean square power.
+    pub(super) rms_power: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_task_file() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/schemas/task.schema.json");
+        let settings = schemars::generate::SchemaSettings::draft2020_12();
+        let mut schema = settings.into_generator().into_root_schema_for::<Document>();
+        schema.insert("title".to_owned(), "hydrotrace task".into());
+        let text = serde_json::to_string_pretty(&schema).unwrap() + "\n";
+        if std::env::var_os("UPDATE_SCHEMA").is_some() {
+            std::fs::write(path, &text).unwrap();
+        }
+        let committed = std::fs::read_to_string(path).unwrap_or_default();
+        assert!(committed == text, "run `UPDATE_SCHEMA=1 cargo test the_committed_schema`");
+    }
+}
