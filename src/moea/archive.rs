@@ -2,6 +2,9 @@
 
 use super::{Population, sorting::dominates};
 
+/// Members that room is made for at once.
+const ROOM: usize = 1 << 12;
+
 /// Non-dominated feasible solutions of everything offered to it, at most `capacity` of them.
 ///
 /// When it overflows, solutions whose nearest neighbour in normalised objectives is closest go
@@ -16,10 +19,12 @@ pub struct Archive {
 impl Archive {
     /// An empty archive.
     pub fn new(variables: usize, objectives: usize, capacity: usize) -> Self {
-        let capacity = capacity.max(objectives);
+        // Twice as many are held between two clearings.
+        let capacity = capacity.clamp(objectives, usize::MAX / 2);
+        let room = capacity.min(ROOM) * 2;
         Self {
-            kept: Population::with_capacity(variables, objectives, 2 * capacity),
-            spare: Population::with_capacity(variables, objectives, 2 * capacity),
+            kept: Population::with_capacity(variables, objectives, room),
+            spare: Population::with_capacity(variables, objectives, room),
             capacity,
         }
     }

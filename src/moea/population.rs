@@ -90,6 +90,17 @@ impl Population {
         Self { variables: 0, objectives, x: Vec::new(), f, violation: vec![0.0; n], fingerprint: vec![0; n] }
     }
 
+    /// Adds a member that has been evaluated: `x` `[variables]`, `f` `[objectives]`. One of another
+    /// shape is left out.
+    pub fn push(&mut self, x: &[f64], f: &[f64], violation: f64) {
+        if x.len() == self.variables && f.len() == self.objectives {
+            self.x.extend_from_slice(x);
+            self.f.extend_from_slice(f);
+            self.violation.push(violation);
+            self.fingerprint.push(fingerprint(x));
+        }
+    }
+
     pub(super) fn clear(&mut self) {
         self.x.clear();
         self.f.clear();

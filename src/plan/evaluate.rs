@@ -5,7 +5,10 @@ use super::{
     limit::Limit,
     mesh::{LOADED, Mesh},
 };
-use crate::spline::{Motion, Quantity};
+use crate::{
+    arm::LANES,
+    spline::{Motion, Quantity},
+};
 
 /// What a plan costs; all three are minimised.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +33,17 @@ impl Objectives {
     }
 }
 
+/// A timing and what it is worth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Timing {
+    /// Time of movement from each key point to the next, s.
+    pub interval_s: Vec<f64>,
+    /// What it costs.
+    pub objectives: Objectives,
+    /// Sum of what it exceeds its limits by, as [`Evaluator::violation`]; 0 if all hold.
+    pub violation: f64,
+}
+
 /// Quantities that are splines, in the order of a joint's rows.
 const SPLINES: [Quantity; 4] = Quantity::ALL;
 
@@ -51,6 +65,9 @@ pub struct Evaluator {
     rms_jerk: Vec<f64>,
     /// Share of each limit, by row.
     pub(super) shares: Vec<f64>,
+    /// The same on each piece and of each sign, `[row][piece][sign]`: smooth in the times where the
+    /// largest of all has a kink.
+    pub(super) peaks: Vec<f64>,
 }
 
 impl Evaluator {
@@ -62,6 +79,7 @@ impl Evaluator {
             t_s: Vec::new(),
             rms_jerk: vec![0.0; setup.joint_count()],
             shares: vec![0.0; Limit::rows(setup.joint_count())],
+            peaks: Vec::new(),
         }
     }
 
@@ -114,35 +132,78 @@ impl Evaluator {
 
     /// Shares of all limits.
     fn weigh(&mut self, setup: &Setup) {
-        let width = Limit::OF_JOINT.len();
-        for (joint, limit) in setup.limits.iter().enumerate() {
-            let rows = &mut self.shares[joint * width..][..width];
-            let [low, high] = limit.range_rad;
-            let bounded = low.is_finite() && high.is_finite();
-            let (middle, half) =
-                if bounded { (0.5 * (low + high), 0.5 * (high - low)) } else { (0.0, f64::INFINITY) };
-            let each = [
-                (middle, half),
-                (0.0, limit.speed_rad_s),
-                (0.0, limit.acceleration_rad_s2),
-                (0.0, limit.jerk_rad_s3),
-            ];
-            for ((quantity, (middle, allowed)), row) in SPLINES.into_iter().zip(each).zip(&mut *rows) {
-                let values = self.mesh.samples.of(quantity, joint);
-                let (node, coarse) = peak(values.iter().map(|value| (value - middle).abs()));
-                let coarse = coarse / allowed;
-                *row = blend(coarse, || {
-                    let exact = near(&self.motion, &self.mesh, joint, quantity, node, values[node] >= middle);
-                    (exact - middle).abs() / allowed
+        let (width, joints) = (Limit::OF_JOINT.len(), setup.limits.len());
+        let pieces = self.mesh.t_s.len() / LANES;
+        self.peaks.resize(self.shares.len() * pieces * 2, 0.0);
+        let mut peaks = std::mem::take(&mut self.peaks);
+        for (row, peaks) in peaks.chunks_exact_mut(2 * pieces.max(1)).enumerate() {
+            let (joint, k) = (row / width, row % width);
+            match SPLINES.get(k).filter(|_| joint < joints) {
+                Some(&quantity) => self.of_spline(setup, joint, quantity, peaks),
+                None if joint < joints => self.sampled(joint * LOADED + k - SPLINES.len(), peaks),
+                None => self.sampled(joints * LOADED + row - joints * width, peaks),
+            }
+            self.shares[row] = peaks.iter().fold(0.0, |most, peak| most.max(*peak));
+        }
+        self.peaks = peaks;
+    }
+
+    /// Shares of a limit on a spline or its derivative, by piece.
+    fn of_spline(&self, setup: &Setup, joint: usize, quantity: Quantity, peaks: &mut [f64]) {
+        let limit = &setup.limits[joint];
+        let [low, high] = limit.range_rad;
+        let (middle, allowed) = match quantity {
+            Quantity::Position if low.is_finite() && high.is_finite() => {
+                (0.5 * (low + high), 0.5 * (high - low))
+            }
+            Quantity::Position => (0.0, f64::INFINITY),
+            Quantity::Velocity => (0.0, limit.speed_rad_s),
+            Quantity::Acceleration => (0.0, limit.acceleration_rad_s2),
+            Quantity::Jerk => (0.0, limit.jerk_rad_s3),
+        };
+        let values = self.mesh.samples.of(quantity, joint);
+        for ((piece, nodes), shares) in values.chunks_exact(LANES).enumerate().zip(peaks.chunks_exact_mut(2))
+        {
+            for (sign, share) in [1.0, -1.0].into_iter().zip(shares) {
+                let (node, coarse) = peak(nodes.iter().map(|value| sign * (value - middle)));
+                *share = blend(coarse / allowed, || {
+                    let exact = self.near(joint, quantity, piece * LANES + node, sign > 0.0);
+                    sign * (exact - middle) / allowed
                 });
             }
-            for (k, row) in rows[SPLINES.len()..].iter_mut().enumerate() {
-                *row = sampled(&self.mesh, joint * LOADED + k);
-            }
         }
-        let joints = setup.limits.len();
-        for (k, row) in self.shares[joints * width..].iter_mut().enumerate() {
-            *row = sampled(&self.mesh, joints * LOADED + k);
+    }
+
+    /// The greatest (or least) value between the neighbours of a node.
+    fn near(&self, joint: usize, quantity: Quantity, node: usize, greatest: bool) -> f64 {
+        let mesh = &self.mesh;
+        let index = mesh.segment_of(node);
+        let (range, segment) = (&mesh.segment[index], &self.motion.segments()[index]);
+        let (start_s, end_s) = (segment.start_s, segment.start_s + segment.spline.duration_s());
+        let from_s = if node > range.start { mesh.t_s[node - 1] } else { start_s };
+        let to_s = if node + 1 < range.end { mesh.t_s[node + 1] } else { end_s };
+        let found = segment.spline.extrema_within(joint, quantity, (from_s - start_s, to_s - start_s));
+        if greatest { found.greatest.value } else { found.least.value }
+    }
+
+    /// Shares of a sampled row by piece: by the parabola through the largest and its neighbours.
+    fn sampled(&self, row: usize, peaks: &mut [f64]) {
+        let (mesh, values) = (&self.mesh, self.mesh.row(row));
+        for ((piece, nodes), shares) in values.chunks_exact(LANES).enumerate().zip(peaks.chunks_exact_mut(2))
+        {
+            let (node, coarse) = peak(nodes.iter().copied());
+            shares[0] = blend(coarse, || {
+                let node = piece * LANES + node;
+                let range = &mesh.segment[mesh.segment_of(node)];
+                if node == range.start || node + 1 >= range.end {
+                    return coarse;
+                }
+                vertex([-1, 0, 1].map(|k: isize| {
+                    let i = node.saturating_add_signed(k);
+                    (mesh.t_s[i], values[i])
+                }))
+                .1
+            });
         }
     }
 }
@@ -158,39 +219,11 @@ fn blend(coarse: f64, exact: impl FnOnce() -> f64) -> f64 {
     if weight > 0.0 { coarse + weight.min(1.0) * (exact() - coarse).max(0.0) } else { coarse }
 }
 
-/// The greatest (or least) value between the neighbours of a node.
-fn near(motion: &Motion, mesh: &Mesh, joint: usize, quantity: Quantity, node: usize, greatest: bool) -> f64 {
-    let index = mesh.segment_of(node);
-    let (range, segment) = (&mesh.segment[index], &motion.segments()[index]);
-    let (start_s, end_s) = (segment.start_s, segment.start_s + segment.spline.duration_s());
-    let from_s = if node > range.start { mesh.t_s[node - 1] } else { start_s };
-    let to_s = if node + 1 < range.end { mesh.t_s[node + 1] } else { end_s };
-    let found = segment.spline.extrema_within(joint, quantity, (from_s - start_s, to_s - start_s));
-    if greatest { found.greatest.value } else { found.least.value }
-}
-
-/// Largest share of a sampled row, by the parabola through the largest and its neighbours.
-fn sampled(mesh: &Mesh, row: usize) -> f64 {
-    let values = mesh.row(row);
-    let (node, coarse) = peak(values.iter().copied());
-    blend(coarse, || {
-        let range = &mesh.segment[mesh.segment_of(node)];
-        if node == range.start || node + 1 >= range.end {
-            return coarse;
-        }
-        vertex([-1, 0, 1].map(|k: isize| {
-            let i = node.saturating_add_signed(k);
-            (mesh.t_s[i], values[i])
-        }))
-        .1
-    })
-}
-
 /// Vertex of the parabola through three points whose middle one is highest.
 pub(super) fn vertex([(t0, a), (t1, b), (t2, c)]: [(f64, f64); 3]) -> (f64, f64) {
     let (left, right) = ((b - a) / (t1 - t0), (c - b) / (t2 - t1));
     let bend = (right - left) / (t2 - t0);
-    if bend >= 0.0 {
+    if bend >= 0.0 || left < 0.0 || right > 0.0 {
         return (t1, b);
     }
     // Slope at the middle point, from Newton's form.

@@ -46,16 +46,6 @@ impl Limit {
     pub(super) fn rows(joints: usize) -> usize {
         joints * Self::OF_JOINT.len() + Self::OF_ARM.len()
     }
-
-    /// What a row is about: a limit, and the joint if it is a joint's.
-    pub(super) fn of_row(row: usize, joints: usize) -> (Self, Option<usize>) {
-        let width = Self::OF_JOINT.len();
-        match row.checked_sub(joints * width) {
-            None => (Self::OF_JOINT[row % width], Some(row / width)),
-            Some(0) => (Self::PumpFlow, None),
-            Some(_) => (Self::ToolSpeed, None),
-        }
-    }
 }
 
 /// Where a limit comes nearest to being broken.

@@ -3,14 +3,25 @@
 //! A [`Setup`] is a task on its arm. An [`Evaluator`] gives the objectives of one timing and how
 //! near it comes to every limit; [`Setup::margins`] says the same exactly, with the place.
 
+mod choose;
+mod descend;
 mod error;
 mod evaluate;
+mod front;
 mod limit;
 mod margin;
 mod mesh;
+mod polish;
+mod problem;
+mod quadratic;
+mod search;
+mod seed;
 mod setup;
+mod tangent;
 
+pub use choose::{Choice, NoChoice, Rule, choose, ends};
 pub use error::PlanError;
-pub use evaluate::{Evaluator, Objectives};
+pub use evaluate::{Evaluator, Objectives, Timing};
 pub use limit::{Limit, Margin};
+pub use search::{Found, Phase, Progress, Search, search};
 pub use setup::Setup;

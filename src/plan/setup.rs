@@ -141,6 +141,17 @@ impl Setup {
             .collect())
     }
 
+    /// Duration of a motion with all intervals alike, s, dwells included.
+    pub(super) fn even_s(&self, interval_s: f64) -> f64 {
+        self.resting_s() + interval_s * self.interval_count() as f64
+    }
+
+    /// Sum of the dwells, s.
+    pub(super) fn resting_s(&self) -> f64 {
+        let last_s = self.template.dwell_s(self.interval_count()).unwrap_or(0.0);
+        self.dwell_before_s.iter().sum::<f64>() + last_s
+    }
+
     /// The motion with these arrivals, s.
     ///
     /// # Errors

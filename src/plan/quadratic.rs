@@ -1,0 +1,97 @@
+//! The quadratic programme of one step, solved by Clarabel.
+
+use clarabel::{
+    algebra::CscMatrix,
+    solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT},
+};
+
+/// Price of breaking the linearised constraints, against weights of the merit that sum to one.
+pub(super) const PRICE: f64 = 20.0;
+
+/// A step d that lessens 1/2 d'Bd + g'd + PRICE * t within a box, with every `c + J d <= t` and
+/// t >= 0.
+#[derive(Clone, Copy)]
+pub(super) struct Step<'a> {
+    /// B, positive definite, `[n][n]`.
+    pub(super) hessian: &'a [f64],
+    /// g, `[n]`.
+    pub(super) gradient: &'a [f64],
+    /// c, `[m]`.
+    pub(super) constraint: &'a [f64],
+    /// J, `[m][n]`.
+    pub(super) jacobian: &'a [f64],
+    /// Least and largest of each element of d; the least below the largest.
+    pub(super) bounds: &'a [(f64, f64)],
+}
+
+/// What a step is.
+pub(super) struct Solution {
+    /// d, `[n]`.
+    pub(super) step: Vec<f64>,
+    /// Multipliers of the constraints, not negative, `[m]`.
+    pub(super) multiplier: Vec<f64>,
+    /// How far the linearised constraints remain broken, t.
+    pub(super) broken: f64,
+}
+
+impl Step<'_> {
+    /// `None` if the solver finds no step.
+    pub(super) fn solve(&self) -> Option<Solution> {
+        let (n, m) = (self.gradient.len(), self.constraint.len());
+        // Column j of P holds rows 0..=j of B; t has a little curvature of its own.
+        let mut p = Columns::default();
+        for j in 0..n {
+            p.column((0..=j).map(|i| (i, self.hessian[i * n + j])));
+        }
+        p.column(std::iter::once((n, 1e-6)));
+        let mut a = Columns::default();
+        for j in 0..n {
+            let rows = (0..m).map(|i| (i, self.jacobian[i * n + j]));
+            a.column(rows.chain([(m + j, 1.0), (m + n + j, -1.0)]));
+        }
+        a.column((0..m).map(|i| (i, -1.0)).chain([(m + 2 * n, -1.0)]));
+        let rows = m + 2 * n + 1;
+        let b: Vec<f64> = (self.constraint.iter().map(|c| -c))
+            .chain(self.bounds.iter().map(|bound| bound.1))
+            .chain(self.bounds.iter().map(|bound| -bound.0))
+            .chain([0.0])
+            .collect();
+        let q: Vec<f64> = self.gradient.iter().copied().chain([PRICE]).collect();
+        let settings = DefaultSettingsBuilder::default().verbose(false).build().ok()?;
+        let cones = [SupportedConeT::NonnegativeConeT(rows)];
+        let (p, a) = (p.matrix(n + 1), a.matrix(rows));
+        let mut solver = DefaultSolver::new(&p, &q, &a, &b, &cones, settings).ok()?;
+        solver.solve();
+        let found = &solver.solution;
+        let solved = matches!(found.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
+        (solved && found.x.iter().all(|x| x.is_finite())).then(|| Solution {
+            step: found.x[..n].iter().zip(self.bounds).map(|(d, (low, high))| d.clamp(*low, *high)).collect(),
+            multiplier: found.z[..m].to_vec(),
+            broken: found.x[n].max(0.0),
+        })
+    }
+}
+
+/// A sparse matrix in the making, column by column.
+#[derive(Default)]
+struct Columns {
+    start: Vec<usize>,
+    row: Vec<usize>,
+    value: Vec<f64>,
+}
+
+impl Columns {
+    fn column(&mut self, entries: impl Iterator<Item = (usize, f64)>) {
+        self.start.push(self.row.len());
+        for (row, value) in entries {
+            self.row.push(row);
+            self.value.push(value);
+        }
+    }
+
+    fn matrix(mut self, rows: usize) -> CscMatrix<f64> {
+        let columns = self.start.len();
+        self.start.push(self.row.len());
+        CscMatrix::new(rows, columns, self.start, self.row, self.value)
+    }
+}

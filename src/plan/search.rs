@@ -1,0 +1,178 @@
+//! The search for the front: seeds, evolution, and a descent from every plan found.
+
+use std::ops::ControlFlow;
+
+use super::{
+    PlanError, Setup, Timing,
+    front::{least_broken, population, thinned, timing, timings},
+    polish::{self, beats},
+    seed::{Seeds, seeds},
+};
+use crate::moea::{self, Algorithm, Archive, Budget, Population};
+
+/// How to search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    /// The evolutionary algorithm; NSGA-III-FO by default.
+    pub algorithm: Algorithm,
+    /// Whether to start from descents and to end with them, or from random plans as the paper does.
+    pub seeded: bool,
+    /// Length of the search; evaluations count those of the descents too, generations are of the
+    /// evolution alone. 20,000 evaluations by default.
+    pub budget: Budget,
+    /// Members of the population; by default as the directions ask.
+    pub population: Option<usize>,
+    /// Seed of every random number drawn.
+    pub seed: u64,
+    /// Plans on the front at most.
+    pub front: usize,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self {
+            algorithm: Algorithm::NSGA3_FO,
+            seeded: true,
+            budget: Budget::Evaluations(20_000),
+            population: None,
+            seed: 1,
+            front: 600,
+        }
+    }
+}
+
+/// Where a search is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Descents to the seeds.
+    Start,
+    /// The evolutionary algorithm.
+    Evolution,
+    /// Descents from the plans found.
+    Polish,
+}
+
+/// What an observer sees.
+#[derive(Debug, Clone, Copy)]
+pub struct Progress<'a> {
+    /// What is going on.
+    pub phase: Phase,
+    /// Evaluations so far.
+    pub evaluations: u64,
+    /// Generations of the evolution so far.
+    pub generation: u64,
+    /// The best so far; feasible members dominated by none, and others.
+    pub population: &'a Population,
+}
+
+/// What a search found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// Feasible plans of which none is better than another in everything, fastest first.
+    pub front: Vec<Timing>,
+    /// The plan that breaks limits least, where no plan keeps them all.
+    pub nearest: Option<Timing>,
+    /// Evaluations made.
+    pub evaluations: u64,
+    /// Generations of the evolution, the first population included.
+    pub generations: u64,
+}
+
+/// Hundredths of the budget for descents from the plans found.
+const POLISH: u64 = 45;
+/// Evaluations that seeds and polish are measured by where the budget is not in evaluations.
+const NOMINAL: u64 = 20_000;
+/// Members of a population for three objectives unless another number is asked for.
+const DIRECTIONS: usize = 92;
+
+/// Searches the front of a setup.
+///
+/// The observer sees the start, every generation and the end; it may end the search by
+/// [`ControlFlow::Break`]. Equal settings give equal plans on any number of cores.
+///
+/// # Errors
+///
+/// [`PlanError::Search`] for settings that no search has.
+pub fn search(
+    setup: &Setup,
+    search: &Search,
+    mut observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Found, PlanError> {
+    let budget = match search.budget {
+        Budget::Evaluations(evaluations) => evaluations,
+        Budget::Generations(_) | Budget::Observer => NOMINAL,
+    };
+    let mut seeds = if search.seeded { seeds(setup, budget) } else { Seeds::default() };
+    let used = seeds.evaluations;
+    // The directions' number of seeds, evenly over the front; if there is none, what is nearest.
+    let mut initial = thinned(setup, seeds.all(), search.population.unwrap_or(DIRECTIONS));
+    if initial.is_empty() {
+        initial.extend(least_broken(seeds.all().cloned()));
+    }
+    let _ = observer(&Progress {
+        phase: Phase::Start,
+        evaluations: used,
+        generation: 0,
+        population: &population(setup, seeds.all()),
+    });
+    let polish = if search.seeded { budget / 100 * POLISH } else { 0 };
+    let settings = moea::Settings {
+        algorithm: search.algorithm,
+        population: search.population,
+        budget: match search.budget {
+            Budget::Evaluations(all) => Budget::Evaluations(all.saturating_sub(used + polish)),
+            other => other,
+        },
+        seed: search.seed,
+        archive: search.front.max(3),
+        initial: initial.iter().map(|timing| timing.interval_s.clone()).collect(),
+        ..moea::Settings::default()
+    };
+    let outcome = moea::optimise(setup, &settings, |progress| {
+        observer(&Progress {
+            phase: Phase::Evolution,
+            evaluations: used + progress.evaluations,
+            generation: progress.generation,
+            population: progress.archive.map_or(progress.population, Archive::population),
+        })
+    })?;
+    let mut evaluations = used + outcome.evaluations;
+    let evolved = timings(outcome.archive.as_ref().unwrap_or(&outcome.population));
+    let mut front = if search.seeded {
+        // Only what the seeds do not beat is worth a descent.
+        let mut chosen = thinned(setup, seeds.all().chain(&evolved), usize::MAX);
+        chosen.retain(|timing| !seeds.exact.contains(timing));
+        let polished = polish::polish(setup, &chosen, polish);
+        evaluations += polished.evaluations;
+        seeds.exact.extend(polished.exact);
+        filled(setup, &seeds.exact, [seeds.rough, polished.rough], search.front)
+    } else {
+        thinned(setup, &evolved, search.front)
+    };
+    front.sort_by(|a, b| a.objectives.duration_s.total_cmp(&b.objectives.duration_s));
+    let _ = observer(&Progress {
+        phase: Phase::Polish,
+        evaluations,
+        generation: outcome.generations,
+        population: &population(setup, &front),
+    });
+    let nearest = front.is_empty().then(|| {
+        let members = (0..outcome.population.len()).map(|i| timing(&outcome.population, i));
+        least_broken(members.chain(initial))
+    });
+    Ok(Found { front, nearest: nearest.flatten(), evaluations, generations: outcome.generations })
+}
+
+/// The front of the plans that descents have ended at. Others fill it up where they look as good, the
+/// first before the second, as long as there is room.
+fn filled(setup: &Setup, exact: &[Timing], others: [Vec<Timing>; 2], most: usize) -> Vec<Timing> {
+    let mut front = thinned(setup, exact, most);
+    for rough in others {
+        if front.len() < most - most / 10 {
+            let beaten = |timing: &Timing| exact.iter().any(|exact| beats(setup, exact, timing));
+            front.extend(rough.into_iter().filter(|timing| !beaten(timing)));
+            front = thinned(setup, &front, most);
+        }
+    }
+    front
+}

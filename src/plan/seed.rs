@@ -1,0 +1,197 @@
+//! Where a search starts: the fastest plan, and for a row of durations the smoothest plan, the one
+//! of least power, and those between.
+//!
+//! At a given duration the front is a short curve from the smoothest plan to that of least power;
+//! while no limit binds, its shapes hardly depend on the duration. So a few descents and what lies
+//! between them cover the front.
+
+use rayon::prelude::*;
+
+use super::{
+    Evaluator, Setup, Timing,
+    descend::{COARSE, Descended, FAR_OFF, FINE, FREE, Goal, Merit, NEARLY, descend},
+};
+/// Weight of power against jerk, both as logarithms, on each curve. Power moves only near 1.
+const CURVES: [f64; 5] = [0.0, 0.5, 0.75, 0.92, 1.0];
+/// Durations as multiples of the fastest, where limits bind and shapes change.
+const NEAR_FASTEST: [f64; 6] = [1.03, 1.08, 1.16, 1.3, 1.5, 1.9];
+/// Durations as shares of the slowest, where intervals reach their longest.
+const NEAR_SLOWEST: [f64; 6] = [0.5, 0.61, 0.72, 0.82, 0.91, 0.98];
+/// Hundredths of the budget: for the fastest plan, for the curves, for the smoothest plan
+/// and that of least power, for what lies between.
+const FASTEST: u64 = 8;
+const DESCENTS: u64 = 22;
+const ENDS: u64 = 3;
+const BETWEEN: u64 = 16;
+/// More than this between the curves fill the front no better.
+const MOST_BETWEEN: u64 = 800;
+
+/// Plans to start from, feasible or not, and what they cost.
+#[derive(Default)]
+pub(super) struct Seeds {
+    /// Where descents ended with no more to gain.
+    pub(super) exact: Vec<Timing>,
+    /// Where others ended, and what lies between.
+    pub(super) rough: Vec<Timing>,
+    pub(super) evaluations: u64,
+}
+
+/// Seeds for a search of `budget` evaluations, of which they take about a third.
+pub(super) fn seeds(setup: &Setup, budget: u64) -> Seeds {
+    let share = |hundredths: u64| budget / 100 * hundredths;
+    let mut seeds = Seeds::default();
+    let mut evaluator = Evaluator::new(setup);
+    let Some(fastest) = seeds.fastest(setup, &mut evaluator, share(FASTEST)) else { return seeds };
+    let durations_s = durations(setup, &fastest);
+    let most = share(DESCENTS) / (CURVES.len() * durations_s.len()).max(1) as u64;
+    let curves: Vec<Vec<Descended>> =
+        CURVES.par_iter().map(|&power| curve(setup, &fastest, &durations_s, power, most)).collect();
+    let curves: Vec<Vec<Timing>> = curves
+        .into_iter()
+        .map(|curve| curve.into_iter().filter_map(|end| seeds.take(end)).collect())
+        .collect();
+    let ends = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().zip([curves.first(), curves.last()]);
+    for (weights, curve) in ends {
+        let Some(slowest) = curve.and_then(|curve| curve.last()) else { continue };
+        let goal = Goal {
+            merit: Merit::Logarithms(weights),
+            ceilings: FREE,
+            evaluations: share(ENDS) / 2,
+            trust: FAR_OFF,
+            enough: FINE,
+        };
+        let end = descend(setup, &mut evaluator, &slowest.interval_s, &goal);
+        seeds.take(end);
+    }
+    // All curves shrink to the fastest plan.
+    let whole = curves.into_iter().map(|curve| std::iter::once(fastest.clone()).chain(curve).collect());
+    seeds.fill(setup, &mut evaluator, &whole.collect::<Vec<_>>(), share(BETWEEN).min(MOST_BETWEEN));
+    seeds
+}
+
+impl Seeds {
+    /// All of them.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Timing> {
+        self.exact.iter().chain(&self.rough)
+    }
+
+    /// The fastest plan that two descents find.
+    fn fastest(&mut self, setup: &Setup, evaluator: &mut Evaluator, evaluations: u64) -> Option<Timing> {
+        let [low, high] = setup.interval_s;
+        let n = setup.interval_count();
+        let middle_s = (low * high).sqrt();
+        let even = vec![middle_s; n];
+        let smooth = Goal {
+            merit: Merit::Logarithms([0.0, 1.0, 0.0]),
+            ceilings: [setup.even_s(middle_s), f64::INFINITY, f64::INFINITY],
+            evaluations: evaluations / 8,
+            trust: FAR_OFF,
+            enough: FINE,
+        };
+        let shape = self.descend(setup, evaluator, &even, &smooth);
+        let goal = |evaluations| Goal {
+            merit: Merit::Logarithms([1.0, 0.0, 0.0]),
+            ceilings: FREE,
+            evaluations,
+            trust: FAR_OFF,
+            enough: FINE,
+        };
+        let from_even = self.descend(setup, evaluator, &even, &goal(evaluations / 3));
+        let from_shape =
+            shape.and_then(|shape| self.descend(setup, evaluator, &shape.interval_s, &goal(evaluations / 2)));
+        let key = |timing: &Timing| (timing.violation, timing.objectives.duration_s);
+        from_even.into_iter().chain(from_shape).min_by(|a, b| {
+            let (a, b) = (key(a), key(b));
+            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+        })
+    }
+
+    fn descend(
+        &mut self,
+        setup: &Setup,
+        evaluator: &mut Evaluator,
+        start_s: &[f64],
+        goal: &Goal,
+    ) -> Option<Timing> {
+        self.take(descend(setup, evaluator, start_s, goal))
+    }
+
+    /// Counts and keeps what a descent found.
+    fn take(&mut self, found: Descended) -> Option<Timing> {
+        self.evaluations += found.evaluations;
+        let kept = if found.settled { &mut self.exact } else { &mut self.rough };
+        kept.extend(found.timing.clone());
+        found.timing
+    }
+
+    /// Plans between those of the curves, in the logarithms of duration and interval.
+    fn fill(&mut self, setup: &Setup, evaluator: &mut Evaluator, curves: &[Vec<Timing>], count: u64) {
+        let rows = curves.iter().map(Vec::len).min().unwrap_or(0);
+        let across = curves.len();
+        if rows < 2 || across < 2 {
+            return;
+        }
+        // Into how many parts to cut the steps of the grid along the curves; across none.
+        let down = usize::try_from(count).unwrap_or(usize::MAX) / across / (rows - 1);
+        let down = down.max(1);
+        for i in (0..=(rows - 1) * down).filter(|i| i % down != 0) {
+            let (row, u) = (i / down, (i % down) as f64 / down as f64);
+            for curve in curves {
+                let between = curve[row].interval_s.iter().zip(&curve[row + 1].interval_s);
+                let interval_s: Vec<f64> = between.map(|(a, b)| a * (b / a).powf(u)).collect();
+                self.evaluations += 1;
+                if let Some(objectives) = evaluator.evaluate(setup, &interval_s) {
+                    self.rough.push(Timing { interval_s, objectives, violation: evaluator.violation() });
+                }
+            }
+        }
+    }
+}
+
+fn durations(setup: &Setup, fastest: &Timing) -> Vec<f64> {
+    let first_s = fastest.objectives.duration_s;
+    let last_s = setup.even_s(setup.interval_s[1]);
+    let near_fastest = NEAR_FASTEST.iter().map(|ratio| first_s * ratio);
+    let mut durations_s: Vec<f64> = near_fastest.filter(|s| *s < NEAR_SLOWEST[0] * last_s).collect();
+    let from_s = durations_s.last().copied().unwrap_or(first_s);
+    durations_s.push((from_s * NEAR_SLOWEST[0] * last_s).sqrt());
+    durations_s.extend(NEAR_SLOWEST.iter().map(|share| share * last_s));
+    durations_s.retain(|s| *s > first_s);
+    durations_s
+}
+
+/// The best plan of each duration by one weight of power, each started from the one before; the
+/// slow ones first, where nothing binds.
+fn curve(setup: &Setup, fastest: &Timing, durations_s: &[f64], power: f64, most: u64) -> Vec<Descended> {
+    let mut evaluator = Evaluator::new(setup);
+    let mut found = Vec::new();
+    let mut last = fastest.clone();
+    let dwell_s = setup.resting_s();
+    let middle = durations_s.len() / 2;
+    let order = (middle..durations_s.len()).chain((0..middle).rev());
+    let mut first = None;
+    for (step, i) in order.enumerate() {
+        if i + 1 == middle {
+            last = first.clone().unwrap_or(last);
+        }
+        let duration_s = durations_s[i];
+        let ratio = (duration_s - dwell_s) / (last.objectives.duration_s - dwell_s);
+        let start_s: Vec<f64> = last.interval_s.iter().map(|s| s * ratio).collect();
+        let goal = Goal {
+            merit: Merit::Logarithms([0.0, 1.0 - power, power]),
+            ceilings: [duration_s, f64::INFINITY, f64::INFINITY],
+            // The first has the longest way.
+            evaluations: if step == 0 { 3 * most } else { most },
+            trust: if step == 0 { FAR_OFF } else { NEARLY },
+            enough: COARSE,
+        };
+        let descended = descend(setup, &mut evaluator, &start_s, &goal);
+        if let Some(timing) = &descended.timing {
+            last = timing.clone();
+            first.get_or_insert_with(|| timing.clone());
+        }
+        found.push((i, descended));
+    }
+    found.sort_by_key(|(i, _)| *i);
+    found.into_iter().map(|(_, descended)| descended).collect()
+}
