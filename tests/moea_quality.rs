@@ -7,13 +7,15 @@
 use hydrotrace::{
     math::median,
     moea::{
-        Algorithm, Bounds, Budget, Problem, Settings,
+        Algorithm, Bounds, Budget, Contender, Operators, Problem, Settings,
         benchmark::Benchmark,
-        compare::{Quality, Yardstick, compare, runs},
+        compare::{Yardstick, compare},
         indicator::igd,
         optimise, silent,
     },
+    workflow::moea::{Inputs, Tally, Verdict, run},
 };
+use rayon::prelude::*;
 use serde_json::Value;
 
 fn reference(name: &str) -> Value {
@@ -39,9 +41,11 @@ fn conforms(seeds: std::ops::RangeInclusive<u64>) {
         let problem = Benchmark::named(name, 3).unwrap();
         let yardstick = Yardstick::of(&problem, 91);
         let seeds: Vec<u64> = seeds.clone().collect();
-        let qualities =
-            runs(&problem, &yardstick, &settings(Algorithm::Nsga3, 0, 0), 92 * generations, &seeds);
-        let igd: Vec<f64> = qualities.unwrap().iter().map(|q| q.igd).collect();
+        let reached = |&seed: &u64| {
+            let settings = settings(Algorithm::Nsga3, seed, 92 * generations);
+            yardstick.measure(&optimise(&problem, &settings, silent).unwrap().population).igd
+        };
+        let igd: Vec<f64> = seeds.par_iter().map(reached).collect();
         let theirs = numbers(&pymoo["problems"][name.to_lowercase()]["igd"]);
         let against = compare(&igd, &theirs);
         let best = igd.iter().copied().fold(f64::INFINITY, f64::min);
@@ -129,37 +133,30 @@ fn scale_and_origin_of_objectives_do_not_matter() {
 #[test]
 #[ignore = "slow: 31 seeds of 27 cells"]
 fn the_focus_wins_at_least_twelve_cells_and_loses_at_most_two() {
-    let (mut igd, mut hv) = ([0; 3], [0; 3]);
-    let seeds: Vec<u64> = (1..=31).collect();
-    let place = |sign: i8| usize::try_from(1 - sign).unwrap();
-    for name in ["DTLZ1", "DTLZ2", "DTLZ3", "DTLZ4", "DTLZ7", "WFG1", "WFG2", "WFG3", "WFG9"] {
-        let problem = Benchmark::named(name, 3).unwrap();
-        let yardstick = Yardstick::of(&problem, 1000);
-        for evaluations in [5_000, 20_000, 50_000] {
-            let run = |algorithm| {
-                runs(&problem, &yardstick, &settings(algorithm, 0, 0), evaluations, &seeds).unwrap()
-            };
-            let (with, without) = (run(Algorithm::NSGA3_FO), run(Algorithm::Nsga3));
-            let of = |get: fn(&Quality) -> f64| {
-                let values = |q: &[Quality]| q.iter().map(get).collect::<Vec<_>>();
-                compare(&values(&with), &values(&without))
-            };
-            let (distance, plus, volume) = (of(|q| q.igd), of(|q| q.igd_plus), of(|q| q.hypervolume));
-            igd[place(-distance.sign())] += 1;
-            hv[place(volume.sign())] += 1;
-            print!("| {name} | {evaluations} ");
-            for (c, better) in [(distance, -distance.sign()), (plus, -plus.sign()), (volume, volume.sign())] {
-                let word = ["win", "tie", "loss"][place(better)];
-                print!("| {:.4} : {:.4} | {:.3} | {:.2} | {word} ", c.first[1], c.second[1], c.p, c.a12);
-            }
-            println!("|");
-            let early = ["DTLZ3", "WFG3", "DTLZ1", "DTLZ7", "WFG1"].contains(&name);
-            let late = ["DTLZ3", "WFG3"].contains(&name);
-            if (evaluations == 5_000 && early) || (evaluations == 20_000 && late) {
-                assert_eq!(distance.sign(), -1, "{name} at {evaluations}: {distance:?}");
-            }
+    let problems = ["DTLZ1", "DTLZ2", "DTLZ3", "DTLZ4", "DTLZ7", "WFG1", "WFG2", "WFG3", "WFG9"];
+    let inputs = Inputs {
+        problems: problems.map(|name| Benchmark::named(name, 3).unwrap()).to_vec(),
+        contenders: ["nsga3-fo", "nsga3"].map(|name| Contender::named(name).unwrap()).to_vec(),
+        evaluations: vec![5_000, 20_000, 50_000],
+        first_seed: 1,
+        seeds: 31,
+        operators: Operators::default(),
+        steps: 0,
+        fronts: false,
+    };
+    let study = run(&inputs, || ()).unwrap();
+    for cell in study.cells.iter().filter(|cell| cell.algorithm == "nsga3-fo") {
+        let name = cell.problem.as_str();
+        let early = ["DTLZ3", "WFG3", "DTLZ1", "DTLZ7", "WFG1"].contains(&name);
+        let late = ["DTLZ3", "WFG3"].contains(&name);
+        if (cell.evaluations == 5_000 && early) || (cell.evaluations == 20_000 && late) {
+            assert_eq!(cell.igd.against.unwrap().verdict, Verdict::Win, "{cell:?}");
         }
     }
-    println!("wins, ties, losses: IGD {igd:?}, HV {hv:?}");
-    assert!(igd[0] >= 12 && igd[2] <= 2 && hv[0] >= 12 && hv[2] <= 2, "{igd:?} {hv:?}");
+    let Tally { igd, hypervolume, .. } = study.tallies[0];
+    assert!(
+        igd[0] >= 12 && igd[2] <= 2 && hypervolume[0] >= 12 && hypervolume[2] <= 2,
+        "{:?}",
+        study.tallies
+    );
 }

@@ -13,7 +13,7 @@ use thiserror::Error;
 
 pub use args::{Args, Command};
 
-use crate::{atomic::AtomicError, log::LogError};
+use crate::{atomic::AtomicError, log::LogError, moea::MoeaError};
 
 /// How a run that did not fail ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,6 +33,10 @@ enum CliError {
     Log(#[from] LogError),
     #[error(transparent)]
     Atomic(#[from] AtomicError),
+    #[error(transparent)]
+    Moea(#[from] MoeaError),
+    #[error("cannot draw the curves")]
+    Picture(#[source] Box<dyn std::error::Error + Send + Sync>),
     #[error("{} is the log that is read; give another name to --output", .0.display())]
     Overwrite(std::path::PathBuf),
     #[error("cannot write the output")]

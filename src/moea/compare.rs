@@ -1,18 +1,16 @@
-//! Runs algorithms on problems with known fronts, and says whether they differ.
+//! How good a population is on a problem with a known front, and whether two samples differ.
 
 use std::cmp::Ordering;
 
-use rayon::prelude::*;
 use statrs::stats_tests::{
     Alternative,
     mannwhitneyu::{MannWhitneyUMethod, mannwhitneyu},
 };
 
 use super::{
-    Budget, MoeaError, Population, Settings,
+    Population,
     benchmark::Benchmark,
     indicator::{hypervolume, igd, igd_plus},
-    optimise, silent,
 };
 use crate::math::quantile;
 
@@ -52,6 +50,16 @@ impl Yardstick {
         Self { front: problem.front(count), nadir: problem.nadir() }
     }
 
+    /// Number of points that distances are measured to.
+    pub fn points(&self) -> usize {
+        self.front.len() / self.nadir.len().max(1)
+    }
+
+    /// The hypervolume's reference point in the problem's own objectives, `[objectives]`.
+    pub fn reference(&self) -> Vec<f64> {
+        self.nadir.iter().map(|nadir| BEYOND * nadir).collect()
+    }
+
     /// Quality of the feasible members of a population.
     pub fn measure(&self, population: &Population) -> Quality {
         let m = self.nadir.len();
@@ -69,29 +77,6 @@ impl Yardstick {
             hypervolume: hypervolume(&scaled, &vec![1.0; m]),
         }
     }
-}
-
-/// Qualities after `evaluations`, one run a seed, `[seeds]`; runs share the cores.
-///
-/// Every budget needs a run of its own, because NSGA-III-FO fades its focus over the budget.
-///
-/// # Errors
-///
-/// [`MoeaError`] when the settings do not fit the problem.
-pub fn runs(
-    problem: &Benchmark,
-    yardstick: &Yardstick,
-    settings: &Settings,
-    evaluations: u64,
-    seeds: &[u64],
-) -> Result<Vec<Quality>, MoeaError> {
-    seeds
-        .par_iter()
-        .map(|&seed| {
-            let own = Settings { seed, budget: Budget::Evaluations(evaluations), ..settings.clone() };
-            optimise(problem, &own, silent).map(|outcome| yardstick.measure(&outcome.population))
-        })
-        .collect()
 }
 
 /// Two samples side by side.

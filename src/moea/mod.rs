@@ -52,6 +52,7 @@
 mod archive;
 pub mod benchmark;
 pub mod compare;
+mod contender;
 mod direction;
 mod evaluate;
 mod focus;
@@ -72,6 +73,7 @@ mod survival;
 mod variation;
 
 pub use archive::Archive;
+pub use contender::{CONTENDERS, Contender};
 pub use direction::{Directions, MOST_DIRECTIONS, das_dennis, direction_count};
 pub use focus::Focus;
 pub use optimise::{Outcome, Progress, optimise, silent};

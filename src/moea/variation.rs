@@ -29,6 +29,12 @@ impl Default for Operators {
     }
 }
 
+impl Operators {
+    /// Defaults of PlatEMO 4 (Tian, Cheng, Zhang and Jin 2017, doi 10.1109/MCI.2017.2742868).
+    pub const PLATEMO: Self =
+        Self { crossover_rate: 1.0, crossover_eta: 20.0, mutation_rate: None, mutation_eta: 20.0 };
+}
+
 /// A number in `[0, 1)`.
 #[inline]
 pub(super) fn unit(rng: &mut ChaCha8Rng) -> f64 {

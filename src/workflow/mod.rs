@@ -2,5 +2,6 @@
 
 pub mod detector;
 pub mod info;
+pub mod moea;
 pub mod recover;
 pub mod report;

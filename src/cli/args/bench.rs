@@ -2,6 +2,8 @@
 
 use clap::Subcommand;
 
+use super::MoeaArgs;
+
 /// Arguments of `bench`.
 #[derive(Debug, clap::Args)]
 pub struct BenchArgs {
@@ -15,6 +17,11 @@ pub struct BenchArgs {
 pub enum Bench {
     /// Precision and recall of the transition detector on synthetic joints with known motions
     Detector(DetectorArgs),
+    /// What the evolutionary algorithms reach on problems with known fronts, beside the paper
+    #[command(after_help = "Examples:\n  hydrotrace bench moea --operators platemo --seeds 31\n  \
+                            hydrotrace bench moea --problem DTLZ1,DTLZ3 --algorithm nsga3-fo,nsga3 --evaluations 5000\n  \
+                            hydrotrace bench moea --problem WFG3 --curves curves --front fronts")]
+    Moea(MoeaArgs),
 }
 
 /// Arguments of `bench detector`.

@@ -1,12 +1,14 @@
 //! Clap definitions only. Degrees and milliseconds are accepted here and turned into SI here.
 
 mod bench;
+mod moea;
 
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
 pub use bench::{Bench, BenchArgs, DetectorArgs};
+pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 
 use crate::{
     log::{ReadOptions, Selector, TimeBase},

@@ -2,8 +2,7 @@
 
 use std::io::Write;
 
-use indicatif::{ProgressBar, ProgressStyle};
-
+use super::progress;
 use crate::{
     cli::{CliError, Outcome, args::DetectorArgs, output::deliver},
     replay::conditions,
@@ -12,11 +11,7 @@ use crate::{
 };
 
 pub(super) fn run(args: &DetectorArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
-    // Drawn on standard error, and not at all where that is no terminal.
-    let bar = ProgressBar::new(conditions().len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} conditions, {eta} left") {
-        bar.set_style(style);
-    }
+    let bar = progress(conditions().len() as u64, "conditions");
     let scores = score(&Inputs { seed: args.seed, runs: args.runs }, || bar.inc(1));
     bar.finish_and_clear();
     let rendered =

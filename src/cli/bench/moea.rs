@@ -1,0 +1,62 @@
+//! `bench moea`, with progress on a terminal.
+
+use std::{fs, io::Write, path::Path};
+
+use super::progress;
+use crate::{
+    atomic::AtomicError,
+    cli::{CliError, Outcome, args::MoeaArgs, output::deliver},
+    report::{curve_svg, curves_csv, front_csv, markdown, moea_json, moea_parts, text},
+    workflow::moea::{Curve, Front, run as compare},
+};
+
+pub(super) fn run(args: &MoeaArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
+    // Before the work, so that a folder that cannot be made does not cost it.
+    for folder in args.front.iter().chain(&args.curves) {
+        make(folder)?;
+    }
+    let inputs = args.inputs();
+    let bar = progress(inputs.runs(), "runs");
+    let study = compare(&inputs, || bar.inc(1))?;
+    bar.finish_and_clear();
+    if let Some(folder) = &args.front {
+        write_fronts(&study.fronts, folder, out)?;
+    }
+    if let Some(folder) = &args.curves {
+        write_curves(&study.curves, folder, out)?;
+    }
+    let rendered = if args.format.json {
+        moea_json(&inputs, &study)
+    } else if args.format.markdown {
+        markdown(&moea_parts(&inputs, &study))
+    } else {
+        text(&moea_parts(&inputs, &study))
+    };
+    deliver(&rendered, None, out)?;
+    Ok(Outcome::Clean)
+}
+
+fn make(folder: &Path) -> Result<(), AtomicError> {
+    let failed = |source| AtomicError::Io { action: "create the folder", path: folder.to_owned(), source };
+    fs::create_dir_all(folder).map_err(failed)
+}
+
+fn write_fronts(fronts: &[Front], folder: &Path, out: &mut impl Write) -> Result<(), CliError> {
+    for front in fronts {
+        let Front { problem, algorithm, evaluations, seed, .. } = front;
+        let name = format!("{}-{algorithm}-{evaluations}-{seed}.csv", problem.to_lowercase());
+        deliver(&front_csv(front), Some(&folder.join(name)), out)?;
+    }
+    Ok(())
+}
+
+fn write_curves(curves: &[Curve], folder: &Path, out: &mut impl Write) -> Result<(), CliError> {
+    deliver(&curves_csv(curves), Some(&folder.join("curves.csv")), out)?;
+    for same in curves.chunk_by(|a, b| a.problem == b.problem) {
+        let Some(first) = same.first() else { continue };
+        let svg = curve_svg(same).map_err(CliError::Picture)?;
+        let name = format!("{}.svg", first.problem.to_lowercase());
+        deliver(&svg, Some(&folder.join(name)), out)?;
+    }
+    Ok(())
+}
