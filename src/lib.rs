@@ -20,6 +20,7 @@ pub mod task;
 
 // abilities
 pub mod log;
+pub mod plant;
 pub mod replay;
 
 // workflow

@@ -137,6 +137,16 @@ impl Cylinder {
         &self.linkage
     }
 
+    /// Area of all pistons together on the side without a rod, m².
+    pub fn push_area_m2(&self) -> f64 {
+        self.push_area_m2
+    }
+
+    /// Area of all pistons together on the side of the rod, m².
+    pub fn pull_area_m2(&self) -> f64 {
+        self.pull_area_m2
+    }
+
     /// Largest push of all cylinders together, N.
     pub fn push_n(&self) -> f64 {
         self.push_n
