@@ -125,8 +125,9 @@ fn loops(plant: &Plant, command: &Series) -> Result<(Vec<Loop>, usize), PlantErr
     // Within rounding, a command that ends with a period ends with it.
     let periods = whole(duration_s / cycle.period_s + 1e-6);
     let own = |((track, _), joint): (&(&Track, &[f64]), &super::JointParameters)| {
+        let state = |period| track.held_at(period as f64 * cycle.period_s);
         let command: Vec<(f64, f64)> =
-            (0..=periods).map(|period| planned(track, period as f64 * cycle.period_s)).collect();
+            (0..=periods).map(state).map(|state| (state.position, state.velocity)).collect();
 
         Loop {
             sensor: Sensor::new(command.first().map_or(0.0, |first| first.0)),
@@ -138,15 +139,6 @@ fn loops(plant: &Plant, command: &Series) -> Result<(Vec<Loop>, usize), PlantErr
         }
     };
     Ok((tracks.iter().zip(&plant.parameters.joints).map(own).collect(), periods))
-}
-
-/// Angle and speed of a track at an instant, rad and rad/s; it holds its angle where it says nothing.
-fn planned(track: &Track, t_s: f64) -> (f64, f64) {
-    if let Some(state) = track.at(t_s) {
-        return (state.position, state.velocity);
-    }
-    let before = track.t_s().partition_point(|&t| t <= t_s).saturating_sub(1);
-    (track.position_rad().get(before).copied().unwrap_or(0.0), 0.0)
 }
 
 /// Whole steps in a time that is not negative.

@@ -4,3 +4,4 @@ pub mod detector;
 pub mod info;
 pub mod recover;
 pub mod report;
+pub mod simulate;
