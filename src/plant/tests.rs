@@ -287,3 +287,21 @@ fn the_true_speed_limit_is_where_a_full_signal_takes_the_joint() {
         assert!(limit > 14.0 * DEGREE_RAD && limit < 26.0 * DEGREE_RAD);
     }
 }
+
+#[test]
+fn oil_flows_once_the_wanted_speed_leaves_the_true_dead_band() {
+    let plant = sample(without_leaks);
+    let truth = plant.truth(&POSE_RAD, 0.0).unwrap();
+    for (j, way) in (0..6).flat_map(|j| [(j, 0), (j, 1)]) {
+        let sign = if way == 0 { 1.0 } else { -1.0 };
+        let way_rad = |share: f64| {
+            let mut machine = Machine::at_rest(&plant, &POSE_RAD, 0.0).unwrap();
+            let wanted_rad_s = sign * share * truth.joints[j].dead_band_rad_s[way];
+            machine.states[j].signal = plant.parameters.joints[j].control.signal(wanted_rad_s);
+            run(&mut machine, 4.0);
+            sign * (machine.states[j].position_rad - POSE_RAD[j])
+        };
+        assert!(way_rad(0.98).abs() < 1e-9, "joint {j} {way}");
+        assert!(way_rad(1.1) > 5e-4, "joint {j} {way}: {}", way_rad(1.1));
+    }
+}
