@@ -21,6 +21,7 @@ pub mod task;
 // abilities
 pub mod log;
 pub mod plan;
+pub mod plant;
 pub mod replay;
 
 // workflow

@@ -11,6 +11,8 @@ pub enum Stream {
     SensorNoise = 2,
     /// Jitter and losses of a synthetic logger.
     Sampling = 3,
+    /// Parameters of a random hydraulic machine.
+    Machine = 4,
     /// First population of an evolutionary run.
     MoeaStart = 20,
     /// Mating, crossover and mutation.

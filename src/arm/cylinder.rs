@@ -132,14 +132,19 @@ impl Cylinder {
         }
     }
 
-    /// Piston areas of all cylinders together: that which pushes and that which pulls, m².
-    pub fn areas_m2(&self) -> (f64, f64) {
-        (self.push_area_m2, self.pull_area_m2)
-    }
-
     /// The triangle.
     pub fn linkage(&self) -> &Linkage {
         &self.linkage
+    }
+
+    /// Area of all pistons together on the side without a rod, m².
+    pub fn push_area_m2(&self) -> f64 {
+        self.push_area_m2
+    }
+
+    /// Area of all pistons together on the side of the rod, m².
+    pub fn pull_area_m2(&self) -> f64 {
+        self.pull_area_m2
     }
 
     /// Largest push of all cylinders together, N.

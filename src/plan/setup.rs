@@ -186,7 +186,7 @@ fn merged(task: &Task, arm: &Arm, joint: usize, own: usize) -> JointLimits {
     let [lower, upper] = task.range_rad.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let cylinder = arm.hydraulics.cylinders()[joint];
     let rod_speed_m_s = cylinder.map_or([f64::INFINITY; 2], |cylinder| {
-        let (push_m2, pull_m2) = cylinder.areas_m2();
+        let (push_m2, pull_m2) = (cylinder.push_area_m2(), cylinder.pull_area_m2());
         [push_m2, pull_m2].map(|area_m2| task.rod_speed_m_s.min(arm.hydraulics.pump_flow_m3_s() / area_m2))
     });
     JointLimits {

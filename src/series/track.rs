@@ -197,6 +197,16 @@ impl Track {
         self.at_after(&mut 0, t_s)
     }
 
+    /// The state at any time: as [`Track::at`], and at rest at the last sample before where the track
+    /// says nothing (at the first one before its start).
+    pub fn held_at(&self, t_s: f64) -> State {
+        self.at(t_s).unwrap_or_else(|| {
+            let before = self.t_s.partition_point(|&t| t <= t_s).saturating_sub(1);
+            let position = self.position_rad.get(before).copied().unwrap_or_default();
+            State { position, velocity: 0.0, acceleration: 0.0 }
+        })
+    }
+
     /// As [`Track::at`], for a caller that walks forward in time: `cursor` is left at the last
     /// sample not after `t_s` and makes the next look-up cheap.
     pub(super) fn at_after(&self, cursor: &mut usize, t_s: f64) -> Option<State> {
@@ -303,6 +313,17 @@ mod tests {
         assert_eq!(track.at(-0.1), None);
         assert_eq!(track.at(6.1), None);
         assert_eq!(track.at(6.0).map(|s| s.position), Some(6.0));
+    }
+
+    #[test]
+    fn where_a_track_says_nothing_it_holds_its_last_angle() {
+        let track = Track::new("a", vec![0.0, 1.0, 5.0, 6.0], vec![0.0, 1.0, 5.0, 6.0], &[2]).unwrap();
+        let track = track.with_velocity(vec![1.0; 4]).unwrap();
+        let state = |position, velocity| State { position, velocity, acceleration: 0.0 };
+        assert_eq!(track.held_at(-1.0), state(0.0, 0.0));
+        assert_eq!((track.held_at(0.5).position, track.held_at(0.5).velocity), (0.5, 1.0));
+        assert_eq!(track.held_at(3.0), state(1.0, 0.0));
+        assert_eq!(track.held_at(7.0), state(6.0, 0.0));
     }
 
     #[test]

@@ -5,3 +5,4 @@ pub mod info;
 pub mod moea;
 pub mod recover;
 pub mod report;
+pub mod simulate;

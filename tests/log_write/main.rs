@@ -121,6 +121,25 @@ fn a_plan_is_one_message() {
 }
 
 #[test]
+fn quantities_of_joints_are_kept_by_joint_and_name() {
+    let mut log = LogWriter::new(Vec::new(), &JOINTS, WriteOptions::default()).unwrap();
+    let values: [(&str, &[f64]); 2] = [("pressure_pa", &[1e6, 2e6, 3e6]), ("spool", &[0.0, -0.5, f64::NAN])];
+    log.interfaces(START_NS, &values).unwrap();
+    let short = log.interfaces(START_NS, &[("spool", &[0.0])]).unwrap_err();
+    assert_eq!(short.to_string(), "1 values of interface for 3 joints");
+    assert!(matches!(log.interfaces(START_NS, &[("", &[0.0; 3])]), Err(WriteError::Interface { .. })));
+    let bytes = log.finish().unwrap();
+    let messages = messages(&bytes);
+    let value = decode(on_topic(&messages, "/dynamic_joint_states")[0]);
+    assert_eq!(value.at("joint_names").texts(), JOINTS);
+    let joints = value.at("interface_values").list();
+    assert_eq!(joints.len(), 3);
+    assert_eq!(joints[1].at("interface_names").texts(), ["pressure_pa", "spool"]);
+    assert_eq!(joints[1].at("values").numbers(), [2e6, -0.5]);
+    assert!(joints[2].at("values").numbers()[1].is_nan());
+}
+
+#[test]
 fn a_log_names_its_profile_library_types_and_quality_of_service() {
     let bytes = run(400, WriteOptions { chunk_bytes: 1 << 14, ..WriteOptions::default() });
     let header = mcap::read::LinearReader::new(&bytes).unwrap().next().unwrap().unwrap();

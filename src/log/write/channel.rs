@@ -50,6 +50,12 @@ pub(super) const CONTROLLER_STATE: MessageType = MessageType {
     hash: "RIHS01_51d8dd89cc624cbe9daaeeb4d80d6de9b86168ffdc3be41fefc0953e3c26e480",
 };
 
+pub(super) const DYNAMIC_JOINT_STATE: MessageType = MessageType {
+    package: "control_msgs",
+    name: "DynamicJointState",
+    hash: "RIHS01_18024c98a62697680f581108eeed40b28fb4542fa0ac5a8e36f56c62b6813d26",
+};
+
 /// A topic; the log learns of it with its first message.
 #[derive(Debug)]
 pub(super) struct Channel {

@@ -16,6 +16,8 @@ macro_rules! definitions {
 definitions! {
     "builtin_interfaces" "Duration",
     "builtin_interfaces" "Time",
+    "control_msgs" "DynamicJointState",
+    "control_msgs" "InterfaceValue",
     "control_msgs" "JointTrajectoryControllerState",
     "geometry_msgs" "Quaternion",
     "geometry_msgs" "Transform",

@@ -20,6 +20,12 @@ pub enum WriteError {
         /// The name.
         name: String,
     },
+    /// A name of a quantity that no reader could give back.
+    #[error("interface name {name:?} is empty or holds a NUL")]
+    Interface {
+        /// The name.
+        name: String,
+    },
     /// Two joints or two topics of one name.
     #[error("{kind} {name} is given twice")]
     Duplicate {

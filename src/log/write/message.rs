@@ -90,6 +90,21 @@ pub(super) fn encode_joint_state(cdr: &mut Cdr, quantities: [&[f64]; 3]) {
     }
 }
 
+/// `control_msgs/DynamicJointState` behind its header; every interface has a value a joint.
+pub(super) fn encode_interfaces(cdr: &mut Cdr, joints: usize, interfaces: &[(&str, &[f64])]) {
+    cdr.count(joints);
+    for joint in 0..joints {
+        cdr.count(interfaces.len());
+        for (name, _) in interfaces {
+            cdr.string(name);
+        }
+        cdr.count(interfaces.len());
+        for (_, values) in interfaces {
+            cdr.f64(values.get(joint).copied().unwrap_or(f64::NAN));
+        }
+    }
+}
+
 /// `trajectory_msgs/JointTrajectory` behind its header.
 pub(super) fn encode_trajectory(cdr: &mut Cdr, points: &[Point]) -> Result<(), WriteError> {
     cdr.count(points.len());

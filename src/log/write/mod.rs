@@ -27,7 +27,7 @@ pub use message::{ControllerState, Point};
 pub use options::{Options, Role, Topics};
 
 use cdr::Cdr;
-use channel::{CONTROLLER_STATE, Channel, JOINT_STATE, JOINT_TRAJECTORY};
+use channel::{CONTROLLER_STATE, Channel, DYNAMIC_JOINT_STATE, JOINT_STATE, JOINT_TRAJECTORY};
 use message::check_length;
 use stamp::Stamp;
 
@@ -58,6 +58,7 @@ struct Channels {
     command: Channel,
     controller_state: Channel,
     trajectory: Channel,
+    interfaces: Channel,
 }
 
 impl LogWriter<BufWriter<File>> {
@@ -157,6 +158,31 @@ impl<W: Write> LogWriter<W> {
         self.flush_if_due(stamp)
     }
 
+    /// Writes named quantities of all joints, such as pressures, each with one value a joint in the
+    /// order of the joint names: `control_msgs/msg/DynamicJointState`.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::LengthMismatch`], [`WriteError::Interface`], [`WriteError::TimeRange`] or
+    /// [`WriteError::Output`].
+    pub fn interfaces(&mut self, stamp_ns: i64, values: &[(&str, &[f64])]) -> Result<(), WriteError> {
+        let joints = self.joint_names.len();
+        for (name, values) in values {
+            if name.is_empty() || name.contains('\0') {
+                return Err(WriteError::Interface { name: (*name).to_owned() });
+            }
+            if values.len() != joints {
+                let values = values.len();
+                return Err(WriteError::LengthMismatch { quantity: "interface", joints, values });
+            }
+        }
+        let stamp = Stamp::new(stamp_ns)?;
+        message::encode_header(&mut self.cdr, stamp, &self.joint_names);
+        message::encode_interfaces(&mut self.cdr, joints, values);
+        self.channels.interfaces.send(&mut self.mcap, stamp, self.cdr.bytes())?;
+        self.flush_if_due(stamp)
+    }
+
     /// Writes a whole plan that starts at the stamp: `trajectory_msgs/msg/JointTrajectory`. No
     /// points at all cancel the plan before.
     ///
@@ -249,11 +275,12 @@ impl Channels {
             command: Channel::new(topics.command, &JOINT_STATE),
             controller_state: Channel::new(topics.controller_state, &CONTROLLER_STATE),
             trajectory: Channel::new(topics.trajectory, &JOINT_TRAJECTORY),
+            interfaces: Channel::new(topics.interfaces, &DYNAMIC_JOINT_STATE),
         };
-        let Self { planned, measured, command, controller_state, trajectory } = &channels;
+        let Self { planned, measured, command, controller_state, trajectory, interfaces } = &channels;
         check_distinct(
             "topic",
-            [planned, measured, command, controller_state, trajectory].map(Channel::topic),
+            [planned, measured, command, controller_state, trajectory, interfaces].map(Channel::topic),
         )?;
         Ok(channels)
     }

@@ -51,6 +51,8 @@ pub struct Topics {
     pub controller_state: String,
     /// `trajectory_msgs/msg/JointTrajectory`.
     pub trajectory: String,
+    /// `control_msgs/msg/DynamicJointState`.
+    pub interfaces: String,
 }
 
 impl Default for Topics {
@@ -61,6 +63,7 @@ impl Default for Topics {
             command: "/command/joint_states".into(),
             controller_state: "/arm_controller/controller_state".into(),
             trajectory: "/arm_controller/joint_trajectory".into(),
+            interfaces: "/dynamic_joint_states".into(),
         }
     }
 }

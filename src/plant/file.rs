@@ -1,0 +1,265 @@
+//! The file of a plant as it is written: degrees, joints by name, lines.
+
+use std::{collections::BTreeMap, ops::Range, path::Path};
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{
+    JointParameters, Parameters, PlantError,
+    quantity::{Place, QUANTITIES, Quantity, check},
+};
+
+/// More than any file of a plant.
+const LARGEST_TEXT: usize = 1 << 20;
+
+/// Tables of quantities.
+type Table = BTreeMap<String, Spanned<Values>>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    title: String,
+    joints: Spanned<Vec<String>>,
+    #[serde(default)]
+    supply: Table,
+    #[serde(default)]
+    valve: Table,
+    #[serde(default)]
+    cylinder: Table,
+    #[serde(default)]
+    friction: Table,
+    #[serde(default)]
+    control: Table,
+    #[serde(default)]
+    encoder: Table,
+    #[serde(default)]
+    log: Table,
+    #[serde(default)]
+    payload: Table,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a number, or a table with a number for each joint")]
+enum Values {
+    All(f64),
+    ByJoint(BTreeMap<String, f64>),
+}
+
+impl Parameters {
+    /// Reads the text of a plant file: every quantity of `sample-logs/plant/default.toml`, as one
+    /// number or, where joints may differ, as a table by joint. Angles are in degrees.
+    ///
+    /// # Errors
+    ///
+    /// [`PlantError`], naming the line, what was found and what belongs there.
+    pub fn parse(text: &str) -> Result<Self, PlantError> {
+        if text.len() > LARGEST_TEXT {
+            let message = format!("{} bytes, at most {LARGEST_TEXT} are read", text.len());
+            return Err(PlantError::Syntax { line: 1, message });
+        }
+        let file: File = toml::from_str(text).map_err(|error| PlantError::Syntax {
+            line: line_of(text, &error.span().unwrap_or(0..0)),
+            message: error.message().trim().replace('\n', " "),
+        })?;
+        let mut reader = Reader { text, joints: file.joints.get_ref().clone(), lines: BTreeMap::new() };
+        reader.check_joints(&file.joints)?;
+        let joint = |name: &String| JointParameters { name: name.clone(), ..JointParameters::default() };
+        let mut parameters =
+            Self { title: file.title, joints: reader.joints.iter().map(joint).collect(), ..Self::default() };
+        let tables = [
+            ("supply", &file.supply),
+            ("valve", &file.valve),
+            ("cylinder", &file.cylinder),
+            ("friction", &file.friction),
+            ("control", &file.control),
+            ("encoder", &file.encoder),
+            ("log", &file.log),
+            ("payload", &file.payload),
+        ];
+        for (name, table) in tables {
+            reader.table(name, table, &mut parameters)?;
+        }
+        check(&parameters).map_err(|flaw| {
+            let line = reader.lines.get(&flaw.key).copied();
+            flaw.at(line)
+        })?;
+        Ok(parameters)
+    }
+
+    /// Reads a plant file.
+    ///
+    /// # Errors
+    ///
+    /// [`PlantError`] if the file cannot be read or describes no plant.
+    pub fn read(path: &Path) -> Result<Self, PlantError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| PlantError::Read { path: path.to_owned(), reason: source.to_string() })?;
+        Self::parse(&text)
+    }
+}
+
+/// The line, from 1, in which a span starts.
+fn line_of(text: &str, span: &Range<usize>) -> usize {
+    1 + memchr::memchr_iter(b'\n', &text.as_bytes()[..span.start.min(text.len())]).count()
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    joints: Vec<String>,
+    /// Where each quantity stands.
+    lines: BTreeMap<(&'static str, &'static str), usize>,
+}
+
+impl Reader<'_> {
+    fn check_joints(&self, given: &Spanned<Vec<String>>) -> Result<(), PlantError> {
+        let mut sorted = self.joints.clone();
+        sorted.sort_unstable();
+        let found = match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => format!("{:?} twice", pair[0]),
+            None if sorted.is_empty() => "none".to_owned(),
+            None => return Ok(()),
+        };
+        let message = format!("joints: found {found}; name every joint of the arm once, in its order");
+        Err(PlantError::Syntax { line: line_of(self.text, &given.span()), message })
+    }
+
+    /// Takes the numbers of one table; every quantity of it must be there, and nothing else.
+    fn table(&mut self, name: &str, table: &Table, into: &mut Parameters) -> Result<(), PlantError> {
+        let known = || QUANTITIES.iter().filter(|quantity| quantity.key.0 == name);
+        let stray = table.iter().find(|(key, _)| !known().any(|quantity| quantity.key.1 == key.as_str()));
+        if let Some((key, values)) = stray {
+            let alike = |quantity: &Quantity| strsim::jaro(quantity.key.1, key);
+            let nearest = known().max_by(|a, b| alike(a).total_cmp(&alike(b))).filter(|q| alike(q) > 0.7);
+            return Err(PlantError::UnknownKey {
+                line: line_of(self.text, &values.span()),
+                key: format!("{name}.{key}"),
+                nearest: nearest.map(|quantity| quantity.key.1.to_owned()),
+            });
+        }
+        known().try_for_each(|quantity| self.quantity(quantity, table.get(quantity.key.1), into))
+    }
+
+    fn quantity(
+        &mut self,
+        quantity: &Quantity,
+        given: Option<&Spanned<Values>>,
+        into: &mut Parameters,
+    ) -> Result<(), PlantError> {
+        let key = || format!("{}.{}", quantity.key.0, quantity.key.1);
+        let Some(given) = given else {
+            let ((least, most), by_joint) = (quantity.range, matches!(quantity.place, Place::Joint(_)));
+            return Err(PlantError::MissingKey { key: key(), least, most, by_joint });
+        };
+        let line = line_of(self.text, &given.span());
+        self.lines.insert(quantity.key, line);
+        match (quantity.place, given.get_ref()) {
+            (Place::Machine(of), Values::All(value)) => *of(into) = quantity.unit * value,
+            (Place::Machine(_), Values::ByJoint(_)) => {
+                let message = format!("{} holds for the whole machine: give one number", key());
+                return Err(PlantError::Syntax { line, message });
+            }
+            (Place::Joint(of), Values::All(value)) => {
+                into.joints.iter_mut().for_each(|joint| *of(joint) = quantity.unit * value);
+            }
+            (Place::Joint(of), Values::ByJoint(values)) => {
+                if !values.keys().all(|name| self.joints.contains(name)) || values.len() < self.joints.len() {
+                    let found = values.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+                    let declared = self.joints.join(", ");
+                    return Err(PlantError::Joints { line, key: key(), found, declared });
+                }
+                for joint in &mut into.joints {
+                    let value = values.get(&joint.name).copied().unwrap_or(f64::NAN);
+                    *of(joint) = quantity.unit * value;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = include_str!("../../sample-logs/plant/default.toml");
+
+    fn message(from: &str, to: &str) -> String {
+        assert!(TEXT.contains(from), "{from}");
+        Parameters::parse(&TEXT.replace(from, to)).unwrap_err().to_string()
+    }
+
+    fn line(word: &str) -> usize {
+        1 + TEXT.lines().position(|line| line.starts_with(word)).unwrap()
+    }
+
+    #[test]
+    fn angles_become_radians_and_a_number_alone_holds_for_all_joints() {
+        let parameters = Parameters::parse(TEXT).unwrap();
+        assert!(parameters.joints.iter().all(|joint| (joint.encoder.noise_rad - 1.745e-4).abs() < 1e-7));
+        assert_eq!(parameters.joints[5].name, "J6");
+    }
+
+    #[test]
+    fn what_was_written_as_json_reads_back() {
+        let parameters = Parameters::parse(TEXT).unwrap();
+        let text = serde_json::to_string(&parameters).unwrap();
+        assert_eq!(serde_json::from_str::<Parameters>(&text).unwrap(), parameters);
+    }
+
+    #[test]
+    fn errors_name_line_key_and_what_belongs_there() {
+        let at = line("hysteresis");
+        assert_eq!(
+            message("hysteresis = 0.006", "hysteresis = 6"),
+            format!("line {at}: valve.hysteresis of J1 is 6; a number from 0 to 0.5 is expected")
+        );
+        assert_eq!(
+            message("hysteresis = 0.006", "hysteresis = nan"),
+            format!("line {at}: valve.hysteresis of J1 is NaN; a number from 0 to 0.5 is expected")
+        );
+        assert_eq!(
+            message("hysteresis = 0.006", "histeresis = 0.006"),
+            format!("line {at}: unknown key valve.histeresis; is hysteresis meant?")
+        );
+        assert_eq!(
+            message("hysteresis = 0.006", ""),
+            "valve.hysteresis is missing: give a number from 0 to 0.5, or a table with one for each joint"
+        );
+        assert_eq!(
+            message("hysteresis = 0.006", "hysteresis = { J1 = 0.006, J9 = 1 }"),
+            format!(
+                "line {at}: valve.hysteresis is for J1, J9; the plant's joints are J1, J2, J3, J4, J5, J6"
+            )
+        );
+        assert_eq!(
+            message("hysteresis = 0.006", "hysteresis = \"much\""),
+            format!("line {at}: expected a number, or a table with a number for each joint")
+        );
+    }
+
+    #[test]
+    fn numbers_must_agree_with_each_other() {
+        let at = line("period_s");
+        assert_eq!(
+            message("period_s = 0.01", "period_s = 0.01005"),
+            format!(
+                "line {at}: control.period_s is 0.01005; a multiple of the simulation's step, 0.0001 s, is expected"
+            )
+        );
+        let at = line("breakaway_n");
+        assert_eq!(
+            message("breakaway_n = { J1 = 1150", "breakaway_n = { J1 = 500"),
+            format!(
+                "line {at}: friction.breakaway_n of J1 is 500; no less than coulomb_n, 650 N, is expected"
+            )
+        );
+    }
+
+    #[test]
+    fn joints_are_named_once() {
+        let names = r#"joints = ["J1", "J2", "J3", "J4", "J5", "J6"]"#;
+        assert!(message(names, r#"joints = ["J1", "J1"]"#).contains(r#"found "J1" twice"#));
+        assert!(message(names, "joints = []").contains("found none"));
+    }
+}
