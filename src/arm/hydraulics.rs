@@ -65,7 +65,7 @@ pub struct Hydraulics {
 
 impl Hydraulics {
     /// No cylinder on any of so many joints.
-    pub fn none(joints: usize) -> Self {
+    pub(super) fn none(joints: usize) -> Self {
         Self { cylinders: vec![None; joints], pump_flow_m3_s: f64::INFINITY }
     }
 
@@ -172,6 +172,17 @@ impl Arm {
     pub fn new(urdf: (&str, &str), tool: Option<&str>, hydraulics: (&str, &str)) -> Result<Self, ArmError> {
         let chain = Chain::from_urdf(urdf.1, urdf.0, tool)?;
         let hydraulics = Hydraulics::from_toml(hydraulics.1, hydraulics.0, &chain)?;
+        Ok(Self { chain, hydraulics })
+    }
+
+    /// An arm without cylinders, or of which nobody has described them.
+    ///
+    /// # Errors
+    ///
+    /// As [`Chain::from_urdf`].
+    pub fn without_hydraulics(urdf: (&str, &str), tool: Option<&str>) -> Result<Self, ArmError> {
+        let chain = Chain::from_urdf(urdf.1, urdf.0, tool)?;
+        let hydraulics = Hydraulics::none(chain.joint_count());
         Ok(Self { chain, hydraulics })
     }
 

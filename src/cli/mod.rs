@@ -4,6 +4,7 @@ pub mod args;
 mod bench;
 mod info;
 mod output;
+mod plan;
 mod recover;
 mod report;
 
@@ -13,7 +14,12 @@ use thiserror::Error;
 
 pub use args::{Args, Command};
 
-use crate::{atomic::AtomicError, log::LogError, moea::MoeaError};
+use crate::{
+    atomic::AtomicError,
+    log::{LogError, WriteError},
+    moea::MoeaError,
+    workflow::plan::PlanFailure,
+};
 
 /// How a run that did not fail ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +43,13 @@ enum CliError {
     Moea(#[from] MoeaError),
     #[error("cannot draw the curves")]
     Picture(#[source] Box<dyn std::error::Error + Send + Sync>),
-    #[error("{} is the log that is read; give another name to --output", .0.display())]
+    #[error(transparent)]
+    Plan(#[from] PlanFailure),
+    #[error("{failure}; what comes nearest:\n  {}", lines.join("\n  "))]
+    NoPlan { failure: String, lines: Vec<String> },
+    #[error("the plan cannot be logged")]
+    Write(#[from] WriteError),
+    #[error("{} is what is read; give another name to --output", .0.display())]
     Overwrite(std::path::PathBuf),
     #[error("cannot write the output")]
     Output(#[from] std::io::Error),
@@ -50,6 +62,7 @@ enum CliError {
 pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
     let result = match &args.command {
         Command::Report(report) => report::run(report, out, err),
+        Command::Plan(plan) => plan::run(plan, out, err),
         Command::Info(info) => info::run(info, out, err),
         Command::Recover(recover) => recover::run(recover, out, err),
         Command::Bench(bench) => bench::run(bench, out),

@@ -15,6 +15,7 @@ use crate::{
 /// How to choose among the plans that keep to the ceilings. Objectives are scaled by their range over
 /// those plans.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Rule {
     /// The least weighted sum.

@@ -109,9 +109,10 @@ impl Evaluator {
         })
     }
 
-    /// Sum of what the plan evaluated last exceeds its limits by, each as a share of the limit.
+    /// Sum of what the plan evaluated last exceeds its limits by, each as a share of the limit and at
+    /// most ten.
     pub fn violation(&self) -> f64 {
-        self.shares.iter().map(|share| (share - 1.0).max(0.0)).sum()
+        self.shares.iter().map(|share| excess(*share)).sum()
     }
 
     /// Root mean square jerk by joint of the plan evaluated last, rad/s³.
@@ -206,6 +207,12 @@ impl Evaluator {
             });
         }
     }
+}
+
+/// What a share exceeds its limit by. At a dead centre the share has no bound, and ten times too much
+/// is as bad as any.
+pub fn excess(share: f64) -> f64 {
+    (share - 1.0).clamp(0.0, 10.0)
 }
 
 /// Index and value of the largest; zeros for none.

@@ -55,12 +55,6 @@ pub(super) fn polish(setup: &Setup, plans: &[Timing], evaluations: u64) -> Polis
                 },
             )
             .collect();
-        eprintln!(
-            "polish {} most {most}: settled {} used {}",
-            ends.len(),
-            ends.iter().filter(|e| e.1.settled).count(),
-            ends.iter().map(|e| e.1.evaluations).sum::<u64>()
-        );
         for (start, end) in ends {
             polished.evaluations += end.evaluations;
             let kept = if end.settled { &mut polished.exact } else { &mut polished.rough };

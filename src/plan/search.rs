@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 
 use super::{
-    PlanError, Setup, Timing,
+    Evaluator, PlanError, Setup, Timing,
+    descend::{FAR_OFF, FINE, FREE, Goal, Merit, descend},
     front::{least_broken, population, thinned, timing, timings},
     polish::{self, beats},
     seed::{Seeds, seeds},
@@ -82,6 +83,8 @@ pub struct Found {
 const POLISH: u64 = 45;
 /// Evaluations that seeds and polish are measured by where the budget is not in evaluations.
 const NOMINAL: u64 = 20_000;
+/// Evaluations of the descent to what is nearest to feasible.
+const NEAREST: u64 = 600;
 /// Members of a population for three objectives unless another number is asked for.
 const DIRECTIONS: usize = 92;
 
@@ -158,9 +161,23 @@ pub fn search(
     });
     let nearest = front.is_empty().then(|| {
         let members = (0..outcome.population.len()).map(|i| timing(&outcome.population, i));
-        least_broken(members.chain(initial))
+        nearest(setup, least_broken(members.chain(initial))?)
     });
     Ok(Found { front, nearest: nearest.flatten(), evaluations, generations: outcome.generations })
+}
+
+/// The plan that breaks its limits least, near one that breaks them.
+fn nearest(setup: &Setup, timing: Timing) -> Option<Timing> {
+    // With nothing to lessen but the price of the limit most broken.
+    let goal = Goal {
+        merit: Merit::Logarithms([0.0; 3]),
+        ceilings: FREE,
+        evaluations: NEAREST,
+        trust: FAR_OFF,
+        enough: FINE,
+    };
+    let end = descend(setup, &mut Evaluator::new(setup), &timing.interval_s, &goal);
+    least_broken(end.timing.into_iter().chain([timing]))
 }
 
 /// The front of the plans that descents have ended at. Others fill it up where they look as good, the

@@ -3,6 +3,8 @@
 pub mod detector;
 pub mod info;
 pub mod moea;
+pub mod plan;
+pub mod plan_log;
 pub mod recover;
 pub mod report;
 pub mod simulate;

@@ -2,6 +2,7 @@
 
 mod bench;
 mod moea;
+mod plan;
 
 use std::path::PathBuf;
 
@@ -9,6 +10,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 pub use bench::{Bench, BenchArgs, DetectorArgs};
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
+pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
 
 use crate::{
     log::{ReadOptions, Selector, TimeBase},
@@ -43,6 +45,13 @@ pub enum Command {
                             hydrotrace report run.mcap --planned /arm/controller_state:output.positions"
     )]
     Report(ReportArgs),
+    /// The best timings of a task's key points, and the one to run, as a log
+    #[command(
+        after_help = "Examples:\n  hydrotrace plan task.toml -o plan.mcap\n  hydrotrace plan task.toml --choose fastest\n  \
+                            hydrotrace plan task.toml --times 0,2.01,3.77,5.79,6.53,8.85,10.48\n  \
+                            hydrotrace plan task.toml --json --evaluations 100000 > plan.json"
+    )]
+    Plan(PlanArgs),
     /// What is in a log, what a report would use, and whether it is damaged
     Info(InfoArgs),
     /// Save everything that is whole in a damaged log

@@ -1,0 +1,192 @@
+//! Arguments of `plan`.
+
+use std::{path::PathBuf, time::Duration};
+
+use clap::{ArgAction, ValueEnum, builder::PossibleValuesParser};
+
+use crate::{
+    moea::{Budget, CONTENDERS, Contender},
+    plan::{Rule, Search},
+    task::Weights,
+    workflow::plan::Options,
+};
+
+/// Arguments of `plan`.
+#[derive(Debug, clap::Args)]
+pub struct PlanArgs {
+    /// The task: a TOML file as schemas/task.schema.json describes it
+    #[arg(value_name = "TASK")]
+    pub task: PathBuf,
+
+    /// Write the chosen plan to FILE, an MCAP log with the task and the whole front within
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+
+    /// Do not search: judge the plan with these arrivals at the key points, s, dwells counted
+    #[arg(long, value_name = "S,...", value_delimiter = ',', value_parser = time, allow_negative_numbers = true)]
+    pub times: Option<Vec<f64>>,
+
+    /// One JSON document with the front, as schemas/plan.v1.schema.json describes it
+    #[arg(long)]
+    pub json: bool,
+
+    /// Samples a second in the log
+    #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate)]
+    pub rate: f64,
+
+    /// How to search.
+    #[command(flatten)]
+    pub search: SearchArgs,
+
+    /// How to choose.
+    #[command(flatten)]
+    pub choice: ChoiceArgs,
+}
+
+/// How to search.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Searching")]
+pub struct SearchArgs {
+    /// Evaluations altogether [default: 20000]
+    #[arg(long, value_name = "N", group = "budget", value_parser = clap::value_parser!(u64).range(100..=1_000_000_000))]
+    pub evaluations: Option<u64>,
+
+    /// Generations of the evolution
+    #[arg(long, value_name = "N", group = "budget", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    pub generations: Option<u64>,
+
+    /// Seconds for the evolution; what it finds then depends on the machine
+    #[arg(long, value_name = "S", group = "budget", value_parser = seconds)]
+    pub time_budget: Option<Duration>,
+
+    /// Evolutionary algorithm
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "nsga3-fo",
+        ignore_case = true,
+        value_parser = PossibleValuesParser::new(CONTENDERS.map(|c| c.name))
+    )]
+    pub algorithm: String,
+
+    /// Start from descents and end with them (the default)
+    #[arg(long, overrides_with = "no_seeded")]
+    pub seeded: bool,
+
+    /// Start from random plans, as the paper does
+    #[arg(long, action = ArgAction::SetTrue)]
+    pub no_seeded: bool,
+
+    /// Members of the population; by default as the directions ask (92)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=100_000))]
+    pub population: Option<u32>,
+
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+}
+
+/// How to choose.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Choosing")]
+pub struct ChoiceArgs {
+    /// Rule; by default the task's weights, or the ideal
+    #[arg(long, value_enum, value_name = "RULE")]
+    pub choose: Option<RuleName>,
+
+    /// Weights of time, jerk and power, in place of the task's
+    #[arg(long, value_name = "T,J,P", value_parser = weights, conflicts_with = "choose")]
+    pub weights: Option<Weights>,
+}
+
+/// Rules by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum RuleName {
+    /// Least weighted sum, equal weights if there are none
+    Weights,
+    /// Nearest to the best of every objective
+    Ideal,
+    /// Where giving up a little costs most
+    Knee,
+    /// Least time
+    Fastest,
+    /// Least jerk
+    Smoothest,
+    /// Least power
+    Thriftiest,
+}
+
+impl PlanArgs {
+    /// The same for the library.
+    pub fn options(&self) -> Options {
+        let SearchArgs { evaluations, generations, time_budget, .. } = &self.search;
+        let default = Search::default();
+        let budget = match (evaluations, generations, time_budget) {
+            (Some(evaluations), _, _) => Budget::Evaluations(*evaluations),
+            (_, Some(generations), _) => Budget::Generations(*generations),
+            (_, _, Some(_)) => Budget::Observer,
+            _ => default.budget,
+        };
+        let rule = match self.choice.choose {
+            _ if self.choice.weights.is_some() => Some(Rule::Weights),
+            None => None,
+            Some(RuleName::Weights) => Some(Rule::Weights),
+            Some(RuleName::Ideal) => Some(Rule::Ideal),
+            Some(RuleName::Knee) => Some(Rule::Knee),
+            Some(RuleName::Fastest) => Some(Rule::Fastest),
+            Some(RuleName::Smoothest) => Some(Rule::Smoothest),
+            Some(RuleName::Thriftiest) => Some(Rule::Thriftiest),
+        };
+        Options {
+            search: Search {
+                algorithm: Contender::named(&self.search.algorithm)
+                    .map_or(default.algorithm, |c| c.algorithm),
+                seeded: !self.search.no_seeded,
+                budget,
+                population: self.search.population.map(|n| n as usize),
+                seed: self.search.seed,
+                ..default
+            },
+            rule,
+            weights: self.choice.weights,
+        }
+    }
+}
+
+fn number(text: &str, what: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("{text:?} is not {what}")),
+    }
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    number(text, "a time in seconds")
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    number(text, "a rate in hertz").and_then(|hz| {
+        if (1.0..=10_000.0).contains(&hz) { Ok(hz) } else { Err(format!("{hz} Hz is not within 1 to 10000")) }
+    })
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let s = number(text, "a time in seconds")?;
+    if (0.0..=1e6).contains(&s) {
+        Ok(Duration::from_secs_f64(s))
+    } else {
+        Err(format!("{s} s is not within 0 to 1e6"))
+    }
+}
+
+fn weights(text: &str) -> Result<Weights, String> {
+    let values = text.split(',').map(|part| number(part, "a weight")).collect::<Result<Vec<_>, _>>()?;
+    match values[..] {
+        [duration, rms_jerk, rms_power]
+            if values.iter().all(|w| *w >= 0.0) && values.iter().sum::<f64>() > 0.0 =>
+        {
+            Ok(Weights { duration, rms_jerk, rms_power })
+        }
+        _ => Err(format!("{text:?} is not three weights of zero or more, not all zero, such as 1,1,2")),
+    }
+}

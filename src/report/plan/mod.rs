@@ -1,0 +1,39 @@
+//! What was planned.
+
+mod document;
+mod tables;
+
+pub use document::{judged_json, plan_json};
+pub use tables::{broken_lines, ceiling_lines, judged_parts, plan_parts};
+
+use crate::{plan::Limit, units::degrees_from_radians};
+
+/// What people call a limited quantity.
+fn name(limit: Limit) -> &'static str {
+    match limit {
+        Limit::Position => "position",
+        Limit::Speed => "speed",
+        Limit::Acceleration => "acceleration",
+        Limit::Jerk => "jerk",
+        Limit::Torque => "torque",
+        Limit::RodSpeed => "rod speed",
+        Limit::RodForce => "rod force",
+        Limit::PumpFlow => "pump flow",
+        Limit::ToolSpeed => "tool speed",
+    }
+}
+
+/// A value of a limited quantity as people read it, with its unit.
+fn shown(limit: Limit, value: f64) -> String {
+    match limit {
+        Limit::Position => format!("{:.2} deg", degrees_from_radians(value)),
+        Limit::Speed => format!("{:.2} deg/s", degrees_from_radians(value)),
+        Limit::Acceleration => format!("{:.2} deg/s2", degrees_from_radians(value)),
+        Limit::Jerk => format!("{:.2} deg/s3", degrees_from_radians(value)),
+        Limit::Torque => format!("{value:.0} N m"),
+        Limit::RodSpeed => format!("{:.1} mm/s", value * 1e3),
+        Limit::RodForce => format!("{:.2} kN", value / 1e3),
+        Limit::PumpFlow => format!("{:.1} l/min", value * 6e4),
+        Limit::ToolSpeed => format!("{value:.3} m/s"),
+    }
+}

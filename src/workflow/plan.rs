@@ -1,0 +1,295 @@
+//! `plan`: from a task to a front of plans and the one to run, or from a time vector to its worth.
+
+use std::{
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+};
+
+use thiserror::Error;
+
+use crate::{
+    arm::{Arm, ArmError},
+    moea::indicator::hypervolume,
+    plan::{
+        Choice, Evaluator, Margin, NoChoice, Objectives, PlanError, Progress, Rule, Search, Setup, Timing,
+        choose, ends, search,
+    },
+    remark::Remarks,
+    task::{ArmSource, Task, TaskError, Weights},
+};
+
+/// What to plan, as read from a file.
+#[derive(Debug, Clone)]
+pub struct Order {
+    /// The task.
+    pub task: Task,
+    /// Its text, to go with the plan.
+    pub text: String,
+    /// The task on its arm.
+    pub setup: Setup,
+}
+
+impl Order {
+    /// Reads a task file and the arm that it names.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanFailure`] naming file and line.
+    pub fn read(path: &Path) -> Result<Self, PlanFailure> {
+        let text = read(path)?;
+        let named = |source| PlanFailure::Task { path: path.to_owned(), source };
+        let task = Task::parse(&text).map_err(named)?;
+        let arm = arm(&task.arm, path.parent().unwrap_or(Path::new("")))?;
+        let setup = Setup::new(&task, arm)
+            .map_err(|source| PlanFailure::Setup { path: path.to_owned(), source: Box::new(source) })?;
+        Ok(Self { task, text, setup })
+    }
+}
+
+/// The arm of a task; files lie beside the task's.
+fn arm(source: &ArmSource, folder: &Path) -> Result<Arm, PlanFailure> {
+    let ArmSource::File { urdf, hydraulics, tool } = source else { return Ok(Arm::sample()?) };
+    let text = read(&folder.join(urdf))?;
+    let Some(hydraulics) = hydraulics else {
+        return Ok(Arm::without_hydraulics((urdf, &text), tool.as_deref())?);
+    };
+    let cylinders = read(&folder.join(hydraulics))?;
+    Ok(Arm::new((urdf, &text), tool.as_deref(), (hydraulics, &cylinders))?)
+}
+
+fn read(path: &Path) -> Result<String, PlanFailure> {
+    std::fs::read_to_string(path).map_err(|source| PlanFailure::Read { path: path.to_owned(), source })
+}
+
+/// Why there is no plan.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PlanFailure {
+    /// A file cannot be read.
+    #[error("cannot read {}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file is no task.
+    #[error("{} is no task", path.display())]
+    Task {
+        /// The file.
+        path: PathBuf,
+        /// Line and reason.
+        source: TaskError,
+    },
+    /// The task does not fit its arm.
+    #[error("{} cannot be planned", path.display())]
+    Setup {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: Box<PlanError>,
+    },
+    /// The arm's files.
+    #[error("the arm cannot be read")]
+    Arm(#[from] ArmError),
+    /// Times or settings.
+    #[error(transparent)]
+    Plan(Box<PlanError>),
+    /// No timing keeps all limits; what the nearest one breaks.
+    #[error("no plan keeps all limits")]
+    Infeasible(Box<Judged>),
+    /// No plan keeps to the ceilings of the task.
+    #[error("no plan keeps to the ceilings of the task")]
+    Ceilings {
+        /// The nearest, which keeps all other limits.
+        nearest: Box<Judged>,
+        /// Its objectives by their ceilings, f1, f2, f3; 0 where there is none.
+        share: [f64; 3],
+    },
+}
+
+impl From<PlanError> for PlanFailure {
+    fn from(error: PlanError) -> Self {
+        Self::Plan(Box::new(error))
+    }
+}
+
+/// A plan, with all that can be said of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// Arrival at each key point, s, dwells counted.
+    pub times_s: Vec<f64>,
+    /// Time of movement from each key point to the next, s.
+    pub interval_s: Vec<f64>,
+    /// What it costs.
+    pub objectives: Objectives,
+    /// Sum of what it exceeds its limits by, as shares of them; 0 if all hold.
+    pub violation: f64,
+    /// Root mean square jerk by joint, rad/s³.
+    pub rms_jerk_rad_s3: Vec<f64>,
+    /// Root mean square power by joint, W.
+    pub rms_power_w: Vec<f64>,
+    /// Work that the joints do and take up, J.
+    pub energy_j: f64,
+    /// Every limit, with where the plan comes nearest to it.
+    pub margins: Vec<Margin>,
+}
+
+impl Judged {
+    /// Judges arrivals at the key points, s.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError`] if they are no times for this task.
+    pub fn of(setup: &Setup, times_s: &[f64]) -> Result<Self, PlanError> {
+        let motion = setup.motion(times_s)?;
+        let mut evaluator = Evaluator::new(setup);
+        let interval_s = setup.intervals_s(times_s)?;
+        // The motion above is of the same times, so there is one.
+        let objectives =
+            evaluator.evaluate(setup, &interval_s).unwrap_or(Objectives::from_array([f64::INFINITY; 3]));
+        let rms_jerk_rad_s3 = evaluator.rms_jerk_rad_s3().to_vec();
+        let (rms_power_w, energy_j) = (evaluator.rms_power_w(), evaluator.energy_j());
+        let margins = setup.margins(&motion, &mut evaluator);
+        let violation = margins.iter().map(|margin| excess(margin.share)).sum();
+        let times_s = times_s.to_vec();
+        Ok(Self {
+            times_s,
+            interval_s,
+            objectives,
+            violation,
+            rms_jerk_rad_s3,
+            rms_power_w,
+            energy_j,
+            margins,
+        })
+    }
+
+    /// Limits that are broken, the worst first.
+    pub fn broken(&self) -> Vec<&Margin> {
+        let mut broken: Vec<&Margin> = self.margins.iter().filter(|margin| margin.share > 1.0).collect();
+        broken.sort_by(|a, b| b.share.total_cmp(&a.share));
+        broken
+    }
+}
+
+/// How to plan.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Options {
+    /// How to search.
+    pub search: Search,
+    /// How to choose; by default the task's weights, or the plan nearest to the ideal.
+    pub rule: Option<Rule>,
+    /// Weights in place of the task's.
+    pub weights: Option<Weights>,
+}
+
+/// What was planned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planned {
+    /// Names of the joints, base first.
+    pub joints: Vec<String>,
+    /// Plans of which none is better than another in everything, fastest first.
+    pub front: Vec<Timing>,
+    /// Their arrivals at the key points, s.
+    pub times_s: Vec<Vec<f64>>,
+    /// Indices of the best in f1, f2 and f3: A, B and C.
+    pub ends: [usize; 3],
+    /// A, B and C with all that can be said of them.
+    pub best: [Judged; 3],
+    /// The plan to run.
+    pub chosen: Judged,
+    /// Why it.
+    pub choice: Choice,
+    /// Evaluations made, those of the choice too.
+    pub evaluations: u64,
+    /// Generations of the evolution.
+    pub generations: u64,
+    /// Share of the box between the best of each objective and `BEYOND` times the range of the front
+    /// that the front dominates.
+    pub hypervolume: f64,
+    /// Doubts about the task.
+    pub remarks: Remarks,
+}
+
+/// How far beyond the range of a front the hypervolume's reference point lies.
+pub const BEYOND: f64 = 1.1;
+
+/// Searches and chooses.
+///
+/// # Errors
+///
+/// [`PlanFailure`] if no plan keeps all limits, or none the ceilings, with what comes nearest.
+pub fn run(
+    order: &Order,
+    options: &Options,
+    observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Planned, PlanFailure> {
+    let Order { task, setup, .. } = order;
+    let found = search(setup, &options.search, observer)?;
+    let judged = |timing: &Timing| Judged::of(setup, &setup.times_s(&timing.interval_s));
+    let Some(ends) = ends(&found.front) else {
+        let nearest =
+            found.nearest.ok_or(PlanError::Times { found: 0, expected: setup.interval_count() + 1 })?;
+        return Err(PlanFailure::Infeasible(Box::new(judged(&nearest)?)));
+    };
+    let weights = options.weights.or(task.weights);
+    let rule = options.rule.unwrap_or(if weights.is_some() { Rule::Weights } else { Rule::Ideal });
+    let choice = match choose(setup, &found.front, &task.bounds, (rule, weights)) {
+        Ok(choice) => choice,
+        Err(NoChoice::Ceilings { nearest, share }) => {
+            return Err(PlanFailure::Ceilings { nearest: Box::new(judged(&nearest)?), share });
+        }
+        Err(NoChoice::Empty) => return Err(PlanError::Times { found: 0, expected: 1 }.into()),
+    };
+    let mut remarks = Remarks::default();
+    let largest = |k: usize| {
+        found.front.iter().map(|timing| timing.objectives.as_array()[k]).fold(0.0, |most: f64, f| most.max(f))
+    };
+    task.bounds.remark_inactive(largest(0), largest(1), largest(2), &mut remarks);
+    let [a, b, c] = ends;
+    let best = [judged(&found.front[a])?, judged(&found.front[b])?, judged(&found.front[c])?];
+    Ok(Planned {
+        joints: setup.joint_names(),
+        times_s: found.front.iter().map(|timing| setup.times_s(&timing.interval_s)).collect(),
+        ends,
+        best,
+        chosen: judged(&choice.timing)?,
+        evaluations: found.evaluations + choice.evaluations,
+        generations: found.generations,
+        hypervolume: Gauge::of(found.front.iter().map(|timing| timing.objectives.as_array()))
+            .measure(found.front.iter().map(|timing| timing.objectives.as_array())),
+        choice,
+        front: found.front,
+        remarks,
+    })
+}
+
+/// A box that hypervolumes are measured in, fixed by the first front seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gauge {
+    ideal: [f64; 3],
+    range: [f64; 3],
+}
+
+impl Gauge {
+    /// From the best of each objective to [`BEYOND`] times the range of these objectives.
+    pub fn of(front: impl Iterator<Item = [f64; 3]>) -> Self {
+        let (mut ideal, mut worst) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for f in front {
+            for k in 0..3 {
+                ideal[k] = ideal[k].min(f[k]);
+                worst[k] = worst[k].max(f[k]);
+            }
+        }
+        Self { ideal, range: std::array::from_fn(|k| (worst[k] - ideal[k]).max(f64::MIN_POSITIVE)) }
+    }
+
+    /// Share of the box that a front dominates.
+    pub fn measure(&self, front: impl Iterator<Item = [f64; 3]>) -> f64 {
+        let scaled: Vec<f64> = front
+            .flat_map(|f| (0..3).map(move |k| (f[k] - self.ideal[k]) / self.range[k] / BEYOND))
+            .collect();
+        hypervolume(&scaled, &[1.0; 3])
+    }
+}

@@ -1,0 +1,115 @@
+//! A plan as a log that any MCAP tool opens: the trajectory, the plan sample by sample, the task and
+//! the front as files within, and where it comes from.
+
+use std::collections::BTreeMap;
+
+use crate::{
+    log::{LogWriter, Point, Role, WriteError, WriteOptions},
+    plan::Setup,
+    spline::{Motion, Quantity, Samples},
+    units::NS_PER_S,
+};
+
+/// Stamp of the first sample, ns since 1970: no wall clock, so that equal plans give equal logs.
+pub const START_NS: i64 = 1_760_000_000_000_000_000;
+
+/// Name of the attached task.
+pub const TASK: &str = "task.toml";
+/// Name of the attached front.
+pub const FRONT: &str = "plan.json";
+/// Name of the metadata that say where a plan comes from.
+pub const PROVENANCE: &str = "hydrotrace.plan";
+
+/// Points of the trajectory a second; controllers interpolate between states that have speeds and
+/// accelerations.
+const TRAJECTORY_HZ: f64 = 25.0;
+
+/// What to write.
+#[derive(Debug, Clone)]
+pub struct PlanLog<'a> {
+    /// The task on its arm.
+    pub setup: &'a Setup,
+    /// Text of the task file.
+    pub task: &'a str,
+    /// The document on plan and front, JSON.
+    pub document: &'a str,
+    /// Where it comes from.
+    pub provenance: &'a BTreeMap<String, String>,
+    /// The motion.
+    pub motion: &'a Motion,
+    /// Samples a second.
+    pub rate_hz: f64,
+}
+
+impl PlanLog<'_> {
+    /// The bytes of the log.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`] for joint names that no log can hold.
+    pub fn bytes(&self) -> Result<Vec<u8>, WriteError> {
+        let mut log = LogWriter::new(Vec::new(), &self.setup.joint_names(), WriteOptions::default())?;
+        log.metadata(PROVENANCE, self.provenance)?;
+        let coarse = States::of(self.motion, instants(self.motion.duration_s(), TRAJECTORY_HZ));
+        log.trajectory(START_NS, &coarse.points().collect::<Vec<_>>())?;
+        let fine = States::of(self.motion, instants(self.motion.duration_s(), self.rate_hz));
+        for point in fine.points() {
+            let stamp_ns = START_NS + point.time_from_start_ns;
+            log.joint_sample(Role::Planned, stamp_ns, point.position_rad, point.velocity_rad_s, &[])?;
+        }
+        log.attach(TASK, "application/toml", self.task.as_bytes(), START_NS)?;
+        log.attach(FRONT, "application/json", self.document.as_bytes(), START_NS)?;
+        log.finish()
+    }
+}
+
+/// States of a motion, instant by instant.
+struct States {
+    t_s: Vec<f64>,
+    joints: usize,
+    /// Position, velocity and acceleration, each `[instant][joint]`.
+    values: [Vec<f64>; 3],
+}
+
+impl States {
+    fn of(motion: &Motion, t_s: Vec<f64>) -> Self {
+        let (joints, mut samples) = (motion.joints(), Samples::default());
+        motion.sample(&t_s, Quantity::Acceleration, &mut samples);
+        let values = [Quantity::Position, Quantity::Velocity, Quantity::Acceleration].map(|quantity| {
+            let at = |i: usize| (0..joints).map(move |joint| (joint, i));
+            (0..t_s.len()).flat_map(at).map(|(joint, i)| samples.of(quantity, joint)[i]).collect()
+        });
+        Self { t_s, joints, values }
+    }
+
+    fn points(&self) -> impl Iterator<Item = Point<'_>> {
+        self.t_s.iter().enumerate().map(|(i, t_s)| {
+            let own = i * self.joints..(i + 1) * self.joints;
+            let [position, velocity, acceleration] = &self.values;
+            Point {
+                position_rad: &position[own.clone()],
+                velocity_rad_s: &velocity[own.clone()],
+                acceleration_rad_s2: &acceleration[own.clone()],
+                effort_n_m: &[],
+                time_from_start_ns: nanoseconds(*t_s),
+            }
+        })
+    }
+}
+
+/// Even instants from the start to the end, both included, s.
+fn instants(duration_s: f64, rate_hz: f64) -> Vec<f64> {
+    let mut t_s = Vec::new();
+    let mut next_s = 0.0;
+    while next_s < duration_s - 1e-9 {
+        t_s.push(next_s);
+        next_s = t_s.len() as f64 / rate_hz;
+    }
+    t_s.push(duration_s);
+    t_s
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a plan lasts an hour at most")]
+fn nanoseconds(t_s: f64) -> i64 {
+    (t_s * NS_PER_S).round() as i64
+}
