@@ -12,7 +12,7 @@ use crate::{
     moea::indicator::hypervolume,
     plan::{
         Choice, Evaluator, Margin, NoChoice, Objectives, PlanError, Progress, Rule, Search, Setup, Timing,
-        choose, ends, search,
+        choose, ends, excess, search,
     },
     remark::Remarks,
     task::{ArmSource, Task, TaskError, Weights},
