@@ -232,3 +232,55 @@ fn update(hessian: &mut [f64], step: &[f64], change: &[f64]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{arm::Arm, task::Task};
+
+    fn task_1() -> Setup {
+        let task = Task::parse(include_str!("../../sample-logs/tasks/task-1.toml")).unwrap();
+        Setup::new(&task, Arm::sample().unwrap()).unwrap()
+    }
+
+    const QUICK: Goal = Goal {
+        merit: Merit::Logarithms([1.0, 0.0, 0.0]),
+        ceilings: FREE,
+        evaluations: 1000,
+        trust: FAR_OFF,
+        enough: FINE,
+    };
+
+    #[test]
+    fn every_start_leads_to_one_fastest_plan_and_no_limit_is_broken_there() {
+        let setup = task_1();
+        let mut evaluator = Evaluator::new(&setup);
+        let mut durations_s = Vec::new();
+        for start_s in [[1.0; 5], [3.0; 5], [10.0; 5], [1.5, 5.0, 2.0, 6.0, 1.5]] {
+            let end = descend(&setup, &mut evaluator, &start_s, &QUICK);
+            assert!(end.settled, "from {start_s:?}");
+            let timing = end.timing.unwrap();
+            assert!(timing.violation < 1e-5, "{}", timing.violation);
+            durations_s.push(timing.objectives.duration_s);
+        }
+        for duration_s in &durations_s {
+            assert!((duration_s - 12.42065).abs() < 1e-3, "{durations_s:?}");
+        }
+    }
+
+    #[test]
+    fn a_descent_keeps_its_ceilings_and_its_budget() {
+        let setup = task_1();
+        let mut evaluator = Evaluator::new(&setup);
+        let goal = Goal {
+            merit: Merit::Logarithms([0.0, 1.0, 0.0]),
+            ceilings: [30.0, f64::INFINITY, f64::INFINITY],
+            evaluations: 60,
+            ..QUICK
+        };
+        let end = descend(&setup, &mut evaluator, &[5.0; 5], &goal);
+        assert!(end.evaluations <= 60);
+        let objectives = end.timing.unwrap().objectives;
+        assert!((objectives.duration_s - 30.0).abs() < 1e-3, "{objectives:?}");
+    }
+}

@@ -238,3 +238,28 @@ pub(super) fn vertex([(t0, a), (t1, b), (t2, c)]: [(f64, f64); 3]) -> (f64, f64)
     let step = (-0.5 * slope / bend).clamp(t0 - t1, t2 - t1);
     (t1 + step, b + step * (slope + step * bend))
 }
+
+#[cfg(test)]
+#[expect(clippy::float_cmp, reason = "exact by construction")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_vertex_of_a_parabola_is_found_and_never_left_of_or_right_of_its_points() {
+        let parabola = |t: f64| 3.0 - 2.0 * (t - 0.4) * (t - 0.4);
+        let at = |t: f64| (t, parabola(t));
+        let (t, peak) = vertex([at(0.1), at(0.5), at(0.8)]);
+        assert!((t - 0.4).abs() < 1e-12 && (peak - 3.0).abs() < 1e-12);
+        assert_eq!(vertex([(0.0, 1.0), (1.0, 2.0), (2.0, 4.0)]), (1.0, 2.0));
+    }
+
+    #[test]
+    fn a_blend_is_the_node_below_and_the_peak_above_and_continuous_between() {
+        let peak = |coarse: f64| blend(coarse, || coarse * 1.01);
+        assert_eq!(peak(0.8), 0.8);
+        assert_eq!(peak(1.0), 1.01);
+        assert_eq!(peak(2.5), 2.5);
+        let steps = (0..3000).map(|i| peak(0.7 + f64::from(i) * 1e-3)).collect::<Vec<_>>();
+        assert!(steps.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 1.3e-3));
+    }
+}

@@ -95,3 +95,40 @@ impl Columns {
         CscMatrix::new(rows, columns, self.start, self.row, self.value)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Least of 1/2 |d - (2, 1)|².
+    fn towards(constraint: &[f64], jacobian: &[f64], bound: f64) -> Solution {
+        let step = Step {
+            hessian: &[1.0, 0.0, 0.0, 1.0],
+            gradient: &[-2.0, -1.0],
+            constraint,
+            jacobian,
+            bounds: &[(-bound, bound); 2],
+        };
+        step.solve().unwrap()
+    }
+
+    #[test]
+    fn a_step_stops_at_the_box_and_at_constraints_whose_multipliers_are_the_slope_left() {
+        let free = towards(&[], &[], 5.0);
+        assert!((free.step[0] - 2.0).abs() < 1e-6 && (free.step[1] - 1.0).abs() < 1e-6);
+        let boxed = towards(&[], &[], 0.5);
+        assert!((boxed.step[0] - 0.5).abs() < 1e-6 && (boxed.step[1] - 0.5).abs() < 1e-6);
+        // d0 <= 1.
+        let held = towards(&[-1.0], &[1.0, 0.0], 5.0);
+        assert!((held.step[0] - 1.0).abs() < 1e-6 && (held.step[1] - 1.0).abs() < 1e-6);
+        assert!((held.multiplier[0] - 1.0).abs() < 1e-5 && held.broken < 1e-6);
+    }
+
+    #[test]
+    fn constraints_that_contradict_each_other_are_broken_as_little_as_possible() {
+        // d0 <= -1 and d0 >= 1.
+        let torn = towards(&[1.0, 1.0], &[1.0, 0.0, -1.0, 0.0], 5.0);
+        assert!((torn.broken - 1.0).abs() < 1e-3, "{}", torn.broken);
+        assert!(torn.step[0].abs() < 1e-2);
+    }
+}
