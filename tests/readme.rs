@@ -41,27 +41,29 @@ fn agree(shown: &[String], printed: &[String]) -> bool {
     }
 }
 
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            std::fs::copy(&path, target).unwrap();
+        }
+    }
+}
+
 #[test]
 fn every_command_prints_what_is_shown() {
     let folder = tempfile::tempdir().unwrap();
+    // Outputs go to a scratch folder that sees the sample logs.
+    copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs"), &folder.path().join("sample-logs"));
     let examples = examples(&readme());
     assert!(examples.len() >= 5, "only {} commands found", examples.len());
     for (command, shown) in examples {
         let words: Vec<&str> = command.split_whitespace().collect();
         assert_eq!(words[0], "hydrotrace", "{command}");
-        // Outputs go to a scratch folder that sees the sample logs.
-        let link = folder.path().join("sample-logs");
-        if !link.exists() {
-            std::fs::create_dir(&link).unwrap();
-            for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs")).unwrap()
-            {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    continue;
-                }
-                std::fs::copy(&path, link.join(path.file_name().unwrap())).unwrap();
-            }
-        }
         let run = Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
             .current_dir(folder.path())
             .args(&words[1..])
