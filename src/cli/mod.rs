@@ -7,6 +7,7 @@ mod output;
 mod plan;
 mod recover;
 mod report;
+mod simulate;
 
 use std::io::Write;
 
@@ -18,7 +19,7 @@ use crate::{
     atomic::AtomicError,
     log::{LogError, WriteError},
     moea::MoeaError,
-    workflow::plan::PlanFailure,
+    workflow::{plan::PlanFailure, simulate_log::SimulateFailure},
 };
 
 /// How a run that did not fail ended.
@@ -45,6 +46,8 @@ enum CliError {
     Picture(#[source] Box<dyn std::error::Error + Send + Sync>),
     #[error(transparent)]
     Plan(#[from] PlanFailure),
+    #[error(transparent)]
+    Simulate(#[from] SimulateFailure),
     #[error("{failure}; what comes nearest:\n  {}", lines.join("\n  "))]
     NoPlan { failure: String, lines: Vec<String> },
     #[error("the plan cannot be logged")]
@@ -63,6 +66,7 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
     let result = match &args.command {
         Command::Report(report) => report::run(report, out, err),
         Command::Plan(plan) => plan::run(plan, out, err),
+        Command::Simulate(simulate) => simulate::run(simulate, out),
         Command::Info(info) => info::run(info, out, err),
         Command::Recover(recover) => recover::run(recover, out, err),
         Command::Bench(bench) => bench::run(bench, out),

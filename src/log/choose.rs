@@ -83,6 +83,18 @@ pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Cho
     Ok(Choice { planned, measured, why, rivals })
 }
 
+/// The plan alone, of a log that need not hold a measurement.
+pub(super) fn choose_plan(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
+    let planned = candidates(extracted, &options.planned, Role::Planned)?;
+    let Some(first) = planned.first() else {
+        return Err(LogError::Missing { missing: "planned", present: present(extracted), flag: "--planned" });
+    };
+    let explicit = !options.planned.is_empty();
+    let chosen = cover(planned.iter().filter(|c| explicit || c.rank == first.rank), None, Some(first));
+    let why = why(extracted, options, &chosen, &[]);
+    Ok(Choice { planned: chosen, measured: Vec::new(), why, rivals: Vec::new() })
+}
+
 /// Leading parts of their names that two topics share.
 fn shared_namespace(a: &str, b: &str) -> usize {
     namespace(a).zip(namespace(b)).take_while(|(a, b)| a == b).count()

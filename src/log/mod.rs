@@ -24,7 +24,8 @@ mod write;
 pub use error::LogError;
 pub use read::{Attachment, FileInfo};
 pub use recording::{
-    ReadOptions, Recording, SourceInfo, Survey, TimeBase, TopicInfo, read_recording, survey, survey_bytes,
+    ReadOptions, Recording, SourceInfo, Survey, TimeBase, TopicInfo, read_plan, read_recording, survey,
+    survey_bytes,
 };
 pub use recover::{Recovered, recover};
 pub use source::Selector;

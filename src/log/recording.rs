@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::{
     Attachment, FileInfo, LogError, Selector,
     assemble::assemble,
-    choose::{Choice, choose, topic_infos},
+    choose::{Choice, choose, choose_plan, topic_infos},
     read::{Extracted, extract, extract_bytes},
     source,
 };
@@ -152,6 +152,21 @@ fn selectors(options: &ReadOptions) -> Vec<(source::Role, Selector)> {
 pub fn read_recording(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, LogError> {
     let extracted = extract(paths, &selectors(options), &options.joints)?;
     recording(extracted, options)
+}
+
+/// Reads planned joints alone, of a log that need not hold a measurement; that is then empty. With
+/// [`ReadOptions::planned`] it reads any topic as if it were a plan, such as a command.
+///
+/// # Errors
+///
+/// [`LogError`] if a file is no log, or no planned joints are found in it.
+pub fn read_plan(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, LogError> {
+    let mut extracted = extract(paths, &selectors(options), &options.joints)?;
+    let doubts = std::mem::take(&mut extracted.remarks);
+    let choice = choose_plan(&extracted, options)?;
+    let recording = assemble(extracted, &choice, options)?;
+    // That nothing was measured is no doubt here.
+    Ok(Recording { remarks: doubts, ..recording })
 }
 
 /// Lists what is in a log and what a report would use.

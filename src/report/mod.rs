@@ -10,6 +10,7 @@ mod moea;
 mod plan;
 mod recover;
 mod score;
+mod simulate;
 mod tables;
 
 pub use csv::transitions_csv;
@@ -20,6 +21,7 @@ pub use moea::{curve_svg, curves_csv, front_csv, moea_json, moea_parts};
 pub use plan::{broken_lines, ceiling_lines, judged_json, judged_parts, plan_json, plan_parts};
 pub use recover::{recovered_json, recovered_parts};
 pub use score::{score_json, score_parts};
+pub use simulate::simulated_line;
 pub use tables::{gate_lines, report_parts};
 
 use crate::units::degrees_from_radians;

@@ -8,3 +8,4 @@ pub mod plan_log;
 pub mod recover;
 pub mod report;
 pub mod simulate;
+pub mod simulate_log;

@@ -39,16 +39,20 @@ impl Order {
         let text = read(path)?;
         let named = |source| PlanFailure::Task { path: path.to_owned(), source };
         let task = Task::parse(&text).map_err(named)?;
-        let arm = arm(&task.arm, path.parent().unwrap_or(Path::new("")))?;
+        let arm = arm_of(&task, path.parent().unwrap_or(Path::new("")))?;
         let setup = Setup::new(&task, arm)
             .map_err(|source| PlanFailure::Setup { path: path.to_owned(), source: Box::new(source) })?;
         Ok(Self { task, text, setup })
     }
 }
 
-/// The arm of a task; files lie beside the task's.
-fn arm(source: &ArmSource, folder: &Path) -> Result<Arm, PlanFailure> {
-    let ArmSource::File { urdf, hydraulics, tool } = source else { return Ok(Arm::sample()?) };
+/// The arm of a task whose files lie in a folder.
+///
+/// # Errors
+///
+/// [`PlanFailure`] naming the file.
+pub fn arm_of(task: &Task, folder: &Path) -> Result<Arm, PlanFailure> {
+    let ArmSource::File { urdf, hydraulics, tool } = &task.arm else { return Ok(Arm::sample()?) };
     let text = read(&folder.join(urdf))?;
     let Some(hydraulics) = hydraulics else {
         return Ok(Arm::without_hydraulics((urdf, &text), tool.as_deref())?);

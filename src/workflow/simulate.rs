@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    log::{LogWriter, Role, WriteError, WriteOptions},
+    log::{Attachment, LogWriter, Role, WriteError, WriteOptions},
     plant::{JointRecord, PayloadChange, Plant, PlantError, Record, Truth, simulate},
     series::{Series, Track},
     units::NS_PER_S,
@@ -88,6 +88,15 @@ impl Outputs {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn log(&self) -> Result<Vec<u8>, WriteError> {
+        self.log_with(&[])
+    }
+
+    /// As [`Outputs::log`], with files.
+    ///
+    /// # Errors
+    ///
+    /// As [`Outputs::log`].
+    pub fn log_with(&self, files: &[Attachment]) -> Result<Vec<u8>, WriteError> {
         let names: Vec<&str> = self.record.joints.iter().map(|joint| joint.name.as_str()).collect();
         let mut log = LogWriter::new(Vec::new(), &names, WriteOptions::default())?;
         let truth = serde_json::to_string(&self.truth).unwrap_or_default();
@@ -118,6 +127,9 @@ impl Outputs {
                     ("spool", &column(|j| &j.spool)),
                 ],
             )?;
+        }
+        for file in files {
+            log.attach(&file.name, &file.media_type, &file.data, START_NS)?;
         }
         log.finish()
     }

@@ -3,6 +3,7 @@
 mod bench;
 mod moea;
 mod plan;
+mod simulate;
 
 use std::path::PathBuf;
 
@@ -11,6 +12,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 pub use bench::{Bench, BenchArgs, DetectorArgs};
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
+pub use simulate::SimulateArgs;
 
 use crate::{
     log::{ReadOptions, Selector, TimeBase},
@@ -52,6 +54,10 @@ pub enum Command {
                             hydrotrace plan task.toml --json --evaluations 100000 > plan.json"
     )]
     Plan(PlanArgs),
+    /// Run a plan on a simulated hydraulic arm
+    #[command(after_help = "Examples:\n  hydrotrace simulate plan.mcap -o run.mcap\n  \
+                            hydrotrace simulate plan.mcap -o run.mcap --plant lag-limited --seed 7")]
+    Simulate(SimulateArgs),
     /// What is in a log, what a report would use, and whether it is damaged
     Info(InfoArgs),
     /// Save everything that is whole in a damaged log

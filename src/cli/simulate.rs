@@ -1,0 +1,35 @@
+//! `simulate`: runs a plan on a simulated machine and writes the log of the run.
+
+use std::{io::Write, path::Path};
+
+use super::{
+    CliError, Outcome,
+    args::SimulateArgs,
+    output::{deliver, spare_inputs},
+};
+use crate::{
+    atomic::write_atomically,
+    plant::{Parameters, PlantError},
+    report::simulated_line,
+    workflow::simulate_log::{SimulateFailure, simulate},
+};
+
+pub(super) fn run(args: &SimulateArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
+    spare_inputs(Some(&args.output), std::slice::from_ref(&args.log))?;
+    let run = simulate(&args.log, parameters(&args.plant).map_err(SimulateFailure::from)?, args.seed)?;
+    let bytes = run.log()?;
+    write_atomically(&args.output, |file| Ok::<(), CliError>(file.write_all(&bytes)?))?;
+    deliver(&simulated_line(&run, &args.plant, args.seed, &args.output), None, out)?;
+    Ok(Outcome::Clean)
+}
+
+/// A preset by its name, else a file.
+fn parameters(plant: &str) -> Result<Parameters, PlantError> {
+    let named = Parameters::preset_names().any(|name| name == plant);
+    // What is neither a preset nor a file is more likely a misspelt preset.
+    if named || !Path::new(plant).exists() {
+        Parameters::preset(plant)
+    } else {
+        Parameters::read(Path::new(plant))
+    }
+}
