@@ -173,6 +173,18 @@ impl Evaluator {
                 });
             }
         }
+        // At the ends of a segment, which no node reaches, the value is that of the outer control point.
+        for (range, segment) in self.mesh.segment.iter().zip(self.motion.segments()) {
+            let control = segment.spline.control(joint, quantity);
+            for (instant, value) in
+                [(range.start, control.first()), (range.end.saturating_sub(1), control.last())]
+            {
+                let Some(value) = value else { continue };
+                let (share, piece) = ((value - middle) / allowed, instant / LANES);
+                peaks[2 * piece] = peaks[2 * piece].max(share);
+                peaks[2 * piece + 1] = peaks[2 * piece + 1].max(-share);
+            }
+        }
     }
 
     /// The greatest (or least) value between the neighbours of a node.

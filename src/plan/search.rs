@@ -77,6 +77,9 @@ pub struct Found {
     pub evaluations: u64,
     /// Generations of the evolution, the first population included.
     pub generations: u64,
+    /// Whether more evaluations would find a faster plan than the fastest, as far as its descent can
+    /// tell; `None` without descents.
+    pub hasty: Option<bool>,
 }
 
 /// Hundredths of the budget for descents from the plans found.
@@ -139,6 +142,7 @@ pub fn search(
             population: progress.archive.map_or(progress.population, Archive::population),
         })
     })?;
+    let hasty = search.seeded.then_some(seeds.hasty);
     let mut evaluations = used + outcome.evaluations;
     let evolved = timings(outcome.archive.as_ref().unwrap_or(&outcome.population));
     let mut front = if search.seeded {
@@ -163,7 +167,7 @@ pub fn search(
         let members = (0..outcome.population.len()).map(|i| timing(&outcome.population, i));
         nearest(setup, least_broken(members.chain(initial))?)
     });
-    Ok(Found { front, nearest: nearest.flatten(), evaluations, generations: outcome.generations })
+    Ok(Found { front, nearest: nearest.flatten(), evaluations, generations: outcome.generations, hasty })
 }
 
 /// The plan that breaks its limits least, near one that breaks them.

@@ -23,6 +23,9 @@ const FASTEST: u64 = 8;
 const DESCENTS: u64 = 22;
 const ENDS: u64 = 3;
 const BETWEEN: u64 = 16;
+/// Steps that a descent on a curve is worth starting with; the fewest durations of a curve.
+const STEPS: u64 = 2;
+const FEWEST: usize = 3;
 /// More than this between the curves fill the front no better.
 const MOST_BETWEEN: u64 = 800;
 
@@ -34,15 +37,22 @@ pub(super) struct Seeds {
     /// Where others ended, and what lies between.
     pub(super) rough: Vec<Timing>,
     pub(super) evaluations: u64,
+    /// Whether the descent to the fastest plan had more to gain when its evaluations were used up.
+    pub(super) hasty: bool,
 }
 
 /// Seeds for a search of `budget` evaluations, of which they take about a third.
 pub(super) fn seeds(setup: &Setup, budget: u64) -> Seeds {
     let share = |hundredths: u64| budget / 100 * hundredths;
+    let step = setup.interval_count() as u64 + 2;
     let mut seeds = Seeds::default();
     let mut evaluator = Evaluator::new(setup);
     let Some(fastest) = seeds.fastest(setup, &mut evaluator, share(FASTEST)) else { return seeds };
-    let durations_s = durations(setup, &fastest);
+    let mut durations_s = durations(setup, &fastest);
+    let few = |durations: usize| share(DESCENTS) < STEPS * step * (CURVES.len() * durations) as u64;
+    while durations_s.len() > FEWEST && few(durations_s.len()) {
+        durations_s = durations_s.into_iter().step_by(2).collect();
+    }
     let most = share(DESCENTS) / (CURVES.len() * durations_s.len()).max(1) as u64;
     let curves: Vec<Vec<Descended>> =
         CURVES.par_iter().map(|&power| curve(setup, &fastest, &durations_s, power, most)).collect();
@@ -96,14 +106,26 @@ impl Seeds {
             trust: FAR_OFF,
             enough: FINE,
         };
-        let from_even = self.descend(setup, evaluator, &even, &goal(evaluations / 3));
+        let from_even = descend(setup, evaluator, &even, &goal(evaluations / 3));
         let from_shape =
-            shape.and_then(|shape| self.descend(setup, evaluator, &shape.interval_s, &goal(evaluations / 2)));
-        let key = |timing: &Timing| (timing.violation, timing.objectives.duration_s);
-        from_even.into_iter().chain(from_shape).min_by(|a, b| {
+            shape.map(|shape| descend(setup, evaluator, &shape.interval_s, &goal(evaluations / 2)));
+        let ends = std::iter::once(from_even).chain(from_shape).filter(|end| end.timing.is_some());
+        let key = |end: &Descended| {
+            end.timing.as_ref().map_or((f64::INFINITY, f64::INFINITY), |timing| {
+                (timing.violation, timing.objectives.duration_s)
+            })
+        };
+        let ends: Vec<Descended> = ends.collect();
+        let best = ends.iter().min_by(|a, b| {
             let (a, b) = (key(a), key(b));
             a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
-        })
+        });
+        self.hasty = best.is_none_or(|best| !best.settled);
+        let fastest = best.and_then(|best| best.timing.clone());
+        for end in ends {
+            self.take(end);
+        }
+        fastest
     }
 
     fn descend(

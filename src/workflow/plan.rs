@@ -209,6 +209,8 @@ pub struct Planned {
     pub evaluations: u64,
     /// Generations of the evolution.
     pub generations: u64,
+    /// Whether more evaluations would find a faster plan than the fastest; `None` without descents.
+    pub hasty: Option<bool>,
     /// Share of the box between the best of each objective and `BEYOND` times the range of the front
     /// that the front dominates.
     pub hypervolume: f64,
@@ -261,6 +263,7 @@ pub fn run(
         chosen: judged(&choice.timing)?,
         evaluations: found.evaluations + choice.evaluations,
         generations: found.generations,
+        hasty: found.hasty,
         hypervolume: Gauge::of(found.front.iter().map(|timing| timing.objectives.as_array()))
             .measure(found.front.iter().map(|timing| timing.objectives.as_array())),
         choice,

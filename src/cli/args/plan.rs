@@ -48,7 +48,7 @@ pub struct PlanArgs {
 #[command(next_help_heading = "Searching")]
 pub struct SearchArgs {
     /// Evaluations altogether [default: 20000]
-    #[arg(long, value_name = "N", group = "budget", value_parser = clap::value_parser!(u64).range(100..=1_000_000_000))]
+    #[arg(long, value_name = "N", group = "budget", value_parser = clap::value_parser!(u64).range(500..=1_000_000_000))]
     pub evaluations: Option<u64>,
 
     /// Generations of the evolution

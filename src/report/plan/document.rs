@@ -34,6 +34,8 @@ pub(super) struct Document<'a> {
     evaluations: u64,
     /// Generations of the evolution.
     generations: Option<u64>,
+    /// Whether more evaluations would find a faster plan than the fastest; null without descents.
+    hasty: Option<bool>,
     /// Share of the box between the best of each objective and 1.1 times the front's range that the
     /// front dominates.
     hypervolume: Option<f64>,
@@ -144,6 +146,7 @@ pub fn plan_json(title: &str, algorithm: &str, options: &Options, planned: &Plan
         seed: Some(options.search.seed),
         evaluations: planned.evaluations,
         generations: Some(planned.generations),
+        hasty: planned.hasty,
         hypervolume: Some(planned.hypervolume),
         front: plans.map(|(plan, times_s)| entry(times_s, plan.objectives, plan.violation)).collect(),
         best: Some(planned.ends),
@@ -170,6 +173,7 @@ pub fn judged_json(title: &str, joints: &[String], judged: &Judged, feasible: bo
         seed: None,
         evaluations: 1,
         generations: None,
+        hasty: None,
         hypervolume: None,
         front: if feasible {
             vec![entry(&judged.times_s, judged.objectives, judged.violation)]

@@ -45,6 +45,13 @@ pub fn plan_parts(
         left: 2,
         rows: named.map(|(name, judged)| row(name, judged, &planned.joints)).to_vec(),
     }));
+    if planned.hasty == Some(true) {
+        parts.push(Part::Line(
+            "The fastest plan was still getting faster when its share of the evaluations was used up: give more with \
+             --evaluations."
+                .into(),
+        ));
+    }
     parts.push(Part::Heading("The chosen plan".into()));
     parts.push(Part::Line(reason(bounds, planned)));
     parts.extend(margin_parts(&planned.chosen, &planned.joints));
