@@ -18,7 +18,7 @@ use crate::{
     atomic::AtomicError,
     log::{LogError, WriteError},
     moea::MoeaError,
-    workflow::plan::PlanFailure,
+    workflow::{contest::ContestFailure, plan::PlanFailure},
 };
 
 /// How a run that did not fail ended.
@@ -47,6 +47,8 @@ enum CliError {
     Plan(#[from] PlanFailure),
     #[error("{failure}; what comes nearest:\n  {}", lines.join("\n  "))]
     NoPlan { failure: String, lines: Vec<String> },
+    #[error(transparent)]
+    Contest(#[from] ContestFailure),
     #[error("the plan cannot be logged")]
     Write(#[from] WriteError),
     #[error("{} is what is read; give another name to --output", .0.display())]
