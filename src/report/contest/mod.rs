@@ -26,7 +26,7 @@ fn notes(inputs: &Inputs) -> Vec<String> {
         format!(
             "{}; a run of its own for every budget. All but `seeded` start from random plans and get no descent, as \
              the paper's; `seeded` is what `hydrotrace plan` does: descents, then NSGA-III-FO, then descents, all \
-             counted as evaluations.",
+             counted as evaluations; in parentheses the evaluations made where they are not those asked for.",
             seeds(inputs.first_seed, inputs.seeds)
         ),
         format!(

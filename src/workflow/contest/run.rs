@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     moea::{Algorithm, Archive, Budget, MoeaError, Population, Settings, optimise, silent},
-    plan::{Found, Search, Setup, Timing, search},
+    plan::{Found, Phase, Search, Setup, Timing, search},
     workflow::{
         plan::Gauge,
         sample::{Watch, quartiles},
@@ -152,8 +152,18 @@ fn one(batch: &Batch<'_>, seed: u64, steps: u64) -> Result<Run, ContestFailure> 
     };
     let settings = Search { algorithm, budget, seed, ..Search::default() };
     let (population, all, made) = if seeded {
+        // The evolution shows its own archive alone, which begins with a part of the seeds.
+        let mut seeds = Population::with_capacity(setup.interval_count(), 3, 0);
         let found = search(setup, &settings, |progress| {
-            see(progress.evaluations, progress.population, progress.population)
+            let mut all = progress.population.clone();
+            match progress.phase {
+                Phase::Start => seeds = all.clone(),
+                Phase::Evolution => {
+                    (0..seeds.len()).for_each(|i| all.push(seeds.x(i), seeds.f(i), seeds.violation(i)));
+                }
+                Phase::Polish => {}
+            }
+            see(progress.evaluations, &all, &all)
         })?;
         let mut front = Population::with_capacity(setup.interval_count(), 3, found.front.len());
         for timing in &found.front {
