@@ -19,7 +19,7 @@ use crate::{
     atomic::AtomicError,
     log::{LogError, WriteError},
     moea::MoeaError,
-    workflow::{plan::PlanFailure, simulate_log::SimulateFailure},
+    workflow::{contest::ContestFailure, plan::PlanFailure, simulate_log::SimulateFailure},
 };
 
 /// How a run that did not fail ended.
@@ -50,6 +50,8 @@ enum CliError {
     Simulate(#[from] SimulateFailure),
     #[error("{failure}; what comes nearest:\n  {}", lines.join("\n  "))]
     NoPlan { failure: String, lines: Vec<String> },
+    #[error(transparent)]
+    Contest(#[from] ContestFailure),
     #[error("the plan cannot be logged")]
     Write(#[from] WriteError),
     #[error("{} is what is read; give another name to --output", .0.display())]

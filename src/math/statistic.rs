@@ -17,7 +17,8 @@ pub fn quantile(mut values: Vec<f64>, p: f64) -> f64 {
     };
     let (_, &mut low, above) = values.select_nth_unstable_by(below, f64::total_cmp);
     let high = above.iter().copied().min_by(f64::total_cmp).unwrap_or(low);
-    low + part * (high - low)
+    // With nothing of the way to go, an infinite next value is none.
+    if part > 0.0 { low + part * (high - low) } else { low }
 }
 
 /// The order statistic below the `p` quantile of `n` values, and the part of the way to the next.

@@ -1,18 +1,22 @@
 //! Renders what a workflow found: text, Markdown, JSON, CSV. Nothing is computed here; degrees
 //! and milliseconds are.
 
+mod contest;
 mod csv;
 mod info;
 mod json;
 mod markup;
 mod method;
 mod moea;
+mod picture;
 mod plan;
 mod recover;
+mod sample;
 mod score;
 mod simulate;
 mod tables;
 
+pub use contest::{contest_csv, contest_json, contest_parts, contest_svg};
 pub use csv::transitions_csv;
 pub use info::{info_json, info_parts};
 pub use json::report_json;

@@ -1,5 +1,6 @@
 //! One file per verb: what the caller wants in, what was found out. No printing, no clap.
 
+pub mod contest;
 pub mod detector;
 pub mod info;
 pub mod moea;
@@ -7,5 +8,6 @@ pub mod plan;
 pub mod plan_log;
 pub mod recover;
 pub mod report;
+mod sample;
 pub mod simulate;
 pub mod simulate_log;

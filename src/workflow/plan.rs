@@ -36,7 +36,15 @@ impl Order {
     ///
     /// [`PlanFailure`] naming file and line.
     pub fn read(path: &Path) -> Result<Self, PlanFailure> {
-        let text = read(path)?;
+        Self::parse(path, read(path)?)
+    }
+
+    /// Takes a task file's text; reads the arm that it names, from beside `path`.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanFailure`] naming file and line.
+    pub fn parse(path: &Path, text: String) -> Result<Self, PlanFailure> {
         let named = |source| PlanFailure::Task { path: path.to_owned(), source };
         let task = Task::parse(&text).map_err(named)?;
         let arm = arm_of(&task, path.parent().unwrap_or(Path::new("")))?;
@@ -290,6 +298,16 @@ impl Gauge {
             }
         }
         Self { ideal, range: std::array::from_fn(|k| (worst[k] - ideal[k]).max(f64::MIN_POSITIVE)) }
+    }
+
+    /// The corner of the best.
+    pub fn ideal(&self) -> [f64; 3] {
+        self.ideal
+    }
+
+    /// The corner that hypervolumes are measured from.
+    pub fn reference_point(&self) -> [f64; 3] {
+        std::array::from_fn(|k| self.ideal[k] + BEYOND * self.range[k])
     }
 
     /// Share of the box that a front dominates.

@@ -2,7 +2,7 @@
 
 use clap::Subcommand;
 
-use super::MoeaArgs;
+use super::{ContestArgs, MoeaArgs};
 
 /// Arguments of `bench`.
 #[derive(Debug, clap::Args)]
@@ -22,6 +22,11 @@ pub enum Bench {
                             hydrotrace bench moea --problem DTLZ1,DTLZ3 --algorithm nsga3-fo,nsga3 --evaluations 5000\n  \
                             hydrotrace bench moea --problem WFG3 --curves curves --front fronts")]
     Moea(MoeaArgs),
+    /// What the algorithms reach on tasks of the arm, and the paper's plans beside ours
+    #[command(after_help = "Examples:\n  hydrotrace bench plan --seeds 31\n  \
+                            hydrotrace bench plan --task task-1 --algorithm nsga3-fo,nsga3 --evaluations 2000 --curves curves\n  \
+                            hydrotrace bench plan --task my-task.toml --json > my-task.json")]
+    Plan(ContestArgs),
 }
 
 /// Arguments of `bench detector`.

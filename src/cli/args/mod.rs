@@ -1,6 +1,7 @@
 //! Clap definitions only. Degrees and milliseconds are accepted here and turned into SI here.
 
 mod bench;
+mod contest;
 mod moea;
 mod plan;
 mod simulate;
@@ -10,6 +11,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand, ValueEnum};
 
 pub use bench::{Bench, BenchArgs, DetectorArgs};
+pub use contest::ContestArgs;
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
 pub use simulate::SimulateArgs;

@@ -128,7 +128,7 @@ impl MoeaArgs {
 }
 
 /// Names in the order given, each once, in their usual case.
-fn chosen<'a>(given: &[String], known: &[&'a str]) -> Vec<&'a str> {
+pub(super) fn chosen<'a>(given: &[String], known: &[&'a str]) -> Vec<&'a str> {
     let mut chosen: Vec<&str> = Vec::new();
     for name in given {
         for known in known {

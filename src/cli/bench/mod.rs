@@ -2,8 +2,9 @@
 
 mod detector;
 mod moea;
+mod plan;
 
-use std::io::Write;
+use std::{fs, io::Write, path::Path};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -11,12 +12,20 @@ use super::{
     CliError, Outcome,
     args::{Bench, BenchArgs},
 };
+use crate::atomic::AtomicError;
 
 pub(super) fn run(args: &BenchArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
     match &args.what {
         Bench::Detector(args) => detector::run(args, out),
         Bench::Moea(args) => moea::run(args, out),
+        Bench::Plan(args) => plan::run(args, out),
     }
+}
+
+/// Makes a folder to write to.
+fn make(folder: &Path) -> Result<(), AtomicError> {
+    let failed = |source| AtomicError::Io { action: "create the folder", path: folder.to_owned(), source };
+    fs::create_dir_all(folder).map_err(failed)
 }
 
 /// Drawn on standard error, and not at all where that is no terminal.

@@ -1,10 +1,9 @@
 //! `bench moea`, with progress on a terminal.
 
-use std::{fs, io::Write, path::Path};
+use std::{io::Write, path::Path};
 
-use super::progress;
+use super::{make, progress};
 use crate::{
-    atomic::AtomicError,
     cli::{CliError, Outcome, args::MoeaArgs, output::deliver},
     report::{curve_svg, curves_csv, front_csv, markdown, moea_json, moea_parts, text},
     workflow::moea::{Curve, Front, run as compare},
@@ -34,11 +33,6 @@ pub(super) fn run(args: &MoeaArgs, out: &mut impl Write) -> Result<Outcome, CliE
     };
     deliver(&rendered, None, out)?;
     Ok(Outcome::Clean)
-}
-
-fn make(folder: &Path) -> Result<(), AtomicError> {
-    let failed = |source| AtomicError::Io { action: "create the folder", path: folder.to_owned(), source };
-    fs::create_dir_all(folder).map_err(failed)
 }
 
 fn write_fronts(fronts: &[Front], folder: &Path, out: &mut impl Write) -> Result<(), CliError> {

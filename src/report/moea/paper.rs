@@ -2,9 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::significant;
 use crate::{
-    report::{NONE, Part, Sheet},
+    report::{NONE, Part, Sheet, sample::significant},
     workflow::moea::{Cell, Published, Study},
 };
 

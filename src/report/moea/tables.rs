@@ -1,9 +1,12 @@
 //! As tables.
 
-use super::{notes, paper, significant};
+use super::{notes, paper};
 use crate::{
-    report::{NONE, Part, Sheet},
-    workflow::moea::{Cell, Inputs, Ruler, Sample, Study, Tally, Verdict},
+    report::{
+        Part, Sheet,
+        sample::{against, counts, sample, significant},
+    },
+    workflow::moea::{Cell, Inputs, Ruler, Study, Tally},
 };
 
 /// For a terminal, or as Markdown.
@@ -59,23 +62,6 @@ fn cell(cell: &Cell) -> Vec<String> {
     ]
 }
 
-fn sample(sample: &Sample, show: impl Fn(f64, u8) -> String) -> String {
-    format!("{} ({}, {})", show(sample.median, 4), show(sample.q1, 3), show(sample.q3, 3))
-}
-
-fn against(sample: &Sample) -> String {
-    sample.against.map_or(NONE.to_owned(), |against| {
-        let word = match against.verdict {
-            Verdict::Win => "win",
-            Verdict::Tie => "tie",
-            Verdict::Loss => "loss",
-        };
-        let p = if against.p < 0.001 { "<.001".to_owned() } else { format!("{:.3}", against.p) };
-        format!("{word} {} {:.2}", p.trim_start_matches('0'), against.a12)
-    })
-}
-
 fn tally(tally: &Tally) -> Vec<String> {
-    let counts = |[wins, ties, losses]: [usize; 3]| format!("{wins} {ties} {losses}");
     vec![tally.algorithm.to_owned(), counts(tally.igd), counts(tally.igd_plus), counts(tally.hypervolume)]
 }

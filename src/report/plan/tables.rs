@@ -96,6 +96,17 @@ fn row(name: &str, judged: &Judged, joints: &[String]) -> Vec<String> {
     ]
 }
 
+/// The limit that is broken most, and how many more are, or the nearest.
+pub(in crate::report) fn limit_cell(judged: &Judged, joints: &[String]) -> String {
+    let Some(worst) = nearest(judged).into_iter().next() else { return NONE.to_owned() };
+    let worst = format!("{} % {}", percent(worst.share), subject(worst, joints));
+    match judged.broken().len() {
+        0 => worst,
+        1 => format!("BREAKS {worst}"),
+        more => format!("BREAKS {worst}, {} more", more - 1),
+    }
+}
+
 /// A share in hundredths. Near a dead centre a force has no bound.
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;

@@ -6,6 +6,7 @@ mod study;
 
 use serde::Serialize;
 
+pub use super::sample::{Against, Sample, Verdict};
 pub use published::{Checkpoint, Published};
 pub use run::run;
 
@@ -95,47 +96,6 @@ pub struct Cell {
     pub table_1: Option<Published>,
     /// What the paper says of its Figure 3 here, if this is run as there.
     pub figure_3: Option<Checkpoint>,
-}
-
-/// One indicator over the seeds.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Sample {
-    /// Lower quartile.
-    pub q1: f64,
-    /// Median.
-    pub median: f64,
-    /// Upper quartile.
-    pub q3: f64,
-    /// Mean, as the paper prints it.
-    pub mean: f64,
-    /// Standard deviation; NaN for one run.
-    pub sd: f64,
-    /// Against the baseline, unless this is it or it was not run.
-    pub against: Option<Against>,
-}
-
-/// How a sample compares with that of the baseline.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Against {
-    /// Two-sided p of the rank-sum test, not corrected for the number of comparisons.
-    pub p: f64,
-    /// Probability that a run is better than one of the baseline, ties counted half (Vargha and
-    /// Delaney's A).
-    pub a12: f64,
-    /// Whether p is below [`SIGNIFICANT`](crate::moea::compare::SIGNIFICANT), and for whom.
-    pub verdict: Verdict,
-}
-
-/// How a comparison ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// Significantly better.
-    Win,
-    /// No significant difference.
-    Tie,
-    /// Significantly worse.
-    Loss,
 }
 
 /// Cells won, tied and lost, in this order.

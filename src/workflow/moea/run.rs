@@ -8,10 +8,13 @@ use super::{
     Inputs, Study,
     study::{Batch, assemble},
 };
-use crate::moea::{
-    Budget, Contender, MoeaError, Population, Settings,
-    compare::{Quality, Yardstick},
-    optimise,
+use crate::{
+    moea::{
+        Budget, Contender, MoeaError, Population, Settings,
+        compare::{Quality, Yardstick},
+        optimise,
+    },
+    workflow::sample::Watch,
 };
 
 /// Points of the true front that are asked for; a problem gives about as many.
@@ -78,14 +81,10 @@ fn one(batch: &Batch<'_>, seed: u64, inputs: &Inputs) -> Result<Run, MoeaError> 
     let budget = Budget::Evaluations(batch.evaluations);
     let settings = Settings { algorithm, seed, budget, operators: inputs.operators, ..Settings::default() };
     let steps = if batch.watched { inputs.steps } else { 0 };
-    let (mut course, mut step) = (Vec::new(), 0);
+    let (mut course, mut watch) = (Vec::new(), Watch::new(batch.evaluations, steps));
     let outcome = optimise(batch.problem, &settings, |progress| {
-        // Each step is due at its share of the budget, the zeroth at the first population.
-        let due = |step: u64| u128::from(step) * u128::from(batch.evaluations);
-        let made = u128::from(progress.evaluations) * u128::from(steps);
-        if steps > 0 && step <= steps && due(step) <= made {
+        if watch.is_due(progress.evaluations) {
             course.push((progress.evaluations, batch.yardstick.measure(progress.population)));
-            step += 1;
         }
         ControlFlow::Continue(())
     })?;

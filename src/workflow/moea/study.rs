@@ -1,17 +1,17 @@
 //! Turns runs into findings.
 
 use super::{
-    Against, BASELINE, Cell, Curve, Front, Inputs, Point, Ruler, Sample, Study, Tally, Verdict,
+    BASELINE, Cell, Curve, Front, Inputs, Point, Ruler, Sample, Study, Tally,
     published::{figure_3, table_1},
     run::Run,
 };
 use crate::{
-    math::quantile,
     moea::{
         Contender, Operators, Problem,
         benchmark::Benchmark,
-        compare::{Quality, Yardstick, compare},
+        compare::{Quality, Yardstick},
     },
+    workflow::sample::{quartiles, tallied},
 };
 
 /// The runs of one cell.
@@ -87,42 +87,12 @@ fn cell(batch: &Batch<'_>, rival: Option<&Batch<'_>>, operators: Operators) -> C
 
 fn sample(batch: &Batch<'_>, rival: Option<&Batch<'_>>, Indicator(get, less): Indicator) -> Sample {
     let values = |batch: &Batch<'_>| batch.runs.iter().map(|run| get(&run.quality)).collect::<Vec<_>>();
-    let own = values(batch);
-    let [q1, median, q3] = quartiles(&own);
-    let against = rival.map(|rival| {
-        let found = compare(&own, &values(rival));
-        let better = if less { -found.sign() } else { found.sign() };
-        Against {
-            p: found.p,
-            a12: if less { 1.0 - found.a12 } else { found.a12 },
-            verdict: match better {
-                1 => Verdict::Win,
-                -1 => Verdict::Loss,
-                _ => Verdict::Tie,
-            },
-        }
-    });
-    let mean = own.iter().sum::<f64>() / own.len() as f64;
-    let squares: f64 = own.iter().map(|value| (value - mean).powi(2)).sum();
-    Sample { q1, median, q3, mean, sd: (squares / (own.len() as f64 - 1.0)).sqrt(), against }
-}
-
-fn quartiles(values: &[f64]) -> [f64; 3] {
-    [0.25, 0.5, 0.75].map(|p| quantile(values.to_vec(), p))
+    Sample::of(&values(batch), rival.map(values).as_deref(), less)
 }
 
 fn tally(algorithm: &'static str, cells: &[Cell]) -> Option<Tally> {
-    let count = |get: fn(&Cell) -> &Sample| {
-        let mut counts = [0; 3];
-        for against in cells.iter().filter(|c| c.algorithm == algorithm).filter_map(|c| get(c).against) {
-            match against.verdict {
-                Verdict::Win => counts[0] += 1,
-                Verdict::Tie => counts[1] += 1,
-                Verdict::Loss => counts[2] += 1,
-            }
-        }
-        counts
-    };
+    let count =
+        |get: fn(&Cell) -> &Sample| tallied(cells.iter().filter(|cell| cell.algorithm == algorithm).map(get));
     let tally = Tally {
         algorithm,
         igd: count(|c| &c.igd),
@@ -167,7 +137,7 @@ fn fronts<'a>(batch: &'a Batch<'_>) -> impl Iterator<Item = Front> + 'a {
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "exact by construction")]
 mod tests {
-    use super::*;
+    use super::{super::Verdict, *};
 
     /// Runs whose distances are `level` and up, and whose volumes fall with them.
     fn runs(level: f64) -> Vec<Run> {
