@@ -2,6 +2,8 @@
 
 pub mod args;
 mod bench;
+mod export;
+mod import;
 mod info;
 mod output;
 mod recover;
@@ -13,7 +15,12 @@ use thiserror::Error;
 
 pub use args::{Args, Command};
 
-use crate::{atomic::AtomicError, log::LogError, moea::MoeaError};
+use crate::{
+    atomic::AtomicError,
+    log::{CsvError, ExportError, LogError},
+    moea::MoeaError,
+    workflow::import::ImportError,
+};
 
 /// How a run that did not fail ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +38,12 @@ enum Outcome {
 enum CliError {
     #[error(transparent)]
     Log(#[from] LogError),
+    #[error(transparent)]
+    Csv(#[from] CsvError),
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    #[error(transparent)]
+    Export(#[from] ExportError),
     #[error(transparent)]
     Atomic(#[from] AtomicError),
     #[error(transparent)]
@@ -52,6 +65,8 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
         Command::Report(report) => report::run(report, out, err),
         Command::Info(info) => info::run(info, out, err),
         Command::Recover(recover) => recover::run(recover, out, err),
+        Command::Import(import) => import::run(import, out, err),
+        Command::Export(export) => export::run(export, out, err),
         Command::Bench(bench) => bench::run(bench, out),
     };
     match result.and_then(|outcome| Ok(out.flush().map(|()| outcome)?)) {

@@ -2,6 +2,7 @@
 //! and milliseconds are.
 
 mod csv;
+mod import;
 mod info;
 mod json;
 mod markup;
@@ -12,6 +13,7 @@ mod score;
 mod tables;
 
 pub use csv::transitions_csv;
+pub use import::{imported_json, imported_parts};
 pub use info::{info_json, info_parts};
 pub use json::report_json;
 pub use markup::{Part, Sheet, markdown, text};

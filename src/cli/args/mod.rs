@@ -1,6 +1,8 @@
 //! Clap definitions only. Degrees and milliseconds are accepted here and turned into SI here.
 
 mod bench;
+mod export;
+mod import;
 mod moea;
 
 use std::path::PathBuf;
@@ -8,6 +10,8 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand, ValueEnum};
 
 pub use bench::{Bench, BenchArgs, DetectorArgs};
+pub use export::{ExportArgs, ExportFormat};
+pub use import::ImportArgs;
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 
 use crate::{
@@ -47,6 +51,12 @@ pub enum Command {
     Info(InfoArgs),
     /// Save everything that is whole in a damaged log
     Recover(RecoverArgs),
+    /// Turn a CSV file of a controller (PLC trace, RTDE recording, any table) into a log
+    #[command(after_help = import::EXAMPLES)]
+    Import(ImportArgs),
+    /// Turn what a report would use of a log into a table: CSV or Parquet
+    #[command(after_help = export::EXAMPLES)]
+    Export(ExportArgs),
     /// Measure hydrotrace itself
     Bench(BenchArgs),
 }
