@@ -64,6 +64,8 @@ pub enum Code {
     Implausible,
     /// A limit of what this program understands.
     NotSupported,
+    /// Something that the data do not say, taken from how they look.
+    Guessed,
     /// A ceiling so high that it binds nothing.
     InactiveBound,
 }

@@ -43,7 +43,7 @@ fn one_sample_reports_as_before_in_the_other_formats() {
 
 #[test]
 fn help_reads_as_before() {
-    for verb in ["report", "info", "recover"] {
+    for verb in ["report", "info", "recover", "import", "export"] {
         insta::assert_snapshot!(format!("help.{verb}"), hydrotrace(&[verb, "--help"]));
     }
     insta::assert_snapshot!("help", hydrotrace(&["--help"]));

@@ -2,6 +2,8 @@
 
 pub mod args;
 mod bench;
+mod export;
+mod import;
 mod info;
 mod output;
 mod plan;
@@ -17,9 +19,11 @@ pub use args::{Args, Command};
 
 use crate::{
     atomic::AtomicError,
-    log::{LogError, WriteError},
+    log::{CsvError, ExportError, LogError, WriteError},
     moea::MoeaError,
-    workflow::{contest::ContestFailure, plan::PlanFailure, simulate_log::SimulateFailure},
+    workflow::{
+        contest::ContestFailure, import::ImportError, plan::PlanFailure, simulate_log::SimulateFailure,
+    },
 };
 
 /// How a run that did not fail ended.
@@ -38,6 +42,12 @@ enum Outcome {
 enum CliError {
     #[error(transparent)]
     Log(#[from] LogError),
+    #[error(transparent)]
+    Csv(#[from] CsvError),
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    #[error(transparent)]
+    Export(#[from] ExportError),
     #[error(transparent)]
     Atomic(#[from] AtomicError),
     #[error(transparent)]
@@ -71,6 +81,8 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
         Command::Simulate(simulate) => simulate::run(simulate, out),
         Command::Info(info) => info::run(info, out, err),
         Command::Recover(recover) => recover::run(recover, out, err),
+        Command::Import(import) => import::run(import, out, err),
+        Command::Export(export) => export::run(export, out, err),
         Command::Bench(bench) => bench::run(bench, out),
     };
     match result.and_then(|outcome| Ok(out.flush().map(|()| outcome)?)) {

@@ -2,15 +2,18 @@
 //!
 //! Reading: bytes become records (`file`), records become fields (`schema`, `decode`), fields
 //! become samples of topics (`source`, `read`), and two topics become planned and measured
-//! series. Writing: samples become messages of ROS 2 types (`write`).
+//! series. Writing: samples become messages of ROS 2 types (`write`). Other formats: `csv` reads
+//! tables of a controller, `export` writes tables.
 
 mod assemble;
 mod bag;
 mod channel;
 mod choose;
+mod csv;
 mod decode;
 mod doubt;
 mod error;
+mod export;
 mod file;
 mod parallel;
 mod read;
@@ -21,7 +24,12 @@ mod source;
 mod track;
 mod write;
 
+pub use csv::{
+    AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, Quantity, Separator, TimeRead, Understood,
+    read_csv, read_csv_bytes,
+};
 pub use error::LogError;
+pub use export::{ExportError, RunTable};
 pub use read::{Attachment, FileInfo};
 pub use recording::{
     ReadOptions, Recording, SourceInfo, Survey, TimeBase, TopicInfo, read_plan, read_recording, survey,

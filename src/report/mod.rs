@@ -3,6 +3,7 @@
 
 mod contest;
 mod csv;
+mod import;
 mod info;
 mod json;
 mod markup;
@@ -18,6 +19,7 @@ mod tables;
 
 pub use contest::{contest_csv, contest_json, contest_parts, contest_svg};
 pub use csv::transitions_csv;
+pub use import::{imported_json, imported_parts};
 pub use info::{info_json, info_parts};
 pub use json::report_json;
 pub use markup::{Part, Sheet, markdown, text};

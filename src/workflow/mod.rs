@@ -2,6 +2,8 @@
 
 pub mod contest;
 pub mod detector;
+pub mod export;
+pub mod import;
 pub mod info;
 pub mod moea;
 pub mod plan;

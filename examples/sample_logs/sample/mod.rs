@@ -3,6 +3,7 @@
 mod cut;
 mod machine;
 mod plan;
+mod plc;
 mod readme;
 mod recorder;
 mod run;
@@ -67,9 +68,14 @@ const TRAJECTORY_ONLY: Title = (
     "The plan only as one `trajectory_msgs/JointTrajectory`, stamped with the start of the run, and the measurement.",
 );
 
+const PLC_TRACE: Title = (
+    "plc-trace.csv",
+    "The first 20 s as a PLC writes them, 50 Hz: semicolons, decimal commas, degrees, a row of units, dates without zone.",
+);
+
 /// Every file of the folder, by name.
 pub(crate) fn files() -> Result<BTreeMap<String, Vec<u8>>, Box<dyn Error>> {
-    let logs = [panel_install()?, still_joint()?, gaps()?, power_loss()?, trajectory_only()?];
+    let logs = [panel_install()?, still_joint()?, gaps()?, power_loss()?, trajectory_only()?, plc_trace()?];
     let mut files = BTreeMap::from([("README.md".to_owned(), readme::text(&logs).into_bytes())]);
     files.extend(logs.into_iter().map(|log| (log.name.to_owned(), log.bytes)));
     Ok(files)
@@ -144,6 +150,13 @@ fn trajectory_only() -> Result<SampleLog, Box<dyn Error>> {
         write_plan(log, &run.plans)?;
         run.cycles.iter().try_for_each(|cycle| write_measured(log, cycle))
     })
+}
+
+fn plc_trace() -> Result<SampleLog, Box<dyn Error>> {
+    let run = Run::new(6, IN_ORDER, &[])?;
+    let bytes = plc::trace(&run).into_bytes();
+    let (name, story) = PLC_TRACE;
+    Ok(SampleLog { name, bytes, run, defects: Vec::new(), story })
 }
 
 /// Plan and measurement in every cycle, the controller's state in every fifth.

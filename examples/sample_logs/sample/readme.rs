@@ -18,8 +18,8 @@ Small logs of a made-up machine whose truth is known. Written, this file include
 
     cargo run --release --example sample_logs -- sample-logs
 
-The same source gives the same bytes; `tests/sample_logs.rs` compares them. Each log also carries its
-truth as MCAP metadata named `truth`.
+The same source gives the same bytes; `tests/sample_logs.rs` compares them. Each MCAP log also
+carries its truth as metadata named `truth`.
 ";
 
 const COLUMNS: &str = "

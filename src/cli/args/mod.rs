@@ -2,6 +2,8 @@
 
 mod bench;
 mod contest;
+mod export;
+mod import;
 mod moea;
 mod plan;
 mod simulate;
@@ -12,6 +14,8 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 pub use bench::{Bench, BenchArgs, DetectorArgs};
 pub use contest::ContestArgs;
+pub use export::{ExportArgs, ExportFormat};
+pub use import::ImportArgs;
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
 pub use simulate::SimulateArgs;
@@ -64,6 +68,12 @@ pub enum Command {
     Info(InfoArgs),
     /// Save everything that is whole in a damaged log
     Recover(RecoverArgs),
+    /// Turn a CSV file of a controller (PLC trace, RTDE recording, any table) into a log
+    #[command(after_help = import::EXAMPLES)]
+    Import(ImportArgs),
+    /// Turn what a report would use of a log into a table: CSV or Parquet
+    #[command(after_help = export::EXAMPLES)]
+    Export(ExportArgs),
     /// Measure hydrotrace itself
     Bench(BenchArgs),
 }

@@ -69,7 +69,7 @@ impl Default for Topics {
 }
 
 /// What a joint sample says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// Where the plan wants the joints.
     Planned,

@@ -1,0 +1,59 @@
+//! Arguments of `export`.
+
+use std::path::PathBuf;
+
+use super::{ReadArgs, selector};
+use crate::log::Selector;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  hydrotrace export run.mcap --csv -o run.csv
+  hydrotrace export run.mcap --parquet -o run.parquet
+  hydrotrace export run.mcap --csv --degrees --joints joint_3
+
+A row for every instant at which anything was sampled: stamp_ns (since 1970), time_s (since the
+start), and for each joint J_planned_rad, J_planned_rad_s, J_measured_rad, J_error_rad and
+J_command_rad, as far as the log has them. A cell without a sample is empty. The error is planned
+minus measured, the plan interpolated. `hydrotrace import` makes a log of the table again, of
+which a report has the same numbers.";
+
+/// Arguments of `export`.
+#[derive(Debug, clap::Args)]
+pub struct ExportArgs {
+    /// Logs of one run: MCAP files or ROS 2 bag directories
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+
+    /// Form of the table.
+    #[command(flatten)]
+    pub format: ExportFormat,
+
+    /// Write to FILE; without it CSV goes to standard output
+    #[arg(short, long, value_name = "FILE", required_unless_present = "csv")]
+    pub output: Option<PathBuf>,
+
+    /// Angles in degrees; the names of the columns say so
+    #[arg(long)]
+    pub degrees: bool,
+
+    /// Topic of what was really sent, with a field where it has several
+    #[arg(long, value_name = "TOPIC[:FIELD]", value_parser = selector)]
+    pub command: Option<Selector>,
+
+    /// What to read.
+    #[command(flatten)]
+    pub read: ReadArgs,
+}
+
+/// One of these.
+#[derive(Debug, clap::Args)]
+#[group(required = true, multiple = false)]
+pub struct ExportFormat {
+    /// Comma-separated values
+    #[arg(long)]
+    pub csv: bool,
+
+    /// Apache Parquet, compressed with zstd
+    #[arg(long)]
+    pub parquet: bool,
+}

@@ -1,0 +1,29 @@
+//! `import`: reads, writes, says how it was read.
+
+use std::io::Write;
+
+use super::{
+    CliError, Outcome,
+    args::ImportArgs,
+    output::{deliver, say_remarks, spare_inputs},
+};
+use crate::{
+    report::{imported_json, imported_parts, text},
+    workflow::import::run as import,
+};
+
+pub(super) fn run(
+    args: &ImportArgs,
+    out: &mut impl Write,
+    err: &mut impl Write,
+) -> Result<Outcome, CliError> {
+    spare_inputs(Some(&args.output), std::slice::from_ref(&args.file))?;
+    let imported = import(&args.inputs()?)?;
+    if args.json {
+        deliver(&imported_json(&imported), None, out)?;
+        say_remarks(&imported.remarks, err);
+    } else {
+        deliver(&text(&imported_parts(&args.output.to_string_lossy(), &imported)), None, out)?;
+    }
+    Ok(if imported.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}

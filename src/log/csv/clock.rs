@@ -1,0 +1,208 @@
+//! Which column tells the time.
+
+use super::{
+    CsvError, CsvOptions,
+    column::{find, present},
+    date::{DateForm, Part},
+    dialect::Dialect,
+    head::Head,
+    label::Label,
+    number::nanoseconds,
+    time::{FIRST_ABSOLUTE_NS, TimeSource},
+    unit::{Measure, Unit, parse_unit},
+};
+use crate::{
+    math::median,
+    remark::{Code, Remarks},
+};
+
+/// Finds the time among the columns.
+pub(super) fn choose(
+    head: &Head,
+    labels: &[Label],
+    dialect: Dialect,
+    options: &CsvOptions,
+    remarks: &mut Remarks,
+) -> Result<TimeSource, CsvError> {
+    if let Some(hz) = options.rate_hz {
+        return Ok(TimeSource::Rate { hz });
+    }
+    let look = Look { head, labels, dialect, options };
+    if let Some(name) = &options.time {
+        let column = find(name, "--time", &head.names)?;
+        return Ok(look.column(column)?.tell(head, remarks));
+    }
+    let mut usable: Vec<Found> = Vec::new();
+    let mut failure = None;
+    for column in (0..labels.len()).filter(|&column| labels[column].is_time) {
+        match look.column(column) {
+            Ok(found) => usable.push(found),
+            Err(error) => failure = failure.or(Some(error)),
+        }
+    }
+    look.join_day_and_time(&mut usable);
+    // What resolves the rows is better than what does not, then what has a date.
+    usable.sort_by_key(|found| (!found.resolves, !found.absolute));
+    match (usable.into_iter().next(), failure) {
+        (Some(best), _) if best.resolves => Ok(best.tell(head, remarks)),
+        (Some(best), _) => {
+            let columns: Vec<&str> = best.source.columns().iter().map(|&c| head.names[c].as_str()).collect();
+            let why =
+                format!(" that tells the rows apart ({} repeats itself in most)", columns.join(" with "));
+            Err(CsvError::NoTime { why, present: present(&head.names) })
+        }
+        (None, Some(error)) => Err(error),
+        (None, None) => Err(CsvError::NoTime { why: String::new(), present: present(&head.names) }),
+    }
+}
+
+/// A column that tells the time.
+struct Found {
+    source: TimeSource,
+    /// Whether most rows have a stamp of their own.
+    resolves: bool,
+    absolute: bool,
+    /// What was guessed.
+    doubt: Option<String>,
+}
+
+impl Found {
+    fn tell(self, head: &Head, remarks: &mut Remarks) -> TimeSource {
+        let column = self.source.columns().first().map_or("", |&column| head.names[column].as_str());
+        if let Some(doubt) = self.doubt {
+            remarks.add(Code::Guessed, 1, format!("time column {column:?} {doubt}"));
+        }
+        self.source
+    }
+}
+
+struct Look<'a> {
+    head: &'a Head,
+    labels: &'a [Label],
+    dialect: Dialect,
+    options: &'a CsvOptions,
+}
+
+impl Look<'_> {
+    fn cells(&self, column: usize) -> impl Iterator<Item = &[u8]> + Clone {
+        self.head.sample.iter().map(move |row| row.get(column).map_or(&[][..], Vec::as_slice))
+    }
+
+    fn found(&self, source: TimeSource, doubt: Option<String>) -> Found {
+        let ns: Vec<i64> = self
+            .head
+            .sample
+            .iter()
+            .filter_map(|row| {
+                source.ns(
+                    0,
+                    |column| row.get(column).map_or(&[][..], Vec::as_slice),
+                    self.dialect.decimal_comma,
+                )
+            })
+            .collect();
+        let steps = ns.windows(2).filter(|w| w[0] != w[1]).count();
+        Found {
+            resolves: !ns.is_empty() && 2 * steps + 1 >= ns.len(),
+            absolute: ns.first().is_some_and(|first| *first >= FIRST_ABSOLUTE_NS),
+            source,
+            doubt,
+        }
+    }
+
+    fn column(&self, column: usize) -> Result<Found, CsvError> {
+        let comma = self.dialect.decimal_comma;
+        let name = || self.head.names[column].clone();
+        let forms = DateForm::fitting(&self.cells(column));
+        if let Some(form) = forms.first() {
+            let other = forms.get(1).filter(|other| other.name.len() == form.name.len());
+            let doubt =
+                other.map(|other| format!("is read as {}; {} would fit as well", form.name, other.name));
+            return Ok(self.found(TimeSource::Date { column, form: form.clone() }, doubt));
+        }
+        let given = self.options.time_unit.as_deref().and_then(parse_unit);
+        let stated = self.labels.get(column).and_then(|label| label.unit);
+        if let Some(other) = stated.filter(|unit| given.is_none() && unit.measure != Measure::Time) {
+            return Err(CsvError::WrongUnit {
+                column: name(),
+                unit: other.name.to_owned(),
+                expected: "time",
+            });
+        }
+        if let Some(unit) = given.or(stated) {
+            return Ok(self.found(TimeSource::Number { column, unit }, None));
+        }
+        let milli: Vec<i64> = self.cells(column).filter_map(|cell| nanoseconds(cell, comma, 1_000)).collect();
+        let values: Vec<f64> = milli.iter().map(|value| *value as f64 / 1e3).collect();
+        let whole = milli.iter().all(|value| value % 1_000 == 0);
+        // Stamps of 19 digits are nanoseconds; times 1000 they fit no i64.
+        let huge = milli.is_empty() && self.cells(column).any(|cell| nanoseconds(cell, comma, 1).is_some());
+        let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).filter(|step| *step > 0.0).collect();
+        let step = if steps.is_empty() { 0.0 } else { median(steps) };
+        let (unit, doubt) = if huge {
+            (parse_unit("ns"), None)
+        } else {
+            guess_unit(values.first().copied().unwrap_or(0.0), step, whole)
+        };
+        let Some(unit) = unit else { return Err(CsvError::TimeUnit { column: name(), step }) };
+        Ok(self.found(TimeSource::Number { column, unit }, doubt))
+    }
+
+    /// A day in one column and a time of day in another are one time.
+    fn join_day_and_time(&self, usable: &mut Vec<Found>) {
+        let of = |part: Part| {
+            usable.iter().find_map(|found| match &found.source {
+                TimeSource::Date { column, form } if form.part() == part => Some((*column, form.clone())),
+                _ => None,
+            })
+        };
+        if let (Some(day), Some(time)) = (of(Part::Day), of(Part::TimeOfDay)) {
+            let joined = self.found(TimeSource::DayAndTime { day, time }, None);
+            usable.insert(0, joined);
+        }
+    }
+}
+
+/// The unit of a column that names none: by its size if it counts from 1970, or else the one in
+/// which the rows come at 2 to 2000 Hz.
+fn guess_unit(first: f64, step: f64, whole: bool) -> (Option<Unit>, Option<String>) {
+    const SINCE_1970_S: [f64; 2] = [1.0e9, 4.2e9];
+    for (name, per_second) in [("s", 1.0), ("ms", 1e3), ("us", 1e6)] {
+        let (size, step_s) = (first / per_second, step / per_second);
+        if (SINCE_1970_S[0]..SINCE_1970_S[1]).contains(&size) && step_s <= 10.0 {
+            return (parse_unit(name), None);
+        }
+    }
+    for (name, least, most) in [("s", 0.000_5, 0.5), ("ms", 0.5, 500.0), ("us", 500.0, 5e5), ("ns", 5e5, 5e8)]
+    {
+        if (least..most).contains(&step) {
+            let sure = name == "s" && !whole;
+            let doubt = format!("says no unit; steps of {step} are taken as {name}, else say --time-unit");
+            return (parse_unit(name), (!sure).then_some(doubt));
+        }
+    }
+    (None, None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn guess(first: f64, step: f64, whole: bool) -> (&'static str, bool) {
+        let (unit, doubt) = guess_unit(first, step, whole);
+        (unit.map_or("none", |unit| unit.name), doubt.is_some())
+    }
+
+    #[test]
+    fn a_unit_is_told_by_size_or_by_step() {
+        assert_eq!(guess(1.75e9, 0.02, false), ("s", false));
+        assert_eq!(guess(1.75e12, 20.0, true), ("ms", false));
+        assert_eq!(guess(1.75e15, 20_000.0, true), ("us", false));
+        assert_eq!(guess(12.3, 0.008, false), ("s", false));
+        assert_eq!(guess(0.0, 20.0, true), ("ms", true));
+        assert_eq!(guess(0.0, 2e4, true), ("us", true));
+        assert_eq!(guess(0.0, 2e7, true), ("ns", true));
+        assert_eq!(guess(0.0, 0.0, true), ("none", false));
+        assert_eq!(guess(0.0, 1e10, true), ("none", false));
+    }
+}

@@ -1,0 +1,151 @@
+//! Dates and times of day, as people and machines write them.
+
+use chrono::format::{Item, Parsed, StrftimeItems, parse};
+
+/// A way to write an instant.
+#[derive(Debug, Clone)]
+pub(super) struct DateForm {
+    items: Vec<Item<'static>>,
+    /// For a person, such as "dd.mm.yyyy hh:mm:ss".
+    pub(super) name: &'static str,
+    part: Part,
+}
+
+/// What of an instant a text gives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Part {
+    Zoned,
+    Local,
+    Day,
+    TimeOfDay,
+}
+
+/// Tried in this order: of two that fit, the first is meant more often.
+const FORMS: [(&str, &str, Part); 17] = [
+    ("%Y-%m-%d %H:%M:%S%.f%#z", "yyyy-mm-dd hh:mm:ss with zone", Part::Zoned),
+    ("%Y-%m-%d %H:%M:%S%.f", "yyyy-mm-dd hh:mm:ss", Part::Local),
+    ("%Y/%m/%d %H:%M:%S%.f", "yyyy/mm/dd hh:mm:ss", Part::Local),
+    ("%Y-%m-%d-%H:%M:%S%.f", "yyyy-mm-dd-hh:mm:ss", Part::Local),
+    ("%Y%m%d %H%M%S%.f", "yyyymmdd hhmmss", Part::Local),
+    ("%d.%m.%Y %H:%M:%S%.f", "dd.mm.yyyy hh:mm:ss", Part::Local),
+    ("%d-%m-%Y %H:%M:%S%.f", "dd-mm-yyyy hh:mm:ss", Part::Local),
+    ("%d/%m/%Y %I:%M:%S%.f %p", "dd/mm/yyyy hh:mm:ss am/pm", Part::Local),
+    ("%m/%d/%Y %I:%M:%S%.f %p", "mm/dd/yyyy hh:mm:ss am/pm", Part::Local),
+    ("%d/%m/%Y %H:%M:%S%.f", "dd/mm/yyyy hh:mm:ss", Part::Local),
+    ("%m/%d/%Y %H:%M:%S%.f", "mm/dd/yyyy hh:mm:ss", Part::Local),
+    ("%H:%M:%S%.f", "hh:mm:ss", Part::TimeOfDay),
+    ("%Y-%m-%d", "yyyy-mm-dd", Part::Day),
+    ("%Y/%m/%d", "yyyy/mm/dd", Part::Day),
+    ("%d.%m.%Y", "dd.mm.yyyy", Part::Day),
+    ("%d/%m/%Y", "dd/mm/yyyy", Part::Day),
+    ("%m/%d/%Y", "mm/dd/yyyy", Part::Day),
+];
+
+impl DateForm {
+    /// The forms in which all of these cells are written.
+    pub(super) fn fitting<'a>(cells: &(impl Iterator<Item = &'a [u8]> + Clone)) -> Vec<Self> {
+        let known = FORMS.iter().map(|(pattern, name, part)| Self {
+            items: StrftimeItems::new(pattern).collect(),
+            name,
+            part: *part,
+        });
+        known
+            .filter(|form| {
+                let mut cells = cells.clone().filter(|cell| !cell.trim_ascii().is_empty()).peekable();
+                cells.peek().is_some() && cells.all(|cell| form.ns(cell).is_some())
+            })
+            .collect()
+    }
+
+    pub(super) fn part(&self) -> Part {
+        self.part
+    }
+
+    /// The instant in a cell, ns since 1970 (UTC where the text gives no zone), or since midnight
+    /// for a time of day.
+    pub(super) fn ns(&self, cell: &[u8]) -> Option<i64> {
+        let text = plain(std::str::from_utf8(cell).ok()?.trim())?;
+        let mut parsed = Parsed::new();
+        parse(&mut parsed, &text, self.items.iter()).ok()?;
+        match self.part {
+            Part::Zoned => parsed.to_datetime().ok()?.timestamp_nanos_opt(),
+            Part::Local => parsed.to_naive_datetime_with_offset(0).ok()?.and_utc().timestamp_nanos_opt(),
+            Part::Day => parsed.to_naive_date().ok()?.and_hms_opt(0, 0, 0)?.and_utc().timestamp_nanos_opt(),
+            Part::TimeOfDay => {
+                let time = parsed.to_naive_time().ok()?;
+                time.signed_duration_since(chrono::NaiveTime::MIN).num_nanoseconds()
+            }
+        }
+    }
+}
+
+/// The same text with a blank between date and time and a point before the fraction, which some
+/// write as a comma or as a third colon.
+fn plain(text: &str) -> Option<String> {
+    const LONGEST: usize = 48;
+    if text.len() > LONGEST || !text.starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    let mut colons = 0;
+    let mut zoned = false;
+    let plain = text.char_indices().map(|(at, c)| match c {
+        'T' | 't' | '_' if at >= 8 && !zoned && colons == 0 => ' ',
+        ',' => '.',
+        ':' if !zoned => {
+            colons += 1;
+            if colons == 3 { '.' } else { ':' }
+        }
+        '+' | '-' if colons >= 2 => {
+            zoned = true;
+            c
+        }
+        _ => c,
+    });
+    let plain: String = plain.collect();
+    Some(plain.strip_suffix(" UTC").map(|time| format!("{time}Z")).unwrap_or(plain))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ns(text: &str) -> (i64, &'static str) {
+        let forms = DateForm::fitting(&std::iter::once(text.as_bytes()));
+        let form = forms.first().unwrap_or_else(|| panic!("{text}"));
+        (form.ns(text.as_bytes()).unwrap(), form.name)
+    }
+
+    #[test]
+    fn one_instant_in_every_spelling_is_one_instant() {
+        const NOON_NS: i64 = 1_750_000_000_020_000_000;
+        for text in [
+            "2025-06-15T15:06:40.020Z",
+            "2025-06-15 15:06:40,020",
+            "2025-06-15T17:06:40.02+02:00",
+            "2025-06-15T17:06:40.02+0200",
+            "2025-06-15 15:06:40.020 UTC",
+            "2025/06/15 15:06:40.020",
+            "15.06.2025 15:06:40,020",
+            "15.06.2025 15:06:40:020",
+            "15/06/2025 15:06:40.020",
+            "06/15/2025 15:06:40.020",
+            "06/15/2025 03:06:40.020 PM",
+            "2025-06-15-15:06:40.020",
+            "20250615 150640.020",
+        ] {
+            assert_eq!(ns(text).0, NOON_NS, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_time_of_day_counts_from_midnight() {
+        assert_eq!(ns("00:01:00,5"), (60_500_000_000, "hh:mm:ss"));
+    }
+
+    #[test]
+    fn what_is_no_date_has_no_form() {
+        for text in ["", "12", "1.5", "99.99.2025 10:00:00", "25:00:00", "zwei"] {
+            assert!(DateForm::fitting(&std::iter::once(text.as_bytes())).is_empty(), "{text}");
+        }
+    }
+}

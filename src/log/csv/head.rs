@@ -1,0 +1,127 @@
+//! Where the numbers begin, and the names above them.
+
+use ::csv::ByteRecord;
+
+use super::{
+    dialect::{Dialect, head},
+    number::{Looks, looks},
+    rows::{Rows, cell_text},
+    unit::parse_unit,
+};
+
+/// The names of the columns and the first rows below them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Head {
+    /// By column; `column_3` where the file has none.
+    pub(super) names: Vec<String>,
+    /// Whether the file has a header.
+    pub(super) named: bool,
+    /// Cells of a row of units below the header.
+    pub(super) units: Option<Vec<String>>,
+    /// Line of the header, 0 if there is none.
+    pub(super) line: u64,
+    /// Line of the first row of numbers.
+    pub(super) first_line: u64,
+    /// Rows above the header.
+    pub(super) above: usize,
+    /// The first rows of numbers, as cells.
+    pub(super) sample: Vec<Vec<Vec<u8>>>,
+}
+
+const SAMPLE_ROWS: usize = 200;
+
+pub(super) fn read_head(text: &[u8], dialect: Dialect) -> Head {
+    let start = head(text);
+    let mut rows = Rows::new(start, dialect.separator);
+    let mut record = ByteRecord::new();
+    let mut above: Vec<(u64, Vec<String>)> = Vec::new();
+    let mut found = Head::default();
+    while found.sample.len() < SAMPLE_ROWS
+        && let Some(line) = rows.next(&mut record)
+    {
+        if found.sample.is_empty() && !is_data(&record, dialect.width) {
+            above.push((line, record.iter().map(cell_text).collect()));
+            continue;
+        }
+        if found.sample.is_empty() {
+            found.first_line = line;
+        }
+        if record.len() == dialect.width {
+            found.sample.push(record.iter().map(<[u8]>::to_vec).collect());
+        }
+    }
+    // A header may lack the empty cell that a trailing separator adds to every row, or have it alone.
+    above.retain(|(_, cells)| {
+        cells.len().abs_diff(dialect.width) <= 1 && cells.iter().any(|cell| !cell.is_empty())
+    });
+    if above.len() > 1 && above.last().is_some_and(|(_, cells)| is_units(cells)) {
+        found.units = above.pop().map(|(_, cells)| cells);
+    }
+    if let Some((line, names)) = above.pop() {
+        found.line = line;
+        found.names = names;
+        found.above = above.len();
+        found.named = true;
+    } else if let Some((line, names)) = commented(start, found.first_line, dialect) {
+        found.line = line;
+        found.names = names;
+        found.named = true;
+    }
+    found.names.resize(dialect.width, String::new());
+    for (index, name) in found.names.iter_mut().enumerate().filter(|(_, name)| name.is_empty()) {
+        *name = format!("column_{}", index + 1);
+    }
+    found
+}
+
+/// Whether a row is one of numbers: as wide as most, and mostly no words.
+fn is_data(record: &ByteRecord, width: usize) -> bool {
+    let all: Vec<Looks> = record.iter().map(looks).filter(|looks| *looks != Looks::Empty).collect();
+    let words = all.iter().filter(|looks| **looks == Looks::Text).count();
+    record.len() == width && !all.is_empty() && 2 * words < all.len()
+}
+
+fn is_units(cells: &[String]) -> bool {
+    let stated = |cell: &String| !cell.is_empty() && cell != "-";
+    cells.iter().any(stated)
+        && cells.iter().filter(|cell| stated(cell)).all(|cell| parse_unit(cell).is_some())
+}
+
+/// A header that is written as the last comment above the numbers.
+fn commented(start: &[u8], first_line: u64, dialect: Dialect) -> Option<(u64, Vec<String>)> {
+    let before = usize::try_from(first_line).ok()?.checked_sub(1)?;
+    let lines = start.split(|byte| *byte == b'\n').take(before).enumerate();
+    let (line, text) = lines.filter(|(_, line)| !line.trim_ascii().is_empty()).last()?;
+    let text = text.trim_ascii().strip_prefix(b"#")?.trim_ascii();
+    let mut record = ByteRecord::new();
+    Rows::new(text, dialect.separator).next(&mut record)?;
+    let names: Vec<String> = record.iter().map(cell_text).collect();
+    (names.len() == dialect.width).then_some((line as u64 + 1, names))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::csv::{CsvOptions, dialect::detect};
+
+    fn of(text: &str) -> Head {
+        read_head(text.as_bytes(), detect("a.csv", text.as_bytes(), &CsvOptions::default()).unwrap())
+    }
+
+    #[test]
+    fn a_header_may_stand_below_other_lines_and_above_its_units() {
+        let head =
+            of("Trace;of arm\nStart;12\nt;\"q ist\";q soll\ns;deg;deg\n0;1;2\n1;1;2\n2;1;2\n3;1;2\n4;1;2\n");
+        assert_eq!(head.names, ["t", "q ist", "q soll"]);
+        assert_eq!((head.line, head.first_line, head.units.is_some()), (3, 5, true));
+        assert_eq!(head.sample.len(), 5);
+    }
+
+    #[test]
+    fn a_header_may_be_a_comment_or_missing() {
+        let head = of("# t q1 q2\n0 1 2\n1 1 2\n");
+        assert_eq!((head.names.as_slice(), head.named), (&["t".into(), "q1".into(), "q2".into()][..], true));
+        let head = of("0 1 2\n1 1 2\n");
+        assert_eq!((head.names[2].as_str(), head.named), ("column_3", false));
+    }
+}

@@ -1,0 +1,215 @@
+//! Which column is which joint's angle or speed, of plan, measurement or command.
+
+use std::collections::BTreeSet;
+
+use super::{
+    CsvError, CsvOptions, Quantity, Role,
+    column::{find, present},
+    head::Head,
+    label::Label,
+};
+use crate::remark::{Code, Remarks};
+
+/// One column in use.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Use {
+    pub(super) column: usize,
+    pub(super) role: Role,
+    pub(super) quantity: Quantity,
+    /// Index into the joints.
+    pub(super) joint: usize,
+}
+
+/// One column kept as another quantity of a joint.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Interface {
+    pub(super) name: String,
+    pub(super) column: usize,
+    pub(super) joint: usize,
+}
+
+/// What every column is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Layout {
+    pub(super) joints: Vec<String>,
+    pub(super) uses: Vec<Use>,
+    pub(super) interfaces: Vec<Interface>,
+}
+
+#[derive(Debug, Clone)]
+struct Draft {
+    column: usize,
+    role: Role,
+    quantity: Quantity,
+    key: String,
+    joint: String,
+    /// Whether the caller or a word of the header says the role.
+    stated: bool,
+}
+
+/// The option that names columns of a role and quantity.
+pub(super) fn option(role: Role, quantity: Quantity) -> &'static str {
+    match (role, quantity) {
+        (Role::Planned, Quantity::Position) => "--planned",
+        (Role::Measured, Quantity::Position) => "--measured",
+        (Role::Command, Quantity::Position) => "--command",
+        (Role::Planned, Quantity::Velocity) => "--planned-velocity",
+        (Role::Measured, Quantity::Velocity) => "--measured-velocity",
+        (Role::Command, Quantity::Velocity) => "--command-velocity",
+    }
+}
+
+/// Such as "planned position".
+pub(super) fn describe(role: Role, quantity: Quantity) -> String {
+    let role = match role {
+        Role::Planned => "planned",
+        Role::Measured => "measured",
+        Role::Command => "command",
+    };
+    let quantity = match quantity {
+        Quantity::Position => "position",
+        Quantity::Velocity => "velocity",
+    };
+    format!("{role} {quantity}")
+}
+
+pub(super) fn lay_out(
+    head: &Head,
+    labels: &[Label],
+    taken: &[usize],
+    options: &CsvOptions,
+    remarks: &mut Remarks,
+) -> Result<Layout, CsvError> {
+    let mut drafts = Vec::new();
+    for ((role, quantity), columns) in &options.columns {
+        for (joint, name) in columns {
+            let column = find(name, option(*role, *quantity), &head.names)?;
+            let (key, joint) = (joint.to_lowercase(), joint.clone());
+            drafts.push(Draft { column, role: *role, quantity: *quantity, key, joint, stated: true });
+        }
+    }
+    let explicit: BTreeSet<usize> =
+        drafts.iter().map(|draft| draft.column).chain(taken.iter().copied()).collect();
+    let free = |column: &usize| head.named && labels[*column].is_joint && !explicit.contains(column);
+    for column in (0..labels.len()).filter(free) {
+        let label = &labels[column];
+        let (role, quantity) =
+            (label.role.unwrap_or(Role::Measured), label.quantity.unwrap_or(Quantity::Position));
+        let partner =
+            |other: usize| free(&other) && labels[other].key == label.key && labels[other].role != label.role;
+        let paired = drafts.iter().any(|draft| draft.key == label.key) || (0..labels.len()).any(partner);
+        if options.columns.contains_key(&(role, quantity)) || label.is_weak && !paired {
+            continue;
+        }
+        let (key, joint) = (label.key.clone(), label.joint.clone());
+        drafts.push(Draft { column, role, quantity, key, joint, stated: label.role.is_some() });
+    }
+    let is = |role| move |draft: &Draft| draft.role == role && draft.quantity == Quantity::Position;
+    if !drafts.iter().any(is(Role::Planned)) {
+        // A controller that logs its command and no plan was sent the plan.
+        for draft in drafts.iter_mut().filter(|draft| draft.role == Role::Command) {
+            draft.role = Role::Planned;
+        }
+    }
+    drop_repeats(head, &mut drafts, remarks)?;
+    let joints = joints(head, &drafts, remarks)?;
+    let place = |key: &str| joints.iter().position(|(known, _)| known == key);
+    let uses = drafts.iter().filter_map(|draft| {
+        let Draft { column, role, quantity, .. } = *draft;
+        Some(Use { column, role, quantity, joint: place(&draft.key)? })
+    });
+    let uses: Vec<Use> = uses.collect();
+    let mut interfaces = Vec::new();
+    for (name, columns) in &options.interfaces {
+        for (joint, column) in columns {
+            let column = find(column, &format!("interface {name}"), &head.names)?;
+            let joint = place(&joint.to_lowercase()).ok_or_else(|| CsvError::NoJoint {
+                interface: name.clone(),
+                joint: joint.clone(),
+                present: joints.iter().map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(", "),
+            })?;
+            interfaces.push(Interface { name: name.clone(), column, joint });
+        }
+    }
+    let mut used = BTreeSet::new();
+    let mut all = uses.iter().map(|one| one.column).chain(interfaces.iter().map(|one| one.column));
+    if let Some(column) = all.find(|column| !used.insert(*column)) {
+        return Err(CsvError::SameColumn { column: head.names[column].clone(), number: column + 1 });
+    }
+    Ok(Layout { joints: joints.into_iter().map(|(_, name)| name).collect(), uses, interfaces })
+}
+
+/// Two columns for one thing are an error, unless they say the same.
+fn drop_repeats(head: &Head, drafts: &mut Vec<Draft>, remarks: &mut Remarks) -> Result<(), CsvError> {
+    let mut kept: Vec<Draft> = Vec::new();
+    for draft in drafts.drain(..) {
+        let same = |other: &&Draft| {
+            other.key == draft.key && other.role == draft.role && other.quantity == draft.quantity
+        };
+        let Some(first) = kept.iter().find(same) else {
+            kept.push(draft);
+            continue;
+        };
+        if head.sample.iter().any(|row| row.get(first.column) != row.get(draft.column)) {
+            let shown = |column: usize| format!("{:?} (#{})", head.names[column], column + 1);
+            return Err(CsvError::Twice {
+                columns: format!("{} and {}", shown(first.column), shown(draft.column)),
+                what: describe(draft.role, draft.quantity),
+                joint: draft.joint,
+                option: option(draft.role, draft.quantity),
+            });
+        }
+        let message = format!(
+            "column {:?} (#{}) repeats #{} and was not used",
+            head.names[draft.column],
+            draft.column + 1,
+            first.column + 1
+        );
+        remarks.add(Code::Ambiguous, 1, message);
+    }
+    *drafts = kept;
+    Ok(())
+}
+
+/// Key and name of the joints that have plan and measurement; all of one side if the file has no other.
+fn joints(head: &Head, drafts: &[Draft], remarks: &mut Remarks) -> Result<Vec<(String, String)>, CsvError> {
+    let side = |role: Role| {
+        let mut list: Vec<&Draft> = Vec::new();
+        for draft in drafts.iter().filter(|d| d.role == role && d.quantity == Quantity::Position) {
+            list.push(draft);
+        }
+        list.sort_by_key(|draft| draft.column);
+        list
+    };
+    let (planned, measured) = (side(Role::Planned), side(Role::Measured));
+    let list = |side: &[&Draft]| side.iter().map(|draft| draft.joint.as_str()).collect::<Vec<_>>().join(", ");
+    let pair = |draft: &&Draft| (draft.key.clone(), draft.joint.clone());
+    let (all, missing, flag) = match (planned.is_empty(), measured.is_empty()) {
+        (true, true) => return Err(CsvError::NoJoints { present: present(&head.names) }),
+        (true, false) => (&measured, "plan", "--planned"),
+        (false, true) => (&planned, "measurement", "--measured"),
+        (false, false) => {
+            let both = |draft: &&&Draft| measured.iter().any(|other| other.key == draft.key);
+            let found: Vec<(String, String)> = planned.iter().filter(both).map(pair).collect();
+            if found.is_empty() {
+                return Err(CsvError::NoPair { planned: list(&planned), measured: list(&measured) });
+            }
+            for draft in planned.iter().chain(&measured).filter(|draft| draft.stated) {
+                if !found.iter().any(|(key, _)| *key == draft.key) {
+                    let message = format!(
+                        "{} has no partner for its column {:?}; left out",
+                        draft.joint, head.names[draft.column]
+                    );
+                    remarks.add(Code::UnpairedJoint, 1, message);
+                }
+            }
+            return Ok(found);
+        }
+    };
+    let message = format!(
+        "no column looks like a {missing}: the log holds the other side only, and a report needs both; name \
+         them with {flag} JOINT=COLUMN,..."
+    );
+    remarks.add(Code::UnpairedJoint, all.len() as u64, message);
+    Ok(all.iter().map(pair).collect())
+}

@@ -1,0 +1,128 @@
+//! Numbers as files write them, with a decimal point or a decimal comma.
+
+/// The number in a cell; `None` if it is none. NaN and infinities, which some programs write as
+/// words, are numbers here.
+pub(super) fn number(cell: &[u8], decimal_comma: bool) -> Option<f64> {
+    const LONGEST: usize = 48;
+    let cell = cell.trim_ascii();
+    if cell.is_empty() || cell.len() > LONGEST {
+        return None;
+    }
+    let comma = if decimal_comma { memchr::memchr(b',', cell) } else { None };
+    let Some(comma) = comma else {
+        if decimal_comma && memchr::memchr(b'.', cell).is_some() {
+            return None;
+        }
+        return std::str::from_utf8(cell).ok()?.parse().ok();
+    };
+    let mut buffer = [0_u8; LONGEST];
+    let copy = buffer.get_mut(..cell.len())?;
+    copy.copy_from_slice(cell);
+    if memchr::memchr(b'.', cell).is_some() {
+        return None;
+    }
+    *copy.get_mut(comma)? = b'.';
+    std::str::from_utf8(copy).ok()?.parse().ok()
+}
+
+/// A plain decimal number times `unit_ns`, rounded to whole nanoseconds without a detour over
+/// binary fractions: stamps of 19 digits keep them all. `None` beyond what an `i64` holds.
+pub(super) fn nanoseconds(cell: &[u8], decimal_comma: bool, unit_ns: i64) -> Option<i64> {
+    let cell = cell.trim_ascii();
+    let (negative, digits) = match cell.first()? {
+        b'-' => (true, &cell[1..]),
+        b'+' => (false, &cell[1..]),
+        _ => (false, cell),
+    };
+    let mark = if decimal_comma { b',' } else { b'.' };
+    let (whole, fraction) = match memchr::memchr(mark, digits) {
+        Some(at) => (&digits[..at], &digits[at + 1..]),
+        None => (digits, &[][..]),
+    };
+    let plain = |digits: &[u8]| digits.iter().all(u8::is_ascii_digit);
+    if !plain(whole) || !plain(fraction) {
+        return scientific(cell, decimal_comma, unit_ns);
+    }
+    if whole.len() > 19 || whole.is_empty() && fraction.is_empty() {
+        return None;
+    }
+    let value = |digits: &[u8]| digits.iter().fold(0_i128, |sum, digit| sum * 10 + i128::from(digit - b'0'));
+    // More digits than these are far below a nanosecond.
+    let fraction = fraction.get(..18).unwrap_or(fraction);
+    let unit = i128::from(unit_ns);
+    let scale = 10_i128.pow(u32::try_from(fraction.len()).ok()?);
+    let rounded = (2 * value(fraction) * unit + scale) / (2 * scale);
+    let total = value(whole) * unit + rounded;
+    i64::try_from(if negative { -total } else { total }).ok()
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "range checked")]
+fn scientific(cell: &[u8], decimal_comma: bool, unit_ns: i64) -> Option<i64> {
+    let value_ns = number(cell, decimal_comma)? * unit_ns as f64;
+    (value_ns.abs() < 9.0e18).then(|| value_ns.round() as i64)
+}
+
+/// What a cell looks like, before anyone knows how the file writes numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Looks {
+    Empty,
+    Whole,
+    Point,
+    Comma,
+    Date,
+    Text,
+}
+
+pub(super) fn looks(cell: &[u8]) -> Looks {
+    let cell = cell.trim_ascii();
+    if cell.is_empty() {
+        return Looks::Empty;
+    }
+    let has = |byte| memchr::memchr(byte, cell).is_some();
+    match (number(cell, false), number(cell, true)) {
+        (Some(_), _) if has(b'.') => Looks::Point,
+        (_, Some(_)) if has(b',') => Looks::Comma,
+        (Some(_), _) | (_, Some(_)) => Looks::Whole,
+        (None, None) => {
+            let dated = cell.len() >= 8
+                && cell[0].is_ascii_digit()
+                && cell.iter().all(|byte| byte.is_ascii_digit() || b" -:./,TZ+APMUC".contains(byte));
+            if dated { Looks::Date } else { Looks::Text }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stamp_of_nineteen_digits_keeps_them() {
+        assert_eq!(nanoseconds(b"1750000000123456789", false, 1), Some(1_750_000_000_123_456_789));
+        assert_eq!(
+            nanoseconds(b"1750000000.123456789", false, 1_000_000_000),
+            Some(1_750_000_000_123_456_789)
+        );
+        assert_eq!(nanoseconds(b"-0,02", true, 1_000_000_000), Some(-20_000_000));
+        assert_eq!(nanoseconds(b"0.30000000000000004", false, 1_000_000_000), Some(300_000_000));
+        assert_eq!(nanoseconds(b"1.5e-3", false, 1_000_000_000), Some(1_500_000));
+        assert_eq!(nanoseconds(b"99999999999", false, 1_000_000_000), None);
+    }
+
+    #[test]
+    fn a_point_is_no_number_where_the_comma_is_decimal() {
+        assert_eq!(number(b" 1,5 ", true), Some(1.5));
+        assert_eq!(number(b"1.5", true), None);
+        assert_eq!(number(b"1.234,5", true), None);
+        assert_eq!(number(b"1,5", false), None);
+        assert_eq!(number(b"-1e3", true), Some(-1000.0));
+    }
+
+    #[test]
+    fn dates_are_told_from_words() {
+        assert_eq!(looks(b"15.06.2025 15:06:40,020"), Looks::Date);
+        assert_eq!(looks(b"2025-06-15T15:06:40Z"), Looks::Date);
+        assert_eq!(looks(b"standstill"), Looks::Text);
+        assert_eq!(looks(b"1,25"), Looks::Comma);
+    }
+}

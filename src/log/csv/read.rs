@@ -1,0 +1,203 @@
+//! All rows of a file: a stamp each, and the numbers of the columns in use.
+
+use std::collections::BTreeMap;
+
+use ::csv::ByteRecord;
+
+use super::{
+    CsvError,
+    column::clip,
+    dialect::Dialect,
+    head::Head,
+    number::number,
+    rows::{Rows, cell_text},
+    time::TimeSource,
+};
+use crate::remark::{Code, Remarks};
+
+/// Numbers of one column, `[rows]`; NaN where a cell holds none.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Column {
+    pub(super) values: Vec<f64>,
+    /// Cells that hold a finite number.
+    pub(super) numbers: u64,
+    /// Cells that hold something that is no finite number.
+    bad: u64,
+    /// The first of these and its line.
+    example: Option<(String, u64)>,
+}
+
+/// What the rows hold.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Cells {
+    /// ns since 1970, `[rows]`.
+    pub(super) stamp_ns: Vec<i64>,
+    pub(super) absolute: bool,
+    /// By column of the file.
+    pub(super) columns: BTreeMap<usize, Column>,
+}
+
+/// Reads the rows; `wanted` are the columns to read besides the time.
+pub(super) fn read(
+    text: &[u8],
+    head: &Head,
+    dialect: Dialect,
+    time: &TimeSource,
+    wanted: impl Iterator<Item = usize>,
+    remarks: &mut Remarks,
+) -> Result<Cells, CsvError> {
+    let mut rows = Rows::new(text, dialect.separator);
+    let mut record = ByteRecord::new();
+    let mut columns: BTreeMap<usize, Column> = wanted.map(|column| (column, Column::default())).collect();
+    let mut stamp_ns = Vec::new();
+    let (mut row, mut ragged, mut unstamped) = (0_u64, 0_u64, 0_u64);
+    let mut ragged_line = None;
+    let mut unstamped_example = None;
+    while let Some(line) = rows.next(&mut record) {
+        if line < head.first_line {
+            continue;
+        }
+        row += 1;
+        let beyond = record.iter().skip(dialect.width).any(|cell| !cell.trim_ascii().is_empty());
+        if record.len() < dialect.width || beyond {
+            ragged += 1;
+            ragged_line.get_or_insert((line, record.len()));
+            continue;
+        }
+        let cell = |column: usize| record.get(column).unwrap_or_default();
+        let Some(ns) = time.ns(row - 1, cell, dialect.decimal_comma) else {
+            unstamped += 1;
+            let example =
+                || (time.columns().first().map_or_else(String::new, |&c| clip(&cell_text(cell(c)))), line);
+            unstamped_example.get_or_insert_with(example);
+            continue;
+        };
+        stamp_ns.push(ns);
+        for (&at, column) in &mut columns {
+            column.push(cell(at), line, dialect.decimal_comma);
+        }
+    }
+    if let Some((line, cells)) = ragged_line {
+        let message = format!(
+            "rows that are not {} cells wide, such as line {line} with {cells}; left out",
+            dialect.width
+        );
+        remarks.add(Code::LengthMismatch, ragged, message);
+    }
+    let absolute = time.settle(&mut stamp_ns);
+    let outside = drop_outside(&mut stamp_ns, &mut columns);
+    let clock = time.columns().first().map_or("", |&column| head.names[column].as_str());
+    judge_stamps(clock, stamp_ns.len() as u64, unstamped, outside, unstamped_example, dialect, remarks)?;
+    doubt_order(&stamp_ns, remarks);
+    for (at, column) in &columns {
+        column.judge(&head.names[*at], dialect, remarks)?;
+    }
+    Ok(Cells { stamp_ns, absolute, columns })
+}
+
+/// An error if most rows have no time, a remark if some have none.
+fn judge_stamps(
+    column: &str,
+    stamped: u64,
+    unstamped: u64,
+    outside: u64,
+    example: Option<(String, u64)>,
+    dialect: Dialect,
+    remarks: &mut Remarks,
+) -> Result<(), CsvError> {
+    let such = such(example.as_ref());
+    if stamped <= unstamped + outside {
+        let marks = example.is_some_and(|(text, _)| text.contains(['.', ',']));
+        let fix = match (marks, dialect.decimal_comma) {
+            (true, false) => "say --decimal-comma, --time COLUMN or --rate HZ",
+            (true, true) => "say --decimal-point, --time COLUMN or --rate HZ",
+            (false, _) => "say --time COLUMN, --time-unit UNIT or --rate HZ",
+        };
+        let (column, bad) = (column.to_owned(), unstamped + outside);
+        return Err(CsvError::NoStamps { column, stamped, bad, example: such, fix });
+    }
+    remarks.add(Code::UnusableStamp, unstamped, format!("rows without a time in {column:?}{such}; left out"));
+    let message = format!("rows whose time in {column:?} lies outside 1970 to 2038; left out");
+    remarks.add(Code::UnusableStamp, outside, message);
+    Ok(())
+}
+
+/// What a cell held where something else was expected, and the line.
+fn such(example: Option<&(String, u64)>) -> String {
+    example.map_or_else(String::new, |(text, line)| format!(", such as {text:?} in line {line}"))
+}
+
+impl Column {
+    fn push(&mut self, cell: &[u8], line: u64, decimal_comma: bool) {
+        let value = number(cell, decimal_comma).filter(|value| value.is_finite());
+        if value.is_some() {
+            self.numbers += 1;
+        } else if !cell.trim_ascii().is_empty() {
+            self.bad += 1;
+            self.example.get_or_insert_with(|| (clip(&cell_text(cell)), line));
+        }
+        self.values.push(value.unwrap_or(f64::NAN));
+    }
+
+    /// The largest finite magnitude.
+    pub(super) fn reach(&self) -> f64 {
+        self.values.iter().filter(|value| value.is_finite()).fold(0.0, |most, value| value.abs().max(most))
+    }
+
+    /// An error if most cells hold something else than numbers, a remark if some do.
+    fn judge(&self, name: &str, dialect: Dialect, remarks: &mut Remarks) -> Result<(), CsvError> {
+        let such = such(self.example.as_ref());
+        let mark = if dialect.decimal_comma { '.' } else { ',' };
+        let marks = self.example.as_ref().is_some_and(|(text, _)| text.contains(mark));
+        // Whole numbers look the same with either mark: a tenth of others says that it is wrong.
+        let most = if marks { self.numbers / 10 } else { self.numbers };
+        if self.bad > most {
+            return Err(CsvError::NoNumbers {
+                column: name.to_owned(),
+                numbers: self.numbers,
+                decimal: if dialect.decimal_comma { "comma" } else { "point" },
+                bad: self.bad,
+                example: such,
+                fix: match (marks, dialect.decimal_comma) {
+                    (true, false) => "say --decimal-comma",
+                    (true, true) => "say --decimal-point",
+                    (false, _) => "map another column",
+                },
+            });
+        }
+        let message = format!("cells of {name:?} that are no number{such}; left empty");
+        remarks.add(Code::NotFinite, self.bad, message);
+        let all = if self.numbers == 0 { self.values.len() as u64 } else { 0 };
+        remarks.add(Code::NotFinite, all, format!("cells of {name:?}, all of them, are empty"));
+        Ok(())
+    }
+}
+
+/// Drops rows that no message can be stamped with; how many.
+fn drop_outside(stamp_ns: &mut Vec<i64>, columns: &mut BTreeMap<usize, Column>) -> u64 {
+    const LAST_NS: i64 = i32::MAX as i64 * 1_000_000_000;
+    let keep: Vec<bool> = stamp_ns.iter().map(|ns| (1..LAST_NS).contains(ns)).collect();
+    let dropped = keep.iter().filter(|keep| !**keep).count() as u64;
+    if dropped == 0 {
+        return 0;
+    }
+    let mut place = keep.iter();
+    stamp_ns.retain(|_| place.next().copied().unwrap_or(false));
+    for column in columns.values_mut() {
+        let mut place = keep.iter();
+        column.values.retain(|_| place.next().copied().unwrap_or(false));
+        column.numbers = column.values.iter().filter(|value| value.is_finite()).count() as u64;
+    }
+    dropped
+}
+
+/// The log keeps the stamps as they are; the report repairs what can be repaired.
+fn doubt_order(stamp_ns: &[i64], remarks: &mut Remarks) {
+    let steps =
+        |wanted: std::cmp::Ordering| stamp_ns.windows(2).filter(|w| w[1].cmp(&w[0]) == wanted).count() as u64;
+    let message = "rows with the time of the row before; kept as they are, a report uses the first of each";
+    remarks.add(Code::DuplicateStamp, steps(std::cmp::Ordering::Equal), message);
+    let message =
+        "rows earlier than the row before; kept as they are, a report puts them in order or splits there";
+    remarks.add(Code::ClockJump, steps(std::cmp::Ordering::Less), message);
+}

@@ -1,0 +1,116 @@
+//! A run as a CSV file gave it, and the log it becomes.
+
+use std::{collections::BTreeMap, io::Write};
+
+use super::{Quantity, Role, Understood, layout::Layout, read::Cells};
+use crate::{
+    log::{LogWriter, WriteError, WriteOptions},
+    remark::Remarks,
+};
+
+/// Columns of one quantity, `[joints]`; `None` for a joint without one.
+type ByJoint<'a> = Vec<Option<&'a [f64]>>;
+
+/// Name of the metadata that says where an imported log comes from.
+const ORIGIN: &str = "hydrotrace.import";
+
+/// A run as a CSV file gave it: SI units, one row an instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CsvRun {
+    /// How the file was read.
+    pub understood: Understood,
+    /// What was doubtful.
+    pub remarks: Remarks,
+    layout: Layout,
+    cells: Cells,
+}
+
+impl CsvRun {
+    pub(super) fn new(layout: Layout, cells: Cells, understood: Understood, remarks: Remarks) -> Self {
+        Self { understood, remarks, layout, cells }
+    }
+
+    /// Writes the run as an MCAP log of ROS 2 messages. A row gives a message of plan, measurement
+    /// or command if at least one joint has a number for it; a joint without one is NaN in it.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`] if `output` takes no more, or for a name of joint or interface that no log
+    /// can hold.
+    pub fn write<W: Write>(&self, output: W) -> Result<W, WriteError> {
+        let Self { layout, cells, understood, .. } = self;
+        let mut log = LogWriter::new(output, &layout.joints, WriteOptions::default())?;
+        let columns =
+            understood.columns.iter().map(|c| (format!("{} of {}", c.becomes, c.joint), c.header.clone()));
+        let time = format!("{} ({})", understood.time.columns.join(", "), understood.time.form);
+        let mut origin: BTreeMap<String, String> = columns.collect();
+        origin.extend([("file".to_owned(), understood.file.clone()), ("time".to_owned(), time)]);
+        log.metadata(ORIGIN, &origin)?;
+        let positions = |role| self.by_joint(role, Quantity::Position);
+        let velocities = |role| self.by_joint(role, Quantity::Velocity);
+        let sides: Vec<(Role, [ByJoint<'_>; 2])> = [Role::Planned, Role::Measured, Role::Command]
+            .into_iter()
+            .filter_map(|role| Some((role, [positions(role)?, velocities(role).unwrap_or_default()])))
+            .collect();
+        let names: Vec<&str> = layout.interfaces.iter().map(|one| one.name.as_str()).collect();
+        let interfaces: BTreeMap<&str, ByJoint<'_>> =
+            names.into_iter().map(|name| (name, self.interface(name))).collect();
+        let mut row_values = [Vec::new(), Vec::new()];
+        for (row, &stamp_ns) in cells.stamp_ns.iter().enumerate() {
+            for (role, quantities) in &sides {
+                for (values, columns) in row_values.iter_mut().zip(quantities) {
+                    at(columns, row, values);
+                }
+                let [position_rad, velocity_rad_s] = &row_values;
+                if position_rad.iter().any(|q| q.is_finite()) {
+                    log.joint_sample(*role, stamp_ns, position_rad, velocity_rad_s, &[])?;
+                }
+            }
+            if !interfaces.is_empty() {
+                let values: Vec<(&str, Vec<f64>)> = interfaces
+                    .iter()
+                    .map(|(name, columns)| {
+                        let mut values = Vec::new();
+                        at(columns, row, &mut values);
+                        (*name, values)
+                    })
+                    .collect();
+                let slices: Vec<(&str, &[f64])> =
+                    values.iter().map(|(name, v)| (*name, v.as_slice())).collect();
+                log.interfaces(stamp_ns, &slices)?;
+            }
+        }
+        log.finish()
+    }
+
+    fn column(&self, column: usize) -> Option<&[f64]> {
+        self.cells.columns.get(&column).map(|column| column.values.as_slice())
+    }
+
+    /// Columns of a role and quantity, `[joints]`; `None` if no joint has one.
+    fn by_joint(&self, role: Role, quantity: Quantity) -> Option<ByJoint<'_>> {
+        let of = |joint: usize| {
+            let fits = |one: &&super::layout::Use| {
+                one.role == role && one.quantity == quantity && one.joint == joint
+            };
+            self.layout.uses.iter().find(fits).and_then(|one| self.column(one.column))
+        };
+        let columns: ByJoint<'_> = (0..self.layout.joints.len()).map(of).collect();
+        columns.iter().any(Option::is_some).then_some(columns)
+    }
+
+    fn interface(&self, name: &str) -> ByJoint<'_> {
+        let of = |joint: usize| {
+            let one = self.layout.interfaces.iter().find(|one| one.name == name && one.joint == joint);
+            one.and_then(|one| self.column(one.column))
+        };
+        (0..self.layout.joints.len()).map(of).collect()
+    }
+}
+
+/// A row of some columns; NaN where there is no number.
+fn at(columns: &[Option<&[f64]>], row: usize, values: &mut Vec<f64>) {
+    values.clear();
+    let value = |values: Option<&[f64]>| values.and_then(|values| values.get(row)).copied();
+    values.extend(columns.iter().map(|&column| value(column).unwrap_or(f64::NAN)));
+}

@@ -1,0 +1,72 @@
+//! The text of a file, whatever its encoding, and what else a file may be.
+
+use std::borrow::Cow;
+
+use super::CsvError;
+
+/// What other files begin with.
+const OTHERS: [(&[u8], &str, &str); 6] = [
+    (b"\x89MCAP0\r\n", "an MCAP log", "`hydrotrace report` reads it as it is"),
+    (b"PAR1", "a Parquet file", "give the CSV it was made from"),
+    (b"PK\x03\x04", "a spreadsheet or an archive", "save the sheet as CSV"),
+    (b"\xd0\xcf\x11\xe0", "an old spreadsheet", "save the sheet as CSV"),
+    (b"\x1f\x8b", "a gzip archive", "unpack it first"),
+    (
+        b"SQLite format 3\0",
+        "an SQLite file, such as a ROS 2 bag",
+        "convert it with `ros2 bag convert` to MCAP",
+    ),
+];
+
+/// Bytes in which a zero means that this is no text.
+const LOOKED_AT: usize = 4096;
+
+/// The text without its byte order mark; UTF-16 becomes UTF-8, everything else stays bytes.
+pub(super) fn of_bytes<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, [u8]>, CsvError> {
+    let not_text = |found: String, fix| CsvError::NotText { file: file.to_owned(), found, fix };
+    if let Some((_, what, fix)) = OTHERS.iter().find(|(magic, ..)| bytes.starts_with(magic)) {
+        return Err(not_text(format!("it is {what}"), fix));
+    }
+    let wide = |rest: &[u8], of: fn([u8; 2]) -> u16| {
+        let units = rest.chunks_exact(2).map(|pair| of([pair[0], pair[1]]));
+        let text: String =
+            char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+        text.into_bytes()
+    };
+    let text = if let Some(rest) = bytes.strip_prefix(b"\xff\xfe") {
+        Cow::Owned(wide(rest, u16::from_le_bytes))
+    } else if let Some(rest) = bytes.strip_prefix(b"\xfe\xff") {
+        Cow::Owned(wide(rest, u16::from_be_bytes))
+    } else {
+        Cow::Borrowed(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))
+    };
+    // A recording that ends in zeros lost its power; one that begins with them is no text.
+    if let Some(at) = memchr::memchr(0, text.get(..LOOKED_AT).unwrap_or(&text)) {
+        let whole = text.iter().skip(at).all(|byte| *byte == 0);
+        if !whole || at == 0 {
+            let fix = "give a text file; if it is UTF-16, it needs its byte order mark";
+            return Err(not_text(format!("byte {} is zero", at + 1), fix));
+        }
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_of_encodings_are_no_text() {
+        assert_eq!(of_bytes("a", b"\xef\xbb\xbft;q").unwrap().as_ref(), b"t;q");
+        assert_eq!(of_bytes("a", b"\xff\xfet\0;\0\xb0\0").unwrap().as_ref(), "t;°".as_bytes());
+        assert_eq!(of_bytes("a", b"\xfe\xff\0t\0;").unwrap().as_ref(), b"t;");
+    }
+
+    #[test]
+    fn a_binary_file_is_named() {
+        let error = of_bytes("a", b"\x89MCAP0\r\nxyz").unwrap_err().to_string();
+        assert!(error.contains("an MCAP log"), "{error}");
+        assert!(of_bytes("a", b"t;q\0\x01\n").is_err());
+        assert!(of_bytes("a", b"t;q\n1;2\n\0\0\0").is_ok());
+    }
+}

@@ -1,0 +1,109 @@
+//! How each row gets its stamp.
+
+use super::{
+    date::{DateForm, Part},
+    number::nanoseconds,
+    unit::Unit,
+};
+use crate::units::NS_PER_S;
+
+/// The instant that times without a date count from, ns since 1970: no wall clock, so that equal
+/// files give equal logs.
+const START_NS: i64 = 1_760_000_000_000_000_000;
+
+/// Stamps before this one, ns since 1970, count from something else.
+pub(super) const FIRST_ABSOLUTE_NS: i64 = 100_000_000_000_000_000;
+
+/// How each row gets its stamp.
+#[derive(Debug, Clone)]
+pub(super) enum TimeSource {
+    Rate { hz: f64 },
+    Number { column: usize, unit: Unit },
+    Date { column: usize, form: DateForm },
+    DayAndTime { day: (usize, DateForm), time: (usize, DateForm) },
+}
+
+impl TimeSource {
+    /// Stamp of a row, ns; `None` if it has none.
+    pub(super) fn ns<'a>(
+        &self,
+        row: u64,
+        cell: impl Fn(usize) -> &'a [u8],
+        decimal_comma: bool,
+    ) -> Option<i64> {
+        match self {
+            Self::Rate { hz } => whole(row as f64 * NS_PER_S / hz),
+            Self::Number { column, unit } => nanoseconds(cell(*column), decimal_comma, whole(unit.factor)?),
+            Self::Date { column, form } => form.ns(cell(*column)),
+            Self::DayAndTime { day, time } => day.1.ns(cell(day.0))?.checked_add(time.1.ns(cell(time.0))?),
+        }
+    }
+
+    /// The columns it reads.
+    pub(super) fn columns(&self) -> Vec<usize> {
+        match self {
+            Self::Rate { .. } => Vec::new(),
+            Self::Number { column, .. } | Self::Date { column, .. } => vec![*column],
+            Self::DayAndTime { day, time } => vec![day.0, time.0],
+        }
+    }
+
+    /// What the times are, for a person.
+    pub(super) fn form(&self) -> String {
+        match self {
+            Self::Rate { hz } => format!("none used; rows come at {hz} Hz as given"),
+            Self::Number { unit, .. } => format!("counts {}", unit.name),
+            Self::Date { form, .. } if form.part() == Part::Local => {
+                format!("{}, no zone, taken as UTC", form.name)
+            }
+            Self::Date { form, .. } => form.name.to_owned(),
+            Self::DayAndTime { day, time } => {
+                format!("{} and {}, no zone, taken as UTC", day.1.name, time.1.name)
+            }
+        }
+    }
+
+    /// Makes stamps increase over midnight where there is no day, and count from a fixed instant
+    /// where they count from none; whether they are absolute.
+    pub(super) fn settle(&self, stamp_ns: &mut [i64]) -> bool {
+        const DAY_NS: i64 = 86_400_000_000_000;
+        if let Self::Date { form, .. } = self
+            && form.part() == Part::TimeOfDay
+        {
+            let (mut days_ns, mut before) = (0_i64, i64::MIN);
+            for ns in &mut *stamp_ns {
+                if before.saturating_sub(*ns) > DAY_NS / 2 {
+                    days_ns = days_ns.saturating_add(DAY_NS);
+                }
+                before = *ns;
+                *ns = ns.saturating_add(days_ns);
+            }
+        }
+        let absolute = stamp_ns.first().is_some_and(|first| *first >= FIRST_ABSOLUTE_NS);
+        if !absolute {
+            for ns in &mut *stamp_ns {
+                *ns = ns.saturating_add(START_NS);
+            }
+        }
+        absolute
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "range checked")]
+fn whole(ns: f64) -> Option<i64> {
+    (ns.abs() < 9.0e18).then(|| ns.round() as i64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_of_day_goes_on_after_midnight() {
+        let cells = [b"23:59:59,98".as_slice(), b"00:00:00,00"];
+        let form = DateForm::fitting(&cells.into_iter()).remove(0);
+        let mut ns: Vec<i64> = cells.iter().filter_map(|cell| form.ns(cell)).collect();
+        let absolute = TimeSource::Date { column: 0, form }.settle(&mut ns);
+        assert_eq!((ns[1] - ns[0], absolute), (20_000_000, false));
+    }
+}

@@ -1,0 +1,114 @@
+//! Units as people write them into a header, and what they are in SI.
+
+use std::f64::consts::TAU;
+
+use serde::Serialize;
+
+use crate::units::DEGREE_RAD;
+
+/// What a unit measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Measure {
+    Angle,
+    AngularSpeed,
+    Time,
+    Pressure,
+    /// Something a header states that is none of these.
+    Other,
+}
+
+/// A unit: SI = value x `factor`; times are in ns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Unit {
+    pub(super) name: &'static str,
+    pub(super) measure: Measure,
+    pub(super) factor: f64,
+}
+
+const fn unit(name: &'static str, measure: Measure, factor: f64) -> Unit {
+    Unit { name, measure, factor }
+}
+
+pub(super) const RADIAN: Unit = unit("rad", Measure::Angle, 1.0);
+pub(super) const DEGREE: Unit = unit("deg", Measure::Angle, DEGREE_RAD);
+
+/// Spellings, in lower case and with `deg` for the degree sign.
+const UNITS: [(&[&str], Unit); 21] = [
+    (&["rad", "radian", "radians"], RADIAN),
+    (&["deg", "degree", "degrees", "grad"], DEGREE),
+    (&["mrad"], unit("mrad", Measure::Angle, 1e-3)),
+    (&["mdeg"], unit("mdeg", Measure::Angle, 1e-3 * DEGREE_RAD)),
+    (&["rev", "turn", "turns"], unit("rev", Measure::Angle, TAU)),
+    (&["rad/s", "rad_s", "rads", "rad/sec", "rad s^-1"], unit("rad/s", Measure::AngularSpeed, 1.0)),
+    (
+        &["deg/s", "deg_s", "degs", "deg/sec", "dps", "grad/s"],
+        unit("deg/s", Measure::AngularSpeed, DEGREE_RAD),
+    ),
+    (&["mrad/s", "mrad_s"], unit("mrad/s", Measure::AngularSpeed, 1e-3)),
+    (&["rpm", "1/min", "u/min"], unit("rpm", Measure::AngularSpeed, TAU / 60.0)),
+    (&["s", "sec", "secs", "seconds", "second"], unit("s", Measure::Time, 1e9)),
+    (&["ms", "msec", "milliseconds", "millis"], unit("ms", Measure::Time, 1e6)),
+    (&["us", "µs", "μs", "usec", "microseconds", "micros"], unit("us", Measure::Time, 1e3)),
+    (&["ns", "nsec", "nanosec", "nanoseconds", "nanos"], unit("ns", Measure::Time, 1.0)),
+    (&["min", "minutes"], unit("min", Measure::Time, 60e9)),
+    (&["pa"], unit("Pa", Measure::Pressure, 1.0)),
+    (&["kpa"], unit("kPa", Measure::Pressure, 1e3)),
+    (&["mpa"], unit("MPa", Measure::Pressure, 1e6)),
+    (&["mbar"], unit("mbar", Measure::Pressure, 100.0)),
+    (&["bar"], unit("bar", Measure::Pressure, 1e5)),
+    (&["psi"], unit("psi", Measure::Pressure, 6_894.757_293_168)),
+    (
+        &[
+            "nm", "n m", "n*m", "a", "ma", "v", "mv", "n", "kn", "mm", "m", "cm", "%", "c", "degc", "l/min",
+            "hz",
+        ],
+        unit("another unit", Measure::Other, 1.0),
+    ),
+];
+
+/// The unit that a text names, if it is one.
+pub(super) fn parse_unit(text: &str) -> Option<Unit> {
+    let text = text.trim().trim_matches(['[', ']', '(', ')']).trim().to_lowercase().replace('°', "deg");
+    UNITS.iter().find(|(spellings, _)| spellings.contains(&text.as_str())).map(|(_, unit)| *unit)
+}
+
+/// The unit that ends a name, as in `q1_deg` or `J1_planned_rad_s`, and the name without it.
+pub(super) fn split_suffix(name: &str) -> Option<(&str, Unit)> {
+    const SUFFIXES: [&str; 15] = [
+        "rad_s", "deg_s", "mrad_s", "rad", "deg", "mrad", "mdeg", "ms", "us", "ns", "s", "bar", "mbar", "pa",
+        "°",
+    ];
+    let lower = name.to_lowercase();
+    let suffix = SUFFIXES.iter().find(|suffix| {
+        let stem = lower.strip_suffix(**suffix);
+        stem.is_some_and(|stem| **suffix == "°" || stem.ends_with(['_', ' ', '.']) && stem.len() > 1)
+    })?;
+    // Lower case may be longer or shorter than the name in some scripts.
+    let stem = name.get(..name.len().checked_sub(suffix.len())?)?;
+    Some((stem.trim_end_matches(['_', ' ', '.']), parse_unit(suffix)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spellings_of_a_unit_are_one_unit() {
+        for text in ["deg", "[deg]", "(°)", " Degrees ", "[Grad]"] {
+            assert_eq!(parse_unit(text), Some(DEGREE), "{text}");
+        }
+        assert_eq!(parse_unit("°/s").map(|unit| unit.name), Some("deg/s"));
+        assert_eq!(parse_unit("soll"), None);
+    }
+
+    #[test]
+    fn a_unit_may_end_a_name() {
+        let split = |name| split_suffix(name).map(|(stem, unit)| (stem, unit.name));
+        assert_eq!(split("q1_deg"), Some(("q1", "deg")));
+        assert_eq!(split("J1_planned_rad_s"), Some(("J1_planned", "rad/s")));
+        assert_eq!(split("stamp_ns"), Some(("stamp", "ns")));
+        assert_eq!(split("axes"), None);
+        assert_eq!(split("İ_deg").map(|(stem, _)| stem), Some("İ"));
+    }
+}

@@ -1,0 +1,271 @@
+//! The words of a header, and which of them say plan, measurement, angle, speed, time.
+
+use super::{Quantity, Role};
+
+/// What one word of a header says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Meaning {
+    Role(Role),
+    Quantity(Quantity),
+    /// A word for a joint; part of its name.
+    Joint,
+    Time,
+    /// A word that no column with joint angles has.
+    Foreign,
+    /// Anything else: part of a joint's name.
+    Name,
+}
+
+const PLANNED: [&str; 21] = [
+    "target",
+    "planned",
+    "plan",
+    "desired",
+    "des",
+    "reference",
+    "ref",
+    "setpoint",
+    "set",
+    "sp",
+    "soll",
+    "sollwert",
+    "goal",
+    "nominal",
+    "nom",
+    "demand",
+    "wanted",
+    "consigne",
+    "trajectory",
+    "traj",
+    "fuehrung",
+];
+const MEASURED: [&str; 18] = [
+    "actual",
+    "act",
+    "measured",
+    "meas",
+    "feedback",
+    "fb",
+    "fbk",
+    "ist",
+    "istwert",
+    "real",
+    "sensor",
+    "encoder",
+    "enc",
+    "pv",
+    "measurement",
+    "reached",
+    "mess",
+    "messwert",
+];
+const COMMAND: [&str; 5] = ["command", "commands", "commanded", "cmd", "stell"];
+const POSITION: [&str; 11] =
+    ["q", "pos", "position", "positions", "posn", "angle", "angles", "winkel", "lage", "theta", "phi"];
+const VELOCITY: [&str; 11] = [
+    "qd",
+    "dq",
+    "vel",
+    "velocity",
+    "velocities",
+    "velo",
+    "speed",
+    "omega",
+    "geschwindigkeit",
+    "drehzahl",
+    "qdot",
+];
+const JOINT: [&str; 9] = ["j", "joint", "axis", "achse", "gelenk", "ax", "axes", "jnt", "joints"];
+const TIME: [&str; 12] = [
+    "time",
+    "timestamp",
+    "zeit",
+    "zeitstempel",
+    "date",
+    "datum",
+    "uhrzeit",
+    "datetime",
+    "stamp",
+    "elapsed",
+    "temps",
+    "clock",
+];
+const FOREIGN: [&str; 65] = [
+    "qdd",
+    "ddq",
+    "acc",
+    "accel",
+    "acceleration",
+    "beschleunigung",
+    "torque",
+    "tau",
+    "effort",
+    "moment",
+    "drehmoment",
+    "current",
+    "strom",
+    "voltage",
+    "spannung",
+    "power",
+    "leistung",
+    "temperature",
+    "temp",
+    "temperatur",
+    "pressure",
+    "druck",
+    "flow",
+    "valve",
+    "ventil",
+    "spool",
+    "force",
+    "kraft",
+    "mode",
+    "status",
+    "error",
+    "err",
+    "fehler",
+    "deviation",
+    "abweichung",
+    "lag",
+    "schleppfehler",
+    "tcp",
+    "tool",
+    "pose",
+    "cart",
+    "cartesian",
+    "output",
+    "input",
+    "digital",
+    "analog",
+    "safety",
+    "runtime",
+    "counter",
+    "index",
+    "scaling",
+    "fraction",
+    "robot",
+    "x",
+    "y",
+    "z",
+    "jerk",
+    "level",
+    "temperatures",
+    "currents",
+    "torques",
+    "forces",
+    "pressures",
+    "modes",
+    "voltages",
+];
+
+fn meaning_of_word(word: &str) -> Meaning {
+    let lists: [(&[&str], Meaning); 8] = [
+        (&PLANNED, Meaning::Role(Role::Planned)),
+        (&MEASURED, Meaning::Role(Role::Measured)),
+        (&COMMAND, Meaning::Role(Role::Command)),
+        (&POSITION, Meaning::Quantity(Quantity::Position)),
+        (&VELOCITY, Meaning::Quantity(Quantity::Velocity)),
+        (&JOINT, Meaning::Joint),
+        (&TIME, Meaning::Time),
+        (&FOREIGN, Meaning::Foreign),
+    ];
+    lists.iter().find(|(list, _)| list.contains(&word)).map_or(Meaning::Name, |(_, meaning)| *meaning)
+}
+
+/// One word of a header: its text, what stood before it, what it says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Word<'a> {
+    pub(super) text: &'a str,
+    /// Whether anything separates it from the word before.
+    pub(super) apart: bool,
+    pub(super) meaning: Meaning,
+}
+
+/// Splits at separators, between letters and digits, and where lower case turns into upper case;
+/// `istpos` is split too if all of its parts are known.
+pub(super) fn words(header: &str) -> Vec<Word<'_>> {
+    let mut words = Vec::new();
+    for part in header.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()) {
+        let mut start = 0;
+        let mut before: Option<char> = None;
+        for (at, c) in part.char_indices() {
+            let turns = before
+                .is_some_and(|b| b.is_numeric() != c.is_numeric() || b.is_lowercase() && c.is_uppercase());
+            if turns {
+                push(&part[start..at], start == 0, &mut words);
+                start = at;
+            }
+            before = Some(c);
+        }
+        push(&part[start..], start == 0, &mut words);
+    }
+    words
+}
+
+fn push<'a>(text: &'a str, apart: bool, words: &mut Vec<Word<'a>>) {
+    let lower = text.to_lowercase();
+    let meaning = meaning_of_word(&lower);
+    // Byte offsets into the lower-case text hold for the text itself only in ASCII.
+    if meaning == Meaning::Name
+        && text.is_ascii()
+        && let Some(cuts) = compound(&lower)
+    {
+        let mut start = 0;
+        for end in cuts {
+            words.push(Word {
+                text: &text[start..end],
+                apart: apart && start == 0,
+                meaning: meaning_of_word(&lower[start..end]),
+            });
+            start = end;
+        }
+        return;
+    }
+    words.push(Word { text, apart, meaning });
+}
+
+/// Where the parts of a word of two or three known parts end.
+fn compound(word: &str) -> Option<Vec<usize>> {
+    const LONGEST: usize = 40;
+    if word.len() > LONGEST {
+        return None;
+    }
+    let known = |part: &str| (part.len() > 1 || part == "q") && meaning_of_word(part) != Meaning::Name;
+    for first in 1..word.len() {
+        if !known(&word[..first]) {
+            continue;
+        }
+        if known(&word[first..]) {
+            return Some(vec![first, word.len()]);
+        }
+        let second = (first + 1..word.len()).find(|&at| known(&word[first..at]) && known(&word[at..]));
+        if let Some(second) = second {
+            return Some(vec![first, second, word.len()]);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn split(header: &str) -> Vec<&str> {
+        words(header).iter().map(|word| word.text).collect()
+    }
+
+    #[test]
+    fn headers_split_into_words_however_they_are_written() {
+        assert_eq!(split("target_q_0"), ["target", "q", "0"]);
+        assert_eq!(split("Achse1Soll"), ["Achse", "1", "Soll"]);
+        assert_eq!(split("istpos.J2"), ["ist", "pos", "J", "2"]);
+        assert_eq!(split("shoulder_pan_joint"), ["shoulder", "pan", "joint"]);
+        assert_eq!(split("qsollwinkel"), ["q", "soll", "winkel"]);
+    }
+
+    #[test]
+    fn a_word_that_only_contains_a_known_one_is_a_name() {
+        assert_eq!(words("offset")[0].meaning, Meaning::Name);
+        assert_eq!(words("Exact")[0].meaning, Meaning::Name);
+    }
+}

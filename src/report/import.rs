@@ -1,0 +1,82 @@
+//! How a CSV file was read.
+
+use serde::Serialize;
+
+use super::{NONE, Part, Sheet, counted, json, tables::remark_parts};
+use crate::{log::Understood, remark::Remark, workflow::import::Outputs};
+
+#[derive(Serialize)]
+struct Document<'a> {
+    format: &'static str,
+    program: &'static str,
+    understood: &'a Understood,
+    remarks: &'a [Remark],
+}
+
+/// As JSON.
+pub fn imported_json(imported: &Outputs) -> String {
+    json::pretty(&Document {
+        format: "hydrotrace.import.v1",
+        program: json::PROGRAM,
+        understood: &imported.understood,
+        remarks: imported.remarks.as_slice(),
+    })
+}
+
+/// As sentences and tables.
+pub fn imported_parts(output: &str, imported: &Outputs) -> Vec<Part> {
+    let Understood { file, time, joints, columns, unused, .. } = &imported.understood;
+    let u = &imported.understood;
+    let mut parts = vec![Part::Line(format!(
+        "{} rows of {file} written to {output}: {}, {:.2} s at {:.1} Hz.",
+        u.rows,
+        counted(joints.len(), "joint"),
+        time.duration_s,
+        time.rate_hz
+    ))];
+    let fact = |name: &str, value: String| (name.to_owned(), value);
+    let header = match (u.header_line, u.unit_row) {
+        (0, _) => "none; columns go by their number".to_owned(),
+        (line, false) => format!("line {line}"),
+        (line, true) => format!("line {line}, units below it"),
+    };
+    let above =
+        if u.rows_above > 0 { format!("; {} above it", counted(u.rows_above, "row")) } else { String::new() };
+    let clock = if time.columns.is_empty() {
+        time.form.clone()
+    } else {
+        format!("{}: {}", time.columns.join(" and "), time.form)
+    };
+    let counts = if time.absolute { "" } else { "; without a date, counted from a fixed one" };
+    parts.push(Part::Heading("Read as".into()));
+    parts.push(Part::Facts(vec![
+        fact("cells", format!("separated by {}, decimal {}", u.separator, u.decimal)),
+        fact("header", format!("{header}{above}")),
+        fact("time", format!("{clock}{counts}")),
+    ]));
+    let rows = columns.iter().map(|column| {
+        let unit = match column.unit {
+            Some(unit) if column.unit_from == "file" => unit.to_owned(),
+            Some(unit) => format!("{unit} ({})", column.unit_from),
+            None => NONE.to_owned(),
+        };
+        vec![
+            column.header.clone(),
+            column.becomes.clone(),
+            column.joint.clone(),
+            unit,
+            column.numbers.to_string(),
+            column.empty.to_string(),
+        ]
+    });
+    parts.push(Part::Sheet(Sheet {
+        head: vec!["column", "became", "of joint", "unit", "numbers", "empty"],
+        left: 4,
+        rows: rows.collect(),
+    }));
+    if !unused.is_empty() {
+        parts.push(Part::Line(format!("Not used: {}", unused.join(", "))));
+    }
+    remark_parts(&imported.remarks, &mut parts);
+    parts
+}
