@@ -24,6 +24,7 @@ struct Document<'a> {
 }
 
 /// A plan of the comparison with the paper's Table 3.
+#[expect(clippy::struct_field_names, reason = "the names of the document")]
 #[derive(Serialize)]
 struct Plan<'a> {
     plan: String,

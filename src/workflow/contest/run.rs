@@ -172,7 +172,7 @@ fn one(batch: &Batch<'_>, seed: u64, steps: u64) -> Result<Run, ContestFailure> 
         (front.clone(), front, found.evaluations)
     } else {
         let archive = settings.front;
-        let settings = Settings { algorithm, seed, budget, archive, ..Settings::default() };
+        let settings = Settings { algorithm, budget, seed, archive, ..Settings::default() };
         let outcome = optimise(setup, &settings, |progress| {
             let all = progress.archive.map_or(progress.population, Archive::population);
             see(progress.evaluations, progress.population, all)
