@@ -2,6 +2,7 @@
 
 pub mod args;
 mod bench;
+mod compare;
 mod info;
 mod output;
 mod plan;
@@ -19,7 +20,7 @@ use crate::{
     atomic::AtomicError,
     log::{LogError, WriteError},
     moea::MoeaError,
-    workflow::{plan::PlanFailure, simulate_log::SimulateFailure},
+    workflow::{compare::CompareFailure, plan::PlanFailure, simulate_log::SimulateFailure},
 };
 
 /// How a run that did not fail ended.
@@ -50,6 +51,8 @@ enum CliError {
     Simulate(#[from] SimulateFailure),
     #[error("{failure}; what comes nearest:\n  {}", lines.join("\n  "))]
     NoPlan { failure: String, lines: Vec<String> },
+    #[error(transparent)]
+    Compare(#[from] CompareFailure),
     #[error("the plan cannot be logged")]
     Write(#[from] WriteError),
     #[error("{} is what is read; give another name to --output", .0.display())]
@@ -65,6 +68,7 @@ enum CliError {
 pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
     let result = match &args.command {
         Command::Report(report) => report::run(report, out, err),
+        Command::Compare(compare) => compare::run(compare, out, err),
         Command::Plan(plan) => plan::run(plan, out, err),
         Command::Simulate(simulate) => simulate::run(simulate, out),
         Command::Info(info) => info::run(info, out, err),

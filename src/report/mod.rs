@@ -1,6 +1,7 @@
 //! Renders what a workflow found: text, Markdown, JSON, CSV. Nothing is computed here; degrees
 //! and milliseconds are.
 
+mod compare;
 mod csv;
 mod info;
 mod json;
@@ -13,6 +14,7 @@ mod score;
 mod simulate;
 mod tables;
 
+pub use compare::{compare_gate_lines, compare_json, compare_parts};
 pub use csv::transitions_csv;
 pub use info::{info_json, info_parts};
 pub use json::report_json;
