@@ -43,7 +43,7 @@ fn verdict(peak: &Summary) -> String {
         Verdict::Larger => format!("The peak error at transitions became larger: {numbers}; {counts}."),
         Verdict::NotShown => {
             format!(
-                "Whether the peak error at transitions changed is open, luck explains it: {numbers}; {counts}."
+                "Whether the peak error at transitions changed is open, luck could explain it: {numbers}; {counts}."
             )
         }
         Verdict::Equal => {
