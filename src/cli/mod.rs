@@ -2,6 +2,7 @@
 
 pub mod args;
 mod bench;
+mod compare;
 mod export;
 mod import;
 mod info;
@@ -22,7 +23,8 @@ use crate::{
     log::{CsvError, ExportError, LogError, WriteError},
     moea::MoeaError,
     workflow::{
-        contest::ContestFailure, import::ImportError, plan::PlanFailure, simulate_log::SimulateFailure,
+        compare::CompareFailure, contest::ContestFailure, import::ImportError, plan::PlanFailure,
+        simulate_log::SimulateFailure,
     },
 };
 
@@ -62,6 +64,8 @@ enum CliError {
     NoPlan { failure: String, lines: Vec<String> },
     #[error(transparent)]
     Contest(#[from] ContestFailure),
+    #[error(transparent)]
+    Compare(#[from] CompareFailure),
     #[error("the plan cannot be logged")]
     Write(#[from] WriteError),
     #[error("{} is what is read; give another name to --output", .0.display())]
@@ -77,6 +81,7 @@ enum CliError {
 pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
     let result = match &args.command {
         Command::Report(report) => report::run(report, out, err),
+        Command::Compare(compare) => compare::run(compare, out, err),
         Command::Plan(plan) => plan::run(plan, out, err),
         Command::Simulate(simulate) => simulate::run(simulate, out),
         Command::Info(info) => info::run(info, out, err),

@@ -1,6 +1,7 @@
 //! Renders what a workflow found: text, Markdown, JSON, CSV. Nothing is computed here; degrees
 //! and milliseconds are.
 
+mod compare;
 mod contest;
 mod csv;
 mod import;
@@ -17,6 +18,7 @@ mod score;
 mod simulate;
 mod tables;
 
+pub use compare::{compare_gate_lines, compare_json, compare_parts};
 pub use contest::{contest_csv, contest_json, contest_parts, contest_svg};
 pub use csv::transitions_csv;
 pub use import::{imported_json, imported_parts};

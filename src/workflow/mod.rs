@@ -1,5 +1,6 @@
 //! One file per verb: what the caller wants in, what was found out. No printing, no clap.
 
+pub mod compare;
 pub mod contest;
 pub mod detector;
 pub mod export;

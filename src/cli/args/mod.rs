@@ -1,6 +1,7 @@
 //! Clap definitions only. Degrees and milliseconds are accepted here and turned into SI here.
 
 mod bench;
+mod compare;
 mod contest;
 mod export;
 mod import;
@@ -13,6 +14,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand, ValueEnum};
 
 pub use bench::{Bench, BenchArgs, DetectorArgs};
+pub use compare::CompareArgs;
 pub use contest::ContestArgs;
 pub use export::{ExportArgs, ExportFormat};
 pub use import::ImportArgs;
@@ -35,7 +37,7 @@ use crate::{
     version,
     max_term_width = 100,
     after_help = "Exit codes: 0 finished, 1 failed, 2 bad usage, 3 finished with remarks on the data, \
-                  4 finished but a limit (--max-...) was not kept."
+                  4 finished but a limit (--max-..., --min-...) was not kept."
 )]
 pub struct Args {
     /// What to do.
@@ -53,6 +55,12 @@ pub enum Command {
                             hydrotrace report run.mcap --planned /arm/controller_state:output.positions"
     )]
     Report(ReportArgs),
+    /// What a change did: the same task before and after it
+    #[command(after_help = "Examples:\n  hydrotrace compare before.mcap after.mcap\n  \
+                            hydrotrace compare before.mcap after.mcap --min-peak-reduction-percent 20 --max-p 0.05\n  \
+                            hydrotrace compare a1.mcap b1.mcap --more-before a2.mcap --more-after b2.mcap\n  \
+                            hydrotrace compare old.mcap new.mcap --json -o compare.json")]
+    Compare(CompareArgs),
     /// The best timings of a task's key points, and the one to run, as a log
     #[command(
         after_help = "Examples:\n  hydrotrace plan task.toml -o plan.mcap\n  hydrotrace plan task.toml --choose fastest\n  \

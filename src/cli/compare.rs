@@ -1,0 +1,50 @@
+//! `compare`: runs the workflow, renders, says what was not kept.
+
+use std::io::Write;
+
+use super::{
+    CliError, Outcome,
+    args::CompareArgs,
+    output::{deliver, say_remarks, spare_inputs},
+};
+use crate::{
+    report::{compare_gate_lines, compare_json, compare_parts, markdown, text},
+    workflow::compare::{Inputs, run as compare},
+};
+
+/// Pairs listed without `--all`.
+const MOST: usize = 15;
+
+pub(super) fn run(
+    args: &CompareArgs,
+    out: &mut impl Write,
+    err: &mut impl Write,
+) -> Result<Outcome, CliError> {
+    let before = [&[args.before.clone()], args.more_before.as_slice()].concat();
+    let after = [&[args.after.clone()], args.more_after.as_slice()].concat();
+    spare_inputs(args.output.as_deref(), &[before.as_slice(), &after].concat())?;
+    let inputs =
+        Inputs { before, after, read: args.read.options(), gates: args.gates.gates(), ..Inputs::default() };
+    let comparison = compare(&inputs)?;
+    let most = if args.all { usize::MAX } else { MOST };
+    let rendered = if args.format.json {
+        compare_json(&comparison)
+    } else if args.format.markdown {
+        markdown(&compare_parts(&comparison, most))
+    } else {
+        text(&compare_parts(&comparison, most))
+    };
+    deliver(&rendered, args.output.as_deref(), out)?;
+    if args.output.is_some() || args.format.json {
+        say_remarks(&comparison.remarks, err);
+    }
+    if !comparison.gates_kept() {
+        for (line, gate) in compare_gate_lines(&comparison).iter().zip(&comparison.gates) {
+            if !gate.kept {
+                let _ = writeln!(err, "gate: {line}");
+            }
+        }
+        return Ok(Outcome::GateFailed);
+    }
+    Ok(if comparison.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}

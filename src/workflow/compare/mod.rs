@@ -1,0 +1,146 @@
+//! `compare`: what a change did to the tracking error of a task, from runs before and after it.
+
+mod change;
+mod figures;
+mod gates;
+mod member;
+mod outcome;
+mod pairing;
+mod plans;
+mod summary;
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+pub use change::Change;
+pub use figures::Figures;
+pub use gates::{Gate, GateResult, Gates};
+pub use outcome::{Comparison, Run, Side, TransitionPair, Unpaired};
+pub use pairing::PairedBy;
+pub use summary::{Measure, Scope, Summary, Verdict};
+
+use super::report::{self, Report};
+use crate::{
+    log::{LogError, ReadOptions},
+    remark::Remarks,
+    replay::Rules,
+};
+use figures::figures;
+use gates::gates;
+use member::{Member, pairs};
+use pairing::matched;
+use summary::summaries;
+
+/// What to compare, how, and what must hold.
+#[derive(Debug, Clone, Default)]
+pub struct Inputs {
+    /// Runs before the change, each a file or a bag directory.
+    pub before: Vec<PathBuf>,
+    /// Runs after it.
+    pub after: Vec<PathBuf>,
+    /// What to read of each, where the log alone does not tell.
+    pub read: ReadOptions,
+    /// Thresholds and windows.
+    pub rules: Rules,
+    /// Limits that the caller sets.
+    pub gates: Gates,
+}
+
+/// Why nothing was compared.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CompareFailure {
+    /// One of the runs cannot be analysed.
+    #[error("{} cannot be compared", path.display())]
+    Run {
+        /// Its log.
+        path: PathBuf,
+        /// Why.
+        source: LogError,
+    },
+    /// A side without a run.
+    #[error("found no run {0} the change, expected at least one")]
+    NoRun(Side),
+    /// The runs are of different arms, or name their joints differently.
+    #[error(
+        "the runs have no joint in common: {before} before, {after} after; --joints names joints of topics that name none"
+    )]
+    NoCommonJoint {
+        /// Joints of the first run before.
+        before: String,
+        /// Joints of the first run after.
+        after: String,
+    },
+}
+
+/// Compares runs of a task before and after a change; values of several runs of a side are averaged before
+/// they are compared.
+///
+/// # Errors
+///
+/// [`CompareFailure`] if a run cannot be analysed or the runs share no joint.
+pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
+    let before = analysed(inputs, &inputs.before)?;
+    let after = analysed(inputs, &inputs.after)?;
+    let first = before.first().ok_or(CompareFailure::NoRun(Side::Before))?;
+    let first_after = after.first().ok_or(CompareFailure::NoRun(Side::After))?;
+    let has = |report: &Report, name: &str| report.replay.joints.iter().any(|joint| joint.name == name);
+    let joints: Vec<String> = first
+        .replay
+        .joints
+        .iter()
+        .map(|joint| joint.name.clone())
+        .filter(|name| before.iter().chain(&after).all(|report| has(report, name)))
+        .collect();
+    if joints.is_empty() {
+        let names = |report: &Report| {
+            report.replay.joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>().join(", ")
+        };
+        return Err(CompareFailure::NoCommonJoint { before: names(first), after: names(first_after) });
+    }
+
+    let mut all: Vec<Member> = Vec::new();
+    for (side, reports, paths) in
+        [(Side::Before, &before, &inputs.before), (Side::After, &after, &inputs.after)]
+    {
+        for (k, (report, path)) in reports.iter().zip(paths).enumerate() {
+            all.push(Member { side, number: k + 1, path, report, matched: matched(first, report, &joints) });
+        }
+    }
+    let (pairs, unpaired) = pairs(first, &all, &joints);
+    let mut remarks = Remarks::default();
+    for member in &all {
+        let of_side = all.iter().filter(|other| other.side == member.side).count();
+        member.remark(of_side, &joints, &unpaired, &mut remarks);
+    }
+    let summaries = summaries(&pairs, &joints, &inputs.rules);
+    let whole_run = figures(&before, &after, &joints, &inputs.rules);
+    let gates = gates(&inputs.gates, &pairs, &summaries, &whole_run);
+    let runs = |side: Side| all.iter().filter(|m| m.side == side).map(|m| m.run(&joints)).collect();
+    Ok(Comparison {
+        before: runs(Side::Before),
+        after: runs(Side::After),
+        joints: joints.clone(),
+        summaries,
+        pairs,
+        unpaired,
+        whole_run,
+        gates,
+        rules: inputs.rules.clone(),
+        remarks,
+    })
+}
+
+fn analysed(inputs: &Inputs, logs: &[PathBuf]) -> Result<Vec<Report>, CompareFailure> {
+    let analyse = |path: &PathBuf| {
+        let inputs = report::Inputs {
+            logs: vec![path.clone()],
+            read: inputs.read.clone(),
+            rules: inputs.rules.clone(),
+            gates: report::Gates::default(),
+        };
+        report::run(&inputs).map_err(|source| CompareFailure::Run { path: path.clone(), source })
+    };
+    logs.iter().map(analyse).collect()
+}

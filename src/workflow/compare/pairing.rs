@@ -1,0 +1,253 @@
+//! Which transition of one run is which of another.
+
+use serde::Serialize;
+
+use super::plans::{PlanDifference, plan_difference};
+use crate::{math::median, replay::Transition, series::Pair, workflow::report::Report};
+
+/// Planned onsets at most this far apart, clocks aligned, are the same, s.
+const SAME_ONSET_S: f64 = 0.3;
+/// Different plans have one rhythm if this share of their onsets meets.
+const SAME_RHYTHM: f64 = 0.8;
+/// Transitions of a joint that may be missing at the beginning of a run.
+const MOST_MISSING: usize = 8;
+
+/// How two transitions were found to be the same one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum PairedBy {
+    /// Their planned onsets are at the same time of the plan.
+    Clock,
+    /// The joint starts equally often in the same directions, in another rhythm.
+    Order,
+}
+
+/// How another run corresponds to the first.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Match {
+    /// What is added to times of the first to get those of the other, s.
+    pub(super) offset_s: f64,
+    /// Largest difference of the plans at equal times, rad.
+    pub(super) plans: Option<PlanDifference>,
+    /// For each transition of the first the one of the other.
+    pub(super) partners: Vec<Option<(usize, PairedBy)>>,
+}
+
+/// Matches the transitions of two runs in the joints given. Nothing is guessed: what neither time nor order
+/// decides stays alone.
+pub(super) fn matched(a: &Report, b: &Report, joints: &[String]) -> Match {
+    let starts = Starts::new(&a.replay.transitions, &b.replay.transitions, joints);
+    let pairs: Vec<(&Pair, &Pair)> = joints
+        .iter()
+        .filter_map(|joint| {
+            let of = |report: &'_ Report| report.pairs.iter().position(|pair| pair.name == *joint);
+            Some((&a.pairs[of(a)?], &b.pairs[of(b)?]))
+        })
+        .collect();
+    let first_s = starts.first_offset_s().unwrap_or(0.0);
+    let plans = plan_difference(&pairs, starts.refined_s(first_s));
+    // Where the beginning of a run is missing, its first start is another one; the plans tell.
+    let other = || plan_difference(&pairs, starts.best_offset_s(first_s)).filter(|plans| plans.same);
+    let plans = if plans.is_some_and(|plans| plans.same) { plans } else { other().or(plans) };
+    let same = plans.is_some_and(|plans| plans.same);
+    let offset_s = plans.map_or(first_s, |plans| plans.offset_s);
+    let partners = starts.partners(offset_s, same);
+    Match { offset_s, plans, partners }
+}
+
+/// Transitions of two runs, those of a joint in order of time.
+struct Starts<'a> {
+    a: &'a [Transition],
+    b: &'a [Transition],
+    /// For each joint the places of its transitions in both.
+    joints: Vec<[Vec<usize>; 2]>,
+}
+
+impl<'a> Starts<'a> {
+    fn new(a: &'a [Transition], b: &'a [Transition], joints: &[String]) -> Self {
+        let of = |all: &[Transition], joint: &String| {
+            let mut found: Vec<usize> = (0..all.len()).filter(|&i| all[i].joint == *joint).collect();
+            found.sort_by(|&i, &j| all[i].planned_onset_s.total_cmp(&all[j].planned_onset_s));
+            found
+        };
+        Self { a, b, joints: joints.iter().map(|joint| [of(a, joint), of(b, joint)]).collect() }
+    }
+
+    fn gap_s(&self, i: usize, j: usize) -> f64 {
+        self.b[j].planned_onset_s - self.a[i].planned_onset_s
+    }
+
+    fn alike(&self, i: usize, j: usize) -> bool {
+        self.a[i].direction == self.b[j].direction && self.a[i].kind == self.b[j].kind
+    }
+
+    /// Between the first planned onsets of the two runs, s.
+    fn first_offset_s(&self) -> Option<f64> {
+        let first = |all: &[Transition], side: usize| {
+            let firsts = self.joints.iter().filter_map(|joint| joint[side].first());
+            firsts.map(|&i| all[i].planned_onset_s).min_by(f64::total_cmp)
+        };
+        Some(first(self.b, 1)? - first(self.a, 0)?)
+    }
+
+    /// The offset at which most onsets meet, `first_s` if no other does better.
+    fn best_offset_s(&self, first_s: f64) -> f64 {
+        let count = |offset_s: f64| {
+            self.joints
+                .iter()
+                .map(|joint| self.by_clock(joint, offset_s).iter().flatten().count())
+                .sum::<usize>()
+        };
+        let mut best = (count(first_s), first_s);
+        for [a, b] in &self.joints {
+            let heads = a.iter().take(MOST_MISSING).flat_map(|&i| b.first().map(|&j| (i, j)));
+            let tails = b.iter().take(MOST_MISSING).flat_map(|&j| a.first().map(|&i| (i, j)));
+            for (i, j) in heads.chain(tails).filter(|&(i, j)| self.alike(i, j)) {
+                let offset_s = self.gap_s(i, j);
+                let met = count(offset_s);
+                if met > best.0 {
+                    best = (met, offset_s);
+                }
+            }
+        }
+        self.refined_s(best.1)
+    }
+
+    /// The same, from all onsets that meet at it.
+    fn refined_s(&self, offset_s: f64) -> f64 {
+        let gaps_s: Vec<f64> = self
+            .joints
+            .iter()
+            .flat_map(|joint| {
+                let partners = self.by_clock(joint, offset_s);
+                let met = joint[0].iter().zip(partners);
+                met.filter_map(|(&i, j)| Some(self.gap_s(i, j?))).collect::<Vec<_>>()
+            })
+            .collect();
+        if gaps_s.is_empty() { offset_s } else { median(gaps_s) }
+    }
+
+    /// For each transition of a joint in the first run the one of the other that is nearest in time, and to
+    /// which it is nearest.
+    fn by_clock(&self, [a, b]: &[Vec<usize>; 2], offset_s: f64) -> Vec<Option<usize>> {
+        let off_s = |i: usize, j: usize| (self.gap_s(i, j) - offset_s).abs();
+        let near = |i: usize, j: usize| self.alike(i, j) && off_s(i, j) <= SAME_ONSET_S;
+        let around = |all: &[Transition], of: &[usize], at_s: f64| {
+            let from = of.partition_point(|&k| all[k].planned_onset_s < at_s - SAME_ONSET_S);
+            let to = of.partition_point(|&k| all[k].planned_onset_s <= at_s + SAME_ONSET_S);
+            of.get(from..to).unwrap_or_default().to_vec()
+        };
+        a.iter()
+            .map(|&i| {
+                let there = around(self.b, b, self.a[i].planned_onset_s + offset_s);
+                let j = there
+                    .into_iter()
+                    .filter(|&j| near(i, j))
+                    .min_by(|&j, &k| off_s(i, j).total_cmp(&off_s(i, k)))?;
+                let back = around(self.a, a, self.b[j].planned_onset_s - offset_s);
+                let nearest = back
+                    .into_iter()
+                    .filter(|&k| near(k, j))
+                    .min_by(|&k, &l| off_s(k, j).total_cmp(&off_s(l, j)));
+                (nearest == Some(i)).then_some(j)
+            })
+            .collect()
+    }
+
+    /// The same starts in the same order.
+    fn equal_order(&self, [a, b]: &[Vec<usize>; 2]) -> bool {
+        a.len() == b.len() && a.iter().zip(b).all(|(&i, &j)| self.alike(i, j))
+    }
+
+    fn partners(&self, offset_s: f64, same_plan: bool) -> Vec<Option<(usize, PairedBy)>> {
+        let mut partners = vec![None; self.a.len()];
+        let clocks: Vec<_> = self.joints.iter().map(|joint| self.by_clock(joint, offset_s)).collect();
+        let met = clocks.iter().flatten().flatten().count() as f64;
+        let rhythm = met >= SAME_RHYTHM * self.a.len().min(self.b.len()) as f64;
+        for (joint, clock) in self.joints.iter().zip(clocks) {
+            let all = joint[0].len() == joint[1].len() && clock.iter().all(Option::is_some);
+            let ordered = self.equal_order(joint);
+            if all || same_plan || (rhythm && !ordered) {
+                for (&i, j) in joint[0].iter().zip(clock) {
+                    partners[i] = j.map(|j| (j, PairedBy::Clock));
+                }
+            } else if ordered {
+                for (&i, &j) in joint[0].iter().zip(&joint[1]) {
+                    partners[i] = Some((j, PairedBy::Order));
+                }
+            }
+        }
+        partners
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::replay::{Kind, OnsetMethod};
+
+    fn start(direction: i8, at_s: f64) -> Transition {
+        Transition {
+            joint: "a".into(),
+            kind: Kind::Start,
+            direction,
+            planned_onset_s: at_s,
+            measured_onset_s: None,
+            onset_method: OnsetMethod::Fit,
+            onset_delay_s: None,
+            onset_delay_interval_s: None,
+            displacement_delay_s: None,
+            breakaway_error_rad: None,
+            jump_rad_s: None,
+            peak_error_rad: 0.0,
+            peak_error_signed_rad: 0.0,
+            time_to_peak_s: 0.0,
+            error_area_rad_s: 0.0,
+            rms_error_rad: 0.0,
+            overshoot_rad: 0.0,
+            settling_time_s: None,
+            window_s: [at_s, at_s + 1.0],
+            samples: 1,
+            time_resolution_s: 0.01,
+        }
+    }
+
+    fn partners(a: &[Transition], b: &[Transition], offset_s: f64, same: bool) -> Vec<Option<usize>> {
+        let starts = Starts::new(a, b, &["a".to_owned()]);
+        starts.partners(offset_s, same).into_iter().map(|partner| partner.map(|(j, _)| j)).collect()
+    }
+
+    fn task() -> Vec<Transition> {
+        vec![start(1, 2.0), start(-1, 10.0), start(1, 21.0), start(-1, 30.0)]
+    }
+
+    #[test]
+    fn a_run_without_its_beginning_is_laid_on_the_rest() {
+        let late: Vec<Transition> =
+            task().into_iter().skip(1).map(|t| start(t.direction, t.planned_onset_s - 7.0)).collect();
+        let task = task();
+        let starts = Starts::new(&task, &late, &["a".to_owned()]);
+        let offset_s = starts.best_offset_s(starts.first_offset_s().unwrap());
+        assert!((offset_s + 7.0).abs() < 1e-9, "{offset_s}");
+        assert_eq!(partners(&task, &late, offset_s, true), [None, Some(0), Some(1), Some(2)]);
+    }
+
+    #[test]
+    fn another_rhythm_pairs_by_order_where_directions_agree_and_guesses_nothing_elsewhere() {
+        let slow: Vec<Transition> =
+            task().into_iter().map(|t| start(t.direction, 1.5 * t.planned_onset_s)).collect();
+        assert_eq!(partners(&task(), &slow, 1.0, false), [Some(0), Some(1), Some(2), Some(3)]);
+        assert_eq!(partners(&task(), &slow[..3], 1.0, false), [None; 4]);
+        let mut other_way = slow;
+        other_way[2] = start(-1, other_way[2].planned_onset_s);
+        assert_eq!(partners(&task(), &other_way, 1.0, false), [None; 4]);
+    }
+
+    #[test]
+    fn a_start_pairs_with_the_nearest_one_and_that_one_with_it() {
+        let a = [start(1, 2.0), start(1, 2.25)];
+        assert_eq!(partners(&a, &[start(1, 2.2)], 0.0, true), [None, Some(0)]);
+        assert_eq!(partners(&a, &[start(-1, 2.0), start(1, 2.6)], 0.0, true), [None, None]);
+    }
+}

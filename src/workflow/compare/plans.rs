@@ -1,0 +1,126 @@
+//! Whether two runs were asked to do the same.
+
+use crate::{series::Pair, units::DEGREE_RAD};
+
+/// Plans further apart than this at equal times are different ones, rad.
+const SAME_RAD: f64 = 0.05 * DEGREE_RAD;
+/// Stamps of equal plans may be this far apart, s.
+const SAME_S: f64 = 0.005;
+/// A clock is set right by the plans' shape at most by this, s.
+const MOST_SHIFT_S: f64 = 0.2;
+/// Two plans that share less of the shorter one's time are not compared.
+const LEAST_OVERLAP: f64 = 0.5;
+
+/// Plans at equal times.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PlanDifference {
+    /// What is added to times of the first run to get those of the second, s.
+    pub(super) offset_s: f64,
+    /// Largest difference of any joint, rad.
+    pub(super) most_rad: f64,
+    /// Whether they are the same plan.
+    pub(super) same: bool,
+}
+
+/// Compares the plans of two runs whose clocks are `offset_s` apart, give or take what a start is known
+/// to; `None` where too little of them was executed at equal times.
+pub(super) fn plan_difference(pairs: &[(&Pair, &Pair)], offset_s: f64) -> Option<PlanDifference> {
+    let mut offset_s = offset_s;
+    let first_s = offset_s;
+    // Gauss-Newton on the shift.
+    for _ in 0..3 {
+        let (mut slope, mut energy) = (0.0, 0.0);
+        for at in pairs.iter().flat_map(|(a, b)| instants(a, b, offset_s)) {
+            slope += at.speed_rad_s * at.difference_rad;
+            energy += at.speed_rad_s * at.speed_rad_s;
+        }
+        let shift_s = if energy > 0.0 { slope / energy } else { 0.0 };
+        if (offset_s + shift_s - first_s).abs() > MOST_SHIFT_S {
+            offset_s = first_s;
+            break;
+        }
+        offset_s += shift_s;
+    }
+    let (mut most_rad, mut same, mut enough) = (0.0_f64, true, !pairs.is_empty());
+    for (a, b) in pairs {
+        let mut count = 0_usize;
+        for at in instants(a, b, offset_s) {
+            count += 1;
+            most_rad = most_rad.max(at.difference_rad.abs());
+            same &= at.difference_rad.abs() <= SAME_RAD + SAME_S * at.speed_rad_s.abs();
+        }
+        enough &= count as f64 >= LEAST_OVERLAP * a.t_s.len().min(b.t_s.len()) as f64;
+    }
+    enough.then_some(PlanDifference { offset_s, most_rad, same })
+}
+
+/// Two plans at one instant.
+struct Instant {
+    /// First minus second, rad.
+    difference_rad: f64,
+    /// Speed of the second, rad/s.
+    speed_rad_s: f64,
+}
+
+/// The plans at those stamps of the first run at which the second has one.
+fn instants(a: &Pair, b: &Pair, offset_s: f64) -> impl Iterator<Item = Instant> {
+    let mut segment = 0;
+    let mut k = 0;
+    a.t_s.iter().zip(&a.planned_rad).filter_map(move |(t_s, a_rad)| {
+        let at_s = t_s + offset_s;
+        while b.segments.get(segment).is_some_and(|s| b.t_s[s.end - 1] < at_s) {
+            segment += 1;
+        }
+        let inside = b.segments.get(segment)?;
+        k = k.max(inside.start);
+        while k + 2 < inside.end && b.t_s[k + 1] < at_s {
+            k += 1;
+        }
+        let next = k + 1;
+        if next >= inside.end || !(b.t_s[k]..=b.t_s[next]).contains(&at_s) {
+            return None;
+        }
+        let speed_rad_s = (b.planned_rad[next] - b.planned_rad[k]) / (b.t_s[next] - b.t_s[k]);
+        let b_rad = b.planned_rad[k] + speed_rad_s * (at_s - b.t_s[k]);
+        Some(Instant { difference_rad: a_rad - b_rad, speed_rad_s })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plan that moves by a radian around 4 s.
+    fn plan(shift_s: f64, scale: f64) -> Pair {
+        let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
+        let planned_rad: Vec<f64> = t_s.iter().map(|t| scale * (2.0 * (t - 4.0 - shift_s)).tanh()).collect();
+        Pair {
+            name: "a".into(),
+            planned_rad_s: None,
+            measured_rad: planned_rad.clone(),
+            planned_rad,
+            segments: vec![0..300, 300..800],
+            planned_interval_s: 0.01,
+            matched: 800,
+            unmatched: 0,
+            t_s,
+        }
+    }
+
+    #[test]
+    fn a_plan_on_another_clock_is_the_same_plan_and_sets_the_clock_right() {
+        let (a, b) = (plan(0.0, 0.5), plan(0.734, 0.5));
+        let found = plan_difference(&[(&a, &b)], 0.66).unwrap();
+        assert!((found.offset_s - 0.734).abs() < 1e-4 && found.same, "{found:?}");
+        assert!(found.most_rad < 1e-3, "{found:?}");
+    }
+
+    #[test]
+    fn a_plan_that_goes_further_is_another_one() {
+        let (a, b) = (plan(0.0, 0.5), plan(0.0, 0.505));
+        let found = plan_difference(&[(&a, &b)], 0.0).unwrap();
+        assert!(!found.same && (found.most_rad - 0.005).abs() < 5e-4, "{found:?}");
+        assert_eq!(plan_difference(&[(&a, &b)], 6.0), None);
+        assert_eq!(plan_difference(&[], 0.0), None);
+    }
+}

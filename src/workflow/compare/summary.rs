@@ -1,0 +1,165 @@
+//! Whether transitions changed, by how much, and whether that is luck.
+
+use serde::Serialize;
+
+use super::TransitionPair;
+use crate::{
+    math::{half_interval, median, signed_rank},
+    replay::{Kind, Rules},
+};
+
+/// What is compared of a transition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Measure {
+    /// Largest error in the window, rad.
+    PeakError,
+    /// Root mean square error in the window, rad.
+    RmsError,
+    /// Measured minus planned onset, s, where the joint answers before and after.
+    OnsetDelay,
+}
+
+/// Which transitions.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Scope {
+    /// All.
+    All,
+    /// Starts from rest of all joints, without reversals.
+    Starts,
+    /// All of one joint.
+    Joint(String),
+}
+
+/// What the rank test says at [`Rules::significance`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Smaller after.
+    Smaller,
+    /// Larger after.
+    Larger,
+    /// No change that luck could not explain.
+    NotShown,
+    /// No value changed.
+    Equal,
+    /// Too few events for any outcome to count.
+    TooFew,
+}
+
+/// One quantity over paired transitions; differences are after minus before, in rad or s.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Summary {
+    /// Which quantity.
+    pub measure: Measure,
+    /// Of which transitions.
+    pub scope: Scope,
+    /// Pairs with a value on both sides.
+    pub pairs: usize,
+    /// Groups of pairs that begin within [`Rules::same_event_s`] of one another, over all joints: they share
+    /// pump and moment, so they count once in interval and test.
+    pub events: usize,
+    /// Mean before; `None` without pairs, as all that follows.
+    pub mean_before: Option<f64>,
+    /// Mean after.
+    pub mean_after: Option<f64>,
+    /// Mean difference.
+    pub mean_difference: Option<f64>,
+    /// Median difference.
+    pub median_difference: Option<f64>,
+    /// 95 % interval of the mean difference (Student's t, robust to events); needs three events.
+    pub interval_95: Option<[f64; 2]>,
+    /// Mean difference as a share of the mean before; `None` where that is not positive.
+    pub relative_change: Option<f64>,
+    /// Pairs with a smaller value after.
+    pub smaller: usize,
+    /// Pairs with a larger value after.
+    pub larger: usize,
+    /// Two-sided p of the Wilcoxon signed-rank test on the mean differences of events.
+    pub p_value: f64,
+    /// Whether p is exact, or from the normal approximation.
+    pub p_is_exact: bool,
+    /// What the test says.
+    pub verdict: Verdict,
+}
+
+/// Every measure over all transitions, over starts from rest where there are others, and by joint.
+pub(super) fn summaries(pairs: &[TransitionPair], joints: &[String], rules: &Rules) -> Vec<Summary> {
+    let mixed = pairs.iter().any(|p| p.kind == Kind::Start) && pairs.iter().any(|p| p.kind == Kind::Reversal);
+    let scopes = [Some(Scope::All), mixed.then_some(Scope::Starts)];
+    let scopes = scopes.into_iter().flatten().chain(joints.iter().cloned().map(Scope::Joint));
+    let measures = [Measure::PeakError, Measure::RmsError, Measure::OnsetDelay];
+    scopes.flat_map(|scope| measures.map(|measure| summary(pairs, measure, scope.clone(), rules))).collect()
+}
+
+fn summary(pairs: &[TransitionPair], measure: Measure, scope: Scope, rules: &Rules) -> Summary {
+    let within = |pair: &&TransitionPair| match &scope {
+        Scope::All => true,
+        Scope::Starts => pair.kind == Kind::Start,
+        Scope::Joint(joint) => pair.joint == *joint,
+    };
+    let change = |pair: &TransitionPair| match measure {
+        Measure::PeakError => pair.peak_error_rad,
+        Measure::RmsError => pair.rms_error_rad,
+        Measure::OnsetDelay => pair.onset_delay_s,
+    };
+    // When, before, after.
+    let mut found: Vec<[f64; 3]> = pairs
+        .iter()
+        .filter(within)
+        .filter_map(|pair| Some([pair.planned_onset_before_s, change(pair).before?, change(pair).after?]))
+        .collect();
+    found.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut events: Vec<Vec<f64>> = Vec::new();
+    let mut began_s = f64::NEG_INFINITY;
+    for [at_s, before, after] in &found {
+        match events.last_mut().filter(|_| at_s - began_s <= rules.same_event_s) {
+            Some(event) => event.push(after - before),
+            None => {
+                began_s = *at_s;
+                events.push(vec![after - before]);
+            }
+        }
+    }
+    let mean =
+        |values: &[f64]| (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
+    let of = |side: usize| mean(&found.iter().map(|values| values[side]).collect::<Vec<_>>());
+    let differences: Vec<f64> = found.iter().map(|[_, before, after]| after - before).collect();
+    let mean_difference = mean(&differences);
+    let half = half_interval(&events);
+    let of_events: Vec<f64> = events.iter().filter_map(|event| mean(event)).collect();
+    let test = signed_rank(&of_events);
+    let changed = test.positive + test.negative;
+    let middle = (changed * (changed + 1)) as f64 / 4.0;
+    // The smallest p that n signs can give is 2 / 2^n.
+    let too_few = 0.5_f64.powi(i32::try_from(events.len()).unwrap_or(i32::MAX) - 1) >= rules.significance;
+    let verdict = match (changed, test.p < rules.significance) {
+        (0, _) if !events.is_empty() => Verdict::Equal,
+        _ if too_few => Verdict::TooFew,
+        (_, false) => Verdict::NotShown,
+        (_, true) if test.rank_sum < middle => Verdict::Smaller,
+        (_, true) => Verdict::Larger,
+    };
+    Summary {
+        measure,
+        scope,
+        pairs: found.len(),
+        events: events.len(),
+        mean_before: of(1),
+        mean_after: of(2),
+        mean_difference,
+        median_difference: mean_difference.map(|_| median(differences.clone())),
+        interval_95: mean_difference.zip(half).map(|(mean, half)| [mean - half, mean + half]),
+        relative_change: mean_difference.zip(of(1).filter(|mean| *mean > 0.0)).map(|(d, before)| d / before),
+        smaller: differences.iter().filter(|d| **d < 0.0).count(),
+        larger: differences.iter().filter(|d| **d > 0.0).count(),
+        p_value: test.p,
+        p_is_exact: test.exact,
+        verdict,
+    }
+}
