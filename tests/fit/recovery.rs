@@ -1,0 +1,1 @@
+//! What fits find against what is there.
