@@ -2,12 +2,16 @@
 
 use super::{
     estimate::{Estimate, Problem, Room},
-    parameters::SHARED,
+    parameters::LIMITS,
     robust::{cost, inefficiency},
 };
 
 /// 95 % quantile of a chi-squared variable with one degree of freedom.
 const THRESHOLD: f64 = 3.84;
+
+/// A joint shows a limit only if it was asked for this many times as much: a model of another form
+/// than the machine's may gain by clipping anywhere.
+pub(super) const ASKED: f64 = 1.3;
 
 /// Which of the limits the data show.
 ///
@@ -19,7 +23,7 @@ pub(super) fn seen(problem: &Problem, found: &Estimate, room: &mut Room) -> [boo
     problem.residuals(&found.x, room, &mut residuals);
     let (with, kappa) = (data(&residuals), inefficiency(&residuals));
     let mut seen = problem.seen;
-    for limit in 0..seen.len() {
+    for limit in (0..problem.seen.len()).filter(|&limit| problem.seen[limit]) {
         let mut without = problem.clone();
         without.seen[limit] = false;
         without.residuals(&found.x, room, &mut residuals);
@@ -29,7 +33,9 @@ pub(super) fn seen(problem: &Problem, found: &Estimate, room: &mut Room) -> [boo
             without.residuals(&refitted.x, room, &mut residuals);
             shows = 2.0 * (data(&residuals) - with) / kappa > THRESHOLD;
         }
-        seen[limit] &= shows && found.x.len() > SHARED;
+        let value = problem.priors.of(LIMITS + limit).value(found.x[LIMITS + limit]);
+        let asked = problem.runs.iter().map(|run| run.asked[limit]).fold(0.0, f64::max);
+        seen[limit] &= shows && asked > ASKED * value;
     }
     seen
 }

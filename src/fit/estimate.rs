@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{
     model::Model,
     parameters::{DEAD_TIME, LIMITS, Priors, SHARED},
-    robust::{cost, scale, weight},
+    robust::{cost, inefficiency, scale, weight},
     run::{Run, Sample},
     simulate::simulate,
 };
@@ -17,22 +17,22 @@ const DIFFERENCE: f64 = 2e-3;
 /// Residuals are never told apart more finely, rad: resolution of an encoder of 16 bits.
 const FINEST_RAD: f64 = 0.002 * DEGREE_RAD;
 
-/// A round that gains less than this share of the cost has nothing left to gain.
-const GAIN: f64 = 2e-5;
+/// A round that gains less than this in the cost, a logarithm of likelihood, is one of the last.
+const GAIN: f64 = 0.02;
 
 /// Which samples count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
     All,
-    /// Those of one fold.
-    Fold(bool),
+    /// All but those of one fold.
+    Without(usize),
 }
 
 impl Part {
     pub(super) fn has(self, sample: &Sample) -> bool {
         match self {
             Self::All => true,
-            Self::Fold(fold) => sample.fold == fold,
+            Self::Without(fold) => sample.fold != fold,
         }
     }
 }
@@ -45,6 +45,8 @@ pub(super) struct Problem<'a> {
     /// Limits that the model has.
     pub(super) seen: [bool; 4],
     pub(super) part: Part,
+    /// Residuals that tell as much as one independent one: their cost is divided by it.
+    pub(super) inefficiency: f64,
 }
 
 /// Where an estimate has come to.
@@ -101,10 +103,17 @@ impl Problem<'_> {
         }
     }
 
+    /// As [`inefficiency`] of the residuals.
+    pub(super) fn measured_inefficiency(&self, x: &[f64], room: &mut Room) -> f64 {
+        let mut residuals = Vec::new();
+        self.residuals(x, room, &mut residuals);
+        inefficiency(&residuals)
+    }
+
     /// Cost of residuals at a scale, with the priors' part.
     pub(super) fn cost(&self, x: &[f64], residuals_rad: &[f64], scale_rad: f64) -> f64 {
         let data: f64 = residuals_rad.iter().map(|r| cost(r / scale_rad)).sum();
-        let total = data + 0.5 * x.iter().map(|x| x * x).sum::<f64>();
+        let total = data / self.inefficiency + 0.5 * x.iter().map(|x| x * x).sum::<f64>();
         if total.is_nan() { f64::INFINITY } else { total }
     }
 
@@ -162,6 +171,8 @@ impl Problem<'_> {
             let scale_rad = scale(residuals.iter().copied(), FINEST_RAD);
             let before = self.cost(&x, &residuals, scale_rad);
             let (mut normal, mut slope) = self.normal(&x, &free, &residuals, scale_rad, room);
+            normal /= self.inefficiency;
+            slope /= self.inefficiency;
             for (k, &i) in free.iter().enumerate() {
                 normal[(k, k)] += 1.0;
                 slope[k] += x[i];
@@ -187,7 +198,7 @@ impl Problem<'_> {
                 }
                 damping *= 8.0;
             }
-            still = if before - better > GAIN * before { 0 } else { still + 1 };
+            still = if before - better > GAIN { 0 } else { still + 1 };
             if still >= 2 || damping > 1e7 {
                 break;
             }

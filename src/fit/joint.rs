@@ -1,12 +1,12 @@
 //! One joint from its runs to what is known of it.
 
 use super::{
-    censor::seen,
+    censor::{ASKED, seen},
     estimate::{Estimate, Part, Problem, Room},
     interval::{Knowledge, discrepancy},
     outcome::{Estimated, JointFit},
     parameters::{ASYMMETRY, DEAD_BAND, FEED_FORWARD, INTEGRAL_GAIN, LIMITS, POSITION_GAIN, Priors, SHARED},
-    run::{Run, deal},
+    run::Run,
     skill::{Skill, skill},
 };
 use crate::units::DEGREE_RAD;
@@ -21,8 +21,7 @@ const ABOVE: [f64; 4] = [1.03, 1.03, 1.2, 1.2];
 const LOWEST: [f64; 4] = [DEGREE_RAD, DEGREE_RAD, 20.0 * DEGREE_RAD, 20.0 * DEGREE_RAD];
 
 /// Fits one joint, whose runs are not empty; with what held-out starts say of its peaks.
-pub(super) fn joint(name: &str, mut runs: Vec<Run>) -> (JointFit, Vec<f64>) {
-    deal(&mut runs);
+pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>) {
     let most = |of: fn(&Run) -> f64| runs.iter().map(of).fold(0.0, f64::max);
     let reached = [
         most(|run| run.fastest_rad_s[0]),
@@ -31,12 +30,16 @@ pub(super) fn joint(name: &str, mut runs: Vec<Run>) -> (JointFit, Vec<f64>) {
         most(|run| run.sharpest_rad_s2[1]),
     ];
     let limits = [0, 1, 2, 3].map(|i| (ABOVE[i] * reached[i]).max(LOWEST[i]));
-    let priors = Priors::new(limits);
-    let mut problem = Problem { runs: &runs, priors: &priors, seen: [true; 4], part: Part::All };
+    let angles = || runs.iter().flat_map(|run| run.sent.iter().map(|sent| sent.0));
+    let pose_rad = [angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max)];
+    let priors = Priors::new(limits, pose_rad);
+    let mut problem =
+        Problem { runs, priors: &priors, seen: asked_for(runs, limits), part: Part::All, inefficiency: 50.0 };
     let mut room = Room::default();
     let mut found = problem.search(&DEAD_TIMES_S, &vec![0.0; SHARED + runs.len()], &mut room);
     // What goes may have stood in for what stays.
     for _ in 0..2 {
+        problem.inefficiency = problem.measured_inefficiency(&found.x, &mut room);
         let seen = seen(&problem, &found, &mut room);
         if seen == problem.seen {
             break;
@@ -49,6 +52,11 @@ pub(super) fn joint(name: &str, mut runs: Vec<Run>) -> (JointFit, Vec<f64>) {
     let Skill { held_out_r2, peak_ratios } = skill(&problem, model.dead_time_s, &mut room);
     let samples = runs.iter().map(|run| run.samples.len()).sum();
     (report(name, &problem, &found, &knowledge, reached, samples, held_out_r2), peak_ratios)
+}
+
+/// Limits that were asked for far enough to show; looking for others costs time.
+fn asked_for(runs: &[Run], limits: [f64; 4]) -> [bool; 4] {
+    [0, 1, 2, 3].map(|i| runs.iter().any(|run| run.asked[i] > ASKED / ABOVE[i] * limits[i]))
 }
 
 fn report(

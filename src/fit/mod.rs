@@ -67,7 +67,7 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
         .map(|name| {
             let runs = of(name);
             let travel_rad: f64 = runs.iter().map(Run::travel_rad).sum();
-            (travel_rad >= LEAST_TRAVEL_RAD).then(|| joint::joint(name, runs))
+            (travel_rad >= LEAST_TRAVEL_RAD).then(|| joint::joint(name, &runs))
         })
         .collect();
     let left_out =

@@ -15,7 +15,7 @@ pub(super) const BACKLASH_RAD: f64 = 0.05 * DEGREE_RAD;
 ///
 /// The loop wants a speed w = `feed_forward` * sent speed + `position_gain` * error + integral, which
 /// arrives after the dead time. What is left of it beyond the dead band, scaled by
-/// exp(±`asymmetry` / 2) for growing and shrinking angles and clipped to the speed limits, is
+/// exp(±`asymmetry` / 2) for growing and shrinking angles and by the pose, and clipped to the speed limits, is
 /// approached with a time constant, within the acceleration limits. Speeds, gains and dead band are
 /// as the joint shows them: a loop gain that no log can tell apart is in all of them.
 ///
@@ -43,6 +43,14 @@ pub struct Model {
     pub stiction_rad_s: f64,
     /// Measured angle less the one that the loop sees, rad.
     pub offset_rad: f64,
+    /// Lowest and highest angle that the gain is known for, rad; beyond them it stays.
+    pub pose_rad: [f64; 2],
+    /// Growth of the gain's logarithm with the angle, from the middle of the known angles, 1/rad.
+    pub pose_slope_1_rad: f64,
+    /// The same of half the asymmetry, 1/rad.
+    pub pose_asymmetry_1_rad: f64,
+    /// Growth of the gain's logarithm with the square of the angle, 1/rad².
+    pub pose_curve_1_rad2: f64,
     /// Largest speeds, rad/s.
     pub speed_limit_rad_s: [Option<f64>; 2],
     /// Largest changes of speed, rad/s².
@@ -77,6 +85,11 @@ impl Model {
             ("asymmetry", self.asymmetry),
             ("dead_band_centre_rad_s", self.dead_band_centre_rad_s),
             ("offset_rad", self.offset_rad),
+            ("pose_rad", self.pose_rad[0]),
+            ("pose_rad", self.pose_rad[1]),
+            ("pose_slope_1_rad", self.pose_slope_1_rad),
+            ("pose_asymmetry_1_rad", self.pose_asymmetry_1_rad),
+            ("pose_curve_1_rad2", self.pose_curve_1_rad2),
         ];
         let bad = positive
             .into_iter()

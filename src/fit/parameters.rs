@@ -7,7 +7,7 @@ use super::model::{BACKLASH_RAD, Model};
 use crate::units::DEGREE_RAD;
 
 /// Number of parameters that all runs share.
-pub(super) const SHARED: usize = 14;
+pub(super) const SHARED: usize = 17;
 
 pub(super) const DEAD_TIME: usize = 0;
 pub(super) const TIME_CONSTANT: usize = 1;
@@ -19,8 +19,11 @@ pub(super) const DEAD_BAND: usize = 6;
 const CENTRE: usize = 7;
 const STICTION: usize = 8;
 const OFFSET: usize = 9;
+const POSE: usize = 10;
+const POSE_ASYMMETRY: usize = 11;
+const POSE_CURVE: usize = 12;
 /// Speed limits for growing and shrinking angles, then acceleration limits.
-pub(super) const LIMITS: usize = 10;
+pub(super) const LIMITS: usize = 13;
 
 /// What is known of one parameter beforehand.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,9 +52,12 @@ const PRIORS: [Prior; SHARED] = [
     positive(0.9, 0.5),
     around_zero(0.4),
     positive(DEGREE_RAD, 1.0),
-    around_zero(1.5 * DEGREE_RAD),
+    around_zero(0.5 * DEGREE_RAD),
     positive(0.2 * DEGREE_RAD, 1.0),
-    around_zero(0.2 * DEGREE_RAD),
+    around_zero(0.05 * DEGREE_RAD),
+    around_zero(0.5),
+    around_zero(0.3),
+    around_zero(0.7),
     positive(1.0, 1.5),
     positive(1.0, 1.5),
     positive(1.0, 1.5),
@@ -59,22 +65,24 @@ const PRIORS: [Prior; SHARED] = [
 ];
 
 /// Of the integral at the start of a run, rad/s.
-const INTEGRAL: Prior = around_zero(1.5 * DEGREE_RAD);
+const INTEGRAL: Prior = around_zero(0.7 * DEGREE_RAD);
 
 /// Priors of one joint.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Priors {
     shared: [Prior; SHARED],
+    /// Lowest and highest angle sent, rad.
+    pose_rad: [f64; 2],
 }
 
 impl Priors {
     /// `limits`: medians of the speed and acceleration limits, by index from [`LIMITS`].
-    pub(super) fn new(limits: [f64; 4]) -> Self {
+    pub(super) fn new(limits: [f64; 4], pose_rad: [f64; 2]) -> Self {
         let mut shared = PRIORS;
         for (prior, middle) in shared[LIMITS..].iter_mut().zip(limits) {
             prior.middle = middle;
         }
-        Self { shared }
+        Self { shared, pose_rad }
     }
 
     pub(super) fn of(&self, parameter: usize) -> Prior {
@@ -96,6 +104,10 @@ impl Priors {
             dead_band_centre_rad_s: value(CENTRE),
             stiction_rad_s: value(STICTION),
             offset_rad: value(OFFSET),
+            pose_rad: self.pose_rad,
+            pose_slope_1_rad: value(POSE),
+            pose_asymmetry_1_rad: value(POSE_ASYMMETRY),
+            pose_curve_1_rad2: value(POSE_CURVE),
             speed_limit_rad_s: [limit(0), limit(1)],
             acceleration_limit_rad_s2: [limit(2), limit(3)],
             backlash_rad: BACKLASH_RAD,
@@ -132,7 +144,7 @@ mod tests {
 
     #[test]
     fn a_parameter_s_place_stands_for_its_value() {
-        let priors = Priors::new([0.3, 0.3, 5.0, 5.0]);
+        let priors = Priors::new([0.3, 0.3, 5.0, 5.0], [0.0, 1.0]);
         for i in 0..=SHARED {
             let prior = priors.of(i);
             let value = if prior.positive { 0.7 * prior.middle } else { 0.01 };

@@ -36,6 +36,12 @@ const SHORTEST_S: f64 = 2.0;
 /// After a start in motion the first errors are those of the unknown state, s.
 const SETTLE_S: f64 = 0.6;
 
+/// Length of a block of data that is fitted or predicted, s.
+const BLOCK_S: f64 = 3.0;
+
+/// Parts of the data of which each is predicted from the others.
+pub(super) const FOLDS: usize = 4;
+
 /// Window of a measured speed, half, s.
 const SPEED_WINDOW_S: f64 = 0.1;
 
@@ -48,8 +54,8 @@ pub(super) struct Sample {
     pub(super) part: f64,
     /// Measured angle, rad.
     pub(super) measured_rad: f64,
-    /// Half of the data to which it belongs when one half is to predict the other.
-    pub(super) fold: bool,
+    /// Part of the data to which it belongs when each is to be predicted from the others.
+    pub(super) fold: usize,
 }
 
 /// A stretch of one log without gaps or long rests.
@@ -67,6 +73,8 @@ pub(super) struct Run {
     pub(super) sharpest_rad_s2: [f64; 2],
     /// Instant of the first grid point, s.
     pub(super) start_s: f64,
+    /// Largest sent speeds, rad/s, and changes of it, rad/s².
+    pub(super) asked: [f64; 4],
     /// Grid points at which the joint is sent off, from rest or backwards.
     pub(super) starts: Vec<usize>,
 }
@@ -131,7 +139,7 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
                 let at = (pair.t_s[i] - start_s) / STEP_S;
                 let step = steps_in(at * STEP_S).min(steps.len() - 2);
                 let measured_rad = pair.measured_rad[i];
-                samples.push(Sample { step, part: at - step as f64, measured_rad, fold: false });
+                samples.push(Sample { step, part: at - step as f64, measured_rad, fold: fold(step) });
             }
             let extreme = |of: &dyn Fn(usize) -> f64| (first..last).map(of).fold(0.0, f64::max);
             let fastest_rad_s = [1.0, -1.0].map(|way| extreme(&|i| way * fits[i].velocity_rad_s));
@@ -142,6 +150,7 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
             let sharpest_rad_s2 = [1.0, -1.0].map(|way| extreme(&|i| way * rise(i)));
             let sent = whole[steps.clone()].to_vec();
             runs.push(Run {
+                asked: asked(&sent),
                 starts: starts(&sent),
                 sent,
                 start: Start { angle_rad: fit.position_rad, speed_rad_s, integral_rad_s: 0.0 },
@@ -153,6 +162,21 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
         }
     }
     runs
+}
+
+/// Largest sent speeds for growing and shrinking angles, rad/s, and changes of speed over a tenth of
+/// a second, rad/s².
+fn asked(sent: &[(f64, f64)]) -> [f64; 4] {
+    let span = steps_in(0.1);
+    let mut asked = [0.0_f64; 4];
+    for (k, now) in sent.iter().enumerate() {
+        let before = sent[k.saturating_sub(span)].1;
+        let change = (now.1 - before) / (span as f64 * STEP_S);
+        for (most, value) in asked.iter_mut().zip([now.1, -now.1, change, -change]) {
+            *most = most.max(value);
+        }
+    }
+    asked
 }
 
 /// Grid points of motions with some rest around them; long rests are left out.
@@ -184,22 +208,8 @@ pub(super) fn starts(sent: &[(f64, f64)]) -> Vec<usize> {
     starts
 }
 
-/// Deals the samples of a joint into two halves that predict each other: pairs of starts in turn,
-/// or halves of the way where there are fewer than four.
-pub(super) fn deal(runs: &mut [Run]) {
-    let starts: usize = runs.iter().map(|run| run.starts.len()).sum();
-    let whole_rad: f64 = runs.iter().map(Run::travel_rad).sum();
-    let (mut seen, mut way_rad) = (0, 0.0);
-    for run in runs {
-        let mut second = Vec::with_capacity(run.sent.len());
-        for k in 0..run.sent.len() {
-            seen += usize::from(run.starts.binary_search(&k).is_ok());
-            way_rad += (run.sent[k].0 - run.sent[k.saturating_sub(1)].0).abs();
-            let early = way_rad <= 0.5 * whole_rad;
-            second.push(if starts < 4 { !early } else { (seen.max(1) - 1) / 2 % 2 == 1 });
-        }
-        for sample in &mut run.samples {
-            sample.fold = second.get(sample.step).copied().unwrap_or_default();
-        }
-    }
+/// Deals the time of a run, in blocks, to [`FOLDS`] parts in turn for each to be predicted from the
+/// others. Longer parts would leave a fit without starts in one direction.
+fn fold(step: usize) -> usize {
+    step / steps_in(BLOCK_S).max(1) % FOLDS
 }

@@ -33,7 +33,13 @@ pub(super) fn simulate(
 ) {
     wanted.clear();
     measured_rad.clear();
-    let [rise, fall] = [0.5, -0.5].map(|half| (half * model.asymmetry).exp());
+    let [lowest, highest] = model.pose_rad;
+    let middle = 0.5 * (lowest + highest);
+    let gain = |way: f64, angle_rad: f64| {
+        let off = angle_rad.max(lowest).min(highest) - middle;
+        let bent = model.pose_slope_1_rad + model.pose_curve_1_rad2 * off;
+        (way * (0.5 * model.asymmetry + model.pose_asymmetry_1_rad * off) + bent * off).exp()
+    };
     let (up, down) = (
         model.dead_band_rad_s + model.dead_band_centre_rad_s,
         -model.dead_band_rad_s + model.dead_band_centre_rad_s,
@@ -64,10 +70,10 @@ pub(super) fn simulate(
         let arrived = new + part * (old - new);
         let target = if arrived > up {
             let held = stiction(model, arrived - up, speed_rad_s);
-            if held { 0.0 } else { (rise * (arrived - up)).min(fastest) }
+            if held { 0.0 } else { (gain(1.0, angle_rad) * (arrived - up)).min(fastest) }
         } else if arrived < down {
             let held = stiction(model, down - arrived, -speed_rad_s);
-            if held { 0.0 } else { (fall * (arrived - down)).max(-slowest) }
+            if held { 0.0 } else { (gain(-1.0, angle_rad) * (arrived - down)).max(-slowest) }
         } else {
             0.0
         };

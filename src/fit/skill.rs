@@ -3,7 +3,7 @@
 use super::{
     estimate::{Part, Problem, Room},
     parameters::{Priors, SHARED},
-    run::{Run, Sample},
+    run::{FOLDS, Run, Sample},
 };
 use crate::math::quantile;
 
@@ -24,17 +24,17 @@ pub(super) struct Skill {
     pub(super) peak_ratios: Vec<f64>,
 }
 
-/// Fits each half of the data and predicts the other.
+/// Fits all parts of the data but one, and predicts that, for each in turn.
 pub(super) fn skill(problem: &Problem, dead_time_s: f64, room: &mut Room) -> Skill {
     // Tracking error, measured and predicted, of every sample.
     let mut errors: Vec<Vec<(f64, f64)>> =
         problem.runs.iter().map(|run| vec![(0.0, 0.0); run.samples.len()]).collect();
     let mut x = vec![0.0; SHARED + problem.runs.len()];
     x[super::parameters::DEAD_TIME] = problem.priors.of(super::parameters::DEAD_TIME).place(dead_time_s);
-    for fold in [false, true] {
-        let half = Problem { part: Part::Fold(!fold), ..problem.clone() };
-        let found = half.descend(x.clone(), 25, room);
-        let model = half.model(&found.x);
+    for fold in 0..FOLDS {
+        let rest = Problem { part: Part::Without(fold), ..problem.clone() };
+        let found = rest.descend(x.clone(), 25, room);
+        let model = rest.model(&found.x);
         for ((run, errors), &integral) in
             problem.runs.iter().zip(&mut errors).zip(found.x.iter().skip(SHARED))
         {

@@ -1,1 +1,127 @@
 //! What fits find against what is there.
+
+use std::time::Instant;
+
+use hydrotrace::{
+    arm::Arm,
+    fit::{Estimated, Excitation, JointFit},
+    plant::{JointTruth, Parameters, Plant},
+    units::DEGREE_RAD,
+};
+
+use super::{HOME_DEG, Job, excitation, fitted, run, task};
+
+/// One quantity over many joints.
+#[derive(Default)]
+struct Column {
+    errors: Vec<f64>,
+    covered: usize,
+    identified: usize,
+    joints: usize,
+}
+
+impl Column {
+    fn add(&mut self, found: &Estimated, truth: f64) {
+        self.joints += 1;
+        self.identified += usize::from(found.identified);
+        if let (Some(value), Some([low, high])) = (found.value, found.interval) {
+            self.errors.push((value / truth).ln());
+            self.covered += usize::from((low..=high).contains(&truth));
+        }
+    }
+
+    fn median_error(&self) -> f64 {
+        let mut sorted: Vec<f64> = self.errors.iter().map(|e| e.abs()).collect();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+    }
+
+    fn coverage(&self) -> f64 {
+        self.covered as f64 / self.errors.len() as f64
+    }
+}
+
+type Pick = fn(&JointFit) -> &Estimated;
+
+/// Quantities with their truth. Gains and dead band of the model have the plant's gain in them.
+const QUANTITIES: [(&str, Pick, fn(&JointTruth) -> f64); 11] = [
+    ("lag", |j| &j.lag_s, |t| t.lag_s),
+    ("dead band", |j| &j.dead_band_rad_s, |t| 0.5 * (t.dead_band_rad_s[0] + t.dead_band_rad_s[1]) * gain(t)),
+    (
+        "dead band error",
+        |j| &j.dead_band_error_rad,
+        |t| 0.5 * (t.dead_band_rad_s[0] + t.dead_band_rad_s[1]) / t.position_gain_1_s,
+    ),
+    ("position gain", |j| &j.position_gain_1_s, |t| t.position_gain_1_s * gain(t)),
+    ("integral gain", |j| &j.integral_gain_1_s2, |t| t.integral_gain_1_s2 * gain(t)),
+    ("feed forward", |j| &j.feed_forward, |t| t.feed_forward * gain(t)),
+    ("gain ratio", |j| &j.gain_ratio, |t| t.gain[0] / t.gain[1]),
+    ("speed +", |j| &j.speed_limit_growing_rad_s, |t| t.speed_limit_rad_s[0]),
+    ("speed -", |j| &j.speed_limit_shrinking_rad_s, |t| t.speed_limit_rad_s[1]),
+    ("acceleration +", |j| &j.acceleration_limit_growing_rad_s2, |t| t.acceleration_limit_rad_s2[0]),
+    ("acceleration -", |j| &j.acceleration_limit_shrinking_rad_s2, |t| t.acceleration_limit_rad_s2[1]),
+];
+
+fn gain(truth: &JointTruth) -> f64 {
+    (truth.gain[0] * truth.gain[1]).sqrt()
+}
+
+/// Fits to one run of each of many machines, by quantity; with the skills.
+fn recover(seeds: std::ops::Range<u64>, job: &Job) -> (Vec<Column>, Vec<f64>) {
+    let base = Parameters::preset("default").unwrap();
+    let mut columns: Vec<Column> = QUANTITIES.iter().map(|_| Column::default()).collect();
+    let mut skills = Vec::new();
+    for seed in seeds {
+        let plant = Plant::new(&Arm::sample().unwrap(), base.random(seed)).unwrap();
+        let truth = plant.truth(&HOME_DEG.map(|q| q * DEGREE_RAD), 0.0).unwrap();
+        let measured = run(&plant, &job.plan, job, seed);
+        let fit = fitted(&[(&job.plan, &measured)]);
+        for (joint, truth) in fit.joints.iter().zip(&truth.joints) {
+            skills.push(joint.held_out_r2);
+            for (column, (_, found, truth_of)) in columns.iter_mut().zip(QUANTITIES) {
+                column.add(found(joint), truth_of(truth));
+            }
+        }
+    }
+    (columns, skills)
+}
+
+fn print(title: &str, (columns, mut skills): (Vec<Column>, Vec<f64>)) {
+    skills.sort_by(f64::total_cmp);
+    let at = |p: f64| skills[(p * (skills.len() - 1) as f64) as usize];
+    println!("{title}: held-out R2 10 % {:.2} median {:.2}; {} joints", at(0.1), at(0.5), skills.len());
+    for (column, (name, ..)) in columns.iter().zip(QUANTITIES) {
+        let mean = column.errors.iter().sum::<f64>() / column.errors.len() as f64;
+        let deviation = (column.errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>()
+            / column.errors.len() as f64)
+            .sqrt();
+        println!(
+            "  {name}: median |error| {:.0} %, mean {:.0} %, deviation {:.0} %, coverage {:.2}, identified {} of {}",
+            100.0 * column.median_error(),
+            100.0 * mean,
+            100.0 * deviation,
+            column.coverage(),
+            column.identified,
+            column.joints,
+        );
+    }
+}
+
+#[test]
+#[ignore = "prints a table; minutes in release"]
+fn table_of_recovery() {
+    let (first, count) = (
+        std::env::var("FIT_FIRST").ok().and_then(|s| s.parse().ok()).unwrap_or(100),
+        std::env::var("FIT_COUNT").ok().and_then(|s| s.parse().ok()).unwrap_or(50),
+    );
+    let jobs = [
+        ("minimal excitation", excitation(&Excitation::minimal())),
+        ("full excitation", excitation(&Excitation::full())),
+        ("task 1", task(1)),
+    ];
+    for (title, job) in jobs {
+        let clock = Instant::now();
+        print(title, recover(first..first + count, &job));
+        println!("  {:.2} s a machine", clock.elapsed().as_secs_f64() / count as f64);
+    }
+}
