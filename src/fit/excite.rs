@@ -21,7 +21,7 @@ pub struct Excitation {
     pub rest_s: f64,
 }
 
-/// Strokes at one speed: to one side, to the other, and back.
+/// Strokes at one speed: to one side, to the other, and back; at the top speed once more across.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Ramp {
     /// Speed that is sent, rad/s.
@@ -130,9 +130,12 @@ fn joint_strokes(joint: &JointRoom, excitation: &Excitation) -> Result<Vec<(f64,
     let inside = |angle_rad: f64| (lowest..=highest).contains(&angle_rad);
     let home = joint.home_rad;
     let mut states = Vec::new();
+    let fastest_rad_s = excitation.ramps.iter().map(|ramp| ramp.speed_rad_s).fold(0.0, f64::max);
     for ramp in &excitation.ramps {
         let (up, down) = (home + ramp.travel_rad, home - ramp.travel_rad);
         let goals = match (inside(home) && inside(up), inside(home) && inside(down)) {
+            // At the top speed both directions need a long stroke.
+            (true, true) if ramp.speed_rad_s >= fastest_rad_s => vec![up, down, up, home],
             (true, true) => vec![up, down, home],
             (true, false) => vec![up, home, up, home],
             (false, true) => vec![down, home, down, home],

@@ -8,8 +8,9 @@ use nalgebra::DMatrix;
 use super::{
     estimate::{Problem, Room},
     outcome::Estimated,
-    parameters::{DEAD_BAND, DEAD_TIME, POSITION_GAIN, TIME_CONSTANT},
+    parameters::{DEAD_BAND, DEAD_TIME, POSITION_GAIN, STICTION, TIME_CONSTANT},
     robust::inefficiency,
+    run::ASKED_OVER_S,
 };
 
 /// Normal quantile of a two-sided 95 % interval.
@@ -18,21 +19,27 @@ const QUANTILE: f64 = 1.96;
 /// Deviations of logarithms that no log narrows: what models of this form miss by.
 pub(super) mod discrepancy {
     /// Of the lag.
-    pub(in crate::fit) const LAG: f64 = 0.05;
+    pub(in crate::fit) const LAG: f64 = 0.07;
+    /// Of the lag where no start is sharp.
+    pub(in crate::fit) const SMOOTH_LAG: f64 = 0.50;
     /// Of the dead band.
-    pub(in crate::fit) const DEAD_BAND: f64 = 0.28;
+    pub(in crate::fit) const DEAD_BAND: f64 = 0.20;
     /// Of the largest speed of growing angles.
     pub(in crate::fit) const GROWING: f64 = 0.12;
     /// Of the largest speed of shrinking angles.
     pub(in crate::fit) const SHRINKING: f64 = 0.07;
     /// Of the largest accelerations.
-    pub(in crate::fit) const ACCELERATION: f64 = 0.35;
-    /// Of the gains.
-    pub(in crate::fit) const GAIN: f64 = 0.15;
+    pub(in crate::fit) const ACCELERATION: f64 = 0.75;
+    /// Of the position gain.
+    pub(in crate::fit) const POSITION_GAIN: f64 = 0.15;
+    /// Of the integral gain.
+    pub(in crate::fit) const INTEGRAL_GAIN: f64 = 0.40;
+    /// Of the feed-forward and of the ratio of gains.
+    pub(in crate::fit) const GAIN: f64 = 0.10;
 }
 
 /// Deviations of a logarithm above which a number is not identified.
-const VAGUE: f64 = 0.45;
+const VAGUE: f64 = 0.6;
 
 /// The data must narrow what was known beforehand to this share.
 const NARROWED: f64 = 0.6;
@@ -96,14 +103,31 @@ impl Knowledge {
         let lag_s = model.lag_s();
         let part = |i: usize, value: f64| (i, problem.priors.of(i).deviation * value / lag_s);
         let parts = [part(DEAD_TIME, model.dead_time_s), part(TIME_CONSTANT, model.time_constant_s)];
-        self.positive(lag_s, &parts, discrepancy::LAG)
+        // Within the lag a smooth start does not leave the dead band: its delay is the band's.
+        let jump_rad_s =
+            problem.runs.iter().map(|run| run.asked[2].max(run.asked[3])).fold(0.0, f64::max) * ASKED_OVER_S;
+        let sharp = jump_rad_s > model.dead_band_rad_s;
+        let missed = if sharp { discrepancy::LAG } else { discrepancy::SMOOTH_LAG };
+        let found = self.positive(lag_s, &parts, missed);
+        Estimated { identified: found.identified && sharp, ..found }
     }
 
-    /// Dead band by position gain.
-    pub(super) fn dead_band_error(&self, problem: &Problem, x: &[f64]) -> Estimated {
+    /// What must be wanted before the joint leaves rest: dead band and stiction, which no log of angles
+    /// tells apart; and the same by the position gain, an error.
+    pub(super) fn dead_band(&self, problem: &Problem, x: &[f64]) -> [Estimated; 2] {
         let model = problem.model(x);
-        let part = |i: usize, sign: f64| (i, sign * problem.priors.of(i).deviation);
-        let parts = [part(DEAD_BAND, 1.0), part(POSITION_GAIN, -1.0)];
-        self.positive(model.dead_band_rad_s / model.position_gain_1_s, &parts, discrepancy::DEAD_BAND)
+        let whole_rad_s = model.dead_band_rad_s + model.stiction_rad_s;
+        let part = |i: usize, share: f64| (i, share * problem.priors.of(i).deviation);
+        let band = part(DEAD_BAND, model.dead_band_rad_s / whole_rad_s);
+        let stiction = part(STICTION, model.stiction_rad_s / whole_rad_s);
+        let gain = part(POSITION_GAIN, -1.0);
+        [
+            self.positive(whole_rad_s, &[band, stiction], discrepancy::DEAD_BAND),
+            self.positive(
+                whole_rad_s / model.position_gain_1_s,
+                &[band, stiction, gain],
+                discrepancy::DEAD_BAND,
+            ),
+        ]
     }
 }

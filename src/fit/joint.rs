@@ -5,7 +5,7 @@ use super::{
     estimate::{Estimate, Part, Problem, Room},
     interval::{Knowledge, discrepancy},
     outcome::{Estimated, JointFit},
-    parameters::{ASYMMETRY, DEAD_BAND, FEED_FORWARD, INTEGRAL_GAIN, LIMITS, POSITION_GAIN, Priors, SHARED},
+    parameters::{ASYMMETRY, FEED_FORWARD, INTEGRAL_GAIN, LIMITS, POSITION_GAIN, Priors, SHARED},
     run::Run,
     skill::{Skill, skill},
 };
@@ -81,6 +81,7 @@ fn report(
             Estimated { lower_bound: bound, ..Estimated::default() }
         }
     };
+    let [dead_band_rad_s, dead_band_error_rad] = knowledge.dead_band(problem, &found.x);
     JointFit {
         name: name.to_owned(),
         runs: problem.runs.len(),
@@ -89,10 +90,10 @@ fn report(
         inefficiency: knowledge.inefficiency,
         held_out_r2,
         lag_s: knowledge.lag(problem, &found.x),
-        dead_band_rad_s: one(DEAD_BAND, model.dead_band_rad_s, discrepancy::DEAD_BAND),
-        dead_band_error_rad: knowledge.dead_band_error(problem, &found.x),
-        position_gain_1_s: one(POSITION_GAIN, model.position_gain_1_s, discrepancy::GAIN),
-        integral_gain_1_s2: one(INTEGRAL_GAIN, model.integral_gain_1_s2, discrepancy::GAIN),
+        dead_band_rad_s,
+        dead_band_error_rad,
+        position_gain_1_s: one(POSITION_GAIN, model.position_gain_1_s, discrepancy::POSITION_GAIN),
+        integral_gain_1_s2: one(INTEGRAL_GAIN, model.integral_gain_1_s2, discrepancy::INTEGRAL_GAIN),
         feed_forward: one(FEED_FORWARD, model.feed_forward, discrepancy::GAIN),
         gain_ratio: one(ASYMMETRY, model.asymmetry.exp(), discrepancy::GAIN),
         speed_limit_growing_rad_s: limit(0, discrepancy::GROWING),

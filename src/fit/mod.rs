@@ -25,6 +25,7 @@ mod run;
 mod simulate;
 mod skill;
 mod smooth;
+mod valve;
 
 use rayon::prelude::*;
 
@@ -67,7 +68,13 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
         .map(|name| {
             let runs = of(name);
             let travel_rad: f64 = runs.iter().map(Run::travel_rad).sum();
-            (travel_rad >= LEAST_TRAVEL_RAD).then(|| joint::joint(name, &runs))
+            (travel_rad >= LEAST_TRAVEL_RAD).then(|| {
+                let (mut joint, ratios) = joint::joint(name, &runs);
+                joint.valve_dead_band = logs
+                    .iter()
+                    .find_map(|log| valve::dead_band(log.valve?.track(name)?, log.measured.track(name)?));
+                (joint, ratios)
+            })
         })
         .collect();
     let left_out =

@@ -35,13 +35,14 @@ pub struct JointFit {
     /// Residuals that tell as much as one independent one.
     pub inefficiency: f64,
     /// Share of the squared tracking error (sent minus measured, about its mean) that is predicted
-    /// where it was not fitted: the joint's starts are dealt by pairs into two halves, or its way is
-    /// cut in the middle where there are fewer than four; each half is predicted by a fit to the
-    /// other. 1 is perfect, 0 no better than the mean.
+    /// where it was not fitted: time is dealt in blocks of 3 s to four parts in turn, and each part is
+    /// predicted by a fit to the other three, simulated from the start of the run. 1 is perfect, 0 no
+    /// better than the mean. It says how well runs like these are predicted, not others.
     pub held_out_r2: f64,
     /// Dead time, time constant and half a period of the loop, s.
     pub lag_s: Estimated,
-    /// Speed that must be wanted before the joint moves, half the width between the directions, rad/s.
+    /// Speed that must be wanted before the joint leaves rest, mean of both directions, rad/s: logs of
+    /// angles do not tell the directions apart.
     pub dead_band_rad_s: Estimated,
     /// Position error that stays below the dead band: its width by the position gain, rad.
     pub dead_band_error_rad: Estimated,

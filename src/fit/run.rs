@@ -36,6 +36,9 @@ const SHORTEST_S: f64 = 2.0;
 /// After a start in motion the first errors are those of the unknown state, s.
 const SETTLE_S: f64 = 0.6;
 
+/// Time over which sent speeds change, s.
+pub(super) const ASKED_OVER_S: f64 = 0.1;
+
 /// Length of a block of data that is fitted or predicted, s.
 const BLOCK_S: f64 = 3.0;
 
@@ -167,7 +170,7 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
 /// Largest sent speeds for growing and shrinking angles, rad/s, and changes of speed over a tenth of
 /// a second, rad/s².
 fn asked(sent: &[(f64, f64)]) -> [f64; 4] {
-    let span = steps_in(0.1);
+    let span = steps_in(ASKED_OVER_S).max(1);
     let mut asked = [0.0_f64; 4];
     for (k, now) in sent.iter().enumerate() {
         let before = sent[k.saturating_sub(span)].1;
