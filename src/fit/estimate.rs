@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{
     model::Model,
-    parameters::{DEAD_TIME, LIMITS, Priors, SHARED},
+    parameters::{DEAD_TIME, LIMITS, Priors, SHARED, STICTION},
     robust::{cost, inefficiency, scale, weight},
     run::{Run, Sample},
     simulate::simulate,
@@ -54,7 +54,6 @@ pub(super) struct Problem<'a> {
 pub(super) struct Estimate {
     /// Shared parameters, then the integral of each run.
     pub(super) x: Vec<f64>,
-    pub(super) cost: f64,
     /// Robust scale of the residuals, rad.
     pub(super) scale_rad: f64,
 }
@@ -119,7 +118,7 @@ impl Problem<'_> {
 
     /// Indices of the parameters that move.
     pub(super) fn free(&self) -> Vec<usize> {
-        let fixed = |i: usize| i >= LIMITS && i < SHARED && !self.seen[i - LIMITS];
+        let fixed = |i: usize| (LIMITS..SHARED).contains(&i) && !self.seen[i - LIMITS];
         (0..SHARED + self.runs.len()).filter(|&i| !fixed(i)).collect()
     }
 
@@ -132,7 +131,8 @@ impl Problem<'_> {
             .collect();
         let mut slopes = DMatrix::zeros(counts.iter().sum(), free.len());
         let (mut ahead, mut behind, mut x) = (Vec::new(), Vec::new(), x.to_vec());
-        for (column, &i) in free.iter().enumerate() {
+        // No log of angles tells stiction from dead band: it stays as known beforehand, no better.
+        for (column, &i) in free.iter().enumerate().filter(|(_, i)| **i != STICTION) {
             let (kept, mut first) = (x[i], 0);
             let own = i.checked_sub(SHARED);
             ahead.clear();
@@ -204,7 +204,7 @@ impl Problem<'_> {
             }
         }
         let scale_rad = scale(residuals.iter().copied(), FINEST_RAD);
-        Estimate { cost: self.cost(&x, &residuals, scale_rad), x, scale_rad }
+        Estimate { x, scale_rad }
     }
 
     /// `x` less a step, no longer than each parameter may go at once.

@@ -105,25 +105,22 @@ pub fn compensate(fit: &Fit, plan: &Series, settings: Compensation) -> Result<Co
     for track in &plan.tracks {
         let planned = grid(track)?;
         let known = fit.joint(track.name());
-        let (sent, applied) = match known {
-            Some(joint) if joint.trusted() && settings.gain > 0.0 => {
-                (corrected(&joint.model, &planned, settings), true)
-            }
-            _ => (planned.clone(), false),
-        };
-        joints.push(account(track.name(), known, &planned, &sent, applied));
-        let built = if applied { on_grid(track, sent) } else { None };
-        tracks.push(built.unwrap_or_else(|| track.clone()));
+        let trusted = known.filter(|joint| joint.trusted() && settings.gain > 0.0);
+        let sent = trusted.map(|joint| corrected(&joint.model, &planned, settings));
+        let built = sent.and_then(|sent| Some((on_grid(track, &sent)?, sent)));
+        let sent = built.as_ref().map_or(&planned, |(_, sent)| sent);
+        joints.push(account(track.name(), known, &planned, sent, built.is_some()));
+        tracks.push(built.map_or_else(|| track.clone(), |(track, _)| track));
     }
     Ok(Compensated { command: Series { tracks }, joints })
 }
 
 /// The track of a command on the steps of the model; the step past the end is left out.
-fn on_grid(plan: &Track, mut sent: Vec<(f64, f64)>) -> Option<Track> {
-    sent.pop();
+fn on_grid(plan: &Track, sent: &[(f64, f64)]) -> Option<Track> {
+    let (_, sent) = sent.split_last()?;
     let from_s = plan.t_s().first()?;
     let t_s: Vec<f64> = (0..sent.len()).map(|k| from_s + k as f64 * STEP_S).collect();
-    let (position_rad, velocity_rad_s): (Vec<f64>, Vec<f64>) = sent.into_iter().unzip();
+    let (position_rad, velocity_rad_s): (Vec<f64>, Vec<f64>) = sent.iter().copied().unzip();
     Track::new(plan.name(), t_s, position_rad, &[]).ok()?.with_velocity(velocity_rad_s).ok()
 }
 

@@ -20,6 +20,9 @@ const ABOVE: [f64; 4] = [1.03, 1.03, 1.2, 1.2];
 /// Limits are looked for from no lower than this: rad/s and rad/s².
 const LOWEST: [f64; 4] = [DEGREE_RAD, DEGREE_RAD, 20.0 * DEGREE_RAD, 20.0 * DEGREE_RAD];
 
+/// Residuals of a machine that tell as much as one independent one, until they are measured.
+const INEFFICIENCY: f64 = 50.0;
+
 /// Fits one joint, whose runs are not empty; with what held-out starts say of its peaks.
 pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>) {
     let most = |of: fn(&Run) -> f64| runs.iter().map(of).fold(0.0, f64::max);
@@ -33,8 +36,13 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>) {
     let angles = || runs.iter().flat_map(|run| run.sent.iter().map(|sent| sent.0));
     let pose_rad = [angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max)];
     let priors = Priors::new(limits, pose_rad);
-    let mut problem =
-        Problem { runs, priors: &priors, seen: asked_for(runs, limits), part: Part::All, inefficiency: 50.0 };
+    let mut problem = Problem {
+        runs,
+        priors: &priors,
+        seen: asked_for(runs, limits),
+        part: Part::All,
+        inefficiency: INEFFICIENCY,
+    };
     let mut room = Room::default();
     let mut found = problem.search(&DEAD_TIMES_S, &vec![0.0; SHARED + runs.len()], &mut room);
     // What goes may have stood in for what stays.

@@ -49,7 +49,7 @@ pub(super) fn grid(sent: &Track) -> Result<Vec<(f64, f64)>, FitError> {
     let (from_s, to_s) =
         (sent.t_s().first().copied().unwrap_or_default(), sent.t_s().last().copied().unwrap_or_default());
     let duration_s = to_s - from_s;
-    if !(duration_s <= LONGEST_S) {
+    if duration_s.is_nan() || duration_s > LONGEST_S {
         return Err(FitError::Duration { joint: sent.name().to_owned(), duration_s, most_s: LONGEST_S });
     }
     Ok(sampled(sent, from_s, steps_in(duration_s) + 2))

@@ -45,6 +45,9 @@ const BLOCK_S: f64 = 3.0;
 /// Parts of the data of which each is predicted from the others.
 pub(super) const FOLDS: usize = 4;
 
+/// Samples farther apart than this on average show no dynamics, s.
+const SPARSEST_S: f64 = 0.2;
+
 /// Window of a measured speed, half, s.
 const SPEED_WINDOW_S: f64 = 0.1;
 
@@ -74,8 +77,6 @@ pub(super) struct Run {
     pub(super) fastest_rad_s: [f64; 2],
     /// Largest measured changes of speed that add to positive and negative ones, rad/s².
     pub(super) sharpest_rad_s2: [f64; 2],
-    /// Instant of the first grid point, s.
-    pub(super) start_s: f64,
     /// Largest sent speeds, rad/s, and changes of it, rad/s².
     pub(super) asked: [f64; 4],
     /// Grid points at which the joint is sent off, from rest or backwards.
@@ -107,7 +108,7 @@ pub(super) fn sampled(track: &Track, from_s: f64, steps: usize) -> Vec<(f64, f64
 /// Whole steps in a time, rounded down within rounding errors.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a log has few steps")]
 pub(super) fn steps_in(span_s: f64) -> usize {
-    (span_s / STEP_S + 1e-6).max(0.0).min(1e9) as usize
+    (span_s / STEP_S + 1e-6).clamp(0.0, 1e9) as usize
 }
 
 /// Runs of one joint in one log.
@@ -117,6 +118,9 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
     let mut runs = Vec::new();
     for segment in &pair.segments {
         let (from_s, to_s) = (pair.t_s[segment.start], pair.t_s[segment.end - 1]);
+        if to_s - from_s > SPARSEST_S * segment.len() as f64 {
+            continue;
+        }
         let whole = sampled(sent, from_s, steps_in(to_s - from_s) + 1);
         for steps in motions(&whole) {
             let start_s = from_s + steps.start as f64 * STEP_S;
@@ -160,7 +164,6 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
                 samples,
                 fastest_rad_s,
                 sharpest_rad_s2,
-                start_s,
             });
         }
     }
@@ -199,11 +202,10 @@ fn motions(sent: &[(f64, f64)]) -> Vec<Range<usize>> {
 /// Where a joint is sent off: from rest, or backwards.
 pub(super) fn starts(sent: &[(f64, f64)]) -> Vec<usize> {
     let mut starts = Vec::new();
-    let mut way = 0.0;
+    let mut way = 0;
     for (k, (_, speed_rad_s)) in sent.iter().enumerate() {
-        let now = if speed_rad_s.abs() > MOVES_RAD_S { speed_rad_s.signum() } else { 0.0 };
-        // A reversal passes through rest within a few steps.
-        if now != 0.0 && now != way {
+        let now = i8::from(*speed_rad_s > MOVES_RAD_S) - i8::from(*speed_rad_s < -MOVES_RAD_S);
+        if now != 0 && now != way {
             starts.push(k);
         }
         way = now;

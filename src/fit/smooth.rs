@@ -7,7 +7,6 @@ const HALF: usize = 15;
 /// both ends are continued at their value.
 pub(super) fn smooth(values: &[f64], out: &mut Vec<f64>) {
     out.clear();
-    let n = values.len();
     let (Some(&first), Some(&last)) = (values.first(), values.last()) else { return };
     let half = HALF as f64;
     // Even moments of the window -m..=m: the weights of the value at its middle are a parabola.
@@ -22,9 +21,9 @@ pub(super) fn smooth(values: &[f64], out: &mut Vec<f64>) {
     let at = |k: usize, back: usize, ahead: usize| {
         if back > k { first } else { values.get(k + ahead - back).copied().unwrap_or(last) }
     };
-    for k in 0..n {
+    for (k, value) in values.iter().enumerate() {
         let sides = (1..=HALF).map(|i| weight[i] * (at(k, i, 0) + at(k, 0, i)));
-        out.push(weight[0] * values[k] + sides.sum::<f64>());
+        out.push(weight[0] * value + sides.sum::<f64>());
     }
 }
 

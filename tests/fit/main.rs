@@ -1,9 +1,10 @@
 //! Fits to simulated machines, whose truth is known, and the commands made from them.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+#![allow(clippy::float_cmp, clippy::unwrap_used, clippy::expect_used, missing_docs)]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 mod inversion;
+mod matched;
 mod recovery;
 
 use hydrotrace::{

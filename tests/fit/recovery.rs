@@ -111,14 +111,14 @@ fn print(title: &str, (columns, mut skills): (Vec<Column>, Vec<f64>)) {
 #[test]
 #[ignore = "prints a table; minutes in release"]
 fn table_of_recovery() {
-    let (first, count) = (
-        std::env::var("FIT_FIRST").ok().and_then(|s| s.parse().ok()).unwrap_or(100),
-        std::env::var("FIT_COUNT").ok().and_then(|s| s.parse().ok()).unwrap_or(50),
-    );
+    // HYDROTRACE_MACHINES = "first,count"; discrepancies were set on machines 1 to 10.
+    let wanted = std::env::var("HYDROTRACE_MACHINES").unwrap_or_default();
+    let (first, count) = wanted.split_once(',').unwrap_or(("100", "50"));
+    let (first, count): (u64, u64) = (first.parse().unwrap(), count.parse().unwrap());
     let jobs = [
+        ("task 1", task(1)),
         ("minimal excitation", excitation(&Excitation::minimal())),
         ("full excitation", excitation(&Excitation::full())),
-        ("task 1", task(1)),
     ];
     for (title, job) in jobs {
         let clock = ProcessTime::now();
@@ -129,7 +129,7 @@ fn table_of_recovery() {
 
 #[test]
 fn a_trial_of_each_joint_finds_lag_dead_band_gains_and_speed_limits() {
-    let (columns, skills) = recover(200..204, &excitation(&Excitation::minimal()));
+    let (columns, skills) = recover(200..203, &excitation(&Excitation::minimal()));
     assert!(skills.iter().all(|r2| *r2 > 0.9), "{skills:?}");
     for (column, (name, ..)) in columns.iter().zip(QUANTITIES) {
         let most = match name {
@@ -147,7 +147,7 @@ fn a_trial_of_each_joint_finds_lag_dead_band_gains_and_speed_limits() {
 
 #[test]
 fn a_smooth_task_shows_no_limit_and_no_lag() {
-    let (columns, _) = recover(200..203, &task(1));
+    let (columns, _) = recover(200..202, &task(1));
     for (column, (name, ..)) in columns.iter().zip(QUANTITIES) {
         if name == "lag" || name.starts_with("speed") || name.starts_with("acceleration") {
             assert_eq!(column.identified, 0, "{name}");
