@@ -44,8 +44,10 @@ impl Column {
 
 type Pick = fn(&JointFit) -> &Estimated;
 
+type Truth = fn(&JointTruth) -> f64;
+
 /// Quantities with their truth. Gains and dead band of the model have the plant's gain in them.
-const QUANTITIES: [(&str, Pick, fn(&JointTruth) -> f64); 11] = [
+const QUANTITIES: [(&str, Pick, Truth); 11] = [
     ("lag", |j| &j.lag_s, |t| t.lag_s),
     ("dead band", |j| &j.dead_band_rad_s, |t| 0.5 * (t.dead_band_rad_s[0] + t.dead_band_rad_s[1]) * gain(t)),
     (
