@@ -12,6 +12,7 @@ use super::{
     robust::inefficiency,
     run::ASKED_OVER_S,
 };
+use crate::units::DEGREE_RAD;
 
 /// Normal quantile of a two-sided 95 % interval.
 const QUANTILE: f64 = 1.96;
@@ -43,6 +44,9 @@ const VAGUE: f64 = 0.6;
 
 /// The data must narrow what was known beforehand to this share.
 const NARROWED: f64 = 0.6;
+
+/// Sent speeds that change by less within a tenth of a second are smooth, rad/s.
+const SHARP_RAD_S: f64 = DEGREE_RAD;
 
 /// What is known of the parameters after the fit.
 #[derive(Debug, Clone)]
@@ -106,7 +110,7 @@ impl Knowledge {
         // Within the lag a smooth start does not leave the dead band: its delay is the band's.
         let jump_rad_s =
             problem.runs.iter().map(|run| run.asked[2].max(run.asked[3])).fold(0.0, f64::max) * ASKED_OVER_S;
-        let sharp = jump_rad_s > model.dead_band_rad_s;
+        let sharp = jump_rad_s > model.dead_band_rad_s.max(SHARP_RAD_S);
         let missed = if sharp { discrepancy::LAG } else { discrepancy::SMOOTH_LAG };
         let found = self.positive(lag_s, &parts, missed);
         Estimated { identified: found.identified && sharp, ..found }
