@@ -19,6 +19,7 @@ pub mod spline;
 pub mod task;
 
 // abilities
+pub mod fit;
 pub mod log;
 pub mod plan;
 pub mod plant;

@@ -1,0 +1,41 @@
+//! Whether a limit shows: a limit that the joint never reached must not be reported as a number.
+
+use super::{
+    estimate::{Estimate, Problem, Room},
+    parameters::LIMITS,
+    robust::{cost, inefficiency},
+};
+
+/// 95 % quantile of a chi-squared variable with one degree of freedom.
+const THRESHOLD: f64 = 3.84;
+
+/// A joint shows a limit only if it was asked for this many times as much: a model of another form
+/// than the machine's may gain by clipping anywhere.
+pub(super) const ASKED: f64 = 1.3;
+
+/// Which of the limits the data show.
+///
+/// The cost without a limit must exceed that with it by more than chance, both scaled down by how
+/// many residuals tell as much as one independent one; the cost without is that of a fit of its own.
+pub(super) fn seen(problem: &Problem, found: &Estimate, room: &mut Room) -> [bool; 4] {
+    let mut residuals = Vec::new();
+    let data = |residuals: &[f64]| residuals.iter().map(|r| cost(r / found.scale_rad)).sum::<f64>();
+    problem.residuals(&found.x, room, &mut residuals);
+    let (with, kappa) = (data(&residuals), inefficiency(&residuals));
+    let mut seen = problem.seen;
+    for limit in (0..problem.seen.len()).filter(|&limit| problem.seen[limit]) {
+        let mut without = problem.clone();
+        without.seen[limit] = false;
+        without.residuals(&found.x, room, &mut residuals);
+        let mut shows = 2.0 * (data(&residuals) - with) / kappa > THRESHOLD;
+        if shows {
+            let refitted = without.descend(found.x.clone(), 10, room);
+            without.residuals(&refitted.x, room, &mut residuals);
+            shows = 2.0 * (data(&residuals) - with) / kappa > THRESHOLD;
+        }
+        let value = problem.priors.of(LIMITS + limit).value(found.x[LIMITS + limit]);
+        let asked = problem.runs.iter().map(|run| run.asked[limit]).fold(0.0, f64::max);
+        seen[limit] &= shows && asked > ASKED * value;
+    }
+    seen
+}

@@ -1,0 +1,83 @@
+//! Why there is no fit, no prediction or no run to make one from.
+
+use thiserror::Error;
+
+/// Why there is no fit, no prediction, or no run to make a fit from.
+#[derive(Debug, Clone, Error, PartialEq)]
+#[non_exhaustive]
+pub enum FitError {
+    /// No joint has enough motion.
+    #[error(
+        "no joint can be fitted: {logs} logs have {shared} joints both sent and measured, of which none is \
+         sent through {least_travel_rad} rad or more; give a log of a run in which the joints move"
+    )]
+    NothingMoves {
+        /// Number of logs.
+        logs: usize,
+        /// Joints that are sent and measured in one of them.
+        shared: usize,
+        /// What counts as motion.
+        least_travel_rad: f64,
+    },
+    /// A number of a model that cannot be.
+    #[error("{key} of joint {joint} is {found}; a number from {least} to {most} is expected")]
+    Value {
+        /// The joint.
+        joint: String,
+        /// Which number.
+        key: &'static str,
+        /// Its value.
+        found: f64,
+        /// Smallest value.
+        least: f64,
+        /// Largest value.
+        most: f64,
+    },
+    /// A joint that the fit leaves out.
+    #[error("the fit has no joint {joint}; it has {known}")]
+    UnknownJoint {
+        /// The joint.
+        joint: String,
+        /// Joints of the fit.
+        known: String,
+    },
+    /// A plan longer than a simulation may be.
+    #[error("joint {joint} is sent angles for {duration_s} s; at most {most_s} s are simulated")]
+    Duration {
+        /// The joint.
+        joint: String,
+        /// From its first to its last sample.
+        duration_s: f64,
+        /// The longest.
+        most_s: f64,
+    },
+    /// A setting of the compensation out of range.
+    #[error("{key} is {found}; a number from {least} to {most} is expected")]
+    Setting {
+        /// Which.
+        key: &'static str,
+        /// Its value.
+        found: f64,
+        /// Smallest value.
+        least: f64,
+        /// Largest value.
+        most: f64,
+    },
+    /// A joint without room for the run.
+    #[error(
+        "joint {joint} starts at {home_rad} rad and may go from {lowest_rad} to {highest_rad} rad; \
+         {travel_rad} rad either way do not fit: start elsewhere or ask for less"
+    )]
+    NoRoom {
+        /// The joint.
+        joint: String,
+        /// Where it starts.
+        home_rad: f64,
+        /// Its lowest angle.
+        lowest_rad: f64,
+        /// Its highest angle.
+        highest_rad: f64,
+        /// What was asked for.
+        travel_rad: f64,
+    },
+}

@@ -1,0 +1,165 @@
+//! A run from which a fit can tell what task runs leave open.
+
+use serde::{Deserialize, Serialize};
+
+use super::{FitError, model::STEP_S, run::steps_in};
+use crate::{
+    series::{Series, Track},
+    units::DEGREE_RAD,
+};
+
+/// How to drive each joint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Excitation {
+    /// Speeds of the ramps with the distance that each goes to either side, rad/s and rad.
+    pub ramps: Vec<Ramp>,
+    /// Rest after each stroke, s.
+    pub dwell_s: f64,
+    /// A joint is taken to be no faster than this: strokes that are sent faster wait for it, rad/s.
+    pub assumed_speed_rad_s: f64,
+    /// Rest before the first joint and after the last one, s.
+    pub rest_s: f64,
+}
+
+/// Strokes at one speed: to one side, to the other, and back; at the top speed once more across.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Ramp {
+    /// Speed that is sent, rad/s.
+    pub speed_rad_s: f64,
+    /// Distance from home, rad.
+    pub travel_rad: f64,
+}
+
+/// One joint of the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointRoom {
+    /// The joint.
+    pub name: String,
+    /// Where it starts and ends, rad.
+    pub home_rad: f64,
+    /// Lowest and highest angle, rad.
+    pub range_rad: [f64; 2],
+}
+
+impl Excitation {
+    /// Slow and much too fast strokes: twenty seconds a joint.
+    pub fn minimal() -> Self {
+        Self::at(&[(3.0, 6.0), (60.0, 10.0)])
+    }
+
+    /// Strokes at five speeds: a minute a joint.
+    pub fn full() -> Self {
+        Self::at(&[(1.0, 4.0), (3.0, 6.0), (8.0, 8.0), (18.0, 10.0), (60.0, 10.0)])
+    }
+
+    fn at(ramps_deg: &[(f64, f64)]) -> Self {
+        let ramp = |&(speed, travel): &(f64, f64)| Ramp {
+            speed_rad_s: speed * DEGREE_RAD,
+            travel_rad: travel * DEGREE_RAD,
+        };
+        Self {
+            ramps: ramps_deg.iter().map(ramp).collect(),
+            dwell_s: 1.5,
+            assumed_speed_rad_s: 15.0 * DEGREE_RAD,
+            rest_s: 1.0,
+        }
+    }
+
+    fn check(&self) -> Result<(), FitError> {
+        let ramps = self.ramps.iter().flat_map(|ramp| {
+            [("speed_rad_s", ramp.speed_rad_s, 1e-4, 100.0), ("travel_rad", ramp.travel_rad, 1e-4, 3.0)]
+        });
+        let own = [
+            ("dwell_s", self.dwell_s, 0.0, 60.0),
+            ("assumed_speed_rad_s", self.assumed_speed_rad_s, 1e-3, 100.0),
+            ("rest_s", self.rest_s, 0.0, 60.0),
+        ];
+        let bad = ramps.chain(own).find(|&(_, found, least, most)| !(found >= least && found <= most));
+        bad.map_or(Ok(()), |(key, found, least, most)| Err(FitError::Setting { key, found, least, most }))
+    }
+}
+
+/// Drives one joint after the other through its ramps, the others at home, every [`STEP_S`] with
+/// positions and speeds.
+///
+/// A stroke that would leave a joint's range is made to the other side only, twice.
+///
+/// # Errors
+///
+/// [`FitError::Setting`], and [`FitError::NoRoom`] for a joint that has room on neither side.
+pub fn excite(joints: &[JointRoom], excitation: &Excitation) -> Result<Series, FitError> {
+    excitation.check()?;
+    let mut strokes = Vec::with_capacity(joints.len());
+    for joint in joints {
+        strokes.push(joint_strokes(joint, excitation)?);
+    }
+    let own: Vec<usize> = strokes.iter().map(Vec::len).collect();
+    let rest = steps_in(excitation.rest_s);
+    let total = 2 * rest + own.iter().sum::<usize>() + 1;
+    let t_s: Vec<f64> = (0..total).map(|k| k as f64 * STEP_S).collect();
+    let mut before = rest;
+    let mut tracks = Vec::with_capacity(joints.len());
+    for (joint, strokes) in joints.iter().zip(&strokes) {
+        let mut position_rad = vec![joint.home_rad; total];
+        let mut velocity_rad_s = vec![0.0; total];
+        for (k, (position, velocity)) in strokes.iter().enumerate() {
+            position_rad[before + k] = *position;
+            velocity_rad_s[before + k] = *velocity;
+        }
+        before += strokes.len();
+        let track = Track::new(&joint.name, t_s.clone(), position_rad, &[])
+            .and_then(|track| track.with_velocity(velocity_rad_s));
+        tracks.push(track.map_err(|_| no_room(joint, f64::NAN))?);
+    }
+    Ok(Series { tracks })
+}
+
+fn no_room(joint: &JointRoom, travel_rad: f64) -> FitError {
+    FitError::NoRoom {
+        joint: joint.name.clone(),
+        home_rad: joint.home_rad,
+        lowest_rad: joint.range_rad[0],
+        highest_rad: joint.range_rad[1],
+        travel_rad,
+    }
+}
+
+/// Angles and speeds of one joint's part of the run.
+fn joint_strokes(joint: &JointRoom, excitation: &Excitation) -> Result<Vec<(f64, f64)>, FitError> {
+    let [lowest, highest] = joint.range_rad;
+    let inside = |angle_rad: f64| (lowest..=highest).contains(&angle_rad);
+    let home = joint.home_rad;
+    let mut states = Vec::new();
+    let fastest_rad_s = excitation.ramps.iter().map(|ramp| ramp.speed_rad_s).fold(0.0, f64::max);
+    for ramp in &excitation.ramps {
+        let (up, down) = (home + ramp.travel_rad, home - ramp.travel_rad);
+        let goals = match (inside(home) && inside(up), inside(home) && inside(down)) {
+            // At the top speed both directions need a long stroke.
+            (true, true) if ramp.speed_rad_s >= fastest_rad_s => vec![up, down, up, home],
+            (true, true) => vec![up, down, home],
+            (true, false) => vec![up, home, up, home],
+            (false, true) => vec![down, home, down, home],
+            (false, false) => return Err(no_room(joint, ramp.travel_rad)),
+        };
+        let mut from = home;
+        for goal in goals {
+            stroke(from, goal, ramp.speed_rad_s, excitation, &mut states);
+            from = goal;
+        }
+    }
+    Ok(states)
+}
+
+/// One ramp and the rest after it.
+fn stroke(from: f64, goal: f64, speed_rad_s: f64, excitation: &Excitation, states: &mut Vec<(f64, f64)>) {
+    let way = goal - from;
+    let sent_s = way.abs() / speed_rad_s;
+    let needed_s = way.abs() / speed_rad_s.min(excitation.assumed_speed_rad_s);
+    let steps = steps_in(needed_s + excitation.dwell_s);
+    for k in 0..steps {
+        let t_s = k as f64 * STEP_S;
+        let moving = t_s < sent_s;
+        let position = if moving { from + way.signum() * speed_rad_s * t_s } else { goal };
+        states.push((position, if moving { way.signum() * speed_rad_s } else { 0.0 }));
+    }
+}

@@ -1,0 +1,137 @@
+//! How well the numbers of a model are known.
+//!
+//! Noise is the smaller part: machines are not of the model's form. On simulated machines fits miss
+//! by the discrepancies below, which are added in quadrature to what noise and priors leave.
+
+use nalgebra::DMatrix;
+
+use super::{
+    estimate::{Problem, Room},
+    outcome::Estimated,
+    parameters::{DEAD_BAND, DEAD_TIME, POSITION_GAIN, STICTION, TIME_CONSTANT},
+    robust::inefficiency,
+    run::ASKED_OVER_S,
+};
+use crate::units::DEGREE_RAD;
+
+/// Normal quantile of a two-sided 95 % interval.
+const QUANTILE: f64 = 1.96;
+
+/// Deviations of logarithms that no log narrows: what models of this form miss by.
+pub(super) mod discrepancy {
+    /// Of the lag.
+    pub(in crate::fit) const LAG: f64 = 0.07;
+    /// Of the lag where no start is sharp.
+    pub(in crate::fit) const SMOOTH_LAG: f64 = 0.50;
+    /// Of the dead band.
+    pub(in crate::fit) const DEAD_BAND: f64 = 0.20;
+    /// Of the largest speed of growing angles.
+    pub(in crate::fit) const GROWING: f64 = 0.12;
+    /// Of the largest speed of shrinking angles.
+    pub(in crate::fit) const SHRINKING: f64 = 0.07;
+    /// Of the largest accelerations.
+    pub(in crate::fit) const ACCELERATION: f64 = 0.75;
+    /// Of the position gain.
+    pub(in crate::fit) const POSITION_GAIN: f64 = 0.15;
+    /// Of the integral gain.
+    pub(in crate::fit) const INTEGRAL_GAIN: f64 = 0.40;
+    /// Of the feed-forward and of the ratio of gains.
+    pub(in crate::fit) const GAIN: f64 = 0.10;
+}
+
+/// Deviations of a logarithm above which a number is not identified.
+const VAGUE: f64 = 0.6;
+
+/// The data must narrow what was known beforehand to this share.
+const NARROWED: f64 = 0.6;
+
+/// Sent speeds that change by less within a tenth of a second are smooth, rad/s.
+const SHARP_RAD_S: f64 = DEGREE_RAD;
+
+/// What is known of the parameters after the fit.
+#[derive(Debug, Clone)]
+pub(super) struct Knowledge {
+    free: Vec<usize>,
+    covariance: DMatrix<f64>,
+    pub(super) inefficiency: f64,
+}
+
+impl Knowledge {
+    /// Around an estimate of a problem.
+    pub(super) fn new(problem: &Problem, x: &[f64], scale_rad: f64, room: &mut Room) -> Self {
+        let free = problem.free();
+        let mut residuals = Vec::new();
+        problem.residuals(x, room, &mut residuals);
+        let inefficiency = inefficiency(&residuals);
+        let (normal, _) = problem.normal(x, &free, &residuals, scale_rad, room);
+        let information = normal / inefficiency + DMatrix::identity(free.len(), free.len());
+        // Information of at least the priors has an inverse.
+        let covariance = information
+            .cholesky()
+            .map_or_else(|| DMatrix::identity(free.len(), free.len()), |cholesky| cholesky.inverse());
+        Self { free, covariance, inefficiency }
+    }
+
+    /// Standard deviation of a sum of parameters, each in its prior deviations.
+    fn deviation(&self, parts: &[(usize, f64)]) -> f64 {
+        let mut variance = 0.0;
+        for &(a, by_a) in parts {
+            for &(b, by_b) in parts {
+                let place = |i| self.free.iter().position(|&free| free == i);
+                if let (Some(a), Some(b)) = (place(a), place(b)) {
+                    variance += by_a * by_b * self.covariance[(a, b)];
+                }
+            }
+        }
+        variance.max(0.0).sqrt()
+    }
+
+    /// A positive number whose logarithm grows with the parameters as `parts` say, by prior
+    /// deviations.
+    pub(super) fn positive(&self, value: f64, parts: &[(usize, f64)], discrepancy: f64) -> Estimated {
+        let own = self.deviation(parts);
+        let before = parts.iter().map(|(_, by)| by * by).sum::<f64>().sqrt();
+        let deviation = own.hypot(discrepancy);
+        let reach = (QUANTILE * deviation).exp();
+        Estimated {
+            value: Some(value),
+            interval: Some([value / reach, value * reach]),
+            identified: deviation <= VAGUE && own <= NARROWED * before,
+            lower_bound: None,
+        }
+    }
+
+    /// The lag: neither dead time nor time constant alone is known.
+    pub(super) fn lag(&self, problem: &Problem, x: &[f64]) -> Estimated {
+        let model = problem.model(x);
+        let lag_s = model.lag_s();
+        let part = |i: usize, value: f64| (i, problem.priors.of(i).deviation * value / lag_s);
+        let parts = [part(DEAD_TIME, model.dead_time_s), part(TIME_CONSTANT, model.time_constant_s)];
+        // Within the lag a smooth start does not leave the dead band: its delay is the band's.
+        let jump_rad_s =
+            problem.runs.iter().map(|run| run.asked[2].max(run.asked[3])).fold(0.0, f64::max) * ASKED_OVER_S;
+        let sharp = jump_rad_s > model.dead_band_rad_s.max(SHARP_RAD_S);
+        let missed = if sharp { discrepancy::LAG } else { discrepancy::SMOOTH_LAG };
+        let found = self.positive(lag_s, &parts, missed);
+        Estimated { identified: found.identified && sharp, ..found }
+    }
+
+    /// What must be wanted before the joint leaves rest: dead band and stiction, which no log of angles
+    /// tells apart; and the same by the position gain, an error.
+    pub(super) fn dead_band(&self, problem: &Problem, x: &[f64]) -> [Estimated; 2] {
+        let model = problem.model(x);
+        let whole_rad_s = model.dead_band_rad_s + model.stiction_rad_s;
+        let part = |i: usize, share: f64| (i, share * problem.priors.of(i).deviation);
+        let band = part(DEAD_BAND, model.dead_band_rad_s / whole_rad_s);
+        let stiction = part(STICTION, model.stiction_rad_s / whole_rad_s);
+        let gain = part(POSITION_GAIN, -1.0);
+        [
+            self.positive(whole_rad_s, &[band, stiction], discrepancy::DEAD_BAND),
+            self.positive(
+                whole_rad_s / model.position_gain_1_s,
+                &[band, stiction, gain],
+                discrepancy::DEAD_BAND,
+            ),
+        ]
+    }
+}

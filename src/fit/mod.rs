@@ -1,0 +1,90 @@
+//! What the machine does with what it is sent: a small model of every joint's closed loop, fitted to
+//! logs, with what the logs do not tell left open.
+//!
+//! [`fit`] takes sent and measured angles and yields a [`Model`] a joint, with intervals and with its
+//! skill on data it was not fitted to. [`predict`] answers a command with what the machine will do;
+//! [`compensate`] turns a plan into a command whose predicted response is the plan; [`excite`] makes a
+//! run from which a fit can tell the limits.
+//!
+//! Smooth runs never reach the limits of speed and acceleration, which then are bounds and no
+//! numbers. Discrepancies were found on simulated machines, and no hardware was at hand.
+
+mod censor;
+mod error;
+mod estimate;
+mod excite;
+mod interval;
+mod invert;
+mod joint;
+mod model;
+mod outcome;
+mod parameters;
+mod predict;
+mod robust;
+mod run;
+mod simulate;
+mod skill;
+mod smooth;
+mod valve;
+
+use rayon::prelude::*;
+
+pub use error::FitError;
+pub use excite::{Excitation, JointRoom, Ramp, excite};
+pub use invert::{Compensated, Compensation, JointCompensation, compensate};
+pub use model::{Model, STEP_S};
+pub use outcome::{Estimated, Fit, JointFit, LEAST_SKILL};
+pub use predict::predict;
+pub use run::Observation;
+
+use crate::units::DEGREE_RAD;
+use run::{Run, runs};
+
+/// A joint that is sent less far than this cannot be fitted, rad.
+const LEAST_TRAVEL_RAD: f64 = 0.5 * DEGREE_RAD;
+
+/// Fits every joint that is sent and measured in any of the logs, all logs of it at once.
+///
+/// Deterministic, whatever the number of threads.
+///
+/// # Errors
+///
+/// [`FitError::NothingMoves`] if no joint can be fitted.
+pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
+    let mut names: Vec<&str> = Vec::new();
+    for log in logs {
+        for track in &log.sent.tracks {
+            if log.measured.track(track.name()).is_some() && !names.contains(&track.name()) {
+                names.push(track.name());
+            }
+        }
+    }
+    let of = |name: &&str| -> Vec<Run> {
+        let of_log = |log: &Observation| Some(runs(log.sent.track(name)?, log.measured.track(name)?));
+        logs.iter().filter_map(of_log).flatten().collect()
+    };
+    let fitted: Vec<_> = names
+        .par_iter()
+        .map(|name| {
+            let runs = of(name);
+            let travel_rad: f64 = runs.iter().map(Run::travel_rad).sum();
+            (travel_rad >= LEAST_TRAVEL_RAD).then(|| {
+                let (mut joint, ratios) = joint::joint(name, &runs);
+                joint.valve_dead_band = logs
+                    .iter()
+                    .find_map(|log| valve::dead_band(log.valve?.track(name)?, log.measured.track(name)?));
+                (joint, ratios)
+            })
+        })
+        .collect();
+    let left_out =
+        names.iter().zip(&fitted).filter(|(_, fit)| fit.is_none()).map(|(name, _)| (*name).to_owned());
+    let left_out: Vec<String> = left_out.collect();
+    let (joints, ratios): (Vec<JointFit>, Vec<Vec<f64>>) = fitted.into_iter().flatten().unzip();
+    if joints.is_empty() {
+        let least_travel_rad = LEAST_TRAVEL_RAD;
+        return Err(FitError::NothingMoves { logs: logs.len(), shared: names.len(), least_travel_rad });
+    }
+    let ratios = ratios.concat();
+    Ok(Fit { joints, left_out, margin_starts: ratios.len(), peak_margin: skill::margin(ratios) })
+}

@@ -1,0 +1,122 @@
+//! The closed loop of one joint, reduced to what logs of positions can tell.
+
+use serde::{Deserialize, Serialize};
+
+use super::{FitError, simulate::Start};
+use crate::units::DEGREE_RAD;
+
+/// Step of the simulation, s; that of the position loops it stands for.
+pub const STEP_S: f64 = 0.01;
+
+/// Width of the play between joint and sensor that every model has, rad.
+pub(super) const BACKLASH_RAD: f64 = 0.05 * DEGREE_RAD;
+
+/// A joint with its valve, its position loop and its sensor, from sent to measured angle.
+///
+/// The loop wants a speed w = `feed_forward` * sent speed + `position_gain` * error + integral, which
+/// arrives after the dead time. What is left of it beyond the dead band, scaled by
+/// exp(±`asymmetry` / 2) for growing and shrinking angles and by the pose, and clipped to the speed limits, is
+/// approached with a time constant, within the acceleration limits. Speeds, gains and dead band are
+/// as the joint shows them: a loop gain that no log can tell apart is in all of them.
+///
+/// Pairs are for growing and for shrinking angles, both positive; a limit that no data showed is
+/// `None`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Model {
+    /// From sent to valve, s.
+    pub dead_time_s: f64,
+    /// Of the joint's speed, s.
+    pub time_constant_s: f64,
+    /// Wanted speed by error, 1/s.
+    pub position_gain_1_s: f64,
+    /// Growth of the wanted speed by error, 1/s².
+    pub integral_gain_1_s2: f64,
+    /// Wanted speed by sent speed.
+    pub feed_forward: f64,
+    /// Logarithm of the ratio of the gains for growing and shrinking angles.
+    pub asymmetry: f64,
+    /// Half width, rad/s.
+    pub dead_band_rad_s: f64,
+    /// Middle of the dead band, rad/s.
+    pub dead_band_centre_rad_s: f64,
+    /// What it takes beyond the dead band to leave rest, rad/s.
+    pub stiction_rad_s: f64,
+    /// Measured angle less the one that the loop sees, rad.
+    pub offset_rad: f64,
+    /// Lowest and highest angle that the gain is known for, rad; beyond them it stays.
+    pub pose_rad: [f64; 2],
+    /// Growth of the gain's logarithm with the angle, from the middle of the known angles, 1/rad.
+    pub pose_slope_1_rad: f64,
+    /// The same of half the asymmetry, 1/rad.
+    pub pose_asymmetry_1_rad: f64,
+    /// Growth of the gain's logarithm with the square of the angle, 1/rad².
+    pub pose_curve_1_rad2: f64,
+    /// Largest speeds, rad/s.
+    pub speed_limit_rad_s: [Option<f64>; 2],
+    /// Largest changes of speed, rad/s².
+    pub acceleration_limit_rad_s2: [Option<f64>; 2],
+    /// Full width of the play before the sensor, rad.
+    pub backlash_rad: f64,
+}
+
+impl Model {
+    /// Holds every number to what it may be.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::Value`], naming the joint.
+    pub fn check(&self, joint: &str) -> Result<(), FitError> {
+        let positive = [
+            ("dead_time_s", self.dead_time_s),
+            ("time_constant_s", self.time_constant_s),
+            ("position_gain_1_s", self.position_gain_1_s),
+            ("integral_gain_1_s2", self.integral_gain_1_s2),
+            ("feed_forward", self.feed_forward),
+            ("dead_band_rad_s", self.dead_band_rad_s),
+            ("stiction_rad_s", self.stiction_rad_s),
+            ("backlash_rad", self.backlash_rad),
+        ];
+        let limits = [
+            ("speed_limit_rad_s", self.speed_limit_rad_s),
+            ("acceleration_limit_rad_s2", self.acceleration_limit_rad_s2),
+        ];
+        let limits = limits.iter().flat_map(|(key, pair)| pair.iter().flatten().map(|limit| (*key, *limit)));
+        let any = [
+            ("asymmetry", self.asymmetry),
+            ("dead_band_centre_rad_s", self.dead_band_centre_rad_s),
+            ("offset_rad", self.offset_rad),
+            ("pose_rad", self.pose_rad[0]),
+            ("pose_rad", self.pose_rad[1]),
+            ("pose_slope_1_rad", self.pose_slope_1_rad),
+            ("pose_asymmetry_1_rad", self.pose_asymmetry_1_rad),
+            ("pose_curve_1_rad2", self.pose_curve_1_rad2),
+        ];
+        let bad = positive
+            .into_iter()
+            .chain(limits)
+            .map(|(key, found)| (key, found, 0.0))
+            .chain(any.into_iter().map(|(key, found)| (key, found, -MOST)))
+            .find(|&(_, found, least)| !(found >= least && found <= MOST));
+        match bad {
+            None => Ok(()),
+            Some((key, found, least)) => {
+                Err(FitError::Value { joint: joint.to_owned(), key, found, least, most: MOST })
+            }
+        }
+    }
+
+    /// What passes between a change of the sent speed and half of its effect, s: dead time, time
+    /// constant and half a step of the loop.
+    pub fn lag_s(&self) -> f64 {
+        self.dead_time_s + self.time_constant_s + 0.5 * STEP_S
+    }
+
+    /// Starts at rest where it is sent to first.
+    pub(super) fn at_rest(&self, sent: &[(f64, f64)]) -> Start {
+        let angle_rad = sent.first().map_or(0.0, |sent| sent.0) + self.offset_rad;
+        Start { angle_rad, speed_rad_s: 0.0, integral_rad_s: 0.0 }
+    }
+}
+
+/// No number of a model is larger.
+const MOST: f64 = 1e4;

@@ -1,0 +1,107 @@
+//! What a fit found. Field names are those of the JSON report and of the file that brings a fit back.
+
+use serde::{Deserialize, Serialize};
+
+use super::{FitError, Model};
+
+/// Held-out skill below which no command should be made from a model.
+pub const LEAST_SKILL: f64 = 0.3;
+
+/// A machine as its logs show it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// Joints that could be fitted, in the order of the first log that has them.
+    pub joints: Vec<JointFit>,
+    /// Joints that are sent and measured but hardly moved.
+    pub left_out: Vec<String>,
+    /// What predicted peak errors are to be multiplied with: nine of ten measured peaks of held-out
+    /// starts lay below; 1.2 where there are fewer than ten.
+    pub peak_margin: f64,
+    /// Number of starts behind the margin.
+    pub margin_starts: usize,
+}
+
+/// One joint. Pairs of arrays are for growing and for shrinking angles.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JointFit {
+    /// The joint.
+    pub name: String,
+    /// Runs without gaps or long rests.
+    pub runs: usize,
+    /// Samples in them.
+    pub samples: usize,
+    /// Robust scale of what the model leaves unexplained, rad.
+    pub residual_rad: f64,
+    /// Residuals that tell as much as one independent one.
+    pub inefficiency: f64,
+    /// Share of the squared tracking error (sent minus measured, about its mean) that is predicted
+    /// where it was not fitted: time is dealt in blocks of 3 s to four parts in turn, and each part is
+    /// predicted by a fit to the other three, simulated from the start of the run. 1 is perfect, 0 no
+    /// better than the mean. It says how well runs like these are predicted, not others.
+    pub held_out_r2: f64,
+    /// Dead time, time constant and half a period of the loop, s.
+    pub lag_s: Estimated,
+    /// Speed that must be wanted before the joint leaves rest, mean of both directions, rad/s: logs of
+    /// angles do not tell the directions apart.
+    pub dead_band_rad_s: Estimated,
+    /// Position error that stays below the dead band: its width by the position gain, rad.
+    pub dead_band_error_rad: Estimated,
+    /// Wanted speed by error, 1/s.
+    pub position_gain_1_s: Estimated,
+    /// Growth of the wanted speed by error, 1/s².
+    pub integral_gain_1_s2: Estimated,
+    /// Wanted speed by sent speed.
+    pub feed_forward: Estimated,
+    /// Gain for growing angles by that for shrinking ones.
+    pub gain_ratio: Estimated,
+    /// Largest speed of growing angles, rad/s.
+    pub speed_limit_growing_rad_s: Estimated,
+    /// Largest speed of shrinking angles, rad/s.
+    pub speed_limit_shrinking_rad_s: Estimated,
+    /// Largest change of speed upwards, rad/s².
+    pub acceleration_limit_growing_rad_s2: Estimated,
+    /// Largest change of speed downwards, rad/s².
+    pub acceleration_limit_shrinking_rad_s2: Estimated,
+    /// Share of the full signal at which oil begins to flow, growing and shrinking; `None` without a
+    /// log of signals to the valves.
+    pub valve_dead_band: Option<[Estimated; 2]>,
+    /// The numbers to predict with. Some are held by what is known beforehand alone; dead time, time
+    /// constant, centre of the dead band, stiction and offset mean nothing on their own.
+    pub model: Model,
+}
+
+/// A number with what the data say of it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Estimated {
+    /// Best guess; `None` for a limit that the joint never reached.
+    pub value: Option<f64>,
+    /// 95 % interval, how wrong models of this form are included; `None` without a value.
+    pub interval: Option<[f64; 2]>,
+    /// Whether the data, and not what was known beforehand, decide it.
+    pub identified: bool,
+    /// What was reached: a limit that does not show is not below.
+    pub lower_bound: Option<f64>,
+}
+
+impl Fit {
+    /// A joint by name.
+    pub fn joint(&self, name: &str) -> Option<&JointFit> {
+        self.joints.iter().find(|joint| joint.name == name)
+    }
+
+    /// Holds a fit that comes from a file to what predictions need.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::Value`].
+    pub fn check(&self) -> Result<(), FitError> {
+        self.joints.iter().try_for_each(|joint| joint.model.check(&joint.name))
+    }
+}
+
+impl JointFit {
+    /// Whether the model predicts well enough to make commands from it.
+    pub fn trusted(&self) -> bool {
+        self.held_out_r2 >= LEAST_SKILL
+    }
+}

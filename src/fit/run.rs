@@ -1,0 +1,220 @@
+//! What logs say of one joint, cut into runs that can be simulated from their start.
+
+use std::ops::Range;
+
+use super::{model::STEP_S, simulate::Start};
+use crate::{
+    series::{Series, Track, align, local_quadratic},
+    units::DEGREE_RAD,
+};
+
+/// What one log says: the angles that were sent and those that came of them, and the signals to the
+/// valves where they were logged.
+#[derive(Debug, Clone, Copy)]
+pub struct Observation<'a> {
+    /// The command if the log has one, else the plan.
+    pub sent: &'a Series,
+    /// What the joints did.
+    pub measured: &'a Series,
+    /// Signal to the valve of each joint as a share of the full one, positive for growing angles, in
+    /// place of positions.
+    pub valve: Option<&'a Series>,
+}
+
+/// Sent speed above which a joint is meant to move, rad/s.
+pub(super) const MOVES_RAD_S: f64 = 0.05 * DEGREE_RAD;
+
+/// Rest before a motion that belongs to its run, s.
+const BEFORE_S: f64 = 1.0;
+
+/// Rest after a motion that belongs to its run, s.
+const AFTER_S: f64 = 3.0;
+
+/// Shortest run, s.
+const SHORTEST_S: f64 = 2.0;
+
+/// After a start in motion the first errors are those of the unknown state, s.
+const SETTLE_S: f64 = 0.6;
+
+/// Time over which sent speeds change, s.
+pub(super) const ASKED_OVER_S: f64 = 0.1;
+
+/// Length of a block of data that is fitted or predicted, s.
+const BLOCK_S: f64 = 3.0;
+
+/// Parts of the data of which each is predicted from the others.
+pub(super) const FOLDS: usize = 4;
+
+/// Samples farther apart than this on average show no dynamics, s.
+const SPARSEST_S: f64 = 0.2;
+
+/// Window of a measured speed, half, s.
+const SPEED_WINDOW_S: f64 = 0.1;
+
+/// A measured sample on the grid of a run.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    /// Grid point before it.
+    pub(super) step: usize,
+    /// Part of the way to the next one.
+    pub(super) part: f64,
+    /// Measured angle, rad.
+    pub(super) measured_rad: f64,
+    /// Part of the data to which it belongs when each is to be predicted from the others.
+    pub(super) fold: usize,
+}
+
+/// A stretch of one log without gaps or long rests.
+#[derive(Debug, Clone)]
+pub(super) struct Run {
+    /// Angle, rad, and speed, rad/s, every [`STEP_S`].
+    pub(super) sent: Vec<(f64, f64)>,
+    /// State at the start; the integral is unknown.
+    pub(super) start: Start,
+    /// Measured angles, in order.
+    pub(super) samples: Vec<Sample>,
+    /// Largest measured speeds for growing and shrinking angles, rad/s.
+    pub(super) fastest_rad_s: [f64; 2],
+    /// Largest measured changes of speed that add to positive and negative ones, rad/s².
+    pub(super) sharpest_rad_s2: [f64; 2],
+    /// Largest sent speeds, rad/s, and changes of it, rad/s².
+    pub(super) asked: [f64; 4],
+    /// Grid points at which the joint is sent off, from rest or backwards.
+    pub(super) starts: Vec<usize>,
+}
+
+impl Run {
+    /// Distance that the joint was sent, rad.
+    pub(super) fn travel_rad(&self) -> f64 {
+        self.sent.windows(2).map(|w| (w[1].0 - w[0].0).abs()).sum()
+    }
+}
+
+/// A track every [`STEP_S`]: angle and speed; the speed by differences where the track has none.
+pub(super) fn sampled(track: &Track, from_s: f64, steps: usize) -> Vec<(f64, f64)> {
+    let at = |k: usize| track.held_at(from_s + k as f64 * STEP_S);
+    let mut sent: Vec<(f64, f64)> = (0..steps).map(at).map(|s| (s.position, s.velocity)).collect();
+    if track.velocity_rad_s().is_none() {
+        let angle_rad: Vec<f64> = sent.iter().map(|s| s.0).collect();
+        for (k, sent) in sent.iter_mut().enumerate() {
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(steps - 1));
+            let span_s = (after - before).max(1) as f64 * STEP_S;
+            sent.1 = (angle_rad[after] - angle_rad[before]) / span_s;
+        }
+    }
+    sent
+}
+
+/// Whole steps in a time, rounded down within rounding errors.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a log has few steps")]
+pub(super) fn steps_in(span_s: f64) -> usize {
+    (span_s / STEP_S + 1e-6).clamp(0.0, 1e9) as usize
+}
+
+/// Runs of one joint in one log.
+pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
+    let Some(pair) = align(sent, measured) else { return Vec::new() };
+    let fits = local_quadratic(&pair.t_s, &pair.measured_rad, &pair.segments, SPEED_WINDOW_S, 5);
+    let mut runs = Vec::new();
+    for segment in &pair.segments {
+        let (from_s, to_s) = (pair.t_s[segment.start], pair.t_s[segment.end - 1]);
+        if to_s - from_s > SPARSEST_S * segment.len() as f64 {
+            continue;
+        }
+        let whole = sampled(sent, from_s, steps_in(to_s - from_s) + 1);
+        for steps in motions(&whole) {
+            let start_s = from_s + steps.start as f64 * STEP_S;
+            let end_s = from_s + (steps.end - 1) as f64 * STEP_S;
+            let t_s = &pair.t_s[segment.clone()];
+            let first = segment.start + t_s.partition_point(|&t| t < start_s);
+            let last = segment.start + t_s.partition_point(|&t| t < end_s);
+            if end_s - start_s < SHORTEST_S || last <= first {
+                continue;
+            }
+            let fit = &fits[first];
+            let resting = whole[steps.start].1.abs() < MOVES_RAD_S;
+            let speed_rad_s = if resting { 0.0 } else { fit.velocity_rad_s };
+            let skipped_s = if resting { 0.0 } else { SETTLE_S };
+            let mut samples = Vec::with_capacity(last - first);
+            let mut earliest_s = start_s + skipped_s;
+            for i in first..last {
+                // Denser samples than the model's steps add nothing but noise that is not white.
+                if pair.t_s[i] < earliest_s {
+                    continue;
+                }
+                earliest_s = pair.t_s[i] + 0.8 * STEP_S;
+                let at = (pair.t_s[i] - start_s) / STEP_S;
+                let step = steps_in(at * STEP_S).min(steps.len() - 2);
+                let measured_rad = pair.measured_rad[i];
+                samples.push(Sample { step, part: at - step as f64, measured_rad, fold: fold(step) });
+            }
+            let extreme = |of: &dyn Fn(usize) -> f64| (first..last).map(of).fold(0.0, f64::max);
+            let fastest_rad_s = [1.0, -1.0].map(|way| extreme(&|i| way * fits[i].velocity_rad_s));
+            let rise = |i: usize| {
+                let span_s = (pair.t_s[i] - pair.t_s[i.saturating_sub(10).max(first)]).max(STEP_S);
+                (fits[i].velocity_rad_s - fits[i.saturating_sub(10).max(first)].velocity_rad_s) / span_s
+            };
+            let sharpest_rad_s2 = [1.0, -1.0].map(|way| extreme(&|i| way * rise(i)));
+            let sent = whole[steps.clone()].to_vec();
+            runs.push(Run {
+                asked: asked(&sent),
+                starts: starts(&sent),
+                sent,
+                start: Start { angle_rad: fit.position_rad, speed_rad_s, integral_rad_s: 0.0 },
+                samples,
+                fastest_rad_s,
+                sharpest_rad_s2,
+            });
+        }
+    }
+    runs
+}
+
+/// Largest sent speeds for growing and shrinking angles, rad/s, and changes of speed over a tenth of
+/// a second, rad/s².
+fn asked(sent: &[(f64, f64)]) -> [f64; 4] {
+    let span = steps_in(ASKED_OVER_S).max(1);
+    let mut asked = [0.0_f64; 4];
+    for (k, now) in sent.iter().enumerate() {
+        let before = sent[k.saturating_sub(span)].1;
+        let change = (now.1 - before) / (span as f64 * STEP_S);
+        for (most, value) in asked.iter_mut().zip([now.1, -now.1, change, -change]) {
+            *most = most.max(value);
+        }
+    }
+    asked
+}
+
+/// Grid points of motions with some rest around them; long rests are left out.
+fn motions(sent: &[(f64, f64)]) -> Vec<Range<usize>> {
+    let (before, after) = (steps_in(BEFORE_S), steps_in(AFTER_S));
+    let mut motions: Vec<Range<usize>> = Vec::new();
+    for (k, _) in sent.iter().enumerate().filter(|(_, sent)| sent.1.abs() > MOVES_RAD_S) {
+        let end = (k + 1 + after).min(sent.len());
+        match motions.last_mut() {
+            Some(last) if last.end + before >= k => last.end = end,
+            _ => motions.push(k.saturating_sub(before)..end),
+        }
+    }
+    motions
+}
+
+/// Where a joint is sent off: from rest, or backwards.
+pub(super) fn starts(sent: &[(f64, f64)]) -> Vec<usize> {
+    let mut starts = Vec::new();
+    let mut way = 0;
+    for (k, (_, speed_rad_s)) in sent.iter().enumerate() {
+        let now = i8::from(*speed_rad_s > MOVES_RAD_S) - i8::from(*speed_rad_s < -MOVES_RAD_S);
+        if now != 0 && now != way {
+            starts.push(k);
+        }
+        way = now;
+    }
+    starts
+}
+
+/// Deals the time of a run, in blocks, to [`FOLDS`] parts in turn for each to be predicted from the
+/// others. Longer parts would leave a fit without starts in one direction.
+fn fold(step: usize) -> usize {
+    step / steps_in(BLOCK_S).max(1) % FOLDS
+}
