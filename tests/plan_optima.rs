@@ -36,6 +36,7 @@ impl Plan {
     }
 }
 
+#[expect(clippy::struct_field_names, reason = "the keys of the file")]
 #[derive(Deserialize)]
 struct Optima {
     printed: BTreeMap<String, Plan>,
