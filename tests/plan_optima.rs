@@ -37,13 +37,13 @@ impl Plan {
 }
 
 #[derive(Deserialize)]
-struct Optima {
+struct Independent {
     printed: BTreeMap<String, Plan>,
     optima: BTreeMap<String, Plan>,
     between: Vec<Plan>,
 }
 
-impl Optima {
+impl Independent {
     /// Plans that are the best of their kind.
     fn best(&self) -> impl Iterator<Item = &Plan> {
         self.optima.values().chain(&self.between)
@@ -58,9 +58,9 @@ fn folder() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn reference() -> BTreeMap<String, Optima> {
+fn reference() -> BTreeMap<String, Independent> {
     let text = std::fs::read_to_string(folder().join("tests/reference/plan-optima.json")).unwrap();
-    let tasks: BTreeMap<String, Optima> = serde_json::from_str(&text).unwrap();
+    let tasks: BTreeMap<String, Independent> = serde_json::from_str(&text).unwrap();
     assert_eq!(tasks.len(), 3);
     tasks
 }
