@@ -38,13 +38,13 @@ impl Plan {
 
 #[expect(clippy::struct_field_names, reason = "the keys of the file")]
 #[derive(Deserialize)]
-struct Optima {
+struct Independent {
     printed: BTreeMap<String, Plan>,
     optima: BTreeMap<String, Plan>,
     between: Vec<Plan>,
 }
 
-impl Optima {
+impl Independent {
     /// Plans that are the best of their kind.
     fn best(&self) -> impl Iterator<Item = &Plan> {
         self.optima.values().chain(&self.between)
@@ -59,9 +59,9 @@ fn folder() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn reference() -> BTreeMap<String, Optima> {
+fn reference() -> BTreeMap<String, Independent> {
     let text = std::fs::read_to_string(folder().join("tests/reference/plan-optima.json")).unwrap();
-    let tasks: BTreeMap<String, Optima> = serde_json::from_str(&text).unwrap();
+    let tasks: BTreeMap<String, Independent> = serde_json::from_str(&text).unwrap();
     assert_eq!(tasks.len(), 3);
     tasks
 }

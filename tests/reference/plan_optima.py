@@ -107,9 +107,11 @@ def written(value, depth=0):
     """JSON with a plan a line."""
     if "times_s" in value:
         return json.dumps(value)
-    items = [(json.dumps(k) + ": ", v) for k, v in value.items()] if isinstance(value, dict) else [("", v) for v in value]
+    if isinstance(value, dict):
+        (opening, closing), items = "{}", [(f"{json.dumps(key)}: ", item) for key, item in value.items()]
+    else:
+        (opening, closing), items = "[]", [("", item) for item in value]
     lines = ",\n".join(" " * (depth + 1) + key + written(item, depth + 1) for key, item in items)
-    opening, closing = "{}" if isinstance(value, dict) else "[]"
     return f"{opening}\n{lines}\n{' ' * depth}{closing}" + ("" if depth else "\n")
 
 
