@@ -49,9 +49,9 @@ const SPLINES: [Quantity; 4] = Quantity::ALL;
 
 /// Below this share of a limit the value at the nearest node serves, above `EXACT` the peak
 /// between the nodes; between them a blend, so that an evaluation is continuous in the times.
-/// Nodes miss peaks by about 1 %.
-const COARSE: f64 = 0.85;
-const EXACT: f64 = 0.95;
+/// Nodes miss peaks by about 1 %, of jerk by up to 6 %.
+const COARSE: f64 = 0.75;
+const EXACT: f64 = 0.85;
 /// From here on a limit is broken by so much that the node serves again.
 const BROKEN: f64 = 1.5;
 const HOPELESS: f64 = 2.0;
@@ -268,10 +268,10 @@ mod tests {
     #[test]
     fn a_blend_is_the_node_below_and_the_peak_above_and_continuous_between() {
         let peak = |coarse: f64| blend(coarse, || coarse * 1.01);
-        assert_eq!(peak(0.8), 0.8);
+        assert_eq!(peak(0.7), 0.7);
         assert_eq!(peak(1.0), 1.01);
         assert_eq!(peak(2.5), 2.5);
-        let steps = (0..3000).map(|i| peak(0.7 + f64::from(i) * 1e-3)).collect::<Vec<_>>();
+        let steps = (0..3000).map(|i| peak(0.6 + f64::from(i) * 1e-3)).collect::<Vec<_>>();
         assert!(steps.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 1.3e-3));
     }
 }

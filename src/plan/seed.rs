@@ -11,8 +11,9 @@ use super::{
     Evaluator, Setup, Timing,
     descend::{COARSE, Descended, FAR_OFF, FINE, FREE, Goal, Merit, NEARLY, descend},
 };
-/// Weight of power against jerk, both as logarithms, on each curve. Power moves only near 1.
-const CURVES: [f64; 5] = [0.0, 0.5, 0.75, 0.92, 1.0];
+/// Weight of power against jerk, both as logarithms, on each curve. Power moves only near 1; at 1 jerk
+/// would be left to chance.
+const CURVES: [f64; 5] = [0.0, 0.5, 0.75, 0.92, 0.985];
 /// Durations as multiples of the fastest, where limits bind and shapes change.
 const NEAR_FASTEST: [f64; 6] = [1.03, 1.08, 1.16, 1.3, 1.5, 1.9];
 /// Durations as shares of the slowest, where intervals reach their longest.
