@@ -101,8 +101,8 @@ impl<'a> Starts<'a> {
         };
         let mut best = (count(first_s), first_s);
         for [a, b] in &self.joints {
-            let heads = a.iter().take(MOST_MISSING).flat_map(|&i| b.first().map(|&j| (i, j)));
-            let tails = b.iter().take(MOST_MISSING).flat_map(|&j| a.first().map(|&i| (i, j)));
+            let heads = a.iter().take(MOST_MISSING).filter_map(|&i| b.first().map(|&j| (i, j)));
+            let tails = b.iter().take(MOST_MISSING).filter_map(|&j| a.first().map(|&i| (i, j)));
             for (i, j) in heads.chain(tails).filter(|&(i, j)| self.alike(i, j)) {
                 let offset_s = self.gap_s(i, j);
                 let met = count(offset_s);

@@ -118,12 +118,11 @@ fn summary(pairs: &[TransitionPair], measure: Measure, scope: Scope, rules: &Rul
     let mut events: Vec<Vec<f64>> = Vec::new();
     let mut began_s = f64::NEG_INFINITY;
     for [at_s, before, after] in &found {
-        match events.last_mut().filter(|_| at_s - began_s <= rules.same_event_s) {
-            Some(event) => event.push(after - before),
-            None => {
-                began_s = *at_s;
-                events.push(vec![after - before]);
-            }
+        if let Some(event) = events.last_mut().filter(|_| at_s - began_s <= rules.same_event_s) {
+            event.push(after - before);
+        } else {
+            began_s = *at_s;
+            events.push(vec![after - before]);
         }
     }
     let mean =
