@@ -1,6 +1,6 @@
 //! `compare`: runs the workflow, renders, says what was not kept.
 
-use std::io::Write;
+use std::{io::Write, slice::from_ref};
 
 use super::{
     CliError, Outcome,
@@ -20,8 +20,8 @@ pub(super) fn run(
     out: &mut impl Write,
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
-    let before = [std::slice::from_ref(&args.before), &args.more_before].concat();
-    let after = [std::slice::from_ref(&args.after), &args.more_after].concat();
+    let before = [from_ref(&args.before), args.more_before.as_slice()].concat();
+    let after = [from_ref(&args.after), args.more_after.as_slice()].concat();
     spare_inputs(args.output.as_deref(), &[before.as_slice(), &after].concat())?;
     let inputs =
         Inputs { before, after, read: args.read.options(), gates: args.gates.gates(), ..Inputs::default() };

@@ -52,7 +52,9 @@ pub(super) fn seeds(setup: &Setup, budget: u64) -> Seeds {
     let mut durations_s = durations(setup, &fastest);
     let few = |durations: usize| share(DESCENTS) < STEPS * step * (CURVES.len() * durations) as u64;
     while durations_s.len() > FEWEST && few(durations_s.len()) {
-        durations_s = durations_s.into_iter().step_by(2).collect();
+        // The slowest stays.
+        durations_s = durations_s.into_iter().rev().step_by(2).collect();
+        durations_s.reverse();
     }
     let most = share(DESCENTS) / (CURVES.len() * durations_s.len()).max(1) as u64;
     let curves: Vec<Vec<Descended>> =
