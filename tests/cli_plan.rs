@@ -57,7 +57,7 @@ fn edited(folder: &Path, file: &str, from: &str, to: &str) -> PathBuf {
 fn a_given_plan_is_judged_with_exit_code_0_if_it_keeps_its_limits_and_4_if_not() {
     let kept = plan(&[SIMULATION, "--times", A], "2");
     assert_eq!((kept.status.code(), stderr(&kept).as_str()), (Some(0), ""));
-    assert!(stdout(&kept).contains("10.48         61.69446       306.67"), "{}", stdout(&kept));
+    assert!(stdout(&kept).contains("10.48          61.6945       306.67"), "{}", stdout(&kept));
     let broken = plan(&[SIMULATION, "--times", C, "--json"], "2");
     assert_eq!(broken.status.code(), Some(4));
     let document = json(&broken);

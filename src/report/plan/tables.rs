@@ -88,7 +88,7 @@ fn row(name: &str, judged: &Judged, joints: &[String]) -> Vec<String> {
         name.to_owned(),
         arrivals.join(" "),
         format!("{duration_s:.2}"),
-        format!("{:.5}", degrees_from_radians(rms_jerk_rad_s3)),
+        format!("{:.4}", degrees_from_radians(rms_jerk_rad_s3)),
         format!("{rms_power_w:.2}"),
         nearest.map_or(NONE.to_owned(), |margin| {
             format!("{} % {}", percent(margin.share), subject(margin, joints))
