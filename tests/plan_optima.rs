@@ -36,7 +36,6 @@ impl Plan {
     }
 }
 
-#[expect(clippy::struct_field_names, reason = "the keys of the file")]
 #[derive(Deserialize)]
 struct Independent {
     printed: BTreeMap<String, Plan>,
