@@ -4,6 +4,7 @@ pub mod args;
 mod bench;
 mod compare;
 mod export;
+mod fit;
 mod import;
 mod info;
 mod output;
@@ -23,8 +24,8 @@ use crate::{
     log::{CsvError, ExportError, LogError, WriteError},
     moea::MoeaError,
     workflow::{
-        compare::CompareFailure, contest::ContestFailure, import::ImportError, plan::PlanFailure,
-        simulate_log::SimulateFailure,
+        compare::CompareFailure, contest::ContestFailure, fit::FitFailure, import::ImportError,
+        plan::PlanFailure, simulate_log::SimulateFailure,
     },
 };
 
@@ -66,6 +67,10 @@ enum CliError {
     Contest(#[from] ContestFailure),
     #[error(transparent)]
     Compare(#[from] CompareFailure),
+    #[error(transparent)]
+    Fit(#[from] FitFailure),
+    #[error("the limits cannot be written")]
+    Limits(#[from] toml::ser::Error),
     #[error("the plan cannot be logged")]
     Write(#[from] WriteError),
     #[error("{} is what is read; give another name to --output", .0.display())]
@@ -84,6 +89,7 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
         Command::Compare(compare) => compare::run(compare, out, err),
         Command::Plan(plan) => plan::run(plan, out, err),
         Command::Simulate(simulate) => simulate::run(simulate, out),
+        Command::Fit(fit) => fit::run(fit, out, err),
         Command::Info(info) => info::run(info, out, err),
         Command::Recover(recover) => recover::run(recover, out, err),
         Command::Import(import) => import::run(import, out, err),

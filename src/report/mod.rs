@@ -4,6 +4,7 @@
 mod compare;
 mod contest;
 mod csv;
+mod fit;
 mod import;
 mod info;
 mod json;
@@ -21,6 +22,7 @@ mod tables;
 pub use compare::{compare_gate_lines, compare_json, compare_parts};
 pub use contest::{contest_csv, contest_json, contest_parts, contest_svg};
 pub use csv::transitions_csv;
+pub use fit::{fit_json, fit_parts, limits_toml};
 pub use import::{imported_json, imported_parts};
 pub use info::{info_json, info_parts};
 pub use json::report_json;

@@ -4,6 +4,7 @@ mod bench;
 mod compare;
 mod contest;
 mod export;
+mod fit;
 mod import;
 mod moea;
 mod plan;
@@ -17,6 +18,7 @@ pub use bench::{Bench, BenchArgs, DetectorArgs};
 pub use compare::CompareArgs;
 pub use contest::ContestArgs;
 pub use export::{ExportArgs, ExportFormat};
+pub use fit::{FitArgs, SentArgs};
 pub use import::ImportArgs;
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
@@ -72,6 +74,11 @@ pub enum Command {
     #[command(after_help = "Examples:\n  hydrotrace simulate plan.mcap -o run.mcap\n  \
                             hydrotrace simulate plan.mcap -o run.mcap --plant lag-limited --seed 7")]
     Simulate(SimulateArgs),
+    /// What the machine does with what it is sent: lag, dead band, limits, from logs of runs
+    #[command(after_help = "Examples:\n  hydrotrace fit run.mcap -o limits.toml\n  \
+                            hydrotrace fit run-1.mcap run-2.mcap identification.mcap -o limits.toml\n  \
+                            hydrotrace fit run.mcap --command /arm/command:position --json")]
+    Fit(FitArgs),
     /// What is in a log, what a report would use, and whether it is damaged
     Info(InfoArgs),
     /// Save everything that is whole in a damaged log
