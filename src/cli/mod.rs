@@ -10,6 +10,7 @@ mod info;
 mod output;
 mod plan;
 mod recover;
+mod replan;
 mod report;
 mod simulate;
 
@@ -25,7 +26,7 @@ use crate::{
     moea::MoeaError,
     workflow::{
         compare::CompareFailure, contest::ContestFailure, fit::FitFailure, import::ImportError,
-        plan::PlanFailure, simulate_log::SimulateFailure,
+        plan::PlanFailure, replan::ReplanFailure, simulate_log::SimulateFailure,
     },
 };
 
@@ -69,6 +70,8 @@ enum CliError {
     Compare(#[from] CompareFailure),
     #[error(transparent)]
     Fit(#[from] FitFailure),
+    #[error(transparent)]
+    Replan(#[from] ReplanFailure),
     #[error("the limits cannot be written")]
     Limits(#[from] toml::ser::Error),
     #[error("the plan cannot be logged")]
@@ -90,6 +93,7 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
         Command::Plan(plan) => plan::run(plan, out, err),
         Command::Simulate(simulate) => simulate::run(simulate, out),
         Command::Fit(fit) => fit::run(fit, out, err),
+        Command::Replan(replan) => replan::run(replan, out, err),
         Command::Info(info) => info::run(info, out, err),
         Command::Recover(recover) => recover::run(recover, out, err),
         Command::Import(import) => import::run(import, out, err),

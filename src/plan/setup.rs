@@ -104,6 +104,11 @@ impl Setup {
         &self.arm
     }
 
+    /// A motion with the task's key points, dwells and ends, to be given its times.
+    pub fn template(&self) -> &Motion {
+        &self.template
+    }
+
     /// Number of joints.
     pub fn joint_count(&self) -> usize {
         self.limits.len()

@@ -8,6 +8,7 @@ mod fit;
 mod import;
 mod moea;
 mod plan;
+mod replan;
 mod simulate;
 
 use std::path::PathBuf;
@@ -22,6 +23,7 @@ pub use fit::{FitArgs, SentArgs};
 pub use import::ImportArgs;
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
+pub use replan::{ChangeArgs, ReplanArgs};
 pub use simulate::SimulateArgs;
 
 use crate::{
@@ -79,6 +81,12 @@ pub enum Command {
                             hydrotrace fit run-1.mcap run-2.mcap identification.mcap -o limits.toml\n  \
                             hydrotrace fit run.mcap --command /arm/command:position --json")]
     Fit(FitArgs),
+    /// Plan and command for the next run, from logs of the last ones
+    #[command(after_help = "Examples:\n  hydrotrace replan run.mcap -o next.mcap\n  \
+                            hydrotrace replan run.mcap -o next.mcap --gain 0.5\n  \
+                            hydrotrace replan field.mcap -o next.mcap --keep-plan\n  \
+                            hydrotrace replan run-1.mcap run-2.mcap --limits limits.toml --task task.toml -o next.mcap")]
+    Replan(ReplanArgs),
     /// What is in a log, what a report would use, and whether it is damaged
     Info(InfoArgs),
     /// Save everything that is whole in a damaged log
