@@ -3,6 +3,8 @@
 pub mod args;
 mod bench;
 mod compare;
+mod demo;
+mod excite;
 mod export;
 mod fit;
 mod import;
@@ -25,8 +27,8 @@ use crate::{
     log::{CsvError, ExportError, LogError, WriteError},
     moea::MoeaError,
     workflow::{
-        compare::CompareFailure, contest::ContestFailure, fit::FitFailure, import::ImportError,
-        plan::PlanFailure, replan::ReplanFailure, simulate_log::SimulateFailure,
+        compare::CompareFailure, contest::ContestFailure, excite::ExciteFailure, fit::FitFailure,
+        import::ImportError, plan::PlanFailure, replan::ReplanFailure, simulate_log::SimulateFailure,
     },
 };
 
@@ -72,6 +74,12 @@ enum CliError {
     Fit(#[from] FitFailure),
     #[error(transparent)]
     Replan(#[from] ReplanFailure),
+    #[error(transparent)]
+    Excite(#[from] ExciteFailure),
+    #[error("cannot make the folder {}", path.display())]
+    Folder { path: std::path::PathBuf, source: std::io::Error },
+    #[error("the words of a step are no command: {0}")]
+    Words(String),
     #[error("the limits cannot be written")]
     Limits(#[from] toml::ser::Error),
     #[error("the plan cannot be logged")]
@@ -93,7 +101,9 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
         Command::Plan(plan) => plan::run(plan, out, err),
         Command::Simulate(simulate) => simulate::run(simulate, out),
         Command::Fit(fit) => fit::run(fit, out, err),
+        Command::Excite(excite) => excite::run(excite, out),
         Command::Replan(replan) => replan::run(replan, out, err),
+        Command::Demo(demo) => demo::run(demo, out),
         Command::Info(info) => info::run(info, out, err),
         Command::Recover(recover) => recover::run(recover, out, err),
         Command::Import(import) => import::run(import, out, err),

@@ -15,7 +15,7 @@ use crate::{
     plan::Progress,
     report::{broken_lines, ceiling_lines, judged_json, judged_parts, plan_json, plan_parts, text},
     workflow::{
-        plan::{Gauge, Judged, Options, Order, PlanFailure, run as search},
+        plan::{Gauge, Judged, Options, Order, PlanFailure, Planned, run as search},
         plan_log::PlanLog,
     },
 };
@@ -46,6 +46,29 @@ fn plan(
     out: &mut impl Write,
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
+    let Found { planned, document, algorithm, options } = found(args, order, out)?;
+    let rendered = if args.json {
+        document
+    } else {
+        text(&plan_parts(&order.task.title, algorithm, &options, &order.task.bounds, &planned))
+    };
+    deliver(&rendered, None, out)?;
+    if args.json {
+        say_remarks(&planned.remarks, err);
+    }
+    Ok(if planned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}
+
+/// What a search found, as it was written.
+pub(super) struct Found {
+    pub(super) planned: Planned,
+    document: String,
+    algorithm: &'static str,
+    options: Options,
+}
+
+/// Searches with a progress bar and writes the chosen plan.
+pub(super) fn found(args: &PlanArgs, order: &Order, out: &mut impl Write) -> Result<Found, CliError> {
     let (title, options) = (&order.task.title, args.options());
     let algorithm = Contender::named(&args.search.algorithm).map_or("", |contender| contender.title);
     let mut watch = Watch::new(args, &options);
@@ -69,16 +92,7 @@ fn plan(
         .map(|(key, value)| (key.to_owned(), value)),
     );
     write_log(args, order, &planned.chosen, &document, &provenance)?;
-    let rendered = if args.json {
-        document
-    } else {
-        text(&plan_parts(title, algorithm, &options, &order.task.bounds, &planned))
-    };
-    deliver(&rendered, None, out)?;
-    if args.json {
-        say_remarks(&planned.remarks, err);
-    }
-    Ok(if planned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+    Ok(Found { planned, document, algorithm, options })
 }
 
 /// What a failure means in the task's own terms; as JSON, where that is asked for.

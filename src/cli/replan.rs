@@ -28,13 +28,7 @@ pub(super) fn run(
     out: &mut impl Write,
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
-    let inputs = args.inputs();
-    let read: Vec<PathBuf> = args.logs.iter().chain(&args.limits).chain(&args.task).cloned().collect();
-    spare_inputs(args.output.as_deref(), &read)?;
-    let replanned = planned(&inputs)?;
-    if let Some(path) = &args.output {
-        write_log(&inputs, &replanned, path)?;
-    }
+    let replanned = replanned(args)?;
     let rendered = if args.json { replan_json(&replanned) } else { text(&replan_parts(&replanned)) };
     deliver(&rendered, None, out)?;
     if args.json {
@@ -43,22 +37,29 @@ pub(super) fn run(
     Ok(if replanned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }
 
-/// Plans again with a progress bar.
-pub(super) fn planned(inputs: &Inputs) -> Result<Replanned, CliError> {
+/// Plans again with a progress bar, and writes plan and command.
+pub(super) fn replanned(args: &ReplanArgs) -> Result<Replanned, CliError> {
+    let inputs = args.inputs();
+    let read: Vec<PathBuf> = args.logs.iter().chain(&args.limits).chain(&args.task).cloned().collect();
+    spare_inputs(args.output.as_deref(), &read)?;
     let bar = ProgressBar::new(inputs.evaluations);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} evaluations") {
         bar.set_style(style);
     }
-    let replanned = replan(inputs, |evaluations| {
+    let replanned = replan(&inputs, |evaluations| {
         bar.set_position(evaluations);
         ControlFlow::Continue(())
     });
     bar.finish_and_clear();
-    Ok(replanned?)
+    let replanned = replanned?;
+    if let Some(path) = &args.output {
+        write_log(&inputs, &replanned, path)?;
+    }
+    Ok(replanned)
 }
 
 /// Writes plan and command.
-pub(super) fn write_log(inputs: &Inputs, replanned: &Replanned, path: &Path) -> Result<(), CliError> {
+fn write_log(inputs: &Inputs, replanned: &Replanned, path: &Path) -> Result<(), CliError> {
     let document = match (&replanned.order, &replanned.judged) {
         (Some(order), Some(judged)) => {
             Some(judged_json(&order.task.title, &order.setup.joint_names(), judged, true))

@@ -139,7 +139,7 @@ fn corrected(model: &Model, planned: &[(f64, f64)], settings: Compensation) -> V
     let mut correction = vec![0.0; n];
     let mut smoothed = Vec::with_capacity(n);
     let mut sent = planned.to_vec();
-    let mut best = (room.rms_rad(model, planned, &sent), sent.clone());
+    let mut best = (room.rms_rad(model, planned, &sent), correction.clone());
     for _ in 0..ROUNDS {
         for (k, correction) in correction.iter_mut().enumerate() {
             let later = (k + ahead).min(n - 1);
@@ -151,13 +151,15 @@ fn corrected(model: &Model, planned: &[(f64, f64)], settings: Compensation) -> V
             let freed = since * since * (3.0 - 2.0 * since);
             *correction = freed * smoothed.clamp(-settings.most_rad, settings.most_rad);
         }
-        send(planned, &correction, settings.gain, &mut sent);
+        send(planned, &correction, 1.0, &mut sent);
         let rms_rad = room.rms_rad(model, planned, &sent);
         if rms_rad < best.0 {
-            best = (rms_rad, sent.clone());
+            best = (rms_rad, correction.clone());
         }
     }
-    best.1
+    // The rounds would make up for a smaller gain.
+    send(planned, &best.1, settings.gain, &mut sent);
+    sent
 }
 
 /// Plan and correction with the speed that belongs to their sum.

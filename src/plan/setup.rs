@@ -109,6 +109,11 @@ impl Setup {
         &self.template
     }
 
+    /// Lowest and highest angle of a joint, rad; infinite without limits, also for a joint that is not there.
+    pub fn range_rad(&self, joint: usize) -> [f64; 2] {
+        self.limits.get(joint).map_or([f64::NEG_INFINITY, f64::INFINITY], |limits| limits.range_rad)
+    }
+
     /// Number of joints.
     pub fn joint_count(&self) -> usize {
         self.limits.len()

@@ -4,6 +4,8 @@
 mod compare;
 mod contest;
 mod csv;
+mod demo;
+mod excite;
 mod fit;
 mod import;
 mod info;
@@ -23,6 +25,8 @@ mod tables;
 pub use compare::{compare_gate_lines, compare_json, compare_parts};
 pub use contest::{contest_csv, contest_json, contest_parts, contest_svg};
 pub use csv::transitions_csv;
+pub use demo::{Story, demo_parts};
+pub use excite::excited_parts;
 pub use fit::{fit_json, fit_parts, limits_toml};
 pub use import::{imported_json, imported_parts};
 pub use info::{info_json, info_parts};

@@ -3,6 +3,7 @@
 pub mod compare;
 pub mod contest;
 pub mod detector;
+pub mod excite;
 pub mod export;
 pub mod fit;
 pub mod import;
@@ -15,6 +16,7 @@ pub mod recover;
 pub mod replan;
 pub mod report;
 mod sample;
+pub mod schedule;
 pub mod series_log;
 pub mod simulate;
 pub mod simulate_log;

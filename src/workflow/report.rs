@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::schedule::Schedule;
 use crate::{
     log::{LogError, ReadOptions, SourceInfo, read_recording},
     remark::{Code, Remarks},
@@ -108,6 +109,8 @@ pub struct Report {
     pub remarks: Remarks,
     /// The aligned samples, for plots.
     pub pairs: Vec<Pair>,
+    /// When the key points of the task are passed, where the log tells.
+    pub schedule: Option<Schedule>,
 }
 
 impl Report {
@@ -124,6 +127,7 @@ impl Report {
 /// [`LogError`] if the log cannot be read or holds no planned and measured joints.
 pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     let recording = read_recording(&inputs.logs, &inputs.read)?;
+    let schedule = Schedule::of(&recording);
     let mut remarks = recording.remarks;
     let mut pairs = Vec::new();
     let mut alignment = Vec::new();
@@ -148,7 +152,7 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     remark_unseen(&recording.planned, &pairs, inputs, &mut remarks);
     let replay = replay(&pairs, &inputs.rules);
     let gates = gates(&inputs.gates, &replay);
-    Ok(Report { source: recording.source, alignment, replay, gates, remarks, pairs })
+    Ok(Report { source: recording.source, alignment, replay, gates, remarks, pairs, schedule })
 }
 
 fn no_overlap(planned: &Series, measured: &Series) -> LogError {

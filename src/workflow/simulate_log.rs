@@ -6,7 +6,8 @@ use thiserror::Error;
 
 use super::{
     plan::{PlanFailure, arm_of},
-    plan_log::{FRONT, PROVENANCE, STARTS, TASK, chosen_times_s},
+    plan_log::{FRONT, TASK, chosen_times_s},
+    schedule::starts_s,
     simulate::{Inputs, Outputs, run},
 };
 use crate::{
@@ -91,8 +92,7 @@ pub fn simulate(path: &Path, parameters: Parameters, seed: u64) -> Result<Run, S
     let topic = Selector { topic: Topics::default().command, field: None };
     let command = read_plan(&paths, &ReadOptions { planned: vec![topic], ..ReadOptions::default() }).ok();
     let attached = |name: &str| plan.attachments.iter().find(|file| file.name == name);
-    let starts_s = plan.metadata.get(PROVENANCE).and_then(|map| map.get(STARTS)?.parse::<f64>().ok());
-    let starts_s = LEAD_S + starts_s.filter(|s| s.is_finite()).unwrap_or(0.0);
+    let starts_s = LEAD_S + starts_s(&plan.metadata).unwrap_or(0.0);
     let folder = path.parent().unwrap_or(Path::new(""));
     let (arm, payload) = match attached(TASK) {
         None => (Arm::sample().map_err(PlanFailure::from)?, Vec::new()),

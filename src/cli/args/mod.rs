@@ -3,6 +3,8 @@
 mod bench;
 mod compare;
 mod contest;
+mod demo;
+mod excite;
 mod export;
 mod fit;
 mod import;
@@ -18,6 +20,8 @@ use clap::{Parser, Subcommand, ValueEnum};
 pub use bench::{Bench, BenchArgs, DetectorArgs};
 pub use compare::CompareArgs;
 pub use contest::ContestArgs;
+pub use demo::DemoArgs;
+pub use excite::ExciteArgs;
 pub use export::{ExportArgs, ExportFormat};
 pub use fit::{FitArgs, SentArgs};
 pub use import::ImportArgs;
@@ -81,12 +85,18 @@ pub enum Command {
                             hydrotrace fit run-1.mcap run-2.mcap identification.mcap -o limits.toml\n  \
                             hydrotrace fit run.mcap --command /arm/command:position --json")]
     Fit(FitArgs),
+    /// Write a run from which `fit` can tell the limits: slow and much too fast strokes, joint by joint
+    #[command(after_help = "Examples:\n  hydrotrace excite -o id.mcap --task task.toml\n  \
+                            hydrotrace excite -o id.mcap --joint boom=40:20:60 --joint arm=90:70:110 --max-speed-deg-s 30")]
+    Excite(ExciteArgs),
     /// Plan and command for the next run, from logs of the last ones
     #[command(after_help = "Examples:\n  hydrotrace replan run.mcap -o next.mcap\n  \
                             hydrotrace replan run.mcap -o next.mcap --gain 0.5\n  \
                             hydrotrace replan field.mcap -o next.mcap --keep-plan\n  \
                             hydrotrace replan run-1.mcap run-2.mcap --limits limits.toml --task task.toml -o next.mcap")]
     Replan(ReplanArgs),
+    /// The whole loop on a simulated machine: plan, run, report, fit, plan again, run, compare
+    Demo(DemoArgs),
     /// What is in a log, what a report would use, and whether it is damaged
     Info(InfoArgs),
     /// Save everything that is whole in a damaged log

@@ -181,8 +181,8 @@ fn trust(fitted: &Fitted) -> Vec<String> {
              machine), which also narrows the dead band. Fit it together with these logs."
                 .into()
         } else {
-            "Acceleration limits hide behind the valves' own lag: strokes with pressures and spool travel logged would \
-             show them."
+            "Acceleration limits hide behind the lag and were identified on no simulated machine either: the bounds are \
+             what is safe to ask for."
                 .into()
         });
     }

@@ -12,7 +12,8 @@ use crate::{
     workflow::{
         observe::Observed,
         plan::Order,
-        plan_log::{FRONT, PROVENANCE, STARTS, TASK, chosen_times_s},
+        plan_log::{FRONT, TASK, chosen_times_s},
+        schedule::starts_s,
     },
 };
 
@@ -54,8 +55,7 @@ impl Last {
         let times_s = observed.attached(FRONT).and_then(chosen_times_s);
         let times_s =
             times_s.filter(|times_s| order.as_ref().is_some_and(|order| order.setup.motion(times_s).is_ok()));
-        let starts_s = observed.recording.metadata.get(PROVENANCE).and_then(|map| map.get(STARTS));
-        let starts_s = starts_s.and_then(|text| text.parse::<f64>().ok()).filter(|s| s.is_finite());
+        let starts_s = starts_s(&observed.recording.metadata);
         let named = |file: &&Attachment| [TASK, FRONT].contains(&file.name.as_str());
         Ok(Self {
             plan,
