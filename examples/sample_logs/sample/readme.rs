@@ -66,7 +66,9 @@ fn summary(text: &mut String, logs: &[SampleLog], plant: &[PlantLog]) {
     for log in logs {
         line(text, &format!("| `{}` | {} | {} | {} |", log.name, log.bytes.len(), log.run.seed, log.story));
     }
-    hydraulic::rows(plant).iter().for_each(|row| line(text, row));
+    for row in hydraulic::rows(plant) {
+        line(text, &row);
+    }
 }
 
 fn machine(text: &mut String) {
