@@ -8,7 +8,7 @@ use super::{
     doubt,
     read::{Content, Extracted},
     source::{Plans, RawTrajectory, Stamps},
-    track::{Axis, tracks},
+    track::{Axis, Unit, tracks},
 };
 use crate::{
     math::median,
@@ -48,12 +48,12 @@ pub(super) fn assemble(
         &mut extracted,
         &choice.measured,
         &choice.planned,
-        options.measured_in_degrees,
+        if options.measured_in_degrees { Unit::Degrees } else { Unit::Radians },
         &axes,
         &mut remarks,
     );
     let mut planned =
-        gather(&mut extracted, &choice.planned, &[], options.planned_in_degrees, &axes, &mut remarks);
+        gather(&mut extracted, &choice.planned, &[], planned_unit(options), &axes, &mut remarks);
     for candidate in &choice.planned {
         if let Content::Plans(plans) = &extracted.sources[candidate.source].content {
             let receipt = Receipt::new(&extracted, choice, base, epoch_ns);
@@ -92,6 +92,15 @@ pub(super) fn assemble(
     })
 }
 
+/// What the numbers of the plan are.
+fn planned_unit(options: &ReadOptions) -> Unit {
+    match (options.planned_is_no_angle, options.planned_in_degrees) {
+        (true, _) => Unit::Other,
+        (false, true) => Unit::Degrees,
+        (false, false) => Unit::Radians,
+    }
+}
+
 /// The tracks of the chosen fields; of joints that several have, those of the first.
 ///
 /// Moves samples out of what was extracted, but for fields that are `needed_later`.
@@ -99,7 +108,7 @@ fn gather(
     extracted: &mut Extracted,
     chosen: &[Candidate],
     needed_later: &[Candidate],
-    degrees: bool,
+    unit: Unit,
     axes: &BTreeMap<usize, Axis>,
     remarks: &mut Remarks,
 ) -> Series {
@@ -113,7 +122,7 @@ fn gather(
         };
         let same = |c: &Candidate| c.source == candidate.source && c.field == candidate.field;
         let last = !chosen[place + 1..].iter().chain(needed_later).any(same);
-        let tracks = tracks(table, field, axis, degrees, last, &name, remarks);
+        let tracks = tracks(table, field, axis, unit, last, &name, remarks);
         let new: Vec<Track> = tracks.into_iter().filter(|t| series.track(t.name()).is_none()).collect();
         series.tracks.extend(new);
     }

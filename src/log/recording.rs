@@ -29,6 +29,8 @@ pub struct ReadOptions {
     pub time_base: Option<TimeBase>,
     /// The plan is in degrees.
     pub planned_in_degrees: bool,
+    /// What is read as the plan is another quantity, such as a pressure: any number may be.
+    pub planned_is_no_angle: bool,
     /// The measurement is in degrees.
     pub measured_in_degrees: bool,
     /// Joints without end stops, whose angle may wrap by a full turn.

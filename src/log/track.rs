@@ -42,13 +42,22 @@ impl Axis {
     }
 }
 
+/// What numbers of a field are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Unit {
+    Radians,
+    Degrees,
+    /// No angles: nothing is known of what they may be.
+    Other,
+}
+
 /// One track a joint of a table's field; `last` if nobody asks the table for this field again,
 /// so that samples may be moved out of it.
 pub(super) fn tracks(
     table: &mut Table,
     field: usize,
     axis: &Axis,
-    degrees: bool,
+    unit: Unit,
     last: bool,
     topic: &str,
     remarks: &mut Remarks,
@@ -64,7 +73,9 @@ pub(super) fn tracks(
         let whole =
             axis.as_read && position.len() == axis.rows.len() && position.iter().all(|q| q.is_finite());
         let whole = whole
-            && !(0..position.len()).any(|k| is_spike(k, position.len(), |i| axis.t_s[i], |i| position[i]));
+            && !(0..position.len()).any(|k| {
+                unit != Unit::Other && is_spike(k, position.len(), |i| axis.t_s[i], |i| position[i])
+            });
         let ((t_s, cuts, jumps), mut position, mut speed) = if whole {
             ((axis.t_s.clone(), axis.cuts.clone(), axis.jumps.clone()), position, speed)
         } else {
@@ -72,14 +83,16 @@ pub(super) fn tracks(
             let mut kept: Vec<usize> = (0..axis.rows.len()).filter(|&i| at(i).is_finite()).collect();
             // Far from the epoch neighbouring nanoseconds are the same second.
             kept.dedup_by(|later, earlier| axis.t_s[*later] <= axis.t_s[*earlier]);
-            spikes += drop_spikes(&mut kept, &axis.t_s, at);
+            if unit != Unit::Other {
+                spikes += drop_spikes(&mut kept, &axis.t_s, at);
+            }
             if kept.is_empty() {
                 continue;
             }
             let speed = kept.iter().map_while(|&i| speed.get(axis.rows[i]).copied()).collect();
             (axis.kept(&kept), kept.iter().map(|&i| at(i)).collect(), speed)
         };
-        if degrees {
+        if unit == Unit::Degrees {
             position.iter_mut().chain(&mut speed).for_each(|value| *value = radians_from_degrees(*value));
         }
         gap.note(&t_s, &cuts, &jumps);

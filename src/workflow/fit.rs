@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::observe::{ObserveFailure, Observed, Wanted, observe};
+use super::{
+    observe::{ObserveFailure, Observed, Wanted, observe},
+    torque::{JointTorque, torques},
+};
 use crate::{
     fit::{Fit, FitError, Observation, fit},
     log::SourceInfo,
@@ -75,6 +78,9 @@ pub struct LimitsFile {
     pub format: String,
     /// Names of the logs that were fitted.
     pub logs: Vec<String>,
+    /// Torques from pressures, where the logs have them.
+    #[serde(default)]
+    pub torques: Vec<JointTorque>,
     /// What was found.
     #[serde(flatten)]
     pub fit: Fit,
@@ -99,6 +105,8 @@ pub struct FittedRun {
 pub struct Fitted {
     /// The machine.
     pub fit: Fit,
+    /// Torques by joint, of the first run that has pressures and a task with cylinders.
+    pub torques: Vec<JointTorque>,
     /// The runs.
     pub runs: Vec<FittedRun>,
     /// Doubts about the data.
@@ -157,7 +165,9 @@ pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
         );
         remarks.add(Code::PoorFit, 1, message);
     }
-    Ok(Fitted { fit, runs, remarks })
+    let torques = logs.iter().zip(observed).map(|(path, observed)| torques(path, observed));
+    let torques = torques.into_iter().find(|torques| !torques.is_empty()).unwrap_or_default();
+    Ok(Fitted { fit, torques, runs, remarks })
 }
 
 /// The file's own name.
@@ -169,7 +179,8 @@ impl Fitted {
     /// As a file that [`read_limits`] reads.
     pub fn file(&self) -> LimitsFile {
         let logs = self.runs.iter().map(|run| run.log.clone()).collect();
-        LimitsFile { format: FORMAT.to_owned(), logs, fit: self.fit.clone() }
+        let torques = self.torques.clone();
+        LimitsFile { format: FORMAT.to_owned(), logs, torques, fit: self.fit.clone() }
     }
 }
 

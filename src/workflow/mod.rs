@@ -20,3 +20,4 @@ pub mod schedule;
 pub mod series_log;
 pub mod simulate;
 pub mod simulate_log;
+pub mod torque;

@@ -52,6 +52,19 @@ pub struct Observed {
     pub command: Option<Series>,
     /// Signals to the valves in place of positions.
     pub valve: Option<Series>,
+    /// Pressures, where the log has those of both sides of the cylinders.
+    pub pressures: Option<Pressures>,
+}
+
+/// Pressures in place of positions, Pa.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pressures {
+    /// On the side without a rod.
+    pub cap_pa: Series,
+    /// On the side of the rod.
+    pub rod_pa: Series,
+    /// Before the valves.
+    pub supply_pa: Option<Series>,
 }
 
 /// Field of the signals to the valves in our logs.
@@ -67,26 +80,38 @@ pub fn observe(path: &Path, wanted: &Wanted) -> Result<Observed, ObserveFailure>
     let named = |source| ObserveFailure { path: path.to_owned(), source };
     let paths = [path.to_owned()];
     let recording = read_recording(&paths, &wanted.read).map_err(|error| named(error.into()))?;
-    let beside = |asked: Option<&Selector>, ours: Selector| -> Result<Option<Series>, ObserveError> {
-        let topic = asked.cloned().unwrap_or(ours);
-        let options = ReadOptions {
-            planned: vec![topic],
-            time_base: Some(recording.source.time_base),
-            ..wanted.read.clone()
+    let beside =
+        |asked: Option<&Selector>, ours: Selector, angle: bool| -> Result<Option<Series>, ObserveError> {
+            let topic = asked.cloned().unwrap_or(ours);
+            let options = ReadOptions {
+                planned: vec![topic],
+                planned_is_no_angle: !angle,
+                planned_in_degrees: angle && wanted.read.planned_in_degrees,
+                time_base: Some(recording.source.time_base),
+                ..wanted.read.clone()
+            };
+            match read_plan(&paths, &options) {
+                Ok(found) => Ok(Some(shifted(&found, recording.source.epoch_ns)?)),
+                // A log of another origin has no such topic.
+                Err(_) if asked.is_none() => Ok(None),
+                Err(error) => Err(error.into()),
+            }
         };
-        match read_plan(&paths, &options) {
-            Ok(found) => Ok(Some(shifted(&found, recording.source.epoch_ns)?)),
-            // A log of another origin has no such topic.
-            Err(_) if asked.is_none() => Ok(None),
-            Err(error) => Err(error.into()),
-        }
-    };
     let topics = Topics::default();
-    let command = beside(wanted.command.as_ref(), Selector { topic: topics.command, field: None });
-    let valve = Selector { topic: topics.interfaces, field: Some(VALVE.to_owned()) };
-    let valve = beside(wanted.valve.as_ref(), valve);
+    let ours = Selector { topic: topics.command.clone(), field: None };
+    let command = beside(wanted.command.as_ref(), ours, true);
+    let interface = |name: &str| Selector { topic: topics.interfaces.clone(), field: Some(name.to_owned()) };
+    let valve = beside(wanted.valve.as_ref(), interface(VALVE), false);
     let (command, valve) = (command.map_err(named)?, valve.map_err(named)?);
-    Ok(Observed { recording, command, valve })
+    let pressure = |name: &str| beside(None, interface(name), false).map_err(named);
+    let (cap, rod) = (pressure("cap_pressure_pa")?, pressure("rod_pressure_pa")?);
+    let pressures = match (cap, rod) {
+        (Some(cap_pa), Some(rod_pa)) => {
+            Some(Pressures { cap_pa, rod_pa, supply_pa: pressure("supply_pressure_pa")? })
+        }
+        _ => None,
+    };
+    Ok(Observed { recording, command, valve, pressures })
 }
 
 impl Observed {

@@ -6,7 +6,10 @@ use crate::{
     fit::{JointFit, LEAST_SKILL},
     remark::Remark,
     report::json,
-    workflow::fit::{Fitted, FittedRun},
+    workflow::{
+        fit::{Fitted, FittedRun},
+        torque::JointTorque,
+    },
 };
 
 /// What logs say of a machine. Angles are radians, times seconds; pairs are for growing and for
@@ -22,6 +25,8 @@ struct Document<'a> {
     runs: &'a [FittedRun],
     /// Each joint; every quantity has `value`, `interval` (95 %), `identified` and `lower_bound`.
     joints: &'a [JointFit],
+    /// Torques of cylinders; empty without pressures and a task with cylinders in a log.
+    torques: &'a [JointTorque],
     /// Joints that are sent and measured but hardly moved.
     left_out: &'a [String],
     /// What predicted peak errors are to be multiplied with so that nine of ten measured ones lie below.
@@ -41,6 +46,7 @@ pub fn fit_json(fitted: &Fitted) -> String {
         program: json::PROGRAM,
         runs: &fitted.runs,
         joints: &fitted.fit.joints,
+        torques: &fitted.torques,
         left_out: &fitted.fit.left_out,
         peak_margin: fitted.fit.peak_margin,
         margin_starts: fitted.fit.margin_starts,

@@ -5,7 +5,7 @@ use crate::{
     fit::{Estimated, JointFit, LEAST_SKILL},
     report::{Part, Sheet, counted, deg, tables::remark_parts},
     units::degrees_from_radians,
-    workflow::fit::Fitted,
+    workflow::{fit::Fitted, torque::JointTorque},
 };
 
 const LOOP: [(&str, Shown); 5] = [
@@ -117,6 +117,24 @@ pub fn fit_parts(fitted: &Fitted) -> Vec<Part> {
             left: 1,
             rows: fit.joints.iter().map(row).collect(),
         }));
+    }
+    if !fitted.torques.is_empty() {
+        parts.push(Part::Heading("Torques from pressures".into()));
+        let row = |torque: &JointTorque| {
+            let both = torque.reached_n_m.iter().zip(torque.available_n_m);
+            let cells = both.flat_map(|(reached, available)| [*reached, available]);
+            let mut row = vec![torque.name.clone()];
+            row.extend(cells.map(|n_m| format!("{n_m:.0}")));
+            row
+        };
+        parts.push(Part::Sheet(Sheet {
+            head: vec!["joint", "reached + N m", "available +", "reached - N m", "available -"],
+            left: 1,
+            rows: fitted.torques.iter().map(row).collect(),
+        }));
+        parts.push(Part::Line(
+            "Available: in every pose of the run at the logged supply pressure; friction and flow take some of it.".into(),
+        ));
     }
     parts.push(Part::Heading("What to trust".into()));
     parts.extend(trust(fitted).into_iter().map(Part::Line));
