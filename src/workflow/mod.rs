@@ -1,9 +1,12 @@
 //! One file per verb: what the caller wants in, what was found out. No printing, no clap.
 
+pub mod advice;
 pub mod compare;
 pub mod contest;
+mod convergence;
 pub mod detector;
 pub mod export;
+pub mod front;
 pub mod import;
 pub mod info;
 pub mod moea;

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::{front::Front, plan_log::FRONT};
 use crate::{
-    log::{LogError, ReadOptions, SourceInfo, read_recording},
+    log::{Attachment, LogError, ReadOptions, SourceInfo, read_recording},
     remark::{Code, Remarks},
     replay::{Replay, Rules, planned_starts, replay},
     series::{Pair, Series, align},
@@ -108,6 +109,8 @@ pub struct Report {
     pub remarks: Remarks,
     /// The aligned samples, for plots.
     pub pairs: Vec<Pair>,
+    /// The plans that the run's own was chosen from, where its log carries them.
+    pub front: Option<Front>,
 }
 
 impl Report {
@@ -148,7 +151,19 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     remark_unseen(&recording.planned, &pairs, inputs, &mut remarks);
     let replay = replay(&pairs, &inputs.rules);
     let gates = gates(&inputs.gates, &replay);
-    Ok(Report { source: recording.source, alignment, replay, gates, remarks, pairs })
+    let front = front(&recording.attachments, &mut remarks);
+    Ok(Report { source: recording.source, alignment, replay, gates, remarks, pairs, front })
+}
+
+fn front(attachments: &[Attachment], remarks: &mut Remarks) -> Option<Front> {
+    let file = attachments.iter().find(|file| file.name == FRONT)?;
+    match Front::read(file)? {
+        Ok(front) => Some(front),
+        Err(error) => {
+            remarks.add(Code::NotSupported, 1, format!("{FRONT} in the log is broken, left out: {error}"));
+            None
+        }
+    }
 }
 
 fn no_overlap(planned: &Series, measured: &Series) -> LogError {
