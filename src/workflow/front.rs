@@ -92,7 +92,9 @@ mod tests {
     fn the_front_of_a_document_is_read_and_broken_ones_are_told_from_foreign_ones() {
         let plan = r#"{"duration_s": 2, "rms_jerk_rad_s3": 3, "rms_power_w": 4}"#;
         let text = |best: &str| {
-            format!(r#"{{"format": "{FORMAT}", "title": "t", "front": [{plan}], "best": {best}, "chosen": {plan}}}"#)
+            format!(
+                r#"{{"format": "{FORMAT}", "title": "t", "front": [{plan}], "best": {best}, "chosen": {plan}}}"#
+            )
         };
         let front = Front::read(&file(&text("[0, 0, 0]"))).unwrap().unwrap();
         assert_eq!((front.plans.as_slice(), front.chosen), ([[2.0, 3.0, 4.0]].as_slice(), [2.0, 3.0, 4.0]));

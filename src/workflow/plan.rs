@@ -7,8 +7,8 @@ use std::{
 
 use thiserror::Error;
 
-pub use super::convergence::Step;
 use super::convergence::Course;
+pub use super::convergence::Step;
 use crate::{
     arm::{Arm, ArmError},
     moea::indicator::hypervolume,

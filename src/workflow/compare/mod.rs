@@ -119,8 +119,9 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     let gates = gates(&inputs.gates, &pairs, &summaries, &whole_run);
     let runs = |side: Side| all.iter().filter(|m| m.side == side).map(|m| m.run(&joints)).collect();
     let (runs_before, runs_after) = (runs(Side::Before), runs(Side::After));
-    let samples =
-        |reports: &mut [Report]| reports.first_mut().map_or_else(Vec::new, |report| std::mem::take(&mut report.pairs));
+    let samples = |reports: &mut [Report]| {
+        reports.first_mut().map_or_else(Vec::new, |report| std::mem::take(&mut report.pairs))
+    };
     Ok(Comparison {
         samples: [samples(&mut before), samples(&mut after)],
         before: runs_before,
