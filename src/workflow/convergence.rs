@@ -11,7 +11,7 @@ use crate::plan::Progress;
 pub struct Step {
     /// Evaluations made.
     pub evaluations: u64,
-    /// Share of the box of the final front that the front of then dominates.
+    /// Share of the box of the final front that was dominated by then.
     pub hypervolume: f64,
 }
 
@@ -48,11 +48,13 @@ impl Course {
         }
     }
 
-    /// By the box of the final front, which ends the course.
+    /// By the box of the final front, which ends the course. A population may forget what was found before it;
+    /// what counts is the most until then.
     pub(super) fn steps(&self, gauge: Gauge, evaluations: u64, hypervolume: f64) -> Vec<Step> {
-        let step = |(evaluations, front): &(u64, Vec<[f64; 3]>)| Step {
-            evaluations: *evaluations,
-            hypervolume: gauge.measure(front.iter().copied()),
+        let mut most: f64 = 0.0;
+        let step = |(evaluations, front): &(u64, Vec<[f64; 3]>)| {
+            most = most.max(gauge.measure(front.iter().copied()));
+            Step { evaluations: *evaluations, hypervolume: most }
         };
         let before = self.fronts.iter().filter(|(then, _)| *then < evaluations);
         before.map(step).chain([Step { evaluations, hypervolume }]).collect()

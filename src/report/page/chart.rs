@@ -8,6 +8,8 @@ use serde::Serialize;
 pub(in crate::report) struct Chart {
     /// For people.
     pub(super) title: String,
+    /// What to know of it, in a few numbers.
+    pub(super) note: String,
     /// The horizontal axis and its unit.
     pub(super) x_label: &'static str,
     /// Horizontal coordinates, which series point into.

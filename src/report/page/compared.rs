@@ -22,7 +22,7 @@ use crate::{
     },
     series::Pair,
     units::degrees_from_radians,
-    workflow::compare::{Comparison, Measure, Scope, Verdict},
+    workflow::compare::{Comparison, Measure, Scope, TransitionPair, Verdict},
 };
 
 /// Places of a series at most, nearly.
@@ -45,11 +45,7 @@ pub fn compare_page(comparison: &Comparison, most: usize) -> String {
     list.truncate(heading("Remarks on the data", &list));
     let mut sections = vec![
         Section { id: "summary", heading: "In short", body: summary(comparison) },
-        Section {
-            id: "pairs",
-            heading: "Every transition",
-            body: html! { (plots.place(scatter(comparison))) },
-        },
+        Section { id: "pairs", heading: "Every transition", body: scatters(comparison, &mut plots) },
         Section { id: "joints", heading: "Error over the run", body: runs(comparison, &mut plots) },
         Section { id: "numbers", heading: "Numbers", body: parts(&list) },
     ];
@@ -131,52 +127,61 @@ fn changes(comparison: &Comparison) -> Markup {
     intervals(&rows.collect::<Vec<_>>())
 }
 
-/// Peak errors after over those before: below the line is better.
-fn scatter(comparison: &Comparison) -> Chart {
+/// Every pair of transitions, after over before.
+fn scatters(comparison: &Comparison, plots: &mut Plots) -> Markup {
+    let peak = scatter(comparison, "Peak error", ["before deg", "after deg"], |pair| {
+        Some((pair.peak_error_rad.before?, pair.peak_error_rad.after?))
+            .map(|(a, b)| (rounded(degrees_from_radians(a)), rounded(degrees_from_radians(b))))
+    });
+    let late = scatter(comparison, "Start delay", ["before ms", "after ms"], |pair| {
+        Some((rounded(1e3 * pair.onset_delay_s.before?), rounded(1e3 * pair.onset_delay_s.after?)))
+    });
+    html! {
+        p class="hint" { "Each point is one transition; below the line it became smaller." }
+        div class="side" { (plots.place(peak)) (plots.place(late)) }
+    }
+}
+
+fn scatter(
+    comparison: &Comparison,
+    title: &str,
+    [x_label, y_label]: [&'static str; 2],
+    of: impl Fn(&TransitionPair) -> Option<(f64, f64)>,
+) -> Chart {
+    let named = |pair: &TransitionPair| {
+        let direction = if pair.direction < 0 { "-" } else { "+" };
+        format!("{} {} {direction} {:.2} s", pair.joint, kind(pair.kind), pair.planned_onset_before_s)
+    };
     let pairs: Vec<(String, f64, f64)> = comparison
         .pairs
         .iter()
-        .filter_map(|pair| {
-            let (before, after) = (pair.peak_error_rad.before?, pair.peak_error_rad.after?);
-            let direction = if pair.direction < 0 { "-" } else { "+" };
-            let name = format!(
-                "{} {} {direction} {:.2} s",
-                pair.joint,
-                kind(pair.kind),
-                pair.planned_onset_before_s
-            );
-            Some((name, rounded(degrees_from_radians(before)), rounded(degrees_from_radians(after))))
-        })
+        .filter_map(|pair| of(pair).map(|(before, after)| (named(pair), before, after)))
         .collect();
-    let [_, most] = span(pairs.iter().flat_map(|(_, before, after)| [*before, *after]).chain([0.0]));
-    let most = rounded(1.05 * most);
+    let [low, high] = span(pairs.iter().flat_map(|(_, before, after)| [*before, *after]).chain([0.0]));
+    let ends =
+        [rounded(low - 0.05 * (high - low) * f64::from(low < 0.0)), rounded(high + 0.05 * (high - low))];
+    let series = |name: &str, role, x, y, names| Series { name: name.to_owned(), role, x, y, names };
     Chart {
-        title: "Peak error of every transition; below the line it became smaller".to_owned(),
-        x_label: "before deg",
-        xs: vec![pairs.iter().map(|(_, before, _)| *before).collect(), vec![0.0, most]],
-        x_range: Some([0.0, most]),
+        title: title.to_owned(),
+        x_label,
+        xs: vec![pairs.iter().map(|(_, before, _)| *before).collect(), ends.to_vec()],
+        x_range: Some(ends),
         panels: vec![Panel {
-            label: "after deg".to_owned(),
+            label: y_label.to_owned(),
             series: vec![
-                Series {
-                    name: "no change".into(),
-                    role: Role::Guide,
-                    x: 1,
-                    y: vec![0.0, most],
-                    names: Vec::new(),
-                },
-                Series {
-                    name: "transition".into(),
-                    role: Role::Point,
-                    x: 0,
-                    y: pairs.iter().map(|(_, _, after)| *after).collect(),
-                    names: pairs.iter().map(|(name, _, _)| name.clone()).collect(),
-                },
+                series("no change", Role::Guide, 1, ends.to_vec(), Vec::new()),
+                series(
+                    "transition",
+                    Role::Point,
+                    0,
+                    pairs.iter().map(|(_, _, after)| *after).collect(),
+                    pairs.iter().map(|(name, _, _)| name.clone()).collect(),
+                ),
             ],
             share: 1.0,
-            range: Some([0.0, most]),
+            range: Some(ends),
         }],
-        height: 340,
+        height: 360,
         ..Chart::default()
     }
 }

@@ -35,6 +35,7 @@ impl Plots {
             figure class=(if chart.tile { "chart tile" } else { "chart" }) {
                 figcaption {
                     span class="title" { (clean(&chart.title)) }
+                    @if !chart.note.is_empty() { span class="note" { (clean(&chart.note)) } }
                     @if !chart.tile { span class="legend" { (legend(&chart)) } }
                     span class="read" {}
                 }

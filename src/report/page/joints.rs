@@ -53,13 +53,14 @@ fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Trans
     let degrees =
         |values: &[f64]| at(values, &places).map(|rad| rounded(degrees_from_radians(rad))).collect();
     let series = |name: &str, role, y| Series { name: name.to_owned(), role, x: 0, y, names: Vec::new() };
-    let title = numbers.map_or(pair.name.clone(), |joint| {
+    let note = numbers.map_or(String::new(), |joint| {
         let late = joint.lag_s.map_or(String::new(), |s| format!(", lag {} ms", ms(s)));
         let error = &joint.tracking_error;
-        format!("{}: rms {}°, peak {}°{late}", pair.name, deg(error.rms_rad), deg(error.peak_rad))
+        format!("rms {}°, peak {}°{late}", deg(error.rms_rad), deg(error.peak_rad))
     });
     Chart {
-        title,
+        title: pair.name.clone(),
+        note,
         x_label: "time s",
         xs: vec![times(&pair.t_s, &places)],
         x_range: None,

@@ -15,6 +15,7 @@
     const step = [1, 2, 5, 10].map(k => k * power).find(s => s >= rough * 0.999) || rough;
     const list = [];
     for (let k = Math.ceil(low / step); k * step <= high + step * 1e-9 && list.length < 40; k++) list.push(k * step);
+    if (list.length < 2 && most < 16) return ticks([low, high], most + 1);
     return { list, digits: clamp(-Math.floor(Math.log10(step) + 1e-9), 0, 6) };
   }
   const number = v => Math.abs(v) >= 1000 ? v.toFixed(0) : String(+v.toPrecision(5));
@@ -40,7 +41,7 @@
       this.canvas.setAttribute('aria-label', spec.title);
       if (!spec.tile) this.listen();
     }
-    left() { return this.spec.tile ? 34 : 48; }
+    left() { return this.spec.tile ? 34 : 58; }
     width() { return Math.max(this.box.clientWidth - this.left() - 10, 10); }
     pixel(x) { return this.left() + (x - this.range[0]) / (this.range[1] - this.range[0]) * this.width(); }
     value(px) { return this.range[0] + (px - this.left()) / this.width() * (this.range[1] - this.range[0]); }
@@ -75,7 +76,7 @@
         const xs = spec.xs[s.x];
         return this.dots ? s.y : s.y.slice(...inside(xs));
       })));
-      const y = v => bottom - (v - low) / (high - low) * height;
+      const y = this.y = v => bottom - (v - low) / (high - low) * height;
       c.save();
       c.beginPath(); c.rect(left, top, width, height); c.clip();
       for (const band of spec.bands) {
@@ -83,7 +84,7 @@
         c.fillRect(this.pixel(band.from), top, Math.max(this.pixel(band.to) - this.pixel(band.from), 1), height);
       }
       c.restore();
-      const across = ticks(this.range, clamp(width / 80, 2, 12)), up = ticks([low, high], clamp(height / 28, 2, 8));
+      const across = ticks(this.range, clamp(width / (spec.tile ? 45 : 80), 2, 12)), up = ticks([low, high], clamp(height / 26, 2, 8));
       c.lineWidth = 1; c.strokeStyle = colour('grid'); c.fillStyle = colour('soft');
       c.beginPath();
       for (const t of across.list) { c.moveTo(this.pixel(t), top); c.lineTo(this.pixel(t), bottom); }
@@ -103,8 +104,12 @@
       c.beginPath(); c.rect(left, top - 2, width, height + 4); c.clip();
       for (const s of panel.series) this.series(c, s, y, inside(spec.xs[s.x]));
       c.restore();
-      c.fillStyle = colour('soft'); c.textAlign = 'left'; c.textBaseline = 'top';
-      if (!spec.tile) c.fillText(panel.label, left + 6, top + 3);
+      if (spec.tile) return;
+      c.save();
+      c.translate(9, top + height / 2); c.rotate(-Math.PI / 2);
+      c.fillStyle = colour('soft'); c.textAlign = 'center'; c.textBaseline = 'middle';
+      c.fillText(panel.label, 0, 0);
+      c.restore();
     }
     series(c, s, y, [from, to]) {
       const xs = this.spec.xs[s.x];
@@ -113,7 +118,7 @@
         s.y.forEach((v, i) => {
           if (v === null) return;
           c.beginPath(); c.arc(this.pixel(xs[i]), y(v), s.role === 'named' ? 4.5 : 2.5, 0, 7); c.fill();
-          if (s.role === 'named') { c.textAlign = 'left'; c.textBaseline = 'bottom'; c.fillText(s.names[i], this.pixel(xs[i]) + 7, y(v)); }
+          if (s.role === 'named') { c.textAlign = 'left'; c.textBaseline = i % 2 ? 'top' : 'bottom'; c.fillText(s.names[i], this.pixel(xs[i]) + 7, y(v)); }
         });
         return;
       }
@@ -128,8 +133,8 @@
       }
       c.stroke(); c.setLineDash([]);
     }
-    // The values nearest to a coordinate, in words; null hides them.
-    point(x) {
+    // The values nearest to a coordinate, in words; null hides them. Points are nearest on the screen.
+    point(x, py) {
       this.hair.hidden = x === null || x < this.range[0] || x > this.range[1];
       if (this.hair.hidden) { this.read.textContent = ''; return; }
       this.hair.style.left = this.pixel(x) + 'px';
@@ -137,7 +142,7 @@
       for (const panel of this.spec.panels) for (const s of panel.series) {
         if (s.role === 'named' || s.role === 'guide') continue;
         const xs = this.spec.xs[s.x];
-        let i = this.dots ? nearest(xs, x) : place(xs, x);
+        let i = this.dots ? this.nearest(s, x, py) : place(xs, x);
         if (!this.dots && i > 0 && (i >= xs.length || x - xs[i - 1] < xs[i] - x)) i--;
         if (i < 0 || i >= xs.length || s.y[i] === null) continue;
         if (!words.length) words.push(this.spec.x_label + ' ' + number(xs[i]));
@@ -145,13 +150,21 @@
       }
       this.read.textContent = words.join('  ·  ');
     }
+    nearest(s, x, py) {
+      let best = -1, least = Infinity;
+      this.spec.xs[s.x].forEach((v, i) => {
+        const d = Math.hypot(this.pixel(v) - this.pixel(x), this.y(s.y[i]) - py);
+        if (d < least) { least = d; best = i; }
+      });
+      return best;
+    }
     listen() {
       const { canvas, sel } = this, at = e => clamp(e.clientX - canvas.getBoundingClientRect().left, this.left(), this.left() + this.width());
       let start = null;
       const drop = () => { start = null; sel.hidden = true; };
       canvas.addEventListener('pointerdown', e => { start = at(e); canvas.setPointerCapture(e.pointerId); });
       canvas.addEventListener('pointermove', e => {
-        for (const plot of group(this)) plot.point(this.value(at(e)));
+        for (const plot of group(this)) plot.point(this.value(at(e)), e.offsetY);
         if (start === null) return;
         sel.hidden = false;
         sel.style.left = Math.min(start, at(e)) + 'px';
@@ -178,11 +191,6 @@
     return low < high ? [low, high] : low === high ? [low - 0.5, high + 0.5] : [0, 1];
   }
   function padded([low, high]) { const room = 0.06 * (high - low); return [low - room, high + room]; }
-  function nearest(xs, x) {
-    let best = -1;
-    xs.forEach((v, i) => { if (v !== null && (best < 0 || Math.abs(v - x) < Math.abs(xs[best] - x))) best = i; });
-    return best;
-  }
 
   const plots = Array.from(document.querySelectorAll('.live'), box => new Plot(box, specs[+box.dataset.chart]));
   const group = plot => plot.spec.group === null ? [plot] : plots.filter(p => p.spec.group === plot.spec.group);

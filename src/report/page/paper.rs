@@ -56,7 +56,11 @@ type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorTy
 
 fn draw<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, chart: &Chart) -> Drawn<DB> {
     let head = (FONT, if chart.tile { 24 } else { 30 }).into_font().color(&INK);
-    area.draw(&Text::new(crate::report::markup::clean(&chart.title), (14, 10), head))?;
+    area.draw(&Text::new(
+        crate::report::markup::clean(&format!("{}  {}", chart.title, chart.note)),
+        (14, 10),
+        head,
+    ))?;
     if !chart.tile {
         legend(area, chart)?;
     }

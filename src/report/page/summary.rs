@@ -6,6 +6,7 @@ use super::strip::{Row, bars};
 use crate::{
     replay::Verdict,
     report::{
+        compare::probability,
         counted, deg,
         markup::clean,
         ms,
@@ -95,7 +96,7 @@ fn place_of_error(report: &Report) -> Markup {
                 "{:.0} % of the squared error in {:.0} % of the time{}",
                 100.0 * c.squared_error_share_inside,
                 100.0 * c.time_share_inside,
-                c.test.map_or(String::new(), |test| format!(" (p = {:.1e})", test.p_value))
+                c.test.map_or(String::new(), |test| format!(" (p = {})", probability(test.p_value)))
             ))
         }
     };

@@ -104,13 +104,15 @@ fn tile(transition: &Transition, pair: &Pair) -> Chart {
     let late = transition.measured_onset_s.map(|s| s - onset_s).filter(|late_s| *late_s > 0.0);
     Chart {
         title: format!(
-            "{} {}{} {:.2} s: {}°, {}",
+            "{} {}{} at {onset_s:.2} s",
             transition.joint,
             kind(transition.kind),
             if transition.direction < 0 { " -" } else { " +" },
-            onset_s,
+        ),
+        note: format!(
+            "peak {}°, {}",
             deg(transition.peak_error_rad),
-            transition.onset_delay_s.map_or("never".to_owned(), |s| format!("{} ms late", ms(s))),
+            transition.onset_delay_s.map_or("never answered".to_owned(), |s| format!("{} ms late", ms(s))),
         ),
         x_label: "time from the planned start s",
         xs: vec![times(&t_s, &places)],
