@@ -18,7 +18,7 @@ use crate::{
         plan_parts, text,
     },
     workflow::{
-        plan::{Gauge, Judged, Options, Order, PlanFailure, run as search},
+        plan::{Course, Gauge, Judged, Options, Order, PlanFailure, run as search},
         plan_log::PlanLog,
     },
 };
@@ -42,7 +42,7 @@ fn judge(args: &PlanArgs, order: &Order, times_s: &[f64], out: &mut impl Write) 
     let rendered = if args.json {
         document
     } else if args.html {
-        judged_page(title, &joints, &judged)
+        judged_page(title, &joints, &judged, &course(order, &judged)?)
     } else {
         text(&judged_parts(title, &joints, &judged))
     };
@@ -82,7 +82,7 @@ fn plan(
     let rendered = if args.json {
         document
     } else if args.html {
-        plan_page(title, algorithm, &options, &order.task.bounds, &planned)
+        plan_page(title, algorithm, &options, &order.task.bounds, &planned, &course(order, &planned.chosen)?)
     } else {
         text(&plan_parts(title, algorithm, &options, &order.task.bounds, &planned))
     };
@@ -91,6 +91,10 @@ fn plan(
         say_remarks(&planned.remarks, err);
     }
     Ok(if planned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}
+
+fn course(order: &Order, judged: &Judged) -> Result<Course, CliError> {
+    Ok(Course::of(&order.setup, judged).map_err(PlanFailure::from)?)
 }
 
 /// What a failure means in the task's own terms; as JSON, where that is asked for.

@@ -20,13 +20,13 @@ const MOST: usize = 64;
 
 /// Fronts on the way, evenly spaced in generations however long the search.
 #[derive(Debug, Default)]
-pub(super) struct Course {
+pub(super) struct Growth {
     fronts: Vec<(u64, Vec<[f64; 3]>)>,
     seen: u64,
     stride: u64,
 }
 
-impl Course {
+impl Growth {
     pub(super) fn see(&mut self, progress: &Progress<'_>) {
         self.stride = self.stride.max(1);
         let due = self.seen.is_multiple_of(self.stride);
@@ -48,7 +48,7 @@ impl Course {
         }
     }
 
-    /// By the box of the final front, which ends the course. A population may forget what was found before it;
+    /// By the box of the final front, which ends it. A population may forget what was found before it;
     /// what counts is the most until then.
     pub(super) fn steps(&self, gauge: Gauge, evaluations: u64, hypervolume: f64) -> Vec<Step> {
         let mut most: f64 = 0.0;

@@ -4,6 +4,7 @@ pub mod advice;
 pub mod compare;
 pub mod contest;
 mod convergence;
+mod course;
 pub mod detector;
 pub mod export;
 pub mod front;

@@ -7,8 +7,8 @@ use std::{
 
 use thiserror::Error;
 
-use super::convergence::Course;
-pub use super::convergence::Step;
+use super::convergence::Growth;
+pub use super::{convergence::Step, course::Course};
 use crate::{
     arm::{Arm, ArmError},
     moea::indicator::hypervolume,
@@ -244,9 +244,9 @@ pub fn run(
     mut observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Planned, PlanFailure> {
     let Order { task, setup, .. } = order;
-    let mut course = Course::default();
+    let mut growth = Growth::default();
     let found = search(setup, &options.search, |progress| {
-        course.see(progress);
+        growth.see(progress);
         observer(progress)
     })?;
     let judged = |timing: &Timing| Judged::of(setup, &setup.times_s(&timing.interval_s));
@@ -284,7 +284,7 @@ pub fn run(
         generations: found.generations,
         hasty: found.hasty,
         hypervolume,
-        convergence: course.steps(gauge, found.evaluations, hypervolume),
+        convergence: growth.steps(gauge, found.evaluations, hypervolume),
         choice,
         front: found.front,
         remarks,

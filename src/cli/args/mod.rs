@@ -185,6 +185,7 @@ pub struct ReportArgs {
 /// At most one of these.
 #[derive(Debug, clap::Args)]
 #[group(multiple = false)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line, of which one at most is given")]
 pub struct ReportFormat {
     /// One JSON document, as schemas/report.v1.schema.json describes it
     #[arg(long)]

@@ -23,8 +23,20 @@ pub(in crate::report) struct Chart {
     pub(super) group: Option<&'static str>,
     /// Height on the screen, pixels.
     pub(super) height: u32,
+    pub(super) size: Size,
+}
+
+/// How much room a chart takes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(in crate::report) enum Size {
+    /// The width of the page.
+    #[default]
+    Wide,
+    /// Two beside each other.
+    Half,
     /// Small, one of many: no legend, few ticks, no zoom.
-    pub(super) tile: bool,
+    Tile,
 }
 
 /// One vertical axis.
@@ -108,6 +120,10 @@ impl Role {
 }
 
 impl Chart {
+    pub(super) fn is_tile(&self) -> bool {
+        self.size == Size::Tile
+    }
+
     /// Range of the horizontal axis.
     pub(super) fn span(&self) -> [f64; 2] {
         self.x_range.unwrap_or_else(|| self.extent())

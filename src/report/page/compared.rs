@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::{
-    chart::{Chart, Panel, Role, Series, rounded, span},
+    chart::{Chart, Panel, Role, Series, Size, rounded, span},
     envelope::envelope,
     frame::{Plots, Section, document},
     joints::{at, times},
@@ -182,6 +182,7 @@ fn scatter(
             range: Some(ends),
         }],
         height: 360,
+        size: Size::Half,
         ..Chart::default()
     }
 }

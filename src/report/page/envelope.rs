@@ -88,7 +88,8 @@ mod tests {
                 values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)])
             };
             let all = range(&mut values.iter().copied());
-            prop_assert_eq!(all, range(&mut kept.iter().map(|&i| values[i])));
+            let left = range(&mut kept.iter().map(|&i| values[i]));
+            prop_assert_eq!(all.map(f64::to_bits), left.map(f64::to_bits));
         }
     }
 }

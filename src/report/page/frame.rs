@@ -32,11 +32,11 @@ impl Plots {
         let picture = paper::svg(&chart).unwrap_or_default();
         let picture = picture.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
         let figure = html! {
-            figure class=(if chart.tile { "chart tile" } else { "chart" }) {
+            figure class=(if chart.is_tile() { "chart tile" } else { "chart" }) {
                 figcaption {
                     span class="title" { (clean(&chart.title)) }
                     @if !chart.note.is_empty() { span class="note" { (clean(&chart.note)) } }
-                    @if !chart.tile { span class="legend" { (legend(&chart)) } }
+                    @if !chart.is_tile() { span class="legend" { (legend(&chart)) } }
                     span class="read" {}
                 }
                 div class="live" data-chart=(number) {}

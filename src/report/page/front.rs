@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::{
-    chart::{Chart, Panel, Role, Series, span},
+    chart::{Chart, Panel, Role, Series, Size, span},
     frame::Plots,
 };
 use crate::{report::counted, units::degrees_from_radians, workflow::front::Front};
@@ -74,6 +74,7 @@ fn projection(front: &Front, (title, across, up): (&str, usize, usize)) -> Chart
             range: None,
         }],
         height: 300,
+        size: Size::Half,
         ..Chart::default()
     }
 }
@@ -88,6 +89,7 @@ fn convergence(front: &Front) -> Chart {
     let steps = &front.convergence;
     Chart {
         title: "How the front grew".to_owned(),
+        note: "the last value is of the final front, judged more exactly than plans on the way".to_owned(),
         x_label: "evaluations",
         xs: vec![steps.iter().map(|step| step.evaluations as f64).collect()],
         panels: vec![Panel {
@@ -103,6 +105,7 @@ fn convergence(front: &Front) -> Chart {
             range: None,
         }],
         height: 300,
+        size: Size::Half,
         ..Chart::default()
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use maud::{Markup, html};
 
 use super::{
-    chart::{Band, Chart, Panel, Role, Series, rounded},
+    chart::{Band, Chart, Panel, Role, Series, Size, rounded},
     envelope::envelope,
     frame::Plots,
     strip::{Row, intervals},
@@ -84,7 +84,7 @@ fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Trans
         bands: transitions.iter().flat_map(|transition| bands(transition)).collect(),
         group: Some("run"),
         height: 270,
-        tile: false,
+        size: Size::Wide,
     }
 }
 

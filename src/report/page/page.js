@@ -29,7 +29,7 @@
 
   class Plot {
     constructor(box, spec) {
-      Object.assign(this, { box, spec, range: spec.x_range || extent(spec.xs.flat()) });
+      Object.assign(this, { box, spec, tile: spec.size === 'tile', range: spec.x_range || extent(spec.xs.flat()) });
       this.full = this.range;
       this.canvas = box.appendChild(document.createElement('canvas'));
       this.hair = box.appendChild(Object.assign(document.createElement('div'), { className: 'hair', hidden: true }));
@@ -39,9 +39,9 @@
       this.canvas.style.height = spec.height + 'px';
       this.canvas.setAttribute('role', 'img');
       this.canvas.setAttribute('aria-label', spec.title);
-      if (!spec.tile) this.listen();
+      if (!this.tile) this.listen();
     }
-    left() { return this.spec.tile ? 34 : 58; }
+    left() { return this.tile ? 34 : 62; }
     width() { return Math.max(this.box.clientWidth - this.left() - 10, 10); }
     pixel(x) { return this.left() + (x - this.range[0]) / (this.range[1] - this.range[0]) * this.width(); }
     value(px) { return this.range[0] + (px - this.left()) / this.width() * (this.range[1] - this.range[0]); }
@@ -58,8 +58,8 @@
       canvas.height = Math.round(spec.height * scale);
       const c = canvas.getContext('2d');
       c.scale(scale, scale);
-      c.font = (spec.tile ? 10 : 11) + 'px system-ui, sans-serif';
-      const foot = spec.tile ? 16 : 32, gap = 10;
+      c.font = (this.tile ? 10 : 11) + 'px system-ui, sans-serif';
+      const foot = this.tile ? 16 : 32, gap = 10;
       const room = spec.height - foot - 4 - gap * (spec.panels.length - 1);
       const shares = spec.panels.reduce((sum, p) => sum + p.share, 0);
       let top = 4;
@@ -84,7 +84,7 @@
         c.fillRect(this.pixel(band.from), top, Math.max(this.pixel(band.to) - this.pixel(band.from), 1), height);
       }
       c.restore();
-      const across = ticks(this.range, clamp(width / (spec.tile ? 45 : 80), 2, 12)), up = ticks([low, high], clamp(height / 26, 2, 8));
+      const across = ticks(this.range, clamp(width / (this.tile ? 45 : 80), 2, 12)), up = ticks([low, high], clamp(height / 26, 2, 8));
       c.lineWidth = 1; c.strokeStyle = colour('grid'); c.fillStyle = colour('soft');
       c.beginPath();
       for (const t of across.list) { c.moveTo(this.pixel(t), top); c.lineTo(this.pixel(t), bottom); }
@@ -95,7 +95,7 @@
       if (last) {
         c.textAlign = 'center'; c.textBaseline = 'top';
         for (const t of across.list) c.fillText(t.toFixed(across.digits), clamp(this.pixel(t), left, left + width - 8), bottom + 4);
-        if (!spec.tile) c.fillText(spec.x_label, left + width / 2, bottom + 18);
+        if (!this.tile) c.fillText(spec.x_label, left + width / 2, bottom + 18);
       }
       if (low < 0 && high > 0) {
         c.strokeStyle = colour('soft'); c.beginPath(); c.moveTo(left, y(0)); c.lineTo(left + width, y(0)); c.stroke();
@@ -104,7 +104,7 @@
       c.beginPath(); c.rect(left, top - 2, width, height + 4); c.clip();
       for (const s of panel.series) this.series(c, s, y, inside(spec.xs[s.x]));
       c.restore();
-      if (spec.tile) return;
+      if (this.tile) return;
       c.save();
       c.translate(9, top + height / 2); c.rotate(-Math.PI / 2);
       c.fillStyle = colour('soft'); c.textAlign = 'center'; c.textBaseline = 'middle';

@@ -12,7 +12,7 @@ use plotters::{
     },
 };
 
-use super::chart::{Chart, Panel, Role, Series};
+use super::chart::{Chart, Panel, Role, Series, Size};
 use crate::report::picture::{Axis, FONT, GRID, INK, short, steps};
 
 /// Why a picture could not be drawn.
@@ -37,9 +37,11 @@ pub(super) fn grid(charts: &[Chart], columns: usize) -> Result<String, Failure> 
     let columns = columns.clamp(1, charts.len().max(1));
     let rows = charts.len().div_ceil(columns).max(1);
     let pixels = |count: usize, each: u32| each.saturating_mul(u32::try_from(count).unwrap_or(u32::MAX));
-    let tile = charts.iter().all(|chart| chart.tile);
     let height = charts.iter().map(|chart| SCALE * chart.height + HEAD).max().unwrap_or(HEAD);
-    let size = (pixels(columns, if tile { TILE } else { WIDTH }), pixels(rows, height));
+    let size = (
+        pixels(columns, charts.iter().map(|chart| width(chart.size)).max().unwrap_or(WIDTH)),
+        pixels(rows, height),
+    );
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
@@ -52,16 +54,24 @@ pub(super) fn grid(charts: &[Chart], columns: usize) -> Result<String, Failure> 
     Ok(text)
 }
 
+fn width(size: Size) -> u32 {
+    match size {
+        Size::Wide => WIDTH,
+        Size::Half => WIDTH / 2,
+        Size::Tile => TILE,
+    }
+}
+
 type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
 fn draw<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, chart: &Chart) -> Drawn<DB> {
-    let head = (FONT, if chart.tile { 24 } else { 30 }).into_font().color(&INK);
+    let head = (FONT, if chart.is_tile() { 24 } else { 30 }).into_font().color(&INK);
     area.draw(&Text::new(
         crate::report::markup::clean(&format!("{}  {}", chart.title, chart.note)),
         (14, 10),
         head,
     ))?;
-    if !chart.tile {
+    if !chart.is_tile() {
         legend(area, chart)?;
     }
     let (_, mut below) = area.split_vertically(HEAD);
@@ -100,21 +110,21 @@ fn draw_panel<DB: DrawingBackend>(
     last: bool,
 ) -> Drawn<DB> {
     let ([from, to], [low, high]) = (chart.span(), panel.span());
-    let words = (FONT, if chart.tile { 20 } else { 24 }).into_font().color(&INK);
+    let words = (FONT, if chart.is_tile() { 20 } else { 24 }).into_font().color(&INK);
     let mut frame = ChartBuilder::on(area)
         .margin(6)
         .margin_right(24)
         .x_label_area_size(if !last {
             8
-        } else if chart.tile {
+        } else if chart.is_tile() {
             34
         } else {
             64
         })
-        .y_label_area_size(if chart.tile { 70 } else { 110 })
+        .y_label_area_size(if chart.is_tile() { 70 } else { 110 })
         .build_cartesian_2d(
-            Axis::new(from..to, steps(from, to, if chart.tile { 4 } else { 10 })),
-            Axis::new(low..high, steps(low, high, if chart.tile { 3 } else { 5 })),
+            Axis::new(from..to, steps(from, to, if chart.is_tile() { 4 } else { 10 })),
+            Axis::new(low..high, steps(low, high, if chart.is_tile() { 3 } else { 5 })),
         )?;
     let bands = chart.bands.iter().map(|band| {
         let fill = if band.late { LATE.mix(0.45) } else { LATE.mix(0.13) };
@@ -131,7 +141,7 @@ fn draw_panel<DB: DrawingBackend>(
         .axis_desc_style(words.clone())
         .x_label_formatter(&x_label)
         .y_label_formatter(&y_label);
-    if !chart.tile {
+    if !chart.is_tile() {
         mesh.y_desc(panel.label.clone());
         if last {
             mesh.x_desc(chart.x_label);

@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use super::{
+    chart::{Chart, Panel, Role, Series, Size, rounded},
     frame::{Plots, Section, document},
     front::front,
     parts::parts,
@@ -19,7 +20,7 @@ use crate::{
     units::degrees_from_radians,
     workflow::{
         front::Front,
-        plan::{Judged, Options, Planned},
+        plan::{Course, Judged, Options, Planned},
     },
 };
 
@@ -30,6 +31,7 @@ pub fn plan_page(
     options: &Options,
     bounds: &Bounds,
     planned: &Planned,
+    course: &Course,
 ) -> String {
     let mut plots = Plots::default();
     let found = Front::of(title, planned);
@@ -41,6 +43,11 @@ pub fn plan_page(
     let mut sections = vec![
         Section { id: "summary", heading: "In short", body: summary(planned) },
         Section { id: "front", heading: "The front", body: front(&found, &mut plots) },
+        Section {
+            id: "motion",
+            heading: "The chosen motion",
+            body: motion(&planned.joints, course, &mut plots),
+        },
         Section { id: "numbers", heading: "Numbers", body: parts(&list) },
     ];
     sections.extend(remarks(&planned.remarks));
@@ -48,7 +55,8 @@ pub fn plan_page(
 }
 
 /// One plan that was given, as one page.
-pub fn judged_page(title: &str, joints: &[String], judged: &Judged) -> String {
+pub fn judged_page(title: &str, joints: &[String], judged: &Judged, course: &Course) -> String {
+    let mut plots = Plots::default();
     let list: Vec<Part> = judged_parts(title, joints, judged);
     let sections = [
         Section {
@@ -56,10 +64,11 @@ pub fn judged_page(title: &str, joints: &[String], judged: &Judged) -> String {
             heading: "In short",
             body: html! { div class="cards" { (limits(judged, joints)) (cost("The plan", judged)) } },
         },
+        Section { id: "motion", heading: "The motion", body: motion(joints, course, &mut plots) },
         Section { id: "numbers", heading: "Numbers", body: parts(&list) },
     ];
     let facts = [("joints".to_owned(), joints.join(", "))];
-    document("plan", title, &facts, &sections, &Plots::default())
+    document("plan", title, &facts, &sections, &plots)
 }
 
 fn facts(joints: &[String], algorithm: &str, options: &Options, planned: &Planned) -> Vec<(String, String)> {
@@ -85,6 +94,43 @@ fn summary(planned: &Planned) -> Markup {
         }
         h3 { "What to do next" }
         ol class="next" { @for step in next(planned) { li { (step) } } }
+    }
+}
+
+/// Angle and speed of each joint over time.
+fn motion(joints: &[String], course: &Course, plots: &mut Plots) -> Markup {
+    let arrivals: Vec<String> = course.arrivals_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
+    html! {
+        p class="hint" { "Key points are reached at " (arrivals.join(", ")) " s. Drag to zoom, all joints together." }
+        div class="side" {
+            @for (joint, (angle, speed)) in joints.iter().zip(course.position_rad.iter().zip(&course.velocity_rad_s)) {
+                (plots.place(joint_motion(joint, &course.t_s, angle, speed)))
+            }
+        }
+    }
+}
+
+fn joint_motion(joint: &str, t_s: &[f64], angle_rad: &[f64], speed_rad_s: &[f64]) -> Chart {
+    let degrees =
+        |values: &[f64]| values.iter().map(|v| rounded(degrees_from_radians(*v))).collect::<Vec<f64>>();
+    let panel = |label: &str, name: &str, role, values: &[f64]| Panel {
+        label: label.to_owned(),
+        series: vec![Series { name: name.to_owned(), role, x: 0, y: degrees(values), names: Vec::new() }],
+        share: 0.5,
+        range: None,
+    };
+    Chart {
+        title: joint.to_owned(),
+        x_label: "time s",
+        xs: vec![t_s.iter().copied().map(rounded).collect()],
+        panels: vec![
+            panel("angle deg", "angle", Role::Measured, angle_rad),
+            panel("speed deg/s", "speed", Role::Error, speed_rad_s),
+        ],
+        group: Some("run"),
+        height: 230,
+        size: Size::Half,
+        ..Chart::default()
     }
 }
 

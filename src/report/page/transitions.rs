@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::{
-    chart::{Band, Chart, Panel, Role, Series, rounded, span},
+    chart::{Band, Chart, Panel, Role, Series, Size, rounded, span},
     envelope::envelope,
     frame::Plots,
     joints::{at, times},
@@ -137,6 +137,6 @@ fn tile(transition: &Transition, pair: &Pair) -> Chart {
         bands: late.map(|late_s| Band { from: 0.0, to: rounded(late_s), late: true }).into_iter().collect(),
         group: None,
         height: 150,
-        tile: true,
+        size: Size::Tile,
     }
 }

@@ -1,19 +1,20 @@
 // Opens pages that hydrotrace wrote in a headless Chromium: no console errors, nothing fetched, pointing and
 // zooming work, no plot is blank, nothing is wider than the screen.
 //
-//   node pages.js FOLDER PAGE.html...     screenshots go to FOLDER; CHROMIUM names the browser
-import { mkdtempSync, mkdirSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { basename, join, resolve } from 'node:path';
-import { pathToFileURL } from 'node:url';
-import { chromium } from 'playwright-core';
+//   node pages.cjs FOLDER PAGE.html...     screenshots go to FOLDER; CHROMIUM names the browser
+'use strict';
+const { mkdtempSync, mkdirSync, rmSync } = require('node:fs');
+const { tmpdir } = require('node:os');
+const { basename, join, resolve } = require('node:path');
+const { pathToFileURL } = require('node:url');
+const { chromium } = require('playwright-core');
 
 const FLAGS = [
   '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync',
 ];
 const [folder, ...pages] = process.argv.slice(2);
-if (!folder || !pages.length) { console.error('usage: node pages.js FOLDER PAGE.html...'); process.exit(2); }
+if (!folder || !pages.length) { console.error('usage: node pages.cjs FOLDER PAGE.html...'); process.exit(2); }
 mkdirSync(folder, { recursive: true });
 
 const faults = [];
@@ -82,22 +83,23 @@ async function use(page, where) {
   }
 }
 
-const profile = mkdtempSync(join(tmpdir(), 'pages-'));
-const browser = await chromium.launchPersistentContext(profile, {
-  executablePath: process.env.CHROMIUM || '/usr/bin/chromium', headless: true, args: FLAGS,
-});
-try {
-  const own = browser.browser();
-  for (const path of pages) {
-    for (const [width, scheme] of [[1280, 'light'], [1280, 'dark'], [360, 'light']]) {
-      const ms = await look(own, path, width, scheme);
-      console.log(`${basename(path)} ${width} px ${scheme}: loaded in ${ms.toFixed(0)} ms`);
+async function main() {
+  const profile = mkdtempSync(join(tmpdir(), 'pages-'));
+  const executablePath = process.env.CHROMIUM || '/usr/bin/chromium';
+  const context = await chromium.launchPersistentContext(profile, { executablePath, headless: true, args: FLAGS });
+  try {
+    for (const path of pages) {
+      for (const [width, scheme] of [[1280, 'light'], [1280, 'dark'], [360, 'light']]) {
+        const ms = await look(context.browser(), path, width, scheme);
+        console.log(`${basename(path)} ${width} px ${scheme}: loaded in ${ms.toFixed(0)} ms`);
+      }
     }
+  } finally {
+    await context.close();
+    rmSync(profile, { recursive: true, force: true });
   }
-} finally {
-  await browser.close();
-  rmSync(profile, { recursive: true, force: true });
+  for (const fault of new Set(faults)) console.error(fault);
+  console.log(faults.length ? `${faults.length} faults` : `${pages.length} pages hold`);
+  return faults.length ? 1 : 0;
 }
-for (const fault of faults) console.error(fault);
-console.log(faults.length ? `${faults.length} faults` : `${pages.length} pages hold`);
-process.exit(faults.length ? 1 : 0);
+main().then(code => process.exit(code), error => { console.error(error); process.exit(1); });
