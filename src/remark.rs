@@ -68,6 +68,10 @@ pub enum Code {
     Guessed,
     /// A ceiling so high that it binds nothing.
     InactiveBound,
+    /// A model that predicts too badly to make commands from.
+    PoorFit,
+    /// Something that a command does beyond what the plan does.
+    BeyondLimit,
 }
 
 impl Code {

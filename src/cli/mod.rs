@@ -3,12 +3,16 @@
 pub mod args;
 mod bench;
 mod compare;
+mod demo;
+mod excite;
 mod export;
+mod fit;
 mod import;
 mod info;
 mod output;
 mod plan;
 mod recover;
+mod replan;
 mod report;
 mod simulate;
 
@@ -23,8 +27,8 @@ use crate::{
     log::{CsvError, ExportError, LogError, WriteError},
     moea::MoeaError,
     workflow::{
-        compare::CompareFailure, contest::ContestFailure, import::ImportError, plan::PlanFailure,
-        simulate_log::SimulateFailure,
+        compare::CompareFailure, contest::ContestFailure, excite::ExciteFailure, fit::FitFailure,
+        import::ImportError, plan::PlanFailure, replan::ReplanFailure, simulate_log::SimulateFailure,
     },
 };
 
@@ -66,6 +70,18 @@ enum CliError {
     Contest(#[from] ContestFailure),
     #[error(transparent)]
     Compare(#[from] CompareFailure),
+    #[error(transparent)]
+    Fit(#[from] FitFailure),
+    #[error(transparent)]
+    Replan(#[from] ReplanFailure),
+    #[error(transparent)]
+    Excite(#[from] ExciteFailure),
+    #[error("cannot make the folder {}", path.display())]
+    Folder { path: std::path::PathBuf, source: std::io::Error },
+    #[error("the words of a step are no command: {0}")]
+    Words(String),
+    #[error("the limits cannot be written")]
+    Limits(#[from] toml::ser::Error),
     #[error("the plan cannot be logged")]
     Write(#[from] WriteError),
     #[error("{} is what is read; give another name to --output", .0.display())]
@@ -74,8 +90,6 @@ enum CliError {
     Terminal,
     #[error("cannot draw the figures")]
     Figures(#[source] Box<dyn std::error::Error + Send + Sync>),
-    #[error("cannot make the folder {}", .0.display())]
-    Folder(std::path::PathBuf, #[source] std::io::Error),
     #[error("cannot write the output")]
     Output(#[from] std::io::Error),
 }
@@ -90,6 +104,10 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
         Command::Compare(compare) => compare::run(compare, out, err),
         Command::Plan(plan) => plan::run(plan, out, err),
         Command::Simulate(simulate) => simulate::run(simulate, out),
+        Command::Fit(fit) => fit::run(fit, out, err),
+        Command::Excite(excite) => excite::run(excite, out),
+        Command::Replan(replan) => replan::run(replan, out, err),
+        Command::Demo(demo) => demo::run(demo, out),
         Command::Info(info) => info::run(info, out, err),
         Command::Recover(recover) => recover::run(recover, out, err),
         Command::Import(import) => import::run(import, out, err),

@@ -18,7 +18,7 @@ use crate::{
         plan_parts, text,
     },
     workflow::{
-        plan::{Course, Gauge, Judged, Options, Order, PlanFailure, run as search},
+        plan::{Course, Gauge, Judged, Options, Order, PlanFailure, Planned, run as search},
         plan_log::PlanLog,
     },
 };
@@ -56,6 +56,32 @@ fn plan(
     out: &mut impl Write,
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
+    let Found { planned, document, algorithm, options } = found(args, order, out)?;
+    let (title, bounds) = (&order.task.title, &order.task.bounds);
+    let rendered = if args.json {
+        document
+    } else if args.html {
+        plan_page(title, algorithm, &options, bounds, &planned, &course(order, &planned.chosen)?)
+    } else {
+        text(&plan_parts(title, algorithm, &options, bounds, &planned))
+    };
+    deliver(&rendered, args.page(), out)?;
+    if args.json || args.html {
+        say_remarks(&planned.remarks, err);
+    }
+    Ok(if planned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}
+
+/// What a search found, as it was written.
+pub(super) struct Found {
+    pub(super) planned: Planned,
+    document: String,
+    algorithm: &'static str,
+    options: Options,
+}
+
+/// Searches with a progress bar and writes the chosen plan.
+pub(super) fn found(args: &PlanArgs, order: &Order, out: &mut impl Write) -> Result<Found, CliError> {
     let (title, options) = (&order.task.title, args.options());
     let algorithm = Contender::named(&args.search.algorithm).map_or("", |contender| contender.title);
     let mut watch = Watch::new(args, &options);
@@ -79,18 +105,7 @@ fn plan(
         .map(|(key, value)| (key.to_owned(), value)),
     );
     write_log(args, order, &planned.chosen, &document, &provenance)?;
-    let rendered = if args.json {
-        document
-    } else if args.html {
-        plan_page(title, algorithm, &options, &order.task.bounds, &planned, &course(order, &planned.chosen)?)
-    } else {
-        text(&plan_parts(title, algorithm, &options, &order.task.bounds, &planned))
-    };
-    deliver(&rendered, args.page(), out)?;
-    if args.json || args.html {
-        say_remarks(&planned.remarks, err);
-    }
-    Ok(if planned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+    Ok(Found { planned, document, algorithm, options })
 }
 
 fn course(order: &Order, judged: &Judged) -> Result<Course, CliError> {

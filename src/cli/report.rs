@@ -12,7 +12,10 @@ use crate::{
     report::{
         gate_lines, markdown, report_figures, report_json, report_page, report_parts, text, transitions_csv,
     },
-    workflow::report::{Inputs, Report, run as analyse},
+    workflow::{
+        fit::read_limits,
+        report::{Inputs, Report, run as analyse},
+    },
 };
 
 /// Transitions listed without `--all`.
@@ -42,7 +45,9 @@ pub(super) fn run(
     } else if args.format.csv {
         transitions_csv(&report)
     } else if args.format.html {
-        report_page(&name, &report, None, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
+        let limits = args.limits.as_deref().map(read_limits).transpose()?;
+        let fit = limits.as_ref().map(|file| &file.fit);
+        report_page(&name, &report, fit, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
     } else if args.format.markdown {
         markdown(&report_parts(&name, &report, most))
     } else {
@@ -70,7 +75,7 @@ pub(super) fn run(
 /// The plots of the page, one file each.
 fn figures(folder: &Path, report: &Report) -> Result<(), CliError> {
     let figures = report_figures(report).map_err(CliError::Figures)?;
-    std::fs::create_dir_all(folder).map_err(|error| CliError::Folder(folder.to_owned(), error))?;
+    std::fs::create_dir_all(folder).map_err(|source| CliError::Folder { path: folder.to_owned(), source })?;
     for (name, svg) in figures {
         write_atomically(&folder.join(name), |file| Ok::<(), CliError>(file.write_all(svg.as_bytes())?))?;
     }

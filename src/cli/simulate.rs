@@ -11,16 +11,22 @@ use crate::{
     atomic::write_atomically,
     plant::{Parameters, PlantError},
     report::simulated_line,
-    workflow::simulate_log::{SimulateFailure, simulate},
+    workflow::simulate_log::{Run, SimulateFailure, simulate},
 };
 
 pub(super) fn run(args: &SimulateArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
+    let run = simulated(args)?;
+    deliver(&simulated_line(&run, &args.plant, args.seed, &args.output), None, out)?;
+    Ok(Outcome::Clean)
+}
+
+/// Runs the plan and writes the run.
+pub(super) fn simulated(args: &SimulateArgs) -> Result<Run, CliError> {
     spare_inputs(Some(&args.output), std::slice::from_ref(&args.log))?;
     let run = simulate(&args.log, parameters(&args.plant).map_err(SimulateFailure::from)?, args.seed)?;
     let bytes = run.log()?;
     write_atomically(&args.output, |file| Ok::<(), CliError>(file.write_all(&bytes)?))?;
-    deliver(&simulated_line(&run, &args.plant, args.seed, &args.output), None, out)?;
-    Ok(Outcome::Clean)
+    Ok(run)
 }
 
 /// A preset by its name, else a file.

@@ -24,8 +24,12 @@ const SHARE: f64 = 0.5;
 /// A correction acts this much later than the lag says, s.
 const BEYOND_LAG_S: f64 = 0.05;
 
-/// The command is the plan for so long from its start, s, and is free after as long again.
+/// The command is the plan for so long from its start, s.
 const UNTOUCHED_S: f64 = 0.2;
+
+/// Shortest and longest time over which it then comes free, s: where the plan rests first, there is time to
+/// take up a standing error without haste.
+const FREED_S: [f64; 2] = [0.2, 1.0];
 
 /// Speeds of the correction below this are none, so that a plan at rest stays a command at rest.
 const STILL_RAD_S: f64 = 1e-4;
@@ -60,6 +64,7 @@ pub struct Compensated {
 
 /// What was done to one joint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointCompensation {
     /// The joint.
     pub name: String,
@@ -128,11 +133,13 @@ fn on_grid(plan: &Track, sent: &[(f64, f64)]) -> Option<Track> {
 fn corrected(model: &Model, planned: &[(f64, f64)], settings: Compensation) -> Vec<(f64, f64)> {
     let n = planned.len();
     let ahead = steps_in(model.lag_s() + BEYOND_LAG_S);
+    let rests = planned.iter().position(|planned| planned.1.abs() > MOVES_RAD_S).unwrap_or(0);
+    let freed_s = (rests.saturating_sub(ahead) as f64 * STEP_S - UNTOUCHED_S).clamp(FREED_S[0], FREED_S[1]);
     let mut room = Room::default();
     let mut correction = vec![0.0; n];
     let mut smoothed = Vec::with_capacity(n);
     let mut sent = planned.to_vec();
-    let mut best = (room.rms_rad(model, planned, &sent), sent.clone());
+    let mut best = (room.rms_rad(model, planned, &sent), correction.clone());
     for _ in 0..ROUNDS {
         for (k, correction) in correction.iter_mut().enumerate() {
             let later = (k + ahead).min(n - 1);
@@ -140,17 +147,19 @@ fn corrected(model: &Model, planned: &[(f64, f64)], settings: Compensation) -> V
         }
         smooth(&correction, &mut smoothed);
         for (k, (correction, smoothed)) in correction.iter_mut().zip(&smoothed).enumerate() {
-            let since = ((k as f64 * STEP_S - UNTOUCHED_S) / UNTOUCHED_S).clamp(0.0, 1.0);
+            let since = ((k as f64 * STEP_S - UNTOUCHED_S) / freed_s).clamp(0.0, 1.0);
             let freed = since * since * (3.0 - 2.0 * since);
             *correction = freed * smoothed.clamp(-settings.most_rad, settings.most_rad);
         }
-        send(planned, &correction, settings.gain, &mut sent);
+        send(planned, &correction, 1.0, &mut sent);
         let rms_rad = room.rms_rad(model, planned, &sent);
         if rms_rad < best.0 {
-            best = (rms_rad, sent.clone());
+            best = (rms_rad, correction.clone());
         }
     }
-    best.1
+    // The rounds would make up for a smaller gain.
+    send(planned, &best.1, settings.gain, &mut sent);
+    sent
 }
 
 /// Plan and correction with the speed that belongs to their sum.

@@ -7,7 +7,7 @@ use super::{
     outcome::{Estimated, JointFit},
     parameters::{ASYMMETRY, FEED_FORWARD, INTEGRAL_GAIN, LIMITS, POSITION_GAIN, Priors, SHARED},
     run::Run,
-    skill::{Skill, skill},
+    skill::{HeldOutStart, Skill, skill, unexplained_rad},
 };
 use crate::units::DEGREE_RAD;
 
@@ -23,8 +23,8 @@ const LOWEST: [f64; 4] = [DEGREE_RAD, DEGREE_RAD, 20.0 * DEGREE_RAD, 20.0 * DEGR
 /// Residuals of a machine that tell as much as one independent one, until they are measured.
 const INEFFICIENCY: f64 = 50.0;
 
-/// Fits one joint, whose runs are not empty; with what held-out starts say of its peaks.
-pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>) {
+/// Fits one joint, whose runs are not empty; with its held-out starts.
+pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
     let most = |of: fn(&Run) -> f64| runs.iter().map(of).fold(0.0, f64::max);
     let reached = [
         most(|run| run.fastest_rad_s[0]),
@@ -57,9 +57,9 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>) {
     }
     let knowledge = Knowledge::new(&problem, &found.x, found.scale_rad, &mut room);
     let model = problem.model(&found.x);
-    let Skill { held_out_r2, peak_ratios } = skill(&problem, model.dead_time_s, &mut room);
+    let skill = skill(&problem, model.dead_time_s, &mut room);
     let samples = runs.iter().map(|run| run.samples.len()).sum();
-    (report(name, &problem, &found, &knowledge, reached, samples, held_out_r2), peak_ratios)
+    (report(name, &problem, &found, &knowledge, reached, samples, &skill), skill.starts)
 }
 
 /// Limits that were asked for far enough to show; looking for others costs time.
@@ -74,7 +74,7 @@ fn report(
     knowledge: &Knowledge,
     reached: [f64; 4],
     samples: usize,
-    held_out_r2: f64,
+    skill: &Skill,
 ) -> JointFit {
     let model = problem.model(&found.x);
     let one = |i: usize, value: f64, discrepancy: f64| {
@@ -96,7 +96,8 @@ fn report(
         samples,
         residual_rad: found.scale_rad,
         inefficiency: knowledge.inefficiency,
-        held_out_r2,
+        held_out_r2: skill.held_out_r2,
+        unexplained_peak_rad: unexplained_rad(&skill.starts),
         lag_s: knowledge.lag(problem, &found.x),
         dead_band_rad_s,
         dead_band_error_rad,

@@ -13,6 +13,7 @@ mod censor;
 mod error;
 mod estimate;
 mod excite;
+mod follow;
 mod interval;
 mod invert;
 mod joint;
@@ -31,6 +32,7 @@ use rayon::prelude::*;
 
 pub use error::FitError;
 pub use excite::{Excitation, JointRoom, Ramp, excite};
+pub use follow::{Follower, PredictedStart};
 pub use invert::{Compensated, Compensation, JointCompensation, compensate};
 pub use model::{Model, STEP_S};
 pub use outcome::{Estimated, Fit, JointFit, LEAST_SKILL};
@@ -69,22 +71,22 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
             let runs = of(name);
             let travel_rad: f64 = runs.iter().map(Run::travel_rad).sum();
             (travel_rad >= LEAST_TRAVEL_RAD).then(|| {
-                let (mut joint, ratios) = joint::joint(name, &runs);
+                let (mut joint, starts) = joint::joint(name, &runs);
                 joint.valve_dead_band = logs
                     .iter()
                     .find_map(|log| valve::dead_band(log.valve?.track(name)?, log.measured.track(name)?));
-                (joint, ratios)
+                (joint, starts)
             })
         })
         .collect();
     let left_out =
         names.iter().zip(&fitted).filter(|(_, fit)| fit.is_none()).map(|(name, _)| (*name).to_owned());
     let left_out: Vec<String> = left_out.collect();
-    let (joints, ratios): (Vec<JointFit>, Vec<Vec<f64>>) = fitted.into_iter().flatten().unzip();
+    let (joints, starts): (Vec<JointFit>, Vec<_>) = fitted.into_iter().flatten().unzip();
     if joints.is_empty() {
         let least_travel_rad = LEAST_TRAVEL_RAD;
         return Err(FitError::NothingMoves { logs: logs.len(), shared: names.len(), least_travel_rad });
     }
-    let ratios = ratios.concat();
+    let ratios: Vec<f64> = starts.iter().flatten().filter_map(skill::HeldOutStart::ratio).collect();
     Ok(Fit { joints, left_out, margin_starts: ratios.len(), peak_margin: skill::margin(ratios) })
 }

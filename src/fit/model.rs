@@ -22,6 +22,7 @@ pub(super) const BACKLASH_RAD: f64 = 0.05 * DEGREE_RAD;
 /// Pairs are for growing and for shrinking angles, both positive; a limit that no data showed is
 /// `None`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Model {
     /// From sent to valve, s.
     pub dead_time_s: f64,
@@ -52,8 +53,12 @@ pub struct Model {
     /// Growth of the gain's logarithm with the square of the angle, 1/rad².
     pub pose_curve_1_rad2: f64,
     /// Largest speeds, rad/s.
+    #[serde(with = "limits")]
+    #[cfg_attr(test, schemars(with = "[Option<f64>; 2]"))]
     pub speed_limit_rad_s: [Option<f64>; 2],
     /// Largest changes of speed, rad/s².
+    #[serde(with = "limits")]
+    #[cfg_attr(test, schemars(with = "[Option<f64>; 2]"))]
     pub acceleration_limit_rad_s2: [Option<f64>; 2],
     /// Full width of the play before the sensor, rad.
     pub backlash_rad: f64,
@@ -120,3 +125,18 @@ impl Model {
 
 /// No number of a model is larger.
 const MOST: f64 = 1e4;
+
+/// Limits in files, in which infinity stands for one that no data showed: TOML has no null in arrays.
+mod limits {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(limits: &[Option<f64>; 2], to: S) -> Result<S::Ok, S::Error> {
+        limits.map(|limit| limit.unwrap_or(f64::INFINITY)).serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<[Option<f64>; 2], D::Error> {
+        // JSON writes infinity as null.
+        let limits = <[Option<f64>; 2]>::deserialize(from)?;
+        Ok(limits.map(|limit| limit.filter(|limit| limit.is_finite())))
+    }
+}

@@ -51,6 +51,9 @@ const SPARSEST_S: f64 = 0.2;
 /// Window of a measured speed, half, s.
 const SPEED_WINDOW_S: f64 = 0.1;
 
+/// Longest stretch after a start in which its peak error is looked for, s.
+const WINDOW_S: f64 = 4.0;
+
 /// A measured sample on the grid of a run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
@@ -88,6 +91,17 @@ impl Run {
     pub(super) fn travel_rad(&self) -> f64 {
         self.sent.windows(2).map(|w| (w[1].0 - w[0].0).abs()).sum()
     }
+
+    /// Where the window after a start ends.
+    pub(super) fn window_end(&self, start: usize) -> usize {
+        window_end(&self.starts, start)
+    }
+}
+
+/// Where the window after one of several starts ends: at the next start, or with time.
+pub(super) fn window_end(starts: &[usize], start: usize) -> usize {
+    let latest = starts.get(start).map_or(0, |at| at + steps_in(WINDOW_S));
+    starts.get(start + 1).map_or(latest, |&next| next.min(latest))
 }
 
 /// A track every [`STEP_S`]: angle and speed; the speed by differences where the track has none.

@@ -7,9 +7,6 @@ use super::{
 };
 use crate::math::quantile;
 
-/// Longest stretch after a start in which its peak error is looked for, s.
-const WINDOW_S: f64 = 4.0;
-
 /// Margin where there are too few starts to measure it.
 const MARGIN: f64 = 1.2;
 
@@ -20,8 +17,24 @@ const STARTS: usize = 10;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Skill {
     pub(super) held_out_r2: f64,
-    /// Measured by predicted peak error of each start.
-    pub(super) peak_ratios: Vec<f64>,
+    /// Each start.
+    pub(super) starts: Vec<HeldOutStart>,
+}
+
+/// Peak errors after a start that was not fitted to, rad.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct HeldOutStart {
+    measured_rad: f64,
+    predicted_rad: f64,
+    /// Of the difference of measured and predicted error.
+    unexplained_rad: f64,
+}
+
+impl HeldOutStart {
+    /// Measured by predicted peak.
+    pub(super) fn ratio(&self) -> Option<f64> {
+        (self.predicted_rad > 0.0 && self.measured_rad > 0.0).then(|| self.measured_rad / self.predicted_rad)
+    }
 }
 
 /// Fits all parts of the data but one, and predicts that, for each in turn.
@@ -52,7 +65,7 @@ pub(super) fn skill(problem: &Problem, dead_time_s: f64, room: &mut Room) -> Ski
     let left: f64 = all().map(|error| (error.0 - error.1).powi(2)).sum();
     let held_out_r2 = 1.0 - left / total;
     let held_out_r2 = if held_out_r2.is_finite() { held_out_r2 } else { -1.0 };
-    Skill { held_out_r2, peak_ratios: peak_ratios(problem.runs, &errors) }
+    Skill { held_out_r2, starts: starts(problem.runs, &errors) }
 }
 
 /// What was sent at a sample, rad.
@@ -63,25 +76,33 @@ fn sent_rad(run: &Run, sample: &Sample) -> f64 {
     }
 }
 
-/// Measured by predicted peak error after each start.
-fn peak_ratios(runs: &[Run], errors: &[Vec<(f64, f64)>]) -> Vec<f64> {
-    let mut ratios = Vec::new();
+/// Peak errors after each start.
+fn starts(runs: &[Run], errors: &[Vec<(f64, f64)>]) -> Vec<HeldOutStart> {
+    let mut found = Vec::new();
     for (run, errors) in runs.iter().zip(errors) {
         for (k, &start) in run.starts.iter().enumerate() {
-            let latest = start + super::run::steps_in(WINDOW_S);
-            let end = run.starts.get(k + 1).map_or(latest, |&next| next.min(latest));
+            let end = run.window_end(k);
             let inside = |sample: &Sample| (start..end).contains(&sample.step);
-            let within = run.samples.iter().zip(errors).filter(|(sample, _)| inside(sample));
-            let (measured, predicted) =
-                within.fold((0.0_f64, 0.0_f64), |(measured, predicted), (_, error)| {
-                    (measured.max(error.0.abs()), predicted.max(error.1.abs()))
+            let within = || run.samples.iter().zip(errors).filter(|(sample, _)| inside(sample));
+            let peak = |of: fn(&(f64, f64)) -> f64| within().map(|(_, e)| of(e).abs()).fold(0.0, f64::max);
+            if within().next().is_some() {
+                found.push(HeldOutStart {
+                    measured_rad: peak(|e| e.0),
+                    predicted_rad: peak(|e| e.1),
+                    unexplained_rad: peak(|e| e.0 - e.1),
                 });
-            if predicted > 0.0 && measured > 0.0 {
-                ratios.push(measured / predicted);
             }
         }
     }
-    ratios
+    found
+}
+
+/// Mean and 0.9 quantile of the peak errors that the model leaves unexplained, rad; `None` without
+/// starts.
+pub(super) fn unexplained_rad(starts: &[HeldOutStart]) -> Option<[f64; 2]> {
+    let peaks: Vec<f64> = starts.iter().map(|start| start.unexplained_rad).collect();
+    let mean = peaks.iter().sum::<f64>() / peaks.len() as f64;
+    (!peaks.is_empty()).then(|| [mean, quantile(peaks, 0.9)])
 }
 
 /// What predicted peaks are to be multiplied with so that nine of ten measured ones lie below.

@@ -14,6 +14,7 @@ mod mesh;
 mod polish;
 mod problem;
 mod quadratic;
+mod sampled;
 mod search;
 mod seed;
 mod setup;

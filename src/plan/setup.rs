@@ -104,6 +104,16 @@ impl Setup {
         &self.arm
     }
 
+    /// A motion with the task's key points, dwells and ends, to be given its times.
+    pub fn template(&self) -> &Motion {
+        &self.template
+    }
+
+    /// Lowest and highest angle of a joint, rad; infinite without limits, also for a joint that is not there.
+    pub fn range_rad(&self, joint: usize) -> [f64; 2] {
+        self.limits.get(joint).map_or([f64::NEG_INFINITY, f64::INFINITY], |limits| limits.range_rad)
+    }
+
     /// Number of joints.
     pub fn joint_count(&self) -> usize {
         self.limits.len()

@@ -20,6 +20,9 @@ use crate::{
     task::{ArmSource, Task, TaskError, Weights},
 };
 
+/// The first task of the paper.
+pub const SAMPLE_TASK: &str = include_str!("../../sample-logs/tasks/task-1.toml");
+
 /// What to plan, as read from a file.
 #[derive(Debug, Clone)]
 pub struct Order {
@@ -39,6 +42,15 @@ impl Order {
     /// [`PlanFailure`] naming file and line.
     pub fn read(path: &Path) -> Result<Self, PlanFailure> {
         Self::parse(path, read(path)?)
+    }
+
+    /// The first task of the paper, on the sample arm.
+    ///
+    /// # Errors
+    ///
+    /// None but those of a program built wrongly.
+    pub fn sample() -> Result<Self, PlanFailure> {
+        Self::parse(Path::new("task-1.toml"), SAMPLE_TASK.to_owned())
     }
 
     /// Takes a task file's text; reads the arm that it names, from beside `path`.

@@ -20,6 +20,15 @@ pub const FRONT: &str = "plan.json";
 /// Name of the metadata that say where a plan comes from.
 pub const PROVENANCE: &str = "hydrotrace.plan";
 
+/// Key of the provenance that says when the times of the plan count from, s since the start of the log; 0 without.
+pub const STARTS: &str = "starts_s";
+
+/// Arrivals of the chosen plan in the document of a plan, s.
+pub fn chosen_times_s(document: &[u8]) -> Option<Vec<f64>> {
+    let document: serde_json::Value = serde_json::from_slice(document).ok()?;
+    document["chosen"]["times_s"].as_array()?.iter().map(serde_json::Value::as_f64).collect()
+}
+
 /// Points of the trajectory a second; controllers interpolate between states that have speeds and
 /// accelerations.
 const TRAJECTORY_HZ: f64 = 25.0;

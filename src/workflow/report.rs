@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::{front::Front, plan_log::FRONT};
+use super::{front::Front, plan_log::FRONT, schedule::Schedule};
 use crate::{
     log::{Attachment, LogError, ReadOptions, SourceInfo, read_recording},
     remark::{Code, Remarks},
@@ -109,6 +109,8 @@ pub struct Report {
     pub remarks: Remarks,
     /// The aligned samples, for plots.
     pub pairs: Vec<Pair>,
+    /// When the key points of the task are passed, where the log tells.
+    pub schedule: Option<Schedule>,
     /// The plans that the run's own was chosen from, where its log carries them.
     pub front: Option<Front>,
 }
@@ -127,6 +129,7 @@ impl Report {
 /// [`LogError`] if the log cannot be read or holds no planned and measured joints.
 pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     let recording = read_recording(&inputs.logs, &inputs.read)?;
+    let schedule = Schedule::of(&recording);
     let mut remarks = recording.remarks;
     let mut pairs = Vec::new();
     let mut alignment = Vec::new();
@@ -152,7 +155,7 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     let replay = replay(&pairs, &inputs.rules);
     let gates = gates(&inputs.gates, &replay);
     let front = front(&recording.attachments, &mut remarks);
-    Ok(Report { source: recording.source, alignment, replay, gates, remarks, pairs, front })
+    Ok(Report { source: recording.source, alignment, replay, gates, remarks, pairs, schedule, front })
 }
 
 fn front(attachments: &[Attachment], remarks: &mut Remarks) -> Option<Front> {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::plan_log::{PROVENANCE, STARTS};
 use crate::{
     log::{Attachment, LogWriter, Role, WriteError, WriteOptions},
     plant::{JointRecord, PayloadChange, Plant, PlantError, Record, Truth, simulate},
@@ -88,19 +89,20 @@ impl Outputs {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn log(&self) -> Result<Vec<u8>, WriteError> {
-        self.log_with(&[])
+        self.log_with(&[], 0.0)
     }
 
-    /// As [`Outputs::log`], with files.
+    /// As [`Outputs::log`], with files and with when the times of the plan count from, s.
     ///
     /// # Errors
     ///
     /// As [`Outputs::log`].
-    pub fn log_with(&self, files: &[Attachment]) -> Result<Vec<u8>, WriteError> {
+    pub fn log_with(&self, files: &[Attachment], starts_s: f64) -> Result<Vec<u8>, WriteError> {
         let names: Vec<&str> = self.record.joints.iter().map(|joint| joint.name.as_str()).collect();
         let mut log = LogWriter::new(Vec::new(), &names, WriteOptions::default())?;
         let truth = serde_json::to_string(&self.truth).unwrap_or_default();
         log.metadata(TRUTH, &BTreeMap::from([("json".to_owned(), truth)]))?;
+        log.metadata(PROVENANCE, &BTreeMap::from([(STARTS.to_owned(), starts_s.to_string())]))?;
         let joints = &self.record.joints;
         for (k, t_s) in self.record.t_s.iter().enumerate() {
             let stamp_ns = START_NS + nanoseconds(*t_s);

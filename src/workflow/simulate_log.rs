@@ -6,7 +6,8 @@ use thiserror::Error;
 
 use super::{
     plan::{PlanFailure, arm_of},
-    plan_log::{FRONT, TASK},
+    plan_log::{FRONT, TASK, chosen_times_s},
+    schedule::starts_s,
     simulate::{Inputs, Outputs, run},
 };
 use crate::{
@@ -64,6 +65,8 @@ pub struct Run {
     pub attachments: Vec<Attachment>,
     /// Whether a command was sent that is not the plan.
     pub commanded: bool,
+    /// When the times of the plan count from, s.
+    pub starts_s: f64,
 }
 
 impl Run {
@@ -73,7 +76,7 @@ impl Run {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn log(&self) -> Result<Vec<u8>, WriteError> {
-        self.outputs.log_with(&self.attachments)
+        self.outputs.log_with(&self.attachments, self.starts_s)
     }
 }
 
@@ -89,6 +92,7 @@ pub fn simulate(path: &Path, parameters: Parameters, seed: u64) -> Result<Run, S
     let topic = Selector { topic: Topics::default().command, field: None };
     let command = read_plan(&paths, &ReadOptions { planned: vec![topic], ..ReadOptions::default() }).ok();
     let attached = |name: &str| plan.attachments.iter().find(|file| file.name == name);
+    let starts_s = LEAD_S + starts_s(&plan.metadata).unwrap_or(0.0);
     let folder = path.parent().unwrap_or(Path::new(""));
     let (arm, payload) = match attached(TASK) {
         None => (Arm::sample().map_err(PlanFailure::from)?, Vec::new()),
@@ -97,8 +101,9 @@ pub fn simulate(path: &Path, parameters: Parameters, seed: u64) -> Result<Run, S
             let named = |source| SimulateFailure::Task { path: path.to_owned(), source };
             let task = Task::parse(&text).map_err(named)?;
             let arm = arm_of(&task, folder)?;
-            let times_s = attached(FRONT).and_then(chosen_times_s);
-            let payload = times_s.map_or(Ok(Vec::new()), |times_s| payload(&task, arm.clone(), &times_s))?;
+            let times_s = attached(FRONT).and_then(|file| chosen_times_s(&file.data));
+            let payload =
+                times_s.map_or(Ok(Vec::new()), |times_s| payload(&task, arm.clone(), &times_s, starts_s))?;
             (arm, payload)
         }
     };
@@ -108,24 +113,18 @@ pub fn simulate(path: &Path, parameters: Parameters, seed: u64) -> Result<Run, S
     let plant = Plant::new(&arm, parameters)?;
     let outputs = run(&Inputs { plant, plan: planned, command, payload, seed })?;
     let attachments = [TASK, FRONT].into_iter().filter_map(attached).cloned().collect();
-    Ok(Run { outputs, attachments, commanded })
-}
-
-/// Arrivals of the chosen plan in the document of a plan, s.
-fn chosen_times_s(document: &Attachment) -> Option<Vec<f64>> {
-    let document: serde_json::Value = serde_json::from_slice(&document.data).ok()?;
-    document["chosen"]["times_s"].as_array()?.iter().map(serde_json::Value::as_f64).collect()
+    Ok(Run { outputs, attachments, commanded, starts_s })
 }
 
 /// What the tool carries, and from when on, rests counted.
-fn payload(task: &Task, arm: Arm, times_s: &[f64]) -> Result<Vec<PayloadChange>, PlanError> {
+fn payload(task: &Task, arm: Arm, times_s: &[f64], starts_s: f64) -> Result<Vec<PayloadChange>, PlanError> {
     let setup = Setup::new(task, arm)?;
     let motion = setup.motion(times_s)?;
     let starts = motion.segments().iter().zip(setup.payload_kg());
     Ok(starts
         .enumerate()
         .map(|(i, (segment, &mass_kg))| PayloadChange {
-            at_s: if i == 0 { 0.0 } else { LEAD_S + segment.start_s },
+            at_s: if i == 0 { 0.0 } else { starts_s + segment.start_s },
             mass_kg,
         })
         .collect())

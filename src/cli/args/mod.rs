@@ -3,10 +3,14 @@
 mod bench;
 mod compare;
 mod contest;
+mod demo;
+mod excite;
 mod export;
+mod fit;
 mod import;
 mod moea;
 mod plan;
+mod replan;
 mod simulate;
 
 use std::path::PathBuf;
@@ -16,10 +20,14 @@ use clap::{Parser, Subcommand, ValueEnum};
 pub use bench::{Bench, BenchArgs, DetectorArgs};
 pub use compare::CompareArgs;
 pub use contest::ContestArgs;
+pub use demo::DemoArgs;
+pub use excite::ExciteArgs;
 pub use export::{ExportArgs, ExportFormat};
+pub use fit::{FitArgs, SentArgs};
 pub use import::ImportArgs;
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
+pub use replan::{ChangeArgs, ReplanArgs};
 pub use simulate::SimulateArgs;
 
 use crate::{
@@ -73,6 +81,23 @@ pub enum Command {
     #[command(after_help = "Examples:\n  hydrotrace simulate plan.mcap -o run.mcap\n  \
                             hydrotrace simulate plan.mcap -o run.mcap --plant lag-limited --seed 7")]
     Simulate(SimulateArgs),
+    /// What the machine does with what it is sent: lag, dead band, limits, from logs of runs
+    #[command(after_help = "Examples:\n  hydrotrace fit run.mcap -o limits.toml\n  \
+                            hydrotrace fit run-1.mcap run-2.mcap identification.mcap -o limits.toml\n  \
+                            hydrotrace fit run.mcap --command /arm/command:position --json")]
+    Fit(FitArgs),
+    /// Write a run from which `fit` can tell the limits: slow and much too fast strokes, joint by joint
+    #[command(after_help = "Examples:\n  hydrotrace excite -o id.mcap --task task.toml\n  \
+                            hydrotrace excite -o id.mcap --joint boom=40:20:60 --joint arm=90:70:110 --max-speed-deg-s 30")]
+    Excite(ExciteArgs),
+    /// Plan and command for the next run, from logs of the last ones
+    #[command(after_help = "Examples:\n  hydrotrace replan run.mcap -o next.mcap\n  \
+                            hydrotrace replan run.mcap -o next.mcap --gain 0.5\n  \
+                            hydrotrace replan field.mcap -o next.mcap --keep-plan\n  \
+                            hydrotrace replan run-1.mcap run-2.mcap --limits limits.toml --task task.toml -o next.mcap")]
+    Replan(ReplanArgs),
+    /// The whole loop on a simulated machine: plan, run, report, fit, plan again, run, compare
+    Demo(DemoArgs),
     /// What is in a log, what a report would use, and whether it is damaged
     Info(InfoArgs),
     /// Save everything that is whole in a damaged log
@@ -168,6 +193,10 @@ pub struct ReportArgs {
     /// Write the plots of the page as SVG files into DIR, which is made where there is none
     #[arg(long, value_name = "DIR")]
     pub figures: Option<PathBuf>,
+
+    /// Show the machine of FILE, which `fit` wrote, on the page
+    #[arg(long, value_name = "FILE", requires = "html")]
+    pub limits: Option<PathBuf>,
 
     /// List every transition, not only the worst
     #[arg(long)]

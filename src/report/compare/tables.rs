@@ -219,8 +219,8 @@ fn how(comparison: &Comparison) -> Vec<(String, String)> {
     vec![
         fact(
             "pairs",
-            "same joint, kind and direction; by time since the first planned start, or by order where another plan \
-             starts a joint equally often in the same directions"
+            "same joint, kind and direction; by time since the first planned start, by the key points of the task where \
+             both logs hold it, or by order where another plan starts a joint equally often in the same directions"
                 .to_owned(),
         ),
         fact("change", "after minus before, over each pair; negative is better".to_owned()),

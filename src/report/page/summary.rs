@@ -148,7 +148,8 @@ fn words(step: &Advice) -> String {
             counted(*starts, "planned start")
         ),
         Advice::EaseStarts { joint, delay_s } => format!(
-            "Work on starts from rest, {joint} first{}: compensate the valve's dead band, or plan a gentler start.",
+            "Work on starts from rest, {joint} first{}: hydrotrace replan LOG --keep-plan -o NEXT makes a command from this log \
+             that compensates dead band and lag; without --keep-plan, a gentler plan too.",
             delay_s.map_or(String::new(), |s| format!(" (half of all starts are more than {} ms late)", ms(s)))
         ),
         Advice::ShortenLag { joint, lag_s } => format!(

@@ -10,7 +10,7 @@ pub use tables::{broken_lines, ceiling_lines, judged_parts, plan_parts};
 use crate::{plan::Limit, units::degrees_from_radians};
 
 /// What people call a limited quantity.
-fn name(limit: Limit) -> &'static str {
+pub(super) fn name(limit: Limit) -> &'static str {
     match limit {
         Limit::Position => "position",
         Limit::Speed => "speed",
@@ -25,7 +25,7 @@ fn name(limit: Limit) -> &'static str {
 }
 
 /// A value of a limited quantity as people read it, with its unit.
-fn shown(limit: Limit, value: f64) -> String {
+pub(super) fn shown(limit: Limit, value: f64) -> String {
     match limit {
         Limit::Position => format!("{:.2} deg", degrees_from_radians(value)),
         Limit::Speed => format!("{:.2} deg/s", degrees_from_radians(value)),

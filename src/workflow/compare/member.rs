@@ -100,7 +100,9 @@ pub(super) fn pairs(
                 |side: &[(&Transition, PairedBy)]| side.iter().map(|(t, _)| value(t)).collect::<Vec<_>>();
             Change::of_runs(&values(&before), &values(&after))
         };
-        let by_order = before.iter().chain(&after).any(|(_, by)| *by == PairedBy::Order);
+        let by = [PairedBy::Order, PairedBy::Task]
+            .into_iter()
+            .find(|way| before.iter().chain(&after).any(|(_, by)| by == way));
         pairs.push(TransitionPair {
             joint: transition.joint.clone(),
             kind: transition.kind,
@@ -109,7 +111,7 @@ pub(super) fn pairs(
             planned_onset_after_s: after
                 .first()
                 .map_or(transition.planned_onset_s, |(t, _)| t.planned_onset_s),
-            paired_by: if by_order { PairedBy::Order } else { PairedBy::Clock },
+            paired_by: by.unwrap_or(PairedBy::Clock),
             peak_error_rad: change(|t| Some(t.peak_error_rad)),
             rms_error_rad: change(|t| Some(t.rms_error_rad)),
             onset_delay_s: change(|t| t.onset_delay_s),

@@ -7,6 +7,9 @@ use crate::{math::median, replay::Transition, series::Pair, workflow::report::Re
 
 /// Planned onsets at most this far apart, clocks aligned, are the same, s.
 const SAME_ONSET_S: f64 = 0.3;
+/// Planned onsets of another timing of the same task may be so far apart once its key points are laid onto
+/// each other, s.
+const SAME_MOTION_S: f64 = 2.0;
 /// Different plans have one rhythm if this share of their onsets meets.
 const SAME_RHYTHM: f64 = 0.8;
 /// Transitions of a joint that may be missing at the beginning of a run.
@@ -19,6 +22,8 @@ const MOST_MISSING: usize = 8;
 pub enum PairedBy {
     /// Their planned onsets are at the same time of the plan.
     Clock,
+    /// Both runs hold the same task, and between the same of its key points they are nearest.
+    Task,
     /// The joint starts equally often in the same directions, in another rhythm.
     Order,
 }
@@ -52,7 +57,10 @@ pub(super) fn matched(a: &Report, b: &Report, joints: &[String]) -> Match {
     let plans = if plans.is_some_and(|plans| plans.same) { plans } else { other().or(plans) };
     let same = plans.is_some_and(|plans| plans.same);
     let offset_s = plans.map_or(first_s, |plans| plans.offset_s);
-    let partners = starts.partners(offset_s, same);
+    let partners = match (&a.schedule, &b.schedule) {
+        (Some(a), Some(b)) if !same && a.same_task(b) => starts.partners_by_task(|t_s| b.at(a.phase(t_s))),
+        _ => starts.partners(offset_s, same),
+    };
     Match { offset_s, plans, partners }
 }
 
@@ -130,29 +138,45 @@ impl<'a> Starts<'a> {
 
     /// For each transition of a joint in the first run the one of the other that is nearest in time, and to
     /// which it is nearest.
-    fn by_clock(&self, [a, b]: &[Vec<usize>; 2], offset_s: f64) -> Vec<Option<usize>> {
-        let off_s = |i: usize, j: usize| (self.gap_s(i, j) - offset_s).abs();
-        let near = |i: usize, j: usize| self.alike(i, j) && off_s(i, j) <= SAME_ONSET_S;
-        let around = |all: &[Transition], of: &[usize], at_s: f64| {
-            let from = of.partition_point(|&k| all[k].planned_onset_s < at_s - SAME_ONSET_S);
-            let to = of.partition_point(|&k| all[k].planned_onset_s <= at_s + SAME_ONSET_S);
-            of.get(from..to).unwrap_or_default().to_vec()
+    fn by_clock(&self, joint: &[Vec<usize>; 2], offset_s: f64) -> Vec<Option<usize>> {
+        self.nearest(joint, |t_s| t_s + offset_s, SAME_ONSET_S)
+    }
+
+    /// The same on any clock that takes times of the first run, in order, to times of the other.
+    fn nearest(
+        &self,
+        [a, b]: &[Vec<usize>; 2],
+        clock: impl Fn(f64) -> f64,
+        reach_s: f64,
+    ) -> Vec<Option<usize>> {
+        let from_s: Vec<f64> = a.iter().map(|&i| clock(self.a[i].planned_onset_s)).collect();
+        let to_s: Vec<f64> = b.iter().map(|&j| self.b[j].planned_onset_s).collect();
+        let around = |of: &[f64], at_s: f64| {
+            of.partition_point(|t| *t < at_s - reach_s)..of.partition_point(|t| *t <= at_s + reach_s)
         };
-        a.iter()
-            .map(|&i| {
-                let there = around(self.b, b, self.a[i].planned_onset_s + offset_s);
-                let j = there
-                    .into_iter()
-                    .filter(|&j| near(i, j))
-                    .min_by(|&j, &k| off_s(i, j).total_cmp(&off_s(i, k)))?;
-                let back = around(self.a, a, self.b[j].planned_onset_s - offset_s);
-                let nearest = back
-                    .into_iter()
-                    .filter(|&k| near(k, j))
-                    .min_by(|&k, &l| off_s(k, j).total_cmp(&off_s(l, j)));
-                (nearest == Some(i)).then_some(j)
+        let off_s = |k: usize, l: usize| (to_s[l] - from_s[k]).abs();
+        (0..a.len())
+            .map(|k| {
+                let l = around(&to_s, from_s[k])
+                    .filter(|&l| self.alike(a[k], b[l]))
+                    .min_by(|&l, &m| off_s(k, l).total_cmp(&off_s(k, m)))?;
+                let back = around(&from_s, to_s[l])
+                    .filter(|&m| self.alike(a[m], b[l]))
+                    .min_by(|&m, &n| off_s(m, l).total_cmp(&off_s(n, l)));
+                (back == Some(k)).then(|| b[l])
             })
             .collect()
+    }
+
+    /// What happens between the same key points, whatever the times.
+    fn partners_by_task(&self, clock: impl Fn(f64) -> f64) -> Vec<Option<(usize, PairedBy)>> {
+        let mut partners = vec![None; self.a.len()];
+        for joint in &self.joints {
+            for (&i, j) in joint[0].iter().zip(self.nearest(joint, &clock, SAME_MOTION_S)) {
+                partners[i] = j.map(|j| (j, PairedBy::Task));
+            }
+        }
+        partners
     }
 
     /// The same starts in the same order.
@@ -242,6 +266,17 @@ mod tests {
         let mut other_way = slow;
         other_way[2] = start(-1, other_way[2].planned_onset_s);
         assert_eq!(partners(&task(), &other_way, 1.0, false), [None; 4]);
+    }
+
+    #[test]
+    fn another_timing_of_the_same_task_pairs_by_its_key_points_even_where_a_start_is_gone() {
+        // Twice as slow between 2 and 21 s, and without the start at 10 s.
+        let slow = [start(1, 2.0), start(1, 40.0), start(-1, 49.5)];
+        let task = task();
+        let starts = Starts::new(&task, &slow, &["a".to_owned()]);
+        let clock = |t_s: f64| if t_s < 21.0 { 2.0 + 2.0 * (t_s - 2.0) } else { t_s + 19.0 };
+        let found: Vec<_> = starts.partners_by_task(clock).into_iter().map(|p| p.map(|(j, _)| j)).collect();
+        assert_eq!(found, [Some(0), None, Some(1), Some(2)]);
     }
 
     #[test]

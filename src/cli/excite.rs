@@ -1,0 +1,27 @@
+//! `excite`: writes an identification run.
+
+use std::io::Write;
+
+use super::{
+    CliError, Outcome,
+    args::ExciteArgs,
+    output::{deliver, spare_inputs},
+};
+use crate::{
+    atomic::write_atomically,
+    report::{excited_parts, text},
+    workflow::excite::run as excite,
+};
+
+/// Samples a second in the log.
+const RATE_HZ: f64 = 100.0;
+
+pub(super) fn run(args: &ExciteArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
+    let read: Vec<_> = args.task.iter().cloned().collect();
+    spare_inputs(Some(&args.output), &read)?;
+    let excited = excite(&args.inputs())?;
+    let bytes = excited.log(RATE_HZ)?;
+    write_atomically(&args.output, |file| Ok::<(), CliError>(file.write_all(&bytes)?))?;
+    deliver(&text(&excited_parts(&excited, &args.output)), None, out)?;
+    Ok(Outcome::Clean)
+}

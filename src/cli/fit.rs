@@ -1,0 +1,33 @@
+//! `fit`: fits, renders, writes the limits.
+
+use std::io::Write;
+
+use super::{
+    CliError, Outcome,
+    args::FitArgs,
+    output::{deliver, say_remarks, spare_inputs},
+};
+use crate::{
+    report::{fit_json, fit_parts, limits_toml, text},
+    workflow::fit::{Fitted, Inputs, run as fit},
+};
+
+pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
+    let fitted = fitted(args)?;
+    let rendered = if args.json { fit_json(&fitted) } else { text(&fit_parts(&fitted)) };
+    deliver(&rendered, None, out)?;
+    if args.json {
+        say_remarks(&fitted.remarks, err);
+    }
+    Ok(if fitted.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}
+
+/// Fits the runs and writes the limits.
+pub(super) fn fitted(args: &FitArgs) -> Result<Fitted, CliError> {
+    spare_inputs(args.output.as_deref(), &args.logs)?;
+    let fitted = fit(&Inputs { logs: args.logs.clone(), wanted: args.sent.wanted() })?;
+    if let Some(path) = &args.output {
+        deliver(&limits_toml(&fitted.file())?, Some(path), &mut std::io::sink())?;
+    }
+    Ok(fitted)
+}

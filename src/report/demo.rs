@@ -1,0 +1,150 @@
+//! The loop, told in one screen.
+
+use std::path::Path;
+
+use super::{NONE, Part, Sheet, deg, tables::remark_parts};
+use crate::workflow::{
+    compare::{Comparison, Measure, Scope, Summary},
+    fit::Fitted,
+    plan::Planned,
+    replan::Replanned,
+};
+
+/// What happened.
+#[derive(Debug)]
+pub struct Story<'a> {
+    /// Where the files are.
+    pub dir: &'a Path,
+    /// The words of both simulations.
+    pub machine: [String; 2],
+    /// The first plan.
+    pub planned: &'a Planned,
+    /// The machine.
+    pub fitted: &'a Fitted,
+    /// The second plan.
+    pub replanned: &'a Replanned,
+    /// Both runs.
+    pub comparison: &'a Comparison,
+}
+
+/// Columns of a bar for the largest value.
+const WIDTH: f64 = 40.0;
+
+/// The loop, for people.
+pub fn demo_parts(story: &Story<'_>) -> Vec<Part> {
+    let Story { planned, fitted, replanned, comparison, .. } = story;
+    let before = &replanned.before;
+    let optional = |value: Option<f64>| value.map_or(NONE.to_owned(), deg);
+    let skills = || fitted.fit.joints.iter().map(|joint| joint.held_out_r2);
+    let commands = replanned.command.as_ref();
+    let most = commands.map_or(0.0, |command| {
+        command.joints.iter().map(|joint| joint.compensation.peak_correction_rad).fold(0.0, f64::max)
+    });
+    let steps = [
+        (
+            "plan task-1.toml -o plan.mcap".to_owned(),
+            format!(
+                "{:.2} s through the key points, chosen among {} plans",
+                planned.chosen.objectives.duration_s,
+                planned.front.len()
+            ),
+        ),
+        (story.machine[0].clone(), "valves, oil, friction, encoders; it starts late and badly".to_owned()),
+        (
+            "report run-1.mcap".to_owned(),
+            format!(
+                "{} starts and reversals, peak error {} deg in the mean, {} deg at worst",
+                before.measured_transitions,
+                optional(before.measured_mean_peak_rad),
+                optional(before.measured_worst_peak_rad)
+            ),
+        ),
+        (
+            "fit run-1.mcap -o limits.toml".to_owned(),
+            format!(
+                "{} joints; what was not fitted to is predicted with R2 {:.2} to {:.2}",
+                fitted.fit.joints.len(),
+                skills().fold(f64::INFINITY, f64::min),
+                skills().fold(f64::NEG_INFINITY, f64::max)
+            ),
+        ),
+        (
+            "replan run-1.mcap --limits limits.toml -o next.mcap".to_owned(),
+            format!(
+                "plan {}, command up to {} deg off it; {} deg expected",
+                if replanned.retimed { "re-timed" } else { "kept" },
+                deg(most),
+                deg(replanned.after.mean_peak_rad)
+            ),
+        ),
+        (story.machine[1].clone(), "the same machine, other noise".to_owned()),
+        ("compare run-1.mcap run-2.mcap".to_owned(), compared(comparison)),
+    ];
+    let mut parts = vec![
+        Part::Title(format!(
+            "From a task to a better run, on a simulated hydraulic arm; the files are in {}",
+            story.dir.display()
+        )),
+        Part::Heading("Steps".into()),
+    ];
+    for (command, found) in steps {
+        parts.push(Part::Line(format!("$ hydrotrace {command}")));
+        parts.push(Part::Line(format!("    {found}")));
+    }
+    parts.extend([
+        Part::Heading("Mean peak error at starts and reversals, first and second run".into()),
+        Part::Sheet(Sheet { head: vec!["joint", "run", "", "deg"], left: 3, rows: bars(comparison) }),
+        Part::Line(format!(
+            "Plan {:.2} s before, {:.2} s after. Run any of these commands in {} for all that it says.",
+            before.duration_s,
+            replanned.duration_s,
+            story.dir.display()
+        )),
+    ]);
+    remark_parts(&replanned.remarks, &mut parts);
+    parts
+}
+
+fn peaks<'a>(comparison: &'a Comparison, scope: &Scope) -> Option<&'a Summary> {
+    comparison.summaries.iter().find(|s| s.measure == Measure::PeakError && s.scope == *scope)
+}
+
+fn compared(comparison: &Comparison) -> String {
+    let Some(all) = peaks(comparison, &Scope::All) else { return NONE.to_owned() };
+    let (Some(before), Some(after), Some(change)) = (all.mean_before, all.mean_after, all.relative_change)
+    else {
+        return "no transition has a counterpart".to_owned();
+    };
+    format!(
+        "peak error {} -> {} deg in the mean ({:+.0} %), {} of {} smaller",
+        deg(before),
+        deg(after),
+        100.0 * change,
+        all.smaller,
+        all.pairs
+    )
+}
+
+/// A bar for each joint before and after.
+fn bars(comparison: &Comparison) -> Vec<Vec<String>> {
+    let joints = || {
+        comparison.joints.iter().filter_map(|joint| {
+            let found = peaks(comparison, &Scope::Joint(joint.clone()))?;
+            Some((joint, found.mean_before?, found.mean_after?))
+        })
+    };
+    let most = joints().map(|(_, before, after)| before.max(after)).fold(f64::MIN_POSITIVE, f64::max);
+    let bar = |value: f64| {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most the width")]
+        let columns = (value / most * WIDTH).round() as usize;
+        "#".repeat(columns.max(1))
+    };
+    joints()
+        .flat_map(|(joint, before, after)| {
+            [
+                vec![joint.clone(), "1".into(), bar(before), deg(before)],
+                vec![String::new(), "2".into(), bar(after), deg(after)],
+            ]
+        })
+        .collect()
+}

@@ -1,0 +1,44 @@
+//! What an identification run does.
+
+use std::path::Path;
+
+use super::{Part, Sheet, counted};
+use crate::{units::degrees_from_radians, workflow::excite::Excited};
+
+/// An identification run, for people.
+pub fn excited_parts(excited: &Excited, file: &Path) -> Vec<Part> {
+    let number = |rad: f64| format!("{:.1}", degrees_from_radians(rad));
+    let strokes: Vec<String> = excited
+        .excitation
+        .ramps
+        .iter()
+        .map(|ramp| format!("+-{} deg at {} deg/s", number(ramp.travel_rad), number(ramp.speed_rad_s)))
+        .collect();
+    let rows = excited.joints.iter().map(|joint| {
+        let sent = excited.command.track(&joint.name).map_or(&[][..], |track| track.position_rad());
+        let least = sent.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = sent.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mut row = vec![joint.name.clone(), number(joint.home_rad), number(least), number(most)];
+        row.extend(joint.range_rad.map(|end| if end.is_finite() { number(end) } else { super::NONE.into() }));
+        row
+    });
+    vec![
+        Part::Title(format!(
+            "Identification run of {}, {:.0} s, in {}",
+            counted(excited.joints.len(), "joint"),
+            excited.duration_s(),
+            file.display()
+        )),
+        Part::Line(format!("One joint after the other, the others at rest: {}.", strokes.join("; "))),
+        Part::Sheet(Sheet {
+            head: vec!["joint", "home deg", "sent from", "to", "allowed from", "to"],
+            left: 1,
+            rows: rows.collect(),
+        }),
+        Part::Line(
+            "The arm must stand at home when it starts. The fast strokes are faster than a machine is, so that its \
+             limits show; --max-speed-deg-s tames them. Nothing here knows of obstacles: keep the area clear."
+                .into(),
+        ),
+    ]
+}

@@ -1,0 +1,69 @@
+//! A fit as one JSON document.
+
+use serde::Serialize;
+
+use crate::{
+    fit::{JointFit, LEAST_SKILL},
+    remark::Remark,
+    report::json,
+    workflow::fit::{Fitted, FittedRun},
+};
+
+/// What logs say of a machine. Angles are radians, times seconds; pairs are for growing and for
+/// shrinking angles.
+#[derive(Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Document<'a> {
+    /// Always "hydrotrace.fit.v1".
+    format: &'static str,
+    /// Name and version of the program that wrote it.
+    program: &'static str,
+    /// The runs.
+    runs: &'a [FittedRun],
+    /// Each joint; every quantity has `value`, `interval` (95 %), `identified` and `lower_bound`.
+    joints: &'a [JointFit],
+    /// Joints that are sent and measured but hardly moved.
+    left_out: &'a [String],
+    /// What predicted peak errors are to be multiplied with so that nine of ten measured ones lie below.
+    peak_margin: f64,
+    /// Number of held-out starts behind the margin.
+    margin_starts: usize,
+    /// Least held-out R2 for which commands are made.
+    least_held_out_r2: f64,
+    /// Doubts; any makes the exit code 3.
+    remarks: &'a [Remark],
+}
+
+/// A fit, SI units and radians throughout.
+pub fn fit_json(fitted: &Fitted) -> String {
+    json::pretty(&Document {
+        format: "hydrotrace.fit.v1",
+        program: json::PROGRAM,
+        runs: &fitted.runs,
+        joints: &fitted.fit.joints,
+        left_out: &fitted.fit.left_out,
+        peak_margin: fitted.fit.peak_margin,
+        margin_starts: fitted.fit.margin_starts,
+        least_held_out_r2: LEAST_SKILL,
+        remarks: fitted.remarks.as_slice(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Document;
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_fit() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/schemas/fit.v1.schema.json");
+        let settings = schemars::generate::SchemaSettings::draft2020_12();
+        let mut schema = settings.into_generator().into_root_schema_for::<Document<'_>>();
+        schema.insert("title".to_owned(), "hydrotrace fit, version 1".into());
+        let text = serde_json::to_string_pretty(&schema).unwrap() + "\n";
+        if std::env::var_os("UPDATE_SCHEMA").is_some() {
+            std::fs::write(path, &text).unwrap();
+        }
+        let committed = std::fs::read_to_string(path).unwrap_or_default();
+        assert!(committed == text, "run `UPDATE_SCHEMA=1 cargo test the_committed_schema`");
+    }
+}

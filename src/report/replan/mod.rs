@@ -1,0 +1,17 @@
+//! What was planned again.
+
+mod document;
+mod tables;
+
+pub use document::replan_json;
+pub use tables::replan_parts;
+
+use crate::{plan::Limit, workflow::replan::Replanned};
+
+/// Name of a joint of the task's arm.
+fn joint_name(replanned: &Replanned, joint: Option<usize>) -> Option<String> {
+    replanned.order.as_ref()?.setup.joint_names().into_iter().nth(joint?)
+}
+
+/// The limits that a command is held against.
+const OF_COMMAND: [Limit; 4] = [Limit::Position, Limit::Speed, Limit::Acceleration, Limit::RodSpeed];

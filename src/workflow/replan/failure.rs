@@ -1,0 +1,65 @@
+//! Why there is no plan for the next run.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::{
+    fit::FitError,
+    plan::PlanError,
+    series::TrackError,
+    workflow::{fit::FitFailure, plan::PlanFailure},
+};
+
+/// Why there is no plan for the next run.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReplanFailure {
+    /// No run.
+    #[error("found no log, expected at least one run to learn from")]
+    NoLog,
+    /// Neither plan nor command may change.
+    #[error("--keep-plan and --no-precompensation leave nothing to change; drop one of them")]
+    NothingToChange,
+    /// The runs, or the file with limits.
+    #[error(transparent)]
+    Fit(#[from] FitFailure),
+    /// A prediction.
+    #[error("the machine cannot be predicted")]
+    Predict(#[from] FitError),
+    /// The task.
+    #[error(transparent)]
+    Task(#[from] PlanFailure),
+    /// The task under fitted limits.
+    #[error("the task cannot be planned under the limits of the machine")]
+    Plan(#[from] PlanError),
+    /// Samples that are no track.
+    #[error("the plan in the log cannot be sampled")]
+    Track(#[from] TrackError),
+    /// The plan never moves.
+    #[error("the plan in {} never moves; give the log of a run in which it does", path.display())]
+    AtRest {
+        /// The log.
+        path: PathBuf,
+    },
+    /// No task to plan.
+    #[error(
+        "{} holds no task, and only the plan may change; name the task with --task, or leave out --no-precompensation",
+        path.display()
+    )]
+    NoTask {
+        /// The log.
+        path: PathBuf,
+    },
+    /// No joint predicted well enough for a command.
+    #[error(
+        "no joint is predicted well enough for a command: the best held-out R2 is {best:.2}, {least} is needed; \
+         was something else sent than the plan (--command), or did valves or controller change between the logs?"
+    )]
+    Unpredictable {
+        /// The best found.
+        best: f64,
+        /// The least for commands.
+        least: f64,
+    },
+}

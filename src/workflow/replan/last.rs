@@ -1,0 +1,133 @@
+//! The plan of the last run, as far as its log tells it.
+
+use std::path::Path;
+
+use super::{Inputs, ReplanFailure};
+use crate::{
+    log::Attachment,
+    plan::Setup,
+    series::{Series, Track, TrackError},
+    spline::{Motion, Quantity, Samples},
+    units::DEGREE_RAD,
+    workflow::{
+        observe::Observed,
+        plan::Order,
+        plan_log::{FRONT, TASK, chosen_times_s},
+        schedule::starts_s,
+    },
+};
+
+/// Rest before the plan, s: commands start before their plan.
+pub const LEAD_S: f64 = 1.5;
+/// Rest after the last motion, s.
+pub const TAIL_S: f64 = 1.0;
+
+/// Planned speed that is motion, rad/s.
+const MOVES_RAD_S: f64 = 0.05 * DEGREE_RAD;
+
+/// The last run's plan.
+pub(super) struct Last {
+    /// Samples, from [`LEAD_S`] before the first motion on.
+    pub(super) plan: Series,
+    /// When the times of the task's plan count from, s.
+    pub(super) starts_s: Option<f64>,
+    /// From the first to the last motion, s.
+    pub(super) duration_s: f64,
+    /// The task, if it is known.
+    pub(super) order: Option<Order>,
+    /// Arrivals at its key points, s, if they are known and of this task.
+    pub(super) times_s: Option<Vec<f64>>,
+    /// Files of the log that go with the plan.
+    pub(super) files: Vec<Attachment>,
+}
+
+impl Last {
+    pub(super) fn of(path: &Path, observed: &Observed, inputs: &Inputs) -> Result<Self, ReplanFailure> {
+        let planned = &observed.recording.planned;
+        let [from_s, to_s] =
+            moving_s(planned).ok_or_else(|| ReplanFailure::AtRest { path: path.to_owned() })?;
+        let plan = cut(planned, from_s - LEAD_S, to_s + TAIL_S)?;
+        let order = match (&inputs.task, observed.attached(TASK)) {
+            (Some(task), _) => Some(Order::read(task)?),
+            (None, Some(text)) => Some(Order::parse(path, String::from_utf8_lossy(text).into_owned())?),
+            (None, None) => None,
+        };
+        let times_s = observed.attached(FRONT).and_then(chosen_times_s);
+        let times_s =
+            times_s.filter(|times_s| order.as_ref().is_some_and(|order| order.setup.motion(times_s).is_ok()));
+        let starts_s = starts_s(&observed.recording.metadata);
+        let named = |file: &&Attachment| [TASK, FRONT].contains(&file.name.as_str());
+        Ok(Self {
+            plan,
+            starts_s: starts_s.map(|s| s - (from_s - LEAD_S)),
+            duration_s: to_s - from_s,
+            order,
+            times_s,
+            files: observed.recording.attachments.iter().filter(named).cloned().collect(),
+        })
+    }
+
+    /// The motion of the task, if it is known.
+    pub(super) fn motion(&self) -> Option<Motion> {
+        self.order.as_ref()?.setup.motion(self.times_s.as_ref()?).ok()
+    }
+}
+
+/// When the first joint starts to move and the last one stops, s.
+fn moving_s(series: &Series) -> Option<[f64; 2]> {
+    let mut found: Option<[f64; 2]> = None;
+    for track in &series.tracks {
+        let (t_s, angle_rad) = (track.t_s(), track.position_rad());
+        let moving = |k: usize| {
+            let fast = track.velocity_rad_s().is_some_and(|speed| speed[k].abs() > MOVES_RAD_S);
+            fast || (k > 0
+                && (angle_rad[k] - angle_rad[k - 1]).abs() > MOVES_RAD_S * (t_s[k] - t_s[k - 1]).max(1e-3))
+        };
+        let first = (0..track.len()).find(|&k| moving(k));
+        let last = (0..track.len()).rev().find(|&k| moving(k));
+        if let (Some(first), Some(last)) = (first, last) {
+            let [from, to] = found.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
+            found = Some([from.min(t_s[first]), to.max(t_s[last])]);
+        }
+    }
+    found
+}
+
+/// A stretch of a series every [`STEP_S`](crate::fit::STEP_S), its times counted from its start; beyond its ends joints rest.
+fn cut(series: &Series, from_s: f64, to_s: f64) -> Result<Series, TrackError> {
+    let t_s = grid(to_s - from_s);
+    let one = |track: &Track| {
+        let states: Vec<_> = t_s.iter().map(|t| track.held_at(t + from_s)).collect();
+        let position = states.iter().map(|state| state.position).collect();
+        let made = Track::new(track.name(), t_s.clone(), position, &[])?;
+        match track.velocity_rad_s() {
+            Some(_) => made.with_velocity(states.iter().map(|state| state.velocity).collect()),
+            None => Ok(made),
+        }
+    };
+    Ok(Series { tracks: series.tracks.iter().map(one).collect::<Result<_, _>>()? })
+}
+
+fn grid(duration_s: f64) -> Vec<f64> {
+    let mut t_s = vec![0.0];
+    while let Some(last) = t_s.last().filter(|last| **last < duration_s) {
+        let next = (last / crate::fit::STEP_S).round() + 1.0;
+        t_s.push(next * crate::fit::STEP_S);
+    }
+    t_s
+}
+
+/// A motion by samples, with rests before and after.
+pub(super) fn sampled(setup: &Setup, motion: &Motion) -> Result<Series, TrackError> {
+    let duration_s = motion.duration_s();
+    let t_s = grid(duration_s + LEAD_S + TAIL_S);
+    let local_s: Vec<f64> = t_s.iter().map(|t| t - LEAD_S).collect();
+    let mut samples = Samples::default();
+    motion.sample(&local_s, Quantity::Velocity, &mut samples);
+    let inside = |(v, t): (&f64, &f64)| if (0.0..=duration_s).contains(t) { *v } else { 0.0 };
+    let one = |(j, name): (usize, String)| {
+        let speed = samples.of(Quantity::Velocity, j).iter().zip(&local_s).map(inside).collect();
+        Track::new(name, t_s.clone(), samples.of(Quantity::Position, j).to_vec(), &[])?.with_velocity(speed)
+    };
+    Ok(Series { tracks: setup.joint_names().into_iter().enumerate().map(one).collect::<Result<_, _>>()? })
+}

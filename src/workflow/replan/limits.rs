@@ -1,0 +1,118 @@
+//! A task under the limits that its machine has shown.
+
+use serde::Serialize;
+
+use crate::{
+    fit::{Estimated, Fit},
+    plan::Setup,
+    spline::{Motion, Quantity},
+    task::Task,
+};
+
+/// Where a limit comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Origin {
+    /// The task's or the arm's own.
+    Task,
+    /// The lower end of a fitted limit's interval.
+    Fitted,
+    /// What the last plan asked for or the joint was seen to reach: beyond it nothing is known.
+    Shown,
+}
+
+/// What a joint was held to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct HeldTo {
+    /// The joint.
+    pub joint: String,
+    /// Largest speed, rad/s; null for none.
+    pub speed_rad_s: f64,
+    /// Where it comes from.
+    pub speed_origin: Origin,
+    /// Largest acceleration, rad/s²; null for none.
+    pub acceleration_rad_s2: f64,
+    /// Where it comes from.
+    pub acceleration_origin: Origin,
+}
+
+/// The task with every joint's speed and acceleration held to what the fit says: of an identified
+/// limit the lower end of its interval in the weaker direction; of one that never showed, what was
+/// reached or what the last plan asked for, whichever is more.
+pub(super) fn held(task: &Task, setup: &Setup, fit: &Fit, last: Option<&Motion>) -> (Task, Vec<HeldTo>) {
+    let mut held = task.clone();
+    let mut joints = Vec::new();
+    for (j, name) in setup.joint_names().into_iter().enumerate() {
+        let Some(limits) =
+            task.joints.iter().position(|own| *own == name).and_then(|own| held.limits.get_mut(own))
+        else {
+            continue;
+        };
+        let known = fit.joint(&name);
+        let asked = |quantity| last.map(|motion| motion.extrema(j, quantity).peak().value.abs());
+        let (speed_rad_s, speed_origin) = tightest(
+            limits.velocity_rad_s,
+            known.map(|joint| [joint.speed_limit_growing_rad_s, joint.speed_limit_shrinking_rad_s]),
+            asked(Quantity::Velocity),
+        );
+        let (acceleration_rad_s2, acceleration_origin) = tightest(
+            limits.acceleration_rad_s2,
+            known.map(|joint| {
+                [joint.acceleration_limit_growing_rad_s2, joint.acceleration_limit_shrinking_rad_s2]
+            }),
+            asked(Quantity::Acceleration),
+        );
+        (limits.velocity_rad_s, limits.acceleration_rad_s2) = (speed_rad_s, acceleration_rad_s2);
+        joints.push(HeldTo {
+            joint: name,
+            speed_rad_s,
+            speed_origin,
+            acceleration_rad_s2,
+            acceleration_origin,
+        });
+    }
+    (held, joints)
+}
+
+/// The limit to hold to, of both directions.
+fn tightest(own: f64, fitted: Option<[Estimated; 2]>, asked: Option<f64>) -> (f64, Origin) {
+    let Some(fitted) = fitted else { return (own, Origin::Task) };
+    let low = |found: &Estimated| found.interval.filter(|_| found.identified).map(|interval| interval[0]);
+    let identified = fitted.iter().filter_map(low).reduce(f64::min);
+    let reached = fitted.iter().filter_map(|found| found.lower_bound).chain(asked).reduce(f64::max);
+    // A fitted limit below what was reached is wrong by that much.
+    let (found, origin) = match (identified, reached) {
+        (Some(limit), _) => (limit, Origin::Fitted),
+        (None, Some(reached)) => (reached, Origin::Shown),
+        (None, None) => return (own, Origin::Task),
+    };
+    if found < own { (found, origin) } else { (own, Origin::Task) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bound(reached: f64) -> Estimated {
+        Estimated { lower_bound: Some(reached), ..Estimated::default() }
+    }
+
+    fn found(low: f64, high: f64) -> Estimated {
+        let value = Some((low * high).sqrt());
+        Estimated { value, interval: Some([low, high]), identified: true, lower_bound: Some(0.5 * low) }
+    }
+
+    #[test]
+    fn a_fitted_limit_holds_at_its_lower_end_and_in_the_weaker_direction() {
+        assert_eq!(tightest(1.0, Some([found(0.4, 0.6), found(0.3, 0.5)]), Some(0.2)), (0.3, Origin::Fitted));
+    }
+
+    #[test]
+    fn a_bound_holds_at_what_was_reached_or_asked_for_and_never_loosens_the_task() {
+        assert_eq!(tightest(1.0, Some([bound(0.2), bound(0.3)]), Some(0.35)), (0.35, Origin::Shown));
+        assert_eq!(tightest(0.1, Some([bound(0.2), bound(0.3)]), None), (0.1, Origin::Task));
+        assert_eq!(tightest(0.1, None, Some(0.05)), (0.1, Origin::Task));
+    }
+}

@@ -1,0 +1,214 @@
+//! What was planned again.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::{
+    Candidate, Commanded, HeldTo, Inputs, LEAD_S, Predicted, ReplanFailure, last::Last, retime::Retimed,
+};
+use crate::{
+    fit::Fit,
+    log::{Attachment, WriteError},
+    plan::Objectives,
+    remark::{Code, Remarks},
+    replay::{Rules, replay},
+    series::{Series, align},
+    workflow::{
+        observe::Observed,
+        plan::{Judged, Order},
+        plan_log::{FRONT, STARTS, TASK},
+        series_log::SeriesLog,
+    },
+};
+
+/// The last run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Before {
+    /// Starts and reversals that were measured.
+    pub measured_transitions: usize,
+    /// Mean of their peak errors, rad; null without any.
+    pub measured_mean_peak_rad: Option<f64>,
+    /// The largest of them, rad.
+    pub measured_worst_peak_rad: Option<f64>,
+    /// Of the plan, s; from the first to the last motion where its times are not known.
+    pub duration_s: f64,
+    /// What the model makes of the same plan, sent as it is.
+    pub predicted: Predicted,
+}
+
+impl Before {
+    pub(super) fn of(observed: &Observed, last: &Last, predicted: Predicted, rules: &Rules) -> Self {
+        let recording = &observed.recording;
+        let pair =
+            |measured: &crate::series::Track| align(recording.planned.track(measured.name())?, measured);
+        let pairs: Vec<_> = recording.measured.tracks.iter().filter_map(pair).collect();
+        let found = replay(&pairs, rules);
+        let peaks = || found.transitions.iter().map(|t| t.peak_error_rad);
+        let count = found.transitions.len();
+        Self {
+            measured_transitions: count,
+            measured_mean_peak_rad: (count > 0).then(|| peaks().sum::<f64>() / count as f64),
+            measured_worst_peak_rad: peaks().reduce(f64::max),
+            duration_s: last.motion().map_or(last.duration_s, |motion| motion.duration_s()),
+            predicted,
+        }
+    }
+}
+
+/// A search for other timings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    /// Timings none better than another in everything, easiest to follow first.
+    pub front: Vec<Retimed>,
+    /// Evaluations made.
+    pub evaluations: u64,
+    /// What time, s, jerk, rad/s³, and power, W, were held to.
+    pub ceilings: [f64; 3],
+    /// What each joint was held to.
+    pub held: Vec<HeldTo>,
+    /// Times of movement of the last plan, s, if they are known.
+    pub start: Option<Vec<f64>>,
+    /// What the last plan is worth under the same limits.
+    pub judged: Option<Judged>,
+}
+
+impl Search {
+    /// Whether the last plan keeps the limits and ceilings of the search.
+    pub fn keeps(&self) -> bool {
+        self.judged.as_ref().is_some_and(|judged| {
+            let costs = judged.objectives.as_array();
+            judged.broken().iter().all(|margin| margin.share < 1.0 + 1e-6)
+                && costs.iter().zip(self.ceilings).all(|(f, ceiling)| *f <= ceiling)
+        })
+    }
+}
+
+/// A plan and a command for the next run.
+#[derive(Debug, Clone)]
+pub struct Replanned {
+    /// The machine that it was made for.
+    pub fit: Fit,
+    /// Logs that the machine was fitted to.
+    pub fitted_to: Vec<String>,
+    /// The last run.
+    pub before: Before,
+    /// What is expected of the next.
+    pub after: Predicted,
+    /// Of the new plan, s; from the first to the last motion where its times are not known.
+    pub duration_s: f64,
+    /// Whether the key points got other times.
+    pub retimed: bool,
+    /// The search, if there was one.
+    pub search: Option<Search>,
+    /// The new plan with all that can be said of it, under the task's own limits; `None` without a task
+    /// or its times.
+    pub judged: Option<Judged>,
+    /// Objectives of the last plan, where they are known.
+    pub objectives_before: Option<Objectives>,
+    /// The command, unless there is none.
+    pub command: Option<Commanded>,
+    /// Where the joints should be.
+    pub plan: Series,
+    /// When the times of the task's plan count from, s.
+    pub starts_s: Option<f64>,
+    /// The task.
+    pub order: Option<Order>,
+    /// Doubts.
+    pub remarks: Remarks,
+    files: Vec<Attachment>,
+}
+
+pub(super) fn replanned(
+    inputs: &Inputs,
+    (fit, fitted_to): (Fit, Vec<String>),
+    last: Last,
+    before: Before,
+    search: Option<Search>,
+    chosen: Candidate,
+    mut remarks: Remarks,
+) -> Result<Replanned, ReplanFailure> {
+    let Candidate { interval_s, plan, command, predicted } = chosen;
+    let setup = last.order.as_ref().map(|order| &order.setup);
+    let times_s = match (setup, &interval_s) {
+        (Some(setup), Some(interval_s)) => Some(setup.times_s(interval_s)),
+        _ => last.times_s.clone(),
+    };
+    let judged = match (setup, &times_s) {
+        (Some(setup), Some(times_s)) => Some(Judged::of(setup, times_s)?),
+        _ => None,
+    };
+    let objectives_before = match (setup, &last.times_s) {
+        (Some(setup), Some(times_s)) => Some(Judged::of(setup, times_s)?.objectives),
+        _ => None,
+    };
+    let retimed =
+        interval_s.is_some() && interval_s != search.as_ref().and_then(|search| search.start.clone());
+    if search.as_ref().is_some_and(|search| search.front.is_empty() && !search.keeps()) {
+        let message = "no timing keeps the fitted limits within the time, jerk and power that are allowed: the plan \
+                       stays; --max-time-growth-percent gives it more";
+        remarks.add(Code::BeyondLimit, 1, message);
+    }
+    if let Some(command) = &command {
+        for joint in command.joints.iter().filter(|joint| joint.because.is_some()) {
+            let message = format!(
+                "the gain of {} is {:.2}, not {:.2}: its command would break a limit",
+                joint.compensation.name, joint.gain, inputs.compensation.gain
+            );
+            remarks.add(Code::BeyondLimit, 1, message);
+        }
+    }
+    let duration_s = judged.as_ref().map_or(last.duration_s, |judged| judged.objectives.duration_s);
+    let starts_s = if interval_s.is_some() { Some(LEAD_S) } else { last.starts_s };
+    Ok(Replanned {
+        fit,
+        fitted_to,
+        before,
+        after: predicted,
+        duration_s,
+        retimed,
+        search,
+        judged,
+        objectives_before,
+        command,
+        plan,
+        starts_s,
+        order: last.order,
+        remarks,
+        files: last.files,
+    })
+}
+
+impl Replanned {
+    /// The bytes of the log: plan and command as channels of their own, and the task with the new plan,
+    /// whose `document` says what it is worth.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`] for joint names that no log can hold.
+    pub fn log(
+        &self,
+        document: Option<&str>,
+        provenance: &BTreeMap<String, String>,
+        rate_hz: f64,
+    ) -> Result<Vec<u8>, WriteError> {
+        let mut provenance = provenance.clone();
+        if let Some(starts_s) = self.starts_s {
+            provenance.insert(STARTS.to_owned(), starts_s.to_string());
+        }
+        let file = |name: &str, media_type: &str, text: &str| Attachment {
+            name: name.to_owned(),
+            media_type: media_type.to_owned(),
+            data: text.as_bytes().to_vec(),
+        };
+        let files = match (&self.order, document) {
+            (Some(order), Some(document)) => {
+                vec![file(TASK, "application/toml", &order.text), file(FRONT, "application/json", document)]
+            }
+            _ => self.files.clone(),
+        };
+        let command = self.command.as_ref().map(|command| &command.series);
+        SeriesLog { plan: &self.plan, command, provenance: &provenance, files: &files, rate_hz }.bytes()
+    }
+}

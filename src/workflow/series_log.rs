@@ -1,0 +1,90 @@
+//! A plan given by samples as a log, with the command to send beside it.
+
+use std::collections::BTreeMap;
+
+use super::plan_log::{PROVENANCE, START_NS};
+use crate::{
+    log::{Attachment, LogWriter, Point, Role, WriteError, WriteOptions},
+    math::State,
+    series::Series,
+    units::NS_PER_S,
+};
+
+/// Points of the trajectory a second.
+const TRAJECTORY_HZ: f64 = 25.0;
+
+/// What to write. Times of all tracks count from the start of the log.
+#[derive(Debug, Clone, Copy)]
+pub struct SeriesLog<'a> {
+    /// Where the joints should be.
+    pub plan: &'a Series,
+    /// What to send, where that is not the plan; of the same joints.
+    pub command: Option<&'a Series>,
+    /// Where it comes from.
+    pub provenance: &'a BTreeMap<String, String>,
+    /// Files to go with it.
+    pub files: &'a [Attachment],
+    /// Samples a second.
+    pub rate_hz: f64,
+}
+
+impl SeriesLog<'_> {
+    /// The bytes of the log: plan and command sample by sample, and what to send as a trajectory.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`] for joint names that no log can hold.
+    pub fn bytes(&self) -> Result<Vec<u8>, WriteError> {
+        let names: Vec<&str> = self.plan.tracks.iter().map(|track| track.name()).collect();
+        let mut log = LogWriter::new(Vec::new(), &names, WriteOptions::default())?;
+        log.metadata(PROVENANCE, self.provenance)?;
+        let end_s = self.plan.tracks.iter().filter_map(|t| t.t_s().last()).fold(0.0, |a: f64, b| a.max(*b));
+        let sent = self.command.unwrap_or(self.plan);
+        let points: Vec<(f64, [Vec<f64>; 2])> =
+            instants(end_s, TRAJECTORY_HZ).map(|t_s| (t_s, states(sent, &names, t_s))).collect();
+        let points: Vec<Point<'_>> = points
+            .iter()
+            .map(|(t_s, [position_rad, velocity_rad_s])| Point {
+                position_rad,
+                velocity_rad_s,
+                acceleration_rad_s2: &[],
+                effort_n_m: &[],
+                time_from_start_ns: nanoseconds(*t_s),
+            })
+            .collect();
+        log.trajectory(START_NS, &points)?;
+        for t_s in instants(end_s, self.rate_hz) {
+            let stamp_ns = START_NS + nanoseconds(t_s);
+            let [position_rad, velocity_rad_s] = states(self.plan, &names, t_s);
+            log.joint_sample(Role::Planned, stamp_ns, &position_rad, &velocity_rad_s, &[])?;
+            if let Some(command) = self.command {
+                let [position_rad, velocity_rad_s] = states(command, &names, t_s);
+                log.joint_sample(Role::Command, stamp_ns, &position_rad, &velocity_rad_s, &[])?;
+            }
+        }
+        for file in self.files {
+            log.attach(&file.name, &file.media_type, &file.data, START_NS)?;
+        }
+        log.finish()
+    }
+}
+
+/// Positions and speeds of some joints at an instant.
+fn states(series: &Series, names: &[&str], t_s: f64) -> [Vec<f64>; 2] {
+    let unknown = State { position: f64::NAN, velocity: f64::NAN, acceleration: 0.0 };
+    let at = |name: &&str| series.track(name).map_or(unknown, |track| track.held_at(t_s));
+    let (position_rad, velocity_rad_s) =
+        names.iter().map(at).map(|state| (state.position, state.velocity)).unzip();
+    [position_rad, velocity_rad_s]
+}
+
+/// Even instants from 0 to the end, both included, s.
+fn instants(end_s: f64, rate_hz: f64) -> impl Iterator<Item = f64> {
+    let inner = (0_u64..).map(move |k| k as f64 / rate_hz).take_while(move |t_s| *t_s < end_s - 1e-9);
+    inner.chain(std::iter::once(end_s))
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a plan lasts an hour at most")]
+fn nanoseconds(t_s: f64) -> i64 {
+    (t_s * NS_PER_S).round() as i64
+}
