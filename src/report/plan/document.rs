@@ -40,8 +40,8 @@ pub(super) struct Document<'a> {
     /// front dominates.
     hypervolume: Option<f64>,
     /// The same on the way, in the box of the final front; left out where nothing was searched.
-    #[serde(skip_serializing_if = "<[Step]>::is_empty")]
-    convergence: &'a [Step],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    convergence: Option<&'a [Step]>,
     /// Plans of which none is better than another in everything, fastest first.
     front: Vec<Entry<'a>>,
     /// Indices into the front of the fastest plan (A), the smoothest (B), that of least power (C).
@@ -151,7 +151,7 @@ pub fn plan_json(title: &str, algorithm: &str, options: &Options, planned: &Plan
         generations: Some(planned.generations),
         hasty: planned.hasty,
         hypervolume: Some(planned.hypervolume),
-        convergence: &planned.convergence,
+        convergence: Some(&planned.convergence),
         front: plans.map(|(plan, times_s)| entry(times_s, plan.objectives, plan.violation)).collect(),
         best: Some(planned.ends),
         chosen: Whole {
@@ -179,7 +179,7 @@ pub fn judged_json(title: &str, joints: &[String], judged: &Judged, feasible: bo
         generations: None,
         hasty: None,
         hypervolume: None,
-        convergence: &[],
+        convergence: None,
         front: if feasible {
             vec![entry(&judged.times_s, judged.objectives, judged.violation)]
         } else {
