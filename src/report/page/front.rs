@@ -19,6 +19,9 @@ pub(super) fn front(front: &Front, plots: &mut Plots) -> Markup {
         p class="hint" {
             (counted(front.plans.len(), "plan")) " of which none is better than another in everything. A is the fastest, B \
             the smoothest, C takes the least power. Less is better on every axis."
+            @if front.convergence.len() > 1 {
+                " On the way plans are judged less exactly than those of the last hypervolume."
+            }
         }
         div class="side" { @for (_, chart) in front_charts(front) { (plots.place(chart)) } }
     }
@@ -89,7 +92,6 @@ fn convergence(front: &Front) -> Chart {
     let steps = &front.convergence;
     Chart {
         title: "How the front grew".to_owned(),
-        note: "the last value is of the final front, judged more exactly than plans on the way".to_owned(),
         x_label: "evaluations",
         xs: vec![steps.iter().map(|step| step.evaluations as f64).collect()],
         panels: vec![Panel {
