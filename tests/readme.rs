@@ -14,14 +14,23 @@ fn readme() -> String {
 /// Commands and what the README says they print.
 fn examples(text: &str) -> Vec<(String, Vec<String>)> {
     let mut examples: Vec<(String, Vec<String>)> = Vec::new();
-    let mut inside = false;
+    let (mut inside, mut demo) = (false, false);
     for line in text.lines() {
         match line {
             "```console" => inside = true,
-            "```" => inside = false,
+            "```" => (inside, demo) = (false, false),
             _ if !inside => {}
+            // What `demo` prints looks like commands.
+            _ if demo && line.starts_with("$ ") => {
+                if let Some((_, shown)) = examples.last_mut() {
+                    shown.push(line.to_owned());
+                }
+            }
             _ => match (line.strip_prefix("$ "), examples.last_mut()) {
-                (Some(command), _) => examples.push((command.to_owned(), Vec::new())),
+                (Some(command), _) => {
+                    demo = command.starts_with("hydrotrace demo");
+                    examples.push((command.to_owned(), Vec::new()));
+                }
                 (None, Some((_, shown))) => shown.push(line.to_owned()),
                 (None, None) => panic!("output before any command: {line}"),
             },
@@ -78,7 +87,7 @@ fn every_command_prints_what_is_shown() {
 #[test]
 fn the_two_first_commands_are_there() {
     let text = readme();
-    let run = text.find("cargo run --release -- report sample-logs/panel-install.mcap").unwrap();
+    let run = text.find("cargo run --release -- demo").unwrap();
     let test = text.find("cargo test").unwrap();
     assert!(run < test && run < 2500, "{run} {test}");
 }

@@ -33,8 +33,12 @@ pub(super) mod discrepancy {
     pub(in crate::fit) const ACCELERATION: f64 = 0.75;
     /// Of the position gain.
     pub(in crate::fit) const POSITION_GAIN: f64 = 0.15;
+    /// Of the position gain where no start is sharp.
+    pub(in crate::fit) const SMOOTH_POSITION_GAIN: f64 = 0.20;
     /// Of the integral gain.
     pub(in crate::fit) const INTEGRAL_GAIN: f64 = 0.40;
+    /// Of the integral gain where no start is sharp.
+    pub(in crate::fit) const SMOOTH_INTEGRAL_GAIN: f64 = 0.50;
     /// Of the feed-forward and of the ratio of gains.
     pub(in crate::fit) const GAIN: f64 = 0.10;
 }
@@ -54,6 +58,8 @@ pub(super) struct Knowledge {
     free: Vec<usize>,
     covariance: DMatrix<f64>,
     pub(super) inefficiency: f64,
+    /// Whether a start asks for more than the dead band within the lag.
+    sharp: bool,
 }
 
 impl Knowledge {
@@ -69,7 +75,15 @@ impl Knowledge {
         let covariance = information
             .cholesky()
             .map_or_else(|| DMatrix::identity(free.len(), free.len()), |cholesky| cholesky.inverse());
-        Self { free, covariance, inefficiency }
+        let jump_rad_s =
+            problem.runs.iter().map(|run| run.asked[2].max(run.asked[3])).fold(0.0, f64::max) * ASKED_OVER_S;
+        let sharp = jump_rad_s > problem.model(x).dead_band_rad_s.max(SHARP_RAD_S);
+        Self { free, covariance, inefficiency, sharp }
+    }
+
+    /// The discrepancy of logs with sharp starts, or that of logs without.
+    pub(super) fn missed(&self, sharp: f64, smooth: f64) -> f64 {
+        if self.sharp { sharp } else { smooth }
     }
 
     /// Standard deviation of a sum of parameters, each in its prior deviations.
@@ -107,13 +121,10 @@ impl Knowledge {
         let lag_s = model.lag_s();
         let part = |i: usize, value: f64| (i, problem.priors.of(i).deviation * value / lag_s);
         let parts = [part(DEAD_TIME, model.dead_time_s), part(TIME_CONSTANT, model.time_constant_s)];
-        // Within the lag a smooth start does not leave the dead band: its delay is the band's.
-        let jump_rad_s =
-            problem.runs.iter().map(|run| run.asked[2].max(run.asked[3])).fold(0.0, f64::max) * ASKED_OVER_S;
-        let sharp = jump_rad_s > model.dead_band_rad_s.max(SHARP_RAD_S);
-        let missed = if sharp { discrepancy::LAG } else { discrepancy::SMOOTH_LAG };
+        let missed = self.missed(discrepancy::LAG, discrepancy::SMOOTH_LAG);
         let found = self.positive(lag_s, &parts, missed);
-        Estimated { identified: found.identified && sharp, ..found }
+        // Within the lag a smooth start does not leave the dead band: its delay is the band's.
+        Estimated { identified: found.identified && self.sharp, ..found }
     }
 
     /// What must be wanted before the joint leaves rest: dead band and stiction, which no log of angles

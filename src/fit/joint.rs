@@ -89,6 +89,8 @@ fn report(
             Estimated { lower_bound: bound, ..Estimated::default() }
         }
     };
+    let position_gain = knowledge.missed(discrepancy::POSITION_GAIN, discrepancy::SMOOTH_POSITION_GAIN);
+    let integral_gain = knowledge.missed(discrepancy::INTEGRAL_GAIN, discrepancy::SMOOTH_INTEGRAL_GAIN);
     let [dead_band_rad_s, dead_band_error_rad] = knowledge.dead_band(problem, &found.x);
     JointFit {
         name: name.to_owned(),
@@ -101,8 +103,8 @@ fn report(
         lag_s: knowledge.lag(problem, &found.x),
         dead_band_rad_s,
         dead_band_error_rad,
-        position_gain_1_s: one(POSITION_GAIN, model.position_gain_1_s, discrepancy::POSITION_GAIN),
-        integral_gain_1_s2: one(INTEGRAL_GAIN, model.integral_gain_1_s2, discrepancy::INTEGRAL_GAIN),
+        position_gain_1_s: one(POSITION_GAIN, model.position_gain_1_s, position_gain),
+        integral_gain_1_s2: one(INTEGRAL_GAIN, model.integral_gain_1_s2, integral_gain),
         feed_forward: one(FEED_FORWARD, model.feed_forward, discrepancy::GAIN),
         gain_ratio: one(ASYMMETRY, model.asymmetry.exp(), discrepancy::GAIN),
         speed_limit_growing_rad_s: limit(0, discrepancy::GROWING),

@@ -20,6 +20,18 @@ pub(super) struct Delay {
     pub(super) interval_s: Option<[f64; 2]>,
 }
 
+/// Directions and onsets, s, of all measured starts, reversals included: whether a plan asks for them or
+/// not.
+pub fn measured_starts(pair: &Pair, rules: &Rules) -> Vec<(i8, f64)> {
+    starts(pair, &Signals::new(pair, rules), rules)
+}
+
+/// The same from known signals.
+pub(super) fn starts(pair: &Pair, signals: &Signals, rules: &Rules) -> Vec<(i8, f64)> {
+    let seen = signals.measured.iter().filter(|m| m.starts());
+    seen.map(|m| (m.direction, measured_onset(pair, signals, m, rules).at_s)).collect()
+}
+
 /// Start of a measured motion; the crossing of the stop threshold where no better is known.
 pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> Onset {
     let at_crossing = Onset { at_s: motion.start_s, interval_s: [motion.start_s; 2] };

@@ -21,6 +21,7 @@ mod transition;
 
 use rayon::prelude::*;
 
+pub use delay::measured_starts;
 pub use outcome::{
     Concentration, ConcentrationTest, JointReplay, Kind, OnsetMethod, PathError, Replay, Stop, Thresholds,
     TrackingError, Transition, Verdict, WholeRun,

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{
     Rules,
-    delay::measured_onset,
+    delay::starts,
     replay,
     signals::Signals,
     synthetic::{Sensing, TrueMotion, synthetic_run},
@@ -139,12 +139,7 @@ impl Tally {
         let run = synthetic_run(seed, sensing);
         let signals = Signals::new(&run.pair, rules);
 
-        let starts: Vec<(i8, f64)> = signals
-            .measured
-            .iter()
-            .filter(|m| m.starts())
-            .map(|m| (m.direction, measured_onset(&run.pair, &signals, m, rules).at_s))
-            .collect();
+        let starts = starts(&run.pair, &signals, rules);
         let truth: Vec<(i8, f64)> =
             run.motions.iter().map(|m| (m.direction, m.start_s + sensing.delay_s)).collect();
         let pairs = assign(&truth, &starts);

@@ -48,6 +48,15 @@ pub struct Outputs {
     pub truth: Truth,
 }
 
+/// How much of a run its log holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    /// Plan, command and measurement of the joints.
+    Joints,
+    /// Pressures, signals to the valves and spools too.
+    Everything,
+}
+
 /// Runs the command.
 ///
 /// # Errors
@@ -98,8 +107,23 @@ impl Outputs {
     ///
     /// As [`Outputs::log`].
     pub fn log_with(&self, files: &[Attachment], starts_s: f64) -> Result<Vec<u8>, WriteError> {
+        self.log_as(files, starts_s, Content::Everything, WriteOptions::default())
+    }
+
+    /// As [`Outputs::log_with`], with as much of the run as is asked for, and written as asked for.
+    ///
+    /// # Errors
+    ///
+    /// As [`Outputs::log`].
+    pub fn log_as(
+        &self,
+        files: &[Attachment],
+        starts_s: f64,
+        content: Content,
+        options: WriteOptions,
+    ) -> Result<Vec<u8>, WriteError> {
         let names: Vec<&str> = self.record.joints.iter().map(|joint| joint.name.as_str()).collect();
-        let mut log = LogWriter::new(Vec::new(), &names, WriteOptions::default())?;
+        let mut log = LogWriter::new(Vec::new(), &names, options)?;
         let truth = serde_json::to_string(&self.truth).unwrap_or_default();
         log.metadata(TRUTH, &BTreeMap::from([("json".to_owned(), truth)]))?;
         log.metadata(PROVENANCE, &BTreeMap::from([(STARTS.to_owned(), starts_s.to_string())]))?;
@@ -118,6 +142,9 @@ impl Outputs {
             log.joint_sample(Role::Command, stamp_ns, &angle_rad, &speed_rad_s, &[])?;
             let (angle_rad, speed_rad_s) = (column(|j| &j.measured_rad), column(|j| &j.measured_rad_s));
             log.joint_sample(Role::Measured, stamp_ns, &angle_rad, &speed_rad_s, &[])?;
+            if content == Content::Joints {
+                continue;
+            }
             let supply_pa = self.record.supply_pa.get(k).copied().unwrap_or(f64::NAN);
             log.interfaces(
                 stamp_ns,

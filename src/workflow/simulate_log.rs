@@ -87,6 +87,40 @@ impl Run {
 ///
 /// [`SimulateFailure`], naming what is missing.
 pub fn simulate(path: &Path, parameters: Parameters, seed: u64) -> Result<Run, SimulateFailure> {
+    prepare(path, parameters, seed)?.run()
+}
+
+/// A run that is yet to be made.
+#[derive(Debug, Clone)]
+pub struct Prepared {
+    /// What to run on which machine, rests counted.
+    pub inputs: Inputs,
+    /// Task and front, if the plan's log holds them.
+    pub attachments: Vec<Attachment>,
+    /// Whether the log holds a command that is not the plan.
+    pub commanded: bool,
+    /// When the times of the plan count from, s.
+    pub starts_s: f64,
+}
+
+impl Prepared {
+    /// Makes the run.
+    ///
+    /// # Errors
+    ///
+    /// [`SimulateFailure::Plant`].
+    pub fn run(self) -> Result<Run, SimulateFailure> {
+        let Self { inputs, attachments, commanded, starts_s } = self;
+        Ok(Run { outputs: run(&inputs)?, attachments, commanded, starts_s })
+    }
+}
+
+/// What [`simulate`] runs.
+///
+/// # Errors
+///
+/// As [`simulate`].
+pub fn prepare(path: &Path, parameters: Parameters, seed: u64) -> Result<Prepared, SimulateFailure> {
     let paths = [path.to_owned()];
     let plan = read_plan(&paths, &ReadOptions::default())?;
     let topic = Selector { topic: Topics::default().command, field: None };
@@ -111,9 +145,9 @@ pub fn simulate(path: &Path, parameters: Parameters, seed: u64) -> Result<Run, S
     let commanded = command.is_some();
     let command = command.map_or(Ok(planned.clone()), |command| with_rests(&command.planned))?;
     let plant = Plant::new(&arm, parameters)?;
-    let outputs = run(&Inputs { plant, plan: planned, command, payload, seed })?;
+    let inputs = Inputs { plant, plan: planned, command, payload, seed };
     let attachments = [TASK, FRONT].into_iter().filter_map(attached).cloned().collect();
-    Ok(Run { outputs, attachments, commanded, starts_s })
+    Ok(Prepared { inputs, attachments, commanded, starts_s })
 }
 
 /// What the tool carries, and from when on, rests counted.

@@ -5,7 +5,7 @@ use cpu_time::ProcessTime;
 use hydrotrace::{
     arm::Arm,
     fit::{Compensation, Excitation, compensate},
-    plant::{Parameters, PayloadChange, Plant, Variation},
+    plant::{Parameters, Plant, Variation},
     replay::{Rules, replay},
     series::{Pair, Series, align, local_quadratic},
     units::DEGREE_RAD,
@@ -45,20 +45,26 @@ fn figures(job: &Job, measured: &Series) -> Figures {
 
 const PRESETS: [&str; 3] = ["dead-band-limited", "default", "lag-limited"];
 
-/// A run as planned, and one with the command that a fit to it makes, on the machine as it is then.
-fn before_and_after(
-    (plant, later): (&Plant, &Plant),
-    job: &Job,
-    payload: &[PayloadChange],
-    seed: u64,
-) -> (Figures, Figures) {
+/// The command that a fit to a run of the plan makes.
+fn learnt(plant: &Plant, job: &Job, seed: u64) -> Series {
     let plain = run(plant, &job.plan, job, seed);
-    let fit = fitted(&[(&job.plan, &plain)]);
-    let made = compensate(&fit, &job.plan, Compensation::default()).unwrap();
-    let later_job = Job { plan: job.plan.clone(), payload: payload.to_vec() };
-    let before = run(later, &job.plan, &later_job, seed + 50);
-    let after = run(later, &made.command, &later_job, seed + 100);
+    compensate(&fitted(&[(&job.plan, &plain)]), &job.plan, Compensation::default()).unwrap().command
+}
+
+/// Runs of the plan and of a command on a machine as it is then.
+fn tried(plant: &Plant, job: &Job, command: &Series, seed: u64) -> (Figures, Figures) {
+    let before = run(plant, &job.plan, job, seed + 50);
+    let after = run(plant, command, job, seed + 100);
+    let ends = |series: &Series| series.tracks.iter().map(|t| *t.t_s().last().unwrap()).collect::<Vec<_>>();
+    assert_eq!(ends(command), ends(&job.plan));
     (figures(job, &before), figures(job, &after))
+}
+
+/// The machine as it has become, and what it carries then.
+fn changed(preset: &str, job: &Job, variation: Variation) -> (Plant, Job) {
+    let parameters = variation.parameters(&Parameters::preset(preset).unwrap());
+    let plant = Plant::new(&Arm::sample().unwrap(), parameters).unwrap();
+    (plant, Job { plan: job.plan.clone(), payload: variation.payload(&job.payload) })
 }
 
 fn ratio(before: &Figures, after: &Figures) -> f64 {
@@ -84,11 +90,11 @@ fn row(title: &str, before: &Figures, after: &Figures) {
 
 const HEAD: &str = "| plain mean peak, worst peak, rms, deg | with command | change, % | acceleration ratio";
 
-/// What every command made from the log of the same task must do.
-fn check(title: &str, before: &Figures, after: &Figures, most: f64) {
+/// What every command must do: leave so much of the mean peak, and accelerate the joints so much more.
+fn check(title: &str, before: &Figures, after: &Figures, (most, faster): (f64, f64)) {
     assert!(after.mean_peak <= most * before.mean_peak, "{title}: {before:?} {after:?}");
     assert!(after.worst_peak <= before.worst_peak, "{title}: {before:?} {after:?}");
-    assert!(ratio(before, after) <= 2.0, "{title}: {before:?} {after:?}");
+    assert!(ratio(before, after) <= faster, "{title}: {before:?} {after:?}");
 }
 
 #[test]
@@ -97,84 +103,91 @@ fn a_command_from_one_log_of_the_task_takes_six_tenths_off_the_mean_transition_p
         let plant = Plant::preset(preset).unwrap();
         for number in [1, 2] {
             let job = task(number);
-            let (before, after) = before_and_after((&plant, &plant), &job, &job.payload, 1);
-            check(&format!("{preset} {number}"), &before, &after, 0.4);
+            let (before, after) = tried(&plant, &job, &learnt(&plant, &job, 1), 1);
+            check(&format!("{preset} {number}"), &before, &after, (0.4, 2.0));
         }
     }
 }
 
 #[test]
 fn a_command_still_helps_once_the_machine_has_changed() {
+    let job = task(1);
+    let command = learnt(&Plant::preset("default").unwrap(), &job, 1);
     for variation in [Variation::ColdOil, Variation::HeavyPayload] {
-        let base = Parameters::preset("default").unwrap();
-        let plant = Plant::new(&Arm::sample().unwrap(), base.clone()).unwrap();
-        let later = Plant::new(&Arm::sample().unwrap(), variation.parameters(&base)).unwrap();
-        let job = task(1);
-        let (before, after) = before_and_after((&plant, &later), &job, &variation.payload(&job.payload), 1);
-        check(&format!("{variation:?}"), &before, &after, 0.5);
+        let (plant, job) = changed("default", &job, variation);
+        let (before, after) = tried(&plant, &job, &command, 1);
+        check(&format!("{variation:?}"), &before, &after, (0.5, 2.0));
     }
 }
 
 #[test]
-#[ignore = "prints a table; minutes in release"]
-fn table_of_commands() {
+#[ignore = "minutes; in release by .ci/run"]
+fn commands_from_task_logs_take_six_tenths_off_for_every_machine_and_task() {
+    let clock = ProcessTime::now();
     println!("plant, task, seed {HEAD}");
+    let mut all = Vec::new();
     for preset in PRESETS {
         let plant = Plant::preset(preset).unwrap();
         for number in [1, 2] {
-            let job = task(number);
+            let (job, mut left) = (task(number), 0.0);
             for seed in 1..=5 {
-                let (before, after) = before_and_after((&plant, &plant), &job, &job.payload, seed);
-                row(&format!("{preset} {number} {seed}"), &before, &after);
+                let (before, after) = tried(&plant, &job, &learnt(&plant, &job, seed), seed);
+                let title = format!("{preset} {number} {seed}");
+                row(&title, &before, &after);
+                // No run is worse than the plan sent as it is; each cell must do better below.
+                check(&title, &before, &after, (1.0, 2.0));
+                left += after.mean_peak / before.mean_peak / 5.0;
             }
+            println!("{preset} {number}: {:.0} % off the mean peak", 100.0 * (1.0 - left));
+            assert!(left <= 0.4, "{preset} {number}: {left}");
+            all.push(left);
         }
     }
+    let mean = all.iter().sum::<f64>() / all.len() as f64;
+    println!("all: {:.0} %; {:.0} s of processor time", 100.0 * (1.0 - mean), clock.elapsed().as_secs_f64());
+    assert!(mean <= 0.35, "{mean}");
 }
 
 #[test]
-#[ignore = "prints a table; minutes in release"]
-fn table_of_changed_machines() {
+#[ignore = "minutes; in release by .ci/run"]
+fn commands_take_half_off_for_every_machine_as_it_has_become() {
+    let clock = ProcessTime::now();
     println!("plant, task, change {HEAD}");
     for preset in PRESETS {
-        let base = Parameters::preset(preset).unwrap();
-        let plant = Plant::new(&Arm::sample().unwrap(), base.clone()).unwrap();
         for number in [1, 2] {
             let job = task(number);
+            let command = learnt(&Plant::preset(preset).unwrap(), &job, 1);
             for variation in Variation::ALL {
-                let later = Plant::new(&Arm::sample().unwrap(), variation.parameters(&base)).unwrap();
-                let payload = variation.payload(&job.payload);
-                let (before, after) = before_and_after((&plant, &later), &job, &payload, 1);
-                row(&format!("{preset} {number} {variation:?}"), &before, &after);
+                let (plant, job) = changed(preset, &job, variation);
+                let (before, after) = tried(&plant, &job, &command, 1);
+                let title = format!("{preset} {number} {variation:?}");
+                row(&title, &before, &after);
+                check(&title, &before, &after, (0.5, 2.0));
             }
         }
     }
+    println!("{:.0} s of processor time", clock.elapsed().as_secs_f64());
 }
 
 #[test]
-#[ignore = "prints a table; minutes in release"]
-fn table_of_other_tasks() {
-    println!("plant, fitted to, commanded {HEAD}; processor time of the fit");
+#[ignore = "minutes; in release by .ci/run"]
+fn commands_from_other_runs_of_the_machine_help_too() {
+    let clock = ProcessTime::now();
+    println!("plant, fitted to, commanded {HEAD}");
     for preset in PRESETS {
         let plant = Plant::preset(preset).unwrap();
         let jobs = [task(1), task(2), excitation(&Excitation::minimal())];
-        let logs: Vec<Series> = jobs.iter().map(|job| run(&plant, &job.plan, job, 1)).collect();
-        for (title, learnt, done) in [
-            ("task 1 to 2", &[0][..], 1),
-            ("task 2 to 1", &[1], 0),
-            ("trial to 1", &[2], 0),
-            ("trial to 2", &[2], 1),
-            ("trial and 1 to 1", &[2, 0], 0),
-            ("trial and 1 to 2", &[2, 0], 1),
-        ] {
-            let clock = ProcessTime::now();
-            let sets: Vec<(&Series, &Series)> = learnt.iter().map(|&i| (&jobs[i].plan, &logs[i])).collect();
-            let fit = fitted(&sets);
-            let spent_s = clock.elapsed().as_secs_f64();
-            let made = compensate(&fit, &jobs[done].plan, Compensation::default()).unwrap();
-            let after = run(&plant, &made.command, &jobs[done], 101);
-            let before = run(&plant, &jobs[done].plan, &jobs[done], 51);
-            let title = format!("{preset} {title}, {spent_s:.2} s, margin {:.2}", fit.peak_margin);
-            row(&title, &figures(&jobs[done], &before), &figures(&jobs[done], &after));
+        let fits = jobs.each_ref().map(|job| fitted(&[(&job.plan, &run(&plant, &job.plan, job, 1))]));
+        for (title, learnt, done) in
+            [("task 1 to 2", 0, 1), ("task 2 to 1", 1, 0), ("trial to 1", 2, 0), ("trial to 2", 2, 1)]
+        {
+            let job = &jobs[done];
+            let made = compensate(&fits[learnt], &job.plan, Compensation::default()).unwrap();
+            let (before, after) = tried(&plant, job, &made.command, 1);
+            let title = format!("{preset} {title}");
+            row(&title, &before, &after);
+            check(&title, &before, &after, (0.6, 3.0));
         }
     }
+    println!("{:.0} s of processor time", clock.elapsed().as_secs_f64());
 }

@@ -23,7 +23,7 @@ const TASKS: [(&str, &[f64]); 2] = [
 ];
 
 /// The motion of a task at the paper's times, and what it carries when; `slower` stretches time.
-fn plan(task: usize, slower: f64) -> (Series, Vec<PayloadChange>) {
+pub(super) fn plan(task: usize, slower: f64) -> (Series, Vec<PayloadChange>) {
     let (text, t_s) = TASKS[task];
     let task = Task::parse(text).unwrap();
     let (mut angles, mut dwells, mut payload) = (Vec::new(), Vec::new(), Vec::new());

@@ -1,6 +1,7 @@
 //! Sample logs with known truth.
 
 mod cut;
+mod hydraulic;
 mod machine;
 mod plan;
 mod plc;
@@ -76,7 +77,9 @@ const PLC_TRACE: Title = (
 /// Every file of the folder, by name.
 pub(crate) fn files() -> Result<BTreeMap<String, Vec<u8>>, Box<dyn Error>> {
     let logs = [panel_install()?, still_joint()?, gaps()?, power_loss()?, trajectory_only()?, plc_trace()?];
-    let mut files = BTreeMap::from([("README.md".to_owned(), readme::text(&logs).into_bytes())]);
+    let plant = hydraulic::logs()?;
+    let mut files = BTreeMap::from([("README.md".to_owned(), readme::text(&logs, &plant)?.into_bytes())]);
+    files.extend(plant.into_iter().map(|log| (log.name.to_owned(), log.bytes)));
     files.extend(logs.into_iter().map(|log| (log.name.to_owned(), log.bytes)));
     Ok(files)
 }

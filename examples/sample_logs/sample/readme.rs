@@ -1,11 +1,12 @@
 //! The README of the sample logs, with the truth as tables.
 
-use std::fmt::Write as _;
+use std::{error::Error, fmt::Write as _};
 
 use hydrotrace::units::degrees_from_radians;
 
 use super::{
-    SampleLog,
+    SampleLog, hydraulic,
+    hydraulic::PlantLog,
     machine::{INTEGRAL_GAIN_1_S2, JOINTS, JUMP_1_S},
     plan::DWELL_S,
     recorder::{COUNT_RAD, JITTER_S, LOSS, NOISE_RAD, START_NS},
@@ -14,12 +15,12 @@ use super::{
 const HEAD: &str = "\
 # Sample logs
 
-Small logs of a made-up machine whose truth is known. Written, this file included, by
+Small logs of two made-up machines whose truth is known. Written, this file included, by
 
     cargo run --release --example sample_logs -- sample-logs
 
 The same source gives the same bytes; `tests/sample_logs.rs` compares them. Each MCAP log also
-carries its truth as metadata named `truth`.
+carries its truth as metadata, named `truth` or, of the hydraulic arm, `hydrotrace.plant`.
 ";
 
 const COLUMNS: &str = "
@@ -31,10 +32,10 @@ before the first start. A start is listed whether or not the log still shows it.
 ";
 
 const MACHINE: &str = "
-## The machine
+## The machine of the other logs
 
 A six-joint arm takes up a curtain-wall panel and installs it: moves of 3 to 4 s from rest to rest
-(minimum-jerk quintics), with reversals. It is **not the hydraulic plant**: no oil, no load, joints do
+(minimum-jerk quintics), with reversals. It is **not the hydraulic arm**: no oil, no load, joints do
 not influence each other. What a joint does:
 
 * it leaves standstill no earlier than its dead time after the plan's speed exceeds 0.05 deg/s, and only
@@ -47,22 +48,26 @@ not influence each other. What a joint does:
 ";
 
 /// The whole text.
-pub(crate) fn text(logs: &[SampleLog]) -> String {
+pub(crate) fn text(logs: &[SampleLog], plant: &[PlantLog]) -> Result<String, Box<dyn Error>> {
     let mut text = HEAD.to_owned();
-    summary(&mut text, logs);
+    summary(&mut text, logs, plant);
+    text.push_str(&hydraulic::sections(plant)?);
     text.push_str(&MACHINE.replace("{JUMP}", &JUMP_1_S.to_string()));
     machine(&mut text);
     text.push_str(COLUMNS);
     for log in logs {
         starts(&mut text, log);
     }
-    text
+    Ok(text)
 }
 
-fn summary(text: &mut String, logs: &[SampleLog]) {
+fn summary(text: &mut String, logs: &[SampleLog], plant: &[PlantLog]) {
     text.push_str("\n| log | bytes | seed | what it holds |\n|---|---|---|---|\n");
     for log in logs {
         line(text, &format!("| `{}` | {} | {} | {} |", log.name, log.bytes.len(), log.run.seed, log.story));
+    }
+    for row in hydraulic::rows(plant) {
+        line(text, &row);
     }
 }
 
@@ -129,6 +134,7 @@ fn starts(text: &mut String, log: &SampleLog) {
     }
 }
 
-fn line(text: &mut String, line: &str) {
+/// Appends a line.
+pub(crate) fn line(text: &mut String, line: &str) {
     let _ = writeln!(text, "{line}");
 }

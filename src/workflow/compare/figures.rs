@@ -105,6 +105,16 @@ fn values(report: &Report, name: &str, window_s: f64, rules: &Rules) -> Values {
     let fits = pair.map_or_else(Vec::new, |pair| {
         local_quadratic(&pair.t_s, &pair.measured_rad, &pair.segments, window_s, rules.window_points)
     });
+    // At the ends of a segment a window is cut, and what it yields is mostly noise.
+    let whole: Vec<bool> = pair.map_or_else(Vec::new, |pair| {
+        let inside = |segment: &std::ops::Range<usize>| {
+            let (first_s, last_s) = (pair.t_s[segment.start], pair.t_s[segment.end - 1]);
+            let whole = move |t_s: &f64| *t_s - first_s >= window_s && last_s - *t_s >= window_s;
+            pair.t_s[segment.clone()].iter().map(whole).collect::<Vec<_>>()
+        };
+        pair.segments.iter().flat_map(inside).collect()
+    });
+    let inside = || fits.iter().zip(&whole).filter(|(_, whole)| **whole).map(|(fit, _)| fit);
     let peak = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).reduce(f64::max);
     Values {
         rms: Some(joint.tracking_error.rms_rad),
@@ -113,8 +123,8 @@ fn values(report: &Report, name: &str, window_s: f64, rules: &Rules) -> Values {
         standstill: joint.standstill_error.map(|error| error.rms_rad),
         path: joint.path_error.map(|error| error.rms_rad),
         lag: joint.lag_s,
-        speed: peak(&mut fits.iter().map(|fit| fit.velocity_rad_s)),
-        acceleration: peak(&mut fits.iter().map(|fit| fit.acceleration_rad_s2)),
+        speed: peak(&mut inside().map(|fit| fit.velocity_rad_s)),
+        acceleration: peak(&mut inside().map(|fit| fit.acceleration_rad_s2)),
     }
 }
 
