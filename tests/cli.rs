@@ -252,3 +252,34 @@ fn write_joint_states(path: &Path, angles_at: impl Fn(f64) -> (f64, f64), later_
     }
     log.finish().unwrap();
 }
+
+#[test]
+fn a_page_goes_to_a_file_or_a_pipe_and_tells_limits_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("run.html");
+    let run = hydrotrace(&["report", CLEAN, "--html", "-o", page.to_str().unwrap()]);
+    assert_eq!((run.status.code(), stdout(&run).as_str()), (Some(0), ""));
+    let text = fs::read_to_string(page).unwrap();
+    assert!(text.starts_with("<!DOCTYPE html>") && text.contains("No limits set"), "{}", &text[..200]);
+    assert_eq!(text, stdout(&hydrotrace(&["report", CLEAN, "--html"])));
+    let broken = hydrotrace(&["report", CLEAN, "--html", "--max-rms-deg", "0.2", "--max-peak-deg", "2"]);
+    assert_eq!(broken.status.code(), Some(4));
+    assert!(stdout(&broken).contains("1 of 2 limits NOT kept"));
+    let doubtful = hydrotrace(&["report", DOUBTFUL, "--html"]);
+    assert_eq!(doubtful.status.code(), Some(3));
+    assert!(stdout(&doubtful).contains("id=\"remarks\"") && stderr(&doubtful).contains("remark: "));
+}
+
+#[test]
+fn figures_are_written_beside_a_report_of_any_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let figures = folder.path().join("new/figures");
+    let run = hydrotrace(&["report", CLEAN, "--json", "--figures", figures.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(0));
+    assert!(stdout(&run).starts_with('{'));
+    let mut names: Vec<String> =
+        fs::read_dir(figures).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names.len(), 7);
+    assert_eq!((names[0].as_str(), names[6].as_str()), ("joint-01-joint_1.svg", "transitions.svg"));
+}

@@ -168,3 +168,37 @@ fn bad_usage_is_exit_code_2_and_names_what_is_allowed() {
         assert!(stderr(&run).contains(expected), "{}", stderr(&run));
     }
 }
+
+#[test]
+fn the_page_goes_where_the_output_ends_in_html_and_the_log_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let budget = ["--evaluations", "1500"];
+    let page = plan(&[&[TASK_1, "--html", "-o", &file("plan.html")], &budget[..]].concat(), "2");
+    assert_eq!((page.status.code(), stdout(&page).as_str()), (Some(3), ""));
+    let text = fs::read_to_string(file("plan.html")).unwrap();
+    for word in ["limits kept", "A, the fastest", "How the front grew", "The chosen motion", "inactive-bound"]
+    {
+        assert!(text.contains(word), "{word}");
+    }
+    let both = plan(&[&[TASK_1, "--html", "-o", &file("plan.mcap")], &budget[..]].concat(), "1");
+    assert_eq!(stdout(&both), text);
+    assert!(fs::read(file("plan.mcap")).unwrap().starts_with(b"\x89MCAP"));
+    let given = plan(&[SIMULATION, "--times", A, "--html"], "1");
+    assert_eq!(given.status.code(), Some(0));
+    assert!(stdout(&given).contains("The motion"));
+}
+
+#[test]
+fn the_front_grows_on_the_way_and_ends_with_the_hypervolume_told() {
+    let found = json(&plan(&[TASK_1, "--json", "--evaluations", "6000"], "2"));
+    let steps = found["convergence"].as_array().unwrap();
+    let of = |step: &Value, name: &str| step[name].as_f64().unwrap();
+    assert!((5..=66).contains(&steps.len()), "{}", steps.len());
+    let (last, way) = steps.split_last().unwrap();
+    assert_eq!(of(last, "hypervolume"), found["hypervolume"].as_f64().unwrap());
+    for pair in way.windows(2) {
+        assert!(of(&pair[0], "evaluations") < of(&pair[1], "evaluations"));
+        assert!(of(&pair[0], "hypervolume") <= of(&pair[1], "hypervolume"));
+    }
+}

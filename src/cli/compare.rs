@@ -5,15 +5,17 @@ use std::{io::Write, slice::from_ref};
 use super::{
     CliError, Outcome,
     args::CompareArgs,
-    output::{deliver, say_remarks, spare_inputs},
+    output::{deliver, say_remarks, spare_inputs, spare_terminal},
 };
 use crate::{
-    report::{compare_gate_lines, compare_json, compare_parts, markdown, text},
+    report::{compare_gate_lines, compare_json, compare_page, compare_parts, markdown, text},
     workflow::compare::{Inputs, run as compare},
 };
 
 /// Pairs listed without `--all`.
 const MOST: usize = 15;
+/// The same on a page.
+const MOST_ON_A_PAGE: usize = 60;
 
 pub(super) fn run(
     args: &CompareArgs,
@@ -23,19 +25,22 @@ pub(super) fn run(
     let before = [from_ref(&args.before), args.more_before.as_slice()].concat();
     let after = [from_ref(&args.after), args.more_after.as_slice()].concat();
     spare_inputs(args.output.as_deref(), &[before.as_slice(), &after].concat())?;
+    spare_terminal(args.format.html, args.output.as_deref())?;
     let inputs =
         Inputs { before, after, read: args.read.options(), gates: args.gates.gates(), ..Inputs::default() };
     let comparison = compare(&inputs)?;
     let most = if args.all { usize::MAX } else { MOST };
     let rendered = if args.format.json {
         compare_json(&comparison)
+    } else if args.format.html {
+        compare_page(&comparison, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
     } else if args.format.markdown {
         markdown(&compare_parts(&comparison, most))
     } else {
         text(&compare_parts(&comparison, most))
     };
     deliver(&rendered, args.output.as_deref(), out)?;
-    if args.output.is_some() || args.format.json {
+    if args.output.is_some() || args.format.json || args.format.html {
         say_remarks(&comparison.remarks, err);
     }
     if !comparison.gates_kept() {

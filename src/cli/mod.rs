@@ -86,6 +86,10 @@ enum CliError {
     Write(#[from] WriteError),
     #[error("{} is what is read; give another name to --output", .0.display())]
     Overwrite(std::path::PathBuf),
+    #[error("a page is for a browser, not for a terminal; give --output FILE or redirect it")]
+    Terminal,
+    #[error("cannot draw the figures")]
+    Figures(#[source] Box<dyn std::error::Error + Send + Sync>),
     #[error("cannot write the output")]
     Output(#[from] std::io::Error),
 }
@@ -123,7 +127,7 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
                 let _ = writeln!(err, "  because: {inner}");
                 cause = inner.source();
             }
-            if matches!(error, CliError::Overwrite(_)) { 2 } else { 1 }
+            if matches!(error, CliError::Overwrite(_) | CliError::Terminal) { 2 } else { 1 }
         }
     }
 }

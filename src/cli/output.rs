@@ -1,6 +1,9 @@
 //! Where results go: standard output, or a file that appears whole or not at all.
 
-use std::{io::Write, path::Path};
+use std::{
+    io::{IsTerminal, Write},
+    path::Path,
+};
 
 use super::CliError;
 use crate::{atomic::write_atomically, remark::Remarks};
@@ -11,6 +14,11 @@ pub(super) fn deliver(text: &str, file: Option<&Path>, out: &mut impl Write) -> 
         None => Ok(out.write_all(text.as_bytes())?),
         Some(path) => write_atomically(path, |file| Ok(file.write_all(text.as_bytes())?)),
     }
+}
+
+/// Refuses a page on a terminal: a megabyte of markup tells nobody anything.
+pub(super) fn spare_terminal(html: bool, file: Option<&Path>) -> Result<(), CliError> {
+    if html && file.is_none() && std::io::stdout().is_terminal() { Err(CliError::Terminal) } else { Ok(()) }
 }
 
 /// Says remarks where a person sees them, whatever the format of the result.

@@ -7,21 +7,25 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::{
     CliError, Outcome,
     args::PlanArgs,
-    output::{deliver, say_remarks, spare_inputs},
+    output::{deliver, say_remarks, spare_inputs, spare_terminal},
 };
 use crate::{
     atomic::write_atomically,
     moea::{Budget, Contender},
     plan::Progress,
-    report::{broken_lines, ceiling_lines, judged_json, judged_parts, plan_json, plan_parts, text},
+    report::{
+        broken_lines, ceiling_lines, judged_json, judged_page, judged_parts, plan_json, plan_page,
+        plan_parts, text,
+    },
     workflow::{
-        plan::{Gauge, Judged, Options, Order, PlanFailure, Planned, run as search},
+        plan::{Course, Gauge, Judged, Options, Order, PlanFailure, Planned, run as search},
         plan_log::PlanLog,
     },
 };
 
 pub(super) fn run(args: &PlanArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     spare_inputs(args.output.as_deref(), std::slice::from_ref(&args.task))?;
+    spare_terminal(args.html, args.page())?;
     let order = Order::read(&args.task)?;
     match args.times.as_ref().or(order.task.times_s.as_ref()) {
         Some(times_s) => judge(args, &order, times_s, out),
@@ -35,8 +39,14 @@ fn judge(args: &PlanArgs, order: &Order, times_s: &[f64], out: &mut impl Write) 
     let joints = order.setup.joint_names();
     let document = judged_json(title, &joints, &judged, true);
     write_log(args, order, &judged, &document, &BTreeMap::new())?;
-    let rendered = if args.json { document } else { text(&judged_parts(title, &joints, &judged)) };
-    deliver(&rendered, None, out)?;
+    let rendered = if args.json {
+        document
+    } else if args.html {
+        judged_page(title, &joints, &judged, &course(order, &judged)?)
+    } else {
+        text(&judged_parts(title, &joints, &judged))
+    };
+    deliver(&rendered, args.page(), out)?;
     Ok(if judged.broken().is_empty() { Outcome::Clean } else { Outcome::GateFailed })
 }
 
@@ -47,13 +57,16 @@ fn plan(
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
     let Found { planned, document, algorithm, options } = found(args, order, out)?;
+    let (title, bounds) = (&order.task.title, &order.task.bounds);
     let rendered = if args.json {
         document
+    } else if args.html {
+        plan_page(title, algorithm, &options, bounds, &planned, &course(order, &planned.chosen)?)
     } else {
-        text(&plan_parts(&order.task.title, algorithm, &options, &order.task.bounds, &planned))
+        text(&plan_parts(title, algorithm, &options, bounds, &planned))
     };
-    deliver(&rendered, None, out)?;
-    if args.json {
+    deliver(&rendered, args.page(), out)?;
+    if args.json || args.html {
         say_remarks(&planned.remarks, err);
     }
     Ok(if planned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
@@ -95,6 +108,10 @@ pub(super) fn found(args: &PlanArgs, order: &Order, out: &mut impl Write) -> Res
     Ok(Found { planned, document, algorithm, options })
 }
 
+fn course(order: &Order, judged: &Judged) -> Result<Course, CliError> {
+    Ok(Course::of(&order.setup, judged).map_err(PlanFailure::from)?)
+}
+
 /// What a failure means in the task's own terms; as JSON, where that is asked for.
 fn explained(
     args: &PlanArgs,
@@ -125,7 +142,7 @@ fn write_log(
     document: &str,
     provenance: &BTreeMap<String, String>,
 ) -> Result<(), CliError> {
-    let Some(path) = &args.output else { return Ok(()) };
+    let Some(path) = args.log() else { return Ok(()) };
     let motion = order.setup.motion(&judged.times_s).map_err(PlanFailure::from)?;
     let log = PlanLog {
         setup: &order.setup,

@@ -1,19 +1,27 @@
 //! `report`: runs the workflow, renders, says what was not kept.
 
-use std::io::Write;
+use std::{io::Write, path::Path};
 
 use super::{
     CliError, Outcome,
     args::ReportArgs,
-    output::{deliver, say_remarks, spare_inputs},
+    output::{deliver, say_remarks, spare_inputs, spare_terminal},
 };
 use crate::{
-    report::{gate_lines, markdown, report_json, report_parts, text, transitions_csv},
-    workflow::report::{Inputs, run as analyse},
+    atomic::write_atomically,
+    report::{
+        gate_lines, markdown, report_figures, report_json, report_page, report_parts, text, transitions_csv,
+    },
+    workflow::{
+        fit::read_limits,
+        report::{Inputs, Report, run as analyse},
+    },
 };
 
 /// Transitions listed without `--all`.
 const MOST: usize = 15;
+/// The same on a page.
+const MOST_ON_A_PAGE: usize = 60;
 
 pub(super) fn run(
     args: &ReportArgs,
@@ -21,6 +29,7 @@ pub(super) fn run(
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
     spare_inputs(args.output.as_deref(), &args.logs)?;
+    spare_terminal(args.format.html, args.output.as_deref())?;
     let inputs = Inputs {
         logs: args.logs.clone(),
         read: args.read.options(),
@@ -35,13 +44,20 @@ pub(super) fn run(
         report_json(&report)
     } else if args.format.csv {
         transitions_csv(&report)
+    } else if args.format.html {
+        let limits = args.limits.as_deref().map(read_limits).transpose()?;
+        let fit = limits.as_ref().map(|file| &file.fit);
+        report_page(&name, &report, fit, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
     } else if args.format.markdown {
         markdown(&report_parts(&name, &report, most))
     } else {
         text(&report_parts(&name, &report, most))
     };
+    if let Some(folder) = &args.figures {
+        figures(folder, &report)?;
+    }
     deliver(&rendered, args.output.as_deref(), out)?;
-    let on_screen = args.output.is_none() && !args.format.json && !args.format.csv;
+    let on_screen = args.output.is_none() && !args.format.json && !args.format.csv && !args.format.html;
     if !on_screen {
         say_remarks(&report.remarks, err);
     }
@@ -54,4 +70,14 @@ pub(super) fn run(
         return Ok(Outcome::GateFailed);
     }
     Ok(if report.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}
+
+/// The plots of the page, one file each.
+fn figures(folder: &Path, report: &Report) -> Result<(), CliError> {
+    let figures = report_figures(report).map_err(CliError::Figures)?;
+    std::fs::create_dir_all(folder).map_err(|source| CliError::Folder { path: folder.to_owned(), source })?;
+    for (name, svg) in figures {
+        write_atomically(&folder.join(name), |file| Ok::<(), CliError>(file.write_all(svg.as_bytes())?))?;
+    }
+    Ok(())
 }

@@ -136,7 +136,7 @@ fn alignment_rule(rule: &str, left: usize) -> String {
 }
 
 /// Names come from logs: control characters would reach the reader's terminal.
-fn clean(text: &str) -> String {
+pub(super) fn clean(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 

@@ -1,4 +1,4 @@
-//! Renders what a workflow found: text, Markdown, JSON, CSV. Nothing is computed here; degrees
+//! Renders what a workflow found: text, Markdown, JSON, CSV, pages, pictures. Nothing is computed here; degrees
 //! and milliseconds are.
 
 mod compare;
@@ -13,6 +13,7 @@ mod json;
 mod markup;
 mod method;
 mod moea;
+mod page;
 mod picture;
 mod plan;
 mod recover;
@@ -33,6 +34,7 @@ pub use info::{info_json, info_parts};
 pub use json::report_json;
 pub use markup::{Part, Sheet, markdown, text};
 pub use moea::{curve_svg, curves_csv, front_csv, moea_json, moea_parts};
+pub use page::{compare_page, judged_page, plan_page, report_figures, report_page};
 pub use plan::{broken_lines, ceiling_lines, judged_json, judged_parts, plan_json, plan_parts};
 pub use recover::{recovered_json, recovered_parts};
 pub use replan::{replan_json, replan_parts};

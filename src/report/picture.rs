@@ -23,10 +23,10 @@ use super::sample::significant;
 /// Pixels; drawn large, because the library rounds to whole ones.
 const SIZE: (u32, u32) = (1800, 800);
 pub(super) const INK: RGBColor = RGBColor(51, 51, 51);
-const GRID: RGBColor = RGBColor(225, 225, 225);
+pub(super) const GRID: RGBColor = RGBColor(225, 225, 225);
 /// Entries of the legend beside one another at most.
 const IN_A_ROW: usize = 4;
-const FONT: &str = "sans-serif";
+pub(super) const FONT: &str = "sans-serif";
 
 /// A curve in every panel.
 pub(super) struct Line {
@@ -143,13 +143,13 @@ fn draw<DB: DrawingBackend>(
 }
 
 /// A linear axis with ticks of our own.
-struct Axis {
+pub(super) struct Axis {
     linear: RangedCoordf64,
     ticks: Vec<f64>,
 }
 
 impl Axis {
-    fn new(range: Range<f64>, ticks: Vec<f64>) -> Self {
+    pub(super) fn new(range: Range<f64>, ticks: Vec<f64>) -> Self {
         Self { linear: range.into(), ticks }
     }
 }
@@ -178,7 +178,7 @@ fn drawable(course: &Course, place: impl Fn(f64) -> f64) -> Course {
 }
 
 /// Multiples of 1, 2 or 5 times a power of ten, at most `most` of them.
-fn steps(low: f64, high: f64, most: u32) -> Vec<f64> {
+pub(super) fn steps(low: f64, high: f64, most: u32) -> Vec<f64> {
     let rough = (high - low) / f64::from(most.max(1));
     let power = 10_f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].map(|k| k * power).into_iter().find(|s| *s >= rough).unwrap_or(rough);
@@ -203,7 +203,7 @@ fn thousands(x: f64) -> String {
 }
 
 /// Without the zeros at the end.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     let text = significant(value, 4);
     if text.contains('.') && !text.contains('e') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()

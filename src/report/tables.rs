@@ -22,7 +22,7 @@ pub fn report_parts(name: &str, report: &Report, most: usize) -> Vec<Part> {
 /// Recorder and header on clocks that have nothing to do with each other (simulated time), s.
 const A_CLOCK_APART_S: f64 = 3600.0;
 
-fn source_facts(report: &Report) -> Vec<(String, String)> {
+pub(super) fn source_facts(report: &Report) -> Vec<(String, String)> {
     let source = &report.source;
     let fact = |name: &str, value: String| (name.to_owned(), value);
     let samples = report.alignment.iter().map(|a| a.matched).max().unwrap_or(0);
@@ -49,7 +49,7 @@ fn source_facts(report: &Report) -> Vec<(String, String)> {
     ]
 }
 
-fn in_short(report: &Report) -> Vec<String> {
+pub(super) fn in_short(report: &Report) -> Vec<String> {
     let replay = &report.replay;
     let mut lines = Vec::new();
     match by_peak(replay).first() {
@@ -108,7 +108,7 @@ fn in_short(report: &Report) -> Vec<String> {
     lines
 }
 
-fn worst_sentence(worst: &Transition) -> String {
+pub(super) fn worst_sentence(worst: &Transition) -> String {
     let lateness = match worst.onset_delay_s {
         Some(delay_s) if delay_s >= 0.0 => format!("leaves {} ms after its plan", ms(delay_s)),
         Some(delay_s) => format!("leaves {} ms before its plan", ms(-delay_s)),
@@ -123,7 +123,7 @@ fn worst_sentence(worst: &Transition) -> String {
     )
 }
 
-fn by_peak(replay: &Replay) -> Vec<&Transition> {
+pub(super) fn by_peak(replay: &Replay) -> Vec<&Transition> {
     let mut worst: Vec<&Transition> = replay.transitions.iter().collect();
     worst.sort_by(|a, b| b.peak_error_rad.total_cmp(&a.peak_error_rad));
     worst
@@ -140,7 +140,7 @@ fn optional(value: Option<f64>, format: fn(f64) -> String) -> String {
     value.map_or(NONE.to_owned(), format)
 }
 
-fn transition_parts(replay: &Replay, most: usize, parts: &mut Vec<Part>) {
+pub(super) fn transition_parts(replay: &Replay, most: usize, parts: &mut Vec<Part>) {
     let all = by_peak(replay);
     if all.is_empty() {
         return;
@@ -185,7 +185,7 @@ fn transition_parts(replay: &Replay, most: usize, parts: &mut Vec<Part>) {
     }
 }
 
-fn joint_parts(replay: &Replay, parts: &mut Vec<Part>) {
+pub(super) fn joint_parts(replay: &Replay, parts: &mut Vec<Part>) {
     let rows = replay.joints.iter().map(|j| {
         let error = &j.tracking_error;
         vec![
@@ -225,7 +225,7 @@ fn joint_parts(replay: &Replay, parts: &mut Vec<Part>) {
     parts.push(Part::Sheet(Sheet { head, left: 1, rows: rows.collect() }));
 }
 
-fn lag(joint: &JointReplay) -> String {
+pub(super) fn lag(joint: &JointReplay) -> String {
     match (joint.lag_s, joint.lag_interval_s) {
         (Some(lag_s), Some([a, b])) => format!("{} ({}..{})", ms(lag_s), ms(a), ms(b)),
         (lag_s, _) => optional(lag_s, ms),

@@ -1,11 +1,15 @@
 //! One file per verb: what the caller wants in, what was found out. No printing, no clap.
 
+pub mod advice;
 pub mod compare;
 pub mod contest;
+mod convergence;
+mod course;
 pub mod detector;
 pub mod excite;
 pub mod export;
 pub mod fit;
+pub mod front;
 pub mod import;
 pub mod info;
 pub mod moea;

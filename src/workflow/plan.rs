@@ -7,6 +7,8 @@ use std::{
 
 use thiserror::Error;
 
+use super::convergence::Growth;
+pub use super::{convergence::Step, course::Course};
 use crate::{
     arm::{Arm, ArmError},
     moea::indicator::hypervolume,
@@ -234,6 +236,8 @@ pub struct Planned {
     /// Share of the box between the best of each objective and `BEYOND` times the range of the front
     /// that the front dominates.
     pub hypervolume: f64,
+    /// The same on the way, in the box of the final front.
+    pub convergence: Vec<Step>,
     /// Doubts about the task.
     pub remarks: Remarks,
 }
@@ -249,10 +253,14 @@ pub const BEYOND: f64 = 1.1;
 pub fn run(
     order: &Order,
     options: &Options,
-    observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+    mut observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Planned, PlanFailure> {
     let Order { task, setup, .. } = order;
-    let found = search(setup, &options.search, observer)?;
+    let mut growth = Growth::default();
+    let found = search(setup, &options.search, |progress| {
+        growth.see(progress);
+        observer(progress)
+    })?;
     let judged = |timing: &Timing| Judged::of(setup, &setup.times_s(&timing.interval_s));
     let Some(ends) = ends(&found.front) else {
         let nearest =
@@ -273,6 +281,9 @@ pub fn run(
         found.front.iter().map(|timing| timing.objectives.as_array()[k]).fold(0.0, |most: f64, f| most.max(f))
     };
     task.bounds.remark_inactive(largest(0), largest(1), largest(2), &mut remarks);
+    let objectives = || found.front.iter().map(|timing| timing.objectives.as_array());
+    let gauge = Gauge::of(objectives());
+    let hypervolume = gauge.measure(objectives());
     let [a, b, c] = ends;
     let best = [judged(&found.front[a])?, judged(&found.front[b])?, judged(&found.front[c])?];
     Ok(Planned {
@@ -284,8 +295,8 @@ pub fn run(
         evaluations: found.evaluations + choice.evaluations,
         generations: found.generations,
         hasty: found.hasty,
-        hypervolume: Gauge::of(found.front.iter().map(|timing| timing.objectives.as_array()))
-            .measure(found.front.iter().map(|timing| timing.objectives.as_array())),
+        hypervolume,
+        convergence: growth.steps(gauge, found.evaluations, hypervolume),
         choice,
         front: found.front,
         remarks,

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::schedule::Schedule;
+use super::{front::Front, plan_log::FRONT, schedule::Schedule};
 use crate::{
-    log::{LogError, ReadOptions, SourceInfo, read_recording},
+    log::{Attachment, LogError, ReadOptions, SourceInfo, read_recording},
     remark::{Code, Remarks},
     replay::{Replay, Rules, planned_starts, replay},
     series::{Pair, Series, align},
@@ -111,6 +111,8 @@ pub struct Report {
     pub pairs: Vec<Pair>,
     /// When the key points of the task are passed, where the log tells.
     pub schedule: Option<Schedule>,
+    /// The plans that the run's own was chosen from, where its log carries them.
+    pub front: Option<Front>,
 }
 
 impl Report {
@@ -152,7 +154,19 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     remark_unseen(&recording.planned, &pairs, inputs, &mut remarks);
     let replay = replay(&pairs, &inputs.rules);
     let gates = gates(&inputs.gates, &replay);
-    Ok(Report { source: recording.source, alignment, replay, gates, remarks, pairs, schedule })
+    let front = front(&recording.attachments, &mut remarks);
+    Ok(Report { source: recording.source, alignment, replay, gates, remarks, pairs, schedule, front })
+}
+
+fn front(attachments: &[Attachment], remarks: &mut Remarks) -> Option<Front> {
+    let file = attachments.iter().find(|file| file.name == FRONT)?;
+    match Front::read(file)? {
+        Ok(front) => Some(front),
+        Err(error) => {
+            remarks.add(Code::NotSupported, 1, format!("{FRONT} in the log is broken, left out: {error}"));
+            None
+        }
+    }
 }
 
 fn no_overlap(planned: &Series, measured: &Series) -> LogError {

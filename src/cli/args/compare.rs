@@ -56,6 +56,10 @@ pub struct CompareFormat {
     /// The comparison as Markdown
     #[arg(long)]
     pub markdown: bool,
+
+    /// One page for a browser: verdict, plots that zoom, every table; needs no network
+    #[arg(long)]
+    pub html: bool,
 }
 
 /// Limits; exit code 4 if one is not kept.

@@ -59,6 +59,7 @@ pub enum Command {
     /// Tracking error of every joint, and of every start from rest
     #[command(
         after_help = "Examples:\n  hydrotrace report run.mcap\n  hydrotrace report run.mcap --json -o report.json\n  \
+                            hydrotrace report run.mcap --html -o run.html\n  \
                             hydrotrace report run.mcap --max-transition-peak-deg 0.5\n  \
                             hydrotrace report run.mcap --planned /arm/controller_state:output.positions"
     )]
@@ -190,6 +191,14 @@ pub struct ReportArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
+    /// Write the plots of the page as SVG files into DIR, which is made where there is none
+    #[arg(long, value_name = "DIR")]
+    pub figures: Option<PathBuf>,
+
+    /// Show the machine of FILE, which `fit` wrote, on the page
+    #[arg(long, value_name = "FILE", requires = "html")]
+    pub limits: Option<PathBuf>,
+
     /// List every transition, not only the worst
     #[arg(long)]
     pub all: bool,
@@ -206,6 +215,7 @@ pub struct ReportArgs {
 /// At most one of these.
 #[derive(Debug, clap::Args)]
 #[group(multiple = false)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line, of which one at most is given")]
 pub struct ReportFormat {
     /// One JSON document, as schemas/report.v1.schema.json describes it
     #[arg(long)]
@@ -218,6 +228,10 @@ pub struct ReportFormat {
     /// The report as Markdown
     #[arg(long)]
     pub markdown: bool,
+
+    /// One page for a browser: verdict, plots that zoom, every table; needs no network
+    #[arg(long)]
+    pub html: bool,
 }
 
 /// Limits; exit code 4 if one is not kept.

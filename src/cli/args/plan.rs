@@ -1,6 +1,9 @@
 //! Arguments of `plan`.
 
-use std::{path::PathBuf, time::Duration};
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 use clap::{ArgAction, ValueEnum, builder::PossibleValuesParser};
 
@@ -18,7 +21,8 @@ pub struct PlanArgs {
     #[arg(value_name = "TASK")]
     pub task: PathBuf,
 
-    /// Write the chosen plan to FILE, an MCAP log with the task and the whole front within
+    /// Write the chosen plan to FILE, an MCAP log with the task and the whole front within; with --html and a
+    /// FILE that ends in .html, the page
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
@@ -29,6 +33,10 @@ pub struct PlanArgs {
     /// One JSON document with the front, as schemas/plan.v1.schema.json describes it
     #[arg(long)]
     pub json: bool,
+
+    /// One page for a browser with the front, the search and every limit; needs no network
+    #[arg(long, conflicts_with = "json")]
+    pub html: bool,
 
     /// Samples a second in the log
     #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate)]
@@ -117,6 +125,17 @@ pub enum RuleName {
 }
 
 impl PlanArgs {
+    /// Where the log goes.
+    pub fn log(&self) -> Option<&Path> {
+        self.output.as_deref().filter(|_| self.page().is_none())
+    }
+
+    /// Where the page goes, if not to standard output.
+    pub fn page(&self) -> Option<&Path> {
+        let html = |path: &&Path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"));
+        self.output.as_deref().filter(|path| self.html && html(path))
+    }
+
     /// The same for the library.
     pub fn options(&self) -> Options {
         let SearchArgs { evaluations, generations, time_budget, .. } = &self.search;

@@ -7,6 +7,7 @@ mod tables;
 pub use document::compare_json;
 pub use short::compare_gate_lines;
 pub use tables::compare_parts;
+pub(super) use tables::run_facts;
 
 use super::{NONE, deg, ms};
 use crate::workflow::compare::{Change, Measure, Verdict};
@@ -20,21 +21,21 @@ fn unit(measure: Measure) -> (fn(f64) -> String, &'static str) {
 }
 
 /// A difference with its sign.
-fn signed(value: f64, show: fn(f64) -> String) -> String {
+pub(super) fn signed(value: f64, show: fn(f64) -> String) -> String {
     let text = show(value);
     let zero = text.chars().all(|c| matches!(c, '0' | '.'));
     if zero || text.starts_with('-') { text } else { format!("+{text}") }
 }
 
 /// A share as whole percent with its sign.
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     signed(share, |share| {
         let text = format!("{:.0}", 100.0 * share);
         if text == "-0" { "0".to_owned() } else { text }
     })
 }
 
-fn probability(p: f64) -> String {
+pub(super) fn probability(p: f64) -> String {
     if p < 0.001 { format!("{p:.1e}") } else { format!("{p:.3}") }
 }
 

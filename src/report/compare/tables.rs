@@ -32,7 +32,7 @@ pub fn compare_parts(comparison: &Comparison, most: usize) -> Vec<Part> {
     parts
 }
 
-fn run_facts(comparison: &Comparison) -> Vec<(String, String)> {
+pub(in crate::report) fn run_facts(comparison: &Comparison) -> Vec<(String, String)> {
     let fact = |side: &str, run: &Run| {
         let plan = run.plan_duration_s.map_or(String::new(), |s| format!(", plan {s:.2} s"));
         let source = &run.source;

@@ -2,7 +2,7 @@
 
 use super::Shown;
 use crate::{
-    fit::{Estimated, JointFit, LEAST_SKILL},
+    fit::{Estimated, Fit, JointFit, LEAST_SKILL},
     report::{Part, Sheet, counted, deg, tables::remark_parts},
     units::degrees_from_radians,
     workflow::{fit::Fitted, torque::JointTorque},
@@ -103,6 +103,18 @@ pub fn fit_parts(fitted: &Fitted) -> Vec<Part> {
             "{}, {samples} samples; {sent}. 95 % intervals hold what models of this form miss.",
             counted(fit.joints.len(), "joint")
         )),
+    ];
+    parts.extend(machine_parts(fit));
+    parts.extend(torque_parts(&fitted.torques));
+    parts.push(Part::Heading("What to trust".into()));
+    parts.extend(trust(fitted).into_iter().map(Part::Line));
+    remark_parts(&fitted.remarks, &mut parts);
+    parts
+}
+
+/// The numbers of a fit with their intervals.
+pub(in crate::report) fn machine_parts(fit: &Fit) -> Vec<Part> {
+    let mut parts = vec![
         Part::Heading("Closed loop".into()),
         sheet(&fit.joints, &LOOP, true),
         Part::Heading("Limits".into()),
@@ -118,28 +130,32 @@ pub fn fit_parts(fitted: &Fitted) -> Vec<Part> {
             rows: fit.joints.iter().map(row).collect(),
         }));
     }
-    if !fitted.torques.is_empty() {
-        parts.push(Part::Heading("Torques from pressures".into()));
-        let row = |torque: &JointTorque| {
-            let both = torque.reached_n_m.iter().zip(torque.available_n_m);
-            let cells = both.flat_map(|(reached, available)| [*reached, available]);
-            let mut row = vec![torque.name.clone()];
-            row.extend(cells.map(|n_m| format!("{n_m:.0}")));
-            row
-        };
-        parts.push(Part::Sheet(Sheet {
+    parts
+}
+
+fn torque_parts(torques: &[JointTorque]) -> Vec<Part> {
+    if torques.is_empty() {
+        return Vec::new();
+    }
+    let row = |torque: &JointTorque| {
+        let both = torque.reached_n_m.iter().zip(torque.available_n_m);
+        let cells = both.flat_map(|(reached, available)| [*reached, available]);
+        let mut row = vec![torque.name.clone()];
+        row.extend(cells.map(|n_m| format!("{n_m:.0}")));
+        row
+    };
+    vec![
+        Part::Heading("Torques from pressures".into()),
+        Part::Sheet(Sheet {
             head: vec!["joint", "reached + N m", "available +", "reached - N m", "available -"],
             left: 1,
-            rows: fitted.torques.iter().map(row).collect(),
-        }));
-        parts.push(Part::Line(
-            "Available: in every pose of the run at the logged supply pressure; friction and flow take some of it.".into(),
-        ));
-    }
-    parts.push(Part::Heading("What to trust".into()));
-    parts.extend(trust(fitted).into_iter().map(Part::Line));
-    remark_parts(&fitted.remarks, &mut parts);
-    parts
+            rows: torques.iter().map(row).collect(),
+        }),
+        Part::Line(
+            "Available: in every pose of the run at the logged supply pressure; friction and flow take some of it."
+                .into(),
+        ),
+    ]
 }
 
 fn sheet(joints: &[JointFit], columns: &[(&'static str, Shown)], skill: bool) -> Part {

@@ -6,7 +6,7 @@ use crate::{
     plan::{Margin, Objectives, Rule},
     remark::Remark,
     report::json,
-    workflow::plan::{Judged, Options, Planned},
+    workflow::plan::{Judged, Options, Planned, Step},
 };
 
 /// Plans of a task. Angles are radians, times seconds, f1 is the duration, f2 the root mean square
@@ -39,6 +39,9 @@ pub(super) struct Document<'a> {
     /// Share of the box between the best of each objective and 1.1 times the front's range that the
     /// front dominates.
     hypervolume: Option<f64>,
+    /// The same on the way, in the box of the final front; left out where nothing was searched.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    convergence: Option<&'a [Step]>,
     /// Plans of which none is better than another in everything, fastest first.
     front: Vec<Entry<'a>>,
     /// Indices into the front of the fastest plan (A), the smoothest (B), that of least power (C).
@@ -148,6 +151,7 @@ pub fn plan_json(title: &str, algorithm: &str, options: &Options, planned: &Plan
         generations: Some(planned.generations),
         hasty: planned.hasty,
         hypervolume: Some(planned.hypervolume),
+        convergence: Some(&planned.convergence),
         front: plans.map(|(plan, times_s)| entry(times_s, plan.objectives, plan.violation)).collect(),
         best: Some(planned.ends),
         chosen: Whole {
@@ -175,6 +179,7 @@ pub fn judged_json(title: &str, joints: &[String], judged: &Judged, feasible: bo
         generations: None,
         hasty: None,
         hypervolume: None,
+        convergence: None,
         front: if feasible {
             vec![entry(&judged.times_s, judged.objectives, judged.violation)]
         } else {

@@ -81,8 +81,8 @@ pub enum CompareFailure {
 ///
 /// [`CompareFailure`] if a run cannot be analysed or the runs share no joint.
 pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
-    let before = analysed(inputs, &inputs.before)?;
-    let after = analysed(inputs, &inputs.after)?;
+    let mut before = analysed(inputs, &inputs.before)?;
+    let mut after = analysed(inputs, &inputs.after)?;
     let first = before.first().ok_or(CompareFailure::NoRun(Side::Before))?;
     let first_after = after.first().ok_or(CompareFailure::NoRun(Side::After))?;
     let has = |report: &Report, name: &str| report.replay.joints.iter().any(|joint| joint.name == name);
@@ -118,9 +118,14 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     let whole_run = figures(&before, &after, &joints, &inputs.rules);
     let gates = gates(&inputs.gates, &pairs, &summaries, &whole_run);
     let runs = |side: Side| all.iter().filter(|m| m.side == side).map(|m| m.run(&joints)).collect();
+    let (runs_before, runs_after) = (runs(Side::Before), runs(Side::After));
+    let samples = |reports: &mut [Report]| {
+        reports.first_mut().map_or_else(Vec::new, |report| std::mem::take(&mut report.pairs))
+    };
     Ok(Comparison {
-        before: runs(Side::Before),
-        after: runs(Side::After),
+        samples: [samples(&mut before), samples(&mut after)],
+        before: runs_before,
+        after: runs_after,
         joints: joints.clone(),
         summaries,
         pairs,

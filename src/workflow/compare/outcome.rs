@@ -7,6 +7,7 @@ use crate::{
     log::SourceInfo,
     remark::Remarks,
     replay::{Kind, Rules},
+    series::Pair,
 };
 
 /// Before the change or after it.
@@ -114,6 +115,8 @@ pub struct Comparison {
     pub rules: Rules,
     /// What was doubtful, in the data or in the pairing.
     pub remarks: Remarks,
+    /// The aligned samples of the first run of each side, for plots.
+    pub samples: [Vec<Pair>; 2],
 }
 
 impl Comparison {

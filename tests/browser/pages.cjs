@@ -1,0 +1,105 @@
+// Opens pages that hydrotrace wrote in a headless Chromium: no console errors, nothing fetched, pointing and
+// zooming work, no plot is blank, nothing is wider than the screen.
+//
+//   node pages.cjs FOLDER PAGE.html...     screenshots go to FOLDER; CHROMIUM names the browser
+'use strict';
+const { mkdtempSync, mkdirSync, rmSync } = require('node:fs');
+const { tmpdir } = require('node:os');
+const { basename, join, resolve } = require('node:path');
+const { pathToFileURL } = require('node:url');
+const { chromium } = require('playwright-core');
+
+const FLAGS = [
+  '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync',
+];
+const [folder, ...pages] = process.argv.slice(2);
+if (!folder || !pages.length) { console.error('usage: node pages.cjs FOLDER PAGE.html...'); process.exit(2); }
+mkdirSync(folder, { recursive: true });
+
+const faults = [];
+function check(holds, page, what) { if (!holds) faults.push(`${page}: ${what}`); }
+
+// How many different colours a plot has: a blank one has one.
+const colours = canvas => {
+  const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+  const seen = new Set();
+  for (let i = 0; i < data.length; i += 4) if (data[i + 3]) seen.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
+  return seen.size;
+};
+
+async function look(browser, path, width, scheme) {
+  const name = basename(path, '.html'), where = `${name} at ${width} px, ${scheme}`;
+  const context = await browser.newContext({ viewport: { width, height: 900 }, colorScheme: scheme, hasTouch: width < 500 });
+  const page = await context.newPage();
+  const fetched = [];
+  page.on('console', message => check(!['error', 'warning'].includes(message.type()), where, `console: ${message.text()}`));
+  page.on('pageerror', error => check(false, where, `script: ${error.message}`));
+  page.on('dialog', dialog => { check(false, where, 'a dialog opened'); dialog.dismiss(); });
+  page.on('request', request => fetched.push(request.url()));
+  await page.goto(pathToFileURL(resolve(path)).href, { waitUntil: 'load' });
+  const ms = await page.evaluate(() => performance.getEntriesByType('navigation')[0].loadEventEnd);
+  check(fetched.length === 1, where, `it fetched ${fetched.slice(1).join(', ')}`);
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+  check(overflow <= 0, where, `it is ${overflow} px wider than the screen`);
+  let blank = 0;
+  for (const canvas of await page.$$('canvas')) if (await canvas.evaluate(colours) < 3) blank++;
+  check(blank === 0, where, `${blank} plots are blank`);
+  check(await page.locator('h2').count() > 1, where, 'it has no sections');
+  await page.screenshot({ path: join(folder, `${name}-${width}-${scheme}.png`), fullPage: true });
+  await use(page, where);
+  await context.close();
+  return ms;
+}
+
+// Points at the first plot, zooms it, resets it.
+async function use(page, where) {
+  const plot = page.locator('figure.chart:not(.tile) canvas').first();
+  if (await plot.count() === 0) return;
+  await plot.scrollIntoViewIfNeeded();
+  const box = await plot.boundingBox(), read = page.locator('figure.chart:not(.tile) .read').first();
+  const at = (x, y) => [box.x + box.width * x, box.y + box.height * y];
+  await page.mouse.move(...at(0.15, 0.85));
+  const first = await read.textContent();
+  await page.mouse.move(...at(0.9, 0.1));
+  const second = await read.textContent();
+  check(first !== '' && second !== '' && first !== second, where, `the read-out stays ${JSON.stringify(first)}`);
+  const range = () => plot.evaluate(canvas => canvas.dataset.range);
+  const whole = await range();
+  await page.mouse.move(...at(0.4, 0.5));
+  await page.mouse.down();
+  await page.mouse.move(...at(0.5, 0.5), { steps: 4 });
+  await page.mouse.up();
+  const zoomed = await range();
+  check(zoomed !== whole, where, 'dragging does not zoom');
+  const span = text => { const [a, b] = text.split(' ').map(Number); return b - a; };
+  check(span(zoomed) < 0.2 * span(whole), where, `dragging a tenth shows ${span(zoomed)} of ${span(whole)}`);
+  await page.mouse.dblclick(...at(0.5, 0.5));
+  check(await range() === whole, where, 'a double click does not reset');
+  const tile = page.locator('.goto').first();
+  if (await tile.count() > 0) {
+    await tile.click();
+    check(await range() !== whole, where, 'a click on a transition does not show it');
+  }
+}
+
+async function main() {
+  const profile = mkdtempSync(join(tmpdir(), 'pages-'));
+  const executablePath = process.env.CHROMIUM || '/usr/bin/chromium';
+  const context = await chromium.launchPersistentContext(profile, { executablePath, headless: true, args: FLAGS });
+  try {
+    for (const path of pages) {
+      for (const [width, scheme] of [[1280, 'light'], [1280, 'dark'], [360, 'light']]) {
+        const ms = await look(context.browser(), path, width, scheme);
+        console.log(`${basename(path)} ${width} px ${scheme}: loaded in ${ms.toFixed(0)} ms`);
+      }
+    }
+  } finally {
+    await context.close();
+    rmSync(profile, { recursive: true, force: true });
+  }
+  for (const fault of new Set(faults)) console.error(fault);
+  console.log(faults.length ? `${faults.length} faults` : `${pages.length} pages hold`);
+  return faults.length ? 1 : 0;
+}
+main().then(code => process.exit(code), error => { console.error(error); process.exit(1); });
