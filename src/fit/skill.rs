@@ -21,8 +21,9 @@ pub(super) struct Skill {
     pub(super) starts: Vec<HeldOutStart>,
 }
 
-/// Peak errors after a start that was not fitted to, rad.
+/// Peak errors after a start that was not fitted to.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "the unit")]
 pub(super) struct HeldOutStart {
     measured_rad: f64,
     predicted_rad: f64,

@@ -6,7 +6,7 @@ use super::plan_log::{PROVENANCE, START_NS};
 use crate::{
     log::{Attachment, LogWriter, Point, Role, WriteError, WriteOptions},
     math::State,
-    series::Series,
+    series::{Series, Track},
     units::NS_PER_S,
 };
 
@@ -35,7 +35,7 @@ impl SeriesLog<'_> {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn bytes(&self) -> Result<Vec<u8>, WriteError> {
-        let names: Vec<&str> = self.plan.tracks.iter().map(|track| track.name()).collect();
+        let names: Vec<&str> = self.plan.tracks.iter().map(Track::name).collect();
         let mut log = LogWriter::new(Vec::new(), &names, WriteOptions::default())?;
         log.metadata(PROVENANCE, self.provenance)?;
         let end_s = self.plan.tracks.iter().filter_map(|t| t.t_s().last()).fold(0.0, |a: f64, b| a.max(*b));

@@ -26,7 +26,7 @@ use super::{
     plan::Judged,
 };
 use crate::{
-    fit::{Compensation, Fit},
+    fit::{Compensation, Fit, JointFit},
     plan::Setup,
     remark::{Code, Remarks},
     replay::Rules,
@@ -107,7 +107,7 @@ pub fn run(
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
     let last = Last::of(path, newest, inputs)?;
     if inputs.precompensate
-        && !last.plan.tracks.iter().any(|t| fit.joint(t.name()).is_some_and(|j| j.trusted()))
+        && !last.plan.tracks.iter().any(|t| fit.joint(t.name()).is_some_and(JointFit::trusted))
     {
         let best = fit.joints.iter().map(|joint| joint.held_out_r2).fold(f64::NEG_INFINITY, f64::max);
         if inputs.keep_plan {
@@ -188,11 +188,11 @@ fn searched(
     Ok(Search { front: found.front, evaluations: found.evaluations, ceilings, held, start, judged })
 }
 
+/// A plan: times of movement, s, where it is one of the task's, and its samples.
+type Sampled = (Option<Vec<f64>>, Series);
+
 /// Plans to look at with their commands: the last one first.
-fn candidates(
-    last: &Last,
-    search: Option<&Search>,
-) -> Result<Vec<(Option<Vec<f64>>, Series)>, ReplanFailure> {
+fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, ReplanFailure> {
     let (Some(search), Some(order)) = (search, &last.order) else {
         return Ok(vec![(None, last.plan.clone())]);
     };
@@ -202,7 +202,7 @@ fn candidates(
     if all.is_empty() {
         return Ok(vec![(None, last.plan.clone())]);
     }
-    let sample = |interval_s: &Vec<f64>| -> Result<(Option<Vec<f64>>, Series), ReplanFailure> {
+    let sample = |interval_s: &Vec<f64>| -> Result<Sampled, ReplanFailure> {
         let motion = order.setup.motion(&order.setup.times_s(interval_s))?;
         Ok((Some(interval_s.clone()), sampled(&order.setup, &motion)?))
     };
