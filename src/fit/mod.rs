@@ -35,7 +35,7 @@ pub use excite::{Excitation, JointRoom, Ramp, excite};
 pub use follow::{Follower, PredictedStart};
 pub use invert::{Compensated, Compensation, JointCompensation, compensate};
 pub use model::{Model, STEP_S};
-pub use outcome::{Estimated, Fit, JointFit, LEAST_SKILL};
+pub use outcome::{Estimated, Fit, JointFit, LEAST_SKILL, LeftOut};
 pub use predict::predict;
 pub use run::Observation;
 
@@ -70,19 +70,30 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
         .map(|name| {
             let runs = of(name);
             let travel_rad: f64 = runs.iter().map(Run::travel_rad).sum();
-            (travel_rad >= LEAST_TRAVEL_RAD).then(|| {
-                let (mut joint, starts) = joint::joint(name, &runs);
-                joint.valve_dead_band = logs
-                    .iter()
-                    .find_map(|log| valve::dead_band(log.valve?.track(name)?, log.measured.track(name)?));
-                (joint, starts)
-            })
+            let moves = travel_rad >= LEAST_TRAVEL_RAD;
+            let left_out =
+                LeftOut { name: (*name).to_owned(), travel_rad, least_travel_rad: LEAST_TRAVEL_RAD };
+            moves
+                .then(|| {
+                    let (mut joint, starts) = joint::joint(name, &runs);
+                    joint.valve_dead_band = logs
+                        .iter()
+                        .find_map(|log| valve::dead_band(log.valve?.track(name)?, log.measured.track(name)?));
+                    (joint, starts)
+                })
+                .ok_or(left_out)
         })
         .collect();
-    let left_out =
-        names.iter().zip(&fitted).filter(|(_, fit)| fit.is_none()).map(|(name, _)| (*name).to_owned());
-    let left_out: Vec<String> = left_out.collect();
-    let (joints, starts): (Vec<JointFit>, Vec<_>) = fitted.into_iter().flatten().unzip();
+    let (mut joints, mut starts, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+    for found in fitted {
+        match found {
+            Ok((joint, of_joint)) => {
+                joints.push(joint);
+                starts.push(of_joint);
+            }
+            Err(joint) => left_out.push(joint),
+        }
+    }
     if joints.is_empty() {
         let least_travel_rad = LEAST_TRAVEL_RAD;
         return Err(FitError::NothingMoves { logs: logs.len(), shared: names.len(), least_travel_rad });

@@ -13,12 +13,24 @@ pub struct Fit {
     /// Joints that could be fitted, in the order of the first log that has them.
     pub joints: Vec<JointFit>,
     /// Joints that are sent and measured but hardly moved.
-    pub left_out: Vec<String>,
+    pub left_out: Vec<LeftOut>,
     /// What predicted peak errors are to be multiplied with: nine of ten measured peaks of held-out
     /// starts lay below; 1.2 where there are fewer than ten.
     pub peak_margin: f64,
     /// Number of starts behind the margin.
     pub margin_starts: usize,
+}
+
+/// A joint that cannot be fitted, for it was hardly sent anywhere while it was measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct LeftOut {
+    /// The joint.
+    pub name: String,
+    /// How far it was sent, all logs together, rad.
+    pub travel_rad: f64,
+    /// How far is enough, rad.
+    pub least_travel_rad: f64,
 }
 
 /// One joint. Pairs of arrays are for growing and for shrinking angles.

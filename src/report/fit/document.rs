@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::{
-    fit::{JointFit, LEAST_SKILL},
+    fit::{JointFit, LEAST_SKILL, LeftOut},
     remark::Remark,
     report::json,
     workflow::{
@@ -28,7 +28,7 @@ struct Document<'a> {
     /// Torques of cylinders; empty without pressures and a task with cylinders in a log.
     torques: &'a [JointTorque],
     /// Joints that are sent and measured but hardly moved.
-    left_out: &'a [String],
+    left_out: &'a [LeftOut],
     /// What predicted peak errors are to be multiplied with so that nine of ten measured ones lie below.
     peak_margin: f64,
     /// Number of held-out starts behind the margin.

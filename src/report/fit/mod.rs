@@ -7,7 +7,7 @@ mod tables;
 pub use document::fit_json;
 pub use file::limits_toml;
 pub use tables::fit_parts;
-pub(super) use tables::machine_parts;
+pub(super) use tables::{left_out_line, machine_parts};
 
 use crate::fit::{Estimated, JointFit};
 

@@ -2,7 +2,7 @@
 
 use super::Shown;
 use crate::{
-    fit::{Estimated, Fit, JointFit, LEAST_SKILL},
+    fit::{Estimated, Fit, JointFit, LEAST_SKILL, LeftOut},
     report::{Part, Sheet, counted, deg, tables::remark_parts},
     units::degrees_from_radians,
     workflow::{fit::Fitted, torque::JointTorque},
@@ -220,8 +220,16 @@ fn trust(fitted: &Fitted) -> Vec<String> {
                 .into()
         });
     }
-    if !fit.left_out.is_empty() {
-        lines.push(format!("Hardly moved, left out: {}.", fit.left_out.join(", ")));
-    }
+    lines.extend(left_out_line(fit));
     lines
+}
+
+/// Which joints are not fitted, and why; `None` if all are.
+pub(in crate::report) fn left_out_line(fit: &Fit) -> Option<String> {
+    let one = |joint: &LeftOut| {
+        let [sent, needed] = [joint.travel_rad, joint.least_travel_rad].map(deg);
+        format!("{} (sent through {sent} deg in all, {needed} are needed)", joint.name)
+    };
+    let joints: Vec<String> = fit.left_out.iter().map(one).collect();
+    (!joints.is_empty()).then(|| format!("Not fitted: {}.", joints.join(", ")))
 }

@@ -5,7 +5,10 @@ use maud::{Markup, html};
 use super::parts::parts;
 use crate::{
     fit::Fit,
-    report::{fit::machine_parts, markup::clean},
+    report::{
+        fit::{left_out_line, machine_parts},
+        markup::clean,
+    },
 };
 
 pub(super) fn fitted(fit: &Fit) -> Markup {
@@ -13,6 +16,6 @@ pub(super) fn fitted(fit: &Fit) -> Markup {
         p class="hint" { "The closed loop of each joint as logs show it, with 95 % intervals." }
         (parts(&machine_parts(fit)))
         p { (format!("Nine of ten held-out peaks lay below {:.2} times the predicted ones.", fit.peak_margin)) }
-        @if !fit.left_out.is_empty() { p { "Not fitted: " (clean(&fit.left_out.join(", "))) } }
+        @if let Some(line) = left_out_line(fit) { p { (clean(&line)) } }
     }
 }
