@@ -5,10 +5,10 @@ use std::{io::Write, slice::from_ref};
 use super::{
     CliError, Outcome,
     args::CompareArgs,
-    output::{deliver, say_remarks, spare_inputs},
+    output::{deliver, say_gate, say_remarks, shown, spare_inputs},
 };
 use crate::{
-    report::{compare_gate_lines, compare_json, compare_parts, markdown, text},
+    report::{compare_gate_lines, compare_json, compare_parts, markdown},
     workflow::compare::{Inputs, run as compare},
 };
 
@@ -32,7 +32,7 @@ pub(super) fn run(
     } else if args.format.markdown {
         markdown(&compare_parts(&comparison, most))
     } else {
-        text(&compare_parts(&comparison, most))
+        shown(&compare_parts(&comparison, most), args.output.as_deref())
     };
     deliver(&rendered, args.output.as_deref(), out)?;
     if args.output.is_some() || args.format.json {
@@ -41,7 +41,7 @@ pub(super) fn run(
     if !comparison.gates_kept() {
         for (line, gate) in compare_gate_lines(&comparison).iter().zip(&comparison.gates) {
             if !gate.kept {
-                let _ = writeln!(err, "gate: {line}");
+                say_gate(line, err);
             }
         }
         return Ok(Outcome::GateFailed);

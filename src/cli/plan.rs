@@ -2,18 +2,18 @@
 
 use std::{collections::BTreeMap, io::Write, ops::ControlFlow, time::Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use super::{
     CliError, Outcome,
     args::PlanArgs,
-    output::{deliver, say_remarks, spare_inputs},
+    output::{deliver, progress, say_remarks, shown, spare_inputs},
 };
 use crate::{
     atomic::write_atomically,
     moea::{Budget, Contender},
     plan::Progress,
-    report::{broken_lines, ceiling_lines, judged_json, judged_parts, plan_json, plan_parts, text},
+    report::{broken_lines, ceiling_lines, judged_json, judged_parts, plan_json, plan_parts},
     workflow::{
         plan::{Gauge, Judged, Options, Order, PlanFailure, Planned, run as search},
         plan_log::PlanLog,
@@ -35,7 +35,7 @@ fn judge(args: &PlanArgs, order: &Order, times_s: &[f64], out: &mut impl Write) 
     let joints = order.setup.joint_names();
     let document = judged_json(title, &joints, &judged, true);
     write_log(args, order, &judged, &document, &BTreeMap::new())?;
-    let rendered = if args.json { document } else { text(&judged_parts(title, &joints, &judged)) };
+    let rendered = if args.json { document } else { shown(&judged_parts(title, &joints, &judged), None) };
     deliver(&rendered, None, out)?;
     Ok(if judged.broken().is_empty() { Outcome::Clean } else { Outcome::GateFailed })
 }
@@ -50,7 +50,7 @@ fn plan(
     let rendered = if args.json {
         document
     } else {
-        text(&plan_parts(&order.task.title, algorithm, &options, &order.task.bounds, &planned))
+        shown(&plan_parts(&order.task.title, algorithm, &options, &order.task.bounds, &planned), None)
     };
     deliver(&rendered, None, out)?;
     if args.json {
@@ -149,13 +149,11 @@ struct Watch {
 
 impl Watch {
     fn new(args: &PlanArgs, options: &Options) -> Self {
-        let bar = match options.search.budget {
-            Budget::Evaluations(evaluations) => ProgressBar::new(evaluations),
-            Budget::Generations(_) | Budget::Observer => ProgressBar::no_length(),
+        let steps = match options.search.budget {
+            Budget::Evaluations(evaluations) => Some(evaluations),
+            Budget::Generations(_) | Budget::Observer => None,
         };
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} evaluations, {msg}") {
-            bar.set_style(style);
-        }
+        let bar = progress(steps, "{bar:30} {pos} evaluations, {msg}");
         Self { bar, gauge: None, start: Instant::now(), args_time: args.search.time_budget }
     }
 

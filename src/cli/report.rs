@@ -5,10 +5,10 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::ReportArgs,
-    output::{deliver, say_remarks, spare_inputs},
+    output::{deliver, say_gate, say_remarks, shown, spare_inputs},
 };
 use crate::{
-    report::{gate_lines, markdown, report_json, report_parts, text, transitions_csv},
+    report::{gate_lines, markdown, report_json, report_parts, transitions_csv},
     workflow::report::{Inputs, run as analyse},
 };
 
@@ -38,7 +38,7 @@ pub(super) fn run(
     } else if args.format.markdown {
         markdown(&report_parts(&name, &report, most))
     } else {
-        text(&report_parts(&name, &report, most))
+        shown(&report_parts(&name, &report, most), args.output.as_deref())
     };
     deliver(&rendered, args.output.as_deref(), out)?;
     let on_screen = args.output.is_none() && !args.format.json && !args.format.csv;
@@ -48,7 +48,7 @@ pub(super) fn run(
     if !report.gates_kept() {
         for (line, gate) in gate_lines(&report).iter().zip(&report.gates) {
             if !gate.kept {
-                let _ = writeln!(err, "gate: {line}");
+                say_gate(line, err);
             }
         }
         return Ok(Outcome::GateFailed);

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use anstyle::{AnsiColor, Style};
 use comfy_table::{CellAlignment, Table, presets};
 
 /// A piece of a report.
@@ -30,31 +31,58 @@ pub struct Sheet {
     pub rows: Vec<Vec<String>>,
 }
 
-/// For a terminal or a plain file.
+/// Heading of the doubts about the data, which stand out.
+pub(super) const REMARKS: &str = "Remarks on the data";
+/// How a sentence says that a limit is not kept.
+pub(super) const NOT_KEPT: &str = "NOT KEPT";
+/// How a sentence says that a limit is kept.
+pub(super) const KEPT: &str = "kept";
+
+const STRONG: Style = Style::new().bold();
+const BAD: Style = AnsiColor::Red.on_default().bold();
+const GOOD: Style = AnsiColor::Green.on_default();
+const DOUBT: Style = AnsiColor::Yellow.on_default();
+
+/// For a plain file.
 pub fn text(parts: &[Part]) -> String {
+    rendered(parts, |text, _| text.to_owned())
+}
+
+/// As [`text`], with the escape codes of a terminal: heads bold, limits kept green and broken ones
+/// red, remarks yellow.
+pub fn styled(parts: &[Part]) -> String {
+    rendered(parts, |text, style| format!("{style}{text}{style:#}"))
+}
+
+fn rendered(parts: &[Part], paint: fn(&str, Style) -> String) -> String {
     let mut out = String::new();
+    let mut doubtful = false;
     for part in parts {
         match part {
             Part::Title(title) => {
-                let _ = writeln!(out, "{}", clean(title));
+                let _ = writeln!(out, "{}", paint(&clean(title), STRONG));
             }
             Part::Heading(title) => {
+                doubtful = title == REMARKS;
                 let gap = if out.is_empty() { "" } else { "\n" };
-                let _ = writeln!(out, "{gap}{}", clean(title).to_uppercase());
+                let _ = writeln!(out, "{gap}{}", paint(&clean(title).to_uppercase(), STRONG));
             }
             Part::Line(line) => {
-                let _ = writeln!(out, "{}", clean(line));
+                let _ = writeln!(out, "{}", judged(&clean(line), paint));
             }
             Part::Facts(facts) => {
                 let width = facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
                 for (name, value) in facts {
-                    let _ = writeln!(out, "{:width$}  {}", clean(name), clean(value));
+                    let name = format!("{:width$}", clean(name));
+                    let name = if doubtful { paint(&name, DOUBT) } else { name };
+                    let _ = writeln!(out, "{name}  {}", clean(value));
                 }
             }
             Part::Sheet(sheet) => {
-                for line in table(sheet, false).lines() {
-                    out.push_str(line.trim_end());
-                    out.push('\n');
+                for (row, line) in table(sheet, false).lines().enumerate() {
+                    let line = line.trim_end();
+                    let line = if row == 0 { paint(line, STRONG) } else { line.to_owned() };
+                    let _ = writeln!(out, "{line}");
                 }
             }
         }
@@ -98,6 +126,16 @@ pub fn markdown(parts: &[Part]) -> String {
     out.truncate(out.trim_end().len());
     out.push('\n');
     out
+}
+
+/// The verdict in a sentence on a limit, painted.
+fn judged(line: &str, paint: fn(&str, Style) -> String) -> String {
+    for (word, style) in [(NOT_KEPT, BAD), (KEPT, GOOD)] {
+        if let Some((limit, found)) = line.split_once(&format!(" {word}: ")) {
+            return format!("{limit} {}: {found}", paint(word, style));
+        }
+    }
+    line.to_owned()
 }
 
 fn table(sheet: &Sheet, markdown: bool) -> String {
@@ -184,6 +222,29 @@ mod tests {
         assert_eq!(lines[0], "joint      peak deg");
         assert_eq!(lines[1], "a               0.5");
         assert!(!text.contains('\u{1b}'));
+    }
+
+    #[test]
+    fn a_terminal_is_shown_the_same_letters_in_the_same_places() {
+        let parts = [
+            Part::Title("a\u{1b}[31mb.mcap".into()),
+            Part::Line("Limit on lag NOT KEPT: a has 3 ms, 2 ms allowed.".into()),
+            Part::Line("Limit on rms error kept: a has 3 deg, 4 deg allowed.".into()),
+            sheet(),
+            Part::Heading(REMARKS.into()),
+            Part::Facts(vec![("gap x1".into(), "in a".into())]),
+        ];
+        let shown = styled(&parts);
+        assert_eq!(anstream::adapter::strip_str(&shown).to_string(), text(&parts));
+        for painted in [
+            "\u{1b}[1mREMARKS ON THE DATA\u{1b}[0m",
+            "\u{1b}[1m\u{1b}[31mNOT KEPT\u{1b}[0m: a has",
+            "\u{1b}[32mkept\u{1b}[0m: a has",
+            "\u{1b}[33mgap x1\u{1b}[0m",
+            "\u{1b}[1mjoint      peak deg\u{1b}[0m",
+        ] {
+            assert!(shown.contains(painted), "{painted:?} not in {shown:?}");
+        }
     }
 
     #[test]

@@ -20,6 +20,7 @@ mod replan;
 mod sample;
 mod score;
 mod simulate;
+mod spark;
 mod tables;
 
 pub use compare::{compare_gate_lines, compare_json, compare_parts};
@@ -31,7 +32,7 @@ pub use fit::{fit_json, fit_parts, limits_toml};
 pub use import::{imported_json, imported_parts};
 pub use info::{info_json, info_parts};
 pub use json::report_json;
-pub use markup::{Part, Sheet, markdown, text};
+pub use markup::{Part, Sheet, markdown, styled, text};
 pub use moea::{curve_svg, curves_csv, front_csv, moea_json, moea_parts};
 pub use plan::{broken_lines, ceiling_lines, judged_json, judged_parts, plan_json, plan_parts};
 pub use recover::{recovered_json, recovered_parts};

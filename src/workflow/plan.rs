@@ -249,10 +249,20 @@ pub const BEYOND: f64 = 1.1;
 pub fn run(
     order: &Order,
     options: &Options,
-    observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+    mut observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Planned, PlanFailure> {
     let Order { task, setup, .. } = order;
-    let found = search(setup, &options.search, observer)?;
+    let found = search(setup, &options.search, |progress| {
+        let (phase, evaluations) = (progress.phase, progress.evaluations);
+        ::log::debug!("{phase:?}: generation {}, {evaluations} evaluations", progress.generation);
+        observer(progress)
+    })?;
+    ::log::info!(
+        "{} plans found in {} evaluations, {} generations",
+        found.front.len(),
+        found.evaluations,
+        found.generations
+    );
     let judged = |timing: &Timing| Judged::of(setup, &setup.times_s(&timing.interval_s));
     let Some(ends) = ends(&found.front) else {
         let nearest =
