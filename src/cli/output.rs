@@ -5,12 +5,13 @@ use std::{io::Write, path::Path};
 use anstream::ColorChoice;
 use anstyle::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressStyle};
+use terminal_size::{Width, terminal_size_of};
 
 use super::CliError;
 use crate::{
     atomic::write_atomically,
     remark::Remarks,
-    report::{Part, styled, text},
+    report::{self, Look, Part},
 };
 
 /// Starts a line on what failed.
@@ -18,10 +19,14 @@ pub(super) const FAILED: Style = AnsiColor::Red.on_default().bold();
 /// Starts a line on a doubt.
 const DOUBT: Style = AnsiColor::Yellow.on_default();
 
-/// A result as `file` or standard output is to have it: escape codes only for a terminal.
+/// A result as `file` or standard output is to have it: colours and folded lines only for a terminal.
 pub(super) fn shown(parts: &[Part], file: Option<&Path>) -> String {
+    if file.is_some() {
+        return report::text(parts);
+    }
     let coloured = matches!(ColorChoice::global(), ColorChoice::Always | ColorChoice::AlwaysAnsi);
-    if coloured && file.is_none() { styled(parts) } else { text(parts) }
+    let width = terminal_size_of(std::io::stdout()).map(|(Width(width), _)| usize::from(width));
+    report::shown(parts, Look { coloured, width })
 }
 
 /// Progress on standard error; none where that is no terminal, and none between or instead of words

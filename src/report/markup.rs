@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use anstyle::{AnsiColor, Style};
 use comfy_table::{CellAlignment, Table, presets};
+
+use super::look::Look;
 
 /// A piece of a report.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,51 +39,44 @@ pub(super) const NOT_KEPT: &str = "NOT KEPT";
 /// How a sentence says that a limit is kept.
 pub(super) const KEPT: &str = "kept";
 
-const STRONG: Style = Style::new().bold();
-const BAD: Style = AnsiColor::Red.on_default().bold();
-const GOOD: Style = AnsiColor::Green.on_default();
-const DOUBT: Style = AnsiColor::Yellow.on_default();
-
 /// For a plain file.
 pub fn text(parts: &[Part]) -> String {
-    rendered(parts, |text, _| text.to_owned())
+    shown(parts, Look::default())
 }
 
-/// As [`text`], with the escape codes of a terminal: heads bold, limits kept green and broken ones
-/// red, remarks yellow.
-pub fn styled(parts: &[Part]) -> String {
-    rendered(parts, |text, style| format!("{style}{text}{style:#}"))
-}
-
-fn rendered(parts: &[Part], paint: fn(&str, Style) -> String) -> String {
+/// For a terminal.
+pub fn shown(parts: &[Part], look: Look) -> String {
     let mut out = String::new();
     let mut doubtful = false;
     for part in parts {
         match part {
             Part::Title(title) => {
-                let _ = writeln!(out, "{}", paint(&clean(title), STRONG));
+                let _ = writeln!(out, "{}", look.strong(&clean(title)));
             }
             Part::Heading(title) => {
                 doubtful = title == REMARKS;
                 let gap = if out.is_empty() { "" } else { "\n" };
-                let _ = writeln!(out, "{gap}{}", paint(&clean(title).to_uppercase(), STRONG));
+                let _ = writeln!(out, "{gap}{}", look.strong(&clean(title).to_uppercase()));
             }
             Part::Line(line) => {
-                let _ = writeln!(out, "{}", judged(&clean(line), paint));
+                let _ = writeln!(out, "{}", look.folded("", &look.judged(&clean(line)), 0));
             }
             Part::Facts(facts) => {
                 let width = facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
                 for (name, value) in facts {
                     let name = format!("{:width$}", clean(name));
-                    let name = if doubtful { paint(&name, DOUBT) } else { name };
-                    let _ = writeln!(out, "{name}  {}", clean(value));
+                    let name = if doubtful { look.doubt(&name) } else { name };
+                    let _ = writeln!(out, "{}", look.folded(&format!("{name}  "), &clean(value), width + 2));
                 }
             }
             Part::Sheet(sheet) => {
-                for (row, line) in table(sheet, false).lines().enumerate() {
-                    let line = line.trim_end();
-                    let line = if row == 0 { paint(line, STRONG) } else { line.to_owned() };
-                    let _ = writeln!(out, "{line}");
+                for (block, sheet) in look.blocks(sheet).iter().enumerate() {
+                    out.push_str(if block == 0 { "" } else { "\n" });
+                    for (row, line) in table(sheet, false).lines().enumerate() {
+                        let line = line.trim_end();
+                        let line = if row == 0 { look.strong(line) } else { line.to_owned() };
+                        let _ = writeln!(out, "{line}");
+                    }
                 }
             }
         }
@@ -126,16 +120,6 @@ pub fn markdown(parts: &[Part]) -> String {
     out.truncate(out.trim_end().len());
     out.push('\n');
     out
-}
-
-/// The verdict in a sentence on a limit, painted.
-fn judged(line: &str, paint: fn(&str, Style) -> String) -> String {
-    for (word, style) in [(NOT_KEPT, BAD), (KEPT, GOOD)] {
-        if let Some((limit, found)) = line.split_once(&format!(" {word}: ")) {
-            return format!("{limit} {}: {found}", paint(word, style));
-        }
-    }
-    line.to_owned()
 }
 
 fn table(sheet: &Sheet, markdown: bool) -> String {
@@ -222,29 +206,6 @@ mod tests {
         assert_eq!(lines[0], "joint      peak deg");
         assert_eq!(lines[1], "a               0.5");
         assert!(!text.contains('\u{1b}'));
-    }
-
-    #[test]
-    fn a_terminal_is_shown_the_same_letters_in_the_same_places() {
-        let parts = [
-            Part::Title("a\u{1b}[31mb.mcap".into()),
-            Part::Line("Limit on lag NOT KEPT: a has 3 ms, 2 ms allowed.".into()),
-            Part::Line("Limit on rms error kept: a has 3 deg, 4 deg allowed.".into()),
-            sheet(),
-            Part::Heading(REMARKS.into()),
-            Part::Facts(vec![("gap x1".into(), "in a".into())]),
-        ];
-        let shown = styled(&parts);
-        assert_eq!(anstream::adapter::strip_str(&shown).to_string(), text(&parts));
-        for painted in [
-            "\u{1b}[1mREMARKS ON THE DATA\u{1b}[0m",
-            "\u{1b}[1m\u{1b}[31mNOT KEPT\u{1b}[0m: a has",
-            "\u{1b}[32mkept\u{1b}[0m: a has",
-            "\u{1b}[33mgap x1\u{1b}[0m",
-            "\u{1b}[1mjoint      peak deg\u{1b}[0m",
-        ] {
-            assert!(shown.contains(painted), "{painted:?} not in {shown:?}");
-        }
     }
 
     #[test]

@@ -77,7 +77,7 @@ pub enum Command {
                             hydrotrace compare a1.mcap b1.mcap --more-before a2.mcap --more-after b2.mcap\n  \
                             hydrotrace compare old.mcap new.mcap --json -o compare.json")]
     Compare(CompareArgs),
-    /// The best timings of a task's key points, and the one to run, as a log
+    /// The best timings of a task's key points, the one to run as a log
     #[command(
         after_help = "Examples:\n  hydrotrace plan task.toml -o plan.mcap\n  hydrotrace plan task.toml --choose fastest\n  \
                             hydrotrace plan task.toml --times 0,2.01,3.77,5.79,6.53,8.85,10.48\n  \
@@ -103,7 +103,7 @@ pub enum Command {
                             hydrotrace replan field.mcap -o next.mcap --keep-plan\n  \
                             hydrotrace replan run-1.mcap run-2.mcap --limits limits.toml --task task.toml -o next.mcap")]
     Replan(ReplanArgs),
-    /// Turn a CSV file (PLC trace, RTDE recording, any table) into a log
+    /// Turn a CSV file (PLC trace, RTDE, any table) into a log
     #[command(after_help = import::EXAMPLES)]
     Import(ImportArgs),
     /// Turn what a report would use of a log into CSV or Parquet
