@@ -203,9 +203,13 @@ fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<V
             let fields = topic_info(extracted, topic, of_topic(extracted, topic)).joint_fields;
             LogError::NoField {
                 topic: name.clone(),
-                type_name: type_name.clone(),
-                nearest: selector.field.as_ref().and_then(|f| nearest(f, fields.iter().map(String::as_str))),
-                field: selector.field.clone(),
+                type_name: type_name.as_str().into(),
+                nearest: selector
+                    .field
+                    .as_ref()
+                    .and_then(|f| nearest(f, fields.iter().map(String::as_str)))
+                    .map(String::into_boxed_str),
+                field: selector.field.as_deref().map(Box::from),
                 present: if fields.is_empty() { "none".to_owned() } else { fields.join(", ") },
             }
         };

@@ -64,11 +64,11 @@ pub enum LogError {
         /// The topic.
         topic: String,
         /// Its type.
-        type_name: String,
+        type_name: Box<str>,
         /// The field asked for.
-        field: Option<String>,
+        field: Option<Box<str>>,
         /// A field of nearly that name.
-        nearest: Option<String>,
+        nearest: Option<Box<str>>,
         /// Fields that are there.
         present: String,
     },

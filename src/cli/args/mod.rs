@@ -93,7 +93,7 @@ pub enum Command {
                             hydrotrace fit run-1.mcap run-2.mcap identification.mcap -o limits.toml\n  \
                             hydrotrace fit run.mcap --command /arm/command:position --json")]
     Fit(FitArgs),
-    /// Write a run of slow and fast strokes from which `fit` tells limits
+    /// Write a run of slow and fast strokes, for `fit` to tell limits
     #[command(after_help = "Examples:\n  hydrotrace excite -o id.mcap --task task.toml\n  \
                             hydrotrace excite -o id.mcap --joint boom=40:20:60 --joint arm=90:70:110 --max-speed-deg-s 30")]
     Excite(ExciteArgs),
