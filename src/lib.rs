@@ -9,6 +9,7 @@ pub mod atomic;
 pub mod math;
 pub mod remark;
 pub mod rng;
+pub mod spelling;
 pub mod units;
 
 // nouns

@@ -5,10 +5,10 @@ use std::{io::Write, slice::from_ref};
 use super::{
     CliError, Outcome,
     args::CompareArgs,
-    output::{deliver, say_remarks, spare_inputs, spare_terminal},
+    output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal},
 };
 use crate::{
-    report::{compare_gate_lines, compare_json, compare_page, compare_parts, markdown, text},
+    report::{compare_gate_lines, compare_json, compare_page, compare_parts, markdown},
     workflow::compare::{Inputs, run as compare},
 };
 
@@ -37,7 +37,7 @@ pub(super) fn run(
     } else if args.format.markdown {
         markdown(&compare_parts(&comparison, most))
     } else {
-        text(&compare_parts(&comparison, most))
+        shown(&compare_parts(&comparison, most), args.output.as_deref())
     };
     deliver(&rendered, args.output.as_deref(), out)?;
     if args.output.is_some() || args.format.json || args.format.html {
@@ -46,7 +46,7 @@ pub(super) fn run(
     if !comparison.gates_kept() {
         for (line, gate) in compare_gate_lines(&comparison).iter().zip(&comparison.gates) {
             if !gate.kept {
-                let _ = writeln!(err, "gate: {line}");
+                say_gate(line, err);
             }
         }
         return Ok(Outcome::GateFailed);

@@ -3,18 +3,17 @@
 use std::{io::Write, path::Path};
 
 use clap::Parser;
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{
     CliError, Outcome,
     args::{Args, Command, CompareArgs, DemoArgs, FitArgs, PlanArgs, ReplanArgs, SimulateArgs},
     fit,
-    output::deliver,
+    output::{deliver, progress, shown},
     plan, replan, simulate,
 };
 use crate::{
     atomic::write_atomically,
-    report::{Story, demo_parts, text},
+    report::{Story, demo_parts},
     workflow::{
         compare::{Inputs, run as compare},
         plan::{Order, SAMPLE_TASK},
@@ -33,10 +32,7 @@ pub(super) fn run(args: &DemoArgs, out: &mut impl Write) -> Result<Outcome, CliE
     let dir = &args.dir;
     std::fs::create_dir_all(dir).map_err(|source| CliError::Folder { path: dir.clone(), source })?;
     write_atomically(&dir.join(TASK), |file| Ok::<(), CliError>(file.write_all(SAMPLE_TASK.as_bytes())?))?;
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}") {
-        bar.set_style(style);
-    }
+    let bar = progress(None, "{spinner} {msg}");
     bar.enable_steady_tick(std::time::Duration::from_millis(100));
     let say = |words: &[&str]| bar.set_message(format!("hydrotrace {}", words.join(" ")));
     let seeds = [args.seed, args.seed.wrapping_add(1)].map(|seed| seed.to_string());
@@ -70,7 +66,7 @@ pub(super) fn run(args: &DemoArgs, out: &mut impl Write) -> Result<Outcome, CliE
         replanned: &replanned,
         comparison: &comparison,
     };
-    deliver(&text(&demo_parts(&story)), None, out)?;
+    deliver(&shown(&demo_parts(&story), None), None, out)?;
     Ok(if replanned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }
 

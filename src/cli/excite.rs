@@ -5,13 +5,9 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::ExciteArgs,
-    output::{deliver, spare_inputs},
+    output::{deliver, shown, spare_inputs},
 };
-use crate::{
-    atomic::write_atomically,
-    report::{excited_parts, text},
-    workflow::excite::run as excite,
-};
+use crate::{atomic::write_atomically, report::excited_parts, workflow::excite::run as excite};
 
 /// Samples a second in the log.
 const RATE_HZ: f64 = 100.0;
@@ -22,6 +18,6 @@ pub(super) fn run(args: &ExciteArgs, out: &mut impl Write) -> Result<Outcome, Cl
     let excited = excite(&args.inputs())?;
     let bytes = excited.log(RATE_HZ)?;
     write_atomically(&args.output, |file| Ok::<(), CliError>(file.write_all(&bytes)?))?;
-    deliver(&text(&excited_parts(&excited, &args.output)), None, out)?;
+    deliver(&shown(&excited_parts(&excited, &args.output), None), None, out)?;
     Ok(Outcome::Clean)
 }

@@ -5,16 +5,16 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::FitArgs,
-    output::{deliver, say_remarks, spare_inputs},
+    output::{deliver, say_remarks, shown, spare_inputs},
 };
 use crate::{
-    report::{fit_json, fit_parts, limits_toml, text},
+    report::{fit_json, fit_parts, limits_toml},
     workflow::fit::{Fitted, Inputs, run as fit},
 };
 
 pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     let fitted = fitted(args)?;
-    let rendered = if args.json { fit_json(&fitted) } else { text(&fit_parts(&fitted)) };
+    let rendered = if args.json { fit_json(&fitted) } else { shown(&fit_parts(&fitted), None) };
     deliver(&rendered, None, out)?;
     if args.json {
         say_remarks(&fitted.remarks, err);

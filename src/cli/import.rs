@@ -5,10 +5,10 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::ImportArgs,
-    output::{deliver, say_remarks, spare_inputs},
+    output::{deliver, say_remarks, shown, spare_inputs},
 };
 use crate::{
-    report::{imported_json, imported_parts, text},
+    report::{imported_json, imported_parts},
     workflow::import::run as import,
 };
 
@@ -23,7 +23,7 @@ pub(super) fn run(
         deliver(&imported_json(&imported), None, out)?;
         say_remarks(&imported.remarks, err);
     } else {
-        deliver(&text(&imported_parts(&args.output.to_string_lossy(), &imported)), None, out)?;
+        deliver(&shown(&imported_parts(&args.output.to_string_lossy(), &imported), None), None, out)?;
     }
     Ok(if imported.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

@@ -5,10 +5,10 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::InfoArgs,
-    output::{deliver, say_remarks},
+    output::{deliver, say_remarks, shown},
 };
 use crate::{
-    report::{info_json, info_parts, text},
+    report::{info_json, info_parts},
     workflow::info::{Inputs, run as look},
 };
 
@@ -18,7 +18,7 @@ pub(super) fn run(args: &InfoArgs, out: &mut impl Write, err: &mut impl Write) -
         deliver(&info_json(&survey), None, out)?;
         say_remarks(&survey.remarks, err);
     } else {
-        deliver(&text(&info_parts(&survey)), None, out)?;
+        deliver(&shown(&info_parts(&survey), None), None, out)?;
     }
     Ok(if survey.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

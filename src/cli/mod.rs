@@ -3,24 +3,29 @@
 pub mod args;
 mod bench;
 mod compare;
+mod completions;
 mod demo;
 mod excite;
 mod export;
 mod fit;
 mod import;
 mod info;
+mod man;
 mod output;
 mod plan;
 mod recover;
 mod replan;
 mod report;
 mod simulate;
+pub mod terminal;
 
 use std::io::Write;
 
 use thiserror::Error;
 
 pub use args::{Args, Command};
+
+use output::{FAILED, harmless};
 
 use crate::{
     atomic::AtomicError,
@@ -94,12 +99,20 @@ enum CliError {
     Output(#[from] std::io::Error),
 }
 
-/// Runs one command: results to `out`, errors and remarks to `err`; returns the exit code.
+/// Runs one command: results to `out`, errors and remarks, with escape codes, to `err`; returns the
+/// exit code.
 ///
 /// 0 finished, 1 failed, 3 finished with remarks on the data, 4 finished but a limit was not
 /// kept; 2 is bad usage, which clap reports. A reader of `out` that goes away is success.
 pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
-    let result = match &args.command {
+    let mut silence = std::io::sink();
+    let said: &mut dyn Write = if args.terminal.quiet { &mut silence } else { &mut *err };
+    let result = command(&args.command, out, &mut { said });
+    ended(result, out, err)
+}
+
+fn command(command: &Command, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
+    match command {
         Command::Report(report) => report::run(report, out, err),
         Command::Compare(compare) => compare::run(compare, out, err),
         Command::Plan(plan) => plan::run(plan, out, err),
@@ -113,7 +126,13 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
         Command::Import(import) => import::run(import, out, err),
         Command::Export(export) => export::run(export, out, err),
         Command::Bench(bench) => bench::run(bench, out),
-    };
+        Command::Completions(completions) => completions::run(completions, out),
+        Command::Man(man) => man::run(man, out),
+    }
+}
+
+/// The exit code; says why a command failed.
+fn ended(result: Result<Outcome, CliError>, out: &mut impl Write, err: &mut impl Write) -> u8 {
     match result.and_then(|outcome| Ok(out.flush().map(|()| outcome)?)) {
         Ok(Outcome::Clean) => 0,
         Ok(Outcome::Remarks) => 3,
@@ -121,10 +140,10 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
         Err(CliError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => 0,
         Err(error) => {
             // Nothing is left to tell it to if standard error is gone.
-            let _ = writeln!(err, "error: {error}");
+            let _ = writeln!(err, "{FAILED}error:{FAILED:#} {}", harmless(&error.to_string()));
             let mut cause = std::error::Error::source(&error);
             while let Some(inner) = cause {
-                let _ = writeln!(err, "  because: {inner}");
+                let _ = writeln!(err, "  because: {}", harmless(&inner.to_string()));
                 cause = inner.source();
             }
             if matches!(error, CliError::Overwrite(_) | CliError::Terminal) { 2 } else { 1 }

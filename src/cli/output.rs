@@ -5,8 +5,50 @@ use std::{
     path::Path,
 };
 
+use anstream::ColorChoice;
+use anstyle::{AnsiColor, Style};
+use indicatif::{ProgressBar, ProgressStyle};
+use terminal_size::{Width, terminal_size_of};
+
 use super::CliError;
-use crate::{atomic::write_atomically, remark::Remarks};
+use crate::{
+    atomic::write_atomically,
+    remark::Remarks,
+    report::{self, Look, Part},
+};
+
+/// Starts a line on what failed.
+pub(super) const FAILED: Style = AnsiColor::Red.on_default().bold();
+/// Starts a line on a doubt.
+const DOUBT: Style = AnsiColor::Yellow.on_default();
+
+/// A result as `file` or standard output is to have it: colours and folded lines only for a terminal.
+pub(super) fn shown(parts: &[Part], file: Option<&Path>) -> String {
+    if file.is_some() {
+        return report::text(parts);
+    }
+    let coloured = matches!(ColorChoice::global(), ColorChoice::Always | ColorChoice::AlwaysAnsi);
+    let width = terminal_size_of(std::io::stdout()).map(|(Width(width), _)| usize::from(width));
+    report::shown(parts, Look { coloured, width })
+}
+
+/// Progress on standard error; none where that is no terminal, and none between or instead of words
+/// (`--verbose`, `--quiet`).
+pub(super) fn progress(steps: Option<u64>, template: &str) -> ProgressBar {
+    if log::max_level() != log::LevelFilter::Warn {
+        return ProgressBar::hidden();
+    }
+    let bar = steps.map_or_else(ProgressBar::no_length, ProgressBar::new);
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// What comes from logs must not steer a terminal.
+pub(super) fn harmless(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c }).collect()
+}
 
 /// Writes a result to `file`, or to `out`.
 pub(super) fn deliver(text: &str, file: Option<&Path>, out: &mut impl Write) -> Result<(), CliError> {
@@ -24,11 +66,15 @@ pub(super) fn spare_terminal(html: bool, file: Option<&Path>) -> Result<(), CliE
 /// Says remarks where a person sees them, whatever the format of the result.
 pub(super) fn say_remarks(remarks: &Remarks, err: &mut impl Write) {
     for remark in remarks.as_slice() {
-        let text: String =
-            remark.message.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+        let text = harmless(&remark.message).replace('\n', "\u{fffd}");
         // A closed standard error does not make the result wrong.
-        let _ = writeln!(err, "remark: {} x{}: {text}", remark.code.name(), remark.count);
+        let _ = writeln!(err, "{DOUBT}remark:{DOUBT:#} {} x{}: {text}", remark.code.name(), remark.count);
     }
+}
+
+/// Says a limit that is not kept.
+pub(super) fn say_gate(line: &str, err: &mut impl Write) {
+    let _ = writeln!(err, "{FAILED}gate:{FAILED:#} {}", harmless(line));
 }
 
 /// Refuses to write over what is read: a log may be the only copy of a run.

@@ -2,20 +2,19 @@
 
 use std::{collections::BTreeMap, io::Write, ops::ControlFlow, time::Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use super::{
     CliError, Outcome,
     args::PlanArgs,
-    output::{deliver, say_remarks, spare_inputs, spare_terminal},
+    output::{deliver, progress, say_remarks, shown, spare_inputs, spare_terminal},
 };
 use crate::{
     atomic::write_atomically,
     moea::{Budget, Contender},
     plan::Progress,
     report::{
-        broken_lines, ceiling_lines, judged_json, judged_page, judged_parts, plan_json, plan_page,
-        plan_parts, text,
+        broken_lines, ceiling_lines, judged_json, judged_page, judged_parts, plan_json, plan_page, plan_parts,
     },
     workflow::{
         plan::{Course, Gauge, Judged, Options, Order, PlanFailure, Planned, run as search},
@@ -44,7 +43,7 @@ fn judge(args: &PlanArgs, order: &Order, times_s: &[f64], out: &mut impl Write) 
     } else if args.html {
         judged_page(title, &joints, &judged, &course(order, &judged)?)
     } else {
-        text(&judged_parts(title, &joints, &judged))
+        shown(&judged_parts(title, &joints, &judged), None)
     };
     deliver(&rendered, args.page(), out)?;
     Ok(if judged.broken().is_empty() { Outcome::Clean } else { Outcome::GateFailed })
@@ -63,7 +62,7 @@ fn plan(
     } else if args.html {
         plan_page(title, algorithm, &options, bounds, &planned, &course(order, &planned.chosen)?)
     } else {
-        text(&plan_parts(title, algorithm, &options, bounds, &planned))
+        shown(&plan_parts(title, algorithm, &options, bounds, &planned), None)
     };
     deliver(&rendered, args.page(), out)?;
     if args.json || args.html {
@@ -166,13 +165,11 @@ struct Watch {
 
 impl Watch {
     fn new(args: &PlanArgs, options: &Options) -> Self {
-        let bar = match options.search.budget {
-            Budget::Evaluations(evaluations) => ProgressBar::new(evaluations),
-            Budget::Generations(_) | Budget::Observer => ProgressBar::no_length(),
+        let steps = match options.search.budget {
+            Budget::Evaluations(evaluations) => Some(evaluations),
+            Budget::Generations(_) | Budget::Observer => None,
         };
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} evaluations, {msg}") {
-            bar.set_style(style);
-        }
+        let bar = progress(steps, "{bar:30} {pos} evaluations, {msg}");
         Self { bar, gauge: None, start: Instant::now(), args_time: args.search.time_budget }
     }
 

@@ -5,10 +5,10 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::RecoverArgs,
-    output::{deliver, say_remarks, spare_inputs},
+    output::{deliver, say_remarks, shown, spare_inputs},
 };
 use crate::{
-    report::{recovered_json, recovered_parts, text},
+    report::{recovered_json, recovered_parts},
     workflow::recover::{Inputs, run as recover},
 };
 
@@ -24,7 +24,7 @@ pub(super) fn run(
         say_remarks(&recovered.remarks, err);
     } else {
         let output = args.output.to_string_lossy();
-        deliver(&text(&recovered_parts(&output, &recovered)), None, out)?;
+        deliver(&shown(&recovered_parts(&output, &recovered), None), None, out)?;
     }
     Ok(if recovered.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

@@ -7,16 +7,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use indicatif::{ProgressBar, ProgressStyle};
-
 use super::{
     CliError, Outcome,
     args::ReplanArgs,
-    output::{deliver, say_remarks, spare_inputs},
+    output::{deliver, progress, say_remarks, shown, spare_inputs},
 };
 use crate::{
     atomic::write_atomically,
-    report::{judged_json, replan_json, replan_parts, text},
+    report::{judged_json, replan_json, replan_parts},
     workflow::replan::{Inputs, Replanned, run as replan},
 };
 
@@ -29,7 +27,7 @@ pub(super) fn run(
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
     let replanned = replanned(args)?;
-    let rendered = if args.json { replan_json(&replanned) } else { text(&replan_parts(&replanned)) };
+    let rendered = if args.json { replan_json(&replanned) } else { shown(&replan_parts(&replanned), None) };
     deliver(&rendered, None, out)?;
     if args.json {
         say_remarks(&replanned.remarks, err);
@@ -42,10 +40,7 @@ pub(super) fn replanned(args: &ReplanArgs) -> Result<Replanned, CliError> {
     let inputs = args.inputs();
     let read: Vec<PathBuf> = args.logs.iter().chain(&args.limits).chain(&args.task).cloned().collect();
     spare_inputs(args.output.as_deref(), &read)?;
-    let bar = ProgressBar::new(inputs.evaluations);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} evaluations") {
-        bar.set_style(style);
-    }
+    let bar = progress(Some(inputs.evaluations), "{bar:30} {pos} evaluations");
     let replanned = replan(&inputs, |evaluations| {
         bar.set_position(evaluations);
         ControlFlow::Continue(())

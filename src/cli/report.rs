@@ -5,13 +5,11 @@ use std::{io::Write, path::Path};
 use super::{
     CliError, Outcome,
     args::ReportArgs,
-    output::{deliver, say_remarks, spare_inputs, spare_terminal},
+    output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal},
 };
 use crate::{
     atomic::write_atomically,
-    report::{
-        gate_lines, markdown, report_figures, report_json, report_page, report_parts, text, transitions_csv,
-    },
+    report::{gate_lines, markdown, report_figures, report_json, report_page, report_parts, transitions_csv},
     workflow::{
         fit::read_limits,
         report::{Inputs, Report, run as analyse},
@@ -51,7 +49,7 @@ pub(super) fn run(
     } else if args.format.markdown {
         markdown(&report_parts(&name, &report, most))
     } else {
-        text(&report_parts(&name, &report, most))
+        shown(&report_parts(&name, &report, most), args.output.as_deref())
     };
     if let Some(folder) = &args.figures {
         figures(folder, &report)?;
@@ -64,7 +62,7 @@ pub(super) fn run(
     if !report.gates_kept() {
         for (line, gate) in gate_lines(&report).iter().zip(&report.gates) {
             if !gate.kept {
-                let _ = writeln!(err, "gate: {line}");
+                say_gate(line, err);
             }
         }
         return Ok(Outcome::GateFailed);

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
     LogError, ReadOptions, Recording, SourceInfo, TimeBase,
-    choose::{Candidate, Choice, nearest},
+    choose::{Candidate, Choice},
     doubt,
     read::{Content, Extracted},
     source::{Plans, RawTrajectory, Stamps},
@@ -14,6 +14,7 @@ use crate::{
     math::median,
     remark::{Code, Remarks},
     series::{Clock, PlannedPoint, PlannedTrajectory, Series, Track, continuous_clock, plan_tracks},
+    spelling::nearest,
     units::{radians_from_degrees, seconds_since},
 };
 

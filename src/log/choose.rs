@@ -7,6 +7,7 @@ use super::{
     read::{Content, Extracted, Source, TopicCount},
     source::{Form, Role},
 };
+use crate::spelling::nearest;
 
 /// A topic and field that could serve.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -198,14 +199,19 @@ fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<V
             sources.flat_map(|s| of_source(extracted, s, role, selector.field.as_deref())).collect();
         fitting.sort_by_key(|c| (c.rank, c.field));
         let TopicCount { topic: name, type_name, .. } = &extracted.topics[topic];
-        let none = || LogError::NoField {
-            topic: name.clone(),
-            type_name: type_name.clone(),
-            field: selector.field.clone(),
-            present: match topic_info(extracted, topic, of_topic(extracted, topic)).joint_fields {
-                fields if fields.is_empty() => "none".to_owned(),
-                fields => fields.join(", "),
-            },
+        let none = || {
+            let fields = topic_info(extracted, topic, of_topic(extracted, topic)).joint_fields;
+            LogError::NoField {
+                topic: name.clone(),
+                type_name: type_name.as_str().into(),
+                nearest: selector
+                    .field
+                    .as_ref()
+                    .and_then(|f| nearest(f, fields.iter().map(String::as_str)))
+                    .map(String::into_boxed_str),
+                field: selector.field.as_deref().map(Box::from),
+                present: if fields.is_empty() { "none".to_owned() } else { fields.join(", ") },
+            }
         };
         found.push(fitting.into_iter().next().ok_or_else(none)?);
     }
@@ -344,13 +350,4 @@ fn topic_info<'a>(
         }
     }
     info
-}
-
-/// The name most like the one looked for, if any is like it.
-pub(super) fn nearest<'a>(name: &str, present: impl Iterator<Item = &'a str>) -> Option<String> {
-    present
-        .map(|other| (strsim::jaro_winkler(name, other), other))
-        .filter(|(likeness, _)| *likeness > 0.8)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, other)| other.to_owned())
 }

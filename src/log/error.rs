@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::spelling::suggestion;
+
 /// Why a log yields nothing at all; doubts about parts of it are remarks instead.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -53,14 +55,20 @@ pub enum LogError {
         present: String,
     },
     /// A topic that the caller asked for holds no joint angles in that field.
-    #[error("topic {topic:?} ({type_name}) has no joint angles{}; it has {present}", field.as_ref().map(|f| format!(" in field {f:?}")).unwrap_or_default())]
+    #[error(
+        "topic {topic:?} ({type_name}) has no joint angles{}{}; it has {present}",
+        field.as_ref().map(|f| format!(" in field {f:?}")).unwrap_or_default(),
+        suggestion(nearest.as_deref())
+    )]
     NoField {
         /// The topic.
         topic: String,
         /// Its type.
-        type_name: String,
+        type_name: Box<str>,
         /// The field asked for.
-        field: Option<String>,
+        field: Option<Box<str>>,
+        /// A field of nearly that name.
+        nearest: Option<Box<str>>,
         /// Fields that are there.
         present: String,
     },
@@ -137,8 +145,4 @@ impl LogError {
         let path = path.to_owned();
         move |source| Self::File { action, path, source }
     }
-}
-
-fn suggestion(nearest: Option<&str>) -> String {
-    nearest.map(|name| format!(", did you mean {name:?}?")).unwrap_or_default()
 }

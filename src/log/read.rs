@@ -218,6 +218,7 @@ pub(super) fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
 fn describe(path: &Path, bytes: &[u8], layout: &Layout<'_>, out: &mut Extracted) {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     describe_damage(&name, layout, &mut out.remarks);
+    ::log::info!("opened {}: {} bytes in {} blocks", path.display(), bytes.len(), layout.blocks.len());
     out.files.push(FileInfo {
         name,
         bytes: bytes.len() as u64,

@@ -203,5 +203,20 @@ fn survey_of(extracted: Extracted, options: &ReadOptions) -> Survey {
 
 fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
     let choice: Choice = choose(&extracted, options)?;
-    assemble(extracted, &choice, options)
+    for topic in topic_infos(&extracted) {
+        ::log::debug!(
+            "topic {} ({}): {} messages, joint angles in {:?}",
+            topic.topic,
+            topic.type_name,
+            topic.messages,
+            topic.joint_fields
+        );
+    }
+    let recording = assemble(extracted, &choice, options)?;
+    let source = &recording.source;
+    ::log::info!("planned {}:{}", source.planned_topic, source.planned_field);
+    ::log::info!("measured {}:{}", source.measured_topic, source.measured_field);
+    ::log::info!("chosen: {}", source.why);
+    ::log::info!("clock {}: {}", source.time_base.name(), source.time_base_why);
+    Ok(recording)
 }

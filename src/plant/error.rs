@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::spelling::suggestion;
+
 /// Why there is no machine, or no run of it; lines count from 1.
 #[derive(Debug, Clone, Error, PartialEq)]
 #[non_exhaustive]
@@ -78,10 +80,12 @@ pub enum PlantError {
         expected: String,
     },
     /// No such machine comes with the program.
-    #[error("there is no plant {name:?}; there are {known}")]
+    #[error("there is no plant {name:?}{}; there are {known}", suggestion(nearest.as_deref()))]
     UnknownPreset {
         /// What was asked for.
         name: String,
+        /// One of nearly that name.
+        nearest: Option<String>,
         /// What there is.
         known: String,
     },

@@ -1,7 +1,7 @@
 //! The machines that come with the program, around the sample arm.
 
 use super::{Parameters, Plant, PlantError};
-use crate::arm::Arm;
+use crate::{arm::Arm, spelling::nearest};
 
 /// Names and texts.
 const PRESETS: [(&str, &str); 3] = [
@@ -24,7 +24,11 @@ impl Parameters {
     pub fn preset(name: &str) -> Result<Self, PlantError> {
         let Some((_, text)) = PRESETS.iter().find(|(known, _)| *known == name) else {
             let known: Vec<&str> = Self::preset_names().collect();
-            return Err(PlantError::UnknownPreset { name: name.to_owned(), known: known.join(", ") });
+            return Err(PlantError::UnknownPreset {
+                name: name.to_owned(),
+                nearest: nearest(name, known.iter().copied()),
+                known: known.join(", "),
+            });
         };
         Self::parse(text)
     }
@@ -56,5 +60,7 @@ mod tests {
         }
         let error = Plant::preset("fast").unwrap_err().to_string();
         assert_eq!(error, "there is no plant \"fast\"; there are dead-band-limited, default, lag-limited");
+        let error = Plant::preset("laglimited").unwrap_err().to_string();
+        assert!(error.contains("did you mean \"lag-limited\"?"), "{error}");
     }
 }

@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 
 use comfy_table::{CellAlignment, Table, presets};
 
+use super::look::Look;
+
 /// A piece of a report.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Part {
@@ -30,31 +32,51 @@ pub struct Sheet {
     pub rows: Vec<Vec<String>>,
 }
 
-/// For a terminal or a plain file.
+/// Heading of the doubts about the data, which stand out.
+pub(super) const REMARKS: &str = "Remarks on the data";
+/// How a sentence says that a limit is not kept.
+pub(super) const NOT_KEPT: &str = "NOT KEPT";
+/// How a sentence says that a limit is kept.
+pub(super) const KEPT: &str = "kept";
+
+/// For a plain file.
 pub fn text(parts: &[Part]) -> String {
+    shown(parts, Look::default())
+}
+
+/// For a terminal.
+pub fn shown(parts: &[Part], look: Look) -> String {
     let mut out = String::new();
+    let mut doubtful = false;
     for part in parts {
         match part {
             Part::Title(title) => {
-                let _ = writeln!(out, "{}", clean(title));
+                let _ = writeln!(out, "{}", look.strong(&clean(title)));
             }
             Part::Heading(title) => {
+                doubtful = title == REMARKS;
                 let gap = if out.is_empty() { "" } else { "\n" };
-                let _ = writeln!(out, "{gap}{}", clean(title).to_uppercase());
+                let _ = writeln!(out, "{gap}{}", look.strong(&clean(title).to_uppercase()));
             }
             Part::Line(line) => {
-                let _ = writeln!(out, "{}", clean(line));
+                let _ = writeln!(out, "{}", look.folded("", &look.judged(&clean(line)), 0));
             }
             Part::Facts(facts) => {
                 let width = facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
                 for (name, value) in facts {
-                    let _ = writeln!(out, "{:width$}  {}", clean(name), clean(value));
+                    let name = format!("{:width$}", clean(name));
+                    let name = if doubtful { look.doubt(&name) } else { name };
+                    let _ = writeln!(out, "{}", look.folded(&format!("{name}  "), &clean(value), width + 2));
                 }
             }
             Part::Sheet(sheet) => {
-                for line in table(sheet, false).lines() {
-                    out.push_str(line.trim_end());
-                    out.push('\n');
+                for (block, sheet) in look.blocks(sheet).iter().enumerate() {
+                    out.push_str(if block == 0 { "" } else { "\n" });
+                    for (row, line) in table(sheet, false).lines().enumerate() {
+                        let line = line.trim_end();
+                        let line = if row == 0 { look.strong(line) } else { line.to_owned() };
+                        let _ = writeln!(out, "{line}");
+                    }
                 }
             }
         }

@@ -1,10 +1,19 @@
 //! The report as headings, sentences and tables, worst first.
 
-use super::{NONE, Part, Sheet, counted, deg, method::method_parts, ms};
+use super::{
+    NONE, Part, Sheet, counted, deg,
+    markup::{KEPT, NOT_KEPT, REMARKS},
+    method::method_parts,
+    ms,
+    spark::spark,
+};
 use crate::{
     remark::Remarks,
     replay::{JointReplay, Kind, Replay, Transition, Verdict},
-    workflow::report::{Gate, GateResult, Report},
+    workflow::{
+        profile::Profiles,
+        report::{Gate, GateResult, Report},
+    },
 };
 
 /// Everything a person reads of a report; `most` is how many transitions to list.
@@ -13,7 +22,7 @@ pub fn report_parts(name: &str, report: &Report, most: usize) -> Vec<Part> {
     parts.push(Part::Heading("In short".into()));
     parts.extend(in_short(report).into_iter().map(Part::Line));
     transition_parts(&report.replay, most, &mut parts);
-    joint_parts(&report.replay, &mut parts);
+    joint_parts(&report.replay, &report.profiles, &mut parts);
     remark_parts(&report.remarks, &mut parts);
     method_parts(report, &mut parts);
     parts
@@ -185,11 +194,12 @@ pub(super) fn transition_parts(replay: &Replay, most: usize, parts: &mut Vec<Par
     }
 }
 
-pub(super) fn joint_parts(replay: &Replay, parts: &mut Vec<Part>) {
-    let rows = replay.joints.iter().map(|j| {
+pub(super) fn joint_parts(replay: &Replay, profiles: &Profiles, parts: &mut Vec<Part>) {
+    let rows = replay.joints.iter().enumerate().map(|(k, j)| {
         let error = &j.tracking_error;
         vec![
             j.name.clone(),
+            profiles.peaks_rad.get(k).map_or(String::new(), |peaks| spark(peaks, profiles.most_rad)),
             deg(error.rms_rad),
             deg(error.mean_abs_rad),
             deg(error.p95_rad),
@@ -207,6 +217,7 @@ pub(super) fn joint_parts(replay: &Replay, parts: &mut Vec<Part>) {
     });
     let head = vec![
         "joint",
+        "error over the run",
         "rms deg",
         "mean",
         "p95",
@@ -222,7 +233,7 @@ pub(super) fn joint_parts(replay: &Replay, parts: &mut Vec<Part>) {
         "unasked",
     ];
     parts.push(Part::Heading("Joints".into()));
-    parts.push(Part::Sheet(Sheet { head, left: 1, rows: rows.collect() }));
+    parts.push(Part::Sheet(Sheet { head, left: 2, rows: rows.collect() }));
 }
 
 pub(super) fn lag(joint: &JointReplay) -> String {
@@ -238,7 +249,7 @@ pub(super) fn remark_parts(remarks: &Remarks, parts: &mut Vec<Part>) {
         return;
     }
     let rows = remarks.as_slice().iter().map(|r| vec![r.code.name(), r.count.to_string(), r.message.clone()]);
-    parts.push(Part::Heading("Remarks on the data".into()));
+    parts.push(Part::Heading(REMARKS.into()));
     parts.push(Part::Facts(rows.map(|row| (format!("{} x{}", row[0], row[1]), row[2].clone())).collect()));
 }
 
@@ -256,7 +267,7 @@ fn gate_line(result: &GateResult) -> String {
         Gate::OnsetDelay => ("start delay", "ms", ms),
         Gate::Lag => ("lag", "ms", ms),
     };
-    let verdict = if result.kept { "kept" } else { "NOT KEPT" };
+    let verdict = if result.kept { KEPT } else { NOT_KEPT };
     let limit = format!("{} {unit} allowed", show(result.limit));
     let Some(joint) = &result.joint else {
         return format!("Limit on {name} {verdict}: nothing to measure, {limit}.");

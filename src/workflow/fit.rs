@@ -140,6 +140,16 @@ pub fn observed(logs: &[PathBuf], wanted: &Wanted) -> Result<Vec<Observed>, Obse
 pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
     let observations: Vec<Observation<'_>> = observed.iter().map(Observed::observation).collect();
     let fit = fit(&observations)?;
+    for joint in &fit.joints {
+        ::log::info!(
+            "{} fitted to {} samples in {} runs; {:e} rad unexplained, held-out R2 {:.3}",
+            joint.name,
+            joint.samples,
+            joint.runs,
+            joint.residual_rad,
+            joint.held_out_r2
+        );
+    }
     let mut remarks = Remarks::default();
     let mut runs = Vec::new();
     for (path, observed) in logs.iter().zip(observed) {

@@ -16,6 +16,7 @@ pub mod moea;
 pub mod observe;
 pub mod plan;
 pub mod plan_log;
+pub mod profile;
 pub mod recover;
 pub mod replan;
 pub mod report;

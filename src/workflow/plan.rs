@@ -259,8 +259,16 @@ pub fn run(
     let mut growth = Growth::default();
     let found = search(setup, &options.search, |progress| {
         growth.see(progress);
+        let (phase, evaluations) = (progress.phase, progress.evaluations);
+        ::log::debug!("{phase:?}: generation {}, {evaluations} evaluations", progress.generation);
         observer(progress)
     })?;
+    ::log::info!(
+        "{} plans found in {} evaluations, {} generations",
+        found.front.len(),
+        found.evaluations,
+        found.generations
+    );
     let judged = |timing: &Timing| Judged::of(setup, &setup.times_s(&timing.interval_s));
     let Some(ends) = ends(&found.front) else {
         let nearest =

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::{front::Front, plan_log::FRONT, schedule::Schedule};
+use super::{front::Front, plan_log::FRONT, profile::Profiles, schedule::Schedule};
 use crate::{
     log::{Attachment, LogError, ReadOptions, SourceInfo, read_recording},
     remark::{Code, Remarks},
@@ -107,6 +107,8 @@ pub struct Report {
     pub gates: Vec<GateResult>,
     /// What was doubtful.
     pub remarks: Remarks,
+    /// Each joint's error over the run, in the order of its joints.
+    pub profiles: Profiles,
     /// The aligned samples, for plots.
     pub pairs: Vec<Pair>,
     /// When the key points of the task are passed, where the log tells.
@@ -140,6 +142,7 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
             remarks.add(Code::UnpairedJoint, 1, message);
             continue;
         };
+        ::log::debug!("{}: {} samples aligned, {} without a plan", pair.name, pair.matched, pair.unmatched);
         alignment.push(Alignment {
             joint: pair.name.clone(),
             matched: pair.matched,
@@ -153,9 +156,20 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     }
     remark_unseen(&recording.planned, &pairs, inputs, &mut remarks);
     let replay = replay(&pairs, &inputs.rules);
+    ::log::info!("{} joints aligned, {} transitions found", pairs.len(), replay.transitions.len());
     let gates = gates(&inputs.gates, &replay);
     let front = front(&recording.attachments, &mut remarks);
-    Ok(Report { source: recording.source, alignment, replay, gates, remarks, pairs, schedule, front })
+    Ok(Report {
+        source: recording.source,
+        alignment,
+        replay,
+        gates,
+        remarks,
+        profiles: Profiles::of(&pairs),
+        pairs,
+        schedule,
+        front,
+    })
 }
 
 fn front(attachments: &[Attachment], remarks: &mut Remarks) -> Option<Front> {

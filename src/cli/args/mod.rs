@@ -12,6 +12,7 @@ mod moea;
 mod plan;
 mod replan;
 mod simulate;
+mod terminal;
 
 use std::path::PathBuf;
 
@@ -29,6 +30,7 @@ pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
 pub use replan::{ChangeArgs, ReplanArgs};
 pub use simulate::SimulateArgs;
+pub use terminal::{CompletionsArgs, ManArgs, TerminalArgs};
 
 use crate::{
     log::{ReadOptions, Selector, TimeBase},
@@ -51,11 +53,17 @@ pub struct Args {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+
+    /// What is said besides results.
+    #[command(flatten)]
+    pub terminal: TerminalArgs,
 }
 
 /// One verb for each question.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// The whole loop on a simulated machine, from plan to comparison
+    Demo(DemoArgs),
     /// Tracking error of every joint, and of every start from rest
     #[command(
         after_help = "Examples:\n  hydrotrace report run.mcap\n  hydrotrace report run.mcap --json -o report.json\n  \
@@ -70,7 +78,7 @@ pub enum Command {
                             hydrotrace compare a1.mcap b1.mcap --more-before a2.mcap --more-after b2.mcap\n  \
                             hydrotrace compare old.mcap new.mcap --json -o compare.json")]
     Compare(CompareArgs),
-    /// The best timings of a task's key points, and the one to run, as a log
+    /// The best timings of a task's key points, the one to run as a log
     #[command(
         after_help = "Examples:\n  hydrotrace plan task.toml -o plan.mcap\n  hydrotrace plan task.toml --choose fastest\n  \
                             hydrotrace plan task.toml --times 0,2.01,3.77,5.79,6.53,8.85,10.48\n  \
@@ -81,12 +89,12 @@ pub enum Command {
     #[command(after_help = "Examples:\n  hydrotrace simulate plan.mcap -o run.mcap\n  \
                             hydrotrace simulate plan.mcap -o run.mcap --plant lag-limited --seed 7")]
     Simulate(SimulateArgs),
-    /// What the machine does with what it is sent: lag, dead band, limits, from logs of runs
+    /// Lag, dead band and limits of the machine, from logs of runs
     #[command(after_help = "Examples:\n  hydrotrace fit run.mcap -o limits.toml\n  \
                             hydrotrace fit run-1.mcap run-2.mcap identification.mcap -o limits.toml\n  \
                             hydrotrace fit run.mcap --command /arm/command:position --json")]
     Fit(FitArgs),
-    /// Write a run from which `fit` can tell the limits: slow and much too fast strokes, joint by joint
+    /// Write a run of slow and fast strokes, for `fit` to tell limits
     #[command(after_help = "Examples:\n  hydrotrace excite -o id.mcap --task task.toml\n  \
                             hydrotrace excite -o id.mcap --joint boom=40:20:60 --joint arm=90:70:110 --max-speed-deg-s 30")]
     Excite(ExciteArgs),
@@ -96,20 +104,24 @@ pub enum Command {
                             hydrotrace replan field.mcap -o next.mcap --keep-plan\n  \
                             hydrotrace replan run-1.mcap run-2.mcap --limits limits.toml --task task.toml -o next.mcap")]
     Replan(ReplanArgs),
-    /// The whole loop on a simulated machine: plan, run, report, fit, plan again, run, compare
-    Demo(DemoArgs),
-    /// What is in a log, what a report would use, and whether it is damaged
+    /// Turn a CSV file (PLC trace, RTDE, any table) into a log
+    #[command(after_help = import::EXAMPLES)]
+    Import(ImportArgs),
+    /// Turn what a report would use of a log into CSV or Parquet
+    #[command(after_help = export::EXAMPLES)]
+    Export(ExportArgs),
+    /// What is in a log, what a report would use, what is damaged
     Info(InfoArgs),
     /// Save everything that is whole in a damaged log
     Recover(RecoverArgs),
-    /// Turn a CSV file of a controller (PLC trace, RTDE recording, any table) into a log
-    #[command(after_help = import::EXAMPLES)]
-    Import(ImportArgs),
-    /// Turn what a report would use of a log into a table: CSV or Parquet
-    #[command(after_help = export::EXAMPLES)]
-    Export(ExportArgs),
     /// Measure hydrotrace itself
     Bench(BenchArgs),
+    /// Print the completions of a shell
+    #[command(after_help = terminal::COMPLETIONS)]
+    Completions(CompletionsArgs),
+    /// Write a manual page for each verb
+    #[command(after_help = terminal::MANUAL)]
+    Man(ManArgs),
 }
 
 /// What to read, where the log alone does not tell.

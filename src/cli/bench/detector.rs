@@ -4,9 +4,13 @@ use std::io::Write;
 
 use super::progress;
 use crate::{
-    cli::{CliError, Outcome, args::DetectorArgs, output::deliver},
+    cli::{
+        CliError, Outcome,
+        args::DetectorArgs,
+        output::{deliver, shown},
+    },
     replay::conditions,
-    report::{score_json, score_parts, text},
+    report::{score_json, score_parts},
     workflow::detector::{Inputs, run as score},
 };
 
@@ -14,8 +18,11 @@ pub(super) fn run(args: &DetectorArgs, out: &mut impl Write) -> Result<Outcome, 
     let bar = progress(conditions().len() as u64, "conditions");
     let scores = score(&Inputs { seed: args.seed, runs: args.runs }, || bar.inc(1));
     bar.finish_and_clear();
-    let rendered =
-        if args.json { score_json(args.seed, &scores) } else { text(&score_parts(args.seed, &scores)) };
+    let rendered = if args.json {
+        score_json(args.seed, &scores)
+    } else {
+        shown(&score_parts(args.seed, &scores), None)
+    };
     deliver(&rendered, None, out)?;
     Ok(Outcome::Clean)
 }

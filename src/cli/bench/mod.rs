@@ -6,11 +6,12 @@ mod plan;
 
 use std::{fs, io::Write, path::Path};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use super::{
     CliError, Outcome,
     args::{Bench, BenchArgs},
+    output,
 };
 use crate::atomic::AtomicError;
 
@@ -30,10 +31,5 @@ fn make(folder: &Path) -> Result<(), AtomicError> {
 
 /// Drawn on standard error, and not at all where that is no terminal.
 fn progress(steps: u64, noun: &str) -> ProgressBar {
-    let bar = ProgressBar::new(steps);
-    let template = format!("{{bar:30}} {{pos}}/{{len}} {noun}, {{eta}} left");
-    if let Ok(style) = ProgressStyle::with_template(&template) {
-        bar.set_style(style);
-    }
-    bar
+    output::progress(Some(steps), &format!("{{bar:30}} {{pos}}/{{len}} {noun}, {{eta}} left"))
 }

@@ -4,8 +4,12 @@ use std::{io::Write, path::Path};
 
 use super::{make, progress};
 use crate::{
-    cli::{CliError, Outcome, args::MoeaArgs, output::deliver},
-    report::{curve_svg, curves_csv, front_csv, markdown, moea_json, moea_parts, text},
+    cli::{
+        CliError, Outcome,
+        args::MoeaArgs,
+        output::{deliver, shown},
+    },
+    report::{curve_svg, curves_csv, front_csv, markdown, moea_json, moea_parts},
     workflow::moea::{Curve, Front, run as compare},
 };
 
@@ -29,7 +33,7 @@ pub(super) fn run(args: &MoeaArgs, out: &mut impl Write) -> Result<Outcome, CliE
     } else if args.format.markdown {
         markdown(&moea_parts(&inputs, &study))
     } else {
-        text(&moea_parts(&inputs, &study))
+        shown(&moea_parts(&inputs, &study), None)
     };
     deliver(&rendered, None, out)?;
     Ok(Outcome::Clean)

@@ -4,8 +4,12 @@ use std::{io::Write, path::Path};
 
 use super::{make, progress};
 use crate::{
-    cli::{CliError, Outcome, args::ContestArgs, output::deliver},
-    report::{contest_csv, contest_json, contest_parts, contest_svg, markdown, text},
+    cli::{
+        CliError, Outcome,
+        args::ContestArgs,
+        output::{deliver, shown},
+    },
+    report::{contest_csv, contest_json, contest_parts, contest_svg, markdown},
     workflow::contest::{Curve, run as compare},
 };
 
@@ -27,7 +31,7 @@ pub(super) fn run(args: &ContestArgs, out: &mut impl Write) -> Result<Outcome, C
     } else if args.format.markdown {
         markdown(&contest_parts(&inputs, &study))
     } else {
-        text(&contest_parts(&inputs, &study))
+        shown(&contest_parts(&inputs, &study), None)
     };
     deliver(&rendered, None, out)?;
     Ok(Outcome::Clean)

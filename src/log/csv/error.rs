@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::log::WriteError;
+use crate::{log::WriteError, spelling::suggestion};
 
 /// Why a CSV file does not become a log. Lines and columns count from 1.
 #[derive(Debug, Error)]
@@ -42,7 +42,7 @@ pub enum CsvError {
     /// A column that the caller named.
     #[error(
         "no column {column:?} (for {option}){}; the columns are {present}",
-        nearest.as_ref().map(|name| format!(", did you mean {name:?}?")).unwrap_or_default()
+        suggestion(nearest.as_deref())
     )]
     NoColumn {
         /// The column looked for.
@@ -109,12 +109,14 @@ pub enum CsvError {
         measured: String,
     },
     /// An interface of a joint that the log does not have.
-    #[error("interface {interface:?} names the joint {joint:?}; the joints are {present}")]
+    #[error("interface {interface:?} names the joint {joint:?}{}; the joints are {present}", suggestion(nearest.as_deref()))]
     NoJoint {
         /// The interface.
         interface: String,
         /// The joint.
         joint: String,
+        /// A joint of nearly that name.
+        nearest: Option<String>,
         /// The joints.
         present: String,
     },

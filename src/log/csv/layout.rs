@@ -8,7 +8,10 @@ use super::{
     head::Head,
     label::Label,
 };
-use crate::remark::{Code, Remarks};
+use crate::{
+    remark::{Code, Remarks},
+    spelling::nearest,
+};
 
 /// One column in use.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -126,6 +129,7 @@ pub(super) fn lay_out(
             let joint = place(&joint.to_lowercase()).ok_or_else(|| CsvError::NoJoint {
                 interface: name.clone(),
                 joint: joint.clone(),
+                nearest: nearest(joint, joints.iter().map(|(_, name)| name.as_str())),
                 present: joints.iter().map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(", "),
             })?;
             interfaces.push(Interface { name: name.clone(), column, joint });

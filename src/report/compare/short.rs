@@ -2,7 +2,10 @@
 
 use super::{optional, percent, probability, signed};
 use crate::{
-    report::{counted, deg},
+    report::{
+        counted, deg,
+        markup::{KEPT, NOT_KEPT},
+    },
     workflow::compare::{Change, Comparison, Gate, GateResult, Measure, Summary, Verdict},
 };
 
@@ -134,7 +137,7 @@ fn gate_line(result: &GateResult) -> String {
             result.found.map(ratio),
         ),
     };
-    let verdict = if result.kept { "kept" } else { "NOT KEPT" };
+    let verdict = if result.kept { KEPT } else { NOT_KEPT };
     let found = found.unwrap_or("nothing to compare".to_owned());
     format!("Limit on {name} {verdict}: {found}; {limit}.")
 }

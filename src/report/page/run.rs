@@ -64,7 +64,7 @@ pub(super) fn remarks(remarks: &crate::remark::Remarks) -> Option<Section> {
 fn numbers(report: &Report, most: usize) -> Markup {
     let lines: Vec<Part> = in_short(report).into_iter().map(Part::Line).collect();
     let mut tables = Vec::new();
-    joint_parts(&report.replay, &mut tables);
+    joint_parts(&report.replay, &report.profiles, &mut tables);
     transition_parts(&report.replay, most, &mut tables);
     html! {
         (parts(&lines))

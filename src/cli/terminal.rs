@@ -1,0 +1,63 @@
+//! Colours and the log of a run, for the whole program.
+
+use std::{
+    ffi::OsString,
+    io::{self, Write},
+};
+
+use anstream::{AutoStream, ColorChoice};
+use log::{Level, LevelFilter};
+
+use super::{args::TerminalArgs, output::harmless};
+
+/// The choice of colours before arguments are parsed, for the help and for errors of usage.
+pub fn early_choice(words: impl IntoIterator<Item = OsString>) -> clap::ColorChoice {
+    let words: Vec<String> = words.into_iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    let apart = words.iter().zip(words.iter().skip(1)).filter(|(name, _)| *name == "--color");
+    let joined = words.iter().filter_map(|word| word.strip_prefix("--color="));
+    let last = apart.map(|(_, value)| value.as_str()).chain(joined).last();
+    last.and_then(|value| value.parse().ok()).unwrap_or_default()
+}
+
+/// Sets colours of results, by what standard output is, and starts the log; returns the choice for
+/// standard error.
+pub fn set_up(args: &TerminalArgs) -> ColorChoice {
+    let choice = match args.color {
+        clap::ColorChoice::Auto => ColorChoice::Auto,
+        clap::ColorChoice::Always => ColorChoice::Always,
+        clap::ColorChoice::Never => ColorChoice::Never,
+    };
+    let of = |choice, auto| if choice == ColorChoice::Auto { auto } else { choice };
+    of(choice, AutoStream::choice(&io::stdout())).write_global();
+    let level = match (args.quiet, args.verbose) {
+        (true, _) => LevelFilter::Off,
+        (false, 0) => LevelFilter::Warn,
+        (false, 1) => LevelFilter::Info,
+        (false, _) => LevelFilter::Debug,
+    };
+    // A second start, as in tests, keeps the first log.
+    let _ = env_logger::Builder::new()
+        .filter_module("hydrotrace", level)
+        .format(|out, record| {
+            let word = if record.level() <= Level::Info { "info" } else { "debug" };
+            writeln!(out, "{word}: {}", harmless(&record.args().to_string()))
+        })
+        .try_init();
+    log::set_max_level(level);
+    of(choice, AutoStream::choice(&io::stderr()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_choice_of_colours_is_the_one_that_holds() {
+        let choice = |words: &str| early_choice(words.split_whitespace().map(OsString::from));
+        assert_eq!(choice("hydrotrace report a.mcap"), clap::ColorChoice::Auto);
+        assert_eq!(choice("hydrotrace --color never report"), clap::ColorChoice::Never);
+        assert_eq!(choice("hydrotrace report --color=always"), clap::ColorChoice::Always);
+        assert_eq!(choice("hydrotrace report --color"), clap::ColorChoice::Auto);
+        assert_eq!(choice("hydrotrace report --color sometimes"), clap::ColorChoice::Auto);
+    }
+}
