@@ -1,5 +1,6 @@
 //! One file per verb: what the caller wants in, what was found out. No printing, no clap.
 
+pub mod arm_log;
 pub mod compare;
 pub mod contest;
 pub mod detector;
@@ -20,3 +21,4 @@ pub mod schedule;
 pub mod series_log;
 pub mod simulate;
 pub mod simulate_log;
+pub mod view;
