@@ -31,3 +31,5 @@ pub mod workflow;
 // edges
 pub mod cli;
 pub mod report;
+#[cfg(feature = "viewer")]
+pub mod viewer;

@@ -15,6 +15,7 @@ mod recover;
 mod replan;
 mod report;
 mod simulate;
+mod view;
 
 use std::io::Write;
 
@@ -80,6 +81,20 @@ enum CliError {
     Folder { path: std::path::PathBuf, source: std::io::Error },
     #[error("the words of a step are no command: {0}")]
     Words(String),
+    #[cfg(not(feature = "viewer"))]
+    #[error(
+        "this build has no viewer; add it from the project's folder (350 more crates, some minutes):\n  \
+         cargo install --path . --features viewer\n\
+         or from anywhere, with the address of the repository for URL:\n  \
+         cargo install --git URL --features viewer\n\
+         the viewer itself, and plain logs without this command (those of plan, simulate and replan show the arm):\n  \
+         pip install rerun-sdk==0.36.3\n  \
+         rerun run.mcap"
+    )]
+    NoViewer,
+    #[cfg(feature = "viewer")]
+    #[error(transparent)]
+    View(#[from] crate::viewer::ViewError),
     #[error("the limits cannot be written")]
     Limits(#[from] toml::ser::Error),
     #[error("the plan cannot be logged")]
@@ -108,6 +123,7 @@ pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
         Command::Recover(recover) => recover::run(recover, out, err),
         Command::Import(import) => import::run(import, out, err),
         Command::Export(export) => export::run(export, out, err),
+        Command::View(view) => view::run(view, out, err),
         Command::Bench(bench) => bench::run(bench, out),
     };
     match result.and_then(|outcome| Ok(out.flush().map(|()| outcome)?)) {

@@ -12,6 +12,7 @@ mod moea;
 mod plan;
 mod replan;
 mod simulate;
+mod view;
 
 use std::path::PathBuf;
 
@@ -29,6 +30,7 @@ pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
 pub use replan::{ChangeArgs, ReplanArgs};
 pub use simulate::SimulateArgs;
+pub use view::{ViewArgs, ViewTarget};
 
 use crate::{
     log::{ReadOptions, Selector, TimeBase},
@@ -107,6 +109,9 @@ pub enum Command {
     /// Turn what a report would use of a log into a table: CSV or Parquet
     #[command(after_help = export::EXAMPLES)]
     Export(ExportArgs),
+    /// Show runs and plans in 3-D: planned and measured arm, tool paths, series, starts from rest
+    #[command(after_help = view::EXAMPLES)]
+    View(ViewArgs),
     /// Measure hydrotrace itself
     Bench(BenchArgs),
 }
