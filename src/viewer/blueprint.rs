@@ -29,7 +29,8 @@ pub(super) fn of(scenes: &[Scene], live: bool) -> Blueprint {
     let lanes: Vec<String> = each_joint(scenes, |scene, name| {
         scene.transitions.iter().any(|t| t.joint == name).then(|| format!("+ {}", lane(scene, name)))
     });
-    if !lanes.is_empty() {
+    // A lane keeps to the time it first showed, which of a run that has just begun is nothing.
+    if !lanes.is_empty() && !live {
         left.push(StateTimelineView::new("Starts from rest").with_origin("/").with_contents(lanes).into());
         left_shares.push(1.3);
     }

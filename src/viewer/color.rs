@@ -15,7 +15,7 @@ const JOINTS: [[u8; 3]; 7] = [
     [204, 121, 167],
 ];
 /// Of whatever is planned.
-pub(super) const PLANNED: [u8; 3] = [150, 200, 255];
+pub(super) const PLANNED: [u8; 3] = [185, 220, 255];
 
 /// Of what is measured in a run; the first has the arm's own paint.
 pub(super) fn run(index: usize) -> Color {
@@ -41,5 +41,5 @@ pub(super) fn solid(rgba: [f64; 4], index: usize) -> Color {
 /// Of a ghost's solids.
 pub(super) fn ghost() -> Color {
     let [r, g, b] = PLANNED;
-    Color::from_unmultiplied_rgba(r, g, b, 120)
+    Color::from_unmultiplied_rgba(r, g, b, 150)
 }
