@@ -10,7 +10,7 @@ use crate::{
     arm::Chain,
     log::{Attachment, LogWriter, Point, Role, WriteError, WriteOptions},
     math::State,
-    series::Series,
+    series::{Series, Track},
     units::NS_PER_S,
 };
 
@@ -41,7 +41,7 @@ impl SeriesLog<'_> {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn bytes(&self) -> Result<Vec<u8>, WriteError> {
-        let names: Vec<&str> = self.plan.tracks.iter().map(|track| track.name()).collect();
+        let names: Vec<&str> = self.plan.tracks.iter().map(Track::name).collect();
         let mut log = LogWriter::new(Vec::new(), &names, WriteOptions::default())?;
         log.metadata(PROVENANCE, self.provenance)?;
         let mut arm = match self.arm {
