@@ -32,3 +32,5 @@ pub mod workflow;
 // edges
 pub mod cli;
 pub mod report;
+#[cfg(feature = "viewer")]
+pub mod viewer;

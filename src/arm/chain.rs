@@ -1,5 +1,7 @@
 //! A serial chain of turning joints, in the form that its mechanics need.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Rotation3, Translation3, Unit, Vector3};
 
 use super::{Inertia, Load, Pose};
@@ -56,6 +58,8 @@ pub struct Chain {
     /// The tool's frame, seen from the last joint's frame.
     pub(super) tool: Pose,
     pub(super) tool_name: String,
+    /// What it was read from.
+    pub(super) robot: Arc<urdf_rs::Robot>,
 }
 
 impl Chain {
@@ -77,6 +81,12 @@ impl Chain {
     /// Names of the links on the way to the tool, in the order of [`Chain::link_poses`].
     pub fn link_names(&self) -> impl Iterator<Item = &str> {
         self.links.iter().map(|link| link.name.as_str())
+    }
+
+    /// Whether each of these links turns against the one before it; the base does not.
+    pub fn link_turns(&self) -> impl Iterator<Item = bool> {
+        let before = std::iter::once(0).chain(self.links.iter().map(|link| link.frame));
+        self.links.iter().zip(before).map(|(link, before)| link.frame > before)
     }
 
     /// Whether a posture is within all limits, up to `slack_rad`.
@@ -102,7 +112,7 @@ pub(super) struct Builder {
 }
 
 impl Builder {
-    pub(super) fn new(base: &str) -> Self {
+    pub(super) fn new(robot: Arc<urdf_rs::Robot>, base: &str) -> Self {
         let chain = Chain {
             joints: Vec::new(),
             steps: Vec::new(),
@@ -110,6 +120,7 @@ impl Builder {
             links: Vec::new(),
             tool: Pose::identity(),
             tool_name: String::new(),
+            robot,
         };
         let mut builder = Self { chain, here: Pose::identity() };
         builder.name_link(base);

@@ -7,20 +7,24 @@
 
 mod chain;
 mod cylinder;
+mod description;
 mod error;
 mod hydraulics;
 mod inertia;
 mod inverse_dynamics;
 mod kinematics;
 mod reach;
+mod shape;
 mod urdf;
 
 pub use chain::{Chain, Joint, JointLimit};
 pub use cylinder::{Actuation, Cylinder, Linkage};
+pub use description::{GHOST, GHOST_RGBA};
 pub use error::ArmError;
 pub use hydraulics::{Arm, Hydraulics};
 pub use inertia::Inertia;
 pub use inverse_dynamics::{LANES, Load, Motion, Workspace, inverse_dynamics};
+pub use shape::{Shape, Solid, quaternion_xyzw};
 
 /// Place and orientation of a frame in another; lengths in m.
 pub type Pose = nalgebra::IsometryMatrix3<f64>;

@@ -1,7 +1,10 @@
 //! From the text of a URDF to a [`Chain`]: the path from the root link to the tool, with fixed
 //! joints folded and the masses of fixed side branches added to what carries them.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use nalgebra::{Matrix3, Rotation3, Translation3, Unit, Vector3};
 use urdf_rs::JointType;
@@ -30,7 +33,7 @@ impl Chain {
         let at = Witness(file);
         at.at_most("bytes", text.len(), LARGEST_TEXT)?;
         at.at_most("nested elements", nesting(text, &at)?, DEEPEST)?;
-        let robot = urdf_rs::read_from_string(text).map_err(|error| at.syntax(&error))?;
+        let robot = Arc::new(urdf_rs::read_from_string(text).map_err(|error| at.syntax(&error))?);
         at.at_most("joints", robot.joints.len(), MOST_JOINTS)?;
         let tree = Tree::new(&robot, at)?;
         let tool = tree.tool(tool)?;
@@ -56,6 +59,7 @@ fn nesting(text: &str, at: &Witness<'_>) -> Result<usize, ArmError> {
 
 struct Tree<'a> {
     at: Witness<'a>,
+    robot: &'a Arc<urdf_rs::Robot>,
     links: BTreeMap<&'a str, &'a urdf_rs::Link>,
     /// The joint that leads to each link but the root.
     above: BTreeMap<&'a str, &'a urdf_rs::Joint>,
@@ -65,7 +69,7 @@ struct Tree<'a> {
 }
 
 impl<'a> Tree<'a> {
-    fn new(robot: &'a urdf_rs::Robot, at: Witness<'a>) -> Result<Self, ArmError> {
+    fn new(robot: &'a Arc<urdf_rs::Robot>, at: Witness<'a>) -> Result<Self, ArmError> {
         let mut links = BTreeMap::new();
         for link in &robot.links {
             if links.insert(link.name.as_str(), link).is_some() {
@@ -101,7 +105,7 @@ impl<'a> Tree<'a> {
             };
             return Err(at.unexpected("<robot>", found, "one link without parent"));
         };
-        Ok(Self { at, links, above, below, root })
+        Ok(Self { at, robot, links, above, below, root })
     }
 
     fn children(&self, link: &str) -> &[&'a urdf_rs::Joint] {
@@ -137,7 +141,7 @@ impl<'a> Tree<'a> {
                 return Err(self.at.unexpected(format!("<link {tool:?}>"), "a loop of joints", "a tree"));
             }
         }
-        let mut builder = Builder::new(self.root);
+        let mut builder = Builder::new(Arc::clone(self.robot), self.root);
         while let Some(joint) = path.pop() {
             let element = format!("<joint {:?}>", joint.name);
             let origin = self.pose(&joint.origin, &element)?;

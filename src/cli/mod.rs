@@ -18,6 +18,7 @@ mod replan;
 mod report;
 mod simulate;
 pub mod terminal;
+mod view;
 
 use std::io::Write;
 
@@ -85,6 +86,20 @@ enum CliError {
     Folder { path: std::path::PathBuf, source: std::io::Error },
     #[error("the words of a step are no command: {0}")]
     Words(String),
+    #[cfg(not(feature = "viewer"))]
+    #[error(
+        "this build has no viewer; add it from the project's folder (350 more crates, some minutes):\n  \
+         cargo install --path . --features viewer\n\
+         or from anywhere, with the address of the repository for URL:\n  \
+         cargo install --git URL --features viewer\n\
+         the viewer itself, and plain logs without this command (those of plan, simulate and replan show the arm):\n  \
+         pip install rerun-sdk==0.36.3\n  \
+         rerun run.mcap"
+    )]
+    NoViewer,
+    #[cfg(feature = "viewer")]
+    #[error(transparent)]
+    View(#[from] crate::viewer::ViewError),
     #[error("the limits cannot be written")]
     Limits(#[from] toml::ser::Error),
     #[error("the plan cannot be logged")]
@@ -125,6 +140,7 @@ fn command(command: &Command, out: &mut impl Write, err: &mut impl Write) -> Res
         Command::Recover(recover) => recover::run(recover, out, err),
         Command::Import(import) => import::run(import, out, err),
         Command::Export(export) => export::run(export, out, err),
+        Command::View(view) => view::run(view, out, err),
         Command::Bench(bench) => bench::run(bench, out),
         Command::Completions(completions) => completions::run(completions, out),
         Command::Man(man) => man::run(man, out),

@@ -11,6 +11,7 @@ mod channel;
 mod choose;
 mod csv;
 mod decode;
+mod description;
 mod doubt;
 mod error;
 mod export;
@@ -28,6 +29,7 @@ pub use csv::{
     AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, Quantity, Separator, TimeRead, Understood,
     read_csv, read_csv_bytes,
 };
+pub use description::read_description;
 pub use error::LogError;
 pub use export::{ExportError, RunTable};
 pub use read::{Attachment, FileInfo};
@@ -37,4 +39,6 @@ pub use recording::{
 };
 pub use recover::{Recovered, recover};
 pub use source::Selector;
-pub use write::{ControllerState, LogWriter, Options as WriteOptions, Point, Role, Topics, WriteError};
+pub use write::{
+    ControllerState, LogWriter, Options as WriteOptions, Point, Role, Topics, Transform, WriteError,
+};

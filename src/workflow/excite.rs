@@ -108,6 +108,14 @@ impl Excited {
     /// [`WriteError`] for joint names that no log can hold.
     pub fn log(&self, rate_hz: f64) -> Result<Vec<u8>, WriteError> {
         let provenance = BTreeMap::from([("made_by".to_owned(), "excite".to_owned())]);
-        SeriesLog { plan: &self.command, command: None, provenance: &provenance, files: &[], rate_hz }.bytes()
+        SeriesLog {
+            plan: &self.command,
+            command: None,
+            arm: None,
+            provenance: &provenance,
+            files: &[],
+            rate_hz,
+        }
+        .bytes()
     }
 }

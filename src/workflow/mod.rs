@@ -1,6 +1,7 @@
 //! One file per verb: what the caller wants in, what was found out. No printing, no clap.
 
 pub mod advice;
+pub mod arm_log;
 pub mod compare;
 pub mod contest;
 mod convergence;
@@ -26,3 +27,4 @@ pub mod series_log;
 pub mod simulate;
 pub mod simulate_log;
 pub mod torque;
+pub mod view;

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use super::arm_log::ArmLog;
 use crate::{
     log::{LogWriter, Point, Role, WriteError, WriteOptions},
     plan::Setup,
@@ -57,14 +58,20 @@ impl PlanLog<'_> {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn bytes(&self) -> Result<Vec<u8>, WriteError> {
-        let mut log = LogWriter::new(Vec::new(), &self.setup.joint_names(), WriteOptions::default())?;
+        let joints = self.setup.joint_names();
+        let joints: Vec<&str> = joints.iter().map(String::as_str).collect();
+        let mut log = LogWriter::new(Vec::new(), &joints, WriteOptions::default())?;
         log.metadata(PROVENANCE, self.provenance)?;
+        let mut arm = ArmLog::begin(&mut log, &self.setup.arm().chain, &joints, START_NS, false)?;
         let coarse = States::of(self.motion, instants(self.motion.duration_s(), TRAJECTORY_HZ));
         log.trajectory(START_NS, &coarse.points().collect::<Vec<_>>())?;
         let fine = States::of(self.motion, instants(self.motion.duration_s(), self.rate_hz));
         for point in fine.points() {
             let stamp_ns = START_NS + point.time_from_start_ns;
             log.joint_sample(Role::Planned, stamp_ns, point.position_rad, point.velocity_rad_s, &[])?;
+            if let Some(arm) = &mut arm {
+                arm.sample(&mut log, stamp_ns, point.position_rad, None)?;
+            }
         }
         log.attach(TASK, "application/toml", self.task.as_bytes(), START_NS)?;
         log.attach(FRONT, "application/json", self.document.as_bytes(), START_NS)?;

@@ -2,8 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::plan_log::{PROVENANCE, START_NS};
+use super::{
+    arm_log::ArmLog,
+    plan_log::{PROVENANCE, START_NS},
+};
 use crate::{
+    arm::Chain,
     log::{Attachment, LogWriter, Point, Role, WriteError, WriteOptions},
     math::State,
     series::{Series, Track},
@@ -20,6 +24,8 @@ pub struct SeriesLog<'a> {
     pub plan: &'a Series,
     /// What to send, where that is not the plan; of the same joints.
     pub command: Option<&'a Series>,
+    /// The arm of these joints, where it is known.
+    pub arm: Option<&'a Chain>,
     /// Where it comes from.
     pub provenance: &'a BTreeMap<String, String>,
     /// Files to go with it.
@@ -38,6 +44,10 @@ impl SeriesLog<'_> {
         let names: Vec<&str> = self.plan.tracks.iter().map(Track::name).collect();
         let mut log = LogWriter::new(Vec::new(), &names, WriteOptions::default())?;
         log.metadata(PROVENANCE, self.provenance)?;
+        let mut arm = match self.arm {
+            Some(chain) => ArmLog::begin(&mut log, chain, &names, START_NS, false)?,
+            None => None,
+        };
         let end_s = self.plan.tracks.iter().filter_map(|t| t.t_s().last()).fold(0.0, |a: f64, b| a.max(*b));
         let sent = self.command.unwrap_or(self.plan);
         let points: Vec<(f64, [Vec<f64>; 2])> =
@@ -57,6 +67,9 @@ impl SeriesLog<'_> {
             let stamp_ns = START_NS + nanoseconds(t_s);
             let [position_rad, velocity_rad_s] = states(self.plan, &names, t_s);
             log.joint_sample(Role::Planned, stamp_ns, &position_rad, &velocity_rad_s, &[])?;
+            if let Some(arm) = &mut arm {
+                arm.sample(&mut log, stamp_ns, &position_rad, None)?;
+            }
             if let Some(command) = self.command {
                 let [position_rad, velocity_rad_s] = states(command, &names, t_s);
                 log.joint_sample(Role::Command, stamp_ns, &position_rad, &velocity_rad_s, &[])?;

@@ -2,8 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::plan_log::{PROVENANCE, STARTS};
+use super::{
+    arm_log::ArmLog,
+    plan_log::{PROVENANCE, STARTS},
+};
 use crate::{
+    arm::Chain,
     log::{Attachment, LogWriter, Role, WriteError, WriteOptions},
     plant::{JointRecord, PayloadChange, Plant, PlantError, Record, Truth, simulate},
     series::{Series, Track},
@@ -98,16 +102,22 @@ impl Outputs {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn log(&self) -> Result<Vec<u8>, WriteError> {
-        self.log_with(&[], 0.0)
+        self.log_with(&[], 0.0, None)
     }
 
-    /// As [`Outputs::log`], with files and with when the times of the plan count from, s.
+    /// As [`Outputs::log`], with files, with when the times of the plan count from, s, and with the arm for
+    /// tools that draw it.
     ///
     /// # Errors
     ///
     /// As [`Outputs::log`].
-    pub fn log_with(&self, files: &[Attachment], starts_s: f64) -> Result<Vec<u8>, WriteError> {
-        self.log_as(files, starts_s, Content::Everything, WriteOptions::default())
+    pub fn log_with(
+        &self,
+        files: &[Attachment],
+        starts_s: f64,
+        chain: Option<&Chain>,
+    ) -> Result<Vec<u8>, WriteError> {
+        self.log_as(files, starts_s, chain, (Content::Everything, WriteOptions::default()))
     }
 
     /// As [`Outputs::log_with`], with as much of the run as is asked for, and written as asked for.
@@ -119,14 +129,18 @@ impl Outputs {
         &self,
         files: &[Attachment],
         starts_s: f64,
-        content: Content,
-        options: WriteOptions,
+        chain: Option<&Chain>,
+        (content, options): (Content, WriteOptions),
     ) -> Result<Vec<u8>, WriteError> {
         let names: Vec<&str> = self.record.joints.iter().map(|joint| joint.name.as_str()).collect();
         let mut log = LogWriter::new(Vec::new(), &names, options)?;
         let truth = serde_json::to_string(&self.truth).unwrap_or_default();
         log.metadata(TRUTH, &BTreeMap::from([("json".to_owned(), truth)]))?;
         log.metadata(PROVENANCE, &BTreeMap::from([(STARTS.to_owned(), starts_s.to_string())]))?;
+        let mut arm = match chain {
+            Some(chain) => ArmLog::begin(&mut log, chain, &names, START_NS, true)?,
+            None => None,
+        };
         let joints = &self.record.joints;
         for (k, t_s) in self.record.t_s.iter().enumerate() {
             let stamp_ns = START_NS + nanoseconds(*t_s);
@@ -136,12 +150,17 @@ impl Outputs {
             let column = |of: fn(&JointRecord) -> &Vec<f64>| -> Vec<f64> {
                 joints.iter().map(|joint| of(joint).get(k).copied().unwrap_or(f64::NAN)).collect()
             };
-            let (angle_rad, speed_rad_s) = side(&self.planned);
-            log.joint_sample(Role::Planned, stamp_ns, &angle_rad, &speed_rad_s, &[])?;
+            let (planned_rad, speed_rad_s) = side(&self.planned);
+            log.joint_sample(Role::Planned, stamp_ns, &planned_rad, &speed_rad_s, &[])?;
             let (angle_rad, speed_rad_s) = side(&self.command);
             log.joint_sample(Role::Command, stamp_ns, &angle_rad, &speed_rad_s, &[])?;
             let (angle_rad, speed_rad_s) = (column(|j| &j.measured_rad), column(|j| &j.measured_rad_s));
             log.joint_sample(Role::Measured, stamp_ns, &angle_rad, &speed_rad_s, &[])?;
+            if let Some(arm) = &mut arm {
+                let error_rad: Vec<f64> = planned_rad.iter().zip(&angle_rad).map(|(p, m)| p - m).collect();
+                log.tracking_error(stamp_ns, &error_rad)?;
+                arm.sample(&mut log, stamp_ns, &planned_rad, Some(&angle_rad))?;
+            }
             if content == Content::Joints {
                 continue;
             }

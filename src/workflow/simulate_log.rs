@@ -57,7 +57,7 @@ pub enum SimulateFailure {
 }
 
 /// A run, and the files of the plan that go with it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Run {
     /// What came of it.
     pub outputs: Outputs,
@@ -67,6 +67,8 @@ pub struct Run {
     pub commanded: bool,
     /// When the times of the plan count from, s.
     pub starts_s: f64,
+    /// The arm that ran it.
+    pub arm: Arm,
 }
 
 impl Run {
@@ -76,7 +78,7 @@ impl Run {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn log(&self) -> Result<Vec<u8>, WriteError> {
-        self.outputs.log_with(&self.attachments, self.starts_s)
+        self.outputs.log_with(&self.attachments, self.starts_s, Some(&self.arm.chain))
     }
 }
 
@@ -101,6 +103,8 @@ pub struct Prepared {
     pub commanded: bool,
     /// When the times of the plan count from, s.
     pub starts_s: f64,
+    /// The arm that is to run it.
+    pub arm: Arm,
 }
 
 impl Prepared {
@@ -110,8 +114,8 @@ impl Prepared {
     ///
     /// [`SimulateFailure::Plant`].
     pub fn run(self) -> Result<Run, SimulateFailure> {
-        let Self { inputs, attachments, commanded, starts_s } = self;
-        Ok(Run { outputs: run(&inputs)?, attachments, commanded, starts_s })
+        let Self { inputs, attachments, commanded, starts_s, arm } = self;
+        Ok(Run { outputs: run(&inputs)?, attachments, commanded, starts_s, arm })
     }
 }
 
@@ -147,7 +151,7 @@ pub fn prepare(path: &Path, parameters: Parameters, seed: u64) -> Result<Prepare
     let plant = Plant::new(&arm, parameters)?;
     let inputs = Inputs { plant, plan: planned, command, payload, seed };
     let attachments = [TASK, FRONT].into_iter().filter_map(attached).cloned().collect();
-    Ok(Prepared { inputs, attachments, commanded, starts_s })
+    Ok(Prepared { inputs, attachments, commanded, starts_s, arm })
 }
 
 /// What the tool carries, and from when on, rests counted.

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::float_cmp, clippy::wildcard_imports, missing_docs)]
 
 mod cylinders;
+mod drawing;
 mod dynamics;
 mod pinocchio;
 mod reach;

@@ -9,10 +9,11 @@
 mod decode;
 mod kill;
 mod peers;
+mod robot;
 
 use std::{collections::BTreeMap, io::Write};
 
-use hydrotrace::log::{ControllerState, LogWriter, Point, Role, Topics, WriteError, WriteOptions};
+use hydrotrace::log::{ControllerState, LogWriter, Point, Role, Topics, Transform, WriteError, WriteOptions};
 use mcap::{Message, MessageStream, Summary};
 use proptest::prelude::*;
 
@@ -26,6 +27,15 @@ fn write_run<W: Write>(log: &mut LogWriter<W>, samples: i64) {
     let task = BTreeMap::from([("task".to_owned(), "reach".to_owned())]);
     log.metadata("provenance", &task).unwrap();
     log.attach("task.json", "application/json", b"{}", START_NS).unwrap();
+    log.description(Role::Measured, START_NS, "<robot/>").unwrap();
+    log.description(Role::Planned, START_NS, "<robot name='é'/>").unwrap();
+    let standing = Transform {
+        parent: "base",
+        child: "plan of base",
+        translation_m: [0.0, 0.0, 1.0],
+        rotation_xyzw: [0.0, 0.0, 0.0, 1.0],
+    };
+    log.fixed_transforms(START_NS, &[standing]).unwrap();
     let points = [0, 2_000_000_000].map(|time_from_start_ns| Point {
         position_rad: &[0.0, 1.0, 2.0],
         time_from_start_ns,
@@ -47,6 +57,9 @@ fn write_run<W: Write>(log: &mut LogWriter<W>, samples: i64) {
             speed_scaling_factor: 0.5,
         };
         log.controller_state(stamp_ns, &state).unwrap();
+        let moving = Transform { child: "boom", rotation_xyzw: [0.6, 0.0, 0.0, 0.8], ..standing };
+        log.transforms(stamp_ns, &[moving, Transform { parent: "boom", child: "é", ..moving }]).unwrap();
+        log.tracking_error(stamp_ns, &[0.01, f64::NAN, 0.0]).unwrap();
     }
 }
 
@@ -74,7 +87,7 @@ fn equal_calls_give_equal_bytes() {
 fn every_sample_reads_back_bit_by_bit() {
     let bytes = run(5, WriteOptions::default());
     let messages = messages(&bytes);
-    assert_eq!(messages.len(), 1 + 4 * 5);
+    assert_eq!(messages.len(), 4 + 6 * 5);
     for (k, message) in on_topic(&messages, "/joint_states").into_iter().enumerate() {
         let value = decode(message);
         let stamp_ns = START_NS + 20_000_000 * i64::try_from(k).unwrap();
@@ -148,14 +161,14 @@ fn a_log_names_its_profile_library_types_and_quality_of_service() {
     assert_eq!(header.library, concat!("hydrotrace ", env!("CARGO_PKG_VERSION")));
     let summary = Summary::read(&bytes).unwrap().unwrap();
     let statistics = summary.stats.unwrap();
-    assert_eq!(statistics.message_count, 1601);
+    assert_eq!(statistics.message_count, 4 + 6 * 400);
     assert_eq!((statistics.attachment_count, statistics.metadata_count), (1, 1));
     assert_eq!(summary.attachment_indexes[0].name, "task.json");
     assert_eq!(summary.metadata_indexes[0].name, "provenance");
     assert!(summary.chunk_indexes.len() > 3);
     assert!(summary.chunk_indexes.iter().all(|chunk| chunk.compression == "zstd"));
-    assert_eq!(summary.channels.len(), 5);
-    for id in 1..=5 {
+    assert_eq!(summary.channels.len(), 10);
+    for id in 1..=10 {
         let channel = &summary.channels[&id];
         let schema = channel.schema.as_ref().unwrap();
         assert_eq!(schema.name.split('/').nth(1), Some("msg"));
@@ -207,7 +220,7 @@ fn a_live_log_does_not_replace_an_existing_file() {
         LogWriter::create(&path, &JOINTS, WriteOptions::live()),
         Err(WriteError::Create { .. })
     ));
-    assert_eq!(messages(&std::fs::read(&path).unwrap()).len(), 13);
+    assert_eq!(messages(&std::fs::read(&path).unwrap()).len(), 22);
 }
 
 proptest! {

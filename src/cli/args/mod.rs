@@ -13,6 +13,7 @@ mod plan;
 mod replan;
 mod simulate;
 mod terminal;
+mod view;
 
 use std::path::PathBuf;
 
@@ -31,6 +32,7 @@ pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
 pub use replan::{ChangeArgs, ReplanArgs};
 pub use simulate::SimulateArgs;
 pub use terminal::{CompletionsArgs, ManArgs, TerminalArgs};
+pub use view::{ViewArgs, ViewTarget};
 
 use crate::{
     log::{ReadOptions, Selector, TimeBase},
@@ -114,6 +116,9 @@ pub enum Command {
     Info(InfoArgs),
     /// Save everything that is whole in a damaged log
     Recover(RecoverArgs),
+    /// Show runs and plans in 3-D: both arms, tool paths, series, starts from rest
+    #[command(after_help = view::EXAMPLES)]
+    View(ViewArgs),
     /// Measure hydrotrace itself
     Bench(BenchArgs),
     /// Print the completions of a shell

@@ -24,6 +24,19 @@ const OFFERED_QOS_PROFILES: &str = "\
   avoid_ros_namespace_conventions: false
 ";
 
+/// The same for what is said once: the last one is kept for those who come later.
+const LATCHED_QOS_PROFILES: &str = "\
+- history: 1
+  depth: 1
+  reliability: 1
+  durability: 1
+  deadline: {sec: 9223372036, nsec: 854775807}
+  lifespan: {sec: 9223372036, nsec: 854775807}
+  liveliness: 1
+  liveliness_lease_duration: {sec: 9223372036, nsec: 854775807}
+  avoid_ros_namespace_conventions: false
+";
+
 /// A message type and the hash of its definition by REP 2016.
 #[derive(Debug)]
 pub(super) struct MessageType {
@@ -56,18 +69,36 @@ pub(super) const DYNAMIC_JOINT_STATE: MessageType = MessageType {
     hash: "RIHS01_18024c98a62697680f581108eeed40b28fb4542fa0ac5a8e36f56c62b6813d26",
 };
 
+pub(super) const TEXT: MessageType = MessageType {
+    package: "std_msgs",
+    name: "String",
+    hash: "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",
+};
+
+pub(super) const TRANSFORMS: MessageType = MessageType {
+    package: "tf2_msgs",
+    name: "TFMessage",
+    hash: "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
+};
+
 /// A topic; the log learns of it with its first message.
 #[derive(Debug)]
 pub(super) struct Channel {
     topic: String,
     message_type: &'static MessageType,
+    qos_profiles: &'static str,
     id: Option<u16>,
     sequence: u32,
 }
 
 impl Channel {
     pub(super) fn new(topic: String, message_type: &'static MessageType) -> Self {
-        Self { topic, message_type, id: None, sequence: 0 }
+        Self { topic, message_type, qos_profiles: OFFERED_QOS_PROFILES, id: None, sequence: 0 }
+    }
+
+    /// A topic whose last message is kept for late subscribers.
+    pub(super) fn latched(topic: String, message_type: &'static MessageType) -> Self {
+        Self { qos_profiles: LATCHED_QOS_PROFILES, ..Self::new(topic, message_type) }
     }
 
     pub(super) fn topic(&self) -> &str {
@@ -99,7 +130,7 @@ impl Channel {
         let text = definition::ros2msg(&format!("{package}/{name}"));
         let schema = log.add_schema(&format!("{package}/msg/{name}"), "ros2msg", text.as_bytes())?;
         let metadata = BTreeMap::from([
-            ("offered_qos_profiles".to_owned(), OFFERED_QOS_PROFILES.to_owned()),
+            ("offered_qos_profiles".to_owned(), self.qos_profiles.to_owned()),
             ("topic_type_hash".to_owned(), (*hash).to_owned()),
         ]);
         log.add_channel(schema, &self.topic, "cdr", &metadata)

@@ -26,6 +26,14 @@ pub enum WriteError {
         /// The name.
         name: String,
     },
+    /// A name of a frame, or a text, that no reader could give back.
+    #[error("{kind} {name:?} is empty or holds a NUL")]
+    Text {
+        /// Frame or robot description.
+        kind: &'static str,
+        /// What was given, or how it begins.
+        name: String,
+    },
     /// Two joints or two topics of one name.
     #[error("{kind} {name} is given twice")]
     Duplicate {

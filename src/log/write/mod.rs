@@ -6,6 +6,7 @@ mod definition;
 mod error;
 mod message;
 mod options;
+mod robot;
 mod stamp;
 
 use std::{
@@ -25,9 +26,12 @@ use mcap::{
 pub use error::WriteError;
 pub use message::{ControllerState, Point};
 pub use options::{Options, Role, Topics};
+pub use robot::Transform;
 
 use cdr::Cdr;
-use channel::{CONTROLLER_STATE, Channel, DYNAMIC_JOINT_STATE, JOINT_STATE, JOINT_TRAJECTORY};
+use channel::{
+    CONTROLLER_STATE, Channel, DYNAMIC_JOINT_STATE, JOINT_STATE, JOINT_TRAJECTORY, TEXT, TRANSFORMS,
+};
 use message::check_length;
 use stamp::Stamp;
 
@@ -59,6 +63,11 @@ struct Channels {
     controller_state: Channel,
     trajectory: Channel,
     interfaces: Channel,
+    description: Channel,
+    planned_description: Channel,
+    transforms: Channel,
+    fixed_transforms: Channel,
+    tracking_error: Channel,
 }
 
 impl LogWriter<BufWriter<File>> {
@@ -276,13 +285,30 @@ impl Channels {
             controller_state: Channel::new(topics.controller_state, &CONTROLLER_STATE),
             trajectory: Channel::new(topics.trajectory, &JOINT_TRAJECTORY),
             interfaces: Channel::new(topics.interfaces, &DYNAMIC_JOINT_STATE),
+            description: Channel::latched(topics.description, &TEXT),
+            planned_description: Channel::latched(topics.planned_description, &TEXT),
+            transforms: Channel::new(topics.transforms, &TRANSFORMS),
+            fixed_transforms: Channel::latched(topics.fixed_transforms, &TRANSFORMS),
+            tracking_error: Channel::new(topics.tracking_error, &JOINT_STATE),
         };
-        let Self { planned, measured, command, controller_state, trajectory, interfaces } = &channels;
-        check_distinct(
-            "topic",
-            [planned, measured, command, controller_state, trajectory, interfaces].map(Channel::topic),
-        )?;
+        check_distinct("topic", channels.all().map(Channel::topic))?;
         Ok(channels)
+    }
+
+    fn all(&self) -> [&Channel; 11] {
+        [
+            &self.planned,
+            &self.measured,
+            &self.command,
+            &self.controller_state,
+            &self.trajectory,
+            &self.interfaces,
+            &self.description,
+            &self.planned_description,
+            &self.transforms,
+            &self.fixed_transforms,
+            &self.tracking_error,
+        ]
     }
 }
 

@@ -53,6 +53,16 @@ pub struct Topics {
     pub trajectory: String,
     /// `control_msgs/msg/DynamicJointState`.
     pub interfaces: String,
+    /// `std_msgs/msg/String`: a URDF.
+    pub description: String,
+    /// `std_msgs/msg/String`: the URDF of the arm as planned, beside that of the arm as measured.
+    pub planned_description: String,
+    /// `tf2_msgs/msg/TFMessage` of what moves.
+    pub transforms: String,
+    /// `tf2_msgs/msg/TFMessage` of what does not.
+    pub fixed_transforms: String,
+    /// `sensor_msgs/msg/JointState`: plan minus measurement.
+    pub tracking_error: String,
 }
 
 impl Default for Topics {
@@ -64,6 +74,11 @@ impl Default for Topics {
             controller_state: "/arm_controller/controller_state".into(),
             trajectory: "/arm_controller/joint_trajectory".into(),
             interfaces: "/dynamic_joint_states".into(),
+            description: "/robot_description".into(),
+            planned_description: "/planned/robot_description".into(),
+            transforms: "/tf".into(),
+            fixed_transforms: "/tf_static".into(),
+            tracking_error: "/tracking_error".into(),
         }
     }
 }

@@ -209,6 +209,7 @@ impl Replanned {
             _ => self.files.clone(),
         };
         let command = self.command.as_ref().map(|command| &command.series);
-        SeriesLog { plan: &self.plan, command, provenance: &provenance, files: &files, rate_hz }.bytes()
+        let arm = self.order.as_ref().map(|order| &order.setup.arm().chain);
+        SeriesLog { plan: &self.plan, command, arm, provenance: &provenance, files: &files, rate_hz }.bytes()
     }
 }

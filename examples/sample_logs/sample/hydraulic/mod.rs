@@ -172,7 +172,7 @@ fn written(
         joint.measured_rad_s.iter_mut().for_each(|x| *x = (*x / SPEED_STEP_RAD_S).round() * SPEED_STEP_RAD_S);
     }
     let options = WriteOptions { compression_level: 19, chunk_bytes: 1 << 24, ..WriteOptions::default() };
-    let bytes = outputs.log_as(files, starts_s, content, options)?;
+    let bytes = outputs.log_as(files, starts_s, None, (content, options))?;
     Ok(PlantLog { name, bytes, story, seed, outputs })
 }
 

@@ -1,0 +1,171 @@
+//! What an arm looks like: the solids of its description, or plain ones where it has none.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Rotation3, Translation3, UnitQuaternion, Vector3};
+use urdf_rs::{Geometry, JointType};
+
+use super::{Chain, Pose};
+
+/// A body without a mesh, about the origin of its frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Solid {
+    /// A block by its edges along x, y and z, m.
+    Block([f64; 3]),
+    /// A cylinder along z, m.
+    Cylinder {
+        /// Its radius, m.
+        radius_m: f64,
+        /// Its length, m.
+        length_m: f64,
+    },
+    /// A ball by its radius, m.
+    Ball(f64),
+}
+
+/// A solid that rides on a link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape {
+    /// The link, counted as in [`Chain::link_poses`].
+    pub link: usize,
+    /// Its frame, seen from the link's.
+    pub place: Pose,
+    /// What it is.
+    pub solid: Solid,
+    /// Red, green, blue and opacity, 0 to 1.
+    pub rgba: [f64; 4],
+}
+
+/// Width of the first link by the reach of the arm; the last one is half as wide.
+const WIDTH: f64 = 0.04;
+/// A pin's radius by the width of its link, and its length by the same.
+const PIN: [f64; 2] = [0.6, 1.35];
+
+const PAINT: [f64; 4] = [0.93, 0.53, 0.10, 1.0];
+const STEEL: [f64; 4] = [0.29, 0.31, 0.35, 1.0];
+
+impl Chain {
+    /// The solids of the description, those on fixed branches included; without any, blocks from
+    /// link to link, a pin at every joint and a ball at the tool. Meshes are left out.
+    pub fn shapes(&self) -> Vec<Shape> {
+        let own = self.own_shapes();
+        if own.is_empty() { self.plain_shapes() } else { own }
+    }
+
+    fn own_shapes(&self) -> Vec<Shape> {
+        let riders = self.riders();
+        let colours: BTreeMap<&str, [f64; 4]> = (self.robot.materials.iter())
+            .chain(self.robot.links.iter().flat_map(|link| &link.visual).filter_map(|v| v.material.as_ref()))
+            .filter_map(|material| Some((material.name.as_str(), material.color.as_ref()?.rgba.0)))
+            .collect();
+        let of_link = |link: &urdf_rs::Link| {
+            let &(index, place) = riders.get(link.name.as_str())?;
+            Some(
+                link.visual
+                    .iter()
+                    .filter_map(|visual| solid(&visual.geometry).map(|s| (visual, s)))
+                    .map(|(visual, solid)| {
+                        let named = visual.material.as_ref().and_then(|m| colours.get(m.name.as_str()));
+                        let rgba = named.copied().unwrap_or(PAINT);
+                        Shape { link: index, place: place * pose(&visual.origin), solid, rgba }
+                    })
+                    .collect::<Vec<_>>(),
+            )
+        };
+        self.robot.links.iter().filter_map(of_link).flatten().filter(sane).collect()
+    }
+
+    /// Every link that moves with one on the way to the tool, and where it is seen from there.
+    fn riders(&self) -> BTreeMap<&str, (usize, Pose)> {
+        let mut riders: BTreeMap<&str, (usize, Pose)> =
+            self.link_names().enumerate().map(|(i, name)| (name, (i, Pose::identity()))).collect();
+        let fixed = |joint: &&urdf_rs::Joint| joint.joint_type == JointType::Fixed;
+        // The joints need not be in order; every round places at least one more link, or ends it.
+        loop {
+            let before = riders.len();
+            for joint in self.robot.joints.iter().filter(fixed) {
+                let Some(&(index, place)) = riders.get(joint.parent.link.as_str()) else { continue };
+                riders
+                    .entry(joint.child.link.as_str())
+                    .or_insert_with(|| (index, place * pose(&joint.origin)));
+            }
+            if riders.len() == before {
+                return riders;
+            }
+        }
+    }
+
+    pub(super) fn reach_m(&self) -> f64 {
+        self.steps.iter().map(|step| step.offset_m.norm()).sum::<f64>() + self.tool.translation.vector.norm()
+    }
+
+    pub(super) fn plain_shapes(&self) -> Vec<Shape> {
+        let poses = self.link_poses(&[]);
+        let last = poses.len().saturating_sub(1);
+        let width_m = |i: usize| WIDTH * self.reach_m() * (1.0 - 0.5 * i as f64 / last.max(1) as f64);
+        let mut shapes = Vec::new();
+        let links = self.links.iter().zip(self.link_turns()).zip(&poses);
+        for (i, ((link, turns), pose)) in links.enumerate() {
+            let width_m = width_m(i);
+            if turns {
+                let [radius_m, length_m] = PIN.map(|share| share * width_m);
+                let solid = Solid::Cylinder { radius_m, length_m };
+                shapes.push(Shape { link: i, place: link.place.inverse(), solid, rgba: STEEL });
+            }
+            let rgba = if link.frame == 0 { STEEL } else { PAINT };
+            match poses.get(i + 1) {
+                Some(next) => {
+                    let way_m = pose.inv_mul(next).translation.vector;
+                    let along = Rotation3::rotation_between(&Vector3::x(), &way_m).unwrap_or_else(|| {
+                        Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI)
+                    });
+                    let place = Pose::from_parts(Translation3::from(0.5 * way_m), along);
+                    let solid = Solid::Block([way_m.norm(), width_m, width_m]);
+                    if way_m.norm() > 1e-6 {
+                        shapes.push(Shape { link: i, place, solid, rgba });
+                    }
+                }
+                None => shapes.push(Shape {
+                    link: i,
+                    place: Pose::identity(),
+                    solid: Solid::Ball(0.6 * width_m),
+                    rgba: STEEL,
+                }),
+            }
+        }
+        shapes
+    }
+}
+
+fn solid(geometry: &Geometry) -> Option<Solid> {
+    match *geometry {
+        Geometry::Box { size } => Some(Solid::Block(size.0)),
+        Geometry::Cylinder { radius, length } | Geometry::Capsule { radius, length } => {
+            Some(Solid::Cylinder { radius_m: radius, length_m: length })
+        }
+        Geometry::Sphere { radius } => Some(Solid::Ball(radius)),
+        Geometry::Mesh { .. } => None,
+    }
+}
+
+/// Numbers that can be drawn.
+fn sane(shape: &Shape) -> bool {
+    let place = shape.place.translation.vector.iter().chain(shape.place.rotation.matrix());
+    let sizes = match shape.solid {
+        Solid::Block(edges_m) => edges_m,
+        Solid::Cylinder { radius_m, length_m } => [radius_m, length_m, 0.0],
+        Solid::Ball(radius_m) => [radius_m, 0.0, 0.0],
+    };
+    place.chain(&shape.rgba).all(|v| v.is_finite()) && sizes.iter().all(|v| v.is_finite() && *v >= 0.0)
+}
+
+fn pose(pose: &urdf_rs::Pose) -> Pose {
+    let ([x, y, z], [roll, pitch, yaw]) = (pose.xyz.0, pose.rpy.0);
+    Pose::from_parts(Translation3::new(x, y, z), Rotation3::from_euler_angles(roll, pitch, yaw))
+}
+
+/// A frame's orientation as a unit quaternion x, y, z, w.
+pub fn quaternion_xyzw(pose: &Pose) -> [f64; 4] {
+    let q = UnitQuaternion::from_rotation_matrix(&pose.rotation);
+    [q.i, q.j, q.k, q.w]
+}

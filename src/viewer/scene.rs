@@ -1,0 +1,191 @@
+//! One run: its arms, curves, lanes of starts, words and front.
+
+use rerun::{Color, Points2D, RecordingStream, SeriesLines, StateConfiguration};
+
+use super::{
+    ViewError, arm,
+    arm::Look,
+    color,
+    stream::{Stream, Values},
+};
+use crate::{
+    replay::{Kind, Transition},
+    series::{Pair, Track},
+    units::degrees_from_radians,
+    workflow::view::{Front, Scene},
+};
+
+/// States of a joint, with their labels and colours.
+const STATES: [(&str, [u8; 3]); 3] =
+    [("follows", [70, 75, 85]), ("waits", [239, 83, 80]), ("settles", [237, 175, 60])];
+
+/// Sends what does not change with time; returns what does. `run` is its index among how many.
+pub(super) fn send_static(
+    rec: &RecordingStream,
+    scene: &Scene,
+    run: (usize, usize),
+) -> Result<Vec<Stream>, ViewError> {
+    let root = root(scene);
+    let mut streams = Vec::new();
+    if let Some(moving) = &scene.arm {
+        let measured = !moving.measured.poses.is_empty();
+        if measured {
+            let look = Look::Measured(run.0);
+            streams.extend(arm::send(rec, &format!("{root}/measured"), moving, &moving.measured, look)?);
+        }
+        if !moving.planned.poses.is_empty() {
+            // Solid, if there is nothing else to see.
+            let look = if measured { Look::Planned } else { Look::Measured(run.0) };
+            streams.extend(arm::send(rec, &format!("{root}/planned"), moving, &moving.planned, look)?);
+        }
+    }
+    for (index, track) in scene.planned.tracks.iter().enumerate() {
+        let joint = joint(scene, track.name());
+        let several = |what: &str| if run.1 > 1 { format!("{} {what}", scene.name) } else { what.to_owned() };
+        let [r, g, b] = color::PLANNED;
+        curve(rec, &format!("{joint}/planned"), &several("planned"), Color::from_rgb(r, g, b), 1.2)?;
+        streams.push(angles(format!("{joint}/planned"), track));
+        if let Some(measured) = scene.measured.track(track.name()) {
+            curve(rec, &format!("{joint}/measured"), &several("measured"), color::run(run.0), 2.5)?;
+            streams.push(angles(format!("{joint}/measured"), measured));
+        }
+        if let Some(pair) = scene.pairs.iter().find(|pair| pair.name == track.name()) {
+            curve(rec, &format!("{joint}/error"), &several(track.name()), color::joint(index), 1.6)?;
+            streams.push(errors(format!("{joint}/error"), pair));
+        }
+        if scene.transitions.iter().any(|t| t.joint == track.name()) {
+            let lane = lane(scene, track.name());
+            let configuration = StateConfiguration::new()
+                .with_values(STATES.map(|(state, _)| state))
+                .with_labels(STATES.map(|(state, _)| state))
+                .with_colors(STATES.map(|(_, [r, g, b])| Color::from_rgb(r, g, b)));
+            rec.log_static(lane.as_str(), &configuration)?;
+            streams.push(states(lane, scene, track.name()));
+        }
+    }
+    streams.push(words(format!("{root}/log"), scene));
+    if let Some(front) = &scene.front {
+        send_front(rec, &format!("{root}/front"), front)?;
+    }
+    Ok(streams)
+}
+
+/// The entity of a run.
+pub(super) fn root(scene: &Scene) -> String {
+    format!("/{}", part(&scene.name))
+}
+
+/// The entity of a joint of a run.
+pub(super) fn joint(scene: &Scene, name: &str) -> String {
+    format!("{}/joints/{}", root(scene), part(name))
+}
+
+/// The entity of a joint's starts.
+pub(super) fn lane(scene: &Scene, name: &str) -> String {
+    format!("{}/starts/{}", root(scene), part(name))
+}
+
+/// A name as part of an entity's path.
+pub(super) fn part(name: &str) -> String {
+    rerun::EntityPathPart::new(name).escaped_string()
+}
+
+fn curve(rec: &RecordingStream, path: &str, name: &str, colour: Color, width: f32) -> Result<(), ViewError> {
+    let lines = SeriesLines::new().with_names([name]).with_colors([colour]).with_widths([width]);
+    Ok(rec.log_static(path, &lines)?)
+}
+
+fn angles(path: String, track: &Track) -> Stream {
+    let values = track.position_rad().iter().map(|q| degrees_from_radians(*q)).collect();
+    Stream { path, t_s: track.t_s().to_vec(), values: Values::Scalars(values) }
+}
+
+fn errors(path: String, pair: &Pair) -> Stream {
+    let values = pair.planned_rad.iter().zip(&pair.measured_rad);
+    let values = values.map(|(planned, measured)| degrees_from_radians(planned - measured)).collect();
+    Stream { path, t_s: pair.t_s.clone(), values: Values::Scalars(values) }
+}
+
+/// A joint waits from its planned onset to the measured one, and settles until its error has.
+fn states(path: String, scene: &Scene, joint: &str) -> Stream {
+    let first_s = scene.planned.track(joint).and_then(|t| t.t_s().first().copied()).unwrap_or(0.0);
+    let mut changes = vec![(first_s, "follows")];
+    for found in scene.transitions.iter().filter(|t| t.joint == joint) {
+        let end_s = found.window_s[1];
+        changes.push((found.planned_onset_s, "waits"));
+        if let Some(at_s) = found.measured_onset_s.filter(|at_s| *at_s < end_s) {
+            changes.push((at_s, "settles"));
+        }
+        let settled_s = found.settling_time_s.map_or(end_s, |after_s| found.planned_onset_s + after_s);
+        changes.push((settled_s.min(end_s), "follows"));
+    }
+    changes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (t_s, states) = changes.into_iter().unzip();
+    Stream { path, t_s, values: Values::States(states) }
+}
+
+fn words(path: String, scene: &Scene) -> Stream {
+    let mut said: Vec<(f64, (String, bool))> = scene
+        .transitions
+        .iter()
+        .map(|found| (found.planned_onset_s, (sentence(found), late(found))))
+        .collect();
+    let doubts = scene.remarks.as_slice().iter();
+    said.extend(doubts.map(|remark| (0.0, (format!("{}: {}", remark.code.name(), remark.message), true))));
+    said.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (t_s, texts) = said.into_iter().unzip();
+    Stream { path, t_s, values: Values::Texts(texts) }
+}
+
+/// Whether a start was never answered.
+fn late(found: &Transition) -> bool {
+    found.measured_onset_s.is_none()
+}
+
+fn sentence(found: &Transition) -> String {
+    let kind = match found.kind {
+        Kind::Start => "start",
+        Kind::Reversal => "reversal",
+    };
+    let peak_deg = degrees_from_radians(found.peak_error_rad);
+    match found.onset_delay_s {
+        Some(delay_s) => {
+            format!(
+                "{} {kind}: follows after {:.0} ms, peak error {peak_deg:.2}°",
+                found.joint,
+                1e3 * delay_s
+            )
+        }
+        None => format!("{} {kind}: never follows, peak error {peak_deg:.2}°", found.joint),
+    }
+}
+
+/// Duration to the right, jerk upwards, each by its range; a larger point takes more power.
+fn send_front(rec: &RecordingStream, path: &str, front: &Front) -> Result<(), ViewError> {
+    let all = || front.objectives.iter().chain(&front.chosen);
+    let range = |k: usize| {
+        let (least, most) =
+            all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), f| (a.min(f[k]), b.max(f[k])));
+        (least, (most - least).max(f64::MIN_POSITIVE))
+    };
+    let share = |f: &[f64; 3], k: usize| (f[k] - range(k).0) / range(k).1;
+    let place = |f: &[f64; 3]| super::stream::single([1.6 * share(f, 0), 1.0 - share(f, 1)]);
+    let radius = |f: &[f64; 3]| super::stream::single([0.006 + 0.012 * share(f, 2)])[0];
+    let label =
+        |f: &[f64; 3]| format!("{:.2} s, {:.0} deg/s³, {:.0} W", f[0], degrees_from_radians(f[1]), f[2]);
+    let points = Points2D::new(front.objectives.iter().map(place))
+        .with_radii(front.objectives.iter().map(radius))
+        .with_colors([Color::from_rgb(150, 200, 255)])
+        .with_labels(front.objectives.iter().map(label))
+        .with_show_labels(false);
+    rec.log_static(format!("{path}/plans"), &points)?;
+    if let Some(chosen) = &front.chosen {
+        let point = Points2D::new([place(chosen)])
+            .with_radii([0.022_f32])
+            .with_colors([color::run(0)])
+            .with_labels([format!("chosen: {}", label(chosen))])
+            .with_show_labels(true);
+        rec.log_static(format!("{path}/chosen"), &point)?;
+    }
+    Ok(())
+}
