@@ -116,7 +116,7 @@ pub enum Command {
     Info(InfoArgs),
     /// Save everything that is whole in a damaged log
     Recover(RecoverArgs),
-    /// Show runs and plans in 3-D: both arms, tool paths, series, starts from rest
+    /// Show runs and plans in 3-D: both arms, series, starts from rest
     #[command(after_help = view::EXAMPLES)]
     View(ViewArgs),
     /// Measure hydrotrace itself
