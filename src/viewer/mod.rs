@@ -7,7 +7,7 @@ mod live;
 mod scene;
 mod stream;
 
-use std::{io, path::PathBuf, process::Command};
+use std::{io, path::PathBuf, process::Command, time::Duration};
 
 use rerun::{
     RecordingStream, RecordingStreamBuilder, RecordingStreamError, SerializationError, SpawnOptions,
@@ -47,6 +47,9 @@ pub enum ViewError {
     Program(#[source] io::Error),
 }
 
+/// How long a viewer may take to answer at first.
+const PATIENCE: Duration = Duration::from_secs(15);
+
 /// Shows runs; with a speed as they happened, so many times as fast, else at once.
 ///
 /// # Errors
@@ -78,6 +81,8 @@ fn send(rec: &RecordingStream, scenes: &[Scene], speed: Option<f64>) -> Result<(
     rec.set_log_tick_enabled(false);
     rec.set_log_time_enabled(false);
     rec.log_static("/", &rerun::ViewCoordinates::RIGHT_HAND_Z_UP())?;
+    // A viewer that is not there is tried again for ever; the first message tells.
+    rec.flush_with_timeout(PATIENCE).map_err(|error| ViewError::Flush(error.to_string()))?;
     let mut streams = Vec::new();
     for (index, scene) in scenes.iter().enumerate() {
         streams.extend(scene::send_static(rec, scene, (index, scenes.len()))?);
