@@ -27,8 +27,7 @@ fn chain() -> Chain {
 fn log(samples: i64, drawn: bool, ghost: bool) -> Vec<u8> {
     let chain = chain();
     let mut log = LogWriter::new(Vec::new(), &JOINTS, WriteOptions::default()).unwrap();
-    let mut arm =
-        drawn.then(|| ArmLog::begin(&mut log, &chain, &JOINTS, START_NS, ghost).unwrap().expect("an arm"));
+    let mut arm = drawn.then(|| ArmLog::begin(&mut log, &chain, &JOINTS, START_NS, ghost).unwrap().unwrap());
     for k in 0..samples {
         let stamp_ns = START_NS + k * 1_000_000;
         log.joint_sample(Role::Planned, stamp_ns, &PLANNED_RAD, &[], &[]).unwrap();
@@ -86,7 +85,7 @@ fn every_link_is_where_the_joints_put_it_and_the_ghosts_where_the_plan_does() {
 fn without_a_measurement_the_plan_moves_the_arm_and_there_is_no_ghost() {
     let chain = chain();
     let mut log = LogWriter::new(Vec::new(), &JOINTS, WriteOptions::default()).unwrap();
-    let mut arm = ArmLog::begin(&mut log, &chain, &JOINTS, START_NS, false).unwrap().expect("an arm");
+    let mut arm = ArmLog::begin(&mut log, &chain, &JOINTS, START_NS, false).unwrap().unwrap();
     arm.sample(&mut log, START_NS, &PLANNED_RAD, None).unwrap();
     let bytes = log.finish().unwrap();
     let frames = frames(&bytes);
@@ -101,7 +100,7 @@ fn links_are_placed_fifty_times_a_second_and_a_lost_sample_leaves_them() {
     assert_eq!(on_topic(&messages(&log(1000, true, true)), "/tf").len(), 50);
     let chain = chain();
     let mut log = LogWriter::new(Vec::new(), &JOINTS, WriteOptions::default()).unwrap();
-    let mut arm = ArmLog::begin(&mut log, &chain, &JOINTS, START_NS, false).unwrap().expect("an arm");
+    let mut arm = ArmLog::begin(&mut log, &chain, &JOINTS, START_NS, false).unwrap().unwrap();
     arm.sample(&mut log, START_NS, &PLANNED_RAD, Some(&[f64::NAN; 6])).unwrap();
     arm.sample(&mut log, START_NS + 1_000_000, &PLANNED_RAD, Some(&MEASURED_RAD)).unwrap();
     assert_eq!(on_topic(&messages(&log.finish().unwrap()), "/tf").len(), 1);
