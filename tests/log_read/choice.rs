@@ -36,7 +36,8 @@ fn errors_name_what_was_found_expected_and_how_to_mend_it() {
     let wrong_field = error(&log, &options(&[], &["/joint_states:positions"], &[]));
     assert_eq!(
         wrong_field,
-        "topic \"/joint_states\" (sensor_msgs/msg/JointState) has no joint angles in field \"positions\"; it has position"
+        "topic \"/joint_states\" (sensor_msgs/msg/JointState) has no joint angles in field \"positions\", did \
+         you mean \"position\"?; it has position"
     );
     let wrong_joint = error(&log, &options(&[], &[], &["a", "bb"]));
     assert_eq!(wrong_joint, "no joint \"bb\", did you mean \"b\"?; the log has a, b");

@@ -164,7 +164,8 @@ fn any_point_can_be_named() {
     assert_values(&recording.measured, |_| vec![0.005, 0.005]);
     let absent = error(&log, &options(&[&topic("desired")], &[], &[]));
     assert!(
-        absent.ends_with("in field \"desired.positions\"; it has reference.positions, feedback.positions"),
+        absent.contains("in field \"desired.positions\"")
+            && absent.ends_with("it has reference.positions, feedback.positions"),
         "{absent}"
     );
 }
