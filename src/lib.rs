@@ -9,6 +9,8 @@ pub mod atomic;
 pub mod math;
 pub mod remark;
 pub mod rng;
+#[cfg(test)]
+mod schema;
 pub mod spelling;
 pub mod units;
 

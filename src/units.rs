@@ -19,6 +19,12 @@ pub fn radians_from_degrees(deg: f64) -> f64 {
     deg.to_radians()
 }
 
+/// Whole nanoseconds, from seconds; those of a log are few.
+#[expect(clippy::cast_possible_truncation, reason = "a log lasts less than centuries")]
+pub fn nanoseconds(t_s: f64) -> i64 {
+    (t_s * NS_PER_S).round() as i64
+}
+
 /// Seconds from `epoch_ns` to `stamp_ns`, s. Exact to below a nanosecond within 104 days.
 pub fn seconds_since(epoch_ns: i64, stamp_ns: i64) -> f64 {
     (i128::from(stamp_ns) - i128::from(epoch_ns)) as f64 / NS_PER_S

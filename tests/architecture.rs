@@ -9,7 +9,7 @@ use std::{
 
 /// Modules by layer; a module may use its own layer's ground rules and everything below.
 const LAYERS: [&[&str]; 5] = [
-    &["units", "rng", "remark", "math", "atomic", "spelling"],
+    &["units", "rng", "remark", "math", "atomic", "spelling", "schema"],
     &["arm", "task", "series", "spline", "moea"],
     &["log", "replay", "fit", "plan", "plant"],
     &["workflow"],

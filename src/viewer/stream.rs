@@ -7,7 +7,7 @@ use rerun::{RecordingStream, Scalars, StateChange, TextLog, TextLogLevel, TimeCo
 use super::ViewError;
 use crate::{
     arm::{Pose, quaternion_xyzw},
-    units::NS_PER_S,
+    units::nanoseconds,
 };
 
 /// The timeline of all streams: time since the start of the log.
@@ -90,9 +90,4 @@ impl Stream {
 #[expect(clippy::cast_possible_truncation, reason = "that is the point")]
 pub(super) fn single<const N: usize>(values: [f64; N]) -> [f32; N] {
     values.map(|value| value as f32)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "a log lasts less than centuries")]
-fn nanoseconds(t_s: f64) -> i64 {
-    (t_s * NS_PER_S).round() as i64
 }

@@ -26,5 +26,6 @@ pub mod schedule;
 pub mod series_log;
 pub mod simulate;
 pub mod simulate_log;
+pub mod stamp;
 pub mod torque;
 pub mod view;

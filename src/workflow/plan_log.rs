@@ -3,16 +3,16 @@
 
 use std::collections::BTreeMap;
 
-use super::arm_log::ArmLog;
+use super::{
+    arm_log::ArmLog,
+    stamp::{START_NS, TRAJECTORY_HZ, instants},
+};
 use crate::{
     log::{LogWriter, Point, Role, WriteError, WriteOptions},
     plan::Setup,
     spline::{Motion, Quantity, Samples},
-    units::NS_PER_S,
+    units::nanoseconds,
 };
-
-/// Stamp of the first sample, ns since 1970: no wall clock, so that equal plans give equal logs.
-pub const START_NS: i64 = 1_760_000_000_000_000_000;
 
 /// Name of the attached task.
 pub const TASK: &str = "task.toml";
@@ -29,10 +29,6 @@ pub fn chosen_times_s(document: &[u8]) -> Option<Vec<f64>> {
     let document: serde_json::Value = serde_json::from_slice(document).ok()?;
     document["chosen"]["times_s"].as_array()?.iter().map(serde_json::Value::as_f64).collect()
 }
-
-/// Points of the trajectory a second; controllers interpolate between states that have speeds and
-/// accelerations.
-const TRAJECTORY_HZ: f64 = 25.0;
 
 /// What to write.
 #[derive(Debug, Clone)]
@@ -63,9 +59,9 @@ impl PlanLog<'_> {
         let mut log = LogWriter::new(Vec::new(), &joints, WriteOptions::default())?;
         log.metadata(PROVENANCE, self.provenance)?;
         let mut arm = ArmLog::begin(&mut log, &self.setup.arm().chain, &joints, START_NS, false)?;
-        let coarse = States::of(self.motion, instants(self.motion.duration_s(), TRAJECTORY_HZ));
+        let coarse = States::of(self.motion, instants(self.motion.duration_s(), TRAJECTORY_HZ).collect());
         log.trajectory(START_NS, &coarse.points().collect::<Vec<_>>())?;
-        let fine = States::of(self.motion, instants(self.motion.duration_s(), self.rate_hz));
+        let fine = States::of(self.motion, instants(self.motion.duration_s(), self.rate_hz).collect());
         for point in fine.points() {
             let stamp_ns = START_NS + point.time_from_start_ns;
             log.joint_sample(Role::Planned, stamp_ns, point.position_rad, point.velocity_rad_s, &[])?;
@@ -111,21 +107,4 @@ impl States {
             }
         })
     }
-}
-
-/// Even instants from the start to the end, both included, s.
-fn instants(duration_s: f64, rate_hz: f64) -> Vec<f64> {
-    let mut t_s = Vec::new();
-    let mut next_s = 0.0;
-    while next_s < duration_s - 1e-9 {
-        t_s.push(next_s);
-        next_s = t_s.len() as f64 / rate_hz;
-    }
-    t_s.push(duration_s);
-    t_s
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "a plan lasts an hour at most")]
-fn nanoseconds(t_s: f64) -> i64 {
-    (t_s * NS_PER_S).round() as i64
 }

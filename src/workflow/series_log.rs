@@ -4,18 +4,16 @@ use std::collections::BTreeMap;
 
 use super::{
     arm_log::ArmLog,
-    plan_log::{PROVENANCE, START_NS},
+    plan_log::PROVENANCE,
+    stamp::{START_NS, TRAJECTORY_HZ, instants},
 };
 use crate::{
     arm::Chain,
     log::{Attachment, LogWriter, Point, Role, WriteError, WriteOptions},
     math::State,
     series::{Series, Track},
-    units::NS_PER_S,
+    units::nanoseconds,
 };
-
-/// Points of the trajectory a second.
-const TRAJECTORY_HZ: f64 = 25.0;
 
 /// What to write. Times of all tracks count from the start of the log.
 #[derive(Debug, Clone, Copy)]
@@ -89,15 +87,4 @@ fn states(series: &Series, names: &[&str], t_s: f64) -> [Vec<f64>; 2] {
     let (position_rad, velocity_rad_s) =
         names.iter().map(at).map(|state| (state.position, state.velocity)).unzip();
     [position_rad, velocity_rad_s]
-}
-
-/// Even instants from 0 to the end, both included, s.
-fn instants(end_s: f64, rate_hz: f64) -> impl Iterator<Item = f64> {
-    let inner = (0_u64..).map(move |k| k as f64 / rate_hz).take_while(move |t_s| *t_s < end_s - 1e-9);
-    inner.chain(std::iter::once(end_s))
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "a plan lasts an hour at most")]
-fn nanoseconds(t_s: f64) -> i64 {
-    (t_s * NS_PER_S).round() as i64
 }

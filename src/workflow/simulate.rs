@@ -5,17 +5,15 @@ use std::collections::BTreeMap;
 use super::{
     arm_log::ArmLog,
     plan_log::{PROVENANCE, STARTS},
+    stamp::START_NS,
 };
 use crate::{
     arm::Chain,
     log::{Attachment, LogWriter, Role, WriteError, WriteOptions},
     plant::{JointRecord, PayloadChange, Plant, PlantError, Record, Truth, simulate},
     series::{Series, Track},
-    units::NS_PER_S,
+    units::nanoseconds,
 };
-
-/// Stamp of the first sample, ns since 1970: no wall clock, so that equal runs give equal logs.
-pub const START_NS: i64 = 1_760_000_000_000_000_000;
 
 /// Name of the metadata that holds the truth, as JSON under the key `json`.
 pub const TRUTH: &str = "hydrotrace.plant";
@@ -181,9 +179,4 @@ impl Outputs {
         }
         log.finish()
     }
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "a run lasts an hour at most")]
-fn nanoseconds(t_s: f64) -> i64 {
-    (t_s * NS_PER_S).round() as i64
 }

@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
-use super::{Inputs, ReplanFailure};
+use super::{
+    Inputs, ReplanFailure,
+    samples::{LEAD_S, TAIL_S, cut},
+};
 use crate::{
     log::Attachment,
-    plan::Setup,
-    series::{Series, Track, TrackError},
-    spline::{Motion, Quantity, Samples},
+    series::Series,
+    spline::Motion,
     units::DEGREE_RAD,
     workflow::{
         observe::Observed,
@@ -16,11 +18,6 @@ use crate::{
         schedule::starts_s,
     },
 };
-
-/// Rest before the plan, s: commands start before their plan.
-pub const LEAD_S: f64 = 1.5;
-/// Rest after the last motion, s.
-pub const TAIL_S: f64 = 1.0;
 
 /// Planned speed that is motion, rad/s.
 const MOVES_RAD_S: f64 = 0.05 * DEGREE_RAD;
@@ -91,43 +88,4 @@ fn moving_s(series: &Series) -> Option<[f64; 2]> {
         }
     }
     found
-}
-
-/// A stretch of a series every [`STEP_S`](crate::fit::STEP_S), its times counted from its start; beyond its ends joints rest.
-fn cut(series: &Series, from_s: f64, to_s: f64) -> Result<Series, TrackError> {
-    let t_s = grid(to_s - from_s);
-    let one = |track: &Track| {
-        let states: Vec<_> = t_s.iter().map(|t| track.held_at(t + from_s)).collect();
-        let position = states.iter().map(|state| state.position).collect();
-        let made = Track::new(track.name(), t_s.clone(), position, &[])?;
-        match track.velocity_rad_s() {
-            Some(_) => made.with_velocity(states.iter().map(|state| state.velocity).collect()),
-            None => Ok(made),
-        }
-    };
-    Ok(Series { tracks: series.tracks.iter().map(one).collect::<Result<_, _>>()? })
-}
-
-fn grid(duration_s: f64) -> Vec<f64> {
-    let mut t_s = vec![0.0];
-    while let Some(last) = t_s.last().filter(|last| **last < duration_s) {
-        let next = (last / crate::fit::STEP_S).round() + 1.0;
-        t_s.push(next * crate::fit::STEP_S);
-    }
-    t_s
-}
-
-/// A motion by samples, with rests before and after.
-pub(super) fn sampled(setup: &Setup, motion: &Motion) -> Result<Series, TrackError> {
-    let duration_s = motion.duration_s();
-    let t_s = grid(duration_s + LEAD_S + TAIL_S);
-    let local_s: Vec<f64> = t_s.iter().map(|t| t - LEAD_S).collect();
-    let mut samples = Samples::default();
-    motion.sample(&local_s, Quantity::Velocity, &mut samples);
-    let inside = |(v, t): (&f64, &f64)| if (0.0..=duration_s).contains(t) { *v } else { 0.0 };
-    let one = |(j, name): (usize, String)| {
-        let speed = samples.of(Quantity::Velocity, j).iter().zip(&local_s).map(inside).collect();
-        Track::new(name, t_s.clone(), samples.of(Quantity::Position, j).to_vec(), &[])?.with_velocity(speed)
-    };
-    Ok(Series { tracks: setup.joint_names().into_iter().enumerate().map(one).collect::<Result<_, _>>()? })
 }

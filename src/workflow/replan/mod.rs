@@ -7,6 +7,7 @@ mod limits;
 mod outcome;
 mod predicted;
 mod retime;
+mod samples;
 
 use std::{ops::ControlFlow, path::PathBuf};
 
@@ -14,11 +15,11 @@ use rayon::prelude::*;
 
 pub use command::{Commanded, JointCommand};
 pub use failure::ReplanFailure;
-pub use last::{LEAD_S, TAIL_S};
 pub use limits::{HeldTo, Origin};
 pub use outcome::{Before, Replanned, Search};
 pub use predicted::{Predicted, PredictedTransition, predicted};
 pub use retime::Retimed;
+pub use samples::{LEAD_S, TAIL_S};
 
 use super::{
     fit::{self, read_limits},
@@ -32,7 +33,8 @@ use crate::{
     replay::Rules,
     series::Series,
 };
-use last::{Last, sampled};
+use last::Last;
+use samples::sampled;
 
 /// What to plan again, and what may be changed.
 #[derive(Debug, Clone)]
