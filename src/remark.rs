@@ -68,6 +68,8 @@ pub enum Code {
     Guessed,
     /// A ceiling so high that it binds nothing.
     InactiveBound,
+    /// What was sent to the machine is not what was made to be sent.
+    SentOtherwise,
     /// A model that predicts too badly to make commands from.
     PoorFit,
     /// Something that a command does beyond what the plan does.

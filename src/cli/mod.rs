@@ -10,6 +10,7 @@ mod export;
 mod fit;
 mod import;
 mod info;
+mod join;
 mod man;
 mod output;
 mod plan;
@@ -34,7 +35,8 @@ use crate::{
     moea::MoeaError,
     workflow::{
         compare::CompareFailure, contest::ContestFailure, excite::ExciteFailure, fit::FitFailure,
-        import::ImportError, plan::PlanFailure, replan::ReplanFailure, simulate_log::SimulateFailure,
+        import::ImportError, join::JoinFailure, plan::PlanFailure, replan::ReplanFailure,
+        simulate_log::SimulateFailure,
     },
 };
 
@@ -82,6 +84,8 @@ enum CliError {
     Replan(#[from] ReplanFailure),
     #[error(transparent)]
     Excite(#[from] ExciteFailure),
+    #[error(transparent)]
+    Join(#[from] JoinFailure),
     #[error("cannot make the folder {}", path.display())]
     Folder { path: std::path::PathBuf, source: std::io::Error },
     #[error("the words of a step are no command: {0}")]
@@ -135,6 +139,7 @@ fn command(command: &Command, out: &mut impl Write, err: &mut impl Write) -> Res
         Command::Fit(fit) => fit::run(fit, out, err),
         Command::Excite(excite) => excite::run(excite, out),
         Command::Replan(replan) => replan::run(replan, out, err),
+        Command::Join(join) => join::run(join, out, err),
         Command::Demo(demo) => demo::run(demo, out),
         Command::Info(info) => info::run(info, out, err),
         Command::Recover(recover) => recover::run(recover, out, err),

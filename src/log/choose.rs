@@ -96,6 +96,18 @@ pub(super) fn choose_plan(extracted: &Extracted, options: &ReadOptions) -> Resul
     Ok(Choice { planned: chosen, measured: Vec::new(), why, rivals: Vec::new() })
 }
 
+/// The measurement alone, of a log that need not hold a plan.
+pub(super) fn choose_measured(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
+    let measured = candidates(extracted, &options.measured, Role::Measured)?;
+    if measured.is_empty() {
+        let present = present(extracted);
+        return Err(LogError::Missing { missing: "measured", present, flag: "--measured" });
+    }
+    let chosen = cover(measured.iter(), None, None);
+    let why = why(extracted, options, &[], &chosen);
+    Ok(Choice { planned: Vec::new(), measured: chosen, why, rivals: Vec::new() })
+}
+
 /// Leading parts of their names that two topics share.
 fn shared_namespace(a: &str, b: &str) -> usize {
     namespace(a).zip(namespace(b)).take_while(|(a, b)| a == b).count()

@@ -129,9 +129,17 @@ pub enum LogError {
         /// The topic.
         topic: String,
     },
-    /// The writer of a recovered log failed.
-    #[error("cannot write the recovered log {}", path.display())]
-    Recover {
+    /// A log that is to get a plan has one.
+    #[error("{} has a plan in {topic} already: `hydrotrace report` it as it is, or give the log as the recorder left it", path.display())]
+    Planned {
+        /// The log.
+        path: PathBuf,
+        /// The plan's topic.
+        topic: String,
+    },
+    /// The writer of a log that copies another failed.
+    #[error("cannot write the log {}", path.display())]
+    Copy {
         /// The output.
         path: PathBuf,
         /// Why.

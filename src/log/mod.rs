@@ -9,6 +9,7 @@ mod assemble;
 mod bag;
 mod channel;
 mod choose;
+mod copy;
 mod csv;
 mod decode;
 mod description;
@@ -16,6 +17,7 @@ mod doubt;
 mod error;
 mod export;
 mod file;
+mod join;
 mod parallel;
 mod read;
 mod recording;
@@ -32,10 +34,11 @@ pub use csv::{
 pub use description::read_description;
 pub use error::LogError;
 pub use export::{ExportError, RunTable};
+pub use join::{Addition, PlanSample, join};
 pub use read::{Attachment, FileInfo};
 pub use recording::{
-    ReadOptions, Recording, SourceInfo, Survey, TimeBase, TopicInfo, read_plan, read_recording, survey,
-    survey_bytes,
+    ReadOptions, Recording, SourceInfo, Survey, TimeBase, TopicInfo, read_measured, read_plan,
+    read_recording, survey, survey_bytes,
 };
 pub use recover::{Recovered, recover};
 pub use source::Selector;

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::{
     Attachment, FileInfo, LogError, Selector,
     assemble::assemble,
-    choose::{Choice, choose, choose_plan, topic_infos},
+    choose::{Choice, choose, choose_measured, choose_plan, topic_infos},
     read::{Extracted, extract, extract_bytes},
     source,
 };
@@ -168,6 +168,20 @@ pub fn read_plan(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, 
     let choice = choose_plan(&extracted, options)?;
     let recording = assemble(extracted, &choice, options)?;
     // That nothing was measured is no doubt here.
+    Ok(Recording { remarks: doubts, ..recording })
+}
+
+/// Reads measured joints alone, of a log that need not hold a plan; that is then empty.
+///
+/// # Errors
+///
+/// [`LogError`] if a file is no log, or no measured joints are found in it.
+pub fn read_measured(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, LogError> {
+    let mut extracted = extract(paths, &selectors(options), &options.joints)?;
+    let doubts = std::mem::take(&mut extracted.remarks);
+    let choice = choose_measured(&extracted, options)?;
+    let recording = assemble(extracted, &choice, options)?;
+    // That nothing was planned is no doubt here.
     Ok(Recording { remarks: doubts, ..recording })
 }
 

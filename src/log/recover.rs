@@ -1,14 +1,13 @@
 //! Copies everything of a damaged log that is whole into a sound one.
 
 use std::{
-    collections::{BTreeMap, btree_map::Entry},
     io::{BufWriter, Seek, Write},
     path::Path,
 };
 
 use super::{
     LogError,
-    channel::Definitions,
+    copy::{Copier, Failure, copy_files},
     file::{Blocks, Layout, Loss, MappedFile, MessageRecord, Opcode, records, scan},
     read::{describe_damage, not_mcap},
 };
@@ -31,8 +30,6 @@ pub struct Recovered {
     /// What was lost or doubtful; empty if nothing was.
     pub remarks: Remarks,
 }
-
-type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 /// Writes what is whole in `log`, the partial last chunk included, to `output`.
 ///
@@ -57,7 +54,7 @@ pub fn recover(log: &Path, output: &Path) -> Result<Recovered, LogError> {
     let written = write_atomically(output, |file| {
         copy(&layout, file, &mut saved).map_err(|source| CopyError { source })
     });
-    written.map_err(|error| LogError::Recover { path: output.to_owned(), source: error.source })?;
+    written.map_err(|error| LogError::Copy { path: output.to_owned(), source: error.source })?;
     Ok(saved)
 }
 
@@ -77,30 +74,14 @@ fn copy<W: Write + Seek>(
     file: &mut BufWriter<W>,
     saved: &mut Recovered,
 ) -> Result<(), Failure> {
-    let definitions = Definitions::gather(layout, true);
     let mut writer = mcap::WriteOptions::new()
         .profile(layout.profile.as_str())
         .library(concat!("hydrotrace ", env!("CARGO_PKG_VERSION")))
         .compression(Some(mcap::Compression::Zstd))
         .compression_threads(0)
         .create(file)?;
-    for attachment in &layout.attachments {
-        writer.attach(&mcap::Attachment {
-            log_time: attachment.log_time_ns,
-            create_time: attachment.create_time_ns,
-            name: attachment.name.clone(),
-            media_type: attachment.media_type.clone(),
-            data: attachment.data.into(),
-        })?;
-    }
-    for one in &layout.metadata {
-        writer.write_metadata(&mcap::records::Metadata {
-            name: one.name.clone(),
-            metadata: one.entries.clone(),
-        })?;
-    }
-    let mut channels: BTreeMap<u16, u16> = BTreeMap::new();
-    let mut unknown = 0;
+    copy_files(&mut writer, layout, &[])?;
+    let mut copier = Copier::of(layout);
     let mut blocks = Blocks::new();
     for block in &layout.blocks {
         let (bytes, loss) = blocks.open(*block);
@@ -112,26 +93,7 @@ fn copy<W: Write + Seek>(
                 continue;
             }
             let Some(message) = MessageRecord::parse(record.body) else { continue };
-            let channel_id = match channels.entry(message.channel_id) {
-                Entry::Occupied(known) => *known.get(),
-                Entry::Vacant(new) => {
-                    let Some(id) = add_channel(&mut writer, &definitions, message.channel_id)? else {
-                        unknown += 1;
-                        continue;
-                    };
-                    *new.insert(id)
-                }
-            };
-            writer.write_to_known_channel(
-                &mcap::records::MessageHeader {
-                    channel_id,
-                    sequence: message.sequence,
-                    log_time: message.log_time_ns,
-                    publish_time: message.publish_time_ns,
-                },
-                message.data,
-            )?;
-            saved.messages += 1;
+            saved.messages += u64::from(copier.message(&mut writer, &message)?);
         }
         match loss {
             Loss::Nothing if end < bytes.len() => {
@@ -152,21 +114,11 @@ fn copy<W: Write + Seek>(
             }
         }
     }
-    saved.remarks.add(Code::UnknownChannel, unknown, "messages of channels that the file does not define");
+    saved.remarks.add(
+        Code::UnknownChannel,
+        copier.unknown,
+        "messages of channels that the file does not define",
+    );
     writer.finish()?;
     Ok(())
-}
-
-/// Defines a channel of the old log in the new one; `None` if the old log does not define it.
-fn add_channel<W: Write + Seek>(
-    writer: &mut mcap::Writer<W>,
-    definitions: &Definitions,
-    id: u16,
-) -> Result<Option<u16>, Failure> {
-    let Some(channel) = definitions.channels.get(&id) else { return Ok(None) };
-    let schema = match definitions.schemas.get(&channel.schema_id) {
-        Some(schema) => writer.add_schema(&schema.name, &schema.encoding, &schema.data)?,
-        None => 0,
-    };
-    Ok(Some(writer.add_channel(schema, &channel.topic, &channel.encoding, &channel.metadata)?))
 }

@@ -6,6 +6,7 @@
 mod align;
 mod clock;
 mod derivative;
+mod locate;
 mod noise;
 mod track;
 mod trajectory;
@@ -13,6 +14,7 @@ mod trajectory;
 pub use align::{Pair, align};
 pub use clock::{Clock, continuous_clock};
 pub use derivative::{LocalFit, local_quadratic};
+pub use locate::{Located, locate};
 pub use noise::{Noise, noise};
 pub use track::{Series, Track, TrackError, split_at_gaps, velocity_agrees};
 pub use trajectory::{PlannedPoint, PlannedTrajectory, plan_tracks};

@@ -13,6 +13,7 @@ pub mod fit;
 pub mod front;
 pub mod import;
 pub mod info;
+pub mod join;
 pub mod moea;
 pub mod observe;
 pub mod plan;

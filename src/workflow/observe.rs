@@ -91,7 +91,7 @@ pub fn observe(path: &Path, wanted: &Wanted) -> Result<Observed, ObserveFailure>
                 ..wanted.read.clone()
             };
             match read_plan(&paths, &options) {
-                Ok(found) => Ok(Some(shifted(&found, recording.source.epoch_ns)?)),
+                Ok(found) => Ok(Some(on_origin(&found, recording.source.epoch_ns)?)),
                 // A log of another origin has no such topic.
                 Err(_) if asked.is_none() => Ok(None),
                 Err(error) => Err(error.into()),
@@ -130,9 +130,9 @@ impl Observed {
     }
 }
 
-/// A series on another origin of time.
+/// What was read as a plan, on another origin of time.
 #[expect(clippy::cast_precision_loss, reason = "a log lasts less than months")]
-fn shifted(found: &Recording, epoch_ns: i64) -> Result<Series, TrackError> {
+pub(super) fn on_origin(found: &Recording, epoch_ns: i64) -> Result<Series, TrackError> {
     let by_s = found.source.epoch_ns.saturating_sub(epoch_ns) as f64 / crate::units::NS_PER_S;
     let shift = |track: &Track| {
         let t_s: Vec<f64> = track.t_s().iter().map(|t_s| t_s + by_s).collect();

@@ -199,11 +199,9 @@ fn remark_unseen(planned: &Series, pairs: &[Pair], inputs: &Inputs, remarks: &mu
     for pair in pairs {
         let all = pair.matched + pair.unmatched;
         if pair.unmatched as f64 > MOST_UNMATCHED * all as f64 {
-            let message = format!(
-                "measured samples of {} have no plan at their time, left out; a start is only seen where the \
-                 plan also shows the rest before it",
-                pair.name
-            );
+            // One line for all joints.
+            let message = "measured samples have no plan at their time, more than half of a joint's; left out; a \
+                           start is only seen where the plan also shows the rest before it";
             remarks.add(Code::Unmatched, pair.unmatched as u64, message);
         }
         let Some(track) = planned.track(&pair.name) else { continue };

@@ -8,6 +8,7 @@ mod excite;
 mod export;
 mod fit;
 mod import;
+mod join;
 mod moea;
 mod plan;
 mod replan;
@@ -27,6 +28,7 @@ pub use excite::ExciteArgs;
 pub use export::{ExportArgs, ExportFormat};
 pub use fit::{FitArgs, SentArgs};
 pub use import::ImportArgs;
+pub use join::JoinArgs;
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
 pub use replan::{ChangeArgs, ReplanArgs};
@@ -106,6 +108,9 @@ pub enum Command {
                             hydrotrace replan field.mcap -o next.mcap --keep-plan\n  \
                             hydrotrace replan run-1.mcap run-2.mcap --limits limits.toml --task task.toml -o next.mcap")]
     Replan(ReplanArgs),
+    /// Put the plan into the log of a run that holds only what was sent
+    #[command(after_help = join::EXAMPLES)]
+    Join(JoinArgs),
     /// Turn a CSV file (PLC trace, RTDE, any table) into a log
     #[command(after_help = import::EXAMPLES)]
     Import(ImportArgs),

@@ -63,6 +63,7 @@ mod tests {
             "fit",
             "excite",
             "replan",
+            "join",
             "import",
             "export",
             "info",

@@ -43,8 +43,8 @@ use stamp::Stamp;
 /// up to the last [`flush`](Self::flush). A power failure takes what the operating system has
 /// not stored yet; give an output whose `flush` waits for the disk if that matters.
 ///
-/// Times are nanoseconds since 1970; they become the header stamp, the log time and the publish
-/// time alike. Values are written as given, NaN and infinities too: a log says what happened.
+/// Times are nanoseconds since 1970; they become the header stamp and, [`Options::log_delay_ns`] later, the
+/// log time and the publish time. Values are written as given, NaN and infinities too: a log says what happened.
 ///
 /// Call [`finish`](Self::finish); dropping the writer closes the log too, but hides failures.
 pub struct LogWriter<W: Write> {
@@ -52,6 +52,7 @@ pub struct LogWriter<W: Write> {
     joint_names: Vec<String>,
     cdr: Cdr,
     channels: Channels,
+    log_delay_ns: i64,
     flush_interval_ns: Option<u64>,
     unflushed_since_ns: Option<u64>,
 }
@@ -115,6 +116,7 @@ impl<W: Write> LogWriter<W> {
             joint_names,
             cdr: Cdr::default(),
             channels,
+            log_delay_ns: options.log_delay_ns,
             flush_interval_ns: options.flush_interval_ns,
             unflushed_since_ns: None,
         })
@@ -138,7 +140,7 @@ impl<W: Write> LogWriter<W> {
         check_length("position", position_rad, joints)?;
         check_length("velocity", velocity_rad_s, joints)?;
         check_length("effort", effort_n_m, joints)?;
-        let stamp = Stamp::new(stamp_ns)?;
+        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         message::encode_header(&mut self.cdr, stamp, &self.joint_names);
         message::encode_joint_state(&mut self.cdr, [position_rad, velocity_rad_s, effort_n_m]);
         let channel = match role {
@@ -160,7 +162,7 @@ impl<W: Write> LogWriter<W> {
         for point in [&state.reference, &state.feedback, &state.output] {
             point.check(self.joint_names.len())?;
         }
-        let stamp = Stamp::new(stamp_ns)?;
+        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         message::encode_header(&mut self.cdr, stamp, &self.joint_names);
         message::encode_controller_state(&mut self.cdr, state)?;
         self.channels.controller_state.send(&mut self.mcap, stamp, self.cdr.bytes())?;
@@ -185,7 +187,7 @@ impl<W: Write> LogWriter<W> {
                 return Err(WriteError::LengthMismatch { quantity: "interface", joints, values });
             }
         }
-        let stamp = Stamp::new(stamp_ns)?;
+        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         message::encode_header(&mut self.cdr, stamp, &self.joint_names);
         message::encode_interfaces(&mut self.cdr, joints, values);
         self.channels.interfaces.send(&mut self.mcap, stamp, self.cdr.bytes())?;
@@ -208,7 +210,7 @@ impl<W: Write> LogWriter<W> {
                 return Err(WriteError::NotIncreasing { index, previous_ns, next_ns });
             }
         }
-        let stamp = Stamp::new(stamp_ns)?;
+        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         message::encode_header(&mut self.cdr, stamp, &self.joint_names);
         message::encode_trajectory(&mut self.cdr, points)?;
         self.channels.trajectory.send(&mut self.mcap, stamp, self.cdr.bytes())?;
@@ -236,7 +238,7 @@ impl<W: Write> LogWriter<W> {
         data: &[u8],
         stamp_ns: i64,
     ) -> Result<(), WriteError> {
-        let stamp = Stamp::new(stamp_ns)?;
+        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         Ok(self.mcap.attach(&Attachment {
             log_time: stamp.log_time_ns,
             create_time: stamp.log_time_ns,
@@ -255,6 +257,11 @@ impl<W: Write> LogWriter<W> {
     pub fn flush(&mut self) -> Result<(), WriteError> {
         self.unflushed_since_ns = None;
         Ok(self.mcap.flush()?)
+    }
+
+    /// What messages that are copied go through.
+    pub(in crate::log) fn raw(&mut self) -> &mut Writer<NoSeek<W>> {
+        &mut self.mcap
     }
 
     /// Closes the log and hands back its output, flushed.

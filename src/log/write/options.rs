@@ -12,6 +12,8 @@ pub struct Options {
     pub flush_interval_ns: Option<u64>,
     /// Compression level of zstd, 1 to 22.
     pub compression_level: u32,
+    /// How much later than its stamp a message counts as received, ns.
+    pub log_delay_ns: i64,
     /// Where messages go.
     pub topics: Topics,
 }
@@ -23,6 +25,7 @@ impl Default for Options {
             flush_interval_ns: None,
             // Joint angles compress no better at the usual level 3, which takes half as long again.
             compression_level: 1,
+            log_delay_ns: 0,
             topics: Topics::default(),
         }
     }

@@ -30,7 +30,7 @@ impl<W: Write> LogWriter<W> {
     /// [`WriteError::Text`], [`WriteError::TimeRange`] or [`WriteError::Output`].
     pub fn description(&mut self, role: Role, stamp_ns: i64, urdf: &str) -> Result<(), WriteError> {
         check_text("robot description", urdf)?;
-        let stamp = Stamp::new(stamp_ns)?;
+        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         self.cdr.begin();
         self.cdr.string(urdf);
         let channel = match role {
@@ -47,7 +47,8 @@ impl<W: Write> LogWriter<W> {
     ///
     /// [`WriteError::Text`], [`WriteError::TimeRange`] or [`WriteError::Output`].
     pub fn transforms(&mut self, stamp_ns: i64, transforms: &[Transform<'_>]) -> Result<(), WriteError> {
-        let stamp = encode_transforms(&mut self.cdr, stamp_ns, transforms)?;
+        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
+        encode_transforms(&mut self.cdr, stamp, transforms)?;
         self.channels.transforms.send(&mut self.mcap, stamp, self.cdr.bytes())?;
         self.flush_if_due(stamp)
     }
@@ -62,7 +63,8 @@ impl<W: Write> LogWriter<W> {
         stamp_ns: i64,
         transforms: &[Transform<'_>],
     ) -> Result<(), WriteError> {
-        let stamp = encode_transforms(&mut self.cdr, stamp_ns, transforms)?;
+        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
+        encode_transforms(&mut self.cdr, stamp, transforms)?;
         self.channels.fixed_transforms.send(&mut self.mcap, stamp, self.cdr.bytes())?;
         self.flush_if_due(stamp)
     }
@@ -74,7 +76,7 @@ impl<W: Write> LogWriter<W> {
     /// [`WriteError::LengthMismatch`], [`WriteError::TimeRange`] or [`WriteError::Output`].
     pub fn tracking_error(&mut self, stamp_ns: i64, error_rad: &[f64]) -> Result<(), WriteError> {
         check_length("tracking error", error_rad, self.joint_names.len())?;
-        let stamp = Stamp::new(stamp_ns)?;
+        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         encode_header(&mut self.cdr, stamp, &self.joint_names);
         encode_joint_state(&mut self.cdr, [error_rad, &[], &[]]);
         self.channels.tracking_error.send(&mut self.mcap, stamp, self.cdr.bytes())?;
@@ -82,12 +84,7 @@ impl<W: Write> LogWriter<W> {
     }
 }
 
-fn encode_transforms(
-    cdr: &mut Cdr,
-    stamp_ns: i64,
-    transforms: &[Transform<'_>],
-) -> Result<Stamp, WriteError> {
-    let stamp = Stamp::new(stamp_ns)?;
+fn encode_transforms(cdr: &mut Cdr, stamp: Stamp, transforms: &[Transform<'_>]) -> Result<(), WriteError> {
     cdr.begin();
     cdr.count(transforms.len());
     for transform in transforms {
@@ -100,7 +97,7 @@ fn encode_transforms(
             cdr.f64(*value);
         }
     }
-    Ok(stamp)
+    Ok(())
 }
 
 fn check_text(kind: &'static str, text: &str) -> Result<(), WriteError> {

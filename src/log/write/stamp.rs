@@ -9,16 +9,15 @@ const NS_PER_S: i64 = 1_000_000_000;
 pub(super) struct Stamp {
     seconds: i32,
     nanoseconds: u32,
-    /// The same instant, ns.
+    /// When it counts as received, ns.
     pub(super) log_time_ns: u64,
 }
 
 impl Stamp {
-    pub(super) fn new(stamp_ns: i64) -> Result<Self, WriteError> {
+    pub(super) fn new(stamp_ns: i64, log_delay_ns: i64) -> Result<Self, WriteError> {
         let (seconds, nanoseconds) = split(stamp_ns, "stamp")?;
-        let log_time_ns = stamp_ns
-            .try_into()
-            .map_err(|_| WriteError::TimeRange { quantity: "stamp", value_ns: stamp_ns })?;
+        let received = stamp_ns.checked_add(log_delay_ns).and_then(|ns| u64::try_from(ns).ok());
+        let log_time_ns = received.ok_or(WriteError::TimeRange { quantity: "stamp", value_ns: stamp_ns })?;
         Ok(Self { seconds, nanoseconds, log_time_ns })
     }
 
@@ -56,9 +55,9 @@ mod tests {
 
     #[test]
     fn instants_before_1970_or_after_2038_are_refused() {
-        assert!(matches!(Stamp::new(-1), Err(WriteError::TimeRange { value_ns: -1, .. })));
+        assert!(matches!(Stamp::new(-1, 0), Err(WriteError::TimeRange { value_ns: -1, .. })));
         let last_ns = i64::from(i32::MAX) * NS_PER_S + 999_999_999;
-        assert!(Stamp::new(last_ns).is_ok());
-        assert!(Stamp::new(last_ns + 1).is_err());
+        assert!(Stamp::new(last_ns, 0).is_ok());
+        assert!(Stamp::new(last_ns + 1, 0).is_err());
     }
 }

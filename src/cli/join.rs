@@ -1,0 +1,26 @@
+//! `join`: puts a plan into a log, says where.
+
+use std::io::Write;
+
+use super::{
+    CliError, Outcome,
+    args::JoinArgs,
+    output::{deliver, say_remarks, shown, spare_inputs},
+};
+use crate::{
+    report::{joined_json, joined_parts},
+    workflow::join::run as join,
+};
+
+pub(super) fn run(args: &JoinArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
+    let read = [args.logs.as_slice(), std::slice::from_ref(&args.plan)].concat();
+    spare_inputs(Some(&args.output), &read)?;
+    let joined = join(&args.inputs())?;
+    if args.json {
+        deliver(&joined_json(&joined), None, out)?;
+        say_remarks(&joined.remarks, err);
+    } else {
+        deliver(&shown(&joined_parts(&joined, &args.plan, &args.output), None), None, out)?;
+    }
+    Ok(if joined.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}

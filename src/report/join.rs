@@ -1,0 +1,85 @@
+//! What was joined.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::{Part, counted, deg, json, tables::remark_parts};
+use crate::{remark::Remark, workflow::join::Joined};
+
+#[derive(Serialize)]
+struct Document<'a> {
+    format: &'static str,
+    program: &'static str,
+    sent: Option<&'a str>,
+    sent_is_command: bool,
+    at_s: f64,
+    rms_difference_rad: Option<f64>,
+    other_places: Option<usize>,
+    duration_s: f64,
+    rest_before_s: f64,
+    rest_after_s: f64,
+    joints: usize,
+    messages: u64,
+    files: &'a [String],
+    remarks: &'a [Remark],
+}
+
+/// As JSON.
+pub fn joined_json(joined: &Joined) -> String {
+    json::pretty(&Document {
+        format: "hydrotrace.join.v1",
+        program: json::PROGRAM,
+        sent: joined.sent.as_deref(),
+        sent_is_command: joined.commanded,
+        at_s: joined.at_s,
+        rms_difference_rad: joined.located.map(|found| found.rms_rad),
+        other_places: joined.located.map(|found| found.others),
+        duration_s: joined.duration_s,
+        rest_before_s: joined.rest_s[0],
+        rest_after_s: joined.rest_s[1],
+        joints: joined.joints,
+        messages: joined.messages,
+        files: &joined.files,
+        remarks: joined.remarks.as_slice(),
+    })
+}
+
+/// As sentences.
+pub fn joined_parts(joined: &Joined, plan: &Path, output: &Path) -> Vec<Part> {
+    let Joined { sent, commanded, located, at_s, duration_s, rest_s, joints, messages, files, remarks } =
+        joined;
+    let (plan, output) = (plan.display(), output.display());
+    let what = if *commanded { "command" } else { "plan" };
+    let sent = match (sent, located) {
+        (Some(topic), Some(found)) => format!(
+            "{topic}: the {what} of {plan} from {at_s:.3} s on, {} deg rms apart on {}",
+            deg(found.rms_rad),
+            counted(found.joints, "joint")
+        ),
+        _ => format!("the {what} of {plan} from {at_s:.3} s on, as given"),
+    };
+    let fact = |name: &str, text: String| (name.to_owned(), text);
+    let mut facts = vec![
+        fact("sent", sent),
+        fact(
+            "plan",
+            format!(
+                "{duration_s:.2} s of {} in /planned/joint_states, held {:.2} s before and {:.2} s after",
+                counted(*joints, "joint"),
+                rest_s[0],
+                rest_s[1]
+            ),
+        ),
+    ];
+    if !files.is_empty() {
+        facts.push(fact("files", files.join(", ")));
+    }
+    let mut parts = vec![
+        Part::Line(format!("{messages} messages of the run and the plan of {plan} written to {output}.")),
+        Part::Facts(facts),
+        Part::Line(format!("hydrotrace report {output} says how the run followed its plan.")),
+    ];
+    remark_parts(remarks, &mut parts);
+    parts
+}

@@ -1,0 +1,246 @@
+//! Finds a stretch of motion within a longer one.
+
+use super::{Series, Track};
+
+/// Where a motion was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Located {
+    /// Time in the longer series at which the motion's own time is 0, s.
+    pub at_s: f64,
+    /// Root mean square of what is left between the two, over all joints, rad.
+    pub rms_rad: f64,
+    /// The same of the motion about its mean: what a find at nothing would leave, rad.
+    pub spread_rad: f64,
+    /// Joints of both.
+    pub joints: usize,
+    /// Other places where as little is left.
+    pub others: usize,
+}
+
+/// Step of the first look, s.
+const STEP_S: f64 = 0.1;
+/// Share of the motion that must lie within the longer series.
+const COVERED: f64 = 0.8;
+/// Longest series that is looked through, s.
+const LONGEST_S: f64 = 250_000.0;
+/// Less than this is no motion, rad.
+const LEAST_RAD: f64 = 1e-4;
+/// Instants at which a place is judged in the end.
+const INSTANTS: usize = 2_000;
+/// Places of the first look that are looked at again.
+const PLACES: usize = 8;
+/// Two places that leave this much of one another are equally good, or both within this share of the motion.
+const ALIKE: f64 = 1.5;
+const ALIKE_SHARE: f64 = 0.01;
+
+/// Looks for `motion` in `within` by its angles, over the joints of both; of equally good places the
+/// first. `None` if they share no joint, the motion is none, a part of
+/// it at most fits in, or one lasts three days.
+pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
+    let pairs: Vec<(&Track, &Track)> =
+        motion.tracks.iter().filter_map(|track| Some((track, within.track(track.name())?))).collect();
+    let [from_s, to_s] = span_s(pairs.iter().map(|pair| pair.0))?;
+    let [start_s, end_s] = span_s(pairs.iter().map(|pair| pair.1))?;
+    let spread_rad = spread_rad(&pairs, from_s, to_s);
+    if spread_rad < LEAST_RAD {
+        return None;
+    }
+    let length_s = to_s - from_s;
+    // The motion may stick out at either end.
+    let earliest_s = start_s - (1.0 - COVERED) * length_s;
+    let latest_s = end_s - COVERED * length_s;
+    let first = first_look(&pairs, [from_s, to_s], [earliest_s, latest_s])?;
+    let judge = |at_s: f64| left_rad(&pairs, [from_s, to_s], at_s, INSTANTS);
+    let mut found: Vec<(f64, f64)> = Vec::new();
+    for near_s in first {
+        let at_s = least(&judge, near_s - STEP_S, near_s + STEP_S);
+        if let Some(rms_rad) = judge(at_s) {
+            found.push((at_s, rms_rad));
+        }
+    }
+    let best_rad = found.iter().map(|place| place.1).min_by(f64::total_cmp)?;
+    found.retain(|place| place.1 <= (ALIKE * best_rad).max(ALIKE_SHARE * spread_rad));
+    let (at_s, rms_rad) = found.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let joints = pairs.len();
+    Some(Located { at_s: at_s - from_s, rms_rad, spread_rad, joints, others: found.len() - 1 })
+}
+
+/// First and last sample of all, s.
+fn span_s<'a>(tracks: impl Iterator<Item = &'a Track>) -> Option<[f64; 2]> {
+    let ends = tracks.filter_map(|track| Some([*track.t_s().first()?, *track.t_s().last()?]));
+    ends.reduce(|[a, b], [from, to]| [a.min(from), b.max(to)])
+}
+
+/// The best places of a coarse grid, at least half a motion apart: when its first sample lies there, s.
+fn first_look(
+    pairs: &[(&Track, &Track)],
+    [from_s, to_s]: [f64; 2],
+    [earliest_s, latest_s]: [f64; 2],
+) -> Option<Vec<f64>> {
+    if to_s - from_s > LONGEST_S || latest_s - earliest_s > LONGEST_S {
+        return None;
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "bounded above, not negative"
+    )]
+    let count = |span_s: f64| (span_s.max(0.0) / STEP_S) as usize + 1;
+    let (instants, shifts) = (count(to_s - from_s), count(latest_s - earliest_s));
+    let on_grid = |track: &Track, start_s: f64, count: usize| -> Vec<f64> {
+        let mut cursor = 0;
+        let at = |k| {
+            let state = track.at_after(&mut cursor, start_s + k as f64 * STEP_S);
+            state.map_or(f64::NAN, |state| state.position)
+        };
+        (0..count).map(at).collect()
+    };
+    let grids: Vec<_> = pairs
+        .iter()
+        .map(|(motion, within)| {
+            let wanted: Vec<f64> =
+                (0..instants).map(|k| motion.held_at(from_s + k as f64 * STEP_S).position).collect();
+            (wanted, on_grid(within, earliest_s, instants + shifts))
+        })
+        .collect();
+    let left = |shift: usize| {
+        let (mut sum, mut seen) = (0.0, 0_usize);
+        for (wanted, there) in &grids {
+            for (a, b) in wanted.iter().zip(&there[shift..]) {
+                if b.is_finite() {
+                    sum += (a - b) * (a - b);
+                    seen += 1;
+                }
+            }
+        }
+        let enough = seen as f64 >= COVERED * (instants * grids.len()) as f64;
+        enough.then(|| sum / seen as f64)
+    };
+    let mut places: Vec<(f64, f64)> =
+        (0..shifts).filter_map(|shift| Some((left(shift)?, earliest_s + shift as f64 * STEP_S))).collect();
+    places.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let mut apart: Vec<f64> = Vec::new();
+    for (_, at_s) in places {
+        if apart.len() < PLACES && apart.iter().all(|other| (other - at_s).abs() >= 0.5 * (to_s - from_s)) {
+            apart.push(at_s);
+        }
+    }
+    (!apart.is_empty()).then_some(apart)
+}
+
+/// What is left when the first sample of the motion lies at `at_s`, rad; `None` where too little is seen.
+fn left_rad(pairs: &[(&Track, &Track)], [from_s, to_s]: [f64; 2], at_s: f64, instants: usize) -> Option<f64> {
+    let (mut sum, mut seen) = (0.0, 0_usize);
+    for (motion, within) in pairs {
+        let mut cursors = (0, 0);
+        for k in 0..instants {
+            let t_s = (to_s - from_s) * k as f64 / (instants - 1) as f64;
+            let wanted = motion.at_after(&mut cursors.0, from_s + t_s);
+            let there = within.at_after(&mut cursors.1, at_s + t_s);
+            if let (Some(wanted), Some(there)) = (wanted, there) {
+                sum += (wanted.position - there.position).powi(2);
+                seen += 1;
+            }
+        }
+    }
+    (seen as f64 >= COVERED * (instants * pairs.len()) as f64 - 1.0).then(|| (sum / seen as f64).sqrt())
+}
+
+/// Root mean square of the motion about its mean, joint by joint, rad.
+fn spread_rad(pairs: &[(&Track, &Track)], from_s: f64, to_s: f64) -> f64 {
+    let mut sum = 0.0;
+    for (motion, _) in pairs {
+        let at = |k: usize| motion.held_at(from_s + (to_s - from_s) * k as f64 / INSTANTS as f64).position;
+        let mean = (0..INSTANTS).map(at).sum::<f64>() / INSTANTS as f64;
+        sum += (0..INSTANTS).map(|k| (at(k) - mean).powi(2)).sum::<f64>();
+    }
+    (sum / (INSTANTS * pairs.len().max(1)) as f64).sqrt()
+}
+
+/// Where a function with one minimum is least, by golden sections.
+fn least(value: &impl Fn(f64) -> Option<f64>, mut low: f64, mut high: f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let of = |at: f64| value(at).unwrap_or(f64::INFINITY);
+    let mut inner = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+    let mut values = (of(inner.0), of(inner.1));
+    for _ in 0..30 {
+        if values.0 <= values.1 {
+            high = inner.1;
+            inner = (high - GOLDEN * (high - low), inner.0);
+            values = (of(inner.0), values.0);
+        } else {
+            low = inner.0;
+            inner = (inner.1, low + GOLDEN * (high - low));
+            values = (values.1, of(inner.1));
+        }
+    }
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two joints that stand, stroke and stand again, from time 5 s of their own on.
+    fn motion() -> Series {
+        let t_s: Vec<f64> = (0..=1000).map(|k| 5.0 + f64::from(k) * 0.01).collect();
+        let stroke = |t: f64, scale: f64| scale * (0.4 * (t - 7.0).clamp(0.0, 5.0)).sin().powi(2);
+        let track = |name: &str, scale: f64| {
+            let angles = t_s.iter().map(|t| stroke(*t, scale)).collect();
+            Track::new(name, t_s.clone(), angles, &[]).unwrap()
+        };
+        Series { tracks: vec![track("a", 0.5), track("b", -0.3)] }
+    }
+
+    /// The motion begun at some times, sampled at 45 Hz with a ripple, at rest between.
+    fn within(starts_s: &[f64], end_s: f64) -> Series {
+        let motion = motion();
+        let t_s: Vec<f64> = (0..9000).map(|k| f64::from(k) / 45.0).filter(|t| *t < end_s).collect();
+        let tracks = motion.tracks.iter().map(|track| {
+            let angle = |(k, t): (usize, &f64)| {
+                let start = starts_s.iter().copied().filter(|s| s <= t).fold(f64::NEG_INFINITY, f64::max);
+                let own = if start.is_finite() { 5.0 + t - start } else { 5.0 };
+                track.held_at(own.min(15.0)).position + 1e-4 * ((k * 7919) % 11) as f64
+            };
+            Track::new(track.name(), t_s.clone(), t_s.iter().enumerate().map(angle).collect(), &[]).unwrap()
+        });
+        Series { tracks: tracks.collect() }
+    }
+
+    #[test]
+    fn a_motion_is_found_to_a_millisecond_between_samples_twenty_times_as_far_apart() {
+        for start_s in [31.2345, 0.5, 88.0] {
+            let found = locate(&motion(), &within(&[start_s], 100.0)).unwrap();
+            assert!((found.at_s - (start_s - 5.0)).abs() < 1e-3, "{start_s}: {found:?}");
+            assert!(found.rms_rad < 0.01 * found.spread_rad && found.others == 0 && found.joints == 2);
+        }
+    }
+
+    #[test]
+    fn of_three_runs_the_first_is_taken_and_the_others_are_counted() {
+        let found = locate(&motion(), &within(&[12.0, 30.0, 55.5], 80.0)).unwrap();
+        assert!((found.at_s - 7.0).abs() < 1e-3 && found.others == 2, "{found:?}");
+    }
+
+    #[test]
+    fn another_motion_leaves_as_much_as_there_is() {
+        let mut other = within(&[20.0], 60.0);
+        for track in &mut other.tracks {
+            let angles = track.position_rad().iter().map(|q| 0.8 - 2.0 * q).collect();
+            *track = Track::new(track.name(), track.t_s().to_vec(), angles, &[]).unwrap();
+        }
+        let found = locate(&motion(), &other).unwrap();
+        assert!(found.rms_rad > found.spread_rad, "{found:?}");
+    }
+
+    #[test]
+    fn rest_alone_other_joints_and_a_log_too_short_are_nowhere() {
+        let rest = Track::new("a", vec![0.0, 1.0, 2.0], vec![0.3; 3], &[]).unwrap();
+        assert_eq!(locate(&Series { tracks: vec![rest] }, &within(&[1.0], 20.0)), None);
+        let other = Track::new("z", vec![0.0, 1.0], vec![0.0, 1.0], &[]).unwrap();
+        assert_eq!(locate(&motion(), &Series { tracks: vec![other] }), None);
+        assert_eq!(locate(&motion(), &within(&[0.0], 4.0)), None);
+        let endless = Track::new("a", vec![0.0, 1e12], vec![0.0, 1.0], &[]).unwrap();
+        assert_eq!(locate(&motion(), &Series { tracks: vec![endless] }), None);
+    }
+}

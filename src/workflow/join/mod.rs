@@ -1,0 +1,244 @@
+//! `join`: the plan into the log of a run that holds what was sent and what came of it.
+
+mod place;
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use super::{
+    plan_log::{PROVENANCE, STARTS},
+    simulate_log::{LEAD_S, TAIL_S},
+    stamp::instants,
+};
+use crate::{
+    log::{
+        Addition, LogError, PlanSample, ReadOptions, Recording, TimeBase, join, read_measured, read_recording,
+    },
+    remark::Remarks,
+    series::{Located, Series, Track, TrackError},
+    units::{DEGREE_RAD, nanoseconds},
+};
+use place::Plan;
+
+/// What to join, and to where.
+#[derive(Debug, Clone, Default)]
+pub struct Inputs {
+    /// Files or bag directories of one run.
+    pub logs: Vec<PathBuf>,
+    /// The log with the plan, and with the command that was made for it.
+    pub plan: PathBuf,
+    /// What to read of the run; its plan is what was sent.
+    pub read: ReadOptions,
+    /// When the first sample of the plan was sent, s from the start of the run's log; `None`: found by what
+    /// was sent.
+    pub at_s: Option<f64>,
+    /// The log to write.
+    pub output: PathBuf,
+}
+
+/// Why nothing was joined.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum JoinFailure {
+    /// One of the logs.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// Nothing tells when the plan began.
+    #[error(
+        "the log of the run does not say what was sent, so that the start of its plan is unknown; name the \
+         topic with --planned TOPIC[:FIELD], or the time of the plan's first sample with --at SECONDS"
+    )]
+    NothingSent(#[source] LogError),
+    /// The plan is of other joints, does not move, or is longer than the run.
+    #[error(
+        "the plan in {} is nowhere in what was sent on {topic}: no common joint, no motion, or a log that \
+         holds less than four fifths of it; --planned names another topic, --at SECONDS the time",
+        plan.display()
+    )]
+    Nowhere {
+        /// The plan's log.
+        plan: PathBuf,
+        /// What was sent.
+        topic: String,
+    },
+    /// Something else was sent.
+    #[error(
+        "what was sent on {topic} is not what {} holds: where it fits best, at {at_s:.2} s, it leaves {:.0} % of \
+         the motion (10 % at most); --planned names another topic, --at SECONDS the time",
+        plan.display(), 100.0 * share
+    )]
+    SentOtherwise {
+        /// The plan's log.
+        plan: PathBuf,
+        /// What was sent.
+        topic: String,
+        /// The best place, s from the start of the run's log.
+        at_s: f64,
+        /// What it leaves, as a share of the motion.
+        share: f64,
+    },
+    /// A time outside the run.
+    #[error("--at {at_s} puts the plan at {at_s:.2} to {:.2} s, outside the measurement, {:.2} to {:.2} s",
+        at_s + duration_s, measured_s[0], measured_s[1])]
+    Outside {
+        /// The time that was given.
+        at_s: f64,
+        /// How long the plan is.
+        duration_s: f64,
+        /// First and last measurement.
+        measured_s: [f64; 2],
+    },
+    /// Times that make no track.
+    #[error("the times of the command do not fit those of the plan")]
+    Track(#[from] TrackError),
+}
+
+/// What was found, and what the new log holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joined {
+    /// Topic and field of what was sent, unless the caller gave the time alone.
+    pub sent: Option<String>,
+    /// Whether what was sent is the command, and not the plan itself.
+    pub commanded: bool,
+    /// Where it was found.
+    pub located: Option<Located>,
+    /// When the first sample of the plan was sent, s from the start of the run's log.
+    pub at_s: f64,
+    /// From the first to the last sample of the plan, s.
+    pub duration_s: f64,
+    /// Rest that was added before and after, s.
+    pub rest_s: [f64; 2],
+    /// Joints of the plan.
+    pub joints: usize,
+    /// Messages of the run.
+    pub messages: u64,
+    /// Files that came with the plan.
+    pub files: Vec<String>,
+    /// What was doubtful.
+    pub remarks: Remarks,
+}
+
+/// Joints within this angle of where they were rest, rad.
+const RESTS_RAD: f64 = 0.05 * DEGREE_RAD;
+/// Samples a second of the plan in the new log.
+const RATE_HZ: f64 = 100.0;
+
+/// Puts the plan where its command was sent.
+///
+/// # Errors
+///
+/// [`JoinFailure`], naming what is missing; nothing is written then.
+pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
+    let plan = Plan::read(&inputs.plan)?;
+    let run = read_run(inputs)?;
+    // A run that was read without a plan has none.
+    let sent = (!run.planned.tracks.is_empty()).then_some(&run.planned);
+    let topic = format!("{}:{}", run.source.planned_topic, run.source.planned_field);
+    let mut remarks = run.remarks.clone();
+    let [from_s, to_s] = plan.span_s();
+    let found = match inputs.at_s {
+        None => Some(plan.place(&run.planned, &inputs.plan, &topic, &mut remarks)?),
+        Some(_) => None,
+    };
+    let commanded = found.map_or(plan.command.is_some(), |(commanded, _)| commanded);
+    let located = found.map(|(_, located)| located);
+    // The run's time at which the plan's own is 0.
+    let zero_s = located.map_or_else(|| inputs.at_s.unwrap_or(0.0) - from_s, |located| located.at_s);
+    let (start_s, end_s) = (zero_s + from_s, zero_s + to_s);
+    let measured_s = measured_s(&run.measured);
+    if inputs.at_s.is_some() && (start_s > measured_s[1] || end_s < measured_s[0]) {
+        return Err(JoinFailure::Outside { at_s: start_s, duration_s: to_s - from_s, measured_s });
+    }
+    let rest_s = match sent {
+        Some(sent) => [
+            rest_s(sent, start_s, -1.0, LEAD_S.min(start_s - measured_s[0])),
+            rest_s(sent, end_s, 1.0, TAIL_S.min(measured_s[1] - end_s)),
+        ],
+        None => [0.0; 2],
+    };
+    // As logged where that is not what was made, else as made: the log may have it more coarsely.
+    let otherwise = located.is_some_and(|found| !place::is_same(&found));
+    let command = match (commanded, &plan.command, sent) {
+        (_, _, Some(sent)) if otherwise => (sent, 0.0),
+        (true, Some(command), _) => (command, zero_s),
+        _ => (&plan.planned, zero_s),
+    };
+    let names: Vec<&str> = plan.planned.tracks.iter().map(Track::name).collect();
+    let begin_s = start_s - rest_s[0];
+    let samples = instants(end_s + rest_s[1] - begin_s, RATE_HZ)
+        .map(|t_s| t_s + begin_s)
+        .filter(|t_s| (measured_s[0]..=measured_s[1]).contains(t_s))
+        .map(|t_s| PlanSample {
+            stamp_ns: run.source.epoch_ns + nanoseconds(t_s),
+            planned: states(&plan.planned, &names, t_s - zero_s),
+            command: states(command.0, &names, t_s - command.1),
+        })
+        .collect();
+    let received = (run.source.time_base == TimeBase::Header).then_some(run.source.recorder_delay_s);
+    let mut provenance = plan.provenance;
+    // Later readers count from the first measurement: nothing else that they use is earlier.
+    let starts_s = zero_s + plan.starts_s - measured_s[0];
+    provenance.insert(STARTS.to_owned(), starts_s.to_string());
+    let addition = Addition {
+        joints: names.clone(),
+        samples,
+        log_delay_ns: received.flatten().map_or(0, |[middle_s, _]| nanoseconds(middle_s)),
+        files: &plan.files,
+        metadata: (PROVENANCE, provenance),
+    };
+    let messages = join(&inputs.logs, &addition, &inputs.output)?;
+    Ok(Joined {
+        sent: located.map(|_| topic),
+        commanded,
+        located,
+        at_s: start_s,
+        duration_s: to_s - from_s,
+        rest_s,
+        joints: names.len(),
+        messages,
+        files: plan.files.into_iter().map(|file| file.name).collect(),
+        remarks,
+    })
+}
+
+/// What was sent and measured; measured alone where the caller says when the plan began.
+fn read_run(inputs: &Inputs) -> Result<Recording, JoinFailure> {
+    match (read_recording(&inputs.logs, &inputs.read), inputs.at_s) {
+        (Ok(run), _) => Ok(run),
+        (Err(LogError::Missing { missing: "planned", .. }), Some(_)) => {
+            Ok(read_measured(&inputs.logs, &inputs.read)?)
+        }
+        (Err(error @ LogError::Missing { missing: "planned", .. }), None) => {
+            Err(JoinFailure::NothingSent(error))
+        }
+        (Err(error), _) => Err(error.into()),
+    }
+}
+
+/// First and last measurement, s.
+fn measured_s(measured: &Series) -> [f64; 2] {
+    let ends = measured.tracks.iter().filter_map(|track| Some([*track.t_s().first()?, *track.t_s().last()?]));
+    ends.reduce(|[a, b], [from, to]| [a.min(from), b.max(to)]).unwrap_or_default()
+}
+
+/// How long what is sent stays where it is at an instant, before or after it, s.
+fn rest_s(sent: &Series, at_s: f64, direction: f64, most_s: f64) -> f64 {
+    let rests = |away_s: &f64| {
+        sent.tracks.iter().all(|track| {
+            let away_rad = track.held_at(at_s + direction * away_s).position - track.held_at(at_s).position;
+            away_rad.abs() < RESTS_RAD
+        })
+    };
+    instants(most_s.max(0.0), RATE_HZ).take_while(rests).last().unwrap_or(0.0)
+}
+
+/// Angles, rad, and speeds, rad/s, of some joints; a joint that is not in the series holds NaN.
+fn states(series: &Series, names: &[&str], t_s: f64) -> [Vec<f64>; 2] {
+    let of = |name: &&str| {
+        let state = series.track(name).map(|track| track.held_at(t_s));
+        state.map_or((f64::NAN, f64::NAN), |state| (state.position, state.velocity))
+    };
+    let (position_rad, velocity_rad_s) = names.iter().map(of).unzip();
+    [position_rad, velocity_rad_s]
+}
