@@ -66,6 +66,8 @@ pub enum Code {
     NotSupported,
     /// Something that the data do not say, taken from how they look.
     Guessed,
+    /// Links without a mass, whose joints so need no torque.
+    NoMass,
     /// A ceiling so high that it binds nothing.
     InactiveBound,
     /// What was sent to the machine is not what was made to be sent.

@@ -19,6 +19,16 @@ pub fn radians_from_degrees(deg: f64) -> f64 {
     deg.to_radians()
 }
 
+/// An angle, rad, as people read it in messages.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Degrees(pub f64);
+
+impl std::fmt::Display for Degrees {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{:.2} deg", degrees_from_radians(self.0))
+    }
+}
+
 /// Whole nanoseconds, from seconds; those of a log are few.
 #[expect(clippy::cast_possible_truncation, reason = "a log lasts less than centuries")]
 pub fn nanoseconds(t_s: f64) -> i64 {

@@ -94,11 +94,13 @@ fn the_front_as_json_has_what_scripts_need_and_remarks_go_to_standard_error() {
 fn the_same_seed_gives_the_same_bytes_on_one_thread_and_on_three() {
     let folder = tempfile::tempdir().unwrap();
     let run = |threads: &str| {
-        let log = folder.path().join(format!("plan-{threads}.mcap"));
+        let log = folder.path().join("plan.mcap");
         let done = plan(&[TASK_1, "--evaluations", "1500", "-o", log.to_str().unwrap()], threads);
         (done.stdout, fs::read(log).unwrap())
     };
-    assert_eq!(run("1"), run("3"));
+    let (one, three) = (run("1"), run("3"));
+    assert_eq!(String::from_utf8(one.0), String::from_utf8(three.0));
+    assert!(one.1 == three.1, "the logs differ");
 }
 
 #[test]
@@ -200,5 +202,33 @@ fn the_front_grows_on_the_way_and_ends_with_the_hypervolume_told() {
     for pair in way.windows(2) {
         assert!(of(&pair[0], "evaluations") < of(&pair[1], "evaluations"));
         assert!(of(&pair[0], "hypervolume") <= of(&pair[1], "hypervolume"));
+    }
+}
+
+#[test]
+fn no_plan_that_is_offered_breaks_a_limit_between_the_instants_that_a_search_looks_at() {
+    // A pump so small that its flow is what binds: it peaks, with kinks, between those instants.
+    let folder = tempfile::tempdir().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    fs::copy(root.join("sample-logs/arm/arm.urdf"), folder.path().join("arm.urdf")).unwrap();
+    let pump = "pump_flow_m3_s = 1.2e-4";
+    let small = edited(folder.path(), "sample-logs/arm/hydraulics.toml", "pump_flow_m3_s = 6.6667e-4", pump);
+    fs::rename(small, folder.path().join("hydraulics.toml")).unwrap();
+    let arm = "arm = \"arm.urdf\"\nhydraulics = \"hydraulics.toml\"";
+    let task = edited(folder.path(), TASK_1, "arm = \"sample\"", arm);
+    let task = task.to_str().unwrap();
+    for (rule, flow) in [("fastest", 0.99), ("ideal", 0.0)] {
+        let found = plan(&[task, "--choose", rule, "--evaluations", "4000", "--json"], "2");
+        let document = json(&found);
+        let offered = document["front"].as_array().unwrap().iter().step_by(40).chain([&document["chosen"]]);
+        for one in offered {
+            let times: Vec<String> =
+                one["times_s"].as_array().unwrap().iter().map(ToString::to_string).collect();
+            let judged = plan(&[task, "--times", &times.join(",")], "2");
+            assert_eq!(judged.status.code(), Some(0), "{times:?}: {}", stdout(&judged));
+        }
+        let limits = document["chosen"]["margins"].as_array().unwrap();
+        let used = limits.iter().find(|limit| limit["limit"] == "pump_flow").unwrap();
+        assert!(used["share"].as_f64().unwrap() >= flow, "{used}");
     }
 }

@@ -73,6 +73,12 @@ impl Chain {
         self.joints.len()
     }
 
+    /// Joints that turn nothing that weighs: the file gives no link beyond them a mass.
+    pub fn weightless(&self) -> Vec<&str> {
+        let loaded = self.bodies.iter().rposition(|body| body.mass_kg() > 0.0).map_or(0, |last| last + 1);
+        self.joints.iter().skip(loaded).map(|joint| joint.name.as_str()).collect()
+    }
+
     /// Name of the link whose frame is the tool's.
     pub fn tool_name(&self) -> &str {
         &self.tool_name

@@ -4,6 +4,8 @@ use std::fmt::Display;
 
 use thiserror::Error;
 
+use crate::units::Degrees;
+
 /// Why a description is refused, or a pose not reached.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -49,7 +51,7 @@ pub enum ArmError {
         tools: Vec<String>,
     },
     /// No posture within the limits has the tool there; what the nearest attempt leaves.
-    #[error("the tool pose is out of reach by {distance_m:.4} m and {angle_rad:.4} rad")]
+    #[error("the tool pose is out of reach by {distance_m:.4} m and {}", Degrees(*angle_rad))]
     Unreachable {
         /// Remaining distance, m.
         distance_m: f64,

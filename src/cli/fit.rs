@@ -8,13 +8,17 @@ use super::{
     output::{deliver, say_remarks, shown, spare_inputs},
 };
 use crate::{
-    report::{fit_json, fit_parts, limits_toml},
+    report::{fit_json, fit_parts, limits_toml, limits_written, noted},
     workflow::fit::{Fitted, Inputs, run as fit},
 };
 
 pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     let fitted = fitted(args)?;
-    let rendered = if args.json { fit_json(&fitted) } else { shown(&fit_parts(&fitted), None) };
+    let rendered = match &args.output {
+        _ if args.json => fit_json(&fitted),
+        Some(path) => shown(&noted(fit_parts(&fitted), limits_written(path, &args.logs)), None),
+        None => shown(&fit_parts(&fitted), None),
+    };
     deliver(&rendered, None, out)?;
     if args.json {
         say_remarks(&fitted.remarks, err);

@@ -14,7 +14,8 @@ use crate::{
     moea::{Budget, Contender},
     plan::Progress,
     report::{
-        broken_lines, ceiling_lines, judged_json, judged_page, judged_parts, plan_json, plan_page, plan_parts,
+        Part, broken_lines, ceiling_lines, judged_json, judged_page, judged_parts, noted, plan_json,
+        plan_page, plan_parts, plan_written,
     },
     workflow::{
         plan::{Course, Gauge, Judged, Options, Order, PlanFailure, Planned, run as search},
@@ -43,7 +44,7 @@ fn judge(args: &PlanArgs, order: &Order, times_s: &[f64], out: &mut impl Write) 
     } else if args.html {
         judged_page(title, &joints, &judged, &course(order, &judged)?)
     } else {
-        shown(&judged_parts(title, &joints, &judged), None)
+        shown(&written(args, judged_parts(title, &joints, &judged)), None)
     };
     deliver(&rendered, args.page(), out)?;
     Ok(if judged.broken().is_empty() { Outcome::Clean } else { Outcome::GateFailed })
@@ -62,13 +63,21 @@ fn plan(
     } else if args.html {
         plan_page(title, algorithm, &options, bounds, &planned, &course(order, &planned.chosen)?)
     } else {
-        shown(&plan_parts(title, algorithm, &options, bounds, &planned), None)
+        shown(&written(args, plan_parts(title, algorithm, &options, bounds, &planned)), None)
     };
     deliver(&rendered, args.page(), out)?;
     if args.json || args.html {
         say_remarks(&planned.remarks, err);
     }
     Ok(if planned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}
+
+/// Says where the log is, if there is one.
+fn written(args: &PlanArgs, parts: Vec<Part>) -> Vec<Part> {
+    match args.log() {
+        Some(log) => noted(parts, plan_written(log)),
+        None => parts,
+    }
 }
 
 /// What a search found, as it was written.

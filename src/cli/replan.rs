@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     atomic::write_atomically,
-    report::{judged_json, replan_json, replan_parts},
+    report::{judged_json, next_written, noted, replan_json, replan_parts},
     workflow::replan::{Inputs, Replanned, run as replan},
 };
 
@@ -27,7 +27,11 @@ pub(super) fn run(
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
     let replanned = replanned(args)?;
-    let rendered = if args.json { replan_json(&replanned) } else { shown(&replan_parts(&replanned), None) };
+    let rendered = match &args.output {
+        _ if args.json => replan_json(&replanned),
+        Some(path) => shown(&noted(replan_parts(&replanned), next_written(path, &args.logs)), None),
+        None => shown(&replan_parts(&replanned), None),
+    };
     deliver(&rendered, None, out)?;
     if args.json {
         say_remarks(&replanned.remarks, err);

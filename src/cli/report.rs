@@ -11,7 +11,7 @@ use crate::{
     atomic::write_atomically,
     report::{gate_lines, markdown, report_figures, report_json, report_page, report_parts, transitions_csv},
     workflow::{
-        fit::read_limits,
+        fit::{LimitsFile, read_limits},
         report::{Inputs, Report, run as analyse},
     },
 };
@@ -43,7 +43,7 @@ pub(super) fn run(
     } else if args.format.csv {
         transitions_csv(&report)
     } else if args.format.html {
-        let limits = args.limits.as_deref().map(read_limits).transpose()?;
+        let limits = args.limits.as_deref().map(|path| limits(path, &report)).transpose()?;
         let fit = limits.as_ref().map(|file| &file.fit);
         report_page(&name, &report, fit, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
     } else if args.format.markdown {
@@ -68,6 +68,13 @@ pub(super) fn run(
         return Ok(Outcome::GateFailed);
     }
     Ok(if report.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}
+
+/// The machine for the page, which must be that of the run.
+fn limits(path: &Path, report: &Report) -> Result<LimitsFile, CliError> {
+    let file = read_limits(path)?;
+    file.check_joints(path, report.pairs.iter().map(|pair| pair.name.as_str()))?;
+    Ok(file)
 }
 
 /// The plots of the page, one file each.

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::units::Degrees;
+
 /// Why there is no fit, no prediction, or no run to make a fit from.
 #[derive(Debug, Clone, Error, PartialEq)]
 #[non_exhaustive]
@@ -9,7 +11,8 @@ pub enum FitError {
     /// No joint has enough motion.
     #[error(
         "no joint can be fitted: {logs} logs have {shared} joints both sent and measured, of which none is \
-         sent through {least_travel_rad} rad or more; give a log of a run in which the joints move"
+         sent through {} or more; give a log of a run in which the joints move",
+        Degrees(*least_travel_rad)
     )]
     NothingMoves {
         /// Number of logs.
@@ -32,6 +35,18 @@ pub enum FitError {
         least: f64,
         /// Largest value.
         most: f64,
+    },
+    /// Logs of different arms.
+    #[error(
+        "{log} has the joints {found}, the logs before it {known}: not one in common, so they are of two machines; fit them apart"
+    )]
+    OtherArm {
+        /// The log.
+        log: String,
+        /// Its joints.
+        found: String,
+        /// Those of the logs before it.
+        known: String,
     },
     /// A joint that the fit leaves out.
     #[error("the fit has no joint {joint}; it has {known}")]
@@ -65,8 +80,8 @@ pub enum FitError {
     },
     /// A joint without room for the run.
     #[error(
-        "joint {joint} starts at {home_rad} rad and may go from {lowest_rad} to {highest_rad} rad; \
-         {travel_rad} rad either way do not fit: start elsewhere or ask for less"
+        "joint {joint} starts at {} and may go from {} to {}; {} either way do not fit: start elsewhere or ask for less",
+        Degrees(*home_rad), Degrees(*lowest_rad), Degrees(*highest_rad), Degrees(*travel_rad)
     )]
     NoRoom {
         /// The joint.

@@ -77,6 +77,8 @@ pub struct JointCompensation {
     pub compensated_rms_rad: Option<f64>,
     /// Largest distance of command and plan, rad.
     pub peak_correction_rad: f64,
+    /// Whether the correction was cut off at [`Compensation::most_rad`]: a larger one would take more away.
+    pub cut_off: bool,
     /// Lowest and highest angle of the command, rad.
     pub range_rad: [f64; 2],
     /// Largest speed of the command, rad/s.
@@ -111,10 +113,14 @@ pub fn compensate(fit: &Fit, plan: &Series, settings: Compensation) -> Result<Co
         let planned = grid(track)?;
         let known = fit.joint(track.name());
         let trusted = known.filter(|joint| joint.trusted() && settings.gain > 0.0);
-        let sent = trusted.map(|joint| corrected(&joint.model, &planned, settings));
+        let (sent, cut_off) = trusted
+            .map(|joint| corrected(&joint.model, &planned, settings))
+            .map_or((None, false), |made| (Some(made.0), made.1));
         let built = sent.and_then(|sent| Some((on_grid(track, &sent)?, sent)));
         let sent = built.as_ref().map_or(&planned, |(_, sent)| sent);
-        joints.push(account(track.name(), known, &planned, sent, built.is_some()));
+        let applied = built.is_some();
+        let cut_off = applied && cut_off;
+        joints.push(JointCompensation { cut_off, ..account(track.name(), known, &planned, sent, applied) });
         tracks.push(built.map_or_else(|| track.clone(), |(track, _)| track));
     }
     Ok(Compensated { command: Series { tracks }, joints })
@@ -129,8 +135,8 @@ fn on_grid(plan: &Track, sent: &[(f64, f64)]) -> Option<Track> {
     Track::new(plan.name(), t_s, position_rad, &[]).ok()?.with_velocity(velocity_rad_s).ok()
 }
 
-/// The plan with a correction that brings the predicted response onto it.
-fn corrected(model: &Model, planned: &[(f64, f64)], settings: Compensation) -> Vec<(f64, f64)> {
+/// The plan with a correction that brings the predicted response onto it, and whether that was cut off.
+fn corrected(model: &Model, planned: &[(f64, f64)], settings: Compensation) -> (Vec<(f64, f64)>, bool) {
     let n = planned.len();
     let ahead = steps_in(model.lag_s() + BEYOND_LAG_S);
     let rests = planned.iter().position(|planned| planned.1.abs() > MOVES_RAD_S).unwrap_or(0);
@@ -159,7 +165,8 @@ fn corrected(model: &Model, planned: &[(f64, f64)], settings: Compensation) -> V
     }
     // The rounds would make up for a smaller gain.
     send(planned, &best.1, settings.gain, &mut sent);
-    sent
+    let cut_off = best.1.iter().any(|correction| correction.abs() >= settings.most_rad);
+    (sent, cut_off)
 }
 
 /// Plan and correction with the speed that belongs to their sum.
@@ -214,6 +221,7 @@ fn account(
         applied,
         plain_rms_rad: rms_rad(planned),
         compensated_rms_rad: rms_rad(sent),
+        cut_off: false,
         peak_correction_rad: most(&mut sent.iter().zip(planned).map(|(sent, planned)| sent.0 - planned.0)),
         range_rad: [least, highest],
         peak_speed_rad_s: speed(sent),

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::{
     Evaluator, Setup, Timing,
     descend::{COARSE, FINE, Goal, Merit, NEARLY, descend},
+    exact,
     front::best_of,
 };
 use crate::{
@@ -115,7 +116,11 @@ pub fn choose(
             };
             let end = descend(setup, &mut evaluator, &nearest.interval_s, &goal);
             used = end.evaluations;
-            end.timing.filter(|timing| timing.violation <= 0.0).unwrap_or_else(|| nearest.clone())
+            let (exact, more) =
+                end.timing.map_or((None, 0), |timing| exact::kept(setup, timing, goal.merit, goal.ceilings));
+            used += more;
+            let nearer = |timing: &Timing| timing.violation <= 0.0 && excess(timing) < excess(nearest);
+            exact.filter(nearer).unwrap_or_else(|| nearest.clone())
         })
     } else {
         None
@@ -139,7 +144,9 @@ pub fn choose(
     let goal = Goal { merit, ceilings: own, evaluations: LAST, trust: NEARLY, enough: FINE };
     let end = descend(setup, &mut evaluator, &picked.interval_s, &goal);
     used += end.evaluations;
-    let better = end.timing.filter(|timing| {
+    let (exact, more) = end.timing.map_or((None, 0), |timing| exact::kept(setup, timing, merit, own));
+    used += more;
+    let better = exact.filter(|timing| {
         timing.violation <= 0.0 && excess(timing) <= 1.0 && worth(merit, timing) < worth(merit, picked)
     });
     let timing = better.unwrap_or_else(|| picked.clone());

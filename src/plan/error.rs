@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::{arm::ArmError, moea::MoeaError, spline::SplineError};
+use crate::{arm::ArmError, moea::MoeaError, spline::SplineError, units::Degrees};
 
 /// Why a task does not fit its arm, or cannot be searched.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -28,8 +28,8 @@ pub enum PlanError {
     },
     /// A key point outside a joint's range: no timing helps.
     #[error(
-        "key point {point} has {joint} at {found_rad:.4} rad, its range is {lowest_rad:.4} to \
-         {highest_rad:.4} rad; move the key point or widen the range"
+        "key point {point} has {joint} at {}, its range is {} to {}; move the key point or widen the range",
+        Degrees(*found_rad), Degrees(*lowest_rad), Degrees(*highest_rad)
     )]
     PointOutside {
         /// Number of the key point, from 1.

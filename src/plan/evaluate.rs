@@ -141,8 +141,10 @@ impl Evaluator {
             let (joint, k) = (row / width, row % width);
             match SPLINES.get(k).filter(|_| joint < joints) {
                 Some(&quantity) => self.of_spline(setup, joint, quantity, peaks),
-                None if joint < joints => self.sampled(joint * LOADED + k - SPLINES.len(), peaks),
-                None => self.sampled(joints * LOADED + row - joints * width, peaks),
+                None if joint < joints => {
+                    self.sampled(joint * LOADED + k - SPLINES.len(), setup.slack[row], peaks)
+                }
+                None => self.sampled(joints * LOADED + row - joints * width, setup.slack[row], peaks),
             }
             self.shares[row] = peaks.iter().fold(0.0, |most, peak| most.max(*peak));
         }
@@ -199,8 +201,8 @@ impl Evaluator {
         if greatest { found.greatest.value } else { found.least.value }
     }
 
-    /// Shares of a sampled row by piece: by the parabola through the largest and its neighbours.
-    fn sampled(&self, row: usize, peaks: &mut [f64]) {
+    /// Shares of a sampled row by piece: by the parabola through the largest and its neighbours, with some slack.
+    fn sampled(&self, row: usize, slack: f64, peaks: &mut [f64]) {
         let (mesh, values) = (&self.mesh, self.mesh.row(row));
         for ((piece, nodes), shares) in values.chunks_exact(LANES).enumerate().zip(peaks.chunks_exact_mut(2))
         {
@@ -216,7 +218,7 @@ impl Evaluator {
                     (mesh.t_s[i], values[i])
                 }))
                 .1
-            });
+            }) * slack;
         }
     }
 }

@@ -66,3 +66,13 @@ pub struct Margin {
     /// When, s.
     pub t_s: f64,
 }
+
+/// A limit is broken from here on; rounding is no break.
+const BROKEN: f64 = 1.0 + 1e-9;
+
+impl Margin {
+    /// Whether the limit is broken.
+    pub fn broken(&self) -> bool {
+        self.share > BROKEN
+    }
+}

@@ -7,6 +7,7 @@ mod choose;
 mod descend;
 mod error;
 mod evaluate;
+mod exact;
 mod front;
 mod limit;
 mod margin;

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use super::{
     Evaluator, PlanError, Setup, Timing,
     descend::{FAR_OFF, FINE, FREE, Goal, Merit, descend},
+    exact,
     front::{least_broken, population, thinned, timing, timings},
     polish::{self, beats},
     seed::{Seeds, seeds},
@@ -157,6 +158,8 @@ pub fn search(
         thinned(setup, &evolved, search.front)
     };
     front.sort_by(|a, b| a.objectives.duration_s.total_cmp(&b.objectives.duration_s));
+    let (front, more) = exact::kept_front(setup, front, search.front);
+    evaluations += more;
     let _ = observer(&Progress {
         phase: Phase::Polish,
         evaluations,

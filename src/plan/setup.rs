@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Translation3, Vector3};
 
-use super::PlanError;
+use super::{Limit, PlanError};
 use crate::{
     arm::{Arm, Inertia, Load, Pose},
     spline::{Degree, Dwell, Ends, KeyPoints, Motion},
@@ -39,6 +39,9 @@ pub struct Setup {
     pub(super) loads: Vec<Load>,
     /// Shortest and longest interval, s.
     pub(super) interval_s: [f64; 2],
+    /// By row of the limits, what a peak between the instants of an evaluation is larger by; 1 unless that has
+    /// been seen.
+    pub(super) slack: Vec<f64>,
     /// Payload by segment, kg.
     payload_kg: Vec<f64>,
 }
@@ -95,6 +98,7 @@ impl Setup {
             dwell_before_s,
             loads,
             interval_s: task.interval_s,
+            slack: vec![1.0; Limit::rows(joints)],
             payload_kg,
         })
     }

@@ -90,7 +90,10 @@ pub enum PlantError {
         known: String,
     },
     /// Plant and arm do not belong together.
-    #[error("the plant is for the joints {plant}, the arm has {arm}: name the same, in this order")]
+    #[error(
+        "the plant is for the joints {plant}, the arm has {arm}: give a plant file with these joints in this order; \
+         sample-logs/plant/default.toml in the repository is one to start from"
+    )]
     OtherArm {
         /// Joints of the plant.
         plant: String,

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::{NONE, Part, Sheet, deg, tables::remark_parts};
+use super::{NONE, Part, Sheet, compare::probability, counted, deg, tables::remark_parts};
 use crate::workflow::{
-    compare::{Comparison, Measure, Scope, Summary},
+    compare::{Comparison, Measure, Scope, Summary, Verdict},
     fit::Fitted,
     plan::Planned,
     replan::Replanned,
@@ -115,13 +115,19 @@ fn compared(comparison: &Comparison) -> String {
     else {
         return "no transition has a counterpart".to_owned();
     };
+    // Of one run no more can be said where the starts are few.
+    let few = if all.verdict == Verdict::TooFew {
+        format!("; {} are too few for a p below {}", counted(all.events, "event"), all.least_p())
+    } else {
+        format!("; p = {}", probability(all.p_value))
+    };
     format!(
-        "peak error {} -> {} deg in the mean ({:+.0} %), {} of {} smaller",
+        "peak error {} -> {} deg in the mean of {} that both runs have ({:+.0} %), {} smaller{few}",
         deg(before),
         deg(after),
+        counted(all.pairs, "start"),
         100.0 * change,
         all.smaller,
-        all.pairs
     )
 }
 

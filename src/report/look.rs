@@ -1,5 +1,7 @@
 //! What a terminal adds to a text: colours, and an end of the line.
 
+use std::collections::BTreeSet;
+
 use anstyle::{AnsiColor, Style};
 use textwrap::{Options, WordSeparator, WordSplitter};
 
@@ -12,6 +14,8 @@ const DOUBT: Style = AnsiColor::Yellow.on_default();
 
 /// Between two columns of a table.
 const GAP: usize = 2;
+/// Leading columns among which rows are told apart.
+const MOST_KEYS: usize = 5;
 
 /// What a text may use; by default nothing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -59,7 +63,7 @@ impl Look {
         format!("{name}{}", textwrap::wrap(text, options).join(&format!("\n{:indent$}", "")))
     }
 
-    /// A table as tables that fit, each with the first column of the whole.
+    /// A table as tables that fit, each with the columns that tell its rows apart.
     pub(super) fn blocks(self, sheet: &Sheet) -> Vec<Sheet> {
         let cell = |row: &[String], k: usize| row.get(k).map_or(0, |cell| cell.chars().count());
         let widths: Vec<usize> = sheet
@@ -68,22 +72,35 @@ impl Look {
             .enumerate()
             .map(|(k, head)| sheet.rows.iter().map(|row| cell(row, k)).fold(head.chars().count(), usize::max))
             .collect();
-        let (Some(most), Some((first, others))) = (self.width, widths.split_first()) else {
-            return vec![sheet.clone()];
-        };
-        let mut blocks = vec![vec![0]];
-        let mut used = *first;
-        for (k, width) in others.iter().enumerate() {
-            if used + GAP + width > most && used > *first {
-                blocks.push(vec![0]);
-                used = *first;
+        let Some(most) = self.width else { return vec![sheet.clone()] };
+        let keys = keys(sheet);
+        let wide = |columns: &[usize]| -> usize { columns.iter().map(|k| widths[*k] + GAP).sum() };
+        let mut blocks: Vec<Vec<usize>> = vec![Vec::new()];
+        for k in 0..widths.len() {
+            let Some(block) = blocks.last_mut() else { break };
+            let full = wide(block) + widths[k] > most;
+            if full && block.iter().any(|column| !keys.contains(column)) {
+                blocks.push(keys.clone());
             }
-            used += GAP + width;
-            if let Some(block) = blocks.last_mut() {
-                block.push(k + 1);
+            if let Some(block) = blocks.last_mut().filter(|block| !block.contains(&k)) {
+                block.push(k);
             }
         }
         blocks.iter().map(|columns| part_of(sheet, columns)).collect()
+    }
+}
+
+/// The first column, and one more if only together they tell the rows apart; else all columns of words.
+fn keys(sheet: &Sheet) -> Vec<usize> {
+    let distinct = |columns: &[usize]| {
+        let rows = sheet.rows.iter().map(|row| columns.iter().map(|k| row.get(*k)).collect::<Vec<_>>());
+        rows.collect::<BTreeSet<_>>().len() == sheet.rows.len()
+    };
+    let second = (1..sheet.head.len().min(MOST_KEYS)).map(|k| vec![0, k]).find(|columns| distinct(columns));
+    match second {
+        _ if distinct(&[0]) => vec![0],
+        Some(columns) => columns,
+        None => (0..sheet.left.max(1).min(sheet.head.len())).collect(),
     }
 }
 

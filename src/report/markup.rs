@@ -39,6 +39,13 @@ pub(super) const NOT_KEPT: &str = "NOT KEPT";
 /// How a sentence says that a limit is kept.
 pub(super) const KEPT: &str = "kept";
 
+/// With a sentence more, before the doubts.
+pub fn noted(mut parts: Vec<Part>, line: String) -> Vec<Part> {
+    let doubts = parts.iter().position(|part| matches!(part, Part::Heading(title) if title == REMARKS));
+    parts.insert(doubts.unwrap_or(parts.len()), Part::Line(line));
+    parts
+}
+
 /// For a plain file.
 pub fn text(parts: &[Part]) -> String {
     shown(parts, Look::default())

@@ -6,11 +6,12 @@ use thiserror::Error;
 
 use super::{
     plan::{Order, PlanFailure},
+    plan_log::ARM,
     series_log::SeriesLog,
 };
 use crate::{
     fit::{Excitation, FitError, JointRoom, excite},
-    log::WriteError,
+    log::{Attachment, WriteError},
     plan::Setup,
     series::Series,
 };
@@ -58,6 +59,8 @@ pub struct Excited {
     pub excitation: Excitation,
     /// What to send.
     pub command: Series,
+    /// Text of the task whose arm is driven.
+    pub task: Option<String>,
 }
 
 /// Writes the run.
@@ -66,10 +69,14 @@ pub struct Excited {
 ///
 /// [`ExciteFailure`] if the task cannot be read or a joint has no room.
 pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
-    let joints = match &inputs.arm {
-        Arm::Joints(joints) => joints.clone(),
-        Arm::Task(path) => rooms(&Order::read(path)?.setup),
-        Arm::Sample => rooms(&Order::sample()?.setup),
+    let order = match &inputs.arm {
+        Arm::Joints(_) => None,
+        Arm::Task(path) => Some(Order::read(path)?),
+        Arm::Sample => Some(Order::sample()?),
+    };
+    let joints = match (&inputs.arm, &order) {
+        (Arm::Joints(joints), _) => joints.clone(),
+        (_, order) => order.as_ref().map_or_else(Vec::new, |order| rooms(&order.setup)),
     };
     let mut excitation = inputs.excitation.clone();
     for ramp in &mut excitation.ramps {
@@ -77,7 +84,7 @@ pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
     }
     excitation.ramps.dedup_by(|a, b| a.speed_rad_s >= b.speed_rad_s && a.travel_rad <= b.travel_rad);
     let command = excite(&joints, &excitation)?;
-    Ok(Excited { joints, excitation, command })
+    Ok(Excited { joints, excitation, command, task: order.map(|order| order.text) })
 }
 
 /// Every joint about the middle of what its key points ask for, within its range.
@@ -107,13 +114,20 @@ impl Excited {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn log(&self, rate_hz: f64) -> Result<Vec<u8>, WriteError> {
+        // So that whoever runs it knows its arm.
+        let task = self.task.as_ref().map(|text| Attachment {
+            name: ARM.to_owned(),
+            media_type: "application/toml".to_owned(),
+            data: text.as_bytes().to_vec(),
+        });
         let provenance = BTreeMap::from([("made_by".to_owned(), "excite".to_owned())]);
         SeriesLog {
             plan: &self.command,
             command: None,
             arm: None,
             provenance: &provenance,
-            files: &[],
+            trajectory: None,
+            files: task.as_slice(),
             rate_hz,
         }
         .bytes()

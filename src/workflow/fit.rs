@@ -13,6 +13,7 @@ use crate::{
     fit::{Fit, FitError, Observation, fit},
     log::SourceInfo,
     remark::{Code, Remarks},
+    series::Track,
 };
 
 /// What to fit.
@@ -57,6 +58,16 @@ pub enum FitFailure {
         path: PathBuf,
         /// What it says.
         found: String,
+    },
+    /// A file of another arm.
+    #[error("the limits in {} are of the joints {found}, the log has {expected}: not one in common", path.display())]
+    OtherJoints {
+        /// The file.
+        path: PathBuf,
+        /// Its joints.
+        found: String,
+        /// Those of the log.
+        expected: String,
     },
     /// Numbers in a file that no machine has.
     #[error("the limits in {} cannot be used", path.display())]
@@ -138,6 +149,7 @@ pub fn observed(logs: &[PathBuf], wanted: &Wanted) -> Result<Vec<Observed>, Obse
 ///
 /// [`FitError`] if no joint can be fitted.
 pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
+    of_one_arm(logs, observed)?;
     let observations: Vec<Observation<'_>> = observed.iter().map(Observed::observation).collect();
     let fit = fit(&observations)?;
     for joint in &fit.joints {
@@ -178,6 +190,40 @@ pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
     let torques = logs.iter().zip(observed).map(|(path, observed)| torques(path, observed));
     let torques = torques.into_iter().find(|torques| !torques.is_empty()).unwrap_or_default();
     Ok(Fitted { fit, torques, runs, remarks })
+}
+
+/// Every log must share a joint with those before it: a machine is fitted, not several.
+fn of_one_arm(logs: &[PathBuf], observed: &[Observed]) -> Result<(), FitError> {
+    let mut known: Vec<&str> = Vec::new();
+    for (path, observed) in logs.iter().zip(observed) {
+        let own: Vec<&str> = observed.recording.measured.tracks.iter().map(Track::name).collect();
+        if !known.is_empty() && !own.iter().any(|name| known.contains(name)) {
+            let (found, known) = (own.join(", "), known.join(", "));
+            return Err(FitError::OtherArm { log: name(path), found, known });
+        }
+        known.extend(own.into_iter().filter(|name| !known.contains(name)).collect::<Vec<_>>());
+    }
+    Ok(())
+}
+
+impl LimitsFile {
+    /// Checks that a log is of the machine, or of one that shares a joint with it.
+    ///
+    /// # Errors
+    ///
+    /// [`FitFailure::OtherJoints`].
+    pub fn check_joints<'a>(
+        &self,
+        path: &Path,
+        joints: impl Iterator<Item = &'a str> + Clone,
+    ) -> Result<(), FitFailure> {
+        if joints.clone().any(|name| self.fit.joint(name).is_some()) {
+            return Ok(());
+        }
+        let found: Vec<&str> = self.fit.joints.iter().map(|joint| joint.name.as_str()).collect();
+        let (found, expected) = (found.join(", "), joints.collect::<Vec<_>>().join(", "));
+        Err(FitFailure::OtherJoints { path: path.to_owned(), found, expected })
+    }
 }
 
 /// The file's own name.

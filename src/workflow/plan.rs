@@ -16,7 +16,7 @@ use crate::{
         Choice, Evaluator, Margin, NoChoice, Objectives, PlanError, Progress, Rule, Search, Setup, Timing,
         choose, ends, excess, search,
     },
-    remark::Remarks,
+    remark::{Code, Remarks},
     task::{ArmSource, Task, TaskError, Weights},
 };
 
@@ -177,7 +177,8 @@ impl Judged {
         let rms_jerk_rad_s3 = evaluator.rms_jerk_rad_s3().to_vec();
         let (rms_power_w, energy_j) = (evaluator.rms_power_w(), evaluator.energy_j());
         let margins = setup.margins(&motion, &mut evaluator);
-        let violation = margins.iter().map(|margin| excess(margin.share)).sum();
+        let violation =
+            margins.iter().filter(|margin| margin.broken()).map(|margin| excess(margin.share)).sum();
         let times_s = times_s.to_vec();
         Ok(Self {
             times_s,
@@ -193,7 +194,7 @@ impl Judged {
 
     /// Limits that are broken, the worst first.
     pub fn broken(&self) -> Vec<&Margin> {
-        let mut broken: Vec<&Margin> = self.margins.iter().filter(|margin| margin.share > 1.0).collect();
+        let mut broken: Vec<&Margin> = self.margins.iter().filter(|margin| margin.broken()).collect();
         broken.sort_by(|a, b| b.share.total_cmp(&a.share));
         broken
     }
@@ -285,6 +286,14 @@ pub fn run(
         Err(NoChoice::Empty) => return Err(PlanError::Times { found: 0, expected: 1 }.into()),
     };
     let mut remarks = Remarks::default();
+    let weightless = setup.arm().chain.weightless();
+    if !weightless.is_empty() && setup.payload_kg().iter().all(|mass_kg| *mass_kg <= 0.0) {
+        let message = format!(
+            "the arm's file gives no mass to what {} turns: torques and power of nothing",
+            weightless.join(", ")
+        );
+        remarks.add(Code::NoMass, weightless.len() as u64, message);
+    }
     let largest = |k: usize| {
         found.front.iter().map(|timing| timing.objectives.as_array()[k]).fold(0.0, |most: f64, f| most.max(f))
     };

@@ -16,6 +16,8 @@ use crate::{
 
 /// Name of the attached task.
 pub const TASK: &str = "task.toml";
+/// Name of an attached task of which only the arm counts: what the log holds does another thing.
+pub const ARM: &str = "arm.toml";
 /// Name of the attached front.
 pub const FRONT: &str = "plan.json";
 /// Name of the metadata that say where a plan comes from.
@@ -60,7 +62,7 @@ impl PlanLog<'_> {
         log.metadata(PROVENANCE, self.provenance)?;
         let mut arm = ArmLog::begin(&mut log, &self.setup.arm().chain, &joints, START_NS, false)?;
         let coarse = States::of(self.motion, instants(self.motion.duration_s(), TRAJECTORY_HZ).collect());
-        log.trajectory(START_NS, &coarse.points().collect::<Vec<_>>())?;
+        log.trajectory_to_send(START_NS, &coarse.points().collect::<Vec<_>>())?;
         let fine = States::of(self.motion, instants(self.motion.duration_s(), self.rate_hz).collect());
         for point in fine.points() {
             let stamp_ns = START_NS + point.time_from_start_ns;

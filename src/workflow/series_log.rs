@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     arm::Chain,
-    log::{Attachment, LogWriter, Point, Role, WriteError, WriteOptions},
+    log::{Attachment, LogWriter, Point, Role, Topics, WriteError, WriteOptions},
     math::State,
     series::{Series, Track},
     units::nanoseconds,
@@ -26,6 +26,8 @@ pub struct SeriesLog<'a> {
     pub arm: Option<&'a Chain>,
     /// Where it comes from.
     pub provenance: &'a BTreeMap<String, String>,
+    /// Topic of what to send as a trajectory; `None`: ours.
+    pub trajectory: Option<&'a str>,
     /// Files to go with it.
     pub files: &'a [Attachment],
     /// Samples a second.
@@ -40,7 +42,10 @@ impl SeriesLog<'_> {
     /// [`WriteError`] for joint names that no log can hold.
     pub fn bytes(&self) -> Result<Vec<u8>, WriteError> {
         let names: Vec<&str> = self.plan.tracks.iter().map(Track::name).collect();
-        let mut log = LogWriter::new(Vec::new(), &names, WriteOptions::default())?;
+        let ours = Topics::default();
+        let trajectory = self.trajectory.map_or_else(|| ours.trajectory.clone(), str::to_owned);
+        let options = WriteOptions { topics: Topics { trajectory, ..ours }, ..WriteOptions::default() };
+        let mut log = LogWriter::new(Vec::new(), &names, options)?;
         log.metadata(PROVENANCE, self.provenance)?;
         let mut arm = match self.arm {
             Some(chain) => ArmLog::begin(&mut log, chain, &names, START_NS, false)?,
@@ -60,7 +65,7 @@ impl SeriesLog<'_> {
                 time_from_start_ns: nanoseconds(*t_s),
             })
             .collect();
-        log.trajectory(START_NS, &points)?;
+        log.trajectory_to_send(START_NS, &points)?;
         for t_s in instants(end_s, self.rate_hz) {
             let stamp_ns = START_NS + nanoseconds(t_s);
             let [position_rad, velocity_rad_s] = states(self.plan, &names, t_s);

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::{
     plan::{PlanFailure, arm_of},
-    plan_log::{FRONT, TASK, chosen_times_s},
+    plan_log::{ARM, FRONT, TASK, chosen_times_s},
     schedule::starts_s,
     simulate::{Inputs, Outputs, run},
 };
@@ -45,6 +45,20 @@ pub enum SimulateFailure {
     /// The task on its arm.
     #[error("the task in the log does not fit its plan")]
     Setup(#[from] PlanError),
+    /// No arm but the sample's, which has other joints.
+    #[error(
+        "{} holds no task and so no arm; its joints are {found}, those of the sample arm {sample}. Give a log of \
+         `plan`, `replan --task` or `excite --task`",
+        path.display()
+    )]
+    NoArm {
+        /// The plan's log.
+        path: PathBuf,
+        /// Its joints.
+        found: String,
+        /// Those of the sample arm.
+        sample: String,
+    },
     /// The machine.
     #[error(transparent)]
     Plant(#[from] PlantError),
@@ -132,8 +146,8 @@ pub fn prepare(path: &Path, parameters: Parameters, seed: u64) -> Result<Prepare
     let attached = |name: &str| plan.attachments.iter().find(|file| file.name == name);
     let starts_s = LEAD_S + starts_s(&plan.metadata).unwrap_or(0.0);
     let folder = path.parent().unwrap_or(Path::new(""));
-    let (arm, payload) = match attached(TASK) {
-        None => (Arm::sample().map_err(PlanFailure::from)?, Vec::new()),
+    let (arm, payload) = match attached(TASK).or_else(|| attached(ARM)) {
+        None => (sample_arm(path, &plan.planned)?, Vec::new()),
         Some(file) => {
             let text = String::from_utf8_lossy(&file.data);
             let named = |source| SimulateFailure::Task { path: path.to_owned(), source };
@@ -150,8 +164,20 @@ pub fn prepare(path: &Path, parameters: Parameters, seed: u64) -> Result<Prepare
     let command = command.map_or(Ok(planned.clone()), |command| with_rests(&command.planned))?;
     let plant = Plant::new(&arm, parameters)?;
     let inputs = Inputs { plant, plan: planned, command, payload, seed };
-    let attachments = [TASK, FRONT].into_iter().filter_map(attached).cloned().collect();
+    let attachments = [TASK, ARM, FRONT].into_iter().filter_map(attached).cloned().collect();
     Ok(Prepared { inputs, attachments, commanded, starts_s, arm })
+}
+
+/// The sample arm, for a log that names no other and whose joints are its.
+fn sample_arm(path: &Path, planned: &Series) -> Result<Arm, SimulateFailure> {
+    let arm = Arm::sample().map_err(PlanFailure::from)?;
+    let names: Vec<&str> = arm.chain.joints().iter().map(|joint| joint.name.as_str()).collect();
+    if names.iter().all(|name| planned.track(name).is_some()) {
+        return Ok(arm);
+    }
+    let found: Vec<&str> = planned.tracks.iter().map(Track::name).collect();
+    let (found, sample) = (found.join(", "), names.join(", "));
+    Err(SimulateFailure::NoArm { path: path.to_owned(), found, sample })
 }
 
 /// What the tool carries, and from when on, rests counted.

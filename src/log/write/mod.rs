@@ -202,6 +202,21 @@ impl<W: Write> LogWriter<W> {
     /// [`WriteError::LengthMismatch`], [`WriteError::NotIncreasing`], [`WriteError::TimeRange`]
     /// or [`WriteError::Output`].
     pub fn trajectory(&mut self, stamp_ns: i64, points: &[Point]) -> Result<(), WriteError> {
+        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
+        self.plan(stamp, points)
+    }
+
+    /// As [`trajectory`](Self::trajectory), but one that starts when it is received, as its stamp of zero says:
+    /// for plans that are yet to be sent. `received_ns` is its place in the log.
+    ///
+    /// # Errors
+    ///
+    /// As [`trajectory`](Self::trajectory).
+    pub fn trajectory_to_send(&mut self, received_ns: i64, points: &[Point]) -> Result<(), WriteError> {
+        self.plan(Stamp::unset(received_ns)?, points)
+    }
+
+    fn plan(&mut self, stamp: Stamp, points: &[Point]) -> Result<(), WriteError> {
         let mut previous_ns = None;
         for (index, point) in points.iter().enumerate() {
             point.check(self.joint_names.len())?;
@@ -210,7 +225,6 @@ impl<W: Write> LogWriter<W> {
                 return Err(WriteError::NotIncreasing { index, previous_ns, next_ns });
             }
         }
-        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         message::encode_header(&mut self.cdr, stamp, &self.joint_names);
         message::encode_trajectory(&mut self.cdr, points)?;
         self.channels.trajectory.send(&mut self.mcap, stamp, self.cdr.bytes())?;

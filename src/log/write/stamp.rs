@@ -21,6 +21,11 @@ impl Stamp {
         Ok(Self { seconds, nanoseconds, log_time_ns })
     }
 
+    /// No stamp at all: what it stands on counts from when it is received.
+    pub(super) fn unset(received_ns: i64) -> Result<Self, WriteError> {
+        Ok(Self { seconds: 0, nanoseconds: 0, ..Self::new(received_ns, 0)? })
+    }
+
     pub(super) fn encode(self, cdr: &mut Cdr) {
         cdr.i32(self.seconds);
         cdr.u32(self.nanoseconds);

@@ -53,8 +53,10 @@ fn verdict(peak: &Summary) -> String {
             format!("The peak error at transitions is the same in {}; p = 1.", counted(peak.pairs, "pair"))
         }
         Verdict::TooFew => format!(
-            "Whether the peak error at transitions changed cannot be told from {}: {numbers}; {counts}.",
-            counted(peak.events, "event")
+            "Whether the peak error at transitions changed cannot be told from {}, of which no p is below {}: {numbers}; \
+             {counts}.",
+            counted(peak.events, "event"),
+            probability(peak.least_p())
         ),
     }
 }

@@ -209,11 +209,12 @@ fn how(comparison: &Comparison) -> Vec<(String, String)> {
     let exact = comparison.summaries.iter().all(|s| s.p_is_exact);
     let runs = comparison.before.len().min(comparison.after.len());
     let luck = if runs > 1 {
-        "values are means over the runs of a side; p and interval go by the spread over transitions"
+        "values are means over the runs of a side, which evens out what differs from run to run; p and interval go by \
+         the spread over transitions, so that more runs give no more events"
             .to_owned()
     } else {
         "p and interval go by the spread over the transitions of these runs; what differs from run to run (oil, \
-         load) only repeats show (--more-before, --more-after)"
+         load) is evened out by repeats (--more-before, --more-after)"
             .to_owned()
     };
     vec![
@@ -232,7 +233,8 @@ fn how(comparison: &Comparison) -> Vec<(String, String)> {
         fact(
             "p",
             format!(
-                "Wilcoxon signed-rank, two-sided, {}; a verdict below {}, not corrected for the number of rows",
+                "Wilcoxon signed-rank, two-sided, {}; a verdict below {}, which takes six events at least; not \
+                 corrected for the number of rows",
                 if exact { "exact" } else { "exact up to 25 events, normal approximation above" },
                 rules.significance
             ),

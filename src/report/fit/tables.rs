@@ -117,6 +117,12 @@ pub(in crate::report) fn machine_parts(fit: &Fit) -> Vec<Part> {
     let mut parts = vec![
         Part::Heading("Closed loop".into()),
         sheet(&fit.joints, &LOOP, true),
+        Part::Line(
+            "Held-out R2: share of the tracking error that is predicted where it was not fitted; unexplained: what is \
+             then left after a start, mean of the peaks. Dead band: speed that must be wanted before the joint leaves \
+             rest; floor: the error that is not enough for it; gain: speed wanted by error; feed-forward: by speed sent."
+                .into(),
+        ),
         Part::Heading("Limits".into()),
         sheet(&fit.joints, &LIMITS, false),
         Part::Line("+ for growing, - for shrinking angles; >= was reached and is no limit; (brackets): prior, not data.".into()),

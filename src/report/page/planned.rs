@@ -135,7 +135,7 @@ fn joint_motion(joint: &str, t_s: &[f64], angle_rad: &[f64], speed_rad_s: &[f64]
 }
 
 fn limits(judged: &Judged, joints: &[String]) -> Markup {
-    let kept: Vec<bool> = judged.margins.iter().map(|margin| margin.share <= 1.0).collect();
+    let kept: Vec<bool> = judged.margins.iter().map(|margin| !margin.broken()).collect();
     let line = format!("Nearest: {}", limit_cell(judged, joints));
     verdict(&kept, &[line], "")
 }

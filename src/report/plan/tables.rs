@@ -54,7 +54,11 @@ pub fn plan_parts(
     }
     parts.push(Part::Heading("The chosen plan".into()));
     parts.push(Part::Line(reason(bounds, planned)));
+    parts.push(Part::Line(
+        "Another: --choose fastest, smoothest, thriftiest, knee or ideal, --weights, or ceilings in the task.".into(),
+    ));
     parts.extend(margin_parts(&planned.chosen, &planned.joints));
+    parts.push(Part::Line(kept(&planned.chosen)));
     remark_parts(&planned.remarks, &mut parts);
     parts
 }
@@ -71,13 +75,15 @@ pub fn judged_parts(title: &str, joints: &[String], judged: &Judged) -> Vec<Part
         Part::Line(format!("The joints do and take up {:.0} J of work together.", judged.energy_j)),
     ];
     parts.extend(margin_parts(judged, joints));
-    let broken = judged.broken();
-    parts.push(Part::Line(if broken.is_empty() {
-        "All limits are kept.".to_owned()
-    } else {
-        format!("{} of {} limits are broken.", broken.len(), judged.margins.len())
-    }));
+    parts.push(Part::Line(kept(judged)));
     parts
+}
+
+fn kept(judged: &Judged) -> String {
+    match judged.broken().len() {
+        0 => "All limits are kept.".to_owned(),
+        broken => format!("{broken} of {} limits are broken.", judged.margins.len()),
+    }
 }
 
 fn row(name: &str, judged: &Judged, joints: &[String]) -> Vec<String> {
@@ -116,7 +122,7 @@ fn percent(share: f64) -> String {
 /// Limits, the nearest first. A range that is used most at a key point says nothing of the plan.
 fn nearest(judged: &Judged) -> Vec<&Margin> {
     let at_point = |margin: &Margin| judged.times_s.iter().any(|t_s| (t_s - margin.t_s).abs() < AT_POINT_S);
-    let given = |margin: &Margin| margin.limit == Limit::Position && margin.share <= 1.0 && at_point(margin);
+    let given = |margin: &Margin| margin.limit == Limit::Position && !margin.broken() && at_point(margin);
     let mut nearest: Vec<&Margin> = judged.margins.iter().filter(|margin| !given(margin)).collect();
     nearest.sort_by(|a, b| b.share.total_cmp(&a.share));
     nearest
@@ -190,17 +196,20 @@ fn margin_parts(judged: &Judged, joints: &[String]) -> Vec<Part> {
         row.extend(Limit::OF_JOINT.map(|limit| share(limit, Some(j))));
         row
     });
-    let listed = nearest(judged).into_iter().take(NEAREST.max(judged.broken().len())).map(|margin| {
+    let nearest: Vec<&Margin> =
+        nearest(judged).into_iter().take(NEAREST.max(judged.broken().len())).collect();
+    let listed_position = nearest.iter().any(|margin| margin.limit == Limit::Position);
+    let listed = nearest.into_iter().map(|margin| {
         vec![
             subject(margin, joints),
             shown(margin.limit, margin.value),
-            shown(margin.limit, margin.allowed),
+            allowed(margin),
             percent(margin.share),
             format!("{:.2}", margin.t_s),
         ]
     });
-    vec![
-        Part::Heading("Use of each limit, %".into()),
+    let mut parts = vec![
+        Part::Heading("Jerk, power, and use of each limit in %".into()),
         Part::Sheet(Sheet {
             head: vec![
                 "joint",
@@ -228,7 +237,24 @@ fn margin_parts(judged: &Judged, joints: &[String]) -> Vec<Part> {
             left: 1,
             rows: listed.collect(),
         }),
-    ]
+    ];
+    if listed_position {
+        parts.push(Part::Line(
+            "Of a position, used is the way from the middle of its range to the end.".into(),
+        ));
+    }
+    parts
+}
+
+/// What is allowed; of a range the end that is nearer, and on which side of it.
+fn allowed(margin: &Margin) -> String {
+    let most = shown(margin.limit, margin.allowed);
+    let kept = margin.broken() != (margin.value <= margin.allowed);
+    match (margin.limit, kept) {
+        (Limit::Position, true) => format!("<= {most}"),
+        (Limit::Position, false) => format!(">= {most}"),
+        _ => most,
+    }
 }
 
 /// What the nearest timing of an infeasible task breaks, a line each, the worst first.

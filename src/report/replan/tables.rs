@@ -2,6 +2,7 @@
 
 use super::{OF_COMMAND, joint_name};
 use crate::{
+    log::Topics,
     plan::Margin,
     report::{NONE, Part, Sheet, counted, deg, plan, tables::remark_parts},
     units::degrees_from_radians,
@@ -35,7 +36,7 @@ pub fn replan_parts(replanned: &Replanned) -> Vec<Part> {
                 "held-out R2",
                 "gain",
                 "off plan deg",
-                "error now deg",
+                "rms error deg",
                 "then deg",
                 "speed x",
                 "acceleration x",
@@ -43,6 +44,12 @@ pub fn replan_parts(replanned: &Replanned) -> Vec<Part> {
             left: 1,
             rows: command.joints.iter().map(|joint| command_row(replanned, joint)).collect(),
         }));
+        parts.push(Part::Line(
+            "Rms errors are predicted, of the plan sent as it is and then of the command; speed x and acceleration x are \
+             the command's peaks by those of the plan."
+                .into(),
+        ));
+        parts.extend(cut_off(&command.joints).map(Part::Line));
         parts.push(Part::Line(nearest(replanned, &command.margins)));
     }
     if let Some(search) = &replanned.search {
@@ -76,7 +83,7 @@ fn expected(replanned: &Replanned) -> Part {
         error("worst transition peak deg", before.measured_worst_peak_rad, |p| p.worst_peak_rad),
         error("sum of peaks deg", None, |p| p.sum_of_peaks_rad),
         vec![
-            "starts and reversals".into(),
+            "starts + reversals".into(),
             before.measured_transitions.to_string(),
             format!("{} + {}", now.starts, now.reversals),
             format!("{} + {}", after.starts, after.reversals),
@@ -134,13 +141,18 @@ fn levers(replanned: &Replanned) -> Vec<(String, String)> {
         let applied = joints.iter().filter(|joint| joint.compensation.applied && joint.gain > 0.0);
         let most = joints.iter().map(|joint| joint.compensation.peak_correction_rad).fold(0.0, f64::max);
         format!(
-            "pre-compensated on {} of {}, up to {} deg off the plan; send /command, judge against /planned",
+            "pre-compensated on {} of {}, up to {} deg off the plan",
             applied.count(),
             counted(joints.len(), "joint"),
             deg(most)
         )
     });
-    vec![("plan".into(), plan), ("command".into(), command)]
+    let ours = Topics::default();
+    let trajectory = replanned.trajectory.as_deref().unwrap_or(&ours.trajectory);
+    let samples = if replanned.command.is_some() { &ours.command } else { &ours.planned };
+    let send =
+        format!("{samples}, or the same as a trajectory, {trajectory}; judge against {}", ours.planned);
+    vec![("plan".into(), plan), ("command".into(), command), ("send".into(), send)]
 }
 
 fn command_row(replanned: &Replanned, joint: &JointCommand) -> Vec<String> {
@@ -157,6 +169,18 @@ fn command_row(replanned: &Replanned, joint: &JointCommand) -> Vec<String> {
         format!("{:.2}", made.speed_ratio),
         format!("{:.2}", made.acceleration_ratio),
     ]
+}
+
+/// Which corrections would have been larger.
+fn cut_off(joints: &[JointCommand]) -> Option<String> {
+    let all: Vec<&JointCommand> = joints.iter().filter(|joint| joint.compensation.cut_off).collect();
+    let most = all.iter().map(|joint| joint.compensation.peak_correction_rad).reduce(f64::max)?;
+    let names: Vec<&str> = all.iter().map(|joint| joint.compensation.name.as_str()).collect();
+    Some(format!(
+        "Cut off at {} deg, gain counted, on {}: with a larger --max-correction-deg more of the error is expected to go.",
+        deg(most),
+        names.join(", ")
+    ))
 }
 
 fn nearest(replanned: &Replanned, margins: &[Margin]) -> String {

@@ -88,6 +88,13 @@ pub struct Summary {
     pub verdict: Verdict,
 }
 
+impl Summary {
+    /// The least p that so many events can have: that of all of one sign.
+    pub fn least_p(&self) -> f64 {
+        0.5_f64.powi(i32::try_from(self.events.saturating_sub(1)).unwrap_or(i32::MAX))
+    }
+}
+
 /// Every measure over all transitions, over starts from rest where there are others, and by joint.
 pub(super) fn summaries(pairs: &[TransitionPair], joints: &[String], rules: &Rules) -> Vec<Summary> {
     let mixed = pairs.iter().any(|p| p.kind == Kind::Start) && pairs.iter().any(|p| p.kind == Kind::Reversal);

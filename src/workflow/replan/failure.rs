@@ -51,6 +51,19 @@ pub enum ReplanFailure {
         /// The log.
         path: PathBuf,
     },
+    /// A task of another arm.
+    #[error(
+        "the task is for the joints {task}, the plan in {} for {log}: give the task of this arm, or leave out --task",
+        path.display()
+    )]
+    OtherArm {
+        /// The log.
+        path: PathBuf,
+        /// Joints of the task.
+        task: String,
+        /// Joints of the log's plan.
+        log: String,
+    },
     /// No joint predicted well enough for a command.
     #[error(
         "no joint is predicted well enough for a command: the best held-out R2 is {best:.2}, {least} is needed; \

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     log::Attachment,
-    series::Series,
+    series::{Series, Track},
     spline::Motion,
     units::DEGREE_RAD,
     workflow::{
@@ -34,6 +34,8 @@ pub(super) struct Last {
     pub(super) order: Option<Order>,
     /// Arrivals at its key points, s, if they are known and of this task.
     pub(super) times_s: Option<Vec<f64>>,
+    /// Where the controller takes trajectories.
+    pub(super) trajectory: Option<String>,
     /// Files of the log that go with the plan.
     pub(super) files: Vec<Attachment>,
 }
@@ -49,6 +51,9 @@ impl Last {
             (None, Some(text)) => Some(Order::parse(path, String::from_utf8_lossy(text).into_owned())?),
             (None, None) => None,
         };
+        if let Some(order) = &order {
+            check_joints(path, order, planned)?;
+        }
         let times_s = observed.attached(FRONT).and_then(chosen_times_s);
         let times_s =
             times_s.filter(|times_s| order.as_ref().is_some_and(|order| order.setup.motion(times_s).is_ok()));
@@ -60,6 +65,7 @@ impl Last {
             duration_s: to_s - from_s,
             order,
             times_s,
+            trajectory: trajectory_topic(&observed.recording.source.planned_topic),
             files: observed.recording.attachments.iter().filter(named).cloned().collect(),
         })
     }
@@ -67,6 +73,27 @@ impl Last {
     /// The motion of the task, if it is known.
     pub(super) fn motion(&self) -> Option<Motion> {
         self.order.as_ref()?.setup.motion(self.times_s.as_ref()?).ok()
+    }
+}
+
+/// The task's joints must be in the log, or its timing would be judged on joints that nobody measured.
+fn check_joints(path: &Path, order: &Order, planned: &Series) -> Result<(), ReplanFailure> {
+    let task = order.setup.joint_names();
+    if task.iter().all(|name| planned.track(name).is_some()) {
+        return Ok(());
+    }
+    let log: Vec<&str> = planned.tracks.iter().map(Track::name).collect();
+    Err(ReplanFailure::OtherArm { path: path.to_owned(), task: task.join(", "), log: log.join(", ") })
+}
+
+/// Where the controller takes trajectories whose state, or whose last trajectory, the plan was read from.
+fn trajectory_topic(planned: &str) -> Option<String> {
+    match planned.rsplit_once('/')? {
+        // Several controllers take no trajectory of all their joints.
+        _ if planned.contains(',') => None,
+        ("", _) => None,
+        (home, "controller_state" | "state" | "joint_trajectory") => Some(format!("{home}/joint_trajectory")),
+        _ => None,
     }
 }
 
@@ -88,4 +115,20 @@ fn moving_s(series: &Series) -> Option<[f64; 2]> {
         }
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn trajectories_go_to_the_controller_that_the_plan_came_from() {
+        let found = |topic: &str| trajectory_topic(topic);
+        assert_eq!(found("/right/controller_state").as_deref(), Some("/right/joint_trajectory"));
+        assert_eq!(found("/a/b/state").as_deref(), Some("/a/b/joint_trajectory"));
+        assert_eq!(found("/a/joint_trajectory").as_deref(), Some("/a/joint_trajectory"));
+        for unknown in ["/planned/joint_states", "/state", "/a/state, /b/state", "state", ""] {
+            assert_eq!(found(unknown), None, "{unknown}");
+        }
+    }
 }

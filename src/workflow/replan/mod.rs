@@ -31,7 +31,7 @@ use crate::{
     plan::Setup,
     remark::{Code, Remarks},
     replay::Rules,
-    series::Series,
+    series::{Series, Track},
 };
 use last::Last;
 use samples::sampled;
@@ -149,6 +149,8 @@ pub fn run(
 fn machine(inputs: &Inputs, observed: &[Observed]) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
     if let Some(path) = &inputs.limits {
         let file = read_limits(path)?;
+        let joints = observed.iter().flat_map(|run| &run.recording.measured.tracks).map(Track::name);
+        file.check_joints(path, joints)?;
         return Ok((file.fit, file.logs, Remarks::default()));
     }
     let fitted = fit::of(&inputs.logs, observed).map_err(fit::FitFailure::from)?;

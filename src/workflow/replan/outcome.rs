@@ -117,6 +117,8 @@ pub struct Replanned {
     pub order: Option<Order>,
     /// Doubts.
     pub remarks: Remarks,
+    /// Where the controller takes trajectories, as far as the last log tells.
+    pub trajectory: Option<String>,
     files: Vec<Attachment>,
 }
 
@@ -175,6 +177,7 @@ pub(super) fn replanned(
         plan,
         starts_s,
         order: last.order,
+        trajectory: last.trajectory,
         remarks,
         files: last.files,
     })
@@ -210,6 +213,16 @@ impl Replanned {
         };
         let command = self.command.as_ref().map(|command| &command.series);
         let arm = self.order.as_ref().map(|order| &order.setup.arm().chain);
-        SeriesLog { plan: &self.plan, command, arm, provenance: &provenance, files: &files, rate_hz }.bytes()
+        let trajectory = self.trajectory.as_deref();
+        SeriesLog {
+            plan: &self.plan,
+            command,
+            arm,
+            provenance: &provenance,
+            trajectory,
+            files: &files,
+            rate_hz,
+        }
+        .bytes()
     }
 }

@@ -71,8 +71,9 @@ pub(super) fn retimed(
     let outcome =
         moea::optimise(&problem, &settings, |progress| observer(found.evaluations + progress.evaluations))?;
     let kept = outcome.archive.unwrap_or(outcome.population);
+    let mut evaluator = Evaluator::new(setup);
     let mut front: Vec<Retimed> = (0..kept.len())
-        .filter(|&i| kept.is_feasible(i))
+        .filter(|&i| kept.is_feasible(i) && setup.keeps(kept.x(i), &mut evaluator))
         .map(|i| {
             let f = kept.f(i);
             Retimed { interval_s: kept.x(i).to_vec(), objectives: [f[0], f[1], f[2], f[3]] }

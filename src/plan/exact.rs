@@ -1,0 +1,146 @@
+//! Plans that keep their limits between the instants that a search looks at, too.
+//!
+//! Splines are judged exactly on the way; torques, rods, flow and tool by eight instants a piece, between which a
+//! peak may hide. Where one breaks its limit the search goes on from there under a limit that is tighter by as much.
+
+use rayon::prelude::*;
+
+use super::{
+    Evaluator, Limit, Margin, Setup, Timing,
+    descend::{FINE, Goal, Merit, NEARLY, descend},
+    front::thinned,
+};
+
+/// Descents under ever tighter limits, and slowings down, that a plan is given.
+const TRIES: usize = 4;
+/// Evaluations of each descent.
+const EVALUATIONS: u64 = 400;
+/// What is kept away from a limit that was found broken, as a share.
+const CLEAR: f64 = 1e-6;
+
+impl Setup {
+    /// Whether a timing keeps all limits at every instant.
+    pub fn keeps(&self, interval_s: &[f64], evaluator: &mut Evaluator) -> bool {
+        self.exact(interval_s, evaluator).is_some_and(|margins| keeps(&margins))
+    }
+
+    fn exact(&self, interval_s: &[f64], evaluator: &mut Evaluator) -> Option<Vec<Margin>> {
+        let motion = self.motion(&self.times_s(interval_s)).ok()?;
+        Some(self.margins(&motion, evaluator))
+    }
+
+    /// The same with tighter limits where a plan breaks one by more than its evaluation shows.
+    fn tightened(&self, interval_s: &[f64], margins: &[Margin], evaluator: &mut Evaluator) -> Self {
+        let mut tight = self.clone();
+        if evaluator.evaluate(self, interval_s).is_none() {
+            return tight;
+        }
+        let width = Limit::OF_JOINT.len();
+        for margin in margins.iter().filter(|margin| margin.broken()) {
+            let place = |limits: &[Limit]| limits.iter().position(|limit| *limit == margin.limit);
+            let row = match margin.joint {
+                Some(joint) => place(&Limit::OF_JOINT).map(|k| joint * width + k),
+                None => place(&Limit::OF_ARM).map(|k| self.joint_count() * width + k),
+            };
+            let Some(row) = row else { continue };
+            let seen = evaluator.shares[row];
+            if seen > 0.0 && seen < margin.share {
+                tight.slack[row] *= margin.share / seen * (1.0 + CLEAR);
+            }
+        }
+        tight
+    }
+}
+
+fn keeps(margins: &[Margin]) -> bool {
+    !margins.iter().any(Margin::broken)
+}
+
+/// The plan if it keeps its limits, else the best by `merit` near it that does, with the evaluations it took.
+/// `None` if none was found.
+pub(super) fn kept(setup: &Setup, timing: Timing, merit: Merit, ceilings: [f64; 3]) -> (Option<Timing>, u64) {
+    let mut evaluator = Evaluator::new(setup);
+    let mut tight = setup.clone();
+    let (mut here, mut used) = (timing.interval_s.clone(), 0);
+    for _ in 0..TRIES {
+        let Some(margins) = setup.exact(&here, &mut evaluator) else { return (None, used) };
+        if keeps(&margins) {
+            return (judged(setup, &mut evaluator, here), used);
+        }
+        tight = tight.tightened(&here, &margins, &mut evaluator);
+        let goal = Goal { merit, ceilings, evaluations: EVALUATIONS, trust: NEARLY, enough: FINE };
+        let end = descend(&tight, &mut evaluator, &slowed(&here, &margins), &goal);
+        used += end.evaluations;
+        let Some(end) = end.timing else { return (None, used) };
+        here = end.interval_s;
+    }
+    (slow(setup, &mut evaluator, &timing.interval_s), used)
+}
+
+/// The front without plans that break a limit somewhere: slowed down until they keep it, the fastest the best
+/// near it, and those left out that others are then better than. With the evaluations it took.
+pub(super) fn kept_front(setup: &Setup, front: Vec<Timing>, most: usize) -> (Vec<Timing>, u64) {
+    let checked: Vec<(Option<Timing>, bool)> = front
+        .into_par_iter()
+        .map_init(
+            || Evaluator::new(setup),
+            |evaluator, timing| {
+                if setup.keeps(&timing.interval_s, evaluator) {
+                    return (Some(timing), true);
+                }
+                (slow(setup, evaluator, &timing.interval_s), false)
+            },
+        )
+        .collect();
+    let sound = checked.iter().all(|(_, as_it_was)| *as_it_was);
+    let mut front: Vec<Timing> = checked.into_iter().filter_map(|(timing, _)| timing).collect();
+    if sound {
+        return (front, 0);
+    }
+    let fastest = front.iter().min_by(|a, b| a.objectives.duration_s.total_cmp(&b.objectives.duration_s));
+    let mut used = 0;
+    if let Some(fastest) = fastest.cloned() {
+        // Slowing down all of it gave away time wherever the limit was kept.
+        let quick =
+            Timing { interval_s: fastest.interval_s.iter().map(|s| s * QUICKER).collect(), ..fastest };
+        let (found, evaluations) =
+            kept(setup, quick, Merit::Logarithms([1.0, 0.0, 0.0]), super::descend::FREE);
+        used = evaluations;
+        front.extend(found);
+    }
+    let mut front = thinned(setup, &front, most);
+    front.sort_by(|a, b| a.objectives.duration_s.total_cmp(&b.objectives.duration_s));
+    (front, used)
+}
+
+/// What the fastest plan is sped up by before its last descent, so that it meets its limits again.
+const QUICKER: f64 = 0.97;
+
+/// The plan slowed down all along until it keeps its limits.
+fn slow(setup: &Setup, evaluator: &mut Evaluator, interval_s: &[f64]) -> Option<Timing> {
+    let mut here = interval_s.to_vec();
+    for _ in 0..TRIES {
+        let margins = setup.exact(&here, evaluator)?;
+        if keeps(&margins) {
+            return judged(setup, evaluator, here);
+        }
+        here = slowed(&here, &margins);
+        if here.iter().any(|s| *s > setup.interval_s[1]) {
+            return None;
+        }
+    }
+    None
+}
+
+/// Longer by what the most broken limit is broken by: enough for speeds and flows, more than enough for jerk.
+fn slowed(interval_s: &[f64], margins: &[Margin]) -> Vec<f64> {
+    let worst = margins.iter().map(|margin| margin.share).fold(1.0, f64::max);
+    let by = if worst > 1.0 { worst.min(2.0) * (1.0 + CLEAR) } else { 1.0 };
+    interval_s.iter().map(|s| s * by).collect()
+}
+
+/// With what it costs.
+fn judged(setup: &Setup, evaluator: &mut Evaluator, interval_s: Vec<f64>) -> Option<Timing> {
+    let objectives = evaluator.evaluate(setup, &interval_s)?;
+    Some(Timing { interval_s, objectives, violation: evaluator.violation() })
+}
