@@ -1,18 +1,18 @@
 //! `report`: runs the workflow, renders, says what was not kept.
 
-use std::{io::Write, path::Path};
+use std::io::Write;
 
 use super::{
     CliError, Outcome,
     args::ReportArgs,
+    figures,
     output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal},
 };
 use crate::{
-    atomic::write_atomically,
     report::{gate_lines, markdown, report_figures, report_json, report_page, report_parts, transitions_csv},
     workflow::{
         fit::read_limits,
-        report::{Inputs, Report, run as analyse},
+        report::{Inputs, run as analyse},
     },
 };
 
@@ -28,6 +28,7 @@ pub(super) fn run(
 ) -> Result<Outcome, CliError> {
     spare_inputs(args.output.as_deref(), &args.logs)?;
     spare_terminal(args.format.html, args.output.as_deref())?;
+    figures::check(&args.figures)?;
     let inputs = Inputs {
         logs: args.logs.clone(),
         read: args.read.options(),
@@ -51,9 +52,7 @@ pub(super) fn run(
     } else {
         shown(&report_parts(&name, &report, most), args.output.as_deref())
     };
-    if let Some(folder) = &args.figures {
-        figures(folder, &report)?;
-    }
+    figures::figures(&args.figures, err, || report_figures(&report))?;
     deliver(&rendered, args.output.as_deref(), out)?;
     let on_screen = args.output.is_none() && !args.format.json && !args.format.csv && !args.format.html;
     if !on_screen {
@@ -68,14 +67,4 @@ pub(super) fn run(
         return Ok(Outcome::GateFailed);
     }
     Ok(if report.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
-}
-
-/// The plots of the page, one file each.
-fn figures(folder: &Path, report: &Report) -> Result<(), CliError> {
-    let figures = report_figures(report).map_err(CliError::Figures)?;
-    std::fs::create_dir_all(folder).map_err(|source| CliError::Folder { path: folder.to_owned(), source })?;
-    for (name, svg) in figures {
-        write_atomically(&folder.join(name), |file| Ok::<(), CliError>(file.write_all(svg.as_bytes())?))?;
-    }
-    Ok(())
 }
