@@ -280,6 +280,6 @@ fn figures_are_written_beside_a_report_of_any_form() {
     let mut names: Vec<String> =
         fs::read_dir(figures).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
-    assert_eq!(names.len(), 7);
-    assert_eq!((names[0].as_str(), names[6].as_str()), ("joint-01-joint_1.svg", "transitions.svg"));
+    assert_eq!(names.len(), 9);
+    assert_eq!((names[0].as_str(), names[8].as_str()), ("joint-01-joint_1.svg", "transitions-02.svg"));
 }

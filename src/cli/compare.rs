@@ -5,10 +5,11 @@ use std::{io::Write, slice::from_ref};
 use super::{
     CliError, Outcome,
     args::CompareArgs,
+    figures,
     output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal},
 };
 use crate::{
-    report::{compare_gate_lines, compare_json, compare_page, compare_parts, markdown},
+    report::{compare_figures, compare_gate_lines, compare_json, compare_page, compare_parts, markdown},
     workflow::compare::{Inputs, run as compare},
 };
 
@@ -26,6 +27,7 @@ pub(super) fn run(
     let after = [from_ref(&args.after), args.more_after.as_slice()].concat();
     spare_inputs(args.output.as_deref(), &[before.as_slice(), &after].concat())?;
     spare_terminal(args.format.html, args.output.as_deref())?;
+    figures::check(&args.figures)?;
     let inputs =
         Inputs { before, after, read: args.read.options(), gates: args.gates.gates(), ..Inputs::default() };
     let comparison = compare(&inputs)?;
@@ -39,6 +41,7 @@ pub(super) fn run(
     } else {
         shown(&compare_parts(&comparison, most), args.output.as_deref())
     };
+    figures::figures(&args.figures, err, || compare_figures(&comparison))?;
     deliver(&rendered, args.output.as_deref(), out)?;
     if args.output.is_some() || args.format.json || args.format.html {
         say_remarks(&comparison.remarks, err);

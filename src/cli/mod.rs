@@ -7,6 +7,7 @@ mod completions;
 mod demo;
 mod excite;
 mod export;
+mod figures;
 mod fit;
 mod import;
 mod info;
@@ -112,6 +113,13 @@ enum CliError {
     Overwrite(std::path::PathBuf),
     #[error("a page is for a browser, not for a terminal; give --output FILE or redirect it")]
     Terminal,
+    #[cfg(not(feature = "png"))]
+    #[error(
+        "this build writes no PNG; add it from the project's folder (40 more crates, about a minute):\n  \
+         cargo install --path . --features png\n\
+         or leave --figures-png out: --figures alone writes SVG"
+    )]
+    NoPng,
     #[error("cannot draw the figures")]
     Figures(#[source] Box<dyn std::error::Error + Send + Sync>),
     #[error("cannot write the output")]

@@ -7,6 +7,7 @@ use indicatif::ProgressBar;
 use super::{
     CliError, Outcome,
     args::PlanArgs,
+    figures,
     output::{deliver, progress, say_remarks, shown, spare_inputs, spare_terminal},
 };
 use crate::{
@@ -14,8 +15,8 @@ use crate::{
     moea::{Budget, Contender},
     plan::Progress,
     report::{
-        Part, broken_lines, ceiling_lines, judged_json, judged_page, judged_parts, noted, plan_json,
-        plan_page, plan_parts, plan_written,
+        Part, broken_lines, ceiling_lines, judged_json, judged_page, judged_parts, motion_figures, noted,
+        plan_figures, plan_json, plan_page, plan_parts, plan_written,
     },
     workflow::{
         plan::{Course, Gauge, Judged, Options, Order, PlanFailure, Planned, run as search},
@@ -26,26 +27,35 @@ use crate::{
 pub(super) fn run(args: &PlanArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     spare_inputs(args.output.as_deref(), std::slice::from_ref(&args.task))?;
     spare_terminal(args.html, args.page())?;
+    figures::check(&args.figures)?;
     let order = Order::read(&args.task)?;
     match args.times.as_ref().or(order.task.times_s.as_ref()) {
-        Some(times_s) => judge(args, &order, times_s, out),
+        Some(times_s) => judge(args, &order, times_s, out, err),
         None => plan(args, &order, out, err),
     }
 }
 
-fn judge(args: &PlanArgs, order: &Order, times_s: &[f64], out: &mut impl Write) -> Result<Outcome, CliError> {
+fn judge(
+    args: &PlanArgs,
+    order: &Order,
+    times_s: &[f64],
+    out: &mut impl Write,
+    err: &mut impl Write,
+) -> Result<Outcome, CliError> {
     let title = &order.task.title;
     let judged = Judged::of(&order.setup, times_s).map_err(PlanFailure::from)?;
     let joints = order.setup.joint_names();
     let document = judged_json(title, &joints, &judged, true);
     write_log(args, order, &judged, &document, &BTreeMap::new())?;
+    let course = course(order, &judged)?;
     let rendered = if args.json {
         document
     } else if args.html {
-        judged_page(title, &joints, &judged, &course(order, &judged)?)
+        judged_page(title, &joints, &judged, &course)
     } else {
         shown(&written(args, judged_parts(title, &joints, &judged)), None)
     };
+    figures::figures(&args.figures, err, || motion_figures(&joints, &course))?;
     deliver(&rendered, args.page(), out)?;
     Ok(if judged.broken().is_empty() { Outcome::Clean } else { Outcome::GateFailed })
 }
@@ -58,13 +68,15 @@ fn plan(
 ) -> Result<Outcome, CliError> {
     let Found { planned, document, algorithm, options } = found(args, order, out)?;
     let (title, bounds) = (&order.task.title, &order.task.bounds);
+    let course = course(order, &planned.chosen)?;
     let rendered = if args.json {
         document
     } else if args.html {
-        plan_page(title, algorithm, &options, bounds, &planned, &course(order, &planned.chosen)?)
+        plan_page(title, algorithm, &options, bounds, &planned, &course)
     } else {
         shown(&written(args, plan_parts(title, algorithm, &options, bounds, &planned)), None)
     };
+    figures::figures(&args.figures, err, || plan_figures(title, &planned, &course))?;
     deliver(&rendered, args.page(), out)?;
     if args.json || args.html {
         say_remarks(&planned.remarks, err);

@@ -5,10 +5,10 @@ use std::{io::Write, path::Path};
 use super::{
     CliError, Outcome,
     args::ReportArgs,
+    figures,
     output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal},
 };
 use crate::{
-    atomic::write_atomically,
     report::{gate_lines, markdown, report_figures, report_json, report_page, report_parts, transitions_csv},
     workflow::{
         fit::{LimitsFile, read_limits},
@@ -28,6 +28,7 @@ pub(super) fn run(
 ) -> Result<Outcome, CliError> {
     spare_inputs(args.output.as_deref(), &args.logs)?;
     spare_terminal(args.format.html, args.output.as_deref())?;
+    figures::check(&args.figures)?;
     let inputs = Inputs {
         logs: args.logs.clone(),
         read: args.read.options(),
@@ -51,9 +52,7 @@ pub(super) fn run(
     } else {
         shown(&report_parts(&name, &report, most), args.output.as_deref())
     };
-    if let Some(folder) = &args.figures {
-        figures(folder, &report)?;
-    }
+    figures::figures(&args.figures, err, || report_figures(&report))?;
     deliver(&rendered, args.output.as_deref(), out)?;
     let on_screen = args.output.is_none() && !args.format.json && !args.format.csv && !args.format.html;
     if !on_screen {
@@ -75,14 +74,4 @@ fn limits(path: &Path, report: &Report) -> Result<LimitsFile, CliError> {
     let file = read_limits(path)?;
     file.check_joints(path, report.pairs.iter().map(|pair| pair.name.as_str()))?;
     Ok(file)
-}
-
-/// The plots of the page, one file each.
-fn figures(folder: &Path, report: &Report) -> Result<(), CliError> {
-    let figures = report_figures(report).map_err(CliError::Figures)?;
-    std::fs::create_dir_all(folder).map_err(|source| CliError::Folder { path: folder.to_owned(), source })?;
-    for (name, svg) in figures {
-        write_atomically(&folder.join(name), |file| Ok::<(), CliError>(file.write_all(svg.as_bytes())?))?;
-    }
-    Ok(())
 }

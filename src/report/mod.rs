@@ -19,6 +19,8 @@ mod next;
 mod page;
 mod picture;
 mod plan;
+#[cfg(feature = "png")]
+mod raster;
 mod recover;
 mod replan;
 mod sample;
@@ -41,8 +43,13 @@ pub use look::Look;
 pub use markup::{Part, Sheet, markdown, noted, shown, text};
 pub use moea::{curve_svg, curves_csv, front_csv, moea_json, moea_parts};
 pub use next::{limits_written, next_written, plan_written};
-pub use page::{compare_page, judged_page, plan_page, report_figures, report_page};
+pub use page::{
+    Figure, compare_figures, compare_page, judged_page, motion_figures, plan_figures, plan_page,
+    report_figures, report_page,
+};
 pub use plan::{broken_lines, ceiling_lines, judged_json, judged_parts, plan_json, plan_parts};
+#[cfg(feature = "png")]
+pub use raster::{Raster, raster};
 pub use recover::{recovered_json, recovered_parts};
 pub use replan::{replan_json, replan_parts};
 pub use score::{score_json, score_parts};

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{ReadArgs, degrees, not_negative};
+use super::{FigureArgs, ReadArgs, degrees, not_negative};
 use crate::workflow::compare::Gates;
 
 /// Arguments of `compare`.
@@ -31,6 +31,10 @@ pub struct CompareArgs {
     /// Write to FILE instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+
+    /// Its plots as files.
+    #[command(flatten)]
+    pub figures: FigureArgs,
 
     /// List every pair of transitions, not only the worst
     #[arg(long)]

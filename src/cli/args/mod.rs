@@ -6,6 +6,7 @@ mod contest;
 mod demo;
 mod excite;
 mod export;
+mod figures;
 mod fit;
 mod import;
 mod join;
@@ -26,6 +27,7 @@ pub use contest::ContestArgs;
 pub use demo::DemoArgs;
 pub use excite::ExciteArgs;
 pub use export::{ExportArgs, ExportFormat};
+pub use figures::FigureArgs;
 pub use fit::{FitArgs, SentArgs};
 pub use import::ImportArgs;
 pub use join::JoinArgs;
@@ -213,9 +215,9 @@ pub struct ReportArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Write the plots of the page as SVG files into DIR, which is made where there is none
-    #[arg(long, value_name = "DIR")]
-    pub figures: Option<PathBuf>,
+    /// Its plots as files.
+    #[command(flatten)]
+    pub figures: FigureArgs,
 
     /// Show the machine of FILE, which `fit` wrote, on the page
     #[arg(long, value_name = "FILE", requires = "html")]

@@ -7,6 +7,7 @@ use std::{
 
 use clap::{ArgAction, ValueEnum, builder::PossibleValuesParser};
 
+use super::FigureArgs;
 use crate::{
     moea::{Budget, CONTENDERS, Contender},
     plan::{Rule, Search},
@@ -37,6 +38,10 @@ pub struct PlanArgs {
     /// One page for a browser with the front, the search and every limit; needs no network
     #[arg(long, conflicts_with = "json")]
     pub html: bool,
+
+    /// Its plots as files.
+    #[command(flatten)]
+    pub figures: FigureArgs,
 
     /// Samples a second in the log
     #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate)]

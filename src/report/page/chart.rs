@@ -109,12 +109,15 @@ impl Role {
         }
     }
 
-    /// Width of its line on paper, in pixels of the large drawing.
-    pub(super) fn width(self) -> u32 {
+    /// Width of its line on paper, or radius of its points.
+    pub(super) fn width_mm(self) -> f64 {
         match self {
-            Self::Planned => 8,
-            Self::Guide => 2,
-            _ => 3,
+            Self::Planned => 0.8,
+            Self::Named => 0.9,
+            Self::Before => 0.4,
+            Self::Point => 0.45,
+            Self::Guide => 0.2,
+            Self::Measured | Self::Error => 0.25,
         }
     }
 }

@@ -63,7 +63,7 @@ fn summary(comparison: &Comparison) -> Markup {
             (whole_run(comparison))
         }
         h3 { "Mean change of the peak error, with its 95 % interval" }
-        (changes(comparison))
+        (intervals(&change_rows(comparison)))
     }
 }
 
@@ -103,7 +103,8 @@ fn whole_run(comparison: &Comparison) -> Markup {
     card("", "Rms error, whole run", &arrow(all.rms_rad.before, all.rms_rad.after), &body)
 }
 
-fn changes(comparison: &Comparison) -> Markup {
+/// Mean changes of the peak error, degrees: of all pairs, of starts from rest, of each joint.
+pub(super) fn change_rows(comparison: &Comparison) -> Vec<Row> {
     let of = comparison.summaries.iter().filter(|summary| summary.measure == Measure::PeakError);
     let rows = of.filter_map(|summary| {
         let mean = summary.mean_difference?;
@@ -124,22 +125,28 @@ fn changes(comparison: &Comparison) -> Markup {
             strong: summary.scope == Scope::All,
         })
     });
-    intervals(&rows.collect::<Vec<_>>())
+    rows.collect()
 }
 
-/// Every pair of transitions, after over before.
 fn scatters(comparison: &Comparison, plots: &mut Plots) -> Markup {
-    let peak = scatter(comparison, "Peak error", ["before deg", "after deg"], |pair| {
-        Some((pair.peak_error_rad.before?, pair.peak_error_rad.after?))
-            .map(|(a, b)| (rounded(degrees_from_radians(a)), rounded(degrees_from_radians(b))))
-    });
-    let late = scatter(comparison, "Start delay", ["before ms", "after ms"], |pair| {
-        Some((rounded(1e3 * pair.onset_delay_s.before?), rounded(1e3 * pair.onset_delay_s.after?)))
-    });
     html! {
         p class="hint" { "Each point is one transition; below the line it became smaller." }
-        div class="side" { (plots.place(peak)) (plots.place(late)) }
+        div class="side" { @for chart in pair_charts(comparison) { (plots.place(chart)) } }
     }
+}
+
+/// Every pair of transitions, after over before: peak errors, delays of starts.
+pub(super) fn pair_charts(comparison: &Comparison) -> [Chart; 2] {
+    let peak =
+        scatter(comparison, "Peak error", ["Peak error before (deg)", "Peak error after (deg)"], |pair| {
+            Some((pair.peak_error_rad.before?, pair.peak_error_rad.after?))
+                .map(|(a, b)| (rounded(degrees_from_radians(a)), rounded(degrees_from_radians(b))))
+        });
+    let late =
+        scatter(comparison, "Start delay", ["Start delay before (ms)", "Start delay after (ms)"], |pair| {
+            Some((rounded(1e3 * pair.onset_delay_s.before?), rounded(1e3 * pair.onset_delay_s.after?)))
+        });
+    [peak, late]
 }
 
 fn scatter(
@@ -187,21 +194,27 @@ fn scatter(
     }
 }
 
-/// Errors before and after, on the clock of the first run before.
 fn runs(comparison: &Comparison, plots: &mut Plots) -> Markup {
-    let offset_s = comparison.after.first().map_or(0.0, |run| run.offset_s);
-    let [before, after] = &comparison.samples;
     html! {
         p class="hint" {
             "Planned minus measured, of the first run of each side; the run after is shifted so that both plans start \
              together. Drag to zoom, double-click for the whole run."
         }
-        @for joint in &comparison.joints {
-            @if let (Some(before), Some(after)) = (named(before, joint), named(after, joint)) {
-                div class="joint" data-name=(clean(joint)) { (plots.place(over_time(joint, before, after, offset_s))) }
-            }
+        @for (joint, chart) in error_charts(comparison) {
+            div class="joint" data-name=(clean(&joint)) { (plots.place(chart)) }
         }
     }
+}
+
+/// Joints with their errors before and after, on the clock of the first run before.
+pub(super) fn error_charts(comparison: &Comparison) -> Vec<(String, Chart)> {
+    let offset_s = comparison.after.first().map_or(0.0, |run| run.offset_s);
+    let [before, after] = &comparison.samples;
+    let chart = |joint: &String| {
+        let (before, after) = (named(before, joint)?, named(after, joint)?);
+        Some((joint.clone(), over_time(joint, before, after, offset_s)))
+    };
+    comparison.joints.iter().filter_map(chart).collect()
 }
 
 fn named<'a>(pairs: &'a [Pair], joint: &str) -> Option<&'a Pair> {
@@ -222,9 +235,9 @@ fn over_time(joint: &str, before: &Pair, after: &Pair, offset_s: f64) -> Chart {
         vec![series("before", Role::Before, before, 0.0), series("after", Role::Measured, after, offset_s)];
     Chart {
         title: joint.to_owned(),
-        x_label: "time s",
+        x_label: "Time (s)",
         xs,
-        panels: vec![Panel { label: "error deg".to_owned(), series, share: 1.0, range: None }],
+        panels: vec![Panel { label: "Error (deg)".to_owned(), series, share: 1.0, range: None }],
         group: Some("run"),
         height: 190,
         ..Chart::default()

@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 
 use super::{
     chart::{Chart, Role, embedded},
-    paper,
+    paper::{self, Paper},
 };
 use crate::report::{json::PROGRAM, markup::clean};
 
@@ -29,7 +29,7 @@ impl Plots {
     pub(super) fn place(&mut self, chart: Chart) -> Markup {
         let number = self.0.len();
         // A plot that no picture can be drawn of is still drawn by the script.
-        let picture = paper::svg(&chart).unwrap_or_default();
+        let picture = paper::svg(&chart, Paper::PAGE).unwrap_or_default();
         let picture = picture.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
         let figure = html! {
             figure class=(if chart.is_tile() { "chart tile" } else { "chart" }) {

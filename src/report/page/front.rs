@@ -9,7 +9,7 @@ use super::{
 use crate::{report::counted, units::degrees_from_radians, workflow::front::Front};
 
 /// Labels of f1, f2 and f3.
-const LABELS: [&str; 3] = ["time s", "RMS jerk deg/s3", "RMS power W"];
+const LABELS: [&str; 3] = ["Time (s)", "RMS jerk (deg/s\u{b3})", "RMS power (W)"];
 /// Objectives over each other.
 const VIEWS: [(&str, usize, usize); 3] =
     [("Jerk over time", 0, 1), ("Power over time", 0, 2), ("Power over jerk", 1, 2)];
@@ -92,10 +92,10 @@ fn convergence(front: &Front) -> Chart {
     let steps = &front.convergence;
     Chart {
         title: "How the front grew".to_owned(),
-        x_label: "evaluations",
+        x_label: "Evaluations",
         xs: vec![steps.iter().map(|step| step.evaluations as f64).collect()],
         panels: vec![Panel {
-            label: "hypervolume".to_owned(),
+            label: "Hypervolume".to_owned(),
             series: vec![Series {
                 name: "share of the final front's box".to_owned(),
                 role: Role::Measured,

@@ -61,12 +61,12 @@ fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Trans
     Chart {
         title: pair.name.clone(),
         note,
-        x_label: "time s",
+        x_label: "Time (s)",
         xs: vec![times(&pair.t_s, &places)],
         x_range: None,
         panels: vec![
             Panel {
-                label: "angle deg".to_owned(),
+                label: "Angle (deg)".to_owned(),
                 series: vec![
                     series("planned", Role::Planned, degrees(&pair.planned_rad)),
                     series("measured", Role::Measured, degrees(&pair.measured_rad)),
@@ -75,7 +75,7 @@ fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Trans
                 range: None,
             },
             Panel {
-                label: "error deg".to_owned(),
+                label: "Error (deg)".to_owned(),
                 series: vec![series("error", Role::Error, degrees(&error_rad))],
                 share: 0.4,
                 range: None,
@@ -113,9 +113,9 @@ pub(super) fn times(t_s: &[f64], places: &[Option<usize>]) -> Vec<f64> {
     places.iter().map(time).collect()
 }
 
-/// The lag of each joint with its interval.
-pub(super) fn lags(report: &Report) -> Markup {
-    let rows: Vec<Row> = report
+/// Joints with their lags, s.
+pub(super) fn lag_rows(report: &Report) -> Vec<Row> {
+    report
         .replay
         .joints
         .iter()
@@ -128,7 +128,12 @@ pub(super) fn lags(report: &Report) -> Markup {
                 strong: false,
             })
         })
-        .collect();
+        .collect()
+}
+
+/// The lag of each joint with its interval.
+pub(super) fn lags(report: &Report) -> Markup {
+    let rows = lag_rows(report);
     html! {
         @if rows.is_empty() {
             p { "No joint moves enough to tell its lag." }

@@ -6,6 +6,7 @@
 mod chart;
 mod compared;
 mod envelope;
+mod figures;
 mod fitted;
 mod frame;
 mod front;
@@ -19,8 +20,9 @@ mod summary;
 mod transitions;
 
 pub use compared::compare_page;
+pub use figures::{Figure, compare_figures, motion_figures, plan_figures, report_figures};
 pub use planned::{judged_page, plan_page};
-pub use run::{report_figures, report_page};
+pub use run::report_page;
 
 #[cfg(test)]
 mod tests;

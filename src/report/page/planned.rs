@@ -103,11 +103,18 @@ fn motion(joints: &[String], course: &Course, plots: &mut Plots) -> Markup {
     html! {
         p class="hint" { "Key points are reached at " (arrivals.join(", ")) " s. Drag to zoom, all joints together." }
         div class="side" {
-            @for (joint, (angle, speed)) in joints.iter().zip(course.position_rad.iter().zip(&course.velocity_rad_s)) {
-                (plots.place(joint_motion(joint, &course.t_s, angle, speed)))
-            }
+            @for (_, chart) in motion_charts(joints, course) { (plots.place(chart)) }
         }
     }
+}
+
+/// Joints with their angles and speeds.
+pub(super) fn motion_charts(joints: &[String], course: &Course) -> Vec<(String, Chart)> {
+    let motions = course.position_rad.iter().zip(&course.velocity_rad_s);
+    let chart = |(joint, (angle, speed)): (&String, (&Vec<f64>, &Vec<f64>))| {
+        (joint.clone(), joint_motion(joint, &course.t_s, angle, speed))
+    };
+    joints.iter().zip(motions).map(chart).collect()
 }
 
 fn joint_motion(joint: &str, t_s: &[f64], angle_rad: &[f64], speed_rad_s: &[f64]) -> Chart {
@@ -121,11 +128,11 @@ fn joint_motion(joint: &str, t_s: &[f64], angle_rad: &[f64], speed_rad_s: &[f64]
     };
     Chart {
         title: joint.to_owned(),
-        x_label: "time s",
+        x_label: "Time (s)",
         xs: vec![t_s.iter().copied().map(rounded).collect()],
         panels: vec![
-            panel("angle deg", "angle", Role::Measured, angle_rad),
-            panel("speed deg/s", "speed", Role::Error, speed_rad_s),
+            panel("Angle (deg)", "angle", Role::Measured, angle_rad),
+            panel("Speed (deg/s)", "speed", Role::Error, speed_rad_s),
         ],
         group: Some("run"),
         height: 230,

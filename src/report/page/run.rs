@@ -1,16 +1,15 @@
-//! The page of one run, and its pictures one by one.
+//! The page of one run.
 
 use maud::{Markup, html};
 
 use super::{
     fitted::fitted,
     frame::{Plots, Section, document},
-    front::{front, front_charts},
-    joints::{joint_charts, joints, lags},
-    paper::{Failure, grid, svg},
+    front::front,
+    joints::{joints, lags},
     parts::parts,
     summary::{concentration_bars, summary},
-    transitions::{tiles, transitions},
+    transitions::transitions,
 };
 use crate::{
     fit::Fit,
@@ -74,32 +73,4 @@ fn numbers(report: &Report, most: usize) -> Markup {
         }
         (parts(&tables))
     }
-}
-
-/// The plots of a report as SVG documents, with names for their files.
-///
-/// # Errors
-///
-/// What the drawing library says.
-pub fn report_figures(report: &Report) -> Result<Vec<(String, String)>, Failure> {
-    const COLUMNS: usize = 3;
-    let mut figures = Vec::new();
-    for (number, (joint, chart)) in joint_charts(report).iter().enumerate() {
-        figures.push((format!("joint-{:02}-{}.svg", number + 1, file_name(joint)), svg(chart)?));
-    }
-    let tiles: Vec<_> = tiles(report).into_iter().map(|(_, chart)| chart).collect();
-    if !tiles.is_empty() {
-        figures.push(("transitions.svg".to_owned(), grid(&tiles, COLUMNS)?));
-    }
-    for (name, chart) in report.front.iter().flat_map(front_charts) {
-        figures.push((format!("{name}.svg"), svg(&chart)?));
-    }
-    Ok(figures)
-}
-
-/// A joint's name as part of a file's: names come from logs.
-fn file_name(joint: &str) -> String {
-    const LONGEST: usize = 40;
-    let plain = |c: char| if c.is_ascii_alphanumeric() || c == '-' || c == '_' { c } else { '-' };
-    joint.chars().take(LONGEST).map(plain).collect()
 }

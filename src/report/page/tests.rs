@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{chart, report_figures, report_page};
+use super::{Figure, chart, report_figures, report_page};
 use crate::{
     fit::{Estimated, Fit, JointFit, Model},
     log::ReadOptions,
@@ -101,7 +101,7 @@ fn a_spike_of_one_sample_stays_in_the_plot_of_its_joint() {
 fn every_figure_is_xml_and_its_name_holds_nothing_but_letters() {
     let figures = report_figures(&hostile()).unwrap();
     assert!(figures.len() >= 2, "{}", figures.len());
-    for (name, svg) in figures {
+    for Figure { name, svg } in figures {
         assert!(name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c)), "{name}");
         svg.parse::<xml::Element>().unwrap();
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");

@@ -114,12 +114,12 @@ fn tile(transition: &Transition, pair: &Pair) -> Chart {
             deg(transition.peak_error_rad),
             transition.onset_delay_s.map_or("never answered".to_owned(), |s| format!("{} ms late", ms(s))),
         ),
-        x_label: "time from the planned start s",
+        x_label: "Time from the planned start (s)",
         xs: vec![times(&t_s, &places)],
         x_range: None,
         panels: vec![
             Panel {
-                label: "deg".to_owned(),
+                label: "Angle (deg)".to_owned(),
                 series: vec![
                     series("planned", Role::Planned, degrees(&planned, base, sign)),
                     series("measured", Role::Measured, degrees(&measured, base, sign)),
@@ -128,7 +128,7 @@ fn tile(transition: &Transition, pair: &Pair) -> Chart {
                 range: None,
             },
             Panel {
-                label: "behind deg".to_owned(),
+                label: "Behind (deg)".to_owned(),
                 series: vec![series("behind", Role::Error, degrees(&behind, 0.0, 1.0))],
                 share: 0.5,
                 range: None,
