@@ -24,8 +24,8 @@ fn a_description_reads_back_as_the_same_arm_and_the_ghost_as_one_beside_it() {
         }
         assert!(ghost.link_names().all(|name| name.starts_with(GHOST)));
         assert!(ghost.joints().iter().all(|joint| joint.name.starts_with(GHOST)));
-        assert_eq!(read.shapes().len(), chain.shapes().len());
-        let solid = |chain: &Chain| match chain.shapes().first().unwrap().solid {
+        assert_eq!(read.shapes(&[]).len(), chain.shapes(&[]).len());
+        let solid = |chain: &Chain| match chain.shapes(&[]).first().unwrap().solid {
             Solid::Block(edges_m) => edges_m[1],
             Solid::Cylinder { radius_m, .. } | Solid::Ball(radius_m) => radius_m,
         };
@@ -37,7 +37,7 @@ fn a_description_reads_back_as_the_same_arm_and_the_ghost_as_one_beside_it() {
 fn an_arm_without_solids_is_drawn_as_blocks_that_end_where_the_next_link_begins() {
     let chain = sample().chain;
     let poses = chain.link_poses(&[0.5; 6]);
-    for shape in chain.shapes() {
+    for shape in chain.shapes(&[]) {
         let Solid::Block([length_m, ..]) = shape.solid else { continue };
         let ends_m = [-0.5, 0.5].map(|share| {
             (poses[shape.link] * shape.place * nalgebra::Point3::new(share * length_m, 0.0, 0.0)).coords
@@ -45,7 +45,7 @@ fn an_arm_without_solids_is_drawn_as_blocks_that_end_where_the_next_link_begins(
         assert!((ends_m[0] - poses[shape.link].translation.vector).norm() < 1e-9);
         assert!((ends_m[1] - poses[shape.link + 1].translation.vector).norm() < 1e-9);
     }
-    assert_eq!(chain.shapes().iter().filter(|s| matches!(s.solid, Solid::Cylinder { .. })).count(), 6);
+    assert_eq!(chain.shapes(&[]).iter().filter(|s| matches!(s.solid, Solid::Cylinder { .. })).count(), 6);
 }
 
 const DRESSED: &str = r#"<robot name="r">
@@ -64,7 +64,7 @@ const DRESSED: &str = r#"<robot name="r">
 #[test]
 fn own_solids_are_kept_with_their_colour_on_fixed_branches_too_and_meshes_are_left_to_others() {
     let chain = Chain::from_urdf(DRESSED, "r.urdf", Some("tool")).unwrap();
-    let shapes = chain.shapes();
+    let shapes = chain.shapes(&[]);
     assert_eq!(shapes.len(), 1);
     assert_eq!((shapes[0].link, shapes[0].solid), (1, Solid::Ball(0.1)));
     assert_eq!(shapes[0].rgba, [1.0, 0.0, 0.0, 1.0]);
