@@ -138,10 +138,9 @@ fn errors(board: &mut Board, scenes: &[Scene]) -> Option<ContainerLike> {
         .into_iter()
         .enumerate()
         .map(|(i, (name, seen))| {
-            let view =
-                TimeSeriesView::new(format!("{name}: error, deg (largest {})", largest_deg(scenes, name)))
-                    .with_origin("/")
-                    .with_contents(seen);
+            let view = TimeSeriesView::new(format!("{name}: error ≤ {} deg", largest_deg(scenes, name)))
+                .with_origin("/")
+                .with_contents(seen);
             if i == 0 {
                 return plot(board, view, Corner2D::LeftTop);
             }

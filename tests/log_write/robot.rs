@@ -130,6 +130,18 @@ fn an_arm_with_a_joint_that_the_log_lacks_is_not_drawn() {
 }
 
 #[test]
+fn the_error_is_one_field_a_joint_and_names_the_joints() {
+    let bytes = log(3, true, true);
+    let messages = messages(&bytes);
+    let errors = on_topic(&messages, "/tracking_error");
+    assert_eq!(errors.len(), 3);
+    let value = decode(errors[0]);
+    let dimension = &value.at("layout.dim").list()[0];
+    assert_eq!(dimension.at("label").text(), "J1 J2 J3 J4 J5 J6");
+    assert_eq!((dimension.at("size").number(), value.at("data").numbers()), (6.0, vec![0.1; 6]));
+}
+
+#[test]
 fn nobody_takes_the_error_or_the_arm_for_a_plan_or_a_measurement() {
     let folder = tempfile::tempdir().unwrap();
     let read = |name: &str, bytes: Vec<u8>| {

@@ -69,6 +69,12 @@ pub(super) const DYNAMIC_JOINT_STATE: MessageType = MessageType {
     hash: "RIHS01_18024c98a62697680f581108eeed40b28fb4542fa0ac5a8e36f56c62b6813d26",
 };
 
+pub(super) const ARRAY: MessageType = MessageType {
+    package: "std_msgs",
+    name: "Float64MultiArray",
+    hash: "RIHS01_1025ddc6b9552d191f89ef1a8d2f60f3d373e28b283d8891ddcc974e8c55397f",
+};
+
 pub(super) const TEXT: MessageType = MessageType {
     package: "std_msgs",
     name: "String",

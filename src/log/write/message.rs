@@ -90,6 +90,17 @@ pub(super) fn encode_joint_state(cdr: &mut Cdr, quantities: [&[f64]; 3]) {
     }
 }
 
+/// `std_msgs/Float64MultiArray` of one dimension.
+pub(super) fn encode_array(cdr: &mut Cdr, label: &str, values: &[f64]) {
+    cdr.begin();
+    cdr.count(1);
+    cdr.string(label);
+    cdr.count(values.len());
+    cdr.count(values.len());
+    cdr.count(0);
+    cdr.f64_sequence(values.iter().copied());
+}
+
 /// `control_msgs/DynamicJointState` behind its header; every interface has a value a joint.
 pub(super) fn encode_interfaces(cdr: &mut Cdr, joints: usize, interfaces: &[(&str, &[f64])]) {
     cdr.count(joints);

@@ -30,7 +30,7 @@ pub use robot::Transform;
 
 use cdr::Cdr;
 use channel::{
-    CONTROLLER_STATE, Channel, DYNAMIC_JOINT_STATE, JOINT_STATE, JOINT_TRAJECTORY, TEXT, TRANSFORMS,
+    ARRAY, CONTROLLER_STATE, Channel, DYNAMIC_JOINT_STATE, JOINT_STATE, JOINT_TRAJECTORY, TEXT, TRANSFORMS,
 };
 use message::check_length;
 use stamp::Stamp;
@@ -50,6 +50,8 @@ use stamp::Stamp;
 pub struct LogWriter<W: Write> {
     mcap: Writer<NoSeek<W>>,
     joint_names: Vec<String>,
+    /// The names in one text.
+    joint_label: String,
     cdr: Cdr,
     channels: Channels,
     flush_interval_ns: Option<u64>,
@@ -112,6 +114,7 @@ impl<W: Write> LogWriter<W> {
             .create(NoSeek::new(output))?;
         Ok(Self {
             mcap,
+            joint_label: joint_names.join(" "),
             joint_names,
             cdr: Cdr::default(),
             channels,
@@ -289,7 +292,7 @@ impl Channels {
             planned_description: Channel::latched(topics.planned_description, &TEXT),
             transforms: Channel::new(topics.transforms, &TRANSFORMS),
             fixed_transforms: Channel::latched(topics.fixed_transforms, &TRANSFORMS),
-            tracking_error: Channel::new(topics.tracking_error, &JOINT_STATE),
+            tracking_error: Channel::new(topics.tracking_error, &ARRAY),
         };
         check_distinct("topic", channels.all().map(Channel::topic))?;
         Ok(channels)

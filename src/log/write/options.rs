@@ -61,7 +61,7 @@ pub struct Topics {
     pub transforms: String,
     /// `tf2_msgs/msg/TFMessage` of what does not.
     pub fixed_transforms: String,
-    /// `sensor_msgs/msg/JointState`: plan minus measurement.
+    /// `std_msgs/msg/Float64MultiArray`: plan minus measurement.
     pub tracking_error: String,
 }
 

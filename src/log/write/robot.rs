@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::{
     Cdr, LogWriter, Role, WriteError,
-    message::{check_length, encode_header, encode_joint_state},
+    message::{check_length, encode_array},
     stamp::Stamp,
 };
 
@@ -67,7 +67,11 @@ impl<W: Write> LogWriter<W> {
         self.flush_if_due(stamp)
     }
 
-    /// Writes plan minus measurement, one angle a joint: `sensor_msgs/msg/JointState`.
+    /// Writes plan minus measurement, one angle a joint: `std_msgs/msg/Float64MultiArray`, whose only
+    /// dimension is labelled with the joint names.
+    ///
+    /// Rerun plots eight fields at first sight, in an order of its own. A `JointState` counts for three, of
+    /// which an error would fill one; this is one field that is always filled.
     ///
     /// # Errors
     ///
@@ -75,8 +79,7 @@ impl<W: Write> LogWriter<W> {
     pub fn tracking_error(&mut self, stamp_ns: i64, error_rad: &[f64]) -> Result<(), WriteError> {
         check_length("tracking error", error_rad, self.joint_names.len())?;
         let stamp = Stamp::new(stamp_ns)?;
-        encode_header(&mut self.cdr, stamp, &self.joint_names);
-        encode_joint_state(&mut self.cdr, [error_rad, &[], &[]]);
+        encode_array(&mut self.cdr, &self.joint_label, error_rad);
         self.channels.tracking_error.send(&mut self.mcap, stamp, self.cdr.bytes())?;
         self.flush_if_due(stamp)
     }

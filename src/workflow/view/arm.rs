@@ -88,7 +88,7 @@ pub struct Sight {
 }
 
 /// Distance of the eye by the diagonal of what is to be seen.
-const FAR: f64 = 0.85;
+const FAR: f64 = 1.0;
 /// Least diagonal of what is to be seen by the arm's reach.
 const MARGIN: f64 = 0.3;
 
