@@ -87,8 +87,16 @@ fn a_mesh_that_is_drawn_needs_no_stand_in_and_one_that_is_not_has_the_blocks_of_
     assert!(chain.shapes(&meshes).is_empty());
     // Both ride on one link: either shows where it is.
     assert!(chain.shapes(&meshes[..1]).is_empty());
-    assert_eq!(chain.shapes(&[]), Chain::from_urdf(&only, "r.urdf", Some("tool")).unwrap().shapes(&[]));
     assert!(chain.shapes(&[]).iter().any(|shape| shape.link == 1));
+    // The base now shows something, so only the link whose meshes are missing has blocks.
+    let based = only.replace(
+        r#"<link name="base"/>"#,
+        r#"<link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link>"#,
+    );
+    let chain = Chain::from_urdf(&based, "r.urdf", Some("tool")).unwrap();
+    assert_eq!(chain.shapes(&meshes).len(), 1);
+    let beside: Vec<usize> = chain.shapes(&[]).iter().skip(1).map(|shape| shape.link).collect();
+    assert!(!beside.is_empty() && beside.iter().all(|link| *link == 1), "{beside:?}");
 }
 
 /// A robot with a sliding torso, two arms and a hand.
