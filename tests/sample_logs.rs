@@ -64,7 +64,7 @@ fn the_cut_log_has_no_end_and_gives_a_plain_reader_what_came_before_its_last_chu
     let counts = counts("power-loss.mcap");
     let text = String::from_utf8(committed("README.md")).unwrap();
     let said = text.lines().find_map(|line| line.strip_prefix("* measured before cut chunk: ")).unwrap();
-    assert!(counts["/joint_states"] >= said.parse().unwrap());
+    assert!(counts["/joint_states"] >= said.parse::<usize>().unwrap());
     assert!(counts["/joint_states"] < 3500);
 }
 

@@ -9,7 +9,8 @@ use std::{
 use hydrotrace::{
     arm::Arm,
     log::{LogWriter, Role, WriteOptions},
-    workflow::view::{ArmOrigin, Inputs, Scene, run},
+    remark::Code,
+    workflow::view::{ArmOrigin, Inputs, Scene, ViewFailure, run},
 };
 
 const JOINTS: [&str; 6] = ["J1", "J2", "J3", "J4", "J5", "J6"];
@@ -93,6 +94,65 @@ fn the_arm_in_the_log_comes_first_and_one_of_other_joints_is_none() {
     assert_eq!(of(&sample("gaps.mcap")), None);
 }
 
+/// An arm of one joint of the log, beneath a joint that is in no log, whose links have meshes.
+const MESHES: &str = r#"<robot name="r"><link name="base"/>
+  <link name="mast"><visual><geometry><mesh filename="package://crane/meshes/mast.stl"/></geometry></visual></link>
+  <link name="boom"><visual><geometry><mesh filename="package://crane/meshes/boom.stl"/></geometry></visual></link>
+  <joint name="slew" type="continuous"><parent link="base"/><child link="mast"/><axis xyz="0 0 1"/></joint>
+  <joint name="J2" type="continuous"><parent link="mast"/><child link="boom"/><origin xyz="0 0 3"/>
+    <axis xyz="0 1 0"/></joint></robot>"#;
+
+#[test]
+fn an_arm_that_is_given_is_drawn_with_the_meshes_around_it_and_what_is_missing_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, package) = (folder.path().join("run.mcap"), folder.path().join("crane"));
+    log(&path, true, Some(&std::fs::read_to_string(sample("arm/arm.urdf")).unwrap()));
+    for name in ["urdf", "meshes"] {
+        std::fs::create_dir_all(package.join(name)).unwrap();
+    }
+    let (urdf, mast) = (package.join("urdf/crane.urdf"), package.join("meshes/mast.stl"));
+    std::fs::write(&urdf, MESHES).unwrap();
+    std::fs::write(&mast, "solid mast\nendsolid mast\n").unwrap();
+    let inputs = Inputs { logs: vec![path], urdf: Some(urdf.clone()), ..Inputs::default() };
+    let scene = run(&inputs).unwrap().remove(0);
+    let arm = scene.arm.unwrap();
+    assert_eq!(
+        (arm.source, arm.links.as_slice()),
+        (ArmOrigin::File, ["base", "mast", "boom"].map(str::to_owned).as_slice())
+    );
+    assert_eq!(arm.meshes.iter().map(|(mesh, _)| mesh.link).collect::<Vec<_>>(), [1]);
+    assert_eq!(arm.meshes[0].1.canonicalize().unwrap(), mast.canonicalize().unwrap());
+    assert!(
+        !arm.shapes.is_empty() && arm.shapes.iter().all(|shape| shape.link == 2),
+        "only the boom has blocks"
+    );
+    let said: Vec<(Code, u64)> =
+        scene.remarks.as_slice().iter().map(|remark| (remark.code, remark.count)).collect();
+    assert!(said.ends_with(&[(Code::Guessed, 1), (Code::MissingFile, 1)]), "{said:?}");
+
+    std::fs::write(&urdf, MESHES.replace("J2", "other")).unwrap();
+    assert!(matches!(run(&inputs), Err(ViewFailure::Arm { joints, .. }) if joints == JOINTS));
+    std::fs::remove_file(&urdf).unwrap();
+    assert!(matches!(run(&inputs), Err(ViewFailure::Read { .. })));
+}
+
+#[test]
+fn the_eye_sees_the_whole_arm_all_the_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    log(&path, true, None);
+    for path in [path, sample("task-1-run.mcap")] {
+        let arm = seen(&[path]).remove(0).arm.unwrap();
+        let sight = arm.sight().unwrap();
+        let [from_m, to_m] = [sight.from_m, sight.to_m].map(nalgebra::Vector3::from);
+        for pose in arm.planned.poses.iter().chain(&arm.measured.poses).flatten() {
+            let angle_rad = (pose.translation.vector - from_m).angle(&(to_m - from_m));
+            // Half of what Rerun's eye sees across is 27.5 degrees.
+            assert!(angle_rad < 27.5_f64.to_radians(), "{angle_rad} rad");
+        }
+    }
+}
+
 #[test]
 fn the_same_logs_are_seen_the_same_way_twice() {
     let [a, b] = [0, 1].map(|_| seen(&[sample("panel-install.mcap")]).remove(0));
@@ -134,4 +194,54 @@ fn a_sample_log_is_saved_for_the_viewer() {
     let bytes = std::fs::read(&path).unwrap();
     assert_eq!(&bytes[..4], b"RRF2");
     assert!(bytes.len() > 100_000, "{}", bytes.len());
+}
+
+#[cfg(feature = "viewer")]
+fn view(arguments: &[&str], path: &Path) -> (Option<i32>, String) {
+    let log = sample("panel-install.mcap");
+    let run = Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
+        .args(["view".as_ref(), log.as_os_str()])
+        .args(arguments)
+        .env("PATH", path)
+        .output()
+        .unwrap();
+    (run.status.code(), String::from_utf8(run.stderr).unwrap())
+}
+
+#[cfg(feature = "viewer")]
+#[test]
+fn without_the_program_rerun_the_command_that_brings_it_is_named() {
+    let nothing = tempfile::tempdir().unwrap();
+    for target in ["--spawn", "--web"] {
+        // A viewer that listens here would be used.
+        if target == "--spawn" && std::net::TcpStream::connect("127.0.0.1:9876").is_ok() {
+            continue;
+        }
+        let (code, said) = view(&[target], nothing.path());
+        assert_eq!(code, Some(1), "{said}");
+        assert!(said.contains("pip install rerun-sdk==0.36.3"), "{said}");
+    }
+}
+
+#[cfg(all(feature = "viewer", unix))]
+#[test]
+fn a_program_that_ends_at_once_is_an_error() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("rerun");
+    std::fs::write(&program, "#!/bin/sh\nexit 7\n").unwrap();
+    std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let (code, said) = view(&["--web"], folder.path());
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("rerun ended at once (exit status: 7)"), "{said}");
+}
+
+#[cfg(feature = "viewer")]
+#[test]
+fn an_address_where_nobody_listens_is_an_error_that_names_it() {
+    let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let url = format!("rerun+http://127.0.0.1:{port}/proxy");
+    let (code, said) = view(&["--connect", &url], Path::new(""));
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains(&url) && said.contains("start one there"), "{said}");
 }

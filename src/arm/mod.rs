@@ -13,6 +13,7 @@ mod hydraulics;
 mod inertia;
 mod inverse_dynamics;
 mod kinematics;
+mod part;
 mod reach;
 mod shape;
 mod urdf;
@@ -24,7 +25,7 @@ pub use error::ArmError;
 pub use hydraulics::{Arm, Hydraulics};
 pub use inertia::Inertia;
 pub use inverse_dynamics::{LANES, Load, Motion, Workspace, inverse_dynamics};
-pub use shape::{Shape, Solid, quaternion_xyzw};
+pub use shape::{Mesh, Shape, Solid, quaternion_xyzw};
 
 /// Place and orientation of a frame in another; lengths in m.
 pub type Pose = nalgebra::IsometryMatrix3<f64>;

@@ -1,6 +1,6 @@
 //! What an arm looks like: the solids of its description, or plain ones where it has none.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Rotation3, Translation3, UnitQuaternion, Vector3};
 use urdf_rs::{Geometry, JointType};
@@ -36,43 +36,87 @@ pub struct Shape {
     pub rgba: [f64; 4],
 }
 
+/// A mesh that rides on a link.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    /// The link, counted as in [`Chain::link_poses`].
+    pub link: usize,
+    /// Its frame, seen from the link's.
+    pub place: Pose,
+    /// Where its file lies, as the description says: `package://`, `file://` or a path.
+    pub uri: String,
+    /// Metres a unit of the file along x, y and z.
+    pub scale: [f64; 3],
+    /// Red, green, blue and opacity, 0 to 1; `None` leaves it to the file.
+    pub rgba: Option<[f64; 4]>,
+}
+
 /// Width of the first link by the reach of the arm; the last one is half as wide.
 const WIDTH: f64 = 0.04;
 /// A pin's radius by the width of its link, and its length by the same.
 const PIN: [f64; 2] = [0.6, 1.35];
 
+/// Where something is seen, and how.
+struct Seen {
+    link: usize,
+    place: Pose,
+    rgba: Option<[f64; 4]>,
+}
+
 const PAINT: [f64; 4] = [0.93, 0.53, 0.10, 1.0];
 const STEEL: [f64; 4] = [0.29, 0.31, 0.35, 1.0];
 
 impl Chain {
-    /// The solids of the description, those on fixed branches included; without any, blocks from
-    /// link to link, a pin at every joint and a ball at the tool. Meshes are left out.
-    pub fn shapes(&self) -> Vec<Shape> {
-        let own = self.own_shapes();
-        if own.is_empty() { self.plain_shapes() } else { own }
+    /// The solids of the description, those on fixed branches included. Where `meshes` are drawn
+    /// beside them and others are not, and of an arm that has nothing else to be seen: blocks from link
+    /// to link, a pin at every joint and a ball at the tool.
+    pub fn shapes(&self, meshes: &[Mesh]) -> Vec<Shape> {
+        let mut shapes: Vec<Shape> = self.visuals(|visual, seen| {
+            let solid = solid(&visual.geometry)?;
+            let rgba = seen.rgba.unwrap_or(PAINT);
+            Some(Shape { link: seen.link, place: seen.place, solid, rgba }).filter(sane)
+        });
+        if shapes.is_empty() && meshes.is_empty() {
+            return self.plain_shapes();
+        }
+        let drawn = meshes.iter().map(|mesh| mesh.link).chain(shapes.iter().map(|shape| shape.link));
+        let mut bare: BTreeSet<usize> = self.meshes().iter().map(|mesh| mesh.link).collect();
+        drawn.for_each(|link| {
+            bare.remove(&link);
+        });
+        shapes.extend(self.plain_shapes().into_iter().filter(|shape| bare.contains(&shape.link)));
+        shapes
     }
 
-    fn own_shapes(&self) -> Vec<Shape> {
+    /// The meshes of the description, those on fixed branches included.
+    pub fn meshes(&self) -> Vec<Mesh> {
+        self.visuals(|visual, seen| {
+            let Geometry::Mesh { filename, scale } = &visual.geometry else { return None };
+            let scale = scale.map_or([1.0; 3], |scale| scale.0);
+            let numbers = scale.iter().chain(seen.place.translation.vector.iter());
+            let sane = numbers.chain(seen.place.rotation.matrix()).all(|v| v.is_finite());
+            let Seen { link, place, rgba } = seen;
+            sane.then(|| Mesh { link, place, uri: filename.clone(), scale, rgba })
+        })
+    }
+
+    fn visuals<T>(&self, of: impl Fn(&urdf_rs::Visual, Seen) -> Option<T>) -> Vec<T> {
         let riders = self.riders();
         let colours: BTreeMap<&str, [f64; 4]> = (self.robot.materials.iter())
             .chain(self.robot.links.iter().flat_map(|link| &link.visual).filter_map(|v| v.material.as_ref()))
             .filter_map(|material| Some((material.name.as_str(), material.color.as_ref()?.rgba.0)))
             .collect();
-        let of_link = |link: &urdf_rs::Link| {
-            let &(index, place) = riders.get(link.name.as_str())?;
-            Some(
-                link.visual
-                    .iter()
-                    .filter_map(|visual| solid(&visual.geometry).map(|s| (visual, s)))
-                    .map(|(visual, solid)| {
-                        let named = visual.material.as_ref().and_then(|m| colours.get(m.name.as_str()));
-                        let rgba = named.copied().unwrap_or(PAINT);
-                        Shape { link: index, place: place * pose(&visual.origin), solid, rgba }
-                    })
-                    .collect::<Vec<_>>(),
-            )
-        };
-        self.robot.links.iter().filter_map(of_link).flatten().filter(sane).collect()
+        let mut found = Vec::new();
+        for link in &self.robot.links {
+            let Some(&(index, place)) = riders.get(link.name.as_str()) else { continue };
+            for visual in &link.visual {
+                let own = visual.material.as_ref().and_then(|m| Some(m.color.as_ref()?.rgba.0));
+                let named = visual.material.as_ref().and_then(|m| colours.get(m.name.as_str()).copied());
+                let rgba = own.or(named).filter(|rgba| rgba.iter().all(|c| c.is_finite()));
+                found.extend(of(visual, Seen { link: index, place: place * pose(&visual.origin), rgba }));
+            }
+        }
+        found
     }
 
     /// Every link that moves with one on the way to the tool, and where it is seen from there.
@@ -95,7 +139,8 @@ impl Chain {
         }
     }
 
-    pub(super) fn reach_m(&self) -> f64 {
+    /// Longest way from the base to the tool along the links, m.
+    pub fn reach_m(&self) -> f64 {
         self.steps.iter().map(|step| step.offset_m.norm()).sum::<f64>() + self.tool.translation.vector.norm()
     }
 
@@ -150,13 +195,13 @@ fn solid(geometry: &Geometry) -> Option<Solid> {
 
 /// Numbers that can be drawn.
 fn sane(shape: &Shape) -> bool {
-    let place = shape.place.translation.vector.iter().chain(shape.place.rotation.matrix());
+    let mut place = shape.place.translation.vector.iter().chain(shape.place.rotation.matrix());
     let sizes = match shape.solid {
         Solid::Block(edges_m) => edges_m,
         Solid::Cylinder { radius_m, length_m } => [radius_m, length_m, 0.0],
         Solid::Ball(radius_m) => [radius_m, 0.0, 0.0],
     };
-    place.chain(&shape.rgba).all(|v| v.is_finite()) && sizes.iter().all(|v| v.is_finite() && *v >= 0.0)
+    place.all(|v| v.is_finite()) && sizes.iter().all(|v| v.is_finite() && *v >= 0.0)
 }
 
 fn pose(pose: &urdf_rs::Pose) -> Pose {

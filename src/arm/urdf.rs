@@ -31,14 +31,19 @@ impl Chain {
     /// other kinds of joints, numbers that are not finite, limits upside down.
     pub fn from_urdf(text: &str, file: &str, tool: Option<&str>) -> Result<Self, ArmError> {
         let at = Witness(file);
-        at.at_most("bytes", text.len(), LARGEST_TEXT)?;
-        at.at_most("nested elements", nesting(text, &at)?, DEEPEST)?;
-        let robot = Arc::new(urdf_rs::read_from_string(text).map_err(|error| at.syntax(&error))?);
-        at.at_most("joints", robot.joints.len(), MOST_JOINTS)?;
+        let robot = Arc::new(parsed(text, &at)?);
         let tree = Tree::new(&robot, at)?;
         let tool = tree.tool(tool)?;
         tree.chain(tool)
     }
+}
+
+pub(super) fn parsed(text: &str, at: &Witness<'_>) -> Result<urdf_rs::Robot, ArmError> {
+    at.at_most("bytes", text.len(), LARGEST_TEXT)?;
+    at.at_most("nested elements", nesting(text, at)?, DEEPEST)?;
+    let robot = urdf_rs::read_from_string(text).map_err(|error| at.syntax(&error))?;
+    at.at_most("joints", robot.joints.len(), MOST_JOINTS)?;
+    Ok(robot)
 }
 
 /// Depth of elements, by the parser that reads them.
@@ -57,7 +62,7 @@ fn nesting(text: &str, at: &Witness<'_>) -> Result<usize, ArmError> {
     Ok(deepest)
 }
 
-struct Tree<'a> {
+pub(super) struct Tree<'a> {
     at: Witness<'a>,
     robot: &'a Arc<urdf_rs::Robot>,
     links: BTreeMap<&'a str, &'a urdf_rs::Link>,
@@ -69,7 +74,7 @@ struct Tree<'a> {
 }
 
 impl<'a> Tree<'a> {
-    fn new(robot: &'a Arc<urdf_rs::Robot>, at: Witness<'a>) -> Result<Self, ArmError> {
+    pub(super) fn new(robot: &'a Arc<urdf_rs::Robot>, at: Witness<'a>) -> Result<Self, ArmError> {
         let mut links = BTreeMap::new();
         for link in &robot.links {
             if links.insert(link.name.as_str(), link).is_some() {
@@ -131,7 +136,18 @@ impl<'a> Tree<'a> {
         }
     }
 
-    fn chain(&self, tool: &'a str) -> Result<Chain, ArmError> {
+    /// Where the links after one branch or end.
+    pub(super) fn end(&self, link: &str) -> &'a str {
+        let mut end = self.links.get_key_value(link).map_or(self.root, |(name, _)| *name);
+        // As many steps as there are links: a file may hold a loop.
+        for _ in 0..self.links.len() {
+            let [only] = self.children(end) else { break };
+            end = only.child.link.as_str();
+        }
+        end
+    }
+
+    pub(super) fn chain(&self, tool: &'a str) -> Result<Chain, ArmError> {
         let mut path = Vec::new();
         let mut link = tool;
         while let Some(&joint) = self.above.get(link) {

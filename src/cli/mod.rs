@@ -105,6 +105,9 @@ enum CliError {
     #[cfg(feature = "viewer")]
     #[error(transparent)]
     View(#[from] crate::viewer::ViewError),
+    #[cfg(feature = "viewer")]
+    #[error(transparent)]
+    Scenes(#[from] crate::workflow::view::ViewFailure),
     #[error("the limits cannot be written")]
     Limits(#[from] toml::ser::Error),
     #[error("the plan cannot be logged")]

@@ -1,6 +1,9 @@
-//! The arm: solids that ride on its links, and the way of its tool.
+//! The arm: solids and meshes that ride on its links, and the way of its tool.
 
-use rerun::{Boxes3D, Color, Cylinders3D, Ellipsoids3D, FillMode, LineStrips3D, RecordingStream};
+use rerun::{
+    AlbedoFactor, Asset3D, Boxes3D, Color, Cylinders3D, Ellipsoids3D, FillMode, LineStrips3D, Radius,
+    RecordingStream, Transform3D,
+};
 
 use super::{
     ViewError, color,
@@ -8,22 +11,52 @@ use super::{
     stream::{Stream, Values, single},
 };
 use crate::{
-    arm::{Shape, Solid, quaternion_xyzw},
+    arm::{Pose, Shape, Solid, quaternion_xyzw},
     workflow::view::{MovingArm, Poses},
 };
 
 /// How an arm is shown.
 #[derive(Clone, Copy)]
 pub(super) enum Look {
-    /// As it was measured, in the colours of its run.
+    /// As it was measured in a run: the first in its own colours, others in theirs, seen through.
     Measured(usize),
     /// Where the plan wants it: pale, and a little larger.
     Planned,
 }
 
-/// How much larger a ghost's solids are on every side, m: the two never show at the same place.
-const MARGIN_M: f64 = 0.012;
-const PATH_RADIUS_M: [f32; 2] = [0.004, 0.009];
+/// How much larger solids that others are seen through are on every side by the arm's reach, so that two never
+/// show at the same place.
+const MARGIN: f64 = 0.002;
+/// Of tool paths, in points of the screen, whatever the size of the arm.
+const PATH_POINTS: f32 = 1.2;
+
+impl Look {
+    fn colour(self) -> Color {
+        match self {
+            Self::Measured(run) => color::run(run),
+            Self::Planned => color::planned(0),
+        }
+    }
+
+    /// Colour and fill of a solid, and by how many margins it grows.
+    fn solid(self, rgba: [f64; 4]) -> (Color, FillMode, f64) {
+        let seen_through = FillMode::TransparentFillMajorWireframe;
+        match self {
+            Self::Measured(0) => (color::own(rgba), FillMode::Solid, 0.0),
+            Self::Measured(run) => (color::clear(Some(run), 255), seen_through, 1.0 + run as f64),
+            Self::Planned => (color::clear(None, 150), seen_through, 1.0),
+        }
+    }
+
+    /// Colour of a mesh; `None` leaves it to the file.
+    fn mesh(self, rgba: Option<[f64; 4]>) -> Option<Color> {
+        match self {
+            Self::Measured(0) => rgba.map(color::own),
+            Self::Measured(run) => Some(color::clear(Some(run), 110)),
+            Self::Planned => Some(color::clear(None, 60)),
+        }
+    }
+}
 
 /// Sends what does not change; returns how the links move.
 pub(super) fn send(
@@ -35,22 +68,29 @@ pub(super) fn send(
 ) -> Result<Vec<Stream>, ViewError> {
     let name = |link: usize| format!("{root}/arm/{}", part(arm.links.get(link).map_or("link", |name| name)));
     for (k, shape) in arm.shapes.iter().enumerate() {
-        send_shape(rec, &format!("{}/{k}", name(shape.link)), shape, look)?;
+        send_shape(rec, &format!("{}/{k}", name(shape.link)), shape, look, MARGIN * arm.reach_m)?;
+    }
+    for (k, (mesh, file)) in arm.meshes.iter().enumerate() {
+        let path = format!("{}/mesh-{k}", name(mesh.link));
+        let asset =
+            Asset3D::from_file_path(file).map_err(|source| ViewError::Mesh { path: file.clone(), source })?;
+        let asset = match look.mesh(mesh.rgba) {
+            Some(Color(rgba)) => asset.with_albedo_factor(AlbedoFactor(rgba)),
+            None => asset,
+        };
+        let (place_m, turn) = placed(&mesh.place);
+        let place = Transform3D::from_translation_rotation_scale(place_m, turn, single(mesh.scale));
+        rec.log_static(path.as_str(), &place)?;
+        rec.log_static(path, &asset)?;
     }
     let tool: Vec<[f32; 3]> = poses
         .poses
         .iter()
         .filter_map(|links| Some(single(links.last()?.translation.vector.into())))
         .collect();
-    let (colour, radius) = match look {
-        Look::Measured(run) => (color::run(run), PATH_RADIUS_M[1]),
-        Look::Planned => {
-            let [r, g, b] = color::PLANNED;
-            (Color::from_rgb(r, g, b), PATH_RADIUS_M[0])
-        }
-    };
     if tool.len() > 1 {
-        let path = LineStrips3D::new([tool]).with_colors([colour]).with_radii([radius]);
+        let radius = Radius::new_ui_points(PATH_POINTS);
+        let path = LineStrips3D::new([tool]).with_colors([look.colour()]).with_radii([radius]);
         rec.log_static(format!("{root}/tool_path"), &path)?;
     }
     let stream = |link: usize| Stream {
@@ -61,13 +101,21 @@ pub(super) fn send(
     Ok((0..arm.links.len()).map(stream).collect())
 }
 
-fn send_shape(rec: &RecordingStream, path: &str, shape: &Shape, look: Look) -> Result<(), ViewError> {
-    let (colour, fill, margin_m) = match look {
-        Look::Measured(run) => (color::solid(shape.rgba, run), FillMode::Solid, 0.0),
-        Look::Planned => (color::ghost(), FillMode::TransparentFillMajorWireframe, MARGIN_M),
-    };
-    let centre = single(shape.place.translation.vector.into());
-    let turn = rerun::Quaternion::from_xyzw(single(quaternion_xyzw(&shape.place)));
+fn placed(place: &Pose) -> ([f32; 3], rerun::Quaternion) {
+    let turn = rerun::Quaternion::from_xyzw(single(quaternion_xyzw(place)));
+    (single(place.translation.vector.into()), turn)
+}
+
+fn send_shape(
+    rec: &RecordingStream,
+    path: &str,
+    shape: &Shape,
+    look: Look,
+    margin_m: f64,
+) -> Result<(), ViewError> {
+    let (colour, fill, margins) = look.solid(shape.rgba);
+    let margin_m = margins * margin_m;
+    let (centre, turn) = placed(&shape.place);
     match shape.solid {
         Solid::Block(edges_m) => {
             let half = single(edges_m.map(|edge_m| 0.5 * edge_m + margin_m));

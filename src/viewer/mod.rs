@@ -2,16 +2,17 @@
 
 mod arm;
 mod blueprint;
+mod board;
 mod color;
+mod front;
 mod live;
+mod process;
 mod scene;
 mod stream;
 
-use std::{io, path::PathBuf, process::Command, time::Duration};
+use std::{io, path::PathBuf, time::Duration};
 
-use rerun::{
-    RecordingStream, RecordingStreamBuilder, RecordingStreamError, SerializationError, SpawnOptions,
-};
+use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamError, SerializationError};
 use thiserror::Error;
 
 use crate::workflow::view::Scene;
@@ -39,50 +40,90 @@ pub enum ViewError {
     /// Rerun does not take the values.
     #[error("the viewer does not take the data")]
     Values(#[from] SerializationError),
-    /// Not everything arrived.
-    #[error("not everything reached the viewer: {0}")]
-    Flush(String),
+    /// Nobody listens, or no longer.
+    #[error(
+        "no viewer takes the data at {place} ({reason}); start one there with `rerun`, or leave --connect out"
+    )]
+    Unheard {
+        /// Address or file.
+        place: String,
+        /// What Rerun says of it.
+        reason: String,
+    },
+    /// The program `rerun` is not there.
+    #[error("there is no program rerun on the PATH; this brings it: pip install rerun-sdk==0.36.3")]
+    NoProgram,
     /// The program `rerun` cannot be run.
-    #[error("cannot run the program rerun; pip install rerun-sdk==0.36.3 brings it")]
+    #[error("cannot run the program rerun")]
     Program(#[source] io::Error),
+    /// The program `rerun` ended at once or does not listen.
+    #[error("the program rerun {0}; what it says is above")]
+    Silent(String),
+    /// A mesh cannot be read.
+    #[error("cannot read {}", path.display())]
+    Mesh {
+        /// Its file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
 }
 
 /// How long a viewer may take to answer at first.
 const PATIENCE: Duration = Duration::from_secs(15);
 
-/// Shows runs; with a speed as they happened, so many times as fast, else at once.
+/// Shows runs; with a speed as they happened, so many times as fast, else at once. A viewer for browsers is
+/// announced by its address, and waited for.
 ///
 /// # Errors
 ///
-/// [`ViewError`] if the viewer cannot be started, reached or written to.
-pub fn show(scenes: &[Scene], target: &Target, speed: Option<f64>) -> Result<(), ViewError> {
-    // A name of its own, or a viewer would join what is shown now to what was shown before.
-    let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
-    let builder = RecordingStreamBuilder::new("hydrotrace")
-        .recording_id(names.join("+"))
-        .recording_name(names.join(" and "))
-        .with_blueprint(blueprint::of(scenes, speed.is_some()));
+/// [`ViewError`] if the viewer cannot be started, reached or written to, or `announce` fails.
+pub fn show(
+    scenes: &[Scene],
+    target: &Target,
+    speed: Option<f64>,
+    announce: &mut dyn FnMut(&str) -> io::Result<()>,
+) -> Result<(), ViewError> {
     match target {
-        Target::Save(path) => send(&builder.save(path)?, scenes, speed),
-        Target::Connect(url) => send(&builder.connect_grpc_opts(url.as_str())?, scenes, speed),
-        Target::Spawn => send(&builder.spawn_opts(&SpawnOptions::default())?, scenes, speed),
+        Target::Save(path) => send(&builder(scenes).save(path)?, scenes, speed, &path.to_string_lossy()),
+        Target::Connect(url) => connect(url, scenes, speed),
+        Target::Spawn => connect(&process::window()?, scenes, speed),
         Target::Web => {
-            let path = std::env::temp_dir().join(format!("hydrotrace-{}.rrd", std::process::id()));
-            send(&builder.save(&path)?, scenes, None)?;
-            let status = Command::new("rerun").arg("--serve-web").arg(&path).status();
-            // The viewer has ended; what it showed can go.
-            let _ = std::fs::remove_file(&path);
-            status.map(|_| ()).map_err(ViewError::Program)
+            let mut page = process::page()?;
+            // The page shows what is there and what comes, so it need not be waited for.
+            let shown = announce(&page.address).map_err(ViewError::Program);
+            match shown.and_then(|()| connect(&page.url, scenes, speed)) {
+                Ok(()) => page.wait(),
+                Err(error) => {
+                    page.end();
+                    Err(error)
+                }
+            }
         }
     }
 }
 
-fn send(rec: &RecordingStream, scenes: &[Scene], speed: Option<f64>) -> Result<(), ViewError> {
+fn builder(scenes: &[Scene]) -> RecordingStreamBuilder {
+    // A name of its own, or a viewer would join what is shown now to what was shown before.
+    let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
+    RecordingStreamBuilder::new(board::APPLICATION)
+        .recording_id(names.join("+"))
+        .recording_name(names.join(" and "))
+}
+
+fn connect(url: &str, scenes: &[Scene], speed: Option<f64>) -> Result<(), ViewError> {
+    send(&builder(scenes).connect_grpc_opts(url)?, scenes, speed, url)
+}
+
+fn send(rec: &RecordingStream, scenes: &[Scene], speed: Option<f64>, place: &str) -> Result<(), ViewError> {
+    let unheard = |reason: String| ViewError::Unheard { place: place.to_owned(), reason };
     rec.set_log_tick_enabled(false);
     rec.set_log_time_enabled(false);
     rec.log_static("/", &rerun::ViewCoordinates::RIGHT_HAND_Z_UP())?;
     // A viewer that is not there is tried again for ever; the first message tells.
-    rec.flush_with_timeout(PATIENCE).map_err(|error| ViewError::Flush(error.to_string()))?;
+    rec.flush_with_timeout(PATIENCE).map_err(|error| unheard(error.to_string()))?;
+    blueprint::of(scenes, speed.is_some()).send(rec)?;
+    front::send(rec, scenes)?;
     let mut streams = Vec::new();
     for (index, scene) in scenes.iter().enumerate() {
         streams.extend(scene::send_static(rec, scene, (index, scenes.len()))?);
@@ -91,5 +132,5 @@ fn send(rec: &RecordingStream, scenes: &[Scene], speed: Option<f64>) -> Result<(
         Some(speed) => live::play(rec, &streams, speed)?,
         None => streams.iter().try_for_each(|stream| stream.send(rec, 0..stream.len()))?,
     }
-    rec.flush_blocking().map_err(|error| ViewError::Flush(error.to_string()))
+    rec.flush_blocking().map_err(|error| unheard(error.to_string()))
 }

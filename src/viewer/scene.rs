@@ -1,6 +1,6 @@
 //! One run: its arms, curves, lanes of starts, words and front.
 
-use rerun::{Color, Points2D, RecordingStream, SeriesLines, StateConfiguration};
+use rerun::{Color, RecordingStream, SeriesLines, StateConfiguration};
 
 use super::{
     ViewError, arm,
@@ -12,7 +12,7 @@ use crate::{
     replay::{Kind, Transition},
     series::{Pair, Track},
     units::degrees_from_radians,
-    workflow::view::{Front, Scene},
+    workflow::view::Scene,
 };
 
 /// States of a joint, with their labels and colours.
@@ -26,6 +26,7 @@ pub(super) fn send_static(
     run: (usize, usize),
 ) -> Result<Vec<Stream>, ViewError> {
     let root = root(scene);
+    let several = run.1 > 1;
     let mut streams = Vec::new();
     if let Some(moving) = &scene.arm {
         let measured = !moving.measured.poses.is_empty();
@@ -33,28 +34,32 @@ pub(super) fn send_static(
             let look = Look::Measured(run.0);
             streams.extend(arm::send(rec, &format!("{root}/measured"), moving, &moving.measured, look)?);
         }
-        if !moving.planned.poses.is_empty() {
-            // Solid, if there is nothing else to see.
+        // Of several runs one ghost is enough. Solid, if there is nothing else to see.
+        if !moving.planned.poses.is_empty() && (run.0 == 0 || !measured) {
             let look = if measured { Look::Planned } else { Look::Measured(run.0) };
             streams.extend(arm::send(rec, &format!("{root}/planned"), moving, &moving.planned, look)?);
         }
     }
     for (index, track) in scene.planned.tracks.iter().enumerate() {
         let joint = joint(scene, track.name());
-        let several = |what: &str| if run.1 > 1 { format!("{} {what}", scene.name) } else { what.to_owned() };
-        let [r, g, b] = color::PLANNED;
-        curve(rec, &format!("{joint}/planned"), &several("planned"), Color::from_rgb(r, g, b), 1.2)?;
+        let named = |what: &str| if several { format!("{} {what}", scene.name) } else { what.to_owned() };
+        curve(rec, &format!("{joint}/planned"), &named("planned"), color::planned(run.0), 1.2)?;
         streams.push(angles(format!("{joint}/planned"), track));
         if let Some(measured) = scene.measured.track(track.name()) {
-            curve(rec, &format!("{joint}/measured"), &several("measured"), color::run(run.0), 2.5)?;
+            curve(rec, &format!("{joint}/measured"), &named("measured"), color::run(run.0), 2.5)?;
             streams.push(angles(format!("{joint}/measured"), measured));
         }
         if let Some(pair) = scene.pairs.iter().find(|pair| pair.name == track.name()) {
-            curve(rec, &format!("{joint}/error"), &several(track.name()), color::joint(index), 1.6)?;
+            let (name, colour) = if several {
+                (scene.name.as_str(), color::run(run.0))
+            } else {
+                (track.name(), color::joint(index))
+            };
+            curve(rec, &format!("{joint}/error"), name, colour, 1.6)?;
             streams.push(errors(format!("{joint}/error"), pair));
         }
         if scene.transitions.iter().any(|t| t.joint == track.name()) {
-            let lane = lane(scene, track.name());
+            let lane = lane(scene, track.name(), several);
             let configuration = StateConfiguration::new()
                 .with_values(STATES.map(|(state, _)| state))
                 .with_labels(STATES.map(|(state, _)| state))
@@ -63,10 +68,7 @@ pub(super) fn send_static(
             streams.push(states(lane, scene, track.name()));
         }
     }
-    streams.push(words(format!("{root}/log"), scene));
-    if let Some(front) = &scene.front {
-        send_front(rec, &format!("{root}/front"), front)?;
-    }
+    streams.push(words(format!("{root}/log"), scene, several));
     Ok(streams)
 }
 
@@ -80,9 +82,10 @@ pub(super) fn joint(scene: &Scene, name: &str) -> String {
     format!("{}/joints/{}", root(scene), part(name))
 }
 
-/// The entity of a joint's starts.
-pub(super) fn lane(scene: &Scene, name: &str) -> String {
-    format!("{}/starts/{}", root(scene), part(name))
+/// The entity of a joint's starts: of several runs those of one joint beside each other.
+pub(super) fn lane(scene: &Scene, name: &str, several: bool) -> String {
+    let joint = format!("/starts/{}", part(name));
+    if several { format!("{joint}/{}", part(&scene.name)) } else { joint }
 }
 
 /// A name as part of an entity's path.
@@ -124,16 +127,21 @@ fn states(path: String, scene: &Scene, joint: &str) -> Stream {
     Stream { path, t_s, values: Values::States(states) }
 }
 
-fn words(path: String, scene: &Scene) -> Stream {
+fn words(path: String, scene: &Scene, several: bool) -> Stream {
+    let whose = if several { format!("{}: ", scene.name) } else { String::new() };
     let mut said: Vec<(f64, (String, bool))> = scene
         .transitions
         .iter()
-        .map(|found| (found.planned_onset_s, (sentence(found), late(found))))
+        .map(|found| (found.planned_onset_s, (format!("{whose}{}", sentence(found)), late(found))))
         .collect();
     let doubts = scene.remarks.as_slice().iter();
-    said.extend(doubts.map(|remark| (0.0, (format!("{}: {}", remark.code.name(), remark.message), true))));
+    said.extend(doubts.map(|remark| {
+        (0.0, (format!("{whose}{} x{}: {}", remark.code.name(), remark.count, remark.message), true))
+    }));
     said.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (t_s, texts) = said.into_iter().unzip();
+    let timed =
+        |(t_s, (text, warning)): (f64, (String, bool))| (t_s, (format!("{t_s:.2} s  {text}"), warning));
+    let (t_s, texts) = said.into_iter().map(timed).unzip();
     Stream { path, t_s, values: Values::Texts(texts) }
 }
 
@@ -158,34 +166,4 @@ fn sentence(found: &Transition) -> String {
         }
         None => format!("{} {kind}: never follows, peak error {peak_deg:.2}°", found.joint),
     }
-}
-
-/// Duration to the right, jerk upwards, each by its range; a larger point takes more power.
-fn send_front(rec: &RecordingStream, path: &str, front: &Front) -> Result<(), ViewError> {
-    let all = || front.objectives.iter().chain(&front.chosen);
-    let range = |k: usize| {
-        let (least, most) =
-            all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), f| (a.min(f[k]), b.max(f[k])));
-        (least, (most - least).max(f64::MIN_POSITIVE))
-    };
-    let share = |f: &[f64; 3], k: usize| (f[k] - range(k).0) / range(k).1;
-    let place = |f: &[f64; 3]| super::stream::single([1.6 * share(f, 0), 1.0 - share(f, 1)]);
-    let radius = |f: &[f64; 3]| super::stream::single([0.006 + 0.012 * share(f, 2)])[0];
-    let label =
-        |f: &[f64; 3]| format!("{:.2} s, {:.0} deg/s³, {:.0} W", f[0], degrees_from_radians(f[1]), f[2]);
-    let points = Points2D::new(front.objectives.iter().map(place))
-        .with_radii(front.objectives.iter().map(radius))
-        .with_colors([Color::from_rgb(150, 200, 255)])
-        .with_labels(front.objectives.iter().map(label))
-        .with_show_labels(false);
-    rec.log_static(format!("{path}/plans"), &points)?;
-    if let Some(chosen) = &front.chosen {
-        let point = Points2D::new([place(chosen)])
-            .with_radii([0.022_f32])
-            .with_colors([color::run(0)])
-            .with_labels([format!("chosen: {}", label(chosen))])
-            .with_show_labels(true);
-        rec.log_static(format!("{path}/chosen"), &point)?;
-    }
-    Ok(())
 }

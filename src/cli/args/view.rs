@@ -9,6 +9,7 @@ Examples:
   hydrotrace view run.mcap
   hydrotrace view before.mcap after.mcap --save compare.rrd
   hydrotrace view run.mcap --connect --speed 0.5
+  hydrotrace view bag/ --urdf robot.urdf
 
 The viewer itself comes with `pip install rerun-sdk==0.36.3`. It also opens the logs that plan,
 simulate and replan write as they are: `rerun run.mcap`.";
@@ -25,8 +26,12 @@ pub struct ViewArgs {
     pub target: ViewTarget,
 
     /// Send it as it happened, X times as fast, to a viewer that is watched
-    #[arg(long, value_name = "X", value_parser = positive, conflicts_with_all = ["save", "web"])]
+    #[arg(long, value_name = "X", value_parser = positive, conflicts_with = "save")]
     pub speed: Option<f64>,
+
+    /// Draw the arm of this URDF, whatever the logs say; its meshes are found around it and in ROS's paths
+    #[arg(long, value_name = "FILE")]
+    pub urdf: Option<PathBuf>,
 
     /// What to read.
     #[command(flatten)]
@@ -49,7 +54,7 @@ pub struct ViewTarget {
     #[arg(long, value_name = "URL", num_args = 0..=1, default_missing_value = LOCAL)]
     pub connect: Option<String>,
 
-    /// Start a viewer that browsers open
+    /// Start a viewer for browsers on this machine and say where to open it
     #[arg(long)]
     pub web: bool,
 }

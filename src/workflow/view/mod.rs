@@ -1,0 +1,148 @@
+//! `view`: from the logs of runs to what is to be seen of them: arms that move, series, events, fronts.
+
+mod arm;
+mod mesh;
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use thiserror::Error;
+
+pub use arm::{ArmOrigin, MovingArm, Poses, Sight};
+
+use super::plan_log::FRONT;
+use crate::{
+    arm::ArmError,
+    log::{LogError, ReadOptions, Recording, read_plan, read_recording},
+    remark::Remarks,
+    replay::{Rules, Transition, replay},
+    series::{Pair, Series, align},
+};
+
+/// What to show.
+#[derive(Debug, Clone, Default)]
+pub struct Inputs {
+    /// Runs or plans, each a file or a bag directory.
+    pub logs: Vec<PathBuf>,
+    /// What to read, where a log alone does not tell.
+    pub read: ReadOptions,
+    /// Thresholds of transitions.
+    pub rules: Rules,
+    /// The description of the arm, whatever the logs say of it.
+    pub urdf: Option<PathBuf>,
+    /// Folders that hold packages of meshes, or are one.
+    pub packages: Vec<PathBuf>,
+}
+
+/// Why there is nothing to show.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ViewFailure {
+    /// A log cannot be read or holds no planned joints.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// A description cannot be read.
+    #[error("cannot read {}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A description is of no arm of these joints.
+    #[error("the joints {} of the log turn no arm of the description", joints.join(", "))]
+    Arm {
+        /// Joints of the log.
+        joints: Vec<String>,
+        /// What is wrong with the description.
+        source: ArmError,
+    },
+}
+
+/// One run or plan.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// Name of its log, distinct among those shown.
+    pub name: String,
+    /// The plan.
+    pub planned: Series,
+    /// The measurement; empty of a plan that nobody ran.
+    pub measured: Series,
+    /// Plan and measurement where both exist, by joint.
+    pub pairs: Vec<Pair>,
+    /// Starts and reversals with what came of them.
+    pub transitions: Vec<Transition>,
+    /// The arm, if there is one of these joints.
+    pub arm: Option<MovingArm>,
+    /// Plans to choose from, if the log holds them.
+    pub front: Option<Front>,
+    /// What was doubtful.
+    pub remarks: Remarks,
+}
+
+/// Plans of which none is better than another in everything.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Front {
+    /// Duration, s, root mean square jerk, rad/s³, root mean square power, W; by plan.
+    pub objectives: Vec<[f64; 3]>,
+    /// The same of the plan that was chosen.
+    pub chosen: Option<[f64; 3]>,
+}
+
+/// Reads and places everything that is to be seen.
+///
+/// # Errors
+///
+/// [`ViewFailure`] if a log cannot be read or holds no planned joints, or a description that is given does
+/// not fit it.
+pub fn run(inputs: &Inputs) -> Result<Vec<Scene>, ViewFailure> {
+    let given = inputs.urdf.as_deref().map(|path| match std::fs::read_to_string(path) {
+        Ok(text) => Ok((path, text)),
+        Err(source) => Err(ViewFailure::Read { path: path.to_owned(), source }),
+    });
+    let given = given.transpose()?;
+    let mut taken: BTreeMap<String, u32> = BTreeMap::new();
+    let scenes = inputs.logs.iter().map(|path| {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let count = taken.entry(stem.clone()).or_default();
+        *count += 1;
+        let name = if *count == 1 { stem } else { format!("{stem}-{count}") };
+        scene(path, name, inputs, given.as_ref().map(|(file, text)| (*file, text.as_str())))
+    });
+    scenes.collect()
+}
+
+fn scene(
+    path: &Path,
+    name: String,
+    inputs: &Inputs,
+    given: Option<(&Path, &str)>,
+) -> Result<Scene, ViewFailure> {
+    let paths = [path.to_owned()];
+    let mut recording = match read_recording(&paths, &inputs.read) {
+        // A plan that nobody ran yet.
+        Err(LogError::Missing { missing: "measured", .. }) => read_plan(&paths, &inputs.read)?,
+        other => other?,
+    };
+    let joints = recording.planned.tracks.iter();
+    let pairs: Vec<Pair> =
+        joints.filter_map(|planned| align(planned, recording.measured.track(planned.name())?)).collect();
+    let found = replay(&pairs, &inputs.rules);
+    let arm = arm::find(&paths, &mut recording, given, &inputs.packages)?;
+    let front = recording.attachments.iter().find(|file| file.name == FRONT).and_then(|f| front(&f.data));
+    let Recording { planned, measured, remarks, .. } = recording;
+    Ok(Scene { name, planned, measured, pairs, transitions: found.transitions, arm, front, remarks })
+}
+
+fn front(document: &[u8]) -> Option<Front> {
+    let document: serde_json::Value = serde_json::from_slice(document).ok()?;
+    let of = |plan: &serde_json::Value| -> Option<[f64; 3]> {
+        let value = |key: &str| plan[key].as_f64();
+        Some([value("duration_s")?, value("rms_jerk_rad_s3")?, value("rms_power_w")?])
+    };
+    let objectives: Vec<[f64; 3]> = document["front"].as_array()?.iter().filter_map(of).collect();
+    let chosen = of(&document["chosen"]);
+    (!objectives.is_empty() || chosen.is_some()).then_some(Front { objectives, chosen })
+}
