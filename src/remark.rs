@@ -58,6 +58,8 @@ pub enum Code {
     StartOnReceipt,
     /// A trajectory that was cut short by the next one or by a cancel.
     TrajectoryReplaced,
+    /// What was sent stands in for a plan that is not there; the error is against the command.
+    PlanIsCommand,
     /// Another topic would have served as well.
     Ambiguous,
     /// Values that no joint can have, dropped.
@@ -122,6 +124,16 @@ impl Remarks {
         for remark in other.list {
             self.add(remark.code, remark.count, remark.message);
         }
+    }
+
+    /// All but those of one kind.
+    #[must_use]
+    pub fn without(self, code: Code) -> Self {
+        let mut left = Self::default();
+        for remark in self.list.into_iter().filter(|remark| remark.code != code) {
+            left.add(remark.code, remark.count, remark.message);
+        }
+        left
     }
 
     /// The remarks, in order of first appearance.

@@ -186,7 +186,6 @@ fn pairs_of_many_names_are_found() {
         ("q_ref_deg", "q_meas_deg"),
         ("planned.J1 (deg)", "measured.J1 (deg)"),
         ("Achse1SollPos [°]", "Achse1IstPos [°]"),
-        ("cmd_pos_1_deg", "fb_pos_1_deg"),
         ("J1_set_deg", "J1_act_deg"),
         ("GVL.fSetPos[1] in °", "GVL.fActPos[1] in °"),
         ("/planned/joint_states/J1/position [deg]", "/joint_states/J1/position [deg]"),

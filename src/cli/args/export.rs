@@ -10,12 +10,13 @@ Examples:
   hydrotrace export run.mcap --csv -o run.csv
   hydrotrace export run.mcap --parquet -o run.parquet
   hydrotrace export run.mcap --csv --degrees --joints joint_3
+  hydrotrace export next.mcap --csv --degrees -o next.csv
 
 A row for every instant at which anything was sampled: stamp_ns (since 1970), time_s (since the
-start), and for each joint J_planned_rad, J_planned_rad_s, J_measured_rad, J_error_rad and
-J_command_rad, as far as the log has them. A cell without a sample is empty. The error is planned
-minus measured, the plan interpolated. `hydrotrace import` makes a log of the table again, of
-which a report has the same numbers.";
+start), and for each joint J_planned_rad, J_planned_rad_s, J_measured_rad, J_command_rad and
+J_error_rad, as far as the log has them: of what plan and replan write, plan and command. A cell
+without a sample is empty. The error is planned minus measured, the plan interpolated. `hydrotrace
+import` makes a log of the table again, of which a report has the same numbers.";
 
 /// Arguments of `export`.
 #[derive(Debug, clap::Args)]

@@ -73,7 +73,8 @@ pub enum Command {
         after_help = "Examples:\n  hydrotrace report run.mcap\n  hydrotrace report run.mcap --json -o report.json\n  \
                             hydrotrace report run.mcap --html -o run.html\n  \
                             hydrotrace report run.mcap --max-transition-peak-deg 0.5\n  \
-                            hydrotrace report run.mcap --planned /arm/controller_state:output.positions"
+                            hydrotrace report run.mcap --planned /arm/controller_state:output.positions\n  \
+                            hydrotrace report measured.mcap plan.mcap    (two files of one run, one zero of time)"
     )]
     Report(ReportArgs),
     /// What a change did: the same task before and after it
@@ -114,7 +115,7 @@ pub enum Command {
     /// Turn a CSV file (PLC trace, RTDE, any table) into a log
     #[command(after_help = import::EXAMPLES)]
     Import(ImportArgs),
-    /// Turn what a report would use of a log into CSV or Parquet
+    /// Turn plan, command and measurement of a log into CSV or Parquet
     #[command(after_help = export::EXAMPLES)]
     Export(ExportArgs),
     /// What is in a log, what a report would use, what is damaged
