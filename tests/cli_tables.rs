@@ -98,14 +98,22 @@ fn a_table_that_goes_in_comes_out_with_the_command_as_command() {
     let mut tables = Vec::new();
     for (from, log, to) in [("a.csv", "a.mcap", "b.csv"), ("b.csv", "b.mcap", "c.csv")] {
         hydrotrace(folder.path(), &format!("import {from} -o {log}"));
-        let (code, _, error) = said(&hydrotrace(folder.path(), &format!("export {log} --csv --degrees -o {to}")));
+        let (code, _, error) =
+            said(&hydrotrace(folder.path(), &format!("export {log} --csv --degrees -o {to}")));
         assert_eq!(code, 0, "{error}");
         tables.push(fs::read_to_string(folder.path().join(to)).unwrap());
     }
-    assert!(tables[0].starts_with("stamp_ns,time_s,J1_measured_deg,J1_command_deg,"), "{}", &tables[0][..200]);
+    assert!(
+        tables[0].starts_with("stamp_ns,time_s,J1_measured_deg,J1_command_deg,"),
+        "{}",
+        &tables[0][..200]
+    );
     assert!(!tables[0].contains("planned") && !tables[0].contains("error"));
     let numbers = |text: &str| -> Vec<f64> {
-        text.lines().skip(1).flat_map(|row| row.split(',').skip(1).map(|cell| cell.parse().unwrap())).collect()
+        text.lines()
+            .skip(1)
+            .flat_map(|row| row.split(',').skip(1).map(|cell| cell.parse().unwrap()))
+            .collect()
     };
     let (first, second) = (numbers(&tables[0]), numbers(&tables[1]));
     assert_eq!(first.len(), 500 * 5);

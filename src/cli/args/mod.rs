@@ -16,7 +16,7 @@ mod simulate;
 mod terminal;
 mod view;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand, ValueEnum};
 
@@ -210,7 +210,7 @@ pub struct ReportArgs {
     #[command(flatten)]
     pub format: ReportFormat,
 
-    /// Write to FILE instead of standard output
+    /// Write to FILE instead of standard output; without an option for the form, .html, .json, .csv and .md say it
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
@@ -255,6 +255,26 @@ pub struct ReportFormat {
     /// One page for a browser: verdict, plots that zoom, every table; needs no network
     #[arg(long)]
     pub html: bool,
+}
+
+impl ReportFormat {
+    /// The form that was asked for, else that of the file's ending.
+    #[must_use]
+    pub fn or_of(&self, file: Option<&Path>) -> Self {
+        let Self { json, csv, markdown, html } = *self;
+        let ends = |with: &str| !(json || csv || markdown || html) && ends(file, with);
+        Self {
+            json: json || ends("json"),
+            csv: csv || ends("csv"),
+            markdown: markdown || ends("md"),
+            html: html || ends("html"),
+        }
+    }
+}
+
+/// Whether the name of a file has an ending.
+fn ends(file: Option<&Path>, with: &str) -> bool {
+    file.and_then(Path::extension).is_some_and(|ending| ending.eq_ignore_ascii_case(with))
 }
 
 /// Limits; exit code 4 if one is not kept.

@@ -7,6 +7,7 @@ use std::{
 
 use clap::{ArgAction, ValueEnum, builder::PossibleValuesParser};
 
+use super::ends;
 use crate::{
     moea::{Budget, CONTENDERS, Contender},
     plan::{Rule, Search},
@@ -21,8 +22,8 @@ pub struct PlanArgs {
     #[arg(value_name = "TASK")]
     pub task: PathBuf,
 
-    /// Write the chosen plan to FILE, an MCAP log with the task and the whole front within; with --html and a
-    /// FILE that ends in .html, the page
+    /// Write the chosen plan to FILE, an MCAP log with the task and the whole front within; a FILE that ends in
+    /// .html or .json gets the page or the document instead
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
@@ -125,15 +126,28 @@ pub enum RuleName {
 }
 
 impl PlanArgs {
+    /// Whether a page is wanted, by option or by the ending of the output.
+    pub fn wants_html(&self) -> bool {
+        self.html || !self.json && ends(self.output.as_deref(), "html")
+    }
+
+    /// The same of the document.
+    pub fn wants_json(&self) -> bool {
+        self.json || !self.html && ends(self.output.as_deref(), "json")
+    }
+
     /// Where the log goes.
     pub fn log(&self) -> Option<&Path> {
         self.output.as_deref().filter(|_| self.page().is_none())
     }
 
-    /// Where the page goes, if not to standard output.
+    /// Where page or document go: a file of that ending, `-` for standard output, which is also meant without.
     pub fn page(&self) -> Option<&Path> {
-        let html = |path: &&Path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"));
-        self.output.as_deref().filter(|path| self.html && html(path))
+        let fits = |path: &&Path| {
+            self.wants_html() && ends(Some(path), "html") || self.wants_json() && ends(Some(path), "json")
+        };
+        let here = |path: &&Path| *path == Path::new("-") && (self.html || self.json);
+        self.output.as_deref().filter(|path| fits(path) || here(path))
     }
 
     /// The same for the library.

@@ -141,9 +141,7 @@ fn joints<'a>(recording: &'a Recording, command: Option<&'a Recording>) -> Vec<&
     match (asked.is_empty(), measured.is_empty()) {
         (true, _) => names(measured).collect(),
         (false, true) => names(asked).collect(),
-        (false, false) => {
-            names(asked).filter(|joint| recording.measured.track(joint).is_some()).collect()
-        }
+        (false, false) => names(asked).filter(|joint| recording.measured.track(joint).is_some()).collect(),
     }
 }
 
