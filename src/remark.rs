@@ -70,6 +70,8 @@ pub enum Code {
     Guessed,
     /// A ceiling so high that it binds nothing.
     InactiveBound,
+    /// Both sides of a comparison are one run.
+    SameRun,
     /// What was sent to the machine is not what was made to be sent.
     SentOtherwise,
     /// A model that predicts too badly to make commands from.

@@ -269,7 +269,7 @@ fn what_is_guessed_is_a_remark() {
             "unusable-stamp",
             "\"nie\"",
         ),
-        (trace("t [s];J1 soll [rad];J1 ist [rad]", 1.0, ";", 1.0) + "1;0;0\n", &[], "clock-jump", "earlier"),
+        (trace("t [s];J1 soll [rad];J1 ist [rad]", 1.0, ";", 1.0) + "1;0;0\n", &[], "reordered", "earlier"),
     ] {
         let (exit, said, _) = import(&text, args);
         assert_eq!(exit, 3, "{code}: {said}");

@@ -94,7 +94,7 @@ pub(super) fn assemble(
         keep_joints(series, &options.joints)?;
         doubt::unwrap_turns(series, &options.continuous, &mut remarks);
     }
-    doubt::of_pairs(&planned, &measured, &options.continuous, &mut remarks);
+    doubt::of_pairs(&planned, &measured, options, &mut remarks);
     let source = source_info(&extracted, choice, base, base_why, epoch_ns, &measured, &planned);
     Ok(Recording {
         planned,

@@ -310,7 +310,8 @@ fn present(extracted: &Extracted) -> String {
     let with_joints: BTreeSet<usize> = extracted.sources.iter().map(|s| s.topic).collect();
     let describe = |index: usize| {
         let topic = &extracted.topics[index];
-        format!("{} ({}, {} messages)", topic.topic, topic.type_name, topic.messages)
+        let messages = if topic.messages == 1 { "message" } else { "messages" };
+        format!("{} ({}, {} {messages})", topic.topic, topic.type_name, topic.messages)
     };
     let listed: Vec<String> = if with_joints.is_empty() {
         (0..extracted.topics.len()).map(describe).collect()

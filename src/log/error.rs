@@ -30,6 +30,15 @@ pub enum LogError {
         /// What to do.
         fix: &'static str,
     },
+    /// A table in text.
+    #[error(
+        "{0} looks like a CSV file, not like an MCAP log; make it one first: `hydrotrace import {0} -o run.mcap`",
+        path.display()
+    )]
+    IsTable {
+        /// The file.
+        path: PathBuf,
+    },
     /// A directory without a recording.
     #[error("{} holds no .mcap file; give a recording or a ROS 2 bag directory in MCAP format", path.display())]
     EmptyBag {

@@ -217,6 +217,9 @@ fn read_layouts(
 }
 
 pub(super) fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
+    if is_table(path, bytes) {
+        return LogError::IsTable { path: path.to_owned() };
+    }
     let start: Vec<String> = bytes.iter().take(8).map(|byte| format!("{byte:02X}")).collect();
     let fix = match bytes {
         [] => "the file is empty",
@@ -229,6 +232,25 @@ pub(super) fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
     };
     let found = if start.is_empty() { "nothing".to_owned() } else { start.join(" ") };
     LogError::NotMcap { path: path.to_owned(), found, fix }
+}
+
+/// Whether bytes are text whose first lines are split alike, or text of a file named as a table.
+fn is_table(path: &Path, bytes: &[u8]) -> bool {
+    const LOOK: usize = 4096;
+    const LINES: usize = 3;
+    let text = String::from_utf8_lossy(bytes.get(..LOOK).unwrap_or(bytes));
+    if text.trim().is_empty() || text.chars().any(|c| c.is_control() && !c.is_whitespace()) {
+        return false;
+    }
+    let named = path
+        .extension()
+        .is_some_and(|ending| ["csv", "tsv"].iter().any(|one| ending.eq_ignore_ascii_case(one)));
+    let alike = |separator: char| {
+        let lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#')).take(LINES);
+        let counts: Vec<usize> = lines.map(|line| line.matches(separator).count()).collect();
+        counts.len() == LINES && counts[0] > 0 && counts.iter().all(|count| *count == counts[0])
+    };
+    named || [';', ',', '\t'].into_iter().any(alike)
 }
 
 fn describe(path: &Path, bytes: &[u8], layout: &Layout<'_>, out: &mut Extracted) {

@@ -49,7 +49,7 @@ pub struct CompareArgs {
 #[derive(Debug, clap::Args)]
 #[group(multiple = false)]
 pub struct CompareFormat {
-    /// One JSON document, as schemas/compare.v1.schema.json describes it
+    /// One JSON document, as schemas/compare.v1.schema.json in the repository describes it
     #[arg(long)]
     pub json: bool,
 
@@ -82,19 +82,19 @@ pub struct CompareGateArgs {
 
     /// p value of the reduction of peak errors, at most: how often chance alone, without any effect, would
     /// give one as large
-    #[arg(long, value_name = "P", value_parser = probability)]
+    #[arg(long, value_name = "P", value_parser = probability, allow_negative_numbers = true)]
     pub max_p: Option<f64>,
 
     /// Growth of the peak error at any one transition
-    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub max_transition_growth_deg: Option<f64>,
 
     /// Root mean square error over the run and all joints, after over before
-    #[arg(long, value_name = "RATIO", value_parser = ratio)]
+    #[arg(long, value_name = "RATIO", value_parser = ratio, allow_negative_numbers = true)]
     pub max_rms_ratio: Option<f64>,
 
     /// Peak error over the run and all joints, after over before
-    #[arg(long, value_name = "RATIO", value_parser = ratio)]
+    #[arg(long, value_name = "RATIO", value_parser = ratio, allow_negative_numbers = true)]
     pub max_peak_ratio: Option<f64>,
 }
 

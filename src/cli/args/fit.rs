@@ -16,7 +16,7 @@ pub struct FitArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// One JSON document, as schemas/fit.v1.schema.json describes it
+    /// One JSON document, as schemas/fit.v1.schema.json in the repository describes it
     #[arg(long)]
     pub json: bool,
 

@@ -7,6 +7,7 @@ mod demo;
 mod excite;
 mod export;
 mod fit;
+mod form;
 mod import;
 mod join;
 mod moea;
@@ -16,7 +17,7 @@ mod simulate;
 mod terminal;
 mod view;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
@@ -27,6 +28,7 @@ pub use demo::DemoArgs;
 pub use excite::ExciteArgs;
 pub use export::{ExportArgs, ExportFormat};
 pub use fit::{FitArgs, SentArgs};
+pub use form::ReportFormat;
 pub use import::ImportArgs;
 pub use join::JoinArgs;
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
@@ -35,6 +37,8 @@ pub use replan::{ChangeArgs, ReplanArgs};
 pub use simulate::SimulateArgs;
 pub use terminal::{CompletionsArgs, ManArgs, TerminalArgs};
 pub use view::{ViewArgs, ViewTarget};
+
+use form::ends;
 
 use crate::{
     log::{ReadOptions, Selector, TimeBase},
@@ -235,74 +239,32 @@ pub struct ReportArgs {
     pub gates: GateArgs,
 }
 
-/// At most one of these.
-#[derive(Debug, clap::Args)]
-#[group(multiple = false)]
-#[expect(clippy::struct_excessive_bools, reason = "flags of a command line, of which one at most is given")]
-pub struct ReportFormat {
-    /// One JSON document, as schemas/report.v1.schema.json describes it
-    #[arg(long)]
-    pub json: bool,
-
-    /// The transitions as comma-separated values
-    #[arg(long)]
-    pub csv: bool,
-
-    /// The report as Markdown
-    #[arg(long)]
-    pub markdown: bool,
-
-    /// One page for a browser: verdict, plots that zoom, every table; needs no network
-    #[arg(long)]
-    pub html: bool,
-}
-
-impl ReportFormat {
-    /// The form that was asked for, else that of the file's ending.
-    #[must_use]
-    pub fn or_of(&self, file: Option<&Path>) -> Self {
-        let Self { json, csv, markdown, html } = *self;
-        let ends = |with: &str| !(json || csv || markdown || html) && ends(file, with);
-        Self {
-            json: json || ends("json"),
-            csv: csv || ends("csv"),
-            markdown: markdown || ends("md"),
-            html: html || ends("html"),
-        }
-    }
-}
-
-/// Whether the name of a file has an ending.
-fn ends(file: Option<&Path>, with: &str) -> bool {
-    file.and_then(Path::extension).is_some_and(|ending| ending.eq_ignore_ascii_case(with))
-}
-
 /// Limits; exit code 4 if one is not kept.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Limits (exit code 4 if not kept)")]
 pub struct GateArgs {
     /// Peak error in any transition
-    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub max_transition_peak_deg: Option<f64>,
 
     /// Root mean square error of any joint over the run
-    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub max_rms_deg: Option<f64>,
 
     /// Peak error of any joint over the run
-    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub max_peak_deg: Option<f64>,
 
     /// Root mean square error of any joint while its plan rests
-    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub max_standstill_rms_deg: Option<f64>,
 
     /// Delay of any start; a start without an answer breaks it
-    #[arg(long, value_name = "MS", value_parser = milliseconds)]
+    #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true)]
     pub max_start_delay_ms: Option<f64>,
 
     /// Velocity lag of any joint
-    #[arg(long, value_name = "MS", value_parser = milliseconds)]
+    #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true)]
     pub max_lag_ms: Option<f64>,
 }
 

@@ -18,7 +18,7 @@ use crate::{
 /// Arguments of `plan`.
 #[derive(Debug, clap::Args)]
 pub struct PlanArgs {
-    /// The task: a TOML file as schemas/task.schema.json describes it
+    /// The task: a TOML file as schemas/task.schema.json in the repository describes it
     #[arg(value_name = "TASK")]
     pub task: PathBuf,
 
@@ -31,7 +31,7 @@ pub struct PlanArgs {
     #[arg(long, value_name = "S,...", value_delimiter = ',', value_parser = time, allow_negative_numbers = true)]
     pub times: Option<Vec<f64>>,
 
-    /// One JSON document with the front, as schemas/plan.v1.schema.json describes it
+    /// One JSON document with the front, as schemas/plan.v1.schema.json in the repository describes it
     #[arg(long)]
     pub json: bool,
 
@@ -40,7 +40,7 @@ pub struct PlanArgs {
     pub html: bool,
 
     /// Samples a second in the log
-    #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate)]
+    #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate, allow_negative_numbers = true)]
     pub rate: f64,
 
     /// How to search.
@@ -65,7 +65,7 @@ pub struct SearchArgs {
     pub generations: Option<u64>,
 
     /// Seconds for the evolution; what it finds then depends on the machine
-    #[arg(long, value_name = "S", group = "budget", value_parser = seconds)]
+    #[arg(long, value_name = "S", group = "budget", value_parser = seconds, allow_negative_numbers = true)]
     pub time_budget: Option<Duration>,
 
     /// Evolutionary algorithm
