@@ -1,8 +1,8 @@
 //! Files that appear whole or not at all.
 
 use std::{
-    fs::{self, File},
-    io::{self, BufWriter, Write},
+    fs::{self, File, OpenOptions},
+    io::{self, BufWriter, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
     sync::atomic::{AtomicU64, Ordering},
 };
@@ -13,14 +13,22 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AtomicError {
-    /// The target is a directory, a device or a pipe, which cannot be replaced whole.
-    #[error("{path} is not a file")]
+    /// The target is a directory, or names no file.
+    #[error("{} is a folder; give the name of a file", path.display())]
     NotAFile {
         /// The target.
         path: PathBuf,
     },
+    /// The directory of the target does not exist.
+    #[error("cannot write {}: there is no folder {}; make it first", path.display(), folder.display())]
+    NoFolder {
+        /// The target.
+        path: PathBuf,
+        /// Where it would be.
+        folder: PathBuf,
+    },
     /// The file system refused.
-    #[error("cannot {action} {path}")]
+    #[error("cannot {action} {}", path.display())]
     Io {
         /// What was tried.
         action: &'static str,
@@ -31,34 +39,100 @@ pub enum AtomicError {
     },
 }
 
+/// An output that remembers why the file system refused it, whatever a writer on top makes of that.
+#[derive(Debug)]
+pub struct Output {
+    file: File,
+    fault: Option<io::Error>,
+}
+
+impl Output {
+    fn noting<T>(&mut self, done: io::Result<T>) -> io::Result<T> {
+        if let Err(error) = &done
+            && error.kind() != io::ErrorKind::Interrupted
+        {
+            let known = error.raw_os_error().map(io::Error::from_raw_os_error);
+            self.fault = Some(known.unwrap_or_else(|| io::Error::from(error.kind())));
+        }
+        done
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let done = self.file.write(bytes);
+        self.noting(done)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let done = self.file.flush();
+        self.noting(done)
+    }
+}
+
+impl Seek for Output {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}
+
 /// Has `write` fill a new file beside `target` and then puts it in the place of `target`, which
 /// holds its old content, or does not exist, until the new content is on the disk. On failure
-/// the new file is removed. A symbolic link stays one; the file it leads to is replaced.
+/// the new file is removed. A symbolic link stays one; the file it leads to is replaced. Devices and
+/// pipes, which cannot be replaced, are written to as they are.
 ///
 /// # Errors
 ///
-/// What `write` returns, or [`AtomicError`].
+/// What `write` returns, or [`AtomicError`], which names the target where the file system refuses.
 pub fn write_atomically<T, E: From<AtomicError>>(
     target: &Path,
-    write: impl FnOnce(&mut BufWriter<File>) -> Result<T, E>,
+    write: impl FnOnce(&mut BufWriter<Output>) -> Result<T, E>,
 ) -> Result<T, E> {
-    let target = resolve(target)?;
-    let partial = Partial::beside(&target)?;
-    let file = File::create_new(&partial.0).map_err(failed("create", &partial.0))?;
-    let mut output = BufWriter::new(file);
-    let value = write(&mut output)?;
-    output.flush().and_then(|()| output.get_ref().sync_all()).map_err(failed("write", &partial.0))?;
+    let Some(place) = resolve(target)? else {
+        let file = OpenOptions::new().write(true).open(target).map_err(failed("open", target))?;
+        let (value, mut output) = fill(file, target, write)?;
+        output.flush().map_err(failed("write", target))?;
+        return Ok(value);
+    };
+    let partial = Partial::beside(&place)?;
+    let file = File::create_new(&partial.0).map_err(failed("write", target))?;
+    let (value, mut output) = fill(file, target, write)?;
+    output.flush().and_then(|()| output.get_ref().file.sync_all()).map_err(failed("write", target))?;
     drop(output);
-    fs::rename(&partial.0, &target).map_err(failed("replace", &target))?;
+    fs::rename(&partial.0, &place).map_err(failed("replace", target))?;
     Ok(value)
 }
 
-/// The file that a path leads to.
-fn resolve(target: &Path) -> Result<PathBuf, AtomicError> {
+fn fill<T, E: From<AtomicError>>(
+    file: File,
+    target: &Path,
+    write: impl FnOnce(&mut BufWriter<Output>) -> Result<T, E>,
+) -> Result<(T, BufWriter<Output>), E> {
+    let mut output = BufWriter::new(Output { file, fault: None });
+    match write(&mut output) {
+        Ok(value) => Ok((value, output)),
+        Err(error) => Err(match output.get_mut().fault.take() {
+            Some(source) => failed("write", target)(source).into(),
+            None => error,
+        }),
+    }
+}
+
+/// The file that a path leads to; `None` for what cannot be replaced.
+fn resolve(target: &Path) -> Result<Option<PathBuf>, AtomicError> {
     match fs::metadata(target) {
-        Ok(found) if found.is_file() => fs::canonicalize(target).map_err(failed("find", target)),
-        Ok(_) => Err(AtomicError::NotAFile { path: target.to_owned() }),
-        Err(_) => Ok(target.to_owned()),
+        Ok(found) if found.is_file() => fs::canonicalize(target).map(Some).map_err(failed("find", target)),
+        Ok(found) if found.is_dir() => Err(AtomicError::NotAFile { path: target.to_owned() }),
+        Ok(_) => Ok(None),
+        Err(_) => {
+            let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
+            match folder.filter(|folder| !folder.is_dir()) {
+                Some(folder) => {
+                    Err(AtomicError::NoFolder { path: target.to_owned(), folder: folder.to_owned() })
+                }
+                None => Ok(Some(target.to_owned())),
+            }
+        }
     }
 }
 
@@ -134,7 +208,7 @@ mod tests {
         assert!(matches!(onto_folder, Err(AtomicError::NotAFile { .. })));
         let nowhere = folder.path().join("missing").join("run.mcap");
         let into_nowhere: Result<(), AtomicError> = write_atomically(&nowhere, |_| Ok(()));
-        assert!(matches!(into_nowhere, Err(AtomicError::Io { action: "create", .. })));
+        assert!(matches!(into_nowhere, Err(AtomicError::NoFolder { .. })));
     }
 
     #[cfg(unix)]

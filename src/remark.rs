@@ -58,6 +58,8 @@ pub enum Code {
     StartOnReceipt,
     /// A trajectory that was cut short by the next one or by a cancel.
     TrajectoryReplaced,
+    /// What was sent stands in for a plan that is not there; the error is against the command.
+    PlanIsCommand,
     /// Another topic would have served as well.
     Ambiguous,
     /// Values that no joint can have, dropped.
@@ -70,6 +72,8 @@ pub enum Code {
     NoMass,
     /// A ceiling so high that it binds nothing.
     InactiveBound,
+    /// Both sides of a comparison are one run.
+    SameRun,
     /// What was sent to the machine is not what was made to be sent.
     SentOtherwise,
     /// A model that predicts too badly to make commands from.
@@ -124,6 +128,16 @@ impl Remarks {
         for remark in other.list {
             self.add(remark.code, remark.count, remark.message);
         }
+    }
+
+    /// All but those of one kind.
+    #[must_use]
+    pub fn without(self, code: Code) -> Self {
+        let mut left = Self::default();
+        for remark in self.list.into_iter().filter(|remark| remark.code != code) {
+            left.add(remark.code, remark.count, remark.message);
+        }
+        left
     }
 
     /// The remarks, in order of first appearance.

@@ -6,7 +6,7 @@ use super::{
     CliError, Outcome,
     args::CompareArgs,
     figures,
-    output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal},
+    output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal, text_file},
 };
 use crate::{
     report::{compare_figures, compare_gate_lines, compare_json, compare_page, compare_parts, markdown},
@@ -26,24 +26,26 @@ pub(super) fn run(
     let before = [from_ref(&args.before), args.more_before.as_slice()].concat();
     let after = [from_ref(&args.after), args.more_after.as_slice()].concat();
     spare_inputs(args.output.as_deref(), &[before.as_slice(), &after].concat())?;
-    spare_terminal(args.format.html, args.output.as_deref())?;
+    let output = text_file(args.output.as_deref());
+    let format = args.format.or_of(output);
+    spare_terminal(format.html, output)?;
     figures::check(&args.figures)?;
     let inputs =
         Inputs { before, after, read: args.read.options(), gates: args.gates.gates(), ..Inputs::default() };
     let comparison = compare(&inputs)?;
     let most = if args.all { usize::MAX } else { MOST };
-    let rendered = if args.format.json {
+    let rendered = if format.json {
         compare_json(&comparison)
-    } else if args.format.html {
+    } else if format.html {
         compare_page(&comparison, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
-    } else if args.format.markdown {
+    } else if format.markdown {
         markdown(&compare_parts(&comparison, most))
     } else {
-        shown(&compare_parts(&comparison, most), args.output.as_deref())
+        shown(&compare_parts(&comparison, most), output)
     };
     figures::figures(&args.figures, err, || compare_figures(&comparison))?;
-    deliver(&rendered, args.output.as_deref(), out)?;
-    if args.output.is_some() || args.format.json || args.format.html {
+    deliver(&rendered, output, out)?;
+    if output.is_some() || format.json || format.html {
         say_remarks(&comparison.remarks, err);
     }
     if !comparison.gates_kept() {

@@ -5,7 +5,7 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::ExportArgs,
-    output::{say_remarks, spare_inputs},
+    output::{say_remarks, spare_inputs, spare_stdout, text_file},
 };
 use crate::{
     atomic::write_atomically,
@@ -19,6 +19,15 @@ pub(super) fn run(
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
     spare_inputs(args.output.as_deref(), &args.logs)?;
+    let output = text_file(args.output.as_deref());
+    let parquet = match (args.wants_parquet(), &args.output) {
+        (Some(parquet), _) => parquet,
+        (None, Some(path)) => return Err(CliError::NoForm(path.clone())),
+        (None, None) => false,
+    };
+    if parquet {
+        spare_stdout(args.output.as_deref())?;
+    }
     let exported = export(&Inputs {
         logs: args.logs.clone(),
         read: args.read.options(),
@@ -26,8 +35,8 @@ pub(super) fn run(
         unit: if args.degrees { AngleUnit::Degrees } else { AngleUnit::Radians },
     })?;
     let table = &exported.table;
-    match &args.output {
-        Some(path) if args.format.parquet => {
+    match output {
+        Some(path) if parquet => {
             write_atomically::<_, ExportError>(path, |file| table.write_parquet(file))?;
         }
         Some(path) => write_atomically::<_, ExportError>(path, |file| table.write_csv(file))?,
@@ -37,7 +46,7 @@ pub(super) fn run(
         })?,
     }
     say_remarks(&exported.remarks, err);
-    if let Some(path) = &args.output {
+    if let Some(path) = output {
         let columns = table.column_names().count();
         writeln!(out, "{} rows, {columns} columns written to {}.", table.rows(), path.display())?;
     }

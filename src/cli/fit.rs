@@ -5,7 +5,7 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::FitArgs,
-    output::{deliver, say_remarks, shown, spare_inputs},
+    output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
     report::{fit_json, fit_parts, limits_toml, limits_written, noted},
@@ -14,13 +14,14 @@ use crate::{
 
 pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     let fitted = fitted(args)?;
+    let json = args.json || args.document().is_some();
     let rendered = match &args.output {
-        _ if args.json => fit_json(&fitted),
+        _ if json => fit_json(&fitted),
         Some(path) => shown(&noted(fit_parts(&fitted), limits_written(path, &args.logs)), None),
         None => shown(&fit_parts(&fitted), None),
     };
-    deliver(&rendered, None, out)?;
-    if args.json {
+    deliver(&rendered, args.document(), out)?;
+    if json {
         say_remarks(&fitted.remarks, err);
     }
     Ok(if fitted.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
@@ -29,8 +30,9 @@ pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) ->
 /// Fits the runs and writes the limits.
 pub(super) fn fitted(args: &FitArgs) -> Result<Fitted, CliError> {
     spare_inputs(args.output.as_deref(), &args.logs)?;
+    spare_stdout(args.output.as_deref())?;
     let fitted = fit(&Inputs { logs: args.logs.clone(), wanted: args.sent.wanted() })?;
-    if let Some(path) = &args.output {
+    if let Some(path) = args.output.as_deref().filter(|_| args.document().is_none()) {
         deliver(&limits_toml(&fitted.file())?, Some(path), &mut std::io::sink())?;
     }
     Ok(fitted)

@@ -5,7 +5,7 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::ImportArgs,
-    output::{deliver, say_remarks, shown, spare_inputs},
+    output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
     report::{imported_json, imported_parts},
@@ -18,6 +18,7 @@ pub(super) fn run(
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
     spare_inputs(Some(&args.output), std::slice::from_ref(&args.file))?;
+    spare_stdout(Some(&args.output))?;
     let imported = import(&args.inputs()?)?;
     if args.json {
         deliver(&imported_json(&imported), None, out)?;

@@ -5,7 +5,7 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::JoinArgs,
-    output::{deliver, say_remarks, shown, spare_inputs},
+    output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
     report::{joined_json, joined_parts},
@@ -15,6 +15,7 @@ use crate::{
 pub(super) fn run(args: &JoinArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     let read = [args.logs.as_slice(), std::slice::from_ref(&args.plan)].concat();
     spare_inputs(Some(&args.output), &read)?;
+    spare_stdout(Some(&args.output))?;
     let joined = join(&args.inputs())?;
     if args.json {
         deliver(&joined_json(&joined), None, out)?;

@@ -114,6 +114,10 @@ enum CliError {
     Write(#[from] WriteError),
     #[error("{} is what is read; give another name to --output", .0.display())]
     Overwrite(std::path::PathBuf),
+    #[error("standard output is for text: it says what was done; give --output the name of a file")]
+    NoText,
+    #[error("{} does not say the form of the table by its ending, .csv or .parquet; say --csv or --parquet", .0.display())]
+    NoForm(std::path::PathBuf),
     #[error("a page is for a browser, not for a terminal; give --output FILE or redirect it")]
     Terminal,
     #[cfg(not(feature = "png"))]
@@ -178,7 +182,11 @@ fn ended(result: Result<Outcome, CliError>, out: &mut impl Write, err: &mut impl
                 let _ = writeln!(err, "  because: {}", harmless(&inner.to_string()));
                 cause = inner.source();
             }
-            if matches!(error, CliError::Overwrite(_) | CliError::Terminal) { 2 } else { 1 }
+            let usage = matches!(
+                error,
+                CliError::Overwrite(_) | CliError::Terminal | CliError::NoText | CliError::NoForm(_)
+            );
+            if usage { 2 } else { 1 }
         }
     }
 }

@@ -58,6 +58,20 @@ pub(super) fn deliver(text: &str, file: Option<&Path>, out: &mut impl Write) -> 
     }
 }
 
+/// The file that a text is to go to; `None` for standard output, whatever it is called.
+pub(super) fn text_file(output: Option<&Path>) -> Option<&Path> {
+    output.filter(|path| !is_stdout(path))
+}
+
+/// Refuses a log on standard output, which says what was done.
+pub(super) fn spare_stdout(output: Option<&Path>) -> Result<(), CliError> {
+    if output.is_some_and(is_stdout) { Err(CliError::NoText) } else { Ok(()) }
+}
+
+fn is_stdout(path: &Path) -> bool {
+    ["-", "/dev/stdout", "/dev/fd/1"].iter().any(|name| path == Path::new(name))
+}
+
 /// Refuses a page on a terminal: a megabyte of markup tells nobody anything.
 pub(super) fn spare_terminal(html: bool, file: Option<&Path>) -> Result<(), CliError> {
     if html && file.is_none() && std::io::stdout().is_terminal() { Err(CliError::Terminal) } else { Ok(()) }

@@ -8,7 +8,7 @@ use super::{
     CliError, Outcome,
     args::PlanArgs,
     figures,
-    output::{deliver, progress, say_remarks, shown, spare_inputs, spare_terminal},
+    output::{deliver, progress, say_remarks, shown, spare_inputs, spare_stdout, spare_terminal, text_file},
 };
 use crate::{
     atomic::write_atomically,
@@ -26,7 +26,8 @@ use crate::{
 
 pub(super) fn run(args: &PlanArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     spare_inputs(args.output.as_deref(), std::slice::from_ref(&args.task))?;
-    spare_terminal(args.html, args.page())?;
+    spare_terminal(args.wants_html(), text_file(args.page()))?;
+    spare_stdout(args.log())?;
     figures::check(&args.figures)?;
     let order = Order::read(&args.task)?;
     match args.times.as_ref().or(order.task.times_s.as_ref()) {
@@ -48,15 +49,15 @@ fn judge(
     let document = judged_json(title, &joints, &judged, true);
     write_log(args, order, &judged, &document, &BTreeMap::new())?;
     let course = course(order, &judged)?;
-    let rendered = if args.json {
+    let rendered = if args.wants_json() {
         document
-    } else if args.html {
+    } else if args.wants_html() {
         judged_page(title, &joints, &judged, &course)
     } else {
         shown(&written(args, judged_parts(title, &joints, &judged)), None)
     };
     figures::figures(&args.figures, err, || motion_figures(&joints, &course))?;
-    deliver(&rendered, args.page(), out)?;
+    deliver(&rendered, text_file(args.page()), out)?;
     Ok(if judged.broken().is_empty() { Outcome::Clean } else { Outcome::GateFailed })
 }
 
@@ -69,16 +70,16 @@ fn plan(
     let Found { planned, document, algorithm, options } = found(args, order, out)?;
     let (title, bounds) = (&order.task.title, &order.task.bounds);
     let course = course(order, &planned.chosen)?;
-    let rendered = if args.json {
+    let rendered = if args.wants_json() {
         document
-    } else if args.html {
+    } else if args.wants_html() {
         plan_page(title, algorithm, &options, bounds, &planned, &course)
     } else {
         shown(&written(args, plan_parts(title, algorithm, &options, bounds, &planned)), None)
     };
     figures::figures(&args.figures, err, || plan_figures(title, &planned, &course))?;
-    deliver(&rendered, args.page(), out)?;
-    if args.json || args.html {
+    deliver(&rendered, text_file(args.page()), out)?;
+    if args.wants_json() || args.wants_html() {
         say_remarks(&planned.remarks, err);
     }
     Ok(if planned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
@@ -149,7 +150,7 @@ fn explained(
         }
         _ => return Ok(failure.into()),
     };
-    if args.json {
+    if args.wants_json() {
         deliver(&judged_json(&order.task.title, &joints, judged, false), None, out)?;
     }
     Ok(CliError::NoPlan { failure: failure.to_string(), lines })

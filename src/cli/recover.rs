@@ -5,7 +5,7 @@ use std::io::Write;
 use super::{
     CliError, Outcome,
     args::RecoverArgs,
-    output::{deliver, say_remarks, shown, spare_inputs},
+    output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
     report::{recovered_json, recovered_parts},
@@ -18,6 +18,7 @@ pub(super) fn run(
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
     spare_inputs(Some(&args.output), std::slice::from_ref(&args.log))?;
+    spare_stdout(Some(&args.output))?;
     let recovered = recover(&Inputs { log: args.log.clone(), output: args.output.clone() })?;
     if args.json {
         deliver(&recovered_json(&recovered), None, out)?;

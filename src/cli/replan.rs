@@ -10,7 +10,7 @@ use std::{
 use super::{
     CliError, Outcome,
     args::ReplanArgs,
-    output::{deliver, progress, say_remarks, shown, spare_inputs},
+    output::{deliver, progress, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
     atomic::write_atomically,
@@ -44,6 +44,7 @@ pub(super) fn replanned(args: &ReplanArgs) -> Result<Replanned, CliError> {
     let inputs = args.inputs();
     let read: Vec<PathBuf> = args.logs.iter().chain(&args.limits).chain(&args.task).cloned().collect();
     spare_inputs(args.output.as_deref(), &read)?;
+    spare_stdout(args.output.as_deref())?;
     let bar = progress(Some(inputs.evaluations), "{bar:30} {pos} evaluations");
     let replanned = replan(&inputs, |evaluations| {
         bar.set_position(evaluations);

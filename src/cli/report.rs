@@ -6,7 +6,7 @@ use super::{
     CliError, Outcome,
     args::ReportArgs,
     figures,
-    output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal},
+    output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal, text_file},
 };
 use crate::{
     report::{gate_lines, markdown, report_figures, report_json, report_page, report_parts, transitions_csv},
@@ -27,7 +27,9 @@ pub(super) fn run(
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
     spare_inputs(args.output.as_deref(), &args.logs)?;
-    spare_terminal(args.format.html, args.output.as_deref())?;
+    let output = text_file(args.output.as_deref());
+    let format = args.format.or_of(output);
+    spare_terminal(format.html, output)?;
     figures::check(&args.figures)?;
     let inputs = Inputs {
         logs: args.logs.clone(),
@@ -39,22 +41,22 @@ pub(super) fn run(
     let name = args.logs.iter().filter_map(|p| p.file_name()).map(|n| n.to_string_lossy().into_owned());
     let name = name.collect::<Vec<_>>().join(", ");
     let most = if args.all { usize::MAX } else { MOST };
-    let rendered = if args.format.json {
+    let rendered = if format.json {
         report_json(&report)
-    } else if args.format.csv {
+    } else if format.csv {
         transitions_csv(&report)
-    } else if args.format.html {
+    } else if format.html {
         let limits = args.limits.as_deref().map(|path| limits(path, &report)).transpose()?;
         let fit = limits.as_ref().map(|file| &file.fit);
         report_page(&name, &report, fit, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
-    } else if args.format.markdown {
+    } else if format.markdown {
         markdown(&report_parts(&name, &report, most))
     } else {
-        shown(&report_parts(&name, &report, most), args.output.as_deref())
+        shown(&report_parts(&name, &report, most), output)
     };
     figures::figures(&args.figures, err, || report_figures(&report))?;
-    deliver(&rendered, args.output.as_deref(), out)?;
-    let on_screen = args.output.is_none() && !args.format.json && !args.format.csv && !args.format.html;
+    deliver(&rendered, output, out)?;
+    let on_screen = output.is_none() && !format.json && !format.csv && !format.html;
     if !on_screen {
         say_remarks(&report.remarks, err);
     }

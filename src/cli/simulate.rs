@@ -5,7 +5,7 @@ use std::{io::Write, path::Path};
 use super::{
     CliError, Outcome,
     args::SimulateArgs,
-    output::{deliver, spare_inputs},
+    output::{deliver, spare_inputs, spare_stdout},
 };
 use crate::{
     atomic::write_atomically,
@@ -23,6 +23,7 @@ pub(super) fn run(args: &SimulateArgs, out: &mut impl Write) -> Result<Outcome, 
 /// Runs the plan and writes the run.
 pub(super) fn simulated(args: &SimulateArgs) -> Result<Run, CliError> {
     spare_inputs(Some(&args.output), std::slice::from_ref(&args.log))?;
+    spare_stdout(Some(&args.output))?;
     let run = simulate(&args.log, parameters(&args.plant).map_err(SimulateFailure::from)?, args.seed)?;
     let bytes = run.log()?;
     write_atomically(&args.output, |file| Ok::<(), CliError>(file.write_all(&bytes)?))?;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{
     LogError, ReadOptions, Recording, SourceInfo, TimeBase,
     choose::{Candidate, Choice},
-    doubt,
+    doubt, parts,
     read::{Content, Extracted},
     source::{Plans, RawTrajectory, Stamps},
     track::{Axis, Unit, tracks},
@@ -25,10 +25,23 @@ pub(super) fn assemble(
 ) -> Result<Recording, LogError> {
     let mut remarks = std::mem::take(&mut extracted.remarks);
     let (base, base_why) = time_base(&extracted, choice, options, &mut remarks)?;
+    let chosen: Vec<&Candidate> = choice.measured.iter().chain(&choice.planned).collect();
+    parts::check(&extracted, &chosen, base)?;
     for rival in &choice.rivals {
         let message = format!("{rival} measures the same joints and was not used; choose with --measured");
         remarks.add(Code::Ambiguous, 1, message);
     }
+    let commanded: Vec<&str> =
+        if options.planned.is_empty() { choice.commanded().collect() } else { Vec::new() };
+    if let [first, ..] = commanded.as_slice() {
+        let message = format!(
+            "{first} is what was sent, and nothing in the log looks like the plan behind it: the error is against \
+             the command, not against what was wanted; `hydrotrace join LOG --plan next.mcap` puts the plan into \
+             the log, --planned TOPIC names it"
+        );
+        remarks.add(Code::PlanIsCommand, commanded.len() as u64, message);
+    }
+    let plan_is_command = !commanded.is_empty();
     let mut clocks: BTreeMap<usize, Clock> = BTreeMap::new();
     let mut jumps_ns: Vec<i64> = Vec::new();
     for candidate in choice.measured.iter().chain(&choice.planned) {
@@ -81,11 +94,12 @@ pub(super) fn assemble(
         keep_joints(series, &options.joints)?;
         doubt::unwrap_turns(series, &options.continuous, &mut remarks);
     }
-    doubt::of_pairs(&planned, &measured, &options.continuous, &mut remarks);
+    doubt::of_pairs(&planned, &measured, options, &mut remarks);
     let source = source_info(&extracted, choice, base, base_why, epoch_ns, &measured, &planned);
     Ok(Recording {
         planned,
         measured,
+        plan_is_command,
         source,
         remarks,
         attachments: extracted.attachments,
@@ -134,7 +148,7 @@ fn topic<'a>(extracted: &'a Extracted, candidate: &Candidate) -> &'a str {
     &extracted.topics[extracted.sources[candidate.source].topic].topic
 }
 
-fn stamps_of(stamps: &Stamps, base: TimeBase) -> &[i64] {
+pub(super) fn stamps_of(stamps: &Stamps, base: TimeBase) -> &[i64] {
     match base {
         TimeBase::Header => &stamps.header_ns,
         TimeBase::Publish => &stamps.publish_ns,

@@ -33,6 +33,16 @@ pub(super) struct Choice {
     pub(super) rivals: Vec<String>,
 }
 
+impl Choice {
+    /// Topics that are the plan for want of a better one: what was sent.
+    pub(super) fn commanded(&self) -> impl Iterator<Item = &str> {
+        let sent = |c: &&Candidate| c.rank == COMMAND;
+        self.planned.iter().filter(sent).map(|c| c.topic.as_str())
+    }
+}
+
+/// Rank of a plan by a name that says command.
+const COMMAND: u32 = 8;
 /// Rank of what is only used when the caller names it.
 const ONLY_IF_NAMED: u32 = 9;
 
@@ -280,7 +290,8 @@ fn rank(topic: &TopicCount, form: Form, field: Role, role: Role) -> u32 {
             _ => 2,
         },
         (Role::Planned, Role::Either) if plan && !array => 1,
-        (Role::Planned, Role::Either) if plan || command => 8,
+        (Role::Planned, Role::Either) if plan => 7,
+        (Role::Planned, Role::Either) if command => COMMAND,
         (Role::Measured, Role::Measured) => match form {
             _ if feedback => 6,
             Form::Versioned => 5,
@@ -299,7 +310,8 @@ fn present(extracted: &Extracted) -> String {
     let with_joints: BTreeSet<usize> = extracted.sources.iter().map(|s| s.topic).collect();
     let describe = |index: usize| {
         let topic = &extracted.topics[index];
-        format!("{} ({}, {} messages)", topic.topic, topic.type_name, topic.messages)
+        let messages = if topic.messages == 1 { "message" } else { "messages" };
+        format!("{} ({}, {} {messages})", topic.topic, topic.type_name, topic.messages)
     };
     let listed: Vec<String> = if with_joints.is_empty() {
         (0..extracted.topics.len()).map(describe).collect()

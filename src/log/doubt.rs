@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::{
-    TimeBase,
+    ReadOptions, TimeBase,
     source::{MAX_JOINTS, Table},
 };
 use crate::{
@@ -173,11 +173,11 @@ fn unwrapped(track: &Track) -> Option<Track> {
     Track::new(track.name(), track.t_s(), position.collect(), &cuts).ok()
 }
 
-pub(super) fn of_pairs(planned: &Series, measured: &Series, continuous: &[String], remarks: &mut Remarks) {
+pub(super) fn of_pairs(planned: &Series, measured: &Series, options: &ReadOptions, remarks: &mut Remarks) {
     for track in &planned.tracks {
         match measured.track(track.name()) {
             None => unmeasured(track.name(), remarks),
-            Some(measured) => of_pair(track, measured, continuous, remarks),
+            Some(measured) => of_pair(track, measured, options, remarks),
         }
     }
 }
@@ -192,20 +192,27 @@ const RATIO_TOLERANCE: f64 = 0.15;
 /// Joints with end stops span less.
 const TURN_AND_A_HALF_RAD: f64 = 1.5 * TAU;
 
-fn of_pair(planned: &Track, measured: &Track, continuous: &[String], remarks: &mut Remarks) {
+fn of_pair(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &mut Remarks) {
     let (plan_rad, angle_rad) = (span(planned.position_rad()), span(measured.position_rad()));
     let near = |ratio: f64| (ratio / DEGREES_IN_RADIAN - 1.0).abs() < RATIO_TOLERANCE;
     let name = planned.name();
     if near(angle_rad / plan_rad) {
-        let message =
-            format!("{name} spans 57.3 times its plan: measured in degrees? then say --measured-degrees");
+        let cause = if options.planned_in_degrees {
+            "--planned-degrees does that to a plan in radians: drop it"
+        } else {
+            "measured in degrees? then say --measured-degrees"
+        };
+        let message = format!("{name} spans 57.3 times its plan: {cause}");
         remarks.add(Code::LooksLikeDegrees, 1, message);
     } else if near(plan_rad / angle_rad) {
-        let message = format!(
-            "the plan of {name} spans 57.3 times the measurement: in degrees? then say --planned-degrees"
-        );
+        let cause = if options.measured_in_degrees {
+            "--measured-degrees does that to a measurement in radians: drop it"
+        } else {
+            "in degrees? then say --planned-degrees"
+        };
+        let message = format!("the plan of {name} spans 57.3 times the measurement: {cause}");
         remarks.add(Code::LooksLikeDegrees, 1, message);
-    } else if plan_rad.min(angle_rad) > TURN_AND_A_HALF_RAD && !continuous.iter().any(|c| c == name) {
+    } else if plan_rad.min(angle_rad) > TURN_AND_A_HALF_RAD && !options.continuous.iter().any(|c| c == name) {
         let message = format!(
             "{name} spans {angle_rad:.1} rad in plan and measurement: both in degrees? then say \
              --planned-degrees --measured-degrees; or, if it has no end stops, --continuous {name}"
@@ -270,7 +277,8 @@ mod tests {
 
     fn codes(planned: Track, measured: Track) -> Vec<Code> {
         let mut remarks = Remarks::default();
-        of_pairs(&Series { tracks: vec![planned] }, &Series { tracks: vec![measured] }, &[], &mut remarks);
+        let (planned, measured) = (Series { tracks: vec![planned] }, Series { tracks: vec![measured] });
+        of_pairs(&planned, &measured, &ReadOptions::default(), &mut remarks);
         remarks.as_slice().iter().map(|r| r.code).collect()
     }
 

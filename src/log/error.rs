@@ -30,6 +30,15 @@ pub enum LogError {
         /// What to do.
         fix: &'static str,
     },
+    /// A table in text.
+    #[error(
+        "{0} looks like a CSV file, not like an MCAP log; make it one first: `hydrotrace import {0} -o run.mcap`",
+        path.display()
+    )]
+    IsTable {
+        /// The file.
+        path: PathBuf,
+    },
     /// A directory without a recording.
     #[error("{} holds no .mcap file; give a recording or a ROS 2 bag directory in MCAP format", path.display())]
     EmptyBag {
@@ -75,7 +84,7 @@ pub enum LogError {
     /// Nothing in the log is a plan, or nothing a measurement.
     #[error("found no {missing} joint angles; the log has {present}; name them with {flag} TOPIC[:FIELD]")]
     Missing {
-        /// "planned" or "measured".
+        /// "planned" or "measured", or all that would have served.
         missing: &'static str,
         /// Topics found.
         present: String,
@@ -104,6 +113,20 @@ pub enum LogError {
         planned_s: [f64; 2],
         /// First and last sample of the measurement, s.
         measured_s: [f64; 2],
+    },
+    /// Two files of a run that are no parts of it.
+    #[error(
+        "{} and {} both have {topic} for the same {shared_s:.2} s and are no parts of one run; give the one that \
+         counts, or put the plan of the other into it with `hydrotrace join`",
+        files[0], files[1]
+    )]
+    ToldTwice {
+        /// The topic.
+        topic: String,
+        /// Names of the files.
+        files: [String; 2],
+        /// How long both have it, s.
+        shared_s: f64,
     },
     /// One field given as plan and as measurement.
     #[error("{field} is given as plan and as measurement; their difference would be nothing")]

@@ -19,6 +19,7 @@ mod export;
 mod file;
 mod join;
 mod parallel;
+mod parts;
 mod read;
 mod recording;
 mod recover;

@@ -16,8 +16,8 @@ use super::{
 };
 use crate::remark::Code;
 
-/// A block and the channels of its file.
-pub(super) type Work<'a> = (Block<'a>, Arc<BTreeMap<u16, Route>>);
+/// A block, the channels of its file, and the file.
+pub(super) type Work<'a> = (Block<'a>, Arc<BTreeMap<u16, Route>>, usize);
 
 /// What one block yields; emptied and reused. Only what the block touches costs anything: files
 /// may have many channels and many blocks.
@@ -35,6 +35,7 @@ struct Piece {
 }
 
 struct Progress<'a> {
+    work: &'a [Work<'a>],
     next: usize,
     waiting: BTreeMap<usize, Piece>,
     spare: Vec<Piece>,
@@ -60,14 +61,14 @@ pub(super) fn read_blocks(work: &[Work<'_>], specs: &[Spec], joints: &[String], 
     let threads = rayon::current_num_threads();
     let counter = AtomicUsize::new(0);
     let progress =
-        Mutex::new(Progress { next: 0, waiting: BTreeMap::new(), spare: Vec::new(), unknown: 0, out });
+        Mutex::new(Progress { work, next: 0, waiting: BTreeMap::new(), spare: Vec::new(), unknown: 0, out });
     let moved = Condvar::new();
     rayon::broadcast(|_| {
         let mut blocks = Blocks::new();
         let _release = ReleaseOnPanic { progress: &progress, moved: &moved };
         loop {
             let index = counter.fetch_add(1, Ordering::Relaxed);
-            let Some((block, routes)) = work.get(index) else { return };
+            let Some((block, routes, _)) = work.get(index) else { return };
             let mut piece = lock(&progress).spare.pop().unwrap_or_else(fresh);
             let new = |source: usize| Content::new(&specs[source], joints);
             read_block(&mut blocks, *block, routes, &new, &mut piece);
@@ -107,11 +108,16 @@ impl Drop for ReleaseOnPanic<'_, '_> {
 impl Progress<'_> {
     fn append_ready(&mut self) {
         while let Some(mut piece) = self.waiting.remove(&self.next) {
+            let file = self.work.get(self.next).map_or(0, |(_, _, file)| *file);
             self.next += 1;
             for source in piece.touched_contents.drain(..) {
                 piece.is_touched[source] = false;
                 if let Some(content) = &mut piece.contents[source] {
-                    self.out.sources[source].content.append(content);
+                    let all = &mut self.out.sources[source];
+                    if all.parts.last().is_none_or(|(last, _)| *last != file) {
+                        all.parts.push((file, all.content.rows()));
+                    }
+                    all.content.append(content);
                 }
             }
             for topic in piece.touched_topics.drain(..) {

@@ -12,6 +12,7 @@ use super::{
     decode::Recall,
     file::{Layout, MappedFile, MessageRecord, scan},
     parallel::read_blocks,
+    parts,
     source::{Form, Plans, Role, Selector, Spec, Table, Versioned},
 };
 use crate::remark::{Code, Remarks};
@@ -77,6 +78,11 @@ impl Content {
         Ok(())
     }
 
+    /// Rows of a table.
+    pub(super) fn rows(&self) -> usize {
+        if let Self::Table(table) = self { table.len() } else { 0 }
+    }
+
     pub(super) fn append(&mut self, other: &mut Self) {
         match (self, other) {
             (Self::Table(mine), Self::Table(theirs)) => mine.append(theirs),
@@ -93,6 +99,8 @@ pub(super) struct Source {
     /// Index into the topics.
     pub(super) topic: usize,
     pub(super) content: Content,
+    /// Files that it was read from, and how many rows came before each.
+    pub(super) parts: Vec<(usize, usize)>,
 }
 
 /// Everything that reading yields.
@@ -146,18 +154,21 @@ pub(super) fn extract(
     joints: &[String],
 ) -> Result<Extracted, LogError> {
     let mut remarks = Remarks::default();
+    // A bag says the order of its parts; of single files the recorder's clock does.
+    let ordered = paths.iter().any(|path| path.is_dir());
     let paths = bag::files(paths, &mut remarks)?;
     let maps = paths
         .iter()
         .map(|path| MappedFile::open(path).map_err(LogError::file("open", path)))
         .collect::<Result<Vec<_>, _>>()?;
     let files: Vec<(&Path, &[u8])> = paths.iter().zip(&maps).map(|(path, map)| (&**path, &**map)).collect();
-    extract_bytes(&files, selectors, joints, remarks)
+    extract_bytes(&files, ordered, selectors, joints, remarks)
 }
 
-/// The same for files in memory.
+/// The same for files in memory, in order of time if they are not `ordered`.
 pub(super) fn extract_bytes(
     files: &[(&Path, &[u8])],
+    ordered: bool,
     selectors: &[(Role, Selector)],
     joints: &[String],
     remarks: Remarks,
@@ -165,10 +176,15 @@ pub(super) fn extract_bytes(
     let mut out = Extracted { remarks, ..Extracted::default() };
     let mut layouts = Vec::with_capacity(files.len());
     for (path, bytes) in files {
-        let layout = scan(bytes).ok_or_else(|| not_mcap(path, bytes))?;
-        describe(path, bytes, &layout, &mut out);
-        layouts.push(layout);
+        layouts.push((path, bytes, scan(bytes).ok_or_else(|| not_mcap(path, bytes))?));
     }
+    if !ordered {
+        layouts.sort_by_cached_key(|(path, _, layout)| (parts::begins_ns(layout), **path));
+    }
+    for (path, bytes, layout) in &layouts {
+        describe(path, bytes, layout, &mut out);
+    }
+    let layouts: Vec<Layout<'_>> = layouts.into_iter().map(|(_, _, layout)| layout).collect();
     let before = out.remarks.clone();
     let unknown = read_layouts(&layouts, selectors, joints, false, &mut out);
     if unknown > 0 && layouts.iter().any(|layout| layout.channels_complete) {
@@ -192,15 +208,18 @@ fn read_layouts(
 ) -> u64 {
     let mut known = Known::default();
     let mut work = Vec::new();
-    for layout in layouts {
+    for (file, layout) in layouts.iter().enumerate() {
         let channels = Definitions::gather(layout, look_inside).plan(selectors);
         let routes = Arc::new(routes(channels, joints, &mut known, out));
-        work.extend(layout.blocks.iter().map(|block| (*block, routes.clone())));
+        work.extend(layout.blocks.iter().map(|block| (*block, routes.clone(), file)));
     }
     read_blocks(&work, &known.specs, joints, out)
 }
 
 pub(super) fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
+    if is_table(path, bytes) {
+        return LogError::IsTable { path: path.to_owned() };
+    }
     let start: Vec<String> = bytes.iter().take(8).map(|byte| format!("{byte:02X}")).collect();
     let fix = match bytes {
         [] => "the file is empty",
@@ -213,6 +232,25 @@ pub(super) fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
     };
     let found = if start.is_empty() { "nothing".to_owned() } else { start.join(" ") };
     LogError::NotMcap { path: path.to_owned(), found, fix }
+}
+
+/// Whether bytes are text whose first lines are split alike, or text of a file named as a table.
+fn is_table(path: &Path, bytes: &[u8]) -> bool {
+    const LOOK: usize = 4096;
+    const LINES: usize = 3;
+    let text = String::from_utf8_lossy(bytes.get(..LOOK).unwrap_or(bytes));
+    if text.trim().is_empty() || text.chars().any(|c| c.is_control() && !c.is_whitespace()) {
+        return false;
+    }
+    let named = path
+        .extension()
+        .is_some_and(|ending| ["csv", "tsv"].iter().any(|one| ending.eq_ignore_ascii_case(one)));
+    let alike = |separator: char| {
+        let lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#')).take(LINES);
+        let counts: Vec<usize> = lines.map(|line| line.matches(separator).count()).collect();
+        counts.len() == LINES && counts[0] > 0 && counts.iter().all(|count| *count == counts[0])
+    };
+    named || [';', ',', '\t'].into_iter().any(alike)
 }
 
 fn describe(path: &Path, bytes: &[u8], layout: &Layout<'_>, out: &mut Extracted) {
@@ -302,7 +340,7 @@ fn routes(
             let of_topic = known.sources.entry(topic).or_default();
             let same = of_topic.iter().copied().find(|&source| known.specs[source] == *spec);
             let source = same.unwrap_or_else(|| {
-                out.sources.push(Source { topic, content: Content::new(&spec, joints) });
+                out.sources.push(Source { topic, content: Content::new(&spec, joints), parts: Vec::new() });
                 known.specs.push((*spec).clone());
                 of_topic.push(known.specs.len() - 1);
                 known.specs.len() - 1
@@ -352,7 +390,8 @@ fn finish(out: &mut Extracted) {
         if let Content::Versioned(values) = &half.content
             && let Some(table) = by_stem.get(&stem(half)).and_then(|names| values.to_table(names))
         {
-            sources.push(Source { topic: half.topic, content: Content::Table(Box::new(table)) });
+            let content = Content::Table(Box::new(table));
+            sources.push(Source { topic: half.topic, content, parts: Vec::new() });
         }
     }
     out.sources = sources;

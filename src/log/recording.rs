@@ -115,6 +115,8 @@ pub struct Recording {
     pub planned: Series,
     /// The measurement.
     pub measured: Series,
+    /// Whether the plan is what was sent, for want of another.
+    pub plan_is_command: bool,
     /// Where both come from.
     pub source: SourceInfo,
     /// What was doubtful.
@@ -202,7 +204,10 @@ pub fn survey(paths: &[PathBuf], options: &ReadOptions) -> Result<Survey, LogErr
 #[doc(hidden)]
 pub fn survey_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Survey, LogError> {
     let files = [(Path::new("memory.mcap"), bytes)];
-    Ok(survey_of(extract_bytes(&files, &selectors(options), &options.joints, Remarks::default())?, options))
+    Ok(survey_of(
+        extract_bytes(&files, true, &selectors(options), &options.joints, Remarks::default())?,
+        options,
+    ))
 }
 
 fn survey_of(extracted: Extracted, options: &ReadOptions) -> Survey {

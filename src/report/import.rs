@@ -47,7 +47,8 @@ pub fn imported_parts(output: &str, imported: &Outputs) -> Vec<Part> {
     } else {
         format!("{}: {}", time.columns.join(" and "), time.form)
     };
-    let counts = if time.absolute { "" } else { "; without a date, counted from a fixed one" };
+    let counts =
+        if time.absolute { "" } else { "; no date, second 0 is put at 2025-10-09 08:53:20 UTC in every log" };
     parts.push(Part::Heading("Read as".into()));
     parts.push(Part::Facts(vec![
         fact("cells", format!("separated by {}, decimal {}", u.separator, u.decimal)),

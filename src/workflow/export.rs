@@ -1,10 +1,14 @@
-//! `export`: what a report would use of a log, as a table.
+//! `export`: plan, command and measurement of a log as a table.
 
 use std::path::PathBuf;
 
 use crate::{
-    log::{AngleUnit, LogError, ReadOptions, RunTable, Selector, Topics, read_recording},
-    remark::Remarks,
+    log::{
+        AngleUnit, LogError, ReadOptions, Recording, RunTable, Selector, Topics, read_measured, read_plan,
+        read_recording,
+    },
+    remark::{Code, Remarks},
+    series::Series,
 };
 
 /// What to export.
@@ -29,27 +33,54 @@ pub struct Outputs {
     pub remarks: Remarks,
 }
 
-/// Reads a log and lays its run out as a table.
+/// Reads a log and lays its run out as a table: plan, command and measurement, whichever there are.
 ///
 /// # Errors
 ///
-/// [`LogError`], as for a report; or if there is no topic of the name given for the command.
+/// [`LogError`] if there is none of them, if plan and measurement share no joint, or if there is no topic of
+/// the name given for the command.
 pub fn run(inputs: &Inputs) -> Result<Outputs, LogError> {
-    let recording = read_recording(&inputs.logs, &inputs.read)?;
-    let usual = || Selector { topic: Topics::default().command, field: None };
-    let sent = ReadOptions {
-        planned: vec![inputs.command.clone().unwrap_or_else(usual)],
-        time_base: Some(recording.source.time_base),
-        ..inputs.read.clone()
-    };
-    let command = match read_recording(&inputs.logs, &sent) {
+    let recording = read(inputs)?;
+    let remarks = recording.remarks.clone().without(Code::PlanIsCommand);
+    if recording.plan_is_command && inputs.command.is_none() {
+        let none = Series::default();
+        let run = Recording { planned: none, ..recording.clone() };
+        return Ok(Outputs { table: RunTable::new(&run, Some(&recording), inputs.unit), remarks });
+    }
+    let command = match read_command(inputs, &recording) {
         // Where the plan is only known from the command there is no second one.
         Ok(command) => (command.source.planned_topic != recording.source.planned_topic).then_some(command),
         Err(error) if inputs.command.is_some() => return Err(error),
         Err(_) => None,
     };
-    Ok(Outputs {
-        table: RunTable::new(&recording, command.as_ref(), inputs.unit),
-        remarks: recording.remarks,
-    })
+    Ok(Outputs { table: RunTable::new(&recording, command.as_ref(), inputs.unit), remarks })
+}
+
+/// Plan and measurement, or the one that there is.
+fn read(inputs: &Inputs) -> Result<Recording, LogError> {
+    let (logs, options) = (&inputs.logs, &inputs.read);
+    match read_recording(logs, options) {
+        Err(LogError::Missing { missing: "measured", .. }) => read_plan(logs, options),
+        Err(LogError::Missing { missing: "planned", .. }) => match read_measured(logs, options) {
+            Err(LogError::Missing { present, .. }) => Err(LogError::Missing {
+                missing: "planned, commanded or measured",
+                present,
+                flag: "--planned or --measured",
+            }),
+            other => other,
+        },
+        other => other,
+    }
+}
+
+/// What was sent, as the plan of a recording on the same clock.
+fn read_command(inputs: &Inputs, run: &Recording) -> Result<Recording, LogError> {
+    let usual = || Selector { topic: Topics::default().command, field: None };
+    let sent = ReadOptions {
+        planned: vec![inputs.command.clone().unwrap_or_else(usual)],
+        time_base: Some(run.source.time_base),
+        ..inputs.read.clone()
+    };
+    let alone = run.measured.tracks.is_empty();
+    if alone { read_plan(&inputs.logs, &sent) } else { read_recording(&inputs.logs, &sent) }
 }

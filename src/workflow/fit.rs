@@ -166,7 +166,9 @@ pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
     let mut runs = Vec::new();
     for (path, observed) in logs.iter().zip(observed) {
         let log = name(path);
-        for remark in observed.recording.remarks.as_slice() {
+        // A machine is fitted to what was sent, whatever was planned.
+        let doubts = observed.recording.remarks.clone().without(Code::PlanIsCommand);
+        for remark in doubts.as_slice() {
             let message =
                 if logs.len() > 1 { format!("{log}: {}", remark.message) } else { remark.message.clone() };
             remarks.add(remark.code, remark.count, message);

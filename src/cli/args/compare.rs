@@ -1,8 +1,8 @@
 //! Arguments of `compare`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use super::{FigureArgs, ReadArgs, degrees, not_negative};
+use super::{FigureArgs, ReadArgs, degrees, ends, not_negative};
 use crate::workflow::compare::Gates;
 
 /// Arguments of `compare`.
@@ -28,7 +28,7 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub format: CompareFormat,
 
-    /// Write to FILE instead of standard output
+    /// Write to FILE instead of standard output; without an option for the form, .html, .json and .md say it
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
@@ -53,7 +53,7 @@ pub struct CompareArgs {
 #[derive(Debug, clap::Args)]
 #[group(multiple = false)]
 pub struct CompareFormat {
-    /// One JSON document, as schemas/compare.v1.schema.json describes it
+    /// One JSON document, as schemas/compare.v1.schema.json in the repository describes it
     #[arg(long)]
     pub json: bool,
 
@@ -66,6 +66,16 @@ pub struct CompareFormat {
     pub html: bool,
 }
 
+impl CompareFormat {
+    /// The form that was asked for, else that of the file's ending.
+    #[must_use]
+    pub fn or_of(&self, file: Option<&Path>) -> Self {
+        let Self { json, markdown, html } = *self;
+        let ends = |with: &str| !(json || markdown || html) && ends(file, with);
+        Self { json: json || ends("json"), markdown: markdown || ends("md"), html: html || ends("html") }
+    }
+}
+
 /// Limits; exit code 4 if one is not kept.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Limits (exit code 4 if not kept)")]
@@ -74,20 +84,21 @@ pub struct CompareGateArgs {
     #[arg(long, value_name = "PERCENT", value_parser = percent, allow_negative_numbers = true)]
     pub min_peak_reduction_percent: Option<f64>,
 
-    /// Probability that the reduction of peak errors at transitions is luck, at most
-    #[arg(long, value_name = "P", value_parser = probability)]
+    /// p value of the reduction of peak errors, at most: how often chance alone, without any effect, would
+    /// give one as large
+    #[arg(long, value_name = "P", value_parser = probability, allow_negative_numbers = true)]
     pub max_p: Option<f64>,
 
     /// Growth of the peak error at any one transition
-    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub max_transition_growth_deg: Option<f64>,
 
     /// Root mean square error over the run and all joints, after over before
-    #[arg(long, value_name = "RATIO", value_parser = ratio)]
+    #[arg(long, value_name = "RATIO", value_parser = ratio, allow_negative_numbers = true)]
     pub max_rms_ratio: Option<f64>,
 
     /// Peak error over the run and all joints, after over before
-    #[arg(long, value_name = "RATIO", value_parser = ratio)]
+    #[arg(long, value_name = "RATIO", value_parser = ratio, allow_negative_numbers = true)]
     pub max_peak_ratio: Option<f64>,
 }
 

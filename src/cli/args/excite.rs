@@ -29,7 +29,7 @@ pub struct ExciteArgs {
     pub full: bool,
 
     /// Send no joint faster; below what the machine can do its speed limits stay unknown
-    #[arg(long, value_name = "DEG/S", value_parser = degrees)]
+    #[arg(long, value_name = "DEG/S", value_parser = degrees, allow_negative_numbers = true)]
     pub max_speed_deg_s: Option<f64>,
 }
 

@@ -2,20 +2,21 @@
 
 use std::path::PathBuf;
 
-use super::{ReadArgs, selector};
+use super::{ReadArgs, ends, selector};
 use crate::log::Selector;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
-  hydrotrace export run.mcap --csv -o run.csv
-  hydrotrace export run.mcap --parquet -o run.parquet
+  hydrotrace export run.mcap -o run.csv
+  hydrotrace export run.mcap -o run.parquet
   hydrotrace export run.mcap --csv --degrees --joints joint_3
+  hydrotrace export next.mcap --csv --degrees -o next.csv
 
 A row for every instant at which anything was sampled: stamp_ns (since 1970), time_s (since the
-start), and for each joint J_planned_rad, J_planned_rad_s, J_measured_rad, J_error_rad and
-J_command_rad, as far as the log has them. A cell without a sample is empty. The error is planned
-minus measured, the plan interpolated. `hydrotrace import` makes a log of the table again, of
-which a report has the same numbers.";
+start), and for each joint J_planned_rad, J_planned_rad_s, J_measured_rad, J_command_rad and
+J_error_rad, as far as the log has them: of what plan and replan write, plan and command. A cell
+without a sample is empty. The error is planned minus measured, the plan interpolated. `hydrotrace
+import` makes a log of the table again, of which a report has the same numbers.";
 
 /// Arguments of `export`.
 #[derive(Debug, clap::Args)]
@@ -28,7 +29,8 @@ pub struct ExportArgs {
     #[command(flatten)]
     pub format: ExportFormat,
 
-    /// Write to FILE; without it CSV goes to standard output
+    /// Write to FILE, of which .csv or .parquet say the form without an option; without FILE CSV goes to
+    /// standard output
     #[arg(short, long, value_name = "FILE", required_unless_present = "csv")]
     pub output: Option<PathBuf>,
 
@@ -45,9 +47,9 @@ pub struct ExportArgs {
     pub read: ReadArgs,
 }
 
-/// One of these.
+/// At most one of these.
 #[derive(Debug, clap::Args)]
-#[group(required = true, multiple = false)]
+#[group(multiple = false)]
 pub struct ExportFormat {
     /// Comma-separated values
     #[arg(long)]
@@ -56,4 +58,18 @@ pub struct ExportFormat {
     /// Apache Parquet, compressed with zstd
     #[arg(long)]
     pub parquet: bool,
+}
+
+impl ExportArgs {
+    /// Whether the table is to be Parquet; `None` if neither option nor ending says the form.
+    pub fn wants_parquet(&self) -> Option<bool> {
+        let file = self.output.as_deref();
+        match (self.format.csv, self.format.parquet) {
+            (true, _) => Some(false),
+            (_, true) => Some(true),
+            _ if ends(file, "parquet") => Some(true),
+            _ if ends(file, "csv") => Some(false),
+            _ => None,
+        }
+    }
 }

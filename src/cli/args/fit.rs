@@ -1,8 +1,8 @@
 //! Arguments of `fit`, and what all verbs that fit have.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use super::{ReadArgs, selector};
+use super::{ReadArgs, ends, selector};
 use crate::{log::Selector, workflow::observe::Wanted};
 
 /// Arguments of `fit`.
@@ -12,17 +12,24 @@ pub struct FitArgs {
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
 
-    /// Write the limits to FILE, TOML, for `replan --limits`
+    /// Write the limits to FILE, TOML, for `replan --limits`; a FILE that ends in .json gets the document instead
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// One JSON document, as schemas/fit.v1.schema.json describes it
+    /// One JSON document, as schemas/fit.v1.schema.json in the repository describes it
     #[arg(long)]
     pub json: bool,
 
     /// What to read.
     #[command(flatten)]
     pub sent: SentArgs,
+}
+
+impl FitArgs {
+    /// Where the document goes, if not to standard output.
+    pub fn document(&self) -> Option<&Path> {
+        self.output.as_deref().filter(|path| ends(Some(path), "json"))
+    }
 }
 
 /// What to read of a run that is to be fitted.

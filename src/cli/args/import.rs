@@ -9,7 +9,8 @@ use crate::{
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
-  hydrotrace import trace.csv -o trace.mcap && hydrotrace report trace.mcap
+  hydrotrace import trace.csv -o trace.mcap
+  hydrotrace report trace.mcap
   hydrotrace import trace.csv -o trace.mcap --degrees --time-unit ms
   hydrotrace import trace.csv -o trace.mcap --rate 50 --planned J1=soll_1 --measured J1=#4
   hydrotrace import trace.csv -o trace.mcap --interface cap_pressure_pa:J1=pA_1,J2=pA_2
@@ -24,8 +25,9 @@ A column is named by its header, or by its number as #3. A map file says the sam
   J1 = \"pA_1\"
 
 Found without help: separator, decimal comma, header, a row of units, dates, and columns whose
-names hold target/actual, soll/ist, planned/measured, ref/meas, set/act or cmd/fb, with q, pos,
-angle or a unit such as [deg]. What was understood is printed; what was guessed is a remark.";
+names hold target/actual, soll/ist, planned/measured, ref/meas or set/act, with q, pos, angle or a
+unit such as [deg]; cmd and command are what was sent, which is not the plan. What was understood is
+printed; what was guessed is a remark.";
 
 /// Arguments of `import`.
 #[derive(Debug, clap::Args)]

@@ -26,7 +26,7 @@ pub struct JoinArgs {
     pub output: PathBuf,
 
     /// When the plan's first sample was sent, from the start of the run's log; by default found by what was sent
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub at: Option<f64>,
 
     /// Say what was joined as one JSON document

@@ -8,6 +8,7 @@ mod excite;
 mod export;
 mod figures;
 mod fit;
+mod form;
 mod import;
 mod join;
 mod moea;
@@ -29,6 +30,7 @@ pub use excite::ExciteArgs;
 pub use export::{ExportArgs, ExportFormat};
 pub use figures::FigureArgs;
 pub use fit::{FitArgs, SentArgs};
+pub use form::ReportFormat;
 pub use import::ImportArgs;
 pub use join::JoinArgs;
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
@@ -37,6 +39,8 @@ pub use replan::{ChangeArgs, ReplanArgs};
 pub use simulate::SimulateArgs;
 pub use terminal::{CompletionsArgs, ManArgs, TerminalArgs};
 pub use view::{ViewArgs, ViewTarget};
+
+use form::ends;
 
 use crate::{
     log::{ReadOptions, Selector, TimeBase},
@@ -75,7 +79,8 @@ pub enum Command {
         after_help = "Examples:\n  hydrotrace report run.mcap\n  hydrotrace report run.mcap --json -o report.json\n  \
                             hydrotrace report run.mcap --html -o run.html\n  \
                             hydrotrace report run.mcap --max-transition-peak-deg 0.5\n  \
-                            hydrotrace report run.mcap --planned /arm/controller_state:output.positions"
+                            hydrotrace report run.mcap --planned /arm/controller_state:output.positions\n  \
+                            hydrotrace report measured.mcap plan.mcap    (two files of one run, one zero of time)"
     )]
     Report(ReportArgs),
     /// What a change did: the same task before and after it
@@ -116,7 +121,7 @@ pub enum Command {
     /// Turn a CSV file (PLC trace, RTDE, any table) into a log
     #[command(after_help = import::EXAMPLES)]
     Import(ImportArgs),
-    /// Turn what a report would use of a log into CSV or Parquet
+    /// Turn plan, command and measurement of a log into CSV or Parquet
     #[command(after_help = export::EXAMPLES)]
     Export(ExportArgs),
     /// What is in a log, what a report would use, what is damaged
@@ -211,7 +216,7 @@ pub struct ReportArgs {
     #[command(flatten)]
     pub format: ReportFormat,
 
-    /// Write to FILE instead of standard output
+    /// Write to FILE instead of standard output; without an option for the form, .html, .json, .csv and .md say it
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
@@ -236,54 +241,32 @@ pub struct ReportArgs {
     pub gates: GateArgs,
 }
 
-/// At most one of these.
-#[derive(Debug, clap::Args)]
-#[group(multiple = false)]
-#[expect(clippy::struct_excessive_bools, reason = "flags of a command line, of which one at most is given")]
-pub struct ReportFormat {
-    /// One JSON document, as schemas/report.v1.schema.json describes it
-    #[arg(long)]
-    pub json: bool,
-
-    /// The transitions as comma-separated values
-    #[arg(long)]
-    pub csv: bool,
-
-    /// The report as Markdown
-    #[arg(long)]
-    pub markdown: bool,
-
-    /// One page for a browser: verdict, plots that zoom, every table; needs no network
-    #[arg(long)]
-    pub html: bool,
-}
-
 /// Limits; exit code 4 if one is not kept.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Limits (exit code 4 if not kept)")]
 pub struct GateArgs {
     /// Peak error in any transition
-    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub max_transition_peak_deg: Option<f64>,
 
     /// Root mean square error of any joint over the run
-    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub max_rms_deg: Option<f64>,
 
     /// Peak error of any joint over the run
-    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub max_peak_deg: Option<f64>,
 
     /// Root mean square error of any joint while its plan rests
-    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub max_standstill_rms_deg: Option<f64>,
 
     /// Delay of any start; a start without an answer breaks it
-    #[arg(long, value_name = "MS", value_parser = milliseconds)]
+    #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true)]
     pub max_start_delay_ms: Option<f64>,
 
     /// Velocity lag of any joint
-    #[arg(long, value_name = "MS", value_parser = milliseconds)]
+    #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true)]
     pub max_lag_ms: Option<f64>,
 }
 

@@ -7,7 +7,7 @@ use std::{
 
 use clap::{ArgAction, ValueEnum, builder::PossibleValuesParser};
 
-use super::FigureArgs;
+use super::{FigureArgs, ends};
 use crate::{
     moea::{Budget, CONTENDERS, Contender},
     plan::{Rule, Search},
@@ -18,12 +18,12 @@ use crate::{
 /// Arguments of `plan`.
 #[derive(Debug, clap::Args)]
 pub struct PlanArgs {
-    /// The task: a TOML file as schemas/task.schema.json describes it
+    /// The task: a TOML file as schemas/task.schema.json in the repository describes it
     #[arg(value_name = "TASK")]
     pub task: PathBuf,
 
-    /// Write the chosen plan to FILE, an MCAP log with the task and the whole front within; with --html and a
-    /// FILE that ends in .html, the page
+    /// Write the chosen plan to FILE, an MCAP log with the task and the whole front within; a FILE that ends in
+    /// .html or .json gets the page or the document instead
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
@@ -31,7 +31,7 @@ pub struct PlanArgs {
     #[arg(long, value_name = "S,...", value_delimiter = ',', value_parser = time, allow_negative_numbers = true)]
     pub times: Option<Vec<f64>>,
 
-    /// One JSON document with the front, as schemas/plan.v1.schema.json describes it
+    /// One JSON document with the front, as schemas/plan.v1.schema.json in the repository describes it
     #[arg(long)]
     pub json: bool,
 
@@ -44,7 +44,7 @@ pub struct PlanArgs {
     pub figures: FigureArgs,
 
     /// Samples a second in the log
-    #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate)]
+    #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate, allow_negative_numbers = true)]
     pub rate: f64,
 
     /// How to search.
@@ -69,7 +69,7 @@ pub struct SearchArgs {
     pub generations: Option<u64>,
 
     /// Seconds for the evolution; what it finds then depends on the machine
-    #[arg(long, value_name = "S", group = "budget", value_parser = seconds)]
+    #[arg(long, value_name = "S", group = "budget", value_parser = seconds, allow_negative_numbers = true)]
     pub time_budget: Option<Duration>,
 
     /// Evolutionary algorithm
@@ -130,15 +130,28 @@ pub enum RuleName {
 }
 
 impl PlanArgs {
+    /// Whether a page is wanted, by option or by the ending of the output.
+    pub fn wants_html(&self) -> bool {
+        self.html || !self.json && ends(self.output.as_deref(), "html")
+    }
+
+    /// The same of the document.
+    pub fn wants_json(&self) -> bool {
+        self.json || !self.html && ends(self.output.as_deref(), "json")
+    }
+
     /// Where the log goes.
     pub fn log(&self) -> Option<&Path> {
         self.output.as_deref().filter(|_| self.page().is_none())
     }
 
-    /// Where the page goes, if not to standard output.
+    /// Where page or document go: a file of that ending, `-` for standard output, which is also meant without.
     pub fn page(&self) -> Option<&Path> {
-        let html = |path: &&Path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"));
-        self.output.as_deref().filter(|path| self.html && html(path))
+        let fits = |path: &&Path| {
+            self.wants_html() && ends(Some(path), "html") || self.wants_json() && ends(Some(path), "json")
+        };
+        let here = |path: &&Path| *path == Path::new("-") && (self.html || self.json);
+        self.output.as_deref().filter(|path| fits(path) || here(path))
     }
 
     /// The same for the library.

@@ -24,7 +24,7 @@ pub struct ReplanArgs {
     #[arg(long, value_name = "FILE")]
     pub task: Option<PathBuf>,
 
-    /// One JSON document, as schemas/replan.v1.schema.json describes it
+    /// One JSON document, as schemas/replan.v1.schema.json in the repository describes it
     #[arg(long)]
     pub json: bool,
 
@@ -54,7 +54,7 @@ pub struct ChangeArgs {
     pub gain: f64,
 
     /// Farthest that the command may leave the plan [default: 1.5]
-    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     pub max_correction_deg: Option<f64>,
 
     /// How much longer the plan may take

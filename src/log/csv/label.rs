@@ -47,6 +47,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let words = words(name);
     let means = |meaning: Meaning| words.iter().any(|word| word.meaning == meaning);
     let role = words.iter().find_map(|word| match word.meaning {
+        // What is a command as well was sent: `target_cmd`.
+        Meaning::Role(Role::Planned) if means(Meaning::Role(Role::Command)) => Some(Role::Command),
         Meaning::Role(role) => Some(role),
         _ => None,
     });
@@ -143,6 +145,8 @@ mod tests {
             said("shoulder_pan_joint cmd"),
             (Some(Role::Command), None, "shoulder_pan_joint".into(), None)
         );
+        assert_eq!(said("target_cmd_q_1").0, Some(Role::Command));
+        assert_eq!(said("commandedPos2").0, Some(Role::Command));
         assert_eq!(said("q_ref_2_rad"), (plan, position, "joint_2".into(), Some("rad")));
         assert_eq!(said("J1 Geschwindigkeit Ist in °/s").1, Some(Quantity::Velocity));
     }

@@ -107,13 +107,6 @@ pub(super) fn lay_out(
         let (key, joint) = (label.key.clone(), label.joint.clone());
         drafts.push(Draft { column, role, quantity, key, joint, stated: label.role.is_some() });
     }
-    let is = |role| move |draft: &Draft| draft.role == role && draft.quantity == Quantity::Position;
-    if !drafts.iter().any(is(Role::Planned)) {
-        // A controller that logs its command and no plan was sent the plan.
-        for draft in drafts.iter_mut().filter(|draft| draft.role == Role::Command) {
-            draft.role = Role::Planned;
-        }
-    }
     drop_repeats(head, &mut drafts, remarks)?;
     let joints = joints(head, &drafts, remarks)?;
     let place = |key: &str| joints.iter().position(|(known, _)| known == key);
@@ -176,6 +169,7 @@ fn drop_repeats(head: &Head, drafts: &mut Vec<Draft>, remarks: &mut Remarks) -> 
 }
 
 /// Key and name of the joints that have plan and measurement; all of one side if the file has no other.
+/// What was sent stands for a plan that is not there.
 fn joints(head: &Head, drafts: &[Draft], remarks: &mut Remarks) -> Result<Vec<(String, String)>, CsvError> {
     let side = |role: Role| {
         let mut list: Vec<&Draft> = Vec::new();
@@ -185,20 +179,22 @@ fn joints(head: &Head, drafts: &[Draft], remarks: &mut Remarks) -> Result<Vec<(S
         list.sort_by_key(|draft| draft.column);
         list
     };
-    let (planned, measured) = (side(Role::Planned), side(Role::Measured));
+    let (planned, measured, sent) = (side(Role::Planned), side(Role::Measured), side(Role::Command));
     let list = |side: &[&Draft]| side.iter().map(|draft| draft.joint.as_str()).collect::<Vec<_>>().join(", ");
     let pair = |draft: &&Draft| (draft.key.clone(), draft.joint.clone());
-    let (all, missing, flag) = match (planned.is_empty(), measured.is_empty()) {
+    let commanded = planned.is_empty() && !sent.is_empty();
+    let asked = if commanded { sent } else { planned };
+    let (all, missing, flag) = match (asked.is_empty(), measured.is_empty()) {
         (true, true) => return Err(CsvError::NoJoints { present: present(&head.names) }),
         (true, false) => (&measured, "plan", "--planned"),
-        (false, true) => (&planned, "measurement", "--measured"),
+        (false, true) => (&asked, "measurement", "--measured"),
         (false, false) => {
             let both = |draft: &&&Draft| measured.iter().any(|other| other.key == draft.key);
-            let found: Vec<(String, String)> = planned.iter().filter(both).map(pair).collect();
+            let found: Vec<(String, String)> = asked.iter().filter(both).map(pair).collect();
             if found.is_empty() {
-                return Err(CsvError::NoPair { planned: list(&planned), measured: list(&measured) });
+                return Err(CsvError::NoPair { planned: list(&asked), measured: list(&measured) });
             }
-            for draft in planned.iter().chain(&measured).filter(|draft| draft.stated) {
+            for draft in asked.iter().chain(&measured).filter(|draft| draft.stated) {
                 if !found.iter().any(|(key, _)| *key == draft.key) {
                     let message = format!(
                         "{} has no partner for its column {:?}; left out",
@@ -207,12 +203,19 @@ fn joints(head: &Head, drafts: &[Draft], remarks: &mut Remarks) -> Result<Vec<(S
                     remarks.add(Code::UnpairedJoint, 1, message);
                 }
             }
+            if commanded {
+                let message = "no column looks like a plan, only like the command: a report gives the error against \
+                               what was sent, not against what was wanted; `hydrotrace join LOG --plan next.mcap` \
+                               puts the plan beside it, or name its columns with --planned JOINT=COLUMN,...";
+                remarks.add(Code::PlanIsCommand, found.len() as u64, message);
+            }
             return Ok(found);
         }
     };
     let message = format!(
-        "no column looks like a {missing}: the log holds the other side only, and a report needs both; name \
-         them with {flag} JOINT=COLUMN,..."
+        "no column looks like a {missing}, and a report needs one: name its columns with {flag} \
+         JOINT=COLUMN,..., or, if it is in a file of its own with the same zero of time, import that too and \
+         give both logs: `hydrotrace report THIS.mcap OTHER.mcap`"
     );
     remarks.add(Code::UnpairedJoint, all.len() as u64, message);
     Ok(all.iter().map(pair).collect())

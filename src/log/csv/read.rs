@@ -13,7 +13,11 @@ use super::{
     rows::{Rows, cell_text},
     time::TimeSource,
 };
-use crate::remark::{Code, Remarks};
+use crate::{
+    math::median,
+    remark::{Code, Remarks},
+    units::NS_PER_S,
+};
 
 /// Numbers of one column, `[rows]`; NaN where a cell holds none.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -32,6 +36,8 @@ pub(super) struct Column {
 pub(super) struct Cells {
     /// ns since 1970, `[rows]`.
     pub(super) stamp_ns: Vec<i64>,
+    /// When each row counts as received, ns since 1970, `[rows]`.
+    pub(super) received_ns: Vec<i64>,
     pub(super) absolute: bool,
     /// By column of the file.
     pub(super) columns: BTreeMap<usize, Column>,
@@ -88,11 +94,11 @@ pub(super) fn read(
     let outside = drop_outside(&mut stamp_ns, &mut columns);
     let clock = time.columns().first().map_or("", |&column| head.names[column].as_str());
     judge_stamps(clock, stamp_ns.len() as u64, unstamped, outside, unstamped_example, dialect, remarks)?;
-    doubt_order(&stamp_ns, remarks);
+    let received_ns = received(&stamp_ns, remarks);
     for (at, column) in &columns {
         column.judge(&head.names[*at], dialect, remarks)?;
     }
-    Ok(Cells { stamp_ns, absolute, columns })
+    Ok(Cells { stamp_ns, received_ns, absolute, columns })
 }
 
 /// An error if most rows have no time, a remark if some have none.
@@ -191,13 +197,57 @@ fn drop_outside(stamp_ns: &mut Vec<i64>, columns: &mut BTreeMap<usize, Column>) 
     dropped
 }
 
-/// The log keeps the stamps as they are; the report repairs what can be repaired.
-fn doubt_order(stamp_ns: &[i64], remarks: &mut Remarks) {
-    let steps =
-        |wanted: std::cmp::Ordering| stamp_ns.windows(2).filter(|w| w[1].cmp(&w[0]) == wanted).count() as u64;
+/// Fewer rows than this that step back came late; more are on a clock that was set back.
+const FEWEST: usize = 8;
+
+/// When a recorder beside the controller would have received the rows, ns: never earlier than the row before,
+/// and on at the usual step where the clock was set back. By it a report tells rows that came late from a clock
+/// that jumped, and splits the run there.
+fn received(stamp_ns: &[i64], remarks: &mut Remarks) -> Vec<i64> {
+    let steps = || stamp_ns.windows(2).map(|w| w[1].saturating_sub(w[0]));
+    let repeated = steps().filter(|step| *step == 0).count() as u64;
     let message = "rows with the time of the row before; kept as they are, a report uses the first of each";
-    remarks.add(Code::DuplicateStamp, steps(std::cmp::Ordering::Equal), message);
-    let message =
-        "rows earlier than the row before; kept as they are, a report puts them in order or splits there";
-    remarks.add(Code::ClockJump, steps(std::cmp::Ordering::Less), message);
+    remarks.add(Code::DuplicateStamp, repeated, message);
+    let forward: Vec<f64> = steps().filter(|step| *step > 0).map(|step| step as f64).collect();
+    let usual_ns = if forward.is_empty() { 0 } else { whole_ns(median(forward)) };
+    let (mut shift_ns, mut latest_ns) = (0_i64, i64::MIN);
+    let (mut late, mut jumps, mut longest_ns) = (0_u64, 0_u64, 0_i64);
+    let mut received = Vec::with_capacity(stamp_ns.len());
+    for (row, &stamp) in stamp_ns.iter().enumerate() {
+        let behind_ns = latest_ns.saturating_sub(stamp.saturating_add(shift_ns));
+        if row > 0 && behind_ns > 0 {
+            if stays(&stamp_ns[row..], stamp.saturating_add(behind_ns), usual_ns) {
+                jumps += 1;
+                longest_ns = longest_ns.max(behind_ns);
+                shift_ns = shift_ns.saturating_add(behind_ns).saturating_add(usual_ns);
+            } else {
+                late += 1;
+            }
+        }
+        latest_ns = latest_ns.max(stamp.saturating_add(shift_ns));
+        received.push(latest_ns);
+    }
+    let message = "rows earlier than the row before; a report puts those that came late in their place and \
+                   leaves out the others";
+    remarks.add(Code::Reordered, late, message);
+    let message = format!(
+        "places where the clock goes back, by up to {:.3} s; no row is lost, a report splits the run there and \
+         goes on in the order of the rows",
+        longest_ns as f64 / NS_PER_S
+    );
+    remarks.add(Code::ClockJump, jumps, message);
+    received
+}
+
+/// Whether the clock stays back: the next rows go on at the usual step, or do not catch up with the latest.
+fn stays(stamp_ns: &[i64], latest_ns: i64, usual_ns: i64) -> bool {
+    let Some(next) = stamp_ns.get(..FEWEST) else { return false };
+    let steady =
+        next.windows(2).all(|w| w[1] >= w[0] && w[1] - w[0] <= usual_ns.saturating_add(usual_ns / 2));
+    steady || next.iter().all(|stamp| *stamp < latest_ns)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a step of a clock of i64 ns")]
+fn whole_ns(ns: f64) -> i64 {
+    ns as i64
 }

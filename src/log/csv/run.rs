@@ -56,7 +56,8 @@ impl CsvRun {
         let interfaces: BTreeMap<&str, ByJoint<'_>> =
             names.into_iter().map(|name| (name, self.interface(name))).collect();
         let mut row_values = [Vec::new(), Vec::new()];
-        for (row, &stamp_ns) in cells.stamp_ns.iter().enumerate() {
+        for (row, (&stamp_ns, &received_ns)) in cells.stamp_ns.iter().zip(&cells.received_ns).enumerate() {
+            log.receive_after(received_ns.saturating_sub(stamp_ns));
             for (role, quantities) in &sides {
                 for (values, columns) in row_values.iter_mut().zip(quantities) {
                     at(columns, row, values);

@@ -7,8 +7,8 @@ use super::{
 };
 use crate::units::NS_PER_S;
 
-/// The instant that times without a date count from, ns since 1970: no wall clock, so that equal
-/// files give equal logs.
+/// The instant that times without a date count from, ns since 1970: 2025-10-09 08:53:20 UTC. No wall clock,
+/// so that equal files give equal logs and files with one zero of time fit together.
 const START_NS: i64 = 1_760_000_000_000_000_000;
 
 /// Stamps before this one, ns since 1970, count from something else.

@@ -13,7 +13,10 @@ impl RunTable {
     /// [`ExportError::Output`]
     pub fn write_csv<W: Write>(&self, output: W) -> Result<(), ExportError> {
         let mut writer = ::csv::Writer::from_writer(output);
-        let failed = |error: ::csv::Error| ExportError::Output(error.into());
+        let failed = |error: ::csv::Error| match error.into_kind() {
+            ::csv::ErrorKind::Io(error) => ExportError::Output(error),
+            other => ExportError::Output(std::io::Error::other(format!("{other:?}"))),
+        };
         writer.write_record(self.column_names()).map_err(failed)?;
         let mut cell = String::new();
         for (row, (stamp_ns, time_s)) in self.stamp_ns.iter().zip(&self.time_s).enumerate() {

@@ -31,7 +31,7 @@ pub enum ExportError {
 ///
 /// Columns: `stamp_ns` (since 1970), `time_s` (since the start of the run), and for each joint
 /// `J_planned_rad`, `J_planned_rad_s` where the plan gives speeds, `J_measured_rad`,
-/// `J_measured_rad_s`, `J_error_rad`, and `J_command_rad` where there is a command. Plan and
+/// `J_measured_rad_s`, `J_command_rad` and `J_error_rad`, as far as there are such. Plan and
 /// measurement stand as they were sampled, each at its own instants, so that
 /// [`read_csv`](super::read_csv) gives the same run back; the error is planned minus measured at
 /// measured instants, the plan interpolated as a report does.
@@ -52,8 +52,8 @@ struct Samples {
 }
 
 impl RunTable {
-    /// Lays out the joints that have plan and measurement; `command` is a recording whose plan is
-    /// what was sent.
+    /// Lays out the joints that both plan, or command where there is no plan, and measurement have; all of
+    /// one side if there is no other. `command` is a recording whose plan is what was sent.
     pub fn new(recording: &Recording, command: Option<&Recording>, unit: AngleUnit) -> Self {
         let epoch_ns = recording.source.epoch_ns;
         let (suffix, per_rad) = match unit {
@@ -61,9 +61,7 @@ impl RunTable {
             AngleUnit::Degrees => ("deg", 1.0 / DEGREE_RAD),
         };
         let mut all: Vec<Samples> = Vec::new();
-        for planned in &recording.planned.tracks {
-            let Some(measured) = recording.measured.track(planned.name()) else { continue };
-            let joint = planned.name();
+        for joint in joints(recording, command) {
             let mut add = |what: &str, epoch_ns: i64, t_s: &[f64], values: &[f64]| {
                 all.push(Samples {
                     name: format!("{joint}_{what}").replace("{unit}", suffix),
@@ -71,20 +69,21 @@ impl RunTable {
                     values: values.iter().map(|value| value * per_rad).collect(),
                 });
             };
-            let mut side = |what: &str, epoch_ns: i64, track: &Track| {
+            let mut side = |what: &str, epoch_ns: i64, track: Option<&Track>| {
+                let Some(track) = track else { return };
                 add(&format!("{what}_{{unit}}"), epoch_ns, track.t_s(), track.position_rad());
                 if let Some(speed_rad_s) = track.velocity_rad_s() {
                     add(&format!("{what}_{{unit}}_s"), epoch_ns, track.t_s(), speed_rad_s);
                 }
             };
+            let (planned, measured) = (recording.planned.track(joint), recording.measured.track(joint));
             side("planned", epoch_ns, planned);
             side("measured", epoch_ns, measured);
-            if let Some((track, epoch_ns)) =
-                command.and_then(|sent| Some((sent.planned.track(joint)?, sent.source.epoch_ns)))
-            {
-                side("command", epoch_ns, track);
+            if let Some(sent) = command {
+                side("command", sent.source.epoch_ns, sent.planned.track(joint));
             }
-            if let Some(pair) = align(planned, measured) {
+            if let Some(pair) = planned.zip(measured).and_then(|(planned, measured)| align(planned, measured))
+            {
                 let error_rad: Vec<f64> =
                     pair.planned_rad.iter().zip(&pair.measured_rad).map(|(r, y)| r - y).collect();
                 add("error_{unit}", epoch_ns, &pair.t_s, &error_rad);
@@ -130,6 +129,19 @@ impl RunTable {
     /// Names of the columns, in order.
     pub fn column_names(&self) -> impl Iterator<Item = &str> {
         ["stamp_ns", "time_s"].into_iter().chain(self.names.iter().map(String::as_str))
+    }
+}
+
+/// Names of the joints of a table.
+fn joints<'a>(recording: &'a Recording, command: Option<&'a Recording>) -> Vec<&'a str> {
+    let sent = command.map_or(&[][..], |sent| &sent.planned.tracks);
+    let (planned, measured) = (&recording.planned.tracks[..], &recording.measured.tracks[..]);
+    let asked = if planned.is_empty() { sent } else { planned };
+    let names = |tracks: &'a [Track]| tracks.iter().map(Track::name);
+    match (asked.is_empty(), measured.is_empty()) {
+        (true, _) => names(measured).collect(),
+        (false, true) => names(asked).collect(),
+        (false, false) => names(asked).filter(|joint| recording.measured.track(joint).is_some()).collect(),
     }
 }
 

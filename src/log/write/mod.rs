@@ -122,6 +122,11 @@ impl<W: Write> LogWriter<W> {
         })
     }
 
+    /// How much later than their stamps the messages from here on count as received, ns.
+    pub(in crate::log) fn receive_after(&mut self, log_delay_ns: i64) {
+        self.log_delay_ns = log_delay_ns;
+    }
+
     /// Writes where joints should be, are, or were sent: `sensor_msgs/msg/JointState`. One value
     /// a joint in the order of the joint names, or empty slices where nothing is known.
     ///

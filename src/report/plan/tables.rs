@@ -186,6 +186,10 @@ fn margin_parts(judged: &Judged, joints: &[String]) -> Vec<Part> {
         let found = judged.margins.iter().find(|margin| margin.limit == limit && margin.joint == joint);
         found.map_or(NONE.to_owned(), |margin| percent(margin.share))
     };
+    let together = |limit: Limit| match share(limit, None) {
+        none if none == NONE => format!("no limit on {}", super::name(limit)),
+        percent => format!("{} {percent} %", super::name(limit)),
+    };
     let rows = joints.iter().enumerate().map(|(j, joint)| {
         let of = |values: &[f64]| values.get(j).copied().unwrap_or(f64::NAN);
         let mut row = vec![
@@ -226,11 +230,7 @@ fn margin_parts(judged: &Judged, joints: &[String]) -> Vec<Part> {
             left: 1,
             rows: rows.collect(),
         }),
-        Part::Line(format!(
-            "All together: pump flow {} %, tool speed {} %.",
-            share(Limit::PumpFlow, None),
-            share(Limit::ToolSpeed, None)
-        )),
+        Part::Line(format!("All together: {}, {}.", together(Limit::PumpFlow), together(Limit::ToolSpeed))),
         Part::Heading("Nearest limits".into()),
         Part::Sheet(Sheet {
             head: vec!["limit", "value", "allowed", "used %", "at s"],

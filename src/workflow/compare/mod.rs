@@ -7,6 +7,7 @@ mod member;
 mod outcome;
 mod pairing;
 mod plans;
+mod same;
 mod summary;
 
 use std::path::PathBuf;
@@ -23,13 +24,14 @@ pub use summary::{Measure, Scope, Summary, Verdict};
 use super::report::{self, Report};
 use crate::{
     log::{LogError, ReadOptions},
-    remark::Remarks,
+    remark::{Code, Remarks},
     replay::Rules,
 };
 use figures::figures;
 use gates::gates;
 use member::{Member, pairs};
 use pairing::matched;
+use same::is_same;
 use summary::summaries;
 
 /// What to compare, how, and what must hold.
@@ -110,6 +112,16 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     }
     let (pairs, unpaired) = pairs(first, &all, &joints);
     let mut remarks = Remarks::default();
+    for (a, b) in inputs.before.iter().flat_map(|a| inputs.after.iter().map(move |b| (a, b))) {
+        if is_same(a, b) {
+            let message = format!(
+                "{} before and {} after are one and the same run; their difference says nothing",
+                a.display(),
+                b.display()
+            );
+            remarks.add(Code::SameRun, 1, message);
+        }
+    }
     for member in &all {
         let of_side = all.iter().filter(|other| other.side == member.side).count();
         member.remark(of_side, &joints, &unpaired, &mut remarks);

@@ -15,7 +15,7 @@ use crate::{
     log::{
         Addition, LogError, PlanSample, ReadOptions, Recording, TimeBase, join, read_measured, read_recording,
     },
-    remark::Remarks,
+    remark::{Code, Remarks},
     series::{Located, Series, Track, TrackError},
     units::{DEGREE_RAD, nanoseconds},
 };
@@ -135,7 +135,8 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     // A run that was read without a plan has none.
     let sent = (!run.planned.tracks.is_empty()).then_some(&run.planned);
     let topic = format!("{}:{}", run.source.planned_topic, run.source.planned_field);
-    let mut remarks = run.remarks.clone();
+    // That the log holds no plan is why it is joined.
+    let mut remarks = run.remarks.clone().without(Code::PlanIsCommand);
     let [from_s, to_s] = plan.span_s();
     let found = match inputs.at_s {
         None => Some(plan.place(&run.planned, &inputs.plan, &topic, &mut remarks)?),
