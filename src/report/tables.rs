@@ -99,7 +99,7 @@ pub(super) fn in_short(report: &Report) -> Vec<String> {
     }
     if mostly_lag(replay).is_none() && replay.whole_run.concentration.is_some() {
         lines.push(match lag_words(replay) {
-            Some(lag) => format!("Lag is part of it: {lag}."),
+            Some(lag) => format!("The part that is lag: {lag}."),
             None => "How much of it is lag cannot be told: no joint shows one.".to_owned(),
         });
     }
