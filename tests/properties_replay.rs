@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use hydrotrace::{
-    replay::{Replay, Rules, Sensing, Transition, detector_score, replay, synthetic_run},
+    replay::{Answer, Replay, Rules, Sensing, Transition, detector_score, replay, synthetic_run},
     series::Pair,
     units::DEGREE_RAD,
 };
@@ -106,6 +106,19 @@ proptest! {
             prop_assert_eq!(inside(t.planned_onset_s), inside(t.window_s[1]));
         }
     }
+
+    #[test]
+    fn an_answer_has_an_instant_if_and_only_if_it_is_timed_and_every_start_is_counted_once(pair in any_pair()) {
+        let found = of(&pair);
+        for t in &found.transitions {
+            prop_assert_eq!(t.answer == Answer::Timed, t.measured_onset_s.is_some());
+        }
+        let count = |wanted: &[Answer]| found.transitions.iter().filter(|t| wanted.contains(&t.answer)).count();
+        let joint = &found.joints[0];
+        prop_assert_eq!(joint.unmatched_starts, count(&[Answer::Never]));
+        prop_assert_eq!(joint.untimed_starts, count(&[Answer::Creeps, Answer::Unclear]));
+        prop_assert_eq!(joint.starts, found.transitions.len());
+    }
 }
 
 proptest! {
@@ -142,6 +155,25 @@ proptest! {
         off.sort_by(f64::total_cmp);
         // Departures are tried every 5 ms.
         prop_assert!(off[off.len() / 2] < 0.008, "{off:?}");
+    }
+
+    #[test]
+    fn a_pure_shift_is_lag_wherever_the_log_is_cut_and_off_the_path_no_more_than_off_the_plan(
+        seed in 0..1000_u64,
+        delay_s in 0.02..0.3_f64,
+        cut in 1..100_usize,
+    ) {
+        let mut pair = noiseless(seed, delay_s);
+        let n = pair.t_s.len();
+        pair.segments = vec![0..cut * n / 100, cut * n / 100..n];
+        let whole = of(&pair).whole_run;
+        let share = whole.lag_share.unwrap();
+        prop_assert!(share.share > 0.99 && share.mostly, "{share:?}");
+        if let Some([low, high]) = share.interval {
+            prop_assert!(low <= share.share && share.share <= high);
+        }
+        let path = whole.path_error.unwrap();
+        prop_assert!(path.rms_rad <= path.timed_rms_rad, "{path:?}");
     }
 
     #[test]
@@ -221,6 +253,64 @@ fn a_joint_that_ignores_its_plan_has_an_unmatched_start_without_onset() {
     assert_eq!((transition.measured_onset_s, transition.onset_delay_s), (None, None));
     assert_eq!((transition.displacement_delay_s, transition.jump_rad_s), (None, None));
     assert!((transition.peak_error_rad - 12.0 * DEGREE_RAD).abs() < 1e-9);
+}
+
+#[test]
+fn a_joint_that_creeps_into_its_motion_answers_without_an_instant() {
+    // It has crept at 0.3 degrees per second for 1.4 s when its plan starts.
+    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
+    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
+    let creep = |t: f64| 0.3 * DEGREE_RAD * (t - 0.6).clamp(0.0, 1.4);
+    let measured = t_s.iter().map(|&t| creep(t) + ramp(t, 2.0)).collect();
+    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..1000).collect()));
+    assert_eq!(found.transitions[0].answer, Answer::Creeps);
+    assert_eq!((found.transitions[0].measured_onset_s, found.transitions[0].onset_delay_s), (None, None));
+    let joint = &found.joints[0];
+    assert_eq!((joint.starts, joint.unmatched_starts, joint.untimed_starts), (1, 0, 1));
+}
+
+#[test]
+fn a_drift_of_the_plan_just_before_a_large_move_says_nothing_of_the_joint() {
+    // 0.35 degrees one way in half a second, then 12 the other way, which the joint follows.
+    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
+    let drift = |t: f64| 0.7 * DEGREE_RAD * (t - 2.0).clamp(0.0, 0.5);
+    let planned: Vec<f64> = t_s.iter().map(|&t| drift(t) - ramp(t, 2.55)).collect();
+    let measured: Vec<f64> = t_s.iter().map(|&t| -ramp(t, 2.65)).collect();
+    let pair = recorded(t_s.clone(), planned, measured, std::iter::once(0..1000).collect());
+    let found = of(&pair);
+    let answers = |found: &Replay| found.transitions.iter().map(|t| t.answer).collect::<Vec<Answer>>();
+    assert_eq!(answers(&found), [Answer::Unclear, Answer::Timed]);
+    // It is the short time that decides, not the small travel.
+    let hasty = Rules { match_after_s: 0.3, ..Rules::default() };
+    assert_eq!(answers(&replay(&[pair], &hasty)), [Answer::Never, Answer::Timed]);
+    assert_eq!((found.joints[0].unmatched_starts, found.joints[0].untimed_starts), (0, 1));
+    // The same drift, had it gone on: a joint that stands still then is one that does not answer.
+    let drift = |t: f64| 0.4 * DEGREE_RAD * (t - 2.0).clamp(0.0, 2.0);
+    let planned: Vec<f64> = t_s.iter().map(|&t| drift(t) - ramp(t, 4.5)).collect();
+    let measured: Vec<f64> = t_s.iter().map(|&t| -ramp(t, 4.6)).collect();
+    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..1000).collect()));
+    assert_eq!(answers(&found), [Answer::Never, Answer::Timed]);
+}
+
+/// How much of the error the lag of a joint explains that follows a ramp of 4 degrees per second, 3 s long, so.
+fn lag_share(follow: impl Fn(f64) -> f64) -> f64 {
+    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
+    let planned = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
+    let measured = t_s.iter().map(|&t| follow(t)).collect();
+    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..1000).collect()));
+    assert_eq!(found.joints[0].lag_share, found.whole_run.lag_share);
+    found.whole_run.lag_share.unwrap().share
+}
+
+#[test]
+fn a_lag_explains_the_error_of_a_delayed_joint_and_not_that_of_a_late_start_or_an_offset() {
+    let delayed = lag_share(|t| ramp(t, 2.12));
+    assert!(delayed > 0.99, "{delayed}");
+    // It waits 0.6 s, is back on its plan 0.4 s later, and stays on it.
+    let late = lag_share(|t| if t < 2.6 { 0.0 } else { ramp(t, 2.0).min(10.0 * DEGREE_RAD * (t - 2.6)) });
+    assert!(late < 0.3, "{late}");
+    let offset = lag_share(|t| ramp(t, 2.0) - 0.5 * DEGREE_RAD);
+    assert!(offset < 0.05, "{offset}");
 }
 
 #[test]

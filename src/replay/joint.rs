@@ -1,9 +1,10 @@
 //! One joint: signals, motions, matching of planned with measured starts, and figures.
 
 use super::{
-    JointReplay, Rules, Stop, Transition,
+    Answer, JointReplay, Rules, Stop, Transition,
     delay::{measured_onset, planned_onset_s},
     lag::{Lag, Speeds, lag},
+    lag_share::{Block, blocks, lag_share},
     motion::Motion,
     onset::Onset,
     signals::Signals,
@@ -17,6 +18,8 @@ pub(super) struct Joint {
     pub(super) replay: JointReplay,
     pub(super) transitions: Vec<Transition>,
     pub(super) stops: Vec<Stop>,
+    /// Its planned motions with their error, and what a lag leaves of it.
+    pub(super) blocks: Vec<Block>,
     pub(super) error: Vec<Sample>,
     /// For each sample, whether the plan moves.
     pub(super) moving: Vec<bool>,
@@ -62,6 +65,8 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
         || signals.measured.iter().any(|m| travel_rad(&pair.measured_rad, m) >= rules.moves_travel_rad);
     // What does not move has no lag, however well its noise fits.
     let lag = if moves { lag } else { Lag::default() };
+    let blocks = blocks(pair, &error, &signals.planned_rad_s, &signals.planned, lag.shift_s);
+    let count = |answer: Answer| transitions.iter().filter(|t| t.answer == answer).count();
     let replay = JointReplay {
         name: pair.name.clone(),
         moves,
@@ -73,16 +78,18 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
         lag_correlation: lag.correlation,
         lag_interval_s: lag.interval_s,
         lag_motions: lag.motions,
+        lag_share: lag.shift_s.and_then(|_| lag_share(&blocks, rules)),
         noise: signals.noise,
         sample_interval_s: signals.sample_interval_s,
         thresholds: signals.thresholds,
         starts: planned.len(),
         reversals: planned.iter().filter(|m| m.reversal).count(),
         stops: stops.iter().filter(|s| s.planned_s.is_some()).count(),
-        unmatched_starts: planned.len() - matched,
+        unmatched_starts: count(Answer::Never),
+        untimed_starts: count(Answer::Unclear) + count(Answer::Creeps),
         unplanned_starts: measured.len() - matched,
     };
-    Some(Joint { replay, transitions, stops, error, moving })
+    Some(Joint { replay, transitions, stops, blocks, error, moving })
 }
 
 /// Travel of a motion, rad.

@@ -4,10 +4,12 @@
 //! of every joint in plan and measurement, measures the answer to each, and says whether the
 //! error lives there. It knows angles over time and nothing of files, controllers or pressure.
 
+mod answer;
 mod concentration;
 mod delay;
 mod joint;
 mod lag;
+mod lag_share;
 mod motion;
 mod onset;
 mod outcome;
@@ -23,8 +25,8 @@ use rayon::prelude::*;
 
 pub use delay::measured_starts;
 pub use outcome::{
-    Concentration, ConcentrationTest, JointReplay, Kind, OnsetMethod, PathError, Replay, Stop, Thresholds,
-    TrackingError, Transition, Verdict, WholeRun,
+    Answer, Concentration, ConcentrationTest, JointReplay, Kind, LagShare, OnsetMethod, PathError, Replay,
+    Stop, Thresholds, TrackingError, Transition, Verdict, WholeRun,
 };
 pub use rules::Rules;
 pub use score::{Score, Spread, conditions, detector_score};
@@ -53,6 +55,10 @@ pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
         .collect();
     let concentration = concentration(&errors, rules);
     let tracking_error = tracking::tracking_error(joints.iter().flat_map(|joint| &joint.error));
+    let lag_share = joints.iter().any(|joint| joint.replay.lag_s.is_some()).then(|| {
+        let blocks = joints.iter().flat_map(|joint| joint.blocks.iter().copied()).collect();
+        lag_share::lag_share(&lag_share::events(blocks, rules), rules)
+    });
     let norm = path.map(|(of_joints, norm)| {
         for (joint, path_error) in joints.iter_mut().zip(of_joints) {
             joint.replay.path_error = Some(path_error);
@@ -64,7 +70,12 @@ pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
         joints: Vec::with_capacity(joints.len()),
         transitions: Vec::new(),
         stops: Vec::new(),
-        whole_run: WholeRun { tracking_error, path_error: norm, concentration },
+        whole_run: WholeRun {
+            tracking_error,
+            path_error: norm,
+            lag_share: lag_share.flatten(),
+            concentration,
+        },
     };
     for mut joint in joints {
         found.joints.push(joint.replay);

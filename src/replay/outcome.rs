@@ -45,6 +45,8 @@ pub struct JointReplay {
     pub lag_interval_s: Option<[f64; 2]>,
     /// Number of motions behind the interval.
     pub lag_motions: usize,
+    /// How much of its error that lag explains; `None` where there is no lag.
+    pub lag_share: Option<LagShare>,
     /// Noise of the measured angle.
     pub noise: Noise,
     /// Median time between samples, s: nothing in time is known better than this.
@@ -57,10 +59,29 @@ pub struct JointReplay {
     pub reversals: usize,
     /// Planned stops.
     pub stops: usize,
-    /// Planned starts that no measured start answers.
+    /// Planned starts that the joint never answers.
     pub unmatched_starts: usize,
+    /// Planned starts whose answer has no instant: the joint creeps, or nobody can tell.
+    pub untimed_starts: usize,
     /// Measured starts that no planned start asks for.
     pub unplanned_starts: usize,
+}
+
+/// How much of the squared error is gone when the plan is shifted by the lag.
+///
+/// The lag is that of the speeds, so a late start that is caught up with, or an offset, is not taken for one. The
+/// rest before the next motion counts with the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct LagShare {
+    /// Share; 0 where the shift makes the error no smaller.
+    pub share: f64,
+    /// 95 % interval from its spread over events, the lag taken as known; needs three of them.
+    pub interval: Option<[f64; 2]>,
+    /// Planned motions; over joints, those that begin within [`Rules::same_event_s`] are one.
+    pub events: usize,
+    /// Whether the share reaches [`Rules::mostly_lag_share`].
+    pub mostly: bool,
 }
 
 /// Detector settings of one joint.
@@ -101,7 +122,8 @@ pub struct TrackingError {
     pub duration_s: f64,
 }
 
-/// Distance from measured joint vectors to the planned joint path.
+/// Distance from measured joint vectors to the planned joint path: of one joint its component, of all the
+/// Euclidean norm over joints, which is larger than any of them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PathError {
@@ -109,6 +131,8 @@ pub struct PathError {
     pub rms_rad: f64,
     /// Largest, rad.
     pub peak_rad: f64,
+    /// Root mean square of the same distance to where the plan is at the same instant, rad.
+    pub timed_rms_rad: f64,
     /// Number of measured joint vectors compared.
     pub samples: usize,
     /// Time between them, s.
@@ -138,6 +162,24 @@ pub enum OnsetMethod {
     Crossing,
 }
 
+/// What became of a planned start.
+///
+/// Only [`Answer::Never`] is a start without an answer: it alone counts as such and breaks limits on the delay.
+/// In ascending order of what it costs to know less.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Answer {
+    /// A measured start answers it, and its instant is known.
+    Timed,
+    /// Too small by plan, or too soon followed by the next start, to tell whether the joint follows.
+    Unclear,
+    /// The joint follows, but crept into the motion or was under way: there is no instant at which it left rest.
+    Creeps,
+    /// The joint does not follow: within the window it covers less than [`Rules::follow_share`] of the planned travel.
+    Never,
+}
+
 /// One planned start or reversal and how the joint answered.
 ///
 /// The error is planned minus measured; "signed along the motion" is that times the direction,
@@ -153,7 +195,9 @@ pub struct Transition {
     pub direction: i8,
     /// When the plan starts, s.
     pub planned_onset_s: f64,
-    /// When the joint starts, s; `None` if it never does.
+    /// What became of it.
+    pub answer: Answer,
+    /// When the joint starts, s; `None` unless the answer is timed.
     pub measured_onset_s: Option<f64>,
     /// How the onsets were found.
     pub onset_method: OnsetMethod,
@@ -214,6 +258,9 @@ pub struct WholeRun {
     /// Norm over joints of the distance to the planned path, ignoring time; `None` where the
     /// joints have no instants in common.
     pub path_error: Option<PathError>,
+    /// How much of the error of joints whose plan moves is gone when each joint's plan is shifted by its lag; a joint
+    /// without a lag keeps its error. `None` where none has one.
+    pub lag_share: Option<LagShare>,
     /// Whether the error lives in the transitions; `None` if no plan moves.
     pub concentration: Option<Concentration>,
 }

@@ -27,6 +27,7 @@ pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError
     }
     let mut squares = vec![0.0; path.joints + 1];
     let mut peaks = vec![0.0_f64; path.joints + 1];
+    let mut timed = vec![0.0; path.joints + 1];
     let (mut first, mut end) = (0, 0);
     for i in 0..n {
         while path.t_s[i] - path.t_s[first] > rules.path_window_s {
@@ -42,18 +43,22 @@ pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError
             square += off * off;
             squares[j] += off * off;
             peaks[j] = peaks[j].max(off.abs());
+            let now = path.offset(i, j, i, 0.0);
+            timed[j] += now * now;
+            timed[path.joints] += now * now;
         }
         squares[path.joints] += square;
         peaks[path.joints] = peaks[path.joints].max(square.sqrt());
     }
     let sample_interval_s = if n > 1 { (path.t_s[n - 1] - path.t_s[0]) / (n - 1) as f64 } else { 0.0 };
-    let of = |(square, peak_rad): (&f64, &f64)| PathError {
+    let of = |((square, timed), peak_rad): ((&f64, &f64), &f64)| PathError {
         rms_rad: (square / n as f64).sqrt(),
         peak_rad: *peak_rad,
+        timed_rms_rad: (timed / n as f64).sqrt(),
         samples: n,
         sample_interval_s,
     };
-    let mut errors: Vec<PathError> = squares.iter().zip(&peaks).map(of).collect();
+    let mut errors: Vec<PathError> = squares.iter().zip(&timed).zip(&peaks).map(of).collect();
     let norm = errors.pop()?;
     Some((errors, norm))
 }
@@ -189,6 +194,7 @@ mod tests {
     fn being_late_on_the_path_is_no_path_error() {
         let (joints, norm) =
             path_error(&[pair(500, 0.213, 0.0), pair(500, 0.213, 0.0)], &Rules::default()).unwrap();
+        assert!(norm.timed_rms_rad > 0.05);
         assert!(norm.peak_rad < 1e-12 && joints.iter().all(|j| j.peak_rad < 1e-12), "{norm:?}");
     }
 

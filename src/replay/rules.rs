@@ -56,6 +56,9 @@ pub struct Rules {
     pub early_travel_share: f64,
     /// A measured start may follow the window of its planned one by this, s.
     pub match_after_s: f64,
+    /// A joint that covers this share of the planned travel within the window follows, whether the
+    /// instant at which it left rest is seen or not.
+    pub follow_share: f64,
     /// Longest window of a transition, s.
     pub transition_window_s: f64,
     /// Travel at which plan and measurement are compared for the displacement delay, rad.
@@ -76,6 +79,9 @@ pub struct Rules {
     pub lag_min_correlation: f64,
     /// Largest lag looked for, either way, s.
     pub lag_max_s: f64,
+    /// Share of the squared error from which on a lag explains it: at 0.75, shifting the plan by the lag at
+    /// least halves the root mean square error.
+    pub mostly_lag_share: f64,
     /// Rate at which the path error is taken, at most, Hz.
     pub path_rate_hz: f64,
     /// The nearest planned point is looked for within this time, either way, s.
@@ -114,6 +120,7 @@ impl Default for Rules {
             match_before_s: 0.3,
             early_travel_share: 0.3,
             match_after_s: 1.0,
+            follow_share: 0.3,
             transition_window_s: 4.0,
             displacement_rad: 0.1 * DEGREE_RAD,
             jump_window_s: 0.4,
@@ -124,6 +131,7 @@ impl Default for Rules {
             lag_rate_hz: 100.0,
             lag_min_correlation: 0.5,
             lag_max_s: 1.0,
+            mostly_lag_share: 0.75,
             path_rate_hz: 50.0,
             path_window_s: 2.0,
             same_event_s: 1.0,

@@ -18,7 +18,11 @@ pub(super) struct Signals {
     pub(super) sample_interval_s: f64,
     pub(super) thresholds: Thresholds,
     pub(super) planned_rad_s: Vec<f64>,
+    /// Measured angle, smoothed, rad.
+    pub(super) measured_rad: Vec<f64>,
     pub(super) measured_rad_s: Vec<f64>,
+    /// Least travel of a measured motion, rad.
+    pub(super) min_travel_rad: f64,
     pub(super) deviation_rad_s: Vec<f64>,
     pub(super) planned: Vec<Motion>,
     pub(super) measured: Vec<Motion>,
@@ -46,6 +50,10 @@ impl Signals {
             fits.iter().map(|fit| fit.velocity_rad_s).collect()
         });
 
+        let min_travel_rad = rules
+            .min_travel_rad
+            .max(rules.min_travel_sigmas * noise.sigma_rad)
+            .max(rules.min_travel_lsbs * noise.lsb_rad.unwrap_or(0.0));
         let planned = Speed {
             t_s,
             position_rad: &pair.planned_rad,
@@ -58,10 +66,7 @@ impl Signals {
             position_rad: &smooth_rad,
             velocity_rad_s: &measured_rad_s,
             deviation_rad_s: Some(&deviation_rad_s),
-            min_travel_rad: rules
-                .min_travel_rad
-                .max(rules.min_travel_sigmas * noise.sigma_rad)
-                .max(rules.min_travel_lsbs * noise.lsb_rad.unwrap_or(0.0)),
+            min_travel_rad,
             ..planned
         };
         let usual = median(deviation_rad_s.clone());
@@ -78,7 +83,9 @@ impl Signals {
             sample_interval_s,
             thresholds,
             planned_rad_s,
+            measured_rad: smooth_rad,
             measured_rad_s,
+            min_travel_rad,
             deviation_rad_s,
             planned,
             measured,

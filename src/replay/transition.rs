@@ -1,7 +1,8 @@
 //! The metrics of one transition.
 
 use super::{
-    Kind, Rules, Transition,
+    Answer, Kind, Rules, Transition,
+    answer::untimed,
     delay::{Delay, delay},
     motion::Motion,
     onset::Onset,
@@ -47,6 +48,11 @@ pub(super) fn transition(
         kind: if planned.reversal { Kind::Reversal } else { Kind::Start },
         direction: planned.direction,
         planned_onset_s: planned_s,
+        answer: if measured_s.is_some() {
+            Answer::Timed
+        } else {
+            untimed(pair, signals, planned.direction, window, rules)
+        },
         measured_onset_s: measured_s,
         onset_method: method,
         onset_delay_s: measured_s.map(|at_s| at_s - planned_s),

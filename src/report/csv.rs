@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::tables::kind;
+use super::tables::{answer_word as answer, kind};
 use crate::workflow::report::Report;
 
-const HEAD: [&str; 22] = [
+const HEAD: [&str; 23] = [
     "joint",
     "kind",
     "direction",
@@ -28,6 +28,7 @@ const HEAD: [&str; 22] = [
     "window_end_s",
     "samples",
     "time_resolution_s",
+    "answer",
 ];
 
 /// One row a transition, in order of joint and time; remarks follow as lines that start with `#`.
@@ -61,6 +62,7 @@ pub fn transitions_csv(report: &Report) -> String {
             number(Some(t.window_s[1])),
             t.samples.to_string(),
             number(Some(t.time_resolution_s)),
+            answer(t.answer).to_owned(),
         ]);
     }
     let mut text = String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default();

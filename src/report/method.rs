@@ -41,6 +41,17 @@ pub(super) fn method_parts(report: &Report, parts: &mut Vec<Part>) {
             ),
         ),
         fact(
+            "late",
+            format!(
+                "when plan and joint pass the same speed; never: within the window the joint covers less than {:.0} % of the \
+                 planned travel; creeps: it covers more, but was under way or crept into the motion, so it leaves rest at no \
+                 instant; unclear: planned too small for its noise, or the next start comes within {:.0} s. Only never is no \
+                 answer",
+                100.0 * rules.follow_share,
+                rules.match_after_s,
+            ),
+        ),
+        fact(
             "speed",
             format!(
                 "local quadratic over +-{} ms; noise {} deg, time resolution {} ms",
@@ -61,6 +72,16 @@ pub(super) fn method_parts(report: &Report, parts: &mut Vec<Part>) {
         fact(
             "lag",
             format!("shift of best correlation of the speeds within +-{} ms, over moving stretches", ms(rules.lag_max_s)),
+        ),
+        fact(
+            "by lag",
+            format!(
+                "share of the squared error that is gone when the plan is shifted by that lag, rests included; interval over \
+                 planned motions, those within {:.0} s of each other as one event; from {:.0} % on, which halves the rms, \
+                 the error is mostly lag",
+                rules.same_event_s,
+                100.0 * rules.mostly_lag_share,
+            ),
         ),
         fact("source", report.source.why.clone()),
         fact("clock", report.source.time_base_why.clone()),

@@ -1,7 +1,9 @@
 //! The report as headings, sentences and tables, worst first.
 
 use super::{
-    NONE, Part, Sheet, counted, deg,
+    NONE, Part, Sheet,
+    compare::probability,
+    counted, deg,
     markup::{KEPT, NOT_KEPT, REMARKS},
     method::method_parts,
     ms,
@@ -9,7 +11,7 @@ use super::{
 };
 use crate::{
     remark::Remarks,
-    replay::{JointReplay, Kind, Replay, Transition, Verdict},
+    replay::{Answer, JointReplay, Kind, Replay, Transition, Verdict},
     workflow::{
         profile::Profiles,
         report::{Gate, GateResult, Report},
@@ -68,16 +70,20 @@ pub(super) fn in_short(report: &Report) -> Vec<String> {
         }
         None => lines.push("No planned start from rest was found.".to_owned()),
     }
+    lines.extend(mostly_lag(replay).map(|lag| format!("The error is mostly lag: {lag}.")));
     if let Some(c) = &replay.whole_run.concentration {
-        let place = match c.verdict {
-            Verdict::Transitions => "The error lives in the transitions",
-            Verdict::Elsewhere => "The error lives outside the transitions",
-            Verdict::Undecided => "Whether the error lives in the transitions is open",
+        let place = match (mostly_lag(replay), c.verdict) {
+            (Some(_), _) => "Transitions hold it because the joints move there",
+            (None, Verdict::Transitions) => "The error lives in the transitions",
+            (None, Verdict::Elsewhere) => "The error lives outside the transitions",
+            (None, Verdict::Undecided) => "Whether the error lives in the transitions is open",
         };
         let test = c.test.map_or("too few stretches to test".to_owned(), |t| {
             format!(
-                "p = {:.2e}, {} transition events against {} other stretches",
-                t.p_value, t.inside_count, t.outside_count
+                "p = {}, {} transition events against {} other stretches",
+                probability(t.p_value),
+                t.inside_count,
+                t.outside_count
             )
         });
         let moving = c
@@ -91,16 +97,30 @@ pub(super) fn in_short(report: &Report) -> Vec<String> {
             100.0 * c.time_share_inside,
         ));
     }
+    if mostly_lag(replay).is_none() && replay.whole_run.concentration.is_some() {
+        lines.push(match lag_words(replay) {
+            Some(lag) => format!("The part that is lag: {lag}."),
+            None => "How much of it is lag cannot be told: no joint shows one.".to_owned(),
+        });
+    }
     if let Some(path) = &replay.whole_run.path_error {
         lines.push(format!(
-            "Path error, which ignores time: rms {} deg, peak {} deg over all joints ({} instants, single run).",
+            "Path error, which ignores time, as the norm over all joints: rms {} deg, where the same norm with time is {} deg; \
+             peak {} deg ({} instants, single run).",
             deg(path.rms_rad),
+            deg(path.timed_rms_rad),
             deg(path.peak_rad),
             path.samples
         ));
     }
     for joint in &replay.joints {
         match (joint.plan_moves, joint.moves) {
+            (false, false) if joint.unplanned_starts > 0 => lines.push(format!(
+                "{} is not asked to move and is only shaken: {} of less than {} deg, unasked.",
+                joint.name,
+                counted(joint.unplanned_starts, "start"),
+                deg(replay.rules.moves_travel_rad)
+            )),
             (false, false) => lines.push(format!("{} does not move and is not asked to.", joint.name)),
             (true, false) => {
                 lines.push(format!(
@@ -117,11 +137,43 @@ pub(super) fn in_short(report: &Report) -> Vec<String> {
     lines
 }
 
+/// What the lag explains of a run whose error is mostly that.
+pub(super) fn mostly_lag(replay: &Replay) -> Option<String> {
+    replay.whole_run.lag_share.filter(|lag| lag.mostly)?;
+    lag_words(replay)
+}
+
+/// How much of the squared error lags at the planned speeds explain; `None` where no joint has one.
+pub(super) fn lag_words(replay: &Replay) -> Option<String> {
+    let share = replay.whole_run.lag_share?;
+    let lags = replay.joints.iter().filter(|joint| joint.plan_moves).filter_map(|joint| joint.lag_s);
+    let [least, most] =
+        lags.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], lag_s| [a.min(lag_s), b.max(lag_s)]);
+    let (least, most) = (ms(least), ms(most));
+    let lag = if least == most { format!("{least} ms") } else { format!("{least} to {most} ms by joint") };
+    Some(format!(
+        "{lag} at the planned speed {} {} of the squared error ({}{}; mostly lag from {:.0} % on)",
+        if least == most { "explains" } else { "explain" },
+        percents(share.share),
+        share.interval.map_or(String::new(), |[a, b]| format!("95 % {:.0}..{}, ", 100.0 * a, percents(b))),
+        counted(share.events, "event"),
+        100.0 * replay.rules.mostly_lag_share,
+    ))
+}
+
+fn percents(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
+}
+
 pub(super) fn worst_sentence(worst: &Transition) -> String {
     let lateness = match worst.onset_delay_s {
         Some(delay_s) if delay_s >= 0.0 => format!("leaves {} ms after its plan", ms(delay_s)),
         Some(delay_s) => format!("leaves {} ms before its plan", ms(-delay_s)),
-        None => "never answers its plan".to_owned(),
+        None => match worst.answer {
+            Answer::Creeps => "creeps or is under way when its plan starts".to_owned(),
+            Answer::Unclear => "has too small a planned motion to tell when it answers".to_owned(),
+            Answer::Timed | Answer::Never => "never answers its plan".to_owned(),
+        },
     };
     format!(
         "{} at {:.2} s {lateness}; its error peaks at {} deg, {} ms after the planned start.",
@@ -145,6 +197,21 @@ pub(super) fn kind(kind: Kind) -> &'static str {
     }
 }
 
+/// A delay in milliseconds, or why there is none.
+pub(super) fn late(delay_s: Option<f64>, answer: Answer) -> String {
+    delay_s.map_or_else(|| answer_word(answer).to_owned(), ms)
+}
+
+pub(super) fn answer_word(answer: Answer) -> &'static str {
+    match answer {
+        // Means over runs lack a delay that single runs have.
+        Answer::Timed => NONE,
+        Answer::Unclear => "unclear",
+        Answer::Creeps => "creeps",
+        Answer::Never => "never",
+    }
+}
+
 fn optional(value: Option<f64>, format: fn(f64) -> String) -> String {
     value.map_or(NONE.to_owned(), format)
 }
@@ -162,7 +229,7 @@ pub(super) fn transition_parts(replay: &Replay, most: usize, parts: &mut Vec<Par
             kind(t.kind).to_owned(),
             if t.direction < 0 { "-" } else { "+" }.to_owned(),
             format!("{:.2}", t.planned_onset_s),
-            t.onset_delay_s.map_or("never".to_owned(), ms),
+            late(t.onset_delay_s, t.answer),
             interval,
             deg(t.peak_error_rad),
             ms(t.time_to_peak_s),
@@ -209,9 +276,11 @@ pub(super) fn joint_parts(replay: &Replay, profiles: &Profiles, parts: &mut Vec<
             optional(j.standstill_error.map(|e| e.rms_rad), deg),
             lag(j),
             optional(j.lag_correlation, |c| format!("{c:.3}")),
-            j.starts.to_string(),
+            j.lag_share.map_or(NONE.to_owned(), |lag| percents(lag.share)),
+            (j.starts - j.reversals).to_string(),
             j.reversals.to_string(),
             j.unmatched_starts.to_string(),
+            j.untimed_starts.to_string(),
             j.unplanned_starts.to_string(),
         ]
     });
@@ -227,9 +296,11 @@ pub(super) fn joint_parts(replay: &Replay, profiles: &Profiles, parts: &mut Vec<
         "at rest",
         "lag ms",
         "corr",
+        "by lag",
         "starts",
         "rev",
         "no answer",
+        "untimed",
         "unasked",
     ];
     parts.push(Part::Heading("Joints".into()));

@@ -9,7 +9,7 @@ use super::{
     stream::{Stream, Values},
 };
 use crate::{
-    replay::{Kind, Transition},
+    replay::{Answer, Kind, Transition},
     series::{Pair, Track},
     units::degrees_from_radians,
     workflow::view::Scene,
@@ -147,7 +147,7 @@ fn words(path: String, scene: &Scene, several: bool) -> Stream {
 
 /// Whether a start was never answered.
 fn late(found: &Transition) -> bool {
-    found.measured_onset_s.is_none()
+    found.answer == Answer::Never
 }
 
 fn sentence(found: &Transition) -> String {
@@ -164,6 +164,13 @@ fn sentence(found: &Transition) -> String {
                 1e3 * delay_s
             )
         }
-        None => format!("{} {kind}: never follows, peak error {peak_deg:.2}°", found.joint),
+        None => {
+            let follows = match found.answer {
+                Answer::Creeps => "creeps or is under way",
+                Answer::Unclear => "moves too little to tell whether it follows",
+                Answer::Timed | Answer::Never => "never follows",
+            };
+            format!("{} {kind}: {follows}, peak error {peak_deg:.2}°", found.joint)
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What to do about what a report found.
 
 use super::report::Report;
-use crate::replay::{Transition, Verdict};
+use crate::replay::{JointReplay, Transition, Verdict};
 
 /// A next step, the most urgent first.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,15 +14,28 @@ pub enum Advice {
         joint: String,
         /// Planned starts without an answer.
         unanswered: usize,
-        /// All its planned starts.
+        /// All its planned starts, reversals included.
         starts: usize,
+    },
+    /// The error is mostly lag.
+    ShiftCommand {
+        /// The joint with the largest error among those whose own is mostly lag, or else of all with a lag.
+        joint: String,
+        /// Its lag, s.
+        lag_s: f64,
+        /// The log, if it is one file.
+        log: Option<String>,
     },
     /// The error lives in the transitions, most in those of a joint.
     EaseStarts {
         /// The joint with the largest peak.
         joint: String,
-        /// Median delay of answered starts over all joints, s.
+        /// Median delay of timed starts over all joints, s.
         delay_s: Option<f64>,
+        /// The log, if it is one file.
+        log: Option<String>,
+        /// Whether a gentler plan can be made from it.
+        gentler: bool,
     },
     /// The error lives outside the transitions, and joints are late throughout.
     ShortenLag {
@@ -68,12 +81,20 @@ pub fn advice(report: &Report) -> Vec<Advice> {
         return advice;
     };
     let verdict = replay.whole_run.concentration.as_ref().map(|c| c.verdict);
-    if verdict == Some(Verdict::Elsewhere) {
+    let log = match report.logs.as_slice() {
+        [log] => Some(log.clone()),
+        _ => None,
+    };
+    if let Some((joint, lag_s)) = mostly_lag(report) {
+        advice.push(Advice::ShiftCommand { joint, lag_s, log });
+    } else if verdict == Some(Verdict::Elsewhere) {
         advice.extend(outside(report));
     } else {
         advice.push(Advice::EaseStarts {
             joint: worst.joint.clone(),
             delay_s: median_delay_s(&replay.transitions),
+            log,
+            gentler: report.holds_task,
         });
     }
     if report.gates.is_empty() {
@@ -81,6 +102,18 @@ pub fn advice(report: &Report) -> Vec<Advice> {
     }
     advice.push(Advice::Compare);
     advice
+}
+
+/// Where the run's error is mostly lag: the joint to begin with and its lag, s.
+fn mostly_lag(report: &Report) -> Option<(String, f64)> {
+    report.replay.whole_run.lag_share.filter(|lag| lag.mostly)?;
+    let joints = report.replay.joints.iter().filter_map(|joint| Some((joint, joint.lag_s?)));
+    let own = |joint: &JointReplay| joint.lag_share.is_some_and(|lag| lag.mostly);
+    let (joint, lag_s) = joints.max_by(|(a, _), (b, _)| {
+        let rms_rad = |joint: &JointReplay| joint.tracking_error.rms_rad;
+        own(a).cmp(&own(b)).then(rms_rad(a).total_cmp(&rms_rad(b)))
+    })?;
+    Some((joint.name.clone(), lag_s))
 }
 
 fn outside(report: &Report) -> Option<Advice> {

@@ -4,11 +4,16 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::{front::Front, plan_log::FRONT, profile::Profiles, schedule::Schedule};
+use super::{
+    front::Front,
+    plan_log::{FRONT, TASK},
+    profile::Profiles,
+    schedule::Schedule,
+};
 use crate::{
     log::{Attachment, LogError, ReadOptions, SourceInfo, read_recording},
     remark::{Code, Remarks},
-    replay::{Replay, Rules, planned_starts, replay},
+    replay::{Answer, Replay, Rules, planned_starts, replay},
     series::{Pair, Series, align},
 };
 
@@ -36,7 +41,8 @@ pub struct Gates {
     pub max_peak_rad: Option<f64>,
     /// Root mean square error of any joint at standstill, rad.
     pub max_standstill_rms_rad: Option<f64>,
-    /// Delay of any start, s; a start that is not answered exceeds every limit.
+    /// Delay of any start, s; a start that is never answered exceeds every limit, one whose answer has no
+    /// instant is not judged.
     pub max_onset_delay_s: Option<f64>,
     /// Velocity lag of any joint, s.
     pub max_lag_s: Option<f64>,
@@ -97,6 +103,10 @@ pub struct Alignment {
 /// A report, before it is rendered.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
+    /// Names of the files of the run, without their folders.
+    pub logs: Vec<String>,
+    /// Whether the log holds the task of its plan, so that a gentler plan can be made from it.
+    pub holds_task: bool,
     /// Where the data come from.
     pub source: SourceInfo,
     /// How plan and measurement were matched, by joint.
@@ -159,7 +169,10 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     ::log::info!("{} joints aligned, {} transitions found", pairs.len(), replay.transitions.len());
     let gates = gates(&inputs.gates, &replay);
     let front = front(&recording.attachments, &mut remarks);
+    let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
     Ok(Report {
+        logs: inputs.logs.iter().filter_map(name).collect(),
+        holds_task: recording.attachments.iter().any(|file| file.name == TASK),
         source: recording.source,
         alignment,
         replay,
@@ -262,7 +275,10 @@ fn gates(limits: &Gates, replay: &Replay) -> Vec<GateResult> {
     check(
         Gate::OnsetDelay,
         limits.max_onset_delay_s,
-        transitions().map(|t| (t.onset_delay_s, t.joint.as_str(), Some(t.planned_onset_s))).collect(),
+        transitions()
+            .filter(|t| matches!(t.answer, Answer::Timed | Answer::Never))
+            .map(|t| (t.onset_delay_s, t.joint.as_str(), Some(t.planned_onset_s)))
+            .collect(),
     );
     check(
         Gate::Lag,
@@ -299,6 +315,34 @@ mod tests {
         let found = vec![(Some(0.1), "a", Some(1.0)), (None, "b", Some(2.0))];
         let result = worst(Gate::OnsetDelay, 10.0, found);
         assert_eq!((result.kept, result.worst, result.joint.as_deref()), (false, None, Some("b")));
+    }
+
+    /// A joint that follows 12 degrees in 3 s from 4 s on, having crept before, or does not.
+    fn replayed(follows: bool) -> Replay {
+        let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
+        let ramp = |t: f64| 0.07 * (t - 4.0).clamp(0.0, 3.0);
+        let creep = |t: f64| 0.005 * (t - 1.0).clamp(0.0, 3.0);
+        let angle = |of: &dyn Fn(f64) -> f64| t_s.iter().map(|t| of(*t)).collect::<Vec<f64>>();
+        let pair = Pair {
+            name: "a".into(),
+            planned_rad: angle(&ramp),
+            planned_rad_s: None,
+            measured_rad: angle(&|t| if follows { creep(t) + ramp(t) } else { 0.0 }),
+            segments: std::iter::once(0..t_s.len()).collect(),
+            planned_interval_s: 0.01,
+            matched: t_s.len(),
+            unmatched: 0,
+            t_s,
+        };
+        replay(&[pair], &Rules::default())
+    }
+
+    #[test]
+    fn only_a_start_that_is_never_answered_breaks_a_limit_on_delay_for_want_of_one() {
+        let limits = Gates { max_onset_delay_s: Some(0.3), ..Gates::default() };
+        let judged = |follows: bool| gates(&limits, &replayed(follows)).remove(0);
+        assert_eq!((judged(true).kept, judged(true).worst, judged(true).joint), (true, None, None));
+        assert_eq!((judged(false).kept, judged(false).joint.as_deref()), (false, Some("a")));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use hydrotrace::{
     plant::{Plant, simulate},
+    replay::{Rules, replay},
     units::DEGREE_RAD,
 };
 
@@ -66,4 +67,18 @@ fn without_overlap_and_friction_the_floor_is_gone() {
     });
     let usual = plant("dead-band-limited", ideal);
     assert!(peak_deg(&quiet, 0.4) < 0.5 * peak_deg(&usual, 0.4));
+}
+
+#[test]
+fn a_lag_explains_more_of_the_error_the_less_a_plant_is_limited_by_its_dead_band() {
+    let (planned, payload) = super::paper::plan(0, 0.6);
+    let found = ["dead-band-limited", "default", "lag-limited"].map(|preset| {
+        let record = simulate(&plant(preset, |_| {}), &planned, &payload, 1).unwrap();
+        replay(&super::pairs(&planned, &record), &Rules::default()).whole_run.lag_share.unwrap()
+    });
+    let shares = found.map(|found| found.share);
+    println!("{shares:.3?}");
+    assert!(shares[0] + 0.05 < shares[1] && shares[1] + 0.05 < shares[2], "{shares:?}");
+    // All three start late by their dead bands before anything else.
+    assert!(found.iter().all(|found| !found.mostly), "{found:?}");
 }

@@ -4,7 +4,7 @@ use super::{arrow, optional, percent, probability, short::in_short, signed, unit
 use crate::{
     report::{
         NONE, Part, Sheet, counted, deg, ms,
-        tables::{kind, remark_parts},
+        tables::{kind, late, remark_parts},
     },
     units::degrees_from_radians,
     workflow::compare::{Comparison, Figures, Measure, Run, Scope, Side, Summary, TransitionPair},
@@ -63,9 +63,8 @@ fn pair_parts(comparison: &Comparison, most: usize, parts: &mut Vec<Part>) {
     }
     let growth = |pair: &TransitionPair| pair.peak_error_rad.difference.unwrap_or(f64::NEG_INFINITY);
     worst.sort_by(|a, b| growth(b).total_cmp(&growth(a)));
-    let never = |value: Option<f64>| value.map_or("never".to_owned(), ms);
     let rows = worst.iter().take(most).map(|pair| {
-        let (peak, rms, late) = (&pair.peak_error_rad, &pair.rms_error_rad, &pair.onset_delay_s);
+        let (peak, rms, delay) = (&pair.peak_error_rad, &pair.rms_error_rad, &pair.onset_delay_s);
         vec![
             pair.joint.clone(),
             kind(pair.kind).to_owned(),
@@ -79,9 +78,9 @@ fn pair_parts(comparison: &Comparison, most: usize, parts: &mut Vec<Part>) {
             optional(rms.before, deg),
             optional(rms.after, deg),
             optional(rms.difference, |d| signed(d, deg)),
-            never(late.before),
-            never(late.after),
-            optional(late.difference, |d| signed(d, ms)),
+            late(delay.before, pair.answer_before),
+            late(delay.after, pair.answer_after),
+            optional(delay.difference, |d| signed(d, ms)),
         ]
     });
     let head = vec![

@@ -10,7 +10,7 @@ use crate::{
         counted, deg,
         markup::clean,
         ms,
-        tables::{by_peak, gate_lines, kind, worst_sentence},
+        tables::{by_peak, gate_lines, kind, lag_words, mostly_lag, worst_sentence},
     },
     units::degrees_from_radians,
     workflow::{
@@ -84,13 +84,16 @@ fn place_of_error(report: &Report) -> Markup {
         let body = html! { p { "No plan moves." } };
         return card("", "Where the error lives", "Open", &body);
     };
+    let lag = lag_words(&report.replay);
     let headline = match c.verdict {
+        _ if mostly_lag(&report.replay).is_some() => "Mostly lag",
         Verdict::Transitions => "In the transitions",
         Verdict::Elsewhere => "Outside the transitions",
         Verdict::Undecided => "The run does not say",
     };
     let body = html! {
         (concentration_bars(report))
+        @if let Some(lag) = lag { p { (lag) } }
         p {
             (format!(
                 "{:.0} % of the squared error in {:.0} % of the time{}",
@@ -127,13 +130,23 @@ fn whole_run(report: &Report) -> Markup {
             p { (format!("peak {}° at {:.2} s, 95 % of the time below {}°", deg(error.peak_rad), error.peak_time_s, deg(error.p95_rad))) }
         }
         @if let Some(path) = whole.path_error {
-            p { (format!("off the planned path, time ignored: {}° rms, {}° peak", deg(path.rms_rad), deg(path.peak_rad))) }
+            p { (format!("norm over joints off the planned path: {}° rms time ignored, {}° with time, {}° peak time ignored", deg(path.rms_rad), deg(path.timed_rms_rad), deg(path.peak_rad))) }
         }
         @if !report.remarks.is_empty() {
             p { a href="#remarks" { (counted(report.remarks.as_slice().len(), "remark") + " on the data") } }
         }
     };
     card("", "Whole run, all joints", &headline, &body)
+}
+
+/// A file's name as a shell takes it.
+fn argument(log: Option<&str>) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "._-/+:@%".contains(c);
+    match log {
+        Some(log) if !log.is_empty() && !log.starts_with('-') && log.chars().all(plain) => log.to_owned(),
+        Some(log) if !log.is_empty() => format!("'{}'", log.replace('\'', "'\\''")),
+        _ => "LOG".to_owned(),
+    }
 }
 
 fn words(step: &Advice) -> String {
@@ -147,10 +160,22 @@ fn words(step: &Advice) -> String {
              the command, a sensor that stands still.",
             counted(*starts, "planned start")
         ),
-        Advice::EaseStarts { joint, delay_s } => format!(
-            "Work on starts from rest, {joint} first{}: hydrotrace replan LOG --keep-plan -o NEXT makes a command from this log \
-             that compensates dead band and lag; without --keep-plan, a gentler plan too.",
-            delay_s.map_or(String::new(), |s| format!(" (half of all starts are more than {} ms late)", ms(s)))
+        Advice::ShiftCommand { joint, lag_s, log } => format!(
+            "The error is mostly lag, {joint} first ({} ms): speed feed-forward, or sending the command that much earlier, does \
+             most, and work on starts little. hydrotrace replan {} --keep-plan -o NEXT makes such a command from this log.",
+            ms(*lag_s),
+            argument(log.as_deref()),
+        ),
+        Advice::EaseStarts { joint, delay_s, log, gentler } => format!(
+            "Work on starts from rest, {joint} first{}: hydrotrace replan {} --keep-plan -o NEXT makes a command from this log \
+             that compensates dead band and lag{}",
+            delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {} ms late)", ms(s))),
+            argument(log.as_deref()),
+            if *gentler {
+                "; without --keep-plan, a gentler plan too."
+            } else {
+                ". The log does not hold the task of its plan: a gentler plan needs that too (--task)."
+            },
         ),
         Advice::ShortenLag { joint, lag_s } => format!(
             "Shorten the lag: {joint} follows {} ms behind throughout; speed feed-forward or a higher gain does most.",

@@ -170,3 +170,37 @@ fn a_fit_shows_its_numbers_intervals_and_what_was_never_reached() {
         assert!(page.contains(text), "{text}");
     }
 }
+
+/// What a page says is to be done next, as text.
+fn next(report: &Report) -> String {
+    let page = report_page("a", report, None, 60);
+    page.split("class=\"next\">").nth(1).unwrap().split("</ol>").next().unwrap().to_owned()
+}
+
+#[test]
+fn advice_names_the_log_and_a_gentler_plan_only_where_the_log_holds_its_task() {
+    let without = next(&report("panel-install.mcap"));
+    assert!(without.contains("hydrotrace replan panel-install.mcap --keep-plan -o NEXT"), "{without}");
+    assert!(!without.contains("gentler plan too"), "{without}");
+    let with = next(&report("task-1-run.mcap"));
+    assert!(with.contains("task-1-run.mcap") && with.contains("gentler plan too"), "{with}");
+    let mut spaced = report("task-1-run.mcap");
+    spaced.logs = vec!["it's 1.mcap".to_owned()];
+    assert!(next(&spaced).contains("replan 'it'\\''s 1.mcap' --keep-plan"), "{}", next(&spaced));
+    spaced.logs.push("2.mcap".to_owned());
+    assert!(next(&spaced).contains("replan LOG --keep-plan"), "{}", next(&spaced));
+}
+
+#[test]
+fn where_a_lag_explains_most_of_the_error_that_is_said_and_advised() {
+    let mut report = report("panel-install.mcap");
+    let starts = next(&report);
+    assert!(starts.contains("Work on starts") && !starts.contains("feed-forward"), "{starts}");
+    let share = report.replay.whole_run.lag_share.as_mut().unwrap();
+    assert!(!share.mostly && share.share < 0.75, "{share:?}");
+    (share.share, share.mostly) = (0.9, true);
+    let page = report_page("a", &report, None, 60);
+    assert!(page.contains("Mostly lag") && page.contains("The error is mostly lag"));
+    let lag = next(&report);
+    assert!(lag.contains("feed-forward") && !lag.contains("Work on starts"), "{lag}");
+}

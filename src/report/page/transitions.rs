@@ -14,7 +14,7 @@ use crate::{
         counted, deg,
         markup::clean,
         ms,
-        tables::{by_peak, kind},
+        tables::{answer_word, by_peak, kind},
     },
     series::Pair,
     units::degrees_from_radians,
@@ -112,7 +112,9 @@ fn tile(transition: &Transition, pair: &Pair) -> Chart {
         note: format!(
             "peak {}°, {}",
             deg(transition.peak_error_rad),
-            transition.onset_delay_s.map_or("never answered".to_owned(), |s| format!("{} ms late", ms(s))),
+            transition
+                .onset_delay_s
+                .map_or_else(|| answer_word(transition.answer).to_owned(), |s| format!("{} ms late", ms(s))),
         ),
         x_label: "Time from the planned start (s)",
         xs: vec![times(&t_s, &places)],

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::{Change, PairedBy, Run, Side, TransitionPair, Unpaired, pairing::Match};
 use crate::{
     remark::{Code, Remarks},
-    replay::{Replay, Transition},
+    replay::{Answer, Replay, Transition},
     workflow::report::Report,
 };
 
@@ -100,6 +100,9 @@ pub(super) fn pairs(
                 |side: &[(&Transition, PairedBy)]| side.iter().map(|(t, _)| value(t)).collect::<Vec<_>>();
             Change::of_runs(&values(&before), &values(&after))
         };
+        let worst = |side: &[(&Transition, PairedBy)]| {
+            side.iter().map(|(t, _)| t.answer).max().unwrap_or(Answer::Timed)
+        };
         let by = [PairedBy::Order, PairedBy::Task]
             .into_iter()
             .find(|way| before.iter().chain(&after).any(|(_, by)| by == way));
@@ -115,6 +118,8 @@ pub(super) fn pairs(
             peak_error_rad: change(|t| Some(t.peak_error_rad)),
             rms_error_rad: change(|t| Some(t.rms_error_rad)),
             onset_delay_s: change(|t| t.onset_delay_s),
+            answer_before: worst(&before),
+            answer_after: worst(&after),
         });
     }
     let alone = |(member, used): (&Member<'_>, Vec<bool>)| {

@@ -6,7 +6,7 @@ use super::{Change, Figures, GateResult, Measure, PairedBy, Scope, Summary, Verd
 use crate::{
     log::SourceInfo,
     remark::Remarks,
-    replay::{Kind, Rules},
+    replay::{Answer, Kind, Rules},
     series::Pair,
 };
 
@@ -68,8 +68,12 @@ pub struct TransitionPair {
     pub peak_error_rad: Change,
     /// Root mean square error in the window, rad.
     pub rms_error_rad: Change,
-    /// Measured minus planned onset, s; `None` where a run never answers.
+    /// Measured minus planned onset, s; `None` where an answer has no instant in a run.
     pub onset_delay_s: Change,
+    /// What became of the start before; of several runs the worst.
+    pub answer_before: Answer,
+    /// The same after.
+    pub answer_after: Answer,
 }
 
 /// A transition that is not found in every run, and is left out.

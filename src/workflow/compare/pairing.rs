@@ -209,7 +209,7 @@ impl<'a> Starts<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::replay::{Kind, OnsetMethod};
+    use crate::replay::{Answer, Kind, OnsetMethod};
 
     fn start(direction: i8, at_s: f64) -> Transition {
         Transition {
@@ -217,6 +217,7 @@ mod tests {
             kind: Kind::Start,
             direction,
             planned_onset_s: at_s,
+            answer: Answer::Never,
             measured_onset_s: None,
             onset_method: OnsetMethod::Fit,
             onset_delay_s: None,

@@ -1,0 +1,57 @@
+//! Why a planned start has no measured instant.
+
+use std::ops::Range;
+
+use super::{Answer, Rules, signals::Signals};
+use crate::series::Pair;
+
+/// What became of a planned start that no measured start answers, by what plan and joint travel in its
+/// window of samples.
+///
+/// A share of the planned travel that the measurement could not show proves nothing, nor does a window
+/// shorter than the time that every answer is given.
+pub(super) fn untimed(
+    pair: &Pair,
+    signals: &Signals,
+    direction: i8,
+    window: Range<usize>,
+    rules: &Rules,
+) -> Answer {
+    let needed_rad = rules.follow_share * rise_rad(&pair.planned_rad[window.clone()], direction);
+    if rise_rad(&signals.measured_rad[window.clone()], direction) >= needed_rad.max(signals.min_travel_rad) {
+        return Answer::Creeps;
+    }
+    let lasts_s = pair.t_s[window.end - 1] - pair.t_s[window.start];
+    if needed_rad < signals.min_travel_rad || lasts_s < rules.match_after_s {
+        Answer::Unclear
+    } else {
+        Answer::Never
+    }
+}
+
+/// Largest travel in a direction from any angle to a later one, rad: a joint that comes out of the
+/// opposite motion is measured from where it turns.
+fn rise_rad(angle_rad: &[f64], direction: i8) -> f64 {
+    let mut lowest = f64::INFINITY;
+    let mut most = 0.0_f64;
+    for angle_rad in angle_rad {
+        let along = f64::from(direction) * angle_rad;
+        lowest = lowest.min(along);
+        most = most.max(along - lowest);
+    }
+    most
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn travel_counts_from_the_turning_point_and_only_along_the_motion() {
+        let rise = |angle_rad: &[f64], direction| format!("{:.3}", rise_rad(angle_rad, direction));
+        assert_eq!(rise(&[1.0, 0.5, 2.0, 1.5], 1), "1.500");
+        assert_eq!(rise(&[1.0, 0.5, 2.0, 1.5], -1), "0.500");
+        assert_eq!(rise(&[3.0, 2.0, 1.0], 1), "0.000");
+        assert_eq!(rise(&[], 1), "0.000");
+    }
+}
