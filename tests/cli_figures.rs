@@ -144,7 +144,7 @@ fn a_figure_that_cannot_be_replaced_leaves_no_half_of_it() {
     fs::create_dir(folder.path().join("lag.svg")).unwrap();
     let run = hydrotrace(&["report", RUN, "--figures", folder.path().to_str().unwrap()]);
     assert_eq!(run.status.code(), Some(1));
-    assert!(String::from_utf8(run.stderr).unwrap().contains("lag.svg is not a file"));
+    assert!(String::from_utf8(run.stderr).unwrap().contains("lag.svg is a folder"));
     for entry in fs::read_dir(folder.path()).unwrap().map(Result::unwrap) {
         let name = entry.file_name().into_string().unwrap();
         assert!(!name.starts_with('.'), "{name}");
