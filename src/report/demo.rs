@@ -91,6 +91,7 @@ pub fn demo_parts(story: &Story<'_>) -> Vec<Part> {
         parts.push(Part::Line(format!("$ hydrotrace {command}")));
         parts.push(Part::Line(format!("    {found}")));
     }
+    parts.extend(luck(comparison).map(|luck| Part::Line(format!("    {luck}"))));
     parts.extend([
         Part::Heading("Mean peak error at starts and reversals, first and second run".into()),
         Part::Sheet(Sheet { head: vec!["joint", "run", "", "deg"], left: 3, rows: bars(comparison) }),
@@ -115,20 +116,26 @@ fn compared(comparison: &Comparison) -> String {
     else {
         return "no transition has a counterpart".to_owned();
     };
-    // Of one run no more can be said where the starts are few.
-    let few = if all.verdict == Verdict::TooFew {
-        format!("; {} are too few for a p below {}", counted(all.events, "event"), all.least_p())
-    } else {
-        format!("; p = {}", probability(all.p_value))
-    };
     format!(
-        "peak error {} -> {} deg in the mean of {} that both runs have ({:+.0} %), {} smaller{few}",
+        "peak error {} -> {} deg in the mean ({:+.0} %), {} of {} that both runs have smaller",
         deg(before),
         deg(after),
-        counted(all.pairs, "start"),
         100.0 * change,
         all.smaller,
+        counted(all.pairs, "start"),
     )
+}
+
+/// What the test says; one run each cannot say more where the starts are few.
+fn luck(comparison: &Comparison) -> Option<String> {
+    let all = peaks(comparison, &Scope::All)?;
+    let events = counted(all.events, "event");
+    Some(match all.verdict {
+        Verdict::TooFew => {
+            format!("{events} of starts: too few for a p below {}", probability(all.least_p()))
+        }
+        _ => format!("{events} of starts, p = {}", probability(all.p_value)),
+    })
 }
 
 /// A bar for each joint before and after.

@@ -177,8 +177,9 @@ impl Judged {
         let rms_jerk_rad_s3 = evaluator.rms_jerk_rad_s3().to_vec();
         let (rms_power_w, energy_j) = (evaluator.rms_power_w(), evaluator.energy_j());
         let margins = setup.margins(&motion, &mut evaluator);
-        let violation =
-            margins.iter().filter(|margin| margin.broken()).map(|margin| excess(margin.share)).sum();
+        let broken = margins.iter().filter(|margin| margin.broken());
+        // A sum of nothing would be minus zero.
+        let violation = broken.fold(0.0, |sum, margin| sum + excess(margin.share));
         let times_s = times_s.to_vec();
         Ok(Self {
             times_s,
