@@ -117,7 +117,7 @@ pub fn choose(
             let end = descend(setup, &mut evaluator, &nearest.interval_s, &goal);
             used = end.evaluations;
             let (exact, more) =
-                end.timing.map_or((None, 0), |timing| exact::kept(setup, timing, goal.merit, goal.ceilings));
+                end.timing.map_or((None, 0), |timing| exact::kept(setup, &timing, goal.merit, goal.ceilings));
             used += more;
             let nearer = |timing: &Timing| timing.violation <= 0.0 && excess(timing) < excess(nearest);
             exact.filter(nearer).unwrap_or_else(|| nearest.clone())
@@ -144,7 +144,7 @@ pub fn choose(
     let goal = Goal { merit, ceilings: own, evaluations: LAST, trust: NEARLY, enough: FINE };
     let end = descend(setup, &mut evaluator, &picked.interval_s, &goal);
     used += end.evaluations;
-    let (exact, more) = end.timing.map_or((None, 0), |timing| exact::kept(setup, timing, merit, own));
+    let (exact, more) = end.timing.map_or((None, 0), |timing| exact::kept(setup, &timing, merit, own));
     used += more;
     let better = exact.filter(|timing| {
         timing.violation <= 0.0 && excess(timing) <= 1.0 && worth(merit, timing) < worth(merit, picked)

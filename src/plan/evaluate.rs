@@ -142,7 +142,7 @@ impl Evaluator {
             match SPLINES.get(k).filter(|_| joint < joints) {
                 Some(&quantity) => self.of_spline(setup, joint, quantity, peaks),
                 None if joint < joints => {
-                    self.sampled(joint * LOADED + k - SPLINES.len(), setup.slack[row], peaks)
+                    self.sampled(joint * LOADED + k - SPLINES.len(), setup.slack[row], peaks);
                 }
                 None => self.sampled(joints * LOADED + row - joints * width, setup.slack[row], peaks),
             }

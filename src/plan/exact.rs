@@ -58,7 +58,12 @@ fn keeps(margins: &[Margin]) -> bool {
 
 /// The plan if it keeps its limits, else the best by `merit` near it that does, with the evaluations it took.
 /// `None` if none was found.
-pub(super) fn kept(setup: &Setup, timing: Timing, merit: Merit, ceilings: [f64; 3]) -> (Option<Timing>, u64) {
+pub(super) fn kept(
+    setup: &Setup,
+    timing: &Timing,
+    merit: Merit,
+    ceilings: [f64; 3],
+) -> (Option<Timing>, u64) {
     let mut evaluator = Evaluator::new(setup);
     let mut tight = setup.clone();
     let (mut here, mut used) = (timing.interval_s.clone(), 0);
@@ -104,7 +109,7 @@ pub(super) fn kept_front(setup: &Setup, front: Vec<Timing>, most: usize) -> (Vec
         let quick =
             Timing { interval_s: fastest.interval_s.iter().map(|s| s * QUICKER).collect(), ..fastest };
         let (found, evaluations) =
-            kept(setup, quick, Merit::Logarithms([1.0, 0.0, 0.0]), super::descend::FREE);
+            kept(setup, &quick, Merit::Logarithms([1.0, 0.0, 0.0]), super::descend::FREE);
         used = evaluations;
         front.extend(found);
     }

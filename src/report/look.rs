@@ -76,9 +76,9 @@ impl Look {
         let keys = keys(sheet);
         let wide = |columns: &[usize]| -> usize { columns.iter().map(|k| widths[*k] + GAP).sum() };
         let mut blocks: Vec<Vec<usize>> = vec![Vec::new()];
-        for k in 0..widths.len() {
+        for (k, width) in widths.iter().enumerate() {
             let Some(block) = blocks.last_mut() else { break };
-            let full = wide(block) + widths[k] > most;
+            let full = wide(block) + width > most;
             if full && block.iter().any(|column| !keys.contains(column)) {
                 blocks.push(keys.clone());
             }
