@@ -198,6 +198,16 @@ fn what_was_not_sent_is_refused_with_how_far_it_is_off() {
     assert!(said.contains("/planned/joint_states already"), "{said}");
     let said = refused(at, &format!("join other.mcap {next} --at 500"));
     assert!(said.contains("outside the measurement"), "{said}");
+    let names: Vec<String> = whole().1.tracks.iter().map(|track| track.name().to_owned()).collect();
+    let output = BufWriter::new(File::create(at.join("endless.mcap")).unwrap());
+    let mut log = LogWriter::new(output, &names, WriteOptions::default()).unwrap();
+    for t_s in [0.0, 1e6] {
+        let angles = vec![t_s / 1e6; names.len()];
+        log.joint_sample(Role::Planned, START_NS + ns(t_s), &angles, &[], &[]).unwrap();
+    }
+    log.finish().unwrap();
+    let said = refused(at, "join other.mcap --plan endless.mcap --at 1");
+    assert!(said.contains("lasts 1000000 s"), "{said}");
     std::fs::copy(RUNS.path().join("next.mcap"), at.join("next.mcap")).unwrap();
     let over = hydrotrace(at, "join other.mcap --plan next.mcap -o next.mcap");
     assert_eq!(over.status.code(), Some(2));

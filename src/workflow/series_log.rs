@@ -85,8 +85,8 @@ impl SeriesLog<'_> {
     }
 }
 
-/// Positions and speeds of some joints at an instant.
-fn states(series: &Series, names: &[&str], t_s: f64) -> [Vec<f64>; 2] {
+/// Positions, rad, and speeds, rad/s, of some joints at an instant; NaN of one that the series lacks.
+pub(super) fn states(series: &Series, names: &[&str], t_s: f64) -> [Vec<f64>; 2] {
     let unknown = State { position: f64::NAN, velocity: f64::NAN, acceleration: 0.0 };
     let at = |name: &&str| series.track(name).map_or(unknown, |track| track.held_at(t_s));
     let (position_rad, velocity_rad_s) =

@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use super::{
     plan_log::{PROVENANCE, STARTS},
+    series_log::states,
     simulate_log::{LEAD_S, TAIL_S},
     stamp::instants,
 };
@@ -78,6 +79,14 @@ pub enum JoinFailure {
         /// What it leaves, as a share of the motion.
         share: f64,
     },
+    /// A plan that no run is.
+    #[error("the plan in {} lasts {duration_s:.0} s, {LONGEST_S} s are the most", plan.display())]
+    TooLong {
+        /// The plan's log.
+        plan: PathBuf,
+        /// From its first to its last sample.
+        duration_s: f64,
+    },
     /// A time outside the run.
     #[error("--at {at_s} puts the plan at {at_s:.2} to {:.2} s, outside the measurement, {:.2} to {:.2} s",
         at_s + duration_s, measured_s[0], measured_s[1])]
@@ -119,6 +128,8 @@ pub struct Joined {
     pub remarks: Remarks,
 }
 
+/// Longest plan, s.
+const LONGEST_S: f64 = 36_000.0;
 /// Joints within this angle of where they were rest, rad.
 const RESTS_RAD: f64 = 0.05 * DEGREE_RAD;
 /// Samples a second of the plan in the new log.
@@ -138,6 +149,9 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     // That the log holds no plan is why it is joined.
     let mut remarks = run.remarks.clone().without(Code::PlanIsCommand);
     let [from_s, to_s] = plan.span_s();
+    if to_s - from_s > LONGEST_S {
+        return Err(JoinFailure::TooLong { plan: inputs.plan.clone(), duration_s: to_s - from_s });
+    }
     let found = match inputs.at_s {
         None => Some(plan.place(&run.planned, &inputs.plan, &topic, &mut remarks)?),
         Some(_) => None,
@@ -232,14 +246,4 @@ fn rest_s(sent: &Series, at_s: f64, direction: f64, most_s: f64) -> f64 {
         })
     };
     instants(most_s.max(0.0), RATE_HZ).take_while(rests).last().unwrap_or(0.0)
-}
-
-/// Angles, rad, and speeds, rad/s, of some joints; a joint that is not in the series holds NaN.
-fn states(series: &Series, names: &[&str], t_s: f64) -> [Vec<f64>; 2] {
-    let of = |name: &&str| {
-        let state = series.track(name).map(|track| track.held_at(t_s));
-        state.map_or((f64::NAN, f64::NAN), |state| (state.position, state.velocity))
-    };
-    let (position_rad, velocity_rad_s) = names.iter().map(of).unzip();
-    [position_rad, velocity_rad_s]
 }
