@@ -156,21 +156,17 @@ fn sentence(found: &Transition) -> String {
         Kind::Reversal => "reversal",
     };
     let peak_deg = degrees_from_radians(found.peak_error_rad);
-    match found.onset_delay_s {
-        Some(delay_s) => {
-            format!(
-                "{} {kind}: follows after {:.0} ms, peak error {peak_deg:.2}°",
-                found.joint,
-                1e3 * delay_s
-            )
-        }
-        None => {
-            let follows = match found.answer {
-                Answer::Creeps => "creeps or is under way",
-                Answer::Unclear => "moves too little to tell whether it follows",
-                Answer::Timed | Answer::Never => "never follows",
-            };
-            format!("{} {kind}: {follows}, peak error {peak_deg:.2}°", found.joint)
-        }
+    if let Some(delay_s) = found.onset_delay_s {
+        return format!(
+            "{} {kind}: follows after {:.0} ms, peak error {peak_deg:.2}°",
+            found.joint,
+            1e3 * delay_s
+        );
     }
+    let follows = match found.answer {
+        Answer::Creeps => "creeps or is under way",
+        Answer::Unclear => "moves too little to tell whether it follows",
+        Answer::Timed | Answer::Never => "never follows",
+    };
+    format!("{} {kind}: {follows}, peak error {peak_deg:.2}°", found.joint)
 }
