@@ -67,8 +67,8 @@ pub struct Margin {
     pub t_s: f64,
 }
 
-/// A limit is broken from here on; rounding is no break.
-const BROKEN: f64 = 1.0 + 1e-9;
+/// Share of a limit from which on it is broken; rounding is no break.
+pub const BROKEN: f64 = 1.0 + 1e-9;
 
 impl Margin {
     /// Whether the limit is broken.

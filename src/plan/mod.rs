@@ -24,6 +24,6 @@ mod tangent;
 pub use choose::{Choice, NoChoice, Rule, choose, ends};
 pub use error::PlanError;
 pub use evaluate::{Evaluator, Objectives, Timing, excess};
-pub use limit::{Limit, Margin};
+pub use limit::{BROKEN, Limit, Margin};
 pub use search::{Found, Phase, Progress, Search, search};
 pub use setup::Setup;

@@ -1,6 +1,6 @@
 //! Finds a stretch of motion within a longer one.
 
-use super::{Series, Track};
+use super::{Series, Track, track::span_s};
 
 /// Where a motion was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,12 +63,6 @@ pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
     let (at_s, rms_rad) = found.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let joints = pairs.len();
     Some(Located { at_s: at_s - from_s, rms_rad, spread_rad, joints, others: found.len() - 1 })
-}
-
-/// First and last sample of all, s.
-fn span_s<'a>(tracks: impl Iterator<Item = &'a Track>) -> Option<[f64; 2]> {
-    let ends = tracks.filter_map(|track| Some([*track.t_s().first()?, *track.t_s().last()?]));
-    ends.reduce(|[a, b], [from, to]| [a.min(from), b.max(to)])
 }
 
 /// The best places of a coarse grid, at least half a motion apart: when its first sample lies there, s.

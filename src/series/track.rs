@@ -18,6 +18,11 @@ impl Series {
     pub fn track(&self, name: &str) -> Option<&Track> {
         self.tracks.iter().find(|track| track.name() == name)
     }
+
+    /// First and last sample of all joints, s; `None` without a joint.
+    pub fn span_s(&self) -> Option<[f64; 2]> {
+        span_s(&self.tracks)
+    }
 }
 
 /// One joint's angle at strictly increasing instants, all finite, at least one.
@@ -79,6 +84,12 @@ pub enum TrackError {
         /// Number of samples.
         samples: usize,
     },
+}
+
+/// First and last sample of some joints, s.
+pub(super) fn span_s<'a>(tracks: impl IntoIterator<Item = &'a Track>) -> Option<[f64; 2]> {
+    let ends = tracks.into_iter().filter_map(|track| Some([*track.t_s.first()?, *track.t_s.last()?]));
+    ends.reduce(|[a, b], [from, to]| [a.min(from), b.max(to)])
 }
 
 impl Track {

@@ -161,7 +161,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     // The run's time at which the plan's own is 0.
     let zero_s = located.map_or_else(|| inputs.at_s.unwrap_or(0.0) - from_s, |located| located.at_s);
     let (start_s, end_s) = (zero_s + from_s, zero_s + to_s);
-    let measured_s = measured_s(&run.measured);
+    let measured_s = run.measured.span_s().unwrap_or_default();
     if inputs.at_s.is_some() && (start_s > measured_s[1] || end_s < measured_s[0]) {
         return Err(JoinFailure::Outside { at_s: start_s, duration_s: to_s - from_s, measured_s });
     }
@@ -229,12 +229,6 @@ fn read_run(inputs: &Inputs) -> Result<Recording, JoinFailure> {
         }
         (Err(error), _) => Err(error.into()),
     }
-}
-
-/// First and last measurement, s.
-fn measured_s(measured: &Series) -> [f64; 2] {
-    let ends = measured.tracks.iter().filter_map(|track| Some([*track.t_s().first()?, *track.t_s().last()?]));
-    ends.reduce(|[a, b], [from, to]| [a.min(from), b.max(to)]).unwrap_or_default()
 }
 
 /// How long what is sent stays where it is at an instant, before or after it, s.

@@ -6,7 +6,7 @@ use super::JoinFailure;
 use crate::{
     log::{Attachment, LogError, ReadOptions, Selector, Topics, read_plan},
     remark::{Code, Remarks},
-    series::{Located, Series, Track, locate},
+    series::{Located, Series, locate},
     workflow::{
         observe::on_origin,
         plan_log::{FRONT, PROVENANCE, TASK},
@@ -54,9 +54,7 @@ impl Plan {
 
     /// First and last sample, s.
     pub(super) fn span_s(&self) -> [f64; 2] {
-        let ends =
-            self.planned.tracks.iter().map(Track::t_s).filter_map(|t_s| Some([*t_s.first()?, *t_s.last()?]));
-        ends.reduce(|[a, b], [from, to]| [a.min(from), b.max(to)]).unwrap_or_default()
+        self.planned.span_s().unwrap_or_default()
     }
 
     /// Where it was sent, and whether the command was sent and not the plan itself.

@@ -4,15 +4,12 @@ use serde::Serialize;
 
 use crate::{
     fit::{Compensation, Fit, FitError, JointCompensation, STEP_S, compensate},
-    plan::{Limit, Margin, Setup},
+    plan::{BROKEN, Limit, Margin, Setup},
     series::Series,
 };
 
 /// Gains that are tried for a joint whose command breaks a limit, as shares of the gain asked for.
 const GAINS: [f64; 4] = [0.75, 0.5, 0.25, 0.0];
-
-/// A command breaks a limit from here on; rounding is no break.
-const BROKEN: f64 = 1.0 + 1e-9;
 
 /// What is done to one joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
