@@ -5,18 +5,18 @@
 //! and how late the machine followed. See `ARCHITECTURE.md` for the layers.
 
 // ground
-pub mod atomic;
+pub mod atomic_file;
 pub mod math;
 pub mod remark;
 pub mod rng;
 #[cfg(test)]
 mod schema;
-pub mod spelling;
+pub mod suggest;
 pub mod units;
 
 // nouns
 pub mod arm;
-pub mod moea;
+pub use ::moea;
 pub mod series;
 pub mod spline;
 pub mod task;
@@ -33,6 +33,6 @@ pub mod workflow;
 
 // edges
 pub mod cli;
-pub mod report;
+pub mod render;
 #[cfg(feature = "viewer")]
 pub mod viewer;

@@ -13,12 +13,6 @@ pub enum Stream {
     Sampling = 3,
     /// Parameters of a random hydraulic machine.
     Machine = 4,
-    /// First population of an evolutionary run.
-    MoeaStart = 20,
-    /// Mating, crossover and mutation.
-    MoeaVariation = 21,
-    /// Ties in selection.
-    MoeaSurvival = 22,
 }
 
 /// The stream for one purpose: equal arguments give equal numbers on every platform, and

@@ -9,11 +9,11 @@ use std::{
 
 /// Modules by layer; a module may use its own layer's ground rules and everything below.
 const LAYERS: [&[&str]; 5] = [
-    &["units", "rng", "remark", "math", "atomic", "spelling", "schema"],
-    &["arm", "task", "series", "spline", "moea"],
+    &["units", "rng", "remark", "math", "atomic_file", "suggest", "schema"],
+    &["arm", "task", "series", "spline"],
     &["log", "replay", "fit", "plan", "plant"],
     &["workflow"],
-    &["cli", "report", "viewer"],
+    &["cli", "render", "viewer"],
 ];
 
 /// Within these layers modules do not use one another; the ground and the edges may.
@@ -22,7 +22,7 @@ const STRANGERS: [usize; 1] = [2];
 const LONGEST: usize = 400;
 
 /// Where angles may be in degrees.
-const DEGREE_EDGES: [&str; 5] = ["units", "task", "cli", "report", "viewer"];
+const DEGREE_EDGES: [&str; 5] = ["units", "task", "cli", "render", "viewer"];
 
 fn layer(module: &str) -> Option<usize> {
     LAYERS.iter().position(|modules| modules.contains(&module))

@@ -14,7 +14,7 @@ use hydrotrace::{
         Budget, Contender, Operators, Population, Settings, benchmark::Benchmark, compare::Yardstick,
         indicator::hypervolume, optimise, silent,
     },
-    report::{curve_svg, curves_csv, front_csv, moea_json, moea_parts, text},
+    render::{curve_svg, curves_csv, front_csv, moea_json, moea_parts, text},
     workflow::moea::{Inputs, Study, run},
 };
 

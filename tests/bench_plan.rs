@@ -13,7 +13,7 @@ use hydrotrace::{
     math::quantile,
     moea::{Budget, Contender, Settings, optimise, silent},
     plan::{Search, search},
-    report::{contest_csv, contest_json, contest_parts, contest_svg, text},
+    render::{contest_csv, contest_json, contest_parts, contest_svg, text},
     workflow::{
         contest::{Inputs, REFERENCE_PLANS, Row, Study, Subject, Whose, run},
         plan::Gauge,

@@ -9,7 +9,7 @@ use super::{
     output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal, text_file},
 };
 use crate::{
-    report::{compare_figures, compare_gate_lines, compare_json, compare_page, compare_parts, markdown},
+    render::{compare_figures, compare_gate_lines, compare_json, compare_page, compare_parts, markdown},
     workflow::compare::{Inputs, run as compare},
 };
 

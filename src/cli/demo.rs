@@ -12,8 +12,8 @@ use super::{
     plan, replan, simulate,
 };
 use crate::{
-    atomic::write_atomically,
-    report::{Story, demo_parts},
+    atomic_file::write_atomically,
+    render::{Story, demo_parts},
     workflow::{
         compare::{Inputs, run as compare},
         plan::{Order, SAMPLE_TASK},

@@ -7,7 +7,7 @@ use super::{
     args::ExciteArgs,
     output::{deliver, shown, spare_inputs, spare_stdout},
 };
-use crate::{atomic::write_atomically, report::excited_parts, workflow::excite::run as excite};
+use crate::{atomic_file::write_atomically, render::excited_parts, workflow::excite::run as excite};
 
 /// Samples a second in the log.
 const RATE_HZ: f64 = 100.0;

@@ -8,7 +8,7 @@ use super::{
     output::{say_remarks, spare_inputs, spare_stdout, text_file},
 };
 use crate::{
-    atomic::write_atomically,
+    atomic_file::write_atomically,
     log::{AngleUnit, ExportError},
     workflow::export::{Inputs, run as export},
 };

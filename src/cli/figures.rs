@@ -6,8 +6,8 @@ use std::{io::Write, path::Path};
 use super::output::harmless;
 use super::{CliError, args::FigureArgs};
 #[cfg(feature = "png")]
-use crate::report::{Raster, raster};
-use crate::{atomic::write_atomically, report::Figure};
+use crate::render::{Raster, raster};
+use crate::{atomic_file::write_atomically, render::Figure};
 
 /// What drawing returns.
 type Drawn = Result<Vec<Figure>, Box<dyn std::error::Error + Send + Sync>>;

@@ -8,7 +8,7 @@ use super::{
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
-    report::{fit_json, fit_parts, limits_toml, limits_written, noted},
+    render::{fit_json, fit_parts, limits_toml, limits_written, noted},
     workflow::fit::{Fitted, Inputs, run as fit},
 };
 

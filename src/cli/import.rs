@@ -8,7 +8,7 @@ use super::{
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
-    report::{imported_json, imported_parts},
+    render::{imported_json, imported_parts},
     workflow::import::run as import,
 };
 

@@ -8,7 +8,7 @@ use super::{
     output::{deliver, say_remarks, shown},
 };
 use crate::{
-    report::{info_json, info_parts},
+    render::{info_json, info_parts},
     workflow::info::{Inputs, run as look},
 };
 

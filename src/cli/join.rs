@@ -8,7 +8,7 @@ use super::{
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
-    report::{joined_json, joined_parts},
+    render::{joined_json, joined_parts},
     workflow::join::run as join,
 };
 

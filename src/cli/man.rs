@@ -6,7 +6,7 @@ use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 
 use super::{Args, CliError, Outcome, args::ManArgs};
-use crate::atomic::write_atomically;
+use crate::atomic_file::write_atomically;
 
 pub(super) fn run(args: &ManArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
     let folder = &args.folder;

@@ -31,13 +31,13 @@ pub use args::{Args, Command};
 use output::{FAILED, harmless};
 
 use crate::{
-    atomic::AtomicError,
+    atomic_file::AtomicError,
     log::{CsvError, ExportError, LogError, WriteError},
     moea::MoeaError,
     workflow::{
         compare::CompareFailure, contest::ContestFailure, excite::ExciteFailure, fit::FitFailure,
         import::ImportError, join::JoinFailure, plan::PlanFailure, replan::ReplanFailure,
-        simulate_log::SimulateFailure,
+        simulate::log::SimulateFailure,
     },
 };
 

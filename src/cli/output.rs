@@ -12,9 +12,9 @@ use terminal_size::{Width, terminal_size_of};
 
 use super::CliError;
 use crate::{
-    atomic::write_atomically,
+    atomic_file::write_atomically,
     remark::Remarks,
-    report::{self, Look, Part},
+    render::{self, Part, TerminalStyle},
 };
 
 /// Starts a line on what failed.
@@ -25,11 +25,11 @@ const DOUBT: Style = AnsiColor::Yellow.on_default();
 /// A result as `file` or standard output is to have it: colours and folded lines only for a terminal.
 pub(super) fn shown(parts: &[Part], file: Option<&Path>) -> String {
     if file.is_some() {
-        return report::text(parts);
+        return render::text(parts);
     }
     let coloured = matches!(ColorChoice::global(), ColorChoice::Always | ColorChoice::AlwaysAnsi);
     let width = terminal_size_of(std::io::stdout()).map(|(Width(width), _)| usize::from(width));
-    report::shown(parts, Look { coloured, width })
+    render::shown(parts, TerminalStyle { coloured, width })
 }
 
 /// Progress on standard error; none where that is no terminal, and none between or instead of words

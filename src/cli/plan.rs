@@ -11,16 +11,16 @@ use super::{
     output::{deliver, progress, say_remarks, shown, spare_inputs, spare_stdout, spare_terminal, text_file},
 };
 use crate::{
-    atomic::write_atomically,
+    atomic_file::write_atomically,
     moea::{Budget, Contender},
     plan::Progress,
-    report::{
+    render::{
         Part, broken_lines, ceiling_lines, judged_json, judged_page, judged_parts, motion_figures, noted,
         plan_figures, plan_json, plan_page, plan_parts, plan_written,
     },
     workflow::{
+        carried::plan_log::PlanLog,
         plan::{Course, Gauge, Judged, Options, Order, PlanFailure, Planned, run as search},
-        plan_log::PlanLog,
     },
 };
 

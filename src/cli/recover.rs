@@ -8,7 +8,7 @@ use super::{
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
-    report::{recovered_json, recovered_parts},
+    render::{recovered_json, recovered_parts},
     workflow::recover::{Inputs, run as recover},
 };
 

@@ -13,8 +13,8 @@ use super::{
     output::{deliver, progress, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
-    atomic::write_atomically,
-    report::{judged_json, next_written, noted, replan_json, replan_parts},
+    atomic_file::write_atomically,
+    render::{judged_json, next_written, noted, replan_json, replan_parts},
     workflow::replan::{Inputs, Replanned, run as replan},
 };
 

@@ -9,7 +9,7 @@ use super::{
     output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal, text_file},
 };
 use crate::{
-    report::{gate_lines, markdown, report_figures, report_json, report_page, report_parts, transitions_csv},
+    render::{gate_lines, markdown, report_figures, report_json, report_page, report_parts, transitions_csv},
     workflow::{
         fit::{LimitsFile, read_limits},
         report::{Inputs, Report, run as analyse},

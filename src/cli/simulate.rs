@@ -8,10 +8,10 @@ use super::{
     output::{deliver, spare_inputs, spare_stdout},
 };
 use crate::{
-    atomic::write_atomically,
+    atomic_file::write_atomically,
     plant::{Parameters, PlantError},
-    report::simulated_line,
-    workflow::simulate_log::{Run, SimulateFailure, simulate},
+    render::simulated_line,
+    workflow::simulate::log::{Run, SimulateFailure, simulate},
 };
 
 pub(super) fn run(args: &SimulateArgs, out: &mut impl Write) -> Result<Outcome, CliError> {

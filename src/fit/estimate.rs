@@ -58,14 +58,14 @@ pub(super) struct Estimate {
     pub(super) scale_rad: f64,
 }
 
-/// Room that all simulations of a problem share.
+/// Workspace that all simulations of a problem share.
 #[derive(Debug, Default)]
-pub(super) struct Room {
+pub(super) struct Workspace {
     wanted: Vec<f64>,
     angle_rad: Vec<f64>,
 }
 
-impl Room {
+impl Workspace {
     /// Measured less predicted angle at the samples of a run that count, rad.
     fn residuals(&mut self, model: &Model, run: &Run, integral_rad_s: f64, part: Part, out: &mut Vec<f64>) {
         self.simulate(model, run, integral_rad_s);
@@ -94,18 +94,18 @@ impl Problem<'_> {
     }
 
     /// All residuals, rad, run by run.
-    pub(super) fn residuals(&self, x: &[f64], room: &mut Room, out: &mut Vec<f64>) {
+    pub(super) fn residuals(&self, x: &[f64], workspace: &mut Workspace, out: &mut Vec<f64>) {
         out.clear();
         let model = self.model(x);
         for (run, &integral) in self.runs.iter().zip(x.iter().skip(SHARED)) {
-            room.residuals(&model, run, Priors::integral_rad_s(integral), self.part, out);
+            workspace.residuals(&model, run, Priors::integral_rad_s(integral), self.part, out);
         }
     }
 
     /// As [`inefficiency`] of the residuals.
-    pub(super) fn measured_inefficiency(&self, x: &[f64], room: &mut Room) -> f64 {
+    pub(super) fn measured_inefficiency(&self, x: &[f64], workspace: &mut Workspace) -> f64 {
         let mut residuals = Vec::new();
-        self.residuals(x, room, &mut residuals);
+        self.residuals(x, workspace, &mut residuals);
         inefficiency(&residuals)
     }
 
@@ -123,7 +123,13 @@ impl Problem<'_> {
     }
 
     /// Slopes of the residuals in scales, `[sample, free parameter]`.
-    pub(super) fn slopes(&self, x: &[f64], free: &[usize], scale_rad: f64, room: &mut Room) -> DMatrix<f64> {
+    pub(super) fn slopes(
+        &self,
+        x: &[f64],
+        free: &[usize],
+        scale_rad: f64,
+        workspace: &mut Workspace,
+    ) -> DMatrix<f64> {
         let counts: Vec<usize> = self
             .runs
             .iter()
@@ -145,7 +151,7 @@ impl Problem<'_> {
                 for (step, out) in [(DIFFERENCE, &mut ahead), (-DIFFERENCE, &mut behind)] {
                     x[i] = kept + step;
                     let integral = Priors::integral_rad_s(x.get(SHARED + r).copied().unwrap_or_default());
-                    room.residuals(&self.model(&x), run, integral, self.part, out);
+                    workspace.residuals(&self.model(&x), run, integral, self.part, out);
                 }
             }
             x[i] = kept;
@@ -161,16 +167,16 @@ impl Problem<'_> {
     }
 
     /// From `x` downhill for at most so many rounds.
-    pub(super) fn descend(&self, mut x: Vec<f64>, rounds: usize, room: &mut Room) -> Estimate {
+    pub(super) fn descend(&self, mut x: Vec<f64>, rounds: usize, workspace: &mut Workspace) -> Estimate {
         let free = self.free();
         let (mut residuals, mut trial) = (Vec::new(), Vec::new());
-        self.residuals(&x, room, &mut residuals);
+        self.residuals(&x, workspace, &mut residuals);
         let mut damping = 1e-2;
         let mut still = 0;
         for _ in 0..rounds {
             let scale_rad = scale(residuals.iter().copied(), FINEST_RAD);
             let before = self.cost(&x, &residuals, scale_rad);
-            let (mut normal, mut slope) = self.normal(&x, &free, &residuals, scale_rad, room);
+            let (mut normal, mut slope) = self.normal(&x, &free, &residuals, scale_rad, workspace);
             normal /= self.inefficiency;
             slope /= self.inefficiency;
             for (k, &i) in free.iter().enumerate() {
@@ -186,7 +192,7 @@ impl Problem<'_> {
                 let step = damped.cholesky().map(|cholesky| cholesky.solve(&slope));
                 if let Some(step) = step.filter(|step| step.iter().all(|s| s.is_finite())) {
                     let moved = self.moved(&x, &free, &step);
-                    self.residuals(&moved, room, &mut trial);
+                    self.residuals(&moved, workspace, &mut trial);
                     let cost = self.cost(&moved, &trial, scale_rad);
                     if cost < before {
                         x = moved;
@@ -225,9 +231,9 @@ impl Problem<'_> {
         free: &[usize],
         residuals_rad: &[f64],
         scale_rad: f64,
-        room: &mut Room,
+        workspace: &mut Workspace,
     ) -> (DMatrix<f64>, DVector<f64>) {
-        let mut slopes = self.slopes(x, free, scale_rad, room);
+        let mut slopes = self.slopes(x, free, scale_rad, workspace);
         let roots: Vec<f64> = residuals_rad.iter().map(|r| weight(r / scale_rad).sqrt()).collect();
         for mut column in slopes.column_iter_mut() {
             for (slope, root) in column.iter_mut().zip(&roots) {
@@ -242,7 +248,7 @@ impl Problem<'_> {
     }
 
     /// The best of descents from several dead times.
-    pub(super) fn search(&self, dead_times_s: &[f64], x: &[f64], room: &mut Room) -> Estimate {
+    pub(super) fn search(&self, dead_times_s: &[f64], x: &[f64], workspace: &mut Workspace) -> Estimate {
         let from = |dead_time_s: f64| {
             let mut x = x.to_vec();
             x[DEAD_TIME] = self.priors.of(DEAD_TIME).place(dead_time_s);
@@ -252,16 +258,16 @@ impl Problem<'_> {
         let mut residuals = Vec::new();
         let mut common_rad = None;
         for &dead_time_s in dead_times_s {
-            let found = self.descend(from(dead_time_s), 8, room);
+            let found = self.descend(from(dead_time_s), 8, workspace);
             // Costs compare at one scale only.
             let scale_rad = *common_rad.get_or_insert(found.scale_rad);
-            self.residuals(&found.x, room, &mut residuals);
+            self.residuals(&found.x, workspace, &mut residuals);
             let cost = self.cost(&found.x, &residuals, scale_rad);
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 best = Some((cost, found));
             }
         }
         let x = best.map_or_else(|| x.to_vec(), |(_, found)| found.x);
-        self.descend(x, 30, room)
+        self.descend(x, 30, workspace)
     }
 }

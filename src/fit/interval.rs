@@ -6,7 +6,7 @@
 use nalgebra::DMatrix;
 
 use super::{
-    estimate::{Problem, Room},
+    estimate::{Problem, Workspace},
     outcome::Estimated,
     parameters::{DEAD_BAND, DEAD_TIME, POSITION_GAIN, STICTION, TIME_CONSTANT},
     robust::inefficiency,
@@ -64,12 +64,12 @@ pub(super) struct Knowledge {
 
 impl Knowledge {
     /// Around an estimate of a problem.
-    pub(super) fn new(problem: &Problem, x: &[f64], scale_rad: f64, room: &mut Room) -> Self {
+    pub(super) fn new(problem: &Problem, x: &[f64], scale_rad: f64, workspace: &mut Workspace) -> Self {
         let free = problem.free();
         let mut residuals = Vec::new();
-        problem.residuals(x, room, &mut residuals);
+        problem.residuals(x, workspace, &mut residuals);
         let inefficiency = inefficiency(&residuals);
-        let (normal, _) = problem.normal(x, &free, &residuals, scale_rad, room);
+        let (normal, _) = problem.normal(x, &free, &residuals, scale_rad, workspace);
         let information = normal / inefficiency + DMatrix::identity(free.len(), free.len());
         // Information of at least the priors has an inverse.
         let covariance = information

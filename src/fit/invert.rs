@@ -141,15 +141,15 @@ fn corrected(model: &Model, planned: &[(f64, f64)], settings: Compensation) -> (
     let ahead = steps_in(model.lag_s() + BEYOND_LAG_S);
     let rests = planned.iter().position(|planned| planned.1.abs() > MOVES_RAD_S).unwrap_or(0);
     let freed_s = (rests.saturating_sub(ahead) as f64 * STEP_S - UNTOUCHED_S).clamp(FREED_S[0], FREED_S[1]);
-    let mut room = Room::default();
+    let mut workspace = Workspace::default();
     let mut correction = vec![0.0; n];
     let mut smoothed = Vec::with_capacity(n);
     let mut sent = planned.to_vec();
-    let mut best = (room.rms_rad(model, planned, &sent), correction.clone());
+    let mut best = (workspace.rms_rad(model, planned, &sent), correction.clone());
     for _ in 0..ROUNDS {
         for (k, correction) in correction.iter_mut().enumerate() {
             let later = (k + ahead).min(n - 1);
-            *correction += SHARE * (planned[later].0 - room.angle_rad[later]);
+            *correction += SHARE * (planned[later].0 - workspace.angle_rad[later]);
         }
         smooth(&correction, &mut smoothed);
         for (k, (correction, smoothed)) in correction.iter_mut().zip(&smoothed).enumerate() {
@@ -158,7 +158,7 @@ fn corrected(model: &Model, planned: &[(f64, f64)], settings: Compensation) -> (
             *correction = freed * smoothed.clamp(-settings.most_rad, settings.most_rad);
         }
         send(planned, &correction, 1.0, &mut sent);
-        let rms_rad = room.rms_rad(model, planned, &sent);
+        let rms_rad = workspace.rms_rad(model, planned, &sent);
         if rms_rad < best.0 {
             best = (rms_rad, correction.clone());
         }
@@ -182,14 +182,14 @@ fn send(planned: &[(f64, f64)], correction: &[f64], gain: f64, sent: &mut [(f64,
     }
 }
 
-/// Room for the simulations of one joint.
+/// Workspace for the simulations of one joint.
 #[derive(Default)]
-struct Room {
+struct Workspace {
     wanted: Vec<f64>,
     angle_rad: Vec<f64>,
 }
 
-impl Room {
+impl Workspace {
     /// Root mean square distance of plan and predicted response, rad.
     fn rms_rad(&mut self, model: &Model, planned: &[(f64, f64)], sent: &[(f64, f64)]) -> f64 {
         simulate(model, sent, model.at_rest(planned), &mut self.wanted, &mut self.angle_rad);
@@ -205,8 +205,8 @@ fn account(
     sent: &[(f64, f64)],
     applied: bool,
 ) -> JointCompensation {
-    let mut room = Room::default();
-    let mut rms_rad = |sent: &[(f64, f64)]| known.map(|joint| room.rms_rad(&joint.model, planned, sent));
+    let mut workspace = Workspace::default();
+    let mut rms_rad = |sent: &[(f64, f64)]| known.map(|joint| workspace.rms_rad(&joint.model, planned, sent));
     let span = steps_in(ACCELERATION_S);
     let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |most, x| most.max(x.abs()));
     let speed = |of: &[(f64, f64)]| most(&mut of.iter().map(|s| s.1));

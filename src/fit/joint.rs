@@ -2,7 +2,7 @@
 
 use super::{
     censor::{ASKED, seen},
-    estimate::{Estimate, Part, Problem, Room},
+    estimate::{Estimate, Part, Problem, Workspace},
     interval::{Knowledge, discrepancy},
     outcome::{Estimated, JointFit},
     parameters::{ASYMMETRY, FEED_FORWARD, INTEGRAL_GAIN, LIMITS, POSITION_GAIN, Priors, SHARED},
@@ -43,21 +43,21 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
         part: Part::All,
         inefficiency: INEFFICIENCY,
     };
-    let mut room = Room::default();
-    let mut found = problem.search(&DEAD_TIMES_S, &vec![0.0; SHARED + runs.len()], &mut room);
+    let mut workspace = Workspace::default();
+    let mut found = problem.search(&DEAD_TIMES_S, &vec![0.0; SHARED + runs.len()], &mut workspace);
     // What goes may have stood in for what stays.
     for _ in 0..2 {
-        problem.inefficiency = problem.measured_inefficiency(&found.x, &mut room);
-        let seen = seen(&problem, &found, &mut room);
+        problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);
+        let seen = seen(&problem, &found, &mut workspace);
         if seen == problem.seen {
             break;
         }
         problem.seen = seen;
-        found = problem.descend(found.x, 30, &mut room);
+        found = problem.descend(found.x, 30, &mut workspace);
     }
-    let knowledge = Knowledge::new(&problem, &found.x, found.scale_rad, &mut room);
+    let knowledge = Knowledge::new(&problem, &found.x, found.scale_rad, &mut workspace);
     let model = problem.model(&found.x);
-    let skill = skill(&problem, model.dead_time_s, &mut room);
+    let skill = skill(&problem, model.dead_time_s, &mut workspace);
     let samples = runs.iter().map(|run| run.samples.len()).sum();
     (report(name, &problem, &found, &knowledge, reached, samples, &skill), skill.starts)
 }

@@ -13,7 +13,6 @@ mod censor;
 mod error;
 mod estimate;
 mod excite;
-mod follow;
 mod interval;
 mod invert;
 mod joint;
@@ -26,18 +25,19 @@ mod run;
 mod simulate;
 mod skill;
 mod smooth;
+mod start_error;
 mod valve;
 
 use rayon::prelude::*;
 
 pub use error::FitError;
 pub use excite::{Excitation, JointRoom, Ramp, excite};
-pub use follow::{Follower, PredictedStart};
 pub use invert::{Compensated, Compensation, JointCompensation, compensate};
 pub use model::{Model, STEP_S};
 pub use outcome::{Estimated, Fit, JointFit, LEAST_SKILL, LeftOut};
 pub use predict::predict;
 pub use run::Observation;
+pub use start_error::{PredictedStart, StartErrorPredictor};
 
 use crate::units::DEGREE_RAD;
 use run::{Run, runs};

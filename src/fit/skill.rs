@@ -1,7 +1,7 @@
 //! How well a model predicts what it was not fitted to.
 
 use super::{
-    estimate::{Part, Problem, Room},
+    estimate::{Part, Problem, Workspace},
     parameters::{Priors, SHARED},
     run::{FOLDS, Run, Sample},
 };
@@ -39,7 +39,7 @@ impl HeldOutStart {
 }
 
 /// Fits all parts of the data but one, and predicts that, for each in turn.
-pub(super) fn skill(problem: &Problem, dead_time_s: f64, room: &mut Room) -> Skill {
+pub(super) fn skill(problem: &Problem, dead_time_s: f64, workspace: &mut Workspace) -> Skill {
     // Tracking error, measured and predicted, of every sample.
     let mut errors: Vec<Vec<(f64, f64)>> =
         problem.runs.iter().map(|run| vec![(0.0, 0.0); run.samples.len()]).collect();
@@ -47,15 +47,15 @@ pub(super) fn skill(problem: &Problem, dead_time_s: f64, room: &mut Room) -> Ski
     x[super::parameters::DEAD_TIME] = problem.priors.of(super::parameters::DEAD_TIME).place(dead_time_s);
     for fold in 0..FOLDS {
         let rest = Problem { part: Part::Without(fold), ..problem.clone() };
-        let found = rest.descend(x.clone(), 25, room);
+        let found = rest.descend(x.clone(), 25, workspace);
         let model = rest.model(&found.x);
         for ((run, errors), &integral) in
             problem.runs.iter().zip(&mut errors).zip(found.x.iter().skip(SHARED))
         {
-            room.simulate(&model, run, Priors::integral_rad_s(integral));
+            workspace.simulate(&model, run, Priors::integral_rad_s(integral));
             for (sample, error) in run.samples.iter().zip(errors).filter(|(sample, _)| sample.fold == fold) {
                 let sent_rad = sent_rad(run, sample);
-                *error = (sent_rad - sample.measured_rad, sent_rad - room.at(sample));
+                *error = (sent_rad - sample.measured_rad, sent_rad - workspace.at(sample));
             }
         }
     }

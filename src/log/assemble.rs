@@ -3,10 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
-    LogError, ReadOptions, Recording, SourceInfo, TimeBase,
-    choose::{Candidate, Choice},
-    doubt, parts,
+    LogError, ReadOptions, Recording, SourceInfo, TimeBase, overlap, quality,
     read::{Content, Extracted},
+    select_topics::{Candidate, Choice},
     source::{Plans, RawTrajectory, Stamps},
     track::{Axis, Unit, tracks},
 };
@@ -14,7 +13,7 @@ use crate::{
     math::median,
     remark::{Code, Remarks},
     series::{Clock, PlannedPoint, PlannedTrajectory, Series, Track, continuous_clock, plan_tracks},
-    spelling::nearest,
+    suggest::nearest,
     units::{radians_from_degrees, seconds_since},
 };
 
@@ -26,7 +25,7 @@ pub(super) fn assemble(
     let mut remarks = std::mem::take(&mut extracted.remarks);
     let (base, base_why) = time_base(&extracted, choice, options, &mut remarks)?;
     let chosen: Vec<&Candidate> = choice.measured.iter().chain(&choice.planned).collect();
-    parts::check(&extracted, &chosen, base)?;
+    overlap::check(&extracted, &chosen, base)?;
     for rival in &choice.rivals {
         let message = format!("{rival} measures the same joints and was not used; choose with --measured");
         remarks.add(Code::Ambiguous, 1, message);
@@ -49,8 +48,8 @@ pub(super) fn assemble(
             clocks.entry(candidate.source).or_insert_with(|| {
                 let clock = continuous_clock(stamps_of(&table.stamps, base), &table.stamps.log_ns, &jumps_ns);
                 jumps_ns.extend(&clock.offsets_ns);
-                doubt::of_clock(topic(&extracted, candidate), base, &clock, &mut remarks);
-                doubt::of_table(topic(&extracted, candidate), table, &mut remarks);
+                quality::of_clock(topic(&extracted, candidate), base, &clock, &mut remarks);
+                quality::of_table(topic(&extracted, candidate), table, &mut remarks);
                 clock
             });
         }
@@ -84,7 +83,7 @@ pub(super) fn assemble(
             let joints: BTreeSet<&str> =
                 trajectories.iter().flat_map(|t| &t.joints).map(|(joint, _)| joint.as_str()).collect();
             for joint in joints.into_iter().filter(|joint| measured.track(joint).is_none()) {
-                doubt::unmeasured(joint, &mut remarks);
+                quality::unmeasured(joint, &mut remarks);
             }
             let new = series.tracks.into_iter().filter(|t| planned.track(t.name()).is_none());
             planned.tracks.extend(new.collect::<Vec<_>>());
@@ -92,9 +91,9 @@ pub(super) fn assemble(
     }
     for series in [&mut planned, &mut measured] {
         keep_joints(series, &options.joints)?;
-        doubt::unwrap_turns(series, &options.continuous, &mut remarks);
+        quality::unwrap_turns(series, &options.continuous, &mut remarks);
     }
-    doubt::of_pairs(&planned, &measured, options, &mut remarks);
+    quality::of_pairs(&planned, &measured, options, &mut remarks);
     let source = source_info(&extracted, choice, base, base_why, epoch_ns, &measured, &planned);
     Ok(Recording {
         planned,

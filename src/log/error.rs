@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::spelling::suggestion;
+use crate::suggest::suggestion;
 
 /// Why a log yields nothing at all; doubts about parts of it are remarks instead.
 #[derive(Debug, Error)]

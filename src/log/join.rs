@@ -15,7 +15,7 @@ use super::{
     read::not_mcap,
 };
 use crate::{
-    atomic::{AtomicError, write_atomically},
+    atomic_file::{AtomicError, write_atomically},
     remark::Remarks,
 };
 

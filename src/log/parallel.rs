@@ -9,7 +9,7 @@ use std::{
 };
 
 use super::{
-    decode::Recall,
+    decode::LayoutCache,
     file::{Block, Blocks, Loss, MessageRecord, Opcode, records},
     read::{Content, Extracted, Route, TopicCount},
     source::Spec,
@@ -189,7 +189,7 @@ fn read_block(
     piece.loss = loss;
     let mut end = 0;
     let mut last: Option<(u16, &Route)> = None;
-    let mut recalls: BTreeMap<u16, Recall> = BTreeMap::new();
+    let mut caches: BTreeMap<u16, LayoutCache> = BTreeMap::new();
     for record in records(bytes) {
         end = record.end;
         if record.opcode != Opcode::MESSAGE {
@@ -218,8 +218,7 @@ fn read_block(
                 piece.touched_contents.push(*source);
             }
             let content = piece.contents[*source].get_or_insert_with(|| new(*source));
-            if let Err(error) =
-                content.read(decoder, recalls.entry(message.channel_id).or_default(), &message)
+            if let Err(error) = content.read(decoder, caches.entry(message.channel_id).or_default(), &message)
             {
                 topic.undecodable += 1;
                 topic.first_error.get_or_insert(error);

@@ -9,10 +9,10 @@ use std::{
 use super::{
     LogError, bag,
     channel::{Channel, Decoder, Definitions},
-    decode::Recall,
+    decode::LayoutCache,
     file::{Layout, MappedFile, MessageRecord, scan},
+    overlap,
     parallel::read_blocks,
-    parts,
     source::{Form, Plans, Role, Selector, Spec, Table, Versioned},
 };
 use crate::remark::{Code, Remarks};
@@ -53,14 +53,14 @@ impl Content {
     pub(super) fn read(
         &mut self,
         decoder: &Decoder,
-        recall: &mut Recall,
+        cache: &mut LayoutCache,
         message: &MessageRecord<'_>,
     ) -> Result<(), String> {
         macro_rules! read {
             ($sink:expr) => {{
                 match decoder {
                     Decoder::Program(program) => {
-                        program.run(message.data, recall, $sink).map_err(|e| e.to_string())?
+                        program.run(message.data, cache, $sink).map_err(|e| e.to_string())?
                     }
                     Decoder::Tree(tree) => tree.run(message.data, $sink)?,
                 }
@@ -179,7 +179,7 @@ pub(super) fn extract_bytes(
         layouts.push((path, bytes, scan(bytes).ok_or_else(|| not_mcap(path, bytes))?));
     }
     if !ordered {
-        layouts.sort_by_cached_key(|(path, _, layout)| (parts::begins_ns(layout), **path));
+        layouts.sort_by_cached_key(|(path, _, layout)| (overlap::begins_ns(layout), **path));
     }
     for (path, bytes, layout) in &layouts {
         describe(path, bytes, layout, &mut out);

@@ -10,8 +10,8 @@ use serde::Serialize;
 use super::{
     Attachment, FileInfo, LogError, Selector,
     assemble::assemble,
-    choose::{Choice, choose, choose_measured, choose_plan, topic_infos},
     read::{Extracted, extract, extract_bytes},
+    select_topics::{Choice, choose, choose_measured, choose_plan, topic_infos},
     source,
 };
 use crate::{remark::Remarks, series::Series};

@@ -12,7 +12,7 @@ use super::{
     read::{describe_damage, not_mcap},
 };
 use crate::{
-    atomic::{AtomicError, write_atomically},
+    atomic_file::{AtomicError, write_atomically},
     remark::{Code, Remarks},
 };
 

@@ -2,7 +2,7 @@
 
 use std::{f64::consts::TAU, sync::Arc};
 
-use super::{doubt::Gaps, source::Table};
+use super::{quality::Gaps, source::Table};
 use crate::{
     remark::{Code, Remarks},
     series::{Clock, Track, split_at_gaps, velocity_agrees},

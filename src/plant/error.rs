@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::spelling::suggestion;
+use crate::suggest::suggestion;
 
 /// Why there is no machine, or no run of it; lines count from 1.
 #[derive(Debug, Clone, Error, PartialEq)]

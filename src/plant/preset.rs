@@ -1,7 +1,7 @@
 //! The machines that come with the program, around the sample arm.
 
 use super::{Parameters, Plant, PlantError};
-use crate::{arm::Arm, spelling::nearest};
+use crate::{arm::Arm, suggest::nearest};
 
 /// Names and texts.
 const PRESETS: [(&str, &str); 3] = [

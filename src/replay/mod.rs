@@ -14,6 +14,7 @@ mod motion;
 mod onset;
 mod outcome;
 mod path;
+mod profile;
 mod rules;
 mod score;
 mod signals;
@@ -28,6 +29,7 @@ pub use outcome::{
     Answer, Concentration, ConcentrationTest, JointReplay, Kind, LagShare, OnsetMethod, PathError, Replay,
     Stop, Thresholds, TrackingError, Transition, Verdict, WholeRun,
 };
+pub use profile::{Profiles, STRETCHES};
 pub use rules::Rules;
 pub use score::{Score, Spread, conditions, detector_score};
 pub use signals::planned_starts;

@@ -6,10 +6,10 @@
 mod document;
 mod error;
 mod file;
-mod weigh;
+mod weights;
 
 pub use error::TaskError;
-pub use weigh::{Bounds, Weights};
+pub use weights::{Bounds, Weights};
 
 use std::path::Path;
 

@@ -1,32 +1,20 @@
-//! One file per verb: what the caller wants in, what was found out. No printing, no clap.
+//! A folder a verb: what the caller wants in, what was found out. No printing, no clap.
 
-pub mod advice;
-pub mod arm_log;
+pub mod carried;
 pub mod compare;
 pub mod contest;
-mod convergence;
-mod course;
 pub mod detector;
 pub mod excite;
 pub mod export;
 pub mod fit;
-pub mod front;
 pub mod import;
 pub mod info;
 pub mod join;
 pub mod moea;
-pub mod observe;
 pub mod plan;
-pub mod plan_log;
-pub mod profile;
 pub mod recover;
 pub mod replan;
 pub mod report;
 mod sample;
-pub mod schedule;
-pub mod series_log;
 pub mod simulate;
-pub mod simulate_log;
-pub mod stamp;
-pub mod torque;
 pub mod view;

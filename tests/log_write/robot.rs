@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use hydrotrace::{
     arm::{Arm, Chain, GHOST, Pose},
     log::{LogError, LogWriter, ReadOptions, Role, WriteError, WriteOptions, read_plan, read_recording},
-    workflow::arm_log::ArmLog,
+    workflow::carried::arm_log::ArmLog,
 };
 use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 

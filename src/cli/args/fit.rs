@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{ReadArgs, ends, selector};
-use crate::{log::Selector, workflow::observe::Wanted};
+use crate::{log::Selector, workflow::fit::observe::Wanted};
 
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]

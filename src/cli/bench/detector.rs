@@ -9,8 +9,8 @@ use crate::{
         args::DetectorArgs,
         output::{deliver, shown},
     },
+    render::{score_json, score_parts},
     replay::conditions,
-    report::{score_json, score_parts},
     workflow::detector::{Inputs, run as score},
 };
 

@@ -13,7 +13,7 @@ use super::{
     args::{Bench, BenchArgs},
     output,
 };
-use crate::atomic::AtomicError;
+use crate::atomic_file::AtomicError;
 
 pub(super) fn run(args: &BenchArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
     match &args.what {

@@ -9,7 +9,7 @@ use crate::{
         args::MoeaArgs,
         output::{deliver, shown},
     },
-    report::{curve_svg, curves_csv, front_csv, markdown, moea_json, moea_parts},
+    render::{curve_svg, curves_csv, front_csv, markdown, moea_json, moea_parts},
     workflow::moea::{Curve, Front, run as compare},
 };
 

@@ -9,7 +9,7 @@ use crate::{
         args::ContestArgs,
         output::{deliver, shown},
     },
-    report::{contest_csv, contest_json, contest_parts, contest_svg, markdown},
+    render::{contest_csv, contest_json, contest_parts, contest_svg, markdown},
     workflow::contest::{Curve, run as compare},
 };
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::CsvError;
-use crate::spelling::nearest;
+use crate::suggest::nearest;
 
 /// The columns of a file, for messages.
 pub(super) fn present(names: &[String]) -> String {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::{log::WriteError, spelling::suggestion};
+use crate::{log::WriteError, suggest::suggestion};
 
 /// Why a CSV file does not become a log. Lines and columns count from 1.
 #[derive(Debug, Error)]

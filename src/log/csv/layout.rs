@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     remark::{Code, Remarks},
-    spelling::nearest,
+    suggest::nearest,
 };
 
 /// One column in use.

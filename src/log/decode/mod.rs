@@ -4,14 +4,14 @@
 //! [`Tree`] does the same for JSON and Protobuf by way of a parsed value. Both report to a
 //! [`Sink`] by slot number.
 
+mod layout_cache;
 mod program;
 mod protobuf;
-mod recall;
 mod run;
 mod sink;
 mod tree;
 
+pub(super) use layout_cache::LayoutCache;
 pub(super) use program::{Program, Want, shape_at};
-pub(super) use recall::Recall;
 pub(super) use sink::{Numbers, Sink, Slot, Texts};
 pub(super) use tree::Tree;

@@ -3,8 +3,8 @@
 use thiserror::Error;
 
 use super::{
+    layout_cache::{Found, LayoutCache},
     program::{Program, Step},
-    recall::{Found, Recall},
     sink::{Numbers, Sink, Slot, Texts, number_from, without_terminator},
 };
 
@@ -44,23 +44,23 @@ const MAX_PADDING: usize = 7;
 impl Program {
     /// Reports the wanted fields of one message to `sink`.
     ///
-    /// On an error some fields may have been reported already; the sink must drop them. `recall`
+    /// On an error some fields may have been reported already; the sink must drop them. `cache`
     /// is what was learnt from earlier messages of the same channel.
     pub(in crate::log) fn run(
         &self,
         message: &[u8],
-        recall: &mut Recall,
+        cache: &mut LayoutCache,
         sink: &mut impl Sink,
     ) -> Result<(), RunError> {
         let Some((&[zero, kind, _, _], body)) = message.split_first_chunk::<4>() else {
             return Err(RunError::NoHeader { bytes: message.len() });
         };
-        if zero == 0 && recall.report(kind, body, sink) {
+        if zero == 0 && cache.report(kind, body, sink) {
             return Ok(());
         }
-        recall.start(kind, body.len());
+        cache.start(kind, body.len());
         let mut walk = |little_endian, widest, sizes| {
-            let reader = Reader { body, widest, sizes, recall: &mut *recall };
+            let reader = Reader { body, widest, sizes, cache: &mut *cache };
             self.walk(reader, little_endian, sink)
         };
         match (zero, kind) {
@@ -99,7 +99,7 @@ impl Program {
         if left > MAX_PADDING && !self.open_ended {
             return Err(RunError::Long { left });
         }
-        reader.recall.finish();
+        reader.cache.finish();
         Ok(())
     }
 }
@@ -110,7 +110,7 @@ struct Reader<'a> {
     body: &'a [u8],
     widest: usize,
     sizes: Sizes,
-    recall: &'a mut Recall,
+    cache: &'a mut LayoutCache,
 }
 
 impl<'a> Reader<'a> {
@@ -138,7 +138,7 @@ impl<'a> Reader<'a> {
     fn length<const LITTLE: bool>(&mut self, at: usize) -> Result<(u32, usize), RunError> {
         let (bytes, end) = self.take(self.align(at, 4), 4)?;
         let bytes = bytes.try_into().unwrap_or_default();
-        self.recall.note_count(end - 4, bytes);
+        self.cache.note_count(end - 4, bytes);
         Ok((if LITTLE { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) }, end))
     }
 
@@ -186,21 +186,21 @@ impl<'a> Reader<'a> {
                 }
                 Step::Number { slot, number } => {
                     let (piece, end) = self.numbers(at, number.size(), 1)?;
-                    self.recall.note(Found::Number(slot, number, end - piece.len(), end));
+                    self.cache.note(Found::Number(slot, number, end - piece.len(), end));
                     sink.number(slot, number_from(number, LITTLE, piece));
                     at = end;
                 }
                 Step::Text(slot) => {
                     let (length, text) = self.length::<LITTLE>(at)?;
                     let (text, end) = self.take(text, u64::from(length))?;
-                    self.recall.note(Found::Text(slot, end - text.len(), end));
+                    self.cache.note(Found::Text(slot, end - text.len(), end));
                     sink.text(slot, without_terminator(text));
                     at = end;
                 }
                 Step::Numbers { slot, number, count } => {
                     let (count, first) = self.count::<LITTLE>(at, count)?;
                     let (bytes, end) = self.numbers(first, number.size(), count)?;
-                    self.recall.note(Found::Numbers(slot, number, end - bytes.len(), end));
+                    self.cache.note(Found::Numbers(slot, number, end - bytes.len(), end));
                     sink.numbers(slot, Numbers::Wire { number, little_endian: LITTLE, bytes });
                     at = end;
                 }
@@ -231,7 +231,7 @@ impl<'a> Reader<'a> {
             && self.body.get(start..).is_some_and(|rest| rest.starts_with(expected))
         {
             let end = start + expected.len();
-            self.recall.note(Found::Texts(slot, start, end));
+            self.cache.note(Found::Texts(slot, start, end));
             sink.same_texts(slot);
             return Self::check_end(end, list_end);
         }
@@ -241,7 +241,7 @@ impl<'a> Reader<'a> {
             at = self.skip(text, u64::from(length))?;
         }
         if fixed.is_none() {
-            self.recall.note(Found::Texts(slot, start, at));
+            self.cache.note(Found::Texts(slot, start, at));
             let raw = &self.body[start..at];
             sink.texts(slot, Texts::Wire { little_endian: LITTLE, count: count as usize, raw });
         }
@@ -265,7 +265,7 @@ impl<'a> Reader<'a> {
         }
         for _ in 0..count {
             if let Some(slot) = slot {
-                self.recall.note(Found::Element(slot));
+                self.cache.note(Found::Element(slot));
                 sink.element(slot);
             }
             at = self.steps::<LITTLE, S>(at, steps, sink)?;

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::{AngleUnit, Recording};
 use crate::{
-    atomic::AtomicError,
+    atomic_file::AtomicError,
     series::{Track, align},
     units::{DEGREE_RAD, NS_PER_S, seconds_since},
 };

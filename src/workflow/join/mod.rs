@@ -7,10 +7,10 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::{
-    plan_log::{PROVENANCE, STARTS},
-    series_log::states,
-    simulate_log::{LEAD_S, TAIL_S},
-    stamp::instants,
+    carried::plan_log::{PROVENANCE, STARTS},
+    carried::series_log::states,
+    carried::stamp::instants,
+    simulate::log::{LEAD_S, TAIL_S},
 };
 use crate::{
     log::{

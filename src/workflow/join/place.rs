@@ -8,9 +8,9 @@ use crate::{
     remark::{Code, Remarks},
     series::{Located, Series, locate},
     workflow::{
-        observe::on_origin,
-        plan_log::{FRONT, PROVENANCE, TASK},
-        schedule::starts_s,
+        carried::plan_log::{FRONT, PROVENANCE, TASK},
+        carried::schedule::starts_s,
+        fit::observe::on_origin,
     },
 };
 

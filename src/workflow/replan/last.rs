@@ -12,10 +12,10 @@ use crate::{
     spline::Motion,
     units::DEGREE_RAD,
     workflow::{
-        observe::Observed,
+        carried::plan_log::{FRONT, TASK, chosen_times_s},
+        carried::schedule::starts_s,
+        fit::observe::Observed,
         plan::Order,
-        plan_log::{FRONT, TASK, chosen_times_s},
-        schedule::starts_s,
     },
 };
 

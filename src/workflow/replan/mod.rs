@@ -22,8 +22,8 @@ pub use retime::Retimed;
 pub use samples::{LEAD_S, TAIL_S};
 
 use super::{
+    fit::observe::{Observed, Wanted},
     fit::{self, read_limits},
-    observe::{Observed, Wanted},
     plan::Judged,
 };
 use crate::{

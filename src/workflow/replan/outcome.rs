@@ -15,10 +15,10 @@ use crate::{
     replay::{Rules, replay},
     series::{Series, align},
     workflow::{
-        observe::Observed,
+        carried::plan_log::{FRONT, STARTS, TASK},
+        carried::series_log::SeriesLog,
+        fit::observe::Observed,
         plan::{Judged, Order},
-        plan_log::{FRONT, STARTS, TASK},
-        series_log::SeriesLog,
     },
 };
 

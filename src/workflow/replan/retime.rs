@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 
 use crate::{
-    fit::{Fit, Follower, Model, STEP_S},
+    fit::{Fit, Model, STEP_S, StartErrorPredictor},
     moea::{self, Bounds, Problem},
     plan::{Evaluator, PlanError, Search, Setup, excess, search},
     spline::{Motion, Quantity, Samples},
@@ -108,7 +108,7 @@ struct Workspace {
     samples: Samples,
     t_s: Vec<f64>,
     planned: Vec<(f64, f64)>,
-    follower: Follower,
+    follower: StartErrorPredictor,
 }
 
 impl Problem for Followed<'_> {
@@ -130,7 +130,7 @@ impl Problem for Followed<'_> {
                 samples: Samples::default(),
                 t_s: Vec::new(),
                 planned: Vec::new(),
-                follower: Follower::default(),
+                follower: StartErrorPredictor::default(),
             })
         });
         let Some(found) = room.evaluator.evaluate(self.setup, x) else { return f64::INFINITY };

@@ -11,7 +11,7 @@ use crate::{
     remark::Code,
     series::{Series, Track},
     task::Task,
-    workflow::{plan::arm_of, plan_log::TASK},
+    workflow::{carried::plan_log::TASK, plan::arm_of},
 };
 
 /// How often an arm is placed, a second; enough for the eye.

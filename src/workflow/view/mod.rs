@@ -12,7 +12,7 @@ use thiserror::Error;
 
 pub use arm::{ArmOrigin, MovingArm, Poses, Sight};
 
-use super::plan_log::FRONT;
+use super::carried::plan_log::FRONT;
 use crate::{
     arm::ArmError,
     log::{LogError, ReadOptions, Recording, read_plan, read_recording},

@@ -9,14 +9,14 @@ use hydrotrace::{
     fit::{Compensation, Excitation, JointRoom, Observation, compensate, excite, fit},
     log::{Attachment, WriteOptions},
     plant::{JointRecord, Parameters, Plant},
-    report::judged_json,
+    render::judged_json,
     series::{Series, Track},
     units::DEGREE_RAD,
     workflow::{
+        carried::plan_log::PlanLog,
         plan::{Judged, Order},
-        plan_log::PlanLog,
+        simulate::log::{LEAD_S, Prepared, prepare},
         simulate::{Content, Inputs, Outputs, run},
-        simulate_log::{LEAD_S, Prepared, prepare},
     },
 };
 

@@ -1,0 +1,159 @@
+//! Points of the true fronts.
+
+use std::{collections::BTreeSet, f64::consts::PI};
+
+use super::{Benchmark, Family, wfg};
+use crate::{Population, das_dennis, direction_count};
+
+/// Cells an objective's range is cut into where a front is thinned to one point a cell.
+const CELLS: f64 = 40.0;
+/// Most points of a front before it is thinned.
+const GRID: f64 = 20_000.0;
+
+/// The directions with at most `count` points, `[n][m]`.
+fn directions(m: usize, count: usize) -> Vec<f64> {
+    let mut p = 1;
+    while m > 1 && direction_count(m, p + 1).is_some_and(|h| h <= count) {
+        p += 1;
+    }
+    das_dennis(m, p).unwrap_or_default()
+}
+
+/// At most about `count` points of the front, spread over it, `[n][m]`.
+pub(super) fn points(problem: &Benchmark, count: usize) -> Vec<f64> {
+    let m = problem.objectives;
+    match (problem.family, problem.number) {
+        (Family::Dtlz, 1) => scaled(directions(m, count), m, |z, _| 0.5 / z.iter().sum::<f64>()),
+        (Family::Dtlz, 2..=4) => scaled(directions(m, count), m, |z, _| 1.0 / length(z)),
+        (Family::Dtlz, 5 | 6) => arc(m, count),
+        (Family::Dtlz, _) => disconnected(m, count),
+        (Family::Wfg, 1 | 2) => thinned(&undominated(&grid(problem), m), m),
+        (Family::Wfg, 3) => line(m, count),
+        (Family::Wfg, _) => scaled(directions(m, count), m, |z, k| 2.0 * (k as f64 + 1.0) / length(z)),
+    }
+}
+
+fn length(z: &[f64]) -> f64 {
+    z.iter().map(|z| z * z).sum::<f64>().sqrt()
+}
+
+fn scaled(mut flat: Vec<f64>, m: usize, factor: impl Fn(&[f64], usize) -> f64) -> Vec<f64> {
+    let mut factors = vec![0.0; m];
+    for z in flat.chunks_exact_mut(m) {
+        for (k, entry) in factors.iter_mut().enumerate() {
+            *entry = factor(z, k);
+        }
+        z.iter_mut().zip(&factors).for_each(|(z, factor)| *z *= factor);
+    }
+    flat
+}
+
+/// DTLZ5 and 6: a quarter circle, its cosine shared by all objectives but the last.
+fn arc(m: usize, count: usize) -> Vec<f64> {
+    let mut flat = Vec::with_capacity(count * m);
+    for i in 0..count {
+        let angle = 0.5 * PI * i as f64 / (count.max(2) - 1) as f64;
+        let mut product = angle.cos();
+        let mut point = vec![0.0; m];
+        point[m - 1] = angle.sin();
+        for k in (1..m - 1).rev() {
+            product *= 0.5_f64.sqrt();
+            point[k] = product;
+        }
+        point[0] = product;
+        flat.extend(point);
+    }
+    flat
+}
+
+/// DTLZ7: each position lies in one of two stretches.
+fn disconnected(m: usize, count: usize) -> Vec<f64> {
+    const STRETCHES: [f64; 4] =
+        [0.0, 0.251_411_836_095_147_3, 0.631_626_530_700_032_4, 0.859_400_856_644_676_9];
+    let first = STRETCHES[1] / (STRETCHES[1] + STRETCHES[3] - STRETCHES[2]);
+    let mut flat = Vec::new();
+    each_of_grid(m - 1, count as f64, |u| {
+        let mut sum = 0.0;
+        for &u in u {
+            let x = if u <= first {
+                u / first * STRETCHES[1]
+            } else {
+                STRETCHES[2] + (u - first) / (1.0 - first) * (STRETCHES[3] - STRETCHES[2])
+            };
+            sum += x / 2.0 * (1.0 + (3.0 * PI * x).sin());
+            flat.push(x);
+        }
+        flat.push(2.0 * (m as f64 - sum));
+    });
+    flat
+}
+
+/// WFG3: the line on which only the first parameter moves.
+fn line(m: usize, count: usize) -> Vec<f64> {
+    let mut flat = Vec::with_capacity(count * m);
+    let (mut t, mut f) = (vec![0.5; m], vec![0.0; m]);
+    t[m - 1] = 0.0;
+    for i in 0..count {
+        t[0] = i as f64 / (count.max(2) - 1) as f64;
+        wfg::shape(3, &t, &mut f);
+        flat.extend_from_slice(&f);
+    }
+    flat
+}
+
+/// All combinations of evenly spaced numbers in 0 to 1, at most about `most` of them.
+fn each_of_grid(axes: usize, most: f64, mut take: impl FnMut(&[f64])) {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive root")]
+    let steps = (most.powf(1.0 / axes.max(1) as f64).floor() as usize).max(2);
+    let mut at = vec![0usize; axes];
+    let mut u = vec![0.0; axes];
+    loop {
+        for (u, &at) in u.iter_mut().zip(&at) {
+            *u = at as f64 / (steps - 1) as f64;
+        }
+        take(&u);
+        let Some(axis) = (0..axes).find(|&axis| at[axis] + 1 < steps) else { return };
+        at[..axis].fill(0);
+        at[axis] += 1;
+    }
+}
+
+fn grid(problem: &Benchmark) -> Vec<f64> {
+    let m = problem.objectives;
+    let mut flat = Vec::new();
+    let (mut t, mut f) = (vec![0.0; m], vec![0.0; m]);
+    each_of_grid(m - 1, GRID, |u| {
+        t[..m - 1].copy_from_slice(u);
+        wfg::shape(problem.number, &t, &mut f);
+        flat.extend_from_slice(&f);
+    });
+    flat
+}
+
+fn undominated(flat: &[f64], m: usize) -> Vec<f64> {
+    let all = Population::from_objectives(flat, m);
+    all.front().into_iter().flat_map(|i| all.f(i).to_vec()).collect()
+}
+
+/// The first point in each cell of a grid over the range of the front.
+fn thinned(flat: &[f64], m: usize) -> Vec<f64> {
+    let range = |k: usize| {
+        let values = || flat.iter().skip(k).step_by(m).copied();
+        (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max))
+    };
+    let ranges: Vec<(f64, f64)> = (0..m).map(range).collect();
+    let mut taken = BTreeSet::new();
+    let mut kept = Vec::new();
+    for point in flat.chunks_exact(m) {
+        #[expect(clippy::cast_possible_truncation, reason = "0 to the number of cells")]
+        let cell: Vec<i64> = point
+            .iter()
+            .zip(&ranges)
+            .map(|(p, (low, high))| ((p - low) / (high - low).max(f64::MIN_POSITIVE) * CELLS) as i64)
+            .collect();
+        if taken.insert(cell) {
+            kept.extend_from_slice(point);
+        }
+    }
+    kept
+}

@@ -1,0 +1,85 @@
+//! Optimises several objectives at once, by evolution.
+//!
+//! A [`Problem`] is a box of real variables and a function to several objectives, all
+//! minimised, and a total violation of constraints; [`optimise`] finds a set of solutions of
+//! which none is better than another in everything. Planning uses it (the paper's section
+//! III); it knows of no joint and no arm, and serves any problem.
+//!
+//! ```
+//! use moea::{Bounds, Problem, Settings, optimise, silent};
+//!
+//! struct Schaffer;
+//! impl Problem for Schaffer {
+//!     type Workspace = ();
+//!     fn bounds(&self) -> Vec<Bounds> { vec![(-10.0, 10.0)] }
+//!     fn objectives(&self) -> usize { 2 }
+//!     fn evaluate(&self, x: &[f64], f: &mut [f64], _: &mut ()) -> f64 {
+//!         (f[0], f[1]) = (x[0].powi(2), (x[0] - 2.0).powi(2));
+//!         0.0
+//!     }
+//! }
+//! let found = optimise(&Schaffer, &Settings::default(), silent)?.population;
+//! assert!(found.front().iter().all(|&i| (-0.01..2.01).contains(&found.x(i)[0])));
+//! # Ok::<(), moea::MoeaError>(())
+//! ```
+//!
+//! # The same on every machine
+//!
+//! All random numbers come from the seed, by one stream a purpose; evaluation draws none and is
+//! collected by index. Equal settings give an equal [`Outcome`] on any number of cores.
+//!
+//! # Scale and origin
+//!
+//! Every threshold of normalisation is relative, so that objectives of 1e-3 and 1e3 side by
+//! side, or far from zero, are optimised as well as any.
+//!
+//! # Departures from the paper
+//!
+//! * `DIFFERENCE(step 2)`: the focus operator compares signed distances to the reference plane
+//!   among neighbouring directions, and acts on mating only ([`Focus::Local`]). The printed
+//!   reading ([`Focus::Literal`]) does not help: distance to the plane confounds convergence
+//!   with the shape of the front. Nobody is ever barred from survival; that destroys diversity.
+//! * `DIFFERENCE(step 3)`: the focus fades over the budget, with the square of the share used;
+//!   without a budget it stays at one half.
+//! * `DIFFERENCE(eq. 8, 9)`: the printed condition can hold only when all fitness values are
+//!   equal, and then divides 0 by 0. The usual reading, the better of a pair against the mean,
+//!   is available (`adaptive_rates`), and off.
+//! * `DIFFERENCE(eq. 10)`: the sum goes over the reference points, by whose number it is
+//!   divided, not over the population.
+//! * `DIFFERENCE(fig. 3)`: the origin is no reference point for minimisation; hypervolumes are
+//!   those of [`compare::Quality::hypervolume`].
+
+mod archive;
+pub mod benchmark;
+pub mod compare;
+mod contender;
+mod direction;
+mod evaluate;
+mod focus;
+mod genetic;
+pub mod indicator;
+mod mating;
+mod moead;
+mod msops2;
+mod normalize;
+mod nsga2;
+mod nsga3;
+mod optimise;
+mod population;
+mod problem;
+mod settings;
+mod sorting;
+mod stream;
+mod survival;
+mod variation;
+
+pub use archive::Archive;
+pub use contender::{CONTENDERS, Contender};
+pub use direction::{Directions, MOST_DIRECTIONS, das_dennis, direction_count};
+pub use focus::Focus;
+pub use optimise::{Outcome, Progress, optimise, silent};
+pub use population::Population;
+pub use problem::{Bounds, Problem};
+pub use settings::{Algorithm, Budget, MoeaError, Settings};
+pub use sorting::{Sorting, dominates};
+pub use variation::Operators;

@@ -1,0 +1,22 @@
+//! Random numbers that are the same on every machine and every run.
+
+use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+
+/// What a stream of random numbers is for. A new purpose gets a new number; none is reused.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Stream {
+    /// First population.
+    Start = 20,
+    /// Mating, crossover and mutation.
+    Variation = 21,
+    /// Ties in selection.
+    Survival = 22,
+}
+
+/// The stream for one purpose: equal arguments give equal numbers on every platform, and
+/// drawing from one stream never moves another.
+pub(crate) fn stream(seed: u64, purpose: Stream) -> ChaCha8Rng {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(purpose as u64);
+    rng
+}

@@ -1,0 +1,63 @@
+//! The paper's Table 3 beside ours.
+
+use super::FINDING;
+use crate::{
+    render::{NONE, Part, Sheet, plan::limit_cell},
+    units::degrees_from_radians,
+    workflow::contest::{Row, Table3, Whose},
+};
+
+pub(super) fn parts(table: &Table3) -> Vec<Part> {
+    vec![
+        Part::Heading("The paper's Table 3 (task simulation)".to_owned()),
+        Part::Line(FINDING.to_owned()),
+        Part::Line(
+            "Printed: the paper's f2 and f3, that of the stretched A from the paper's f2 of A. The rest is measured here, \
+             on an arm and limits that are not the paper's, which prints none."
+                .to_owned(),
+        ),
+        Part::Sheet(Sheet {
+            head: vec![
+                "plan",
+                "worst limit",
+                "printed f2 N",
+                "printed f3 J",
+                "f1 s",
+                "f2 deg/s3",
+                "f3 W",
+            ],
+            left: 2,
+            rows: table.rows.iter().map(|entry| row(entry, &table.joints)).collect(),
+        }),
+    ]
+}
+
+pub(super) fn name(whose: Whose) -> String {
+    match whose {
+        Whose::Paper(plan) => format!("paper's {plan}"),
+        Whose::Stretched => "paper's A as long as B".to_owned(),
+        Whose::Better(plan) => format!("ours, no worse than {plan} in f1, f2, f3"),
+        Whose::Smoothest(plan) => format!("ours, as fast as {plan}: least f2"),
+        Whose::Thriftiest(plan) => format!("ours, as fast as {plan}: least f3"),
+        Whose::End(plan) => format!("ours, {plan} of the front"),
+    }
+}
+
+fn row(row: &Row, joints: &[String]) -> Vec<String> {
+    let printed = |value: Option<f64>| value.map_or(NONE.to_owned(), |value| format!("{value:.2}"));
+    let mut cells = vec![name(row.whose)];
+    let (limit, worth) = match &row.judged {
+        Some(judged) => {
+            let [f1, f2, f3] = judged.objectives.as_array();
+            let f2 = degrees_from_radians(f2);
+            let worth = [format!("{f1:.2}"), format!("{f2:.4}"), format!("{f3:.2}")];
+            (limit_cell(judged, joints), worth)
+        }
+        None => ("no such plan".to_owned(), [NONE; 3].map(str::to_owned)),
+    };
+    cells.push(limit);
+    cells.push(printed(row.printed.map(|printed| printed.f2)));
+    cells.push(printed(row.printed.and_then(|printed| printed.f3)));
+    cells.extend(worth);
+    cells
+}

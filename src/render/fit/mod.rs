@@ -1,0 +1,40 @@
+//! What a fit found: tables, JSON, and the file that brings it back.
+
+mod document;
+mod file;
+mod tables;
+
+pub use document::fit_json;
+pub use file::limits_toml;
+pub use tables::fit_parts;
+pub(super) use tables::{left_out_line, machine_parts};
+
+use crate::fit::{Estimated, JointFit};
+
+/// How a quantity is shown.
+pub(in crate::render) struct Shown {
+    /// As in tables.
+    pub(in crate::render) name: &'static str,
+    /// Of a joint.
+    pub(in crate::render) of: fn(&JointFit) -> Estimated,
+    /// From SI to what people read.
+    pub(in crate::render) scale: fn(f64) -> f64,
+    /// Decimals.
+    pub(in crate::render) decimals: usize,
+}
+
+impl Shown {
+    /// The value with its interval, a bound, or nothing.
+    pub(in crate::render) fn cell(&self, joint: &JointFit) -> String {
+        let found = (self.of)(joint);
+        let number = |si: f64| format!("{:.*}", self.decimals, (self.scale)(si));
+        match (found.value, found.interval, found.lower_bound) {
+            (Some(value), Some([low, high]), _) if found.identified => {
+                format!("{} ({}..{})", number(value), number(low), number(high))
+            }
+            (_, _, Some(bound)) => format!(">= {}", number(bound)),
+            (Some(value), ..) => format!("({})", number(value)),
+            _ => crate::render::NONE.to_owned(),
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! A fit as tables.
+
+use super::Shown;
+use crate::{
+    fit::{Estimated, Fit, JointFit, LEAST_SKILL, LeftOut},
+    render::{Part, Sheet, counted, deg, tables::remark_parts},
+    units::degrees_from_radians,
+    workflow::fit::{Fitted, torque::JointTorque},
+};
+
+const LOOP: [(&str, Shown); 5] = [
+    ("lag ms", Shown { name: "lag", of: |j| j.lag_s, scale: |s| s * 1e3, decimals: 0 }),
+    (
+        "dead band deg/s",
+        Shown { name: "dead band", of: |j| j.dead_band_rad_s, scale: degrees_from_radians, decimals: 2 },
+    ),
+    (
+        "floor deg",
+        Shown {
+            name: "error floor",
+            of: |j| j.dead_band_error_rad,
+            scale: degrees_from_radians,
+            decimals: 2,
+        },
+    ),
+    ("gain 1/s", Shown { name: "position gain", of: |j| j.position_gain_1_s, scale: |k| k, decimals: 2 }),
+    ("feed-forward", Shown { name: "feed-forward", of: |j| j.feed_forward, scale: |k| k, decimals: 2 }),
+];
+
+const LIMITS: [(&str, Shown); 4] = [
+    (
+        "speed + deg/s",
+        Shown {
+            name: "speed limit, growing",
+            of: |j| j.speed_limit_growing_rad_s,
+            scale: degrees_from_radians,
+            decimals: 1,
+        },
+    ),
+    (
+        "speed - deg/s",
+        Shown {
+            name: "speed limit, shrinking",
+            of: |j| j.speed_limit_shrinking_rad_s,
+            scale: degrees_from_radians,
+            decimals: 1,
+        },
+    ),
+    (
+        "acceleration + deg/s2",
+        Shown {
+            name: "acceleration limit, growing",
+            of: |j| j.acceleration_limit_growing_rad_s2,
+            scale: degrees_from_radians,
+            decimals: 0,
+        },
+    ),
+    (
+        "acceleration - deg/s2",
+        Shown {
+            name: "acceleration limit, shrinking",
+            of: |j| j.acceleration_limit_shrinking_rad_s2,
+            scale: degrees_from_radians,
+            decimals: 0,
+        },
+    ),
+];
+
+/// Share of the full signal to each side.
+const VALVE: [Shown; 2] = [
+    Shown {
+        name: "valve dead band, growing",
+        of: |j| valve(j, 0),
+        scale: |share| share * 100.0,
+        decimals: 1,
+    },
+    Shown {
+        name: "valve dead band, shrinking",
+        of: |j| valve(j, 1),
+        scale: |share| share * 100.0,
+        decimals: 1,
+    },
+];
+
+fn valve(joint: &JointFit, side: usize) -> Estimated {
+    joint.valve_dead_band.map_or(Estimated::default(), |sides| sides[side])
+}
+
+/// A fit, for people.
+pub fn fit_parts(fitted: &Fitted) -> Vec<Part> {
+    let fit = &fitted.fit;
+    let samples: usize = fit.joints.iter().map(|joint| joint.samples).sum();
+    let logs: Vec<&str> = fitted.runs.iter().map(|run| run.log.as_str()).collect();
+    let commanded = fitted.runs.iter().filter(|run| run.commanded).count();
+    let sent = match commanded {
+        0 => "the plan is what was sent".to_owned(),
+        all if all == fitted.runs.len() => "what was sent is the logged command".to_owned(),
+        some => format!("what was sent is the logged command in {some} of them, else the plan"),
+    };
+    let mut parts = vec![
+        Part::Title(format!("Limits of the machine in {}", logs.join(", "))),
+        Part::Line(format!(
+            "{}, {samples} samples; {sent}. 95 % intervals hold what models of this form miss.",
+            counted(fit.joints.len(), "joint")
+        )),
+    ];
+    parts.extend(machine_parts(fit));
+    parts.extend(torque_parts(&fitted.torques));
+    parts.push(Part::Heading("What to trust".into()));
+    parts.extend(trust(fitted).into_iter().map(Part::Line));
+    remark_parts(&fitted.remarks, &mut parts);
+    parts
+}
+
+/// The numbers of a fit with their intervals.
+pub(in crate::render) fn machine_parts(fit: &Fit) -> Vec<Part> {
+    let mut parts = vec![
+        Part::Heading("Closed loop".into()),
+        sheet(&fit.joints, &LOOP, true),
+        Part::Line(
+            "Held-out R2: share of the tracking error that is predicted where it was not fitted; unexplained: what is \
+             then left after a start, mean of the peaks. Dead band: speed that must be wanted before the joint leaves \
+             rest; floor: the error that is not enough for it; gain: speed wanted by error; feed-forward: by speed sent."
+                .into(),
+        ),
+        Part::Heading("Limits".into()),
+        sheet(&fit.joints, &LIMITS, false),
+        Part::Line("+ for growing, - for shrinking angles; >= was reached and is no limit; (brackets): prior, not data.".into()),
+    ];
+    if fit.joints.iter().any(|joint| joint.valve_dead_band.is_some()) {
+        parts.push(Part::Heading("Valves".into()));
+        let row = |joint: &JointFit| vec![joint.name.clone(), VALVE[0].cell(joint), VALVE[1].cell(joint)];
+        parts.push(Part::Sheet(Sheet {
+            head: vec!["joint", "dead band + %", "dead band - %"],
+            left: 1,
+            rows: fit.joints.iter().map(row).collect(),
+        }));
+    }
+    parts
+}
+
+fn torque_parts(torques: &[JointTorque]) -> Vec<Part> {
+    if torques.is_empty() {
+        return Vec::new();
+    }
+    let row = |torque: &JointTorque| {
+        let both = torque.reached_n_m.iter().zip(torque.available_n_m);
+        let cells = both.flat_map(|(reached, available)| [*reached, available]);
+        let mut row = vec![torque.name.clone()];
+        row.extend(cells.map(|n_m| format!("{n_m:.0}")));
+        row
+    };
+    vec![
+        Part::Heading("Torques from pressures".into()),
+        Part::Sheet(Sheet {
+            head: vec!["joint", "reached + N m", "available +", "reached - N m", "available -"],
+            left: 1,
+            rows: torques.iter().map(row).collect(),
+        }),
+        Part::Line(
+            "Available: in every pose of the run at the logged supply pressure; friction and flow take some of it."
+                .into(),
+        ),
+    ]
+}
+
+fn sheet(joints: &[JointFit], columns: &[(&'static str, Shown)], skill: bool) -> Part {
+    let mut head = vec!["joint"];
+    if skill {
+        head.extend(["held-out R2", "unexplained deg"]);
+    }
+    head.extend(columns.iter().map(|(head, _)| *head));
+    let row = |joint: &JointFit| {
+        let mut row = vec![joint.name.clone()];
+        if skill {
+            row.push(format!("{:.2}", joint.held_out_r2));
+            row.push(
+                joint.unexplained_peak_rad.map_or(crate::render::NONE.to_owned(), |[mean, _]| deg(mean)),
+            );
+        }
+        row.extend(columns.iter().map(|(_, shown)| shown.cell(joint)));
+        row
+    };
+    Part::Sheet(Sheet { head, left: 1, rows: joints.iter().map(row).collect() })
+}
+
+/// What the numbers are good for, and what would tell the rest.
+fn trust(fitted: &Fitted) -> Vec<String> {
+    let fit = &fitted.fit;
+    let good = fit.joints.iter().filter(|joint| joint.trusted()).count();
+    let mut lines = vec![format!(
+        "{good} of {} predict held-out tracking error with R2 of {LEAST_SKILL} or more: commands may be made for them. \
+         Measured peaks stay below {:.2} times the predicted ones in nine of ten of {} held-out starts.",
+        counted(fit.joints.len(), "joint"),
+        fit.peak_margin,
+        fit.margin_starts
+    )];
+    let all = || LOOP.iter().chain(&LIMITS).map(|(_, shown)| shown);
+    let open: Vec<String> = all()
+        .filter_map(|shown| {
+            let joints: Vec<&str> = fit
+                .joints
+                .iter()
+                .filter(|joint| !(shown.of)(joint).identified)
+                .map(|joint| joint.name.as_str())
+                .collect();
+            let of =
+                if joints.len() == fit.joints.len() { "any joint".to_owned() } else { joints.join(", ") };
+            (!joints.is_empty()).then(|| format!("{} of {of}", shown.name))
+        })
+        .collect();
+    if open.is_empty() {
+        lines.push("All quantities are identified.".into());
+    } else {
+        lines.push(format!("Not identified: {}.", open.join("; ")));
+        let speed = fit.joints.iter().any(|joint| {
+            !(joint.speed_limit_growing_rad_s.identified && joint.speed_limit_shrinking_rad_s.identified)
+        });
+        lines.push(if speed {
+            "Smooth runs never reach the limits; `hydrotrace excite` writes a run that does (strokes faster than the \
+             machine), which also narrows the dead band. Fit it together with these logs."
+                .into()
+        } else {
+            "Acceleration limits hide behind the lag and were identified on no simulated machine either: the bounds are \
+             what is safe to ask for."
+                .into()
+        });
+    }
+    lines.extend(left_out_line(fit));
+    lines
+}
+
+/// Which joints are not fitted, and why; `None` if all are.
+pub(in crate::render) fn left_out_line(fit: &Fit) -> Option<String> {
+    let one = |joint: &LeftOut| {
+        let [sent, needed] = [joint.travel_rad, joint.least_travel_rad].map(deg);
+        format!("{} (sent through {sent} deg in all, {needed} are needed)", joint.name)
+    };
+    let joints: Vec<String> = fit.left_out.iter().map(one).collect();
+    (!joints.is_empty()).then(|| format!("Not fitted: {}.", joints.join(", ")))
+}

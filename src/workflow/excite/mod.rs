@@ -1,0 +1,135 @@
+//! `excite`: a run from which a fit can tell what runs of tasks leave open.
+
+use std::{collections::BTreeMap, path::PathBuf};
+
+use thiserror::Error;
+
+use super::{
+    carried::plan_log::ARM,
+    carried::series_log::SeriesLog,
+    plan::{Order, PlanFailure},
+};
+use crate::{
+    fit::{Excitation, FitError, JointRoom, excite},
+    log::{Attachment, WriteError},
+    plan::Setup,
+    series::Series,
+};
+
+/// The joints to drive.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Arm {
+    /// Those of the sample arm, about where its first task works.
+    Sample,
+    /// Those of a task's arm, about the middle of its key points.
+    Task(PathBuf),
+    /// These.
+    Joints(Vec<JointRoom>),
+}
+
+/// What to write.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inputs {
+    /// The joints.
+    pub arm: Arm,
+    /// How to drive them.
+    pub excitation: Excitation,
+    /// Largest speed that is sent, rad/s; infinite for none.
+    pub most_rad_s: f64,
+}
+
+/// Why there is no such run.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ExciteFailure {
+    /// The task.
+    #[error(transparent)]
+    Task(#[from] PlanFailure),
+    /// The joints or the strokes.
+    #[error("there is no such run")]
+    Run(#[from] FitError),
+}
+
+/// The run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Excited {
+    /// The joints, in the order in which they are driven.
+    pub joints: Vec<JointRoom>,
+    /// How each is driven.
+    pub excitation: Excitation,
+    /// What to send.
+    pub command: Series,
+    /// Text of the task whose arm is driven.
+    pub task: Option<String>,
+}
+
+/// Writes the run.
+///
+/// # Errors
+///
+/// [`ExciteFailure`] if the task cannot be read or a joint has no room.
+pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
+    let order = match &inputs.arm {
+        Arm::Joints(_) => None,
+        Arm::Task(path) => Some(Order::read(path)?),
+        Arm::Sample => Some(Order::sample()?),
+    };
+    let joints = match (&inputs.arm, &order) {
+        (Arm::Joints(joints), _) => joints.clone(),
+        (_, order) => order.as_ref().map_or_else(Vec::new, |order| rooms(&order.setup)),
+    };
+    let mut excitation = inputs.excitation.clone();
+    for ramp in &mut excitation.ramps {
+        ramp.speed_rad_s = ramp.speed_rad_s.min(inputs.most_rad_s);
+    }
+    excitation.ramps.dedup_by(|a, b| a.speed_rad_s >= b.speed_rad_s && a.travel_rad <= b.travel_rad);
+    let command = excite(&joints, &excitation)?;
+    Ok(Excited { joints, excitation, command, task: order.map(|order| order.text) })
+}
+
+/// Every joint about the middle of what its key points ask for, within its range.
+fn rooms(setup: &Setup) -> Vec<JointRoom> {
+    let points = setup.template().points();
+    let of_joint = |(j, name): (usize, String)| {
+        let angles = (0..points.len()).map(|point| points.of(point)[j]);
+        let (least, most) = angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), q| (a.min(q), b.max(q)));
+        JointRoom { name, home_rad: 0.5 * (least + most), range_rad: setup.range_rad(j) }
+    };
+    setup.joint_names().into_iter().enumerate().map(of_joint).collect()
+}
+
+impl Excited {
+    /// How long it takes, s.
+    pub fn duration_s(&self) -> f64 {
+        self.command
+            .tracks
+            .iter()
+            .filter_map(|track| track.t_s().last())
+            .fold(0.0, |most: f64, t| most.max(*t))
+    }
+
+    /// The bytes of the log.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`] for joint names that no log can hold.
+    pub fn log(&self, rate_hz: f64) -> Result<Vec<u8>, WriteError> {
+        // So that whoever runs it knows its arm.
+        let task = self.task.as_ref().map(|text| Attachment {
+            name: ARM.to_owned(),
+            media_type: "application/toml".to_owned(),
+            data: text.as_bytes().to_vec(),
+        });
+        let provenance = BTreeMap::from([("made_by".to_owned(), "excite".to_owned())]);
+        SeriesLog {
+            plan: &self.command,
+            command: None,
+            arm: None,
+            provenance: &provenance,
+            trajectory: None,
+            files: task.as_slice(),
+            rate_hz,
+        }
+        .bytes()
+    }
+}

@@ -1,0 +1,56 @@
+//! `import`: a CSV file becomes a log.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::{
+    atomic_file::{AtomicError, write_atomically},
+    log::{CsvError, CsvOptions, Understood, WriteError, read_csv},
+    remark::Remarks,
+};
+
+/// What to import, how, and to where.
+#[derive(Debug, Clone, Default)]
+pub struct Inputs {
+    /// The CSV file.
+    pub file: PathBuf,
+    /// What the caller says of it.
+    pub options: CsvOptions,
+    /// The log to write; it appears whole or not at all.
+    pub output: PathBuf,
+}
+
+/// What came of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outputs {
+    /// How the file was read.
+    pub understood: Understood,
+    /// What was doubtful.
+    pub remarks: Remarks,
+}
+
+/// Why there is no log.
+#[derive(Debug, Error)]
+pub enum ImportError {
+    /// The file is not understood.
+    #[error(transparent)]
+    Csv(#[from] CsvError),
+    /// The log cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The log cannot be put in place.
+    #[error(transparent)]
+    Atomic(#[from] AtomicError),
+}
+
+/// Imports a CSV file.
+///
+/// # Errors
+///
+/// [`ImportError`]; then there is no output.
+pub fn run(inputs: &Inputs) -> Result<Outputs, ImportError> {
+    let run = read_csv(&inputs.file, &inputs.options)?;
+    write_atomically(&inputs.output, |file| run.write(file).map(|_| ()).map_err(ImportError::from))?;
+    Ok(Outputs { understood: run.understood, remarks: run.remarks })
+}

@@ -1,0 +1,134 @@
+//! What to do about what a report found.
+
+use super::Report;
+use crate::replay::{JointReplay, Transition, Verdict};
+
+/// A next step, the most urgent first.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Advice {
+    /// The data are doubtful: so many kinds of doubt.
+    ClearDoubts(usize),
+    /// A joint leaves planned starts unanswered.
+    FreeJoint {
+        /// The joint.
+        joint: String,
+        /// Planned starts without an answer.
+        unanswered: usize,
+        /// All its planned starts, reversals included.
+        starts: usize,
+    },
+    /// The error is mostly lag.
+    ShiftCommand {
+        /// The joint with the largest error among those whose own is mostly lag, or else of all with a lag.
+        joint: String,
+        /// Its lag, s.
+        lag_s: f64,
+        /// The log, if it is one file.
+        log: Option<String>,
+    },
+    /// The error lives in the transitions, most in those of a joint.
+    EaseStarts {
+        /// The joint with the largest peak.
+        joint: String,
+        /// Median delay of timed starts over all joints, s.
+        delay_s: Option<f64>,
+        /// The log, if it is one file.
+        log: Option<String>,
+        /// Whether a gentler plan can be made from it.
+        gentler: bool,
+    },
+    /// The error lives outside the transitions, and joints are late throughout.
+    ShortenLag {
+        /// The joint that is latest.
+        joint: String,
+        /// By how much, s.
+        lag_s: f64,
+    },
+    /// The error lives outside the transitions, and no lag explains it.
+    LookOutside {
+        /// The joint with the largest error.
+        joint: String,
+        /// When that is, s.
+        time_s: f64,
+    },
+    /// No joint is asked to leave rest.
+    RecordStarts,
+    /// No limit was set, so nothing says whether this run is good enough.
+    SetLimits,
+    /// Whatever is changed: run again and compare.
+    Compare,
+}
+
+/// Lags below this are not worth a step, s.
+const SMALL_LAG_S: f64 = 0.01;
+
+/// What to do next.
+pub fn advice(report: &Report) -> Vec<Advice> {
+    let replay = &report.replay;
+    let mut advice = Vec::new();
+    if !report.remarks.is_empty() {
+        advice.push(Advice::ClearDoubts(report.remarks.as_slice().len()));
+    }
+    let stuck = replay.joints.iter().filter(|joint| joint.unmatched_starts > 0);
+    advice.extend(stuck.max_by_key(|joint| joint.unmatched_starts).map(|joint| Advice::FreeJoint {
+        joint: joint.name.clone(),
+        unanswered: joint.unmatched_starts,
+        starts: joint.starts,
+    }));
+    let worst = replay.transitions.iter().max_by(|a, b| a.peak_error_rad.total_cmp(&b.peak_error_rad));
+    let Some(worst) = worst else {
+        advice.push(Advice::RecordStarts);
+        return advice;
+    };
+    let verdict = replay.whole_run.concentration.as_ref().map(|c| c.verdict);
+    let log = match report.logs.as_slice() {
+        [log] => Some(log.clone()),
+        _ => None,
+    };
+    if let Some((joint, lag_s)) = mostly_lag(report) {
+        advice.push(Advice::ShiftCommand { joint, lag_s, log });
+    } else if verdict == Some(Verdict::Elsewhere) {
+        advice.extend(outside(report));
+    } else {
+        advice.push(Advice::EaseStarts {
+            joint: worst.joint.clone(),
+            delay_s: median_delay_s(&replay.transitions),
+            log,
+            gentler: report.holds_task,
+        });
+    }
+    if report.gates.is_empty() {
+        advice.push(Advice::SetLimits);
+    }
+    advice.push(Advice::Compare);
+    advice
+}
+
+/// Where the run's error is mostly lag: the joint to begin with and its lag, s.
+fn mostly_lag(report: &Report) -> Option<(String, f64)> {
+    report.replay.whole_run.lag_share.filter(|lag| lag.mostly)?;
+    let joints = report.replay.joints.iter().filter_map(|joint| Some((joint, joint.lag_s?)));
+    let own = |joint: &JointReplay| joint.lag_share.is_some_and(|lag| lag.mostly);
+    let (joint, lag_s) = joints.max_by(|(a, _), (b, _)| {
+        let rms_rad = |joint: &JointReplay| joint.tracking_error.rms_rad;
+        own(a).cmp(&own(b)).then(rms_rad(a).total_cmp(&rms_rad(b)))
+    })?;
+    Some((joint.name.clone(), lag_s))
+}
+
+fn outside(report: &Report) -> Option<Advice> {
+    let joints = &report.replay.joints;
+    let lags = joints.iter().filter_map(|joint| Some((joint, joint.lag_s?)));
+    let latest = lags.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, lag_s)| *lag_s > SMALL_LAG_S);
+    if let Some((joint, lag_s)) = latest {
+        return Some(Advice::ShortenLag { joint: joint.name.clone(), lag_s });
+    }
+    let worst =
+        joints.iter().max_by(|a, b| a.tracking_error.peak_rad.total_cmp(&b.tracking_error.peak_rad))?;
+    Some(Advice::LookOutside { joint: worst.name.clone(), time_s: worst.tracking_error.peak_time_s })
+}
+
+fn median_delay_s(transitions: &[Transition]) -> Option<f64> {
+    let delays: Vec<f64> = transitions.iter().filter_map(|t| t.onset_delay_s).collect();
+    (!delays.is_empty()).then(|| crate::math::median(delays))
+}

@@ -1,0 +1,214 @@
+//! `simulate`: from the log of a plan to a run of it, and to the run's log.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::super::{
+    carried::plan_log::{ARM, FRONT, TASK, chosen_times_s},
+    carried::schedule::starts_s,
+    plan::{PlanFailure, arm_of},
+    simulate::{Inputs, Outputs, run},
+};
+use crate::{
+    arm::Arm,
+    log::{Attachment, LogError, ReadOptions, Selector, Topics, WriteError, read_plan},
+    plan::{PlanError, Setup},
+    plant::{Parameters, PayloadChange, Plant, PlantError},
+    series::{Series, Track, TrackError},
+    task::{Task, TaskError},
+};
+
+/// How long the machine stands before the plan starts, s: a start from rest needs a rest.
+pub const LEAD_S: f64 = 2.0;
+/// How long it is watched after the plan's end, s.
+pub const TAIL_S: f64 = 3.0;
+
+/// Why nothing was simulated.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SimulateFailure {
+    /// The plan's log.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// The task within the log.
+    #[error("the task in {} is none", path.display())]
+    Task {
+        /// The log.
+        path: PathBuf,
+        /// Why.
+        source: TaskError,
+    },
+    /// The task's arm.
+    #[error(transparent)]
+    Arm(#[from] PlanFailure),
+    /// The task on its arm.
+    #[error("the task in the log does not fit its plan")]
+    Setup(#[from] PlanError),
+    /// No arm but the sample's, which has other joints.
+    #[error(
+        "{} holds no task and so no arm; its joints are {found}, those of the sample arm {sample}. Give a log of \
+         `plan`, `replan --task` or `excite --task`",
+        path.display()
+    )]
+    NoArm {
+        /// The plan's log.
+        path: PathBuf,
+        /// Its joints.
+        found: String,
+        /// Those of the sample arm.
+        sample: String,
+    },
+    /// The machine.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
+    /// The run's log.
+    #[error("the run cannot be logged")]
+    Write(#[from] WriteError),
+    /// Angles in the log that are no track.
+    #[error("the plan in the log cannot be run")]
+    Track(#[from] TrackError),
+}
+
+/// A run, and the files of the plan that go with it.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// What came of it.
+    pub outputs: Outputs,
+    /// Task and front, if the plan's log holds them.
+    pub attachments: Vec<Attachment>,
+    /// Whether a command was sent that is not the plan.
+    pub commanded: bool,
+    /// When the times of the plan count from, s.
+    pub starts_s: f64,
+    /// The arm that ran it.
+    pub arm: Arm,
+}
+
+impl Run {
+    /// The run as an MCAP log, with the files of its plan.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`] for joint names that no log can hold.
+    pub fn log(&self) -> Result<Vec<u8>, WriteError> {
+        self.outputs.log_with(&self.attachments, self.starts_s, Some(&self.arm.chain))
+    }
+}
+
+/// Runs the plan of a log, or the command beside it, on a machine around the arm of the log's task; the
+/// sample arm where the log has no task.
+///
+/// # Errors
+///
+/// [`SimulateFailure`], naming what is missing.
+pub fn simulate(path: &Path, parameters: Parameters, seed: u64) -> Result<Run, SimulateFailure> {
+    prepare(path, parameters, seed)?.run()
+}
+
+/// A run that is yet to be made.
+#[derive(Debug, Clone)]
+pub struct Prepared {
+    /// What to run on which machine, rests counted.
+    pub inputs: Inputs,
+    /// Task and front, if the plan's log holds them.
+    pub attachments: Vec<Attachment>,
+    /// Whether the log holds a command that is not the plan.
+    pub commanded: bool,
+    /// When the times of the plan count from, s.
+    pub starts_s: f64,
+    /// The arm that is to run it.
+    pub arm: Arm,
+}
+
+impl Prepared {
+    /// Makes the run.
+    ///
+    /// # Errors
+    ///
+    /// [`SimulateFailure::Plant`].
+    pub fn run(self) -> Result<Run, SimulateFailure> {
+        let Self { inputs, attachments, commanded, starts_s, arm } = self;
+        Ok(Run { outputs: run(&inputs)?, attachments, commanded, starts_s, arm })
+    }
+}
+
+/// What [`simulate`] runs.
+///
+/// # Errors
+///
+/// As [`simulate`].
+pub fn prepare(path: &Path, parameters: Parameters, seed: u64) -> Result<Prepared, SimulateFailure> {
+    let paths = [path.to_owned()];
+    let plan = read_plan(&paths, &ReadOptions::default())?;
+    let topic = Selector { topic: Topics::default().command, field: None };
+    let command = read_plan(&paths, &ReadOptions { planned: vec![topic], ..ReadOptions::default() }).ok();
+    let attached = |name: &str| plan.attachments.iter().find(|file| file.name == name);
+    let starts_s = LEAD_S + starts_s(&plan.metadata).unwrap_or(0.0);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let (arm, payload) = match attached(TASK).or_else(|| attached(ARM)) {
+        None => (sample_arm(path, &plan.planned)?, Vec::new()),
+        Some(file) => {
+            let text = String::from_utf8_lossy(&file.data);
+            let named = |source| SimulateFailure::Task { path: path.to_owned(), source };
+            let task = Task::parse(&text).map_err(named)?;
+            let arm = arm_of(&task, folder)?;
+            let times_s = attached(FRONT).and_then(|file| chosen_times_s(&file.data));
+            let payload =
+                times_s.map_or(Ok(Vec::new()), |times_s| payload(&task, arm.clone(), &times_s, starts_s))?;
+            (arm, payload)
+        }
+    };
+    let planned = with_rests(&plan.planned)?;
+    let commanded = command.is_some();
+    let command = command.map_or(Ok(planned.clone()), |command| with_rests(&command.planned))?;
+    let plant = Plant::new(&arm, parameters)?;
+    let inputs = Inputs { plant, plan: planned, command, payload, seed };
+    let attachments = [TASK, ARM, FRONT].into_iter().filter_map(attached).cloned().collect();
+    Ok(Prepared { inputs, attachments, commanded, starts_s, arm })
+}
+
+/// The sample arm, for a log that names no other and whose joints are its.
+fn sample_arm(path: &Path, planned: &Series) -> Result<Arm, SimulateFailure> {
+    let arm = Arm::sample().map_err(PlanFailure::from)?;
+    let names: Vec<&str> = arm.chain.joints().iter().map(|joint| joint.name.as_str()).collect();
+    if names.iter().all(|name| planned.track(name).is_some()) {
+        return Ok(arm);
+    }
+    let found: Vec<&str> = planned.tracks.iter().map(Track::name).collect();
+    let (found, sample) = (found.join(", "), names.join(", "));
+    Err(SimulateFailure::NoArm { path: path.to_owned(), found, sample })
+}
+
+/// What the tool carries, and from when on, rests counted.
+fn payload(task: &Task, arm: Arm, times_s: &[f64], starts_s: f64) -> Result<Vec<PayloadChange>, PlanError> {
+    let setup = Setup::new(task, arm)?;
+    let motion = setup.motion(times_s)?;
+    let starts = motion.segments().iter().zip(setup.payload_kg());
+    Ok(starts
+        .enumerate()
+        .map(|(i, (segment, &mass_kg))| PayloadChange {
+            at_s: if i == 0 { 0.0 } else { starts_s + segment.start_s },
+            mass_kg,
+        })
+        .collect())
+}
+
+/// The same with rests before and after; speeds that a track lacks are those of its interpolation.
+fn with_rests(series: &Series) -> Result<Series, TrackError> {
+    let first_s = |track: &Track| track.t_s().first().copied().unwrap_or(0.0);
+    let ends_s = series.tracks.iter().filter_map(|track| Some(track.t_s().last()? - first_s(track)));
+    let end_s = ends_s.fold(0.0, f64::max);
+    let tracks = series.tracks.iter().map(|track| {
+        let step_s = track.sample_interval_s().clamp(1e-3, 0.1);
+        let mut t_s = vec![0.0];
+        t_s.extend(track.t_s().iter().map(|t_s| LEAD_S + t_s - first_s(track)));
+        t_s.push(LEAD_S + end_s + step_s);
+        t_s.push(LEAD_S + end_s + TAIL_S);
+        let states: Vec<_> = t_s.iter().map(|t| track.held_at(t - LEAD_S + first_s(track))).collect();
+        let position_rad = states.iter().map(|state| state.position).collect();
+        let velocity_rad_s = states.iter().map(|state| state.velocity).collect();
+        Track::new(track.name().to_owned(), t_s, position_rad, &[])?.with_velocity(velocity_rad_s)
+    });
+    Ok(Series { tracks: tracks.collect::<Result<_, _>>()? })
+}
