@@ -40,10 +40,10 @@ fn a_cell_holds_what_its_seeds_reach_in_the_box_of_the_reference_front() {
     assert_eq!(order[9], ("task-1", 600, "nsga3"));
     let setup = &inputs().subjects[1].request.setup;
     let long = Search { budget: Budget::Evaluations(REFERENCE), front: REFERENCE_PLANS, ..Search::default() };
-    let reference = search(setup, &long, |_| ControlFlow::Continue(())).unwrap().front;
-    let reference = Reference::of(reference.iter().map(|timing| timing.objectives.as_array()));
+    let front = search(setup, &long, |_| ControlFlow::Continue(())).unwrap().front;
+    let reference = Reference::of(front.iter().map(|timing| timing.objectives.as_array()));
     let ruler = &STUDY.rulers[1];
-    assert_eq!((ruler.plans, ruler.ideal), (reference.len(), reference.ideal()));
+    assert_eq!((ruler.plans, ruler.ideal), (front.len(), reference.ideal()));
     let reached = [5, 6, 7].map(|seed| {
         let algorithm = Contender::named("nsga3").unwrap().algorithm;
         let settings = Settings { algorithm, seed, budget: Budget::Evaluations(600), ..Settings::default() };
