@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use hydrotrace::{
     replay::{Answer, Replay, Rules, Sensing, Transition, detector_score, replay, synthetic_run},
-    series::Pair,
+    series::{JointKind, Pair},
     units::DEGREE_RAD,
 };
 use proptest::prelude::*;
@@ -20,9 +20,10 @@ fn noiseless(seed: u64, delay_s: f64) -> Pair {
 fn recorded(t_s: Vec<f64>, planned: Vec<f64>, measured: Vec<f64>, segments: Vec<Range<usize>>) -> Pair {
     Pair {
         name: "a".into(),
-        planned_rad: planned,
-        planned_rad_s: None,
-        measured_rad: measured,
+        kind: JointKind::Turns,
+        planned,
+        planned_velocity: None,
+        measured,
         segments,
         planned_interval_s: 0.01,
         matched: t_s.len(),
@@ -63,8 +64,8 @@ fn any_pair() -> impl Strategy<Value = Pair> {
         segments.push(start..rows.len());
         let column = |value: fn(&(f64, f64, f64, f64, bool)) -> f64| rows.iter().map(value).collect();
         let mut pair = recorded(t_s, column(|r| r.1), column(|r| r.2), segments);
-        pair.planned_rad.iter_mut().chain(&mut pair.measured_rad).for_each(|x| *x *= scale);
-        pair.planned_rad_s = with_speed.then(|| column(|r| r.3));
+        pair.planned.iter_mut().chain(&mut pair.measured).for_each(|x| *x *= scale);
+        pair.planned_velocity = with_speed.then(|| column(|r| r.3));
         pair
     })
 }
@@ -86,7 +87,7 @@ proptest! {
 
     #[test]
     fn a_joint_on_its_plan_has_no_error(mut pair in any_pair()) {
-        pair.measured_rad.clone_from(&pair.planned_rad);
+        pair.measured.clone_from(&pair.planned);
         let found = of(&pair);
         prop_assert_eq!(found.joints[0].tracking_error.peak_rad, 0.0);
         prop_assert!(found.transitions.iter().all(|t| t.peak_error_rad == 0.0 && t.error_area_rad_s == 0.0));
@@ -126,7 +127,7 @@ proptest! {
     fn a_constant_offset_shifts_the_bias_and_nothing_in_time(seed in 0..1000_u64, offset in -0.02..0.02_f64) {
         let pair = noiseless(seed, 0.1);
         let mut off = pair.clone();
-        off.measured_rad.iter_mut().for_each(|y| *y -= offset);
+        off.measured.iter_mut().for_each(|y| *y -= offset);
         let (a, b) = (of(&pair), of(&off));
         let shift = b.joints[0].tracking_error.bias_rad - a.joints[0].tracking_error.bias_rad;
         prop_assert!((shift - offset).abs() < 1e-9);
@@ -178,8 +179,8 @@ proptest! {
     fn a_mirrored_run_gives_mirrored_results(seed in 0..1000_u64) {
         let pair = synthetic_run(seed, &Sensing::default()).pair;
         let mut mirrored = pair.clone();
-        let speeds = mirrored.planned_rad_s.as_mut().unwrap();
-        mirrored.planned_rad.iter_mut().chain(&mut mirrored.measured_rad).chain(speeds).for_each(|x| *x = -*x);
+        let speeds = mirrored.planned_velocity.as_mut().unwrap();
+        mirrored.planned.iter_mut().chain(&mut mirrored.measured).chain(speeds).for_each(|x| *x = -*x);
         let (a, b) = (of(&pair), of(&mirrored));
         let back: Vec<Transition> = b
             .transitions
@@ -198,7 +199,7 @@ proptest! {
     #[test]
     fn given_speeds_and_slopes_of_the_plan_find_the_same_starts(seed in 0..1000_u64) {
         let pair = noiseless(seed, 0.1);
-        let bare = Pair { planned_rad_s: None, ..pair.clone() };
+        let bare = Pair { planned_velocity: None, ..pair.clone() };
         let (a, b) = (onsets(&of(&pair)), onsets(&of(&bare)));
         prop_assert_eq!(a.len(), b.len());
         for (a, b) in a.iter().zip(&b) {

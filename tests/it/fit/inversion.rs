@@ -32,8 +32,8 @@ fn figures(job: &Job, measured: &Series) -> Figures {
     let peaks: Vec<f64> = found.transitions.iter().map(|t| t.peak_error_rad / DEGREE_RAD).collect();
     let mut acceleration = [0.0; 6];
     for (most, pair) in acceleration.iter_mut().zip(&pairs) {
-        let fits = local_quadratic(&pair.t_s, &pair.measured_rad, &pair.segments, 0.15, 9);
-        *most = fits.iter().map(|fit| fit.acceleration_rad_s2.abs() / DEGREE_RAD).fold(0.0, f64::max);
+        let fits = local_quadratic(&pair.t_s, &pair.measured, &pair.segments, 0.15, 9);
+        *most = fits.iter().map(|fit| fit.acceleration.abs() / DEGREE_RAD).fold(0.0, f64::max);
     }
     Figures {
         mean_peak: peaks.iter().sum::<f64>() / peaks.len() as f64,

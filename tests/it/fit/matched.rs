@@ -43,7 +43,7 @@ fn measured(plan: &Series, seed: u64, lost: impl Fn(f64) -> bool) -> Series {
         let noisy: Vec<(f64, f64)> = exact
             .t_s()
             .iter()
-            .zip(exact.position_rad())
+            .zip(exact.position())
             .filter(|(t_s, _)| !lost(**t_s))
             .map(|(t_s, angle_rad)| {
                 let noise: f64 = StandardNormal.sample(&mut rng);
@@ -88,7 +88,7 @@ fn gaps_and_a_plan_without_speeds_do_not_mislead() {
     let log = measured(&plan, 1, |t_s| (6.0..7.5).contains(&t_s) || (t_s * 100.0).round() % 7.0 == 0.0);
     assert_eq!(log.tracks[0].segments().len(), 2);
     let bare = &plan.tracks[0];
-    let bare = Track::new("J", bare.t_s(), bare.position_rad().to_vec(), &[]).unwrap();
+    let bare = Track::new("J", bare.t_s(), bare.position().to_vec(), &[]).unwrap();
     let fit = fitted(&[(&Series { tracks: vec![bare] }, &log)]);
     assert_eq!(fit.joints[0].runs, 2);
     assert!(worst(&fit) < 0.08, "{} {:?}", worst(&fit), fit.joints[0]);
@@ -131,7 +131,7 @@ fn a_compensated_command_leaves_the_model_a_fifth_of_the_error_and_keeps_its_spe
     assert!(joint.compensated_rms_rad.unwrap() < 0.2 * joint.plain_rms_rad.unwrap(), "{joint:?}");
     assert!(joint.peak_correction_rad <= 1.5 * DEGREE_RAD);
     let command = &made.command.tracks[0];
-    let (q, v) = (command.position_rad(), command.velocity_rad_s().unwrap());
+    let (q, v) = (command.position(), command.velocity().unwrap());
     for k in 1..q.len() - 1 {
         let slope = (q[k + 1] - q[k - 1]) / 0.02;
         assert!((slope - v[k]).abs() < 2e-3, "{k}: {slope} {}", v[k]);
@@ -155,10 +155,10 @@ fn a_trial_stays_in_range_and_one_without_room_is_refused() {
         let run = excite(&rooms, &excitation).unwrap();
         for (track, room) in run.tracks.iter().zip(&rooms) {
             let inside = |q: &f64| (room.range_rad[0]..=room.range_rad[1]).contains(q);
-            assert!(track.position_rad().iter().all(inside));
-            assert_eq!(track.position_rad().last(), Some(&room.home_rad));
+            assert!(track.position().iter().all(inside));
+            assert_eq!(track.position().last(), Some(&room.home_rad));
         }
-        let moving = |k: usize| run.tracks.iter().filter(|t| t.velocity_rad_s().unwrap()[k] != 0.0).count();
+        let moving = |k: usize| run.tracks.iter().filter(|t| t.velocity().unwrap()[k] != 0.0).count();
         assert!((0..run.tracks[0].len()).all(|k| moving(k) <= 1));
     }
     let tight = [JointRoom { range_rad: [0.95, 1.05], ..rooms[1].clone() }];

@@ -86,7 +86,7 @@ fn gain(truth: &JointTruth) -> f64 {
 /// Amid the angles of each joint, where a fit's gains hold.
 fn middle_rad(plan: &Series) -> Vec<f64> {
     let middle = |track: &Track| {
-        let angles = track.position_rad().iter().copied();
+        let angles = track.position().iter().copied();
         0.5 * (angles.clone().fold(f64::INFINITY, f64::min) + angles.fold(f64::NEG_INFINITY, f64::max))
     };
     plan.tracks.iter().map(middle).collect()

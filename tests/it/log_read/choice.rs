@@ -12,7 +12,7 @@ fn the_plan_is_found_by_name_and_commands_are_no_measurement() {
     let recording =
         read_with(&log, &options(&["/command/joint_states:position"], &["/planned/joint_states"], &[]));
     assert_eq!(recording.source.planned_topic, "/command/joint_states");
-    assert_eq!(recording.planned.tracks[0].position_rad()[0], 3.0);
+    assert_eq!(recording.planned.tracks[0].position()[0], 3.0);
 }
 
 #[test]

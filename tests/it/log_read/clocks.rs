@@ -85,7 +85,7 @@ fn repeated_stamps_are_dropped_and_counted() {
     assert_eq!(count(&recording.remarks, Code::DuplicateStamp), 5);
     let track = &recording.measured.tracks[0];
     assert_eq!(
-        (track.len(), track.position_rad()[2], track.position_rad()[3]),
+        (track.len(), track.position()[2], track.position()[3]),
         (45, measurement(2)[0], measurement(4)[0])
     );
 }
@@ -98,7 +98,7 @@ fn late_samples_are_put_in_their_place() {
         k => stamp(k),
     }));
     assert_eq!(count(&recording.remarks, Code::Reordered), 1);
-    assert_eq!(recording.measured.tracks[0].position_rad()[10], measurement(11)[0]);
+    assert_eq!(recording.measured.tracks[0].position()[10], measurement(11)[0]);
 }
 
 #[test]

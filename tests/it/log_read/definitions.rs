@@ -195,7 +195,7 @@ proptest! {
         prop_assert_eq!(joints(&recording.measured), NAMES);
         for (j, track) in recording.measured.tracks.iter().enumerate() {
             for k in 0..3 {
-                prop_assert_eq!(track.position_rad()[k as usize], measurement(k)[j], "{:?}\n{}", kind, texts.ros2msg());
+                prop_assert_eq!(track.position()[k as usize], measurement(k)[j], "{:?}\n{}", kind, texts.ros2msg());
             }
         }
     }

@@ -55,10 +55,10 @@ fn degrees_are_noticed_never_rescaled_unless_told() {
         |k| (NAMES.to_vec(), measurement(k).iter().map(|q| q * 180.0 / std::f64::consts::PI).collect());
     let recording = read(&log_of(degrees));
     assert_eq!(count(&recording.remarks, Code::LooksLikeDegrees), 2);
-    assert!(recording.measured.tracks[0].position_rad()[49] > 20.0);
+    assert!(recording.measured.tracks[0].position()[49] > 20.0);
     let told = ReadOptions { measured_in_degrees: true, ..ReadOptions::default() };
     let recording = read_with(&log_of(degrees), &told);
-    assert!((recording.measured.tracks[0].position_rad()[49] - measurement(49)[0]).abs() < 1e-12);
+    assert!((recording.measured.tracks[0].position()[49] - measurement(49)[0]).abs() < 1e-12);
     assert_eq!(count(&recording.remarks, Code::LooksLikeDegrees), 0);
 }
 
@@ -79,7 +79,7 @@ fn a_wrap_is_undone_for_joints_declared_continuous_only() {
     let told = ReadOptions { continuous: vec!["a".into()], ..ReadOptions::default() };
     let recording = read_with(&log_of(wrapped), &told);
     assert_eq!(count(&recording.remarks, Code::Wrapped), 0);
-    assert!((recording.measured.tracks[0].position_rad()[49] - 9.8).abs() < 1e-9);
+    assert!((recording.measured.tracks[0].position()[49] - 9.8).abs() < 1e-9);
 }
 
 #[test]

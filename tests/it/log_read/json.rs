@@ -44,7 +44,7 @@ fn a_group_without_a_name_or_a_number_shifts_no_other() {
     });
     let recording = read(&log);
     assert_eq!(recording.measured.track("a"), None);
-    assert_eq!(recording.measured.track("b").unwrap().position_rad()[3], measurement(3)[1]);
+    assert_eq!(recording.measured.track("b").unwrap().position()[3], measurement(3)[1]);
 }
 
 #[test]

@@ -101,7 +101,7 @@ fn assert_values(series: &Series, values: impl Fn(i64) -> Vec<f64>) {
     assert_eq!(joints(series), NAMES);
     for (j, track) in series.tracks.iter().enumerate() {
         assert_eq!(track.len() as i64, SAMPLES, "samples of {}", track.name());
-        for (k, (&t_s, &q)) in track.t_s().iter().zip(track.position_rad()).enumerate() {
+        for (k, (&t_s, &q)) in track.t_s().iter().zip(track.position()).enumerate() {
             assert!((t_s - k as f64 * 0.02).abs() < 1e-9, "sample {k} at {t_s} s");
             assert_eq!(q, values(k as i64)[j], "sample {k} of {}", track.name());
         }

@@ -23,10 +23,10 @@ fn joints_are_joined_by_name_whatever_their_order_and_subset() {
     let recording = read(&log);
     let (a, b) = (recording.measured.track("a").unwrap(), recording.measured.track("b").unwrap());
     assert_eq!((a.len(), b.len()), (34, 50));
-    for (&t_s, &q) in a.t_s().iter().zip(a.position_rad()) {
+    for (&t_s, &q) in a.t_s().iter().zip(a.position()) {
         assert_eq!(q, measurement((t_s / 0.02).round() as i64)[0]);
     }
-    for (k, &q) in b.position_rad().iter().enumerate() {
+    for (k, &q) in b.position().iter().enumerate() {
         assert_eq!(q, measurement(k as i64)[1]);
     }
     assert_eq!(count(&recording.remarks, Code::JointsChange), 49);
@@ -43,7 +43,7 @@ fn joint_states_in_every_encoding_with_velocities() {
         add_joint_state(&mut log, "/joint_states", measurement);
         let recording = read(&log);
         assert_values(&recording.planned, plan);
-        assert_eq!(recording.planned.tracks[1].velocity_rad_s(), Some(&[-1.0; 50][..]), "{kind:?}");
+        assert_eq!(recording.planned.tracks[1].velocity(), Some(&[-1.0; 50][..]), "{kind:?}");
     }
 }
 
@@ -94,11 +94,11 @@ fn dynamic_joint_states_yield_positions_and_other_interfaces_by_name() {
         let [b, a] = &recording.measured.tracks[..] else { panic!("{:?}", joints(&recording.measured)) };
         assert_eq!((b.name(), a.name()), ("b", "a"));
         for k in 0..SAMPLES {
-            assert_eq!([a.position_rad()[k as usize], b.position_rad()[k as usize]], measurement(k)[..]);
+            assert_eq!([a.position()[k as usize], b.position()[k as usize]], measurement(k)[..]);
         }
         assert!(recording.remarks.is_empty(), "{kind:?} {:?}", recording.remarks);
         let pressure = read_with(&log, &options(&[], &["/dynamic_joint_states:pressure"], &["b"]));
-        assert_eq!(pressure.measured.tracks[0].position_rad()[0], 1e5);
+        assert_eq!(pressure.measured.tracks[0].position()[0], 1e5);
     }
 }
 

@@ -5,10 +5,11 @@ use std::{ops::ControlFlow, path::Path};
 use hydrotrace::{
     arm::Arm,
     moea::{Algorithm, Budget},
-    plan::{Evaluator, Found, Limit, Margin, Objectives, Rule, Search, Setup, Timing, choose, search},
+    plan::{
+        Evaluator, Found, Limit, Margin, Objectives, Reference, Rule, Search, Setup, Timing, choose, search,
+    },
     task::{Bounds, Place, Task},
     units::degrees_from_radians,
-    workflow::plan::Gauge,
 };
 use proptest::prelude::*;
 
@@ -116,9 +117,9 @@ fn a_start_from_descents_misses_far_less_of_the_hypervolume_than_a_random_one_at
             front(&setup, options).front.iter().map(|timing| timing.objectives.as_array()).collect()
         };
         let best = objectives(&Search { front: 1000, ..evaluations(15_000) });
-        let gauge = Gauge::of(best.iter().copied());
-        let all = gauge.measure(best.into_iter());
-        let missing = |options: &Search| all - gauge.measure(objectives(options).into_iter());
+        let reference = Reference::of(best.iter().copied());
+        let all = reference.measure(best.into_iter());
+        let missing = |options: &Search| all - reference.measure(objectives(options).into_iter());
         let seeded = missing(&evaluations(3000));
         let random = missing(&Search { seeded: false, algorithm: Algorithm::Nsga3, ..evaluations(3000) });
         assert!(2.0 * seeded < random, "{name}: {seeded} and {random} of {all}");

@@ -28,9 +28,9 @@ fn plan_and_measurement_read_back_and_the_command_is_neither() {
     let recording = read_recording(&[path], &ReadOptions::default()).unwrap();
     for (j, joint) in outputs.record.joints.iter().enumerate() {
         let measured = recording.measured.track(&joint.name).unwrap();
-        assert_eq!(measured.position_rad(), joint.measured_rad);
+        assert_eq!(measured.position(), joint.measured_rad);
         let planned = recording.planned.track(&joint.name).unwrap();
-        assert!(planned.position_rad().iter().zip(&outputs.planned[j]).all(|(a, b)| *a == b.0));
+        assert!(planned.position().iter().zip(&outputs.planned[j]).all(|(a, b)| *a == b.0));
     }
     assert!(outputs.planned != outputs.command);
     assert!(recording.remarks.is_empty(), "{:?}", recording.remarks);

@@ -86,7 +86,7 @@ fn figures(preset: &str, (plan, payload): &(Series, Vec<PayloadChange>), seeds: 
         for pair in &pairs {
             let starts =
                 || found.transitions.iter().filter(|t| t.joint == pair.name).map(|t| t.planned_onset_s);
-            for ((t, planned), measured) in pair.t_s.iter().zip(&pair.planned_rad).zip(&pair.measured_rad) {
+            for ((t, planned), measured) in pair.t_s.iter().zip(&pair.planned).zip(&pair.measured) {
                 let within = starts().any(|start| (start..start + INSIDE_S).contains(t));
                 let error = degrees_from_radians(planned - measured);
                 if within { &mut inside } else { &mut outside }.push(error * error);

@@ -156,7 +156,7 @@ fn a_command_without_a_joint_or_without_speeds_is_refused() {
     let last = short.tracks.pop().unwrap();
     let error = simulate(&plant, &short, &[], 1).unwrap_err();
     assert_eq!(error, PlantError::NoCommand { joint: "J6".into(), what: "track" });
-    let bare = hydrotrace::series::Track::new("J6", last.t_s(), last.position_rad().to_vec(), &[]).unwrap();
+    let bare = hydrotrace::series::Track::new("J6", last.t_s(), last.position().to_vec(), &[]).unwrap();
     short.tracks.push(bare);
     let error = simulate(&plant, &short, &[], 1).unwrap_err();
     assert_eq!(error, PlantError::NoCommand { joint: "J6".into(), what: "speeds" });

@@ -32,7 +32,7 @@ fn peak_deg(plant: &Plant, acceleration_deg_s2: f64) -> f64 {
             if k == j { (from + sign * way_deg, sign * speed) } else { (POSE_DEG[k], 0.0) }
         });
         let record = simulate(plant, &command, &[], 1).unwrap();
-        let planned = command.tracks[j].position_rad();
+        let planned = command.tracks[j].position();
         let end = ((1.0 + ramp_s + cruise_s) * 100.0) as usize;
         let errors = planned.iter().zip(&record.joints[j].true_rad).take(end);
         peaks.push(errors.map(|(p, q)| (p - q).abs() / DEGREE_RAD).fold(0.0, f64::max));

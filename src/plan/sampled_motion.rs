@@ -1,14 +1,11 @@
 //! The motion of a plan, sampled for plots.
 
-use super::Judged;
-use crate::{
-    plan::{PlanError, Setup},
-    spline::{Quantity, Samples},
-};
+use super::{PlanError, PlanEvaluation, Setup};
+use crate::spline::{Quantity, Samples};
 
 /// Angles and speeds of all joints over a plan.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Course {
+pub struct SampledMotion {
     /// Instants, s, `[n]`.
     pub t_s: Vec<f64>,
     /// Angles, rad, `[joints][n]`.
@@ -22,14 +19,14 @@ pub struct Course {
 /// Instants of a course, less one.
 const STEPS: u32 = 600;
 
-impl Course {
+impl SampledMotion {
     /// Of a plan on its arm.
     ///
     /// # Errors
     ///
     /// [`PlanError`] if the times are not those of the task.
-    pub fn of(setup: &Setup, judged: &Judged) -> Result<Self, PlanError> {
-        let motion = setup.motion(&judged.times_s)?;
+    pub fn of(setup: &Setup, evaluation: &PlanEvaluation) -> Result<Self, PlanError> {
+        let motion = setup.motion(&evaluation.times_s)?;
         let t_s: Vec<f64> =
             (0..=STEPS).map(|i| motion.duration_s() * f64::from(i) / f64::from(STEPS)).collect();
         let mut samples = Samples::default();
@@ -38,7 +35,7 @@ impl Course {
         Ok(Self {
             position_rad: of(Quantity::Position),
             velocity_rad_s: of(Quantity::Velocity),
-            arrivals_s: judged.times_s.clone(),
+            arrivals_s: evaluation.times_s.clone(),
             t_s,
         })
     }
