@@ -18,7 +18,7 @@ pub struct Figures {
     /// Root mean square error, rad.
     pub rms_rad: Change,
     /// Magnitude exceeded for 5 % of the time, rad; of all joints only where every run has the same.
-    pub p95_rad: Change,
+    pub p95: Change,
     /// Largest error, rad.
     pub peak_rad: Change,
     /// Root mean square error at standstill, rad.
@@ -83,7 +83,7 @@ pub(super) fn figures(before: &[Report], after: &[Report], joints: &[String], ru
             Figures {
                 joint,
                 rms_rad: change(|v| v.rms),
-                p95_rad: change(|v| v.p95),
+                p95: change(|v| v.p95),
                 peak_rad: change(|v| v.peak),
                 standstill_rms_rad: change(|v| v.standstill),
                 path_rms_rad: change(|v| v.path),
@@ -117,11 +117,11 @@ fn values(report: &Report, name: &str, window_s: f64, rules: &Rules) -> Values {
     let inside = || fits.iter().zip(&whole).filter(|(_, whole)| **whole).map(|(fit, _)| fit);
     let peak = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).reduce(f64::max);
     Values {
-        rms: Some(joint.tracking_error.rms_rad),
-        p95: Some(joint.tracking_error.p95_rad),
-        peak: Some(joint.tracking_error.peak_rad),
-        standstill: joint.standstill_error.map(|error| error.rms_rad),
-        path: joint.path_error.map(|error| error.rms_rad),
+        rms: Some(joint.tracking_error.rms),
+        p95: Some(joint.tracking_error.p95),
+        peak: Some(joint.tracking_error.peak),
+        standstill: joint.standstill_error.map(|error| error.rms),
+        path: joint.path_error.map(|error| error.rms),
         lag: joint.lag_s,
         speed: peak(&mut inside().map(|fit| fit.velocity)),
         acceleration: peak(&mut inside().map(|fit| fit.acceleration)),
@@ -137,10 +137,10 @@ fn together(report: &Report, joints: &[String], each: &[Values]) -> Values {
     let lags: Vec<f64> = each.iter().filter_map(|values| values.lag).collect();
     Values {
         rms: pooled(common.iter().map(|joint| joint.tracking_error)),
-        p95: whole.map(|error| error.p95_rad),
+        p95: whole.map(|error| error.p95),
         peak: most(|values| values.peak),
         standstill: pooled(common.iter().filter_map(|joint| joint.standstill_error)),
-        path: replay.whole_run.path_error.filter(|_| complete).map(|error: PathError| error.rms_rad),
+        path: replay.whole_run.path_error.filter(|_| complete).map(|error: PathError| error.rms),
         lag: (!lags.is_empty()).then(|| lags.iter().sum::<f64>() / lags.len() as f64),
         speed: most(|values| values.speed),
         acceleration: most(|values| values.acceleration),
@@ -150,7 +150,7 @@ fn together(report: &Report, joints: &[String], each: &[Values]) -> Values {
 /// Root mean square over several, weighted by time.
 fn pooled(errors: impl Iterator<Item = TrackingError>) -> Option<f64> {
     let (square, time_s) = errors.fold((0.0, 0.0), |(square, time_s), error| {
-        (square + error.rms_rad * error.rms_rad * error.duration_s, time_s + error.duration_s)
+        (square + error.rms * error.rms * error.duration_s, time_s + error.duration_s)
     });
     (time_s > 0.0).then(|| (square / time_s).sqrt())
 }

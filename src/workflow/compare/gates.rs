@@ -90,7 +90,7 @@ pub(super) fn gates(
             result(Gate::P, limit, p.map(|peak| peak.p_value), kept)
         }),
         limits.max_transition_growth_rad.map(|limit| {
-            let growth = |pair: &TransitionPair| pair.peak_error_rad.difference.unwrap_or(f64::NEG_INFINITY);
+            let growth = |pair: &TransitionPair| pair.peak_error.difference.unwrap_or(f64::NEG_INFINITY);
             let worst = pairs.iter().max_by(|a, b| growth(a).total_cmp(&growth(b)));
             GateResult {
                 joint: worst.map(|pair| pair.joint.clone()),
@@ -98,8 +98,8 @@ pub(super) fn gates(
                 ..at_most(Gate::TransitionGrowth, limit, worst.map(growth))
             }
         }),
-        limits.max_rms_ratio.map(|limit| at_most(Gate::RmsRatio, limit, of(|all| all.rms_rad))),
-        limits.max_peak_ratio.map(|limit| at_most(Gate::PeakRatio, limit, of(|all| all.peak_rad))),
+        limits.max_rms_ratio.map(|limit| at_most(Gate::RmsRatio, limit, of(|all| all.rms))),
+        limits.max_peak_ratio.map(|limit| at_most(Gate::PeakRatio, limit, of(|all| all.peak))),
     ];
     results.into_iter().flatten().collect()
 }

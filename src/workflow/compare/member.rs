@@ -30,7 +30,7 @@ impl Member<'_> {
             transitions: replay.transitions.iter().filter(|t| joints.contains(&t.joint)).count(),
             plan_duration_s: plan_duration_s(replay, joints),
             offset_s: self.matched.offset_s,
-            plan_difference_rad: plans.map(|plans| plans.most_rad),
+            plan_difference: plans.map(|plans| plans.most_rad),
             same_plan: plans.is_some_and(|plans| plans.same),
         }
     }
@@ -115,8 +115,8 @@ pub(super) fn pairs(
                 .first()
                 .map_or(transition.planned_onset_s, |(t, _)| t.planned_onset_s),
             paired_by: by.unwrap_or(PairedBy::Clock),
-            peak_error_rad: change(|t| Some(t.peak_error_rad)),
-            rms_error_rad: change(|t| Some(t.rms_error_rad)),
+            peak_error: change(|t| Some(t.peak_error)),
+            rms_error: change(|t| Some(t.rms_error)),
             onset_delay_s: change(|t| t.onset_delay_s),
             answer_before: worst(&before),
             answer_after: worst(&after),
@@ -132,7 +132,7 @@ pub(super) fn pairs(
                 kind: t.kind,
                 direction: t.direction,
                 planned_onset_s: t.planned_onset_s,
-                peak_error_rad: t.peak_error_rad,
+                peak_error: t.peak_error,
             })
             .collect::<Vec<_>>()
     };

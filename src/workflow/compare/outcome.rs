@@ -43,7 +43,7 @@ pub struct Run {
     pub offset_s: f64,
     /// Largest difference of any joint's plan from that of the first run before, at equal times, rad; `None`
     /// where they share too little time.
-    pub plan_difference_rad: Option<f64>,
+    pub plan_difference: Option<f64>,
     /// Whether it is the same plan.
     pub same_plan: bool,
 }
@@ -65,9 +65,9 @@ pub struct TransitionPair {
     /// How the two were found to be the same.
     pub paired_by: PairedBy,
     /// Largest error in the window, rad.
-    pub peak_error_rad: Change,
+    pub peak_error: Change,
     /// Root mean square error in the window, rad.
-    pub rms_error_rad: Change,
+    pub rms_error: Change,
     /// Measured minus planned onset, s; `None` where an answer has no instant in a run.
     pub onset_delay_s: Change,
     /// What became of the start before; of several runs the worst.
@@ -93,7 +93,7 @@ pub struct Unpaired {
     /// When its plan starts in that run, s.
     pub planned_onset_s: f64,
     /// Its largest error, rad.
-    pub peak_error_rad: f64,
+    pub peak_error: f64,
 }
 
 /// What a change did, before it is rendered.

@@ -111,8 +111,8 @@ fn summary(pairs: &[TransitionPair], measure: Measure, scope: Scope, rules: &Rul
         Scope::Joint(joint) => pair.joint == *joint,
     };
     let change = |pair: &TransitionPair| match measure {
-        Measure::PeakError => pair.peak_error_rad,
-        Measure::RmsError => pair.rms_error_rad,
+        Measure::PeakError => pair.peak_error,
+        Measure::RmsError => pair.rms_error,
         Measure::OnsetDelay => pair.onset_delay_s,
     };
     // When, before, after.

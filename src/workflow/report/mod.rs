@@ -246,21 +246,21 @@ fn gates(limits: &Gates, replay: &Replay) -> Vec<GateResult> {
         Gate::TransitionPeak,
         limits.max_transition_peak_rad,
         transitions()
-            .map(|t| (Some(t.peak_error_rad), t.joint.as_str(), Some(t.planned_onset_s + t.time_to_peak_s)))
+            .map(|t| (Some(t.peak_error), t.joint.as_str(), Some(t.planned_onset_s + t.time_to_peak_s)))
             .collect(),
     );
     check(
         Gate::Rms,
         limits.max_rms_rad,
         joints()
-            .map(|j| (Some(j.tracking_error.rms_rad), j.name.as_str(), Some(j.tracking_error.peak_time_s)))
+            .map(|j| (Some(j.tracking_error.rms), j.name.as_str(), Some(j.tracking_error.peak_time_s)))
             .collect(),
     );
     check(
         Gate::Peak,
         limits.max_peak_rad,
         joints()
-            .map(|j| (Some(j.tracking_error.peak_rad), j.name.as_str(), Some(j.tracking_error.peak_time_s)))
+            .map(|j| (Some(j.tracking_error.peak), j.name.as_str(), Some(j.tracking_error.peak_time_s)))
             .collect(),
     );
     check(
@@ -269,7 +269,7 @@ fn gates(limits: &Gates, replay: &Replay) -> Vec<GateResult> {
         joints()
             .filter_map(|j| {
                 let error = j.standstill_error?;
-                Some((Some(error.rms_rad), j.name.as_str(), Some(error.peak_time_s)))
+                Some((Some(error.rms), j.name.as_str(), Some(error.peak_time_s)))
             })
             .collect(),
     );
