@@ -8,7 +8,11 @@ use super::LogError;
 use crate::remark::{Code, Remarks};
 
 /// The files that together are one recording: files as given, bag directories opened.
-pub(super) fn files(paths: &[PathBuf], remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogError> {
+///
+/// # Errors
+///
+/// [`LogError`] if a directory is no bag, or of another storage.
+pub fn recording_files(paths: &[PathBuf], remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogError> {
     let mut files = Vec::new();
     for path in paths {
         if path.is_dir() {

@@ -21,7 +21,7 @@ const TOPIC: &str = "robot_description";
 /// [`LogError`] if a file cannot be opened or is no log.
 pub fn read_description(paths: &[PathBuf]) -> Result<Option<String>, LogError> {
     let mut best: Option<(String, String)> = None;
-    for path in bag::files(paths, &mut Remarks::default())? {
+    for path in bag::recording_files(paths, &mut Remarks::default())? {
         let map = MappedFile::open(&path).map_err(LogError::file("open", &path))?;
         let layout = scan(&map).ok_or_else(|| not_mcap(&path, &map))?;
         let definitions = Definitions::gather(&layout, false);

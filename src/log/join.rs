@@ -52,7 +52,7 @@ pub struct Addition<'a> {
 ///
 /// [`LogError`] if a file is no log or has a plan on our topic, or `output` cannot be written.
 pub fn join(logs: &[PathBuf], addition: &Addition<'_>, output: &Path) -> Result<u64, LogError> {
-    let paths = bag::files(logs, &mut Remarks::default())?;
+    let paths = bag::recording_files(logs, &mut Remarks::default())?;
     let maps = paths
         .iter()
         .map(|path| MappedFile::open(path).map_err(LogError::file("open", path)))

@@ -156,7 +156,7 @@ pub(super) fn extract(
     let mut remarks = Remarks::default();
     // A bag says the order of its parts; of single files the recorder's clock does.
     let ordered = paths.iter().any(|path| path.is_dir());
-    let paths = bag::files(paths, &mut remarks)?;
+    let paths = bag::recording_files(paths, &mut remarks)?;
     let maps = paths
         .iter()
         .map(|path| MappedFile::open(path).map_err(LogError::file("open", path)))

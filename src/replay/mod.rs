@@ -24,7 +24,7 @@ mod signals;
 mod synthetic;
 mod tracking;
 mod transition;
-mod unit;
+pub(crate) mod unit;
 
 use rayon::prelude::*;
 

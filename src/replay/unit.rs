@@ -5,11 +5,11 @@ use serde::{Deserialize, Deserializer, Serializer, de::Error};
 use crate::series::JointKind;
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that serde asks for")]
-pub(super) fn serialize<S: Serializer>(kind: &JointKind, serializer: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn serialize<S: Serializer>(kind: &JointKind, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(kind.unit())
 }
 
-pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<JointKind, D::Error> {
+pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<JointKind, D::Error> {
     let unit = String::deserialize(deserializer)?;
     let kinds = [JointKind::Turns, JointKind::Slides];
     let kind = kinds.into_iter().find(|kind| kind.unit() == unit);

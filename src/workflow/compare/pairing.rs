@@ -1,6 +1,6 @@
 //! Which transition of one run is which of another.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::plans::{PlanDifference, plan_difference};
 use crate::{math::median, replay::Transition, series::Pair, workflow::report::Report};
@@ -16,7 +16,7 @@ const SAME_RHYTHM: f64 = 0.8;
 const MOST_MISSING: usize = 8;
 
 /// How two transitions were found to be the same one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum PairedBy {
@@ -209,33 +209,9 @@ impl<'a> Starts<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::replay::{Answer, Kind, OnsetMethod};
 
     fn start(direction: i8, at_s: f64) -> Transition {
-        Transition {
-            joint: "a".into(),
-            kind: Kind::Start,
-            direction,
-            planned_onset_s: at_s,
-            answer: Answer::Never,
-            measured_onset_s: None,
-            onset_method: OnsetMethod::Fit,
-            onset_delay_s: None,
-            onset_delay_interval_s: None,
-            displacement_delay_s: None,
-            breakaway_error: None,
-            jump_rad_s: None,
-            peak_error: 0.0,
-            peak_error_signed: 0.0,
-            time_to_peak_s: 0.0,
-            error_area: 0.0,
-            rms_error: 0.0,
-            overshoot: 0.0,
-            settling_time_s: None,
-            window_s: [at_s, at_s + 1.0],
-            samples: 1,
-            time_resolution_s: 0.01,
-        }
+        Transition { joint: "a".into(), direction, planned_onset_s: at_s, ..Transition::default() }
     }
 
     fn partners(a: &[Transition], b: &[Transition], offset_s: f64, same: bool) -> Vec<Option<usize>> {

@@ -1,6 +1,6 @@
 //! What to do about what a report found.
 
-use super::Report;
+use super::outcome::Report;
 use crate::replay::{JointReplay, Transition, Verdict};
 
 /// A next step, the most urgent first.

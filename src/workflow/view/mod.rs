@@ -12,13 +12,16 @@ use thiserror::Error;
 
 pub use arm::{ArmOrigin, MovingArm, Poses, Sight};
 
-use super::carried::plan_log::FRONT;
+use super::{
+    carried::plan_log::FRONT,
+    report::{Analysis, analyse},
+};
 use crate::{
     arm::ArmError,
     log::{LogError, ReadOptions, Recording, read_plan, read_recording},
     remark::Remarks,
-    replay::{Rules, Transition, replay},
-    series::{Pair, Series, align},
+    replay::{Rules, Transition},
+    series::{Pair, Series},
 };
 
 /// What to show.
@@ -126,14 +129,12 @@ fn scene(
         Err(LogError::Missing { missing: "measured", .. }) => read_plan(&paths, &inputs.read)?,
         other => other?,
     };
-    let joints = recording.planned.tracks.iter();
-    let pairs: Vec<Pair> =
-        joints.filter_map(|planned| align(planned, recording.measured.track(planned.name())?)).collect();
-    let found = replay(&pairs, &inputs.rules);
+    let mut remarks = recording.remarks.clone();
+    let Analysis { pairs, replay, .. } = analyse(&recording, &inputs.rules, &mut remarks);
     let arm = arm::find(&paths, &mut recording, given, &inputs.packages)?;
     let front = recording.attachments.iter().find(|file| file.name == FRONT).and_then(|f| front(&f.data));
-    let Recording { planned, measured, remarks, .. } = recording;
-    Ok(Scene { name, planned, measured, pairs, transitions: found.transitions, arm, front, remarks })
+    let Recording { planned, measured, .. } = recording;
+    Ok(Scene { name, planned, measured, pairs, transitions: replay.transitions, arm, front, remarks })
 }
 
 fn front(document: &[u8]) -> Option<Front> {
