@@ -9,7 +9,7 @@ use hydrotrace::{
     fit::{Compensation, Excitation, JointRoom, Observation, compensate, excite, fit},
     log::{Attachment, WriteOptions},
     plant::{JointRecord, Parameters, Plant},
-    render::judged_json,
+    render::plan::judged_json,
     series::{Series, Track},
     units::DEGREE_RAD,
     workflow::{
