@@ -2,11 +2,8 @@
 
 use serde::Serialize;
 
-use super::{
-    json,
-    kit::{Block, Document, Id, NONE, Section, Sentence, Table, counted, fact},
-};
-use crate::{log::Understood, remark::Remark, workflow::import::Outputs};
+use super::kit::{Block, Document, Id, NONE, Section, Sentence, Table, counted, fact};
+use crate::{document, log::Understood, remark::Remark, workflow::import::Outputs};
 
 #[derive(Serialize)]
 struct Json<'a> {
@@ -18,9 +15,9 @@ struct Json<'a> {
 
 /// As JSON.
 pub fn json(imported: &Outputs) -> String {
-    json::pretty(&Json {
+    document::pretty(&Json {
         format: "hydrotrace.import.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         understood: &imported.understood,
         remarks: imported.remarks.as_slice(),
     })

@@ -2,11 +2,9 @@
 
 use serde::Serialize;
 
-use super::{
-    json,
-    kit::{Block, Document, Id, Section, Sentence, Table, fact},
-};
+use super::kit::{Block, Document, Id, Section, Sentence, Table, fact};
 use crate::{
+    document,
     log::{FileInfo, SourceInfo, Survey, TopicInfo},
     remark::Remark,
 };
@@ -26,9 +24,9 @@ struct Json<'a> {
 
 /// As JSON.
 pub fn json(survey: &Survey) -> String {
-    json::pretty(&Json {
+    document::pretty(&Json {
         format: "hydrotrace.info.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         files: &survey.files,
         topics: &survey.topics,
         attachments: &survey.attachments,

@@ -4,11 +4,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{
-    json,
-    kit::{Block, Document, Id, Section, Sentence, counted, deg, fact},
-};
-use crate::{remark::Remark, workflow::join::Joined};
+use super::kit::{Block, Document, Id, Section, Sentence, counted, deg, fact};
+use crate::{document, remark::Remark, workflow::join::Joined};
 
 #[derive(Serialize)]
 struct Json<'a> {
@@ -30,9 +27,9 @@ struct Json<'a> {
 
 /// As JSON.
 pub fn json(joined: &Joined) -> String {
-    json::pretty(&Json {
+    document::pretty(&Json {
         format: "hydrotrace.join.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         sent: joined.sent.as_deref(),
         sent_is_command: joined.commanded,
         at_s: joined.at_s,

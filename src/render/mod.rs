@@ -9,7 +9,6 @@ pub mod fit;
 pub mod import;
 pub mod info;
 pub mod join;
-mod json;
 pub mod kit;
 mod moea;
 pub mod next;

@@ -2,11 +2,8 @@
 
 use serde::Serialize;
 
-use super::{
-    json,
-    kit::{Document, Id, Section, Sentence},
-};
-use crate::{log::Recovered, remark::Remark};
+use super::kit::{Document, Id, Section, Sentence};
+use crate::{document, log::Recovered, remark::Remark};
 
 #[derive(Serialize)]
 struct Json<'a> {
@@ -21,9 +18,9 @@ struct Json<'a> {
 
 /// As JSON.
 pub fn json(recovered: &Recovered) -> String {
-    json::pretty(&Json {
+    document::pretty(&Json {
         format: "hydrotrace.recover.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         messages: recovered.messages,
         blocks: recovered.blocks,
         dropped_blocks: recovered.dropped_blocks,

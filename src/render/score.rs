@@ -2,11 +2,9 @@
 
 use serde::Serialize;
 
-use super::{
-    json,
-    kit::{Document, Id, NONE, Section, Sentence, Table, ms},
-};
+use super::kit::{Document, Id, NONE, Section, Sentence, Table, ms};
 use crate::{
+    document,
     replay::{Score, Spread},
     units::degrees_from_radians,
 };
@@ -21,7 +19,12 @@ struct Json<'a> {
 
 /// As JSON.
 pub fn json(seed: u64, scores: &[Score]) -> String {
-    json::pretty(&Json { format: "hydrotrace.detector.v1", program: json::PROGRAM, seed, rows: scores })
+    document::pretty(&Json {
+        format: "hydrotrace.detector.v1",
+        program: document::PROGRAM,
+        seed,
+        rows: scores,
+    })
 }
 
 /// As a table.

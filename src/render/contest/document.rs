@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::published::name;
 use crate::{
-    render::json,
+    document,
     workflow::contest::{BASELINE, Cell, Inputs, Row, Ruler, Study, Tally},
 };
 
@@ -38,26 +38,26 @@ struct Plan<'a> {
 }
 
 fn plan(row: &Row) -> Plan<'_> {
-    let judged = row.judged.as_ref();
-    let f = judged.map(|judged| judged.objectives.as_array());
+    let evaluation = row.evaluation.as_ref();
+    let f = evaluation.map(|evaluation| evaluation.objectives.as_array());
     Plan {
         plan: name(row.whose),
         printed_f2: row.printed.map(|printed| printed.f2),
         printed_f3: row.printed.and_then(|printed| printed.f3),
-        times_s: judged.map(|judged| judged.times_s.as_slice()),
+        times_s: evaluation.map(|evaluation| evaluation.times_s.as_slice()),
         duration_s: f.map(|f| f[0]),
         rms_jerk_rad_s3: f.map(|f| f[1]),
         rms_power_w: f.map(|f| f[2]),
-        limits_broken: judged.map(|judged| judged.broken().len()),
+        limits_broken: evaluation.map(|evaluation| evaluation.broken().len()),
     }
 }
 
 /// Tasks, then cells by task, budget and algorithm, then the paper's Table 3. Times are seconds, jerk is
 /// rad/s³, power W; what no run has is null.
 pub fn contest_json(inputs: &Inputs, study: &Study) -> String {
-    json::pretty(&Document {
+    document::pretty(&Document {
         format: "hydrotrace.bench-plan.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         first_seed: inputs.first_seed,
         seeds: inputs.seeds,
         reference_evaluations: inputs.reference_evaluations,

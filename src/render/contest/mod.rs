@@ -13,11 +13,8 @@ pub use tables::contest_document;
 
 use super::sample::{AGAINST, few, seeds};
 use crate::{
-    plan::Search,
-    workflow::{
-        contest::{Inputs, MEASURED_PLANS},
-        plan::BEYOND,
-    },
+    plan::{BEYOND, Search},
+    workflow::contest::{Inputs, MEASURED_PLANS},
 };
 
 /// What a reader of the figures must know.

@@ -37,12 +37,12 @@ pub(super) fn name(whose: Whose) -> String {
 fn row(row: &Row, joints: &[String]) -> Vec<String> {
     let printed = |value: Option<f64>| value.map_or(NONE.to_owned(), |value| format!("{value:.2}"));
     let mut cells = vec![name(row.whose)];
-    let (limit, worth) = match &row.judged {
-        Some(judged) => {
-            let [f1, f2, f3] = judged.objectives.as_array();
+    let (limit, worth) = match &row.evaluation {
+        Some(evaluation) => {
+            let [f1, f2, f3] = evaluation.objectives.as_array();
             let f2 = degrees_from_radians(f2);
             let worth = [format!("{f1:.2}"), format!("{f2:.4}"), format!("{f3:.2}")];
-            (limit_cell(judged, joints), worth)
+            (limit_cell(evaluation, joints), worth)
         }
         None => ("no such plan".to_owned(), [NONE; 3].map(str::to_owned)),
     };

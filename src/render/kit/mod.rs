@@ -32,6 +32,3 @@ pub use terminal_style::TerminalStyle;
 
 pub(in crate::render) use clean::clean;
 pub(in crate::render) use spark::spark;
-
-/// Name and version of this program, as documents and pages state them.
-pub const PROGRAM: &str = concat!("hydrotrace ", env!("CARGO_PKG_VERSION"));

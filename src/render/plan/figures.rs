@@ -2,14 +2,12 @@
 
 use super::{front::front_charts, page::motion_charts};
 use crate::{
+    plan::SampledMotion,
     render::kit::{
         Failure, Figure,
         figure::{figure, numbered},
     },
-    workflow::{
-        plan::front::Front,
-        plan::{Course, Planned},
-    },
+    workflow::{plan::Planned, plan::front::Front},
 };
 
 /// The plots of a search and of the motion it chose.
@@ -17,7 +15,7 @@ use crate::{
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn figures(title: &str, planned: &Planned, course: &Course) -> Result<Vec<Figure>, Failure> {
+pub fn figures(title: &str, planned: &Planned, course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
     let mut figures = front_figures(&Front::of(title, planned))?;
     figures.extend(motion_figures(&planned.joints, course)?);
     Ok(figures)
@@ -28,7 +26,7 @@ pub fn figures(title: &str, planned: &Planned, course: &Course) -> Result<Vec<Fi
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn motion_figures(joints: &[String], course: &Course) -> Result<Vec<Figure>, Failure> {
+pub fn motion_figures(joints: &[String], course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
     numbered("motion", &motion_charts(joints, course))
 }
 

@@ -7,6 +7,7 @@ use super::{
     tables::{document, judged_document, limit_cell},
 };
 use crate::{
+    plan::{PlanEvaluation, SampledMotion},
     render::kit::{
         self, Document, Fact, Id, Sentence, counted, fact,
         page::{
@@ -19,7 +20,7 @@ use crate::{
     units::degrees_from_radians,
     workflow::{
         plan::front::Front,
-        plan::{Course, Judged, Options, Planned},
+        plan::{Options, Planned},
     },
 };
 
@@ -30,7 +31,7 @@ pub fn page(
     options: &Options,
     bounds: &Bounds,
     planned: &Planned,
-    course: &Course,
+    course: &SampledMotion,
 ) -> String {
     let mut document = document(title, algorithm, options, bounds, planned);
     document.facts = facts(&planned.joints, algorithm, options, planned);
@@ -51,15 +52,20 @@ pub fn page(
 }
 
 /// One plan that was given, as one page.
-pub fn judged_page(title: &str, joints: &[String], judged: &Judged, course: &Course) -> String {
-    let mut document = judged_document(title, joints, judged);
+pub fn judged_page(
+    title: &str,
+    joints: &[String],
+    evaluation: &PlanEvaluation,
+    course: &SampledMotion,
+) -> String {
+    let mut document = judged_document(title, joints, evaluation);
     document.facts = vec![fact("joints", joints.join(", "))];
     let mut plots = Plots::default();
     let chapters = [
         Chapter {
             id: "summary",
             heading: "In short",
-            body: html! { div class="cards" { (limits(judged, joints)) (cost("The plan", judged)) } },
+            body: html! { div class="cards" { (limits(evaluation, joints)) (cost("The plan", evaluation)) } },
         },
         Chapter { id: "motion", heading: "The motion", body: motion(joints, course, &mut plots) },
         numbers(&document),
@@ -98,7 +104,7 @@ fn summary(planned: &Planned) -> Markup {
 }
 
 /// Angle and speed of each joint over time.
-fn motion(joints: &[String], course: &Course, plots: &mut Plots) -> Markup {
+fn motion(joints: &[String], course: &SampledMotion, plots: &mut Plots) -> Markup {
     let arrivals: Vec<String> = course.arrivals_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
     html! {
         p class="hint" { "Key points are reached at " (arrivals.join(", ")) " s. Drag to zoom, all joints together." }
@@ -109,7 +115,7 @@ fn motion(joints: &[String], course: &Course, plots: &mut Plots) -> Markup {
 }
 
 /// Joints with their angles and speeds.
-pub(super) fn motion_charts(joints: &[String], course: &Course) -> Vec<(String, Chart)> {
+pub(super) fn motion_charts(joints: &[String], course: &SampledMotion) -> Vec<(String, Chart)> {
     let motions = course.position_rad.iter().zip(&course.velocity_rad_s);
     let chart = |(joint, (angle, speed)): (&String, (&Vec<f64>, &Vec<f64>))| {
         (joint.clone(), joint_motion(joint, &course.t_s, angle, speed))
@@ -141,14 +147,14 @@ fn joint_motion(joint: &str, t_s: &[f64], angle_rad: &[f64], speed_rad_s: &[f64]
     }
 }
 
-fn limits(judged: &Judged, joints: &[String]) -> Markup {
-    let kept: Vec<bool> = judged.margins.iter().map(|margin| !margin.broken()).collect();
-    let line = format!("Nearest: {}", limit_cell(judged, joints));
+fn limits(evaluation: &PlanEvaluation, joints: &[String]) -> Markup {
+    let kept: Vec<bool> = evaluation.margins.iter().map(|margin| !margin.broken()).collect();
+    let line = format!("Nearest: {}", limit_cell(evaluation, joints));
     verdict(&kept, &[line], "")
 }
 
-fn cost(label: &str, judged: &Judged) -> Markup {
-    let f = judged.objectives;
+fn cost(label: &str, evaluation: &PlanEvaluation) -> Markup {
+    let f = evaluation.objectives;
     let body = html! {
         p { (format!("RMS jerk {:.4} deg/s3", degrees_from_radians(f.rms_jerk_rad_s3))) }
         p { (format!("RMS power {:.2} W", f.rms_power_w)) }
@@ -161,7 +167,7 @@ fn next(planned: &Planned) -> Vec<Sentence> {
         let doubts = counted(planned.remarks.as_slice().len(), "remark");
         format!("Look at what is doubtful about the task: {doubts} below.")
     });
-    let longer = (planned.hasty == Some(true))
+    let longer = (planned.fastest_converged == Some(false))
         .then(|| "Search longer (--evaluations): the fastest plan was still getting faster.".to_owned());
     let always = [
         "Another plan of the front may suit better: --choose fastest, smoothest, knee, or --weights.",

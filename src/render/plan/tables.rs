@@ -2,11 +2,11 @@
 
 use super::{name, shown};
 use crate::{
-    plan::{Limit, Margin, Objectives, Rule},
+    plan::{BEYOND, Limit, Margin, Objectives, PlanEvaluation, Rule},
     render::kit::{Document, Id, NONE, Section, Sentence, Table},
     task::Bounds,
     units::degrees_from_radians,
-    workflow::plan::{BEYOND, Judged, Options, Planned},
+    workflow::plan::{Options, Planned},
 };
 
 /// A limit or an interval used more than this binds.
@@ -36,7 +36,7 @@ pub fn document(
     );
     let [a, b, c] = &planned.best;
     let named = [("A  fastest", a), ("B  smoothest", b), ("C  least power", c), ("chosen", &planned.chosen)];
-    let hasty = (planned.hasty == Some(true)).then(|| {
+    let hasty = (planned.fastest_converged == Some(false)).then(|| {
         Sentence::advice(
             "The fastest plan was still getting faster when its share of the evaluations was used up: give more with \
              --evaluations.",
@@ -56,34 +56,34 @@ pub fn document(
 }
 
 /// One given plan, for people.
-pub fn judged_document(title: &str, joints: &[String], judged: &Judged) -> Document {
-    let work = format!("The joints do and take up {:.0} J of work together.", judged.energy_j);
-    let given = Section::plain(Id::SUMMARY, [plans([("given", judged)], joints)]);
+pub fn judged_document(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Document {
+    let work = format!("The joints do and take up {:.0} J of work together.", evaluation.energy_j);
+    let given = Section::plain(Id::SUMMARY, [plans([("given", evaluation)], joints)]);
     let mut document = Document::titled(title).with(given.with(Sentence::finding(work)));
-    document.sections.extend(margins(judged, joints));
+    document.sections.extend(margins(evaluation, joints));
     document
 }
 
 /// A row each.
-fn plans<const N: usize>(named: [(&str, &Judged); N], joints: &[String]) -> Table {
+fn plans<const N: usize>(named: [(&str, &PlanEvaluation); N], joints: &[String]) -> Table {
     Table::new(
         &["plan", "arrivals s"],
         &["time s", "RMS jerk deg/s3", "RMS power W", "nearest limit"],
-        named.map(|(name, judged)| row(name, judged, joints)),
+        named.map(|(name, evaluation)| row(name, evaluation, joints)),
     )
 }
 
-fn kept(judged: &Judged) -> String {
-    match judged.broken().len() {
+fn kept(evaluation: &PlanEvaluation) -> String {
+    match evaluation.broken().len() {
         0 => "All limits are kept.".to_owned(),
-        broken => format!("{broken} of {} limits are broken.", judged.margins.len()),
+        broken => format!("{broken} of {} limits are broken.", evaluation.margins.len()),
     }
 }
 
-fn row(name: &str, judged: &Judged, joints: &[String]) -> Vec<String> {
-    let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = judged.objectives;
-    let arrivals: Vec<String> = judged.times_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
-    let nearest = nearest(judged).into_iter().next();
+fn row(name: &str, evaluation: &PlanEvaluation, joints: &[String]) -> Vec<String> {
+    let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = evaluation.objectives;
+    let arrivals: Vec<String> = evaluation.times_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
+    let nearest = nearest(evaluation).into_iter().next();
     vec![
         name.to_owned(),
         arrivals.join(" "),
@@ -97,10 +97,10 @@ fn row(name: &str, judged: &Judged, joints: &[String]) -> Vec<String> {
 }
 
 /// The limit that is broken most, and how many more are, or the nearest.
-pub fn limit_cell(judged: &Judged, joints: &[String]) -> String {
-    let Some(worst) = nearest(judged).into_iter().next() else { return NONE.to_owned() };
+pub fn limit_cell(evaluation: &PlanEvaluation, joints: &[String]) -> String {
+    let Some(worst) = nearest(evaluation).into_iter().next() else { return NONE.to_owned() };
     let worst = format!("{} % {}", percent(worst.share), subject(worst, joints));
-    match judged.broken().len() {
+    match evaluation.broken().len() {
         0 => worst,
         1 => format!("BREAKS {worst}"),
         more => format!("BREAKS {worst}, {} more", more - 1),
@@ -114,10 +114,11 @@ fn percent(share: f64) -> String {
 }
 
 /// Limits, the nearest first. A range that is used most at a key point says nothing of the plan.
-fn nearest(judged: &Judged) -> Vec<&Margin> {
-    let at_point = |margin: &Margin| judged.times_s.iter().any(|t_s| (t_s - margin.t_s).abs() < AT_POINT_S);
+fn nearest(evaluation: &PlanEvaluation) -> Vec<&Margin> {
+    let at_point =
+        |margin: &Margin| evaluation.times_s.iter().any(|t_s| (t_s - margin.t_s).abs() < AT_POINT_S);
     let given = |margin: &Margin| margin.limit == Limit::Position && !margin.broken() && at_point(margin);
-    let mut nearest: Vec<&Margin> = judged.margins.iter().filter(|margin| !given(margin)).collect();
+    let mut nearest: Vec<&Margin> = evaluation.margins.iter().filter(|margin| !given(margin)).collect();
     nearest.sort_by(|a, b| b.share.total_cmp(&a.share));
     nearest
 }
@@ -175,9 +176,9 @@ fn trimmed(text: &str) -> String {
 }
 
 /// What of each limit is used, and the nearest with their places.
-fn margins(judged: &Judged, joints: &[String]) -> [Section; 2] {
+fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
     let share = |limit: Limit, joint: Option<usize>| {
-        let found = judged.margins.iter().find(|margin| margin.limit == limit && margin.joint == joint);
+        let found = evaluation.margins.iter().find(|margin| margin.limit == limit && margin.joint == joint);
         found.map_or(NONE.to_owned(), |margin| percent(margin.share))
     };
     let together = |limit: Limit| match share(limit, None) {
@@ -188,14 +189,14 @@ fn margins(judged: &Judged, joints: &[String]) -> [Section; 2] {
         let of = |values: &[f64]| values.get(j).copied().unwrap_or(f64::NAN);
         let mut row = vec![
             joint.clone(),
-            format!("{:.4}", degrees_from_radians(of(&judged.rms_jerk_rad_s3))),
-            format!("{:.2}", of(&judged.rms_power_w)),
+            format!("{:.4}", degrees_from_radians(of(&evaluation.rms_jerk_rad_s3))),
+            format!("{:.2}", of(&evaluation.rms_power_w)),
         ];
         row.extend(Limit::OF_JOINT.map(|limit| share(limit, Some(j))));
         row
     });
     let nearest: Vec<&Margin> =
-        nearest(judged).into_iter().take(NEAREST.max(judged.broken().len())).collect();
+        nearest(evaluation).into_iter().take(NEAREST.max(evaluation.broken().len())).collect();
     let listed_position = nearest.iter().any(|margin| margin.limit == Limit::Position);
     let listed = nearest.into_iter().map(|margin| {
         vec![
@@ -233,7 +234,7 @@ fn margins(judged: &Judged, joints: &[String]) -> [Section; 2] {
             [Table::new(&["limit"], &["value", "allowed", "used %", "at s"], listed)],
         )
         .with_all(position)
-        .with(Sentence::finding(kept(judged))),
+        .with(Sentence::finding(kept(evaluation))),
     ]
 }
 
@@ -249,7 +250,7 @@ fn allowed(margin: &Margin) -> String {
 }
 
 /// What the nearest timing of an infeasible task breaks, a line each, the worst first.
-pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &Judged) -> Vec<String> {
+pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation) -> Vec<String> {
     let lines = nearest.broken().into_iter().map(|margin| {
         format!(
             "{} is {} at {:.2} s, {} is allowed: {} % too much",
@@ -272,7 +273,12 @@ pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &Judged) -> Vec<
 }
 
 /// What the nearest plan exceeds its ceilings by, a line each, and what holds it there.
-pub fn ceiling_lines(bounds: &Bounds, joints: &[String], nearest: &Judged, share: [f64; 3]) -> Vec<String> {
+pub fn ceiling_lines(
+    bounds: &Bounds,
+    joints: &[String],
+    nearest: &PlanEvaluation,
+    share: [f64; 3],
+) -> Vec<String> {
     let f = nearest.objectives;
     let values = [
         (format!("time {:.2} s", f.duration_s), bounds.duration_s.map(|s| format!("{s:.2} s"))),

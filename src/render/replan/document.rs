@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use super::joint_name;
 use crate::{
+    document,
     plan::Objectives,
     remark::Remark,
-    render::json,
     workflow::replan::{Before, HeldTo, JointCommand, Predicted, Replanned},
 };
 
@@ -67,7 +67,7 @@ struct CommandMargin {
 /// A plan for the next run, SI units and radians throughout.
 pub fn replan_json(replanned: &Replanned) -> String {
     let search = replanned.search.as_ref();
-    let judged = replanned.judged.as_ref();
+    let evaluation = replanned.evaluation.as_ref();
     let command = replanned.command.as_ref();
     let margin = |margin: &crate::plan::Margin| CommandMargin {
         limit: crate::render::plan::name(margin.limit).replace(' ', "_"),
@@ -77,17 +77,17 @@ pub fn replan_json(replanned: &Replanned) -> String {
         share: margin.share,
         t_s: margin.t_s,
     };
-    json::pretty(&Document {
+    document::pretty(&Document {
         format: "hydrotrace.replan.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         fitted_to: &replanned.fitted_to,
         before: &replanned.before,
         after: &replanned.after,
         duration_s: replanned.duration_s,
         retimed: replanned.retimed,
         objectives_before: replanned.objectives_before.as_ref().map(Objectives::as_array),
-        objectives_after: judged.map(|judged| judged.objectives.as_array()),
-        times_s: judged.map(|judged| judged.times_s.as_slice()),
+        objectives_after: evaluation.map(|evaluation| evaluation.objectives.as_array()),
+        times_s: evaluation.map(|evaluation| evaluation.times_s.as_slice()),
         evaluations: search.map(|search| search.evaluations),
         held_to: search.map_or(&[], |search| search.held.as_slice()),
         command: command.map_or(&[], |command| command.joints.as_slice()),

@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use crate::{
+    document,
     log::SourceInfo,
     remark::Remark,
-    render::{json, kit},
     replay::{JointReplay, Rules, Stop, Transition, WholeRun},
     workflow::report::{Alignment, GateResult, Report},
 };
@@ -43,9 +43,9 @@ struct Document<'a> {
 
 /// The report, SI units and radians throughout.
 pub fn report_json(report: &Report) -> String {
-    json::pretty(&Document {
+    document::pretty(&Document {
         format: "hydrotrace.report.v1",
-        program: kit::PROGRAM,
+        program: document::PROGRAM,
         source: &report.source,
         alignment: &report.alignment,
         joints: &report.replay.joints,

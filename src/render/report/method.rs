@@ -61,7 +61,7 @@ pub(super) fn method(report: &Report) -> Option<Section> {
             format!(
                 "local quadratic over +-{} ms; noise {} deg, time resolution {} ms",
                 range(&|j| joints[j].thresholds.window_s, ms),
-                range(&|j| joints[j].noise.sigma_rad, |rad| format!(
+                range(&|j| joints[j].noise.sigma, |rad| format!(
                     "{:.4}",
                     crate::units::degrees_from_radians(rad)
                 )),

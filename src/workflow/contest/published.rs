@@ -2,9 +2,8 @@
 
 use super::ContestFailure;
 use crate::{
-    plan::{Objectives, Rule, Setup, Timing, choose, ends},
+    plan::{Objectives, PlanEvaluation, Rule, Setup, Timing, choose, ends},
     task::Bounds,
-    workflow::plan::Judged,
 };
 
 /// What the paper prints of a plan: f2 as "N", f3 as "J".
@@ -56,7 +55,7 @@ pub struct Row {
     /// What the paper prints; of the stretched plan f2 as it follows from A's, with the cube of time.
     pub printed: Option<Printed>,
     /// What it is worth here; `None` where no plan of ours is so.
-    pub judged: Option<Judged>,
+    pub evaluation: Option<PlanEvaluation>,
 }
 
 /// The comparison.
@@ -73,10 +72,10 @@ pub(super) fn table_3(setup: &Setup, front: &[Timing]) -> Result<Table3, Contest
     let mut rows = Vec::new();
     for plan in &TABLE_3 {
         let name = plan.name;
-        let judged = Judged::of(setup, &plan.times_s)?;
-        let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = judged.objectives;
+        let evaluation = PlanEvaluation::of(setup, &plan.times_s)?;
+        let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = evaluation.objectives;
         let printed = Printed { f2: plan.f2, f3: Some(plan.f3) };
-        rows.push(Row { whose: Whose::Paper(name), printed: Some(printed), judged: Some(judged) });
+        rows.push(Row { whose: Whose::Paper(name), printed: Some(printed), evaluation: Some(evaluation) });
         if name == "B" {
             rows.push(stretched(setup, duration_s)?);
         }
@@ -89,26 +88,26 @@ pub(super) fn table_3(setup: &Setup, front: &[Timing]) -> Result<Table3, Contest
             (Whose::Thriftiest(name), no_slower, Rule::Thriftiest),
         ] {
             let choice = choose(setup, front, &bounds, (rule, None)).ok();
-            let judged = choice.map(|choice| of(setup, &choice.timing)).transpose()?;
-            rows.push(Row { whose, printed: None, judged });
+            let evaluation = choice.map(|choice| of(setup, &choice.timing)).transpose()?;
+            rows.push(Row { whose, printed: None, evaluation });
         }
     }
     for (plan, end) in TABLE_3.iter().zip(ends(front).into_iter().flatten()) {
-        let judged = front.get(end).map(|timing| of(setup, timing)).transpose()?;
-        rows.push(Row { whose: Whose::End(plan.name), printed: None, judged });
+        let evaluation = front.get(end).map(|timing| of(setup, timing)).transpose()?;
+        rows.push(Row { whose: Whose::End(plan.name), printed: None, evaluation });
     }
     Ok(Table3 { joints: setup.joint_names(), rows })
 }
 
-fn of(setup: &Setup, timing: &Timing) -> Result<Judged, ContestFailure> {
-    Ok(Judged::of(setup, &setup.times_s(&timing.interval_s))?)
+fn of(setup: &Setup, timing: &Timing) -> Result<PlanEvaluation, ContestFailure> {
+    Ok(PlanEvaluation::of(setup, &setup.times_s(&timing.interval_s))?)
 }
 
 fn stretched(setup: &Setup, duration_s: f64) -> Result<Row, ContestFailure> {
     let [Plan { times_s, f2, .. }, ..] = &TABLE_3;
     let ratio = duration_s / times_s[6];
-    let judged = Judged::of(setup, &times_s.map(|t_s| ratio * t_s))?;
+    let evaluation = PlanEvaluation::of(setup, &times_s.map(|t_s| ratio * t_s))?;
     // Any mean of the jerk falls with the cube of time, rest at both ends given.
     let printed = Printed { f2: f2 / ratio.powi(3), f3: None };
-    Ok(Row { whose: Whose::Stretched, printed: Some(printed), judged: Some(judged) })
+    Ok(Row { whose: Whose::Stretched, printed: Some(printed), evaluation: Some(evaluation) })
 }

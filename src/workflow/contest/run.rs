@@ -10,11 +10,8 @@ use super::{
 };
 use crate::{
     moea::{Algorithm, Archive, Budget, MoeaError, Population, Settings, optimise, silent},
-    plan::{Found, Phase, Search, Setup, Timing, search},
-    workflow::{
-        plan::Gauge,
-        sample::{Watch, quartiles},
-    },
+    plan::{Found, Phase, Reference, Search, Setup, Timing, search},
+    workflow::sample::{Watch, quartiles},
 };
 
 /// The runs of one cell.
@@ -27,7 +24,7 @@ pub(super) struct Batch<'a> {
     /// Whether the runs give a curve.
     pub(super) watched: bool,
     pub(super) runs: Vec<Run>,
-    gauge: &'a Gauge,
+    reference: &'a Reference,
 }
 
 /// What one seed gave.
@@ -54,7 +51,7 @@ pub fn run(inputs: &Inputs, done: impl Fn() + Sync) -> Result<Study, ContestFail
     budgets.sort_unstable();
     budgets.dedup();
     let seeds: Vec<u64> = (0..inputs.seeds).map(|k| inputs.first_seed.wrapping_add(k)).collect();
-    let references: Vec<(Ruler, Gauge, Vec<Timing>)> = inputs
+    let references: Vec<(Ruler, Reference, Vec<Timing>)> = inputs
         .subjects
         .par_iter()
         .map(|subject| {
@@ -66,7 +63,7 @@ pub fn run(inputs: &Inputs, done: impl Fn() + Sync) -> Result<Study, ContestFail
     let entrants: Vec<Entrant> =
         inputs.contenders.iter().copied().map(Entrant::from).chain([SEEDED]).collect();
     let mut batches: Vec<Batch<'_>> = Vec::new();
-    for (subject, (ruler, gauge, _)) in inputs.subjects.iter().zip(&references) {
+    for (subject, (ruler, reference, _)) in inputs.subjects.iter().zip(&references) {
         for &evaluations in &budgets {
             let watched = inputs.steps > 0 && Some(&evaluations) == budgets.last();
             batches.extend(entrants.iter().map(|&entrant| Batch {
@@ -76,7 +73,7 @@ pub fn run(inputs: &Inputs, done: impl Fn() + Sync) -> Result<Study, ContestFail
                 evaluations,
                 watched,
                 runs: Vec::new(),
-                gauge,
+                reference,
             }));
         }
     }
@@ -95,7 +92,8 @@ pub fn run(inputs: &Inputs, done: impl Fn() + Sync) -> Result<Study, ContestFail
         batch.runs = runs.by_ref().take(seeds.len()).collect();
     }
     let printed = inputs.subjects.iter().zip(&references).find(|(subject, _)| subject.in_table_3);
-    let table_3 = printed.map(|(subject, (_, _, front))| table_3(&subject.order.setup, front)).transpose()?;
+    let table_3 =
+        printed.map(|(subject, (_, _, front))| table_3(&subject.request.setup, front)).transpose()?;
     let rulers = references.iter().map(|(ruler, ..)| ruler.clone()).collect();
     Ok(assemble(rulers, &entrants, &batches, table_3))
 }
@@ -105,8 +103,8 @@ fn reference(
     subject: &Subject,
     evaluations: u64,
     seeds: &[u64],
-) -> Result<(Ruler, Gauge, Vec<Timing>), ContestFailure> {
-    let setup = &subject.order.setup;
+) -> Result<(Ruler, Reference, Vec<Timing>), ContestFailure> {
+    let setup = &subject.request.setup;
     let budget = Budget::Evaluations(evaluations);
     let long = Search { budget, front: REFERENCE_PLANS, ..Search::default() };
     let Found { front, evaluations, .. } = search(setup, &long, |_| ControlFlow::Continue(()))?;
@@ -114,19 +112,19 @@ fn reference(
         return Err(ContestFailure::NoPlan { task: subject.name.clone() });
     }
     let objectives = || front.iter().map(|timing| timing.objectives.as_array());
-    let gauge = Gauge::of(objectives());
+    let reference = Reference::of(objectives());
     let at_first = seeds.iter().map(|&seed| at_first(setup, seed)).collect::<Result<Vec<f64>, _>>()?;
     let ruler = Ruler {
         task: subject.name.clone(),
         intervals: setup.interval_count(),
         evaluations,
         plans: front.len(),
-        ideal: gauge.ideal(),
-        reference_point: gauge.reference_point(),
-        hypervolume: gauge.measure(objectives()),
+        ideal: reference.ideal(),
+        reference_point: reference.reference_point(),
+        hypervolume: reference.measure(objectives()),
         feasible_at_first: quartiles(&at_first),
     };
-    Ok((ruler, gauge, front))
+    Ok((ruler, reference, front))
 }
 
 /// Share of feasible plans in the first population of a seed, which all algorithms have alike.
@@ -139,7 +137,7 @@ fn at_first(setup: &Setup, seed: u64) -> Result<f64, MoeaError> {
 }
 
 fn one(batch: &Batch<'_>, seed: u64, steps: u64) -> Result<Run, ContestFailure> {
-    let setup = &batch.subject.order.setup;
+    let setup = &batch.subject.request.setup;
     let budget = Budget::Evaluations(batch.evaluations);
     let Entrant { algorithm, seeded, .. } = batch.entrant;
     let mut watch = Watch::new(batch.evaluations, if batch.watched { steps } else { 0 });
@@ -197,7 +195,7 @@ impl Batch<'_> {
         let mut archive = Archive::new(self.ruler.intervals, 3, MEASURED_PLANS);
         archive.extend(population);
         let thinned = archive.into_population();
-        [&thinned, all].map(|set| self.gauge.measure(plans(set).into_iter()))
+        [&thinned, all].map(|set| self.reference.measure(plans(set).into_iter()))
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::ContestFailure;
-use crate::workflow::plan::Order;
+use crate::workflow::plan::PlanRequest;
 
 /// The paper's tasks: name and text.
 pub const TASKS: [(&str, &str); 3] = [
@@ -20,7 +20,7 @@ pub struct Subject {
     /// The name it goes by.
     pub name: String,
     /// The task on its arm.
-    pub order: Order,
+    pub request: PlanRequest,
     /// Whether the paper's Table 3 is of this task.
     pub in_table_3: bool,
 }
@@ -34,16 +34,16 @@ impl Subject {
     pub fn find(name: &str) -> Result<Self, ContestFailure> {
         let known = TASKS.into_iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
         let Some((known, text)) = known else { return Self::read(name) };
-        let order = Order::parse(Path::new(known), text.to_owned())?;
-        Ok(Self { name: known.to_owned(), order, in_table_3: known == SIMULATION })
+        let request = PlanRequest::parse(Path::new(known), text.to_owned())?;
+        Ok(Self { name: known.to_owned(), request, in_table_3: known == SIMULATION })
     }
 
     fn read(name: &str) -> Result<Self, ContestFailure> {
         let path = Path::new(name);
         let text = std::fs::read_to_string(path)
             .map_err(|source| ContestFailure::Unknown { name: name.to_owned(), source })?;
-        let order = Order::parse(path, text)?;
+        let request = PlanRequest::parse(path, text)?;
         let stem = path.file_stem().map_or(name.to_owned(), |stem| stem.to_string_lossy().into_owned());
-        Ok(Self { name: stem, order, in_table_3: false })
+        Ok(Self { name: stem, request, in_table_3: false })
     }
 }

@@ -9,7 +9,10 @@ use super::{
     chart::{Chart, Role, embedded},
     paper::{self, Paper},
 };
-use crate::render::kit::{Document, PROGRAM, Section, clean};
+use crate::{
+    document::PROGRAM,
+    render::kit::{Document, Section, clean},
+};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
