@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     atomic_file::write_atomically,
-    render::{judged_json, next_written, noted, replan_json, replan_parts},
+    render::{next, plan::judged_json, replan as words},
     workflow::replan::{Inputs, Replanned, run as replan},
 };
 
@@ -28,9 +28,11 @@ pub(super) fn run(
 ) -> Result<Outcome, CliError> {
     let replanned = replanned(args)?;
     let rendered = match &args.output {
-        _ if args.json => replan_json(&replanned),
-        Some(path) => shown(&noted(replan_parts(&replanned), next_written(path, &args.logs)), None),
-        None => shown(&replan_parts(&replanned), None),
+        _ if args.json => words::json(&replanned),
+        Some(path) => {
+            shown(&words::document(&replanned).with_above_remarks(next::next_written(path, &args.logs)), None)
+        }
+        None => shown(&words::document(&replanned), None),
     };
     deliver(&rendered, None, out)?;
     if args.json {

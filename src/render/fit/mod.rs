@@ -2,12 +2,13 @@
 
 mod document;
 mod file;
+mod page;
 mod tables;
 
-pub use document::fit_json;
+pub use document::fit_json as json;
 pub use file::limits_toml;
-pub use tables::fit_parts;
-pub(super) use tables::{left_out_line, machine_parts};
+pub(super) use page::fitted;
+pub use tables::document;
 
 use crate::fit::{Estimated, JointFit};
 
@@ -34,7 +35,7 @@ impl Shown {
             }
             (_, _, Some(bound)) => format!(">= {}", number(bound)),
             (Some(value), ..) => format!("({})", number(value)),
-            _ => crate::render::NONE.to_owned(),
+            _ => crate::render::kit::NONE.to_owned(),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::{name, shown};
 use crate::{
     plan::{BEYOND, Limit, Margin, Objectives, PlanEvaluation, Rule},
-    render::{NONE, Part, Sheet, tables::remark_parts},
+    render::kit::{Document, Id, NONE, Section, Sentence, Table},
     task::Bounds,
     units::degrees_from_radians,
     workflow::plan::{Options, Planned},
@@ -17,66 +17,60 @@ const NEAREST: usize = 6;
 const AT_POINT_S: f64 = 1e-6;
 
 /// What was planned, for people.
-pub fn plan_parts(
+pub fn document(
     title: &str,
     algorithm: &str,
     options: &Options,
     bounds: &Bounds,
     planned: &Planned,
-) -> Vec<Part> {
+) -> Document {
     let start = if options.search.seeded { "descents" } else { "random plans" };
-    let mut parts = vec![
-        Part::Title(title.to_owned()),
-        Part::Line(format!(
-            "{} plans of which none is better than another in everything, from {} evaluations: {algorithm}, started \
-             from {start}, seed {}. Hypervolume {:.4} of the box from the best of each objective to {BEYOND} times the \
-             range.",
-            planned.front.len(),
-            planned.evaluations,
-            options.search.seed,
-            planned.hypervolume,
-        )),
-        Part::Heading("Plans".into()),
-    ];
+    let searched = format!(
+        "{} plans of which none is better than another in everything, from {} evaluations: {algorithm}, started \
+         from {start}, seed {}. Hypervolume {:.4} of the box from the best of each objective to {BEYOND} times the \
+         range.",
+        planned.front.len(),
+        planned.evaluations,
+        options.search.seed,
+        planned.hypervolume,
+    );
     let [a, b, c] = &planned.best;
     let named = [("A  fastest", a), ("B  smoothest", b), ("C  least power", c), ("chosen", &planned.chosen)];
-    parts.push(Part::Sheet(Sheet {
-        head: vec!["plan", "arrivals s", "time s", "RMS jerk deg/s3", "RMS power W", "nearest limit"],
-        left: 2,
-        rows: named.map(|(name, evaluation)| row(name, evaluation, &planned.joints)).to_vec(),
-    }));
-    if planned.fastest_converged == Some(false) {
-        parts.push(Part::Line(
+    let hasty = (planned.fastest_converged == Some(false)).then(|| {
+        Sentence::advice(
             "The fastest plan was still getting faster when its share of the evaluations was used up: give more with \
-             --evaluations."
-                .into(),
+             --evaluations.",
+        )
+    });
+    let another = "Another: --choose fastest, smoothest, thriftiest, knee or ideal, --weights, or ceilings in the task.";
+    let mut document = Document::titled(title)
+        .with(Section::plain(Id::SUMMARY, [Sentence::finding(searched)]))
+        .with(Section::new(Id::OTHER, "Plans", [plans(named, &planned.joints)]).with_all(hasty))
+        .with(Section::new(
+            Id::OTHER,
+            "The chosen plan",
+            [Sentence::finding(reason(bounds, planned)), Sentence::advice(another)],
         ));
-    }
-    parts.push(Part::Heading("The chosen plan".into()));
-    parts.push(Part::Line(reason(bounds, planned)));
-    parts.push(Part::Line(
-        "Another: --choose fastest, smoothest, thriftiest, knee or ideal, --weights, or ceilings in the task.".into(),
-    ));
-    parts.extend(margin_parts(&planned.chosen, &planned.joints));
-    parts.push(Part::Line(kept(&planned.chosen)));
-    remark_parts(&planned.remarks, &mut parts);
-    parts
+    document.sections.extend(margins(&planned.chosen, &planned.joints));
+    document.remarked(&planned.remarks)
 }
 
 /// One given plan, for people.
-pub fn judged_parts(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Vec<Part> {
-    let mut parts = vec![
-        Part::Title(title.to_owned()),
-        Part::Sheet(Sheet {
-            head: vec!["plan", "arrivals s", "time s", "RMS jerk deg/s3", "RMS power W", "nearest limit"],
-            left: 2,
-            rows: vec![row("given", evaluation, joints)],
-        }),
-        Part::Line(format!("The joints do and take up {:.0} J of work together.", evaluation.energy_j)),
-    ];
-    parts.extend(margin_parts(evaluation, joints));
-    parts.push(Part::Line(kept(evaluation)));
-    parts
+pub fn judged_document(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Document {
+    let work = format!("The joints do and take up {:.0} J of work together.", evaluation.energy_j);
+    let given = Section::plain(Id::SUMMARY, [plans([("given", evaluation)], joints)]);
+    let mut document = Document::titled(title).with(given.with(Sentence::finding(work)));
+    document.sections.extend(margins(evaluation, joints));
+    document
+}
+
+/// A row each.
+fn plans<const N: usize>(named: [(&str, &PlanEvaluation); N], joints: &[String]) -> Table {
+    Table::new(
+        &["plan", "arrivals s"],
+        &["time s", "RMS jerk deg/s3", "RMS power W", "nearest limit"],
+        named.map(|(name, evaluation)| row(name, evaluation, joints)),
+    )
 }
 
 fn kept(evaluation: &PlanEvaluation) -> String {
@@ -103,7 +97,7 @@ fn row(name: &str, evaluation: &PlanEvaluation, joints: &[String]) -> Vec<String
 }
 
 /// The limit that is broken most, and how many more are, or the nearest.
-pub(in crate::render) fn limit_cell(evaluation: &PlanEvaluation, joints: &[String]) -> String {
+pub fn limit_cell(evaluation: &PlanEvaluation, joints: &[String]) -> String {
     let Some(worst) = nearest(evaluation).into_iter().next() else { return NONE.to_owned() };
     let worst = format!("{} % {}", percent(worst.share), subject(worst, joints));
     match evaluation.broken().len() {
@@ -182,7 +176,7 @@ fn trimmed(text: &str) -> String {
 }
 
 /// What of each limit is used, and the nearest with their places.
-fn margin_parts(evaluation: &PlanEvaluation, joints: &[String]) -> Vec<Part> {
+fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
     let share = |limit: Limit, joint: Option<usize>| {
         let found = evaluation.margins.iter().find(|margin| margin.limit == limit && margin.joint == joint);
         found.map_or(NONE.to_owned(), |margin| percent(margin.share))
@@ -213,38 +207,35 @@ fn margin_parts(evaluation: &PlanEvaluation, joints: &[String]) -> Vec<Part> {
             format!("{:.2}", margin.t_s),
         ]
     });
-    let mut parts = vec![
-        Part::Heading("Jerk, power, and use of each limit in %".into()),
-        Part::Sheet(Sheet {
-            head: vec![
-                "joint",
-                "RMS jerk deg/s3",
-                "RMS power W",
-                "range",
-                "speed",
-                "acceleration",
-                "jerk",
-                "torque",
-                "rod speed",
-                "rod force",
-            ],
-            left: 1,
-            rows: rows.collect(),
-        }),
-        Part::Line(format!("All together: {}, {}.", together(Limit::PumpFlow), together(Limit::ToolSpeed))),
-        Part::Heading("Nearest limits".into()),
-        Part::Sheet(Sheet {
-            head: vec!["limit", "value", "allowed", "used %", "at s"],
-            left: 1,
-            rows: listed.collect(),
-        }),
+    let numbers = [
+        "RMS jerk deg/s3",
+        "RMS power W",
+        "range",
+        "speed",
+        "acceleration",
+        "jerk",
+        "torque",
+        "rod speed",
+        "rod force",
     ];
-    if listed_position {
-        parts.push(Part::Line(
-            "Of a position, used is the way from the middle of its range to the end.".into(),
-        ));
-    }
-    parts
+    let all = format!("All together: {}, {}.", together(Limit::PumpFlow), together(Limit::ToolSpeed));
+    let position = listed_position
+        .then(|| Sentence::note("Of a position, used is the way from the middle of its range to the end."));
+    [
+        Section::new(
+            Id::OTHER,
+            "Jerk, power, and use of each limit in %",
+            [Table::new(&["joint"], &numbers, rows)],
+        )
+        .with(Sentence::finding(all)),
+        Section::new(
+            Id::OTHER,
+            "Nearest limits",
+            [Table::new(&["limit"], &["value", "allowed", "used %", "at s"], listed)],
+        )
+        .with_all(position)
+        .with(Sentence::finding(kept(evaluation))),
+    ]
 }
 
 /// What is allowed; of a range the end that is nearer, and on which side of it.

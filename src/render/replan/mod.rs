@@ -3,8 +3,8 @@
 mod document;
 mod tables;
 
-pub use document::replan_json;
-pub use tables::replan_parts;
+pub use document::replan_json as json;
+pub use tables::document;
 
 use crate::{plan::Limit, workflow::replan::Replanned};
 

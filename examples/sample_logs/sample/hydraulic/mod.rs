@@ -10,7 +10,7 @@ use hydrotrace::{
     log::{Attachment, WriteOptions},
     plan::PlanEvaluation,
     plant::{JointRecord, Parameters, Plant},
-    render::judged_json,
+    render::plan::judged_json,
     series::{Series, Track},
     units::DEGREE_RAD,
     workflow::{
