@@ -9,8 +9,9 @@ use super::{
     output::{deliver, say_broken, say_remarks, shown, spare_inputs, spare_terminal, text_file},
 };
 use crate::{
+    document::pretty,
     render::{compare as words, kit::markdown},
-    workflow::compare::{Inputs, run as compare},
+    workflow::compare::{Document, Inputs, run as compare},
 };
 
 /// Pairs listed without `--all`.
@@ -35,7 +36,7 @@ pub(super) fn run(
     let comparison = compare(&inputs)?;
     let most = if args.all { usize::MAX } else { MOST };
     let rendered = if format.json {
-        words::json(&comparison)
+        pretty(&Document::of(&comparison))
     } else if format.html {
         words::page(&comparison, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
     } else if format.markdown {

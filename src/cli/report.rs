@@ -9,10 +9,11 @@ use super::{
     output::{deliver, say_broken, say_remarks, shown, spare_inputs, spare_terminal, text_file},
 };
 use crate::{
+    document::pretty,
     render::{kit::markdown, report as words},
     workflow::{
         fit::{LimitsFile, read_limits},
-        report::{Inputs, Report, run as analyse},
+        report::{Document, Inputs, Report, run as analyse},
     },
 };
 
@@ -34,7 +35,7 @@ pub(super) fn run(
     let inputs = Inputs {
         logs: args.logs.clone(),
         read: args.read.options(),
-        gates: args.gates.gates(),
+        gates: args.gates.gates.clone(),
         ..Inputs::default()
     };
     let report = analyse(&inputs)?;
@@ -42,7 +43,7 @@ pub(super) fn run(
     let name = name.collect::<Vec<_>>().join(", ");
     let most = if args.all { usize::MAX } else { MOST };
     let rendered = if format.json {
-        words::json(&report)
+        pretty(&Document::of(&report))
     } else if format.csv {
         words::csv(&report)
     } else if format.html {

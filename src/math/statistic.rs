@@ -43,6 +43,11 @@ pub fn mad(values: &[f64]) -> f64 {
     median(values.iter().map(|v| (v - centre).abs()).collect())
 }
 
+/// Smallest and largest value; `None` without values.
+pub fn span(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
+    values.into_iter().map(|value| [value; 2]).reduce(|[a, b], [low, high]| [a.min(low), b.max(high)])
+}
+
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "exact by construction")]
 mod tests {

@@ -10,6 +10,7 @@ pub mod import;
 pub mod info;
 pub mod join;
 pub mod kit;
+mod metric;
 mod moea;
 pub mod next;
 pub mod plan;
@@ -19,7 +20,6 @@ pub mod report;
 mod sample;
 pub mod score;
 pub mod simulate;
-mod transition;
 
 pub use contest::{contest_csv, contest_document, contest_json, contest_svg};
 pub use moea::{curve_svg, curves_csv, front_csv, moea_document, moea_json};

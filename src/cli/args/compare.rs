@@ -53,7 +53,7 @@ pub struct CompareArgs {
 #[derive(Debug, clap::Args)]
 #[group(multiple = false)]
 pub struct CompareFormat {
-    /// One JSON document, as schemas/compare.v1.schema.json in the repository describes it
+    /// One JSON document, as schemas/compare.v2.schema.json in the repository describes it
     #[arg(long)]
     pub json: bool,
 
@@ -105,13 +105,12 @@ pub struct CompareGateArgs {
 impl CompareGateArgs {
     /// The same in SI units; the parsers have converted already.
     pub fn gates(&self) -> Gates {
-        Gates {
-            min_peak_reduction: self.min_peak_reduction_percent,
-            max_p: self.max_p,
-            max_transition_growth_rad: self.max_transition_growth_deg,
-            max_rms_ratio: self.max_rms_ratio,
-            max_peak_ratio: self.max_peak_ratio,
-        }
+        Gates::default()
+            .with("peak-reduction", self.min_peak_reduction_percent)
+            .with("p", self.max_p)
+            .with("transition-growth", self.max_transition_growth_deg)
+            .with("rms-ratio", self.max_rms_ratio)
+            .with("peak-ratio", self.max_peak_ratio)
     }
 }
 

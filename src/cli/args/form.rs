@@ -7,7 +7,7 @@ use std::path::Path;
 #[group(multiple = false)]
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line, of which one at most is given")]
 pub struct ReportFormat {
-    /// One JSON document, as schemas/report.v1.schema.json in the repository describes it
+    /// One JSON document, as schemas/report.v2.schema.json in the repository describes it
     #[arg(long)]
     pub json: bool,
 

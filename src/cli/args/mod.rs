@@ -9,6 +9,7 @@ mod export;
 mod figures;
 mod fit;
 mod form;
+mod gates;
 mod import;
 mod join;
 mod moea;
@@ -31,6 +32,7 @@ pub use export::{ExportArgs, ExportFormat};
 pub use figures::FigureArgs;
 pub use fit::{FitArgs, SentArgs};
 pub use form::ReportFormat;
+pub use gates::GateArgs;
 pub use import::ImportArgs;
 pub use join::JoinArgs;
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
@@ -45,7 +47,6 @@ use form::ends;
 use crate::{
     log::{ReadOptions, Selector, TimeBase},
     units::radians_from_degrees,
-    workflow::report::Gates,
 };
 
 /// Where a jointed arm leaves its plan: tracking error at every start from rest, from its logs.
@@ -241,49 +242,6 @@ pub struct ReportArgs {
     pub gates: GateArgs,
 }
 
-/// Limits; exit code 4 if one is not kept.
-#[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Limits (exit code 4 if not kept)")]
-pub struct GateArgs {
-    /// Peak error in any transition
-    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
-    pub max_transition_peak_deg: Option<f64>,
-
-    /// Root mean square error of any joint over the run
-    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
-    pub max_rms_deg: Option<f64>,
-
-    /// Peak error of any joint over the run
-    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
-    pub max_peak_deg: Option<f64>,
-
-    /// Root mean square error of any joint while its plan rests
-    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
-    pub max_standstill_rms_deg: Option<f64>,
-
-    /// Delay of any start; a start without an answer breaks it
-    #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true)]
-    pub max_start_delay_ms: Option<f64>,
-
-    /// Velocity lag of any joint
-    #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true)]
-    pub max_lag_ms: Option<f64>,
-}
-
-impl GateArgs {
-    /// The same in SI units; the parsers have converted already.
-    pub fn gates(&self) -> Gates {
-        Gates {
-            max_transition_peak_rad: self.max_transition_peak_deg,
-            max_rms_rad: self.max_rms_deg,
-            max_peak_rad: self.max_peak_deg,
-            max_standstill_rms_rad: self.max_standstill_rms_deg,
-            max_onset_delay_s: self.max_start_delay_ms,
-            max_lag_s: self.max_lag_ms,
-        }
-    }
-}
-
 /// Arguments of `info`.
 #[derive(Debug, clap::Args)]
 pub struct InfoArgs {
@@ -332,6 +290,11 @@ fn degrees(text: &str) -> Result<f64, String> {
     not_negative(text, "angle in degrees").map(radians_from_degrees)
 }
 
+/// Millimetres, as metres.
+fn millimetres(text: &str) -> Result<f64, String> {
+    not_negative(text, "length in millimetres").map(|mm| mm / 1e3)
+}
+
 /// Milliseconds, as seconds.
 fn milliseconds(text: &str) -> Result<f64, String> {
     not_negative(text, "time in milliseconds").map(|ms| ms / 1e3)
@@ -345,22 +308,6 @@ mod tests {
     #[test]
     fn definitions_are_consistent() {
         Args::command().debug_assert();
-    }
-
-    #[test]
-    fn degrees_and_milliseconds_become_si_at_the_edge() {
-        let args = Args::try_parse_from([
-            "hydrotrace",
-            "report",
-            "a.mcap",
-            "--max-rms-deg",
-            "180",
-            "--max-start-delay-ms",
-            "250",
-        ]);
-        let Command::Report(report) = args.unwrap().command else { panic!("not a report") };
-        assert_eq!(report.gates.gates().max_rms_rad, Some(std::f64::consts::PI));
-        assert_eq!(report.gates.gates().max_onset_delay_s, Some(0.25));
     }
 
     #[test]

@@ -64,7 +64,7 @@ fn projection(front: &Front, (title, across, up): (&str, usize, usize)) -> Chart
     let room = 0.05 * (high - low);
     Chart {
         title: title.to_owned(),
-        x_label: LABELS[across],
+        x_label: LABELS[across].into(),
         xs,
         x_range: Some([low - room, high + 2.0 * room]),
         panels: vec![Panel {
@@ -98,7 +98,7 @@ fn convergence(front: &Front) -> Chart {
     let steps = &front.convergence;
     Chart {
         title: "How the front grew".to_owned(),
-        x_label: "Evaluations",
+        x_label: "Evaluations".into(),
         xs: vec![steps.iter().map(|step| step.evaluations as f64).collect()],
         panels: vec![Panel {
             label: "Hypervolume".to_owned(),

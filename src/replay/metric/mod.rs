@@ -36,6 +36,8 @@ pub enum Dimension {
     Correlation,
     /// How many.
     Count,
+    /// The sign of a direction.
+    Sign,
     /// A name or a word.
     Word,
 }

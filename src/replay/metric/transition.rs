@@ -1,7 +1,7 @@
 //! The metrics of a transition, in the order of the CSV.
 
 use super::{
-    Dimension::{Area, Count, Duration, Instant, Position, Speed, Word},
+    Dimension::{Area, Count, Duration, Instant, Position, Sign, Speed, Word},
     Judged, Limit, Metric,
     Read::{Interval, Number, Word as Text},
     Together::Nothing,
@@ -21,7 +21,7 @@ pub static TRANSITION: &[Row] = &[
     Row::new("index", "", "index", "Place among the planned starts of the joint, from 1.", Count, Number(|t| Some(t.index as f64))),
     Row::new("id", "", "id", "Joint and planned onset.", Word, Text(|t| t.id.clone())),
     Row::new("kind", "kind", "kind", "From rest (start) or out of the opposite motion (reversal).", Word, Text(|t| t.kind.name().to_owned())),
-    Row::new("direction", "dir", "direction", "Sign of the planned motion.", Word, Text(|t| t.direction.to_string())),
+    Row::new("direction", "dir", "direction", "Sign of the planned motion.", Sign, Number(|t| Some(f64::from(t.direction)))),
     Row::new("planned_onset_s", "at", "planned onset", "Time at which the plan starts.", Instant, Number(|t| Some(t.planned_onset_s))),
     Row::new("measured_onset_s", "", "measured onset", "Time at which the joint starts.", Instant, Number(|t| t.measured_onset_s)),
     Row::new("onset_delay_s", "delay", "start delay", "Measured minus planned onset.", Duration, Number(|t| t.onset_delay_s))

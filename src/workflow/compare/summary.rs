@@ -99,10 +99,15 @@ fn summary(pairs: &[TransitionPair], metric: &'static Metric<Transition>, scope:
         Scope::Joint(joint) => pair.joint == *joint,
     };
     let change = |pair: &TransitionPair| pair.changes.get(metric.key);
+    // Positions of joints that turn and of joints that slide have no common mean.
+    let kind = pairs.iter().find(within).map(|pair| pair.joint_kind);
+    let alike = |pair: &&TransitionPair| !metric.dimension.is_of_joint() || Some(pair.joint_kind) == kind;
+    let comparable = pairs.iter().filter(within).all(|pair| alike(&pair));
     // When, before, after.
     let mut found: Vec<[f64; 3]> = pairs
         .iter()
         .filter(within)
+        .filter(|_| comparable)
         .filter_map(|pair| Some([pair.planned_onset_before_s, change(pair).before?, change(pair).after?]))
         .collect();
     found.sort_by(|a, b| a[0].total_cmp(&b[0]));
