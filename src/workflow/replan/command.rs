@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::{
     fit::{Compensation, Fit, FitError, JointCompensation, STEP_S, compensate},
-    plan::{BROKEN, Limit, Margin, Setup},
+    plan::{KEPT_SHARE, Limit, Margin, Setup},
     series::Series,
 };
 
@@ -61,7 +61,7 @@ pub(super) fn commanded(
         let same = |other: &&Margin| (other.limit, other.joint) == (margin.limit, margin.joint);
         allowed.iter().find(same).map_or(0.0, |found| found.share)
     };
-    let broken = |margin: &&Margin| margin.share > BROKEN.max(share_of_plan(margin) + 1e-9);
+    let broken = |margin: &&Margin| margin.share > KEPT_SHARE.max(share_of_plan(margin) + 1e-9);
     for share in GAINS {
         let margins = setup.sampled_margins(&series, STEP_S);
         let worst: Vec<(usize, Limit)> =
