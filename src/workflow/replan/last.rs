@@ -101,9 +101,9 @@ fn trajectory_topic(planned: &str) -> Option<String> {
 fn moving_s(series: &Series) -> Option<[f64; 2]> {
     let mut found: Option<[f64; 2]> = None;
     for track in &series.tracks {
-        let (t_s, angle_rad) = (track.t_s(), track.position_rad());
+        let (t_s, angle_rad) = (track.t_s(), track.position());
         let moving = |k: usize| {
-            let fast = track.velocity_rad_s().is_some_and(|speed| speed[k].abs() > MOVES_RAD_S);
+            let fast = track.velocity().is_some_and(|speed| speed[k].abs() > MOVES_RAD_S);
             fast || (k > 0
                 && (angle_rad[k] - angle_rad[k - 1]).abs() > MOVES_RAD_S * (t_s[k] - t_s[k - 1]).max(1e-3))
         };
