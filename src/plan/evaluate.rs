@@ -223,7 +223,8 @@ fn peak(values: impl Iterator<Item = f64>) -> (usize, f64) {
 
 /// The share between nodes, as far as it matters.
 fn blend(coarse: f64, exact: impl FnOnce() -> f64) -> f64 {
-    let weight = ((coarse - COARSE) / (EXACT - COARSE)).min((COARSE_AGAIN - coarse) / (COARSE_AGAIN - FAR_BROKEN));
+    let weight =
+        ((coarse - COARSE) / (EXACT - COARSE)).min((COARSE_AGAIN - coarse) / (COARSE_AGAIN - FAR_BROKEN));
     if weight > 0.0 { coarse + weight.min(1.0) * (exact() - coarse).max(0.0) } else { coarse }
 }
 

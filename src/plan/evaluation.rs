@@ -35,8 +35,7 @@ impl PlanEvaluation {
         let mut evaluator = Evaluator::new(setup);
         let interval_s = setup.intervals_s(times_s)?;
         // The motion above is of the same times, so there is one.
-        let objectives =
-            evaluator.evaluate(setup, &interval_s).unwrap_or(Objectives::NONE);
+        let objectives = evaluator.evaluate(setup, &interval_s).unwrap_or(Objectives::NONE);
         let rms_jerk_rad_s3 = evaluator.rms_jerk_rad_s3().to_vec();
         let (rms_power_w, energy_j) = (evaluator.rms_power_w(), evaluator.energy_j());
         let margins = setup.margins(&motion, &mut evaluator);

@@ -103,14 +103,15 @@ pub(super) fn kept_front(setup: &Setup, front: Vec<Timing>, most: usize) -> (Vec
     if sound {
         return (front, 0);
     }
-    let fastest = front.iter().min_by(|a, b| a.objectives[Objective::Duration].total_cmp(&b.objectives[Objective::Duration]));
+    let fastest = front
+        .iter()
+        .min_by(|a, b| a.objectives[Objective::Duration].total_cmp(&b.objectives[Objective::Duration]));
     let mut used = 0;
     if let Some(fastest) = fastest.cloned() {
         // Slowing down all of it gave away time wherever the limit was kept.
         let quick =
             Timing { interval_s: fastest.interval_s.iter().map(|s| s * QUICKER).collect(), ..fastest };
-        let (found, evaluations) =
-            kept(setup, &quick, Merit::alone(Objective::Duration), Ceilings::NONE);
+        let (found, evaluations) = kept(setup, &quick, Merit::alone(Objective::Duration), Ceilings::NONE);
         used = evaluations;
         front.extend(found);
     }

@@ -37,7 +37,8 @@ pub(super) fn thinned<'a>(
     let mut archive = Archive::new(setup.interval_count(), Objective::OF_PLAN.len(), usize::MAX);
     archive.extend(&population(setup, all));
     let clear = timings(archive.population());
-    let mut archive = Archive::new(setup.interval_count(), Objective::OF_PLAN.len(), most.max(Objective::OF_PLAN.len()));
+    let mut archive =
+        Archive::new(setup.interval_count(), Objective::OF_PLAN.len(), most.max(Objective::OF_PLAN.len()));
     archive.extend(&population(setup, &clear));
     timings(&archive.into_population())
 }

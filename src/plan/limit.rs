@@ -1,9 +1,9 @@
 //! What a plan must keep to.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A quantity with a limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Limit {

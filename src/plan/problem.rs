@@ -67,10 +67,12 @@ impl<M: Machine> Problem for TimingProblem<'_, M> {
         let (evaluator, memory) = &mut **workspace
             .get_or_insert_with(|| Box::new((Evaluator::new(self.setup), M::Memory::default())));
         let Some(mut found) = evaluator.evaluate(self.setup, x) else { return f64::INFINITY };
-        let over: f64 = found.plan().iter().zip(self.ceilings.plan()).map(|(f, ceiling)| excess(f / ceiling)).sum();
+        let over: f64 =
+            found.plan().iter().zip(self.ceilings.plan()).map(|(f, ceiling)| excess(f / ceiling)).sum();
         let violation = evaluator.violation() + over;
         // A prediction takes as long as a hundred evaluations; of a plan that cannot be run there is none.
-        found[Objective::StartError] = if self.objectives.contains(&Objective::StartError) && violation <= 0.0 {
+        found[Objective::StartError] = if self.objectives.contains(&Objective::StartError) && violation <= 0.0
+        {
             self.machine.start_error_rad(&evaluator.motion, memory)
         } else {
             0.0

@@ -204,7 +204,9 @@ fn curve(setup: &Setup, fastest: &Timing, durations_s: &[f64], power: f64, most:
         let ratio = (duration_s - dwell_s) / (last.objectives[Objective::Duration] - dwell_s);
         let start_s: Vec<f64> = last.interval_s.iter().map(|s| s * ratio).collect();
         let goal = Goal {
-            merit: Merit::Logarithms(Weights::ZERO.with(Objective::RmsJerk, 1.0 - power).with(Objective::RmsPower, power)),
+            merit: Merit::Logarithms(
+                Weights::ZERO.with(Objective::RmsJerk, 1.0 - power).with(Objective::RmsPower, power),
+            ),
             ceilings: Ceilings::NONE.with(Objective::Duration, duration_s),
             // The first has the longest way.
             evaluations: if step == 0 { 3 * most } else { most },

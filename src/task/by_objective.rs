@@ -75,7 +75,9 @@ impl ByObjective {
 
     /// Remarks on ceilings that bind nothing: more than ten times the largest value that any plan of the front has.
     pub fn remark_inactive(&self, largest: &Objectives, remarks: &mut Remarks) {
-        for (objective, ceiling) in self.known().filter(|(objective, bound)| *bound > INACTIVE * largest[*objective]) {
+        for (objective, ceiling) in
+            self.known().filter(|(objective, bound)| *bound > INACTIVE * largest[*objective])
+        {
             let message = format!(
                 "{} is {:.0} times above the largest value of any plan found: it binds nothing; is its unit right?",
                 objective.row().ceiling,
@@ -164,8 +166,7 @@ mod tests {
 
     #[test]
     fn a_ceiling_that_binds_nothing_gets_a_remark() {
-        let ceilings =
-            Ceilings::NONE.with(Objective::Duration, 40.0).with(Objective::RmsJerk, 17.0);
+        let ceilings = Ceilings::NONE.with(Objective::Duration, 40.0).with(Objective::RmsJerk, 17.0);
         let mut remarks = Remarks::default();
         ceilings.remark_inactive(&Objectives::from_slice(&[38.0, 0.03, 100.0]), &mut remarks);
         assert_eq!(remarks.as_slice().len(), 1);

@@ -5,7 +5,8 @@ use std::{collections::BTreeMap, ops::Range};
 use toml::Spanned;
 
 use super::{
-    ArmSource, Boundary, ByObjective, Ceilings, JointLimits, KeyPoint, Objective, Place, Task, TaskError, Weights,
+    ArmSource, Boundary, ByObjective, Ceilings, JointLimits, KeyPoint, Objective, Place, Task, TaskError,
+    Weights,
     document::{ByJoint, Document, End, Limits, Point, Tool},
     objective::Row,
 };

@@ -18,7 +18,6 @@ pub use failure::ReplanFailure;
 pub use limits::{HeldTo, Origin};
 pub use outcome::{Before, Replanned, Search};
 pub use predicted::{Predicted, PredictedTransition, predicted};
-pub use retime::Retimed;
 pub use samples::{LEAD_S, TAIL_S};
 
 use super::{
@@ -31,6 +30,7 @@ use crate::{
     remark::{Code, Remarks},
     replay::Rules,
     series::{Series, Track},
+    task::{Ceilings, Objective, Objectives},
 };
 use last::Last;
 use samples::sampled;
@@ -170,17 +170,11 @@ fn searched(
     let setup = Setup::new(&task, request.setup.arm().clone())?;
     let start = last.times_s.as_ref().map(|times_s| setup.intervals_s(times_s)).transpose()?;
     let evaluation = last.times_s.as_ref().map(|times_s| PlanEvaluation::of(&setup, times_s)).transpose()?;
-    let own = [task.bounds.duration_s, task.bounds.rms_jerk_rad_s3, task.bounds.rms_power_w];
-    let grown = |factors: [f64; 3]| {
-        let most =
-            evaluation.as_ref().map_or([last.duration_s, f64::INFINITY, f64::INFINITY], |evaluation| {
-                evaluation.objectives.as_array()
-            });
-        std::array::from_fn(|k| (most[k] * factors[k]).min(own[k].unwrap_or(f64::INFINITY)))
-    };
     let time = (1.0 + inputs.time_growth) * (1.0 + 1e-9);
-    let cost = 1.0 + inputs.cost_growth;
-    let ceilings: [f64; 3] = grown([time, cost, cost]);
+    let growth = |objective| if objective == Objective::Duration { time } else { 1.0 + inputs.cost_growth };
+    let unknown = Objectives::NONE.with(Objective::Duration, last.duration_s);
+    let most = evaluation.as_ref().map_or(unknown, |evaluation| evaluation.objectives);
+    let ceilings = Ceilings::NONE.map_plan(|k| (most[k] * growth(k)).min(task.ceilings[k]));
     let found = retime::retimed(
         &setup,
         fit,

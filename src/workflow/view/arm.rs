@@ -153,9 +153,7 @@ fn found(paths: &[PathBuf], recording: &Recording) -> Result<Option<FoundArm>, L
         Some(FoundArm { origin: ArmOrigin::Log, chain, still })
     };
     let tasks = || {
-        let file = recording.attachments.iter().find(|file| file.name == TASK)?;
-        let task = Task::parse(&String::from_utf8_lossy(&file.data)).ok()?;
-        let chain = arm_of(&task, folder_of(paths)).ok()?.chain;
+        let chain = Carried::of(recording).arm(folder_of(paths))?.ok()?.chain;
         whole(&chain).then_some(FoundArm { origin: ArmOrigin::Task, chain, still: Vec::new() })
     };
     let sample = || {
