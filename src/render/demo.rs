@@ -3,11 +3,14 @@
 use std::path::Path;
 
 use super::{NONE, Part, Sheet, compare::probability, counted, deg, tables::remark_parts};
-use crate::workflow::{
-    compare::{Comparison, Measure, Scope, Summary, Verdict},
-    fit::Fitted,
-    plan::Planned,
-    replan::Replanned,
+use crate::{
+    task::Objective,
+    workflow::{
+        compare::{Comparison, Measure, Scope, Summary, Verdict},
+        fit::Fitted,
+        plan::Planned,
+        replan::Replanned,
+    },
 };
 
 /// What happened.
@@ -45,7 +48,7 @@ pub fn demo_parts(story: &Story<'_>) -> Vec<Part> {
             "plan task-1.toml -o plan.mcap".to_owned(),
             format!(
                 "{:.2} s through the key points, chosen among {} plans",
-                planned.chosen.objectives.duration_s,
+                planned.chosen.objectives[Objective::Duration],
                 planned.front.len()
             ),
         ),

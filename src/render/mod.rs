@@ -34,7 +34,7 @@ pub use contest::{contest_csv, contest_json, contest_parts, contest_svg};
 pub use csv::transitions_csv;
 pub use demo::{Story, demo_parts};
 pub use excite::excited_parts;
-pub use fit::{fit_json, fit_parts, limits_toml};
+pub use fit::fit_parts;
 pub use import::{imported_json, imported_parts};
 pub use info::{info_json, info_parts};
 pub use join::{joined_json, joined_parts};
@@ -46,11 +46,11 @@ pub use page::{
     Figure, compare_figures, compare_page, judged_page, motion_figures, plan_figures, plan_page,
     report_figures, report_page,
 };
-pub use plan::{broken_lines, ceiling_lines, judged_json, judged_parts, plan_json, plan_parts};
+pub use plan::{broken_lines, ceiling_lines, judged_parts, plan_parts};
 #[cfg(feature = "png")]
 pub use raster::{Raster, raster};
 pub use recover::{recovered_json, recovered_parts};
-pub use replan::{replan_json, replan_parts};
+pub use replan::replan_parts;
 pub use score::{score_json, score_parts};
 pub use simulate::simulated_line;
 pub use tables::{gate_lines, report_parts};

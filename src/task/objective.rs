@@ -36,6 +36,10 @@ pub struct Row {
     pub rule: &'static str,
     /// Unit as people read it.
     pub unit: &'static str,
+    /// Name and unit, for the head of a column.
+    pub heading: &'static str,
+    /// Name and unit, for an axis.
+    pub axis: &'static str,
     /// Decimals as people read it.
     pub decimals: usize,
     /// One sentence.
@@ -55,6 +59,8 @@ const TABLE: [Row; Objective::COUNT] = [
         best: "fastest",
         rule: "fastest",
         unit: "s",
+        heading: "time s",
+        axis: "Time (s)",
         decimals: 2,
         explanation: "Total time, dwells included.",
         angular: false,
@@ -69,6 +75,8 @@ const TABLE: [Row; Objective::COUNT] = [
         best: "smoothest",
         rule: "smoothest",
         unit: "deg/s3",
+        heading: "RMS jerk deg/s3",
+        axis: "RMS jerk (deg/s\u{b3})",
         decimals: 4,
         explanation: "Root mean square jerk, summed over joints.",
         angular: true,
@@ -83,6 +91,8 @@ const TABLE: [Row; Objective::COUNT] = [
         best: "least power",
         rule: "thriftiest",
         unit: "W",
+        heading: "RMS power W",
+        axis: "RMS power (W)",
         decimals: 2,
         explanation: "Root mean square power, summed over joints.",
         angular: false,
@@ -97,6 +107,8 @@ const TABLE: [Row; Objective::COUNT] = [
         best: "least start error",
         rule: "followed",
         unit: "deg",
+        heading: "predicted start error deg",
+        axis: "Predicted start error (deg)",
         decimals: 2,
         explanation: "Predicted peak errors of all starts and reversals, summed.",
         angular: true,
@@ -150,18 +162,6 @@ impl Objective {
     pub fn text(self, value: f64) -> String {
         format!("{} {}", self.number(value), self.row().unit)
     }
-
-    /// Name and unit, for the head of a column.
-    pub fn heading(self) -> String {
-        format!("{} {}", self.row().name, self.row().unit)
-    }
-
-    /// Name and unit, for an axis.
-    pub fn axis(self) -> String {
-        let row = self.row();
-        let (first, rest) = row.name.split_at(1);
-        format!("{}{rest} ({})", first.to_uppercase(), row.unit.replace("s3", "s\u{b3}"))
-    }
 }
 
 /// A number for each objective of a plan under some key of its row.
@@ -187,7 +187,5 @@ mod tests {
         for objective in Objective::ALL {
             assert_eq!(objective.row().objective, objective);
         }
-        assert_eq!(Objective::RmsJerk.axis(), "RMS jerk (deg/s\u{b3})");
-        assert_eq!(Objective::Duration.axis(), "Time (s)");
     }
 }

@@ -1,11 +1,7 @@
 //! What a fit found: tables, JSON, and the file that brings it back.
 
-mod document;
-mod file;
 mod tables;
 
-pub use document::fit_json;
-pub use file::limits_toml;
 pub use tables::fit_parts;
 pub(super) use tables::{left_out_line, machine_parts};
 

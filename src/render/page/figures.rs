@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     plan::SampledMotion,
-    workflow::{compare::Comparison, plan::Planned, plan::front::Front, report::Report},
+    workflow::{compare::Comparison, plan::PlanDocument, report::Report},
 };
 
 /// A plot as a file of its own.
@@ -77,9 +77,9 @@ pub fn compare_figures(comparison: &Comparison) -> Result<Vec<Figure>, Failure> 
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn plan_figures(title: &str, planned: &Planned, course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
-    let mut figures = front_figures(&Front::of(title, planned))?;
-    figures.extend(motion_figures(&planned.joints, course)?);
+pub fn plan_figures(plan: &PlanDocument, course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
+    let mut figures = front_figures(plan)?;
+    figures.extend(motion_figures(&plan.joints, course)?);
     Ok(figures)
 }
 
@@ -92,8 +92,8 @@ pub fn motion_figures(joints: &[String], course: &SampledMotion) -> Result<Vec<F
     numbered("motion", &motion_charts(joints, course))
 }
 
-fn front_figures(front: &Front) -> Result<Vec<Figure>, Failure> {
-    front_charts(front).into_iter().map(|(name, chart)| figure(name, &chart)).collect()
+fn front_figures(front: &PlanDocument) -> Result<Vec<Figure>, Failure> {
+    front_charts(front).into_iter().map(|(name, chart)| figure(&name, &chart)).collect()
 }
 
 /// One a joint, in their order.

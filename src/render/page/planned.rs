@@ -17,33 +17,29 @@ use crate::{
         Part, counted,
         plan::{judged_parts, limit_cell, plan_parts},
     },
-    task::Bounds,
+    task::{Ceilings, Objective},
     units::degrees_from_radians,
-    workflow::{
-        plan::front::Front,
-        plan::{Options, Planned},
-    },
+    workflow::plan::{Options, PlanDocument, Planned},
 };
 
 /// What a search found, as one page.
 pub fn plan_page(
-    title: &str,
-    algorithm: &str,
+    plan: &PlanDocument,
     options: &Options,
-    bounds: &Bounds,
+    ceilings: &Ceilings,
     planned: &Planned,
     course: &SampledMotion,
 ) -> String {
     let mut plots = Plots::default();
-    let found = Front::of(title, planned);
-    let mut list = plan_parts(title, algorithm, options, bounds, planned);
+    let (title, algorithm) = (plan.title.as_str(), plan.algorithm.as_deref().unwrap_or_default());
+    let mut list = plan_parts(title, algorithm, options, ceilings, planned);
     list.retain(|part| !matches!(part, Part::Title(_)));
     // Remarks have a section of their own.
     let own = list.iter().position(|part| matches!(part, Part::Heading(text) if text.starts_with("Remarks")));
     list.truncate(own.unwrap_or(list.len()));
     let mut sections = vec![
         Section { id: "summary", heading: "In short", body: summary(planned) },
-        Section { id: "front", heading: "The front", body: front(&found, &mut plots) },
+        Section { id: "front", heading: "The front", body: front(plan, &mut plots) },
         Section {
             id: "motion",
             heading: "The chosen motion",
@@ -89,14 +85,13 @@ fn facts(joints: &[String], algorithm: &str, options: &Options, planned: &Planne
 }
 
 fn summary(planned: &Planned) -> Markup {
-    let [a, b, c] = &planned.best;
     html! {
         div class="cards" {
             (limits(&planned.chosen, &planned.joints))
             (cost("Chosen", &planned.chosen))
-            (cost("A, the fastest", a))
-            (cost("B, the smoothest", b))
-            (cost("C, of least power", c))
+            @for (objective, plan) in Objective::OF_PLAN.iter().zip(&planned.best) {
+                (cost(&format!("{}, {}", objective.letter(), objective.row().best), plan))
+            }
         }
         h3 { "What to do next" }
         ol class="next" { @for step in next(planned) { li { (step) } } }
@@ -154,22 +149,17 @@ fn limits(evaluation: &PlanEvaluation, joints: &[String]) -> Markup {
 }
 
 fn cost(label: &str, evaluation: &PlanEvaluation) -> Markup {
-    let f = evaluation.objectives;
-    let body = html! {
-        p { (format!("RMS jerk {:.4} deg/s3", degrees_from_radians(f.rms_jerk_rad_s3))) }
-        p { (format!("RMS power {:.2} W", f.rms_power_w)) }
-    };
-    card("", label, &format!("{:.2} s", f.duration_s), &body)
+    let text = |k: Objective| k.text(evaluation.objectives[k]);
+    let (first, others) = Objective::OF_PLAN.split_first().unwrap_or((&Objective::Duration, &[]));
+    let body = html! { @for k in others { p { (k.row().name) " " (text(*k)) } } };
+    card("", label, &text(*first), &body)
 }
 
 fn next(planned: &Planned) -> Vec<String> {
     let doubts = |remarks: &Remarks| counted(remarks.as_slice().len(), "remark");
     let mut steps = Vec::new();
     if !planned.remarks.is_empty() {
-        steps.push(format!(
-            "TerminalStyle at what is doubtful about the task: {} below.",
-            doubts(&planned.remarks)
-        ));
+        steps.push(format!("Look at what is doubtful about the task: {} below.", doubts(&planned.remarks)));
     }
     if planned.fastest_converged == Some(false) {
         steps.push("Search longer (--evaluations): the fastest plan was still getting faster.".to_owned());

@@ -1,9 +1,7 @@
 //! What was planned.
 
-mod document;
 mod tables;
 
-pub use document::{judged_json, plan_json};
 pub(super) use tables::limit_cell;
 pub use tables::{broken_lines, ceiling_lines, judged_parts, plan_parts};
 

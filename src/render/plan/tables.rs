@@ -2,9 +2,9 @@
 
 use super::{name, shown};
 use crate::{
-    plan::{BEYOND, Limit, Margin, Objectives, PlanEvaluation, Rule},
+    plan::{BEYOND, Limit, Margin, PlanEvaluation, Rule},
     render::{NONE, Part, Sheet, tables::remark_parts},
-    task::Bounds,
+    task::{Ceilings, Objective, Weights},
     units::degrees_from_radians,
     workflow::plan::{Options, Planned},
 };
@@ -21,7 +21,7 @@ pub fn plan_parts(
     title: &str,
     algorithm: &str,
     options: &Options,
-    bounds: &Bounds,
+    ceilings: &Ceilings,
     planned: &Planned,
 ) -> Vec<Part> {
     let start = if options.search.seeded { "descents" } else { "random plans" };
@@ -38,13 +38,12 @@ pub fn plan_parts(
         )),
         Part::Heading("Plans".into()),
     ];
-    let [a, b, c] = &planned.best;
-    let named = [("A  fastest", a), ("B  smoothest", b), ("C  least power", c), ("chosen", &planned.chosen)];
-    parts.push(Part::Sheet(Sheet {
-        head: vec!["plan", "arrivals s", "time s", "RMS jerk deg/s3", "RMS power W", "nearest limit"],
-        left: 2,
-        rows: named.map(|(name, evaluation)| row(name, evaluation, &planned.joints)).to_vec(),
-    }));
+    let best = Objective::OF_PLAN.iter().zip(&planned.best);
+    let mut rows: Vec<_> = best
+        .map(|(k, evaluation)| row(&format!("{}  {}", k.letter(), k.row().best), evaluation, &planned.joints))
+        .collect();
+    rows.push(row("chosen", &planned.chosen, &planned.joints));
+    parts.push(Part::Sheet(Sheet { head: head(), left: 2, rows }));
     if planned.fastest_converged == Some(false) {
         parts.push(Part::Line(
             "The fastest plan was still getting faster when its share of the evaluations was used up: give more with \
@@ -53,7 +52,7 @@ pub fn plan_parts(
         ));
     }
     parts.push(Part::Heading("The chosen plan".into()));
-    parts.push(Part::Line(reason(bounds, planned)));
+    parts.push(Part::Line(reason(ceilings, planned)));
     parts.push(Part::Line(
         "Another: --choose fastest, smoothest, thriftiest, knee or ideal, --weights, or ceilings in the task.".into(),
     ));
@@ -67,11 +66,7 @@ pub fn plan_parts(
 pub fn judged_parts(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Vec<Part> {
     let mut parts = vec![
         Part::Title(title.to_owned()),
-        Part::Sheet(Sheet {
-            head: vec!["plan", "arrivals s", "time s", "RMS jerk deg/s3", "RMS power W", "nearest limit"],
-            left: 2,
-            rows: vec![row("given", evaluation, joints)],
-        }),
+        Part::Sheet(Sheet { head: head(), left: 2, rows: vec![row("given", evaluation, joints)] }),
         Part::Line(format!("The joints do and take up {:.0} J of work together.", evaluation.energy_j)),
     ];
     parts.extend(margin_parts(evaluation, joints));
@@ -86,20 +81,20 @@ fn kept(evaluation: &PlanEvaluation) -> String {
     }
 }
 
+fn head() -> Vec<&'static str> {
+    let costs = Objective::OF_PLAN.iter().map(|objective| objective.row().heading);
+    ["plan", "arrivals s"].into_iter().chain(costs).chain(["nearest limit"]).collect()
+}
+
 fn row(name: &str, evaluation: &PlanEvaluation, joints: &[String]) -> Vec<String> {
-    let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = evaluation.objectives;
     let arrivals: Vec<String> = evaluation.times_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
     let nearest = nearest(evaluation).into_iter().next();
-    vec![
-        name.to_owned(),
-        arrivals.join(" "),
-        format!("{duration_s:.2}"),
-        format!("{:.4}", degrees_from_radians(rms_jerk_rad_s3)),
-        format!("{rms_power_w:.2}"),
-        nearest.map_or(NONE.to_owned(), |margin| {
-            format!("{} % {}", percent(margin.share), subject(margin, joints))
-        }),
-    ]
+    let mut row = vec![name.to_owned(), arrivals.join(" ")];
+    row.extend(Objective::OF_PLAN.iter().map(|&k| k.number(evaluation.objectives[k])));
+    row.push(nearest.map_or(NONE.to_owned(), |margin| {
+        format!("{} % {}", percent(margin.share), subject(margin, joints))
+    }));
+    row
 }
 
 /// The limit that is broken most, and how many more are, or the nearest.
@@ -138,22 +133,22 @@ fn subject(margin: &Margin, joints: &[String]) -> String {
 }
 
 /// Why a plan was chosen.
-fn reason(bounds: &Bounds, planned: &Planned) -> String {
+fn reason(ceilings: &Ceilings, planned: &Planned) -> String {
     let choice = &planned.choice;
     let why = match choice.rule {
         Rule::Weights => {
-            let weights = choice.weights.map_or(String::new(), |w| {
-                format!(" {} time, {} jerk, {} power", w.duration, w.rms_jerk, w.rms_power)
-            });
+            let each = |w: Weights| {
+                let each = Objective::OF_PLAN.iter().map(|&k| format!("{} {}", w[k], k.row().short));
+                format!(" {}", each.collect::<Vec<_>>().join(", "))
+            };
+            let weights = choice.weights.map_or(String::new(), each);
             format!("Least sum by the weights{weights}, each objective scaled by its range")
         }
         Rule::Ideal => "Nearest to the best of every objective, each scaled by its range".into(),
         Rule::Knee => "The knee: giving up a little of one objective costs most of another".into(),
-        Rule::Fastest => "The fastest".into(),
-        Rule::Smoothest => "The smoothest".into(),
-        Rule::Thriftiest => "The one of least power".into(),
+        Rule::Best(objective) => format!("The plan of least {}", objective.row().name),
     };
-    let ceilings = ceilings(bounds);
+    let ceilings = ceiling_texts(ceilings);
     let among = if ceilings.is_empty() {
         format!("all {}", choice.of)
     } else {
@@ -162,13 +157,9 @@ fn reason(bounds: &Bounds, planned: &Planned) -> String {
     format!("{why}, among {among}; then moved to where the rule has its optimum.")
 }
 
-fn ceilings(bounds: &Bounds) -> Vec<String> {
-    let each = [
-        bounds.duration_s.map(|s| format!("{s} s")),
-        bounds.rms_jerk_rad_s3.map(|rad| format!("{:.6} deg/s3", degrees_from_radians(rad))),
-        bounds.rms_power_w.map(|w| format!("{w} W")),
-    ];
-    each.into_iter().flatten().map(|text| trimmed(&text)).collect()
+fn ceiling_texts(ceilings: &Ceilings) -> Vec<String> {
+    let text = |(k, ceiling): (Objective, f64)| trimmed(&format!("{:.6} {}", k.shown(ceiling), k.row().unit));
+    ceilings.known().map(text).collect()
 }
 
 /// Without the zeros that a fixed number of decimals leaves.
@@ -282,29 +273,14 @@ pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation)
 }
 
 /// What the nearest plan exceeds its ceilings by, a line each, and what holds it there.
-pub fn ceiling_lines(
-    bounds: &Bounds,
-    joints: &[String],
-    nearest: &PlanEvaluation,
-    share: [f64; 3],
-) -> Vec<String> {
-    let f = nearest.objectives;
-    let values = [
-        (format!("time {:.2} s", f.duration_s), bounds.duration_s.map(|s| format!("{s:.2} s"))),
-        (
-            format!("RMS jerk {:.4} deg/s3", degrees_from_radians(f.rms_jerk_rad_s3)),
-            bounds.rms_jerk_rad_s3.map(|rad| format!("{:.4} deg/s3", degrees_from_radians(rad))),
-        ),
-        (format!("RMS power {:.2} W", f.rms_power_w), bounds.rms_power_w.map(|w| format!("{w:.2} W"))),
-    ];
-    let mut lines: Vec<String> = values
-        .into_iter()
-        .zip(share)
-        .filter(|(_, share)| *share > 1.0)
-        .filter_map(|((value, ceiling), share)| {
-            Some(format!("{value}, {} is asked for: {:.1} % too much", ceiling?, 100.0 * (share - 1.0)))
-        })
-        .collect();
+pub fn ceiling_lines(ceilings: &Ceilings, joints: &[String], nearest: &PlanEvaluation) -> Vec<String> {
+    let over = |(k, ceiling): (Objective, f64)| {
+        let share = nearest.objectives[k] / ceiling;
+        let (name, found, asked) = (k.row().name, k.text(nearest.objectives[k]), k.text(ceiling));
+        (share > 1.0)
+            .then(|| format!("{name} {found}, {asked} is asked for: {:.1} % too much", 100.0 * (share - 1.0)))
+    };
+    let mut lines: Vec<String> = ceilings.known().filter_map(over).collect();
     let mut tight: Vec<&Margin> = nearest.margins.iter().filter(|margin| margin.share > TIGHT).collect();
     tight.sort_by(|a, b| b.share.total_cmp(&a.share));
     let tight: Vec<String> =

@@ -1,9 +1,7 @@
 //! What was planned again.
 
-mod document;
 mod tables;
 
-pub use document::replan_json;
 pub use tables::replan_parts;
 
 use crate::{plan::Limit, workflow::replan::Replanned};

@@ -7,8 +7,7 @@ use crate::{
     arm::Arm,
     math::{median, quantile},
     series::Track,
-    task::Task,
-    workflow::{carried::plan_log::TASK, plan::arm_of},
+    workflow::carried::Carried,
 };
 
 /// What a joint's cylinders did and could do. Pairs are for growing and for shrinking angles, both

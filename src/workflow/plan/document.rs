@@ -4,7 +4,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{Options, Planned, Step};
 use crate::{
-    document::{PROGRAM, pretty},
+    document::{PROGRAM, pretty, unbounded},
     plan::{Limit, Margin, PlanEvaluation, Rule},
     remark::Remark,
     task::{Objective, Objectives},
@@ -114,11 +114,15 @@ pub struct MarginEntry {
     /// The joint; null for a limit of the arm as a whole.
     pub joint: Option<String>,
     /// Its value there: rad, rad/s, rad/s², rad/s³, N m, m/s, N or m³/s; null where it has no bound.
-    pub value: Option<f64>,
+    #[serde(with = "unbounded")]
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
+    pub value: f64,
     /// What is allowed in that direction.
-    pub allowed: Option<f64>,
-    /// Share of what is allowed; above 1 the limit is broken.
-    pub share: Option<f64>,
+    pub allowed: f64,
+    /// Share of what is allowed; above 1 the limit is broken; null where it has no bound.
+    #[serde(with = "unbounded")]
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
+    pub share: f64,
     /// When, s.
     pub t_s: f64,
 }
@@ -129,9 +133,9 @@ impl MarginEntry {
         let one = |margin: &Margin| Self {
             limit: margin.limit,
             joint: margin.joint.and_then(|joint| joints.get(joint)).cloned(),
-            value: Some(margin.value),
-            allowed: Some(margin.allowed),
-            share: Some(margin.share),
+            value: margin.value,
+            allowed: margin.allowed,
+            share: margin.share,
             t_s: margin.t_s,
         };
         margins.iter().map(one).collect()

@@ -9,8 +9,8 @@ mod request;
 
 use crate::{
     plan::{
-        Choice, NoChoice, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Setup, Timing,
-        choose, ends, search,
+        Choice, NoChoice, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Timing, choose, ends,
+        search,
     },
     remark::{Code, Remarks},
     task::{Objectives, Weights},

@@ -1,6 +1,6 @@
 //! The command to send for a plan, held to the arm's limits.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     fit::{Compensation, Fit, FitError, JointCompensation, STEP_S, compensate},
@@ -12,7 +12,7 @@ use crate::{
 const GAINS: [f64; 4] = [0.75, 0.5, 0.25, 0.0];
 
 /// What is done to one joint.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointCommand {
     /// The correction.

@@ -49,8 +49,8 @@ impl Last {
         if let Some(request) = &request {
             check_joints(path, request, planned)?;
         }
-        let times_s = observed.attached(FRONT).and_then(chosen_times_s);
-        let times_s = times_s
+        let times_s = carried
+            .times_s()
             .filter(|times_s| request.as_ref().is_some_and(|request| request.setup.motion(times_s).is_ok()));
         Ok(Self {
             plan,

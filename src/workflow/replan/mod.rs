@@ -1,6 +1,7 @@
 //! `replan`: from the logs of runs to a plan and a command for the next one.
 
 mod command;
+mod document;
 mod failure;
 mod last;
 mod limits;
@@ -14,6 +15,7 @@ use std::{ops::ControlFlow, path::PathBuf};
 use rayon::prelude::*;
 
 pub use command::{Commanded, JointCommand};
+pub use document::ReplanDocument;
 pub use failure::ReplanFailure;
 pub use limits::{HeldTo, Origin};
 pub use outcome::{Before, Replanned, Search};
@@ -22,7 +24,7 @@ pub use samples::{LEAD_S, TAIL_S};
 
 use super::{
     fit::observe::{Observed, Wanted},
-    fit::{self, read_limits},
+    fit::{self, LimitsFile},
 };
 use crate::{
     fit::{Compensation, Fit, JointFit},
@@ -147,7 +149,7 @@ pub fn run(
 /// The machine: fitted, or from a file; with the names of the logs behind it.
 fn machine(inputs: &Inputs, observed: &[Observed]) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
     if let Some(path) = &inputs.limits {
-        let file = read_limits(path)?;
+        let file = LimitsFile::read(path)?;
         let joints = observed.iter().flat_map(|run| &run.recording.measured.tracks).map(Track::name);
         file.check_joints(path, joints)?;
         return Ok((file.fit, file.logs, Remarks::default()));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{Candidate, Commanded, HeldTo, Inputs, LEAD_S, Predicted, ReplanFailure, last::Last};
 use crate::{
@@ -24,7 +24,7 @@ use crate::{
 };
 
 /// The last run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Before {
     /// Starts and reversals that were measured.

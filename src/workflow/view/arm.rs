@@ -10,8 +10,7 @@ use crate::{
     log::{LogError, Recording, read_description},
     remark::Code,
     series::{Series, Track},
-    task::Task,
-    workflow::{carried::plan_log::TASK, plan::arm_of},
+    workflow::carried::Carried,
 };
 
 /// How often an arm is placed, a second; enough for the eye.
