@@ -32,7 +32,7 @@ mod log_write;
 mod plan;
 mod plant;
 mod readme;
-mod real_log;
 mod replay;
 mod sample_logs;
 mod spline;
+mod support;

@@ -3,10 +3,12 @@
 //! In a block marked `console` a line `$ hydrotrace ...` is run and the lines after it are what it
 //! prints; a line `...` stands for any number of lines.
 
-use std::{path::Path, process::Command};
+use std::path::Path;
+
+use crate::support::{command as binary, root, samples};
 
 fn readme() -> String {
-    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md")).unwrap()
+    std::fs::read_to_string(root().join("README.md")).unwrap()
 }
 
 /// Commands and what the README says they print.
@@ -65,17 +67,13 @@ fn copy(from: &Path, to: &Path) {
 fn every_command_prints_what_is_shown() {
     let folder = tempfile::tempdir().unwrap();
     // Outputs go to a scratch folder that sees the sample logs.
-    copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs"), &folder.path().join("sample-logs"));
+    copy(samples(), &folder.path().join("sample-logs"));
     let examples = examples(&readme());
     assert!(examples.len() >= 5, "only {} commands found", examples.len());
     for (command, shown) in examples {
         let words: Vec<&str> = command.split_whitespace().collect();
         assert_eq!(words[0], "hydrotrace", "{command}");
-        let run = Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
-            .current_dir(folder.path())
-            .args(&words[1..])
-            .output()
-            .unwrap();
+        let run = binary(folder.path()).args(&words[1..]).output().unwrap();
         let printed = [run.stdout, run.stderr].concat();
         let printed: Vec<String> = String::from_utf8(printed).unwrap().lines().map(str::to_owned).collect();
         assert!(agree(&shown, &printed), "{command} prints\n{}", printed.join("\n"));
@@ -95,7 +93,7 @@ fn every_local_link_leads_somewhere() {
     let text = readme();
     for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
         if !link.contains("://") && !link.starts_with('#') {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(link);
+            let path = root().join(link);
             assert!(path.exists(), "README links to {link}");
         }
     }
