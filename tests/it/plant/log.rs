@@ -9,7 +9,7 @@ use hydrotrace::{
     },
 };
 
-use super::{POSE_DEG, command};
+use crate::support::machine::{POSE_DEG, command};
 
 fn outputs() -> Outputs {
     let swing = |lead: f64| {
