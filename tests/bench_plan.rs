@@ -114,7 +114,7 @@ fn the_papers_plans_have_their_known_worth_and_ours_are_no_worse_in_anything() {
         let better = ours.objectives.plan();
         assert!(better.iter().zip(f).all(|(ours, theirs)| ours <= theirs), "{plan} {better:?} {f:?}");
         let (smooth, thrifty) = (row(Whose::Smoothest(plan)), row(Whose::Thriftiest(plan)));
-        let of = |row: &Row| row.evaluation.as_ref().unwrap().objectives.plan();
+        let of = |row: &Row| row.evaluation.as_ref().unwrap().objectives.plan().to_vec();
         assert!(of(smooth)[1] <= better[1] && of(thrifty)[2] <= better[2], "{plan}");
     }
     let stretched = row(Whose::Stretched);
