@@ -6,7 +6,7 @@ use hydrotrace::{
     workflow::simulate::{Inputs, Outputs, TRUTH, run},
 };
 
-use super::{POSE_DEG, command};
+use crate::support::machine::{POSE_DEG, command};
 
 fn outputs() -> Outputs {
     let swing = |lead: f64| {
