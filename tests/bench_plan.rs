@@ -13,7 +13,7 @@ use hydrotrace::{
     math::quantile,
     moea::{Budget, Contender, Settings, optimise, silent},
     plan::{Reference, Search, TimingProblem, search},
-    render::{contest_csv, contest_json, contest_parts, contest_svg, text},
+    render::{contest_csv, contest_document, contest_json, contest_svg, kit::text},
     task::Objective,
     workflow::contest::{Inputs, REFERENCE_PLANS, Row, Study, Subject, Whose, run},
 };
@@ -126,7 +126,7 @@ fn the_papers_plans_have_their_known_worth_and_ours_are_no_worse_in_anything() {
 
 fn rendered(inputs: &Inputs, study: &Study) -> Vec<String> {
     let mut all =
-        vec![text(&contest_parts(inputs, study)), contest_json(inputs, study), contest_csv(&study.curves)];
+        vec![text(&contest_document(inputs, study)), contest_json(inputs, study), contest_csv(&study.curves)];
     all.extend(study.curves.chunk_by(|a, b| a.task == b.task).map(|same| contest_svg(same).unwrap()));
     all
 }

@@ -8,7 +8,7 @@ use super::{
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
-    render::{fit_parts, limits_written, noted},
+    render::{fit as words, next},
     workflow::fit::{FitDocument, Fitted, Inputs, LimitsFile, run as fit},
 };
 
@@ -17,8 +17,10 @@ pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) ->
     let json = args.json || args.document().is_some();
     let rendered = match &args.output {
         _ if json => FitDocument::of(&fitted).json(),
-        Some(path) => shown(&noted(fit_parts(&fitted), limits_written(path, &args.logs)), None),
-        None => shown(&fit_parts(&fitted), None),
+        Some(path) => {
+            shown(&words::document(&fitted).with_above_remarks(next::limits_written(path, &args.logs)), None)
+        }
+        None => shown(&words::document(&fitted), None),
     };
     deliver(&rendered, args.document(), out)?;
     if json {

@@ -15,8 +15,9 @@ use crate::{
     moea::{Budget, Contender},
     plan::{PlanEvaluation, Progress, Reference, SampledMotion},
     render::{
-        Part, broken_lines, ceiling_lines, judged_page, judged_parts, motion_figures, noted, plan_figures,
-        plan_page, plan_parts, plan_written,
+        kit::Document,
+        next,
+        plan::{self as words, broken_lines, ceiling_lines, judged_document, judged_page, motion_figures},
     },
     workflow::{
         carried::{
@@ -57,7 +58,7 @@ fn judge(
     } else if args.wants_html() {
         judged_page(title, &joints, &evaluation, &course)
     } else {
-        shown(&written(args, judged_parts(title, &joints, &evaluation)), None)
+        shown(&written(args, judged_document(title, &joints, &evaluation)), None)
     };
     figures::figures(&args.figures, err, || motion_figures(&joints, &course))?;
     deliver(&rendered, text_file(args.page()), out)?;
@@ -76,11 +77,11 @@ fn plan(
     let rendered = if args.wants_json() {
         document.json()
     } else if args.wants_html() {
-        plan_page(&document, &options, ceilings, &planned, &course)
+        words::page(&document, &options, ceilings, &planned, &course)
     } else {
-        shown(&written(args, plan_parts(title, algorithm, &options, ceilings, &planned)), None)
+        shown(&written(args, words::document(title, algorithm, &options, ceilings, &planned)), None)
     };
-    figures::figures(&args.figures, err, || plan_figures(&document, &course))?;
+    figures::figures(&args.figures, err, || words::figures(&document, &course))?;
     deliver(&rendered, text_file(args.page()), out)?;
     if args.wants_json() || args.wants_html() {
         say_remarks(&planned.remarks, err);
@@ -89,10 +90,10 @@ fn plan(
 }
 
 /// Says where the log is, if there is one.
-fn written(args: &PlanArgs, parts: Vec<Part>) -> Vec<Part> {
+fn written(args: &PlanArgs, document: Document) -> Document {
     match args.log() {
-        Some(log) => noted(parts, plan_written(log)),
-        None => parts,
+        Some(log) => document.with_above_remarks(next::plan_written(log)),
+        None => document,
     }
 }
 

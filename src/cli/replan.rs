@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     atomic_file::write_atomically,
-    render::{next_written, noted, replan_parts},
+    render::{next, replan as words},
     workflow::replan::{Inputs, ReplanDocument, Replanned, run as replan},
 };
 
@@ -29,8 +29,10 @@ pub(super) fn run(
     let replanned = replanned(args)?;
     let rendered = match &args.output {
         _ if args.json => ReplanDocument::of(&replanned).json(),
-        Some(path) => shown(&noted(replan_parts(&replanned), next_written(path, &args.logs)), None),
-        None => shown(&replan_parts(&replanned), None),
+        Some(path) => {
+            shown(&words::document(&replanned).with_above_remarks(next::next_written(path, &args.logs)), None)
+        }
+        None => shown(&words::document(&replanned), None),
     };
     deliver(&rendered, None, out)?;
     if args.json {

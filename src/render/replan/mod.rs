@@ -2,7 +2,7 @@
 
 mod tables;
 
-pub use tables::replan_parts;
+pub use tables::document;
 
 use crate::{plan::Limit, workflow::replan::Replanned};
 

@@ -94,7 +94,7 @@ fn plans_of_a_front_keep_every_limit_exactly_and_none_beats_another() {
         for a in &found.front {
             let beats = |b: &Timing| {
                 let (a, b) = (a.objectives.plan(), b.objectives.plan());
-                a != b && a.iter().zip(b).all(|(a, b)| *a <= b)
+                a != b && a.iter().zip(b).all(|(a, b)| a <= b)
             };
             assert!(!found.front.iter().any(beats));
         }
@@ -244,7 +244,7 @@ proptest! {
         let slow: Vec<f64> = interval_s.iter().map(|s| s * stretch).collect();
         let (fast, _, fast_margins) = judged(&setup, &setup.times_s(&interval_s));
         let (slow, _, slow_margins) = judged(&setup, &setup.times_s(&slow));
-        let ratio = slow.rms_jerk_rad_s3 / fast.rms_jerk_rad_s3 * stretch.powi(3);
+        let ratio = slow[Objective::RmsJerk] / fast[Objective::RmsJerk] * stretch.powi(3);
         prop_assert!((ratio - 1.0).abs() < 1e-9);
         for (fast, slow) in fast_margins.iter().zip(&slow_margins) {
             let power = match fast.limit {
