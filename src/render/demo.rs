@@ -3,11 +3,15 @@
 use std::path::Path;
 
 use super::kit::{Document, Id, NONE, Section, Sentence, Table, counted, deg, optional, probability};
-use crate::workflow::{
-    compare::{Comparison, Measure, Scope, Summary, Verdict},
-    fit::Fitted,
-    plan::Planned,
-    replan::Replanned,
+use crate::{
+    replay::PEAK_ERROR,
+    task::Objective,
+    workflow::{
+        compare::{Comparison, Scope, Summary, Verdict},
+        fit::Fitted,
+        plan::Planned,
+        replan::Replanned,
+    },
 };
 
 /// What happened.
@@ -44,7 +48,7 @@ pub fn document(story: &Story<'_>) -> Document {
             "plan task-1.toml -o plan.mcap".to_owned(),
             format!(
                 "{:.2} s through the key points, chosen among {} plans",
-                planned.chosen.objectives.duration_s,
+                planned.chosen.objectives[Objective::Duration],
                 planned.front.len()
             ),
         ),
@@ -106,7 +110,7 @@ pub fn document(story: &Story<'_>) -> Document {
 }
 
 fn peaks<'a>(comparison: &'a Comparison, scope: &Scope) -> Option<&'a Summary> {
-    comparison.summaries.iter().find(|s| s.measure == Measure::PeakError && s.scope == *scope)
+    comparison.summaries.iter().find(|s| s.measure.key == PEAK_ERROR && s.scope == *scope)
 }
 
 fn compared(comparison: &Comparison) -> String {

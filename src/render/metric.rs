@@ -71,7 +71,9 @@ impl Units {
     /// `peak deg`.
     pub(super) fn heading(self, heading: &str, dimension: Dimension) -> String {
         let kind = if dimension.is_of_joint() { self.0 } else { Some(Turns) };
-        kind.map_or(heading.to_owned(), |kind| format!("{heading} {}", unit(dimension, kind)).trim_end().to_owned())
+        kind.map_or(heading.to_owned(), |kind| {
+            format!("{heading} {}", unit(dimension, kind)).trim_end().to_owned()
+        })
     }
 
     /// A number of a joint.
@@ -91,10 +93,15 @@ impl Units {
     ) -> Table {
         let shown: Vec<&Metric<T>> = metrics.iter().filter(|metric| !metric.heading.is_empty()).collect();
         let columns = shown.iter().map(|metric| Column {
-            align: if matches!(metric.dimension, Dimension::Word | Dimension::Sign) { Align::Left } else { Align::Right },
+            align: if matches!(metric.dimension, Dimension::Word | Dimension::Sign) {
+                Align::Left
+            } else {
+                Align::Right
+            },
             ..Column::words(self.heading(metric.heading, metric.dimension)).meaning(metric.explanation)
         });
-        let row = |(one, kind): (&T, JointKind)| shown.iter().map(|metric| self.shown(metric, one, kind)).collect();
+        let row =
+            |(one, kind): (&T, JointKind)| shown.iter().map(|metric| self.shown(metric, one, kind)).collect();
         Table::of(columns.collect::<Vec<_>>(), all.map(row).collect::<Vec<_>>())
     }
 

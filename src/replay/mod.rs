@@ -64,7 +64,8 @@ pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
         .map(|(joint, windows_s)| JointError { samples: &joint.error, moving: &joint.moving, windows_s })
         .collect();
     let concentration = concentration(&errors, rules).filter(|_| alike);
-    let tracking_error = tracking::tracking_error(joints.iter().flat_map(|joint| &joint.error)).filter(|_| alike);
+    let tracking_error =
+        tracking::tracking_error(joints.iter().flat_map(|joint| &joint.error)).filter(|_| alike);
     let lagging = alike && joints.iter().any(|joint| joint.replay.lag_s.is_some());
     let lag_share = lagging.then(|| {
         let blocks = joints.iter().flat_map(|joint| joint.blocks.iter().copied()).collect();

@@ -16,7 +16,9 @@ pub fn peak_motion(pair: &Pair, window_s: f64, rules: &Rules) -> [Option<f64>; 2
 pub(super) fn of_fits(pair: &Pair, fits: &[LocalFit], window_s: f64) -> [Option<f64>; 2] {
     let whole = pair.segments.iter().flat_map(|segment| {
         let [first_s, last_s] = [pair.t_s[segment.start], pair.t_s[segment.end - 1]];
-        segment.clone().filter(move |&i| pair.t_s[i] - first_s >= window_s && last_s - pair.t_s[i] >= window_s)
+        segment
+            .clone()
+            .filter(move |&i| pair.t_s[i] - first_s >= window_s && last_s - pair.t_s[i] >= window_s)
     });
     whole.fold([None, None], |[speed, acceleration], i| {
         let larger = |a: Option<f64>, b: f64| Some(a.map_or(b.abs(), |a| a.max(b.abs())));

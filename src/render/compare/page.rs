@@ -116,7 +116,11 @@ pub(super) fn change_rows(comparison: &Comparison) -> Vec<Row> {
             text: format!(
                 "{}{}",
                 signed(mean, |d| position(kind, d)),
-                interval.map_or(String::new(), |[a, b]| format!(" ({}..{})", signed(a, alone), signed(b, alone)))
+                interval.map_or(String::new(), |[a, b]| format!(
+                    " ({}..{})",
+                    signed(a, alone),
+                    signed(b, alone)
+                ))
             ),
             strong: summary.scope == Scope::All,
         })
@@ -242,7 +246,12 @@ fn over_time(joint: &str, before: &Pair, after: &Pair, offset_s: f64) -> Chart {
         title: joint.to_owned(),
         x_label: "Time (s)".into(),
         xs,
-        panels: vec![Panel { label: format!("Error ({})", unit(Dimension::Position, before.kind)), series, share: 1.0, range: None }],
+        panels: vec![Panel {
+            label: format!("Error ({})", unit(Dimension::Position, before.kind)),
+            series,
+            share: 1.0,
+            range: None,
+        }],
         group: Some("run"),
         height: 190,
         ..Chart::default()

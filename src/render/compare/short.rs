@@ -65,12 +65,13 @@ fn verdict(peak: &Summary, kind: JointKind) -> String {
 fn whole_run(comparison: &Comparison) -> Option<String> {
     let all = comparison.whole_run.first()?;
     let shown = ["rms", "peak", "standstill_rms", "path_rms"];
-    let figures = all.changes.iter().filter(|(metric, _)| shown.contains(&metric.key)).map(|(metric, change)| {
-        let share = change.ratio.map_or(String::new(), |ratio| format!(" ({} %)", percent(ratio - 1.0)));
-        let show = |value: f64| with_unit(metric.dimension, all.kind, value);
-        let both = change.before.zip(change.after);
-        both.map(|(before, after)| format!("{} {} -> {}{share}", metric.name, show(before), show(after)))
-    });
+    let figures =
+        all.changes.iter().filter(|(metric, _)| shown.contains(&metric.key)).map(|(metric, change)| {
+            let share = change.ratio.map_or(String::new(), |ratio| format!(" ({} %)", percent(ratio - 1.0)));
+            let show = |value: f64| with_unit(metric.dimension, all.kind, value);
+            let both = change.before.zip(change.after);
+            both.map(|(before, after)| format!("{} {} -> {}{share}", metric.name, show(before), show(after)))
+        });
     let figures: Vec<String> = figures.flatten().collect();
     (!figures.is_empty()).then(|| format!("Whole run, all joints: {}.", figures.join(", ")))
 }

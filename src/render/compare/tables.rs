@@ -4,8 +4,8 @@ use super::{arrow, kind, scope, short::in_short, word};
 use crate::{
     render::{
         kit::{
-            Block, Column, Document, Fact, Id, NONE, Section, Sentence, Table, counted, fact, optional, percent,
-            probability, signed,
+            Block, Column, Document, Fact, Id, NONE, Section, Sentence, Table, counted, fact, optional,
+            percent, probability, signed,
         },
         metric::{Units, number, position},
     },
@@ -102,8 +102,11 @@ fn summary(comparison: &Comparison, metric: &Metric<Transition>) -> Option<Secti
     let columns = std::iter::once(Column::words("transitions"))
         .chain(std::iter::once(Column::numbers(before).meaning(metric.explanation)))
         .chain(
-            ["after", "change", "95 %", "median", "%", "p", "verdict", "pairs", "events", "smaller", "larger"]
-                .map(Column::numbers),
+            [
+                "after", "change", "95 %", "median", "%", "p", "verdict", "pairs", "events", "smaller",
+                "larger",
+            ]
+            .map(Column::numbers),
         );
     let rows: Vec<Vec<String>> = of.iter().map(|summary| summary_row(comparison, summary, units)).collect();
     let some = !rows.is_empty();
@@ -120,7 +123,9 @@ fn summary_row(comparison: &Comparison, summary: &Summary, units: Units) -> Vec<
         optional(summary.mean_before, show),
         optional(summary.mean_after, show),
         optional(summary.mean_difference, signed),
-        summary.interval_95.map_or(NONE.to_owned(), |[low, high]| format!("{}..{}", signed(low), signed(high))),
+        summary
+            .interval_95
+            .map_or(NONE.to_owned(), |[low, high]| format!("{}..{}", signed(low), signed(high))),
         optional(summary.median_difference, signed),
         optional(summary.relative_change, percent),
         probability(summary.p_value),
@@ -139,8 +144,7 @@ fn figures_table(figures: &[Figures]) -> Table {
         Column::numbers(units.heading(heading, metric.dimension)).meaning(metric.explanation)
     });
     let rows = figures.iter().map(|f| {
-        let cells =
-            f.changes.iter().map(|(metric, change)| arrow(change, metric.dimension, f.kind, units));
+        let cells = f.changes.iter().map(|(metric, change)| arrow(change, metric.dimension, f.kind, units));
         std::iter::once(f.joint.clone().unwrap_or("all".to_owned())).chain(cells).collect()
     });
     Table::of(

@@ -14,9 +14,11 @@ use crate::{
 /// One row a transition, in order of joint and time; remarks follow as lines that start with `#`.
 pub fn csv(report: &Report) -> String {
     let run = report.run.clone().unwrap_or_else(|| report.logs.join(", "));
-    let rows = report.replay.transitions.iter().map(|t| {
-        std::iter::once(run.clone()).chain(csv_cells(TRANSITION, t)).collect()
-    });
+    let rows = report
+        .replay
+        .transitions
+        .iter()
+        .map(|t| std::iter::once(run.clone()).chain(csv_cells(TRANSITION, t)).collect());
     let mut text = kit::csv(std::iter::once("run").chain(csv_columns(TRANSITION)), rows);
     for remark in report.remarks.as_slice() {
         let message = remark.message.replace(['\n', '\r'], " ");

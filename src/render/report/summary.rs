@@ -50,7 +50,8 @@ fn worst(report: &Report) -> Markup {
             "Show it"
         }
     };
-    let headline = format!("{}: {} of {}", position(worst.joint_kind, worst.peak_error), worst.kind.name(), worst.joint);
+    let headline =
+        format!("{}: {} of {}", position(worst.joint_kind, worst.peak_error), worst.kind.name(), worst.joint);
     card("", "Worst transition", &headline, &body)
 }
 

@@ -5,8 +5,8 @@ use crate::{
     math::span,
     render::{
         kit::{
-            Column, Document, Fact, Id, Section, Sentence, counted, fact, ms, probability,
-            share as percents, spark,
+            Column, Document, Fact, Id, Section, Sentence, counted, fact, ms, probability, share as percents,
+            spark,
         },
         metric::{Units, position, with_unit},
     },
@@ -80,7 +80,9 @@ fn findings(report: &Report) -> Vec<String> {
             (Some(_), _) => "Transitions hold it because the joints move there",
             (None, Verdict::Transitions) => "Most of the error arises in the transitions",
             (None, Verdict::Elsewhere) => "Most of the error arises outside the transitions",
-            (None, Verdict::Undecided) => "Whether most of the error arises in the transitions cannot be told",
+            (None, Verdict::Undecided) => {
+                "Whether most of the error arises in the transitions cannot be told"
+            }
         };
         let test = c.test.map_or("too few stretches to test".to_owned(), |t| {
             format!(
@@ -156,9 +158,9 @@ pub(super) fn lag_words(replay: &Replay) -> Option<String> {
     Some(format!(
         "a lag of {lag} causes {} of the squared error ({}{}; mostly lag from {:.0} % on)",
         percents(share.share),
-        share.interval.map_or(String::new(), |[a, b]| {
-            format!("95 % interval {:.0}..{}, ", 100.0 * a, percents(b))
-        }),
+        share
+            .interval
+            .map_or(String::new(), |[a, b]| { format!("95 % interval {:.0}..{}, ", 100.0 * a, percents(b)) }),
         counted(share.events, "event"),
         100.0 * replay.rules.mostly_lag_share,
     ))
@@ -208,7 +210,9 @@ fn transitions(replay: &Replay, most: usize) -> Option<Section> {
 fn joints(replay: &Replay, profiles: &Profiles) -> Section {
     let units = Units::of(replay.joints.iter().map(|joint| joint.kind));
     let mut table = units.table(JOINT, replay.joints.iter().map(|joint| (joint, joint.kind)));
-    table.columns.insert(1, Column::words("error over the run").meaning("Largest error in each part of the run."));
+    table
+        .columns
+        .insert(1, Column::words("error over the run").meaning("Largest error in each part of the run."));
     for (k, row) in table.rows.iter_mut().enumerate() {
         let line = profiles.peaks.get(k).map_or(String::new(), |peaks| spark(peaks, profiles.most));
         row.insert(1, line);

@@ -10,10 +10,7 @@ mod transition;
 pub use joint::JOINT;
 pub use transition::{PEAK_ERROR, TRANSITION};
 
-use super::{
-    JointReplay, TrackingError, Transition, WholeRun,
-    keyed::Keyed,
-};
+use super::{JointReplay, TrackingError, Transition, WholeRun, keyed::Keyed};
 
 /// What a number is, and so its unit: that of a position is the joint's, rad or m.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

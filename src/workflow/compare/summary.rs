@@ -92,7 +92,12 @@ pub(super) fn summaries(pairs: &[TransitionPair], joints: &[String], rules: &Rul
     scopes.flat_map(of).collect()
 }
 
-fn summary(pairs: &[TransitionPair], metric: &'static Metric<Transition>, scope: Scope, rules: &Rules) -> Summary {
+fn summary(
+    pairs: &[TransitionPair],
+    metric: &'static Metric<Transition>,
+    scope: Scope,
+    rules: &Rules,
+) -> Summary {
     let within = |pair: &&TransitionPair| match &scope {
         Scope::All => true,
         Scope::Starts => pair.kind == Kind::Start,

@@ -123,8 +123,7 @@ fn outside(report: &Report) -> Option<Advice> {
     if let Some((joint, lag_s)) = latest {
         return Some(Advice::ShortenLag { joint: joint.name.clone(), lag_s });
     }
-    let worst =
-        joints.iter().max_by(|a, b| a.tracking_error.peak.total_cmp(&b.tracking_error.peak))?;
+    let worst = joints.iter().max_by(|a, b| a.tracking_error.peak.total_cmp(&b.tracking_error.peak))?;
     Some(Advice::LookOutside { joint: worst.name.clone(), time_s: worst.tracking_error.peak_time_s })
 }
 

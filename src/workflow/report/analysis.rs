@@ -58,8 +58,9 @@ fn remark_unseen(planned: &Series, pairs: &[Pair], rules: &Rules, remarks: &mut 
             remarks.add(Code::Unmatched, pair.unmatched as u64, message);
         }
         let Some(track) = planned.track(&pair.name) else { continue };
-        let seen =
-            |at_s: &f64| pair.segments.iter().any(|s| (pair.t_s[s.start]..=pair.t_s[s.end - 1]).contains(at_s));
+        let seen = |at_s: &f64| {
+            pair.segments.iter().any(|s| (pair.t_s[s.start]..=pair.t_s[s.end - 1]).contains(at_s))
+        };
         let hidden = planned_starts(track, rules).iter().filter(|at_s| !seen(at_s)).count();
         let message = format!("planned starts of {} lie where nothing was measured; not judged", pair.name);
         remarks.add(Code::Unmatched, hidden as u64, message);

@@ -16,12 +16,11 @@ pub use identity::{LogFile, log_files};
 pub use outcome::{Alignment, Report};
 
 use super::{
-    carried::plan_log::{FRONT, TASK},
-    carried::schedule::Schedule,
-    plan::front::Front,
+    carried::{Carried, PLAN, Schedule},
+    plan::PlanDocument,
 };
 use crate::{
-    log::{Attachment, LogError, ReadOptions, Recording, read_recording},
+    log::{LogError, ReadOptions, Recording, read_recording},
     remark::{Code, Remarks},
     replay::{Profiles, Rules},
 };
@@ -54,17 +53,19 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
 ///
 /// [`LogError`] if plan and measurement never overlap.
 pub fn report(recording: Recording, inputs: &Inputs) -> Result<Report, LogError> {
+    let carried = Carried::of(&recording);
     let mut remarks = recording.remarks.clone();
     let Analysis { alignment, pairs, replay } = analyse(&recording, &inputs.rules, &mut remarks);
     if pairs.is_empty() {
-        let span_s = |series: &crate::series::Series| series.span_s().unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
+        let span_s =
+            |series: &crate::series::Series| series.span_s().unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
         return Err(LogError::NoOverlap {
             planned_s: span_s(&recording.planned),
             measured_s: span_s(&recording.measured),
         });
     }
     let gates = inputs.gates.judge(&replay);
-    let front = front(&recording.attachments, &mut remarks);
+    let front = front(&carried, &mut remarks);
     let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let named = |key: &str| recording.metadata.values().find_map(|entries| entries.get(key).cloned());
     Ok(Report {
@@ -72,8 +73,8 @@ pub fn report(recording: Recording, inputs: &Inputs) -> Result<Report, LogError>
         paths: inputs.logs.clone(),
         machine: named("machine"),
         run: named("run"),
-        holds_task: recording.attachments.iter().any(|file| file.name == TASK),
-        schedule: Schedule::of(&recording),
+        holds_task: carried.task().is_some(),
+        schedule: Schedule::of(&carried),
         source: recording.source,
         alignment,
         replay,
@@ -85,12 +86,11 @@ pub fn report(recording: Recording, inputs: &Inputs) -> Result<Report, LogError>
     })
 }
 
-fn front(attachments: &[Attachment], remarks: &mut Remarks) -> Option<Front> {
-    let file = attachments.iter().find(|file| file.name == FRONT)?;
-    match Front::read(file)? {
-        Ok(front) => Some(front),
+fn front(carried: &Carried, remarks: &mut Remarks) -> Option<PlanDocument> {
+    match carried.plan()? {
+        Ok(plan) => Some(plan),
         Err(error) => {
-            remarks.add(Code::NotSupported, 1, format!("{FRONT} in the log is broken, left out: {error}"));
+            remarks.add(Code::NotSupported, 1, format!("{PLAN} in the log is broken, left out: {error}"));
             None
         }
     }

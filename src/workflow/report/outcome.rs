@@ -10,7 +10,7 @@ use crate::{
     remark::Remarks,
     replay::{Profiles, Replay},
     series::Pair,
-    workflow::{carried::schedule::Schedule, plan::front::Front},
+    workflow::{carried::Schedule, plan::PlanDocument},
 };
 
 /// How the plan of one joint met its measurement.
@@ -57,7 +57,7 @@ pub struct Report {
     /// When the key points of the task are passed, where the log tells.
     pub schedule: Option<Schedule>,
     /// The plans that the run's own was chosen from, where its log carries them.
-    pub front: Option<Front>,
+    pub front: Option<PlanDocument>,
 }
 
 impl Report {

@@ -8,14 +8,13 @@
 //! one 0.03 deg above rest, are 0.10 to 0.16 s on joints 1 to 4 and 6. At 0.05 deg/s, where
 //! hydrotrace dates both, the first joints leave up to 30 ms earlier.
 
-use std::process::Command;
-
 use serde_json::Value;
+
+use crate::support::run_at_root;
 
 fn report() -> Value {
     let log = std::env::var("HYDROTRACE_REAL_LOG").expect("HYDROTRACE_REAL_LOG names the log");
-    let run =
-        Command::new(env!("CARGO_BIN_EXE_hydrotrace")).args(["report", &log, "--json"]).output().unwrap();
+    let run = run_at_root(&["report", &log, "--json"]);
     assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
     serde_json::from_slice(&run.stdout).unwrap()
 }
