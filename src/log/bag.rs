@@ -121,7 +121,8 @@ mod tests {
         let text =
             "rosbag2_bagfile_information:\n  storage_identifier: sqlite3\n  relative_file_paths: [a.db3]\n";
         std::fs::write(folder.path().join("metadata.yaml"), text).unwrap();
-        let error = files(&[folder.path().to_owned()], &mut Remarks::default()).unwrap_err().to_string();
+        let error =
+            recording_files(&[folder.path().to_owned()], &mut Remarks::default()).unwrap_err().to_string();
         assert!(error.contains("sqlite3") && error.contains("ros2 bag convert"), "{error}");
     }
 }

@@ -247,8 +247,8 @@ fn json_is_as_the_schema_says_and_equal_calls_give_equal_bytes() {
     let gates = ["lag.mcap", "slow.mcap", "--max-p", "0.05", "--max-transition-growth-deg", "1"];
     for (folder, args) in [(RUNS.path(), &gates[..]), (samples(), &[SOUND, "gaps.mcap"])] {
         let document = json(folder, args);
-        hold_to_schema(&document, "compare.v1");
-        assert_eq!(document["format"], "hydrotrace.compare.v1");
+        hold_to_schema(&document, "compare.v2");
+        assert_eq!(document["format"], "hydrotrace.compare.v2");
         assert_eq!(document, json(folder, args));
     }
 }
