@@ -2,7 +2,6 @@
 //! and milliseconds are.
 
 mod compare;
-mod contest;
 mod csv;
 mod demo;
 mod excite;
@@ -13,7 +12,6 @@ mod join;
 mod json;
 mod markup;
 mod method;
-mod moea;
 mod next;
 mod page;
 mod picture;
@@ -22,15 +20,12 @@ mod plan;
 mod raster;
 mod recover;
 mod replan;
-mod sample;
-mod score;
 mod simulate;
 mod spark;
 mod tables;
 mod terminal_style;
 
 pub use compare::{compare_gate_lines, compare_json, compare_parts};
-pub use contest::{contest_csv, contest_json, contest_parts, contest_svg};
 pub use csv::transitions_csv;
 pub use demo::{Story, demo_parts};
 pub use excite::excited_parts;
@@ -40,18 +35,16 @@ pub use info::{info_json, info_parts};
 pub use join::{joined_json, joined_parts};
 pub use json::report_json;
 pub use markup::{Part, Sheet, markdown, noted, shown, text};
-pub use moea::{curve_svg, curves_csv, front_csv, moea_json, moea_parts};
 pub use next::{limits_written, next_written, plan_written};
 pub use page::{
     Figure, compare_figures, compare_page, judged_page, motion_figures, plan_figures, plan_page,
     report_figures, report_page,
 };
-pub use plan::{broken_lines, ceiling_lines, judged_json, judged_parts, plan_json, plan_parts};
+pub use plan::{broken_lines, ceiling_lines, judged_json, judged_parts, limit_cell, plan_json, plan_parts};
 #[cfg(feature = "png")]
 pub use raster::{Raster, raster};
 pub use recover::{recovered_json, recovered_parts};
 pub use replan::{replan_json, replan_parts};
-pub use score::{score_json, score_parts};
 pub use simulate::simulated_line;
 pub use tables::{gate_lines, report_parts};
 pub use terminal_style::TerminalStyle;

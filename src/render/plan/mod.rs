@@ -4,8 +4,7 @@ mod document;
 mod tables;
 
 pub use document::{judged_json, plan_json};
-pub(super) use tables::limit_cell;
-pub use tables::{broken_lines, ceiling_lines, judged_parts, plan_parts};
+pub use tables::{broken_lines, ceiling_lines, judged_parts, limit_cell, plan_parts};
 
 use crate::{plan::Limit, units::degrees_from_radians};
 

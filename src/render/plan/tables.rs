@@ -103,7 +103,7 @@ fn row(name: &str, judged: &Judged, joints: &[String]) -> Vec<String> {
 }
 
 /// The limit that is broken most, and how many more are, or the nearest.
-pub(in crate::render) fn limit_cell(judged: &Judged, joints: &[String]) -> String {
+pub fn limit_cell(judged: &Judged, joints: &[String]) -> String {
     let Some(worst) = nearest(judged).into_iter().next() else { return NONE.to_owned() };
     let worst = format!("{} % {}", percent(worst.share), subject(worst, joints));
     match judged.broken().len() {
