@@ -42,9 +42,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let series = |value: &dyn Fn(usize) -> f64| -> Vec<(f64, f64)> {
         shown.clone().map(|i| (pair.t_s[i], degrees_from_radians(value(i)))).collect()
     };
-    let planned = series(&|i| pair.planned_rad[i]);
-    let measured = series(&|i| pair.measured_rad[i]);
-    let error = series(&|i| pair.planned_rad[i] - pair.measured_rad[i]);
+    let planned = series(&|i| pair.planned[i]);
+    let measured = series(&|i| pair.measured[i]);
+    let error = series(&|i| pair.planned[i] - pair.measured[i]);
     let span = |points: &[(f64, f64)]| {
         let low = points.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
         let high = points.iter().map(|p| p.1).fold(f64::NEG_INFINITY, f64::max);

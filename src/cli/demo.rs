@@ -16,7 +16,7 @@ use crate::{
     render::{Story, demo_parts},
     workflow::{
         compare::{Inputs, run as compare},
-        plan::{Order, SAMPLE_TASK},
+        plan::{PlanRequest, SAMPLE_TASK},
     },
 };
 
@@ -41,7 +41,8 @@ pub(super) fn run(args: &DemoArgs, out: &mut impl Write) -> Result<Outcome, CliE
 
     let words = ["plan", TASK, "-o", PLAN];
     say(&words);
-    let planned = plan::found(&made(dir, &words)?, &Order::read(&dir.join(TASK))?, &mut std::io::sink())?;
+    let planned =
+        plan::found(&made(dir, &words)?, &PlanRequest::read(&dir.join(TASK))?, &mut std::io::sink())?;
     say(&first);
     simulate::simulated(&made(dir, &first)?)?;
     let words = ["fit", RUN, "-o", LIMITS];

@@ -33,9 +33,8 @@ use crate::{
     atomic_file::AtomicError,
     log::{CsvError, ExportError, LogError, WriteError},
     workflow::{
-        compare::CompareFailure, excite::ExciteFailure, fit::FitFailure,
-        import::ImportError, join::JoinFailure, plan::PlanFailure, replan::ReplanFailure,
-        simulate::log::SimulateFailure,
+        compare::CompareFailure, excite::ExciteFailure, fit::FitFailure, import::ImportError,
+        join::JoinFailure, plan::PlanFailure, replan::ReplanFailure, simulate::log::SimulateFailure,
     },
 };
 

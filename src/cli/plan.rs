@@ -12,15 +12,15 @@ use super::{
 };
 use crate::{
     atomic_file::write_atomically,
-    moea::{Budget, Contender},
-    plan::Progress,
+    moea::{Budget, NamedAlgorithm},
+    plan::{PlanEvaluation, Progress, Reference, SampledMotion},
     render::{
         Part, broken_lines, ceiling_lines, judged_json, judged_page, judged_parts, motion_figures, noted,
         plan_figures, plan_json, plan_page, plan_parts, plan_written,
     },
     workflow::{
         carried::plan_log::PlanLog,
-        plan::{Course, Gauge, Judged, Options, Order, PlanFailure, Planned, run as search},
+        plan::{Options, PlanFailure, PlanRequest, Planned, run as search},
     },
 };
 
@@ -29,47 +29,47 @@ pub(super) fn run(args: &PlanArgs, out: &mut impl Write, err: &mut impl Write) -
     spare_terminal(args.wants_html(), text_file(args.page()))?;
     spare_stdout(args.log())?;
     figures::check(&args.figures)?;
-    let order = Order::read(&args.task)?;
-    match args.times.as_ref().or(order.task.times_s.as_ref()) {
-        Some(times_s) => judge(args, &order, times_s, out, err),
-        None => plan(args, &order, out, err),
+    let request = PlanRequest::read(&args.task)?;
+    match args.times.as_ref().or(request.task.times_s.as_ref()) {
+        Some(times_s) => judge(args, &request, times_s, out, err),
+        None => plan(args, &request, out, err),
     }
 }
 
 fn judge(
     args: &PlanArgs,
-    order: &Order,
+    request: &PlanRequest,
     times_s: &[f64],
     out: &mut impl Write,
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
-    let title = &order.task.title;
-    let judged = Judged::of(&order.setup, times_s).map_err(PlanFailure::from)?;
-    let joints = order.setup.joint_names();
-    let document = judged_json(title, &joints, &judged, true);
-    write_log(args, order, &judged, &document, &BTreeMap::new())?;
-    let course = course(order, &judged)?;
+    let title = &request.task.title;
+    let evaluation = PlanEvaluation::of(&request.setup, times_s).map_err(PlanFailure::from)?;
+    let joints = request.setup.joint_names();
+    let document = judged_json(title, &joints, &evaluation, true);
+    write_log(args, request, &evaluation, &document, &BTreeMap::new())?;
+    let course = course(request, &evaluation)?;
     let rendered = if args.wants_json() {
         document
     } else if args.wants_html() {
-        judged_page(title, &joints, &judged, &course)
+        judged_page(title, &joints, &evaluation, &course)
     } else {
-        shown(&written(args, judged_parts(title, &joints, &judged)), None)
+        shown(&written(args, judged_parts(title, &joints, &evaluation)), None)
     };
     figures::figures(&args.figures, err, || motion_figures(&joints, &course))?;
     deliver(&rendered, text_file(args.page()), out)?;
-    Ok(if judged.broken().is_empty() { Outcome::Clean } else { Outcome::GateFailed })
+    Ok(if evaluation.broken().is_empty() { Outcome::Clean } else { Outcome::GateFailed })
 }
 
 fn plan(
     args: &PlanArgs,
-    order: &Order,
+    request: &PlanRequest,
     out: &mut impl Write,
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
-    let Found { planned, document, algorithm, options } = found(args, order, out)?;
-    let (title, bounds) = (&order.task.title, &order.task.bounds);
-    let course = course(order, &planned.chosen)?;
+    let Found { planned, document, algorithm, options } = found(args, request, out)?;
+    let (title, bounds) = (&request.task.title, &request.task.bounds);
+    let course = course(request, &planned.chosen)?;
     let rendered = if args.wants_json() {
         document
     } else if args.wants_html() {
@@ -102,15 +102,15 @@ pub(super) struct Found {
 }
 
 /// Searches with a progress bar and writes the chosen plan.
-pub(super) fn found(args: &PlanArgs, order: &Order, out: &mut impl Write) -> Result<Found, CliError> {
-    let (title, options) = (&order.task.title, args.options());
-    let algorithm = Contender::named(&args.search.algorithm).map_or("", |contender| contender.title);
+pub(super) fn found(args: &PlanArgs, request: &PlanRequest, out: &mut impl Write) -> Result<Found, CliError> {
+    let (title, options) = (&request.task.title, args.options());
+    let algorithm = NamedAlgorithm::find(&args.search.algorithm).map_or("", |named| named.title);
     let mut watch = Watch::new(args, &options);
-    let planned = match search(order, &options, |progress| watch.see(progress)) {
+    let planned = match search(request, &options, |progress| watch.see(progress)) {
         Ok(planned) => planned,
         Err(failure) => {
             watch.bar.finish_and_clear();
-            return Err(explained(args, order, failure, out)?);
+            return Err(explained(args, request, failure, out)?);
         }
     };
     watch.bar.finish_and_clear();
@@ -125,49 +125,49 @@ pub(super) fn found(args: &PlanArgs, order: &Order, out: &mut impl Write) -> Res
         ]
         .map(|(key, value)| (key.to_owned(), value)),
     );
-    write_log(args, order, &planned.chosen, &document, &provenance)?;
+    write_log(args, request, &planned.chosen, &document, &provenance)?;
     Ok(Found { planned, document, algorithm, options })
 }
 
-fn course(order: &Order, judged: &Judged) -> Result<Course, CliError> {
-    Ok(Course::of(&order.setup, judged).map_err(PlanFailure::from)?)
+fn course(request: &PlanRequest, evaluation: &PlanEvaluation) -> Result<SampledMotion, CliError> {
+    Ok(SampledMotion::of(&request.setup, evaluation).map_err(PlanFailure::from)?)
 }
 
 /// What a failure means in the task's own terms; as JSON, where that is asked for.
 fn explained(
     args: &PlanArgs,
-    order: &Order,
+    request: &PlanRequest,
     failure: PlanFailure,
     out: &mut impl Write,
 ) -> Result<CliError, CliError> {
-    let joints = order.setup.joint_names();
-    let (judged, lines) = match &failure {
+    let joints = request.setup.joint_names();
+    let (evaluation, lines) = match &failure {
         PlanFailure::Infeasible(nearest) => {
-            (nearest, broken_lines(&joints, order.task.interval_s[1], nearest))
+            (nearest, broken_lines(&joints, request.task.interval_s[1], nearest))
         }
         PlanFailure::Ceilings { nearest, share } => {
-            (nearest, ceiling_lines(&order.task.bounds, &joints, nearest, *share))
+            (nearest, ceiling_lines(&request.task.bounds, &joints, nearest, *share))
         }
         _ => return Ok(failure.into()),
     };
     if args.wants_json() {
-        deliver(&judged_json(&order.task.title, &joints, judged, false), None, out)?;
+        deliver(&judged_json(&request.task.title, &joints, evaluation, false), None, out)?;
     }
     Ok(CliError::NoPlan { failure: failure.to_string(), lines })
 }
 
 fn write_log(
     args: &PlanArgs,
-    order: &Order,
-    judged: &Judged,
+    request: &PlanRequest,
+    evaluation: &PlanEvaluation,
     document: &str,
     provenance: &BTreeMap<String, String>,
 ) -> Result<(), CliError> {
     let Some(path) = args.log() else { return Ok(()) };
-    let motion = order.setup.motion(&judged.times_s).map_err(PlanFailure::from)?;
+    let motion = request.setup.motion(&evaluation.times_s).map_err(PlanFailure::from)?;
     let log = PlanLog {
-        setup: &order.setup,
-        task: &order.text,
+        setup: &request.setup,
+        task: &request.text,
         document,
         provenance,
         motion: &motion,
@@ -180,7 +180,7 @@ fn write_log(
 /// Shows progress on a terminal and ends the search when its time is up.
 struct Watch {
     bar: ProgressBar,
-    gauge: Option<Gauge>,
+    reference: Option<Reference>,
     start: Instant,
     args_time: Option<std::time::Duration>,
 }
@@ -192,7 +192,7 @@ impl Watch {
             Budget::Generations(_) | Budget::Observer => None,
         };
         let bar = progress(steps, "{bar:30} {pos} evaluations, {msg}");
-        Self { bar, gauge: None, start: Instant::now(), args_time: args.search.time_budget }
+        Self { bar, reference: None, start: Instant::now(), args_time: args.search.time_budget }
     }
 
     fn see(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
@@ -202,8 +202,8 @@ impl Watch {
             let front = population.front();
             let objectives = || front.iter().map(|&i| population.f(i)).map(|f| [f[0], f[1], f[2]]);
             if !front.is_empty() {
-                let gauge = *self.gauge.get_or_insert_with(|| Gauge::of(objectives()));
-                self.bar.set_message(format!("hypervolume {:.4}", gauge.measure(objectives())));
+                let reference = *self.reference.get_or_insert_with(|| Reference::of(objectives()));
+                self.bar.set_message(format!("hypervolume {:.4}", reference.measure(objectives())));
             }
         }
         match self.args_time {

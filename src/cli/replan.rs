@@ -60,9 +60,9 @@ pub(super) fn replanned(args: &ReplanArgs) -> Result<Replanned, CliError> {
 
 /// Writes plan and command.
 fn write_log(inputs: &Inputs, replanned: &Replanned, path: &Path) -> Result<(), CliError> {
-    let document = match (&replanned.order, &replanned.judged) {
-        (Some(order), Some(judged)) => {
-            Some(judged_json(&order.task.title, &order.setup.joint_names(), judged, true))
+    let document = match (&replanned.request, &replanned.evaluation) {
+        (Some(request), Some(evaluation)) => {
+            Some(judged_json(&request.task.title, &request.setup.joint_names(), evaluation, true))
         }
         _ => None,
     };

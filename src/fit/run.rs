@@ -108,7 +108,7 @@ pub(super) fn window_end(starts: &[usize], start: usize) -> usize {
 pub(super) fn sampled(track: &Track, from_s: f64, steps: usize) -> Vec<(f64, f64)> {
     let at = |k: usize| track.held_at(from_s + k as f64 * STEP_S);
     let mut sent: Vec<(f64, f64)> = (0..steps).map(at).map(|s| (s.position, s.velocity)).collect();
-    if track.velocity_rad_s().is_none() {
+    if track.velocity().is_none() {
         let angle_rad: Vec<f64> = sent.iter().map(|s| s.0).collect();
         for (k, sent) in sent.iter_mut().enumerate() {
             let (before, after) = (k.saturating_sub(1), (k + 1).min(steps - 1));
@@ -128,7 +128,7 @@ pub(super) fn steps_in(span_s: f64) -> usize {
 /// Runs of one joint in one log.
 pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
     let Some(pair) = align(sent, measured) else { return Vec::new() };
-    let fits = local_quadratic(&pair.t_s, &pair.measured_rad, &pair.segments, SPEED_WINDOW_S, 5);
+    let fits = local_quadratic(&pair.t_s, &pair.measured, &pair.segments, SPEED_WINDOW_S, 5);
     let mut runs = Vec::new();
     for segment in &pair.segments {
         let (from_s, to_s) = (pair.t_s[segment.start], pair.t_s[segment.end - 1]);
@@ -147,7 +147,7 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
             }
             let fit = &fits[first];
             let resting = whole[steps.start].1.abs() < MOVES_RAD_S;
-            let speed_rad_s = if resting { 0.0 } else { fit.velocity_rad_s };
+            let speed_rad_s = if resting { 0.0 } else { fit.velocity };
             let skipped_s = if resting { 0.0 } else { SETTLE_S };
             let mut samples = Vec::with_capacity(last - first);
             let mut earliest_s = start_s + skipped_s;
@@ -159,14 +159,14 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
                 earliest_s = pair.t_s[i] + 0.8 * STEP_S;
                 let at = (pair.t_s[i] - start_s) / STEP_S;
                 let step = steps_in(at * STEP_S).min(steps.len() - 2);
-                let measured_rad = pair.measured_rad[i];
+                let measured_rad = pair.measured[i];
                 samples.push(Sample { step, part: at - step as f64, measured_rad, fold: fold(step) });
             }
             let extreme = |of: &dyn Fn(usize) -> f64| (first..last).map(of).fold(0.0, f64::max);
-            let fastest_rad_s = [1.0, -1.0].map(|way| extreme(&|i| way * fits[i].velocity_rad_s));
+            let fastest_rad_s = [1.0, -1.0].map(|way| extreme(&|i| way * fits[i].velocity));
             let rise = |i: usize| {
                 let span_s = (pair.t_s[i] - pair.t_s[i.saturating_sub(10).max(first)]).max(STEP_S);
-                (fits[i].velocity_rad_s - fits[i.saturating_sub(10).max(first)].velocity_rad_s) / span_s
+                (fits[i].velocity - fits[i.saturating_sub(10).max(first)].velocity) / span_s
             };
             let sharpest_rad_s2 = [1.0, -1.0].map(|way| extreme(&|i| way * rise(i)));
             let sent = whole[steps.clone()].to_vec();
@@ -174,7 +174,7 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
                 asked: asked(&sent),
                 starts: starts(&sent),
                 sent,
-                start: Start { angle_rad: fit.position_rad, speed_rad_s, integral_rad_s: 0.0 },
+                start: Start { angle_rad: fit.position, speed_rad_s, integral_rad_s: 0.0 },
                 samples,
                 fastest_rad_s,
                 sharpest_rad_s2,

@@ -34,17 +34,17 @@ const DISCREPANCY: f64 = 0.12;
 /// `valve` holds signals in place of positions. `None` where a direction has too little slow motion.
 pub(super) fn dead_band(valve: &Track, measured: &Track) -> Option<[Estimated; 2]> {
     let (t_s, segments) = (measured.t_s(), measured.segments());
-    let fits = local_quadratic(t_s, measured.position_rad(), segments, WINDOW_S, 7);
+    let fits = local_quadratic(t_s, measured.position(), segments, WINDOW_S, 7);
     let one = |way: f64| -> Option<Estimated> {
         let slow = |fit: &LocalFit| {
-            let speed = way * fit.velocity_rad_s;
-            speed > SLOW_RAD_S[0] && speed < SLOW_RAD_S[1] && fit.acceleration_rad_s2.abs() < EVEN_RAD_S2
+            let speed = way * fit.velocity;
+            speed > SLOW_RAD_S[0] && speed < SLOW_RAD_S[1] && fit.acceleration.abs() < EVEN_RAD_S2
         };
         let moving: Vec<(f64, f64)> = t_s
             .iter()
             .zip(&fits)
             .filter(|(_, fit)| slow(fit))
-            .map(|(&t_s, fit)| (t_s, way * fit.velocity_rad_s))
+            .map(|(&t_s, fit)| (t_s, way * fit.velocity))
             .collect();
         let mut best: Option<(f64, f64)> = None;
         for step in 0..DELAYS {

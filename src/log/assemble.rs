@@ -292,9 +292,9 @@ fn trajectory(raw: &RawTrajectory, start_s: f64, degrees: bool) -> Option<Planne
     let joints = (0..n).map(|j| {
         let points = raw.points.iter().map(|p| PlannedPoint {
             t_s: start_s + seconds_since(0, p.since_start_ns),
-            position_rad: unit(p.position_rad[j]),
-            velocity_rad_s: p.velocity_rad_s.get(j).map(|&v| unit(v)),
-            acceleration_rad_s2: p.acceleration_rad_s2.get(j).map(|&a| unit(a)),
+            position: unit(p.position_rad[j]),
+            velocity: p.velocity_rad_s.get(j).map(|&v| unit(v)),
+            acceleration: p.acceleration_rad_s2.get(j).map(|&a| unit(a)),
         });
         (raw.joints[j].clone(), points.collect())
     });

@@ -155,14 +155,14 @@ pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: 
 
 /// Steps between neighbouring samples that are nearer to a full turn than to nothing.
 fn turns(track: &Track) -> u64 {
-    let steps = track.position_rad().windows(2);
+    let steps = track.position().windows(2);
     steps.filter(|w| (w[1] - w[0]).abs() > PI && ((w[1] - w[0]).abs() - TAU).abs() < 1.0).count() as u64
 }
 
 fn unwrapped(track: &Track) -> Option<Track> {
     let mut turns_rad = 0.0;
     let mut previous: Option<f64> = None;
-    let position = track.position_rad().iter().map(|&q| {
+    let position = track.position().iter().map(|&q| {
         if let Some(before) = previous {
             turns_rad -= TAU * ((q - before) / TAU).round();
         }
@@ -193,7 +193,7 @@ const RATIO_TOLERANCE: f64 = 0.15;
 const TURN_AND_A_HALF_RAD: f64 = 1.5 * TAU;
 
 fn of_pair(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &mut Remarks) {
-    let (plan_rad, angle_rad) = (span(planned.position_rad()), span(measured.position_rad()));
+    let (plan_rad, angle_rad) = (span(planned.position()), span(measured.position()));
     let near = |ratio: f64| (ratio / DEGREES_IN_RADIAN - 1.0).abs() < RATIO_TOLERANCE;
     let name = planned.name();
     if near(angle_rad / plan_rad) {
@@ -242,7 +242,7 @@ const FROZEN_S: f64 = 0.5;
 
 /// The longest stretch of exactly one measured value while the plan moves: from, to, samples.
 fn frozen(planned: &Track, measured: &Track) -> Option<(f64, f64, u64)> {
-    let (t_s, q) = (measured.t_s(), measured.position_rad());
+    let (t_s, q) = (measured.t_s(), measured.position());
     let mut longest: Option<(usize, usize)> = None;
     let mut start = 0;
     for i in 1..=q.len() {
@@ -260,7 +260,7 @@ fn frozen(planned: &Track, measured: &Track) -> Option<(f64, f64, u64)> {
 
 fn plan_moves(planned: &Track, from_s: f64, to_s: f64) -> bool {
     let range = |t: f64| planned.t_s().partition_point(|&s| s < t);
-    let plan = &planned.position_rad()[range(from_s)..range(to_s)];
+    let plan = &planned.position()[range(from_s)..range(to_s)];
     let (least, most) = plan.iter().fold((f64::MAX, f64::MIN), |(a, b), &q| (a.min(q), b.max(q)));
     most - least > FROZEN_PLAN_RAD
 }
@@ -305,6 +305,6 @@ mod tests {
         unwrap_turns(&mut series, &[], &mut remarks);
         assert_eq!(remarks.as_slice()[0].code, Code::Wrapped);
         unwrap_turns(&mut series, &["a".into()], &mut remarks);
-        assert!((series.tracks[0].position_rad()[499] - 2.0 * 4.99).abs() < 1e-9);
+        assert!((series.tracks[0].position()[499] - 2.0 * 4.99).abs() < 1e-9);
     }
 }

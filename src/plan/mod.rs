@@ -4,9 +4,11 @@
 //! near it comes to every limit; [`Setup::margins`] says the same exactly, with the place.
 
 mod choose;
+mod command_margin;
 mod descend;
 mod error;
 mod evaluate;
+mod evaluation;
 mod exact;
 mod front;
 mod limit;
@@ -15,7 +17,8 @@ mod mesh;
 mod polish;
 mod problem;
 mod quadratic;
-mod sampled;
+mod reference;
+mod sampled_motion;
 mod search;
 mod seed;
 mod setup;
@@ -24,6 +27,9 @@ mod tangent;
 pub use choose::{Choice, NoChoice, Rule, choose, ends};
 pub use error::PlanError;
 pub use evaluate::{Evaluator, Objectives, Timing, excess};
+pub use evaluation::PlanEvaluation;
 pub use limit::{BROKEN, Limit, Margin};
+pub use reference::{BEYOND, Reference};
+pub use sampled_motion::SampledMotion;
 pub use search::{Found, Phase, Progress, Search, search};
 pub use setup::Setup;

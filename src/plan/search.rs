@@ -78,9 +78,9 @@ pub struct Found {
     pub evaluations: u64,
     /// Generations of the evolution, the first population included.
     pub generations: u64,
-    /// Whether more evaluations would find a faster plan than the fastest, as far as its descent can
-    /// tell; `None` without descents.
-    pub hasty: Option<bool>,
+    /// Whether the descent to the fastest plan ended because nothing was left to gain; `None` without
+    /// descents.
+    pub fastest_converged: Option<bool>,
 }
 
 /// Hundredths of the budget for descents from the plans found.
@@ -143,7 +143,7 @@ pub fn search(
             population: progress.archive.map_or(progress.population, Archive::population),
         })
     })?;
-    let hasty = search.seeded.then_some(seeds.hasty);
+    let fastest_converged = search.seeded.then_some(seeds.fastest_converged);
     let mut evaluations = used + outcome.evaluations;
     let evolved = timings(outcome.archive.as_ref().unwrap_or(&outcome.population));
     let mut front = if search.seeded {
@@ -170,7 +170,13 @@ pub fn search(
         let members = (0..outcome.population.len()).map(|i| timing(&outcome.population, i));
         nearest(setup, least_broken(members.chain(initial))?)
     });
-    Ok(Found { front, nearest: nearest.flatten(), evaluations, generations: outcome.generations, hasty })
+    Ok(Found {
+        front,
+        nearest: nearest.flatten(),
+        evaluations,
+        generations: outcome.generations,
+        fastest_converged,
+    })
 }
 
 /// The plan that breaks its limits least, near one that breaks them.

@@ -38,8 +38,8 @@ pub(super) struct Seeds {
     /// Where others ended, and what lies between.
     pub(super) rough: Vec<Timing>,
     pub(super) evaluations: u64,
-    /// Whether the descent to the fastest plan had more to gain when its evaluations were used up.
-    pub(super) hasty: bool,
+    /// Whether the descent to the fastest plan ended because nothing was left to gain.
+    pub(super) fastest_converged: bool,
 }
 
 /// Seeds for a search of `budget` evaluations, of which they take about a third.
@@ -123,7 +123,7 @@ impl Seeds {
             let (a, b) = (key(a), key(b));
             a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
-        self.hasty = best.is_none_or(|best| !best.settled);
+        self.fastest_converged = best.is_some_and(|best| best.settled);
         let fastest = best.and_then(|best| best.timing.clone());
         for end in ends {
             self.take(end);

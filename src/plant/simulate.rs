@@ -115,7 +115,7 @@ fn loops(plant: &Plant, command: &Series) -> Result<(Vec<Loop>, usize), PlantErr
     for name in plant.joints() {
         let missing = |what| PlantError::NoCommand { joint: name.to_owned(), what };
         let track = command.track(name).ok_or_else(|| missing("track"))?;
-        tracks.push((track, track.velocity_rad_s().ok_or_else(|| missing("speeds"))?));
+        tracks.push((track, track.velocity().ok_or_else(|| missing("speeds"))?));
     }
     let ends_s = tracks.iter().filter_map(|(track, _)| track.t_s().last());
     let duration_s = ends_s.copied().fold(0.0, f64::max);

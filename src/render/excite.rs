@@ -15,7 +15,7 @@ pub fn excited_parts(excited: &Excited, file: &Path) -> Vec<Part> {
         .map(|ramp| format!("+-{} deg at {} deg/s", number(ramp.travel_rad), number(ramp.speed_rad_s)))
         .collect();
     let rows = excited.joints.iter().map(|joint| {
-        let sent = excited.command.track(&joint.name).map_or(&[][..], |track| track.position_rad());
+        let sent = excited.command.track(&joint.name).map_or(&[][..], |track| track.position());
         let least = sent.iter().copied().fold(f64::INFINITY, f64::min);
         let most = sent.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let mut row = vec![joint.name.clone(), number(joint.home_rad), number(least), number(most)];

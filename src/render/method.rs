@@ -56,7 +56,7 @@ pub(super) fn method_parts(report: &Report, parts: &mut Vec<Part>) {
             format!(
                 "local quadratic over +-{} ms; noise {} deg, time resolution {} ms",
                 range(&|j| joints[j].thresholds.window_s, ms),
-                range(&|j| joints[j].noise.sigma_rad, |rad| format!("{:.4}", crate::units::degrees_from_radians(rad))),
+                range(&|j| joints[j].noise.sigma, |rad| format!("{:.4}", crate::units::degrees_from_radians(rad))),
                 range(&|j| joints[j].sample_interval_s, ms),
             ),
         ),

@@ -17,7 +17,7 @@ pub(super) fn untimed(
     window: Range<usize>,
     rules: &Rules,
 ) -> Answer {
-    let needed_rad = rules.follow_share * rise_rad(&pair.planned_rad[window.clone()], direction);
+    let needed_rad = rules.follow_share * rise_rad(&pair.planned[window.clone()], direction);
     if rise_rad(&signals.measured_rad[window.clone()], direction) >= needed_rad.max(signals.min_travel_rad) {
         return Answer::Creeps;
     }

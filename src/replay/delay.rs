@@ -58,10 +58,10 @@ pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion, r
     if motion.reversal {
         return motion.start_s;
     }
-    let (t_s, angle_rad) = (&pair.t_s, &pair.planned_rad);
+    let (t_s, angle_rad) = (&pair.t_s, &pair.planned);
     let last = motion.segment.end - 1;
     // A plan without speeds is not smoothed here: that would blur its start.
-    let speed_rad_s = |i: usize| match &pair.planned_rad_s {
+    let speed_rad_s = |i: usize| match &pair.planned_velocity {
         Some(given) => along(motion, given[i]),
         None if i < last => along(motion, angle_rad[i + 1] - angle_rad[i]) / (t_s[i + 1] - t_s[i]),
         None => along(motion, signals.planned_rad_s[i]),
@@ -125,7 +125,7 @@ fn unshaken(
     let times = &pair.t_s[motion.segment.clone()];
     let at = |t_s: f64| motion.segment.start + times.partition_point(|&t| t < t_s);
     let (from, asked) = (at(onset.at_s), at(planned_s));
-    let early_rad = pair.measured_rad.get(asked)? - pair.measured_rad.get(from)?;
+    let early_rad = pair.measured.get(asked)? - pair.measured.get(from)?;
     if onset.interval_s[1] >= planned_s || early_rad.abs() >= rules.displacement_rad {
         return None;
     }
@@ -200,17 +200,17 @@ fn smoothed_plan<'a>(
     let end = motion.segment.start + times.partition_point(|&t| t <= until_s);
     let t_s = &pair.t_s[first..end];
     let whole = 0..t_s.len();
-    let angle_rad = &pair.planned_rad[first..end];
+    let angle_rad = &pair.planned[first..end];
     let fits = local_quadratic(t_s, angle_rad, std::slice::from_ref(&whole), window_s, rules.window_points);
-    (t_s, fits.iter().map(|fit| along(motion, fit.velocity_rad_s)).collect())
+    (t_s, fits.iter().map(|fit| along(motion, fit.velocity)).collect())
 }
 
 /// How long a motion cannot be seen for want of samples and encoder steps, s: the longer sample
 /// interval of plan and measurement, and the time in which the plan travels half a step.
 fn blind_s(pair: &Pair, signals: &Signals, planned: &Motion) -> f64 {
-    let step_rad = 0.5 * signals.noise.lsb_rad.unwrap_or(0.0);
+    let step_rad = 0.5 * signals.noise.lsb.unwrap_or(0.0);
     let first = planned.samples.start;
-    let travelled = |i: &usize| (pair.planned_rad[*i] - pair.planned_rad[first]).abs() >= step_rad;
+    let travelled = |i: &usize| (pair.planned[*i] - pair.planned[first]).abs() >= step_rad;
     let seen = planned.samples.clone().find(travelled).unwrap_or(first);
     signals.sample_interval_s.max(pair.planned_interval_s) + pair.t_s[seen] - pair.t_s[first]
 }
@@ -227,5 +227,5 @@ fn upward(t_s: &[f64], speed_rad_s: &[f64], level_rad_s: f64, near_s: f64) -> Op
 }
 
 fn onset_of(pair: &Pair, search: &Search, rules: &Rules) -> Option<Onset> {
-    onset(&pair.t_s, &pair.measured_rad, search, rules)
+    onset(&pair.t_s, &pair.measured, search, rules)
 }

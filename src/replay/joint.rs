@@ -62,7 +62,7 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
     let stops = stops(pair, &signals, &error, rules);
     let matched = answers.iter().flatten().count();
     let moves = matched > 0
-        || signals.measured.iter().any(|m| travel_rad(&pair.measured_rad, m) >= rules.moves_travel_rad);
+        || signals.measured.iter().any(|m| travel_rad(&pair.measured, m) >= rules.moves_travel_rad);
     // What does not move has no lag, however well its noise fits.
     let lag = if moves { lag } else { Lag::default() };
     let blocks = blocks(pair, &error, &signals.planned_rad_s, &signals.planned, lag.shift_s);
@@ -119,8 +119,8 @@ fn answers(
                 && onset.at_s <= window_end_s + rules.match_after_s
                 && answers[p].is_none()
                 && (onset.interval_s[1] >= planned[p].start_s
-                    || travel_rad(&pair.measured_rad, motion)
-                        >= rules.early_travel_share * travel_rad(&pair.planned_rad, planned[p]))
+                    || travel_rad(&pair.measured, motion)
+                        >= rules.early_travel_share * travel_rad(&pair.planned, planned[p]))
         });
         if let Some(cause) = cause {
             answers[cause] = Some(k);

@@ -47,11 +47,11 @@ pub(super) fn blocks(
                 // Beyond the segment's ends the plan is taken to keep its speed.
                 let next = cursor + 1;
                 let speed_rad_s = if pair.t_s[cursor] <= at_s && next < segment.end {
-                    (pair.planned_rad[next] - pair.planned_rad[cursor]) / (pair.t_s[next] - pair.t_s[cursor])
+                    (pair.planned[next] - pair.planned[cursor]) / (pair.t_s[next] - pair.t_s[cursor])
                 } else {
                     planned_rad_s[cursor]
                 };
-                pair.planned_rad[cursor] + speed_rad_s * (at_s - pair.t_s[cursor]) - pair.measured_rad[i]
+                pair.planned[cursor] + speed_rad_s * (at_s - pair.t_s[cursor]) - pair.measured[i]
             });
             block.whole += weight_s * error_rad * error_rad;
             block.left += weight_s * left_rad * left_rad;

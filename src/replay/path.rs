@@ -159,29 +159,31 @@ impl Cursor {
             return None;
         }
         if t[i] >= t_s {
-            return Some((pair.planned_rad[i], pair.measured_rad[i]));
+            return Some((pair.planned[i], pair.measured[i]));
         }
         if i + 1 >= segment.end {
             return None;
         }
         let share = (t_s - t[i]) / (t[i + 1] - t[i]);
         let between = |x: &[f64]| x[i] + share * (x[i + 1] - x[i]);
-        Some((between(&pair.planned_rad), between(&pair.measured_rad)))
+        Some((between(&pair.planned), between(&pair.measured)))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::series::JointKind;
 
     fn pair(n: u32, late_s: f64, off_rad: f64) -> Pair {
         let t_s: Vec<f64> = (0..n).map(|k| 0.02 * f64::from(k)).collect();
         let angle = |t: f64| 0.5 * (t - 3.0).clamp(0.0, 4.0);
         Pair {
             name: "a".into(),
-            planned_rad: t_s.iter().map(|&t| angle(t)).collect(),
-            planned_rad_s: None,
-            measured_rad: t_s.iter().map(|&t| angle(t - late_s) + off_rad).collect(),
+            kind: JointKind::Turns,
+            planned: t_s.iter().map(|&t| angle(t)).collect(),
+            planned_velocity: None,
+            measured: t_s.iter().map(|&t| angle(t - late_s) + off_rad).collect(),
             segments: std::iter::once(0..t_s.len()).collect(),
             planned_interval_s: 0.01,
             matched: t_s.len(),
@@ -202,8 +204,8 @@ mod tests {
     fn standing_off_the_path_is_a_path_error_of_that_joint() {
         let still = |off_rad: f64| {
             let mut pair = pair(500, 0.0, off_rad);
-            pair.planned_rad.fill(0.0);
-            pair.measured_rad.fill(off_rad);
+            pair.planned.fill(0.0);
+            pair.measured.fill(off_rad);
             pair
         };
         let (joints, norm) = path_error(&[pair(500, 0.1, 0.0), still(0.03)], &Rules::default()).unwrap();

@@ -37,7 +37,7 @@ fn span_s(pairs: &[Pair]) -> RangeInclusive<f64> {
 fn peaks_rad(pair: &Pair, span_s: &RangeInclusive<f64>) -> [Option<f64>; STRETCHES] {
     let mut peaks_rad = [None; STRETCHES];
     let whole_s = span_s.end() - span_s.start();
-    let angles = pair.planned_rad.iter().zip(&pair.measured_rad);
+    let angles = pair.planned.iter().zip(&pair.measured);
     for (t_s, (planned_rad, measured_rad)) in pair.t_s.iter().zip(angles) {
         let share = if whole_s > 0.0 { (t_s - span_s.start()) / whole_s } else { 0.0 };
         // The last sample belongs to the last stretch.
@@ -54,14 +54,16 @@ fn peaks_rad(pair: &Pair, span_s: &RangeInclusive<f64>) -> [Option<f64>; STRETCH
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::series::JointKind;
 
     fn pair(t_s: Vec<f64>, error_rad: &[f64]) -> Pair {
         let n = t_s.len();
         Pair {
             name: "a".into(),
-            measured_rad: error_rad.iter().map(|e| -e).collect(),
-            planned_rad: vec![0.0; n],
-            planned_rad_s: None,
+            kind: JointKind::Turns,
+            measured: error_rad.iter().map(|e| -e).collect(),
+            planned: vec![0.0; n],
+            planned_velocity: None,
             segments: std::iter::once(0..n).collect(),
             planned_interval_s: 0.01,
             matched: n,

@@ -31,32 +31,32 @@ pub(super) struct Signals {
 impl Signals {
     pub(super) fn new(pair: &Pair, rules: &Rules) -> Self {
         let (t_s, segments) = (&pair.t_s, &pair.segments);
-        let noise = noise(t_s, &pair.measured_rad, segments);
+        let noise = noise(t_s, &pair.measured, segments);
         let sample_interval_s = sample_interval_s(pair);
-        let window_s = rules.window_s(sample_interval_s, noise.sigma_rad);
+        let window_s = rules.window_s(sample_interval_s, noise.sigma);
 
-        let fits = local_quadratic(t_s, &pair.measured_rad, segments, window_s, rules.window_points);
+        let fits = local_quadratic(t_s, &pair.measured, segments, window_s, rules.window_points);
         let of = |value: fn(&LocalFit) -> f64| fits.iter().map(value).collect::<Vec<f64>>();
-        let smooth_rad = of(|fit| fit.position_rad);
-        let measured_rad_s = of(|fit| fit.velocity_rad_s);
+        let smooth_rad = of(|fit| fit.position);
+        let measured_rad_s = of(|fit| fit.velocity);
         let mut deviation_rad_s = of(|fit| fit.velocity_gain_per_s);
         drop(fits);
         for deviation in &mut deviation_rad_s {
-            *deviation *= noise.sigma_rad;
+            *deviation *= noise.sigma;
         }
 
-        let planned_rad_s = pair.planned_rad_s.clone().unwrap_or_else(|| {
-            let fits = local_quadratic(t_s, &pair.planned_rad, segments, rules.planned_window_s, PLAN_POINTS);
-            fits.iter().map(|fit| fit.velocity_rad_s).collect()
+        let planned_rad_s = pair.planned_velocity.clone().unwrap_or_else(|| {
+            let fits = local_quadratic(t_s, &pair.planned, segments, rules.planned_window_s, PLAN_POINTS);
+            fits.iter().map(|fit| fit.velocity).collect()
         });
 
         let min_travel_rad = rules
             .min_travel_rad
-            .max(rules.min_travel_sigmas * noise.sigma_rad)
-            .max(rules.min_travel_lsbs * noise.lsb_rad.unwrap_or(0.0));
+            .max(rules.min_travel_sigmas * noise.sigma)
+            .max(rules.min_travel_lsbs * noise.lsb.unwrap_or(0.0));
         let planned = Speed {
             t_s,
-            position_rad: &pair.planned_rad,
+            position_rad: &pair.planned,
             velocity_rad_s: &planned_rad_s,
             deviation_rad_s: None,
             segments,
@@ -98,13 +98,12 @@ pub fn planned_starts(planned: &Track, rules: &Rules) -> Vec<f64> {
     let (t_s, segments) = (planned.t_s(), planned.segments());
     let sloped = |angle_rad: &[f64]| -> Vec<f64> {
         let fits = local_quadratic(t_s, angle_rad, segments, rules.planned_window_s, PLAN_POINTS);
-        fits.iter().map(|fit| fit.velocity_rad_s).collect()
+        fits.iter().map(|fit| fit.velocity).collect()
     };
-    let velocity_rad_s =
-        planned.velocity_rad_s().map_or_else(|| sloped(planned.position_rad()), <[f64]>::to_vec);
+    let velocity_rad_s = planned.velocity().map_or_else(|| sloped(planned.position()), <[f64]>::to_vec);
     let speed = Speed {
         t_s,
-        position_rad: planned.position_rad(),
+        position_rad: planned.position(),
         velocity_rad_s: &velocity_rad_s,
         deviation_rad_s: None,
         segments,

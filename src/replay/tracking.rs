@@ -27,7 +27,7 @@ pub(super) fn samples(pair: &Pair) -> Vec<Sample> {
             let span_s = pair.t_s[(i + 1).min(last)] - pair.t_s[i.saturating_sub(1).max(first)];
             samples.push(Sample {
                 t_s: pair.t_s[i],
-                error_rad: pair.planned_rad[i] - pair.measured_rad[i],
+                error_rad: pair.planned[i] - pair.measured[i],
                 weight_s: (0.5 * span_s).max(LONE_S),
             });
         }

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::Track;
+use super::{JointKind, Track};
 
-/// Planned and measured angle of one joint at the same instants.
+/// Planned and measured position of one joint at the same instants, in the joint\'s unit: rad or m.
 ///
 /// All arrays are `[n]`, n >= 1; times strictly increase; `segments` cover `0..n` and are cut
 /// wherever either track was, and where samples found no plan.
@@ -12,14 +12,16 @@ use super::Track;
 pub struct Pair {
     /// The joint.
     pub name: String,
+    /// Whether it turns or slides.
+    pub kind: JointKind,
     /// Measured stamps, s since the start of the log.
     pub t_s: Vec<f64>,
-    /// Plan at these stamps, rad.
-    pub planned_rad: Vec<f64>,
-    /// Speed of the plan, rad/s, where the plan gives one.
-    pub planned_rad_s: Option<Vec<f64>>,
-    /// Measured angle, rad.
-    pub measured_rad: Vec<f64>,
+    /// Plan at these stamps.
+    pub planned: Vec<f64>,
+    /// Velocity of the plan, per second, where the plan gives one.
+    pub planned_velocity: Option<Vec<f64>>,
+    /// Measured position.
+    pub measured: Vec<f64>,
     /// Continuous stretches.
     pub segments: Vec<Range<usize>>,
     /// Median time between samples of the plan itself, s: its starts are known no better.
@@ -30,21 +32,26 @@ pub struct Pair {
     pub unmatched: usize,
 }
 
-/// Interpolates `planned` onto the stamps of `measured`; `None` if they never overlap.
+/// Interpolates `planned` onto the stamps of `measured`; `None` if they never overlap in time, or if
+/// one turns and the other slides.
 pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
+    if planned.kind() != measured.kind() {
+        return None;
+    }
     let n = measured.len();
     let mut pair = Pair {
         name: measured.name().to_owned(),
+        kind: measured.kind(),
         t_s: Vec::with_capacity(n),
-        planned_rad: Vec::with_capacity(n),
-        planned_rad_s: None,
-        measured_rad: Vec::with_capacity(n),
+        planned: Vec::with_capacity(n),
+        planned_velocity: None,
+        measured: Vec::with_capacity(n),
         segments: Vec::new(),
         planned_interval_s: planned.sample_interval_s(),
         matched: 0,
         unmatched: 0,
     };
-    let mut speed_rad_s = Vec::with_capacity(n);
+    let mut velocity = Vec::with_capacity(n);
     let mut cursor = 0;
     for segment in measured.segments() {
         let mut start = pair.t_s.len();
@@ -61,9 +68,9 @@ pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
             match found {
                 Some(plan) => {
                     pair.t_s.push(t_s);
-                    pair.planned_rad.push(plan.position);
-                    speed_rad_s.push(plan.velocity);
-                    pair.measured_rad.push(measured.position_rad()[i]);
+                    pair.planned.push(plan.position);
+                    velocity.push(plan.velocity);
+                    pair.measured.push(measured.position()[i]);
                 }
                 None => pair.unmatched += 1,
             }
@@ -73,7 +80,7 @@ pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
         }
     }
     pair.matched = pair.t_s.len();
-    pair.planned_rad_s = planned.velocity_rad_s().map(|_| speed_rad_s);
+    pair.planned_velocity = planned.velocity().map(|_| velocity);
     (pair.matched > 0).then_some(pair)
 }
 
@@ -92,7 +99,7 @@ mod tests {
         let measured = track((0..30).map(|k| 0.013 + f64::from(k) * 0.03).collect(), &[]);
         let pair = align(&planned, &measured).unwrap();
         assert_eq!((pair.matched, pair.unmatched, pair.segments.len()), (30, 0, 1));
-        for (r, y) in pair.planned_rad.iter().zip(&pair.measured_rad) {
+        for (r, y) in pair.planned.iter().zip(&pair.measured) {
             assert!((r - y).abs() < 1e-12);
         }
     }

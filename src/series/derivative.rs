@@ -1,4 +1,4 @@
-//! Velocity of a sampled angle: a local quadratic in actual time.
+//! Velocity of a sampled position: a local quadratic in actual time.
 //!
 //! Jitter and lost samples shift no estimate, because the fit uses each sample's own stamp
 //! (Cleveland and Devlin 1988, doi:10.1080/01621459.1988.10478639, with uniform weights).
@@ -7,15 +7,15 @@ use std::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
 
-/// A local quadratic, evaluated at the sample it was fitted around.
+/// A local quadratic at the sample that it was fitted around, in the unit of the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LocalFit {
-    /// Smoothed angle, rad.
-    pub position_rad: f64,
-    /// Slope, rad/s.
-    pub velocity_rad_s: f64,
-    /// Curvature, rad/s².
-    pub acceleration_rad_s2: f64,
+    /// Smoothed value.
+    pub position: f64,
+    /// Slope, per second.
+    pub velocity: f64,
+    /// Second derivative, per second squared.
+    pub acceleration: f64,
     /// Standard deviation of the slope per standard deviation of the samples, 1/s.
     pub velocity_gain_per_s: f64,
 }
@@ -29,14 +29,14 @@ pub struct LocalFit {
 /// rounding cannot pile up.
 pub fn local_quadratic(
     t_s: &[f64],
-    position_rad: &[f64],
+    position: &[f64],
     segments: &[Range<usize>],
     half_width_s: f64,
     min_points: usize,
 ) -> Vec<LocalFit> {
     let mut fits = vec![LocalFit::default(); t_s.len()];
     for segment in segments {
-        let (t, x) = (&t_s[segment.clone()], &position_rad[segment.clone()]);
+        let (t, x) = (&t_s[segment.clone()], &position[segment.clone()]);
         let mut window = 0..0;
         let mut sums = Sums::default();
         for i in 0..t.len() {
@@ -140,9 +140,9 @@ impl Sums {
         let slope_at = Vector3::new(0.0, 1.0, 2.0 * u);
         let variance = slope_at.dot(&quadratic.solve(&slope_at));
         LocalFit {
-            position_rad: self.x_ref + c[0] + u * (c[1] + u * c[2]),
-            velocity_rad_s: slope_at.dot(&c) / self.scale_s,
-            acceleration_rad_s2: 2.0 * c[2] / (self.scale_s * self.scale_s),
+            position: self.x_ref + c[0] + u * (c[1] + u * c[2]),
+            velocity: slope_at.dot(&c) / self.scale_s,
+            acceleration: 2.0 * c[2] / (self.scale_s * self.scale_s),
             velocity_gain_per_s: variance.max(0.0).sqrt() / self.scale_s,
         }
     }
@@ -151,13 +151,13 @@ impl Sums {
         let ([s0, s1, s2, ..], [x0, x1, _]) = (self.u, self.x);
         let spread = s2 - s1 * s1 / s0;
         if points < 2 || spread <= 0.0 {
-            return LocalFit { position_rad: self.x_ref, ..LocalFit::default() };
+            return LocalFit { position: self.x_ref, ..LocalFit::default() };
         }
         let slope = (x1 - s1 * x0 / s0) / spread;
         LocalFit {
-            position_rad: self.x_ref + x0 / s0 + slope * (u - s1 / s0),
-            velocity_rad_s: slope / self.scale_s,
-            acceleration_rad_s2: 0.0,
+            position: self.x_ref + x0 / s0 + slope * (u - s1 / s0),
+            velocity: slope / self.scale_s,
+            acceleration: 0.0,
             velocity_gain_per_s: (1.0 / spread).sqrt() / self.scale_s,
         }
     }
@@ -178,8 +178,8 @@ mod tests {
         let x: Vec<f64> = t_s.iter().map(|t| 3.0 - 2.0 * t + 0.7 * t * t).collect();
         let n = t_s.len();
         for (i, fit) in local_quadratic(&t_s, &x, std::slice::from_ref(&(0..n)), 0.1, 7).iter().enumerate() {
-            assert!((fit.velocity_rad_s - (-2.0 + 1.4 * t_s[i])).abs() < 1e-7, "{i} {fit:?}");
-            assert!((fit.acceleration_rad_s2 - 1.4).abs() < 1e-6, "{i} {fit:?}");
+            assert!((fit.velocity - (-2.0 + 1.4 * t_s[i])).abs() < 1e-7, "{i} {fit:?}");
+            assert!((fit.acceleration - 1.4).abs() < 1e-6, "{i} {fit:?}");
         }
     }
 
@@ -192,7 +192,7 @@ mod tests {
         for i in 0..n {
             let window = widen(&t_s, i, slide(&t_s, i, &(0..0), 0.06), 7);
             let alone = Sums::around(&t_s, &x, i, &window).fit(t_s[i], window.len());
-            assert!((alone.velocity_rad_s - all[i].velocity_rad_s).abs() < 1e-7, "{i}");
+            assert!((alone.velocity - all[i].velocity).abs() < 1e-7, "{i}");
             assert!((alone.velocity_gain_per_s / all[i].velocity_gain_per_s - 1.0).abs() < 1e-7, "{i}");
         }
     }
@@ -210,8 +210,8 @@ mod tests {
         let t_s: Vec<f64> = (0..12).map(f64::from).collect();
         let x: Vec<f64> = (0..12).map(|k| if k < 9 { 1.0 } else { 5.0 * f64::from(k) }).collect();
         let fits = local_quadratic(&t_s, &x, &[0..8, 8..9, 9..11, 11..12], 2.0, 7);
-        assert!(fits[..9].iter().all(|fit| fit.velocity_rad_s == 0.0));
-        assert!((fits[9].velocity_rad_s - 5.0).abs() < 1e-12);
-        assert_eq!((fits[11].velocity_rad_s, fits[11].position_rad), (0.0, 55.0));
+        assert!(fits[..9].iter().all(|fit| fit.velocity == 0.0));
+        assert!((fits[9].velocity - 5.0).abs() < 1e-12);
+        assert_eq!((fits[11].velocity, fits[11].position), (0.0, 55.0));
     }
 }

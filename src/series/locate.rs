@@ -220,7 +220,7 @@ mod tests {
     fn another_motion_leaves_as_much_as_there_is() {
         let mut other = within(&[20.0], 60.0);
         for track in &mut other.tracks {
-            let angles = track.position_rad().iter().map(|q| 0.8 - 2.0 * q).collect();
+            let angles = track.position().iter().map(|q| 0.8 - 2.0 * q).collect();
             *track = Track::new(track.name(), track.t_s().to_vec(), angles, &[]).unwrap();
         }
         let found = locate(&motion(), &other).unwrap();

@@ -1,13 +1,15 @@
-//! Joint angles over time: what every reader yields and every ability works on.
+//! Signals over time: every reader yields them, every other module works on them.
 //!
-//! A [`Track`] is one joint of one source (planned or measured); a [`Pair`] is a plan laid
-//! onto the measured stamps of the same joint. Times are seconds since the start of the log.
+//! A [`Signal`] holds values of one [`Quantity`]; a [`Track`] is the position of one joint of one
+//! source (planned or measured), rad if it turns, m if it slides; a [`Pair`] is a plan interpolated
+//! to the measured stamps of the same joint. Times are seconds since the start of the log.
 
 mod align;
 mod clock;
 mod derivative;
 mod locate;
 mod noise;
+mod signal;
 mod track;
 mod trajectory;
 
@@ -16,5 +18,6 @@ pub use clock::{Clock, continuous_clock};
 pub use derivative::{LocalFit, local_quadratic};
 pub use locate::{Located, locate};
 pub use noise::{Noise, noise};
-pub use track::{Series, Track, TrackError, split_at_gaps, velocity_agrees};
+pub use signal::{JointKind, Quantity, Signal, SignalError};
+pub use track::{Series, Track, split_at_gaps, velocity_agrees};
 pub use trajectory::{PlannedPoint, PlannedTrajectory, plan_tracks};

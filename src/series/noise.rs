@@ -1,4 +1,4 @@
-//! How much of an angle signal is the sensor rather than the joint.
+//! How much of a position signal is the sensor rather than the joint.
 
 use std::ops::Range;
 
@@ -6,19 +6,21 @@ use serde::Serialize;
 
 use crate::math::{SIGMA_PER_MAD, mad, median};
 
-/// Noise and step size of one angle signal.
+/// Noise and step size of one position signal, in its unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Noise {
-    /// Standard deviation of white noise on the angle, at least that of rounding, rad.
-    pub sigma_rad: f64,
-    /// Step of the encoder where the signal shows one, rad.
-    pub lsb_rad: Option<f64>,
+    /// Standard deviation of white noise on the position, at least that of rounding.
+    #[serde(rename = "sigma_rad")]
+    pub sigma: f64,
+    /// Step of the encoder where the signal shows one.
+    #[serde(rename = "lsb_rad")]
+    pub lsb: Option<f64>,
 }
 
-/// Steps below this are rounding of numbers, not steps of a sensor, rad. Single precision
+/// Steps below this are rounding of numbers, not steps of a sensor, in rad or m. Single precision
 /// near pi rounds to 2.4e-7.
-const DUST_RAD: f64 = 2.5e-7;
+const DUST: f64 = 2.5e-7;
 /// More samples than this add no precision; longer signals are thinned evenly.
 const ENOUGH: usize = 200_000;
 
@@ -26,12 +28,12 @@ const ENOUGH: usize = 200_000;
 /// leaves near zero, and the encoder's step from the smallest common change.
 ///
 /// Arrays are `[n]`; nothing is differenced across the cuts between `segments`.
-pub fn noise(t_s: &[f64], position_rad: &[f64], segments: &[Range<usize>]) -> Noise {
-    let lsb_rad = lsb(position_rad, segments);
-    let floor_rad = lsb_rad.map_or(0.0, |lsb| lsb / 12.0_f64.sqrt());
-    let curvature = second_differences(t_s, position_rad, segments);
-    let sigma_rad = if curvature.is_empty() { 0.0 } else { SIGMA_PER_MAD * mad(&curvature) / 6.0_f64.sqrt() };
-    Noise { sigma_rad: sigma_rad.max(floor_rad), lsb_rad }
+pub fn noise(t_s: &[f64], position: &[f64], segments: &[Range<usize>]) -> Noise {
+    let lsb = lsb(position, segments);
+    let floor = lsb.map_or(0.0, |lsb| lsb / 12.0_f64.sqrt());
+    let curvature = second_differences(t_s, position, segments);
+    let sigma = if curvature.is_empty() { 0.0 } else { SIGMA_PER_MAD * mad(&curvature) / 6.0_f64.sqrt() };
+    Noise { sigma: sigma.max(floor), lsb }
 }
 
 fn second_differences(t_s: &[f64], x: &[f64], segments: &[Range<usize>]) -> Vec<f64> {
@@ -47,7 +49,7 @@ fn lsb(x: &[f64], segments: &[Range<usize>]) -> Option<f64> {
     let stride = x.len() / ENOUGH + 1;
     let pairs = segments.iter().flat_map(|s| (s.start + 1..s.end).step_by(stride));
     let steps: Vec<f64> = pairs.map(|i| (x[i] - x[i - 1]).abs()).collect();
-    let mut moved: Vec<f64> = steps.iter().copied().filter(|&step| step > DUST_RAD).collect();
+    let mut moved: Vec<f64> = steps.iter().copied().filter(|&step| step > DUST).collect();
     if moved.len() < 20 {
         return None;
     }
@@ -70,11 +72,11 @@ mod tests {
 
     const SIGMA_RAD: f64 = 2e-4;
 
-    fn swing(lsb_rad: f64) -> (Vec<f64>, Vec<f64>) {
+    fn swing(lsb: f64) -> (Vec<f64>, Vec<f64>) {
         let mut rng = stream(1, Stream::SensorNoise);
         let white = Normal::new(0.0, SIGMA_RAD).unwrap();
         let t_s: Vec<f64> = (0..4000).map(|k| f64::from(k) * 0.01).collect();
-        let round = |x: f64| if lsb_rad > 0.0 { (x / lsb_rad).round() * lsb_rad } else { x };
+        let round = |x: f64| if lsb > 0.0 { (x / lsb).round() * lsb } else { x };
         let x = t_s.iter().map(|t| round((0.5 * t).sin() + white.sample(&mut rng))).collect();
         (t_s, x)
     }
@@ -83,22 +85,22 @@ mod tests {
     fn noise_on_a_swing_is_found_to_a_twentieth() {
         let (t_s, x) = swing(0.0);
         let found = noise(&t_s, &x, std::slice::from_ref(&(0..4000)));
-        assert!((found.sigma_rad / SIGMA_RAD - 1.0).abs() < 0.05, "{found:?}");
-        assert_eq!(found.lsb_rad, None);
+        assert!((found.sigma / SIGMA_RAD - 1.0).abs() < 0.05, "{found:?}");
+        assert_eq!(found.lsb, None);
     }
 
     #[test]
     fn a_coarse_encoder_shows_its_step_and_counts_as_noise() {
         let (t_s, x) = swing(1e-3);
         let found = noise(&t_s, &x, std::slice::from_ref(&(0..4000)));
-        assert!((found.lsb_rad.unwrap() / 1e-3 - 1.0).abs() < 1e-6, "{found:?}");
-        assert!(found.sigma_rad >= 1e-3 / 12.0_f64.sqrt());
+        assert!((found.lsb.unwrap() / 1e-3 - 1.0).abs() < 1e-6, "{found:?}");
+        assert!(found.sigma >= 1e-3 / 12.0_f64.sqrt());
     }
 
     #[test]
     fn a_jump_at_a_cut_is_no_noise() {
         let t_s: Vec<f64> = (0..40).map(f64::from).collect();
         let x: Vec<f64> = (0..40).map(|k| if k < 20 { 0.0 } else { 9.0 }).collect();
-        assert_eq!(noise(&t_s, &x, &[0..20, 20..40]), Noise { sigma_rad: 0.0, lsb_rad: None });
+        assert_eq!(noise(&t_s, &x, &[0..20, 20..40]), Noise { sigma: 0.0, lsb: None });
     }
 }

@@ -1,10 +1,9 @@
-//! One joint's angle over time, checked once so that nothing downstream has to check again.
+//! The position of one joint over time.
 
 use std::{ops::Range, sync::Arc};
 
-use thiserror::Error;
-
-use crate::math::{State, cubic, linear, median, quintic};
+use super::signal::{JointKind, Place, Signal, SignalError, check_values};
+use crate::math::{State, cubic, linear, median};
 
 /// The joints of one source, in the order in which the source names them.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -25,195 +24,121 @@ impl Series {
     }
 }
 
-/// One joint's angle at strictly increasing instants, all finite, at least one.
-///
-/// `segments` cut the samples where time is not continuous (a gap, a clock jump): nothing is
-/// interpolated and no derivative is taken across a cut.
+/// The position of one joint, a [`Signal`] in rad or m, and its velocity where the source gives one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
-    name: String,
-    t_s: Arc<[f64]>,
-    position_rad: Vec<f64>,
-    velocity_rad_s: Option<Vec<f64>>,
-    acceleration_rad_s2: Option<Vec<f64>>,
-    segments: Vec<Range<usize>>,
-}
-
-/// Why samples do not make a [`Track`].
-#[derive(Debug, Clone, Error, PartialEq)]
-#[non_exhaustive]
-pub enum TrackError {
-    /// There is nothing to look at.
-    #[error("no samples")]
-    Empty,
-    /// Arrays do not run in parallel.
-    #[error("{times} time stamps but {values} values of {quantity}")]
-    LengthMismatch {
-        /// Which array.
-        quantity: &'static str,
-        /// Number of time stamps.
-        times: usize,
-        /// Number of values.
-        values: usize,
-    },
-    /// A sample is NaN or infinite.
-    #[error("{quantity} {index} is not finite: {value}")]
-    NotFinite {
-        /// Which array.
-        quantity: &'static str,
-        /// Index of the sample.
-        index: usize,
-        /// Its value.
-        value: f64,
-    },
-    /// Time stands still or runs backwards.
-    #[error("time does not increase at sample {index}: {previous_s} s then {next_s} s")]
-    NotIncreasing {
-        /// Index of the later sample.
-        index: usize,
-        /// The earlier stamp, s.
-        previous_s: f64,
-        /// The later stamp, s.
-        next_s: f64,
-    },
-    /// A cut lies outside the samples or out of order.
-    #[error("cut {cut} is not between the previous one and the {samples} samples")]
-    BadCut {
-        /// Index of the first sample after the cut.
-        cut: usize,
-        /// Number of samples.
-        samples: usize,
-    },
+    kind: JointKind,
+    signal: Signal,
+    velocity: Option<Vec<f64>>,
 }
 
 /// First and last sample of some joints, s.
 pub(super) fn span_s<'a>(tracks: impl IntoIterator<Item = &'a Track>) -> Option<[f64; 2]> {
-    let ends = tracks.into_iter().filter_map(|track| Some([*track.t_s.first()?, *track.t_s.last()?]));
+    let ends = tracks.into_iter().filter_map(|track| Some([*track.t_s().first()?, *track.t_s().last()?]));
     ends.reduce(|[a, b], [from, to]| [a.min(from), b.max(to)])
 }
 
 impl Track {
-    /// Names samples and cuts them into segments.
-    ///
-    /// `cuts` are the indices of the first sample of every segment but the first, ascending.
+    /// The track of a joint that turns; `cuts` as in [`Signal::new`].
     ///
     /// # Errors
     ///
-    /// [`TrackError`], naming the first sample that breaks the type's promise.
+    /// [`SignalError`], naming the first sample that is not finite or not later than the one before.
     pub fn new(
         name: impl Into<String>,
         t_s: impl Into<Arc<[f64]>>,
-        position_rad: Vec<f64>,
+        angle_rad: Vec<f64>,
         cuts: &[usize],
-    ) -> Result<Self, TrackError> {
-        let t_s = t_s.into();
-        if t_s.is_empty() {
-            return Err(TrackError::Empty);
-        }
-        check_values("time", &t_s, t_s.len())?;
-        check_values("position", &position_rad, t_s.len())?;
-        for (i, pair) in t_s.windows(2).enumerate() {
-            if pair[1] <= pair[0] {
-                return Err(TrackError::NotIncreasing { index: i + 1, previous_s: pair[0], next_s: pair[1] });
-            }
-        }
-        let mut segments = Vec::with_capacity(cuts.len() + 1);
-        let mut start = 0;
-        for &cut in cuts {
-            if cut <= start || cut >= t_s.len() {
-                return Err(TrackError::BadCut { cut, samples: t_s.len() });
-            }
-            segments.push(start..cut);
-            start = cut;
-        }
-        segments.push(start..t_s.len());
-        Ok(Self {
-            name: name.into(),
-            t_s,
-            position_rad,
-            velocity_rad_s: None,
-            acceleration_rad_s2: None,
-            segments,
-        })
+    ) -> Result<Self, SignalError> {
+        Self::of(JointKind::Turns, name, t_s, angle_rad, cuts)
     }
 
-    /// Adds the velocity the source gives, rad/s.
+    /// The track of a joint of either kind; positions in the unit of the kind.
     ///
     /// # Errors
     ///
-    /// [`TrackError`] if the array is not finite or not as long as the positions.
-    pub fn with_velocity(mut self, velocity_rad_s: Vec<f64>) -> Result<Self, TrackError> {
-        check_values("velocity", &velocity_rad_s, self.len())?;
-        self.velocity_rad_s = Some(velocity_rad_s);
-        Ok(self)
+    /// As [`Track::new`].
+    pub fn of(
+        kind: JointKind,
+        name: impl Into<String>,
+        t_s: impl Into<Arc<[f64]>>,
+        position: Vec<f64>,
+        cuts: &[usize],
+    ) -> Result<Self, SignalError> {
+        Ok(Self { kind, signal: Signal::new(name, kind.quantity(), t_s, position, cuts)?, velocity: None })
     }
 
-    /// Adds the acceleration the source gives, rad/s².
+    /// Adds the velocity that the source gives, in the joint's unit per second.
     ///
     /// # Errors
     ///
-    /// [`TrackError`] if the array is not finite or not as long as the positions.
-    pub fn with_acceleration(mut self, acceleration_rad_s2: Vec<f64>) -> Result<Self, TrackError> {
-        check_values("acceleration", &acceleration_rad_s2, self.len())?;
-        self.acceleration_rad_s2 = Some(acceleration_rad_s2);
+    /// [`SignalError`] if the array is not finite or not as long as the positions.
+    pub fn with_velocity(mut self, velocity: Vec<f64>) -> Result<Self, SignalError> {
+        check_values("velocity", &velocity, self.len())?;
+        self.velocity = Some(velocity);
         Ok(self)
+    }
+
+    /// Whether the joint turns or slides.
+    pub const fn kind(&self) -> JointKind {
+        self.kind
+    }
+
+    /// The position as a signal.
+    pub const fn signal(&self) -> &Signal {
+        &self.signal
     }
 
     /// The joint's name.
     pub fn name(&self) -> &str {
-        &self.name
+        self.signal.name()
     }
 
     /// Stamps, s since the start of the log, strictly increasing.
     pub fn t_s(&self) -> &[f64] {
-        &self.t_s
+        self.signal.t_s()
     }
 
-    /// Angles, rad.
-    pub fn position_rad(&self) -> &[f64] {
-        &self.position_rad
+    /// Positions, in the joint's unit: rad or m.
+    pub fn position(&self) -> &[f64] {
+        self.signal.values()
     }
 
-    /// Velocities the source gave, rad/s.
-    pub fn velocity_rad_s(&self) -> Option<&[f64]> {
-        self.velocity_rad_s.as_deref()
-    }
-
-    /// Accelerations the source gave, rad/s².
-    pub fn acceleration_rad_s2(&self) -> Option<&[f64]> {
-        self.acceleration_rad_s2.as_deref()
+    /// Velocities that the source gave, in the joint's unit per second.
+    pub fn velocity(&self) -> Option<&[f64]> {
+        self.velocity.as_deref()
     }
 
     /// Continuous stretches of samples; together they are all samples.
     pub fn segments(&self) -> &[Range<usize>] {
-        &self.segments
+        self.signal.segments()
     }
 
     /// Number of samples, at least one.
     #[expect(clippy::len_without_is_empty, reason = "a track is never empty")]
     pub fn len(&self) -> usize {
-        self.t_s.len()
+        self.signal.len()
     }
 
-    /// Time between neighbouring samples, median, s; 0 for a single sample.
+    /// Median time between neighbouring samples, s; 0 for a single sample.
     pub fn sample_interval_s(&self) -> f64 {
-        if self.len() < 2 { 0.0 } else { median(self.t_s.windows(2).map(|w| w[1] - w[0]).collect()) }
+        self.signal.sample_interval_s()
     }
 
     /// The state at a time inside a segment; `None` between segments and outside.
     ///
-    /// Quintic where the source gave velocity and acceleration, cubic where it gave velocity,
-    /// linear otherwise, as the ROS 2 joint trajectory controller interpolates.
+    /// Cubic where the source gave velocities, linear otherwise, as the ROS 2 joint trajectory
+    /// controller interpolates.
     pub fn at(&self, t_s: f64) -> Option<State> {
         self.at_after(&mut 0, t_s)
     }
 
-    /// The state at any time: as [`Track::at`], and at rest at the last sample before where the track
-    /// says nothing (at the first one before its start).
+    /// The state at any time: as [`Track::at`], and elsewhere at rest at the last sample before (at
+    /// the first one before the track starts).
     pub fn held_at(&self, t_s: f64) -> State {
         self.at(t_s).unwrap_or_else(|| {
-            let before = self.t_s.partition_point(|&t| t <= t_s).saturating_sub(1);
-            let position = self.position_rad.get(before).copied().unwrap_or_default();
+            let before = self.t_s().partition_point(|&t| t <= t_s).saturating_sub(1);
+            let position = self.position().get(before).copied().unwrap_or_default();
             State { position, velocity: 0.0, acceleration: 0.0 }
         })
     }
@@ -221,56 +146,38 @@ impl Track {
     /// As [`Track::at`], for a caller that walks forward in time: `cursor` is left at the last
     /// sample not after `t_s` and makes the next look-up cheap.
     pub(super) fn at_after(&self, cursor: &mut usize, t_s: f64) -> Option<State> {
-        let t = &self.t_s;
-        if t.get(*cursor).is_none_or(|&start| start > t_s) {
-            *cursor = 0;
-        }
-        // Neighbouring stamps are found at once; farther ones by bisection.
-        let near = (*cursor + 1..t.len().min(*cursor + 4)).find(|&i| t[i] > t_s);
-        let above = near.unwrap_or_else(|| *cursor + t[*cursor..].partition_point(|&t| t <= t_s));
-        let i = above.checked_sub(1)?;
-        *cursor = i;
-        if t[i] > t_s {
-            return None;
-        }
-        if t[i] >= t_s {
-            return Some(self.knot(i));
-        }
-        if above == t.len() || self.segments.binary_search_by_key(&above, |s| s.start).is_ok() {
-            return None;
-        }
-        let (span_s, at_s) = (t[above] - t[i], t_s - t[i]);
-        Some(match (&self.velocity_rad_s, &self.acceleration_rad_s2) {
-            (Some(_), Some(_)) => quintic(self.knot(i), self.knot(above), span_s, at_s),
-            (Some(_), None) => cubic(self.knot(i), self.knot(above), span_s, at_s),
-            (None, _) => linear(self.position_rad[i], self.position_rad[above], span_s, at_s),
+        let i = match self.signal.place(cursor, t_s)? {
+            Place::At(i) => return Some(self.knot(i)),
+            Place::After(i) => i,
+        };
+        let (t, x) = (self.t_s(), self.position());
+        let (span_s, at_s) = (t[i + 1] - t[i], t_s - t[i]);
+        Some(match &self.velocity {
+            Some(_) => cubic(self.knot(i), self.knot(i + 1), span_s, at_s),
+            None => linear(x[i], x[i + 1], span_s, at_s),
         })
     }
 
     /// Which segment sample `i` lies in.
     pub(super) fn segment_of(&self, i: usize) -> usize {
-        self.segments.partition_point(|s| s.start <= i)
+        self.segments().partition_point(|s| s.start <= i)
     }
 
-    /// Sample `i`; what the source does not give is zero.
+    /// Sample `i`; zero for what the source does not give.
     fn knot(&self, i: usize) -> State {
-        let of = |values: &Option<Vec<f64>>| values.as_ref().map_or(0.0, |v| v[i]);
-        State {
-            position: self.position_rad[i],
-            velocity: of(&self.velocity_rad_s),
-            acceleration: of(&self.acceleration_rad_s2),
-        }
+        let velocity = self.velocity.as_ref().map_or(0.0, |v| v[i]);
+        State { position: self.position()[i], velocity, acceleration: 0.0 }
     }
 }
 
 /// Whether sampled velocities are the slope of sampled positions: some controllers fill the
 /// field with zeros or with something else. Trapezoid steps must explain nine tenths of the
 /// motion. `cuts` as in [`Track::new`].
-pub fn velocity_agrees(t_s: &[f64], position_rad: &[f64], velocity_rad_s: &[f64], cuts: &[usize]) -> bool {
+pub fn velocity_agrees(t_s: &[f64], position: &[f64], velocity: &[f64], cuts: &[usize]) -> bool {
     let (mut unexplained, mut motion) = (0.0, 0.0);
     for i in (1..t_s.len()).filter(|i| cuts.binary_search(i).is_err()) {
-        let step = position_rad[i] - position_rad[i - 1];
-        let expected = 0.5 * (velocity_rad_s[i] + velocity_rad_s[i - 1]) * (t_s[i] - t_s[i - 1]);
+        let step = position[i] - position[i - 1];
+        let expected = 0.5 * (velocity[i] + velocity[i - 1]) * (t_s[i] - t_s[i - 1]);
         unexplained += (step - expected).abs();
         motion += step.abs().max(expected.abs());
     }
@@ -289,31 +196,9 @@ pub fn split_at_gaps(t_s: &[f64]) -> Vec<usize> {
     (1..t_s.len()).filter(|&i| t_s[i] - t_s[i - 1] > longest_s).collect()
 }
 
-fn check_values(quantity: &'static str, values: &[f64], samples: usize) -> Result<(), TrackError> {
-    if values.len() != samples {
-        return Err(TrackError::LengthMismatch { quantity, times: samples, values: values.len() });
-    }
-    match values.iter().position(|v| !v.is_finite()) {
-        Some(index) => Err(TrackError::NotFinite { quantity, index, value: values[index] }),
-        None => Ok(()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_repeated_time_stamp_is_refused_and_located() {
-        let err = Track::new("a", vec![0.0, 0.1, 0.1], vec![0.0; 3], &[]).unwrap_err();
-        assert_eq!(err.to_string(), "time does not increase at sample 2: 0.1 s then 0.1 s");
-    }
-
-    #[test]
-    fn a_nan_is_refused_even_where_time_is_sound() {
-        let err = Track::new("a", vec![0.0, 0.1], vec![0.0, f64::NAN], &[]).unwrap_err();
-        assert!(matches!(err, TrackError::NotFinite { index: 1, .. }));
-    }
 
     #[test]
     fn nothing_is_interpolated_across_a_cut_or_beyond_the_ends() {

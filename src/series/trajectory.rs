@@ -13,12 +13,12 @@ use crate::math::{State, cubic, linear, quintic};
 pub struct PlannedPoint {
     /// When, s since the start of the log.
     pub t_s: f64,
-    /// Angle, rad.
-    pub position_rad: f64,
-    /// Speed, rad/s, if given.
-    pub velocity_rad_s: Option<f64>,
-    /// Acceleration, rad/s², if given with the speed.
-    pub acceleration_rad_s2: Option<f64>,
+    /// Position, in the joint's unit.
+    pub position: f64,
+    /// Velocity, if given.
+    pub velocity: Option<f64>,
+    /// Acceleration, if given with the velocity.
+    pub acceleration: Option<f64>,
 }
 
 /// One trajectory: times strictly increase, everything is finite; no joint means "stop".
@@ -51,8 +51,9 @@ pub fn plan_tracks(trajectories: &[PlannedTrajectory], measured: &Series) -> (Se
             .filter_map(|s| s.start.checked_sub(start))
             .filter(|&cut| cut > 0)
             .collect();
-        let planned = Track::new(track.name(), t_s, states.iter().map(|s| s.position).collect(), &cuts)
-            .and_then(|planned| planned.with_velocity(states.iter().map(|s| s.velocity).collect()));
+        let planned =
+            Track::of(track.kind(), track.name(), t_s, states.iter().map(|s| s.position).collect(), &cuts)
+                .and_then(|planned| planned.with_velocity(states.iter().map(|s| s.velocity).collect()));
         tracks.extend(planned.ok());
     }
     let replaced = trajectories
@@ -97,12 +98,12 @@ fn pieces(trajectories: &[PlannedTrajectory], measured: &Track) -> Vec<Piece> {
             .map(|p| Knot {
                 t_s: p.t_s,
                 state: State {
-                    position: p.position_rad,
-                    velocity: p.velocity_rad_s.unwrap_or(0.0),
-                    acceleration: p.acceleration_rad_s2.unwrap_or(0.0),
+                    position: p.position,
+                    velocity: p.velocity.unwrap_or(0.0),
+                    acceleration: p.acceleration.unwrap_or(0.0),
                 },
-                has_velocity: p.velocity_rad_s.is_some(),
-                has_acceleration: p.velocity_rad_s.is_some() && p.acceleration_rad_s2.is_some(),
+                has_velocity: p.velocity.is_some(),
+                has_acceleration: p.velocity.is_some() && p.acceleration.is_some(),
             })
             .collect();
         if knots.first().is_none_or(|first| first.t_s > start_s) {
@@ -157,12 +158,7 @@ mod tests {
     fn trajectory(start_s: f64, points: &[(f64, f64, Option<f64>)]) -> PlannedTrajectory {
         let points = points
             .iter()
-            .map(|&(t_s, position_rad, velocity_rad_s)| PlannedPoint {
-                t_s,
-                position_rad,
-                velocity_rad_s,
-                acceleration_rad_s2: None,
-            })
+            .map(|&(t_s, position, velocity)| PlannedPoint { t_s, position, velocity, acceleration: None })
             .collect();
         PlannedTrajectory { start_s, joints: vec![("a".into(), points)] }
     }

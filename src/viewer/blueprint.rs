@@ -160,11 +160,8 @@ fn errors(board: &mut Board, scenes: &[Scene]) -> Option<ContainerLike> {
 fn largest_deg(scenes: &[Scene], name: &str) -> String {
     let pairs = scenes.iter().filter_map(|scene| scene.pairs.iter().find(|pair| pair.name == name));
     let largest = pairs.map(|pair| {
-        let errors_rad = pair
-            .planned_rad
-            .iter()
-            .zip(&pair.measured_rad)
-            .map(|(planned, measured)| (planned - measured).abs());
+        let errors_rad =
+            pair.planned.iter().zip(&pair.measured).map(|(planned, measured)| (planned - measured).abs());
         format!("{:.2}", degrees_from_radians(errors_rad.fold(0.0, f64::max)))
     });
     largest.collect::<Vec<_>>().join(", ")
@@ -177,7 +174,7 @@ fn angles(board: &mut Board, scenes: &[Scene], name: &str) -> ContainerLike {
     let view = TimeSeriesView::new(format!("{name}, deg")).with_origin("/").with_contents(seen);
     // The corner that the curve does not begin in.
     let position_rad =
-        scenes.iter().find_map(|scene| scene.planned.track(name)).map_or(&[][..], |t| t.position_rad());
+        scenes.iter().find_map(|scene| scene.planned.track(name)).map_or(&[][..], |t| t.position());
     let (least, most) =
         position_rad.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), q| (a.min(*q), b.max(*q)));
     let high = position_rad.first().is_some_and(|first| first - least > most - first);

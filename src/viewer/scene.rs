@@ -99,12 +99,12 @@ fn curve(rec: &RecordingStream, path: &str, name: &str, colour: Color, width: f3
 }
 
 fn angles(path: String, track: &Track) -> Stream {
-    let values = track.position_rad().iter().map(|q| degrees_from_radians(*q)).collect();
+    let values = track.position().iter().map(|q| degrees_from_radians(*q)).collect();
     Stream { path, t_s: track.t_s().to_vec(), values: Values::Scalars(values) }
 }
 
 fn errors(path: String, pair: &Pair) -> Stream {
-    let values = pair.planned_rad.iter().zip(&pair.measured_rad);
+    let values = pair.planned.iter().zip(&pair.measured);
     let values = values.map(|(planned, measured)| degrees_from_radians(planned - measured)).collect();
     Stream { path, t_s: pair.t_s.clone(), values: Values::Scalars(values) }
 }

@@ -28,18 +28,14 @@ pub(crate) enum StudyArgs {
     /// Precision and recall of the transition detector on synthetic joints with known motions
     Detector(DetectorArgs),
     /// What the evolutionary algorithms reach on problems with known fronts, beside the paper
-    #[command(
-        after_help = "Examples:\n  hydrotrace-bench moea --operators platemo --seeds 31\n  \
+    #[command(after_help = "Examples:\n  hydrotrace-bench moea --operators platemo --seeds 31\n  \
                       hydrotrace-bench moea --problem DTLZ1,DTLZ3 --algorithm nsga3-fo,nsga3 --evaluations 5000\n  \
-                      hydrotrace-bench moea --problem WFG3 --curves curves --front fronts"
-    )]
+                      hydrotrace-bench moea --problem WFG3 --curves curves --front fronts")]
     Moea(MoeaArgs),
     /// What the algorithms reach on tasks of the arm, and the paper's plans beside ours
-    #[command(
-        after_help = "Examples:\n  hydrotrace-bench plan --seeds 31\n  \
+    #[command(after_help = "Examples:\n  hydrotrace-bench plan --seeds 31\n  \
                       hydrotrace-bench plan --task task-1 --algorithm nsga3-fo,nsga3 --evaluations 2000 --curves curves\n  \
-                      hydrotrace-bench plan --task my-task.toml --json > my-task.json"
-    )]
+                      hydrotrace-bench plan --task my-task.toml --json > my-task.json")]
     Plan(PlanArgs),
 }
 
@@ -198,7 +194,11 @@ impl Shared {
         Inputs {
             subjects: Vec::new(),
             entrants: names.into_iter().filter_map(NamedAlgorithm::find).map(Entrant::from).collect(),
-            evaluations: if self.evaluations.is_empty() { budgets.to_vec() } else { self.evaluations.clone() },
+            evaluations: if self.evaluations.is_empty() {
+                budgets.to_vec()
+            } else {
+                self.evaluations.clone()
+            },
             first_seed: self.seed,
             seeds: self.seeds,
             steps: if self.curves.is_some() { STEPS } else { 0 },

@@ -79,8 +79,7 @@ fn run(study: &StudyArgs) -> Result<(), Box<dyn Error>> {
 /// Makes folders to write to: before the work, so that a folder that cannot be made does not cost it.
 fn make(folders: &[&Option<PathBuf>]) -> Result<(), AtomicError> {
     for path in folders.iter().copied().flatten() {
-        let failed =
-            |source| AtomicError::Io { action: "create the folder", path: path.clone(), source };
+        let failed = |source| AtomicError::Io { action: "create the folder", path: path.clone(), source };
         fs::create_dir_all(path).map_err(failed)?;
     }
     Ok(())

@@ -11,5 +11,8 @@ pub(crate) fn is_committed<T: JsonSchema>(file: &str) {
         std::fs::write(&path, &text).unwrap();
     }
     let committed = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(committed == text, "run `UPDATE_SCHEMA=1 cargo test -p hydrotrace-bench --lib` and look at {file}");
+    assert!(
+        committed == text,
+        "run `UPDATE_SCHEMA=1 cargo test -p hydrotrace-bench --lib` and look at {file}"
+    );
 }

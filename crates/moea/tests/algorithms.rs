@@ -1,4 +1,4 @@
-//! The moea module against values of other implementations, and laws of every algorithm.
+//! The algorithms against values of other implementations, and laws of every algorithm.
 //!
 //! `tests/reference/moea-values.json` is written by the script beside it, which names the
 //! programs and versions it ran.
@@ -7,7 +7,7 @@
 
 use std::ops::ControlFlow;
 
-use hydrotrace::moea::{
+use moea::{
     Algorithm, Bounds, Budget, Focus, MoeaError, Outcome, Population, Problem, Settings, Sorting,
     benchmark::{Benchmark, NAMES},
     das_dennis, dominates,

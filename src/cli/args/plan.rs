@@ -9,7 +9,7 @@ use clap::{ArgAction, ValueEnum, builder::PossibleValuesParser};
 
 use super::{FigureArgs, ends};
 use crate::{
-    moea::{Budget, CONTENDERS, Contender},
+    moea::{ALGORITHMS, Budget, NamedAlgorithm},
     plan::{Rule, Search},
     task::Weights,
     workflow::plan::Options,
@@ -78,7 +78,7 @@ pub struct SearchArgs {
         value_name = "NAME",
         default_value = "nsga3-fo",
         ignore_case = true,
-        value_parser = PossibleValuesParser::new(CONTENDERS.map(|c| c.name))
+        value_parser = PossibleValuesParser::new(ALGORITHMS.map(|c| c.name))
     )]
     pub algorithm: String,
 
@@ -176,7 +176,7 @@ impl PlanArgs {
         };
         Options {
             search: Search {
-                algorithm: Contender::named(&self.search.algorithm)
+                algorithm: NamedAlgorithm::find(&self.search.algorithm)
                     .map_or(default.algorithm, |c| c.algorithm),
                 seeded: !self.search.no_seeded,
                 budget,

@@ -71,8 +71,8 @@ impl RunTable {
             };
             let mut side = |what: &str, epoch_ns: i64, track: Option<&Track>| {
                 let Some(track) = track else { return };
-                add(&format!("{what}_{{unit}}"), epoch_ns, track.t_s(), track.position_rad());
-                if let Some(speed_rad_s) = track.velocity_rad_s() {
+                add(&format!("{what}_{{unit}}"), epoch_ns, track.t_s(), track.position());
+                if let Some(speed_rad_s) = track.velocity() {
                     add(&format!("{what}_{{unit}}_s"), epoch_ns, track.t_s(), speed_rad_s);
                 }
             };
@@ -85,7 +85,7 @@ impl RunTable {
             if let Some(pair) = planned.zip(measured).and_then(|(planned, measured)| align(planned, measured))
             {
                 let error_rad: Vec<f64> =
-                    pair.planned_rad.iter().zip(&pair.measured_rad).map(|(r, y)| r - y).collect();
+                    pair.planned.iter().zip(&pair.measured).map(|(r, y)| r - y).collect();
                 add("error_{unit}", epoch_ns, &pair.t_s, &error_rad);
             }
         }

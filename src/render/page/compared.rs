@@ -224,8 +224,7 @@ fn named<'a>(pairs: &'a [Pair], joint: &str) -> Option<&'a Pair> {
 fn over_time(joint: &str, before: &Pair, after: &Pair, offset_s: f64) -> Chart {
     let mut xs = Vec::new();
     let mut series = |name: &str, role, pair: &Pair, shift_s: f64| {
-        let error_rad: Vec<f64> =
-            pair.planned_rad.iter().zip(&pair.measured_rad).map(|(p, m)| p - m).collect();
+        let error_rad: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| p - m).collect();
         let places = envelope(&pair.segments, &[&error_rad], MOST);
         xs.push(times(&pair.t_s, &places).into_iter().map(|t_s| rounded(t_s - shift_s)).collect());
         let y = at(&error_rad, &places).map(|rad| rounded(degrees_from_radians(rad))).collect();

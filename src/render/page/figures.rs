@@ -9,11 +9,9 @@ use super::{
     planned::motion_charts,
     transitions::tiles,
 };
-use crate::workflow::{
-    compare::Comparison,
-    plan::front::Front,
-    plan::{Course, Planned},
-    report::Report,
+use crate::{
+    plan::SampledMotion,
+    workflow::{compare::Comparison, plan::Planned, plan::front::Front, report::Report},
 };
 
 /// A plot as a file of its own.
@@ -79,7 +77,7 @@ pub fn compare_figures(comparison: &Comparison) -> Result<Vec<Figure>, Failure> 
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn plan_figures(title: &str, planned: &Planned, course: &Course) -> Result<Vec<Figure>, Failure> {
+pub fn plan_figures(title: &str, planned: &Planned, course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
     let mut figures = front_figures(&Front::of(title, planned))?;
     figures.extend(motion_figures(&planned.joints, course)?);
     Ok(figures)
@@ -90,7 +88,7 @@ pub fn plan_figures(title: &str, planned: &Planned, course: &Course) -> Result<V
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn motion_figures(joints: &[String], course: &Course) -> Result<Vec<Figure>, Failure> {
+pub fn motion_figures(joints: &[String], course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
     numbered("motion", &motion_charts(joints, course))
 }
 

@@ -48,8 +48,8 @@ pub(super) fn joint_charts(report: &Report) -> Vec<(String, Chart)> {
 }
 
 fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Transition]) -> Chart {
-    let error_rad: Vec<f64> = pair.planned_rad.iter().zip(&pair.measured_rad).map(|(p, m)| p - m).collect();
-    let places = envelope(&pair.segments, &[&pair.planned_rad, &pair.measured_rad, &error_rad], MOST);
+    let error_rad: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| p - m).collect();
+    let places = envelope(&pair.segments, &[&pair.planned, &pair.measured, &error_rad], MOST);
     let degrees =
         |values: &[f64]| at(values, &places).map(|rad| rounded(degrees_from_radians(rad))).collect();
     let series = |name: &str, role, y| Series { name: name.to_owned(), role, x: 0, y, names: Vec::new() };
@@ -68,8 +68,8 @@ fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Trans
             Panel {
                 label: "Angle (deg)".to_owned(),
                 series: vec![
-                    series("planned", Role::Planned, degrees(&pair.planned_rad)),
-                    series("measured", Role::Measured, degrees(&pair.measured_rad)),
+                    series("planned", Role::Planned, degrees(&pair.planned)),
+                    series("measured", Role::Measured, degrees(&pair.measured)),
                 ],
                 share: 0.6,
                 range: None,

@@ -11,6 +11,7 @@ use super::{
     summary::{card, verdict},
 };
 use crate::{
+    plan::{PlanEvaluation, SampledMotion},
     remark::Remarks,
     render::{
         Part, counted,
@@ -20,7 +21,7 @@ use crate::{
     units::degrees_from_radians,
     workflow::{
         plan::front::Front,
-        plan::{Course, Judged, Options, Planned},
+        plan::{Options, Planned},
     },
 };
 
@@ -31,7 +32,7 @@ pub fn plan_page(
     options: &Options,
     bounds: &Bounds,
     planned: &Planned,
-    course: &Course,
+    course: &SampledMotion,
 ) -> String {
     let mut plots = Plots::default();
     let found = Front::of(title, planned);
@@ -55,14 +56,19 @@ pub fn plan_page(
 }
 
 /// One plan that was given, as one page.
-pub fn judged_page(title: &str, joints: &[String], judged: &Judged, course: &Course) -> String {
+pub fn judged_page(
+    title: &str,
+    joints: &[String],
+    evaluation: &PlanEvaluation,
+    course: &SampledMotion,
+) -> String {
     let mut plots = Plots::default();
-    let list: Vec<Part> = judged_parts(title, joints, judged);
+    let list: Vec<Part> = judged_parts(title, joints, evaluation);
     let sections = [
         Section {
             id: "summary",
             heading: "In short",
-            body: html! { div class="cards" { (limits(judged, joints)) (cost("The plan", judged)) } },
+            body: html! { div class="cards" { (limits(evaluation, joints)) (cost("The plan", evaluation)) } },
         },
         Section { id: "motion", heading: "The motion", body: motion(joints, course, &mut plots) },
         Section { id: "numbers", heading: "Numbers", body: parts(&list) },
@@ -98,7 +104,7 @@ fn summary(planned: &Planned) -> Markup {
 }
 
 /// Angle and speed of each joint over time.
-fn motion(joints: &[String], course: &Course, plots: &mut Plots) -> Markup {
+fn motion(joints: &[String], course: &SampledMotion, plots: &mut Plots) -> Markup {
     let arrivals: Vec<String> = course.arrivals_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
     html! {
         p class="hint" { "Key points are reached at " (arrivals.join(", ")) " s. Drag to zoom, all joints together." }
@@ -109,7 +115,7 @@ fn motion(joints: &[String], course: &Course, plots: &mut Plots) -> Markup {
 }
 
 /// Joints with their angles and speeds.
-pub(super) fn motion_charts(joints: &[String], course: &Course) -> Vec<(String, Chart)> {
+pub(super) fn motion_charts(joints: &[String], course: &SampledMotion) -> Vec<(String, Chart)> {
     let motions = course.position_rad.iter().zip(&course.velocity_rad_s);
     let chart = |(joint, (angle, speed)): (&String, (&Vec<f64>, &Vec<f64>))| {
         (joint.clone(), joint_motion(joint, &course.t_s, angle, speed))
@@ -141,14 +147,14 @@ fn joint_motion(joint: &str, t_s: &[f64], angle_rad: &[f64], speed_rad_s: &[f64]
     }
 }
 
-fn limits(judged: &Judged, joints: &[String]) -> Markup {
-    let kept: Vec<bool> = judged.margins.iter().map(|margin| !margin.broken()).collect();
-    let line = format!("Nearest: {}", limit_cell(judged, joints));
+fn limits(evaluation: &PlanEvaluation, joints: &[String]) -> Markup {
+    let kept: Vec<bool> = evaluation.margins.iter().map(|margin| !margin.broken()).collect();
+    let line = format!("Nearest: {}", limit_cell(evaluation, joints));
     verdict(&kept, &[line], "")
 }
 
-fn cost(label: &str, judged: &Judged) -> Markup {
-    let f = judged.objectives;
+fn cost(label: &str, evaluation: &PlanEvaluation) -> Markup {
+    let f = evaluation.objectives;
     let body = html! {
         p { (format!("RMS jerk {:.4} deg/s3", degrees_from_radians(f.rms_jerk_rad_s3))) }
         p { (format!("RMS power {:.2} W", f.rms_power_w)) }
@@ -165,7 +171,7 @@ fn next(planned: &Planned) -> Vec<String> {
             doubts(&planned.remarks)
         ));
     }
-    if planned.hasty == Some(true) {
+    if planned.fastest_converged == Some(false) {
         steps.push("Search longer (--evaluations): the fastest plan was still getting faster.".to_owned());
     }
     steps.push(

@@ -86,11 +86,11 @@ fn a_spike_of_one_sample_stays_in_the_plot_of_its_joint() {
     let repeat = 60;
     let n = pair.t_s.len();
     let long = |values: &[f64]| values.iter().copied().cycle().take(repeat * n).collect::<Vec<f64>>();
-    pair.planned_rad = long(&pair.planned_rad);
-    pair.measured_rad = long(&pair.measured_rad);
+    pair.planned = long(&pair.planned);
+    pair.measured = long(&pair.measured);
     pair.t_s = (0..repeat * n).map(|i| i as f64 * 1e-2).collect();
     pair.segments = std::iter::once(0..repeat * n).collect();
-    pair.measured_rad[100_003] = SPIKE_RAD;
+    pair.measured[100_003] = SPIKE_RAD;
     let page = report_page("a", &report, None, 60);
     let spike = chart::rounded(crate::units::degrees_from_radians(SPIKE_RAD));
     assert!(page.contains(&format!("{spike}")), "{spike}");

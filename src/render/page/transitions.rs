@@ -83,7 +83,7 @@ fn tile(transition: &Transition, pair: &Pair) -> Chart {
     let from = pair.t_s.partition_point(|t_s| *t_s < onset_s - BEFORE_S);
     let to = pair.t_s.partition_point(|t_s| *t_s <= transition.window_s[1].min(onset_s + AFTER_S));
     let within = |values: &[f64]| values.get(from..to.max(from)).unwrap_or_default().to_vec();
-    let (planned, measured) = (within(&pair.planned_rad), within(&pair.measured_rad));
+    let (planned, measured) = (within(&pair.planned), within(&pair.measured));
     let t_s: Vec<f64> = within(&pair.t_s).iter().map(|t_s| t_s - onset_s).collect();
     // Where the plan stands when it starts.
     let base = t_s.iter().position(|t_s| *t_s >= 0.0).and_then(|i| planned.get(i)).copied().unwrap_or(0.0);

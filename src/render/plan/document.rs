@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use crate::{
-    plan::{Margin, Objectives, Rule},
+    plan::{Margin, Objectives, PlanEvaluation, Rule},
     remark::Remark,
     render::json,
-    workflow::plan::{Judged, Options, Planned, Step},
+    workflow::plan::{Options, Planned, Step},
 };
 
 /// Plans of a task. Angles are radians, times seconds, f1 is the duration, f2 the root mean square
@@ -113,7 +113,7 @@ fn entry(times_s: &[f64], objectives: Objectives, violation: f64) -> Entry<'_> {
     Entry { times_s, duration_s, rms_jerk_rad_s3, rms_power_w, violation }
 }
 
-fn whole<'a>(judged: &'a Judged, joints: &'a [String]) -> Whole<'a> {
+fn whole<'a>(evaluation: &'a PlanEvaluation, joints: &'a [String]) -> Whole<'a> {
     let nearest = |margin: &Margin| Nearest {
         limit: super::name(margin.limit).replace(' ', "_"),
         joint: margin.joint.and_then(|joint| joints.get(joint)).map(String::as_str),
@@ -123,14 +123,14 @@ fn whole<'a>(judged: &'a Judged, joints: &'a [String]) -> Whole<'a> {
         t_s: margin.t_s,
     };
     Whole {
-        entry: entry(&judged.times_s, judged.objectives, judged.violation),
+        entry: entry(&evaluation.times_s, evaluation.objectives, evaluation.violation),
         rule: None,
         weights: None,
         within_ceilings: None,
-        joint_rms_jerk_rad_s3: &judged.rms_jerk_rad_s3,
-        joint_rms_power_w: &judged.rms_power_w,
-        energy_j: judged.energy_j,
-        margins: judged.margins.iter().map(nearest).collect(),
+        joint_rms_jerk_rad_s3: &evaluation.rms_jerk_rad_s3,
+        joint_rms_power_w: &evaluation.rms_power_w,
+        energy_j: evaluation.energy_j,
+        margins: evaluation.margins.iter().map(nearest).collect(),
     }
 }
 
@@ -149,7 +149,7 @@ pub fn plan_json(title: &str, algorithm: &str, options: &Options, planned: &Plan
         seed: Some(options.search.seed),
         evaluations: planned.evaluations,
         generations: Some(planned.generations),
-        hasty: planned.hasty,
+        hasty: planned.fastest_converged.map(|converged| !converged),
         hypervolume: Some(planned.hypervolume),
         convergence: Some(&planned.convergence),
         front: plans.map(|(plan, times_s)| entry(times_s, plan.objectives, plan.violation)).collect(),
@@ -165,7 +165,7 @@ pub fn plan_json(title: &str, algorithm: &str, options: &Options, planned: &Plan
 }
 
 /// One plan that was given, or the nearest to one of an infeasible task, as JSON.
-pub fn judged_json(title: &str, joints: &[String], judged: &Judged, feasible: bool) -> String {
+pub fn judged_json(title: &str, joints: &[String], evaluation: &PlanEvaluation, feasible: bool) -> String {
     json::pretty(&Document {
         format: "hydrotrace.plan.v1",
         program: json::PROGRAM,
@@ -181,12 +181,12 @@ pub fn judged_json(title: &str, joints: &[String], judged: &Judged, feasible: bo
         hypervolume: None,
         convergence: None,
         front: if feasible {
-            vec![entry(&judged.times_s, judged.objectives, judged.violation)]
+            vec![entry(&evaluation.times_s, evaluation.objectives, evaluation.violation)]
         } else {
             Vec::new()
         },
         best: None,
-        chosen: whole(judged, joints),
+        chosen: whole(evaluation, joints),
         remarks: &[],
     })
 }

@@ -2,11 +2,11 @@
 
 use super::{name, shown};
 use crate::{
-    plan::{Limit, Margin, Objectives, Rule},
+    plan::{BEYOND, Limit, Margin, Objectives, PlanEvaluation, Rule},
     render::{NONE, Part, Sheet, tables::remark_parts},
     task::Bounds,
     units::degrees_from_radians,
-    workflow::plan::{BEYOND, Judged, Options, Planned},
+    workflow::plan::{Options, Planned},
 };
 
 /// A limit or an interval used more than this binds.
@@ -43,9 +43,9 @@ pub fn plan_parts(
     parts.push(Part::Sheet(Sheet {
         head: vec!["plan", "arrivals s", "time s", "RMS jerk deg/s3", "RMS power W", "nearest limit"],
         left: 2,
-        rows: named.map(|(name, judged)| row(name, judged, &planned.joints)).to_vec(),
+        rows: named.map(|(name, evaluation)| row(name, evaluation, &planned.joints)).to_vec(),
     }));
-    if planned.hasty == Some(true) {
+    if planned.fastest_converged == Some(false) {
         parts.push(Part::Line(
             "The fastest plan was still getting faster when its share of the evaluations was used up: give more with \
              --evaluations."
@@ -64,32 +64,32 @@ pub fn plan_parts(
 }
 
 /// One given plan, for people.
-pub fn judged_parts(title: &str, joints: &[String], judged: &Judged) -> Vec<Part> {
+pub fn judged_parts(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Vec<Part> {
     let mut parts = vec![
         Part::Title(title.to_owned()),
         Part::Sheet(Sheet {
             head: vec!["plan", "arrivals s", "time s", "RMS jerk deg/s3", "RMS power W", "nearest limit"],
             left: 2,
-            rows: vec![row("given", judged, joints)],
+            rows: vec![row("given", evaluation, joints)],
         }),
-        Part::Line(format!("The joints do and take up {:.0} J of work together.", judged.energy_j)),
+        Part::Line(format!("The joints do and take up {:.0} J of work together.", evaluation.energy_j)),
     ];
-    parts.extend(margin_parts(judged, joints));
-    parts.push(Part::Line(kept(judged)));
+    parts.extend(margin_parts(evaluation, joints));
+    parts.push(Part::Line(kept(evaluation)));
     parts
 }
 
-fn kept(judged: &Judged) -> String {
-    match judged.broken().len() {
+fn kept(evaluation: &PlanEvaluation) -> String {
+    match evaluation.broken().len() {
         0 => "All limits are kept.".to_owned(),
-        broken => format!("{broken} of {} limits are broken.", judged.margins.len()),
+        broken => format!("{broken} of {} limits are broken.", evaluation.margins.len()),
     }
 }
 
-fn row(name: &str, judged: &Judged, joints: &[String]) -> Vec<String> {
-    let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = judged.objectives;
-    let arrivals: Vec<String> = judged.times_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
-    let nearest = nearest(judged).into_iter().next();
+fn row(name: &str, evaluation: &PlanEvaluation, joints: &[String]) -> Vec<String> {
+    let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = evaluation.objectives;
+    let arrivals: Vec<String> = evaluation.times_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
+    let nearest = nearest(evaluation).into_iter().next();
     vec![
         name.to_owned(),
         arrivals.join(" "),
@@ -103,10 +103,10 @@ fn row(name: &str, judged: &Judged, joints: &[String]) -> Vec<String> {
 }
 
 /// The limit that is broken most, and how many more are, or the nearest.
-pub fn limit_cell(judged: &Judged, joints: &[String]) -> String {
-    let Some(worst) = nearest(judged).into_iter().next() else { return NONE.to_owned() };
+pub fn limit_cell(evaluation: &PlanEvaluation, joints: &[String]) -> String {
+    let Some(worst) = nearest(evaluation).into_iter().next() else { return NONE.to_owned() };
     let worst = format!("{} % {}", percent(worst.share), subject(worst, joints));
-    match judged.broken().len() {
+    match evaluation.broken().len() {
         0 => worst,
         1 => format!("BREAKS {worst}"),
         more => format!("BREAKS {worst}, {} more", more - 1),
@@ -120,10 +120,11 @@ fn percent(share: f64) -> String {
 }
 
 /// Limits, the nearest first. A range that is used most at a key point says nothing of the plan.
-fn nearest(judged: &Judged) -> Vec<&Margin> {
-    let at_point = |margin: &Margin| judged.times_s.iter().any(|t_s| (t_s - margin.t_s).abs() < AT_POINT_S);
+fn nearest(evaluation: &PlanEvaluation) -> Vec<&Margin> {
+    let at_point =
+        |margin: &Margin| evaluation.times_s.iter().any(|t_s| (t_s - margin.t_s).abs() < AT_POINT_S);
     let given = |margin: &Margin| margin.limit == Limit::Position && !margin.broken() && at_point(margin);
-    let mut nearest: Vec<&Margin> = judged.margins.iter().filter(|margin| !given(margin)).collect();
+    let mut nearest: Vec<&Margin> = evaluation.margins.iter().filter(|margin| !given(margin)).collect();
     nearest.sort_by(|a, b| b.share.total_cmp(&a.share));
     nearest
 }
@@ -181,9 +182,9 @@ fn trimmed(text: &str) -> String {
 }
 
 /// What of each limit is used, and the nearest with their places.
-fn margin_parts(judged: &Judged, joints: &[String]) -> Vec<Part> {
+fn margin_parts(evaluation: &PlanEvaluation, joints: &[String]) -> Vec<Part> {
     let share = |limit: Limit, joint: Option<usize>| {
-        let found = judged.margins.iter().find(|margin| margin.limit == limit && margin.joint == joint);
+        let found = evaluation.margins.iter().find(|margin| margin.limit == limit && margin.joint == joint);
         found.map_or(NONE.to_owned(), |margin| percent(margin.share))
     };
     let together = |limit: Limit| match share(limit, None) {
@@ -194,14 +195,14 @@ fn margin_parts(judged: &Judged, joints: &[String]) -> Vec<Part> {
         let of = |values: &[f64]| values.get(j).copied().unwrap_or(f64::NAN);
         let mut row = vec![
             joint.clone(),
-            format!("{:.4}", degrees_from_radians(of(&judged.rms_jerk_rad_s3))),
-            format!("{:.2}", of(&judged.rms_power_w)),
+            format!("{:.4}", degrees_from_radians(of(&evaluation.rms_jerk_rad_s3))),
+            format!("{:.2}", of(&evaluation.rms_power_w)),
         ];
         row.extend(Limit::OF_JOINT.map(|limit| share(limit, Some(j))));
         row
     });
     let nearest: Vec<&Margin> =
-        nearest(judged).into_iter().take(NEAREST.max(judged.broken().len())).collect();
+        nearest(evaluation).into_iter().take(NEAREST.max(evaluation.broken().len())).collect();
     let listed_position = nearest.iter().any(|margin| margin.limit == Limit::Position);
     let listed = nearest.into_iter().map(|margin| {
         vec![
@@ -258,7 +259,7 @@ fn allowed(margin: &Margin) -> String {
 }
 
 /// What the nearest timing of an infeasible task breaks, a line each, the worst first.
-pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &Judged) -> Vec<String> {
+pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation) -> Vec<String> {
     let lines = nearest.broken().into_iter().map(|margin| {
         format!(
             "{} is {} at {:.2} s, {} is allowed: {} % too much",
@@ -281,7 +282,12 @@ pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &Judged) -> Vec<
 }
 
 /// What the nearest plan exceeds its ceilings by, a line each, and what holds it there.
-pub fn ceiling_lines(bounds: &Bounds, joints: &[String], nearest: &Judged, share: [f64; 3]) -> Vec<String> {
+pub fn ceiling_lines(
+    bounds: &Bounds,
+    joints: &[String],
+    nearest: &PlanEvaluation,
+    share: [f64; 3],
+) -> Vec<String> {
     let f = nearest.objectives;
     let values = [
         (format!("time {:.2} s", f.duration_s), bounds.duration_s.map(|s| format!("{s:.2} s"))),

@@ -67,7 +67,7 @@ struct CommandMargin {
 /// A plan for the next run, SI units and radians throughout.
 pub fn replan_json(replanned: &Replanned) -> String {
     let search = replanned.search.as_ref();
-    let judged = replanned.judged.as_ref();
+    let evaluation = replanned.evaluation.as_ref();
     let command = replanned.command.as_ref();
     let margin = |margin: &crate::plan::Margin| CommandMargin {
         limit: crate::render::plan::name(margin.limit).replace(' ', "_"),
@@ -86,8 +86,8 @@ pub fn replan_json(replanned: &Replanned) -> String {
         duration_s: replanned.duration_s,
         retimed: replanned.retimed,
         objectives_before: replanned.objectives_before.as_ref().map(Objectives::as_array),
-        objectives_after: judged.map(|judged| judged.objectives.as_array()),
-        times_s: judged.map(|judged| judged.times_s.as_slice()),
+        objectives_after: evaluation.map(|evaluation| evaluation.objectives.as_array()),
+        times_s: evaluation.map(|evaluation| evaluation.times_s.as_slice()),
         evaluations: search.map(|search| search.evaluations),
         held_to: search.map_or(&[], |search| search.held.as_slice()),
         command: command.map_or(&[], |command| command.joints.as_slice()),

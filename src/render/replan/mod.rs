@@ -10,7 +10,7 @@ use crate::{plan::Limit, workflow::replan::Replanned};
 
 /// Name of a joint of the task's arm.
 fn joint_name(replanned: &Replanned, joint: Option<usize>) -> Option<String> {
-    replanned.order.as_ref()?.setup.joint_names().into_iter().nth(joint?)
+    replanned.request.as_ref()?.setup.joint_names().into_iter().nth(joint?)
 }
 
 /// The limits that a command is held against.

@@ -14,7 +14,7 @@ const NEAR: f64 = 0.9;
 
 /// A plan for the next run, for people.
 pub fn replan_parts(replanned: &Replanned) -> Vec<Part> {
-    let title = replanned.order.as_ref().map_or("the logged plan", |order| order.task.title.as_str());
+    let title = replanned.request.as_ref().map_or("the logged plan", |request| request.task.title.as_str());
     let mut parts = vec![
         Part::Title(format!("Next run of {title}")),
         Part::Line(format!("Learnt from {}.", replanned.fitted_to.join(", "))),
@@ -97,7 +97,8 @@ fn expected(replanned: &Replanned) -> Part {
             percent(before.duration_s, replanned.duration_s),
         ],
     ];
-    let costs = (&replanned.objectives_before, replanned.judged.as_ref().map(|judged| judged.objectives));
+    let costs =
+        (&replanned.objectives_before, replanned.evaluation.as_ref().map(|evaluation| evaluation.objectives));
     if let (Some(was), Some(is)) = costs {
         let [jerk, then] = [was.rms_jerk_rad_s3, is.rms_jerk_rad_s3];
         rows.push(vec![
@@ -119,15 +120,15 @@ fn expected(replanned: &Replanned) -> Part {
 }
 
 fn levers(replanned: &Replanned) -> Vec<(String, String)> {
-    let plan = match (&replanned.search, replanned.retimed, &replanned.judged) {
+    let plan = match (&replanned.search, replanned.retimed, &replanned.evaluation) {
         (None, ..) => "stays as it was".to_owned(),
         (Some(search), false, _) => format!(
             "stays: of {} timings with no more time, jerk and power than allowed none is expected to follow better",
             search.front.len()
         ),
-        (Some(search), true, judged) => {
-            let times = judged.as_ref().map_or_else(String::new, |judged| {
-                judged.times_s.iter().map(|t| format!("{t:.2}")).collect::<Vec<_>>().join(" ")
+        (Some(search), true, evaluation) => {
+            let times = evaluation.as_ref().map_or_else(String::new, |evaluation| {
+                evaluation.times_s.iter().map(|t| format!("{t:.2}")).collect::<Vec<_>>().join(" ")
             });
             format!(
                 "re-timed, one of {} timings of {} evaluations: {times} s",

@@ -103,7 +103,7 @@ fn values(report: &Report, name: &str, window_s: f64, rules: &Rules) -> Values {
     let Some(joint) = joint_of(report, name) else { return Values::default() };
     let pair = report.pairs.iter().find(|pair| pair.name == name);
     let fits = pair.map_or_else(Vec::new, |pair| {
-        local_quadratic(&pair.t_s, &pair.measured_rad, &pair.segments, window_s, rules.window_points)
+        local_quadratic(&pair.t_s, &pair.measured, &pair.segments, window_s, rules.window_points)
     });
     // At the ends of a segment a window is cut, and what it yields is mostly noise.
     let whole: Vec<bool> = pair.map_or_else(Vec::new, |pair| {
@@ -123,8 +123,8 @@ fn values(report: &Report, name: &str, window_s: f64, rules: &Rules) -> Values {
         standstill: joint.standstill_error.map(|error| error.rms_rad),
         path: joint.path_error.map(|error| error.rms_rad),
         lag: joint.lag_s,
-        speed: peak(&mut inside().map(|fit| fit.velocity_rad_s)),
-        acceleration: peak(&mut inside().map(|fit| fit.acceleration_rad_s2)),
+        speed: peak(&mut inside().map(|fit| fit.velocity)),
+        acceleration: peak(&mut inside().map(|fit| fit.acceleration)),
     }
 }
 

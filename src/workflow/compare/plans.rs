@@ -66,7 +66,7 @@ struct Instant {
 fn instants(a: &Pair, b: &Pair, offset_s: f64) -> impl Iterator<Item = Instant> {
     let mut segment = 0;
     let mut k = 0;
-    a.t_s.iter().zip(&a.planned_rad).filter_map(move |(t_s, a_rad)| {
+    a.t_s.iter().zip(&a.planned).filter_map(move |(t_s, a_rad)| {
         let at_s = t_s + offset_s;
         while b.segments.get(segment).is_some_and(|s| b.t_s[s.end - 1] < at_s) {
             segment += 1;
@@ -80,8 +80,8 @@ fn instants(a: &Pair, b: &Pair, offset_s: f64) -> impl Iterator<Item = Instant> 
         if next >= inside.end || !(b.t_s[k]..=b.t_s[next]).contains(&at_s) {
             return None;
         }
-        let speed_rad_s = (b.planned_rad[next] - b.planned_rad[k]) / (b.t_s[next] - b.t_s[k]);
-        let b_rad = b.planned_rad[k] + speed_rad_s * (at_s - b.t_s[k]);
+        let speed_rad_s = (b.planned[next] - b.planned[k]) / (b.t_s[next] - b.t_s[k]);
+        let b_rad = b.planned[k] + speed_rad_s * (at_s - b.t_s[k]);
         Some(Instant { difference_rad: a_rad - b_rad, speed_rad_s })
     })
 }
@@ -89,16 +89,18 @@ fn instants(a: &Pair, b: &Pair, offset_s: f64) -> impl Iterator<Item = Instant> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::series::JointKind;
 
     /// A plan that moves by a radian around 4 s.
     fn plan(shift_s: f64, scale: f64) -> Pair {
         let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
-        let planned_rad: Vec<f64> = t_s.iter().map(|t| scale * (2.0 * (t - 4.0 - shift_s)).tanh()).collect();
+        let planned: Vec<f64> = t_s.iter().map(|t| scale * (2.0 * (t - 4.0 - shift_s)).tanh()).collect();
         Pair {
             name: "a".into(),
-            planned_rad_s: None,
-            measured_rad: planned_rad.clone(),
-            planned_rad,
+            kind: JointKind::Turns,
+            planned_velocity: None,
+            measured: planned.clone(),
+            planned,
             segments: vec![0..300, 300..800],
             planned_interval_s: 0.01,
             matched: 800,

@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::{
     carried::plan_log::ARM,
     carried::series_log::SeriesLog,
-    plan::{Order, PlanFailure},
+    plan::{PlanFailure, PlanRequest},
 };
 use crate::{
     fit::{Excitation, FitError, JointRoom, excite},
@@ -69,14 +69,14 @@ pub struct Excited {
 ///
 /// [`ExciteFailure`] if the task cannot be read or a joint has no room.
 pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
-    let order = match &inputs.arm {
+    let request = match &inputs.arm {
         Arm::Joints(_) => None,
-        Arm::Task(path) => Some(Order::read(path)?),
-        Arm::Sample => Some(Order::sample()?),
+        Arm::Task(path) => Some(PlanRequest::read(path)?),
+        Arm::Sample => Some(PlanRequest::sample()?),
     };
-    let joints = match (&inputs.arm, &order) {
+    let joints = match (&inputs.arm, &request) {
         (Arm::Joints(joints), _) => joints.clone(),
-        (_, order) => order.as_ref().map_or_else(Vec::new, |order| rooms(&order.setup)),
+        (_, request) => request.as_ref().map_or_else(Vec::new, |request| rooms(&request.setup)),
     };
     let mut excitation = inputs.excitation.clone();
     for ramp in &mut excitation.ramps {
@@ -84,7 +84,7 @@ pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
     }
     excitation.ramps.dedup_by(|a, b| a.speed_rad_s >= b.speed_rad_s && a.travel_rad <= b.travel_rad);
     let command = excite(&joints, &excitation)?;
-    Ok(Excited { joints, excitation, command, task: order.map(|order| order.text) })
+    Ok(Excited { joints, excitation, command, task: request.map(|request| request.text) })
 }
 
 /// Every joint about the middle of what its key points ask for, within its range.

@@ -7,7 +7,7 @@ use thiserror::Error;
 use crate::{
     fit::Observation,
     log::{LogError, ReadOptions, Recording, Selector, Topics, read_plan, read_recording},
-    series::{Series, Track, TrackError},
+    series::{Series, SignalError, Track},
 };
 
 /// What to read of a run's log.
@@ -40,7 +40,7 @@ pub enum ObserveError {
     Log(#[from] LogError),
     /// Times of a command that make no track beside those of the plan.
     #[error("the times of the command do not fit those of the plan")]
-    Track(#[from] TrackError),
+    Track(#[from] SignalError),
 }
 
 /// A run.
@@ -132,13 +132,13 @@ impl Observed {
 
 /// What was read as a plan, on another origin of time.
 #[expect(clippy::cast_precision_loss, reason = "a log lasts less than months")]
-pub(in crate::workflow) fn on_origin(found: &Recording, epoch_ns: i64) -> Result<Series, TrackError> {
+pub(in crate::workflow) fn on_origin(found: &Recording, epoch_ns: i64) -> Result<Series, SignalError> {
     let by_s = found.source.epoch_ns.saturating_sub(epoch_ns) as f64 / crate::units::NS_PER_S;
     let shift = |track: &Track| {
         let t_s: Vec<f64> = track.t_s().iter().map(|t_s| t_s + by_s).collect();
         let cuts: Vec<usize> = track.segments().iter().skip(1).map(|segment| segment.start).collect();
-        let moved = Track::new(track.name(), t_s, track.position_rad().to_vec(), &cuts)?;
-        match track.velocity_rad_s() {
+        let moved = Track::new(track.name(), t_s, track.position().to_vec(), &cuts)?;
+        match track.velocity() {
             Some(speed) => moved.with_velocity(speed.to_vec()),
             None => Ok(moved),
         }

@@ -54,10 +54,10 @@ fn torque(
     let joint = arm.chain.joints().iter().position(|joint| joint.name == measured.name())?;
     let cylinder = (*arm.hydraulics.cylinders().get(joint)?)?;
     let (push_m2, pull_m2) = (cylinder.push_area_m2(), cylinder.pull_area_m2());
-    let supply_pa = supply.map(|track| median(track.position_rad().to_vec()));
+    let supply_pa = supply.map(|track| median(track.position().to_vec()));
     let mut made = [Vec::new(), Vec::new()];
     let mut available_n_m = [f64::INFINITY; 2];
-    for (&t_s, &angle_rad) in measured.t_s().iter().zip(measured.position_rad()) {
+    for (&t_s, &angle_rad) in measured.t_s().iter().zip(measured.position()) {
         let (Some(cap), Some(rod)) = (cap.at(t_s), rod.at(t_s)) else { continue };
         let (sin, cos) = angle_rad.sin_cos();
         let (_, lever_m) = cylinder.length_and_lever(sin, cos);

@@ -17,7 +17,7 @@ use crate::{
         Addition, LogError, PlanSample, ReadOptions, Recording, TimeBase, join, read_measured, read_recording,
     },
     remark::{Code, Remarks},
-    series::{Located, Series, Track, TrackError},
+    series::{Located, Series, SignalError, Track},
     units::{DEGREE_RAD, nanoseconds},
 };
 use place::Plan;
@@ -100,7 +100,7 @@ pub enum JoinFailure {
     },
     /// Times that make no track.
     #[error("the times of the command do not fit those of the plan")]
-    Track(#[from] TrackError),
+    Track(#[from] SignalError),
 }
 
 /// What was found, and what the new log holds.

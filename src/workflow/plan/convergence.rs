@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Gauge;
-use crate::plan::Progress;
+use crate::plan::{Progress, Reference};
 
 /// Where a search was.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -50,10 +49,10 @@ impl Growth {
 
     /// By the box of the final front, which ends it. A population may forget what was found before it;
     /// what counts is the most until then.
-    pub(super) fn steps(&self, gauge: Gauge, evaluations: u64, hypervolume: f64) -> Vec<Step> {
+    pub(super) fn steps(&self, reference: Reference, evaluations: u64, hypervolume: f64) -> Vec<Step> {
         let mut most: f64 = 0.0;
         let step = |(evaluations, front): &(u64, Vec<[f64; 3]>)| {
-            most = most.max(gauge.measure(front.iter().copied()));
+            most = most.max(reference.measure(front.iter().copied()));
             Step { evaluations: *evaluations, hypervolume: most }
         };
         let before = self.fronts.iter().filter(|(then, _)| *then < evaluations);

@@ -7,7 +7,7 @@ use thiserror::Error;
 use crate::{
     fit::FitError,
     plan::PlanError,
-    series::TrackError,
+    series::SignalError,
     workflow::{fit::FitFailure, plan::PlanFailure},
 };
 
@@ -35,7 +35,7 @@ pub enum ReplanFailure {
     Plan(#[from] PlanError),
     /// Samples that are no track.
     #[error("the plan in the log cannot be sampled")]
-    Track(#[from] TrackError),
+    Track(#[from] SignalError),
     /// The plan never moves.
     #[error("the plan in {} never moves; give the log of a run in which it does", path.display())]
     AtRest {

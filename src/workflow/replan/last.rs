@@ -15,7 +15,7 @@ use crate::{
         carried::plan_log::{FRONT, TASK, chosen_times_s},
         carried::schedule::starts_s,
         fit::observe::Observed,
-        plan::Order,
+        plan::PlanRequest,
     },
 };
 
@@ -31,7 +31,7 @@ pub(super) struct Last {
     /// From the first to the last motion, s.
     pub(super) duration_s: f64,
     /// The task, if it is known.
-    pub(super) order: Option<Order>,
+    pub(super) request: Option<PlanRequest>,
     /// Arrivals at its key points, s, if they are known and of this task.
     pub(super) times_s: Option<Vec<f64>>,
     /// Where the controller takes trajectories.
@@ -46,24 +46,24 @@ impl Last {
         let [from_s, to_s] =
             moving_s(planned).ok_or_else(|| ReplanFailure::AtRest { path: path.to_owned() })?;
         let plan = cut(planned, from_s - LEAD_S, to_s + TAIL_S)?;
-        let order = match (&inputs.task, observed.attached(TASK)) {
-            (Some(task), _) => Some(Order::read(task)?),
-            (None, Some(text)) => Some(Order::parse(path, String::from_utf8_lossy(text).into_owned())?),
+        let request = match (&inputs.task, observed.attached(TASK)) {
+            (Some(task), _) => Some(PlanRequest::read(task)?),
+            (None, Some(text)) => Some(PlanRequest::parse(path, String::from_utf8_lossy(text).into_owned())?),
             (None, None) => None,
         };
-        if let Some(order) = &order {
-            check_joints(path, order, planned)?;
+        if let Some(request) = &request {
+            check_joints(path, request, planned)?;
         }
         let times_s = observed.attached(FRONT).and_then(chosen_times_s);
-        let times_s =
-            times_s.filter(|times_s| order.as_ref().is_some_and(|order| order.setup.motion(times_s).is_ok()));
+        let times_s = times_s
+            .filter(|times_s| request.as_ref().is_some_and(|request| request.setup.motion(times_s).is_ok()));
         let starts_s = starts_s(&observed.recording.metadata);
         let named = |file: &&Attachment| [TASK, FRONT].contains(&file.name.as_str());
         Ok(Self {
             plan,
             starts_s: starts_s.map(|s| s - (from_s - LEAD_S)),
             duration_s: to_s - from_s,
-            order,
+            request,
             times_s,
             trajectory: trajectory_topic(&observed.recording.source.planned_topic),
             files: observed.recording.attachments.iter().filter(named).cloned().collect(),
@@ -72,13 +72,13 @@ impl Last {
 
     /// The motion of the task, if it is known.
     pub(super) fn motion(&self) -> Option<Motion> {
-        self.order.as_ref()?.setup.motion(self.times_s.as_ref()?).ok()
+        self.request.as_ref()?.setup.motion(self.times_s.as_ref()?).ok()
     }
 }
 
 /// The task's joints must be in the log, or its timing would be judged on joints that nobody measured.
-fn check_joints(path: &Path, order: &Order, planned: &Series) -> Result<(), ReplanFailure> {
-    let task = order.setup.joint_names();
+fn check_joints(path: &Path, request: &PlanRequest, planned: &Series) -> Result<(), ReplanFailure> {
+    let task = request.setup.joint_names();
     if task.iter().all(|name| planned.track(name).is_some()) {
         return Ok(());
     }
@@ -101,9 +101,9 @@ fn trajectory_topic(planned: &str) -> Option<String> {
 fn moving_s(series: &Series) -> Option<[f64; 2]> {
     let mut found: Option<[f64; 2]> = None;
     for track in &series.tracks {
-        let (t_s, angle_rad) = (track.t_s(), track.position_rad());
+        let (t_s, angle_rad) = (track.t_s(), track.position());
         let moving = |k: usize| {
-            let fast = track.velocity_rad_s().is_some_and(|speed| speed[k].abs() > MOVES_RAD_S);
+            let fast = track.velocity().is_some_and(|speed| speed[k].abs() > MOVES_RAD_S);
             fast || (k > 0
                 && (angle_rad[k] - angle_rad[k - 1]).abs() > MOVES_RAD_S * (t_s[k] - t_s[k - 1]).max(1e-3))
         };

@@ -24,11 +24,10 @@ pub use samples::{LEAD_S, TAIL_S};
 use super::{
     fit::observe::{Observed, Wanted},
     fit::{self, read_limits},
-    plan::Judged,
 };
 use crate::{
     fit::{Compensation, Fit, JointFit},
-    plan::Setup,
+    plan::{PlanEvaluation, Setup},
     remark::{Code, Remarks},
     replay::Rules,
     series::{Series, Track},
@@ -123,8 +122,8 @@ pub fn run(
     }
     let before =
         Before::of(newest, &last, predicted(&fit, &last.plan, &last.plan, &inputs.rules)?, &inputs.rules);
-    let search = match &last.order {
-        Some(order) if !inputs.keep_plan => Some(searched(inputs, &fit, &last, order, observer)?),
+    let search = match &last.request {
+        Some(request) if !inputs.keep_plan => Some(searched(inputs, &fit, &last, request, observer)?),
         _ => None,
     };
     if search.is_none() && !inputs.keep_plan {
@@ -135,7 +134,7 @@ pub fn run(
             "the log holds no task, so the plan stays and only the command changes; --task names one";
         remarks.add(Code::NotSupported, 1, message);
     }
-    let setup = last.order.as_ref().map(|order| &order.setup);
+    let setup = last.request.as_ref().map(|request| &request.setup);
     let options = candidates(&last, search.as_ref())?;
     let made: Vec<Candidate> = options
         .into_par_iter()
@@ -162,20 +161,21 @@ fn searched(
     inputs: &Inputs,
     fit: &Fit,
     last: &Last,
-    order: &super::plan::Order,
+    request: &super::plan::PlanRequest,
     mut observer: impl FnMut(u64) -> ControlFlow<()>,
 ) -> Result<Search, ReplanFailure> {
     let motion = last.motion();
-    let (task, held) = limits::held(&order.task, &order.setup, fit, motion.as_ref());
+    let (task, held) = limits::held(&request.task, &request.setup, fit, motion.as_ref());
     // The arm is that of the order; its files need not be read again.
-    let setup = Setup::new(&task, order.setup.arm().clone())?;
+    let setup = Setup::new(&task, request.setup.arm().clone())?;
     let start = last.times_s.as_ref().map(|times_s| setup.intervals_s(times_s)).transpose()?;
-    let judged = last.times_s.as_ref().map(|times_s| Judged::of(&setup, times_s)).transpose()?;
+    let evaluation = last.times_s.as_ref().map(|times_s| PlanEvaluation::of(&setup, times_s)).transpose()?;
     let own = [task.bounds.duration_s, task.bounds.rms_jerk_rad_s3, task.bounds.rms_power_w];
     let grown = |factors: [f64; 3]| {
-        let most = judged
-            .as_ref()
-            .map_or([last.duration_s, f64::INFINITY, f64::INFINITY], |judged| judged.objectives.as_array());
+        let most =
+            evaluation.as_ref().map_or([last.duration_s, f64::INFINITY, f64::INFINITY], |evaluation| {
+                evaluation.objectives.as_array()
+            });
         std::array::from_fn(|k| (most[k] * factors[k]).min(own[k].unwrap_or(f64::INFINITY)))
     };
     let time = (1.0 + inputs.time_growth) * (1.0 + 1e-9);
@@ -189,7 +189,7 @@ fn searched(
         (inputs.evaluations, inputs.seed),
         &mut observer,
     )?;
-    Ok(Search { front: found.front, evaluations: found.evaluations, ceilings, held, start, judged })
+    Ok(Search { front: found.front, evaluations: found.evaluations, ceilings, held, start, evaluation })
 }
 
 /// A plan: times of movement, s, where it is one of the task's, and its samples.
@@ -197,7 +197,7 @@ type Sampled = (Option<Vec<f64>>, Series);
 
 /// Plans to look at with their commands: the last one first.
 fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, ReplanFailure> {
-    let (Some(search), Some(order)) = (search, &last.order) else {
+    let (Some(search), Some(request)) = (search, &last.request) else {
         return Ok(vec![(None, last.plan.clone())]);
     };
     let kept = search.start.iter().filter(|_| search.keeps());
@@ -207,8 +207,8 @@ fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, Repl
         return Ok(vec![(None, last.plan.clone())]);
     }
     let sample = |interval_s: &Vec<f64>| -> Result<Sampled, ReplanFailure> {
-        let motion = order.setup.motion(&order.setup.times_s(interval_s))?;
-        Ok((Some(interval_s.clone()), sampled(&order.setup, &motion)?))
+        let motion = request.setup.motion(&request.setup.times_s(interval_s))?;
+        Ok((Some(interval_s.clone()), sampled(&request.setup, &motion)?))
     };
     all.into_iter().map(sample).collect()
 }

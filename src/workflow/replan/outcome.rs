@@ -10,7 +10,7 @@ use super::{
 use crate::{
     fit::Fit,
     log::{Attachment, WriteError},
-    plan::Objectives,
+    plan::{Objectives, PlanEvaluation},
     remark::{Code, Remarks},
     replay::{Rules, replay},
     series::{Series, align},
@@ -18,7 +18,7 @@ use crate::{
         carried::plan_log::{FRONT, STARTS, TASK},
         carried::series_log::SeriesLog,
         fit::observe::Observed,
-        plan::{Judged, Order},
+        plan::PlanRequest,
     },
 };
 
@@ -71,15 +71,15 @@ pub struct Search {
     /// Times of movement of the last plan, s, if they are known.
     pub start: Option<Vec<f64>>,
     /// What the last plan is worth under the same limits.
-    pub judged: Option<Judged>,
+    pub evaluation: Option<PlanEvaluation>,
 }
 
 impl Search {
     /// Whether the last plan keeps the limits and ceilings of the search.
     pub fn keeps(&self) -> bool {
-        self.judged.as_ref().is_some_and(|judged| {
-            let costs = judged.objectives.as_array();
-            judged.broken().iter().all(|margin| margin.share < 1.0 + 1e-6)
+        self.evaluation.as_ref().is_some_and(|evaluation| {
+            let costs = evaluation.objectives.as_array();
+            evaluation.broken().iter().all(|margin| margin.share < 1.0 + 1e-6)
                 && costs.iter().zip(self.ceilings).all(|(f, ceiling)| *f <= ceiling)
         })
     }
@@ -104,7 +104,7 @@ pub struct Replanned {
     pub search: Option<Search>,
     /// The new plan with all that can be said of it, under the task's own limits; `None` without a task
     /// or its times.
-    pub judged: Option<Judged>,
+    pub evaluation: Option<PlanEvaluation>,
     /// Objectives of the last plan, where they are known.
     pub objectives_before: Option<Objectives>,
     /// The command, unless there is none.
@@ -114,7 +114,7 @@ pub struct Replanned {
     /// When the times of the task's plan count from, s.
     pub starts_s: Option<f64>,
     /// The task.
-    pub order: Option<Order>,
+    pub request: Option<PlanRequest>,
     /// Doubts.
     pub remarks: Remarks,
     /// Where the controller takes trajectories, as far as the last log tells.
@@ -132,17 +132,17 @@ pub(super) fn replanned(
     mut remarks: Remarks,
 ) -> Result<Replanned, ReplanFailure> {
     let Candidate { interval_s, plan, command, predicted } = chosen;
-    let setup = last.order.as_ref().map(|order| &order.setup);
+    let setup = last.request.as_ref().map(|request| &request.setup);
     let times_s = match (setup, &interval_s) {
         (Some(setup), Some(interval_s)) => Some(setup.times_s(interval_s)),
         _ => last.times_s.clone(),
     };
-    let judged = match (setup, &times_s) {
-        (Some(setup), Some(times_s)) => Some(Judged::of(setup, times_s)?),
+    let evaluation = match (setup, &times_s) {
+        (Some(setup), Some(times_s)) => Some(PlanEvaluation::of(setup, times_s)?),
         _ => None,
     };
     let objectives_before = match (setup, &last.times_s) {
-        (Some(setup), Some(times_s)) => Some(Judged::of(setup, times_s)?.objectives),
+        (Some(setup), Some(times_s)) => Some(PlanEvaluation::of(setup, times_s)?.objectives),
         _ => None,
     };
     let retimed =
@@ -161,7 +161,8 @@ pub(super) fn replanned(
             remarks.add(Code::BeyondLimit, 1, message);
         }
     }
-    let duration_s = judged.as_ref().map_or(last.duration_s, |judged| judged.objectives.duration_s);
+    let duration_s =
+        evaluation.as_ref().map_or(last.duration_s, |evaluation| evaluation.objectives.duration_s);
     let starts_s = if interval_s.is_some() { Some(LEAD_S) } else { last.starts_s };
     Ok(Replanned {
         fit,
@@ -171,12 +172,12 @@ pub(super) fn replanned(
         duration_s,
         retimed,
         search,
-        judged,
+        evaluation,
         objectives_before,
         command,
         plan,
         starts_s,
-        order: last.order,
+        request: last.request,
         trajectory: last.trajectory,
         remarks,
         files: last.files,
@@ -205,14 +206,14 @@ impl Replanned {
             media_type: media_type.to_owned(),
             data: text.as_bytes().to_vec(),
         };
-        let files = match (&self.order, document) {
-            (Some(order), Some(document)) => {
-                vec![file(TASK, "application/toml", &order.text), file(FRONT, "application/json", document)]
+        let files = match (&self.request, document) {
+            (Some(request), Some(document)) => {
+                vec![file(TASK, "application/toml", &request.text), file(FRONT, "application/json", document)]
             }
             _ => self.files.clone(),
         };
         let command = self.command.as_ref().map(|command| &command.series);
-        let arm = self.order.as_ref().map(|order| &order.setup.arm().chain);
+        let arm = self.request.as_ref().map(|request| &request.setup.arm().chain);
         let trajectory = self.trajectory.as_deref();
         SeriesLog {
             plan: &self.plan,

@@ -2,7 +2,7 @@
 
 use crate::{
     plan::Setup,
-    series::{Series, Track, TrackError},
+    series::{Series, SignalError, Track},
     spline::{Motion, Quantity, Samples},
 };
 
@@ -12,13 +12,13 @@ pub const LEAD_S: f64 = 1.5;
 pub const TAIL_S: f64 = 1.0;
 
 /// A stretch of a series every [`STEP_S`](crate::fit::STEP_S), its times counted from its start; beyond its ends joints rest.
-pub(super) fn cut(series: &Series, from_s: f64, to_s: f64) -> Result<Series, TrackError> {
+pub(super) fn cut(series: &Series, from_s: f64, to_s: f64) -> Result<Series, SignalError> {
     let t_s = grid(to_s - from_s);
     let one = |track: &Track| {
         let states: Vec<_> = t_s.iter().map(|t| track.held_at(t + from_s)).collect();
         let position = states.iter().map(|state| state.position).collect();
         let made = Track::new(track.name(), t_s.clone(), position, &[])?;
-        match track.velocity_rad_s() {
+        match track.velocity() {
             Some(_) => made.with_velocity(states.iter().map(|state| state.velocity).collect()),
             None => Ok(made),
         }
@@ -36,7 +36,7 @@ fn grid(duration_s: f64) -> Vec<f64> {
 }
 
 /// A motion by samples, with rests before and after.
-pub(super) fn sampled(setup: &Setup, motion: &Motion) -> Result<Series, TrackError> {
+pub(super) fn sampled(setup: &Setup, motion: &Motion) -> Result<Series, SignalError> {
     let duration_s = motion.duration_s();
     let t_s = grid(duration_s + LEAD_S + TAIL_S);
     let local_s: Vec<f64> = t_s.iter().map(|t| t - LEAD_S).collect();

@@ -310,6 +310,7 @@ fn worst(gate: Gate, limit: f64, found: Vec<Found<'_>>) -> GateResult {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::series::JointKind;
 
     #[test]
     fn a_start_that_was_never_answered_breaks_every_limit_on_delay() {
@@ -326,9 +327,10 @@ mod tests {
         let angle = |of: &dyn Fn(f64) -> f64| t_s.iter().map(|t| of(*t)).collect::<Vec<f64>>();
         let pair = Pair {
             name: "a".into(),
-            planned_rad: angle(&ramp),
-            planned_rad_s: None,
-            measured_rad: angle(&|t| if follows { creep(t) + ramp(t) } else { 0.0 }),
+            kind: JointKind::Turns,
+            planned: angle(&ramp),
+            planned_velocity: None,
+            measured: angle(&|t| if follows { creep(t) + ramp(t) } else { 0.0 }),
             segments: std::iter::once(0..t_s.len()).collect(),
             planned_interval_s: 0.01,
             matched: t_s.len(),

@@ -15,7 +15,7 @@ use crate::{
     log::{Attachment, LogError, ReadOptions, Selector, Topics, WriteError, read_plan},
     plan::{PlanError, Setup},
     plant::{Parameters, PayloadChange, Plant, PlantError},
-    series::{Series, Track, TrackError},
+    series::{Series, SignalError, Track},
     task::{Task, TaskError},
 };
 
@@ -67,7 +67,7 @@ pub enum SimulateFailure {
     Write(#[from] WriteError),
     /// Angles in the log that are no track.
     #[error("the plan in the log cannot be run")]
-    Track(#[from] TrackError),
+    Track(#[from] SignalError),
 }
 
 /// A run, and the files of the plan that go with it.
@@ -195,7 +195,7 @@ fn payload(task: &Task, arm: Arm, times_s: &[f64], starts_s: f64) -> Result<Vec<
 }
 
 /// The same with rests before and after; speeds that a track lacks are those of its interpolation.
-fn with_rests(series: &Series) -> Result<Series, TrackError> {
+fn with_rests(series: &Series) -> Result<Series, SignalError> {
     let first_s = |track: &Track| track.t_s().first().copied().unwrap_or(0.0);
     let ends_s = series.tracks.iter().filter_map(|track| Some(track.t_s().last()? - first_s(track)));
     let end_s = ends_s.fold(0.0, f64::max);

@@ -7,7 +7,7 @@
 
 use hydrotrace::{
     rng::{Stream, stream},
-    series::Pair,
+    series::{JointKind, Pair},
     units::DEGREE_RAD,
 };
 use rand_chacha::ChaCha8Rng;
@@ -84,9 +84,10 @@ pub fn synthetic_run(seed: u64, sensing: &Sensing) -> SyntheticRun {
     let n = t_s.len();
     let pair = Pair {
         name: "synthetic".into(),
-        planned_rad: t_s.iter().map(|&t| state(&motions, t).0).collect(),
-        planned_rad_s: Some(t_s.iter().map(|&t| state(&motions, t).1).collect()),
-        measured_rad: t_s.iter().map(|&t| state(&motions, t - sensing.delay_s).0).map(sense).collect(),
+        kind: JointKind::Turns,
+        planned: t_s.iter().map(|&t| state(&motions, t).0).collect(),
+        planned_velocity: Some(t_s.iter().map(|&t| state(&motions, t).1).collect()),
+        measured: t_s.iter().map(|&t| state(&motions, t - sensing.delay_s).0).map(sense).collect(),
         segments: std::iter::once(0..n).collect(),
         planned_interval_s: 1.0 / sensing.rate_hz,
         matched: n,
@@ -208,7 +209,7 @@ mod tests {
         let clean = synthetic_run(5, &Sensing::default()).pair;
         let coarse =
             synthetic_run(5, &Sensing { lsb_rad: Some(1e-3), sigma_rad: 1e-3, ..Sensing::default() }).pair;
-        assert_eq!((clean.t_s, clean.planned_rad), (coarse.t_s, coarse.planned_rad));
+        assert_eq!((clean.t_s, clean.planned), (coarse.t_s, coarse.planned));
     }
 
     #[test]

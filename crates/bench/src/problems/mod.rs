@@ -19,7 +19,12 @@ use crate::study::{
 /// Points of the true front that are asked for; a problem gives about as many.
 pub const FRONT_POINTS: usize = 1000;
 
-const fn measure(key: &'static str, heading: &'static str, less: bool, show: fn(f64, u8) -> String) -> Measure {
+const fn measure(
+    key: &'static str,
+    heading: &'static str,
+    less: bool,
+    show: fn(f64, u8) -> String,
+) -> Measure {
     Measure { key, heading, less, show, column: Column::Compared, tally: heading }
 }
 
@@ -47,7 +52,12 @@ pub const FORM: Form = Form {
     reference_words: 2,
     paper: paper::parts,
     panels: [
-        Panel { heading: "hypervolume (more is better)", logarithmic: false, measure: 2, drawn: |value| value },
+        Panel {
+            heading: "hypervolume (more is better)",
+            logarithmic: false,
+            measure: 2,
+            drawn: |value| value,
+        },
         Panel {
             heading: "IGD, logarithmic scale (less is better)",
             logarithmic: true,

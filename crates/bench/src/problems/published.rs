@@ -43,8 +43,7 @@ const FIGURE_3: [(&str, &str, u64, &str, Option<f64>); 11] = [
 
 /// What is known of Figure 3 there.
 pub(super) fn figure_3(problem: &str, algorithm: &str, evaluations: u64) -> Option<Published> {
-    FIGURE_3
-        .iter()
-        .find(|row| (row.0, row.1, row.2) == (problem, algorithm, evaluations))
-        .map(|&(_, _, _, said, platemo_defaults)| Published::Figure3 { said: said.to_owned(), platemo_defaults })
+    FIGURE_3.iter().find(|row| (row.0, row.1, row.2) == (problem, algorithm, evaluations)).map(
+        |&(_, _, _, said, platemo_defaults)| Published::Figure3 { said: said.to_owned(), platemo_defaults },
+    )
 }

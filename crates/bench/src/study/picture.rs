@@ -36,7 +36,10 @@ pub fn curve_svg(form: &Form, curves: &[Curve]) -> String {
          font-size=\"13\" fill=\"{INK}\">\n<rect width=\"{wide}\" height=\"{high}\" fill=\"#FFFFFF\"/>"
     );
     let title = curves.first().map_or(String::new(), |curve| {
-        format!("{}, {} objectives: median and quartiles, seeds: {}", curve.subject, curve.objectives, curve.seeds)
+        format!(
+            "{}, {} objectives: median and quartiles, seeds: {}",
+            curve.subject, curve.objectives, curve.seeds
+        )
     });
     label(&mut svg, (wide / 2.0, 24.0), "middle", &title);
     let in_a_row = IN_A_ROW.min(curves.len().max(1));

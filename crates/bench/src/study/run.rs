@@ -143,7 +143,6 @@ fn tally<S: Subject>(algorithm: &str, cells: &[Cell]) -> Option<Tally> {
     compared.then(|| Tally { algorithm: algorithm.to_owned(), counts: counts.collect() })
 }
 
-
 fn curve<S: Subject>(batch: &Batch<'_, S>) -> Curve {
     let steps = batch.runs.iter().map(|run| run.course.len()).min().unwrap_or(0);
     let point = |step: usize| {

@@ -7,16 +7,16 @@ mod task;
 use std::{collections::BTreeMap, ops::ControlFlow};
 
 use hydrotrace::{
-    plan::{Found, Phase, Search, Setup, Timing, search},
+    plan::{BEYOND, Found, Phase, Reference, Search, Setup, Timing, search},
     units::degrees_from_radians,
-    workflow::plan::{BEYOND, Gauge, Order},
+    workflow::plan::PlanRequest,
 };
 use moea::{Algorithm, Archive, Budget, MoeaError, Population, Settings, optimise, silent};
 use rayon::prelude::*;
 
 use crate::study::{
-    self, Column, Entrant, Form, Inputs, Measure, Panel, ReferenceFacts, Run, Searched, Study, Subject, Watch,
-    decimals, quartiles, significant,
+    self, Column, Entrant, Form, Inputs, Measure, Panel, ReferenceFacts, Run, Searched, Study, Subject,
+    Watch, decimals, quartiles, significant,
 };
 pub use task::{TaskFailure, find};
 
@@ -113,8 +113,9 @@ pub const FORM: Form = Form {
 
 fn reference_row(facts: &ReferenceFacts) -> Vec<String> {
     let ideal = |k: usize| facts.ideal.get(k).copied().unwrap_or(f64::NAN);
-    let [q1, median, q3] =
-        facts.searched.map_or([f64::NAN; 3], |searched| searched.feasible_at_first.map(|share| 100.0 * share));
+    let [q1, median, q3] = facts
+        .searched
+        .map_or([f64::NAN; 3], |searched| searched.feasible_at_first.map(|share| 100.0 * share));
     vec![
         facts.subject.clone(),
         facts.variables.to_string(),
@@ -132,7 +133,7 @@ fn reference_row(facts: &ReferenceFacts) -> Vec<String> {
 pub struct ArmTask {
     setup: Setup,
     front: Vec<Timing>,
-    gauge: Gauge,
+    reference: Reference,
     facts: ReferenceFacts,
     /// Whether the paper's Table 3 is of this task.
     in_table_3: bool,
@@ -145,8 +146,13 @@ impl ArmTask {
     /// # Errors
     ///
     /// [`TaskFailure`] if no plan keeps all limits.
-    pub fn new(name: String, order: Order, evaluations: u64, seeds: &[u64]) -> Result<Self, TaskFailure> {
-        let Order { setup, text, .. } = order;
+    pub fn new(
+        name: String,
+        request: PlanRequest,
+        evaluations: u64,
+        seeds: &[u64],
+    ) -> Result<Self, TaskFailure> {
+        let PlanRequest { setup, text, .. } = request;
         let budget = Budget::Evaluations(evaluations);
         let long = Search { budget, front: REFERENCE_PLANS, ..Search::default() };
         let Found { front, evaluations, .. } = search(&setup, &long, |_| ControlFlow::Continue(()))?;
@@ -154,22 +160,22 @@ impl ArmTask {
             return Err(TaskFailure::NoPlan { task: name });
         }
         let objectives = || front.iter().map(|timing| timing.objectives.as_array());
-        let gauge = Gauge::of(objectives());
+        let reference = Reference::of(objectives());
         let at_first = seeds.iter().map(|&seed| at_first(&setup, seed)).collect::<Result<Vec<f64>, _>>()?;
         let facts = ReferenceFacts {
             subject: name,
             objectives: 3,
             variables: setup.interval_count(),
             members: front.len(),
-            ideal: gauge.ideal().to_vec(),
-            reference_point: gauge.reference_point().to_vec(),
+            ideal: reference.ideal().to_vec(),
+            reference_point: reference.reference_point().to_vec(),
             searched: Some(Searched {
                 evaluations,
-                hypervolume: gauge.measure(objectives()),
+                hypervolume: reference.measure(objectives()),
                 feasible_at_first: quartiles(&at_first),
             }),
         };
-        Ok(Self { setup, front, gauge, facts, in_table_3: text == task::SIMULATION })
+        Ok(Self { setup, front, reference, facts, in_table_3: text == task::SIMULATION })
     }
 
     /// Hypervolumes of at most [`MEASURED_PLANS`] of a population, spread evenly, and of all found; the
@@ -178,7 +184,8 @@ impl ArmTask {
         let mut archive = Archive::new(self.facts.variables, 3, MEASURED_PLANS);
         archive.extend(population);
         let thinned = archive.into_population();
-        let [of_population, of_all] = [&thinned, all].map(|set| self.gauge.measure(plans(set).into_iter()));
+        let [of_population, of_all] =
+            [&thinned, all].map(|set| self.reference.measure(plans(set).into_iter()));
         let best = |k: usize| plans(all).iter().fold(f64::INFINITY, |best, f| best.min(f[k]));
         let whole = self.facts.searched.map_or(f64::NAN, |searched| searched.hypervolume);
         vec![of_population, of_all, of_all / whole, best(0), best(1)]
@@ -207,7 +214,7 @@ fn plans(population: &Population) -> Vec<[f64; 3]> {
 ///
 /// [`TaskFailure`] if no plan of a task keeps all limits.
 pub fn inputs(
-    tasks: Vec<(String, Order)>,
+    tasks: Vec<(String, PlanRequest)>,
     reference: u64,
     mut study: Inputs<()>,
     done: impl Fn() + Sync,
@@ -215,8 +222,8 @@ pub fn inputs(
     let seeds = study.seeds();
     let subjects = tasks
         .into_par_iter()
-        .map(|(name, order)| {
-            let task = ArmTask::new(name, order, reference, &seeds);
+        .map(|(name, request)| {
+            let task = ArmTask::new(name, request, reference, &seeds);
             done();
             task
         })

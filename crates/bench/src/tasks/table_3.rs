@@ -1,11 +1,10 @@
 //! The paper's Table 3 beside ours.
 
 use hydrotrace::{
-    plan::{Objectives, PlanError, Rule, Setup, Timing, choose, ends},
+    plan::{Objectives, PlanError, PlanEvaluation, Rule, Setup, Timing, choose, ends},
     render::{Part, Sheet, limit_cell},
     task::Bounds,
     units::degrees_from_radians,
-    workflow::plan::Judged,
 };
 
 use crate::study::{NONE, PaperPlan, Study};
@@ -32,12 +31,12 @@ const TABLE_3: [Printed; 3] = [
 ///
 /// [`PlanError`] if the task is not the paper's.
 pub(super) fn table_3(setup: &Setup, front: &[Timing]) -> Result<Vec<PaperPlan>, PlanError> {
-    let judge = |times_s: &[f64]| Judged::of(setup, times_s);
-    let of = |timing: &Timing| judge(&setup.times_s(&timing.interval_s));
-    let row = |plan: String, judged: Option<Judged>| row(setup, plan, judged);
+    let evaluate = |times_s: &[f64]| PlanEvaluation::of(setup, times_s);
+    let of = |timing: &Timing| evaluate(&setup.times_s(&timing.interval_s));
+    let row = |plan: String, evaluation: Option<PlanEvaluation>| row(setup, plan, evaluation);
     let mut rows = Vec::new();
     for Printed { name, times_s, f2, f3 } in &TABLE_3 {
-        let theirs = judge(times_s)?;
+        let theirs = evaluate(times_s)?;
         let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = theirs.objectives;
         let paper = row(format!("paper's {name}"), Some(theirs));
         rows.push(PaperPlan { printed_f2: Some(*f2), printed_f3: Some(*f3), ..paper });
@@ -45,7 +44,7 @@ pub(super) fn table_3(setup: &Setup, front: &[Timing]) -> Result<Vec<PaperPlan>,
             let [Printed { times_s: of_a, f2, .. }, ..] = &TABLE_3;
             let ratio = duration_s / of_a[6];
             let stretched =
-                row("paper's A as long as B".to_owned(), Some(judge(&of_a.map(|t_s| ratio * t_s))?));
+                row("paper's A as long as B".to_owned(), Some(evaluate(&of_a.map(|t_s| ratio * t_s))?));
             // With rest at both ends any mean of the jerk falls with the cube of the duration.
             rows.push(PaperPlan { printed_f2: Some(f2 / ratio.powi(3)), ..stretched });
         }
@@ -62,22 +61,22 @@ pub(super) fn table_3(setup: &Setup, front: &[Timing]) -> Result<Vec<PaperPlan>,
         }
     }
     for (Printed { name, .. }, end) in TABLE_3.iter().zip(ends(front).into_iter().flatten()) {
-        let judged = front.get(end).map(of).transpose()?;
-        rows.push(row(format!("ours, {name} of the front"), judged));
+        let evaluation = front.get(end).map(of).transpose()?;
+        rows.push(row(format!("ours, {name} of the front"), evaluation));
     }
     Ok(rows)
 }
 
-fn row(setup: &Setup, plan: String, judged: Option<Judged>) -> PaperPlan {
-    let Some(judged) = judged else { return PaperPlan { plan, ..PaperPlan::default() } };
+fn row(setup: &Setup, plan: String, evaluation: Option<PlanEvaluation>) -> PaperPlan {
+    let Some(evaluation) = evaluation else { return PaperPlan { plan, ..PaperPlan::default() } };
     PaperPlan {
         plan,
-        worst_limit: Some(limit_cell(&judged, &setup.joint_names())),
-        limits_broken: Some(judged.broken().len()),
-        duration_s: Some(judged.objectives.duration_s),
-        rms_jerk_rad_s3: Some(judged.objectives.rms_jerk_rad_s3),
-        rms_power_w: Some(judged.objectives.rms_power_w),
-        times_s: judged.times_s,
+        worst_limit: Some(limit_cell(&evaluation, &setup.joint_names())),
+        limits_broken: Some(evaluation.broken().len()),
+        duration_s: Some(evaluation.objectives.duration_s),
+        rms_jerk_rad_s3: Some(evaluation.objectives.rms_jerk_rad_s3),
+        rms_power_w: Some(evaluation.objectives.rms_power_w),
+        times_s: evaluation.times_s,
         ..PaperPlan::default()
     }
 }

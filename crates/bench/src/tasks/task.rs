@@ -4,7 +4,7 @@ use std::path::Path;
 
 use hydrotrace::{
     plan::PlanError,
-    workflow::plan::{Order, PlanFailure},
+    workflow::plan::{PlanFailure, PlanRequest},
 };
 use moea::MoeaError;
 use thiserror::Error;
@@ -57,13 +57,13 @@ fn known() -> String {
 /// # Errors
 ///
 /// [`TaskFailure`] if the name is neither, or the task does not fit its arm.
-pub fn find(name: &str) -> Result<(String, Order), TaskFailure> {
+pub fn find(name: &str) -> Result<(String, PlanRequest), TaskFailure> {
     if let Some((known, text)) = TASKS.into_iter().find(|(known, _)| known.eq_ignore_ascii_case(name)) {
-        return Ok((known.to_owned(), Order::parse(Path::new(known), text.to_owned())?));
+        return Ok((known.to_owned(), PlanRequest::parse(Path::new(known), text.to_owned())?));
     }
     let path = Path::new(name);
     let text = std::fs::read_to_string(path)
         .map_err(|source| TaskFailure::Unknown { name: name.to_owned(), source })?;
     let stem = path.file_stem().map_or(name.to_owned(), |stem| stem.to_string_lossy().into_owned());
-    Ok((stem, Order::parse(path, text)?))
+    Ok((stem, PlanRequest::parse(path, text)?))
 }

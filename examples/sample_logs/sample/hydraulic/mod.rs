@@ -8,13 +8,14 @@ use hydrotrace::{
     arm::Arm,
     fit::{Compensation, Excitation, JointRoom, Observation, compensate, excite, fit},
     log::{Attachment, WriteOptions},
+    plan::PlanEvaluation,
     plant::{JointRecord, Parameters, Plant},
     render::judged_json,
     series::{Series, Track},
     units::DEGREE_RAD,
     workflow::{
         carried::plan_log::PlanLog,
-        plan::{Judged, Order},
+        plan::PlanRequest,
         simulate::log::{LEAD_S, Prepared, prepare},
         simulate::{Content, Inputs, Outputs, run},
     },
@@ -94,15 +95,15 @@ pub(super) fn logs() -> Result<Vec<PlantLog>, Box<dyn Error>> {
 
 /// A run of a task, by way of the log of its plan.
 fn prepared((text, times_s): Task, seed: u64) -> Result<Prepared, Box<dyn Error>> {
-    let order = Order::parse(Path::new("task.toml"), text.to_owned())?;
-    let judged = Judged::of(&order.setup, times_s)?;
-    let document = judged_json(&order.task.title, &order.setup.joint_names(), &judged, true);
+    let request = PlanRequest::parse(Path::new("task.toml"), text.to_owned())?;
+    let evaluation = PlanEvaluation::of(&request.setup, times_s)?;
+    let document = judged_json(&request.task.title, &request.setup.joint_names(), &evaluation, true);
     let plan = PlanLog {
-        setup: &order.setup,
+        setup: &request.setup,
         task: text,
         document: &document,
         provenance: &BTreeMap::new(),
-        motion: &order.setup.motion(times_s)?,
+        motion: &request.setup.motion(times_s)?,
         rate_hz: RATE_HZ,
     };
     let folder = tempfile::tempdir()?;

@@ -9,8 +9,8 @@ use hydrotrace::{
     units::degrees_from_radians,
 };
 
+use super::super::readme::line;
 use super::{PRESET, PlantLog};
-use crate::sample::readme::line;
 
 const MACHINE: &str = "
 ## The hydraulic arm

@@ -1,0 +1,64 @@
+//! One plan, evaluated: its objectives and how near it comes to every limit.
+
+use super::{Evaluator, Margin, Objectives, PlanError, Setup, excess};
+
+/// A plan, with all that can be said of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanEvaluation {
+    /// Arrival at each key point, s, dwells counted.
+    pub times_s: Vec<f64>,
+    /// Time of movement from each key point to the next, s.
+    pub interval_s: Vec<f64>,
+    /// What it costs.
+    pub objectives: Objectives,
+    /// Sum of what it exceeds its limits by, as shares of them; 0 if all hold.
+    pub violation: f64,
+    /// Root mean square jerk by joint, rad/s³.
+    pub rms_jerk_rad_s3: Vec<f64>,
+    /// Root mean square power by joint, W.
+    pub rms_power_w: Vec<f64>,
+    /// Work that the joints do and take up, J.
+    pub energy_j: f64,
+    /// Every limit, with where the plan comes nearest to it.
+    pub margins: Vec<Margin>,
+}
+
+impl PlanEvaluation {
+    /// Judges arrivals at the key points, s.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError`] if they are no times for this task.
+    pub fn of(setup: &Setup, times_s: &[f64]) -> Result<Self, PlanError> {
+        let motion = setup.motion(times_s)?;
+        let mut evaluator = Evaluator::new(setup);
+        let interval_s = setup.intervals_s(times_s)?;
+        // The motion above is of the same times, so there is one.
+        let objectives =
+            evaluator.evaluate(setup, &interval_s).unwrap_or(Objectives::from_array([f64::INFINITY; 3]));
+        let rms_jerk_rad_s3 = evaluator.rms_jerk_rad_s3().to_vec();
+        let (rms_power_w, energy_j) = (evaluator.rms_power_w(), evaluator.energy_j());
+        let margins = setup.margins(&motion, &mut evaluator);
+        let broken = margins.iter().filter(|margin| margin.broken());
+        // A sum of nothing would be minus zero.
+        let violation = broken.fold(0.0, |sum, margin| sum + excess(margin.share));
+        let times_s = times_s.to_vec();
+        Ok(Self {
+            times_s,
+            interval_s,
+            objectives,
+            violation,
+            rms_jerk_rad_s3,
+            rms_power_w,
+            energy_j,
+            margins,
+        })
+    }
+
+    /// Limits that are broken, the worst first.
+    pub fn broken(&self) -> Vec<&Margin> {
+        let mut broken: Vec<&Margin> = self.margins.iter().filter(|margin| margin.broken()).collect();
+        broken.sort_by(|a, b| b.share.total_cmp(&a.share));
+        broken
+    }
+}

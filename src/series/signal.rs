@@ -1,0 +1,306 @@
+//! One measured or commanded quantity over time, checked once so that nothing downstream checks it again.
+
+use std::{ops::Range, sync::Arc};
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::math::median;
+
+/// What the values of a [`Signal`] are, and so their unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Position of a joint that turns, rad.
+    Angle,
+    /// Position of a joint that slides, m.
+    Length,
+    /// Share of the full signal, as to a valve: -1 to 1.
+    Share,
+    /// Pressure, Pa.
+    Pressure,
+    /// Effort of a joint that turns, N m.
+    Torque,
+    /// Effort of a joint that slides, N.
+    Force,
+    /// Position x, y, z, m, and unit quaternion x, y, z, w of a frame.
+    Pose,
+}
+
+impl Quantity {
+    /// The unit in text; of the position for a pose.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Angle => "rad",
+            Self::Length | Self::Pose => "m",
+            Self::Share => "1",
+            Self::Pressure => "Pa",
+            Self::Torque => "N m",
+            Self::Force => "N",
+        }
+    }
+
+    /// Number of values in a sample.
+    pub const fn components(self) -> usize {
+        match self {
+            Self::Pose => 7,
+            _ => 1,
+        }
+    }
+}
+
+/// How a joint moves, and so the units of its position, velocity and effort.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum JointKind {
+    /// About an axis: rad.
+    #[default]
+    Turns,
+    /// Along an axis: m.
+    Slides,
+}
+
+impl JointKind {
+    /// What the position of such a joint is.
+    pub const fn quantity(self) -> Quantity {
+        match self {
+            Self::Turns => Quantity::Angle,
+            Self::Slides => Quantity::Length,
+        }
+    }
+
+    /// The unit of its position in text.
+    pub const fn unit(self) -> &'static str {
+        self.quantity().unit()
+    }
+}
+
+/// Values of one [`Quantity`] at strictly increasing instants, all finite, at least one.
+///
+/// `segments` cut the samples where time is not continuous (a gap, a clock jump): nothing is
+/// interpolated and no derivative is taken across a cut.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signal {
+    name: String,
+    quantity: Quantity,
+    t_s: Arc<[f64]>,
+    /// `[components, samples]`.
+    values: Vec<f64>,
+    segments: Vec<Range<usize>>,
+}
+
+/// Why samples do not make a [`Signal`] or a [`Track`](super::Track).
+#[derive(Debug, Clone, Error, PartialEq)]
+#[non_exhaustive]
+pub enum SignalError {
+    /// There are no samples.
+    #[error("no samples")]
+    Empty,
+    /// The arrays have different lengths.
+    #[error("{times} time stamps but {values} values of {array}")]
+    LengthMismatch {
+        /// Which array.
+        array: &'static str,
+        /// Number of time stamps, times the components.
+        times: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// A sample is NaN or infinite.
+    #[error("{array} {index} is not finite: {value}")]
+    NotFinite {
+        /// Which array.
+        array: &'static str,
+        /// Index of the value.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// Time stands still or runs backwards.
+    #[error("time does not increase at sample {index}: {previous_s} s then {next_s} s")]
+    NotIncreasing {
+        /// Index of the later sample.
+        index: usize,
+        /// The earlier stamp, s.
+        previous_s: f64,
+        /// The later stamp, s.
+        next_s: f64,
+    },
+    /// A cut lies outside the samples or out of order.
+    #[error("cut {cut} is not between the previous one and the {samples} samples")]
+    BadCut {
+        /// Index of the first sample after the cut.
+        cut: usize,
+        /// Number of samples.
+        samples: usize,
+    },
+}
+
+/// Where an instant lies among the samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// At this sample.
+    At(usize),
+    /// Between this sample and the next one of the same segment.
+    After(usize),
+}
+
+impl Signal {
+    /// Names samples and cuts them into segments.
+    ///
+    /// `values` are `[components, samples]`; `cuts` are the indices of the first sample of every
+    /// segment but the first, ascending.
+    ///
+    /// # Errors
+    ///
+    /// [`SignalError`], naming the first sample that is not finite or not later than the one before.
+    pub fn new(
+        name: impl Into<String>,
+        quantity: Quantity,
+        t_s: impl Into<Arc<[f64]>>,
+        values: Vec<f64>,
+        cuts: &[usize],
+    ) -> Result<Self, SignalError> {
+        let t_s = t_s.into();
+        if t_s.is_empty() {
+            return Err(SignalError::Empty);
+        }
+        check_values("time", &t_s, t_s.len())?;
+        check_values("value", &values, t_s.len() * quantity.components())?;
+        for (i, pair) in t_s.windows(2).enumerate() {
+            if pair[1] <= pair[0] {
+                return Err(SignalError::NotIncreasing {
+                    index: i + 1,
+                    previous_s: pair[0],
+                    next_s: pair[1],
+                });
+            }
+        }
+        let mut segments = Vec::with_capacity(cuts.len() + 1);
+        let mut start = 0;
+        for &cut in cuts {
+            if cut <= start || cut >= t_s.len() {
+                return Err(SignalError::BadCut { cut, samples: t_s.len() });
+            }
+            segments.push(start..cut);
+            start = cut;
+        }
+        segments.push(start..t_s.len());
+        Ok(Self { name: name.into(), quantity, t_s, values, segments })
+    }
+
+    /// Name of the joint or frame.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What the values are.
+    pub const fn quantity(&self) -> Quantity {
+        self.quantity
+    }
+
+    /// Stamps, s since the start of the log, strictly increasing.
+    pub fn t_s(&self) -> &[f64] {
+        &self.t_s
+    }
+
+    /// Values of the first component, which is the only one of all quantities but poses.
+    pub fn values(&self) -> &[f64] {
+        self.component(0).unwrap_or_default()
+    }
+
+    /// Values of a component; `None` if the quantity has fewer.
+    pub fn component(&self, index: usize) -> Option<&[f64]> {
+        let start = index.checked_mul(self.t_s.len())?;
+        self.values.get(start..start.checked_add(self.t_s.len())?)
+    }
+
+    /// Continuous stretches of samples; together they are all samples.
+    pub fn segments(&self) -> &[Range<usize>] {
+        &self.segments
+    }
+
+    /// Number of samples, at least one.
+    #[expect(clippy::len_without_is_empty, reason = "a signal is never empty")]
+    pub fn len(&self) -> usize {
+        self.t_s.len()
+    }
+
+    /// Median time between neighbouring samples, s; 0 for a single sample.
+    pub fn sample_interval_s(&self) -> f64 {
+        if self.len() < 2 { 0.0 } else { median(self.t_s.windows(2).map(|w| w[1] - w[0]).collect()) }
+    }
+
+    /// The first component at a time inside a segment, by a line between samples; `None` between
+    /// segments and outside.
+    pub fn at(&self, t_s: f64) -> Option<f64> {
+        let x = self.values();
+        Some(match self.place(&mut 0, t_s)? {
+            Place::At(i) => x[i],
+            Place::After(i) => {
+                let share = (t_s - self.t_s[i]) / (self.t_s[i + 1] - self.t_s[i]);
+                x[i] + share * (x[i + 1] - x[i])
+            }
+        })
+    }
+
+    /// Where a time lies; `None` between segments and outside. For a caller that walks forward in
+    /// time: `cursor` is left at the last sample not after `t_s` and makes the next look-up cheap.
+    pub(super) fn place(&self, cursor: &mut usize, t_s: f64) -> Option<Place> {
+        let t = &self.t_s;
+        if t.get(*cursor).is_none_or(|&start| start > t_s) {
+            *cursor = 0;
+        }
+        // Neighbouring stamps are found at once; farther ones by bisection.
+        let near = (*cursor + 1..t.len().min(*cursor + 4)).find(|&i| t[i] > t_s);
+        let above = near.unwrap_or_else(|| *cursor + t[*cursor..].partition_point(|&t| t <= t_s));
+        let i = above.checked_sub(1)?;
+        *cursor = i;
+        if t[i] > t_s {
+            return None;
+        }
+        if t[i] >= t_s {
+            return Some(Place::At(i));
+        }
+        let ends = above == t.len() || self.segments.binary_search_by_key(&above, |s| s.start).is_ok();
+        (!ends).then_some(Place::After(i))
+    }
+}
+
+/// Checks that an array is finite and as long as the samples need it.
+pub(super) fn check_values(array: &'static str, values: &[f64], samples: usize) -> Result<(), SignalError> {
+    if values.len() != samples {
+        return Err(SignalError::LengthMismatch { array, times: samples, values: values.len() });
+    }
+    match values.iter().position(|v| !v.is_finite()) {
+        Some(index) => Err(SignalError::NotFinite { array, index, value: values[index] }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_repeated_time_stamp_is_refused_and_located() {
+        let err = Signal::new("a", Quantity::Pressure, vec![0.0, 0.1, 0.1], vec![0.0; 3], &[]).unwrap_err();
+        assert_eq!(err.to_string(), "time does not increase at sample 2: 0.1 s then 0.1 s");
+    }
+
+    #[test]
+    fn a_nan_is_refused_even_where_time_is_sound() {
+        let err = Signal::new("a", Quantity::Share, vec![0.0, 0.1], vec![0.0, f64::NAN], &[]).unwrap_err();
+        assert!(matches!(err, SignalError::NotFinite { index: 1, .. }));
+    }
+
+    #[test]
+    fn the_components_of_a_pose_are_arrays_of_their_own() {
+        let values = (0..14).map(f64::from).collect();
+        let pose = Signal::new("tool", Quantity::Pose, vec![0.0, 1.0], values, &[]).unwrap();
+        assert_eq!(pose.component(6), Some(&[12.0, 13.0][..]));
+        assert_eq!((pose.component(7), pose.at(0.5)), (None, Some(0.5)));
+    }
+}

@@ -1,0 +1,166 @@
+//! Fits to responses of the model itself: what is lost is lost by the estimator.
+
+use hydrotrace::{
+    fit::{Compensation, Excitation, Fit, FitError, JointRoom, Model, compensate, excite, predict},
+    rng::{Stream, stream},
+    series::{Series, Track, split_at_gaps},
+    units::DEGREE_RAD,
+};
+use rand_distr::{Distribution, StandardNormal};
+
+use super::fitted;
+
+const MODEL: Model = Model {
+    dead_time_s: 0.22,
+    time_constant_s: 0.06,
+    position_gain_1_s: 1.8,
+    integral_gain_1_s2: 0.5,
+    feed_forward: 0.85,
+    asymmetry: 0.2,
+    dead_band_rad_s: 0.015,
+    dead_band_centre_rad_s: 0.0,
+    stiction_rad_s: 0.2 * DEGREE_RAD,
+    offset_rad: 0.0,
+    pose_rad: [0.8, 1.2],
+    pose_slope_1_rad: 0.2,
+    pose_asymmetry_1_rad: 0.0,
+    pose_curve_1_rad2: 0.0,
+    speed_limit_rad_s: [Some(0.35), Some(0.28)],
+    acceleration_limit_rad_s2: [None, None],
+    backlash_rad: 0.05 * DEGREE_RAD,
+};
+
+fn trial(joints: &[&str]) -> Series {
+    let joint = |name: &&str| JointRoom { name: (*name).to_owned(), home_rad: 1.0, range_rad: [0.5, 1.5] };
+    excite(&joints.iter().map(joint).collect::<Vec<_>>(), &Excitation::minimal()).unwrap()
+}
+
+/// The model's answer with an encoder's noise, without the samples for which `lost` holds.
+fn measured(plan: &Series, seed: u64, lost: impl Fn(f64) -> bool) -> Series {
+    let mut rng = stream(seed, Stream::SensorNoise);
+    let track = |sent: &Track| {
+        let exact = predict(&MODEL, sent).unwrap();
+        let noisy: Vec<(f64, f64)> = exact
+            .t_s()
+            .iter()
+            .zip(exact.position())
+            .filter(|(t_s, _)| !lost(**t_s))
+            .map(|(t_s, angle_rad)| {
+                let noise: f64 = StandardNormal.sample(&mut rng);
+                (*t_s, angle_rad + 0.01 * DEGREE_RAD * noise)
+            })
+            .collect();
+        let (t_s, position_rad): (Vec<f64>, Vec<f64>) = noisy.into_iter().unzip();
+        let cuts = split_at_gaps(&t_s);
+        Track::new(sent.name(), t_s, position_rad, &cuts).unwrap()
+    };
+    Series { tracks: plan.tracks.iter().map(track).collect() }
+}
+
+/// Largest relative error of what a trial should show.
+fn worst(fit: &Fit) -> f64 {
+    let joint = &fit.joints[0];
+    let pairs = [
+        (joint.lag_s.value.unwrap(), MODEL.lag_s()),
+        (joint.model.position_gain_1_s, MODEL.position_gain_1_s),
+        (joint.model.feed_forward, MODEL.feed_forward),
+        (joint.gain_ratio.value.unwrap(), MODEL.asymmetry.exp()),
+        (joint.dead_band_rad_s.value.unwrap(), MODEL.dead_band_rad_s + MODEL.stiction_rad_s),
+        (joint.speed_limit_growing_rad_s.value.unwrap(), 0.35),
+        (joint.speed_limit_shrinking_rad_s.value.unwrap(), 0.28),
+    ];
+    pairs.iter().map(|(found, truth)| (found / truth).ln().abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_model_is_found_again_from_its_own_noisy_response() {
+    let plan = trial(&["J"]);
+    for seed in 1..=3 {
+        let fit = fitted(&[(&plan, &measured(&plan, seed, |_| false))]);
+        assert!(worst(&fit) < 0.04, "{seed}: {} {:?}", worst(&fit), fit.joints[0]);
+        assert!(fit.joints[0].held_out_r2 > 0.99);
+    }
+}
+
+#[test]
+fn gaps_and_a_plan_without_speeds_do_not_mislead() {
+    let plan = trial(&["J"]);
+    let log = measured(&plan, 1, |t_s| (6.0..7.5).contains(&t_s) || (t_s * 100.0).round() % 7.0 == 0.0);
+    assert_eq!(log.tracks[0].segments().len(), 2);
+    let bare = &plan.tracks[0];
+    let bare = Track::new("J", bare.t_s(), bare.position().to_vec(), &[]).unwrap();
+    let fit = fitted(&[(&Series { tracks: vec![bare] }, &log)]);
+    assert_eq!(fit.joints[0].runs, 2);
+    assert!(worst(&fit) < 0.08, "{} {:?}", worst(&fit), fit.joints[0]);
+}
+
+#[test]
+fn a_fit_does_not_depend_on_the_number_of_threads_and_survives_a_file() {
+    let plan = trial(&["A", "B"]);
+    let log = measured(&plan, 1, |_| false);
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        serde_json::to_string(&pool.install(|| fitted(&[(&plan, &log)]))).unwrap()
+    };
+    let text = on(1);
+    assert_eq!(text, on(2));
+    let back: Fit = serde_json::from_str(&text).unwrap();
+    back.check().unwrap();
+    assert_eq!(serde_json::to_string(&back).unwrap(), text);
+}
+
+#[test]
+fn a_compensated_command_leaves_the_model_a_fifth_of_the_error_and_keeps_its_speeds() {
+    let plan = {
+        let t_s: Vec<f64> = (0..=1500).map(|k| f64::from(k) * 0.01).collect();
+        let rate = std::f64::consts::PI / 6.0;
+        let phase = |t: &f64| rate * (t - 1.5).clamp(0.0, 12.0);
+        let position = t_s.iter().map(|t| 0.9 + 0.1 * (1.0 - phase(t).cos())).collect();
+        let speed = t_s
+            .iter()
+            .map(|t| if (1.5..13.5).contains(t) { 0.1 * rate * phase(t).sin() } else { 0.0 })
+            .collect();
+        let track = Track::new("J", t_s, position, &[]).unwrap().with_velocity(speed).unwrap();
+        Series { tracks: vec![track] }
+    };
+    let trial = trial(&["J"]);
+    let mut fit = fitted(&[(&trial, &measured(&trial, 1, |_| false))]);
+    let made = compensate(&fit, &plan, Compensation::default()).unwrap();
+    let joint = &made.joints[0];
+    assert!(joint.applied);
+    assert!(joint.compensated_rms_rad.unwrap() < 0.2 * joint.plain_rms_rad.unwrap(), "{joint:?}");
+    assert!(joint.peak_correction_rad <= 1.5 * DEGREE_RAD);
+    let command = &made.command.tracks[0];
+    let (q, v) = (command.position(), command.velocity().unwrap());
+    for k in 1..q.len() - 1 {
+        let slope = (q[k + 1] - q[k - 1]) / 0.02;
+        assert!((slope - v[k]).abs() < 2e-3, "{k}: {slope} {}", v[k]);
+    }
+    let none = compensate(&fit, &plan, Compensation { gain: 0.0, ..Compensation::default() }).unwrap();
+    assert_eq!(none.command, plan);
+    fit.joints[0].held_out_r2 = 0.2;
+    let refused = compensate(&fit, &plan, Compensation::default()).unwrap();
+    assert!(!refused.joints[0].applied && refused.command == plan);
+    fit.joints[0].model.dead_time_s = -1.0;
+    let error = compensate(&fit, &plan, Compensation::default()).unwrap_err();
+    assert!(matches!(error, FitError::Value { key: "dead_time_s", .. }), "{error}");
+}
+
+#[test]
+fn a_trial_stays_in_range_and_one_without_room_is_refused() {
+    let joints = [("up", 0.5, [0.5, 1.5]), ("both", 1.0, [0.0, 2.0])];
+    let rooms =
+        joints.map(|(name, home_rad, range_rad)| JointRoom { name: name.to_owned(), home_rad, range_rad });
+    for excitation in [Excitation::minimal(), Excitation::full()] {
+        let run = excite(&rooms, &excitation).unwrap();
+        for (track, room) in run.tracks.iter().zip(&rooms) {
+            let inside = |q: &f64| (room.range_rad[0]..=room.range_rad[1]).contains(q);
+            assert!(track.position().iter().all(inside));
+            assert_eq!(track.position().last(), Some(&room.home_rad));
+        }
+        let moving = |k: usize| run.tracks.iter().filter(|t| t.velocity().unwrap()[k] != 0.0).count();
+        assert!((0..run.tracks[0].len()).all(|k| moving(k) <= 1));
+    }
+    let tight = [JointRoom { range_rad: [0.95, 1.05], ..rooms[1].clone() }];
+    assert!(matches!(excite(&tight, &Excitation::minimal()), Err(FitError::NoRoom { .. })));
+}

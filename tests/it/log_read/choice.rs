@@ -1,0 +1,113 @@
+//! Which topics are used, and what is said where that fails.
+
+use super::{file::store, *};
+
+#[test]
+fn the_plan_is_found_by_name_and_commands_are_no_measurement() {
+    let mut log = plain_log();
+    add_joint_state(&mut log, "/command/joint_states", |k| vec![3.0 + k as f64, 6.0]);
+    let recording = read(&log);
+    assert_eq!(recording.source.planned_topic, "/planned/joint_states");
+    assert_eq!(recording.source.measured_topic, "/joint_states");
+    let recording =
+        read_with(&log, &options(&["/command/joint_states:position"], &["/planned/joint_states"], &[]));
+    assert_eq!(recording.source.planned_topic, "/command/joint_states");
+    assert_eq!(recording.planned.tracks[0].position()[0], 3.0);
+}
+
+#[test]
+fn joints_are_kept_in_the_order_of_the_caller() {
+    let recording = read_with(&plain_log(), &options(&[], &[], &["b", "a"]));
+    assert_eq!((joints(&recording.planned), joints(&recording.measured)), (vec!["b", "a"], vec!["b", "a"]));
+}
+
+#[test]
+fn errors_name_what_was_found_expected_and_how_to_mend_it() {
+    let log = plain_log();
+    let topics = "/joint_states (sensor_msgs/msg/JointState, 50 messages)";
+    let wrong_topic = error(&log, &options(&["/planed/joint_states"], &[], &[]));
+    assert!(
+        wrong_topic.starts_with(
+            "no topic \"/planed/joint_states\", did you mean \"/planned/joint_states\"?; the log has "
+        ),
+        "{wrong_topic}"
+    );
+    assert!(wrong_topic.contains(topics), "{wrong_topic}");
+    let wrong_field = error(&log, &options(&[], &["/joint_states:positions"], &[]));
+    assert_eq!(
+        wrong_field,
+        "topic \"/joint_states\" (sensor_msgs/msg/JointState) has no joint angles in field \"positions\", did \
+         you mean \"position\"?; it has position"
+    );
+    let wrong_joint = error(&log, &options(&[], &[], &["a", "bb"]));
+    assert_eq!(wrong_joint, "no joint \"bb\", did you mean \"b\"?; the log has a, b");
+    let mut no_plan = log.clone();
+    no_plan.channels.remove(0);
+    no_plan.messages.retain(|message| message.channel == 1);
+    no_plan.messages.iter_mut().for_each(|message| message.channel = 0);
+    let no_plan = error(&no_plan, &ReadOptions::default());
+    assert_eq!(
+        no_plan,
+        format!(
+            "found no planned joint angles; the log has {topics}; name them with --planned TOPIC[:FIELD]"
+        )
+    );
+    let mut strangers = Log::default();
+    add_joint_state(&mut strangers, "/planned/joint_states", plan);
+    let channel = strangers.channel(file::Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
+    strangers.send(
+        channel,
+        stamp(0),
+        encode::joint_state(cdr::Kind::LittleEndian, stamp(0), &["x"], &[0.0], &[]),
+    );
+    let strangers = error(&strangers, &ReadOptions::default());
+    assert!(
+        strangers.starts_with("planned joints (a, b) and measured joints (x) have no name in common; choose"),
+        "{strangers}"
+    );
+}
+
+#[test]
+fn files_that_are_no_log_say_what_they_are() {
+    for (bytes, found, fix) in [
+        (&b""[..], "nothing", "the file is empty"),
+        (b"#ROSBAG V2.0\n", "23 52 4F 53 42 41 47 20", "rosbags-convert"),
+        (b"SQLite format 3\0", "53 51 4C 69 74 65 20 66", "ros2 bag convert"),
+        (b"\x28\xB5\x2F\xFD", "28 B5 2F FD", "zstd -d"),
+        (b"time;a;b\n0;1;2\n", "74 69 6D 65 3B 61 3B 62", "give an .mcap recording"),
+    ] {
+        let message = read_bytes(bytes, &ReadOptions::default()).unwrap_err().to_string();
+        assert!(
+            message.contains(&format!("found {found}, expected the bytes 89 4D 43 41 50 30 0D 0A")),
+            "{message}"
+        );
+        assert!(message.contains(fix) && message.contains("run.mcap"), "{message}");
+    }
+    let missing =
+        hydrotrace::log::read_recording(&[path("no/such.mcap")], &ReadOptions::default()).unwrap_err();
+    assert_eq!(missing.to_string(), "cannot open no/such.mcap");
+    assert!(std::error::Error::source(&missing).is_some());
+    let empty = store(&[]);
+    let empty = hydrotrace::log::read_recording(&[empty.folder.path().to_owned()], &ReadOptions::default())
+        .unwrap_err();
+    assert!(empty.to_string().contains("holds no .mcap file; give a recording"), "{empty}");
+}
+
+#[test]
+fn a_survey_lists_all_topics_with_rates_fields_and_joints() {
+    let mut log = plain_log();
+    let other = log.channel(
+        file::Channel::cdr("/rosout", "std_msgs/msg/String").with_schema("ros2msg", "string data\n"),
+    );
+    log.send(other, stamp(3), vec![0, 1, 0, 0, 1, 0, 0, 0, 0]);
+    let survey = survey_bytes(&log.bytes(mcap::WriteOptions::new()));
+    let names: Vec<&str> = survey.topics.iter().map(|topic| topic.topic.as_str()).collect();
+    assert_eq!(names, ["/joint_states", "/planned/joint_states", "/rosout"]);
+    let topic = &survey.topics[0];
+    assert!((topic.rate_hz - 50.0).abs() < 1e-9);
+    assert_eq!(
+        (topic.messages, &topic.joint_fields[..], &topic.joints[..]),
+        (50, &["position".to_owned()][..], &NAMES.map(str::to_owned)[..])
+    );
+    assert_eq!(survey.recording.unwrap(), read(&log));
+}

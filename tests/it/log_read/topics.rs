@@ -1,0 +1,221 @@
+//! Topics of samples other than controller states.
+
+use super::{cdr::KINDS, encode, file::Channel, *};
+
+#[test]
+fn joints_are_joined_by_name_whatever_their_order_and_subset() {
+    let mut log = Log::default();
+    add_joint_state(&mut log, "/planned/joint_states", plan);
+    let channel = log.channel(Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
+    for k in 0..SAMPLES {
+        let q = measurement(k);
+        let (names, values): (&[&str], Vec<f64>) = match k % 3 {
+            0 => (&["a", "b"], vec![q[0], q[1]]),
+            1 => (&["b", "other", "a"], vec![q[1], 7.0, q[0]]),
+            _ => (&["b"], vec![q[1]]),
+        };
+        log.send(
+            channel,
+            stamp(k),
+            encode::joint_state(cdr::Kind::LittleEndian, stamp(k), names, &values, &[]),
+        );
+    }
+    let recording = read(&log);
+    let (a, b) = (recording.measured.track("a").unwrap(), recording.measured.track("b").unwrap());
+    assert_eq!((a.len(), b.len()), (34, 50));
+    for (&t_s, &q) in a.t_s().iter().zip(a.position()) {
+        assert_eq!(q, measurement((t_s / 0.02).round() as i64)[0]);
+    }
+    for (k, &q) in b.position().iter().enumerate() {
+        assert_eq!(q, measurement(k as i64)[1]);
+    }
+    assert_eq!(count(&recording.remarks, Code::JointsChange), 49);
+}
+
+#[test]
+fn joint_states_in_every_encoding_with_velocities() {
+    for kind in KINDS {
+        let mut log = Log::default();
+        let channel = log.channel(Channel::cdr("/planned/joint_states", "sensor_msgs/msg/JointState"));
+        for k in 0..SAMPLES {
+            log.send(channel, stamp(k), encode::joint_state(kind, stamp(k), &NAMES, &plan(k), &[0.5, -1.0]));
+        }
+        add_joint_state(&mut log, "/joint_states", measurement);
+        let recording = read(&log);
+        assert_values(&recording.planned, plan);
+        assert_eq!(recording.planned.tracks[1].velocity(), Some(&[-1.0; 50][..]), "{kind:?}");
+    }
+}
+
+#[test]
+fn subsets_on_several_topics_are_put_together() {
+    let mut log = Log::default();
+    add_joint_state(&mut log, "/planned/joint_states", plan);
+    for (j, topic) in ["/left/joint_states", "/right/joint_states"].into_iter().enumerate() {
+        let channel = log.channel(Channel::cdr(topic, "sensor_msgs/msg/JointState"));
+        for k in 0..SAMPLES {
+            log.send(
+                channel,
+                stamp(k),
+                encode::joint_state(
+                    cdr::Kind::LittleEndian,
+                    stamp(k),
+                    &NAMES[j..=j],
+                    &measurement(k)[j..=j],
+                    &[],
+                ),
+            );
+        }
+    }
+    let recording = read(&log);
+    assert_values(&recording.measured, measurement);
+    assert_eq!(recording.source.measured_topic, "/left/joint_states, /right/joint_states");
+    assert!(recording.remarks.is_empty(), "{:?}", recording.remarks);
+}
+
+#[test]
+fn dynamic_joint_states_yield_positions_and_other_interfaces_by_name() {
+    for kind in KINDS {
+        let mut log = Log::default();
+        add_joint_state(&mut log, "/planned/joint_states", plan);
+        let channel =
+            log.channel(Channel::cdr("/dynamic_joint_states", "control_msgs/msg/DynamicJointState"));
+        for k in 0..SAMPLES {
+            let q = measurement(k);
+            let joints: [(&str, &[(&str, f64)]); 4] = [
+                ("tank", &[("pressure", 2e5)]),
+                ("b", &[("pressure", 1e5), ("position", q[1])]),
+                ("a", &[("position", q[0]), ("velocity", 0.5)]),
+                ("gripper", &[]),
+            ];
+            log.send(channel, stamp(k), encode::dynamic(kind, stamp(k), &joints));
+        }
+        let recording = read(&log);
+        let [b, a] = &recording.measured.tracks[..] else { panic!("{:?}", joints(&recording.measured)) };
+        assert_eq!((b.name(), a.name()), ("b", "a"));
+        for k in 0..SAMPLES {
+            assert_eq!([a.position()[k as usize], b.position()[k as usize]], measurement(k)[..]);
+        }
+        assert!(recording.remarks.is_empty(), "{kind:?} {:?}", recording.remarks);
+        let pressure = read_with(&log, &options(&[], &["/dynamic_joint_states:pressure"], &["b"]));
+        assert_eq!(pressure.measured.tracks[0].position()[0], 1e5);
+    }
+}
+
+fn send_versioned(log: &mut Log, names: usize, values: usize, k: i64) {
+    let q: [Vec<f64>; 2] = [plan(k), measurement(k)];
+    let version = 1 + (k / 20) as u32;
+    let mut rows = [
+        ("command_interface.a/position", q[0][0]),
+        ("command_interface.b/position", q[0][1]),
+        ("state_interface.a/position", q[1][0]),
+        ("state_interface.b/position", q[1][1]),
+        ("state_interface.b/effort", 5.0),
+        ("controller_manager.cycle_time", 0.01),
+    ];
+    if version == 2 {
+        rows.reverse();
+    }
+    if k % 20 == 0 {
+        log.send(
+            names,
+            stamp(k),
+            cdr::Cdr::message(cdr::Kind::LittleEndian, |cdr| {
+                cdr.header(stamp(k));
+                cdr.texts(&rows.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+                cdr.u32(version);
+            }),
+        );
+    }
+    log.send(
+        values,
+        stamp(k),
+        cdr::Cdr::message(cdr::Kind::LittleEndian, |cdr| {
+            cdr.header(stamp(k));
+            cdr.f64s(&rows.iter().map(|(_, value)| *value).collect::<Vec<_>>());
+            cdr.u32(version);
+        }),
+    );
+}
+
+#[test]
+fn introspection_values_are_joined_to_their_names_by_version() {
+    let mut log = Log::default();
+    let stem = "/controller_manager/introspection_data";
+    let names =
+        log.channel(Channel::cdr(&format!("{stem}/names"), "pal_statistics_msgs/msg/StatisticsNames"));
+    let values =
+        log.channel(Channel::cdr(&format!("{stem}/values"), "pal_statistics_msgs/msg/StatisticsValues"));
+    (0..SAMPLES).for_each(|k| send_versioned(&mut log, names, values, k));
+    let recording = read(&log);
+    let sorted = |mut series: Series| {
+        series.tracks.sort_by(|a, b| a.name().cmp(b.name()));
+        series
+    };
+    assert_values(&sorted(recording.planned), plan);
+    assert_values(&sorted(recording.measured), measurement);
+    assert!(recording.remarks.is_empty(), "{:?}", recording.remarks);
+}
+
+#[test]
+fn a_nameless_array_takes_its_joints_from_the_caller() {
+    for kind in KINDS {
+        let mut log = Log::default();
+        let channel = log.channel(Channel::cdr("/arm/commands", "std_msgs/msg/Float64MultiArray"));
+        (0..SAMPLES).for_each(|k| log.send(channel, stamp(k), encode::array(kind, &plan(k))));
+        add_joint_state(&mut log, "/joint_states", measurement);
+        let recording = read_with(&log, &options(&["/arm/commands"], &[], &NAMES));
+        assert_values(&recording.planned, plan);
+        assert_values(&recording.measured, measurement);
+        assert_eq!(recording.source.time_base, hydrotrace::log::TimeBase::Publish);
+        assert_eq!(count(&recording.remarks, Code::JointsChange), 0, "{:?}", recording.remarks);
+    }
+}
+
+#[test]
+fn foxglove_joint_states_of_ros_are_read_in_every_encoding() {
+    for kind in KINDS {
+        let mut log = Log::default();
+        add_joint_state(&mut log, "/planned/joint_states", plan);
+        let channel = log.channel(Channel::cdr("/joints", "foxglove_msgs/msg/JointStates"));
+        for k in 0..SAMPLES {
+            let q = measurement(k);
+            log.send(
+                channel,
+                stamp(k),
+                cdr::Cdr::message(kind, |cdr| {
+                    cdr.time(stamp(k));
+                    cdr.list(&[("a", q[0]), ("b", q[1])], |cdr, (name, position)| {
+                        cdr.record(|cdr| {
+                            cdr.text(name);
+                            [*position, 0.0, 0.0, 0.0].iter().for_each(|v| cdr.f64(*v));
+                        });
+                    });
+                }),
+            );
+        }
+        let recording = read(&log);
+        assert_values(&recording.measured, measurement);
+        assert_eq!(recording.source.time_base, hydrotrace::log::TimeBase::Header);
+    }
+}
+
+#[test]
+fn idl_says_the_same_as_msg() {
+    let mut log = plain_log();
+    for channel in &mut log.channels {
+        *channel = channel.clone().with_schema("ros2idl", schema::joint_state_idl());
+    }
+    assert_eq!(read(&log), read(&plain_log()));
+}
+
+#[test]
+fn crlf_comments_constants_and_bounds_in_a_schema_do_not_matter() {
+    let mut log = plain_log();
+    let own = "# note\r\nuint8 MODE=1 # one\r\nstring LABEL = \"a # b\"\r\nstd_msgs/Header header   # when\r\n\
+               string<=32[<=64] name\r\nfloat64[] position\r\nfloat64[<=64] velocity\r\nfloat64[] effort\r\n";
+    for channel in &mut log.channels {
+        *channel = channel.clone().with_schema("ros2msg", schema::text_of("sensor_msgs/JointState", own));
+    }
+    assert_eq!(read(&log), read(&plain_log()));
+}
