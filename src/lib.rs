@@ -6,6 +6,7 @@
 
 // ground
 pub mod atomic_file;
+pub mod document;
 pub mod math;
 pub mod remark;
 pub mod rng;
@@ -32,7 +33,9 @@ pub mod replay;
 pub mod workflow;
 
 // edges
+#[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "cli")]
 pub mod render;
 #[cfg(feature = "viewer")]
 pub mod viewer;

@@ -7,7 +7,7 @@ use std::{
 
 /// Modules by layer; a module may use its own layer's ground rules and everything below.
 const LAYERS: [&[&str]; 5] = [
-    &["units", "rng", "remark", "math", "atomic_file", "suggest", "schema"],
+    &["units", "rng", "remark", "math", "atomic_file", "suggest", "schema", "document"],
     &["arm", "task", "series", "spline"],
     &["log", "replay", "fit", "plan", "plant"],
     &["workflow"],

@@ -25,13 +25,14 @@ mod allocations;
 mod architecture;
 mod arm;
 mod cli;
+mod docs;
 mod fit;
 mod golden;
 mod log_read;
 mod log_write;
 mod plan;
 mod plant;
-mod readme;
+
 mod real_log;
 mod replay;
 mod sample_logs;
