@@ -7,10 +7,7 @@ use super::{
     args::ImportArgs,
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
-use crate::{
-    render::{imported_json, imported_parts},
-    workflow::import::run as import,
-};
+use crate::{render::import as words, workflow::import::run as import};
 
 pub(super) fn run(
     args: &ImportArgs,
@@ -21,10 +18,10 @@ pub(super) fn run(
     spare_stdout(Some(&args.output))?;
     let imported = import(&args.inputs()?)?;
     if args.json {
-        deliver(&imported_json(&imported), None, out)?;
+        deliver(&words::json(&imported), None, out)?;
         say_remarks(&imported.remarks, err);
     } else {
-        deliver(&shown(&imported_parts(&args.output.to_string_lossy(), &imported), None), None, out)?;
+        deliver(&shown(&words::document(&args.output.to_string_lossy(), &imported), None), None, out)?;
     }
     Ok(if imported.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

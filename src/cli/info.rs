@@ -8,17 +8,17 @@ use super::{
     output::{deliver, say_remarks, shown},
 };
 use crate::{
-    render::{info_json, info_parts},
+    render::info as words,
     workflow::info::{Inputs, run as look},
 };
 
 pub(super) fn run(args: &InfoArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     let survey = look(&Inputs { logs: args.logs.clone(), read: args.read.options() })?;
     if args.json {
-        deliver(&info_json(&survey), None, out)?;
+        deliver(&words::json(&survey), None, out)?;
         say_remarks(&survey.remarks, err);
     } else {
-        deliver(&shown(&info_parts(&survey), None), None, out)?;
+        deliver(&shown(&words::document(&survey), None), None, out)?;
     }
     Ok(if survey.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

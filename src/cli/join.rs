@@ -7,10 +7,7 @@ use super::{
     args::JoinArgs,
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
-use crate::{
-    render::{joined_json, joined_parts},
-    workflow::join::run as join,
-};
+use crate::{render::join as words, workflow::join::run as join};
 
 pub(super) fn run(args: &JoinArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     let read = [args.logs.as_slice(), std::slice::from_ref(&args.plan)].concat();
@@ -18,10 +15,10 @@ pub(super) fn run(args: &JoinArgs, out: &mut impl Write, err: &mut impl Write) -
     spare_stdout(Some(&args.output))?;
     let joined = join(&args.inputs())?;
     if args.json {
-        deliver(&joined_json(&joined), None, out)?;
+        deliver(&words::json(&joined), None, out)?;
         say_remarks(&joined.remarks, err);
     } else {
-        deliver(&shown(&joined_parts(&joined, &args.plan, &args.output), None), None, out)?;
+        deliver(&shown(&words::document(&joined, &args.plan, &args.output), None), None, out)?;
     }
     Ok(if joined.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

@@ -8,7 +8,7 @@ use super::{
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
-    render::{recovered_json, recovered_parts},
+    render::recover as words,
     workflow::recover::{Inputs, run as recover},
 };
 
@@ -21,11 +21,11 @@ pub(super) fn run(
     spare_stdout(Some(&args.output))?;
     let recovered = recover(&Inputs { log: args.log.clone(), output: args.output.clone() })?;
     if args.json {
-        deliver(&recovered_json(&recovered), None, out)?;
+        deliver(&words::json(&recovered), None, out)?;
         say_remarks(&recovered.remarks, err);
     } else {
         let output = args.output.to_string_lossy();
-        deliver(&shown(&recovered_parts(&output, &recovered), None), None, out)?;
+        deliver(&shown(&words::document(&output, &recovered), None), None, out)?;
     }
     Ok(if recovered.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

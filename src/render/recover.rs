@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::{Part, json, tables::remark_parts};
-use crate::{log::Recovered, remark::Remark};
+use super::kit::{Document, Id, Section, Sentence};
+use crate::{document, log::Recovered, remark::Remark};
 
 #[derive(Serialize)]
-struct Document<'a> {
+struct Json<'a> {
     format: &'static str,
     program: &'static str,
     messages: u64,
@@ -17,10 +17,10 @@ struct Document<'a> {
 }
 
 /// As JSON.
-pub fn recovered_json(recovered: &Recovered) -> String {
-    json::pretty(&Document {
+pub fn json(recovered: &Recovered) -> String {
+    document::pretty(&Json {
         format: "hydrotrace.recover.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         messages: recovered.messages,
         blocks: recovered.blocks,
         dropped_blocks: recovered.dropped_blocks,
@@ -30,15 +30,13 @@ pub fn recovered_json(recovered: &Recovered) -> String {
 }
 
 /// As sentences.
-pub fn recovered_parts(output: &str, recovered: &Recovered) -> Vec<Part> {
+pub fn document(output: &str, recovered: &Recovered) -> Document {
     let Recovered { messages, blocks, dropped_blocks, attachments, remarks } = recovered;
-    let mut parts = vec![Part::Line(format!(
+    let saved = format!(
         "{messages} messages and {attachments} attachments saved to {output}, from {blocks} chunks of which \
          {dropped_blocks} had to be dropped."
-    ))];
-    if remarks.is_empty() {
-        parts.push(Part::Line("Nothing was lost: the log was whole.".into()));
-    }
-    remark_parts(remarks, &mut parts);
-    parts
+    );
+    let whole = remarks.is_empty().then(|| Sentence::finding("Nothing was lost: the log was whole."));
+    let section = Section::plain(Id::SUMMARY, [Sentence::finding(saved)]).with_all(whole);
+    Document::default().with(section).remarked(remarks)
 }

@@ -32,8 +32,7 @@ mod log_read;
 mod log_write;
 mod plan;
 mod plant;
-
-mod real_log;
 mod replay;
 mod sample_logs;
 mod spline;
+mod support;

@@ -13,11 +13,11 @@ use std::{
 use clap::Parser;
 use hydrotrace::{
     atomic_file::{AtomicError, write_atomically},
-    render::{Part, markdown, text},
+    render::kit::{Document, markdown, text},
 };
 use hydrotrace_bench::{
     detector, problems,
-    study::{self, Form, Study, curve_svg, curves_csv, front_csv, parts},
+    study::{self, Form, Study, curve_svg, curves_csv, document, front_csv},
     tasks,
 };
 use indicatif::{ProgressBar, ProgressStyle};
@@ -45,7 +45,7 @@ fn run(study: &StudyArgs) -> Result<(), Box<dyn Error>> {
             let bar = progress(detector::conditions().len() as u64, "conditions");
             let found = detector::run(args.seed, args.runs, || bar.inc(1));
             bar.finish_and_clear();
-            show(&args.format, || found.json(), || found.parts())
+            show(&args.format, || found.json(), || found.document())
         }
         StudyArgs::Moea(args) => {
             let shared = args.shared.inputs("msops2", [5_000, 20_000, 50_000], args.front.is_some());
@@ -103,19 +103,19 @@ fn finish(form: &Form, found: &Study, curves: Option<&Path>, format: &Format) ->
             write(folder, &format!("{}.svg", first.subject.to_lowercase()), &curve_svg(form, same))?;
         }
     }
-    show(format, || found.json(), || parts(form, found))
+    show(format, || found.json(), || document(form, found))
 }
 
 /// Writes the findings to standard output. A reader that goes away is no failure.
 fn show(
     format: &Format,
     json: impl Fn() -> String,
-    parts: impl Fn() -> Vec<Part>,
+    document: impl Fn() -> Document,
 ) -> Result<(), Box<dyn Error>> {
     let shown = match format {
         Format { json: true, .. } => json(),
-        Format { markdown: true, .. } => markdown(&parts()),
-        Format { .. } => text(&parts()),
+        Format { markdown: true, .. } => markdown(&document()),
+        Format { .. } => text(&document()),
     };
     match io::stdout().write_all(shown.as_bytes()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),

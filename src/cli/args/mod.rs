@@ -28,7 +28,7 @@ pub use fit::{FitArgs, SentArgs};
 pub use form::ReportFormat;
 pub use import::ImportArgs;
 pub use join::JoinArgs;
-pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
+pub use plan::{ChoiceArgs, PlanArgs, SearchArgs};
 pub use replan::{ChangeArgs, ReplanArgs};
 pub use simulate::SimulateArgs;
 pub use terminal::{CompletionsArgs, ManArgs, TerminalArgs};

@@ -3,15 +3,16 @@
 mod synthetic;
 
 use hydrotrace::{
+    document::{PROGRAM, pretty},
     math::{SIGMA_PER_MAD, mad, median},
-    render::{Part, Sheet},
+    render::kit::{Document, Id, NONE, Section, Sentence, Table, ms},
     replay::{Rules, measured_starts, measured_stops, replay},
     units::{DEGREE_RAD, degrees_from_radians},
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::study::{NONE, PROGRAM, finite, json};
+use crate::study::finite;
 pub use synthetic::{Sensing, SyntheticRun, TrueMotion, synthetic_run};
 
 /// A start counts as found if one of the same direction is detected this near, s.
@@ -108,15 +109,11 @@ pub fn run(seed: u64, runs: u64, done: impl Fn() + Sync) -> Detector {
 impl Detector {
     /// As JSON.
     pub fn json(&self) -> String {
-        json(self)
+        pretty(self)
     }
 
     /// As a table.
-    pub fn parts(&self) -> Vec<Part> {
-        let ms = |s: f64| {
-            let text = format!("{:.0}", s * 1e3);
-            if text == "-0" { "0".to_owned() } else { text }
-        };
+    pub fn document(&self) -> Document {
         let spread = |s: &Spread| format!("{} +-{}", ms(s.median_s), ms(s.mad_sd_s));
         let rows = self.rows.iter().map(|s| {
             vec![
@@ -136,7 +133,7 @@ impl Detector {
                 format!("{:.2}", s.stop_recall),
             ]
         });
-        let head = vec![
+        let numbers = [
             "noise deg",
             "LSB deg",
             "Hz",
@@ -152,14 +149,13 @@ impl Detector {
             "stop P",
             "stop R",
         ];
-        vec![
-            Part::Line(format!(
-                "Starts found on synthetic joints with known motions, seed {}. Errors of the onset and of the delay: \
-                 median +- robust standard deviation; coverage is the share of delays inside their 95 % interval.",
-                self.seed
-            )),
-            Part::Sheet(Sheet { head, left: 0, rows: rows.collect() }),
-        ]
+        let found = format!(
+            "Starts found on synthetic joints with known motions, seed {}. Errors of the onset and of the delay: \
+             median +- robust standard deviation; coverage is the share of delays inside their 95 % interval.",
+            self.seed
+        );
+        let section = Section::plain(Id::SUMMARY, [Sentence::note(found)]);
+        Document::default().with(section.with(Table::new(&[], &numbers, rows)))
     }
 }
 

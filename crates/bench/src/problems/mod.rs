@@ -5,6 +5,7 @@ mod published;
 
 use std::{collections::BTreeMap, ops::ControlFlow};
 
+use hydrotrace::render::kit::significant;
 use moea::{
     Budget, MoeaError, Operators, Population, Problem, Settings, benchmark::Benchmark, compare::Yardstick,
     optimise,
@@ -13,7 +14,6 @@ use rayon::prelude::*;
 
 use crate::study::{
     Column, Entrant, Form, Inputs, Measure, Panel, Published, ReferenceFacts, Run, Subject, Watch, decimals,
-    significant,
 };
 
 /// Points of the true front that are asked for; a problem gives about as many.
@@ -39,7 +39,7 @@ pub const FORM: Form = Form {
         measure("hypervolume", "HV", false, decimals),
     ],
     heading: "Medians (quartiles), and against nsga3",
-    reference: (&["problem", "HV reference point", "objectives", "variables", "front points"], |facts| {
+    reference: (&["problem", "HV reference point"], &["objectives", "variables", "front points"], |facts| {
         let point: Vec<String> = facts.reference_point.iter().map(|&f| significant(f, 3)).collect();
         vec![
             facts.subject.clone(),
@@ -49,8 +49,7 @@ pub const FORM: Form = Form {
             facts.members.to_string(),
         ]
     }),
-    reference_words: 2,
-    paper: paper::parts,
+    paper: paper::sections,
     panels: [
         Panel {
             heading: "hypervolume (more is better)",

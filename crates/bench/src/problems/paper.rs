@@ -2,18 +2,16 @@
 
 use std::collections::BTreeSet;
 
-use hydrotrace::render::{Part, Sheet};
+use hydrotrace::render::kit::{Id, NONE, Section, Sentence, Table, significant};
 
-use crate::study::{Cell, NONE, Published, Study, significant};
+use crate::study::{Cell, Published, Study};
 
 /// Nothing if no problem of the paper was run.
-pub(super) fn parts(study: &Study) -> Vec<Part> {
-    let mut parts = table_1(study);
-    parts.extend(figure_3(study));
-    parts
+pub(super) fn sections(study: &Study) -> Vec<Section> {
+    table_1(study).into_iter().chain(figure_3(study)).collect()
 }
 
-fn table_1(study: &Study) -> Vec<Part> {
+fn table_1(study: &Study) -> Option<Section> {
     let entry = |cell: &Cell| {
         cell.published.iter().find_map(|published| match published {
             Published::Table1 { mean, spread } => Some((*mean, *spread)),
@@ -38,21 +36,17 @@ fn table_1(study: &Study) -> Vec<Part> {
         }
     }
     if rows.is_empty() {
-        return Vec::new();
+        return None;
     }
     let budgets: BTreeSet<u64> = known.iter().map(|(cell, _)| cell.evaluations).collect();
     let budgets: Vec<String> = budgets.iter().map(u64::to_string).collect();
-    vec![
-        Part::Heading("IGD beside the paper's Table 1".to_owned()),
-        Part::Line(
-            "The table names no budget, and contradicts Figure 3, where runs of 50000 evaluations end near the \
-             front: nsga3 has 343.9 on DTLZ3 here after about 500 evaluations, and 0.6122 on WFG3 after about 350. \
-             The table's gaps between NSGA-III-FO and NSGA-III are a tenth of its own spread."
-                .to_owned(),
-        ),
-        Part::Line(format!("Means and standard deviations; ours after {} evaluations.", budgets.join(", "))),
-        Part::Sheet(Sheet { head: vec!["problem", "algorithm", "paper", "ours"], left: 2, rows }),
-    ]
+    let finding = "The table names no budget, and contradicts Figure 3, where runs of 50000 evaluations end near the \
+                   front: nsga3 has 343.9 on DTLZ3 here after about 500 evaluations, and 0.6122 on WFG3 after about \
+                   350. The table's gaps between NSGA-III-FO and NSGA-III are a tenth of its own spread.";
+    let which = format!("Means and standard deviations; ours after {} evaluations.", budgets.join(", "));
+    let notes = [Sentence::note(finding), Sentence::note(which)];
+    let table = Table::new(&["problem", "algorithm"], &["paper", "ours"], rows);
+    Some(Section::new(Id::OTHER, "IGD beside the paper's Table 1", notes).with(table))
 }
 
 /// Nothing for one run.
@@ -60,7 +54,7 @@ fn spread(sd: f64) -> String {
     if sd.is_finite() { format!(" +-{}", significant(sd, 3)) } else { String::new() }
 }
 
-fn figure_3(study: &Study) -> Vec<Part> {
+fn figure_3(study: &Study) -> Option<Section> {
     let mean = |cell: &Cell| cell.samples.get("hypervolume").map_or(f64::NAN, |sample| sample.mean);
     let share = |cell: &Cell| {
         let focused = study.cells.iter().find(|other| {
@@ -87,28 +81,14 @@ fn figure_3(study: &Study) -> Vec<Part> {
     };
     let rows: Vec<Vec<String>> = study.cells.iter().filter_map(row).collect();
     if rows.is_empty() {
-        return Vec::new();
+        return None;
     }
-    vec![
-        Part::Heading("Hypervolume beside the paper's Figure 3".to_owned()),
-        Part::Line(
-            "The paper's words, for its curves are not at hand; then what another implementation gave at PlatEMO's \
-             defaults (91 members, 12 variables). The share is that of our mean in the mean of nsga3-fo."
-                .to_owned(),
-        ),
-        Part::Sheet(Sheet {
-            head: vec![
-                "problem",
-                "algorithm",
-                "paper",
-                "evaluations",
-                "other",
-                "our median",
-                "our mean",
-                "share",
-            ],
-            left: 3,
-            rows,
-        }),
-    ]
+    let note = "The paper's words, for its curves are not at hand; then the hypervolume of another implementation at \
+                PlatEMO's defaults (91 members, 12 variables). The share is our mean divided by the mean of nsga3-fo.";
+    let numbers = ["evaluations", "other", "our median", "our mean", "share"];
+    let table = Table::new(&["problem", "algorithm", "paper"], &numbers, rows);
+    Some(
+        Section::new(Id::OTHER, "Hypervolume beside the paper's Figure 3", [Sentence::note(note)])
+            .with(table),
+    )
 }

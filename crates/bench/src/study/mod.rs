@@ -9,7 +9,7 @@ mod watch;
 
 use std::collections::BTreeMap;
 
-use hydrotrace::render::Part;
+use hydrotrace::{document::pretty, render::kit::Section};
 use moea::{Algorithm, NamedAlgorithm};
 use serde::{Deserialize, Serialize};
 
@@ -18,8 +18,7 @@ pub use rows::{curves_csv, front_csv};
 pub use run::run;
 pub(crate) use sample::finite;
 pub use sample::{Against, Sample, Verdict, quartiles};
-pub(crate) use tables::NONE;
-pub use tables::{decimals, parts, significant};
+pub use tables::{decimals, document};
 pub use watch::Watch;
 
 /// Name of the algorithm that the others are compared with.
@@ -67,12 +66,10 @@ pub struct Form {
     pub measures: &'static [Measure],
     /// Heading of the table of measures.
     pub heading: &'static str,
-    /// Heads of the table of references, and how a reference fills it.
-    pub reference: (&'static [&'static str], fn(&ReferenceFacts) -> Vec<String>),
-    /// Leading columns of that table that are words.
-    pub reference_words: usize,
+    /// Columns of the table of references that are words, those that are numbers, and a row.
+    pub reference: (&'static [&'static str], &'static [&'static str], fn(&ReferenceFacts) -> Vec<String>),
     /// The paper's figures beside ours.
-    pub paper: fn(&Study) -> Vec<Part>,
+    pub paper: fn(&Study) -> Vec<Section>,
     /// Charts of the curves.
     pub panels: [Panel; 2],
 }
@@ -236,18 +233,9 @@ pub const FORMAT: &str = "hydrotrace.study.v1";
 impl Study {
     /// As JSON. Times are seconds, jerk rad/s³, power W; a value that is not finite is null.
     pub fn json(&self) -> String {
-        json(self)
+        pretty(self)
     }
 }
-
-/// A document as indented JSON.
-pub(crate) fn json(document: &impl Serialize) -> String {
-    // The documents are structures of numbers and text: they always serialise.
-    serde_json::to_string_pretty(document).unwrap_or_default() + "\n"
-}
-
-/// Name and version of this program.
-pub(crate) const PROGRAM: &str = concat!("hydrotrace-bench ", env!("CARGO_PKG_VERSION"));
 
 /// A subject, and what its runs are measured against.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
+use hydrotrace::render::kit::short;
 use moea::ALGORITHMS;
 
-use super::{Curve, Form, Panel, significant};
+use super::{Curve, Form, Panel};
 
 /// Of the whole picture and of one chart's plot.
 const SIZE: (f64, f64) = (900.0, 400.0);
@@ -151,16 +152,6 @@ fn decades(low: f64, high: f64) -> Vec<f64> {
     let powers = low.floor() as i32..=high.ceil() as i32;
     let ticks = powers.flat_map(|power| factors.iter().map(move |factor| f64::from(power) + factor.log10()));
     ticks.filter(|tick| (low..=high).contains(tick)).collect()
-}
-
-/// Without the zeros at the end.
-fn short(value: f64) -> String {
-    let text = significant(value, 4);
-    if text.contains('.') && !text.contains('e') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! Makes the runs and summarises them.
 
+use hydrotrace::document::PROGRAM;
 use rayon::prelude::*;
 
 use super::{
-    BASELINE, Cell, Curve, Entrant, FEW_SEEDS, FORMAT, Front, Inputs, PROGRAM, Run, Sample, Study, Subject,
-    Tally, Watch,
+    BASELINE, Cell, Curve, Entrant, FEW_SEEDS, FORMAT, Front, Inputs, Run, Sample, Study, Subject, Tally,
+    Watch,
     sample::{quartiles, tallied},
 };
 

@@ -1,45 +1,36 @@
 //! As tables.
 
-use hydrotrace::render::{Part, Sheet};
+use hydrotrace::render::kit::{Document, Id, NONE, Section, Sentence, Table};
 
 use super::{BASELINE, Cell, Column, Form, Measure, Sample, Study, Tally, Verdict};
 
-/// A cell without a value.
-pub(crate) const NONE: &str = "-";
-
 /// For a terminal, or as Markdown.
-pub fn parts(form: &Form, study: &Study) -> Vec<Part> {
-    let mut parts = vec![Part::Title(form.title.to_owned())];
-    parts.extend(study.notes.iter().cloned().map(Part::Line));
-    let (head, row) = form.reference;
-    parts.push(Part::Heading("Measured against".to_owned()));
-    parts.push(Part::Sheet(Sheet {
-        head: head.to_vec(),
-        left: form.reference_words,
-        rows: study.references.iter().map(row).collect(),
-    }));
-    parts.push(Part::Heading(form.heading.to_owned()));
+pub fn document(form: &Form, study: &Study) -> Document {
+    let (words, numbers, row) = form.reference;
+    let references = Table::new(words, numbers, study.references.iter().map(row));
     let columns = form.measures.iter().flat_map(|measure| match measure.column {
         Column::Compared => vec![measure.heading, "p, A"],
         Column::Median => vec![measure.heading],
     });
-    parts.push(Part::Sheet(Sheet {
-        head: [form.subject, "algorithm", "evaluations"].into_iter().chain(columns).collect(),
-        left: 2,
-        rows: study.cells.iter().map(|cell| cell_row(form, cell)).collect(),
-    }));
-    parts.extend(study.cells.iter().filter_map(missed).map(Part::Line));
+    let columns: Vec<&str> = std::iter::once("evaluations").chain(columns).collect();
+    let cells = study.cells.iter().map(|cell| cell_row(form, cell));
+    let cells = Table::new(&[form.subject, "algorithm"], &columns, cells);
+    let missed = study.cells.iter().filter_map(missed).map(Sentence::Finding);
+    let mut document = Document::titled(form.title)
+        .with(Section::plain(Id::METHOD, study.notes.iter().cloned().map(Sentence::Note)))
+        .with(Section::new(Id::OTHER, "Measured against", [references]))
+        .with(Section::new(Id::SUMMARY, form.heading, [cells]).with_all(missed));
     if !study.tallies.is_empty() {
-        parts.push(Part::Heading(format!("Wins, ties and losses against {BASELINE}")));
-        let tallied = form.measures.iter().filter(|measure| !measure.tally.is_empty());
-        parts.push(Part::Sheet(Sheet {
-            head: std::iter::once("algorithm").chain(tallied.clone().map(|measure| measure.tally)).collect(),
-            left: 1,
-            rows: study.tallies.iter().map(|tally| tally_row(tallied.clone(), tally)).collect(),
-        }));
+        let tallied: Vec<&Measure> =
+            form.measures.iter().filter(|measure| !measure.tally.is_empty()).collect();
+        let columns: Vec<&str> = tallied.iter().map(|measure| measure.tally).collect();
+        let rows = study.tallies.iter().map(|tally| tally_row(&tallied, tally));
+        let tallies = Table::new(&["algorithm"], &columns, rows);
+        let heading = format!("Wins, ties and losses against {BASELINE}");
+        document.sections.push(Section::new(Id::OTHER, heading, [tallies]));
     }
-    parts.extend((form.paper)(study));
-    parts
+    document.sections.extend((form.paper)(study));
+    document
 }
 
 fn cell_row(form: &Form, cell: &Cell) -> Vec<String> {
@@ -95,8 +86,8 @@ fn missed(cell: &Cell) -> Option<String> {
     })
 }
 
-fn tally_row<'a>(measures: impl Iterator<Item = &'a Measure>, tally: &Tally) -> Vec<String> {
-    let counts = measures.map(|measure| {
+fn tally_row(measures: &[&Measure], tally: &Tally) -> Vec<String> {
+    let counts = measures.iter().map(|measure| {
         let [wins, ties, losses] = tally.counts.get(measure.key).copied().unwrap_or_default();
         format!("{wins} {ties} {losses}")
     });
@@ -106,32 +97,4 @@ fn tally_row<'a>(measures: impl Iterator<Item = &'a Measure>, tally: &Tally) -> 
 /// So many decimals.
 pub fn decimals(value: f64, digits: u8) -> String {
     format!("{value:.*}", usize::from(digits))
-}
-
-/// So many significant digits.
-pub fn significant(value: f64, digits: u8) -> String {
-    if !value.is_finite() {
-        return value.to_string();
-    }
-    #[expect(clippy::cast_possible_truncation, reason = "an exponent")]
-    let exponent = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
-    let after = i32::from(digits.max(1)) - 1;
-    let places = |count: i32| usize::try_from(count).unwrap_or(0);
-    if exponent < -2 {
-        format!("{value:.*e}", places(after))
-    } else {
-        format!("{value:.*}", places(after - exponent))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::significant;
-
-    #[test]
-    fn figures_keep_their_digits_at_every_size() {
-        let values = [343.91, 19.4134, 1.18, 0.0557, 0.000_123_45, 12_345.6, 0.0, f64::INFINITY];
-        let shown = values.map(|value| significant(value, 4));
-        assert_eq!(shown, ["343.9", "19.41", "1.180", "0.05570", "1.234e-4", "12346", "0.000", "inf"]);
-    }
 }

@@ -7,7 +7,9 @@ mod task;
 use std::{collections::BTreeMap, ops::ControlFlow};
 
 use hydrotrace::{
-    plan::{BEYOND, Found, Phase, Reference, Search, Setup, Timing, search},
+    plan::{BEYOND, Found, Phase, Reference, Search, Setup, Timing, TimingProblem, search},
+    render::kit::significant,
+    task::Objective,
     units::degrees_from_radians,
     workflow::plan::PlanRequest,
 };
@@ -16,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::study::{
     self, Column, Entrant, Form, Inputs, Measure, Panel, ReferenceFacts, Run, Searched, Study, Subject,
-    Watch, decimals, quartiles, significant,
+    Watch, decimals, quartiles,
 };
 pub use task::{TaskFailure, find};
 
@@ -27,6 +29,9 @@ pub const SEEDED: Entrant = Entrant {
     algorithm: Algorithm::NSGA3_FO,
     seeded: true,
 };
+
+/// Objectives of a plan.
+const OBJECTIVES: usize = Objective::OF_PLAN.len();
 
 /// Plans of the reference front at most.
 pub const REFERENCE_PLANS: usize = 1500;
@@ -81,8 +86,8 @@ pub const FORM: Form = Form {
     ],
     heading: "Hypervolume: medians (quartiles), and against nsga3",
     reference: (
+        &["task"],
         &[
-            "task",
             "variables",
             "reference plans",
             "its HV",
@@ -93,8 +98,7 @@ pub const FORM: Form = Form {
         ],
         reference_row,
     ),
-    reference_words: 1,
-    paper: table_3::parts,
+    paper: table_3::sections,
     panels: [
         Panel {
             heading: "population: hypervolume (more is better)",
@@ -159,16 +163,16 @@ impl ArmTask {
         if front.is_empty() {
             return Err(TaskFailure::NoPlan { task: name });
         }
-        let objectives = || front.iter().map(|timing| timing.objectives.as_array());
+        let objectives = || front.iter().map(|timing| timing.objectives.plan());
         let reference = Reference::of(objectives());
         let at_first = seeds.iter().map(|&seed| at_first(&setup, seed)).collect::<Result<Vec<f64>, _>>()?;
         let facts = ReferenceFacts {
             subject: name,
-            objectives: 3,
+            objectives: OBJECTIVES,
             variables: setup.interval_count(),
             members: front.len(),
-            ideal: reference.ideal().to_vec(),
-            reference_point: reference.reference_point().to_vec(),
+            ideal: reference.ideal().plan().to_vec(),
+            reference_point: reference.reference_point().plan().to_vec(),
             searched: Some(Searched {
                 evaluations,
                 hypervolume: reference.measure(objectives()),
@@ -181,7 +185,7 @@ impl ArmTask {
     /// Hypervolumes of at most [`MEASURED_PLANS`] of a population, spread evenly, and of all found; the
     /// latter as a share of the reference front's; the best of f1 and f2, infinite without a plan.
     fn values(&self, population: &Population, all: &Population) -> Vec<f64> {
-        let mut archive = Archive::new(self.facts.variables, 3, MEASURED_PLANS);
+        let mut archive = Archive::new(self.facts.variables, OBJECTIVES, MEASURED_PLANS);
         archive.extend(population);
         let thinned = archive.into_population();
         let [of_population, of_all] =
@@ -196,15 +200,15 @@ impl ArmTask {
 fn at_first(setup: &Setup, seed: u64) -> Result<f64, MoeaError> {
     let budget = Budget::Generations(1);
     let settings = Settings { algorithm: Algorithm::Nsga3, seed, budget, ..Settings::default() };
-    let first = optimise(setup, &settings, silent)?.population;
+    let first = optimise(&TimingProblem::of(setup), &settings, silent)?.population;
     let feasible = (0..first.len()).filter(|&i| first.is_feasible(i)).count();
     Ok(feasible as f64 / first.len().max(1) as f64)
 }
 
 /// Objectives of the feasible plans.
-fn plans(population: &Population) -> Vec<[f64; 3]> {
+fn plans(population: &Population) -> Vec<&[f64]> {
     let feasible = (0..population.len()).filter(|&i| population.is_feasible(i));
-    feasible.filter_map(|i| <[f64; 3]>::try_from(population.f(i)).ok()).collect()
+    feasible.map(|i| population.f(i)).collect()
 }
 
 /// Searches for the reference fronts, calling `done` after each; settings and notes of the study follow,
@@ -288,7 +292,7 @@ impl Subject for ArmTask {
         let settings = Search { algorithm, budget, seed, ..Search::default() };
         let (population, all, made) = if entrant.seeded {
             // The evolution shows its own archive alone, which begins with a part of the seeds.
-            let mut seeds = Population::with_capacity(setup.interval_count(), 3, 0);
+            let mut seeds = Population::with_capacity(setup.interval_count(), OBJECTIVES, 0);
             let found = search(setup, &settings, |progress| {
                 let mut all = progress.population.clone();
                 match progress.phase {
@@ -300,15 +304,15 @@ impl Subject for ArmTask {
                 }
                 see(progress.evaluations, &all, &all)
             })?;
-            let mut front = Population::with_capacity(setup.interval_count(), 3, found.front.len());
+            let mut front = Population::with_capacity(setup.interval_count(), OBJECTIVES, found.front.len());
             for timing in &found.front {
-                front.push(&timing.interval_s, &timing.objectives.as_array(), timing.violation);
+                front.push(&timing.interval_s, timing.objectives.plan(), timing.violation);
             }
             (front.clone(), front, found.evaluations)
         } else {
             let archive = settings.front;
             let settings = Settings { algorithm, budget, seed, archive, ..Settings::default() };
-            let outcome = optimise(setup, &settings, |progress| {
+            let outcome = optimise(&TimingProblem::of(setup), &settings, |progress| {
                 let all = progress.archive.map_or(progress.population, Archive::population);
                 see(progress.evaluations, progress.population, all)
             })?;

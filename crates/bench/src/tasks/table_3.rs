@@ -1,13 +1,16 @@
 //! The paper's Table 3 beside ours.
 
 use hydrotrace::{
-    plan::{Objectives, PlanError, PlanEvaluation, Rule, Setup, Timing, choose, ends},
-    render::{Part, Sheet, limit_cell},
-    task::Bounds,
+    plan::{PlanError, PlanEvaluation, Rule, Setup, Timing, choose, ends},
+    render::{
+        kit::{Id, NONE, Section, Sentence, Table},
+        plan::limit_cell,
+    },
+    task::{Ceilings, Objective},
     units::degrees_from_radians,
 };
 
-use crate::study::{NONE, PaperPlan, Study};
+use crate::study::{PaperPlan, Study};
 
 /// A plan of the paper: arrival at each key point, f2 printed in N, f3 printed in J.
 struct Printed {
@@ -37,7 +40,8 @@ pub(super) fn table_3(setup: &Setup, front: &[Timing]) -> Result<Vec<PaperPlan>,
     let mut rows = Vec::new();
     for Printed { name, times_s, f2, f3 } in &TABLE_3 {
         let theirs = evaluate(times_s)?;
-        let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = theirs.objectives;
+        let costs = theirs.objectives;
+        let duration_s = costs[Objective::Duration];
         let paper = row(format!("paper's {name}"), Some(theirs));
         rows.push(PaperPlan { printed_f2: Some(*f2), printed_f3: Some(*f3), ..paper });
         if *name == "B" {
@@ -48,13 +52,12 @@ pub(super) fn table_3(setup: &Setup, front: &[Timing]) -> Result<Vec<PaperPlan>,
             // With rest at both ends any mean of the jerk falls with the cube of the duration.
             rows.push(PaperPlan { printed_f2: Some(f2 / ratio.powi(3)), ..stretched });
         }
-        let no_slower = Bounds { duration_s: Some(duration_s), ..Bounds::default() };
-        let no_worse =
-            Bounds { rms_jerk_rad_s3: Some(rms_jerk_rad_s3), rms_power_w: Some(rms_power_w), ..no_slower };
+        let no_slower = Ceilings::NONE.with(Objective::Duration, duration_s);
+        let no_worse = Ceilings::NONE.map_plan(|objective| costs[objective]);
         for (whose, bounds, rule) in [
             (format!("ours, no worse than {name} in f1, f2, f3"), no_worse, Rule::Ideal),
-            (format!("ours, as fast as {name}: least f2"), no_slower, Rule::Smoothest),
-            (format!("ours, as fast as {name}: least f3"), no_slower, Rule::Thriftiest),
+            (format!("ours, as fast as {name}: least f2"), no_slower, Rule::Best(Objective::RmsJerk)),
+            (format!("ours, as fast as {name}: least f3"), no_slower, Rule::Best(Objective::RmsPower)),
         ] {
             let choice = choose(setup, front, &bounds, (rule, None)).ok();
             rows.push(row(whose, choice.map(|choice| of(&choice.timing)).transpose()?));
@@ -73,9 +76,9 @@ fn row(setup: &Setup, plan: String, evaluation: Option<PlanEvaluation>) -> Paper
         plan,
         worst_limit: Some(limit_cell(&evaluation, &setup.joint_names())),
         limits_broken: Some(evaluation.broken().len()),
-        duration_s: Some(evaluation.objectives.duration_s),
-        rms_jerk_rad_s3: Some(evaluation.objectives.rms_jerk_rad_s3),
-        rms_power_w: Some(evaluation.objectives.rms_power_w),
+        duration_s: Some(evaluation.objectives[Objective::Duration]),
+        rms_jerk_rad_s3: Some(evaluation.objectives[Objective::RmsJerk]),
+        rms_power_w: Some(evaluation.objectives[Objective::RmsPower]),
         times_s: evaluation.times_s,
         ..PaperPlan::default()
     }
@@ -88,7 +91,7 @@ const FINDING: &str = "The paper prints f2 in N and f3 in J. No reading of its e
      to the duration of B has less than half of what it prints for B.";
 
 /// Nothing if the paper's task was no subject.
-pub(super) fn parts(study: &Study) -> Vec<Part> {
+pub(super) fn sections(study: &Study) -> Vec<Section> {
     if study.table_3.is_empty() {
         return Vec::new();
     }
@@ -106,15 +109,10 @@ pub(super) fn parts(study: &Study) -> Vec<Part> {
             cell(plan.rms_power_w, 2),
         ]
     });
-    let head = vec!["plan", "worst limit", "printed f2 N", "printed f3 J", "f1 s", "f2 deg/s3", "f3 W"];
-    vec![
-        Part::Heading("The paper's Table 3 (task simulation)".to_owned()),
-        Part::Line(FINDING.to_owned()),
-        Part::Line(
-            "Printed: the paper's f2 and f3; the f2 of the stretched A follows from the paper's f2 of A. The rest is \
-             measured here, on an arm and limits that are not the paper's, which prints none."
-                .to_owned(),
-        ),
-        Part::Sheet(Sheet { head, left: 2, rows: rows.collect() }),
-    ]
+    let numbers = ["printed f2 N", "printed f3 J", "f1 s", "f2 deg/s3", "f3 W"];
+    let table = Table::new(&["plan", "worst limit"], &numbers, rows);
+    let printed = "Printed: the paper's f2 and f3; the f2 of the stretched A follows from the paper's f2 of A. The rest \
+                   is measured here, on an arm and limits that are not the paper's, which prints none.";
+    let notes = [Sentence::note(FINDING), Sentence::note(printed)];
+    vec![Section::new(Id::OTHER, "The paper's Table 3 (task simulation)", notes).with(table)]
 }

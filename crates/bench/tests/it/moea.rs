@@ -2,10 +2,10 @@
 
 use std::{fs, path::Path};
 
-use hydrotrace::{math::quantile, render::text};
+use hydrotrace::{math::quantile, render::kit::text};
 use hydrotrace_bench::{
     problems::{self, FORM, FRONT_POINTS, KnownFront},
-    study::{Inputs, Study, curve_svg, curves_csv, front_csv, parts, run},
+    study::{Inputs, Study, curve_svg, curves_csv, document, front_csv, run},
 };
 use moea::{
     Budget, NamedAlgorithm, Operators, Population, Settings, benchmark::Benchmark, compare::Yardstick,
@@ -82,7 +82,7 @@ fn a_front_has_the_hypervolume_of_its_run() {
 fn findings_are_the_same_bytes_for_any_number_of_threads() {
     is_the_same_on_any_number_of_threads(|| {
         let study = run(&inputs(), || ()).unwrap();
-        let mut all = vec![text(&parts(&FORM, &study)), study.json(), curves_csv(&FORM, &study.curves)];
+        let mut all = vec![text(&document(&FORM, &study)), study.json(), curves_csv(&FORM, &study.curves)];
         all.push(curve_svg(&FORM, &study.curves[..3]));
         all.extend(study.fronts.iter().map(front_csv));
         all

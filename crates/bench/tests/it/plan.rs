@@ -4,11 +4,11 @@ use std::{fs, ops::ControlFlow, sync::LazyLock};
 
 use hydrotrace::{
     math::quantile,
-    plan::{Reference, Search, search},
-    render::text,
+    plan::{Reference, Search, TimingProblem, search},
+    render::kit::text,
 };
 use hydrotrace_bench::{
-    study::{Cell, Inputs, PaperPlan, Study, curve_svg, curves_csv, parts},
+    study::{Cell, Inputs, PaperPlan, Study, curve_svg, curves_csv, document},
     tasks::{ArmTask, FORM, REFERENCE_PLANS, find, inputs, run},
 };
 use moea::{Budget, NamedAlgorithm, Settings, optimise, silent};
@@ -33,15 +33,15 @@ fn a_cell_holds_what_its_seeds_reach_in_the_box_of_the_reference_front() {
     let setup = &find("task-1").unwrap().1.setup;
     let long = Search { budget: Budget::Evaluations(REFERENCE), front: REFERENCE_PLANS, ..Search::default() };
     let front = search(setup, &long, |_| ControlFlow::Continue(())).unwrap().front;
-    let reference = Reference::of(front.iter().map(|timing| timing.objectives.as_array()));
+    let reference = Reference::of(front.iter().map(|timing| timing.objectives.plan()));
     let facts = &STUDY.references[1];
-    assert_eq!((facts.members, &facts.ideal[..]), (front.len(), &reference.ideal()[..]));
+    assert_eq!((facts.members, &facts.ideal[..]), (front.len(), reference.ideal().plan()));
     let reached = [5, 6, 7].map(|seed| {
         let algorithm = NamedAlgorithm::find("nsga3").unwrap().algorithm;
         let settings = Settings { algorithm, seed, budget: Budget::Evaluations(600), ..Settings::default() };
-        let last = optimise(setup, &settings, silent).unwrap().population;
+        let last = optimise(&TimingProblem::of(setup), &settings, silent).unwrap().population;
         let kept = last.front().into_iter().filter(|&i| last.is_feasible(i));
-        reference.measure(kept.map(|i| [last.f(i)[0], last.f(i)[1], last.f(i)[2]]))
+        reference.measure(kept.map(|i| last.f(i)))
     });
     let cell = &STUDY.cells[9];
     let medians = [0.25, 0.5, 0.75].map(|p| quantile(reached.to_vec(), p));
@@ -123,7 +123,7 @@ fn the_papers_plans_have_their_known_worth_and_ours_are_no_worse_in_anything() {
 fn findings_are_the_same_bytes_for_any_number_of_threads() {
     is_the_same_on_any_number_of_threads(|| {
         let study = run(&study(2, &[200]), || ()).unwrap();
-        let mut all = vec![text(&parts(&FORM, &study)), study.json(), curves_csv(&FORM, &study.curves)];
+        let mut all = vec![text(&document(&FORM, &study)), study.json(), curves_csv(&FORM, &study.curves)];
         all.extend(study.curves.chunk_by(|a, b| a.subject == b.subject).map(|same| curve_svg(&FORM, same)));
         all
     });
