@@ -9,14 +9,14 @@ use super::{
 };
 use crate::{
     render::{fit as words, next},
-    workflow::fit::{Fitted, Inputs, run as fit},
+    workflow::fit::{FitDocument, Fitted, Inputs, LimitsFile, run as fit},
 };
 
 pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     let fitted = fitted(args)?;
     let json = args.json || args.document().is_some();
     let rendered = match &args.output {
-        _ if json => words::json(&fitted),
+        _ if json => FitDocument::of(&fitted).json(),
         Some(path) => {
             shown(&words::document(&fitted).with_above_remarks(next::limits_written(path, &args.logs)), None)
         }
@@ -35,7 +35,7 @@ pub(super) fn fitted(args: &FitArgs) -> Result<Fitted, CliError> {
     spare_stdout(args.output.as_deref())?;
     let fitted = fit(&Inputs { logs: args.logs.clone(), wanted: args.sent.wanted() })?;
     if let Some(path) = args.output.as_deref().filter(|_| args.document().is_none()) {
-        deliver(&words::limits_toml(&fitted.file())?, Some(path), &mut std::io::sink())?;
+        deliver(&LimitsFile::of(&fitted).toml()?, Some(path), &mut std::io::sink())?;
     }
     Ok(fitted)
 }

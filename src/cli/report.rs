@@ -11,7 +11,7 @@ use super::{
 use crate::{
     render::{kit::markdown, report as words},
     workflow::{
-        fit::{LimitsFile, read_limits},
+        fit::LimitsFile,
         report::{Inputs, Report, run as analyse},
     },
 };
@@ -68,7 +68,7 @@ pub(super) fn run(
 
 /// The machine for the page, which must be that of the run.
 fn limits(path: &Path, report: &Report) -> Result<LimitsFile, CliError> {
-    let file = read_limits(path)?;
+    let file = LimitsFile::read(path)?;
     file.check_joints(path, report.pairs.iter().map(|pair| pair.name.as_str()))?;
     Ok(file)
 }
