@@ -45,7 +45,8 @@ pub fn document(
         )
     });
     let rules: Vec<&str> = Rule::all().filter(|rule| *rule != Rule::Weights).map(Rule::name).collect();
-    let another = format!("To choose another plan: --choose {}; --weights; or ceilings in the task.", rules.join(", "));
+    let another =
+        format!("To choose another plan: --choose {}; --weights; or ceilings in the task.", rules.join(", "));
     let mut document = Document::titled(title)
         .with(Section::plain(Id::SUMMARY, [Sentence::finding(searched)]))
         .with(Section::new(Id::OTHER, "Plans", [plans(rows)]).with_all(longer))
@@ -269,8 +270,9 @@ pub fn ceiling_lines(ceilings: &Ceilings, joints: &[String], nearest: &PlanEvalu
     let over = |(k, ceiling): (Objective, f64)| {
         let share = nearest.objectives[k] / ceiling;
         let (name, found, asked) = (k.row().name, k.text(nearest.objectives[k]), k.text(ceiling));
-        (share > 1.0)
-            .then(|| format!("{name} {found}, the ceiling is {asked}: {:.1} % above it", 100.0 * (share - 1.0)))
+        (share > 1.0).then(|| {
+            format!("{name} {found}, the ceiling is {asked}: {:.1} % above it", 100.0 * (share - 1.0))
+        })
     };
     let mut lines: Vec<String> = ceilings.known().filter_map(over).collect();
     let mut tight: Vec<&Margin> = nearest.margins.iter().filter(|margin| margin.share > TIGHT).collect();
