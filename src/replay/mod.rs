@@ -19,16 +19,14 @@ mod path;
 mod peak_motion;
 mod profile;
 mod rules;
-mod score;
 mod signals;
-mod synthetic;
 mod tracking;
 mod transition;
 pub(crate) mod unit;
 
 use rayon::prelude::*;
 
-pub use delay::measured_starts;
+pub use delay::{measured_starts, measured_stops};
 pub use keyed::{Keyed, Row};
 pub use metric::{Dimension, JOINT, Judged, Limit, Metric, PEAK_ERROR, Read, TRANSITION, Together, limits};
 pub use outcome::{
@@ -38,9 +36,7 @@ pub use outcome::{
 pub use peak_motion::peak_motion;
 pub use profile::{Profiles, STRETCHES};
 pub use rules::Rules;
-pub use score::{Score, Spread, conditions, detector_score};
 pub use signals::planned_starts;
-pub use synthetic::{Sensing, SyntheticRun, TrueMotion, synthetic_run};
 
 use crate::series::Pair;
 use concentration::{JointError, concentration};

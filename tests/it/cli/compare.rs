@@ -40,7 +40,7 @@ fn list<'a>(document: &'a Value, name: &str) -> &'a Vec<Value> {
 
 /// The summary of peak errors over all transitions.
 fn overall(document: &Value) -> &Value {
-    list(document, "summaries").iter().find(|s| s["measure"] == "peak-error" && s["scope"] == "all").unwrap()
+    list(document, "summaries").iter().find(|s| s["measure"] == "peak_error" && s["scope"] == "all").unwrap()
 }
 
 #[test]
