@@ -12,7 +12,7 @@ use super::{
 };
 use crate::task::{ByObjective, Ceilings, Objective, Objectives, Weights};
 
-/// What a descent lessens.
+/// Merit function of a descent; less is better.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Merit {
     /// Sum of the objectives' logarithms by weights that sum to one.
@@ -54,11 +54,11 @@ pub(super) const NEARLY: f64 = 0.05;
 pub(super) const FINE: f64 = 1e-6;
 pub(super) const COARSE: f64 = 2e-4;
 
-/// What a descent is to do.
+/// Settings of a descent.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Goal {
     pub(super) merit: Merit,
-    /// What the objectives must not exceed.
+    /// Ceilings on the objectives.
     pub(super) ceilings: Ceilings,
     /// Evaluations at most, unless the start alone takes more.
     pub(super) evaluations: u64,

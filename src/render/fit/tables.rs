@@ -160,16 +160,16 @@ fn table(joints: &[JointFit], columns: &[(&'static str, Shown)], skill: bool) ->
     Table::new(&["joint"], &numbers, joints.iter().map(row))
 }
 
-/// What the numbers are good for, and what would tell the rest.
+/// How far to trust the numbers, and which log would identify the others.
 fn trust(fitted: &Fitted) -> Vec<Sentence> {
     let fit = &fitted.fit;
     let good = fit.joints.iter().filter(|joint| joint.trusted()).count();
     let mut lines = vec![format!(
         "{good} of {} predict held-out tracking error with R2 of {LEAST_SKILL} or more: commands may be made for them. \
-         Measured peaks stay below {:.2} times the predicted ones in nine of ten of {} held-out starts.",
+         In 90 % of {} held-out starts the measured peak stays below {:.2} times the predicted one.",
         counted(fit.joints.len(), "joint"),
-        fit.peak_margin,
-        fit.margin_starts
+        fit.margin_starts,
+        fit.peak_margin
     )];
     let all = || LOOP.iter().chain(&LIMITS).map(|(_, shown)| shown);
     let open: Vec<String> = all()

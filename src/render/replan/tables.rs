@@ -21,8 +21,8 @@ pub fn document(replanned: &Replanned) -> Document {
     let title = replanned.request.as_ref().map_or("the logged plan", |request| request.task.title.as_str());
     let learnt = format!("Learnt from {}.", replanned.fitted_to.join(", "));
     let margin = format!(
-        "Expected peaks hold what the model left unexplained after held-out starts; nine of ten stay below: the \
-         predicted peak times {:.2}, or what was left unexplained in nine of ten.",
+        "Expected peaks include the error that the model left unexplained after held-out starts. 90 % of peaks stay below the \
+         larger of the predicted peak times {:.2} and the predicted peak with the unexplained error of 90 % of starts.",
         replanned.fit.peak_margin
     );
     let mut document = Document::titled(format!("Next run of {title}"))
@@ -41,12 +41,12 @@ pub fn document(replanned: &Replanned) -> Document {
 fn command(replanned: &Replanned) -> Option<Section> {
     let command = replanned.command.as_ref()?;
     let numbers =
-        ["held-out R2", "gain", "off plan deg", "rms error deg", "then deg", "speed x", "acceleration x"];
+        ["held-out R2", "gain", "correction deg", "plain RMS deg", "RMS deg", "speed x", "acceleration x"];
     let rows = command.joints.iter().map(|joint| command_row(replanned, joint));
     let section = Section::new(Id::OTHER, "Command", [Table::new(&["joint"], &numbers, rows)])
         .with(Sentence::note(
-            "Rms errors are predicted, of the plan sent as it is and then of the command; speed x and acceleration x are \
-             the command's peaks by those of the plan.",
+            "Correction: largest distance of command and plan. RMS: predicted RMS error, plain if the plan itself is sent, \
+             then with the command. speed x, acceleration x: peaks of the command as multiples of the plan's.",
         ))
         .with_all(cut_off(&command.joints).map(Sentence::Advice));
     Some(section.with(Sentence::finding(nearest(replanned, &command.margins))))
@@ -66,7 +66,7 @@ fn expected(replanned: &Replanned) -> Table {
     let count = |p: &Predicted| p.transitions.len();
     let mut rows = vec![
         error("mean transition peak deg", before.measured_mean_peak_rad, |p| p.mean_peak_rad),
-        error("  nine of ten below deg", None, |p| p.mean_peak_margin_rad),
+        error("  90 % stay below deg", None, |p| p.mean_peak_margin_rad),
         error("worst transition peak deg", before.measured_worst_peak_rad, |p| p.worst_peak_rad),
         error("sum of peaks deg", None, |p| p.sum_of_peaks_rad),
         vec![
@@ -91,7 +91,7 @@ fn expected(replanned: &Replanned) -> Table {
             vec![k.row().heading.to_owned(), k.number(was[k]), NONE.into(), k.number(is[k]), change]
         }));
     }
-    Table::new(&[""], &["last run", "its model", "next run", "change"], rows)
+    Table::new(&[""], &["last run", "predicted", "next run", "change"], rows)
 }
 
 fn levers(replanned: &Replanned) -> Vec<Fact> {
@@ -175,7 +175,7 @@ fn nearest(replanned: &Replanned, margins: &[Margin]) -> String {
         plan::shown(worst.limit, worst.value.abs()),
         plan::shown(worst.limit, worst.allowed),
         worst.t_s,
-        if near > 1 { format!("; {near} are used to nine tenths or more") } else { String::new() }
+        if near > 1 { format!("; {near} are used to 90 % or more") } else { String::new() }
     )
 }
 

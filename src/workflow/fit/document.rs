@@ -15,7 +15,7 @@ const FORMAT: &str = "hydrotrace.fit.v1";
 /// Format of every file with limits.
 pub(super) const LIMITS_FORMAT: &str = "hydrotrace.limits.v1";
 
-/// What logs say of a machine. Angles are radians, times seconds; pairs are for growing and for
+/// A fitted machine. Angles are radians, times seconds; pairs are for growing and for
 /// shrinking angles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -77,7 +77,7 @@ pub struct LimitsFile {
     /// Torques from pressures, where the logs have them.
     #[serde(default)]
     pub torques: Vec<JointTorque>,
-    /// What was found.
+    /// The fitted machine.
     #[serde(flatten)]
     pub fit: Fit,
 }

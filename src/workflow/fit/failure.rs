@@ -14,7 +14,7 @@ pub enum FitFailure {
     /// A log.
     #[error(transparent)]
     Observe(#[from] ObserveFailure),
-    /// What the logs hold.
+    /// The data.
     #[error("the logs cannot be fitted")]
     Fit(#[from] FitError),
     /// A file with limits cannot be read.
