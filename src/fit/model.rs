@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{FitError, simulate::Start};
+use super::FitError;
 use crate::units::DEGREE_RAD;
 
 /// Step of the simulation, s; that of the position loops it stands for.
@@ -62,6 +62,17 @@ pub struct Model {
     pub acceleration_limit_rad_s2: [Option<f64>; 2],
     /// Full width of the play before the sensor, rad.
     pub backlash_rad: f64,
+}
+
+/// State in which a run begins.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Start {
+    /// Measured angle, rad.
+    pub(super) angle_rad: f64,
+    /// Its speed, rad/s.
+    pub(super) speed_rad_s: f64,
+    /// Integral part of the wanted speed, rad/s.
+    pub(super) integral_rad_s: f64,
 }
 
 impl Model {

@@ -1,6 +1,6 @@
 //! The response of a model, step by step.
 
-use super::model::{Model, STEP_S};
+use super::model::{Model, STEP_S, Start};
 use crate::units::DEGREE_RAD;
 
 /// Speed over which stiction fades, rad/s.
@@ -8,17 +8,6 @@ const FADE_RAD_S: f64 = 0.15 * DEGREE_RAD;
 
 /// While the sent angle rests, an error below this leaves the integral as it is, rad.
 const FREEZE_RAD: f64 = 0.08 * DEGREE_RAD;
-
-/// State in which a run begins.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Start {
-    /// Measured angle, rad.
-    pub(super) angle_rad: f64,
-    /// Its speed, rad/s.
-    pub(super) speed_rad_s: f64,
-    /// Integral part of the wanted speed, rad/s.
-    pub(super) integral_rad_s: f64,
-}
 
 /// Answers `sent`, angle and speed every [`STEP_S`], with the measured angle at the same instants.
 ///

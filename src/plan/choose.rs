@@ -4,9 +4,10 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 use super::{
     Evaluator, Setup, Timing,
-    descend::{COARSE, FINE, Goal, Merit, NEARLY, descend},
+    descend::descend,
     exact,
     front::best_of,
+    merit::{COARSE, FINE, Goal, Merit, NEARLY},
 };
 use crate::{
     moea::das_dennis,

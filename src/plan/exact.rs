@@ -7,8 +7,9 @@ use rayon::prelude::*;
 
 use super::{
     Evaluator, Limit, Margin, Setup, Timing,
-    descend::{FINE, Goal, Merit, NEARLY, descend},
+    descend::descend,
     front::thinned,
+    merit::{FINE, Goal, Merit, NEARLY},
 };
 use crate::task::{Ceilings, Objective};
 

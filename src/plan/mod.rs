@@ -13,6 +13,7 @@ mod exact;
 mod front;
 mod limit;
 mod margin;
+mod merit;
 mod mesh;
 mod polish;
 mod problem;

@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 use super::{
     Evaluator, Setup, Timing,
-    descend::{COARSE, Descended, Goal, Merit, NEARLY, descend},
+    descend::{Descended, descend},
     front::thinned,
+    merit::{COARSE, Goal, Merit, NEARLY},
 };
 use crate::task::Objective;
 

@@ -13,7 +13,7 @@ use crate::{
 
 const FORMAT: &str = "hydrotrace.fit.v1";
 /// Format of every file with limits.
-pub(super) const LIMITS_FORMAT: &str = "hydrotrace.limits.v1";
+const LIMITS_FORMAT: &str = "hydrotrace.limits.v1";
 
 /// A fitted machine. Angles are radians, times seconds; pairs are for growing and for
 /// shrinking angles.
@@ -125,7 +125,7 @@ impl LimitsFile {
             Err(source) => return Err(FitFailure::Limits { path, source: Box::new(source) }),
         };
         if file.format != LIMITS_FORMAT {
-            return Err(FitFailure::Format { path, found: file.format });
+            return Err(FitFailure::Format { path, found: file.format, expected: LIMITS_FORMAT });
         }
         match file.fit.check() {
             Ok(()) => Ok(file),

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Candidate, Commanded, HeldTo, Inputs, LEAD_S, Predicted, ReplanFailure, last::Last};
+use super::{Commanded, Inputs, LEAD_S, Predicted, ReplanFailure, Search, candidate::Candidate, last::Last};
 use crate::{
     fit::Fit,
     log::WriteError,
-    plan::{PlanEvaluation, Timing},
+    plan::PlanEvaluation,
     remark::{Code, Remarks},
     replay::{Rules, replay},
     series::{Series, align},
-    task::{Ceilings, Objective, Objectives},
+    task::{Objective, Objectives},
     workflow::{
         carried::{
             Carried,
@@ -55,33 +55,6 @@ impl Before {
             duration_s: last.motion().map_or(last.duration_s, |motion| motion.duration_s()),
             predicted,
         }
-    }
-}
-
-/// A search for other timings.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Search {
-    /// Timings on the Pareto front, least predicted start error first.
-    pub front: Vec<Timing>,
-    /// Evaluations made.
-    pub evaluations: u64,
-    /// Ceilings on the objectives.
-    pub ceilings: Ceilings,
-    /// Limits of each joint in the search.
-    pub held: Vec<HeldTo>,
-    /// Times of movement of the last plan, s, if they are known.
-    pub start: Option<Vec<f64>>,
-    /// The last plan under the same limits.
-    pub evaluation: Option<PlanEvaluation>,
-}
-
-impl Search {
-    /// Whether the last plan keeps the limits and ceilings of the search.
-    pub fn keeps(&self) -> bool {
-        self.evaluation.as_ref().is_some_and(|evaluation| {
-            evaluation.broken().iter().all(|margin| margin.share < 1.0 + 1e-6)
-                && evaluation.objectives.within(&self.ceilings)
-        })
     }
 }
 
