@@ -75,7 +75,7 @@ impl Workspace {
     }
 
     pub(super) fn simulate(&mut self, model: &Model, run: &Run, integral_rad_s: f64) {
-        let start = super::model::Start { integral_rad_s, ..run.start };
+        let start = super::simulate::Start { integral_rad_s, ..run.start };
         simulate(model, &run.sent, start, &mut self.wanted, &mut self.angle_rad);
     }
 

@@ -64,17 +64,6 @@ pub struct Model {
     pub backlash_rad: f64,
 }
 
-/// State in which a run begins.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Start {
-    /// Measured angle, rad.
-    pub(super) angle_rad: f64,
-    /// Its speed, rad/s.
-    pub(super) speed_rad_s: f64,
-    /// Integral part of the wanted speed, rad/s.
-    pub(super) integral_rad_s: f64,
-}
-
 impl Model {
     /// Holds every number to what it may be.
     ///
@@ -125,12 +114,6 @@ impl Model {
     /// constant and half a step of the loop.
     pub fn lag_s(&self) -> f64 {
         self.dead_time_s + self.time_constant_s + 0.5 * STEP_S
-    }
-
-    /// Starts at rest where it is sent to first.
-    pub(super) fn at_rest(&self, sent: &[(f64, f64)]) -> Start {
-        let angle_rad = sent.first().map_or(0.0, |sent| sent.0) + self.offset_rad;
-        Start { angle_rad, speed_rad_s: 0.0, integral_rad_s: 0.0 }
     }
 }
 

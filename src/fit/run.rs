@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::model::{STEP_S, Start};
+use super::{model::STEP_S, simulate::Start};
 use crate::{
     series::{Series, Track, align, local_quadratic},
     units::DEGREE_RAD,

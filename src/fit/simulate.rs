@@ -1,6 +1,6 @@
 //! The response of a model, step by step.
 
-use super::model::{Model, STEP_S, Start};
+use super::model::{Model, STEP_S};
 use crate::units::DEGREE_RAD;
 
 /// Speed over which stiction fades, rad/s.
@@ -8,6 +8,25 @@ const FADE_RAD_S: f64 = 0.15 * DEGREE_RAD;
 
 /// While the sent angle rests, an error below this leaves the integral as it is, rad.
 const FREEZE_RAD: f64 = 0.08 * DEGREE_RAD;
+
+/// State in which a run begins.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Start {
+    /// Measured angle, rad.
+    pub(super) angle_rad: f64,
+    /// Its speed, rad/s.
+    pub(super) speed_rad_s: f64,
+    /// Integral part of the wanted speed, rad/s.
+    pub(super) integral_rad_s: f64,
+}
+
+impl Start {
+    /// At rest where the joint is sent to first.
+    pub(super) fn at_rest(model: &Model, sent: &[(f64, f64)]) -> Self {
+        let angle_rad = sent.first().map_or(0.0, |sent| sent.0) + model.offset_rad;
+        Self { angle_rad, ..Self::default() }
+    }
+}
 
 /// Answers `sent`, angle and speed every [`STEP_S`], with the measured angle at the same instants.
 ///

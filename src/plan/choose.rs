@@ -4,10 +4,10 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 use super::{
     Evaluator, Setup, Timing,
-    descend::descend,
+    descend::{COARSE, FINE, NEARLY, descend},
     exact,
     front::best_of,
-    merit::{COARSE, FINE, Goal, Merit, NEARLY},
+    goal::{Goal, Merit},
 };
 use crate::{
     moea::das_dennis,

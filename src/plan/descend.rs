@@ -7,10 +7,18 @@
 
 use super::{
     Evaluator, Setup, Timing,
-    merit::Goal,
+    goal::Goal,
     quadratic::{PRICE, Solution, Step},
     tangent::{Cuts, Point, Slopes, dot},
 };
+
+/// First steps from far off, and from a plan that is nearly best.
+pub(super) const FAR_OFF: f64 = 0.4;
+pub(super) const NEARLY: f64 = 0.05;
+
+/// Gains of merit that are worth going on for: of an end of the front, of a plan among many.
+pub(super) const FINE: f64 = 1e-6;
+pub(super) const COARSE: f64 = 2e-4;
 
 /// Where a descent ended.
 #[derive(Debug, Clone)]
@@ -188,10 +196,7 @@ fn update(hessian: &mut [f64], step: &[f64], change: &[f64]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{
-        super::merit::{FAR_OFF, FINE, Merit},
-        *,
-    };
+    use super::{super::goal::Merit, *};
     use crate::{
         arm::Arm,
         task::{Ceilings, Objective, Task},

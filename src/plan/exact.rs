@@ -7,9 +7,9 @@ use rayon::prelude::*;
 
 use super::{
     Evaluator, Limit, Margin, Setup, Timing,
-    descend::descend,
+    descend::{FINE, NEARLY, descend},
     front::thinned,
-    merit::{FINE, Goal, Merit, NEARLY},
+    goal::{Goal, Merit},
 };
 use crate::task::{Ceilings, Objective};
 

@@ -4,9 +4,9 @@ use rayon::prelude::*;
 
 use super::{
     Evaluator, Setup, Timing,
-    descend::{Descended, descend},
+    descend::{COARSE, Descended, NEARLY, descend},
     front::thinned,
-    merit::{COARSE, Goal, Merit, NEARLY},
+    goal::{Goal, Merit},
 };
 use crate::task::Objective;
 
