@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use yaml_rust2::parser::{Event, Parser};
 
-use super::LogError;
+use super::error::LogError;
 use crate::remark::{Code, Remarks};
 
 /// The files that together are one recording: files as given, bag directories opened.

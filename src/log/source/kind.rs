@@ -1,8 +1,9 @@
 //! Which fields of which message types are joint angles, and whether they are plan or measurement.
 
-use super::{Selector, slot};
+use super::slot;
 use crate::log::{
     decode::{Slot, Want, shape_at},
+    options::Selector,
     schema::{Definition, Shape, plain_name},
 };
 
@@ -13,6 +14,8 @@ pub(in crate::log) enum Role {
     Measured,
     /// Depends on the topic.
     Either,
+    /// Another signal, read because the caller named it.
+    Beside,
 }
 
 /// A field of a table: one number a joint and message.
