@@ -6,6 +6,7 @@
 
 // ground
 pub mod atomic_file;
+pub mod document;
 pub mod math;
 pub mod remark;
 pub mod rng;

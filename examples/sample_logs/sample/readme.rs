@@ -19,7 +19,7 @@ Small logs of two made-up machines whose truth is known. Written, this file incl
 
     cargo run --release --example sample_logs -- sample-logs
 
-The same source gives the same bytes; `tests/sample_logs.rs` compares them. Each MCAP log also
+The same source gives the same bytes; `tests/it/sample_logs.rs` compares them. Each MCAP log also
 carries its truth as metadata, named `truth` or, of the hydraulic arm, `hydrotrace.plant`.
 ";
 

@@ -10,7 +10,7 @@ use hydrotrace::{
 };
 
 use super::{PRESET, PlantLog};
-use crate::sample::readme::line;
+use super::super::readme::line;
 
 const MACHINE: &str = "
 ## The hydraulic arm

@@ -1,0 +1,259 @@
+//! `join` as an operator meets it: the machine ran the command of `replan`, and its recorder knows no plan.
+
+use std::{
+    fs::File,
+    io::BufWriter,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+    sync::LazyLock,
+};
+
+use hydrotrace::{
+    log::{
+        ControllerState, LogWriter, Point, ReadOptions, Recording, Role, Selector, WriteOptions, read_plan,
+        read_recording,
+    },
+    series::{Series, Track},
+};
+use serde_json::Value;
+
+fn hydrotrace(folder: &Path, line: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
+        .current_dir(folder)
+        .args(line.split_whitespace())
+        .output()
+        .unwrap()
+}
+
+fn stderr(run: &Output) -> String {
+    String::from_utf8_lossy(&run.stderr).into_owned()
+}
+
+fn done(folder: &Path, line: &str) -> String {
+    let run = hydrotrace(folder, line);
+    assert_eq!(run.status.code(), Some(0), "{line}: {}", stderr(&run));
+    String::from_utf8(run.stdout).unwrap()
+}
+
+fn json(folder: &Path, line: &str) -> Value {
+    serde_json::from_str(&done(folder, &format!("{line} --json"))).unwrap()
+}
+
+/// The plan and command for a next run, `next.mcap`, and that run with everything in its log, `whole.mcap`.
+static RUNS: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let task = concat!(env!("CARGO_MANIFEST_DIR"), "/sample-logs/tasks/task-1.toml");
+    let at = folder.path();
+    std::fs::copy(task, at.join("task-1.toml")).unwrap();
+    done(at, "plan task-1.toml --times 0,4.49,8.09,12.39,18.79,21.85 -o plan.mcap");
+    done(at, "simulate plan.mcap -o run.mcap");
+    done(at, "replan run.mcap --evaluations 2000 -o next.mcap");
+    done(at, "simulate next.mcap --seed 2 -o whole.mcap");
+    folder
+});
+
+/// When the recorder of the field logs started, ns, and how much later than that the run did, s.
+const START_NS: i64 = 1_790_000_000_000_000_000;
+const LATER_S: f64 = 47.3;
+
+#[expect(clippy::cast_possible_truncation, reason = "within a century")]
+fn ns(t_s: f64) -> i64 {
+    (t_s * 1e9).round() as i64
+}
+
+fn whole() -> (Recording, Series) {
+    let paths = [RUNS.path().join("whole.mcap")];
+    let run = read_recording(&paths, &ReadOptions::default()).unwrap();
+    let topic = Selector::parse("/command/joint_states");
+    let sent = read_plan(&paths, &ReadOptions { planned: vec![topic], ..ReadOptions::default() }).unwrap();
+    (run, sent.planned)
+}
+
+fn angles(series: &Series, t_s: f64) -> Vec<f64> {
+    series.tracks.iter().map(|track| track.held_at(t_s).position).collect()
+}
+
+/// A point of a controller's state.
+fn point(position_rad: &[f64]) -> Point<'_> {
+    let none: &[f64] = &[];
+    Point {
+        position_rad,
+        velocity_rad_s: none,
+        acceleration_rad_s2: none,
+        effort_n_m: none,
+        time_from_start_ns: 0,
+    }
+}
+
+fn state<'a>(reference: &'a [f64], feedback: &'a [f64]) -> ControllerState<'a> {
+    ControllerState {
+        reference: point(reference),
+        feedback: point(feedback),
+        output: point(&[]),
+        speed_scaling_factor: 1.0,
+    }
+}
+
+/// What a recorder of the controller's state has of the run: what was sent, as its reference, times a gain
+/// about the rest, and what was measured, each time in `later_s` the run.
+fn field(folder: &Path, name: &str, later_s: &[f64], gain: f64) -> PathBuf {
+    let (run, sent) = whole();
+    let names: Vec<&str> = sent.tracks.iter().map(Track::name).collect();
+    let path = folder.join(name);
+    let output = BufWriter::new(File::create(&path).unwrap());
+    let options = WriteOptions { log_delay_ns: ns(0.004), ..WriteOptions::default() };
+    let mut log = LogWriter::new(output, &names, options).unwrap();
+    let stamps = run.measured.tracks[0].t_s();
+    let mut from_s = 0.0;
+    for &later_s in later_s {
+        let mut t_s = from_s;
+        while t_s < later_s {
+            let still = angles(&sent, 0.0);
+            log.controller_state(START_NS + ns(t_s), &state(&still, &still)).unwrap();
+            t_s += 0.02;
+        }
+        for &t_s in stamps {
+            let rest = angles(&sent, 0.0);
+            let reference: Vec<f64> =
+                angles(&sent, t_s).iter().zip(&rest).map(|(q, rest)| rest + gain * (q - rest)).collect();
+            let feedback = angles(&run.measured, t_s);
+            log.controller_state(START_NS + ns(later_s + t_s), &state(&reference, &feedback)).unwrap();
+        }
+        from_s = later_s + stamps.last().unwrap() + 0.02;
+    }
+    log.finish().unwrap();
+    path
+}
+
+fn peaks_deg(report: &Value) -> Vec<(String, f64)> {
+    let transitions = report["transitions"].as_array().unwrap().iter();
+    let mut peaks: Vec<(String, f64)> = transitions
+        .map(|t| {
+            let peak = t["peak_error_rad"].as_f64().unwrap().to_degrees();
+            (t["joint"].as_str().unwrap().to_owned(), peak)
+        })
+        .collect();
+    peaks.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    peaks
+}
+
+#[test]
+fn a_joined_log_reports_fits_and_compares_as_one_that_always_had_its_plan() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    field(at, "field.mcap", &[LATER_S], 1.0);
+    let next = RUNS.path().join("next.mcap");
+    let said = json(at, &format!("join field.mcap --plan {} -o run-2.mcap", next.display()));
+    assert_eq!(said["sent_is_command"], true);
+    // The plan's log starts where the machine has stood for two seconds.
+    assert!((said["at_s"].as_f64().unwrap() - (LATER_S + 2.0)).abs() < 2e-3, "{said}");
+    let whole = json(RUNS.path(), "report whole.mcap");
+    let joined = json(at, "report run-2.mcap");
+    assert_eq!(joined["source"]["planned_topic"], "/planned/joint_states");
+    let (expected, found) = (peaks_deg(&whole), peaks_deg(&joined));
+    assert_eq!(expected.len(), found.len());
+    for (expected, found) in expected.iter().zip(&found) {
+        assert!(expected.0 == found.0 && (expected.1 - found.1).abs() < 0.01, "{expected:?} {found:?}");
+    }
+    // Without its plan the log says how the command was followed, which is another question.
+    let alone = json(at, "report field.mcap");
+    let mean = |peaks: &[(String, f64)]| peaks.iter().map(|p| p.1).sum::<f64>() / peaks.len() as f64;
+    assert!(mean(&peaks_deg(&alone)) > 2.0 * mean(&found));
+    // Task and timing came along: runs of other timings are compared, the next run is planned.
+    let before = RUNS.path().join("run.mcap");
+    let compared = json(at, &format!("compare {} run-2.mcap", before.display()));
+    assert_eq!((&compared["same_plan"], &compared["verdict"]), (&Value::Bool(true), &Value::from("smaller")));
+    assert!(compared["pairs"].as_array().unwrap().len() >= found.len() - 2);
+    done(at, "replan run-2.mcap --evaluations 1000 -o next-2.mcap");
+    let lags = |path: &Path| {
+        let fit = json(at, &format!("fit {}", path.display()));
+        let joints = fit["joints"].as_array().unwrap().clone();
+        joints.iter().map(|joint| joint["lag_s"]["value"].as_f64().unwrap_or(f64::NAN)).collect::<Vec<_>>()
+    };
+    let (expected, found) = (lags(&RUNS.path().join("whole.mcap")), lags(&at.join("run-2.mcap")));
+    for (expected, found) in expected.iter().zip(&found) {
+        assert!((expected - found).abs() < 0.1 * expected || expected.is_nan(), "{expected} {found}");
+    }
+}
+
+/// What a join that must fail says; it writes nothing.
+fn refused(folder: &Path, line: &str) -> String {
+    let run = hydrotrace(folder, &format!("{line} -o joined.mcap"));
+    assert_eq!(run.status.code(), Some(1), "{line}");
+    assert!(!folder.join("joined.mcap").exists(), "{line}");
+    stderr(&run)
+}
+
+#[test]
+fn what_was_not_sent_is_refused_with_how_far_it_is_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    field(at, "other.mcap", &[LATER_S], 0.5);
+    let next = format!("--plan {}", RUNS.path().join("next.mcap").display());
+    let said = refused(at, &format!("join other.mcap {next}"));
+    assert!(said.contains("% of the motion") && said.contains("--planned"), "{said}");
+    let said = refused(at, &format!("join {} {next}", RUNS.path().join("whole.mcap").display()));
+    assert!(said.contains("/planned/joint_states already"), "{said}");
+    let said = refused(at, &format!("join other.mcap {next} --at 500"));
+    assert!(said.contains("outside the measurement"), "{said}");
+    let names: Vec<String> = whole().1.tracks.iter().map(|track| track.name().to_owned()).collect();
+    let output = BufWriter::new(File::create(at.join("endless.mcap")).unwrap());
+    let mut log = LogWriter::new(output, &names, WriteOptions::default()).unwrap();
+    for t_s in [0.0, 1e6] {
+        let angles = vec![t_s / 1e6; names.len()];
+        log.joint_sample(Role::Planned, START_NS + ns(t_s), &angles, &[], &[]).unwrap();
+    }
+    log.finish().unwrap();
+    let said = refused(at, "join other.mcap --plan endless.mcap --at 1");
+    assert!(said.contains("lasts 1000000 s"), "{said}");
+    std::fs::copy(RUNS.path().join("next.mcap"), at.join("next.mcap")).unwrap();
+    let over = hydrotrace(at, "join other.mcap --plan next.mcap -o next.mcap");
+    assert_eq!(over.status.code(), Some(2));
+}
+
+#[test]
+fn of_two_runs_in_one_log_the_first_is_taken_with_a_remark_and_a_time_names_the_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    field(at, "twice.mcap", &[LATER_S, 100.0], 1.0);
+    let next = format!("--plan {}", RUNS.path().join("next.mcap").display());
+    let run = hydrotrace(at, &format!("join twice.mcap {next} -o first.mcap --json"));
+    assert_eq!(run.status.code(), Some(3));
+    let said: Value = serde_json::from_slice(&run.stdout).unwrap();
+    assert_eq!((&said["other_places"], &said["remarks"][0]["code"]), (&Value::from(1), &"ambiguous".into()));
+    assert!((said["at_s"].as_f64().unwrap() - LATER_S - 2.0).abs() < 2e-3);
+    let said = json(at, &format!("join twice.mcap {next} --at 102 -o second.mcap"));
+    assert_eq!(said["at_s"], 102.0);
+    // Most of the log has no plan, which is a remark.
+    let peaks = |log: &str| {
+        let run = hydrotrace(at, &format!("report {log} --json"));
+        assert_eq!((run.status.code(), stderr(&run).lines().count()), (Some(3), 1), "{}", stderr(&run));
+        peaks_deg(&serde_json::from_slice(&run.stdout).unwrap())
+    };
+    for (first, second) in peaks("first.mcap").iter().zip(&peaks("second.mcap")) {
+        assert!(first.0 == second.0 && (first.1 - second.1).abs() < 0.02, "{first:?} {second:?}");
+    }
+}
+
+#[test]
+fn a_log_of_the_measurement_alone_asks_for_the_time_and_does_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let (run, sent) = whole();
+    let names: Vec<&str> = sent.tracks.iter().map(Track::name).collect();
+    let output = BufWriter::new(File::create(at.join("bare.mcap")).unwrap());
+    let mut log = LogWriter::new(output, &names, WriteOptions::default()).unwrap();
+    for &t_s in run.measured.tracks[0].t_s() {
+        log.joint_sample(Role::Measured, START_NS + ns(t_s), &angles(&run.measured, t_s), &[], &[]).unwrap();
+    }
+    log.finish().unwrap();
+    let next = format!("--plan {}", RUNS.path().join("next.mcap").display());
+    let said = refused(at, &format!("join bare.mcap {next}"));
+    assert!(said.contains("--at SECONDS") && said.contains("/joint_states"), "{said}");
+    let said = json(at, &format!("join bare.mcap {next} --at 2 -o joined.mcap"));
+    assert_eq!((&said["sent"], &said["sent_is_command"]), (&Value::Null, &Value::Bool(true)));
+    let (expected, found) = (json(RUNS.path(), "report whole.mcap"), json(at, "report joined.mcap"));
+    for (expected, found) in peaks_deg(&expected).iter().zip(&peaks_deg(&found)) {
+        assert!(expected.0 == found.0 && (expected.1 - found.1).abs() < 0.01, "{expected:?} {found:?}");
+    }
+}

@@ -1,0 +1,232 @@
+//! `plan` as an operator meets it: exit codes, streams, the log that it writes.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+
+use hydrotrace::log::{ReadOptions, survey};
+use serde_json::Value;
+
+const SIMULATION: &str = "sample-logs/tasks/simulation.toml";
+const TASK_1: &str = "sample-logs/tasks/task-1.toml";
+const A: &str = "0,2.01,3.77,5.79,6.53,8.85,10.48";
+const C: &str = "0,1.51,5.09,10.23,15.67,18.98,23.27";
+
+fn plan(args: &[&str], threads: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .env("RAYON_NUM_THREADS", threads)
+        .arg("plan")
+        .args(args)
+        .output()
+        .unwrap()
+}
+
+fn stdout(run: &Output) -> String {
+    String::from_utf8(run.stdout.clone()).unwrap()
+}
+
+fn stderr(run: &Output) -> String {
+    String::from_utf8(run.stderr.clone()).unwrap()
+}
+
+fn json(run: &Output) -> Value {
+    let document: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let schema =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("schemas/plan.v1.schema.json"));
+    let schema: Value = serde_json::from_str(&schema.unwrap()).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let faults: Vec<String> = validator.iter_errors(&document).map(|fault| fault.to_string()).collect();
+    assert!(faults.is_empty(), "{faults:?}");
+    document
+}
+
+fn edited(folder: &Path, file: &str, from: &str, to: &str) -> PathBuf {
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).unwrap();
+    assert!(text.contains(from), "{from} is not in {file}");
+    let path = folder.join("task.toml");
+    fs::write(&path, text.replace(from, to)).unwrap();
+    path
+}
+
+#[test]
+fn a_given_plan_is_judged_with_exit_code_0_if_it_keeps_its_limits_and_4_if_not() {
+    let kept = plan(&[SIMULATION, "--times", A], "2");
+    assert_eq!((kept.status.code(), stderr(&kept).as_str()), (Some(0), ""));
+    assert!(stdout(&kept).contains("10.48          61.6945       306.67"), "{}", stdout(&kept));
+    let broken = plan(&[SIMULATION, "--times", C, "--json"], "2");
+    assert_eq!(broken.status.code(), Some(4));
+    let document = json(&broken);
+    let margins = document["chosen"]["margins"].as_array().unwrap();
+    let range = margins.iter().find(|m| m["joint"] == "J3" && m["limit"] == "position").unwrap();
+    assert!(range["share"].as_f64().unwrap() > 1.4 && range["t_s"].as_f64().unwrap() > 7.0, "{range}");
+}
+
+#[test]
+fn the_front_as_json_has_what_scripts_need_and_remarks_go_to_standard_error() {
+    let run = plan(&[TASK_1, "--json", "--evaluations", "2000"], "2");
+    assert_eq!(run.status.code(), Some(3));
+    assert!(stderr(&run).contains("inactive-bound") && stderr(&run).contains("max_rms_jerk_deg_s3"));
+    let document = json(&run);
+    let front = document["front"].as_array().unwrap();
+    assert!(front.len() > 50);
+    let (mut last_s, dwell_s) = (0.0, 2.0);
+    for plan in front {
+        let times_s: Vec<f64> =
+            plan["times_s"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect();
+        assert_eq!(times_s.len(), 6);
+        assert!(times_s[4] - times_s[3] > dwell_s);
+        assert_eq!(plan["violation"].as_f64(), Some(0.0));
+        assert!(plan["duration_s"].as_f64().unwrap() >= last_s);
+        last_s = plan["duration_s"].as_f64().unwrap();
+    }
+    assert!(document["chosen"]["duration_s"].as_f64().unwrap() < 40.0);
+    let evaluations = document["evaluations"].as_u64().unwrap();
+    assert!((1000..=2600).contains(&evaluations), "{evaluations}");
+    assert_eq!(document["seed"].as_u64(), Some(1));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_on_one_thread_and_on_three() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |threads: &str| {
+        let log = folder.path().join("plan.mcap");
+        let done = plan(&[TASK_1, "--evaluations", "1500", "-o", log.to_str().unwrap()], threads);
+        (done.stdout, fs::read(log).unwrap())
+    };
+    let (one, three) = (run("1"), run("3"));
+    assert_eq!(String::from_utf8(one.0), String::from_utf8(three.0));
+    assert!(one.1 == three.1, "the logs differ");
+}
+
+#[test]
+fn the_log_holds_the_plan_sample_by_sample_the_task_and_the_front() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("plan.mcap");
+    let log = log.to_str().unwrap();
+    assert_eq!(plan(&[SIMULATION, "--times", A, "-o", log, "--rate", "50"], "2").status.code(), Some(0));
+    let found = survey(&[PathBuf::from(log)], &ReadOptions::default()).unwrap();
+    let count = |topic: &str| found.topics.iter().find(|t| t.topic == topic).map(|t| t.messages);
+    assert_eq!(count("/planned/joint_states"), Some(525));
+    assert_eq!(count("/arm_controller/joint_trajectory"), Some(1));
+    assert_eq!(found.attachments, ["task.toml", "plan.json"]);
+}
+
+#[test]
+fn a_task_that_no_timing_keeps_says_what_binds_where_and_by_how_much() {
+    let folder = tempfile::tempdir().unwrap();
+    let slow = edited(folder.path(), SIMULATION, "J3 = 35", "J3 = 0.5");
+    let log = folder.path().join("plan.mcap");
+    let run = plan(&[slow.to_str().unwrap(), "--evaluations", "1000", "-o", log.to_str().unwrap()], "2");
+    assert_eq!(run.status.code(), Some(1));
+    assert!(run.stdout.is_empty() && !log.exists());
+    let said = stderr(&run);
+    assert!(said.contains("J3 speed is 2.7") && said.contains("0.50 deg/s is allowed"), "{said}");
+    assert!(said.contains("longest allowed, 20 s (interval_s)"), "{said}");
+}
+
+#[test]
+fn a_ceiling_that_no_plan_keeps_says_by_how_much_and_which_limits_bind() {
+    let folder = tempfile::tempdir().unwrap();
+    let quick = edited(folder.path(), TASK_1, "max_duration_s = 40.0", "max_duration_s = 10");
+    let run = plan(&[quick.to_str().unwrap(), "--evaluations", "2000", "--json"], "2");
+    assert_eq!(run.status.code(), Some(1));
+    assert_eq!(json(&run)["feasible"], false);
+    let said = stderr(&run);
+    assert!(said.contains("time 12.4") && said.contains("10.00 s is asked for"), "{said}");
+    assert!(said.contains("limits that bind it: ") && said.contains("J2 jerk at"), "{said}");
+}
+
+#[test]
+fn wrong_tasks_and_times_name_file_line_and_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    let task = edited(folder.path(), TASK_1, "J1 = 37.2", "J9 = 37.2");
+    let run = plan(&[task.to_str().unwrap()], "2");
+    assert_eq!(run.status.code(), Some(1));
+    assert!(stderr(&run).contains("task.toml is no task\n  because: line "), "{}", stderr(&run));
+    assert!(stderr(&run).contains("J9"));
+    let short = plan(&[SIMULATION, "--times", "0,1,2"], "2");
+    assert_eq!(short.status.code(), Some(1));
+    assert!(stderr(&short).contains("3 times for 7 key points"), "{}", stderr(&short));
+    let back = plan(&[SIMULATION, "--times", "0,2,1,3,4,5,6"], "2");
+    assert_eq!(back.status.code(), Some(1));
+    assert!(stderr(&back).contains("key point 2"), "{}", stderr(&back));
+}
+
+#[test]
+fn bad_usage_is_exit_code_2_and_names_what_is_allowed() {
+    for (args, expected) in [
+        (vec![SIMULATION, "--algorithm", "nsga4"], "nsga3"),
+        (vec![SIMULATION, "--weights", "1,2"], "three weights"),
+        (vec![SIMULATION, "--evaluations", "500", "--generations", "3"], "cannot be used with"),
+        (vec![SIMULATION, "-o", SIMULATION], "is what is read"),
+    ] {
+        let run = plan(&args, "2");
+        assert_eq!(run.status.code(), Some(2), "{args:?}");
+        assert!(stderr(&run).contains(expected), "{}", stderr(&run));
+    }
+}
+
+#[test]
+fn the_page_goes_where_the_output_ends_in_html_and_the_log_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let budget = ["--evaluations", "1500"];
+    let page = plan(&[&[TASK_1, "--html", "-o", &file("plan.html")], &budget[..]].concat(), "2");
+    assert_eq!((page.status.code(), stdout(&page).as_str()), (Some(3), ""));
+    let text = fs::read_to_string(file("plan.html")).unwrap();
+    for word in ["limits kept", "A, the fastest", "How the front grew", "The chosen motion", "inactive-bound"]
+    {
+        assert!(text.contains(word), "{word}");
+    }
+    let both = plan(&[&[TASK_1, "--html", "-o", &file("plan.mcap")], &budget[..]].concat(), "1");
+    assert_eq!(stdout(&both), text);
+    assert!(fs::read(file("plan.mcap")).unwrap().starts_with(b"\x89MCAP"));
+    let given = plan(&[SIMULATION, "--times", A, "--html"], "1");
+    assert_eq!(given.status.code(), Some(0));
+    assert!(stdout(&given).contains("The motion"));
+}
+
+#[test]
+fn the_front_grows_on_the_way_and_ends_with_the_hypervolume_told() {
+    let found = json(&plan(&[TASK_1, "--json", "--evaluations", "6000"], "2"));
+    let steps = found["convergence"].as_array().unwrap();
+    let of = |step: &Value, name: &str| step[name].as_f64().unwrap();
+    assert!((5..=66).contains(&steps.len()), "{}", steps.len());
+    let (last, way) = steps.split_last().unwrap();
+    assert_eq!(of(last, "hypervolume"), found["hypervolume"].as_f64().unwrap());
+    for pair in way.windows(2) {
+        assert!(of(&pair[0], "evaluations") < of(&pair[1], "evaluations"));
+        assert!(of(&pair[0], "hypervolume") <= of(&pair[1], "hypervolume"));
+    }
+}
+
+#[test]
+fn no_plan_that_is_offered_breaks_a_limit_between_the_instants_that_a_search_looks_at() {
+    // A pump so small that its flow is what binds: it peaks, with kinks, between those instants.
+    let folder = tempfile::tempdir().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    fs::copy(root.join("sample-logs/arm/arm.urdf"), folder.path().join("arm.urdf")).unwrap();
+    let pump = "pump_flow_m3_s = 1.2e-4";
+    let small = edited(folder.path(), "sample-logs/arm/hydraulics.toml", "pump_flow_m3_s = 6.6667e-4", pump);
+    fs::rename(small, folder.path().join("hydraulics.toml")).unwrap();
+    let arm = "arm = \"arm.urdf\"\nhydraulics = \"hydraulics.toml\"";
+    let task = edited(folder.path(), TASK_1, "arm = \"sample\"", arm);
+    let task = task.to_str().unwrap();
+    for (rule, flow) in [("fastest", 0.99), ("ideal", 0.0)] {
+        let found = plan(&[task, "--choose", rule, "--evaluations", "4000", "--json"], "2");
+        let document = json(&found);
+        let offered = document["front"].as_array().unwrap().iter().step_by(40).chain([&document["chosen"]]);
+        for one in offered {
+            let times: Vec<String> =
+                one["times_s"].as_array().unwrap().iter().map(ToString::to_string).collect();
+            let judged = plan(&[task, "--times", &times.join(",")], "2");
+            assert_eq!(judged.status.code(), Some(0), "{times:?}: {}", stdout(&judged));
+        }
+        let limits = document["chosen"]["margins"].as_array().unwrap();
+        let used = limits.iter().find(|limit| limit["limit"] == "pump_flow").unwrap();
+        assert!(used["share"].as_f64().unwrap() >= flow, "{used}");
+    }
+}

@@ -1,0 +1,283 @@
+//! The built binary as an operator meets it: exit codes, streams, files.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+
+fn hydrotrace(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(args)
+        .output()
+        .unwrap()
+}
+
+fn stdout(run: &Output) -> String {
+    String::from_utf8(run.stdout.clone()).unwrap()
+}
+
+fn stderr(run: &Output) -> String {
+    String::from_utf8(run.stderr.clone()).unwrap()
+}
+
+const CLEAN: &str = "sample-logs/panel-install.mcap";
+const DOUBTFUL: &str = "sample-logs/gaps.mcap";
+const CUT: &str = "sample-logs/power-loss.mcap";
+
+#[test]
+fn exit_code_0_and_a_quiet_standard_error_for_a_sound_log() {
+    let run = hydrotrace(&["report", CLEAN]);
+    assert_eq!((run.status.code(), stderr(&run).as_str()), (Some(0), ""));
+    assert!(stdout(&run).contains("TRANSITIONS, WORST FIRST"));
+}
+
+#[test]
+fn exit_code_1_when_the_log_is_missing_and_stdout_stays_empty() {
+    let run = hydrotrace(&["report", "no-such.mcap"]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(run.stdout.is_empty());
+    let said = stderr(&run);
+    assert!(said.starts_with("error: cannot open no-such.mcap\n  because: "), "{said}");
+}
+
+#[test]
+fn exit_code_1_names_what_a_file_is_when_it_is_no_log() {
+    let run = hydrotrace(&["report", "Cargo.toml"]);
+    assert_eq!(run.status.code(), Some(1));
+    let said = stderr(&run);
+    assert!(said.contains("not an MCAP file") && said.contains("expected the bytes 89 4D"), "{said}");
+}
+
+#[test]
+fn exit_code_1_suggests_the_topic_that_was_meant() {
+    let run = hydrotrace(&["report", CLEAN, "--measured", "/joint_state"]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(stderr(&run).contains("did you mean \"/joint_states\"?"), "{}", stderr(&run));
+}
+
+#[test]
+fn exit_code_2_when_an_angle_is_not_a_number() {
+    let run = hydrotrace(&["report", CLEAN, "--max-rms-deg", "lots"]);
+    assert_eq!(run.status.code(), Some(2));
+    assert_eq!(hydrotrace(&["report"]).status.code(), Some(2));
+    assert_eq!(hydrotrace(&["report", CLEAN, "--json", "--csv"]).status.code(), Some(2));
+}
+
+#[test]
+fn exit_code_3_shows_the_remarks_in_every_format() {
+    for format in [&[][..], &["--json"], &["--csv"], &["--markdown"]] {
+        let run = hydrotrace(&[&["report", DOUBTFUL], format].concat());
+        assert_eq!(run.status.code(), Some(3), "{format:?}");
+        let text = stdout(&run).replace('\\', "");
+        for code in ["not-finite", "duplicate-stamp", "gap"] {
+            assert!(text.contains(code), "{format:?} lacks {code}");
+        }
+    }
+}
+
+#[test]
+fn exit_code_4_names_joint_time_and_amount() {
+    let run = hydrotrace(&["report", CLEAN, "--max-transition-peak-deg", "0.9"]);
+    assert_eq!(run.status.code(), Some(4));
+    let said = stderr(&run);
+    assert!(said.starts_with("gate: ") && said.contains("joint_3 at 4."), "{said}");
+    assert!(said.contains("0.900 deg allowed"), "{said}");
+    let kept = hydrotrace(&["report", CLEAN, "--max-transition-peak-deg", "1.2"]);
+    assert_eq!(kept.status.code(), Some(0));
+}
+
+#[test]
+fn equal_calls_give_equal_bytes() {
+    for args in [&["report", DOUBTFUL, "--json"][..], &["info", CUT, "--json"]] {
+        assert_eq!(hydrotrace(args).stdout, hydrotrace(args).stdout);
+    }
+}
+
+#[test]
+fn a_file_given_with_o_holds_what_standard_output_would() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("report.json");
+    let run = hydrotrace(&["report", CLEAN, "--json", "-o", file.to_str().unwrap()]);
+    assert_eq!((run.status.code(), run.stdout.len()), (Some(0), 0));
+    assert_eq!(fs::read(&file).unwrap(), hydrotrace(&["report", CLEAN, "--json"]).stdout);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn an_output_that_cannot_be_written_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("missing").join("report.json");
+    let run = hydrotrace(&["report", CLEAN, "--json", "-o", file.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(1));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_reader_that_goes_away_is_success() {
+    let mut run = Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(["report", CLEAN, "--json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(run.stdout.take());
+    let status = run.wait_with_output().unwrap();
+    assert_eq!((status.status.code(), stderr(&status).as_str()), (Some(0), ""));
+}
+
+#[test]
+fn a_cut_log_is_recovered_with_what_the_cut_chunk_still_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let saved = folder.path().join("saved.mcap");
+    let saved = saved.to_str().unwrap();
+    let run = hydrotrace(&["recover", CUT, "-o", saved]);
+    assert_eq!(run.status.code(), Some(3), "{}", stderr(&run));
+    assert!(stdout(&run).contains("partial-chunk"));
+    let joints = |log: &str| -> serde_json::Value {
+        let report: serde_json::Value =
+            serde_json::from_slice(&hydrotrace(&["report", log, "--json"]).stdout).unwrap();
+        report["joints"].clone()
+    };
+    assert_eq!(joints(saved), joints(CUT));
+    let whole = hydrotrace(&["report", saved]);
+    assert_eq!(whole.status.code(), Some(0), "{}", stdout(&whole));
+    let again = hydrotrace(&["recover", saved, "-o", folder.path().join("again.mcap").to_str().unwrap()]);
+    assert_eq!(again.status.code(), Some(0));
+}
+
+#[test]
+fn info_says_what_a_report_would_use_even_where_none_can_be_made() {
+    let run = hydrotrace(&["info", CLEAN]);
+    assert_eq!(run.status.code(), Some(0));
+    assert!(stdout(&run).contains("/planned/joint_states:position"));
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("measured-only.mcap");
+    write_measured_only(&log);
+    let run = hydrotrace(&["info", log.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(0));
+    assert!(stdout(&run).contains("nothing: found no planned joint angles"), "{}", stdout(&run));
+    let run = hydrotrace(&["report", log.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(stderr(&run).contains("--planned TOPIC[:FIELD]"));
+}
+
+fn write_measured_only(path: &Path) {
+    use hydrotrace::log::{LogWriter, Role, WriteOptions};
+    let mut log = LogWriter::create(path, &["a"], WriteOptions::default()).unwrap();
+    for k in 0..100_i64 {
+        log.joint_sample(Role::Measured, 1_000_000_000 + k * 10_000_000, &[0.1], &[], &[]).unwrap();
+    }
+    log.finish().unwrap();
+}
+
+#[test]
+fn reports_are_as_their_schema_says() {
+    let schema =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("schemas/report.v1.schema.json"))
+            .unwrap();
+    let schema: serde_json::Value = serde_json::from_str(&schema).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    for log in [CLEAN, DOUBTFUL, CUT] {
+        let run =
+            hydrotrace(&["report", log, "--json", "--max-rms-deg", "90", "--max-start-delay-ms", "900"]);
+        let report: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+        let faults: Vec<String> =
+            validator.iter_errors(&report).map(|e| format!("{}: {e}", e.instance_path())).collect();
+        assert!(faults.is_empty(), "{log}: {faults:?}");
+        assert_eq!(report["format"], "hydrotrace.report.v1");
+    }
+}
+
+#[test]
+fn a_report_never_replaces_the_log_it_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("run.mcap");
+    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(CLEAN), &log).unwrap();
+    let before = fs::read(&log).unwrap();
+    let name = log.to_str().unwrap();
+    for args in [&["report", name, "-o", name][..], &["recover", name, "-o", name]] {
+        let run = hydrotrace(args);
+        assert_eq!(run.status.code(), Some(2), "{}", stderr(&run));
+        assert!(stderr(&run).contains("is what is read"));
+    }
+    assert_eq!(fs::read(&log).unwrap(), before);
+}
+
+#[test]
+fn a_field_is_not_compared_with_itself() {
+    let same = ["report", CLEAN, "--planned", "/joint_states", "--measured", "/joint_states"];
+    let run = hydrotrace(&same);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(stderr(&run).contains("given as plan and as measurement"), "{}", stderr(&run));
+}
+
+#[test]
+fn a_joint_without_a_lag_in_range_does_not_keep_a_limit_on_lag() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("dead.mcap");
+    write_joint_states(&log, |t_s| (0.3 * (t_s - 2.0).clamp(0.0, 2.0), 0.0), 0);
+    let run = hydrotrace(&["report", log.to_str().unwrap(), "--max-lag-ms", "100"]);
+    assert_eq!(run.status.code(), Some(4), "{}{}", stdout(&run), stderr(&run));
+    let report = hydrotrace(&["report", log.to_str().unwrap(), "--json"]);
+    let report: serde_json::Value = serde_json::from_slice(&report.stdout).unwrap();
+    assert_eq!(report["joints"][0]["lag_s"], serde_json::Value::Null);
+    assert_eq!(report["joints"][0]["moves"], false);
+}
+
+#[test]
+fn a_plan_of_another_time_is_an_error_that_names_both() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("apart.mcap");
+    write_joint_states(&log, |t_s| (t_s.sin(), t_s.sin()), 3_600_000_000_000);
+    let run = hydrotrace(&["report", log.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(stderr(&run).contains("they have no time in common"), "{}", stderr(&run));
+}
+
+/// Ten seconds of one joint at 100 Hz; the plan is stamped `later_ns` later than the measurement.
+fn write_joint_states(path: &Path, angles_at: impl Fn(f64) -> (f64, f64), later_ns: i64) {
+    use hydrotrace::log::{LogWriter, Role, WriteOptions};
+    let mut log = LogWriter::create(path, &["a"], WriteOptions::default()).unwrap();
+    for (role, shift_ns) in [(Role::Measured, 0), (Role::Planned, later_ns)] {
+        for k in 0..1000_i64 {
+            let (planned, measured) = angles_at(k as f64 * 0.01);
+            let angle = if role == Role::Planned { planned } else { measured };
+            log.joint_sample(role, 1_000_000_000 + k * 10_000_000 + shift_ns, &[angle], &[], &[]).unwrap();
+        }
+    }
+    log.finish().unwrap();
+}
+
+#[test]
+fn a_page_goes_to_a_file_or_a_pipe_and_tells_limits_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("run.html");
+    let run = hydrotrace(&["report", CLEAN, "--html", "-o", page.to_str().unwrap()]);
+    assert_eq!((run.status.code(), stdout(&run).as_str()), (Some(0), ""));
+    let text = fs::read_to_string(page).unwrap();
+    assert!(text.starts_with("<!DOCTYPE html>") && text.contains("No limits set"), "{}", &text[..200]);
+    assert_eq!(text, stdout(&hydrotrace(&["report", CLEAN, "--html"])));
+    let broken = hydrotrace(&["report", CLEAN, "--html", "--max-rms-deg", "0.2", "--max-peak-deg", "2"]);
+    assert_eq!(broken.status.code(), Some(4));
+    assert!(stdout(&broken).contains("1 of 2 limits NOT kept"));
+    let doubtful = hydrotrace(&["report", DOUBTFUL, "--html"]);
+    assert_eq!(doubtful.status.code(), Some(3));
+    assert!(stdout(&doubtful).contains("id=\"remarks\"") && stderr(&doubtful).contains("remark: "));
+}
+
+#[test]
+fn figures_are_written_beside_a_report_of_any_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let figures = folder.path().join("new/figures");
+    let run = hydrotrace(&["report", CLEAN, "--json", "--figures", figures.to_str().unwrap()]);
+    assert_eq!(run.status.code(), Some(0));
+    assert!(stdout(&run).starts_with('{'));
+    let mut names: Vec<String> =
+        fs::read_dir(figures).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names.len(), 9);
+    assert_eq!((names[0].as_str(), names[8].as_str()), ("joint-01-joint_1.svg", "transitions-02.svg"));
+}

@@ -1,0 +1,248 @@
+//! CSV files in and out as a field engineer meets them: what was sent is no plan.
+
+use std::{
+    fmt::Write as _,
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+fn hydrotrace(folder: &Path, words: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
+        .current_dir(folder)
+        .args(words.split_whitespace())
+        .output()
+        .unwrap()
+}
+
+/// Exit code, standard output and standard error.
+fn said(run: &Output) -> (i32, String, String) {
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    (run.status.code().unwrap(), text(&run.stdout), text(&run.stderr))
+}
+
+/// Angles, deg, of a joint that is asked to move at 2 s and follows 0.1 s later.
+fn moves(t_s: f64) -> [f64; 2] {
+    let at = |t_s: f64| 15.0 * (1.0 - ((t_s - 2.0).clamp(0.0, 3.0) / 3.0 * std::f64::consts::PI).cos());
+    [at(t_s), at(t_s - 0.1)]
+}
+
+/// Rows at 50 Hz: time, then what was asked and what came of it for each of two joints.
+fn trace(header: &str) -> String {
+    let mut text = format!("{header}\n");
+    for k in 0..500 {
+        let t_s = f64::from(k) * 0.02;
+        let [asked, came] = moves(t_s);
+        writeln!(text, "{t_s:.2},{asked},{came},{},{}", -asked, -came).unwrap();
+    }
+    text
+}
+
+/// A folder with that table as `a.csv`.
+fn folder(header: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.csv"), trace(header)).unwrap();
+    folder
+}
+
+#[test]
+fn what_was_sent_stays_what_was_sent_and_the_missing_plan_is_a_remark() {
+    let option = " --degrees --command ax1=ax1_cmd,ax2=ax2_cmd";
+    for (header, option) in [
+        ("t,ax1_cmd,ax1_act,ax2_cmd,ax2_act", option),
+        ("t,ax1_cmd,ax1_act,ax2_cmd,ax2_act", " --degrees"),
+        ("t,ax1_target_cmd,ax1_act,ax2_target_cmd,ax2_act", " --degrees"),
+        ("t,J1_command_deg,J1_measured_deg,J2_command_deg,J2_measured_deg", ""),
+        ("t,a,ax1_act,b,ax2_act", " --degrees --command ax1=a,ax2=b"),
+    ] {
+        let folder = folder(header);
+        let (code, text, _) = said(&hydrotrace(folder.path(), &format!("import a.csv -o a.mcap{option}")));
+        assert_eq!(code, 3, "{header}: {text}");
+        assert!(text.contains("command position") && !text.contains("planned position"), "{header}: {text}");
+        assert!(text.contains("plan-is-command") && text.contains("join LOG --plan"), "{header}: {text}");
+        let (code, text, _) = said(&hydrotrace(folder.path(), "report a.mcap"));
+        assert_eq!(code, 3, "{header}: {text}");
+        assert!(text.contains("plan-is-command") && text.contains("join LOG --plan"), "{header}: {text}");
+        let (code, text, _) =
+            said(&hydrotrace(folder.path(), "report a.mcap --planned /command/joint_states"));
+        assert_eq!(code, 0, "{header}: {text}");
+    }
+}
+
+#[test]
+fn beside_a_plan_the_command_is_no_reason_for_a_remark() {
+    let folder = folder("t,J1_ref,J1_act,J1_cmd,J2_act");
+    let (code, text, _) =
+        said(&hydrotrace(folder.path(), "import a.csv -o a.mcap --degrees --measured J1=J1_act"));
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("planned position") && text.contains("command position"), "{text}");
+    let (code, text, _) = said(&hydrotrace(folder.path(), "report a.mcap"));
+    assert_eq!((code, text.contains("plan-is-command")), (0, false), "{text}");
+    assert!(text.contains("planned   /planned/joint_states"), "{text}");
+}
+
+#[test]
+fn an_explicit_option_prevails_over_what_a_header_says() {
+    let folder = folder("t,ax1_cmd,ax1_act,ax2_cmd,ax2_act");
+    let words = "import a.csv -o a.mcap --degrees --planned ax1=ax1_cmd,ax2=ax2_cmd";
+    let (code, text, _) = said(&hydrotrace(folder.path(), words));
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("planned position") && !text.contains("command position"), "{text}");
+}
+
+#[test]
+fn a_table_that_goes_in_comes_out_with_the_command_as_command() {
+    let folder = folder("t,J1_command_deg,J1_measured_deg,J2_command_deg,J2_measured_deg");
+    let mut tables = Vec::new();
+    for (from, log, to) in [("a.csv", "a.mcap", "b.csv"), ("b.csv", "b.mcap", "c.csv")] {
+        hydrotrace(folder.path(), &format!("import {from} -o {log}"));
+        let (code, _, error) =
+            said(&hydrotrace(folder.path(), &format!("export {log} --csv --degrees -o {to}")));
+        assert_eq!(code, 0, "{error}");
+        tables.push(fs::read_to_string(folder.path().join(to)).unwrap());
+    }
+    assert!(
+        tables[0].starts_with("stamp_ns,time_s,J1_measured_deg,J1_command_deg,"),
+        "{}",
+        &tables[0][..200]
+    );
+    assert!(!tables[0].contains("planned") && !tables[0].contains("error"));
+    let numbers = |text: &str| -> Vec<f64> {
+        text.lines()
+            .skip(1)
+            .flat_map(|row| row.split(',').skip(1).map(|cell| cell.parse().unwrap()))
+            .collect()
+    };
+    let (first, second) = (numbers(&tables[0]), numbers(&tables[1]));
+    assert_eq!(first.len(), 500 * 5);
+    assert!(first.iter().zip(&second).all(|(a, b)| (a - b).abs() < 1e-9));
+}
+
+#[test]
+fn a_log_of_plan_and_command_alone_is_a_table_too() {
+    let folder = folder("t,J1_ref_deg,J1_cmd_deg,J2_ref_deg,J2_cmd_deg");
+    hydrotrace(folder.path(), "import a.csv -o next.mcap");
+    let (code, _, error) = said(&hydrotrace(folder.path(), "export next.mcap --csv --degrees -o next.csv"));
+    assert_eq!(code, 0, "{error}");
+    let text = fs::read_to_string(folder.path().join("next.csv")).unwrap();
+    let head: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    assert_eq!(
+        head[2..],
+        ["J1_planned_deg", "J1_command_deg", "J2_planned_deg", "J2_command_deg"].map(String::from)
+    );
+    assert_eq!(text.lines().count(), 501);
+}
+
+#[test]
+fn a_plan_in_a_file_of_its_own_fits_whatever_the_order_of_the_files() {
+    let folder = folder("t,J1_ref_deg,x,J2_ref_deg,y");
+    hydrotrace(folder.path(), "import a.csv -o plan.mcap");
+    fs::write(folder.path().join("b.csv"), trace("t,x,J1_act_deg,y,J2_act_deg")).unwrap();
+    let (code, text, _) = said(&hydrotrace(folder.path(), "import b.csv -o measured.mcap"));
+    assert!(
+        code == 3 && text.contains("report THIS.mcap OTHER.mcap") && text.contains("2025-10-09"),
+        "{text}"
+    );
+    let runs = ["report measured.mcap plan.mcap --json", "report plan.mcap measured.mcap --json"]
+        .map(|words| said(&hydrotrace(folder.path(), words)));
+    assert_eq!(runs[0].0, 0, "{}", runs[0].2);
+    assert_eq!(runs[0], runs[1]);
+}
+
+#[test]
+fn files_that_tell_the_same_time_twice_are_refused_in_either_order() {
+    let folder = folder("t,J1_ref_deg,J1_act_deg,J2_ref_deg,J2_act_deg");
+    hydrotrace(folder.path(), "import a.csv -o run.mcap");
+    fs::write(folder.path().join("b.csv"), trace("t,J1_ref_deg,x,J2_ref_deg,y")).unwrap();
+    hydrotrace(folder.path(), "import b.csv -o plan.mcap");
+    for words in ["report run.mcap plan.mcap", "report plan.mcap run.mcap", "report run.mcap run.mcap"] {
+        let (code, text, error) = said(&hydrotrace(folder.path(), words));
+        assert_eq!((code, text.as_str()), (1, ""), "{words}");
+        assert!(
+            error.contains("no parts of one run") && error.contains("hydrotrace join"),
+            "{words}: {error}"
+        );
+    }
+}
+
+#[test]
+fn a_clock_that_goes_back_splits_the_run_and_costs_no_row() {
+    for back_s in [0.3, 0.7, 5.0] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut text = "t [s],J1_ref_deg,J1_act_deg\n".to_owned();
+        for k in 0..500 {
+            let t_s = f64::from(k) * 0.02;
+            let [asked, came] = moves(t_s % 5.0);
+            let shown_s = if k < 250 { t_s + 1.0 } else { t_s + 1.0 - back_s };
+            writeln!(text, "{shown_s:.2},{asked},{came}").unwrap();
+        }
+        fs::write(folder.path().join("a.csv"), text).unwrap();
+        let (code, text, _) = said(&hydrotrace(folder.path(), "import a.csv -o a.mcap"));
+        assert!(code == 3 && text.contains("clock-jump x1") && !text.contains("reordered"), "{text}");
+        let report = said(&hydrotrace(folder.path(), "report a.mcap --json")).1;
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let codes: Vec<&str> =
+            report["remarks"].as_array().unwrap().iter().map(|r| r["code"].as_str().unwrap()).collect();
+        assert_eq!(codes, ["clock-jump", "clock-jump"], "{back_s}: {report}");
+        let starts: Vec<f64> = report["transitions"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|one| one["planned_onset_s"].as_f64().unwrap())
+            .collect();
+        assert_eq!(starts.len(), 2, "{back_s}");
+        assert!((starts[1] - starts[0] - 5.0).abs() < 0.03, "{back_s}: {starts:?}");
+    }
+}
+
+#[test]
+fn a_table_given_as_a_log_is_told_what_to_become() {
+    let folder = folder("t,J1_ref_deg,J1_act_deg,J2_ref_deg,J2_act_deg");
+    fs::copy(folder.path().join("a.csv"), folder.path().join("trace.log")).unwrap();
+    for words in ["report a.csv", "info a.csv", "report trace.log", "compare a.csv a.csv"] {
+        let (code, _, error) = said(&hydrotrace(folder.path(), words));
+        assert_eq!(code, 1, "{words}");
+        assert!(
+            error.contains("looks like a CSV file") && error.contains("`hydrotrace import "),
+            "{words}: {error}"
+        );
+        assert!(!error.contains("4D 43"), "{words}: {error}");
+    }
+}
+
+#[test]
+fn a_unit_that_an_option_spoils_is_told_by_that_option() {
+    let folder = folder("t,J1_ref_deg,J1_act_deg,J2_ref_deg,J2_act_deg");
+    hydrotrace(folder.path(), "import a.csv -o a.mcap");
+    for (option, hint) in [
+        ("--planned-degrees", "--planned-degrees does that to a plan in radians: drop it"),
+        ("--measured-degrees", "--measured-degrees does that to a measurement in radians: drop it"),
+    ] {
+        let (code, text, _) = said(&hydrotrace(folder.path(), &format!("report a.mcap {option}")));
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(code == 3 && text.contains(hint), "{option}: {text}");
+    }
+}
+
+#[test]
+fn one_run_on_both_sides_of_a_comparison_is_a_remark() {
+    let folder = folder("t,J1_ref_deg,J1_act_deg,J2_ref_deg,J2_act_deg");
+    hydrotrace(folder.path(), "import a.csv -o a.mcap");
+    fs::copy(folder.path().join("a.mcap"), folder.path().join("b.mcap")).unwrap();
+    for words in ["compare a.mcap a.mcap", "compare a.mcap ./a.mcap", "compare a.mcap b.mcap"] {
+        let (code, text, _) = said(&hydrotrace(folder.path(), words));
+        assert!(code == 3 && text.contains("same-run"), "{words}: {text}");
+    }
+}
+
+#[test]
+fn a_negative_limit_is_refused_in_its_own_words() {
+    for words in [
+        "report a.mcap --max-rms-deg -1",
+        "compare a.mcap b.mcap --max-p -1",
+        "join a.mcap --plan b.mcap -o c.mcap --at -1",
+    ] {
+        let (code, _, error) = said(&hydrotrace(Path::new("."), words));
+        assert!(code == 2 && error.contains("is not a non-negative"), "{words}: {error}");
+    }
+}

@@ -1,0 +1,4 @@
+//! Plans and the search for them.
+
+mod optima;
+mod search;

@@ -1,0 +1,369 @@
+//! Laws of the replay that hold for every run, and the gates of its detector.
+
+use std::ops::Range;
+
+use hydrotrace::{
+    replay::{Answer, Replay, Rules, Sensing, Transition, detector_score, replay, synthetic_run},
+    series::{JointKind, Pair},
+    units::DEGREE_RAD,
+};
+use proptest::prelude::*;
+
+fn of(pair: &Pair) -> Replay {
+    replay(std::slice::from_ref(pair), &Rules::default())
+}
+
+fn noiseless(seed: u64, delay_s: f64) -> Pair {
+    synthetic_run(seed, &Sensing { sigma_rad: 0.0, delay_s, ..Sensing::default() }).pair
+}
+
+fn recorded(t_s: Vec<f64>, planned: Vec<f64>, measured: Vec<f64>, segments: Vec<Range<usize>>) -> Pair {
+    Pair {
+        name: "a".into(),
+        kind: JointKind::Turns,
+        planned,
+        planned_velocity: None,
+        measured,
+        segments,
+        planned_interval_s: 0.01,
+        matched: t_s.len(),
+        unmatched: 0,
+        t_s,
+    }
+}
+
+/// A ramp from rest at `start_s`, of 4 degrees per second for 3 s.
+fn ramp(t_s: f64, start_s: f64) -> f64 {
+    4.0 * DEGREE_RAD * (t_s - start_s).clamp(0.0, 3.0)
+}
+
+fn onsets(replay: &Replay) -> Vec<(i8, f64, Option<f64>)> {
+    replay.transitions.iter().map(|t| (t.direction, t.planned_onset_s, t.measured_onset_s)).collect()
+}
+
+/// Any pair at all: uneven stamps, wild angles, cuts anywhere, speeds that mean nothing.
+fn any_pair() -> impl Strategy<Value = Pair> {
+    let sample = (1e-4..0.3_f64, -4.0..4.0_f64, -4.0..4.0_f64, -2.0..2.0_f64, prop::bool::weighted(0.1));
+    let scale = prop_oneof![Just(1.0), Just(1e-9), Just(0.0), Just(1e12), Just(1e200)];
+    (prop::collection::vec(sample, 1..120), scale, any::<bool>()).prop_map(|(rows, scale, with_speed)| {
+        let t_s: Vec<f64> = rows
+            .iter()
+            .scan(0.0, |now, row| {
+                *now += row.0;
+                Some(*now)
+            })
+            .collect();
+        let mut segments = Vec::new();
+        let mut start = 0;
+        for (i, row) in rows.iter().enumerate().skip(1) {
+            if row.4 {
+                segments.push(start..i);
+                start = i;
+            }
+        }
+        segments.push(start..rows.len());
+        let column = |value: fn(&(f64, f64, f64, f64, bool)) -> f64| rows.iter().map(value).collect();
+        let mut pair = recorded(t_s, column(|r| r.1), column(|r| r.2), segments);
+        pair.planned.iter_mut().chain(&mut pair.measured).for_each(|x| *x *= scale);
+        pair.planned_velocity = with_speed.then(|| column(|r| r.3));
+        pair
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_run_is_analysed_and_serialises(pairs in prop::collection::vec(any_pair(), 0..4)) {
+        let found = replay(&pairs, &Rules::default());
+        prop_assert_eq!(found.joints.len(), pairs.len());
+        prop_assert!(serde_json::to_string(&found).is_ok());
+        for joint in &found.joints {
+            let e = joint.tracking_error;
+            prop_assert!(e.peak_rad >= e.p95_rad && e.peak_rad >= e.mean_abs_rad * (1.0 - 1e-9));
+            prop_assert_eq!(joint.starts, found.transitions.iter().filter(|t| t.joint == joint.name).count().min(joint.starts));
+        }
+    }
+
+    #[test]
+    fn a_joint_on_its_plan_has_no_error(mut pair in any_pair()) {
+        pair.measured.clone_from(&pair.planned);
+        let found = of(&pair);
+        prop_assert_eq!(found.joints[0].tracking_error.peak_rad, 0.0);
+        prop_assert!(found.transitions.iter().all(|t| t.peak_error_rad == 0.0 && t.error_area_rad_s == 0.0));
+    }
+
+    #[test]
+    fn windows_and_motions_stay_within_their_segment(pair in any_pair()) {
+        for t in &of(&pair).transitions {
+            let inside = |at_s: f64| {
+                pair.segments.iter().position(|s| pair.t_s[s.start] <= at_s && at_s <= pair.t_s[s.end - 1])
+            };
+            if let Some(measured_s) = t.measured_onset_s {
+                prop_assert_eq!(inside(t.planned_onset_s), inside(measured_s), "{:?}", t);
+            }
+            prop_assert_eq!(inside(t.planned_onset_s), inside(t.window_s[1]));
+        }
+    }
+
+    #[test]
+    fn an_answer_has_an_instant_if_and_only_if_it_is_timed_and_every_start_is_counted_once(pair in any_pair()) {
+        let found = of(&pair);
+        for t in &found.transitions {
+            prop_assert_eq!(t.answer == Answer::Timed, t.measured_onset_s.is_some());
+        }
+        let count = |wanted: &[Answer]| found.transitions.iter().filter(|t| wanted.contains(&t.answer)).count();
+        let joint = &found.joints[0];
+        prop_assert_eq!(joint.unmatched_starts, count(&[Answer::Never]));
+        prop_assert_eq!(joint.untimed_starts, count(&[Answer::Creeps, Answer::Unclear]));
+        prop_assert_eq!(joint.starts, found.transitions.len());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_constant_offset_shifts_the_bias_and_nothing_in_time(seed in 0..1000_u64, offset in -0.02..0.02_f64) {
+        let pair = noiseless(seed, 0.1);
+        let mut off = pair.clone();
+        off.measured.iter_mut().for_each(|y| *y -= offset);
+        let (a, b) = (of(&pair), of(&off));
+        let shift = b.joints[0].tracking_error.bias_rad - a.joints[0].tracking_error.bias_rad;
+        prop_assert!((shift - offset).abs() < 1e-9);
+        prop_assert!((a.joints[0].lag_s.unwrap() - b.joints[0].lag_s.unwrap()).abs() < 1e-6);
+        prop_assert_eq!(a.transitions.len(), b.transitions.len());
+        for (a, b) in a.transitions.iter().zip(&b.transitions) {
+            let (Some(a), Some(b)) = (a.onset_delay_s, b.onset_delay_s) else {
+                prop_assert_eq!(a.onset_delay_s, b.onset_delay_s);
+                continue;
+            };
+            prop_assert!((a - b).abs() < 1e-3, "{} {}", a, b);
+        }
+    }
+
+    #[test]
+    fn a_pure_shift_is_the_lag_and_the_delay_of_every_start(seed in 0..1000_u64, delay_s in 0.0..0.3_f64) {
+        let found = of(&noiseless(seed, delay_s));
+        prop_assert!((found.joints[0].lag_s.unwrap() - delay_s).abs() < 0.003, "{:?}", found.joints[0].lag_s);
+        prop_assert!(!found.transitions.is_empty());
+        for t in &found.transitions {
+            prop_assert!((t.onset_delay_s.unwrap() - delay_s).abs() < 0.03, "{t:?}");
+        }
+        let mut off: Vec<f64> = found.transitions.iter().map(|t| (t.onset_delay_s.unwrap() - delay_s).abs()).collect();
+        off.sort_by(f64::total_cmp);
+        // Departures are tried every 5 ms.
+        prop_assert!(off[off.len() / 2] < 0.008, "{off:?}");
+    }
+
+    #[test]
+    fn a_pure_shift_is_lag_wherever_the_log_is_cut_and_off_the_path_no_more_than_off_the_plan(
+        seed in 0..1000_u64,
+        delay_s in 0.02..0.3_f64,
+        cut in 1..100_usize,
+    ) {
+        let mut pair = noiseless(seed, delay_s);
+        let n = pair.t_s.len();
+        pair.segments = vec![0..cut * n / 100, cut * n / 100..n];
+        let whole = of(&pair).whole_run;
+        let share = whole.lag_share.unwrap();
+        prop_assert!(share.share > 0.99 && share.mostly, "{share:?}");
+        if let Some([low, high]) = share.interval {
+            prop_assert!(low <= share.share && share.share <= high);
+        }
+        let path = whole.path_error.unwrap();
+        prop_assert!(path.rms_rad <= path.timed_rms_rad, "{path:?}");
+    }
+
+    #[test]
+    fn a_mirrored_run_gives_mirrored_results(seed in 0..1000_u64) {
+        let pair = synthetic_run(seed, &Sensing::default()).pair;
+        let mut mirrored = pair.clone();
+        let speeds = mirrored.planned_velocity.as_mut().unwrap();
+        mirrored.planned.iter_mut().chain(&mut mirrored.measured).chain(speeds).for_each(|x| *x = -*x);
+        let (a, b) = (of(&pair), of(&mirrored));
+        let back: Vec<Transition> = b
+            .transitions
+            .iter()
+            .map(|t| Transition {
+                direction: -t.direction,
+                peak_error_signed_rad: -t.peak_error_signed_rad,
+                ..t.clone()
+            })
+            .collect();
+        prop_assert_eq!(&a.transitions, &back);
+        prop_assert_eq!(a.joints[0].lag_s, b.joints[0].lag_s);
+        prop_assert_eq!(a.joints[0].tracking_error.bias_rad, -b.joints[0].tracking_error.bias_rad);
+    }
+
+    #[test]
+    fn given_speeds_and_slopes_of_the_plan_find_the_same_starts(seed in 0..1000_u64) {
+        let pair = noiseless(seed, 0.1);
+        let bare = Pair { planned_velocity: None, ..pair.clone() };
+        let (a, b) = (onsets(&of(&pair)), onsets(&of(&bare)));
+        prop_assert_eq!(a.len(), b.len());
+        for (a, b) in a.iter().zip(&b) {
+            prop_assert!(a.0 == b.0 && (a.1 - b.1).abs() < 0.03, "{:?} {:?}", a, b);
+        }
+    }
+}
+
+#[test]
+fn a_log_that_opens_in_motion_has_no_transition_there() {
+    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
+    let angle: Vec<f64> = t_s.iter().map(|&t| ramp(t, -1.0) + ramp(t, 6.0)).collect();
+    let n = t_s.len();
+    let found = of(&recorded(t_s, angle.clone(), angle, std::iter::once(0..n).collect()));
+    assert_eq!(found.transitions.len(), 1);
+    assert!((found.transitions[0].planned_onset_s - 6.0).abs() < 0.02);
+    assert_eq!((found.joints[0].unplanned_starts, found.joints[0].unmatched_starts), (0, 0));
+}
+
+#[test]
+fn a_step_across_a_cut_is_no_motion() {
+    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
+    let angle: Vec<f64> = (0..800).map(|k| if k < 400 { 0.0 } else { 1.0 }).collect();
+    let found = of(&recorded(t_s.clone(), angle.clone(), angle.clone(), vec![0..400, 400..800]));
+    assert!(found.transitions.is_empty() && found.stops.is_empty());
+    assert!(!found.joints[0].moves && !found.joints[0].plan_moves);
+    // Without the cut it is one.
+    let found = of(&recorded(t_s, angle.clone(), angle, std::iter::once(0..800).collect()));
+    assert!(found.joints[0].moves);
+}
+
+#[test]
+fn a_joint_at_rest_gets_no_invented_numbers() {
+    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
+    let found = of(&recorded(t_s, vec![0.5; 800], vec![0.49; 800], std::iter::once(0..800).collect()));
+    let joint = &found.joints[0];
+    assert!(!joint.moves && !joint.plan_moves);
+    assert_eq!((joint.lag_s, joint.lag_correlation, joint.lag_interval_s), (None, None, None));
+    assert!((joint.standstill_error.unwrap().bias_rad - 0.01).abs() < 1e-12);
+    assert_eq!(found.whole_run.concentration, None);
+}
+
+#[test]
+fn a_joint_that_ignores_its_plan_has_an_unmatched_start_without_onset() {
+    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
+    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
+    let found = of(&recorded(t_s, planned, vec![0.0; 800], std::iter::once(0..800).collect()));
+    assert_eq!((found.joints[0].starts, found.joints[0].unmatched_starts), (1, 1));
+    let transition = &found.transitions[0];
+    assert_eq!((transition.measured_onset_s, transition.onset_delay_s), (None, None));
+    assert_eq!((transition.displacement_delay_s, transition.jump_rad_s), (None, None));
+    assert!((transition.peak_error_rad - 12.0 * DEGREE_RAD).abs() < 1e-9);
+}
+
+#[test]
+fn a_joint_that_creeps_into_its_motion_answers_without_an_instant() {
+    // It has crept at 0.3 degrees per second for 1.4 s when its plan starts.
+    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
+    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
+    let creep = |t: f64| 0.3 * DEGREE_RAD * (t - 0.6).clamp(0.0, 1.4);
+    let measured = t_s.iter().map(|&t| creep(t) + ramp(t, 2.0)).collect();
+    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..1000).collect()));
+    assert_eq!(found.transitions[0].answer, Answer::Creeps);
+    assert_eq!((found.transitions[0].measured_onset_s, found.transitions[0].onset_delay_s), (None, None));
+    let joint = &found.joints[0];
+    assert_eq!((joint.starts, joint.unmatched_starts, joint.untimed_starts), (1, 0, 1));
+}
+
+#[test]
+fn a_drift_of_the_plan_just_before_a_large_move_says_nothing_of_the_joint() {
+    // 0.35 degrees one way in half a second, then 12 the other way, which the joint follows.
+    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
+    let drift = |t: f64| 0.7 * DEGREE_RAD * (t - 2.0).clamp(0.0, 0.5);
+    let planned: Vec<f64> = t_s.iter().map(|&t| drift(t) - ramp(t, 2.55)).collect();
+    let measured: Vec<f64> = t_s.iter().map(|&t| -ramp(t, 2.65)).collect();
+    let pair = recorded(t_s.clone(), planned, measured, std::iter::once(0..1000).collect());
+    let found = of(&pair);
+    let answers = |found: &Replay| found.transitions.iter().map(|t| t.answer).collect::<Vec<Answer>>();
+    assert_eq!(answers(&found), [Answer::Unclear, Answer::Timed]);
+    // It is the short time that decides, not the small travel.
+    let hasty = Rules { match_after_s: 0.3, ..Rules::default() };
+    assert_eq!(answers(&replay(&[pair], &hasty)), [Answer::Never, Answer::Timed]);
+    assert_eq!((found.joints[0].unmatched_starts, found.joints[0].untimed_starts), (0, 1));
+    // The same drift, had it gone on: a joint that stands still then is one that does not answer.
+    let drift = |t: f64| 0.4 * DEGREE_RAD * (t - 2.0).clamp(0.0, 2.0);
+    let planned: Vec<f64> = t_s.iter().map(|&t| drift(t) - ramp(t, 4.5)).collect();
+    let measured: Vec<f64> = t_s.iter().map(|&t| -ramp(t, 4.6)).collect();
+    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..1000).collect()));
+    assert_eq!(answers(&found), [Answer::Never, Answer::Timed]);
+}
+
+/// How much of the error the lag of a joint explains that follows a ramp of 4 degrees per second, 3 s long, so.
+fn lag_share(follow: impl Fn(f64) -> f64) -> f64 {
+    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
+    let planned = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
+    let measured = t_s.iter().map(|&t| follow(t)).collect();
+    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..1000).collect()));
+    assert_eq!(found.joints[0].lag_share, found.whole_run.lag_share);
+    found.whole_run.lag_share.unwrap().share
+}
+
+#[test]
+fn a_lag_explains_the_error_of_a_delayed_joint_and_not_that_of_a_late_start_or_an_offset() {
+    let delayed = lag_share(|t| ramp(t, 2.12));
+    assert!(delayed > 0.99, "{delayed}");
+    // It waits 0.6 s, is back on its plan 0.4 s later, and stays on it.
+    let late = lag_share(|t| if t < 2.6 { 0.0 } else { ramp(t, 2.0).min(10.0 * DEGREE_RAD * (t - 2.6)) });
+    assert!(late < 0.3, "{late}");
+    let offset = lag_share(|t| ramp(t, 2.0) - 0.5 * DEGREE_RAD);
+    assert!(offset < 0.05, "{offset}");
+}
+
+#[test]
+fn a_stop_across_a_cut_answers_nothing() {
+    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
+    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
+    let measured: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.6)).collect();
+    let found = of(&recorded(t_s, planned, measured, vec![0..520, 520..800]));
+    let stops: Vec<_> = found.stops.iter().map(|s| (s.planned_s.is_some(), s.measured_s.is_some())).collect();
+    assert_eq!(stops, [(true, false), (false, true)]);
+}
+
+#[test]
+fn a_joint_that_moves_the_other_way_answers_nothing() {
+    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
+    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
+    let measured = t_s.iter().map(|&t| -ramp(t, 2.1)).collect();
+    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..800).collect()));
+    assert_eq!((found.joints[0].unmatched_starts, found.joints[0].unplanned_starts), (1, 1));
+    assert_eq!(found.transitions[0].measured_onset_s, None);
+}
+
+#[test]
+fn a_known_start_has_the_metrics_worked_out_by_hand() {
+    // The joint waits 0.2 s, then follows at the planned speed: the error grows to 0.8 degrees.
+    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
+    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
+    let measured: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.2)).collect();
+    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..1000).collect()));
+    let transition = &found.transitions[0];
+    let near = |got: f64, want: f64, tolerance: f64| assert!((got - want).abs() < tolerance, "{got} {want}");
+    near(transition.planned_onset_s, 2.0, 0.01);
+    // No joint jumps to speed as this one does: the fit gives it 30 ms for it.
+    near(transition.onset_delay_s.unwrap(), 0.2, 0.02);
+    near(transition.displacement_delay_s.unwrap(), 0.2, 1e-6);
+    near(transition.breakaway_error_rad.unwrap(), 0.8 * DEGREE_RAD, 0.1 * DEGREE_RAD);
+    near(transition.peak_error_rad, 0.8 * DEGREE_RAD, 1e-9);
+    // 0.8 degrees for 3 s, less the two ramps of 0.2 s, which make up for each other.
+    near(transition.error_area_rad_s, 2.4 * DEGREE_RAD, 0.01 * DEGREE_RAD);
+    near(transition.settling_time_s.unwrap(), 3.2, 0.05);
+    assert_eq!(transition.overshoot_rad, 0.0);
+    // Being late at the end is no standstill error.
+    assert!(found.joints[0].standstill_error.unwrap().peak_rad < 1e-12);
+}
+
+#[test]
+fn starts_are_found_at_the_promised_rate_and_sharp_onsets_to_30_ms() {
+    for (sigma_deg, gate) in [(0.02, 0.99), (0.05, 0.95)] {
+        let sensing = Sensing { sigma_rad: sigma_deg * DEGREE_RAD, ..Sensing::default() };
+        let score = detector_score(1, 30, &sensing, &Rules::default());
+        assert!(score.starts > 300, "{score:?}");
+        assert!(score.precision >= gate && score.recall >= gate, "{score:?}");
+        assert!(score.onset_sharp.median_s.abs() < 0.030, "{score:?}");
+        assert!(score.onset_sharp.mad_sd_s < 0.035, "{score:?}");
+        assert!(score.delay_coverage >= 0.95, "{score:?}");
+    }
+}

@@ -1,0 +1,4 @@
+//! Splines against SciPy and against their own laws.
+
+mod conformance;
+mod properties;
