@@ -25,8 +25,8 @@ pub use error::ArmError;
 pub use hydraulics::{Arm, Hydraulics};
 pub use inertia::Inertia;
 pub use inverse_dynamics::{LANES, Load, Motion, Workspace, inverse_dynamics};
-pub use urdf::sliding_joints;
 pub use shape::{Mesh, Shape, Solid, quaternion_xyzw};
+pub use urdf::sliding_joints;
 
 /// Place and orientation of a frame in another; lengths in m.
 pub type Pose = nalgebra::IsometryMatrix3<f64>;

@@ -8,8 +8,9 @@ use super::{
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
-    render::{imported_json, imported_parts},
-    workflow::import::run as import,
+    document::pretty,
+    render::imported_parts,
+    workflow::import::{ImportDocument, run as import},
 };
 
 pub(super) fn run(
@@ -21,7 +22,7 @@ pub(super) fn run(
     spare_stdout(Some(&args.output))?;
     let imported = import(&args.inputs()?)?;
     if args.json {
-        deliver(&imported_json(&imported), None, out)?;
+        deliver(&pretty(&ImportDocument::of(&imported)), None, out)?;
         say_remarks(&imported.remarks, err);
     } else {
         deliver(&shown(&imported_parts(&args.output.to_string_lossy(), &imported), None), None, out)?;

@@ -8,14 +8,15 @@ use super::{
     output::{deliver, say_remarks, shown},
 };
 use crate::{
-    render::{info_json, info_parts},
-    workflow::info::{Inputs, run as look},
+    document::pretty,
+    render::info_parts,
+    workflow::info::{InfoDocument, Inputs, run as look},
 };
 
 pub(super) fn run(args: &InfoArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     let survey = look(&Inputs { logs: args.logs.clone(), read: args.read.options() })?;
     if args.json {
-        deliver(&info_json(&survey), None, out)?;
+        deliver(&pretty(&InfoDocument::of(&survey)), None, out)?;
         say_remarks(&survey.remarks, err);
     } else {
         deliver(&shown(&info_parts(&survey), None), None, out)?;

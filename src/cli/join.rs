@@ -8,8 +8,9 @@ use super::{
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
-    render::{joined_json, joined_parts},
-    workflow::join::run as join,
+    document::pretty,
+    render::joined_parts,
+    workflow::join::{JoinDocument, run as join},
 };
 
 pub(super) fn run(args: &JoinArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
@@ -18,7 +19,7 @@ pub(super) fn run(args: &JoinArgs, out: &mut impl Write, err: &mut impl Write) -
     spare_stdout(Some(&args.output))?;
     let joined = join(&args.inputs())?;
     if args.json {
-        deliver(&joined_json(&joined), None, out)?;
+        deliver(&pretty(&JoinDocument::of(&joined)), None, out)?;
         say_remarks(&joined.remarks, err);
     } else {
         deliver(&shown(&joined_parts(&joined, &args.plan, &args.output), None), None, out)?;

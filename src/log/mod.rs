@@ -29,7 +29,7 @@ pub use export::{ExportError, RunTable};
 pub use files::{LogFiles, ScannedLog};
 #[doc(hidden)]
 pub use files::{Passes, passes};
-pub use options::{ReadOptions, Selector, Sides, SignalRole, TimeBase, Wanted};
+pub use options::{ReadOptions, Selector, Sides, SignalRole, TimeBase, WantedSignal};
 pub use read::{
     read_plan, read_recording,
     recording::{Attachment, Command, FileInfo, Recording, SourceInfo, Survey, TopicInfo},

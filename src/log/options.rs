@@ -15,7 +15,7 @@ pub struct ReadOptions {
     /// Topics of the measurement; empty: found by type and name.
     pub measured: Vec<Selector>,
     /// Signals to read beside them, in the same pass.
-    pub signals: Vec<Wanted>,
+    pub signals: Vec<WantedSignal>,
     /// Joints to read, and names for topics that carry none; empty: all.
     pub joints: Vec<String>,
     /// Which clock to use; `None`: the header's where it is usable.
@@ -46,7 +46,7 @@ pub enum Sides {
 
 /// A signal to read.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Wanted {
+pub struct WantedSignal {
     /// Which.
     pub role: SignalRole,
     /// Where it is; then it must be there. `None`: where our own logs have it, if it is there.
@@ -98,7 +98,7 @@ impl SignalRole {
     }
 }
 
-impl Wanted {
+impl WantedSignal {
     /// A signal that is read if it is where our own logs have it.
     pub const fn usual(role: SignalRole) -> Self {
         Self { role, topic: None }

@@ -1,27 +1,7 @@
 //! How a CSV file was read.
 
-use serde::Serialize;
-
-use super::{NONE, Part, Sheet, counted, json, tables::remark_parts};
-use crate::{log::Understood, remark::Remark, workflow::import::Outputs};
-
-#[derive(Serialize)]
-struct Document<'a> {
-    format: &'static str,
-    program: &'static str,
-    understood: &'a Understood,
-    remarks: &'a [Remark],
-}
-
-/// As JSON.
-pub fn imported_json(imported: &Outputs) -> String {
-    json::pretty(&Document {
-        format: "hydrotrace.import.v1",
-        program: json::PROGRAM,
-        understood: &imported.understood,
-        remarks: imported.remarks.as_slice(),
-    })
-}
+use super::{NONE, Part, Sheet, counted, tables::remark_parts};
+use crate::{log::Understood, workflow::import::Outputs};
 
 /// As sentences and tables.
 pub fn imported_parts(output: &str, imported: &Outputs) -> Vec<Part> {
@@ -56,8 +36,8 @@ pub fn imported_parts(output: &str, imported: &Outputs) -> Vec<Part> {
         fact("time", format!("{clock}{counts}")),
     ]));
     let rows = columns.iter().map(|column| {
-        let unit = match column.unit {
-            Some(unit) if column.unit_from == "file" => unit.to_owned(),
+        let unit = match &column.unit {
+            Some(unit) if column.unit_from == "file" => unit.clone(),
             Some(unit) => format!("{unit} ({})", column.unit_from),
             None => NONE.to_owned(),
         };

@@ -2,48 +2,8 @@
 
 use std::path::Path;
 
-use serde::Serialize;
-
-use super::{Part, counted, deg, json, tables::remark_parts};
-use crate::{remark::Remark, workflow::join::Joined};
-
-#[derive(Serialize)]
-struct Document<'a> {
-    format: &'static str,
-    program: &'static str,
-    sent: Option<&'a str>,
-    sent_is_command: bool,
-    at_s: f64,
-    rms_difference_rad: Option<f64>,
-    other_places: Option<usize>,
-    duration_s: f64,
-    rest_before_s: f64,
-    rest_after_s: f64,
-    joints: usize,
-    messages: u64,
-    files: &'a [String],
-    remarks: &'a [Remark],
-}
-
-/// As JSON.
-pub fn joined_json(joined: &Joined) -> String {
-    json::pretty(&Document {
-        format: "hydrotrace.join.v1",
-        program: json::PROGRAM,
-        sent: joined.sent.as_deref(),
-        sent_is_command: joined.commanded,
-        at_s: joined.at_s,
-        rms_difference_rad: joined.located.map(|found| found.rms_rad),
-        other_places: joined.located.map(|found| found.others),
-        duration_s: joined.duration_s,
-        rest_before_s: joined.rest_s[0],
-        rest_after_s: joined.rest_s[1],
-        joints: joined.joints,
-        messages: joined.messages,
-        files: &joined.files,
-        remarks: joined.remarks.as_slice(),
-    })
-}
+use super::{Part, counted, deg, tables::remark_parts};
+use crate::workflow::join::Joined;
 
 /// As sentences.
 pub fn joined_parts(joined: &Joined, plan: &Path, output: &Path) -> Vec<Part> {

@@ -35,9 +35,9 @@ pub use csv::transitions_csv;
 pub use demo::{Story, demo_parts};
 pub use excite::excited_parts;
 pub use fit::{fit_json, fit_parts, limits_toml};
-pub use import::{imported_json, imported_parts};
-pub use info::{info_json, info_parts};
-pub use join::{joined_json, joined_parts};
+pub use import::imported_parts;
+pub use info::info_parts;
+pub use join::joined_parts;
 pub use json::report_json;
 pub use markup::{Part, Sheet, markdown, noted, shown, text};
 pub use moea::{curve_svg, curves_csv, front_csv, moea_json, moea_parts};
@@ -49,7 +49,7 @@ pub use page::{
 pub use plan::{broken_lines, ceiling_lines, judged_json, judged_parts, plan_json, plan_parts};
 #[cfg(feature = "png")]
 pub use raster::{Raster, raster};
-pub use recover::{recovered_json, recovered_parts};
+pub use recover::recovered_parts;
 pub use replan::{replan_json, replan_parts};
 pub use score::{score_json, score_parts};
 pub use simulate::simulated_line;

@@ -1,33 +1,7 @@
 //! What a recovery saved.
 
-use serde::Serialize;
-
-use super::{Part, json, tables::remark_parts};
-use crate::{log::Recovered, remark::Remark};
-
-#[derive(Serialize)]
-struct Document<'a> {
-    format: &'static str,
-    program: &'static str,
-    messages: u64,
-    blocks: usize,
-    dropped_blocks: u64,
-    attachments: usize,
-    remarks: &'a [Remark],
-}
-
-/// As JSON.
-pub fn recovered_json(recovered: &Recovered) -> String {
-    json::pretty(&Document {
-        format: "hydrotrace.recover.v1",
-        program: json::PROGRAM,
-        messages: recovered.messages,
-        blocks: recovered.blocks,
-        dropped_blocks: recovered.dropped_blocks,
-        attachments: recovered.attachments,
-        remarks: recovered.remarks.as_slice(),
-    })
-}
+use super::{Part, tables::remark_parts};
+use crate::log::Recovered;
 
 /// As sentences.
 pub fn recovered_parts(output: &str, recovered: &Recovered) -> Vec<Part> {

@@ -5,7 +5,7 @@ use std::{ops::Range, sync::Arc};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::math::median;
+use crate::math::{linear, median};
 
 /// What the values of a [`Signal`] are, and so their unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -236,13 +236,10 @@ impl Signal {
     /// The first component at a time inside a segment, by a line between samples; `None` between
     /// segments and outside.
     pub fn at(&self, t_s: f64) -> Option<f64> {
-        let x = self.values();
+        let (t, x) = (&self.t_s, self.values());
         Some(match self.place(&mut 0, t_s)? {
             Place::At(i) => x[i],
-            Place::After(i) => {
-                let share = (t_s - self.t_s[i]) / (self.t_s[i + 1] - self.t_s[i]);
-                x[i] + share * (x[i + 1] - x[i])
-            }
+            Place::After(i) => linear(x[i], x[i + 1], t[i + 1] - t[i], t_s - t[i]).position,
         })
     }
 

@@ -4,6 +4,7 @@ use rerun::{Color, LineStrips2D, Points2D, RecordingStream};
 
 use super::{ViewError, color, stream::single};
 use crate::{
+    math::range,
     units::degrees_from_radians,
     workflow::view::{Front, Scene},
 };
@@ -68,10 +69,7 @@ struct Axes([[f64; 2]; 3]);
 
 impl Axes {
     fn of(all: &[Objectives]) -> Self {
-        let range = |k: usize| {
-            all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(f[k]), b.max(f[k])])
-        };
-        Self([0, 1, 2].map(range))
+        Self([0, 1, 2].map(|k| range(all.iter().map(|f| f[k]))))
     }
 
     fn share(&self, f: &Objectives, k: usize) -> f64 {

@@ -29,6 +29,7 @@ mod fit;
 mod golden;
 mod log_read;
 mod log_write;
+mod one_pass;
 mod plan;
 mod plant;
 mod readme;

@@ -15,7 +15,7 @@ use crate::{
     arm::sliding_joints,
     log::{
         error::LogError,
-        options::{ReadOptions, SignalRole, TimeBase, Wanted},
+        options::{ReadOptions, SignalRole, TimeBase, WantedSignal},
         source::{Role, Stamps},
     },
     remark::{Code, Remarks},
@@ -42,8 +42,8 @@ pub(super) fn assemble(
         Err(error) if wanted.topic.is_some() => Err(error),
         other => Ok(other.ok().map(|candidate| (wanted, candidate))),
     });
-    let beside: Vec<Option<(&Wanted, Candidate)>> = beside.collect::<Result<_, _>>()?;
-    let beside: Vec<(&Wanted, Candidate)> = beside.into_iter().flatten().collect();
+    let beside: Vec<Option<(&WantedSignal, Candidate)>> = beside.collect::<Result<_, _>>()?;
+    let beside: Vec<(&WantedSignal, Candidate)> = beside.into_iter().flatten().collect();
 
     let chosen = choice.measured.iter().chain(&choice.planned);
     let mut assembly = Assembly::new(extracted, base, sliding, chosen, &mut remarks);
@@ -52,7 +52,8 @@ pub(super) fn assemble(
     let mut measured = assembly.series(&choice.measured, &pending, degrees, None, &mut remarks);
     pending.drain(..choice.planned.len());
     let degrees = options.planned_in_degrees;
-    let mut planned = assembly.series(&choice.planned, &pending, degrees, Some((choice, &measured)), &mut remarks);
+    let mut planned =
+        assembly.series(&choice.planned, &pending, degrees, Some((choice, &measured)), &mut remarks);
     let mut command = None;
     let mut signals = BTreeMap::new();
     for (wanted, candidate) in &beside {
@@ -71,7 +72,9 @@ pub(super) fn assemble(
             command = Some(Command { topic: assembly.topic(candidate).to_owned(), series });
         } else {
             let found = assembly.signals(candidate, wanted.role, &pending, &mut doubts);
-            let kept = |signal: &Signal| options.joints.is_empty() || options.joints.iter().any(|j| j == signal.name());
+            let kept = |signal: &Signal| {
+                options.joints.is_empty() || options.joints.iter().any(|j| j == signal.name())
+            };
             signals.insert(wanted.role, found.into_iter().filter(kept).collect());
         }
     }
@@ -117,7 +120,7 @@ fn remark_choice(choice: &Choice, options: &ReadOptions, remarks: &mut Remarks) 
 }
 
 /// Where a signal is, on a clock that runs.
-fn candidate(extracted: &Extracted, wanted: &Wanted, base: TimeBase) -> Result<Candidate, LogError> {
+fn candidate(extracted: &Extracted, wanted: &WantedSignal, base: TimeBase) -> Result<Candidate, LogError> {
     let role = if wanted.role == SignalRole::Command { Role::Planned } else { Role::Beside };
     let candidate = named(extracted, &wanted.selector(), role)?;
     if let Content::Table(table) = &extracted.sources[candidate.source].content
@@ -160,7 +163,8 @@ impl Assembly {
             }
         }
         new.epoch_ns = clocks.values().filter_map(|clock| clock.t_ns.first()).min().copied().unwrap_or(0);
-        new.axes = clocks.into_iter().map(|(source, clock)| (source, Axis::new(clock, new.epoch_ns))).collect();
+        new.axes =
+            clocks.into_iter().map(|(source, clock)| (source, Axis::new(clock, new.epoch_ns))).collect();
         new
     }
 
@@ -221,7 +225,8 @@ impl Assembly {
     ) -> Series {
         let mut series = Series::default();
         for (place, candidate) in chosen.iter().enumerate() {
-            let pending: Vec<&Candidate> = chosen[place + 1..].iter().chain(pending.iter().copied()).collect();
+            let pending: Vec<&Candidate> =
+                chosen[place + 1..].iter().chain(pending.iter().copied()).collect();
             let found = self.samples(candidate, true, &pending, remarks);
             let tracks = found.into_iter().filter_map(|one| {
                 let kind = self.kind(&one.name);
@@ -270,7 +275,13 @@ impl Assembly {
         }
     }
 
-    fn source_info(&self, choice: &Choice, time_base_why: String, measured: &Series, planned: &Series) -> SourceInfo {
+    fn source_info(
+        &self,
+        choice: &Choice,
+        time_base_why: String,
+        measured: &Series,
+        planned: &Series,
+    ) -> SourceInfo {
         let join = |all: &[Candidate], text: &dyn Fn(&Candidate) -> String| {
             let mut list: Vec<String> = all.iter().map(text).collect();
             list.dedup();
@@ -295,7 +306,8 @@ impl Assembly {
             messages: choice.measured.iter().map(|c| self.extracted.topic_of(c.source).messages).sum(),
             epoch_ns: self.epoch_ns,
             duration_s: ends.copied().fold(0.0, f64::max),
-            recorder_delay_s: delays_ns.map(|[_, middle, most]| [middle, most].map(|ns| seconds_since(0, ns))),
+            recorder_delay_s: delays_ns
+                .map(|[_, middle, most]| [middle, most].map(|ns| seconds_since(0, ns))),
         }
     }
 }

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     log::{
-        LogError,
+        error::LogError,
         options::{SignalRole, TimeBase},
     },
     remark::Remarks,
-    series::{Series, Signal},
+    series::{Series, Signal, Track},
 };
 
 /// A file of the recording.
@@ -150,4 +150,14 @@ pub struct Survey {
     pub recording: Result<Recording, LogError>,
     /// Doubts about the files.
     pub remarks: Remarks,
+}
+
+impl Survey {
+    /// The joints that a report would cover.
+    pub fn joints(&self) -> impl Iterator<Item = &str> {
+        let both = |recording: &'_ Recording, name: &str| recording.measured.track(name).is_some();
+        let recording = self.recording.iter();
+        recording
+            .flat_map(move |r| r.planned.tracks.iter().map(Track::name).filter(move |name| both(r, name)))
+    }
 }

@@ -101,7 +101,8 @@ pub(super) fn samples(
         let whole = axis.as_read
             && values.len() == axis.rows.len()
             && values.iter().all(|q| q.is_finite())
-            && !(positions && (0..values.len()).any(|k| is_spike(k, values.len(), |i| axis.t_s[i], |i| values[i])));
+            && !(positions
+                && (0..values.len()).any(|k| is_spike(k, values.len(), |i| axis.t_s[i], |i| values[i])));
         let ((t_s, cuts, jumps), values, velocity) = if whole {
             ((axis.t_s.clone(), axis.cuts.clone(), axis.jumps.clone()), values, speed)
         } else {

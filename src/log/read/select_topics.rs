@@ -246,17 +246,19 @@ fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<V
 
 /// What the caller named.
 pub(super) fn named(extracted: &Extracted, selector: &Selector, role: Role) -> Result<Candidate, LogError> {
-    let topic = extracted.topics.iter().position(|t| t.topic == selector.topic).ok_or_else(|| LogError::NoTopic {
-        topic: selector.topic.clone(),
-        nearest: nearest(&selector.topic, extracted.topics.iter().map(|t| t.topic.as_str())),
-        present: present(extracted),
-    })?;
+    let topic =
+        extracted.topics.iter().position(|t| t.topic == selector.topic).ok_or_else(|| LogError::NoTopic {
+            topic: selector.topic.clone(),
+            nearest: nearest(&selector.topic, extracted.topics.iter().map(|t| t.topic.as_str())),
+            present: present(extracted),
+        })?;
     let sources = (0..extracted.sources.len()).filter(|&s| extracted.sources[s].topic == topic);
     let fitting = sources.flat_map(|s| of_source(extracted, s, role, selector.field.as_deref()));
     fitting.min_by_key(|c| (c.rank, c.field)).ok_or_else(|| {
         let TopicCount { topic: name, type_name, .. } = &extracted.topics[topic];
         let fields = fields_of(extracted, topic);
-        let near = |field: &String| nearest(field, fields.iter().map(String::as_str)).map(String::into_boxed_str);
+        let near =
+            |field: &String| nearest(field, fields.iter().map(String::as_str)).map(String::into_boxed_str);
         LogError::NoField {
             topic: name.clone(),
             type_name: type_name.as_str().into(),

@@ -1,12 +1,11 @@
 //! The one clock of all topics: two clocks would differ by more than the lag that is measured.
 
-use super::{content::{Content, Extracted}, select_topics::Choice};
+use super::{
+    content::{Content, Extracted},
+    select_topics::Choice,
+};
 use crate::{
-    log::{
-        error::LogError,
-        options::TimeBase,
-        source::Stamps,
-    },
+    log::{error::LogError, options::TimeBase, source::Stamps},
     remark::{Code, Remarks},
 };
 

@@ -101,8 +101,7 @@ fn trajectory(
     let fits =
         |values: &[f64]| values.is_empty() || values.len() == n && values.iter().all(|v| v.is_finite());
     let sound = raw.points.iter().all(|p| {
-        p.positions.len() == n
-            && [&p.positions, &p.velocities, &p.accelerations].iter().all(|v| fits(v))
+        p.positions.len() == n && [&p.positions, &p.velocities, &p.accelerations].iter().all(|v| fits(v))
     });
     let increasing = raw.points.windows(2).all(|w| w[0].since_start_ns < w[1].since_start_ns);
     if !sound || !increasing || raw.points.first().is_some_and(|p| p.since_start_ns < 0) {
@@ -124,4 +123,3 @@ fn trajectory(
     });
     Some(PlannedTrajectory { start_s, joints: joints.collect() })
 }
-

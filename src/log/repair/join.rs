@@ -1,12 +1,6 @@
 //! A log with a plan put into it.
 
-use std::{
-    collections::BTreeMap,
-    io::Write,
-    iter::Peekable,
-    path::Path,
-    slice::Iter,
-};
+use std::{collections::BTreeMap, io::Write, iter::Peekable, path::Path, slice::Iter};
 
 use super::copy::{Copier, CopyError, copy_files};
 use crate::{

@@ -1,8 +1,12 @@
 //! `import`: a CSV file becomes a log.
 
+mod document;
+
 use std::path::PathBuf;
 
 use thiserror::Error;
+
+pub use document::ImportDocument;
 
 use crate::{
     atomic_file::{AtomicError, write_atomically},

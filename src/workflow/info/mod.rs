@@ -1,6 +1,10 @@
 //! `info`: what is in a log, what a report would use, and how healthy it is.
 
+mod document;
+
 use std::path::PathBuf;
+
+pub use document::InfoDocument;
 
 use crate::log::{LogError, ReadOptions, Survey, survey};
 

@@ -1,23 +1,24 @@
 //! `join`: the plan into the log of a run that holds what was sent and what came of it.
 
+mod document;
 mod place;
 
 use std::path::PathBuf;
 
 use thiserror::Error;
 
+pub use document::JoinDocument;
+
 use super::{
     carried::plan_log::{PROVENANCE, STARTS},
+    carried::rest::{RUN_LEAD_S, RUN_TAIL_S},
     carried::series_log::states,
     carried::stamp::instants,
-    simulate::log::{LEAD_S, TAIL_S},
 };
 use crate::{
-    log::{
-        Addition, LogError, PlanSample, ReadOptions, Recording, TimeBase, join, read_measured, read_recording,
-    },
+    log::{Addition, LogError, LogFiles, PlanSample, ReadOptions, Sides, TimeBase},
     remark::{Code, Remarks},
-    series::{Located, Series, SignalError, Track},
+    series::{Located, Series, Track},
     units::{DEGREE_RAD, nanoseconds},
 };
 use place::Plan;
@@ -98,9 +99,6 @@ pub enum JoinFailure {
         /// First and last measurement.
         measured_s: [f64; 2],
     },
-    /// Times that make no track.
-    #[error("the times of the command do not fit those of the plan")]
-    Track(#[from] SignalError),
 }
 
 /// What was found, and what the new log holds.
@@ -142,7 +140,14 @@ const RATE_HZ: f64 = 100.0;
 /// [`JoinFailure`], naming what is missing; nothing is written then.
 pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     let plan = Plan::read(&inputs.plan)?;
-    let run = read_run(inputs)?;
+    let files = LogFiles::open(&inputs.logs)?;
+    let log = files.scan()?;
+    // The measurement is enough if the caller says when the plan began.
+    let sides = if inputs.at_s.is_some() { Sides::MeasurementAtLeast } else { Sides::Both };
+    let run = log.read(&ReadOptions { sides, ..inputs.read.clone() }).map_err(|error| match error {
+        LogError::Missing { missing: "planned", .. } => JoinFailure::NothingSent(error),
+        other => other.into(),
+    })?;
     // A run that was read without a plan has none.
     let sent = (!run.planned.tracks.is_empty()).then_some(&run.planned);
     let topic = format!("{}:{}", run.source.planned_topic, run.source.planned_field);
@@ -167,8 +172,8 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     }
     let rest_s = match sent {
         Some(sent) => [
-            rest_s(sent, start_s, -1.0, LEAD_S.min(start_s - measured_s[0])),
-            rest_s(sent, end_s, 1.0, TAIL_S.min(measured_s[1] - end_s)),
+            rest_s(sent, start_s, -1.0, RUN_LEAD_S.min(start_s - measured_s[0])),
+            rest_s(sent, end_s, 1.0, RUN_TAIL_S.min(measured_s[1] - end_s)),
         ],
         None => [0.0; 2],
     };
@@ -202,7 +207,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         files: &plan.files,
         metadata: (PROVENANCE, provenance),
     };
-    let messages = join(&inputs.logs, &addition, &inputs.output)?;
+    let messages = log.join(&addition, &inputs.output)?;
     Ok(Joined {
         sent: located.map(|_| topic),
         commanded,
@@ -215,20 +220,6 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         files: plan.files.into_iter().map(|file| file.name).collect(),
         remarks,
     })
-}
-
-/// What was sent and measured; measured alone where the caller says when the plan began.
-fn read_run(inputs: &Inputs) -> Result<Recording, JoinFailure> {
-    match (read_recording(&inputs.logs, &inputs.read), inputs.at_s) {
-        (Ok(run), _) => Ok(run),
-        (Err(LogError::Missing { missing: "planned", .. }), Some(_)) => {
-            Ok(read_measured(&inputs.logs, &inputs.read)?)
-        }
-        (Err(error @ LogError::Missing { missing: "planned", .. }), None) => {
-            Err(JoinFailure::NothingSent(error))
-        }
-        (Err(error), _) => Err(error.into()),
-    }
 }
 
 /// How long what is sent stays where it is at an instant, before or after it, s.

@@ -4,13 +4,12 @@ use std::{collections::BTreeMap, path::Path};
 
 use super::JoinFailure;
 use crate::{
-    log::{Attachment, LogError, ReadOptions, Selector, Topics, read_plan},
+    log::{Attachment, ReadOptions, SignalRole, WantedSignal, read_plan},
     remark::{Code, Remarks},
     series::{Located, Series, locate},
     workflow::{
         carried::plan_log::{FRONT, PROVENANCE, TASK},
         carried::schedule::starts_s,
-        fit::observe::on_origin,
     },
 };
 
@@ -33,21 +32,14 @@ pub(super) struct Plan {
 
 impl Plan {
     pub(super) fn read(path: &Path) -> Result<Self, JoinFailure> {
-        let paths = [path.to_owned()];
-        let plan = read_plan(&paths, &ReadOptions::default())?;
-        let topic = Selector { topic: Topics::default().command, field: None };
-        let command = match read_plan(&paths, &ReadOptions { planned: vec![topic], ..ReadOptions::default() })
-        {
-            Ok(command) => Some(on_origin(&command, plan.source.epoch_ns)?),
-            Err(LogError::NoTopic { .. }) => None,
-            Err(error) => return Err(error.into()),
-        };
+        let signals = vec![WantedSignal::usual(SignalRole::Command)];
+        let plan = read_plan(&[path.to_owned()], &ReadOptions { signals, ..ReadOptions::default() })?;
         let named = |file: &&Attachment| [TASK, FRONT].contains(&file.name.as_str());
         Ok(Self {
-            command,
             files: plan.attachments.iter().filter(named).cloned().collect(),
             provenance: plan.metadata.get(PROVENANCE).cloned().unwrap_or_default(),
             starts_s: starts_s(&plan.metadata).unwrap_or(0.0),
+            command: plan.command.map(|command| command.series),
             planned: plan.planned,
         })
     }

@@ -1,6 +1,10 @@
 //! `recover`: everything of a damaged log that is whole, as a sound log.
 
+mod document;
+
 use std::path::PathBuf;
+
+pub use document::RecoverDocument;
 
 use crate::log::{LogError, Recovered, recover};
 

@@ -2,19 +2,16 @@
 
 use std::path::Path;
 
-use super::{
-    Inputs, ReplanFailure,
-    samples::{LEAD_S, TAIL_S, cut},
-};
+use super::{Inputs, ReplanFailure, samples::cut};
 use crate::{
-    log::Attachment,
+    log::{Attachment, Recording},
     series::{Series, Track},
     spline::Motion,
     units::DEGREE_RAD,
     workflow::{
         carried::plan_log::{FRONT, TASK, chosen_times_s},
+        carried::rest::{PLAN_LEAD_S, PLAN_TAIL_S},
         carried::schedule::starts_s,
-        fit::observe::Observed,
         plan::PlanRequest,
     },
 };
@@ -24,7 +21,7 @@ const MOVES_RAD_S: f64 = 0.05 * DEGREE_RAD;
 
 /// The last run's plan.
 pub(super) struct Last {
-    /// Samples, from [`LEAD_S`] before the first motion on.
+    /// Samples, from [`PLAN_LEAD_S`] before the first motion on.
     pub(super) plan: Series,
     /// When the times of the task's plan count from, s.
     pub(super) starts_s: Option<f64>,
@@ -41,32 +38,34 @@ pub(super) struct Last {
 }
 
 impl Last {
-    pub(super) fn of(path: &Path, observed: &Observed, inputs: &Inputs) -> Result<Self, ReplanFailure> {
-        let planned = &observed.recording.planned;
+    pub(super) fn of(path: &Path, recording: &Recording, inputs: &Inputs) -> Result<Self, ReplanFailure> {
+        let planned = &recording.planned;
         let [from_s, to_s] =
             moving_s(planned).ok_or_else(|| ReplanFailure::AtRest { path: path.to_owned() })?;
-        let plan = cut(planned, from_s - LEAD_S, to_s + TAIL_S)?;
-        let request = match (&inputs.task, observed.attached(TASK)) {
+        let plan = cut(planned, from_s - PLAN_LEAD_S, to_s + PLAN_TAIL_S)?;
+        let request = match (&inputs.task, recording.attached(TASK)) {
             (Some(task), _) => Some(PlanRequest::read(task)?),
-            (None, Some(text)) => Some(PlanRequest::parse(path, String::from_utf8_lossy(text).into_owned())?),
+            (None, Some(file)) => {
+                Some(PlanRequest::parse(path, String::from_utf8_lossy(&file.data).into_owned())?)
+            }
             (None, None) => None,
         };
         if let Some(request) = &request {
             check_joints(path, request, planned)?;
         }
-        let times_s = observed.attached(FRONT).and_then(chosen_times_s);
+        let times_s = recording.attached(FRONT).and_then(|file| chosen_times_s(&file.data));
         let times_s = times_s
             .filter(|times_s| request.as_ref().is_some_and(|request| request.setup.motion(times_s).is_ok()));
-        let starts_s = starts_s(&observed.recording.metadata);
+        let starts_s = starts_s(&recording.metadata);
         let named = |file: &&Attachment| [TASK, FRONT].contains(&file.name.as_str());
         Ok(Self {
             plan,
-            starts_s: starts_s.map(|s| s - (from_s - LEAD_S)),
+            starts_s: starts_s.map(|s| s - (from_s - PLAN_LEAD_S)),
             duration_s: to_s - from_s,
             request,
             times_s,
-            trajectory: trajectory_topic(&observed.recording.source.planned_topic),
-            files: observed.recording.attachments.iter().filter(named).cloned().collect(),
+            trajectory: trajectory_topic(&recording.source.planned_topic),
+            files: recording.attachments.iter().filter(named).cloned().collect(),
         })
     }
 

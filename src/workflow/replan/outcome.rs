@@ -4,20 +4,18 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{
-    Candidate, Commanded, HeldTo, Inputs, LEAD_S, Predicted, ReplanFailure, last::Last, retime::Retimed,
-};
+use super::{Candidate, Commanded, HeldTo, Inputs, Predicted, ReplanFailure, last::Last, retime::Retimed};
 use crate::{
     fit::Fit,
-    log::{Attachment, WriteError},
+    log::{Attachment, Recording, WriteError},
     plan::{Objectives, PlanEvaluation},
     remark::{Code, Remarks},
     replay::{Rules, replay},
     series::{Series, align},
     workflow::{
         carried::plan_log::{FRONT, STARTS, TASK},
+        carried::rest::PLAN_LEAD_S,
         carried::series_log::SeriesLog,
-        fit::observe::Observed,
         plan::PlanRequest,
     },
 };
@@ -39,8 +37,7 @@ pub struct Before {
 }
 
 impl Before {
-    pub(super) fn of(observed: &Observed, last: &Last, predicted: Predicted, rules: &Rules) -> Self {
-        let recording = &observed.recording;
+    pub(super) fn of(recording: &Recording, last: &Last, predicted: Predicted, rules: &Rules) -> Self {
         let pair =
             |measured: &crate::series::Track| align(recording.planned.track(measured.name())?, measured);
         let pairs: Vec<_> = recording.measured.tracks.iter().filter_map(pair).collect();
@@ -163,7 +160,7 @@ pub(super) fn replanned(
     }
     let duration_s =
         evaluation.as_ref().map_or(last.duration_s, |evaluation| evaluation.objectives.duration_s);
-    let starts_s = if interval_s.is_some() { Some(LEAD_S) } else { last.starts_s };
+    let starts_s = if interval_s.is_some() { Some(PLAN_LEAD_S) } else { last.starts_s };
     Ok(Replanned {
         fit,
         fitted_to,

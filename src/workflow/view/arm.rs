@@ -7,7 +7,7 @@ use nalgebra::{Vector2, Vector3};
 use super::{ViewFailure, mesh::Places};
 use crate::{
     arm::{Arm, Chain, Mesh, Pose, Shape},
-    log::{LogError, Recording, read_description},
+    log::Recording,
     remark::Code,
     series::{Series, Track},
     task::Task,
@@ -106,9 +106,9 @@ pub struct Poses {
 ///
 /// # Errors
 ///
-/// [`ViewFailure`] if the log cannot be read, or the description is of no arm of its joints.
+/// [`ViewFailure`] if the description is of no arm of its joints.
 pub(super) fn find(
-    paths: &[PathBuf],
+    log: &Path,
     recording: &mut Recording,
     given: Option<(&Path, &str)>,
     packages: &[PathBuf],
@@ -123,15 +123,15 @@ pub(super) fn find(
             })?;
             (Some(FoundArm { origin: ArmOrigin::File, chain, still }), file.parent().unwrap_or(Path::new("")))
         }
-        None => (found(paths, recording)?, folder_of(paths)),
+        None => (found(log, recording), folder_of(log)),
     };
     // Packages are looked for around the folder, so it must have a place.
     let folder = Path::new(".").join(folder).canonicalize().unwrap_or_default();
     Ok(arm.map(|arm| moving(arm, recording, Places { folder: &folder, packages })))
 }
 
-fn folder_of(paths: &[PathBuf]) -> &Path {
-    paths.first().and_then(|path| path.parent()).unwrap_or(Path::new(""))
+fn folder_of(log: &Path) -> &Path {
+    log.parent().unwrap_or(Path::new(""))
 }
 
 struct FoundArm {
@@ -143,26 +143,26 @@ struct FoundArm {
 
 /// The first arm of joints in the log: that of the log, of its task, of the samples. Only of the log's own
 /// may joints be missing.
-fn found(paths: &[PathBuf], recording: &Recording) -> Result<Option<FoundArm>, LogError> {
+fn found(log: &Path, recording: &Recording) -> Option<FoundArm> {
     let whole =
         |chain: &Chain| chain.joints().iter().all(|joint| recording.planned.track(&joint.name).is_some());
     let names: Vec<&str> = recording.planned.tracks.iter().map(Track::name).collect();
-    let described = read_description(paths)?;
     let own = || {
-        let (chain, still) = Chain::of_joints(described.as_deref()?, "robot_description", &names).ok()?;
+        let (chain, still) =
+            Chain::of_joints(recording.description.as_deref()?, "robot_description", &names).ok()?;
         Some(FoundArm { origin: ArmOrigin::Log, chain, still })
     };
     let tasks = || {
-        let file = recording.attachments.iter().find(|file| file.name == TASK)?;
+        let file = recording.attached(TASK)?;
         let task = Task::parse(&String::from_utf8_lossy(&file.data)).ok()?;
-        let chain = arm_of(&task, folder_of(paths)).ok()?.chain;
+        let chain = arm_of(&task, folder_of(log)).ok()?.chain;
         whole(&chain).then_some(FoundArm { origin: ArmOrigin::Task, chain, still: Vec::new() })
     };
     let sample = || {
         let chain = Arm::sample().ok()?.chain;
         whole(&chain).then_some(FoundArm { origin: ArmOrigin::Sample, chain, still: Vec::new() })
     };
-    Ok(own().or_else(tasks).or_else(sample))
+    own().or_else(tasks).or_else(sample)
 }
 
 fn moving(arm: FoundArm, recording: &mut Recording, places: Places<'_>) -> MovingArm {

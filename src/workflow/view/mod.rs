@@ -15,7 +15,7 @@ pub use arm::{ArmOrigin, MovingArm, Poses, Sight};
 use super::carried::plan_log::FRONT;
 use crate::{
     arm::ArmError,
-    log::{LogError, ReadOptions, Recording, read_plan, read_recording},
+    log::{LogError, ReadOptions, Recording, Sides, read_recording},
     remark::Remarks,
     replay::{Rules, Transition, replay},
     series::{Pair, Series, align},
@@ -121,16 +121,14 @@ fn scene(
     given: Option<(&Path, &str)>,
 ) -> Result<Scene, ViewFailure> {
     let paths = [path.to_owned()];
-    let mut recording = match read_recording(&paths, &inputs.read) {
-        // A plan that nobody ran yet.
-        Err(LogError::Missing { missing: "measured", .. }) => read_plan(&paths, &inputs.read)?,
-        other => other?,
-    };
+    // A plan that nobody ran yet has no measurement.
+    let read = ReadOptions { sides: Sides::PlanAtLeast, ..inputs.read.clone() };
+    let mut recording = read_recording(&paths, &read)?;
     let joints = recording.planned.tracks.iter();
     let pairs: Vec<Pair> =
         joints.filter_map(|planned| align(planned, recording.measured.track(planned.name())?)).collect();
     let found = replay(&pairs, &inputs.rules);
-    let arm = arm::find(&paths, &mut recording, given, &inputs.packages)?;
+    let arm = arm::find(path, &mut recording, given, &inputs.packages)?;
     let front = recording.attachments.iter().find(|file| file.name == FRONT).and_then(|f| front(&f.data));
     let Recording { planned, measured, remarks, .. } = recording;
     Ok(Scene { name, planned, measured, pairs, transitions: found.transitions, arm, front, remarks })

@@ -85,6 +85,6 @@ fn measured(record: &Record) -> Series {
 /// A fit to what came of what was sent.
 fn fitted(logs: &[(&Series, &Series)]) -> Fit {
     let logs: Vec<Observation> =
-        logs.iter().map(|(sent, measured)| Observation { sent, measured, valve: None }).collect();
+        logs.iter().map(|(sent, measured)| Observation { sent, measured, valve: &[] }).collect();
     fit(&logs).unwrap()
 }

@@ -6,7 +6,7 @@ use hydrotrace::{
     arm::Arm,
     fit::{Estimated, Excitation, JointFit, Observation, fit},
     plant::{JointRecord, JointTruth, Parameters, Plant, simulate},
-    series::{Series, Track},
+    series::{Quantity, Series, Signal, Track},
     units::DEGREE_RAD,
 };
 
@@ -222,10 +222,11 @@ fn signals_to_the_valves_show_the_dead_band_of_each_direction() {
     let job = task(1);
     let record = simulate(&plant, &job.plan, &job.payload, 1).unwrap();
     let signals = |joint: &JointRecord| {
-        Track::new(&joint.name, record.t_s.clone(), joint.valve_command.clone(), &[]).unwrap()
+        let values = joint.valve_command.clone();
+        Signal::new(&joint.name, Quantity::Share, record.t_s.clone(), values, &[]).unwrap()
     };
-    let valve = Series { tracks: record.joints.iter().map(signals).collect() };
-    let log = Observation { sent: &job.plan, measured: &measured(&record), valve: Some(&valve) };
+    let valve: Vec<Signal> = record.joints.iter().map(signals).collect();
+    let log = Observation { sent: &job.plan, measured: &measured(&record), valve: &valve };
     let fit = fit(&[log]).unwrap();
     let truth = plant.truth(&HOME_DEG.map(|q| q * DEGREE_RAD), 0.0).unwrap();
     let mut found = 0;

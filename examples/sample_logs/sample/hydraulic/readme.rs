@@ -9,8 +9,8 @@ use hydrotrace::{
     units::degrees_from_radians,
 };
 
-use super::{PRESET, PlantLog};
 use super::super::readme::line;
+use super::{PRESET, PlantLog};
 
 const MACHINE: &str = "
 ## The hydraulic arm
