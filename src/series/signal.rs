@@ -94,48 +94,23 @@ pub struct Signal {
 /// Why samples do not make a [`Signal`] or a [`Track`](super::Track).
 #[derive(Debug, Clone, Error, PartialEq)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum SignalError {
     /// There are no samples.
     #[error("no samples")]
     Empty,
     /// The arrays have different lengths.
     #[error("{times} time stamps but {values} values of {array}")]
-    LengthMismatch {
-        /// Which array.
-        array: &'static str,
-        /// Number of time stamps, times the components.
-        times: usize,
-        /// Number of values.
-        values: usize,
-    },
+    LengthMismatch { array: &'static str, times: usize, values: usize },
     /// A sample is NaN or infinite.
     #[error("{array} {index} is not finite: {value}")]
-    NotFinite {
-        /// Which array.
-        array: &'static str,
-        /// Index of the value.
-        index: usize,
-        /// The value.
-        value: f64,
-    },
+    NotFinite { array: &'static str, index: usize, value: f64 },
     /// Time stands still or runs backwards.
     #[error("time does not increase at sample {index}: {previous_s} s then {next_s} s")]
-    NotIncreasing {
-        /// Index of the later sample.
-        index: usize,
-        /// The earlier stamp, s.
-        previous_s: f64,
-        /// The later stamp, s.
-        next_s: f64,
-    },
+    NotIncreasing { index: usize, previous_s: f64, next_s: f64 },
     /// A cut lies outside the samples or out of order.
     #[error("cut {cut} is not between the previous one and the {samples} samples")]
-    BadCut {
-        /// Index of the first sample after the cut.
-        cut: usize,
-        /// Number of samples.
-        samples: usize,
-    },
+    BadCut { cut: usize, samples: usize },
 }
 
 /// Where an instant lies among the samples.

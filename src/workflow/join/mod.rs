@@ -42,6 +42,7 @@ pub struct Inputs {
 /// Why nothing was joined.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum JoinFailure {
     /// One of the logs.
     #[error(transparent)]
@@ -58,47 +59,21 @@ pub enum JoinFailure {
          holds less than four fifths of it; --planned names another topic, --at SECONDS the time",
         plan.display()
     )]
-    Nowhere {
-        /// The plan's log.
-        plan: PathBuf,
-        /// What was sent.
-        topic: String,
-    },
+    Nowhere { plan: PathBuf, topic: String },
     /// Something else was sent.
     #[error(
         "what was sent on {topic} is not what {} holds: where it fits best, at {at_s:.2} s, it leaves {:.0} % of \
          the motion (10 % at most); --planned names another topic, --at SECONDS the time",
         plan.display(), 100.0 * share
     )]
-    SentOtherwise {
-        /// The plan's log.
-        plan: PathBuf,
-        /// What was sent.
-        topic: String,
-        /// The best place, s from the start of the run's log.
-        at_s: f64,
-        /// What it leaves, as a share of the motion.
-        share: f64,
-    },
+    SentOtherwise { plan: PathBuf, topic: String, at_s: f64, share: f64 },
     /// A plan that no run is.
     #[error("the plan in {} lasts {duration_s:.0} s, {LONGEST_S} s are the most", plan.display())]
-    TooLong {
-        /// The plan's log.
-        plan: PathBuf,
-        /// From its first to its last sample.
-        duration_s: f64,
-    },
+    TooLong { plan: PathBuf, duration_s: f64 },
     /// A time outside the run.
     #[error("--at {at_s} puts the plan at {at_s:.2} to {:.2} s, outside the measurement, {:.2} to {:.2} s",
         at_s + duration_s, measured_s[0], measured_s[1])]
-    Outside {
-        /// The time that was given.
-        at_s: f64,
-        /// How long the plan is.
-        duration_s: f64,
-        /// First and last measurement.
-        measured_s: [f64; 2],
-    },
+    Outside { at_s: f64, duration_s: f64, measured_s: [f64; 2] },
 }
 
 /// What was found, and what the new log holds.

@@ -39,26 +39,17 @@ pub struct Inputs {
 /// Why there is nothing to show.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ViewFailure {
     /// A log cannot be read or holds no planned joints.
     #[error(transparent)]
     Log(#[from] LogError),
     /// A description cannot be read.
     #[error("cannot read {}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     /// A description is of no arm of these joints.
     #[error("the joints {} of the log turn no arm of the description", joints.join(", "))]
-    Arm {
-        /// Joints of the log.
-        joints: Vec<String>,
-        /// What is wrong with the description.
-        source: ArmError,
-    },
+    Arm { joints: Vec<String>, source: ArmError },
 }
 
 /// One run or plan.
