@@ -33,7 +33,9 @@ pub mod replay;
 pub mod workflow;
 
 // edges
+#[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "cli")]
 pub mod render;
 #[cfg(feature = "viewer")]
 pub mod viewer;

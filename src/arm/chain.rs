@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Rotation3, Translation3, Unit, Vector3};
 
-use super::{Inertia, Load, Pose};
+use super::{Inertia, Load, Pose, robot::Robot};
 
 /// What a joint may do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,7 +59,7 @@ pub struct Chain {
     pub(super) tool: Pose,
     pub(super) tool_name: String,
     /// What it was read from.
-    pub(super) robot: Arc<urdf_rs::Robot>,
+    pub(super) robot: Arc<Robot>,
 }
 
 impl Chain {
@@ -118,7 +118,7 @@ pub(super) struct Builder {
 }
 
 impl Builder {
-    pub(super) fn new(robot: Arc<urdf_rs::Robot>, base: &str) -> Self {
+    pub(super) fn new(robot: Arc<Robot>, base: &str) -> Self {
         let chain = Chain {
             joints: Vec::new(),
             steps: Vec::new(),

@@ -1,9 +1,13 @@
 //! The text of a URDF for tools that draw: with solids where the arm's own has none, and once more as a
 //! ghost, to be shown beside itself.
 
-use urdf_rs::{Color, Geometry, Material, Pose as Origin, Vec3, Vec4, Visual};
+use serde::Serialize as _;
 
-use super::{ArmError, Chain, Pose, Shape, Solid};
+use super::{
+    ArmError, Chain, Pose, Shape, Solid,
+    error::Witness,
+    robot::{Body, Color, Geometry, Material, Origin, Robot, Visual},
+};
 
 /// Stands before the names of all links and joints of a ghost.
 pub const GHOST: &str = "planned/";
@@ -40,7 +44,7 @@ impl Chain {
         for link in &mut robot.links {
             prefix(&mut link.name);
             for visual in &mut link.visual {
-                visual.geometry = larger(&visual.geometry, margin_m);
+                enlarge(&mut visual.geometry.body, margin_m);
                 visual.material = Some(material("ghost", GHOST_RGBA));
             }
         }
@@ -52,9 +56,8 @@ impl Chain {
         written(&robot)
     }
 
-    fn dressed(&self) -> urdf_rs::Robot {
-        let mut robot = urdf_rs::Robot::clone(&self.robot);
-        robot.links.iter_mut().for_each(|link| link.collision.clear());
+    fn dressed(&self) -> Robot {
+        let mut robot = Robot::clone(&self.robot);
         if robot.links.iter().all(|link| link.visual.is_empty()) {
             let names: Vec<&str> = self.link_names().collect();
             for shape in self.plain_shapes() {
@@ -68,40 +71,46 @@ impl Chain {
     }
 }
 
-fn written(robot: &urdf_rs::Robot) -> Result<String, ArmError> {
-    urdf_rs::write_to_string(robot)
-        .map_err(|error| ArmError::Syntax { file: "robot description".to_owned(), reason: error.to_string() })
+fn written(robot: &Robot) -> Result<String, ArmError> {
+    let mut text = String::new();
+    let mut serializer = quick_xml::se::Serializer::new(&mut text);
+    serializer.indent(' ', 2);
+    let written = robot.serialize(serializer);
+    written.map(|_| text).map_err(|error| Witness("robot description").syntax(&error))
 }
 
 fn visual(shape: &Shape) -> Visual {
-    let geometry = match shape.solid {
-        Solid::Block(size) => Geometry::Box { size: Vec3(size) },
-        Solid::Cylinder { radius_m, length_m } => Geometry::Cylinder { radius: radius_m, length: length_m },
-        Solid::Ball(radius) => Geometry::Sphere { radius },
+    let body = match shape.solid {
+        Solid::Block(size) => Body::Box { size },
+        Solid::Cylinder { radius_m, length_m } => Body::Cylinder { radius: radius_m, length: length_m },
+        Solid::Ball(radius) => Body::Sphere { radius },
     };
     let name = shape.rgba.map(|c| format!("{c:.2}")).join(" ");
-    Visual { name: None, origin: origin(&shape.place), geometry, material: Some(material(&name, shape.rgba)) }
+    Visual {
+        name: None,
+        origin: origin(&shape.place),
+        geometry: Geometry { body },
+        material: Some(material(&name, shape.rgba)),
+    }
 }
 
 fn origin(place: &Pose) -> Origin {
     let (roll, pitch, yaw) = place.rotation.euler_angles();
-    Origin { xyz: Vec3(place.translation.vector.into()), rpy: Vec3([roll, pitch, yaw]) }
+    Origin { xyz: place.translation.vector.into(), rpy: [roll, pitch, yaw], quat_xyzw: None }
 }
 
 fn material(name: &str, rgba: [f64; 4]) -> Material {
-    Material { name: name.to_owned(), color: Some(Color { rgba: Vec4(rgba) }), texture: None }
+    Material { name: name.to_owned(), color: Some(Color { rgba }) }
 }
 
-fn larger(geometry: &Geometry, margin_m: f64) -> Geometry {
-    match geometry {
-        Geometry::Box { size } => Geometry::Box { size: Vec3(size.0.map(|edge| edge + 2.0 * margin_m)) },
-        Geometry::Cylinder { radius, length } => {
-            Geometry::Cylinder { radius: radius + margin_m, length: length + 2.0 * margin_m }
+fn enlarge(body: &mut Body, margin_m: f64) {
+    match body {
+        Body::Box { size } => *size = size.map(|edge| edge + 2.0 * margin_m),
+        Body::Cylinder { radius, length } => {
+            *radius += margin_m;
+            *length += 2.0 * margin_m;
         }
-        Geometry::Capsule { radius, length } => {
-            Geometry::Capsule { radius: radius + margin_m, length: *length }
-        }
-        Geometry::Sphere { radius } => Geometry::Sphere { radius: radius + margin_m },
-        mesh @ Geometry::Mesh { .. } => mesh.clone(),
+        Body::Capsule { radius, .. } | Body::Sphere { radius } => *radius += margin_m,
+        Body::Mesh { .. } => {}
     }
 }

@@ -15,6 +15,7 @@ mod inverse_dynamics;
 mod kinematics;
 mod part;
 mod reach;
+mod robot;
 mod shape;
 mod urdf;
 

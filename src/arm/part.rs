@@ -5,11 +5,10 @@ use std::{
     sync::Arc,
 };
 
-use urdf_rs::JointType;
-
 use super::{
     ArmError, Chain,
     error::Witness,
+    robot::{Joint, JointKind, Robot},
     urdf::{Tree, parsed},
 };
 
@@ -33,9 +32,9 @@ impl Chain {
 
 /// Fixes all joints but those of the arm that most of the named ones move; returns the link that the last of
 /// these moves, and the names of other joints on the way to it.
-fn hold_others(robot: &mut urdf_rs::Robot, names: &[&str]) -> (String, Vec<String>) {
-    let turns = |joint: &urdf_rs::Joint| {
-        let kind = matches!(joint.joint_type, JointType::Revolute | JointType::Continuous);
+fn hold_others(robot: &mut Robot, names: &[&str]) -> (String, Vec<String>) {
+    let turns = |joint: &Joint| {
+        let kind = matches!(joint.kind, JointKind::Revolute | JointKind::Continuous);
         kind && joint.mimic.is_none() && names.contains(&joint.name.as_str())
     };
     let above: BTreeMap<&str, usize> =
@@ -53,11 +52,11 @@ fn hold_others(robot: &mut urdf_rs::Robot, names: &[&str]) -> (String, Vec<Strin
     let last = arm.first().and_then(|i| robot.joints.get(*i)).map(|joint| joint.child.link.clone());
     let mut still = Vec::new();
     for (i, joint) in robot.joints.iter_mut().enumerate() {
-        if !moving.contains(&i) && joint.joint_type != JointType::Fixed {
+        if !moving.contains(&i) && joint.kind != JointKind::Fixed {
             if arm.contains(&i) {
                 still.push(joint.name.clone());
             }
-            joint.joint_type = JointType::Fixed;
+            joint.kind = JointKind::Fixed;
             joint.mimic = None;
         }
     }

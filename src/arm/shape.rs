@@ -3,9 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Rotation3, Translation3, UnitQuaternion, Vector3};
-use urdf_rs::{Geometry, JointType};
 
-use super::{Chain, Pose};
+use super::{
+    Chain, Pose,
+    robot::{Body, Joint, JointKind, Origin, Visual},
+};
 
 /// A body without a mesh, about the origin of its frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +74,7 @@ impl Chain {
     /// to link, a pin at every joint and a ball at the tool.
     pub fn shapes(&self, meshes: &[Mesh]) -> Vec<Shape> {
         let mut shapes: Vec<Shape> = self.visuals(|visual, seen| {
-            let solid = solid(&visual.geometry)?;
+            let solid = solid(&visual.geometry.body)?;
             let rgba = seen.rgba.unwrap_or(PAINT);
             Some(Shape { link: seen.link, place: seen.place, solid, rgba }).filter(sane)
         });
@@ -91,8 +93,8 @@ impl Chain {
     /// The meshes of the description, those on fixed branches included.
     pub fn meshes(&self) -> Vec<Mesh> {
         self.visuals(|visual, seen| {
-            let Geometry::Mesh { filename, scale } = &visual.geometry else { return None };
-            let scale = scale.map_or([1.0; 3], |scale| scale.0);
+            let Body::Mesh { filename, scale } = &visual.geometry.body else { return None };
+            let scale = scale.unwrap_or([1.0; 3]);
             let numbers = scale.iter().chain(seen.place.translation.vector.iter());
             let sane = numbers.chain(seen.place.rotation.matrix()).all(|v| v.is_finite());
             let Seen { link, place, rgba } = seen;
@@ -100,17 +102,17 @@ impl Chain {
         })
     }
 
-    fn visuals<T>(&self, of: impl Fn(&urdf_rs::Visual, Seen) -> Option<T>) -> Vec<T> {
+    fn visuals<T>(&self, of: impl Fn(&Visual, Seen) -> Option<T>) -> Vec<T> {
         let riders = self.riders();
         let colours: BTreeMap<&str, [f64; 4]> = (self.robot.materials.iter())
             .chain(self.robot.links.iter().flat_map(|link| &link.visual).filter_map(|v| v.material.as_ref()))
-            .filter_map(|material| Some((material.name.as_str(), material.color.as_ref()?.rgba.0)))
+            .filter_map(|material| Some((material.name.as_str(), material.color.as_ref()?.rgba)))
             .collect();
         let mut found = Vec::new();
         for link in &self.robot.links {
             let Some(&(index, place)) = riders.get(link.name.as_str()) else { continue };
             for visual in &link.visual {
-                let own = visual.material.as_ref().and_then(|m| Some(m.color.as_ref()?.rgba.0));
+                let own = visual.material.as_ref().and_then(|m| Some(m.color.as_ref()?.rgba));
                 let named = visual.material.as_ref().and_then(|m| colours.get(m.name.as_str()).copied());
                 let rgba = own.or(named).filter(|rgba| rgba.iter().all(|c| c.is_finite()));
                 found.extend(of(visual, Seen { link: index, place: place * pose(&visual.origin), rgba }));
@@ -123,7 +125,7 @@ impl Chain {
     fn riders(&self) -> BTreeMap<&str, (usize, Pose)> {
         let mut riders: BTreeMap<&str, (usize, Pose)> =
             self.link_names().enumerate().map(|(i, name)| (name, (i, Pose::identity()))).collect();
-        let fixed = |joint: &&urdf_rs::Joint| joint.joint_type == JointType::Fixed;
+        let fixed = |joint: &&Joint| joint.kind == JointKind::Fixed;
         // The joints need not be in order; every round places at least one more link, or ends it.
         loop {
             let before = riders.len();
@@ -182,14 +184,14 @@ impl Chain {
     }
 }
 
-fn solid(geometry: &Geometry) -> Option<Solid> {
-    match *geometry {
-        Geometry::Box { size } => Some(Solid::Block(size.0)),
-        Geometry::Cylinder { radius, length } | Geometry::Capsule { radius, length } => {
+fn solid(body: &Body) -> Option<Solid> {
+    match *body {
+        Body::Box { size } => Some(Solid::Block(size)),
+        Body::Cylinder { radius, length } | Body::Capsule { radius, length } => {
             Some(Solid::Cylinder { radius_m: radius, length_m: length })
         }
-        Geometry::Sphere { radius } => Some(Solid::Ball(radius)),
-        Geometry::Mesh { .. } => None,
+        Body::Sphere { radius } => Some(Solid::Ball(radius)),
+        Body::Mesh { .. } => None,
     }
 }
 
@@ -204,8 +206,8 @@ fn sane(shape: &Shape) -> bool {
     place.all(|v| v.is_finite()) && sizes.iter().all(|v| v.is_finite() && *v >= 0.0)
 }
 
-fn pose(pose: &urdf_rs::Pose) -> Pose {
-    let ([x, y, z], [roll, pitch, yaw]) = (pose.xyz.0, pose.rpy.0);
+fn pose(origin: &Origin) -> Pose {
+    let ([x, y, z], [roll, pitch, yaw]) = (origin.xyz, origin.rpy);
     Pose::from_parts(Translation3::new(x, y, z), Rotation3::from_euler_angles(roll, pitch, yaw))
 }
 

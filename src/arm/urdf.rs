@@ -7,9 +7,14 @@ use std::{
 };
 
 use nalgebra::{Matrix3, Rotation3, Translation3, Unit, Vector3};
-use urdf_rs::JointType;
+use quick_xml::{Reader, events::Event};
 
-use super::{ArmError, Chain, Inertia, Joint, JointLimit, Pose, chain::Builder, error::Witness};
+use super::{
+    ArmError, Chain, Inertia, Joint, JointLimit, Pose,
+    chain::Builder,
+    error::Witness,
+    robot::{self, JointKind, Origin, Robot},
+};
 
 /// More than any description of an arm; meshes lie outside the text.
 const LARGEST_TEXT: usize = 4 << 20;
@@ -41,47 +46,48 @@ impl Chain {
 /// Names of the joints of a URDF that slide; none if the text is no URDF.
 pub fn sliding_joints(text: &str) -> BTreeSet<String> {
     let joints = parsed(text, &Witness("URDF")).map(|robot| robot.joints).unwrap_or_default();
-    let slides = |joint: &urdf_rs::Joint| joint.joint_type == JointType::Prismatic;
+    let slides = |joint: &robot::Joint| joint.kind == JointKind::Prismatic;
     joints.into_iter().filter(slides).map(|joint| joint.name).collect()
 }
 
-pub(super) fn parsed(text: &str, at: &Witness<'_>) -> Result<urdf_rs::Robot, ArmError> {
+pub(super) fn parsed(text: &str, at: &Witness<'_>) -> Result<Robot, ArmError> {
     at.at_most("bytes", text.len(), LARGEST_TEXT)?;
     at.at_most("nested elements", nesting(text, at)?, DEEPEST)?;
-    let robot = urdf_rs::read_from_string(text).map_err(|error| at.syntax(&error))?;
+    let mut robot: Robot = quick_xml::de::from_str(text).map_err(|error| at.syntax(&error))?;
+    robot.turn_quaternions();
     at.at_most("joints", robot.joints.len(), MOST_JOINTS)?;
     Ok(robot)
 }
 
 /// Depth of elements, by the parser that reads them.
 fn nesting(text: &str, at: &Witness<'_>) -> Result<usize, ArmError> {
-    let mut parser = xml::Parser::new();
-    parser.feed_str(text);
+    let mut reader = Reader::from_str(text);
     let (mut depth, mut deepest) = (0_usize, 0);
-    for event in parser {
-        match event.map_err(|error| at.syntax(&error))? {
-            xml::Event::ElementStart(_) => depth += 1,
-            xml::Event::ElementEnd(_) => depth = depth.saturating_sub(1),
+    loop {
+        match reader.read_event().map_err(|error| at.syntax(&error))? {
+            Event::Start(_) => depth += 1,
+            Event::End(_) => depth = depth.saturating_sub(1),
+            Event::Eof if depth == 0 => return Ok(deepest),
+            Event::Eof => return Err(at.syntax(&"it ends within an element")),
             _ => {}
         }
         deepest = deepest.max(depth);
     }
-    Ok(deepest)
 }
 
 pub(super) struct Tree<'a> {
     at: Witness<'a>,
-    robot: &'a Arc<urdf_rs::Robot>,
-    links: BTreeMap<&'a str, &'a urdf_rs::Link>,
+    robot: &'a Arc<Robot>,
+    links: BTreeMap<&'a str, &'a robot::Link>,
     /// The joint that leads to each link but the root.
-    above: BTreeMap<&'a str, &'a urdf_rs::Joint>,
+    above: BTreeMap<&'a str, &'a robot::Joint>,
     /// The joints that leave each link.
-    below: BTreeMap<&'a str, Vec<&'a urdf_rs::Joint>>,
+    below: BTreeMap<&'a str, Vec<&'a robot::Joint>>,
     root: &'a str,
 }
 
 impl<'a> Tree<'a> {
-    pub(super) fn new(robot: &'a Arc<urdf_rs::Robot>, at: Witness<'a>) -> Result<Self, ArmError> {
+    pub(super) fn new(robot: &'a Arc<Robot>, at: Witness<'a>) -> Result<Self, ArmError> {
         let mut links = BTreeMap::new();
         for link in &robot.links {
             if links.insert(link.name.as_str(), link).is_some() {
@@ -90,7 +96,7 @@ impl<'a> Tree<'a> {
         }
         let mut names = BTreeSet::new();
         let mut above = BTreeMap::new();
-        let mut below: BTreeMap<&str, Vec<&urdf_rs::Joint>> = BTreeMap::new();
+        let mut below: BTreeMap<&str, Vec<&robot::Joint>> = BTreeMap::new();
         for joint in &robot.joints {
             let element = format!("<joint {:?}>", joint.name);
             if !names.insert(joint.name.as_str()) {
@@ -120,7 +126,7 @@ impl<'a> Tree<'a> {
         Ok(Self { at, robot, links, above, below, root })
     }
 
-    fn children(&self, link: &str) -> &[&'a urdf_rs::Joint] {
+    fn children(&self, link: &str) -> &[&'a robot::Joint] {
         self.below.get(link).map_or(&[], Vec::as_slice)
     }
 
@@ -169,7 +175,7 @@ impl<'a> Tree<'a> {
             let element = format!("<joint {:?}>", joint.name);
             let origin = self.pose(&joint.origin, &element)?;
             let child = joint.child.link.as_str();
-            if joint.joint_type == JointType::Fixed {
+            if joint.kind == JointKind::Fixed {
                 builder.fixed(&origin, child);
             } else {
                 builder.turning(self.joint(joint, &element)?, &origin, &self.axis(joint, &element)?, child);
@@ -193,7 +199,7 @@ impl<'a> Tree<'a> {
                     continue;
                 }
                 let element = format!("<joint {:?}>", joint.name);
-                if joint.joint_type != JointType::Fixed {
+                if joint.kind != JointKind::Fixed {
                     let found = "a moving joint beside or beyond the path to the tool";
                     return Err(self.at.unexpected(element, found, "a serial chain; name another tool"));
                 }
@@ -218,31 +224,31 @@ impl<'a> Tree<'a> {
         Ok((body, self.pose(&given.origin, &element)?))
     }
 
-    fn pose(&self, pose: &urdf_rs::Pose, element: &str) -> Result<Pose, ArmError> {
-        let ([x, y, z], [roll, pitch, yaw]) = (pose.xyz.0, pose.rpy.0);
+    fn pose(&self, origin: &Origin, element: &str) -> Result<Pose, ArmError> {
+        let ([x, y, z], [roll, pitch, yaw]) = (origin.xyz, origin.rpy);
         // Beyond this, sums and products of lengths would overflow.
         let sane = |v: &f64| v.abs() < 1e9;
         if ![x, y, z, roll, pitch, yaw].iter().all(sane) {
-            let found = format!("xyz {:?}, rpy {:?}", pose.xyz.0, pose.rpy.0);
+            let found = format!("xyz {:?}, rpy {:?}", origin.xyz, origin.rpy);
             return Err(self.at.unexpected(format!("{element} <origin>"), found, "numbers below 1e9"));
         }
         let rotation = Rotation3::from_euler_angles(roll, pitch, yaw);
         Ok(Pose::from_parts(Translation3::new(x, y, z), rotation))
     }
 
-    fn axis(&self, joint: &urdf_rs::Joint, element: &str) -> Result<Unit<Vector3<f64>>, ArmError> {
-        let axis = Vector3::from(joint.axis.xyz.0);
+    fn axis(&self, joint: &robot::Joint, element: &str) -> Result<Unit<Vector3<f64>>, ArmError> {
+        let axis = Vector3::from(joint.axis.xyz);
         Unit::try_new(axis, 1e-9).filter(|unit| unit.iter().all(|v| v.is_finite())).ok_or_else(|| {
-            self.at.unexpected(format!("{element} <axis>"), format!("{:?}", joint.axis.xyz.0), "a direction")
+            self.at.unexpected(format!("{element} <axis>"), format!("{:?}", joint.axis.xyz), "a direction")
         })
     }
 
-    fn joint(&self, joint: &urdf_rs::Joint, element: &str) -> Result<Joint, ArmError> {
+    fn joint(&self, joint: &robot::Joint, element: &str) -> Result<Joint, ArmError> {
         let given = &joint.limit;
-        let (lower_rad, upper_rad) = match joint.joint_type {
-            JointType::Continuous => (f64::NEG_INFINITY, f64::INFINITY),
-            JointType::Revolute => (given.lower, given.upper),
-            ref other => {
+        let (lower_rad, upper_rad) = match joint.kind {
+            JointKind::Continuous => (f64::NEG_INFINITY, f64::INFINITY),
+            JointKind::Revolute => (given.lower, given.upper),
+            other => {
                 let expected = "revolute, continuous or fixed";
                 return Err(self.at.unexpected(element, format!("the type {other:?}"), expected));
             }

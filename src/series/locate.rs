@@ -1,6 +1,6 @@
 //! Finds a stretch of motion within a longer one.
 
-use super::{Series, Track, track::span_s};
+use super::{JointKind, Series, Track, track::span_s};
 
 /// Where a motion was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,12 +33,13 @@ const PLACES: usize = 8;
 const ALIKE: f64 = 1.5;
 const ALIKE_SHARE: f64 = 0.01;
 
-/// Looks for `motion` in `within` by its angles, over the joints of both; of equally good places the
-/// first. `None` if they share no joint, the motion is none, a part of
-/// it at most fits in, or one lasts three days.
+/// Looks for `motion` in `within` by its angles, over the joints that turn in both; of equally good
+/// places the first. `None` if they share no joint, the motion does not move, less than four fifths
+/// of it lie within, or one lasts three days.
 pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
-    let pairs: Vec<(&Track, &Track)> =
-        motion.tracks.iter().filter_map(|track| Some((track, within.track(track.name())?))).collect();
+    let turns = |track: &&Track| track.kind() == JointKind::Turns;
+    let both = |track| Some((track, within.track(Track::name(track)).filter(turns)?));
+    let pairs: Vec<(&Track, &Track)> = motion.tracks.iter().filter(turns).filter_map(both).collect();
     let [from_s, to_s] = span_s(pairs.iter().map(|pair| pair.0))?;
     let [start_s, end_s] = span_s(pairs.iter().map(|pair| pair.1))?;
     let spread_rad = spread_rad(&pairs, from_s, to_s);

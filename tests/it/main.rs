@@ -25,6 +25,7 @@ mod allocations;
 mod architecture;
 mod arm;
 mod cli;
+mod docs;
 mod fit;
 mod golden;
 mod log_read;
@@ -32,7 +33,7 @@ mod log_write;
 mod one_pass;
 mod plan;
 mod plant;
-mod readme;
+
 mod real_log;
 mod replay;
 mod sample_logs;

@@ -50,11 +50,11 @@ type Title = (&'static str, &'static str);
 
 const PANEL_INSTALL: Title = (
     "panel-install.mcap",
-    "Nothing wrong: plan, measurement, controller state (20 Hz) and the trajectory, once. `joint_3` leaves standstill 0.25 s late and falls behind by a degree.",
+    "No faults: plan, measurement, controller state (20 Hz) and the trajectory, once. `joint_3` leaves standstill 0.25 s late and falls behind by a degree.",
 );
 const STILL_JOINT: Title = (
     "still-joint.mcap",
-    "Plan and measurement, with the joints in the order 6, 3, 1, 5, 2, 4. `joint_6` never moves and is never asked to.",
+    "Plan and measurement, with the joints in the order 6, 3, 1, 5, 2, 4. `joint_6` never moves, and its plan rests.",
 );
 const GAPS: Title = (
     "gaps.mcap",
@@ -62,7 +62,7 @@ const GAPS: Title = (
 );
 const POWER_LOSS: Title = (
     "power-loss.mcap",
-    "As the first, but cut in the middle of its last chunk, which holds the last third of the run.",
+    "Like the first, but cut in the middle of its last chunk, which holds the last third of the run.",
 );
 const TRAJECTORY_ONLY: Title = (
     "trajectory-only.mcap",
@@ -71,7 +71,7 @@ const TRAJECTORY_ONLY: Title = (
 
 const PLC_TRACE: Title = (
     "plc-trace.csv",
-    "The first 20 s as a PLC writes them, 50 Hz: semicolons, decimal commas, degrees, a row of units, dates without zone.",
+    "The first 20 s as a PLC writes them, 50 Hz: semicolons, decimal commas, degrees, a row of units, dates without time zone.",
 );
 
 /// Every file of the folder, by name.

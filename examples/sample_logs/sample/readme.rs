@@ -15,35 +15,35 @@ use super::{
 const HEAD: &str = "\
 # Sample logs
 
-Small logs of two made-up machines whose truth is known. Written, this file included, by
+Small logs of two simulated machines whose parameters (the truth) are known. This command writes the logs and this file:
 
     cargo run --release --example sample_logs -- sample-logs
 
-The same source gives the same bytes; `tests/it/sample_logs.rs` compares them. Each MCAP log also
-carries its truth as metadata, named `truth` or, of the hydraulic arm, `hydrotrace.plant`.
+The same source gives the same bytes; `tests/it/sample_logs.rs` compares them. Each MCAP log carries its truth as metadata,
+named `truth`, or `hydrotrace.plant` for the hydraulic arm.
 ";
 
 const COLUMNS: &str = "
 ## Columns
 
-Asked: the plan's speed begins to exceed 0.05 deg/s. Late: from there until the joint leaves standstill. Peak:
-largest plan minus angle, without noise, until the next start and for at most 4 s. Offset: angle minus plan
-before the first start. A start is listed whether or not the log still shows it.
+Asked: the instant at which the plan's speed exceeds 0.05 deg/s. Late (dead time): from there until the joint leaves
+standstill. Peak: largest plan minus angle, without noise, until the next start, 4 s at most. Offset: angle minus plan
+before the first start. Every start is listed, also if a gap or a cut hides it in the log.
 ";
 
 const MACHINE: &str = "
 ## The machine of the other logs
 
-A six-joint arm takes up a curtain-wall panel and installs it: moves of 3 to 4 s from rest to rest
-(minimum-jerk quintics), with reversals. It is **not the hydraulic arm**: no oil, no load, joints do
-not influence each other. What a joint does:
+A six-joint arm picks up a curtain-wall panel and installs it: moves of 3 to 4 s from rest to rest
+(minimum-jerk quintics), with reversals. It is **not the hydraulic arm**: it has no oil and no load, and its joints do
+not influence each other. A joint moves by these rules:
 
-* it leaves standstill no earlier than its dead time after the plan's speed exceeds 0.05 deg/s, and only
-  when its command leaves the dead-band of the valve; then it jumps: it starts at once with the speed let
-  through, plus {JUMP} 1/s times what the plan moved on while it stuck;
+* it leaves standstill when its dead time has passed since the plan's speed exceeded 0.05 deg/s and its command
+  has left the dead band of the valve; then it jumps: it starts with the speed that the valve lets through,
+  plus {JUMP} 1/s times the distance that the plan moved while the joint stuck;
 * command = planned speed + gain x error + integral; the integral works only while the plan moves;
 * the speed follows the opening of the valve with a first-order lag;
-* it stops where the command falls into the dead-band and stays there, up to two tenths of a degree off.
+* it stops where the command enters the dead band and stays there, up to 0.2 deg off.
 
 ";
 
@@ -73,7 +73,7 @@ fn summary(text: &mut String, logs: &[SampleLog], plant: &[PlantLog]) {
 
 fn machine(text: &mut String) {
     text.push_str(
-        "| joint | dead time up, s | down, s | lag, s | dead-band, deg/s | gain, 1/s |\n|---|---|---|---|---|---|\n",
+        "| joint | dead time up, s | down, s | lag, s | dead band, deg/s | gain, 1/s |\n|---|---|---|---|---|---|\n",
     );
     for (index, joint) in JOINTS.iter().enumerate() {
         let [up_s, down_s] = joint.dead_time_s;
@@ -93,7 +93,7 @@ fn machine(text: &mut String) {
         text,
         &format!(
             "
-Integral gain {INTEGRAL_GAIN_1_S2} 1/s². No joint is asked to move from {from_s} to {to_s} s, while the panel is gripped.
+Integral gain {INTEGRAL_GAIN_1_S2} 1/s². The plan rests from {from_s} to {to_s} s, while the panel is gripped.
 The control loop runs at 100 Hz with {:.1} ms jitter (1 sigma); {:.1} % of the messages of each joint topic are
 lost. Encoders: noise {:.3} deg (1 sigma), then rounded to counts of {:.5} deg (16 bit). Angles and speeds are
 held as `f32`. Times below count from the first stamp, {START_NS} ns.",

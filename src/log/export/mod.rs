@@ -1,6 +1,7 @@
 //! A run as a table that other programs read.
 
 mod csv;
+#[cfg(feature = "parquet")]
 mod parquet;
 
 use thiserror::Error;
@@ -20,6 +21,7 @@ pub enum ExportError {
     #[error("cannot write the table")]
     Output(#[from] std::io::Error),
     /// The Parquet library said no.
+    #[cfg(feature = "parquet")]
     #[error("cannot write the Parquet file")]
     Parquet(#[from] ::parquet::errors::ParquetError),
     /// The file cannot be put in place.

@@ -56,14 +56,14 @@ const TASK_1_RUN: Title = (
     "Task 1 of the paper at its times, sent as planned; with the task and the plan's document. For `report` and for making the next plan or command.",
 );
 const TASK_2_RUN: Title =
-    ("task-2-run.mcap", "Task 2 in the same way: to predict from a fit to the other, or to fit both.");
+    ("task-2-run.mcap", "Task 2 in the same way: to be predicted from a fit to the other, or to fit both.");
 const IDENTIFICATION_RUN: Title = (
     "identification-run.mcap",
-    "Every joint in turn at 3 and at 60 deg/s to both sides, no task: shows lag, dead band and speed limits, which the smooth runs leave open.",
+    "Every joint in turn at 3 and at 60 deg/s to both sides, no task. Shows lag, dead band and speed limits; the smooth runs do not.",
 );
 const PRECOMPENSATED_RUN: Title = (
     "precompensated-run.mcap",
-    "Task 1 again, the same plan; the command makes up for the machine by a fit to `task-1-run.mcap`. For comparing the two.",
+    "Task 1 again, the same plan, with a command pre-compensated by a fit to `task-1-run.mcap`. For comparing the two.",
 );
 const PRESSURES_RUN: Title = (
     "pressures-run.mcap",

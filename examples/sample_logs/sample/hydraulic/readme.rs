@@ -17,22 +17,23 @@ const MACHINE: &str = "
 
 The simulated machine `{PRESET}` of `hydrotrace simulate` around the sample arm: valves with dead time, overlap,
 hysteresis and slew, cylinders with oil, friction and play, one pump, a loop at 100 Hz, encoders with noise 0.010 deg
-(1 sigma) and 16 bit, 0.5 ms jitter and 0.2 % lost samples ([every number](plant/default.toml)). No hardware stands
-behind it. It rests 2 s before and 3 s after its plan; plan, command and measurement are separate topics, numbers are
-held as `f32`, measured speeds in steps of 2^-16 rad/s. The truth that fits can be judged by is in each log as metadata `hydrotrace.plant` (JSON, SI units), for
-the pose amid the angles of that log's plan and without payload. That of `task-1-run.mcap`, growing / shrinking angles:
+(1 sigma) and 16 bit, 0.5 ms jitter and 0.2 % lost samples ([every number](plant/default.toml)). It is no real machine.
+It rests 2 s before and 3 s after its plan. Plan, command and measurement are separate topics; numbers are stored as
+`f32`, measured speeds in steps of 2^-16 rad/s. The metadata `hydrotrace.plant` of each log (JSON, SI units) holds the
+truth to judge fits by, for the middle of the range of that log's plan and without payload. For `task-1-run.mcap`,
+growing / shrinking angles:
 
 | joint | lag, s | dead band, deg/s | speed limit, deg/s | gain | position gain, 1/s | feed-forward |
 |---|---|---|---|---|---|---|
 ";
 
 const COLUMNS: &str = "
-Lag: dead time, spool and half a period of the loop. Dead band: speed that the loop must want before oil flows. Gain:
-speed by wanted speed beyond the dead band, which a fit has in its gains and dead band. No acceleration limit: what the
-oil makes of a fast spool is no number that a fit finds.
+Lag: dead time, spool and half a period of the loop. Dead band: speed that the controller must ask for before oil flows.
+Gain: speed divided by the speed asked for beyond the dead band; a fit has it in its gains and dead band. There is no
+acceleration limit: the response of the oil to a fast spool is no parameter of a fit.
 
-What the joints did, by angles without noise: starts and reversals of the plan, the largest plan minus angle after each
-(mean and largest), the largest distance of command and plan, and the lowest pressure of the supply.
+Measured from angles without noise: number of starts and reversals of the plan, peak error after each (mean and
+largest), largest distance between command and plan, and lowest pressure of the supply.
 
 | log | starts | mean peak, deg | largest peak, deg | command off plan, deg | supply, MPa |
 |---|---|---|---|---|---|
