@@ -1,4 +1,4 @@
-//! From what the user named to the files of one recording, in order.
+//! Finds the files of one recording, in order, from paths of files and bag directories.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! What can stop the reading or writing of a log.
+//! Errors of reading and writing a log.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::suggest::suggestion;
 
-/// Why a log yields nothing at all; doubts about parts of it are remarks instead.
+/// Why a log cannot be read or written; doubts about parts of it are remarks.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -45,7 +45,7 @@ pub enum LogError {
         nearest: Option<Box<str>>,
         present: String,
     },
-    /// Nothing in the log is a plan, or nothing a measurement.
+    /// The log holds no plan, or no measurement.
     #[error("found no {missing} joint angles; the log has {present}; name them with {flag} TOPIC[:FIELD]")]
     Missing { missing: &'static str, present: String, flag: &'static str },
     /// Planned and measured joints have no name in common.

@@ -16,7 +16,7 @@ use crate::remark::{Code, Remarks};
 #[derive(Debug)]
 pub struct LogFiles {
     files: Vec<(PathBuf, MappedFile)>,
-    /// Whether their order is known: that of a bag is, that of single files is not.
+    /// Whether their order is known, as in a bag; single files are ordered by the recorder's clock.
     ordered: bool,
     remarks: Remarks,
 }

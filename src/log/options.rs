@@ -1,11 +1,11 @@
-//! What to read of a log.
+//! Options of reading a log.
 
 use serde::{Deserialize, Serialize};
 
 use super::write::Topics;
 use crate::series::{JointKind, Quantity};
 
-/// What to read, where the log alone does not tell.
+/// Topics, joints, clock and units, where the log alone does not determine them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ReadOptions {
     /// Which of plan and measurement the log must hold.
@@ -53,7 +53,7 @@ pub struct WantedSignal {
     pub topic: Option<Selector>,
 }
 
-/// What a signal beside plan and measurement is.
+/// Role of a signal beside plan and measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SignalRole {
@@ -72,7 +72,7 @@ pub enum SignalRole {
 }
 
 impl SignalRole {
-    /// What its values are.
+    /// The quantity of its values.
     pub const fn quantity(self, kind: JointKind) -> Quantity {
         match (self, kind) {
             (Self::Command, _) => kind.quantity(),

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::math::{linear, median};
 
-/// What the values of a [`Signal`] are, and so their unit.
+/// The quantity of the values of a [`Signal`], and so their unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -63,7 +63,7 @@ pub enum JointKind {
 }
 
 impl JointKind {
-    /// What the position of such a joint is.
+    /// The quantity of its position.
     pub const fn quantity(self) -> Quantity {
         match self {
             Self::Turns => Quantity::Angle,
@@ -171,7 +171,7 @@ impl Signal {
         &self.name
     }
 
-    /// What the values are.
+    /// The quantity of the values.
     pub const fn quantity(&self) -> Quantity {
         self.quantity
     }

@@ -65,7 +65,7 @@ pub enum CsvError {
         "column {column:?} counts time in steps of {step}; say in what with --time-unit s|ms|us|ns, or give --rate HZ"
     )]
     TimeUnit { column: String, step: f64 },
-    /// Angles that say no unit and fit none.
+    /// Angles without a unit, too large for radians.
     #[error(
         "column {column:?} says no unit and reaches {reach}, too far for radians; say --degrees or --radians"
     )]

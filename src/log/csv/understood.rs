@@ -61,7 +61,7 @@ pub struct TimeRead {
     pub rate_hz: f64,
 }
 
-/// What a column became.
+/// The use of a column.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ColumnRead {

@@ -2,7 +2,7 @@
 
 use super::{Quantity, Role};
 
-/// What one word of a header says.
+/// The meaning of one word of a header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meaning {
     Role(Role),
@@ -46,7 +46,7 @@ fn meaning_of_word(word: &str) -> Meaning {
     meant.map_or(Meaning::Name, |(_, meaning)| meaning)
 }
 
-/// One word of a header: its text, what stood before it, what it says.
+/// One word of a header: its text, whether it stands apart, its meaning.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Word<'a> {
     pub(super) text: &'a str,

@@ -100,7 +100,7 @@ pub(super) fn assemble(
     })
 }
 
-/// Remarks on what was chosen; returns whether the plan is a command.
+/// Remarks on the choice; returns whether the plan is a command.
 fn remark_choice(choice: &Choice, options: &ReadOptions, remarks: &mut Remarks) -> bool {
     for rival in &choice.rivals {
         let message = format!("{rival} measures the same joints and was not used; choose with --measured");
@@ -133,7 +133,7 @@ fn candidate(extracted: &Extracted, wanted: &WantedSignal, base: TimeBase) -> Re
     Ok(candidate)
 }
 
-/// What was extracted, and the time axes of the tables that are used.
+/// The content of the files, and the time axes of the tables that are used.
 struct Assembly {
     extracted: Extracted,
     base: TimeBase,

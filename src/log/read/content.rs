@@ -1,4 +1,4 @@
-//! What the blocks of a recording yield, before plan and measurement are chosen.
+//! Contents of the blocks of a recording, before plan and measurement are chosen.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::{
     remark::Remarks,
 };
 
-/// What a topic holds, whether it is read or not.
+/// Counts of a topic, whether it is read or not.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct TopicCount {
     pub(super) topic: String,
@@ -29,7 +29,7 @@ pub(super) struct TopicCount {
     pub(super) unread: u64,
 }
 
-/// What was read of one topic.
+/// Samples or trajectories of one topic.
 #[derive(Debug, Clone)]
 pub(super) enum Content {
     Table(Box<Table>),
@@ -89,7 +89,7 @@ impl Content {
     }
 }
 
-/// One topic that holds joints, with what was read of it.
+/// One topic that holds joints, with its content.
 #[derive(Debug, Clone)]
 pub(super) struct Source {
     /// Index into the topics.
@@ -99,7 +99,7 @@ pub(super) struct Source {
     pub(super) parts: Vec<(usize, usize)>,
 }
 
-/// Everything that reading yields.
+/// Content of all files.
 #[derive(Debug, Default)]
 pub(super) struct Extracted {
     pub(super) files: Vec<FileInfo>,
@@ -119,7 +119,7 @@ impl Extracted {
     }
 }
 
-/// What to do with one channel of one file.
+/// How one channel of one file is read.
 pub(super) struct Route {
     pub(super) topic: usize,
     pub(super) read: Option<(usize, Decoder)>,

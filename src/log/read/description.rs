@@ -13,7 +13,7 @@ pub(super) fn is_topic(topic: &str) -> bool {
     topic.rsplit('/').next() == Some(TOPIC)
 }
 
-/// Takes the description of a log out of what was read: that of a message, else that of a file.
+/// Takes the description of a log out of its content: that of a message, else that of a file.
 pub(super) fn take(extracted: &mut Extracted) -> Option<String> {
     let message = extracted.description.take().map(|(_, text)| text);
     message.or_else(|| {

@@ -17,7 +17,7 @@ use crate::{
 /// Parts that meet may share this much: recorders split between threads.
 const SHARED_S: f64 = 1.0;
 
-/// When the recorder received the first message of a file, ns; the end of all times if it has none.
+/// When the recorder received the first message of a file, ns; `u64::MAX` if it has no message.
 pub(super) fn begins_ns(layout: &Layout<'_>) -> u64 {
     let first = |block: &Block<'_>| match block {
         // A chunk starts with the time of its first message.

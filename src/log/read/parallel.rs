@@ -1,4 +1,4 @@
-//! Decodes blocks on all threads and appends what they yield in the order of the file.
+//! Decodes blocks on all threads and appends their content in the order of the file.
 
 use std::{
     collections::BTreeMap,
@@ -24,7 +24,7 @@ use crate::{
 /// A block, the channels of its file, and the file.
 pub(super) type Work<'a> = (Block<'a>, Arc<BTreeMap<u16, Route>>, usize);
 
-/// What one block yields; emptied and reused. Only what the block touches costs anything: files
+/// Content of one block; emptied and reused. Cost is by the topics that the block touches: files
 /// may have many channels and many blocks.
 struct Piece {
     contents: Vec<Option<Content>>,

@@ -1,4 +1,4 @@
-//! Remarks on what looks wrong in the data.
+//! Remarks on data that look wrong.
 
 use std::f64::consts::{PI, TAU};
 
@@ -119,7 +119,7 @@ impl Gaps {
     }
 }
 
-/// Samples paused and slowed; none where the field is never filled.
+/// Numbers of samples paused and slowed; 0 where the field is never filled.
 fn scaling(factors: &[f64]) -> (u64, u64) {
     if !factors.iter().any(|&f| f > 0.0) {
         return (0, 0);
@@ -154,7 +154,7 @@ pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: 
     }
 }
 
-/// Steps between neighbouring samples that are nearer to a full turn than to nothing.
+/// Number of steps between neighbouring samples of about a full turn.
 fn turns(track: &Track) -> u64 {
     let steps = track.position().windows(2);
     steps.filter(|w| (w[1] - w[0]).abs() > PI && ((w[1] - w[0]).abs() - TAU).abs() < 1.0).count() as u64

@@ -1,4 +1,4 @@
-//! What is read of a log.
+//! A recording as read from its log.
 
 use std::collections::BTreeMap;
 
@@ -137,7 +137,7 @@ impl Recording {
     }
 }
 
-/// What is in a log, whether or not a report can be made of it.
+/// The content of a log, whether or not a report can be made of it.
 #[derive(Debug)]
 pub struct Survey {
     /// Its files.
@@ -146,7 +146,7 @@ pub struct Survey {
     pub topics: Vec<TopicInfo>,
     /// Names of the files stored in it.
     pub attachments: Vec<String>,
-    /// What a report would use, or why no report can be made.
+    /// The recording that a report would use, or why no report can be made.
     pub recording: Result<Recording, LogError>,
     /// Doubts about the files.
     pub remarks: Remarks,

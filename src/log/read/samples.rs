@@ -72,13 +72,13 @@ impl Samples {
     }
 }
 
-/// What is read of a table.
+/// The field to read of a table, and how.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reading {
     pub(super) field: usize,
-    /// Whether values are positions of joints, of which some cannot be.
+    /// Whether values are positions of joints, so that impossible ones are dropped.
     pub(super) positions: bool,
-    /// Whether nobody asks the table for this field again, so that samples may be moved out of it.
+    /// Whether this is the last use of the field, so that its samples may be moved out of the table.
     pub(super) last: bool,
 }
 

@@ -29,7 +29,7 @@ pub(super) struct Candidate {
     topic: String,
 }
 
-/// What was chosen.
+/// The chosen topics and fields.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Choice {
     pub(super) planned: Vec<Candidate>,
@@ -40,7 +40,7 @@ pub(super) struct Choice {
 }
 
 impl Choice {
-    /// Topics that are the plan for want of a better one: what was sent.
+    /// Topics of commands that serve as the plan because the log has no other.
     pub(super) fn commanded(&self) -> impl Iterator<Item = &str> {
         let sent = |c: &&Candidate| c.rank == COMMAND;
         self.planned.iter().filter(sent).map(|c| c.topic.as_str())
@@ -49,7 +49,7 @@ impl Choice {
 
 /// Rank of a plan by a name that says command.
 const COMMAND: u32 = 8;
-/// Rank of what is only used when the caller names it.
+/// Rank of fields that are used only if the caller names them.
 const ONLY_IF_NAMED: u32 = 9;
 
 const PLAN_WORDS: [&str; 8] =
@@ -162,7 +162,7 @@ fn namespace(topic: &str) -> impl Iterator<Item = &str> {
     stem.split('/').filter(|part| !part.is_empty())
 }
 
-/// What would have served as well as what was chosen, elsewhere.
+/// Topics of other namespaces that would have served as well.
 fn rivals(all: &[Candidate], chosen: &[Candidate], wanted: &BTreeSet<&String>) -> Vec<String> {
     let same_home = |a: &Candidate, b: &Candidate| namespace(&a.topic).eq(namespace(&b.topic));
     let rival = |c: &&Candidate| {
@@ -244,7 +244,7 @@ fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<V
     named.iter().map(|selector| self::named(extracted, selector, role)).collect()
 }
 
-/// What the caller named.
+/// The candidate of a selector.
 pub(super) fn named(extracted: &Extracted, selector: &Selector, role: Role) -> Result<Candidate, LogError> {
     let topic =
         extracted.topics.iter().position(|t| t.topic == selector.topic).ok_or_else(|| LogError::NoTopic {

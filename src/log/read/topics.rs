@@ -1,4 +1,4 @@
-//! What is in the topics of a log, for people.
+//! Lists the topics of a log.
 
 use std::collections::BTreeSet;
 
@@ -30,7 +30,7 @@ pub(super) fn fields_of(extracted: &Extracted, topic: usize) -> Vec<String> {
     topic_info(extracted, topic, sources).joint_fields
 }
 
-/// What `info` says of each topic, by name.
+/// The topics for `info`, by name.
 pub(super) fn topic_infos(extracted: &Extracted) -> Vec<TopicInfo> {
     let mut sources: Vec<Vec<&Source>> = vec![Vec::new(); extracted.topics.len()];
     extracted.sources.iter().for_each(|source| sources[source.topic].push(source));

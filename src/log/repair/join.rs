@@ -21,11 +21,11 @@ pub struct PlanSample {
     pub stamp_ns: i64,
     /// Where the joints should be.
     pub planned: [Vec<f64>; 2],
-    /// What was sent.
+    /// The command.
     pub command: [Vec<f64>; 2],
 }
 
-/// What to put into a log.
+/// Samples, files and metadata to put into a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Addition<'a> {
     /// The joints of the samples.

@@ -1,4 +1,4 @@
-//! Logs made from logs: what is whole of a damaged one, and one with a plan put into it.
+//! Logs made from logs: the whole messages of a damaged log, and a log with a plan added.
 
 mod copy;
 mod join;

@@ -16,7 +16,7 @@ use crate::{
     remark::{Code, Remarks},
 };
 
-/// What a recovery saved.
+/// Counts of a recovery.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Recovered {
     /// Messages in the new log.
@@ -27,11 +27,11 @@ pub struct Recovered {
     pub dropped_blocks: u64,
     /// Attachments in the new log.
     pub attachments: usize,
-    /// What was lost or doubtful; empty if nothing was.
+    /// Losses and doubts; empty if there are none.
     pub remarks: Remarks,
 }
 
-/// Writes what is whole in `log`, the partial last chunk included, to `output`.
+/// Writes all whole messages of `log`, those of a partial last chunk included, to `output`.
 ///
 /// Messages keep their bytes, times and sequence numbers; attachments and metadata are copied.
 ///

@@ -1,4 +1,4 @@
-//! Which fields of which message types are joint angles, and whether they are plan or measurement.
+//! The fields of known message types that are joint positions, and which are plan or measurement.
 
 use super::slot;
 use crate::log::{
@@ -7,7 +7,7 @@ use crate::log::{
     schema::{Definition, Shape, plain_name},
 };
 
-/// What a field says of a joint.
+/// The meaning of a field for a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::log) enum Role {
     Planned,

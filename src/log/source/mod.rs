@@ -1,4 +1,4 @@
-//! Topics that carry joints: which messages are read, for which fields, into what.
+//! Topics that carry joints: the messages and fields that are read, and the tables they fill.
 
 mod kind;
 mod plans;

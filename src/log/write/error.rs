@@ -1,4 +1,4 @@
-//! What can go wrong while a log is written.
+//! Errors of writing a log.
 
 use std::{error::Error, path::PathBuf};
 
@@ -37,7 +37,7 @@ pub enum WriteError {
     /// The file cannot be created, for one because it exists already.
     #[error("cannot create {path}")]
     Create { path: PathBuf, source: std::io::Error },
-    /// The output takes no more, or took none before.
+    /// The output rejects bytes now, or rejected some before.
     #[error("the log cannot be written")]
     Output(#[source] Box<dyn Error + Send + Sync>),
 }

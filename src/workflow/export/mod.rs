@@ -10,25 +10,25 @@ use crate::{
     remark::{Code, Remarks},
 };
 
-/// What to export.
+/// Input and form of an export.
 #[derive(Debug, Clone)]
 pub struct Inputs {
     /// Files or bag directories of one run.
     pub logs: Vec<PathBuf>,
-    /// What to read, where the log alone does not tell.
+    /// Topics, joints, clock and units, where the log alone does not determine them.
     pub read: ReadOptions,
-    /// Topic of what was really sent; `None`: that of our own logs, if it is there.
+    /// Topic of the command; `None`: that of our own logs, if it is there.
     pub command: Option<Selector>,
     /// Unit of the angles.
     pub unit: AngleUnit,
 }
 
-/// What came of it.
+/// The result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outputs {
     /// The run.
     pub table: RunTable,
-    /// What was doubtful.
+    /// Doubts about the data.
     pub remarks: Remarks,
 }
 

@@ -66,15 +66,10 @@ impl JoinDocument {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{document::pretty, remark::Remarks};
+    use crate::{remark::Remarks, schema::is_written_and_read};
 
     #[test]
-    fn the_committed_schema_is_that_of_the_document() {
-        crate::schema::is_committed::<JoinDocument>("join.v1.schema.json", "hydrotrace join, version 1");
-    }
-
-    #[test]
-    fn what_is_written_is_read_back() {
+    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
         let joined = Joined {
             sent: Some("/sent:positions".into()),
             commanded: true,
@@ -88,6 +83,6 @@ mod tests {
             remarks: Remarks::default(),
         };
         let document = JoinDocument::of(&joined);
-        assert_eq!(serde_json::from_str::<JoinDocument>(&pretty(&document)).unwrap(), document);
+        is_written_and_read(&document, "join.v1.schema.json", "hydrotrace join, version 1");
     }
 }

@@ -1,4 +1,4 @@
-//! `join`: the plan into the log of a run that holds what was sent and what came of it.
+//! `join`: adds the plan to the log of a run that holds command and measurement.
 
 mod document;
 mod place;
@@ -23,14 +23,14 @@ use crate::{
 };
 use place::Plan;
 
-/// What to join, and to where.
+/// Run, plan and output of a join.
 #[derive(Debug, Clone, Default)]
 pub struct Inputs {
     /// Files or bag directories of one run.
     pub logs: Vec<PathBuf>,
     /// The log with the plan, and with the command that was made for it.
     pub plan: PathBuf,
-    /// What to read of the run; its plan is what was sent.
+    /// Topics of the run; its plan is the command.
     pub read: ReadOptions,
     /// When the first sample of the plan was sent, s from the start of the run's log; `None`: found by what
     /// was sent.
@@ -39,7 +39,7 @@ pub struct Inputs {
     pub output: PathBuf,
 }
 
-/// Why nothing was joined.
+/// Why a plan was not joined.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -47,7 +47,7 @@ pub enum JoinFailure {
     /// One of the logs.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// Nothing tells when the plan began.
+    /// The log does not hold what was sent, so the start of the plan is unknown.
     #[error(
         "the log of the run does not say what was sent, so that the start of its plan is unknown; name the \
          topic with --planned TOPIC[:FIELD], or the time of the plan's first sample with --at SECONDS"
@@ -76,7 +76,7 @@ pub enum JoinFailure {
     Outside { at_s: f64, duration_s: f64, measured_s: [f64; 2] },
 }
 
-/// What was found, and what the new log holds.
+/// Where the plan was found, and the content of the new log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joined {
     /// Topic and field of what was sent, unless the caller gave the time alone.
@@ -97,7 +97,7 @@ pub struct Joined {
     pub messages: u64,
     /// Files that came with the plan.
     pub files: Vec<String>,
-    /// What was doubtful.
+    /// Doubts about the data.
     pub remarks: Remarks,
 }
 
@@ -108,7 +108,7 @@ const RESTS_RAD: f64 = 0.05 * DEGREE_RAD;
 /// Samples a second of the plan in the new log.
 const RATE_HZ: f64 = 100.0;
 
-/// Puts the plan where its command was sent.
+/// Adds the plan at the time at which its command was sent.
 ///
 /// # Errors
 ///
@@ -126,7 +126,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     // A run that was read without a plan has none.
     let sent = (!run.planned.tracks.is_empty()).then_some(&run.planned);
     let topic = format!("{}:{}", run.source.planned_topic, run.source.planned_field);
-    // That the log holds no plan is why it is joined.
+    // A missing plan is the reason for the join, no doubt.
     let mut remarks = run.remarks.clone().without(Code::PlanIsCommand);
     let [from_s, to_s] = plan.span_s();
     if to_s - from_s > LONGEST_S {
@@ -152,7 +152,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         ],
         None => [0.0; 2],
     };
-    // As logged where that is not what was made, else as made: the log may have it more coarsely.
+    // As logged if it differs from the made one, else as made: the log may be coarser.
     let otherwise = located.is_some_and(|found| !place::is_same(&found));
     let command = match (commanded, &plan.command, sent) {
         (_, _, Some(sent)) if otherwise => (sent, 0.0),
@@ -197,7 +197,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     })
 }
 
-/// How long what is sent stays where it is at an instant, before or after it, s.
+/// How long the command rests before or after an instant, s.
 fn rest_s(sent: &Series, at_s: f64, direction: f64, most_s: f64) -> f64 {
     let rests = |away_s: &f64| {
         sent.tracks.iter().all(|track| {

@@ -13,9 +13,9 @@ use crate::{
     },
 };
 
-/// What is left of a motion at most for a place to be its own, as a share.
+/// Largest difference, as a share of the motion, at which a place is taken to be that of the plan.
 const FITS: f64 = 0.1;
-/// The same for what was sent to be what was made.
+/// Largest difference, as a share, at which the sent signal is taken to be the planned one.
 const SAME: f64 = 0.01;
 
 /// A plan and its command, on the plan's clock.
@@ -86,12 +86,12 @@ impl Plan {
     }
 }
 
-/// Whether what was sent is what was made.
+/// Whether the sent signal is the planned one.
 pub(super) fn is_same(found: &Located) -> bool {
     share(found) <= SAME
 }
 
-/// What is left of the motion, as a share.
+/// Difference as a share of the motion.
 fn share(found: &Located) -> f64 {
     found.rms_rad / found.spread_rad
 }

@@ -16,11 +16,11 @@ pub struct RecoverDocument {
     pub messages: u64,
     /// Chunks, or runs of messages outside chunks, that were read.
     pub blocks: usize,
-    /// Blocks of which nothing could be read.
+    /// Blocks that could not be read at all.
     pub dropped_blocks: u64,
     /// Attachments in the new log.
     pub attachments: usize,
-    /// What was lost or doubtful; empty if nothing was.
+    /// Losses and doubts; empty if there are none.
     pub remarks: Vec<Remark>,
 }
 
@@ -44,24 +44,16 @@ impl RecoverDocument {
 mod tests {
     use super::*;
     use crate::{
-        document::pretty,
         remark::{Code, Remarks},
+        schema::is_written_and_read,
     };
 
     #[test]
-    fn the_committed_schema_is_that_of_the_document() {
-        crate::schema::is_committed::<RecoverDocument>(
-            "recover.v1.schema.json",
-            "hydrotrace recover, version 1",
-        );
-    }
-
-    #[test]
-    fn what_is_written_is_read_back() {
+    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
         let mut remarks = Remarks::default();
         remarks.add(Code::DamagedChunk, 1, "a chunk was dropped");
         let recovered = Recovered { messages: 5, blocks: 2, dropped_blocks: 1, attachments: 3, remarks };
         let document = RecoverDocument::of(&recovered);
-        assert_eq!(serde_json::from_str::<RecoverDocument>(&pretty(&document)).unwrap(), document);
+        is_written_and_read(&document, "recover.v1.schema.json", "hydrotrace recover, version 1");
     }
 }

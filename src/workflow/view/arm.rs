@@ -26,7 +26,7 @@ pub struct MovingArm {
     pub source: ArmOrigin,
     /// Names of its links, the base first.
     pub links: Vec<String>,
-    /// What is seen of it but for its meshes.
+    /// Its shapes but for meshes.
     pub shapes: Vec<Shape>,
     /// Its meshes that are at hand, and their files.
     pub meshes: Vec<(Mesh, PathBuf)>,
@@ -34,7 +34,7 @@ pub struct MovingArm {
     pub reach_m: f64,
     /// By the plan.
     pub planned: Poses,
-    /// By the measurement; without instants of a plan that nobody ran.
+    /// By the measurement; without instants for a plan that was not run.
     pub measured: Poses,
 }
 
@@ -52,7 +52,7 @@ pub enum ArmOrigin {
 }
 
 impl MovingArm {
-    /// From where all of the arm and of its tool's way is seen best; `None` of an arm that is nowhere.
+    /// The view point that shows the arm and its tool's path best; `None` without poses.
     ///
     /// From the side of the way that the tool is on, and a little from above.
     pub fn sight(&self) -> Option<Sight> {
@@ -83,13 +83,13 @@ impl MovingArm {
 pub struct Sight {
     /// The eye.
     pub from_m: [f64; 3],
-    /// What is in the middle.
+    /// The middle of the picture.
     pub to_m: [f64; 3],
 }
 
-/// Distance of the eye by the diagonal of what is to be seen.
+/// Distance of the eye by the diagonal of the scene.
 const FAR: f64 = 1.0;
-/// Least diagonal of what is to be seen by the arm's reach.
+/// Least diagonal of the scene by the arm's reach.
 const MARGIN: f64 = 0.3;
 
 /// Poses of all links in the base's frame.
@@ -101,8 +101,7 @@ pub struct Poses {
     pub poses: Vec<Vec<Pose>>,
 }
 
-/// The arm of a log, by the description that is given with its file, else as the log tells; `None` if nothing
-/// tells.
+/// The arm of a log, by the given description with its file, else by the log; `None` if there is neither.
 ///
 /// # Errors
 ///

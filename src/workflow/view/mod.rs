@@ -1,4 +1,4 @@
-//! `view`: from the logs of runs to what is to be seen of them: arms that move, series, events, fronts.
+//! `view`: from the logs of runs to scenes: moving arms, series, events, fronts.
 
 mod arm;
 mod mesh;
@@ -21,12 +21,12 @@ use crate::{
     series::{Pair, Series, align},
 };
 
-/// What to show.
+/// Input of a view.
 #[derive(Debug, Clone, Default)]
 pub struct Inputs {
     /// Runs or plans, each a file or a bag directory.
     pub logs: Vec<PathBuf>,
-    /// What to read, where a log alone does not tell.
+    /// Topics, joints, clock and units, where a log alone does not determine them.
     pub read: ReadOptions,
     /// Thresholds of transitions.
     pub rules: Rules,
@@ -36,7 +36,7 @@ pub struct Inputs {
     pub packages: Vec<PathBuf>,
 }
 
-/// Why there is nothing to show.
+/// Why a view cannot be made.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
@@ -59,7 +59,7 @@ pub struct Scene {
     pub name: String,
     /// The plan.
     pub planned: Series,
-    /// The measurement; empty of a plan that nobody ran.
+    /// The measurement; empty for a plan that was not run.
     pub measured: Series,
     /// Plan and measurement where both exist, by joint.
     pub pairs: Vec<Pair>,
@@ -69,11 +69,11 @@ pub struct Scene {
     pub arm: Option<MovingArm>,
     /// Plans to choose from, if the log holds them.
     pub front: Option<Front>,
-    /// What was doubtful.
+    /// Doubts about the data.
     pub remarks: Remarks,
 }
 
-/// Plans of which none is better than another in everything.
+/// Plans on the Pareto front.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Front {
     /// Duration, s, root mean square jerk, rad/s³, root mean square power, W; by plan.
