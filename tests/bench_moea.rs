@@ -14,7 +14,7 @@ use hydrotrace::{
         Budget, Contender, Operators, Population, Settings, benchmark::Benchmark, compare::Yardstick,
         indicator::hypervolume, optimise, silent,
     },
-    render::{curve_svg, curves_csv, front_csv, moea_json, moea_parts, text},
+    render::{curve_svg, curves_csv, front_csv, kit::text, moea_document, moea_json},
     workflow::moea::{Inputs, Study, run},
 };
 
@@ -87,7 +87,8 @@ fn a_front_has_the_hypervolume_of_its_run() {
 }
 
 fn rendered(inputs: &Inputs, study: &Study) -> Vec<String> {
-    let mut all = vec![text(&moea_parts(inputs, study)), moea_json(inputs, study), curves_csv(&study.curves)];
+    let mut all =
+        vec![text(&moea_document(inputs, study)), moea_json(inputs, study), curves_csv(&study.curves)];
     all.push(curve_svg(&study.curves[..3]).unwrap());
     all.extend(study.fronts.iter().map(front_csv));
     all

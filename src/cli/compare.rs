@@ -6,10 +6,10 @@ use super::{
     CliError, Outcome,
     args::CompareArgs,
     figures,
-    output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal, text_file},
+    output::{deliver, say_broken, say_remarks, shown, spare_inputs, spare_terminal, text_file},
 };
 use crate::{
-    render::{compare_figures, compare_gate_lines, compare_json, compare_page, compare_parts, markdown},
+    render::{compare as words, kit::markdown},
     workflow::compare::{Inputs, run as compare},
 };
 
@@ -35,25 +35,20 @@ pub(super) fn run(
     let comparison = compare(&inputs)?;
     let most = if args.all { usize::MAX } else { MOST };
     let rendered = if format.json {
-        compare_json(&comparison)
+        words::json(&comparison)
     } else if format.html {
-        compare_page(&comparison, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
+        words::page(&comparison, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
     } else if format.markdown {
-        markdown(&compare_parts(&comparison, most))
+        markdown(&words::document(&comparison, most))
     } else {
-        shown(&compare_parts(&comparison, most), output)
+        shown(&words::document(&comparison, most), output)
     };
-    figures::figures(&args.figures, err, || compare_figures(&comparison))?;
+    figures::figures(&args.figures, err, || words::figures(&comparison))?;
     deliver(&rendered, output, out)?;
     if output.is_some() || format.json || format.html {
         say_remarks(&comparison.remarks, err);
     }
-    if !comparison.gates_kept() {
-        for (line, gate) in compare_gate_lines(&comparison).iter().zip(&comparison.gates) {
-            if !gate.kept {
-                say_gate(line, err);
-            }
-        }
+    if say_broken(&words::verdicts(&comparison), err) {
         return Ok(Outcome::GateFailed);
     }
     Ok(if comparison.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })

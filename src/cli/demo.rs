@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     atomic_file::write_atomically,
-    render::{Story, demo_parts},
+    render::demo::{Story, document},
     workflow::{
         compare::{Inputs, run as compare},
         plan::{PlanRequest, SAMPLE_TASK},
@@ -67,7 +67,7 @@ pub(super) fn run(args: &DemoArgs, out: &mut impl Write) -> Result<Outcome, CliE
         replanned: &replanned,
         comparison: &comparison,
     };
-    deliver(&shown(&demo_parts(&story), None), None, out)?;
+    deliver(&shown(&document(&story), None), None, out)?;
     Ok(if replanned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }
 

@@ -7,7 +7,7 @@ use super::{
     args::ExciteArgs,
     output::{deliver, shown, spare_inputs, spare_stdout},
 };
-use crate::{atomic_file::write_atomically, render::excited_parts, workflow::excite::run as excite};
+use crate::{atomic_file::write_atomically, render::excite::document, workflow::excite::run as excite};
 
 /// Samples a second in the log.
 const RATE_HZ: f64 = 100.0;
@@ -19,6 +19,6 @@ pub(super) fn run(args: &ExciteArgs, out: &mut impl Write) -> Result<Outcome, Cl
     let excited = excite(&args.inputs())?;
     let bytes = excited.log(RATE_HZ)?;
     write_atomically(&args.output, |file| Ok::<(), CliError>(file.write_all(&bytes)?))?;
-    deliver(&shown(&excited_parts(&excited, &args.output), None), None, out)?;
+    deliver(&shown(&document(&excited, &args.output), None), None, out)?;
     Ok(Outcome::Clean)
 }

@@ -6,8 +6,8 @@ use std::{io::Write, path::Path};
 use super::output::harmless;
 use super::{CliError, args::FigureArgs};
 #[cfg(feature = "png")]
-use crate::render::{Raster, raster};
-use crate::{atomic_file::write_atomically, render::Figure};
+use crate::render::kit::{Raster, raster};
+use crate::{atomic_file::write_atomically, render::kit::Figure};
 
 /// What drawing returns.
 type Drawn = Result<Vec<Figure>, Box<dyn std::error::Error + Send + Sync>>;

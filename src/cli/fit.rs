@@ -8,17 +8,19 @@ use super::{
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
-    render::{fit_json, fit_parts, limits_toml, limits_written, noted},
-    workflow::fit::{Fitted, Inputs, run as fit},
+    render::{fit as words, next},
+    workflow::fit::{FitDocument, Fitted, Inputs, LimitsFile, run as fit},
 };
 
 pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     let fitted = fitted(args)?;
     let json = args.json || args.document().is_some();
     let rendered = match &args.output {
-        _ if json => fit_json(&fitted),
-        Some(path) => shown(&noted(fit_parts(&fitted), limits_written(path, &args.logs)), None),
-        None => shown(&fit_parts(&fitted), None),
+        _ if json => FitDocument::of(&fitted).json(),
+        Some(path) => {
+            shown(&words::document(&fitted).with_above_remarks(next::limits_written(path, &args.logs)), None)
+        }
+        None => shown(&words::document(&fitted), None),
     };
     deliver(&rendered, args.document(), out)?;
     if json {
@@ -33,7 +35,7 @@ pub(super) fn fitted(args: &FitArgs) -> Result<Fitted, CliError> {
     spare_stdout(args.output.as_deref())?;
     let fitted = fit(&Inputs { logs: args.logs.clone(), read: args.sent.options() })?;
     if let Some(path) = args.output.as_deref().filter(|_| args.document().is_none()) {
-        deliver(&limits_toml(&fitted.file())?, Some(path), &mut std::io::sink())?;
+        deliver(&LimitsFile::of(&fitted).toml()?, Some(path), &mut std::io::sink())?;
     }
     Ok(fitted)
 }

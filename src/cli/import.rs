@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     document::pretty,
-    render::imported_parts,
+    render::import as words,
     workflow::import::{ImportDocument, run as import},
 };
 
@@ -25,7 +25,7 @@ pub(super) fn run(
         deliver(&pretty(&ImportDocument::of(&imported)), None, out)?;
         say_remarks(&imported.remarks, err);
     } else {
-        deliver(&shown(&imported_parts(&args.output.to_string_lossy(), &imported), None), None, out)?;
+        deliver(&shown(&words::document(&args.output.to_string_lossy(), &imported), None), None, out)?;
     }
     Ok(if imported.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

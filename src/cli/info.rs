@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     document::pretty,
-    render::info_parts,
+    render::info as words,
     workflow::info::{InfoDocument, Inputs, run as look},
 };
 
@@ -19,7 +19,7 @@ pub(super) fn run(args: &InfoArgs, out: &mut impl Write, err: &mut impl Write) -
         deliver(&pretty(&InfoDocument::of(&survey)), None, out)?;
         say_remarks(&survey.remarks, err);
     } else {
-        deliver(&shown(&info_parts(&survey), None), None, out)?;
+        deliver(&shown(&words::document(&survey), None), None, out)?;
     }
     Ok(if survey.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

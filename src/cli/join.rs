@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     document::pretty,
-    render::joined_parts,
+    render::join as words,
     workflow::join::{JoinDocument, run as join},
 };
 
@@ -22,7 +22,7 @@ pub(super) fn run(args: &JoinArgs, out: &mut impl Write, err: &mut impl Write) -
         deliver(&pretty(&JoinDocument::of(&joined)), None, out)?;
         say_remarks(&joined.remarks, err);
     } else {
-        deliver(&shown(&joined_parts(&joined, &args.plan, &args.output), None), None, out)?;
+        deliver(&shown(&words::document(&joined, &args.plan, &args.output), None), None, out)?;
     }
     Ok(if joined.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

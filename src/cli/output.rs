@@ -14,7 +14,7 @@ use super::CliError;
 use crate::{
     atomic_file::write_atomically,
     remark::Remarks,
-    render::{self, Part, TerminalStyle},
+    render::kit::{self, Document, Sentence, TerminalStyle},
 };
 
 /// Starts a line on what failed.
@@ -23,13 +23,13 @@ pub(super) const FAILED: Style = AnsiColor::Red.on_default().bold();
 const DOUBT: Style = AnsiColor::Yellow.on_default();
 
 /// A result as `file` or standard output is to have it: colours and folded lines only for a terminal.
-pub(super) fn shown(parts: &[Part], file: Option<&Path>) -> String {
+pub(super) fn shown(document: &Document, file: Option<&Path>) -> String {
     if file.is_some() {
-        return render::text(parts);
+        return kit::text(document);
     }
     let coloured = matches!(ColorChoice::global(), ColorChoice::Always | ColorChoice::AlwaysAnsi);
     let width = terminal_size_of(std::io::stdout()).map(|(Width(width), _)| usize::from(width));
-    render::shown(parts, TerminalStyle { coloured, width })
+    kit::shown(document, TerminalStyle { coloured, width })
 }
 
 /// Progress on standard error; none where that is no terminal, and none between or instead of words
@@ -86,9 +86,13 @@ pub(super) fn say_remarks(remarks: &Remarks, err: &mut impl Write) {
     }
 }
 
-/// Says a limit that is not kept.
-pub(super) fn say_gate(line: &str, err: &mut impl Write) {
-    let _ = writeln!(err, "{FAILED}gate:{FAILED:#} {}", harmless(line));
+/// Says which limits are not kept; returns whether there are any.
+pub(super) fn say_broken(verdicts: &[Sentence], err: &mut impl Write) -> bool {
+    let broken = || verdicts.iter().filter(|verdict| verdict.is_broken());
+    for verdict in broken() {
+        let _ = writeln!(err, "{FAILED}gate:{FAILED:#} {}", harmless(&verdict.to_string()));
+    }
+    broken().next().is_some()
 }
 
 /// Refuses to write over what is read: a log may be the only copy of a run.

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     document::pretty,
-    render::recovered_parts,
+    render::recover as words,
     workflow::recover::{Inputs, RecoverDocument, run as recover},
 };
 
@@ -26,7 +26,7 @@ pub(super) fn run(
         say_remarks(&recovered.remarks, err);
     } else {
         let output = args.output.to_string_lossy();
-        deliver(&shown(&recovered_parts(&output, &recovered), None), None, out)?;
+        deliver(&shown(&words::document(&output, &recovered), None), None, out)?;
     }
     Ok(if recovered.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

@@ -6,12 +6,12 @@ use super::{
     CliError, Outcome,
     args::ReportArgs,
     figures,
-    output::{deliver, say_gate, say_remarks, shown, spare_inputs, spare_terminal, text_file},
+    output::{deliver, say_broken, say_remarks, shown, spare_inputs, spare_terminal, text_file},
 };
 use crate::{
-    render::{gate_lines, markdown, report_figures, report_json, report_page, report_parts, transitions_csv},
+    render::{kit::markdown, report as words},
     workflow::{
-        fit::{LimitsFile, read_limits},
+        fit::LimitsFile,
         report::{Inputs, Report, run as analyse},
     },
 };
@@ -42,30 +42,25 @@ pub(super) fn run(
     let name = name.collect::<Vec<_>>().join(", ");
     let most = if args.all { usize::MAX } else { MOST };
     let rendered = if format.json {
-        report_json(&report)
+        words::json(&report)
     } else if format.csv {
-        transitions_csv(&report)
+        words::csv(&report)
     } else if format.html {
         let limits = args.limits.as_deref().map(|path| limits(path, &report)).transpose()?;
         let fit = limits.as_ref().map(|file| &file.fit);
-        report_page(&name, &report, fit, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
+        words::page(&name, &report, fit, if args.all { usize::MAX } else { MOST_ON_A_PAGE })
     } else if format.markdown {
-        markdown(&report_parts(&name, &report, most))
+        markdown(&words::document(&name, &report, most))
     } else {
-        shown(&report_parts(&name, &report, most), output)
+        shown(&words::document(&name, &report, most), output)
     };
-    figures::figures(&args.figures, err, || report_figures(&report))?;
+    figures::figures(&args.figures, err, || words::figures(&report))?;
     deliver(&rendered, output, out)?;
     let on_screen = output.is_none() && !format.json && !format.csv && !format.html;
     if !on_screen {
         say_remarks(&report.remarks, err);
     }
-    if !report.gates_kept() {
-        for (line, gate) in gate_lines(&report).iter().zip(&report.gates) {
-            if !gate.kept {
-                say_gate(line, err);
-            }
-        }
+    if say_broken(&words::verdicts(&report), err) {
         return Ok(Outcome::GateFailed);
     }
     Ok(if report.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
@@ -73,7 +68,7 @@ pub(super) fn run(
 
 /// The machine for the page, which must be that of the run.
 fn limits(path: &Path, report: &Report) -> Result<LimitsFile, CliError> {
-    let file = read_limits(path)?;
+    let file = LimitsFile::read(path)?;
     file.check_joints(path, report.pairs.iter().map(|pair| pair.name.as_str()))?;
     Ok(file)
 }

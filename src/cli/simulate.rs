@@ -5,18 +5,18 @@ use std::{io::Write, path::Path};
 use super::{
     CliError, Outcome,
     args::SimulateArgs,
-    output::{deliver, spare_inputs, spare_stdout},
+    output::{deliver, shown, spare_inputs, spare_stdout},
 };
 use crate::{
     atomic_file::write_atomically,
     plant::{Parameters, PlantError},
-    render::simulated_line,
+    render::simulate::document,
     workflow::simulate::log::{Run, SimulateFailure, simulate},
 };
 
 pub(super) fn run(args: &SimulateArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
     let run = simulated(args)?;
-    deliver(&simulated_line(&run, &args.plant, args.seed, &args.output), None, out)?;
+    deliver(&shown(&document(&run, &args.plant, args.seed, &args.output), None), None, out)?;
     Ok(Outcome::Clean)
 }
 

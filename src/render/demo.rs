@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
-use super::{NONE, Part, Sheet, compare::probability, counted, deg, tables::remark_parts};
-use crate::workflow::{
-    compare::{Comparison, Measure, Scope, Summary, Verdict},
-    fit::Fitted,
-    plan::Planned,
-    replan::Replanned,
+use super::kit::{Document, Id, NONE, Section, Sentence, Table, counted, deg, optional, probability};
+use crate::{
+    task::Objective,
+    workflow::{
+        compare::{Comparison, Measure, Scope, Summary, Verdict},
+        fit::Fitted,
+        plan::Planned,
+        replan::Replanned,
+    },
 };
 
 /// What happened.
@@ -31,10 +34,9 @@ pub struct Story<'a> {
 const WIDTH: f64 = 40.0;
 
 /// The loop, for people.
-pub fn demo_parts(story: &Story<'_>) -> Vec<Part> {
+pub fn document(story: &Story<'_>) -> Document {
     let Story { planned, fitted, replanned, comparison, .. } = story;
     let before = &replanned.before;
-    let optional = |value: Option<f64>| value.map_or(NONE.to_owned(), deg);
     let skills = || fitted.fit.joints.iter().map(|joint| joint.held_out_r2);
     let commands = replanned.command.as_ref();
     let most = commands.map_or(0.0, |command| {
@@ -45,7 +47,7 @@ pub fn demo_parts(story: &Story<'_>) -> Vec<Part> {
             "plan task-1.toml -o plan.mcap".to_owned(),
             format!(
                 "{:.2} s through the key points, chosen among {} plans",
-                planned.chosen.objectives.duration_s,
+                planned.chosen.objectives[Objective::Duration],
                 planned.front.len()
             ),
         ),
@@ -55,8 +57,8 @@ pub fn demo_parts(story: &Story<'_>) -> Vec<Part> {
             format!(
                 "{} starts and reversals, peak error {} deg in the mean, {} deg at worst",
                 before.measured_transitions,
-                optional(before.measured_mean_peak_rad),
-                optional(before.measured_worst_peak_rad)
+                optional(before.measured_mean_peak_rad, deg),
+                optional(before.measured_worst_peak_rad, deg)
             ),
         ),
         (
@@ -80,30 +82,30 @@ pub fn demo_parts(story: &Story<'_>) -> Vec<Part> {
         (story.machine[1].clone(), "the same machine, other noise".to_owned()),
         ("compare run-1.mcap run-2.mcap".to_owned(), compared(comparison)),
     ];
-    let mut parts = vec![
-        Part::Title(format!(
-            "From a task to a better run, on a simulated hydraulic arm; the files are in {}",
-            story.dir.display()
-        )),
-        Part::Heading("Steps".into()),
-    ];
-    for (command, found) in steps {
-        parts.push(Part::Line(format!("$ hydrotrace {command}")));
-        parts.push(Part::Line(format!("    {found}")));
-    }
-    parts.extend(luck(comparison).map(|luck| Part::Line(format!("    {luck}"))));
-    parts.extend([
-        Part::Heading("Mean peak error at starts and reversals, first and second run".into()),
-        Part::Sheet(Sheet { head: vec!["joint", "run", "", "deg"], left: 3, rows: bars(comparison) }),
-        Part::Line(format!(
-            "Plan {:.2} s before, {:.2} s after. Run any of these commands in {} for all that it says.",
-            before.duration_s,
-            replanned.duration_s,
-            story.dir.display()
-        )),
-    ]);
-    remark_parts(&replanned.remarks, &mut parts);
-    parts
+    let lines = steps
+        .into_iter()
+        .flat_map(|(command, found)| [format!("$ hydrotrace {command}"), format!("    {found}")]);
+    let lines = lines.chain(luck(comparison).map(|luck| format!("    {luck}"))).map(Sentence::Finding);
+    let last = format!(
+        "Plan {:.2} s before, {:.2} s after. Run any of these commands in {} for all that it says.",
+        before.duration_s,
+        replanned.duration_s,
+        story.dir.display()
+    );
+    Document::titled(format!(
+        "From a task to a better run, on a simulated hydraulic arm; the files are in {}",
+        story.dir.display()
+    ))
+    .with(Section::new(Id::OTHER, "Steps", lines))
+    .with(
+        Section::new(
+            Id::SUMMARY,
+            "Mean peak error at starts and reversals, first and second run",
+            [Table::new(&["joint", "run", ""], &["deg"], bars(comparison))],
+        )
+        .with(Sentence::finding(last)),
+    )
+    .remarked(&replanned.remarks)
 }
 
 fn peaks<'a>(comparison: &'a Comparison, scope: &Scope) -> Option<&'a Summary> {

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use super::{Part, Sheet, counted};
+use super::kit::{Document, Id, NONE, Section, Sentence, Table, counted};
 use crate::{units::degrees_from_radians, workflow::excite::Excited};
 
 /// An identification run, for people.
-pub fn excited_parts(excited: &Excited, file: &Path) -> Vec<Part> {
+pub fn document(excited: &Excited, file: &Path) -> Document {
     let number = |rad: f64| format!("{:.1}", degrees_from_radians(rad));
     let strokes: Vec<String> = excited
         .excitation
@@ -19,26 +19,22 @@ pub fn excited_parts(excited: &Excited, file: &Path) -> Vec<Part> {
         let least = sent.iter().copied().fold(f64::INFINITY, f64::min);
         let most = sent.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let mut row = vec![joint.name.clone(), number(joint.home_rad), number(least), number(most)];
-        row.extend(joint.range_rad.map(|end| if end.is_finite() { number(end) } else { super::NONE.into() }));
+        row.extend(joint.range_rad.map(|end| if end.is_finite() { number(end) } else { NONE.into() }));
         row
     });
-    vec![
-        Part::Title(format!(
-            "Identification run of {}, {:.0} s, in {}",
-            counted(excited.joints.len(), "joint"),
-            excited.duration_s(),
-            file.display()
-        )),
-        Part::Line(format!("One joint after the other, the others at rest: {}.", strokes.join("; "))),
-        Part::Sheet(Sheet {
-            head: vec!["joint", "home deg", "sent from", "to", "allowed from", "to"],
-            left: 1,
-            rows: rows.collect(),
-        }),
-        Part::Line(
+    let title = format!(
+        "Identification run of {}, {:.0} s, in {}",
+        counted(excited.joints.len(), "joint"),
+        excited.duration_s(),
+        file.display()
+    );
+    let what = format!("One joint after the other, the others at rest: {}.", strokes.join("; "));
+    let numbers = ["home deg", "sent from", "to", "allowed from", "to"];
+    let section = Section::plain(Id::SUMMARY, [Sentence::finding(what)])
+        .with(Table::new(&["joint"], &numbers, rows))
+        .with(Sentence::advice(
             "The arm must stand at home when it starts. The fast strokes are faster than a machine is, so that its \
-             limits show; --max-speed-deg-s tames them. Nothing here knows of obstacles: keep the area clear."
-                .into(),
-        ),
-    ]
+             limits show; --max-speed-deg-s tames them. Nothing here knows of obstacles: keep the area clear.",
+        ));
+    Document::titled(title).with(section)
 }

@@ -1,20 +1,19 @@
 //! How a CSV file was read.
 
-use super::{NONE, Part, Sheet, counted, tables::remark_parts};
+use super::kit::{Block, Document, Id, NONE, Section, Sentence, Table, counted, fact};
 use crate::{log::Understood, workflow::import::Outputs};
 
 /// As sentences and tables.
-pub fn imported_parts(output: &str, imported: &Outputs) -> Vec<Part> {
+pub fn document(output: &str, imported: &Outputs) -> Document {
     let Understood { file, time, joints, columns, unused, .. } = &imported.understood;
     let u = &imported.understood;
-    let mut parts = vec![Part::Line(format!(
+    let written = format!(
         "{} rows of {file} written to {output}: {}, {:.2} s at {:.1} Hz.",
         u.rows,
         counted(joints.len(), "joint"),
         time.duration_s,
         time.rate_hz
-    ))];
-    let fact = |name: &str, value: String| (name.to_owned(), value);
+    );
     let header = match (u.header_line, u.unit_row) {
         (0, _) => "none; columns go by their number".to_owned(),
         (line, false) => format!("line {line}"),
@@ -29,12 +28,11 @@ pub fn imported_parts(output: &str, imported: &Outputs) -> Vec<Part> {
     };
     let counts =
         if time.absolute { "" } else { "; no date, second 0 is put at 2025-10-09 08:53:20 UTC in every log" };
-    parts.push(Part::Heading("Read as".into()));
-    parts.push(Part::Facts(vec![
+    let read_as = vec![
         fact("cells", format!("separated by {}, decimal {}", u.separator, u.decimal)),
         fact("header", format!("{header}{above}")),
         fact("time", format!("{clock}{counts}")),
-    ]));
+    ];
     let rows = columns.iter().map(|column| {
         let unit = match &column.unit {
             Some(unit) if column.unit_from == "file" => unit.clone(),
@@ -50,14 +48,10 @@ pub fn imported_parts(output: &str, imported: &Outputs) -> Vec<Part> {
             column.empty.to_string(),
         ]
     });
-    parts.push(Part::Sheet(Sheet {
-        head: vec!["column", "became", "of joint", "unit", "numbers", "empty"],
-        left: 4,
-        rows: rows.collect(),
-    }));
-    if !unused.is_empty() {
-        parts.push(Part::Line(format!("Not used: {}", unused.join(", "))));
-    }
-    remark_parts(&imported.remarks, &mut parts);
-    parts
+    let table = Table::new(&["column", "became", "of joint", "unit"], &["numbers", "empty"], rows);
+    let unused = (!unused.is_empty()).then(|| Sentence::finding(format!("Not used: {}", unused.join(", "))));
+    Document::default()
+        .with(Section::plain(Id::SUMMARY, [Sentence::finding(written)]))
+        .with(Section::new(Id::OTHER, "Read as", [Block::Facts(read_as)]).with(table).with_all(unused))
+        .remarked(&imported.remarks)
 }

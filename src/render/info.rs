@@ -1,11 +1,10 @@
 //! What is in a log.
 
-use super::{Part, Sheet, tables::remark_parts};
+use super::kit::{Block, Document, Id, Section, Sentence, Table, fact};
 use crate::log::Survey;
 
 /// As headings, sentences and tables.
-pub fn info_parts(survey: &Survey) -> Vec<Part> {
-    let mut parts = vec![Part::Heading("Files".into())];
+pub fn document(survey: &Survey) -> Document {
     let files = survey.files.iter().map(|f| {
         let state = if f.closed { "closed properly" } else { "NOT CLOSED" };
         let bytes = if f.bytes < 10_000 {
@@ -15,12 +14,6 @@ pub fn info_parts(survey: &Survey) -> Vec<Part> {
         };
         vec![f.name.clone(), state.to_owned(), bytes, f.blocks.to_string()]
     });
-    parts.push(Part::Sheet(Sheet {
-        head: vec!["file", "state", "size", "blocks"],
-        left: 2,
-        rows: files.collect(),
-    }));
-    parts.push(Part::Heading("Topics".into()));
     let topics = survey.topics.iter().map(|t| {
         let joints = if t.joints.is_empty() { String::new() } else { t.joints.len().to_string() };
         let encoding = if t.encoding == "cdr" { String::new() } else { format!(" ({})", t.encoding) };
@@ -33,26 +26,30 @@ pub fn info_parts(survey: &Survey) -> Vec<Part> {
             joints,
         ]
     });
-    let head = vec!["topic", "type", "joint fields", "messages", "Hz", "joints"];
-    parts.push(Part::Sheet(Sheet { head, left: 3, rows: topics.collect() }));
-    if !survey.attachments.is_empty() {
-        parts.push(Part::Line(format!("Stored in the log: {}", survey.attachments.join(", "))));
-    }
-    parts.push(Part::Heading("A report would use".into()));
+    let files = Table::new(&["file", "state"], &["size", "blocks"], files);
+    let topics = Table::new(&["topic", "type", "joint fields"], &["messages", "Hz", "joints"], topics);
+    let stored = &survey.attachments;
+    let stored =
+        (!stored.is_empty()).then(|| Sentence::finding(format!("Stored in the log: {}", stored.join(", "))));
+    Document::default()
+        .with(Section::new(Id::OTHER, "Files", [files]))
+        .with(Section::new(Id::OTHER, "Topics", [topics]).with_all(stored))
+        .with(Section::new(Id::SUMMARY, "A report would use", [used(survey)]))
+        .remarked(&survey.remarks)
+}
+
+fn used(survey: &Survey) -> Block {
     match &survey.recording {
         Ok(recording) => {
             let source = &recording.source;
-            let fact = |name: &str, value: String| (name.to_owned(), value);
-            parts.push(Part::Facts(vec![
+            Block::Facts(vec![
                 fact("planned", format!("{}:{}", source.planned_topic, source.planned_field)),
                 fact("measured", format!("{}:{}", source.measured_topic, source.measured_field)),
-                fact("why", source.why.clone()),
+                fact("why", &source.why),
                 fact("clock", format!("{} ({})", source.time_base.name(), source.time_base_why)),
                 fact("joints", survey.joints().collect::<Vec<_>>().join(", ")),
-            ]));
+            ])
         }
-        Err(error) => parts.push(Part::Line(format!("nothing: {error}"))),
+        Err(error) => Sentence::finding(format!("nothing: {error}")).into(),
     }
-    remark_parts(&survey.remarks, &mut parts);
-    parts
 }

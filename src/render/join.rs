@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use super::{Part, counted, deg, tables::remark_parts};
+use super::kit::{Block, Document, Id, Section, Sentence, counted, deg, fact};
 use crate::workflow::join::Joined;
 
 /// As sentences.
-pub fn joined_parts(joined: &Joined, plan: &Path, output: &Path) -> Vec<Part> {
+pub fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {
     let Joined { sent, commanded, located, at_s, duration_s, rest_s, joints, messages, files, remarks } =
         joined;
     let (plan, output) = (plan.display(), output.display());
@@ -19,7 +19,6 @@ pub fn joined_parts(joined: &Joined, plan: &Path, output: &Path) -> Vec<Part> {
         ),
         _ => format!("the {what} of {plan} from {at_s:.3} s on, as given"),
     };
-    let fact = |name: &str, text: String| (name.to_owned(), text);
     let mut facts = vec![
         fact("sent", sent),
         fact(
@@ -35,11 +34,10 @@ pub fn joined_parts(joined: &Joined, plan: &Path, output: &Path) -> Vec<Part> {
     if !files.is_empty() {
         facts.push(fact("files", files.join(", ")));
     }
-    let mut parts = vec![
-        Part::Line(format!("{messages} messages of the run and the plan of {plan} written to {output}.")),
-        Part::Facts(facts),
-        Part::Line(format!("hydrotrace report {output} says how the run followed its plan.")),
-    ];
-    remark_parts(remarks, &mut parts);
-    parts
+    let written = format!("{messages} messages of the run and the plan of {plan} written to {output}.");
+    let next = format!("hydrotrace report {output} says how the run followed its plan.");
+    let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)])
+        .with(Block::Facts(facts))
+        .with(Sentence::advice(next));
+    Document::default().with(section).remarked(remarks)
 }

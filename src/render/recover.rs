@@ -1,18 +1,16 @@
 //! What a recovery saved.
 
-use super::{Part, tables::remark_parts};
+use super::kit::{Document, Id, Section, Sentence};
 use crate::log::Recovered;
 
 /// As sentences.
-pub fn recovered_parts(output: &str, recovered: &Recovered) -> Vec<Part> {
+pub fn document(output: &str, recovered: &Recovered) -> Document {
     let Recovered { messages, blocks, dropped_blocks, attachments, remarks } = recovered;
-    let mut parts = vec![Part::Line(format!(
+    let saved = format!(
         "{messages} messages and {attachments} attachments saved to {output}, from {blocks} chunks of which \
          {dropped_blocks} had to be dropped."
-    ))];
-    if remarks.is_empty() {
-        parts.push(Part::Line("Nothing was lost: the log was whole.".into()));
-    }
-    remark_parts(remarks, &mut parts);
-    parts
+    );
+    let whole = remarks.is_empty().then(|| Sentence::finding("Nothing was lost: the log was whole."));
+    let section = Section::plain(Id::SUMMARY, [Sentence::finding(saved)]).with_all(whole);
+    Document::default().with(section).remarked(remarks)
 }

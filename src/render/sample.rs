@@ -1,6 +1,6 @@
 //! Figures of many runs as cells of a table.
 
-use super::NONE;
+use super::kit::NONE;
 use crate::workflow::moea::{FEW_SEEDS, Sample, Verdict};
 
 /// How to read [`against`].
@@ -43,32 +43,4 @@ pub(super) fn against(sample: &Sample) -> String {
 /// Wins, ties and losses.
 pub(super) fn counts([wins, ties, losses]: [usize; 3]) -> String {
     format!("{wins} {ties} {losses}")
-}
-
-/// That many significant digits.
-pub(super) fn significant(value: f64, digits: u8) -> String {
-    if !value.is_finite() {
-        return value.to_string();
-    }
-    #[expect(clippy::cast_possible_truncation, reason = "an exponent")]
-    let exponent = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
-    let after = i32::from(digits.max(1)) - 1;
-    let places = |count: i32| usize::try_from(count).unwrap_or(0);
-    if exponent < -2 {
-        format!("{value:.*e}", places(after))
-    } else {
-        format!("{value:.*}", places(after - exponent))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::significant;
-
-    #[test]
-    fn figures_keep_their_digits_at_every_size() {
-        let values = [343.91, 19.4134, 1.18, 0.0557, 0.000_123_45, 12_345.6, 0.0, f64::INFINITY];
-        let shown = values.map(|value| significant(value, 4));
-        assert_eq!(shown, ["343.9", "19.41", "1.180", "0.05570", "1.234e-4", "12346", "0.000", "inf"]);
-    }
 }

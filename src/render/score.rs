@@ -2,14 +2,15 @@
 
 use serde::Serialize;
 
-use super::{NONE, Part, Sheet, json, ms};
+use super::kit::{Document, Id, NONE, Section, Sentence, Table, ms};
 use crate::{
+    document,
     replay::{Score, Spread},
     units::degrees_from_radians,
 };
 
 #[derive(Serialize)]
-struct Document<'a> {
+struct Json<'a> {
     format: &'static str,
     program: &'static str,
     seed: u64,
@@ -17,12 +18,17 @@ struct Document<'a> {
 }
 
 /// As JSON.
-pub fn score_json(seed: u64, scores: &[Score]) -> String {
-    json::pretty(&Document { format: "hydrotrace.detector.v1", program: json::PROGRAM, seed, rows: scores })
+pub fn json(seed: u64, scores: &[Score]) -> String {
+    document::pretty(&Json {
+        format: "hydrotrace.detector.v1",
+        program: document::PROGRAM,
+        seed,
+        rows: scores,
+    })
 }
 
 /// As a table.
-pub fn score_parts(seed: u64, scores: &[Score]) -> Vec<Part> {
+pub fn document(seed: u64, scores: &[Score]) -> Document {
     let spread = |s: &Spread| format!("{} +-{}", ms(s.median_s), ms(s.mad_sd_s));
     let rows = scores.iter().map(|s| {
         vec![
@@ -42,7 +48,7 @@ pub fn score_parts(seed: u64, scores: &[Score]) -> Vec<Part> {
             format!("{:.2}", s.stop_recall),
         ]
     });
-    let head = vec![
+    let numbers = [
         "noise deg",
         "LSB deg",
         "Hz",
@@ -58,11 +64,10 @@ pub fn score_parts(seed: u64, scores: &[Score]) -> Vec<Part> {
         "stop P",
         "stop R",
     ];
-    vec![
-        Part::Line(format!(
-            "Starts found on synthetic joints with known motions, seed {seed}. Errors of the onset and of the delay: \
-             median +- robust standard deviation; coverage is the share of delays inside their 95 % interval."
-        )),
-        Part::Sheet(Sheet { head, left: 0, rows: rows.collect() }),
-    ]
+    let found = format!(
+        "Starts found on synthetic joints with known motions, seed {seed}. Errors of the onset and of the delay: \
+         median +- robust standard deviation; coverage is the share of delays inside their 95 % interval."
+    );
+    let section = Section::plain(Id::SUMMARY, [Sentence::note(found)]).with(Table::new(&[], &numbers, rows));
+    Document::default().with(section)
 }

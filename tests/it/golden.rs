@@ -1,14 +1,11 @@
 //! What every sample log reports, kept as snapshots; `INSTA_UPDATE=always` blesses new ones.
 
-use std::{collections::BTreeSet, path::Path, process::Command};
+use std::collections::BTreeSet;
+
+use crate::support::{root, run_at_root, stdout};
 
 fn hydrotrace(args: &[&str]) -> String {
-    let run = Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(args)
-        .output()
-        .unwrap();
-    String::from_utf8(run.stdout).unwrap()
+    stdout(&run_at_root(args))
 }
 
 /// Holds a text to its snapshot, whose file is named after the text and not after this module.
@@ -21,8 +18,7 @@ fn keep(name: &str, text: &str) {
 }
 
 fn samples() -> Vec<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs");
-    let mut names: Vec<String> = std::fs::read_dir(folder)
+    let mut names: Vec<String> = std::fs::read_dir(root().join("sample-logs"))
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.extension().is_some_and(|extension| extension == "mcap"))
@@ -58,7 +54,7 @@ fn help_reads_as_before() {
 
 #[test]
 fn no_snapshot_without_its_sample() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
+    let folder = root().join("tests/snapshots");
     let known: BTreeSet<String> = samples().into_iter().chain(["help".to_owned()]).collect();
     for entry in std::fs::read_dir(folder).unwrap() {
         let name = entry.unwrap().file_name().to_string_lossy().into_owned();

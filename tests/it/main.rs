@@ -33,8 +33,7 @@ mod log_write;
 mod one_pass;
 mod plan;
 mod plant;
-
-mod real_log;
 mod replay;
 mod sample_logs;
 mod spline;
+mod support;

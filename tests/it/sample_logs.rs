@@ -3,23 +3,21 @@
 #[path = "../../examples/sample_logs/sample/mod.rs"]
 mod sample;
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{collections::BTreeMap, fs};
 
 use mcap::{MessageStream, Summary, read};
 
+use crate::support::{sample as sample_file, samples};
+
 const AGAIN: &str = "run: cargo run --release --example sample_logs -- sample-logs";
 
-fn folder() -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs")
-}
-
 fn committed(name: &str) -> Vec<u8> {
-    fs::read(folder().join(name)).unwrap()
+    fs::read(sample_file(name)).unwrap()
 }
 
 /// Names of the committed files, in order.
 fn present() -> Vec<String> {
-    let mut present: Vec<String> = fs::read_dir(folder())
+    let mut present: Vec<String> = fs::read_dir(samples())
         .unwrap()
         .map(Result::unwrap)
         .filter(|entry| entry.file_type().unwrap().is_file())

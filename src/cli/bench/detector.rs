@@ -9,7 +9,7 @@ use crate::{
         args::DetectorArgs,
         output::{deliver, shown},
     },
-    render::{score_json, score_parts},
+    render::score as words,
     replay::conditions,
     workflow::detector::{Inputs, run as score},
 };
@@ -19,9 +19,9 @@ pub(super) fn run(args: &DetectorArgs, out: &mut impl Write) -> Result<Outcome, 
     let scores = score(&Inputs { seed: args.seed, runs: args.runs }, || bar.inc(1));
     bar.finish_and_clear();
     let rendered = if args.json {
-        score_json(args.seed, &scores)
+        words::json(args.seed, &scores)
     } else {
-        shown(&score_parts(args.seed, &scores), None)
+        shown(&words::document(args.seed, &scores), None)
     };
     deliver(&rendered, None, out)?;
     Ok(Outcome::Clean)

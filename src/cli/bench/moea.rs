@@ -9,7 +9,7 @@ use crate::{
         args::MoeaArgs,
         output::{deliver, shown},
     },
-    render::{curve_svg, curves_csv, front_csv, markdown, moea_json, moea_parts},
+    render::{curve_svg, curves_csv, front_csv, kit::markdown, moea_document, moea_json},
     workflow::moea::{Curve, Front, run as compare},
 };
 
@@ -31,9 +31,9 @@ pub(super) fn run(args: &MoeaArgs, out: &mut impl Write) -> Result<Outcome, CliE
     let rendered = if args.format.json {
         moea_json(&inputs, &study)
     } else if args.format.markdown {
-        markdown(&moea_parts(&inputs, &study))
+        markdown(&moea_document(&inputs, &study))
     } else {
-        shown(&moea_parts(&inputs, &study), None)
+        shown(&moea_document(&inputs, &study), None)
     };
     deliver(&rendered, None, out)?;
     Ok(Outcome::Clean)

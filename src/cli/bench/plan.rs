@@ -9,7 +9,7 @@ use crate::{
         args::ContestArgs,
         output::{deliver, shown},
     },
-    render::{contest_csv, contest_json, contest_parts, contest_svg, markdown},
+    render::{contest_csv, contest_document, contest_json, contest_svg, kit::markdown},
     workflow::contest::{Curve, run as compare},
 };
 
@@ -29,9 +29,9 @@ pub(super) fn run(args: &ContestArgs, out: &mut impl Write) -> Result<Outcome, C
     let rendered = if args.format.json {
         contest_json(&inputs, &study)
     } else if args.format.markdown {
-        markdown(&contest_parts(&inputs, &study))
+        markdown(&contest_document(&inputs, &study))
     } else {
-        shown(&contest_parts(&inputs, &study), None)
+        shown(&contest_document(&inputs, &study), None)
     };
     deliver(&rendered, None, out)?;
     Ok(Outcome::Clean)

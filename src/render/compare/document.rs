@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use crate::{
+    document,
     remark::Remark,
-    render::json,
     replay::Rules,
     workflow::compare::{Comparison, Figures, GateResult, Run, Summary, TransitionPair, Unpaired, Verdict},
 };
@@ -49,9 +49,9 @@ struct Document<'a> {
 
 /// The comparison, SI units and radians throughout.
 pub fn compare_json(comparison: &Comparison) -> String {
-    json::pretty(&Document {
+    document::pretty(&Document {
         format: "hydrotrace.compare.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         before: &comparison.before,
         after: &comparison.after,
         same_plan: comparison.same_plan(),

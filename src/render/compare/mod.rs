@@ -1,15 +1,18 @@
 //! What a change did to the tracking error of a task.
 
 mod document;
+mod figures;
+mod page;
 mod short;
 mod tables;
 
-pub use document::compare_json;
-pub use short::compare_gate_lines;
-pub use tables::compare_parts;
-pub(super) use tables::run_facts;
+pub use document::compare_json as json;
+pub use figures::figures;
+pub use page::page;
+pub use short::verdicts;
+pub use tables::document;
 
-use super::{NONE, deg, ms};
+use super::kit::{NONE, deg, ms, optional};
 use crate::workflow::compare::{Change, Measure, Verdict};
 
 /// How a measure is shown, and its unit.
@@ -18,29 +21,6 @@ fn unit(measure: Measure) -> (fn(f64) -> String, &'static str) {
         Measure::PeakError | Measure::RmsError => (deg, "deg"),
         Measure::OnsetDelay => (ms, "ms"),
     }
-}
-
-/// A difference with its sign.
-pub(super) fn signed(value: f64, show: fn(f64) -> String) -> String {
-    let text = show(value);
-    let zero = text.chars().all(|c| matches!(c, '0' | '.'));
-    if zero || text.starts_with('-') { text } else { format!("+{text}") }
-}
-
-/// A share as whole percent with its sign.
-pub(super) fn percent(share: f64) -> String {
-    signed(share, |share| {
-        let text = format!("{:.0}", 100.0 * share);
-        if text == "-0" { "0".to_owned() } else { text }
-    })
-}
-
-pub(super) fn probability(p: f64) -> String {
-    if p < 0.001 { format!("{p:.1e}") } else { format!("{p:.3}") }
-}
-
-fn optional(value: Option<f64>, show: impl Fn(f64) -> String) -> String {
-    value.map_or(NONE.to_owned(), show)
 }
 
 /// `before -> after`; nothing where neither is known.

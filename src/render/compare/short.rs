@@ -1,16 +1,12 @@
 //! A comparison in three lines, and its limits in one each.
 
-use super::{optional, percent, probability, signed};
 use crate::{
-    render::{
-        counted, deg,
-        markup::{KEPT, NOT_KEPT},
-    },
+    render::kit::{Sentence, counted, deg, optional, percent, probability, signed},
     workflow::compare::{Change, Comparison, Gate, GateResult, Measure, Summary, Verdict},
 };
 
 /// Verdict, whole run, plans; then joints that call for a word, and limits.
-pub(super) fn in_short(comparison: &Comparison) -> Vec<String> {
+pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     let mut lines = Vec::new();
     match comparison.overall(Measure::PeakError) {
         Some(peak) if peak.pairs > 0 => lines.push(verdict(peak)),
@@ -18,8 +14,7 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<String> {
     }
     lines.extend(whole_run(comparison));
     lines.push(plans(comparison));
-    lines.extend(compare_gate_lines(comparison));
-    lines
+    lines.into_iter().map(Sentence::Finding).chain(verdicts(comparison)).collect()
 }
 
 fn verdict(peak: &Summary) -> String {
@@ -97,12 +92,12 @@ fn plans(comparison: &Comparison) -> String {
     format!("{which} ({long}): {apart}; {left}.")
 }
 
-/// One line for each limit that was set.
-pub fn compare_gate_lines(comparison: &Comparison) -> Vec<String> {
-    comparison.gates.iter().map(gate_line).collect()
+/// One for each limit that was set.
+pub fn verdicts(comparison: &Comparison) -> Vec<Sentence> {
+    comparison.gates.iter().map(gate).collect()
 }
 
-fn gate_line(result: &GateResult) -> String {
+fn gate(result: &GateResult) -> Sentence {
     let percents = |share: f64| format!("{:.1} %", 100.0 * share);
     let ratio = |ratio: f64| format!("{ratio:.3}");
     let (name, limit, found) = match result.gate {
@@ -139,7 +134,10 @@ fn gate_line(result: &GateResult) -> String {
             result.found.map(ratio),
         ),
     };
-    let verdict = if result.kept { KEPT } else { NOT_KEPT };
     let found = found.unwrap_or("nothing to compare".to_owned());
-    format!("Limit on {name} {verdict}: {found}; {limit}.")
+    Sentence::Verdict {
+        limit: format!("Limit on {name}"),
+        kept: result.kept,
+        found: format!("{found}; {limit}."),
+    }
 }

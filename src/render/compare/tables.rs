@@ -1,39 +1,39 @@
 //! A comparison as headings, sentences and tables, worst first.
 
-use super::{arrow, optional, percent, probability, short::in_short, signed, unit, word};
+use super::{arrow, short::in_short, unit, word};
 use crate::{
     render::{
-        NONE, Part, Sheet, counted, deg, ms,
-        tables::{kind, late, remark_parts},
+        kit::{
+            Block, Document, Fact, Id, NONE, Section, Sentence, Table, counted, deg, fact, ms, optional,
+            percent, probability, signed,
+        },
+        transition::{direction, kind, late},
     },
     units::degrees_from_radians,
     workflow::compare::{Comparison, Figures, Measure, Run, Scope, Side, Summary, TransitionPair},
 };
 
 /// Everything a person reads of a comparison; `most` is how many pairs to list.
-pub fn compare_parts(comparison: &Comparison, most: usize) -> Vec<Part> {
+pub fn document(comparison: &Comparison, most: usize) -> Document {
     let names = |runs: &[Run]| runs.iter().map(|run| run.log.clone()).collect::<Vec<_>>().join(", ");
-    let mut parts = vec![
-        Part::Title(format!("{} -> {}", names(&comparison.before), names(&comparison.after))),
-        Part::Facts(run_facts(comparison)),
-        Part::Heading("In short".into()),
-    ];
-    parts.extend(in_short(comparison).into_iter().map(Part::Line));
-    pair_parts(comparison, most, &mut parts);
-    for measure in [Measure::PeakError, Measure::RmsError, Measure::OnsetDelay] {
-        summary_parts(comparison, measure, &mut parts);
-    }
-    parts.push(Part::Heading("Whole run, before -> after".into()));
-    parts.push(figures_sheet(&comparison.whole_run));
-    unpaired_parts(comparison, &mut parts);
-    remark_parts(&comparison.remarks, &mut parts);
-    parts.push(Part::Heading("How".into()));
-    parts.push(Part::Facts(how(comparison)));
-    parts
+    let title = format!("{} -> {}", names(&comparison.before), names(&comparison.after));
+    let mut document = Document { facts: run_facts(comparison), ..Document::titled(title) }
+        .with(Section::new(Id::SUMMARY, "In short", in_short(comparison)));
+    let measures = [Measure::PeakError, Measure::RmsError, Measure::OnsetDelay];
+    document.sections.extend(pairs(comparison, most));
+    document.sections.extend(measures.into_iter().filter_map(|measure| summary(comparison, measure)));
+    let whole_run = [figures_table(&comparison.whole_run)];
+    document.sections.push(Section::new(Id::OTHER, "Whole run, before -> after", whole_run));
+    document.sections.extend(unpaired(comparison));
+    document.remarked(&comparison.remarks).with(Section::new(
+        Id::METHOD,
+        "How",
+        [Block::Facts(how(comparison))],
+    ))
 }
 
-pub(in crate::render) fn run_facts(comparison: &Comparison) -> Vec<(String, String)> {
-    let fact = |side: &str, run: &Run| {
+fn run_facts(comparison: &Comparison) -> Vec<Fact> {
+    let of_run = |side: &str, run: &Run| {
         let plan = run.plan_duration_s.map_or(String::new(), |s| format!(", plan {s:.2} s"));
         let source = &run.source;
         let text = format!(
@@ -46,21 +46,14 @@ pub(in crate::render) fn run_facts(comparison: &Comparison) -> Vec<(String, Stri
             source.measured_topic,
             source.measured_field,
         );
-        (side.to_owned(), text)
+        fact(side, text)
     };
-    let before = comparison.before.iter().map(|run| fact("before", run));
-    before.chain(comparison.after.iter().map(|run| fact("after", run))).collect()
+    let before = comparison.before.iter().map(|run| of_run("before", run));
+    before.chain(comparison.after.iter().map(|run| of_run("after", run))).collect()
 }
 
-fn direction(direction: i8) -> String {
-    if direction < 0 { "-" } else { "+" }.to_owned()
-}
-
-fn pair_parts(comparison: &Comparison, most: usize, parts: &mut Vec<Part>) {
+fn pairs(comparison: &Comparison, most: usize) -> Option<Section> {
     let mut worst: Vec<&TransitionPair> = comparison.pairs.iter().collect();
-    if worst.is_empty() {
-        return;
-    }
     let growth = |pair: &TransitionPair| pair.peak_error_rad.difference.unwrap_or(f64::NEG_INFINITY);
     worst.sort_by(|a, b| growth(b).total_cmp(&growth(a)));
     let rows = worst.iter().take(most).map(|pair| {
@@ -68,7 +61,7 @@ fn pair_parts(comparison: &Comparison, most: usize, parts: &mut Vec<Part>) {
         vec![
             pair.joint.clone(),
             kind(pair.kind).to_owned(),
-            direction(pair.direction),
+            direction(pair.direction).to_owned(),
             format!("{:.2}", pair.planned_onset_before_s),
             format!("{:.2}", pair.planned_onset_after_s),
             optional(peak.before, deg),
@@ -83,45 +76,33 @@ fn pair_parts(comparison: &Comparison, most: usize, parts: &mut Vec<Part>) {
             optional(delay.difference, |d| signed(d, ms)),
         ]
     });
-    let head = vec![
-        "joint", "kind", "dir", "at s", "after", "peak deg", "after", "change", "ratio", "rms deg", "after",
-        "change", "late ms", "after", "change",
+    let numbers = [
+        "at s", "after", "peak deg", "after", "change", "ratio", "rms deg", "after", "change", "late ms",
+        "after", "change",
     ];
-    parts.push(Part::Heading("Transitions, worst change of peak first".into()));
-    parts.push(Part::Sheet(Sheet { head, left: 3, rows: rows.collect() }));
-    if worst.len() > most {
-        parts.push(Part::Line(format!("and {} more that did better (--all lists them)", worst.len() - most)));
-    }
+    let table = Table::new(&["joint", "kind", "dir"], &numbers, rows);
+    let more = (worst.len() > most).then(|| {
+        Sentence::note(format!("and {} more that did better (--all lists them)", worst.len() - most))
+    });
+    (!worst.is_empty()).then(|| {
+        Section::new(Id::TRANSITIONS, "Transitions, worst change of peak first", [table]).with_all(more)
+    })
 }
 
-fn summary_parts(comparison: &Comparison, measure: Measure, parts: &mut Vec<Part>) {
+fn summary(comparison: &Comparison, measure: Measure) -> Option<Section> {
     let of = comparison.summaries.iter().filter(|s| s.measure == measure);
     let rows: Vec<Vec<String>> = of.filter(|s| s.pairs > 0).map(summary_row).collect();
-    if rows.is_empty() {
-        return;
-    }
     let (title, before) = match measure {
         Measure::PeakError => ("Peak error at transitions", "before deg"),
         Measure::RmsError => ("Rms error at transitions", "before deg"),
         Measure::OnsetDelay => ("Start delay, where answered before and after", "before ms"),
     };
-    let head = vec![
-        "transitions",
-        before,
-        "after",
-        "change",
-        "95 %",
-        "median",
-        "%",
-        "p",
-        "verdict",
-        "pairs",
-        "events",
-        "smaller",
+    let numbers = [
+        before, "after", "change", "95 %", "median", "%", "p", "verdict", "pairs", "events", "smaller",
         "larger",
     ];
-    parts.push(Part::Heading(title.into()));
-    parts.push(Part::Sheet(Sheet { head, left: 1, rows }));
+    let some = !rows.is_empty();
+    some.then(|| Section::new(Id::OTHER, title, [Table::new(&["transitions"], &numbers, rows)]))
 }
 
 fn summary_row(summary: &Summary) -> Vec<String> {
@@ -150,7 +131,7 @@ fn summary_row(summary: &Summary) -> Vec<String> {
     ]
 }
 
-fn figures_sheet(figures: &[Figures]) -> Part {
+fn figures_table(figures: &[Figures]) -> Table {
     let tenth = |rad: f64| format!("{:.1}", degrees_from_radians(rad));
     let rows = figures.iter().map(|f| {
         vec![
@@ -166,8 +147,7 @@ fn figures_sheet(figures: &[Figures]) -> Part {
             arrow(&f.peak_acceleration_rad_s2, tenth),
         ]
     });
-    let head = vec![
-        "joint",
+    let numbers = [
         "rms deg",
         "ratio",
         "p95 deg",
@@ -178,13 +158,10 @@ fn figures_sheet(figures: &[Figures]) -> Part {
         "speed deg/s",
         "accel deg/s2",
     ];
-    Part::Sheet(Sheet { head, left: 1, rows: rows.collect() })
+    Table::new(&["joint"], &numbers, rows)
 }
 
-fn unpaired_parts(comparison: &Comparison, parts: &mut Vec<Part>) {
-    if comparison.unpaired.is_empty() {
-        return;
-    }
+fn unpaired(comparison: &Comparison) -> Option<Section> {
     let several = comparison.before.len().max(comparison.after.len()) > 1;
     let rows = comparison.unpaired.iter().map(|u| {
         let side = if u.side == Side::Before { "before" } else { "after" };
@@ -192,18 +169,17 @@ fn unpaired_parts(comparison: &Comparison, parts: &mut Vec<Part>) {
             if several { format!("{side} {}", u.run) } else { side.to_owned() },
             u.joint.clone(),
             kind(u.kind).to_owned(),
-            direction(u.direction),
+            direction(u.direction).to_owned(),
             format!("{:.2}", u.planned_onset_s),
             deg(u.peak_error_rad),
         ]
     });
-    let head = vec!["only", "joint", "kind", "dir", "at s", "peak deg"];
-    parts.push(Part::Heading("Transitions without a counterpart, left out".into()));
-    parts.push(Part::Sheet(Sheet { head, left: 4, rows: rows.collect() }));
+    let table = Table::new(&["only", "joint", "kind", "dir"], &["at s", "peak deg"], rows);
+    let some = !comparison.unpaired.is_empty();
+    some.then(|| Section::new(Id::OTHER, "Transitions without a counterpart, left out", [table]))
 }
 
-fn how(comparison: &Comparison) -> Vec<(String, String)> {
-    let fact = |name: &str, value: String| (name.to_owned(), value);
+fn how(comparison: &Comparison) -> Vec<Fact> {
     let rules = &comparison.rules;
     let exact = comparison.summaries.iter().all(|s| s.p_is_exact);
     let runs = comparison.before.len().min(comparison.after.len());
@@ -220,15 +196,14 @@ fn how(comparison: &Comparison) -> Vec<(String, String)> {
         fact(
             "pairs",
             "same joint, kind and direction; by time since the first planned start, by the key points of the task where \
-             both logs hold it, or by order where another plan starts a joint equally often in the same directions"
-                .to_owned(),
+             both logs hold it, or by order where another plan starts a joint equally often in the same directions",
         ),
-        fact("change", "after minus before, over each pair; negative is better".to_owned()),
+        fact("change", "after minus before, over each pair; negative is better"),
         fact(
             "events",
             format!("starts of any joints within {} s count as one in interval and test", rules.same_event_s),
         ),
-        fact("95 %", "Student's t of the mean change, robust to events; three events at least".to_owned()),
+        fact("95 %", "Student's t of the mean change, robust to events; three events at least"),
         fact(
             "p",
             format!(

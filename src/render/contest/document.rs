@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::published::name;
 use crate::{
-    render::json,
+    document,
     workflow::contest::{BASELINE, Cell, Inputs, Row, Ruler, Study, Tally},
 };
 
@@ -39,7 +39,7 @@ struct Plan<'a> {
 
 fn plan(row: &Row) -> Plan<'_> {
     let evaluation = row.evaluation.as_ref();
-    let f = evaluation.map(|evaluation| evaluation.objectives.as_array());
+    let f = evaluation.map(|evaluation| [0, 1, 2].map(|k| evaluation.objectives.plan()[k]));
     Plan {
         plan: name(row.whose),
         printed_f2: row.printed.map(|printed| printed.f2),
@@ -55,9 +55,9 @@ fn plan(row: &Row) -> Plan<'_> {
 /// Tasks, then cells by task, budget and algorithm, then the paper's Table 3. Times are seconds, jerk is
 /// rad/s³, power W; what no run has is null.
 pub fn contest_json(inputs: &Inputs, study: &Study) -> String {
-    json::pretty(&Document {
+    document::pretty(&Document {
         format: "hydrotrace.bench-plan.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         first_seed: inputs.first_seed,
         seeds: inputs.seeds,
         reference_evaluations: inputs.reference_evaluations,

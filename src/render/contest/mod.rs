@@ -9,7 +9,7 @@ mod tables;
 pub use document::contest_json;
 pub use picture::contest_svg;
 pub use rows::contest_csv;
-pub use tables::contest_parts;
+pub use tables::contest_document;
 
 use super::sample::{AGAINST, few, seeds};
 use crate::{

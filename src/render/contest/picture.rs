@@ -4,9 +4,11 @@ use plotters::style::RGBColor;
 
 use crate::{
     render::{
-        counted,
+        kit::{
+            Failure, counted,
+            picture::{Course, Line, Panel, picture},
+        },
         moea::colour,
-        picture::{Course, Line, Panel, picture},
     },
     workflow::contest::{Curve, Point},
 };
@@ -23,7 +25,7 @@ const LEAST: f64 = 1e-4;
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn contest_svg(curves: &[Curve]) -> Result<String, Box<dyn std::error::Error + Send + Sync>> {
+pub fn contest_svg(curves: &[Curve]) -> Result<String, Failure> {
     let title = curves.first().map_or(String::new(), |curve| {
         let seeds = counted(usize::try_from(curve.seeds).unwrap_or(usize::MAX), "seed");
         format!("{}: median and quartiles of {seeds}", curve.task)

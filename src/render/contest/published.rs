@@ -2,34 +2,25 @@
 
 use super::FINDING;
 use crate::{
-    render::{NONE, Part, Sheet, plan::limit_cell},
+    render::{
+        kit::{Id, NONE, Section, Sentence, Table},
+        plan::limit_cell,
+    },
     units::degrees_from_radians,
     workflow::contest::{Row, Table3, Whose},
 };
 
-pub(super) fn parts(table: &Table3) -> Vec<Part> {
-    vec![
-        Part::Heading("The paper's Table 3 (task simulation)".to_owned()),
-        Part::Line(FINDING.to_owned()),
-        Part::Line(
-            "Printed: the paper's f2 and f3, that of the stretched A from the paper's f2 of A. The rest is measured here, \
-             on an arm and limits that are not the paper's, which prints none."
-                .to_owned(),
-        ),
-        Part::Sheet(Sheet {
-            head: vec![
-                "plan",
-                "worst limit",
-                "printed f2 N",
-                "printed f3 J",
-                "f1 s",
-                "f2 deg/s3",
-                "f3 W",
-            ],
-            left: 2,
-            rows: table.rows.iter().map(|entry| row(entry, &table.joints)).collect(),
-        }),
-    ]
+pub(super) fn section(table: &Table3) -> Section {
+    let printed = "Printed: the paper's f2 and f3, that of the stretched A from the paper's f2 of A. The rest is measured \
+                   here, on an arm and limits that are not the paper's, which prints none.";
+    let numbers = ["printed f2 N", "printed f3 J", "f1 s", "f2 deg/s3", "f3 W"];
+    let rows = table.rows.iter().map(|entry| row(entry, &table.joints));
+    let notes = [Sentence::note(FINDING), Sentence::note(printed)];
+    Section::new(Id::OTHER, "The paper's Table 3 (task simulation)", notes).with(Table::new(
+        &["plan", "worst limit"],
+        &numbers,
+        rows,
+    ))
 }
 
 pub(super) fn name(whose: Whose) -> String {
@@ -48,7 +39,7 @@ fn row(row: &Row, joints: &[String]) -> Vec<String> {
     let mut cells = vec![name(row.whose)];
     let (limit, worth) = match &row.evaluation {
         Some(evaluation) => {
-            let [f1, f2, f3] = evaluation.objectives.as_array();
+            let [f1, f2, f3] = [0, 1, 2].map(|k| evaluation.objectives.plan()[k]);
             let f2 = degrees_from_radians(f2);
             let worth = [format!("{f1:.2}"), format!("{f2:.4}"), format!("{f3:.2}")];
             (limit_cell(evaluation, joints), worth)

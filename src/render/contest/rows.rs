@@ -1,12 +1,10 @@
 //! As comma-separated values.
 
-use crate::workflow::contest::Curve;
+use crate::{render::kit::csv, workflow::contest::Curve};
 
 /// Convergence, one row for each algorithm and checkpoint.
 pub fn contest_csv(curves: &[Curve]) -> String {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    // Writing to memory does not fail.
-    let _ = writer.write_record([
+    let head = [
         "task",
         "algorithm",
         "seeds",
@@ -18,20 +16,19 @@ pub fn contest_csv(curves: &[Curve]) -> String {
         "of_all_median",
         "of_all_q3",
         "reference_hypervolume",
-    ]);
-    for curve in curves {
-        for point in &curve.points {
+    ];
+    let rows = curves.iter().flat_map(|curve| {
+        curve.points.iter().map(|point| {
             let mut row = vec![
                 curve.task.clone(),
                 curve.entrant.name.to_owned(),
                 curve.seeds.to_string(),
                 point.evaluations.to_string(),
             ];
-            row.extend(
-                point.hypervolume.iter().chain(&point.of_all).chain([&curve.reference]).map(f64::to_string),
-            );
-            let _ = writer.write_record(row);
-        }
-    }
-    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+            let values = point.hypervolume.iter().chain(&point.of_all).chain([&curve.reference]);
+            row.extend(values.map(f64::to_string));
+            row
+        })
+    });
+    csv(head, rows)
 }

@@ -3,65 +3,51 @@
 use super::{notes, published};
 use crate::{
     render::{
-        NONE, Part, Sheet,
-        sample::{against, counts, sample, significant},
+        kit::{Document, Id, NONE, Section, Sentence, Table, significant},
+        sample::{against, counts, sample},
     },
     units::degrees_from_radians,
     workflow::contest::{BASELINE, Cell, Inputs, Ruler, Study, Tally},
 };
 
 /// For a terminal, or as Markdown.
-pub fn contest_parts(inputs: &Inputs, study: &Study) -> Vec<Part> {
-    let mut parts = vec![Part::Title("Evolutionary algorithms on tasks of the arm".to_owned())];
-    parts.extend(notes(inputs).into_iter().map(Part::Line));
-    parts.push(Part::Heading("Measured against".to_owned()));
-    parts.push(Part::Sheet(Sheet {
-        head: vec![
-            "task",
-            "variables",
-            "reference plans",
-            "its HV",
-            "fastest s",
-            "smoothest deg/s3",
-            "least power W",
-            "feasible at first",
-        ],
-        left: 1,
-        rows: study.rulers.iter().map(ruler).collect(),
-    }));
-    parts.push(Part::Line(
-        "Feasible at first: share of the first, random population that keeps all limits (quartiles)."
-            .to_owned(),
-    ));
-    parts.push(Part::Heading(format!("Hypervolume: medians (quartiles), and against {BASELINE}")));
-    parts.push(Part::Sheet(Sheet {
-        head: vec![
-            "task",
-            "algorithm",
-            "evaluations",
-            "HV, population",
-            "p, A",
-            "HV, all found",
-            "p, A",
-            "of reference",
-            "fastest s",
-            "smoothest deg/s3",
-        ],
-        left: 2,
-        rows: study.cells.iter().map(cell).collect(),
-    }));
-    let missed: Vec<String> = study.cells.iter().filter_map(missed).collect();
-    parts.extend(missed.into_iter().map(Part::Line));
+pub fn contest_document(inputs: &Inputs, study: &Study) -> Document {
+    let numbers = [
+        "variables",
+        "reference plans",
+        "its HV",
+        "fastest s",
+        "smoothest deg/s3",
+        "least power W",
+        "feasible at first",
+    ];
+    let rulers = Table::new(&["task"], &numbers, study.rulers.iter().map(ruler));
+    let numbers = [
+        "evaluations",
+        "HV, population",
+        "p, A",
+        "HV, all found",
+        "p, A",
+        "of reference",
+        "fastest s",
+        "smoothest deg/s3",
+    ];
+    let cells = Table::new(&["task", "algorithm"], &numbers, study.cells.iter().map(cell));
+    let missed = study.cells.iter().filter_map(missed).map(Sentence::Finding);
+    let numbers = ["HV, population", "HV, all found", "fastest", "smoothest"];
+    let tallies = Table::new(&["algorithm"], &numbers, study.tallies.iter().map(tally));
+    let first = "Feasible at first: share of the first, random population that keeps all limits (quartiles).";
+    let heading = format!("Hypervolume: medians (quartiles), and against {BASELINE}");
+    let mut document = Document::titled("Evolutionary algorithms on tasks of the arm")
+        .with(Section::plain(Id::METHOD, notes(inputs).into_iter().map(Sentence::Note)))
+        .with(Section::new(Id::OTHER, "Measured against", [rulers]).with(Sentence::note(first)))
+        .with(Section::new(Id::SUMMARY, heading, [cells]).with_all(missed));
     if !study.tallies.is_empty() {
-        parts.push(Part::Heading(format!("Wins, ties and losses against {BASELINE}")));
-        parts.push(Part::Sheet(Sheet {
-            head: vec!["algorithm", "HV, population", "HV, all found", "fastest", "smoothest"],
-            left: 1,
-            rows: study.tallies.iter().map(tally).collect(),
-        }));
+        let heading = format!("Wins, ties and losses against {BASELINE}");
+        document.sections.push(Section::new(Id::OTHER, heading, [tallies]));
     }
-    parts.extend(study.table_3.iter().flat_map(published::parts));
-    parts
+    document.sections.extend(study.table_3.as_ref().map(published::section));
+    document
 }
 
 fn ruler(ruler: &Ruler) -> Vec<String> {

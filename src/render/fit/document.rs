@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use crate::{
+    document,
     fit::{JointFit, LEAST_SKILL, LeftOut},
     remark::Remark,
-    render::json,
     workflow::{
         fit::torque::JointTorque,
         fit::{Fitted, FittedRun},
@@ -41,9 +41,9 @@ struct Document<'a> {
 
 /// A fit, SI units and radians throughout.
 pub fn fit_json(fitted: &Fitted) -> String {
-    json::pretty(&Document {
+    document::pretty(&Document {
         format: "hydrotrace.fit.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         runs: &fitted.runs,
         joints: &fitted.fit.joints,
         torques: &fitted.torques,

@@ -1,13 +1,10 @@
 //! What a fit found: tables, JSON, and the file that brings it back.
 
-mod document;
-mod file;
+mod page;
 mod tables;
 
-pub use document::fit_json;
-pub use file::limits_toml;
-pub use tables::fit_parts;
-pub(super) use tables::{left_out_line, machine_parts};
+pub(super) use page::fitted;
+pub use tables::document;
 
 use crate::fit::{Estimated, JointFit};
 
@@ -34,7 +31,7 @@ impl Shown {
             }
             (_, _, Some(bound)) => format!(">= {}", number(bound)),
             (Some(value), ..) => format!("({})", number(value)),
-            _ => crate::render::NONE.to_owned(),
+            _ => crate::render::kit::NONE.to_owned(),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::Shown;
 use crate::{
     fit::{Estimated, Fit, JointFit, LEAST_SKILL, LeftOut},
-    render::{Part, Sheet, counted, deg, tables::remark_parts},
+    render::kit::{Document, Id, Section, Sentence, Table, counted, deg, optional},
     units::degrees_from_radians,
     workflow::fit::{Fitted, torque::JointTorque},
 };
@@ -87,7 +87,7 @@ fn valve(joint: &JointFit, side: usize) -> Estimated {
 }
 
 /// A fit, for people.
-pub fn fit_parts(fitted: &Fitted) -> Vec<Part> {
+pub fn document(fitted: &Fitted) -> Document {
     let fit = &fitted.fit;
     let samples: usize = fit.joints.iter().map(|joint| joint.samples).sum();
     let logs: Vec<&str> = fitted.runs.iter().map(|run| run.log.as_str()).collect();
@@ -97,52 +97,38 @@ pub fn fit_parts(fitted: &Fitted) -> Vec<Part> {
         all if all == fitted.runs.len() => "what was sent is the logged command".to_owned(),
         some => format!("what was sent is the logged command in {some} of them, else the plan"),
     };
-    let mut parts = vec![
-        Part::Title(format!("Limits of the machine in {}", logs.join(", "))),
-        Part::Line(format!(
-            "{}, {samples} samples; {sent}. 95 % intervals hold what models of this form miss.",
-            counted(fit.joints.len(), "joint")
-        )),
-    ];
-    parts.extend(machine_parts(fit));
-    parts.extend(torque_parts(&fitted.torques));
-    parts.push(Part::Heading("What to trust".into()));
-    parts.extend(trust(fitted).into_iter().map(Part::Line));
-    remark_parts(&fitted.remarks, &mut parts);
-    parts
+    let seen = format!(
+        "{}, {samples} samples; {sent}. 95 % intervals hold what models of this form miss.",
+        counted(fit.joints.len(), "joint")
+    );
+    let mut document = Document::titled(format!("Limits of the machine in {}", logs.join(", ")))
+        .with(Section::plain(Id::SUMMARY, [Sentence::finding(seen)]));
+    document.sections.extend(machine(fit));
+    document.sections.extend(torques(&fitted.torques));
+    document.with(Section::new(Id::OTHER, "What to trust", trust(fitted))).remarked(&fitted.remarks)
 }
 
 /// The numbers of a fit with their intervals.
-pub(in crate::render) fn machine_parts(fit: &Fit) -> Vec<Part> {
-    let mut parts = vec![
-        Part::Heading("Closed loop".into()),
-        sheet(&fit.joints, &LOOP, true),
-        Part::Line(
+pub(super) fn machine(fit: &Fit) -> Vec<Section> {
+    let row = |joint: &JointFit| vec![joint.name.clone(), VALVE[0].cell(joint), VALVE[1].cell(joint)];
+    let valves = Table::new(&["joint"], &["dead band + %", "dead band - %"], fit.joints.iter().map(row));
+    let mut sections = vec![
+        Section::new(Id::OTHER, "Closed loop", [table(&fit.joints, &LOOP, true)]).with(Sentence::note(
             "Held-out R2: share of the tracking error that is predicted where it was not fitted; unexplained: what is \
              then left after a start, mean of the peaks. Dead band: speed that must be wanted before the joint leaves \
-             rest; floor: the error that is not enough for it; gain: speed wanted by error; feed-forward: by speed sent."
-                .into(),
-        ),
-        Part::Heading("Limits".into()),
-        sheet(&fit.joints, &LIMITS, false),
-        Part::Line("+ for growing, - for shrinking angles; >= was reached and is no limit; (brackets): prior, not data.".into()),
+             rest; floor: the error that is not enough for it; gain: speed wanted by error; feed-forward: by speed sent.",
+        )),
+        Section::new(Id::OTHER, "Limits", [table(&fit.joints, &LIMITS, false)]).with(Sentence::note(
+            "+ for growing, - for shrinking angles; >= was reached and is no limit; (brackets): prior, not data.",
+        )),
     ];
     if fit.joints.iter().any(|joint| joint.valve_dead_band.is_some()) {
-        parts.push(Part::Heading("Valves".into()));
-        let row = |joint: &JointFit| vec![joint.name.clone(), VALVE[0].cell(joint), VALVE[1].cell(joint)];
-        parts.push(Part::Sheet(Sheet {
-            head: vec!["joint", "dead band + %", "dead band - %"],
-            left: 1,
-            rows: fit.joints.iter().map(row).collect(),
-        }));
+        sections.push(Section::new(Id::OTHER, "Valves", [valves]));
     }
-    parts
+    sections
 }
 
-fn torque_parts(torques: &[JointTorque]) -> Vec<Part> {
-    if torques.is_empty() {
-        return Vec::new();
-    }
+fn torques(torques: &[JointTorque]) -> Option<Section> {
     let row = |torque: &JointTorque| {
         let both = torque.reached_n_m.iter().zip(torque.available_n_m);
         let cells = both.flat_map(|(reached, available)| [*reached, available]);
@@ -150,42 +136,32 @@ fn torque_parts(torques: &[JointTorque]) -> Vec<Part> {
         row.extend(cells.map(|n_m| format!("{n_m:.0}")));
         row
     };
-    vec![
-        Part::Heading("Torques from pressures".into()),
-        Part::Sheet(Sheet {
-            head: vec!["joint", "reached + N m", "available +", "reached - N m", "available -"],
-            left: 1,
-            rows: torques.iter().map(row).collect(),
-        }),
-        Part::Line(
-            "Available: in every pose of the run at the logged supply pressure; friction and flow take some of it."
-                .into(),
-        ),
-    ]
+    let numbers = ["reached + N m", "available +", "reached - N m", "available -"];
+    let table = Table::new(&["joint"], &numbers, torques.iter().map(row));
+    (!torques.is_empty()).then(|| {
+        Section::new(Id::OTHER, "Torques from pressures", [table]).with(Sentence::note(
+            "Available: in every pose of the run at the logged supply pressure; friction and flow take some of it.",
+        ))
+    })
 }
 
-fn sheet(joints: &[JointFit], columns: &[(&'static str, Shown)], skill: bool) -> Part {
-    let mut head = vec!["joint"];
-    if skill {
-        head.extend(["held-out R2", "unexplained deg"]);
-    }
-    head.extend(columns.iter().map(|(head, _)| *head));
+fn table(joints: &[JointFit], columns: &[(&'static str, Shown)], skill: bool) -> Table {
+    let mut numbers = if skill { vec!["held-out R2", "unexplained deg"] } else { Vec::new() };
+    numbers.extend(columns.iter().map(|(heading, _)| *heading));
     let row = |joint: &JointFit| {
         let mut row = vec![joint.name.clone()];
         if skill {
             row.push(format!("{:.2}", joint.held_out_r2));
-            row.push(
-                joint.unexplained_peak_rad.map_or(crate::render::NONE.to_owned(), |[mean, _]| deg(mean)),
-            );
+            row.push(optional(joint.unexplained_peak_rad.map(|[mean, _]| mean), deg));
         }
         row.extend(columns.iter().map(|(_, shown)| shown.cell(joint)));
         row
     };
-    Part::Sheet(Sheet { head, left: 1, rows: joints.iter().map(row).collect() })
+    Table::new(&["joint"], &numbers, joints.iter().map(row))
 }
 
 /// What the numbers are good for, and what would tell the rest.
-fn trust(fitted: &Fitted) -> Vec<String> {
+fn trust(fitted: &Fitted) -> Vec<Sentence> {
     let fit = &fitted.fit;
     let good = fit.joints.iter().filter(|joint| joint.trusted()).count();
     let mut lines = vec![format!(
@@ -227,11 +203,11 @@ fn trust(fitted: &Fitted) -> Vec<String> {
         });
     }
     lines.extend(left_out_line(fit));
-    lines
+    lines.into_iter().map(Sentence::Finding).collect()
 }
 
 /// Which joints are not fitted, and why; `None` if all are.
-pub(in crate::render) fn left_out_line(fit: &Fit) -> Option<String> {
+pub(super) fn left_out_line(fit: &Fit) -> Option<String> {
     let one = |joint: &LeftOut| {
         let [sent, needed] = [joint.travel_rad, joint.least_travel_rad].map(deg);
         format!("{} (sent through {sent} deg in all, {needed} are needed)", joint.name)

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::{
-    render::json,
+    document,
     workflow::moea::{BASELINE, Cell, Inputs, Ruler, Study, Tally},
 };
 
@@ -25,9 +25,9 @@ struct Document<'a> {
 
 /// Problems, then cells by problem, budget and algorithm.
 pub fn moea_json(inputs: &Inputs, study: &Study) -> String {
-    json::pretty(&Document {
+    document::pretty(&Document {
         format: "hydrotrace.moea.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         first_seed: inputs.first_seed,
         seeds: inputs.seeds,
         crossover_rate: inputs.operators.crossover_rate,

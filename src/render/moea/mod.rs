@@ -10,7 +10,7 @@ pub use document::moea_json;
 pub(super) use picture::colour;
 pub use picture::curve_svg;
 pub use rows::{curves_csv, front_csv};
-pub use tables::moea_parts;
+pub use tables::moea_document;
 
 use super::sample::{AGAINST, few, seeds};
 use crate::workflow::moea::Inputs;

@@ -3,18 +3,16 @@
 use std::collections::BTreeSet;
 
 use crate::{
-    render::{NONE, Part, Sheet, sample::significant},
+    render::kit::{Id, NONE, Section, Sentence, Table, significant},
     workflow::moea::{Cell, Published, Study},
 };
 
 /// Nothing where no problem of the paper was run.
-pub(super) fn parts(study: &Study) -> Vec<Part> {
-    let mut parts = table_1(study);
-    parts.extend(figure_3(study));
-    parts
+pub(super) fn sections(study: &Study) -> impl Iterator<Item = Section> {
+    table_1(study).into_iter().chain(figure_3(study))
 }
 
-fn table_1(study: &Study) -> Vec<Part> {
+fn table_1(study: &Study) -> Option<Section> {
     let known: Vec<(&Cell, Published)> =
         study.cells.iter().filter_map(|cell| Some((cell, cell.table_1?))).collect();
     // By problem and algorithm, budgets beside one another.
@@ -31,22 +29,20 @@ fn table_1(study: &Study) -> Vec<Part> {
             ]),
         }
     }
-    if rows.is_empty() {
-        return Vec::new();
-    }
     let budgets: BTreeSet<u64> = known.iter().map(|(cell, _)| cell.evaluations).collect();
     let budgets: Vec<String> = budgets.iter().map(u64::to_string).collect();
-    vec![
-        Part::Heading("IGD beside the paper's Table 1".to_owned()),
-        Part::Line(
-            "The table names no budget, and contradicts Figure 3, where runs of 50000 evaluations end near the \
-             front: nsga3 has 343.9 on DTLZ3 here after about 500 evaluations, and 0.6122 on WFG3 after about 350. \
-             The table's gaps between NSGA-III-FO and NSGA-III are a tenth of its own spread."
-                .to_owned(),
-        ),
-        Part::Line(format!("Means and standard deviations; ours after {} evaluations.", budgets.join(", "))),
-        Part::Sheet(Sheet { head: vec!["problem", "algorithm", "paper", "ours"], left: 2, rows }),
-    ]
+    let gaps = "The table names no budget, and contradicts Figure 3, where runs of 50000 evaluations end near the \
+                front: nsga3 has 343.9 on DTLZ3 here after about 500 evaluations, and 0.6122 on WFG3 after about 350. \
+                The table's gaps between NSGA-III-FO and NSGA-III are a tenth of its own spread.";
+    let means = format!("Means and standard deviations; ours after {} evaluations.", budgets.join(", "));
+    (!rows.is_empty()).then(|| {
+        let notes = [Sentence::note(gaps), Sentence::note(means)];
+        Section::new(Id::OTHER, "IGD beside the paper's Table 1", notes).with(Table::new(
+            &["problem", "algorithm"],
+            &["paper", "ours"],
+            rows,
+        ))
+    })
 }
 
 /// Nothing for one run.
@@ -54,7 +50,7 @@ fn spread(sd: f64) -> String {
     if sd.is_finite() { format!(" +-{}", significant(sd, 3)) } else { String::new() }
 }
 
-fn figure_3(study: &Study) -> Vec<Part> {
+fn figure_3(study: &Study) -> Option<Section> {
     let share = |cell: &Cell| {
         let focused = study.cells.iter().find(|other| {
             (&other.problem, other.evaluations, other.algorithm)
@@ -78,29 +74,11 @@ fn figure_3(study: &Study) -> Vec<Part> {
         })
     };
     let rows: Vec<Vec<String>> = study.cells.iter().filter_map(row).collect();
-    if rows.is_empty() {
-        return Vec::new();
-    }
-    vec![
-        Part::Heading("Hypervolume beside the paper's Figure 3".to_owned()),
-        Part::Line(
-            "The paper's words, for its curves are not at hand; then what another implementation gave at PlatEMO's \
-             defaults (91 members, 12 variables). The share is that of our mean in the mean of nsga3-fo."
-                .to_owned(),
-        ),
-        Part::Sheet(Sheet {
-            head: vec![
-                "problem",
-                "algorithm",
-                "paper",
-                "evaluations",
-                "other",
-                "our median",
-                "our mean",
-                "share",
-            ],
-            left: 3,
-            rows,
-        }),
-    ]
+    let words = "The paper's words, for its curves are not at hand; then what another implementation gave at PlatEMO's \
+                 defaults (91 members, 12 variables). The share is that of our mean in the mean of nsga3-fo.";
+    let numbers = ["evaluations", "other", "our median", "our mean", "share"];
+    (!rows.is_empty()).then(|| {
+        Section::new(Id::OTHER, "Hypervolume beside the paper's Figure 3", [Sentence::note(words)])
+            .with(Table::new(&["problem", "algorithm", "paper"], &numbers, rows))
+    })
 }

@@ -4,8 +4,8 @@ use plotters::style::RGBColor;
 
 use crate::{
     moea::CONTENDERS,
-    render::{
-        counted,
+    render::kit::{
+        Failure, counted,
         picture::{INK, Line, Panel, picture},
     },
     workflow::moea::{Curve, Point},
@@ -30,7 +30,7 @@ const COLOURS: [RGBColor; 9] = [
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn curve_svg(curves: &[Curve]) -> Result<String, Box<dyn std::error::Error + Send + Sync>> {
+pub fn curve_svg(curves: &[Curve]) -> Result<String, Failure> {
     let title = curves.first().map_or(String::new(), |curve| {
         format!(
             "{}, {} objectives: median and quartiles of {}",

@@ -1,6 +1,9 @@
 //! As comma-separated values.
 
-use crate::workflow::moea::{Curve, Front};
+use crate::{
+    render::kit::csv,
+    workflow::moea::{Curve, Front},
+};
 
 const CURVE_HEAD: [&str; 14] = [
     "problem",
@@ -21,11 +24,8 @@ const CURVE_HEAD: [&str; 14] = [
 
 /// Convergence, one row for each algorithm and checkpoint.
 pub fn curves_csv(curves: &[Curve]) -> String {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    // Writing to memory does not fail.
-    let _ = writer.write_record(CURVE_HEAD);
-    for curve in curves {
-        for point in &curve.points {
+    let rows = curves.iter().flat_map(|curve| {
+        curve.points.iter().map(|point| {
             let mut row = vec![
                 curve.problem.clone(),
                 curve.objectives.to_string(),
@@ -35,24 +35,17 @@ pub fn curves_csv(curves: &[Curve]) -> String {
             ];
             let values = [point.igd, point.igd_plus, point.hypervolume];
             row.extend(values.iter().flatten().map(f64::to_string));
-            let _ = writer.write_record(row);
-        }
-    }
-    finish(writer)
+            row
+        })
+    });
+    csv(CURVE_HEAD, rows)
 }
 
 /// One row for each member of a front, columns `f1` to `fM`.
 pub fn front_csv(front: &Front) -> String {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let _ = writer.write_record((1..=front.objectives).map(|k| format!("f{k}")));
-    for f in front.points.chunks_exact(front.objectives.max(1)) {
-        let _ = writer.write_record(f.iter().map(f64::to_string));
-    }
-    finish(writer)
-}
-
-fn finish(writer: csv::Writer<Vec<u8>>) -> String {
-    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+    let head: Vec<String> = (1..=front.objectives).map(|k| format!("f{k}")).collect();
+    let members = front.points.chunks_exact(front.objectives.max(1));
+    csv(head.iter().map(String::as_str), members.map(|f| f.iter().map(f64::to_string).collect()))
 }
 
 #[cfg(test)]

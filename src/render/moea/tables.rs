@@ -3,38 +3,28 @@
 use super::{notes, paper};
 use crate::{
     render::{
-        Part, Sheet,
-        sample::{against, counts, sample, significant},
+        kit::{Document, Id, Section, Sentence, Table, significant},
+        sample::{against, counts, sample},
     },
     workflow::moea::{Cell, Inputs, Ruler, Study, Tally},
 };
 
 /// For a terminal, or as Markdown.
-pub fn moea_parts(inputs: &Inputs, study: &Study) -> Vec<Part> {
-    let mut parts = vec![Part::Title("Evolutionary algorithms on problems with known fronts".to_owned())];
-    parts.extend(notes(inputs).into_iter().map(Part::Line));
-    parts.push(Part::Heading("Measured against".to_owned()));
-    parts.push(Part::Sheet(Sheet {
-        head: vec!["problem", "HV reference point", "objectives", "variables", "front points"],
-        left: 2,
-        rows: study.rulers.iter().map(ruler).collect(),
-    }));
-    parts.push(Part::Heading("Medians (quartiles), and against nsga3".to_owned()));
-    parts.push(Part::Sheet(Sheet {
-        head: vec!["problem", "algorithm", "evaluations", "IGD", "p, A", "IGD+", "p, A", "HV", "p, A"],
-        left: 2,
-        rows: study.cells.iter().map(cell).collect(),
-    }));
+pub fn moea_document(inputs: &Inputs, study: &Study) -> Document {
+    let objectives = ["objectives", "variables", "front points"];
+    let rulers = Table::new(&["problem", "HV reference point"], &objectives, study.rulers.iter().map(ruler));
+    let numbers = ["evaluations", "IGD", "p, A", "IGD+", "p, A", "HV", "p, A"];
+    let cells = Table::new(&["problem", "algorithm"], &numbers, study.cells.iter().map(cell));
+    let tallies = Table::new(&["algorithm"], &["IGD", "IGD+", "HV"], study.tallies.iter().map(tally));
+    let mut document = Document::titled("Evolutionary algorithms on problems with known fronts")
+        .with(Section::plain(Id::METHOD, notes(inputs).into_iter().map(Sentence::Note)))
+        .with(Section::new(Id::OTHER, "Measured against", [rulers]))
+        .with(Section::new(Id::SUMMARY, "Medians (quartiles), and against nsga3", [cells]));
     if !study.tallies.is_empty() {
-        parts.push(Part::Heading("Wins, ties and losses against nsga3".to_owned()));
-        parts.push(Part::Sheet(Sheet {
-            head: vec!["algorithm", "IGD", "IGD+", "HV"],
-            left: 1,
-            rows: study.tallies.iter().map(tally).collect(),
-        }));
+        document.sections.push(Section::new(Id::OTHER, "Wins, ties and losses against nsga3", [tallies]));
     }
-    parts.extend(paper::parts(study));
-    parts
+    document.sections.extend(paper::sections(study));
+    document
 }
 
 fn ruler(ruler: &Ruler) -> Vec<String> {

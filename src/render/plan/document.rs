@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use crate::{
+    document,
     plan::{Margin, Objectives, PlanEvaluation, Rule},
     remark::Remark,
-    render::json,
     workflow::plan::{Options, Planned, Step},
 };
 
@@ -138,9 +138,9 @@ fn whole<'a>(evaluation: &'a PlanEvaluation, joints: &'a [String]) -> Whole<'a> 
 pub fn plan_json(title: &str, algorithm: &str, options: &Options, planned: &Planned) -> String {
     let plans = planned.front.iter().zip(&planned.times_s);
     let choice = &planned.choice;
-    json::pretty(&Document {
+    document::pretty(&Document {
         format: "hydrotrace.plan.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         title,
         joints: &planned.joints,
         feasible: true,
@@ -166,9 +166,9 @@ pub fn plan_json(title: &str, algorithm: &str, options: &Options, planned: &Plan
 
 /// One plan that was given, or the nearest to one of an infeasible task, as JSON.
 pub fn judged_json(title: &str, joints: &[String], evaluation: &PlanEvaluation, feasible: bool) -> String {
-    json::pretty(&Document {
+    document::pretty(&Document {
         format: "hydrotrace.plan.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         title,
         joints,
         feasible,

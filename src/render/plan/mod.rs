@@ -1,11 +1,15 @@
 //! What was planned.
 
-mod document;
+mod figures;
+mod front;
+mod page;
 mod tables;
 
-pub use document::{judged_json, plan_json};
-pub(super) use tables::limit_cell;
-pub use tables::{broken_lines, ceiling_lines, judged_parts, plan_parts};
+pub(super) use figures::front_figures;
+pub use figures::{figures, motion_figures};
+pub(super) use front::front;
+pub use page::{judged_page, page};
+pub use tables::{broken_lines, ceiling_lines, document, judged_document, limit_cell};
 
 use crate::{plan::Limit, units::degrees_from_radians};
 

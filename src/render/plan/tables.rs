@@ -2,9 +2,9 @@
 
 use super::{name, shown};
 use crate::{
-    plan::{BEYOND, Limit, Margin, Objectives, PlanEvaluation, Rule},
-    render::{NONE, Part, Sheet, tables::remark_parts},
-    task::Bounds,
+    plan::{BEYOND, Limit, Margin, PlanEvaluation, Rule},
+    render::kit::{Column, Document, Id, NONE, Section, Sentence, Table},
+    task::{Ceilings, Objective, Weights},
     units::degrees_from_radians,
     workflow::plan::{Options, Planned},
 };
@@ -17,66 +17,64 @@ const NEAREST: usize = 6;
 const AT_POINT_S: f64 = 1e-6;
 
 /// What was planned, for people.
-pub fn plan_parts(
+pub fn document(
     title: &str,
     algorithm: &str,
     options: &Options,
-    bounds: &Bounds,
+    ceilings: &Ceilings,
     planned: &Planned,
-) -> Vec<Part> {
+) -> Document {
     let start = if options.search.seeded { "descents" } else { "random plans" };
-    let mut parts = vec![
-        Part::Title(title.to_owned()),
-        Part::Line(format!(
-            "{} plans of which none is better than another in everything, from {} evaluations: {algorithm}, started \
-             from {start}, seed {}. Hypervolume {:.4} of the box from the best of each objective to {BEYOND} times the \
-             range.",
-            planned.front.len(),
-            planned.evaluations,
-            options.search.seed,
-            planned.hypervolume,
-        )),
-        Part::Heading("Plans".into()),
-    ];
-    let [a, b, c] = &planned.best;
-    let named = [("A  fastest", a), ("B  smoothest", b), ("C  least power", c), ("chosen", &planned.chosen)];
-    parts.push(Part::Sheet(Sheet {
-        head: vec!["plan", "arrivals s", "time s", "RMS jerk deg/s3", "RMS power W", "nearest limit"],
-        left: 2,
-        rows: named.map(|(name, evaluation)| row(name, evaluation, &planned.joints)).to_vec(),
-    }));
-    if planned.fastest_converged == Some(false) {
-        parts.push(Part::Line(
+    let searched = format!(
+        "{} plans on the Pareto front, from {} evaluations: {algorithm}, started \
+         from {start}, seed {}. Hypervolume {:.4} of the box from the best of each objective to {BEYOND} times the \
+         range.",
+        planned.front.len(),
+        planned.evaluations,
+        options.search.seed,
+        planned.hypervolume,
+    );
+    let best = Objective::OF_PLAN.iter().zip(&planned.best);
+    let mut rows: Vec<Vec<String>> = best
+        .map(|(k, evaluation)| row(&format!("{}  {}", k.letter(), k.row().best), evaluation, &planned.joints))
+        .collect();
+    rows.push(row("chosen", &planned.chosen, &planned.joints));
+    let longer = (planned.fastest_converged == Some(false)).then(|| {
+        Sentence::advice(
             "The fastest plan was still getting faster when its share of the evaluations was used up: give more with \
-             --evaluations."
-                .into(),
+             --evaluations.",
+        )
+    });
+    let rules: Vec<&str> = Rule::all().filter(|rule| *rule != Rule::Weights).map(Rule::name).collect();
+    let another = format!("Another: --choose {}; --weights; or ceilings in the task.", rules.join(", "));
+    let mut document = Document::titled(title)
+        .with(Section::plain(Id::SUMMARY, [Sentence::finding(searched)]))
+        .with(Section::new(Id::OTHER, "Plans", [plans(rows)]).with_all(longer))
+        .with(Section::new(
+            Id::OTHER,
+            "The chosen plan",
+            [Sentence::finding(reason(ceilings, planned)), Sentence::advice(another)],
         ));
-    }
-    parts.push(Part::Heading("The chosen plan".into()));
-    parts.push(Part::Line(reason(bounds, planned)));
-    parts.push(Part::Line(
-        "Another: --choose fastest, smoothest, thriftiest, knee or ideal, --weights, or ceilings in the task.".into(),
-    ));
-    parts.extend(margin_parts(&planned.chosen, &planned.joints));
-    parts.push(Part::Line(kept(&planned.chosen)));
-    remark_parts(&planned.remarks, &mut parts);
-    parts
+    document.sections.extend(margins(&planned.chosen, &planned.joints));
+    document.remarked(&planned.remarks)
 }
 
 /// One given plan, for people.
-pub fn judged_parts(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Vec<Part> {
-    let mut parts = vec![
-        Part::Title(title.to_owned()),
-        Part::Sheet(Sheet {
-            head: vec!["plan", "arrivals s", "time s", "RMS jerk deg/s3", "RMS power W", "nearest limit"],
-            left: 2,
-            rows: vec![row("given", evaluation, joints)],
-        }),
-        Part::Line(format!("The joints do and take up {:.0} J of work together.", evaluation.energy_j)),
-    ];
-    parts.extend(margin_parts(evaluation, joints));
-    parts.push(Part::Line(kept(evaluation)));
-    parts
+pub fn judged_document(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Document {
+    let work = format!("The joints do and take up {:.0} J of work together.", evaluation.energy_j);
+    let given = Section::plain(Id::SUMMARY, [plans([row("given", evaluation, joints)])]);
+    let mut document = Document::titled(title).with(given.with(Sentence::finding(work)));
+    document.sections.extend(margins(evaluation, joints));
+    document
+}
+
+fn plans(rows: impl IntoIterator<Item = Vec<String>>) -> Table {
+    let costs = Objective::OF_PLAN.iter().map(|objective| {
+        let row = objective.row();
+        Column::numbers(row.heading).meaning(row.explanation)
+    });
+    let words = ["plan", "arrivals s"].map(Column::words).into_iter();
+    Table::of(words.chain(costs).chain([Column::numbers("nearest limit")]), rows)
 }
 
 fn kept(evaluation: &PlanEvaluation) -> String {
@@ -87,23 +85,17 @@ fn kept(evaluation: &PlanEvaluation) -> String {
 }
 
 fn row(name: &str, evaluation: &PlanEvaluation, joints: &[String]) -> Vec<String> {
-    let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = evaluation.objectives;
     let arrivals: Vec<String> = evaluation.times_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
-    let nearest = nearest(evaluation).into_iter().next();
-    vec![
-        name.to_owned(),
-        arrivals.join(" "),
-        format!("{duration_s:.2}"),
-        format!("{:.4}", degrees_from_radians(rms_jerk_rad_s3)),
-        format!("{rms_power_w:.2}"),
-        nearest.map_or(NONE.to_owned(), |margin| {
-            format!("{} % {}", percent(margin.share), subject(margin, joints))
-        }),
-    ]
+    let mut row = vec![name.to_owned(), arrivals.join(" ")];
+    row.extend(Objective::OF_PLAN.iter().map(|&k| k.number(evaluation.objectives[k])));
+    row.push(nearest(evaluation).first().map_or(NONE.to_owned(), |margin| {
+        format!("{} % {}", percent(margin.share), subject(margin, joints))
+    }));
+    row
 }
 
 /// The limit that is broken most, and how many more are, or the nearest.
-pub(in crate::render) fn limit_cell(evaluation: &PlanEvaluation, joints: &[String]) -> String {
+pub fn limit_cell(evaluation: &PlanEvaluation, joints: &[String]) -> String {
     let Some(worst) = nearest(evaluation).into_iter().next() else { return NONE.to_owned() };
     let worst = format!("{} % {}", percent(worst.share), subject(worst, joints));
     match evaluation.broken().len() {
@@ -138,37 +130,29 @@ fn subject(margin: &Margin, joints: &[String]) -> String {
 }
 
 /// Why a plan was chosen.
-fn reason(bounds: &Bounds, planned: &Planned) -> String {
+fn reason(ceilings: &Ceilings, planned: &Planned) -> String {
     let choice = &planned.choice;
     let why = match choice.rule {
         Rule::Weights => {
-            let weights = choice.weights.map_or(String::new(), |w| {
-                format!(" {} time, {} jerk, {} power", w.duration, w.rms_jerk, w.rms_power)
-            });
+            let each = |w: Weights| {
+                let each = Objective::OF_PLAN.iter().map(|&k| format!("{} {}", w[k], k.row().short));
+                format!(" {}", each.collect::<Vec<_>>().join(", "))
+            };
+            let weights = choice.weights.map_or(String::new(), each);
             format!("Least sum by the weights{weights}, each objective scaled by its range")
         }
         Rule::Ideal => "Nearest to the best of every objective, each scaled by its range".into(),
         Rule::Knee => "The knee: giving up a little of one objective costs most of another".into(),
-        Rule::Fastest => "The fastest".into(),
-        Rule::Smoothest => "The smoothest".into(),
-        Rule::Thriftiest => "The one of least power".into(),
+        Rule::Best(objective) => format!("The plan of least {}", objective.row().name),
     };
-    let ceilings = ceilings(bounds);
+    let text = |(k, ceiling): (Objective, f64)| trimmed(&format!("{:.6} {}", k.shown(ceiling), k.row().unit));
+    let ceilings: Vec<String> = ceilings.known().map(text).collect();
     let among = if ceilings.is_empty() {
         format!("all {}", choice.of)
     } else {
         format!("{} of {} within {}", choice.within, choice.of, ceilings.join(", "))
     };
     format!("{why}, among {among}; then moved to where the rule has its optimum.")
-}
-
-fn ceilings(bounds: &Bounds) -> Vec<String> {
-    let each = [
-        bounds.duration_s.map(|s| format!("{s} s")),
-        bounds.rms_jerk_rad_s3.map(|rad| format!("{:.6} deg/s3", degrees_from_radians(rad))),
-        bounds.rms_power_w.map(|w| format!("{w} W")),
-    ];
-    each.into_iter().flatten().map(|text| trimmed(&text)).collect()
 }
 
 /// Without the zeros that a fixed number of decimals leaves.
@@ -182,7 +166,7 @@ fn trimmed(text: &str) -> String {
 }
 
 /// What of each limit is used, and the nearest with their places.
-fn margin_parts(evaluation: &PlanEvaluation, joints: &[String]) -> Vec<Part> {
+fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
     let share = |limit: Limit, joint: Option<usize>| {
         let found = evaluation.margins.iter().find(|margin| margin.limit == limit && margin.joint == joint);
         found.map_or(NONE.to_owned(), |margin| percent(margin.share))
@@ -213,38 +197,35 @@ fn margin_parts(evaluation: &PlanEvaluation, joints: &[String]) -> Vec<Part> {
             format!("{:.2}", margin.t_s),
         ]
     });
-    let mut parts = vec![
-        Part::Heading("Jerk, power, and use of each limit in %".into()),
-        Part::Sheet(Sheet {
-            head: vec![
-                "joint",
-                "RMS jerk deg/s3",
-                "RMS power W",
-                "range",
-                "speed",
-                "acceleration",
-                "jerk",
-                "torque",
-                "rod speed",
-                "rod force",
-            ],
-            left: 1,
-            rows: rows.collect(),
-        }),
-        Part::Line(format!("All together: {}, {}.", together(Limit::PumpFlow), together(Limit::ToolSpeed))),
-        Part::Heading("Nearest limits".into()),
-        Part::Sheet(Sheet {
-            head: vec!["limit", "value", "allowed", "used %", "at s"],
-            left: 1,
-            rows: listed.collect(),
-        }),
+    let numbers = [
+        "RMS jerk deg/s3",
+        "RMS power W",
+        "range",
+        "speed",
+        "acceleration",
+        "jerk",
+        "torque",
+        "rod speed",
+        "rod force",
     ];
-    if listed_position {
-        parts.push(Part::Line(
-            "Of a position, used is the way from the middle of its range to the end.".into(),
-        ));
-    }
-    parts
+    let all = format!("All together: {}, {}.", together(Limit::PumpFlow), together(Limit::ToolSpeed));
+    let position = listed_position
+        .then(|| Sentence::note("Of a position, used is the way from the middle of its range to the end."));
+    [
+        Section::new(
+            Id::OTHER,
+            "Jerk, power, and use of each limit in %",
+            [Table::new(&["joint"], &numbers, rows)],
+        )
+        .with(Sentence::finding(all)),
+        Section::new(
+            Id::OTHER,
+            "Nearest limits",
+            [Table::new(&["limit"], &["value", "allowed", "used %", "at s"], listed)],
+        )
+        .with_all(position)
+        .with(Sentence::finding(kept(evaluation))),
+    ]
 }
 
 /// What is allowed; of a range the end that is nearer, and on which side of it.
@@ -282,29 +263,14 @@ pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation)
 }
 
 /// What the nearest plan exceeds its ceilings by, a line each, and what holds it there.
-pub fn ceiling_lines(
-    bounds: &Bounds,
-    joints: &[String],
-    nearest: &PlanEvaluation,
-    share: [f64; 3],
-) -> Vec<String> {
-    let f = nearest.objectives;
-    let values = [
-        (format!("time {:.2} s", f.duration_s), bounds.duration_s.map(|s| format!("{s:.2} s"))),
-        (
-            format!("RMS jerk {:.4} deg/s3", degrees_from_radians(f.rms_jerk_rad_s3)),
-            bounds.rms_jerk_rad_s3.map(|rad| format!("{:.4} deg/s3", degrees_from_radians(rad))),
-        ),
-        (format!("RMS power {:.2} W", f.rms_power_w), bounds.rms_power_w.map(|w| format!("{w:.2} W"))),
-    ];
-    let mut lines: Vec<String> = values
-        .into_iter()
-        .zip(share)
-        .filter(|(_, share)| *share > 1.0)
-        .filter_map(|((value, ceiling), share)| {
-            Some(format!("{value}, {} is asked for: {:.1} % too much", ceiling?, 100.0 * (share - 1.0)))
-        })
-        .collect();
+pub fn ceiling_lines(ceilings: &Ceilings, joints: &[String], nearest: &PlanEvaluation) -> Vec<String> {
+    let over = |(k, ceiling): (Objective, f64)| {
+        let share = nearest.objectives[k] / ceiling;
+        let (name, found, asked) = (k.row().name, k.text(nearest.objectives[k]), k.text(ceiling));
+        (share > 1.0)
+            .then(|| format!("{name} {found}, {asked} is asked for: {:.1} % too much", 100.0 * (share - 1.0)))
+    };
+    let mut lines: Vec<String> = ceilings.known().filter_map(over).collect();
     let mut tight: Vec<&Margin> = nearest.margins.iter().filter(|margin| margin.share > TIGHT).collect();
     tight.sort_by(|a, b| b.share.total_cmp(&a.share));
     let tight: Vec<String> =

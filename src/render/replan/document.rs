@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use super::joint_name;
 use crate::{
+    document,
     plan::Objectives,
     remark::Remark,
-    render::json,
     workflow::replan::{Before, HeldTo, JointCommand, Predicted, Replanned},
 };
 
@@ -77,9 +77,9 @@ pub fn replan_json(replanned: &Replanned) -> String {
         share: margin.share,
         t_s: margin.t_s,
     };
-    json::pretty(&Document {
+    document::pretty(&Document {
         format: "hydrotrace.replan.v1",
-        program: json::PROGRAM,
+        program: document::PROGRAM,
         fitted_to: &replanned.fitted_to,
         before: &replanned.before,
         after: &replanned.after,

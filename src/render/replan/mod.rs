@@ -1,10 +1,8 @@
 //! What was planned again.
 
-mod document;
 mod tables;
 
-pub use document::replan_json;
-pub use tables::replan_parts;
+pub use tables::document;
 
 use crate::{plan::Limit, workflow::replan::Replanned};
 

@@ -4,7 +4,11 @@ use super::{OF_COMMAND, joint_name};
 use crate::{
     log::Topics,
     plan::Margin,
-    render::{NONE, Part, Sheet, counted, deg, plan, tables::remark_parts},
+    render::{
+        kit::{Block, Document, Fact, Id, NONE, Section, Sentence, Table, counted, deg, fact, optional},
+        plan,
+    },
+    task::Objective,
     units::degrees_from_radians,
     workflow::replan::{HeldTo, JointCommand, Origin, Predicted, Replanned},
 };
@@ -13,68 +17,51 @@ use crate::{
 const NEAR: f64 = 0.9;
 
 /// A plan for the next run, for people.
-pub fn replan_parts(replanned: &Replanned) -> Vec<Part> {
+pub fn document(replanned: &Replanned) -> Document {
     let title = replanned.request.as_ref().map_or("the logged plan", |request| request.task.title.as_str());
-    let mut parts = vec![
-        Part::Title(format!("Next run of {title}")),
-        Part::Line(format!("Learnt from {}.", replanned.fitted_to.join(", "))),
-        Part::Heading("Expected".into()),
-        expected(replanned),
-        Part::Line(format!(
-            "Expected peaks hold what the model left unexplained after held-out starts; nine of ten stay below: the \
-             predicted peak times {:.2}, or what was left unexplained in nine of ten.",
-            replanned.fit.peak_margin
-        )),
-        Part::Heading("Levers".into()),
-        Part::Facts(levers(replanned)),
-    ];
-    if let Some(command) = &replanned.command {
-        parts.push(Part::Heading("Command".into()));
-        parts.push(Part::Sheet(Sheet {
-            head: vec![
-                "joint",
-                "held-out R2",
-                "gain",
-                "off plan deg",
-                "rms error deg",
-                "then deg",
-                "speed x",
-                "acceleration x",
-            ],
-            left: 1,
-            rows: command.joints.iter().map(|joint| command_row(replanned, joint)).collect(),
-        }));
-        parts.push(Part::Line(
-            "Rms errors are predicted, of the plan sent as it is and then of the command; speed x and acceleration x are \
-             the command's peaks by those of the plan."
-                .into(),
-        ));
-        parts.extend(cut_off(&command.joints).map(Part::Line));
-        parts.push(Part::Line(nearest(replanned, &command.margins)));
-    }
+    let learnt = format!("Learnt from {}.", replanned.fitted_to.join(", "));
+    let margin = format!(
+        "Expected peaks hold what the model left unexplained after held-out starts; nine of ten stay below: the \
+         predicted peak times {:.2}, or what was left unexplained in nine of ten.",
+        replanned.fit.peak_margin
+    );
+    let mut document = Document::titled(format!("Next run of {title}"))
+        .with(Section::plain(Id::SUMMARY, [Sentence::finding(learnt)]))
+        .with(Section::new(Id::OTHER, "Expected", [expected(replanned)]).with(Sentence::note(margin)))
+        .with(Section::new(Id::OTHER, "Levers", [Block::Facts(levers(replanned))]));
+    document.sections.extend(command(replanned));
     if let Some(search) = &replanned.search {
-        parts.push(Part::Heading("The plan was held to".into()));
-        parts.push(Part::Sheet(Sheet {
-            head: vec!["joint", "speed deg/s", "by", "acceleration deg/s2", "by"],
-            left: 1,
-            rows: search.held.iter().map(held_row).collect(),
-        }));
+        let numbers = ["speed deg/s", "by", "acceleration deg/s2", "by"];
+        let held = Table::new(&["joint"], &numbers, search.held.iter().map(held_row));
+        document.sections.push(Section::new(Id::OTHER, "The plan was held to", [held]));
     }
-    remark_parts(&replanned.remarks, &mut parts);
-    parts
+    document.remarked(&replanned.remarks)
+}
+
+fn command(replanned: &Replanned) -> Option<Section> {
+    let command = replanned.command.as_ref()?;
+    let numbers =
+        ["held-out R2", "gain", "off plan deg", "rms error deg", "then deg", "speed x", "acceleration x"];
+    let rows = command.joints.iter().map(|joint| command_row(replanned, joint));
+    let section = Section::new(Id::OTHER, "Command", [Table::new(&["joint"], &numbers, rows)])
+        .with(Sentence::note(
+            "Rms errors are predicted, of the plan sent as it is and then of the command; speed x and acceleration x are \
+             the command's peaks by those of the plan.",
+        ))
+        .with_all(cut_off(&command.joints).map(Sentence::Advice));
+    Some(section.with(Sentence::finding(nearest(replanned, &command.margins))))
 }
 
 fn percent(now: f64, then: f64) -> String {
     if now > 0.0 { format!("{:+.0} %", 100.0 * (then / now - 1.0)) } else { NONE.to_owned() }
 }
 
-fn expected(replanned: &Replanned) -> Part {
+fn expected(replanned: &Replanned) -> Table {
     let (before, after) = (&replanned.before, &replanned.after);
     let now = &before.predicted;
-    let optional = |value: Option<f64>| value.map_or(NONE.to_owned(), deg);
     let error = |name: &str, measured: Option<f64>, of: fn(&Predicted) -> f64| {
         let change = percent(of(now), of(after));
-        vec![name.to_owned(), optional(measured), deg(of(now)), deg(of(after)), change]
+        vec![name.to_owned(), optional(measured, deg), deg(of(now)), deg(of(after)), change]
     };
     let count = |p: &Predicted| p.transitions.len();
     let mut rows = vec![
@@ -97,29 +84,17 @@ fn expected(replanned: &Replanned) -> Part {
             percent(before.duration_s, replanned.duration_s),
         ],
     ];
-    let costs =
-        (&replanned.objectives_before, replanned.evaluation.as_ref().map(|evaluation| evaluation.objectives));
-    if let (Some(was), Some(is)) = costs {
-        let [jerk, then] = [was.rms_jerk_rad_s3, is.rms_jerk_rad_s3];
-        rows.push(vec![
-            "RMS jerk deg/s3".into(),
-            format!("{:.4}", degrees_from_radians(jerk)),
-            NONE.into(),
-            format!("{:.4}", degrees_from_radians(then)),
-            percent(jerk, then),
-        ]);
-        rows.push(vec![
-            "RMS power W".into(),
-            format!("{:.1}", was.rms_power_w),
-            NONE.into(),
-            format!("{:.1}", is.rms_power_w),
-            percent(was.rms_power_w, is.rms_power_w),
-        ]);
+    if let (Some(was), Some(evaluation)) = (&replanned.objectives_before, &replanned.evaluation) {
+        let is = evaluation.objectives;
+        rows.extend(Objective::OF_PLAN.iter().filter(|k| **k != Objective::Duration).map(|&k| {
+            let change = percent(was[k], is[k]);
+            vec![k.row().heading.to_owned(), k.number(was[k]), NONE.into(), k.number(is[k]), change]
+        }));
     }
-    Part::Sheet(Sheet { head: vec!["", "last run", "its model", "next run", "change"], left: 1, rows })
+    Table::new(&[""], &["last run", "its model", "next run", "change"], rows)
 }
 
-fn levers(replanned: &Replanned) -> Vec<(String, String)> {
+fn levers(replanned: &Replanned) -> Vec<Fact> {
     let plan = match (&replanned.search, replanned.retimed, &replanned.evaluation) {
         (None, ..) => "stays as it was".to_owned(),
         (Some(search), false, _) => format!(
@@ -153,20 +128,19 @@ fn levers(replanned: &Replanned) -> Vec<(String, String)> {
     let samples = if replanned.command.is_some() { &ours.command } else { &ours.planned };
     let send =
         format!("{samples}, or the same as a trajectory, {trajectory}; judge against {}", ours.planned);
-    vec![("plan".into(), plan), ("command".into(), command), ("send".into(), send)]
+    vec![fact("plan", plan), fact("command", command), fact("send", send)]
 }
 
 fn command_row(replanned: &Replanned, joint: &JointCommand) -> Vec<String> {
     let made = &joint.compensation;
     let skill = replanned.fit.joint(&made.name).map(|fit| format!("{:.2}", fit.held_out_r2));
-    let rms = |value: Option<f64>| value.map_or(NONE.to_owned(), deg);
     vec![
         made.name.clone(),
         skill.unwrap_or_else(|| NONE.to_owned()),
         format!("{:.2}", joint.gain),
         deg(made.peak_correction_rad),
-        rms(made.plain_rms_rad),
-        rms(made.compensated_rms_rad),
+        optional(made.plain_rms_rad, deg),
+        optional(made.compensated_rms_rad, deg),
         format!("{:.2}", made.speed_ratio),
         format!("{:.2}", made.acceleration_ratio),
     ]

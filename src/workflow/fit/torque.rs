@@ -7,8 +7,7 @@ use crate::{
     log::{Recording, SignalRole},
     math::{median, quantile},
     series::{Signal, Track},
-    task::Task,
-    workflow::{carried::plan_log::TASK, plan::arm_of},
+    workflow::carried::Carried,
 };
 
 /// What a joint's cylinders did and could do. Pairs are for growing and for shrinking angles, both
@@ -32,10 +31,8 @@ pub fn torques(path: &std::path::Path, recording: &Recording) -> Vec<JointTorque
     if !recording.has(SignalRole::CapPressure) || !recording.has(SignalRole::RodPressure) {
         return Vec::new();
     }
-    let arm = recording.attached(TASK).and_then(|file| {
-        let task = Task::parse(&String::from_utf8_lossy(&file.data)).ok()?;
-        arm_of(&task, path.parent().unwrap_or(std::path::Path::new(""))).ok()
-    });
+    let folder = path.parent().unwrap_or(std::path::Path::new(""));
+    let arm = Carried::of(recording).arm(folder).and_then(Result::ok);
     let Some(arm) = arm else { return Vec::new() };
     let one = |measured: &Track| {
         let name = measured.name();

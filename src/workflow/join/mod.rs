@@ -9,11 +9,10 @@ use thiserror::Error;
 
 pub use document::JoinDocument;
 
-use super::{
-    carried::plan_log::{PROVENANCE, STARTS},
-    carried::rest::{RUN_LEAD_S, RUN_TAIL_S},
-    carried::series_log::states,
-    carried::stamp::instants,
+use super::carried::{
+    plan_log::states,
+    rest::{RUN_LEAD_S, RUN_TAIL_S},
+    stamp::instants,
 };
 use crate::{
     log::{Addition, LogError, LogFiles, PlanSample, ReadOptions, Sides, TimeBase},
@@ -171,16 +170,15 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         })
         .collect();
     let received = (run.source.time_base == TimeBase::Header).then_some(run.source.recorder_delay_s);
-    let mut provenance = plan.provenance;
     // Later readers count from the first measurement: nothing else that they use is earlier.
-    let starts_s = zero_s + plan.starts_s - measured_s[0];
-    provenance.insert(STARTS.to_owned(), starts_s.to_string());
+    let starts_s = zero_s + plan.carried.starts_s().unwrap_or(0.0) - measured_s[0];
+    let carried = plan.carried.with_starts_s(starts_s);
     let addition = Addition {
         joints: names.clone(),
         samples,
         log_delay_ns: received.flatten().map_or(0, |[middle_s, _]| nanoseconds(middle_s)),
-        files: &plan.files,
-        metadata: (PROVENANCE, provenance),
+        files: carried.files(),
+        metadata: carried.metadata(),
     };
     let messages = log.join(&addition, &inputs.output)?;
     Ok(Joined {
@@ -192,7 +190,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         rest_s,
         joints: names.len(),
         messages,
-        files: plan.files.into_iter().map(|file| file.name).collect(),
+        files: carried.names(),
         remarks,
     })
 }

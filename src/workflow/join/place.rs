@@ -1,16 +1,13 @@
 //! The plan to join, and where in a run it was sent.
 
-use std::{collections::BTreeMap, path::Path};
+use std::path::Path;
 
 use super::JoinFailure;
 use crate::{
-    log::{Attachment, ReadOptions, SignalRole, WantedSignal, read_plan},
+    log::{ReadOptions, SignalRole, WantedSignal, read_plan},
     remark::{Code, Remarks},
     series::{Located, Series, locate},
-    workflow::{
-        carried::plan_log::{FRONT, PROVENANCE, TASK},
-        carried::schedule::starts_s,
-    },
+    workflow::carried::Carried,
 };
 
 /// Largest difference, as a share of the motion, at which a place is taken to be that of the plan.
@@ -23,25 +20,17 @@ pub(super) struct Plan {
     pub(super) planned: Series,
     /// Where it is not the plan.
     pub(super) command: Option<Series>,
-    /// Task and front.
-    pub(super) files: Vec<Attachment>,
-    pub(super) provenance: BTreeMap<String, String>,
-    /// When the times of the task's plan count from, s.
-    pub(super) starts_s: f64,
+    /// Task, plan and provenance.
+    pub(super) carried: Carried,
 }
 
 impl Plan {
     pub(super) fn read(path: &Path) -> Result<Self, JoinFailure> {
         let signals = vec![WantedSignal::usual(SignalRole::Command)];
         let plan = read_plan(&[path.to_owned()], &ReadOptions { signals, ..ReadOptions::default() })?;
-        let named = |file: &&Attachment| [TASK, FRONT].contains(&file.name.as_str());
-        Ok(Self {
-            files: plan.attachments.iter().filter(named).cloned().collect(),
-            provenance: plan.metadata.get(PROVENANCE).cloned().unwrap_or_default(),
-            starts_s: starts_s(&plan.metadata).unwrap_or(0.0),
-            command: plan.command.map(|command| command.series),
-            planned: plan.planned,
-        })
+        let carried = Carried::of(&plan).of_plan();
+        let command = plan.command.map(|command| command.series);
+        Ok(Self { command, carried, planned: plan.planned })
     }
 
     /// First and last sample, s.

@@ -16,7 +16,7 @@ pub struct Front {
     pub best: Option<[[f64; 3]; 3]>,
     /// Objectives of the plan to run.
     pub chosen: [f64; 3],
-    /// SampledMotion of the search; empty where it is not known.
+    /// Course of the search; empty where it is not known.
     pub convergence: Vec<Step>,
 }
 

@@ -4,14 +4,15 @@ use std::path::Path;
 
 use super::{Inputs, ReplanFailure, samples::cut};
 use crate::{
-    log::{Attachment, Recording},
+    log::Recording,
     series::{Series, Track},
     spline::Motion,
     units::DEGREE_RAD,
     workflow::{
-        carried::plan_log::{FRONT, TASK, chosen_times_s},
-        carried::rest::{PLAN_LEAD_S, PLAN_TAIL_S},
-        carried::schedule::starts_s,
+        carried::{
+            Carried,
+            rest::{PLAN_LEAD_S, PLAN_TAIL_S},
+        },
         plan::PlanRequest,
     },
 };
@@ -33,8 +34,8 @@ pub(super) struct Last {
     pub(super) times_s: Option<Vec<f64>>,
     /// Where the controller takes trajectories.
     pub(super) trajectory: Option<String>,
-    /// Files of the log that go with the plan.
-    pub(super) files: Vec<Attachment>,
+    /// What the log carries of the plan.
+    pub(super) carried: Carried,
 }
 
 impl Last {
@@ -43,29 +44,26 @@ impl Last {
         let [from_s, to_s] =
             moving_s(planned).ok_or_else(|| ReplanFailure::AtRest { path: path.to_owned() })?;
         let plan = cut(planned, from_s - PLAN_LEAD_S, to_s + PLAN_TAIL_S)?;
-        let request = match (&inputs.task, recording.attached(TASK)) {
+        let carried = Carried::of(recording).of_plan();
+        let request = match (&inputs.task, carried.task()) {
             (Some(task), _) => Some(PlanRequest::read(task)?),
-            (None, Some(file)) => {
-                Some(PlanRequest::parse(path, String::from_utf8_lossy(&file.data).into_owned())?)
-            }
+            (None, Some(text)) => Some(PlanRequest::parse(path, text)?),
             (None, None) => None,
         };
         if let Some(request) = &request {
             check_joints(path, request, planned)?;
         }
-        let times_s = recording.attached(FRONT).and_then(|file| chosen_times_s(&file.data));
-        let times_s = times_s
+        let times_s = carried
+            .times_s()
             .filter(|times_s| request.as_ref().is_some_and(|request| request.setup.motion(times_s).is_ok()));
-        let starts_s = starts_s(&recording.metadata);
-        let named = |file: &&Attachment| [TASK, FRONT].contains(&file.name.as_str());
         Ok(Self {
             plan,
-            starts_s: starts_s.map(|s| s - (from_s - PLAN_LEAD_S)),
+            starts_s: carried.starts_s().map(|s| s - (from_s - PLAN_LEAD_S)),
             duration_s: to_s - from_s,
             request,
             times_s,
             trajectory: trajectory_topic(&recording.source.planned_topic),
-            files: recording.attachments.iter().filter(named).cloned().collect(),
+            carried,
         })
     }
 

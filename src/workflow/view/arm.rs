@@ -10,8 +10,7 @@ use crate::{
     log::Recording,
     remark::Code,
     series::{Series, Track},
-    task::Task,
-    workflow::{carried::plan_log::TASK, plan::arm_of},
+    workflow::carried::Carried,
 };
 
 /// How often an arm is placed, a second; enough for the eye.
@@ -152,9 +151,7 @@ fn found(log: &Path, recording: &Recording) -> Option<FoundArm> {
         Some(FoundArm { origin: ArmOrigin::Log, chain, still })
     };
     let tasks = || {
-        let file = recording.attached(TASK)?;
-        let task = Task::parse(&String::from_utf8_lossy(&file.data)).ok()?;
-        let chain = arm_of(&task, folder_of(log)).ok()?.chain;
+        let chain = Carried::of(recording).arm(folder_of(log))?.ok()?.chain;
         whole(&chain).then_some(FoundArm { origin: ArmOrigin::Task, chain, still: Vec::new() })
     };
     let sample = || {

@@ -1,33 +1,21 @@
 //! CSV files into logs and logs into tables, at the built binary and in the library.
 
-use std::{
-    fmt::Write as _,
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+use std::{fmt::Write as _, fs, path::Path};
 
 use hydrotrace::log::{CsvOptions, read_csv_bytes};
 use proptest::prelude::*;
 use serde_json::Value;
 
+use crate::support::{run_args as hydrotrace, said};
+
 const SAMPLES: [&str; 5] = ["panel-install", "still-joint", "gaps", "power-loss", "trajectory-only"];
-
-fn hydrotrace(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hydrotrace")).current_dir(folder).args(args).output().unwrap()
-}
-
-fn sample(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name).to_str().unwrap().to_owned()
-}
-
-fn said(run: &Output) -> (i32, String, String) {
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (run.status.code().unwrap(), text(&run.stdout), text(&run.stderr))
-}
 
 fn report(folder: &Path, log: &str) -> Value {
     serde_json::from_slice(&hydrotrace(folder, &["report", log, "--json"]).stdout).unwrap()
+}
+
+fn sample(name: &str) -> String {
+    crate::support::sample(name).to_str().unwrap().to_owned()
 }
 
 /// Imports a text and gives exit code, standard output, standard error.

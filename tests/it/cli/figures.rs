@@ -1,26 +1,15 @@
 //! `--figures` of the built binary: which files it writes, what is in them, what is left where it fails.
 
-use std::{
-    collections::BTreeMap,
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+use std::{collections::BTreeMap, fs, path::Path};
 
 use hydrotrace::log::{LogWriter, Role, WriteOptions};
+
+use crate::support::run_at_root as hydrotrace;
 
 const RUN: &str = "sample-logs/task-1-run.mcap";
 const CHANGED: &str = "sample-logs/precompensated-run.mcap";
 const TASK: &str = "sample-logs/tasks/task-1.toml";
 const TIMES: &str = "0,5.5,10,15.2,23,27";
-
-fn hydrotrace(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(args)
-        .output()
-        .unwrap()
-}
 
 /// What a verb writes with `--figures` into a new folder, by name.
 fn figures(args: &[&str]) -> BTreeMap<String, Vec<u8>> {

@@ -4,7 +4,6 @@ use std::{
     fs::File,
     io::BufWriter,
     path::{Path, PathBuf},
-    process::{Command, Output},
     sync::LazyLock,
 };
 
@@ -17,23 +16,7 @@ use hydrotrace::{
 };
 use serde_json::Value;
 
-fn hydrotrace(folder: &Path, line: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
-        .current_dir(folder)
-        .args(line.split_whitespace())
-        .output()
-        .unwrap()
-}
-
-fn stderr(run: &Output) -> String {
-    String::from_utf8_lossy(&run.stderr).into_owned()
-}
-
-fn done(folder: &Path, line: &str) -> String {
-    let run = hydrotrace(folder, line);
-    assert_eq!(run.status.code(), Some(0), "{line}: {}", stderr(&run));
-    String::from_utf8(run.stdout).unwrap()
-}
+use crate::support::{clean as done, run_line as hydrotrace, sample, stderr};
 
 fn json(folder: &Path, line: &str) -> Value {
     serde_json::from_str(&done(folder, &format!("{line} --json"))).unwrap()
@@ -42,9 +25,8 @@ fn json(folder: &Path, line: &str) -> Value {
 /// The plan and command for a next run, `next.mcap`, and that run with everything in its log, `whole.mcap`.
 static RUNS: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
-    let task = concat!(env!("CARGO_MANIFEST_DIR"), "/sample-logs/tasks/task-1.toml");
     let at = folder.path();
-    std::fs::copy(task, at.join("task-1.toml")).unwrap();
+    std::fs::copy(sample("tasks/task-1.toml"), at.join("task-1.toml")).unwrap();
     done(at, "plan task-1.toml --times 0,4.49,8.09,12.39,18.79,21.85 -o plan.mcap");
     done(at, "simulate plan.mcap -o run.mcap");
     done(at, "replan run.mcap --evaluations 2000 -o next.mcap");

@@ -7,23 +7,17 @@ use std::{
     process::{Command, Output, Stdio},
 };
 
+use crate::support::{command, said, samples};
+
 fn start(folder: &Path, words: &str) -> Command {
-    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hydrotrace"));
-    let words: Vec<String> =
-        words.split_whitespace().map(|word| word.replace("SAMPLES", samples.to_str().unwrap())).collect();
-    command.current_dir(folder).args(words);
+    let mut command = command(folder);
+    let samples = samples().to_str().unwrap();
+    command.args(words.split_whitespace().map(|word| word.replace("SAMPLES", samples)));
     command
 }
 
 fn hydrotrace(folder: &Path, words: &str) -> Output {
     start(folder, words).output().unwrap()
-}
-
-/// Exit code, standard output and standard error.
-fn said(run: &Output) -> (i32, String, String) {
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (run.status.code().unwrap(), text(&run.stdout), text(&run.stderr))
 }
 
 fn contents(mut file: fs::File) -> Vec<u8> {

@@ -3,11 +3,13 @@
 use std::{
     fs,
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::Output,
 };
 
 use hydrotrace::log::{ReadOptions, survey};
 use serde_json::Value;
+
+use crate::support::{command, hold_to_schema, root, stderr, stdout};
 
 const SIMULATION: &str = "sample-logs/tasks/simulation.toml";
 const TASK_1: &str = "sample-logs/tasks/task-1.toml";
@@ -15,36 +17,17 @@ const A: &str = "0,2.01,3.77,5.79,6.53,8.85,10.48";
 const C: &str = "0,1.51,5.09,10.23,15.67,18.98,23.27";
 
 fn plan(args: &[&str], threads: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .env("RAYON_NUM_THREADS", threads)
-        .arg("plan")
-        .args(args)
-        .output()
-        .unwrap()
-}
-
-fn stdout(run: &Output) -> String {
-    String::from_utf8(run.stdout.clone()).unwrap()
-}
-
-fn stderr(run: &Output) -> String {
-    String::from_utf8(run.stderr.clone()).unwrap()
+    command(root()).env("RAYON_NUM_THREADS", threads).arg("plan").args(args).output().unwrap()
 }
 
 fn json(run: &Output) -> Value {
     let document: Value = serde_json::from_slice(&run.stdout).unwrap();
-    let schema =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("schemas/plan.v1.schema.json"));
-    let schema: Value = serde_json::from_str(&schema.unwrap()).unwrap();
-    let validator = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> = validator.iter_errors(&document).map(|fault| fault.to_string()).collect();
-    assert!(faults.is_empty(), "{faults:?}");
+    hold_to_schema(&document, "plan.v1");
     document
 }
 
 fn edited(folder: &Path, file: &str, from: &str, to: &str) -> PathBuf {
-    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).unwrap();
+    let text = fs::read_to_string(root().join(file)).unwrap();
     assert!(text.contains(from), "{from} is not in {file}");
     let path = folder.join("task.toml");
     fs::write(&path, text.replace(from, to)).unwrap();
@@ -207,8 +190,7 @@ fn the_front_grows_on_the_way_and_ends_with_the_hypervolume_told() {
 fn no_plan_that_is_offered_breaks_a_limit_between_the_instants_that_a_search_looks_at() {
     // A pump so small that its flow is what binds: it peaks, with kinks, between those instants.
     let folder = tempfile::tempdir().unwrap();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    fs::copy(root.join("sample-logs/arm/arm.urdf"), folder.path().join("arm.urdf")).unwrap();
+    fs::copy(root().join("sample-logs/arm/arm.urdf"), folder.path().join("arm.urdf")).unwrap();
     let pump = "pump_flow_m3_s = 1.2e-4";
     let small = edited(folder.path(), "sample-logs/arm/hydraulics.toml", "pump_flow_m3_s = 6.6667e-4", pump);
     fs::rename(small, folder.path().join("hydraulics.toml")).unwrap();

@@ -1,26 +1,8 @@
 //! The built binary as an operator meets it: exit codes, streams, files.
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output, Stdio},
-};
+use std::{fs, path::Path, process::Stdio};
 
-fn hydrotrace(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(args)
-        .output()
-        .unwrap()
-}
-
-fn stdout(run: &Output) -> String {
-    String::from_utf8(run.stdout.clone()).unwrap()
-}
-
-fn stderr(run: &Output) -> String {
-    String::from_utf8(run.stderr.clone()).unwrap()
-}
+use crate::support::{command, hold_to_schema, root, run_at_root as hydrotrace, stderr, stdout};
 
 const CLEAN: &str = "sample-logs/panel-install.mcap";
 const DOUBTFUL: &str = "sample-logs/gaps.mcap";
@@ -116,8 +98,7 @@ fn an_output_that_cannot_be_written_leaves_nothing_behind() {
 
 #[test]
 fn a_reader_that_goes_away_is_success() {
-    let mut run = Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
+    let mut run = command(root())
         .args(["report", CLEAN, "--json"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -175,18 +156,11 @@ fn write_measured_only(path: &Path) {
 
 #[test]
 fn reports_are_as_their_schema_says() {
-    let schema =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("schemas/report.v1.schema.json"))
-            .unwrap();
-    let schema: serde_json::Value = serde_json::from_str(&schema).unwrap();
-    let validator = jsonschema::validator_for(&schema).unwrap();
     for log in [CLEAN, DOUBTFUL, CUT] {
         let run =
             hydrotrace(&["report", log, "--json", "--max-rms-deg", "90", "--max-start-delay-ms", "900"]);
         let report: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
-        let faults: Vec<String> =
-            validator.iter_errors(&report).map(|e| format!("{}: {e}", e.instance_path())).collect();
-        assert!(faults.is_empty(), "{log}: {faults:?}");
+        hold_to_schema(&report, "report.v1");
         assert_eq!(report["format"], "hydrotrace.report.v1");
     }
 }
@@ -195,7 +169,7 @@ fn reports_are_as_their_schema_says() {
 fn a_report_never_replaces_the_log_it_reads() {
     let folder = tempfile::tempdir().unwrap();
     let log = folder.path().join("run.mcap");
-    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(CLEAN), &log).unwrap();
+    fs::copy(root().join(CLEAN), &log).unwrap();
     let before = fs::read(&log).unwrap();
     let name = log.to_str().unwrap();
     for args in [&["report", name, "-o", name][..], &["recover", name, "-o", name]] {

@@ -1,29 +1,15 @@
 //! `simulate` as an operator meets it: from a task to a run that `report` judges.
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+use std::fs;
 
 use hydrotrace::log::{ReadOptions, read_recording};
 
-fn hydrotrace(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hydrotrace")).current_dir(folder).args(args).output().unwrap()
-}
-
-fn stderr(run: &Output) -> String {
-    String::from_utf8(run.stderr.clone()).unwrap()
-}
+use crate::support::{clean, run_args as hydrotrace, scratch, stderr};
 
 /// A folder with the plan that the paper prints for task 1.
 fn planned() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let task = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs/tasks/task-1.toml");
-    let times = "0,7.744,15.307,22.863,30.976,38.72";
-    let run =
-        hydrotrace(folder.path(), &["plan", task.to_str().unwrap(), "--times", times, "-o", "plan.mcap"]);
-    assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
+    let folder = scratch();
+    clean(folder.path(), "plan task-1.toml --times 0,7.744,15.307,22.863,30.976,38.72 -o plan.mcap");
     folder
 }
 

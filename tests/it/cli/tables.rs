@@ -1,25 +1,8 @@
 //! CSV files in and out as a field engineer meets them: what was sent is no plan.
 
-use std::{
-    fmt::Write as _,
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+use std::{fmt::Write as _, fs, path::Path};
 
-fn hydrotrace(folder: &Path, words: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
-        .current_dir(folder)
-        .args(words.split_whitespace())
-        .output()
-        .unwrap()
-}
-
-/// Exit code, standard output and standard error.
-fn said(run: &Output) -> (i32, String, String) {
-    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-    (run.status.code().unwrap(), text(&run.stdout), text(&run.stderr))
-}
+use crate::support::{run_line as hydrotrace, said};
 
 /// Angles, deg, of a joint that is asked to move at 2 s and follows 0.1 s later.
 fn moves(t_s: f64) -> [f64; 2] {

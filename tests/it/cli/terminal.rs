@@ -1,31 +1,12 @@
 //! The built binary at a prompt: colours, what is said besides results, completions, manual pages.
 
-use std::process::{Command, Output};
+use std::process::Command;
+
+use crate::support::{command, root, run_at_root as hydrotrace, stderr, stdout};
 
 const CLEAN: &str = "sample-logs/panel-install.mcap";
 const DOUBTFUL: &str = "sample-logs/gaps.mcap";
 const ESCAPE: char = '\u{1b}';
-
-fn command(args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hydrotrace"));
-    command.current_dir(env!("CARGO_MANIFEST_DIR")).args(args);
-    for name in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE"] {
-        command.env_remove(name);
-    }
-    command
-}
-
-fn hydrotrace(args: &[&str]) -> Output {
-    command(args).output().unwrap()
-}
-
-fn stdout(run: &Output) -> String {
-    String::from_utf8(run.stdout.clone()).unwrap()
-}
-
-fn stderr(run: &Output) -> String {
-    String::from_utf8(run.stderr.clone()).unwrap()
-}
 
 #[test]
 fn a_pipe_gets_no_colour_unless_it_is_asked_for() {
@@ -35,11 +16,12 @@ fn a_pipe_gets_no_colour_unless_it_is_asked_for() {
     let coloured = hydrotrace(&[&args[..], &["--color", "always"]].concat());
     assert!(stdout(&coloured).contains("\u{1b}[31mNOT KEPT\u{1b}[0m"), "{}", stdout(&coloured));
     assert!(stderr(&coloured).starts_with("\u{1b}[1m\u{1b}[31mgate:\u{1b}[0m "), "{}", stderr(&coloured));
-    let forced = command(&args).env("CLICOLOR_FORCE", "1").output().unwrap();
+    let forced = command(root()).args(args).env("CLICOLOR_FORCE", "1").output().unwrap();
     assert_eq!((forced.stdout, forced.stderr), (coloured.stdout.clone(), coloured.stderr));
-    let refused = command(&args).env("CLICOLOR_FORCE", "1").env("NO_COLOR", "1").output().unwrap();
+    let refused =
+        command(root()).args(args).env("CLICOLOR_FORCE", "1").env("NO_COLOR", "1").output().unwrap();
     assert_eq!(refused.stdout, plain.stdout);
-    let never = command(&[&args[..], &["--color=never"]].concat()).env("CLICOLOR_FORCE", "1").output();
+    let never = command(root()).args(args).arg("--color=never").env("CLICOLOR_FORCE", "1").output();
     assert_eq!(never.unwrap().stdout, plain.stdout);
 }
 
@@ -143,7 +125,7 @@ fn a_reader_that_stops_early_is_success() {
     ] {
         let script = format!("{{ \"$0\" {args}; echo $? >&2; }} | true");
         let run = Command::new("sh")
-            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .current_dir(root())
             .args(["-c", &script, env!("CARGO_BIN_EXE_hydrotrace")])
             .output()
             .unwrap();

@@ -1,9 +1,6 @@
 //! What `view` shows of a log, and what it says where it cannot.
 
-use std::{
-    path::{Path, PathBuf},
-    process::Command,
-};
+use std::path::{Path, PathBuf};
 
 use hydrotrace::{
     arm::Arm,
@@ -12,11 +9,9 @@ use hydrotrace::{
     workflow::view::{ArmOrigin, Inputs, Scene, ViewFailure, run},
 };
 
-const JOINTS: [&str; 6] = ["J1", "J2", "J3", "J4", "J5", "J6"];
+use crate::support::{command, root, sample};
 
-fn sample(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name)
-}
+const JOINTS: [&str; 6] = ["J1", "J2", "J3", "J4", "J5", "J6"];
 
 fn seen(logs: &[PathBuf]) -> Vec<Scene> {
     run(&Inputs { logs: logs.to_vec(), ..Inputs::default() }).unwrap()
@@ -162,10 +157,8 @@ fn the_same_logs_are_seen_the_same_way_twice() {
 #[cfg(not(feature = "viewer"))]
 #[test]
 fn a_build_without_the_viewer_names_the_command_that_adds_it_and_the_way_without() {
-    let run = Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
-        .args(["view".as_ref(), sample("panel-install.mcap").as_os_str()])
-        .output()
-        .unwrap();
+    let run =
+        command(root()).args(["view".as_ref(), sample("panel-install.mcap").as_os_str()]).output().unwrap();
     let said = String::from_utf8(run.stderr).unwrap();
     assert_eq!(run.status.code(), Some(1), "{said}");
     for expected in ["cargo install --path . --features viewer", "pip install rerun-sdk==", "rerun run.mcap"]
@@ -180,7 +173,7 @@ fn a_build_without_the_viewer_names_the_command_that_adds_it_and_the_way_without
 fn a_sample_log_is_saved_for_the_viewer() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.rrd");
-    let run = Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
+    let run = command(root())
         .args([
             "view".as_ref(),
             sample("panel-install.mcap").as_os_str(),
@@ -198,7 +191,7 @@ fn a_sample_log_is_saved_for_the_viewer() {
 #[cfg(feature = "viewer")]
 fn view(arguments: &[&str], path: &Path) -> (Option<i32>, String) {
     let log = sample("panel-install.mcap");
-    let run = Command::new(env!("CARGO_BIN_EXE_hydrotrace"))
+    let run = command(root())
         .args(["view".as_ref(), log.as_os_str()])
         .args(arguments)
         .env("PATH", path)

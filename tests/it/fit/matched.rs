@@ -8,7 +8,7 @@ use hydrotrace::{
 };
 use rand_distr::{Distribution, StandardNormal};
 
-use super::fitted;
+use crate::support::machine::fitted;
 
 const MODEL: Model = Model {
     dead_time_s: 0.22,

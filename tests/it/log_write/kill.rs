@@ -107,7 +107,7 @@ fn a_killed_process_loses_nothing_it_had_flushed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("live.mcap");
     let mut child = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "kill::a_killed_process_loses_nothing_it_had_flushed", "--nocapture"])
+        .args(["--exact", "log_write::kill::a_killed_process_loses_nothing_it_had_flushed", "--nocapture"])
         .env(VICTIM, &path)
         .stdout(Stdio::piped())
         .spawn()

@@ -1,10 +1,11 @@
 //! Other people's readers must open what we write; `peers/check_peers.py` asks them.
 
-use std::{path::Path, process::Command};
+use std::process::Command;
 
 use hydrotrace::log::{LogWriter, WriteOptions};
 
 use super::write_run;
+use crate::support::root;
 
 /// Runs on request, `cargo test --test it log_write -- --ignored`; `PYTHON` names the interpreter.
 #[test]
@@ -18,7 +19,7 @@ fn other_readers_agree_on_what_a_log_says() {
         write_run(&mut log, 500);
         log.finish().unwrap();
     }
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers/check_peers.py");
+    let script = root().join("tests/peers/check_peers.py");
     let python = std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
     let status = Command::new(python).arg(script).args([finished, live]).status().unwrap();
     assert!(status.success());

@@ -4,56 +4,13 @@ use hydrotrace::{
     plant::{PayloadChange, Plant, simulate},
     replay::{Rules, replay},
     series::Series,
-    spline::{Degree, Dwell, Ends, KeyPoints, Motion, Quantity, Samples},
-    task::{Place, Task},
     units::degrees_from_radians,
 };
 
-use super::{command, pairs};
-
-/// Rest before and after the motion, s.
-const REST_S: f64 = 2.0;
+use crate::support::machine::{REST_S, pairs, paper_plan as plan};
 
 /// Within so long after a planned start an error counts as one of the start, s.
 const INSIDE_S: f64 = 3.0;
-
-const TASKS: [(&str, &[f64]); 2] = [
-    (include_str!("../../../sample-logs/tasks/task-1.toml"), &[0.0, 7.744, 15.307, 22.863, 30.976, 38.72]),
-    (include_str!("../../../sample-logs/tasks/task-2.toml"), &[0.0, 9.431, 19.334, 34.66, 39.14, 49.043]),
-];
-
-/// The motion of a task at the paper's times, and what it carries when; `slower` stretches time.
-pub(super) fn plan(task: usize, slower: f64) -> (Series, Vec<PayloadChange>) {
-    let (text, t_s) = TASKS[task];
-    let task = Task::parse(text).unwrap();
-    let (mut angles, mut dwells, mut payload) = (Vec::new(), Vec::new(), Vec::new());
-    for (point, key_point) in task.points.iter().enumerate() {
-        let Place::Joints(position_rad) = &key_point.place else { panic!("no angles") };
-        angles.extend_from_slice(position_rad);
-        if let Some(length_s) = key_point.dwell_s {
-            dwells.push(Dwell { point, length_s: slower * length_s });
-        }
-        if let Some(mass_kg) = key_point.payload_kg {
-            payload.push(PayloadChange { at_s: REST_S + slower * t_s[point], mass_kg });
-        }
-    }
-    let t_s: Vec<f64> = t_s.iter().map(|t| slower * t).collect();
-    let points = KeyPoints::new(6, angles).unwrap();
-    let motion = Motion::new(Degree::Sextic, points, &Ends::at_rest(6), &dwells, &t_s).unwrap();
-    let duration_s = motion.duration_s();
-    let mut samples = Samples::default();
-    let whole_s = 2.0 * REST_S + duration_s;
-    let at_s: Vec<f64> =
-        (0..=(whole_s * 100.0).round() as u32).map(|k| f64::from(k) * 0.01 - REST_S).collect();
-    motion.sample(&at_s, Quantity::Velocity, &mut samples);
-    let plan = command(whole_s, |j, t| {
-        let k = (t * 100.0).round() as usize;
-        let moving = (0.0..=duration_s).contains(&at_s[k]);
-        let of = |quantity| degrees_from_radians(samples.of(quantity, j)[k]);
-        (of(Quantity::Position), if moving { of(Quantity::Velocity) } else { 0.0 })
-    });
-    (plan, payload)
-}
 
 /// Figures of a preset on a task, degrees.
 #[derive(Debug)]

@@ -7,7 +7,7 @@ use hydrotrace::{
     units::DEGREE_RAD,
 };
 
-use super::{POSE_DEG, command, plant};
+use crate::support::machine::{POSE_DEG, command, plant};
 
 fn pose_rad() -> Vec<f64> {
     POSE_DEG.iter().map(|q| q * DEGREE_RAD).collect()

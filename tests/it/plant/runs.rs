@@ -6,7 +6,7 @@ use hydrotrace::{
     units::DEGREE_RAD,
 };
 
-use super::{POSE_DEG, command, ideal, plant};
+use crate::support::machine::{POSE_DEG, command, ideal, plant};
 
 /// All joints rest for a second, then swing.
 fn swing() -> Series {

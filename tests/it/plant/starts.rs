@@ -6,7 +6,7 @@ use hydrotrace::{
     units::DEGREE_RAD,
 };
 
-use super::{POSE_DEG, command, ideal, plant};
+use crate::support::machine::{POSE_DEG, command, ideal, pairs, paper_plan, plant};
 
 /// Peak error, degrees, averaged over joints and both directions, of starts to 4 degrees a second.
 fn peak_deg(plant: &Plant, acceleration_deg_s2: f64) -> f64 {
@@ -71,10 +71,10 @@ fn without_overlap_and_friction_the_floor_is_gone() {
 
 #[test]
 fn a_lag_explains_more_of_the_error_the_less_a_plant_is_limited_by_its_dead_band() {
-    let (planned, payload) = super::paper::plan(0, 0.6);
+    let (planned, payload) = paper_plan(0, 0.6);
     let found = ["dead-band-limited", "default", "lag-limited"].map(|preset| {
         let record = simulate(&plant(preset, |_| {}), &planned, &payload, 1).unwrap();
-        replay(&super::pairs(&planned, &record), &Rules::default()).whole_run.lag_share.unwrap()
+        replay(&pairs(&planned, &record), &Rules::default()).whole_run.lag_share.unwrap()
     });
     let shares = found.map(|found| found.share);
     println!("{shares:.3?}");

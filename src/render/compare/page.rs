@@ -1,0 +1,239 @@
+//! The page of a comparison.
+
+use maud::{Markup, html};
+
+use super::{short::verdicts, tables::document};
+use crate::{
+    render::{
+        kit::{
+            self, Id, Sentence, clean, deg,
+            page::{
+                Chapter, Plots, card,
+                chart::{Chart, Panel, Role, Series, Size, at, rounded, span, times},
+                envelope::envelope,
+                headed,
+                strip::{Row, intervals},
+                verdict,
+            },
+            percent, probability, signed,
+        },
+        transition::{direction, kind},
+    },
+    series::Pair,
+    units::degrees_from_radians,
+    workflow::compare::{Comparison, Measure, Scope, TransitionPair, Verdict},
+};
+
+/// Places of a series at most, nearly.
+const MOST: usize = 4000;
+
+/// What a change did, as one page; `most` is how many pairs its table lists.
+pub fn page(comparison: &Comparison, most: usize) -> String {
+    let document = document(comparison, most);
+    let apart = [Id::REMARKS, Id::METHOD];
+    let numbers = document.sections.iter().filter(|section| !apart.contains(&section.id));
+    let mut plots = Plots::default();
+    let mut chapters = vec![
+        Chapter { id: "summary", heading: "In short", body: summary(comparison) },
+        Chapter { id: "pairs", heading: "Every transition", body: scatters(comparison, &mut plots) },
+        Chapter { id: "joints", heading: "Error over the run", body: runs(comparison, &mut plots) },
+        Chapter {
+            id: "numbers",
+            heading: "Numbers",
+            body: html! { @for section in numbers { (headed(section)) } },
+        },
+    ];
+    chapters.extend(Chapter::of(document.section(Id::REMARKS), "Remarks on the data"));
+    chapters.extend(Chapter::of(document.section(Id::METHOD), "Method"));
+    kit::page::page("comparison", &document, &chapters, &plots)
+}
+
+fn summary(comparison: &Comparison) -> Markup {
+    let kept: Vec<bool> = comparison.gates.iter().map(|gate| gate.kept).collect();
+    let lines: Vec<String> = verdicts(comparison).iter().map(Sentence::to_string).collect();
+    html! {
+        div class="cards" {
+            (change(comparison))
+            (verdict(&kept, &lines, "--min-peak-reduction-percent 20"))
+            (whole_run(comparison))
+        }
+        h3 { "Mean change of the peak error, with its 95 % interval" }
+        (intervals(&change_rows(comparison)))
+    }
+}
+
+fn change(comparison: &Comparison) -> Markup {
+    let (class, headline) = match comparison.verdict() {
+        Verdict::Smaller => ("good", "Peaks became smaller"),
+        Verdict::Larger => ("bad", "Peaks became larger"),
+        Verdict::NotShown => ("open", "No change shown"),
+        Verdict::Equal => ("open", "Nothing changed"),
+        Verdict::TooFew => ("open", "Too few to tell"),
+    };
+    let peak = comparison.overall(Measure::PeakError);
+    let body = html! {
+        @if let Some(peak) = peak {
+            @if let (Some(before), Some(after)) = (peak.mean_before, peak.mean_after) {
+                p {
+                    (format!("{}° -> {}° in the mean", deg(before), deg(after)))
+                    (peak.relative_change.map_or(String::new(), |share| format!(" ({} %)", percent(share))))
+                }
+            }
+            p { (format!("p = {}; {} smaller, {} larger of {} pairs", probability(peak.p_value), peak.smaller, peak.larger, peak.pairs)) }
+        }
+    };
+    card(class, "Peak error at transitions", headline, &body)
+}
+
+fn whole_run(comparison: &Comparison) -> Markup {
+    let Some(all) = comparison.whole_run.first() else { return html! {} };
+    let arrow = |before: Option<f64>, after: Option<f64>| match (before, after) {
+        (Some(before), Some(after)) => format!("{}° -> {}°", deg(before), deg(after)),
+        _ => "not known".to_owned(),
+    };
+    let body = html! {
+        p { "peak " (arrow(all.peak_rad.before, all.peak_rad.after)) }
+        p { "at rest " (arrow(all.standstill_rms_rad.before, all.standstill_rms_rad.after)) }
+    };
+    card("", "Rms error, whole run", &arrow(all.rms_rad.before, all.rms_rad.after), &body)
+}
+
+/// Mean changes of the peak error, degrees: of all pairs, of starts from rest, of each joint.
+pub(super) fn change_rows(comparison: &Comparison) -> Vec<Row> {
+    let of = comparison.summaries.iter().filter(|summary| summary.measure == Measure::PeakError);
+    let rows = of.filter_map(|summary| {
+        let mean = summary.mean_difference?;
+        let interval = summary.interval_95;
+        Some(Row {
+            name: match &summary.scope {
+                Scope::All => "all".to_owned(),
+                Scope::Starts => "from rest".to_owned(),
+                Scope::Joint(joint) => joint.clone(),
+            },
+            value: degrees_from_radians(mean),
+            interval: interval.map(|ends| ends.map(degrees_from_radians)),
+            text: format!(
+                "{}°{}",
+                signed(mean, deg),
+                interval.map_or(String::new(), |[a, b]| format!(" ({}..{})", signed(a, deg), signed(b, deg)))
+            ),
+            strong: summary.scope == Scope::All,
+        })
+    });
+    rows.collect()
+}
+
+fn scatters(comparison: &Comparison, plots: &mut Plots) -> Markup {
+    html! {
+        p class="hint" { "Each point is one transition; below the line it became smaller." }
+        div class="side" { @for chart in pair_charts(comparison) { (plots.place(chart)) } }
+    }
+}
+
+/// Every pair of transitions, after over before: peak errors, delays of starts.
+pub(super) fn pair_charts(comparison: &Comparison) -> [Chart; 2] {
+    let peak =
+        scatter(comparison, "Peak error", ["Peak error before (deg)", "Peak error after (deg)"], |pair| {
+            Some((pair.peak_error_rad.before?, pair.peak_error_rad.after?))
+                .map(|(a, b)| (rounded(degrees_from_radians(a)), rounded(degrees_from_radians(b))))
+        });
+    let late =
+        scatter(comparison, "Start delay", ["Start delay before (ms)", "Start delay after (ms)"], |pair| {
+            Some((rounded(1e3 * pair.onset_delay_s.before?), rounded(1e3 * pair.onset_delay_s.after?)))
+        });
+    [peak, late]
+}
+
+fn scatter(
+    comparison: &Comparison,
+    title: &str,
+    [x_label, y_label]: [&'static str; 2],
+    of: impl Fn(&TransitionPair) -> Option<(f64, f64)>,
+) -> Chart {
+    let named = |pair: &TransitionPair| {
+        let direction = direction(pair.direction);
+        format!("{} {} {direction} {:.2} s", pair.joint, kind(pair.kind), pair.planned_onset_before_s)
+    };
+    let pairs: Vec<(String, f64, f64)> = comparison
+        .pairs
+        .iter()
+        .filter_map(|pair| of(pair).map(|(before, after)| (named(pair), before, after)))
+        .collect();
+    let [low, high] = span(pairs.iter().flat_map(|(_, before, after)| [*before, *after]).chain([0.0]));
+    let ends =
+        [rounded(low - 0.05 * (high - low) * f64::from(low < 0.0)), rounded(high + 0.05 * (high - low))];
+    let series = |name: &str, role, x, y, names| Series { name: name.to_owned(), role, x, y, names };
+    Chart {
+        title: title.to_owned(),
+        x_label,
+        xs: vec![pairs.iter().map(|(_, before, _)| *before).collect(), ends.to_vec()],
+        x_range: Some(ends),
+        panels: vec![Panel {
+            label: y_label.to_owned(),
+            series: vec![
+                series("no change", Role::Guide, 1, ends.to_vec(), Vec::new()),
+                series(
+                    "transition",
+                    Role::Point,
+                    0,
+                    pairs.iter().map(|(_, _, after)| *after).collect(),
+                    pairs.iter().map(|(name, _, _)| name.clone()).collect(),
+                ),
+            ],
+            share: 1.0,
+            range: Some(ends),
+        }],
+        height: 360,
+        size: Size::Half,
+        ..Chart::default()
+    }
+}
+
+fn runs(comparison: &Comparison, plots: &mut Plots) -> Markup {
+    html! {
+        p class="hint" {
+            "Planned minus measured, of the first run of each side; the run after is shifted so that both plans start \
+             together. Drag to zoom, double-click for the whole run."
+        }
+        @for (joint, chart) in error_charts(comparison) {
+            div class="joint" data-name=(clean(&joint)) { (plots.place(chart)) }
+        }
+    }
+}
+
+/// Joints with their errors before and after, on the clock of the first run before.
+pub(super) fn error_charts(comparison: &Comparison) -> Vec<(String, Chart)> {
+    let offset_s = comparison.after.first().map_or(0.0, |run| run.offset_s);
+    let [before, after] = &comparison.samples;
+    let chart = |joint: &String| {
+        let (before, after) = (named(before, joint)?, named(after, joint)?);
+        Some((joint.clone(), over_time(joint, before, after, offset_s)))
+    };
+    comparison.joints.iter().filter_map(chart).collect()
+}
+
+fn named<'a>(pairs: &'a [Pair], joint: &str) -> Option<&'a Pair> {
+    pairs.iter().find(|pair| pair.name == joint)
+}
+
+fn over_time(joint: &str, before: &Pair, after: &Pair, offset_s: f64) -> Chart {
+    let mut xs = Vec::new();
+    let mut series = |name: &str, role, pair: &Pair, shift_s: f64| {
+        let error_rad: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| p - m).collect();
+        let places = envelope(&pair.segments, &[&error_rad], MOST);
+        xs.push(times(&pair.t_s, &places).into_iter().map(|t_s| rounded(t_s - shift_s)).collect());
+        let y = at(&error_rad, &places).map(|rad| rounded(degrees_from_radians(rad))).collect();
+        Series { name: name.to_owned(), role, x: xs.len() - 1, y, names: Vec::new() }
+    };
+    let series =
+        vec![series("before", Role::Before, before, 0.0), series("after", Role::Measured, after, offset_s)];
+    Chart {
+        title: joint.to_owned(),
+        x_label: "Time (s)",
+        xs,
+        panels: vec![Panel { label: "Error (deg)".to_owned(), series, share: 1.0, range: None }],
+        group: Some("run"),
+        height: 190,
+        ..Chart::default()
+    }
+}

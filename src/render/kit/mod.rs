@@ -1,0 +1,34 @@
+//! The rendering kit: a document of sections and sentences, and its forms: terminal, text, Markdown, CSV, page, figure.
+//!
+//! It knows nothing of any verb; the words of a verb lie beside it, in a file or folder of its own.
+
+mod axis;
+mod clean;
+mod csv;
+mod document;
+pub(in crate::render) mod figure;
+mod layout;
+mod markdown;
+mod number;
+pub(in crate::render) mod page;
+pub mod picture;
+#[cfg(feature = "png")]
+mod raster;
+mod spark;
+mod table;
+mod terminal;
+mod terminal_style;
+
+pub use csv::csv;
+pub use document::{Block, Document, Fact, Id, Section, Sentence, fact};
+pub use figure::{Failure, Figure};
+pub use markdown::markdown;
+pub use number::{NONE, counted, deg, ms, optional, percent, probability, share, short, signed, significant};
+#[cfg(feature = "png")]
+pub use raster::{Raster, raster};
+pub use table::{Align, Column, Table};
+pub use terminal::{shown, text};
+pub use terminal_style::TerminalStyle;
+
+pub(in crate::render) use clean::clean;
+pub(in crate::render) use spark::spark;

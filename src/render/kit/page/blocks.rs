@@ -1,0 +1,61 @@
+//! Blocks of a document as HTML.
+
+use maud::{Markup, html};
+
+use crate::render::kit::{Align, Block, Fact, Section, Table, clean};
+
+/// A section within a chapter.
+pub(in crate::render) fn headed(section: &Section) -> Markup {
+    html! {
+        @if let Some(heading) = &section.heading { h3 { (clean(heading)) } }
+        (blocks(&section.blocks))
+    }
+}
+
+/// Sentences, facts and tables.
+pub(in crate::render) fn blocks(blocks: &[Block]) -> Markup {
+    html! {
+        @for block in blocks {
+            @match block {
+                Block::Sentence(sentence) => { p { (clean(&sentence.to_string())) } }
+                Block::Facts(facts) => { (list(facts)) }
+                Block::Remarks(facts) => { div class="remarks" { (list(facts)) } }
+                Block::Table(whole) => { (table(whole)) }
+            }
+        }
+    }
+}
+
+fn list(facts: &[Fact]) -> Markup {
+    html! {
+        dl class="list" {
+            @for Fact { name, value } in facts { dt { (clean(name)) } dd { (clean(value)) } }
+        }
+    }
+}
+
+/// A table that scrolls by itself where the screen is narrow.
+fn table(table: &Table) -> Markup {
+    let class = |k: usize| match table.columns.get(k).map(|column| column.align) {
+        Some(Align::Left) => "word",
+        _ => "number",
+    };
+    html! {
+        div class="scroll" tabindex="0" {
+            table {
+                thead { tr {
+                    @for (k, column) in table.columns.iter().enumerate() {
+                        th class=(class(k)) title=[(!column.meaning.is_empty()).then_some(column.meaning)] {
+                            (clean(&column.heading))
+                        }
+                    }
+                } }
+                tbody {
+                    @for row in &table.rows {
+                        tr { @for (k, cell) in row.iter().enumerate() { td class=(class(k)) { (clean(cell)) } } }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! The panels of a chart above one another, with their axes.
+
+use plotters::{
+    prelude::{
+        ChartBuilder, Circle, Color, EmptyElement, LineSeries, PathElement, Rectangle, ShapeStyle, Text,
+        WHITE,
+    },
+    style::text_anchor::{HPos, Pos, VPos},
+};
+
+use super::{
+    Area, Chart, Drawn, Paper,
+    legend::{BAND, strength},
+};
+use crate::render::kit::{
+    axis::{Axis, GRID, INK, steps},
+    page::chart::{Panel, Role, Series},
+    short,
+};
+
+/// Numbers and name of the horizontal axis.
+pub(super) const BELOW_MM: f64 = 8.6;
+/// Room where there is no such axis, so that numbers of two panels do not touch.
+const APART_MM: f64 = 2.4;
+/// For half of the last number.
+pub(super) const RIGHT_MM: f64 = 3.0;
+/// Letters must not touch the edge.
+pub(super) const LEFT_MM: f64 = 0.6;
+pub(super) const TICK_MM: f64 = 0.6;
+/// For half of the topmost number.
+pub(super) const ABOVE_MM: f64 = 1.2;
+/// One number on the vertical axis takes so much at least.
+const UP_MM: f64 = 4.5;
+/// The same for the horizontal one.
+pub(super) const ACROSS_MM: f64 = 9.0;
+
+/// Numbers and name of the vertical axes.
+pub(super) fn left_mm(chart: &Chart) -> f64 {
+    let numbers = chart.panels.iter().flat_map(|panel| {
+        let [low, high] = panel.span();
+        steps(low, high, 7)
+    });
+    let longest = numbers.map(|y| Paper::taken_mm(&number(y), Paper::NUMBERS)).fold(0.0, f64::max);
+    longest + 2.0 * TICK_MM + 4.8
+}
+
+/// With a typographer's minus.
+pub(super) fn number(value: f64) -> String {
+    short(value).replace('-', "\u{2212}")
+}
+
+/// `outer`: whether the horizontal and the vertical axes are named.
+pub(super) fn draw(area: &Area, chart: &Chart, left_mm: f64, outer: [bool; 2], paper: Paper) -> Drawn {
+    let own_mm = Paper::body_mm(chart) - BELOW_MM + APART_MM;
+    let all: f64 = chart.panels.iter().map(|panel| panel.share).sum();
+    let mut below = area.clone();
+    for (place, panel) in chart.panels.iter().enumerate() {
+        let last = place + 1 == chart.panels.len();
+        let high_mm = own_mm * panel.share / all;
+        let (above, rest) =
+            if last { (below.clone(), below) } else { below.split_vertically(paper.px(high_mm)) };
+        let frame = Frame { chart, panel, left_mm, high_mm: high_mm - APART_MM, last, outer, paper };
+        frame.draw(&above)?;
+        below = rest;
+    }
+    Ok(())
+}
+
+struct Frame<'a> {
+    chart: &'a Chart,
+    panel: &'a Panel,
+    left_mm: f64,
+    /// Between the axes' ends.
+    high_mm: f64,
+    /// The lowest panel has the horizontal axis.
+    last: bool,
+    outer: [bool; 2],
+    paper: Paper,
+}
+
+impl Frame<'_> {
+    fn draw(&self, area: &Area) -> Drawn {
+        let Self { chart, panel, paper, last, .. } = *self;
+        let ([from, to], [low, high]) = (chart.span(), panel.span());
+        let wide_mm = paper.width_mm(chart.size) - self.left_mm - RIGHT_MM;
+        let mut frame = ChartBuilder::on(area)
+            .margin_top(paper.size(ABOVE_MM))
+            .margin_right(paper.size(RIGHT_MM))
+            .margin_left(paper.size(LEFT_MM))
+            .x_label_area_size(paper.size(if last { BELOW_MM - 0.4 } else { APART_MM - ABOVE_MM }))
+            .y_label_area_size(paper.size(self.left_mm - LEFT_MM))
+            .build_cartesian_2d(
+                Axis::new(from..to, steps(from, to, most(wide_mm, ACROSS_MM))),
+                Axis::new(low..high, steps(low, high, most(self.high_mm, UP_MM).min(7))),
+            )?;
+        let bands = chart.bands.iter().filter(|band| band.to > from && band.from < to).map(|band| {
+            let fill = BAND.mix(strength(band.late)).filled();
+            Rectangle::new([(band.from.max(from), low), (band.to.min(to), high)], fill)
+        });
+        frame.draw_series(bands)?;
+        let points = if chart.is_tile() { Paper::SMALL } else { Paper::NAMES };
+        let x_label = |x: &f64| if last { number(*x) } else { String::new() };
+        let y_label = |y: &f64| number(*y);
+        let mut mesh = frame.configure_mesh();
+        mesh.max_light_lines(0)
+            .bold_line_style(GRID.stroke_width(paper.size(0.1)))
+            .axis_style(INK.stroke_width(paper.size(0.15)))
+            .y_label_offset(paper.px(Paper::LOWER_MM))
+            .set_all_tick_mark_size(paper.size(TICK_MM))
+            .label_style(paper.text(Paper::NUMBERS))
+            .axis_desc_style(paper.text(points))
+            .x_label_formatter(&x_label)
+            .y_label_formatter(&y_label);
+        if self.outer[1] {
+            mesh.y_desc(panel.label.clone());
+        }
+        if last && self.outer[0] {
+            mesh.x_desc(chart.x_label);
+        }
+        mesh.draw()?;
+        if low < 0.0 && high > 0.0 {
+            let zero = INK.mix(0.5).stroke_width(paper.size(0.1));
+            frame.draw_series([PathElement::new([(from, 0.0), (to, 0.0)], zero)])?;
+        }
+        for series in &panel.series {
+            let (colour, size) = (series.role.colour(), paper.size(series.role.width_mm()));
+            if series.role.dots() {
+                for (size, fill) in dot(series.role, paper) {
+                    frame.draw_series(drawn(chart, series).map(|at| Circle::new(at, size, fill)))?;
+                }
+            } else {
+                for stroke in strokes(chart, series) {
+                    frame.draw_series(LineSeries::new(stroke, colour.stroke_width(size)))?;
+                }
+            }
+            if series.role == Role::Named {
+                for (at, name) in named(chart, series) {
+                    let [right, up] = self.free(at);
+                    let side = if right { HPos::Left } else { HPos::Right };
+                    let words = paper.text(Paper::NUMBERS);
+                    let words = words.pos(Pos::new(side, if up { VPos::Bottom } else { VPos::Top }));
+                    let toward = |way: bool, mm: f64| paper.px(if way { mm } else { -mm });
+                    let beside = (toward(right, 1.3), toward(!up, 0.5));
+                    frame.draw_series([EmptyElement::at(at) + Text::new(name, beside, words)])?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a point's name finds most room to the right, and above.
+    fn free(&self, (x, y): (f64, f64)) -> [bool; 2] {
+        let ([from, to], [low, high]) = (self.chart.span(), self.panel.span());
+        let right = x - from <= 0.75 * (to - from);
+        let taken = |up: f64| {
+            let within = |(dx, dy): (f64, f64)| (0.0..0.2).contains(&dx) && (0.0..0.1).contains(&dy);
+            let place = |at: (f64, f64)| {
+                let side = if right { 1.0 } else { -1.0 };
+                (side * (at.0 - x) / (to - from), up * (at.1 - y) / (high - low))
+            };
+            let points = self.panel.series.iter().flat_map(|series| drawn(self.chart, series));
+            points.filter(|at| within(place(*at))).count()
+        };
+        // Below the lowest are the numbers of the axis.
+        [right, taken(1.0) <= taken(-1.0) || y - low < 0.1 * (high - low)]
+    }
+}
+
+/// Circles, radii and fills, that make a point; those that are named are rings, told apart without colours.
+pub(super) fn dot(role: Role, paper: Paper) -> Vec<(u32, ShapeStyle)> {
+    let full = (paper.size(role.width_mm()), role.colour().mix(0.8).filled());
+    if role == Role::Named {
+        vec![(full.0, role.colour().filled()), (paper.size(0.5 * role.width_mm()), WHITE.filled())]
+    } else {
+        vec![full]
+    }
+}
+
+/// Steps that a length has room for.
+pub(super) fn most(length_mm: f64, each_mm: f64) -> u32 {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few")]
+    let most = (length_mm / each_mm) as u32;
+    most.clamp(2, 10)
+}
+
+fn drawn(chart: &Chart, series: &Series) -> impl Iterator<Item = (f64, f64)> {
+    let x = chart.xs.get(series.x).map_or(&[][..], Vec::as_slice);
+    x.iter().copied().zip(series.y.iter().copied()).filter(|(x, y)| x.is_finite() && y.is_finite())
+}
+
+/// Points with their names; one that has several has them all.
+fn named(chart: &Chart, series: &Series) -> Vec<((f64, f64), String)> {
+    let mut named: Vec<((f64, f64), String)> = Vec::new();
+    for (at, name) in drawn(chart, series).zip(&series.names) {
+        match named.iter_mut().find(|(other, _)| *other == at) {
+            Some((_, names)) => *names = format!("{names}, {name}"),
+            None => named.push((at, name.clone())),
+        }
+    }
+    named
+}
+
+/// Continuous stretches of a line.
+fn strokes(chart: &Chart, series: &Series) -> Vec<Vec<(f64, f64)>> {
+    let x = chart.xs.get(series.x).map_or(&[][..], Vec::as_slice);
+    let all: Vec<(f64, f64)> = x.iter().copied().zip(series.y.iter().copied()).collect();
+    let pieces = all.split(|(x, y)| !x.is_finite() || !y.is_finite());
+    pieces.filter(|piece| piece.len() > 1).map(<[_]>::to_vec).collect()
+}

@@ -1,0 +1,70 @@
+//! A document as text: for a terminal of some width, or for a plain file.
+
+use std::fmt::Write as _;
+
+use super::{Block, Document, Fact, Sentence, Table, TerminalStyle, clean, layout::filled};
+
+/// Between two columns of a table.
+pub(super) const GAP: &str = "  ";
+
+/// For a plain file.
+pub fn text(document: &Document) -> String {
+    shown(document, TerminalStyle::default())
+}
+
+/// For a terminal.
+pub fn shown(document: &Document, style: TerminalStyle) -> String {
+    let mut out = String::new();
+    if let Some(title) = &document.title {
+        let _ = writeln!(out, "{}", style.strong(&clean(title)));
+    }
+    facts(&mut out, &document.facts, style, false);
+    for section in &document.sections {
+        if let Some(heading) = &section.heading {
+            let gap = if out.is_empty() { "" } else { "\n" };
+            let _ = writeln!(out, "{gap}{}", style.strong(&clean(heading).to_uppercase()));
+        }
+        for block in &section.blocks {
+            match block {
+                Block::Sentence(text) => {
+                    let _ = writeln!(out, "{}", style.folded("", &sentence(text, style), 0));
+                }
+                Block::Facts(list) => facts(&mut out, list, style, false),
+                Block::Remarks(list) => facts(&mut out, list, style, true),
+                Block::Table(whole) => table(&mut out, whole, style),
+            }
+        }
+    }
+    out
+}
+
+fn sentence(sentence: &Sentence, style: TerminalStyle) -> String {
+    match sentence {
+        Sentence::Verdict { limit, kept, found } => {
+            format!("{} {}: {}", clean(limit), style.verdict(*kept), clean(found))
+        }
+        other => clean(&other.to_string()),
+    }
+}
+
+fn facts(out: &mut String, facts: &[Fact], style: TerminalStyle, doubtful: bool) {
+    let width = facts.iter().map(|fact| fact.name.chars().count()).max().unwrap_or(0);
+    for Fact { name, value } in facts {
+        let name = format!("{:width$}", clean(name));
+        let name = if doubtful { style.doubt(&name) } else { name };
+        let _ = writeln!(out, "{}", style.folded(&format!("{name}{GAP}"), &clean(value), width + GAP.len()));
+    }
+}
+
+fn table(out: &mut String, whole: &Table, style: TerminalStyle) {
+    let rows = whole.rows.iter().map(|row| row.iter().map(|cell| clean(cell)).collect());
+    for (block, part) in style.blocks(&Table { rows: rows.collect(), ..whole.clone() }).iter().enumerate() {
+        out.push_str(if block == 0 { "" } else { "\n" });
+        for (row, cells) in filled(part).iter().enumerate() {
+            let line = cells.join(GAP);
+            let line = line.trim_end();
+            let line = if row == 0 { style.strong(line) } else { line.to_owned() };
+            let _ = writeln!(out, "{line}");
+        }
+    }
+}

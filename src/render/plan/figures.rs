@@ -1,0 +1,36 @@
+//! The plots of a plan one by one.
+
+use super::{front::front_charts, page::motion_charts};
+use crate::{
+    plan::SampledMotion,
+    render::kit::{
+        Failure, Figure,
+        figure::{figure, numbered},
+    },
+    workflow::plan::PlanDocument,
+};
+
+/// The plots of a search and of the motion it chose.
+///
+/// # Errors
+///
+/// What the drawing library says.
+pub fn figures(plan: &PlanDocument, course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
+    let mut figures = front_figures(plan)?;
+    figures.extend(motion_figures(&plan.joints, course)?);
+    Ok(figures)
+}
+
+/// The plots of one motion.
+///
+/// # Errors
+///
+/// What the drawing library says.
+pub fn motion_figures(joints: &[String], course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
+    numbered("motion", &motion_charts(joints, course))
+}
+
+/// The plots of a front.
+pub(in crate::render) fn front_figures(front: &PlanDocument) -> Result<Vec<Figure>, Failure> {
+    front_charts(front).into_iter().map(|(name, chart)| figure(&name, &chart)).collect()
+}

@@ -1,0 +1,131 @@
+//! Joints over the whole run: planned, measured, error.
+
+use std::collections::BTreeMap;
+
+use maud::{Markup, html};
+
+use super::tables::lag;
+use crate::{
+    render::kit::{
+        clean, deg, ms,
+        page::{
+            Plots,
+            chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, times},
+            envelope::envelope,
+            strip::{Row, intervals},
+        },
+    },
+    replay::{JointReplay, Transition},
+    series::Pair,
+    units::degrees_from_radians,
+    workflow::report::Report,
+};
+
+/// Places of a series at most, nearly.
+const MOST: usize = 4000;
+
+/// A plot for each joint.
+pub(super) fn joints(report: &Report, plots: &mut Plots) -> Markup {
+    let charts = joint_charts(report);
+    html! {
+        p class="hint" {
+            "Drag to zoom, double-click for the whole run; all joints zoom together. Error is planned minus measured."
+        }
+        @for (joint, chart) in charts { div class="joint" data-name=(clean(&joint)) { (plots.place(chart)) } }
+    }
+}
+
+/// Joints with their plots, in the order of the report.
+pub(super) fn joint_charts(report: &Report) -> Vec<(String, Chart)> {
+    let mut of: BTreeMap<&str, Vec<&Transition>> = BTreeMap::new();
+    for transition in &report.replay.transitions {
+        of.entry(&transition.joint).or_default().push(transition);
+    }
+    let numbers: BTreeMap<&str, &JointReplay> =
+        report.replay.joints.iter().map(|joint| (joint.name.as_str(), joint)).collect();
+    let chart = |pair: &Pair| {
+        let transitions = of.get(pair.name.as_str()).map_or(&[][..], Vec::as_slice);
+        (pair.name.clone(), joint_chart(pair, numbers.get(pair.name.as_str()).copied(), transitions))
+    };
+    report.pairs.iter().map(chart).collect()
+}
+
+fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Transition]) -> Chart {
+    let error_rad: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| p - m).collect();
+    let places = envelope(&pair.segments, &[&pair.planned, &pair.measured, &error_rad], MOST);
+    let degrees =
+        |values: &[f64]| at(values, &places).map(|rad| rounded(degrees_from_radians(rad))).collect();
+    let series = |name: &str, role, y| Series { name: name.to_owned(), role, x: 0, y, names: Vec::new() };
+    let note = numbers.map_or(String::new(), |joint| {
+        let late = joint.lag_s.map_or(String::new(), |s| format!(", lag {} ms", ms(s)));
+        let error = &joint.tracking_error;
+        format!("rms {}°, peak {}°{late}", deg(error.rms_rad), deg(error.peak_rad))
+    });
+    Chart {
+        title: pair.name.clone(),
+        note,
+        x_label: "Time (s)",
+        xs: vec![times(&pair.t_s, &places)],
+        x_range: None,
+        panels: vec![
+            Panel {
+                label: "Angle (deg)".to_owned(),
+                series: vec![
+                    series("planned", Role::Planned, degrees(&pair.planned)),
+                    series("measured", Role::Measured, degrees(&pair.measured)),
+                ],
+                share: 0.6,
+                range: None,
+            },
+            Panel {
+                label: "Error (deg)".to_owned(),
+                series: vec![series("error", Role::Error, degrees(&error_rad))],
+                share: 0.4,
+                range: None,
+            },
+        ],
+        bands: transitions.iter().flat_map(|transition| bands(transition)).collect(),
+        group: Some("run"),
+        height: 270,
+        size: Size::Wide,
+    }
+}
+
+/// The window of a transition, and in it the time until the joint answers.
+fn bands(transition: &Transition) -> Vec<Band> {
+    let [from, to] = transition.window_s.map(rounded);
+    let late =
+        transition.measured_onset_s.filter(|s| *s > from).map(|s| Band { from, to: rounded(s), late: true });
+    std::iter::once(Band { from, to, late: false }).chain(late).collect()
+}
+
+/// Joints with their lags, s.
+pub(super) fn lag_rows(report: &Report) -> Vec<Row> {
+    report
+        .replay
+        .joints
+        .iter()
+        .filter_map(|joint| {
+            Some(Row {
+                name: joint.name.clone(),
+                value: joint.lag_s?,
+                interval: joint.lag_interval_s,
+                text: format!("{} ms", lag(joint)),
+                strong: false,
+            })
+        })
+        .collect()
+}
+
+/// The lag of each joint with its interval.
+pub(super) fn lags(report: &Report) -> Markup {
+    let rows = lag_rows(report);
+    html! {
+        @if rows.is_empty() {
+            p { "No joint moves enough to tell its lag." }
+        } @else {
+            p { "Time by which the measured speed follows the planned one, with its 95 % interval over single motions." }
+            (intervals(&rows))
+        }
+    }
+}

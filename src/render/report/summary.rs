@@ -1,0 +1,175 @@
+//! What a reader sees first: verdict, worst transition, where the error lives, what to do next.
+
+use maud::{Markup, html};
+
+use super::tables::{by_peak, lag_words, mostly_lag, verdicts, worst_sentence};
+use crate::{
+    render::{
+        kit::{
+            Sentence, clean, counted, deg, ms,
+            page::{
+                card, next_steps,
+                strip::{Row, bars},
+                verdict,
+            },
+            probability,
+        },
+        transition::kind,
+    },
+    replay::Verdict,
+    units::degrees_from_radians,
+    workflow::report::{
+        Report,
+        advice::{Advice, advice},
+    },
+};
+
+pub(super) fn summary(report: &Report) -> Markup {
+    let kept: Vec<bool> = report.gates.iter().map(|gate| gate.kept).collect();
+    let lines: Vec<String> = verdicts(report).iter().map(Sentence::to_string).collect();
+    let steps: Vec<Sentence> = advice(report).iter().map(words).map(Sentence::Advice).collect();
+    html! {
+        div class="cards" {
+            (verdict(&kept, &lines, "--max-transition-peak-deg 0.5"))
+            (worst(report))
+            (place_of_error(report))
+            (whole_run(report))
+        }
+        (next_steps(&steps))
+    }
+}
+
+fn worst(report: &Report) -> Markup {
+    let Some(worst) = by_peak(&report.replay).into_iter().next() else {
+        let body = html! { p { "No planned start from rest was found." } };
+        return card("", "Worst transition", "None", &body);
+    };
+    let [from, to] = [worst.planned_onset_s - 0.5, worst.window_s[1] + 0.5];
+    let body = html! {
+        p { (clean(&worst_sentence(worst))) }
+        button type="button" data-from=(format!("{from:.3}")) data-to=(format!("{to:.3}")) data-joint=(clean(&worst.joint)) {
+            "Show it"
+        }
+    };
+    let headline = format!("{}°: {} of {}", deg(worst.peak_error_rad), kind(worst.kind), worst.joint);
+    card("", "Worst transition", &headline, &body)
+}
+
+fn place_of_error(report: &Report) -> Markup {
+    let Some(c) = &report.replay.whole_run.concentration else {
+        let body = html! { p { "No plan moves." } };
+        return card("", "Where the error lives", "Open", &body);
+    };
+    let lag = lag_words(&report.replay);
+    let headline = match c.verdict {
+        _ if mostly_lag(&report.replay).is_some() => "Mostly lag",
+        Verdict::Transitions => "In the transitions",
+        Verdict::Elsewhere => "Outside the transitions",
+        Verdict::Undecided => "The run does not say",
+    };
+    let body = html! {
+        (concentration_bars(report))
+        @if let Some(lag) = lag { p { (lag) } }
+        p {
+            (format!(
+                "{:.0} % of the squared error in {:.0} % of the time{}",
+                100.0 * c.squared_error_share_inside,
+                100.0 * c.time_share_inside,
+                c.test.map_or(String::new(), |test| format!(" (p = {})", probability(test.p_value)))
+            ))
+        }
+    };
+    card("", "Where the error lives", headline, &body)
+}
+
+/// Root mean square errors inside and outside.
+pub(super) fn concentration_bars(report: &Report) -> Markup {
+    let Some(c) = &report.replay.whole_run.concentration else { return html! {} };
+    let row = |name: &str, rad: f64, strong| Row {
+        name: name.to_owned(),
+        value: degrees_from_radians(rad),
+        interval: None,
+        text: format!("{}°", deg(rad)),
+        strong,
+    };
+    let mut rows = vec![row("inside", c.rms_inside_rad, true), row("elsewhere", c.rms_outside_rad, false)];
+    rows.extend(c.rms_outside_moving_rad.map(|rad| row("elsewhere, moving", rad, false)));
+    bars(&rows)
+}
+
+fn whole_run(report: &Report) -> Markup {
+    let whole = &report.replay.whole_run;
+    let headline =
+        whole.tracking_error.map_or("-".to_owned(), |error| format!("{}° rms", deg(error.rms_rad)));
+    let body = html! {
+        @if let Some(error) = whole.tracking_error {
+            p { (format!("peak {}° at {:.2} s, 95 % of the time below {}°", deg(error.peak_rad), error.peak_time_s, deg(error.p95_rad))) }
+        }
+        @if let Some(path) = whole.path_error {
+            p { (format!("norm over joints off the planned path: {}° rms time ignored, {}° with time, {}° peak time ignored", deg(path.rms_rad), deg(path.timed_rms_rad), deg(path.peak_rad))) }
+        }
+        @if !report.remarks.is_empty() {
+            p { a href="#remarks" { (counted(report.remarks.as_slice().len(), "remark") + " on the data") } }
+        }
+    };
+    card("", "Whole run, all joints", &headline, &body)
+}
+
+/// A file's name as a shell takes it.
+fn argument(log: Option<&str>) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "._-/+:@%".contains(c);
+    match log {
+        Some(log) if !log.is_empty() && !log.starts_with('-') && log.chars().all(plain) => log.to_owned(),
+        Some(log) if !log.is_empty() => format!("'{}'", log.replace('\'', "'\\''")),
+        _ => "LOG".to_owned(),
+    }
+}
+
+fn words(step: &Advice) -> String {
+    match step {
+        Advice::ClearDoubts(kinds) => format!(
+            "Clear the doubts about the data first: {} below.",
+            counted(*kinds, "remark")
+        ),
+        Advice::FreeJoint { joint, unanswered, starts } => format!(
+            "Find out why {joint} leaves {unanswered} of {} unanswered: enable signals, brakes, a dead band wider than \
+             the command, a sensor that stands still.",
+            counted(*starts, "planned start")
+        ),
+        Advice::ShiftCommand { joint, lag_s, log } => format!(
+            "The error is mostly lag, {joint} first ({} ms): speed feed-forward, or sending the command that much earlier, does \
+             most, and work on starts little. hydrotrace replan {} --keep-plan -o NEXT makes such a command from this log.",
+            ms(*lag_s),
+            argument(log.as_deref()),
+        ),
+        Advice::EaseStarts { joint, delay_s, log, gentler } => format!(
+            "Work on starts from rest, {joint} first{}: hydrotrace replan {} --keep-plan -o NEXT makes a command from this log \
+             that compensates dead band and lag{}",
+            delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {} ms late)", ms(s))),
+            argument(log.as_deref()),
+            if *gentler {
+                "; without --keep-plan, a gentler plan too."
+            } else {
+                ". The log does not hold the task of its plan: a gentler plan needs that too (--task)."
+            },
+        ),
+        Advice::ShortenLag { joint, lag_s } => format!(
+            "Shorten the lag: {joint} follows {} ms behind throughout; speed feed-forward or a higher gain does most.",
+            ms(*lag_s)
+        ),
+        Advice::LookOutside { joint, time_s } => format!(
+            "Look at {joint} at {time_s:.2} s: the error is largest there, outside the transitions, and no lag explains it."
+        ),
+        Advice::RecordStarts => {
+            "Record a run in which joints leave rest by plan, with the plan in the log: there is no transition to judge."
+                .to_owned()
+        }
+        Advice::SetLimits => {
+            "Say what is good enough: limits (--max-transition-peak-deg and others) make the verdict and the exit code."
+                .to_owned()
+        }
+        Advice::Compare => {
+            "After any change, run the same task again: hydrotrace compare BEFORE AFTER tells whether it helped.".to_owned()
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! What holds of every page: nothing from a log is markup, nothing is fetched, peaks are kept.
+
+use std::path::{Path, PathBuf};
+
+use super::{figures, page as report_page};
+use crate::{
+    fit::{Estimated, Fit, JointFit, Model},
+    log::ReadOptions,
+    remark::Code,
+    render::kit::{Figure, page::chart},
+    workflow::{
+        compare,
+        report::{Inputs, Report, run},
+    },
+};
+
+const SPIKE_RAD: f64 = 7.123;
+const HOSTILE: &str = "</script><script>alert(1)</script><img onerror=x>&\"'";
+
+fn sample(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name)
+}
+
+fn report(name: &str) -> Report {
+    run(&Inputs { logs: vec![sample(name)], ..Inputs::default() }).unwrap()
+}
+
+/// The same with a joint, a topic and a remark that look like markup.
+fn hostile() -> Report {
+    let mut report = report("gaps.mcap");
+    let name = report.pairs[0].name.clone();
+    let renamed = |text: &mut String| {
+        if *text == name {
+            HOSTILE.clone_into(text);
+        }
+    };
+    report.pairs.iter_mut().for_each(|pair| renamed(&mut pair.name));
+    report.alignment.iter_mut().for_each(|a| renamed(&mut a.joint));
+    report.replay.joints.iter_mut().for_each(|joint| renamed(&mut joint.name));
+    report.replay.transitions.iter_mut().for_each(|t| renamed(&mut t.joint));
+    HOSTILE.clone_into(&mut report.source.planned_topic);
+    report.remarks.add(Code::Guessed, 1, HOSTILE);
+    report
+}
+
+/// Elements by name, as a parser that knows scripts would see them.
+fn tags(page: &str, name: &str) -> usize {
+    page.matches(&format!("<{name}")).count()
+}
+
+#[test]
+fn nothing_from_a_log_is_markup() {
+    let page = report_page(HOSTILE, &hostile(), None, 60);
+    assert_eq!((tags(&page, "script"), page.matches("</script").count()), (2, 2));
+    assert_eq!(tags(&page, "img"), 0);
+    assert!(page.contains("&lt;/script&gt;&lt;script&gt;alert(1)"), "the name is still shown");
+    let data = page.split("type=\"application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let charts: serde_json::Value = serde_json::from_str(data).unwrap();
+    let titles: Vec<&str> = charts.as_array().unwrap().iter().map(|c| c["title"].as_str().unwrap()).collect();
+    assert!(titles.contains(&HOSTILE), "{titles:?}");
+}
+
+#[test]
+fn a_page_fetches_nothing_and_the_policy_lets_only_its_own_script_run() {
+    let page = report_page("a", &report("gaps.mcap"), None, 60);
+    for word in ["http://", "https://", "src=", "@import", "url(", " style=\"", "javascript:"] {
+        assert!(!page.contains(word), "{word}");
+    }
+    assert!(page.contains("default-src 'none'; script-src 'sha256-"));
+    let before = page.find("Content-Security-Policy").unwrap();
+    assert!(before < page.find("<style").unwrap() && before < page.find("<script").unwrap());
+}
+
+#[test]
+fn equal_runs_give_equal_pages_of_a_modest_size() {
+    let report = report("panel-install.mcap");
+    let page = report_page("a", &report, None, 60);
+    assert_eq!(page, report_page("a", &report, None, 60));
+    assert!(page.len() < 4_000_000, "{} bytes for 40 s of six joints", page.len());
+}
+
+#[test]
+fn a_spike_of_one_sample_stays_in_the_plot_of_its_joint() {
+    let mut report = report("panel-install.mcap");
+    let pair = &mut report.pairs[1];
+    // As often as an hour would be.
+    let repeat = 60;
+    let n = pair.t_s.len();
+    let long = |values: &[f64]| values.iter().copied().cycle().take(repeat * n).collect::<Vec<f64>>();
+    pair.planned = long(&pair.planned);
+    pair.measured = long(&pair.measured);
+    pair.t_s = (0..repeat * n).map(|i| i as f64 * 1e-2).collect();
+    pair.segments = std::iter::once(0..repeat * n).collect();
+    pair.measured[100_003] = SPIKE_RAD;
+    let page = report_page("a", &report, None, 60);
+    let spike = chart::rounded(crate::units::degrees_from_radians(SPIKE_RAD));
+    assert!(page.contains(&format!("{spike}")), "{spike}");
+    assert!(page.len() < 6_000_000, "{}", page.len());
+}
+
+#[test]
+fn every_figure_is_xml_and_its_name_holds_nothing_but_letters() {
+    let drawn = figures(&hostile()).unwrap();
+    assert!(drawn.len() >= 2, "{}", drawn.len());
+    for Figure { name, svg } in drawn {
+        assert!(name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c)), "{name}");
+        svg.parse::<xml::Element>().unwrap();
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
+    }
+}
+
+#[test]
+fn a_comparison_draws_every_joint_before_and_after() {
+    let logs = |name: &str| vec![sample(name)];
+    let inputs = compare::Inputs {
+        before: logs("panel-install.mcap"),
+        after: logs("gaps.mcap"),
+        read: ReadOptions::default(),
+        ..compare::Inputs::default()
+    };
+    let comparison = compare::run(&inputs).unwrap();
+    let page = crate::render::compare::page(&comparison, 60);
+    for joint in &comparison.joints {
+        assert!(page.contains(&format!("data-name=\"{joint}\"")), "{joint}");
+    }
+    assert_eq!(tags(&page, "script"), 2);
+}
+
+#[test]
+fn a_fit_shows_its_numbers_intervals_and_what_was_never_reached() {
+    let known = |value: f64| Estimated {
+        value: Some(value),
+        interval: Some([0.9 * value, 1.1 * value]),
+        identified: true,
+        lower_bound: None,
+    };
+    let reached = Estimated { lower_bound: Some(0.25), ..Estimated::default() };
+    let model: Model = serde_json::from_value(serde_json::json!({
+        "dead_time_s": 0.1, "time_constant_s": 0.1, "position_gain_1_s": 2.0, "integral_gain_1_s2": 0.5,
+        "feed_forward": 1.0, "asymmetry": 0.0, "dead_band_rad_s": 0.01, "dead_band_centre_rad_s": 0.0,
+        "stiction_rad_s": 0.0, "offset_rad": 0.0, "pose_rad": [0.0, 1.0], "pose_slope_1_rad": 0.0,
+        "pose_asymmetry_1_rad": 0.0, "pose_curve_1_rad2": 0.0, "speed_limit_rad_s": [null, null],
+        "acceleration_limit_rad_s2": [null, null], "backlash_rad": 0.0,
+    }))
+    .unwrap();
+    let joint = JointFit {
+        name: "boom".to_owned(),
+        runs: 1,
+        samples: 10,
+        residual_rad: 0.0,
+        inefficiency: 1.0,
+        held_out_r2: 0.875,
+        unexplained_peak_rad: None,
+        lag_s: known(0.2),
+        dead_band_rad_s: known(0.01),
+        dead_band_error_rad: known(0.01),
+        position_gain_1_s: known(2.0),
+        integral_gain_1_s2: known(0.5),
+        feed_forward: known(1.0),
+        gain_ratio: known(1.0),
+        speed_limit_growing_rad_s: reached,
+        speed_limit_shrinking_rad_s: reached,
+        acceleration_limit_growing_rad_s2: reached,
+        acceleration_limit_shrinking_rad_s2: reached,
+        valve_dead_band: None,
+        model,
+    };
+    let fit = Fit { joints: vec![joint], left_out: vec![], peak_margin: 1.25, margin_starts: 12 };
+    let page = report_page("a", &report("gaps.mcap"), Some(&fit), 60);
+    for text in ["Fitted machine", "200 (180..220)", "&gt;= 14.3", "0.88"] {
+        assert!(page.contains(text), "{text}");
+    }
+}
+
+/// What a page says is to be done next, as text.
+fn next(report: &Report) -> String {
+    let page = report_page("a", report, None, 60);
+    page.split("class=\"next\">").nth(1).unwrap().split("</ol>").next().unwrap().to_owned()
+}
+
+#[test]
+fn advice_names_the_log_and_a_gentler_plan_only_where_the_log_holds_its_task() {
+    let without = next(&report("panel-install.mcap"));
+    assert!(without.contains("hydrotrace replan panel-install.mcap --keep-plan -o NEXT"), "{without}");
+    assert!(!without.contains("gentler plan too"), "{without}");
+    let with = next(&report("task-1-run.mcap"));
+    assert!(with.contains("task-1-run.mcap") && with.contains("gentler plan too"), "{with}");
+    let mut spaced = report("task-1-run.mcap");
+    spaced.logs = vec!["it's 1.mcap".to_owned()];
+    assert!(next(&spaced).contains("replan 'it'\\''s 1.mcap' --keep-plan"), "{}", next(&spaced));
+    spaced.logs.push("2.mcap".to_owned());
+    assert!(next(&spaced).contains("replan LOG --keep-plan"), "{}", next(&spaced));
+}
+
+#[test]
+fn where_a_lag_explains_most_of_the_error_that_is_said_and_advised() {
+    let mut report = report("panel-install.mcap");
+    let starts = next(&report);
+    assert!(starts.contains("Work on starts") && !starts.contains("feed-forward"), "{starts}");
+    let share = report.replay.whole_run.lag_share.as_mut().unwrap();
+    assert!(!share.mostly && share.share < 0.75, "{share:?}");
+    (share.share, share.mostly) = (0.9, true);
+    let page = report_page("a", &report, None, 60);
+    assert!(page.contains("Mostly lag") && page.contains("The error is mostly lag"));
+    let lag = next(&report);
+    assert!(lag.contains("feed-forward") && !lag.contains("Work on starts"), "{lag}");
+}

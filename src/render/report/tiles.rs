@@ -1,0 +1,144 @@
+//! Small multiples: every transition from its own planned start, worst first.
+
+use maud::{Markup, html};
+
+use super::tables::by_peak;
+use crate::{
+    render::{
+        kit::{
+            clean, counted, deg, ms,
+            page::{
+                Plots,
+                chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, span, times},
+                envelope::envelope,
+            },
+        },
+        transition::{answer_word, direction, kind},
+    },
+    replay::Transition,
+    series::Pair,
+    units::degrees_from_radians,
+    workflow::report::Report,
+};
+
+/// Transitions drawn at most.
+const MOST: usize = 48;
+/// Places of a series at most, nearly.
+const PLACES: usize = 300;
+/// Shown before the planned start, s.
+const BEFORE_S: f64 = 0.3;
+/// Shown after it at most, s.
+const AFTER_S: f64 = 3.0;
+
+pub(super) fn transitions(report: &Report, plots: &mut Plots) -> Markup {
+    let tiles = tiles(report);
+    let left = report.replay.transitions.len().saturating_sub(tiles.len());
+    if tiles.is_empty() {
+        return html! { p { "No planned start from rest was found." } };
+    }
+    html! {
+        p class="hint" {
+            "Every planned start, from the instant of the plan, worst first. Above: planned and measured angle from there, \
+             upwards in the direction of motion; below: how far the joint is behind, on one scale for all. Shaded until \
+             the joint leaves rest. A click shows it in the whole run."
+            @if left > 0 { " " (counted(left, "smaller one")) " not drawn." }
+        }
+        div class="tiles" {
+            @for (transition, chart) in tiles {
+                div class="goto" role="button" tabindex="0" data-from=(format!("{:.3}", transition.planned_onset_s - 0.5))
+                    data-to=(format!("{:.3}", transition.window_s[1] + 0.5)) data-joint=(clean(&transition.joint)) {
+                    (plots.place(chart))
+                }
+            }
+        }
+    }
+}
+
+/// Transitions with their plots, worst first.
+pub(super) fn tiles(report: &Report) -> Vec<(&Transition, Chart)> {
+    let worst = by_peak(&report.replay).into_iter().take(MOST);
+    let mut tiles: Vec<(&Transition, Chart)> = worst
+        .filter_map(|transition| {
+            let pair = report.pairs.iter().find(|pair| pair.name == transition.joint)?;
+            Some((transition, tile(transition, pair)))
+        })
+        .collect();
+    let errors = tiles.iter().filter_map(|(_, chart)| chart.panels.last());
+    let values = errors.flat_map(|panel| panel.series.iter().flat_map(|series| &series.y)).copied();
+    let [low, high] = span(values.chain([0.0]));
+    let room = 0.06 * (high - low);
+    let to_s = tiles.iter().map(|(_, chart)| chart.span()[1]).fold(0.0, f64::max);
+    for (_, chart) in &mut tiles {
+        chart.x_range = Some([-BEFORE_S, to_s.max(BEFORE_S)]);
+        if let Some(panel) = chart.panels.last_mut() {
+            panel.range = Some([rounded(low - room), rounded(high + room)]);
+        }
+    }
+    tiles
+}
+
+fn tile(transition: &Transition, pair: &Pair) -> Chart {
+    let onset_s = transition.planned_onset_s;
+    let sign = f64::from(transition.direction);
+    let from = pair.t_s.partition_point(|t_s| *t_s < onset_s - BEFORE_S);
+    let to = pair.t_s.partition_point(|t_s| *t_s <= transition.window_s[1].min(onset_s + AFTER_S));
+    let within = |values: &[f64]| values.get(from..to.max(from)).unwrap_or_default().to_vec();
+    let (planned, measured) = (within(&pair.planned), within(&pair.measured));
+    let t_s: Vec<f64> = within(&pair.t_s).iter().map(|t_s| t_s - onset_s).collect();
+    // Where the plan stands when it starts.
+    let base = t_s.iter().position(|t_s| *t_s >= 0.0).and_then(|i| planned.get(i)).copied().unwrap_or(0.0);
+    let behind: Vec<f64> = planned.iter().zip(&measured).map(|(p, m)| sign * (p - m)).collect();
+    let cut = |segment: &std::ops::Range<usize>| {
+        let clip = |i: usize| i.clamp(from, to.max(from)) - from;
+        let own = clip(segment.start)..clip(segment.end);
+        (!own.is_empty()).then_some(own)
+    };
+    let segments: Vec<_> = pair.segments.iter().filter_map(cut).collect();
+    let places = envelope(&segments, &[&planned, &measured, &behind], PLACES);
+    let degrees = |values: &[f64], base: f64, sign: f64| {
+        at(values, &places)
+            .map(|rad| rounded(degrees_from_radians(sign * (rad - base))))
+            .collect::<Vec<f64>>()
+    };
+    let series = |name: &str, role, y| Series { name: name.to_owned(), role, x: 0, y, names: Vec::new() };
+    let late = transition.measured_onset_s.map(|s| s - onset_s).filter(|late_s| *late_s > 0.0);
+    Chart {
+        title: format!(
+            "{} {} {} at {onset_s:.2} s",
+            transition.joint,
+            kind(transition.kind),
+            direction(transition.direction),
+        ),
+        note: format!(
+            "peak {}°, {}",
+            deg(transition.peak_error_rad),
+            transition
+                .onset_delay_s
+                .map_or_else(|| answer_word(transition.answer).to_owned(), |s| format!("{} ms late", ms(s))),
+        ),
+        x_label: "Time from the planned start (s)",
+        xs: vec![times(&t_s, &places)],
+        x_range: None,
+        panels: vec![
+            Panel {
+                label: "Angle (deg)".to_owned(),
+                series: vec![
+                    series("planned", Role::Planned, degrees(&planned, base, sign)),
+                    series("measured", Role::Measured, degrees(&measured, base, sign)),
+                ],
+                share: 0.5,
+                range: None,
+            },
+            Panel {
+                label: "Behind (deg)".to_owned(),
+                series: vec![series("behind", Role::Error, degrees(&behind, 0.0, 1.0))],
+                share: 0.5,
+                range: None,
+            },
+        ],
+        bands: late.map(|late_s| Band { from: 0.0, to: rounded(late_s), late: true }).into_iter().collect(),
+        group: None,
+        height: 150,
+        size: Size::Tile,
+    }
+}

@@ -1,0 +1,95 @@
+//! What many tests share: the built binary, the sample logs, schemas, simulated machines.
+
+pub(crate) mod compensation;
+pub(crate) mod detection;
+pub(crate) mod machine;
+pub(crate) mod recovery;
+
+use std::{
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+
+use serde_json::Value;
+
+/// The project's folder.
+pub(crate) fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+pub(crate) fn samples() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/sample-logs"))
+}
+
+/// A file of `sample-logs`.
+pub(crate) fn sample(name: &str) -> PathBuf {
+    samples().join(name)
+}
+
+/// The built binary in a folder; whatever colours the caller's terminal asks for.
+pub(crate) fn command(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hydrotrace"));
+    command.current_dir(folder);
+    for name in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE"] {
+        command.env_remove(name);
+    }
+    command
+}
+
+pub(crate) fn run_args(folder: &Path, args: &[&str]) -> Output {
+    command(folder).args(args).output().unwrap()
+}
+
+/// Arguments separated by spaces.
+pub(crate) fn run_line(folder: &Path, line: &str) -> Output {
+    command(folder).args(line.split_whitespace()).output().unwrap()
+}
+
+pub(crate) fn run_at_root(args: &[&str]) -> Output {
+    run_args(root(), args)
+}
+
+pub(crate) fn stdout(run: &Output) -> String {
+    String::from_utf8(run.stdout.clone()).unwrap()
+}
+
+pub(crate) fn stderr(run: &Output) -> String {
+    String::from_utf8(run.stderr.clone()).unwrap()
+}
+
+/// Exit code, standard output and standard error.
+pub(crate) fn said(run: &Output) -> (i32, String, String) {
+    (run.status.code().unwrap(), stdout(run), stderr(run))
+}
+
+/// The standard output of a command that must end without remarks.
+pub(crate) fn clean(folder: &Path, line: &str) -> String {
+    let run = run_line(folder, line);
+    assert_eq!(run.status.code(), Some(0), "{line}: {}", stderr(&run));
+    stdout(&run)
+}
+
+/// The document of a command that may end with remarks.
+pub(crate) fn json(folder: &Path, line: &str) -> Value {
+    let run = run_line(folder, &format!("{line} --json"));
+    assert!(matches!(run.status.code(), Some(0 | 3)), "{line}: {}", stderr(&run));
+    serde_json::from_slice(&run.stdout).unwrap()
+}
+
+/// A folder with the paper's tasks.
+pub(crate) fn scratch() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for task in ["task-1.toml", "task-2.toml"] {
+        std::fs::copy(samples().join("tasks").join(task), folder.path().join(task)).unwrap();
+    }
+    folder
+}
+
+/// Holds a document to a committed schema, say `report.v1`.
+pub(crate) fn hold_to_schema(document: &Value, name: &str) {
+    let schema = std::fs::read_to_string(root().join(format!("schemas/{name}.schema.json"))).unwrap();
+    let validator = jsonschema::validator_for(&serde_json::from_str(&schema).unwrap()).unwrap();
+    let faults: Vec<String> =
+        validator.iter_errors(document).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
+    assert!(faults.is_empty(), "{name}: {faults:?}");
+}
