@@ -18,7 +18,8 @@ pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) ->
     let rendered = match &args.output {
         _ if json => FitDocument::of(&fitted).json(),
         Some(path) => {
-            shown(&words::document(&fitted).with_above_remarks(next::limits_written(path, &args.logs)), None)
+            let log = fitted.with_task.map_or(args.logs.last(), |place| args.logs.get(place));
+            shown(&words::document(&fitted).with_above_remarks(next::limits_written(path, log)), None)
         }
         None => shown(&words::document(&fitted), None),
     };

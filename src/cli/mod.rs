@@ -1,7 +1,6 @@
 //! The command line: arguments in, an exit code out. No arithmetic lives here.
 
 pub mod args;
-mod bench;
 mod compare;
 mod completions;
 mod demo;
@@ -33,11 +32,9 @@ use output::{FAILED, harmless};
 use crate::{
     atomic_file::AtomicError,
     log::{CsvError, ExportError, LogError, WriteError},
-    moea::MoeaError,
     workflow::{
-        compare::CompareFailure, contest::ContestFailure, excite::ExciteFailure, fit::FitFailure,
-        import::ImportError, join::JoinFailure, plan::PlanFailure, replan::ReplanFailure,
-        simulate::log::SimulateFailure,
+        compare::CompareFailure, excite::ExciteFailure, fit::FitFailure, import::ImportError,
+        join::JoinFailure, plan::PlanFailure, replan::ReplanFailure, simulate::log::SimulateFailure,
     },
 };
 
@@ -66,17 +63,11 @@ enum CliError {
     #[error(transparent)]
     Atomic(#[from] AtomicError),
     #[error(transparent)]
-    Moea(#[from] MoeaError),
-    #[error("cannot draw the curves")]
-    Picture(#[source] Box<dyn std::error::Error + Send + Sync>),
-    #[error(transparent)]
     Plan(#[from] PlanFailure),
     #[error(transparent)]
     Simulate(#[from] SimulateFailure),
     #[error("{failure}; what comes nearest:\n  {}", lines.join("\n  "))]
     NoPlan { failure: String, lines: Vec<String> },
-    #[error(transparent)]
-    Contest(#[from] ContestFailure),
     #[error(transparent)]
     Compare(#[from] CompareFailure),
     #[error(transparent)]
@@ -161,7 +152,6 @@ fn command(command: &Command, out: &mut impl Write, err: &mut impl Write) -> Res
         Command::Import(import) => import::run(import, out, err),
         Command::Export(export) => export::run(export, out, err),
         Command::View(view) => view::run(view, out, err),
-        Command::Bench(bench) => bench::run(bench, out),
         Command::Completions(completions) => completions::run(completions, out),
         Command::Man(man) => man::run(man, out),
     }

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     atomic_file::write_atomically,
-    moea::{Budget, Contender},
+    moea::{Budget, NamedAlgorithm},
     plan::{PlanEvaluation, Progress, Reference, SampledMotion},
     render::{
         kit::Document,
@@ -108,7 +108,7 @@ pub(super) struct Found {
 /// Searches with a progress bar and writes the chosen plan.
 pub(super) fn found(args: &PlanArgs, request: &PlanRequest, out: &mut impl Write) -> Result<Found, CliError> {
     let (title, options) = (&request.task.title, args.options());
-    let algorithm = Contender::named(&args.search.algorithm).map_or("", |contender| contender.title);
+    let algorithm = NamedAlgorithm::find(&args.search.algorithm).map_or("", |named| named.title);
     let mut watch = Watch::new(args, &options);
     let planned = match search(request, &options, |progress| watch.see(progress)) {
         Ok(planned) => planned,

@@ -15,7 +15,7 @@ pub fn document(output: &str, imported: &Outputs) -> Document {
         time.rate_hz
     );
     let header = match (u.header_line, u.unit_row) {
-        (0, _) => "none; columns go by their number".to_owned(),
+        (0, _) => "none; columns are named by their number".to_owned(),
         (line, false) => format!("line {line}"),
         (line, true) => format!("line {line}, units below it"),
     };
@@ -27,7 +27,7 @@ pub fn document(output: &str, imported: &Outputs) -> Document {
         format!("{}: {}", time.columns.join(" and "), time.form)
     };
     let counts =
-        if time.absolute { "" } else { "; no date, second 0 is put at 2025-10-09 08:53:20 UTC in every log" };
+        if time.absolute { "" } else { "; no date in the file: second 0 becomes 2025-10-09 08:53:20 UTC" };
     let read_as = vec![
         fact("cells", format!("separated by {}, decimal {}", u.separator, u.decimal)),
         fact("header", format!("{header}{above}")),

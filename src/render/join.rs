@@ -1,15 +1,18 @@
-//! What was joined.
+//! The words of `join`.
 
 use std::path::Path;
 
-use super::kit::{Block, Document, Id, Section, Sentence, counted, deg, fact};
+use super::{
+    kit::{Block, Document, Id, Section, Sentence, counted, deg, fact},
+    next,
+};
 use crate::workflow::join::Joined;
 
 /// As sentences.
 pub fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {
     let Joined { sent, commanded, located, at_s, duration_s, rest_s, joints, messages, files, remarks } =
         joined;
-    let (plan, output) = (plan.display(), output.display());
+    let plan = plan.display();
     let what = if *commanded { "command" } else { "plan" };
     let sent = match (sent, located) {
         (Some(topic), Some(found)) => format!(
@@ -34,10 +37,8 @@ pub fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {
     if !files.is_empty() {
         facts.push(fact("files", files.join(", ")));
     }
-    let written = format!("{messages} messages of the run and the plan of {plan} written to {output}.");
-    let next = format!("hydrotrace report {output} says how the run followed its plan.");
-    let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)])
-        .with(Block::Facts(facts))
-        .with(Sentence::advice(next));
-    Document::default().with(section).remarked(remarks)
+    let written =
+        format!("{messages} messages of the run and the plan of {plan} written to {}.", output.display());
+    let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)]).with(Block::Facts(facts));
+    Document::default().with(next::report(section, output)).remarked(remarks)
 }

@@ -7,8 +7,8 @@ use crate::log::Recovered;
 pub fn document(output: &str, recovered: &Recovered) -> Document {
     let Recovered { messages, blocks, dropped_blocks, attachments, remarks } = recovered;
     let saved = format!(
-        "{messages} messages and {attachments} attachments saved to {output}, from {blocks} chunks of which \
-         {dropped_blocks} had to be dropped."
+        "{messages} messages and {attachments} attachments saved to {output}, from {blocks} chunks; {dropped_blocks} \
+         chunks were damaged and are lost."
     );
     let whole = remarks.is_empty().then(|| Sentence::finding("Nothing was lost: the log was whole."));
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(saved)]).with_all(whole);

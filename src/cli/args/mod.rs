@@ -1,8 +1,6 @@
 //! Clap definitions only. Degrees and milliseconds are accepted here and turned into SI here.
 
-mod bench;
 mod compare;
-mod contest;
 mod demo;
 mod excite;
 mod export;
@@ -11,7 +9,6 @@ mod fit;
 mod form;
 mod import;
 mod join;
-mod moea;
 mod plan;
 mod replan;
 mod simulate;
@@ -22,9 +19,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
-pub use bench::{Bench, BenchArgs, DetectorArgs};
 pub use compare::CompareArgs;
-pub use contest::ContestArgs;
 pub use demo::DemoArgs;
 pub use excite::ExciteArgs;
 pub use export::{ExportArgs, ExportFormat};
@@ -33,7 +28,6 @@ pub use fit::{FitArgs, SentArgs};
 pub use form::ReportFormat;
 pub use import::ImportArgs;
 pub use join::JoinArgs;
-pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
 pub use plan::{ChoiceArgs, PlanArgs, SearchArgs};
 pub use replan::{ChangeArgs, ReplanArgs};
 pub use simulate::SimulateArgs;
@@ -131,8 +125,6 @@ pub enum Command {
     /// Show runs and plans in 3-D: both arms, series, starts from rest
     #[command(after_help = view::EXAMPLES)]
     View(ViewArgs),
-    /// Measure hydrotrace itself
-    Bench(BenchArgs),
     /// Print the completions of a shell
     #[command(after_help = terminal::COMPLETIONS)]
     Completions(CompletionsArgs),

@@ -12,7 +12,7 @@ use clap::{
 
 use super::{FigureArgs, ends};
 use crate::{
-    moea::{Budget, CONTENDERS, Contender},
+    moea::{ALGORITHMS, Budget, NamedAlgorithm},
     plan::{Rule, Search},
     task::{Objective, Weights},
     workflow::plan::Options,
@@ -81,7 +81,7 @@ pub struct SearchArgs {
         value_name = "NAME",
         default_value = "nsga3-fo",
         ignore_case = true,
-        value_parser = PossibleValuesParser::new(CONTENDERS.map(|c| c.name))
+        value_parser = PossibleValuesParser::new(ALGORITHMS.map(|c| c.name))
     )]
     pub algorithm: String,
 
@@ -170,7 +170,7 @@ impl PlanArgs {
         let rule = self.choice.weights.map(|_| Rule::Weights).or(self.choice.choose);
         Options {
             search: Search {
-                algorithm: Contender::named(&self.search.algorithm)
+                algorithm: NamedAlgorithm::find(&self.search.algorithm)
                     .map_or(default.algorithm, |c| c.algorithm),
                 seeded: !self.search.no_seeded,
                 budget,

@@ -69,7 +69,6 @@ mod tests {
             "info",
             "recover",
             "view",
-            "bench",
             "completions",
             "man",
         ];

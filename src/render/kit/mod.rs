@@ -4,6 +4,7 @@
 
 mod axis;
 mod clean;
+mod command;
 mod csv;
 mod document;
 pub(in crate::render) mod figure;
@@ -11,7 +12,6 @@ mod layout;
 mod markdown;
 mod number;
 pub(in crate::render) mod page;
-pub mod picture;
 #[cfg(feature = "png")]
 mod raster;
 mod spark;
@@ -19,6 +19,7 @@ mod table;
 mod terminal;
 mod terminal_style;
 
+pub use command::{argument, command};
 pub use csv::csv;
 pub use document::{Block, Document, Fact, Id, Section, Sentence, fact};
 pub use figure::{Failure, Figure};

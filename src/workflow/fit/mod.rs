@@ -16,6 +16,7 @@ use crate::{
     log::{ReadOptions, Recording, SignalRole, SourceInfo},
     remark::{Code, Remarks},
     series::Track,
+    workflow::carried::Carried,
 };
 use {
     observe::{ObserveFailure, observation, observe},
@@ -54,6 +55,8 @@ pub struct Fitted {
     pub torques: Vec<JointTorque>,
     /// The runs.
     pub runs: Vec<FittedRun>,
+    /// Which run holds the task of its plan and so can be planned again: the last one that does.
+    pub with_task: Option<usize>,
     /// Doubts about the data.
     pub remarks: Remarks,
 }
@@ -125,7 +128,8 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
     }
     let torques = logs.iter().zip(observed).map(|(path, observed)| torques(path, observed));
     let torques = torques.into_iter().find(|torques| !torques.is_empty()).unwrap_or_default();
-    Ok(Fitted { fit, torques, runs, remarks })
+    let with_task = observed.iter().rposition(|observed| Carried::of(&observed.recording).task().is_some());
+    Ok(Fitted { fit, torques, runs, with_task, remarks })
 }
 
 /// Every log must share a joint with those before it: a machine is fitted, not several.
