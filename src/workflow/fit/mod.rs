@@ -128,7 +128,7 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
     }
     let torques = logs.iter().zip(observed).map(|(path, observed)| torques(path, observed));
     let torques = torques.into_iter().find(|torques| !torques.is_empty()).unwrap_or_default();
-    let with_task = observed.iter().rposition(|observed| Carried::of(&observed.recording).task().is_some());
+    let with_task = observed.iter().rposition(|observed| Carried::of(observed).task().is_some());
     Ok(Fitted { fit, torques, runs, with_task, remarks })
 }
 
