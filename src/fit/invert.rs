@@ -7,7 +7,7 @@ use super::{
     model::STEP_S,
     predict::grid,
     run::{MOVES_RAD_S, steps_in},
-    simulate::simulate,
+    simulate::{Start, simulate},
     smooth::smooth,
 };
 use crate::{
@@ -193,7 +193,7 @@ struct Workspace {
 impl Workspace {
     /// Root mean square distance of plan and predicted response, rad.
     fn rms_rad(&mut self, model: &Model, planned: &[(f64, f64)], sent: &[(f64, f64)]) -> f64 {
-        simulate(model, sent, model.at_rest(planned), &mut self.wanted, &mut self.angle_rad);
+        simulate(model, sent, Start::at_rest(model, planned), &mut self.wanted, &mut self.angle_rad);
         let squares = planned.iter().zip(&self.angle_rad).map(|(planned, angle)| (planned.0 - angle).powi(2));
         (squares.sum::<f64>() / planned.len().max(1) as f64).sqrt()
     }
