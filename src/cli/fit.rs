@@ -18,7 +18,8 @@ pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) ->
     let rendered = match &args.output {
         _ if json => FitDocument::of(&fitted).json(),
         Some(path) => {
-            shown(&words::document(&fitted).with_above_remarks(next::limits_written(path, &args.logs)), None)
+            let log = fitted.with_task.map_or(args.logs.last(), |place| args.logs.get(place));
+            shown(&words::document(&fitted).with_above_remarks(next::limits_written(path, log)), None)
         }
         None => shown(&words::document(&fitted), None),
     };
@@ -33,7 +34,7 @@ pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) ->
 pub(super) fn fitted(args: &FitArgs) -> Result<Fitted, CliError> {
     spare_inputs(args.output.as_deref(), &args.logs)?;
     spare_stdout(args.output.as_deref())?;
-    let fitted = fit(&Inputs { logs: args.logs.clone(), wanted: args.sent.wanted() })?;
+    let fitted = fit(&Inputs { logs: args.logs.clone(), read: args.sent.options() })?;
     if let Some(path) = args.output.as_deref().filter(|_| args.document().is_none()) {
         deliver(&LimitsFile::of(&fitted).toml()?, Some(path), &mut std::io::sink())?;
     }
