@@ -1,10 +1,8 @@
 //! `replan`: from the logs of runs to a plan and a command for the next one.
 
-mod candidate;
 mod command;
 mod document;
 mod failure;
-mod inputs;
 mod last;
 mod limits;
 mod outcome;
@@ -12,33 +10,83 @@ mod predicted;
 mod retime;
 mod samples;
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, path::PathBuf};
 
 use rayon::prelude::*;
 
 pub use command::{Commanded, JointCommand};
 pub use document::ReplanDocument;
 pub use failure::ReplanFailure;
-pub use inputs::Inputs;
 pub use limits::{HeldTo, Origin};
-pub use outcome::{Before, Replanned};
+pub use outcome::{Before, Replanned, Search};
 pub use predicted::{Predicted, PredictedTransition, predicted};
-pub use retime::Search;
-pub use samples::{LEAD_S, TAIL_S};
 
-use super::{
-    fit::observe::Observed,
-    fit::{self, LimitsFile},
-};
+use super::fit::{self, LimitsFile};
 use crate::{
-    fit::{Fit, JointFit},
+    fit::{Compensation, Fit, JointFit},
+    log::{ReadOptions, Recording},
     plan::{PlanEvaluation, Setup},
     remark::{Code, Remarks},
-    series::Track,
+    replay::Rules,
+    series::{Series, Track},
     task::{Ceilings, Objective, Objectives},
 };
-use candidate::{Candidate, candidates, choose};
 use last::Last;
+use samples::sampled;
+
+/// What to plan again, and what may be changed.
+#[derive(Debug, Clone)]
+pub struct Inputs {
+    /// Runs, each a file or a bag directory; the plan is that of the last.
+    pub logs: Vec<PathBuf>,
+    /// What to read of each.
+    pub read: ReadOptions,
+    /// A file with limits in place of a fit to the runs.
+    pub limits: Option<PathBuf>,
+    /// The task in place of that in the last log.
+    pub task: Option<PathBuf>,
+    /// Whether the plan stays as it is.
+    pub keep_plan: bool,
+    /// Whether a command is made.
+    pub precompensate: bool,
+    /// How far a command may leave its plan.
+    pub compensation: Compensation,
+    /// How much longer the plan may take, as a share.
+    pub time_growth: f64,
+    /// How much rougher it may be and how much more power it may take, as a share.
+    pub cost_growth: f64,
+    /// Evaluations of the search.
+    pub evaluations: u64,
+    /// Seed of the search.
+    pub seed: u64,
+    /// Thresholds of transitions.
+    pub rules: Rules,
+}
+
+impl Default for Inputs {
+    fn default() -> Self {
+        Self {
+            logs: Vec::new(),
+            read: ReadOptions::default(),
+            limits: None,
+            task: None,
+            keep_plan: false,
+            precompensate: true,
+            compensation: Compensation::default(),
+            time_growth: 0.0,
+            cost_growth: 0.1,
+            evaluations: 20_000,
+            seed: 1,
+            rules: Rules::default(),
+        }
+    }
+}
+
+/// Timings of the search that are looked at with their commands.
+const CANDIDATES: usize = 6;
+
+/// A new timing must be expected to lower the sum of all peaks by this share; otherwise the proven one stays.
+const WORTH: f64 = 0.02;
 
 /// Plans again.
 ///
@@ -53,7 +101,7 @@ pub fn run(
     if inputs.keep_plan && !inputs.precompensate {
         return Err(ReplanFailure::NothingToChange);
     }
-    let observed = fit::observed(&inputs.logs, &inputs.wanted).map_err(fit::FitFailure::from)?;
+    let observed = fit::observed(&inputs.logs, &inputs.read).map_err(fit::FitFailure::from)?;
     let (fit, fitted_to, mut remarks) = machine(inputs, &observed)?;
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
     let last = Last::of(path, newest, inputs)?;
@@ -95,10 +143,10 @@ pub fn run(
 }
 
 /// The machine: fitted, or from a file; with the names of the logs behind it.
-fn machine(inputs: &Inputs, observed: &[Observed]) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
+fn machine(inputs: &Inputs, observed: &[Recording]) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
     if let Some(path) = &inputs.limits {
         let file = LimitsFile::read(path)?;
-        let joints = observed.iter().flat_map(|run| &run.recording.measured.tracks).map(Track::name);
+        let joints = observed.iter().flat_map(|run| &run.measured.tracks).map(Track::name);
         file.check_joints(path, joints)?;
         return Ok((file.fit, file.logs, Remarks::default()));
     }
@@ -134,4 +182,62 @@ fn searched(
         &mut observer,
     )?;
     Ok(Search { front: found.front, evaluations: found.evaluations, ceilings, held, start, evaluation })
+}
+
+/// A plan: times of movement, s, where it is one of the task's, and its samples.
+type Sampled = (Option<Vec<f64>>, Series);
+
+/// Plans to look at with their commands: the last one first.
+fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, ReplanFailure> {
+    let (Some(search), Some(request)) = (search, &last.request) else {
+        return Ok(vec![(None, last.plan.clone())]);
+    };
+    let kept = search.start.iter().filter(|_| search.keeps());
+    let others = search.front.iter().map(|timing| &timing.interval_s);
+    let all: Vec<&Vec<f64>> = kept.chain(others).take(CANDIDATES + 1).collect();
+    if all.is_empty() {
+        return Ok(vec![(None, last.plan.clone())]);
+    }
+    let sample = |interval_s: &Vec<f64>| -> Result<Sampled, ReplanFailure> {
+        let motion = request.setup.motion(&request.setup.times_s(interval_s))?;
+        Ok((Some(interval_s.clone()), sampled(&request.setup, &motion)?))
+    };
+    all.into_iter().map(sample).collect()
+}
+
+/// A plan with its command and what is expected of it.
+pub(super) struct Candidate {
+    pub(super) interval_s: Option<Vec<f64>>,
+    pub(super) plan: Series,
+    pub(super) command: Option<Commanded>,
+    pub(super) predicted: Predicted,
+}
+
+impl Candidate {
+    fn of(
+        inputs: &Inputs,
+        fit: &Fit,
+        setup: Option<&Setup>,
+        interval_s: Option<Vec<f64>>,
+        plan: Series,
+    ) -> Result<Self, ReplanFailure> {
+        let command = if inputs.precompensate {
+            let made = command::commanded(fit, &plan, inputs.compensation, setup)?;
+            made.joints.iter().any(|joint| joint.compensation.applied).then_some(made)
+        } else {
+            None
+        };
+        let sent = command.as_ref().map_or(&plan, |command| &command.series);
+        let predicted = predicted(fit, &plan, sent, &inputs.rules)?;
+        Ok(Self { interval_s, plan, command, predicted })
+    }
+}
+
+/// The first unless another is expected to be better by enough.
+fn choose(made: Vec<Candidate>) -> Option<Candidate> {
+    let mut all = made.into_iter();
+    let first = all.next()?;
+    let most = (1.0 - WORTH) * first.predicted.sum_of_peaks_rad;
+    let better = all.min_by(|a, b| a.predicted.sum_of_peaks_rad.total_cmp(&b.predicted.sum_of_peaks_rad));
+    Some(better.filter(|better| better.predicted.sum_of_peaks_rad < most).unwrap_or(first))
 }

@@ -4,21 +4,21 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Commanded, Inputs, LEAD_S, Predicted, ReplanFailure, Search, candidate::Candidate, last::Last};
+use super::{Candidate, Commanded, HeldTo, Inputs, Predicted, ReplanFailure, last::Last};
 use crate::{
     fit::Fit,
-    log::WriteError,
-    plan::PlanEvaluation,
+    log::{Recording, WriteError},
+    plan::{PlanEvaluation, Timing},
     remark::{Code, Remarks},
     replay::{Rules, replay},
     series::{Series, align},
-    task::{Objective, Objectives},
+    task::{Ceilings, Objective, Objectives},
     workflow::{
         carried::{
             Carried,
             plan_log::{PlanLog, Planned},
+            rest::PLAN_LEAD_S,
         },
-        fit::observe::Observed,
         plan::{PlanDocument, PlanRequest},
     },
 };
@@ -40,8 +40,7 @@ pub struct Before {
 }
 
 impl Before {
-    pub(super) fn of(observed: &Observed, last: &Last, predicted: Predicted, rules: &Rules) -> Self {
-        let recording = &observed.recording;
+    pub(super) fn of(recording: &Recording, last: &Last, predicted: Predicted, rules: &Rules) -> Self {
         let pair =
             |measured: &crate::series::Track| align(recording.planned.track(measured.name())?, measured);
         let pairs: Vec<_> = recording.measured.tracks.iter().filter_map(pair).collect();
@@ -55,6 +54,33 @@ impl Before {
             duration_s: last.motion().map_or(last.duration_s, |motion| motion.duration_s()),
             predicted,
         }
+    }
+}
+
+/// A search for other timings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    /// Timings on the Pareto front, least predicted start error first.
+    pub front: Vec<Timing>,
+    /// Evaluations made.
+    pub evaluations: u64,
+    /// Ceilings on the objectives.
+    pub ceilings: Ceilings,
+    /// Limits of each joint in the search.
+    pub held: Vec<HeldTo>,
+    /// Times of movement of the last plan, s, if they are known.
+    pub start: Option<Vec<f64>>,
+    /// The last plan under the same limits.
+    pub evaluation: Option<PlanEvaluation>,
+}
+
+impl Search {
+    /// Whether the last plan keeps the limits and ceilings of the search.
+    pub fn keeps(&self) -> bool {
+        self.evaluation.as_ref().is_some_and(|evaluation| {
+            evaluation.broken().iter().all(|margin| margin.share < 1.0 + 1e-6)
+                && evaluation.objectives.within(&self.ceilings)
+        })
     }
 }
 
@@ -135,7 +161,7 @@ pub(super) fn replanned(
     }
     let duration_s =
         evaluation.as_ref().map_or(last.duration_s, |evaluation| evaluation.objectives[Objective::Duration]);
-    let starts_s = if interval_s.is_some() { Some(LEAD_S) } else { last.starts_s };
+    let starts_s = if interval_s.is_some() { Some(PLAN_LEAD_S) } else { last.starts_s };
     Ok(Replanned {
         fit,
         fitted_to,

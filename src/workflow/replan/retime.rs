@@ -3,14 +3,10 @@
 
 use std::ops::ControlFlow;
 
-use super::HeldTo;
 use crate::{
     fit::{Fit, Model, STEP_S, StartErrorPredictor},
     moea,
-    plan::{
-        Evaluator, Machine, PlanError, PlanEvaluation, Search as TimingSearch, Setup, Timing, TimingProblem,
-        search,
-    },
+    plan::{Evaluator, Machine, PlanError, Search, Setup, Timing, TimingProblem, search},
     spline::{Motion, Quantity, Samples},
     task::{Ceilings, Objective, Objectives},
 };
@@ -20,33 +16,6 @@ const PREDICTED: f64 = 0.15;
 
 /// Plans kept of the second search.
 const KEPT: usize = 200;
-
-/// A search for other timings.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Search {
-    /// Timings on the Pareto front, least predicted start error first.
-    pub front: Vec<Timing>,
-    /// Evaluations made.
-    pub evaluations: u64,
-    /// Ceilings on the objectives.
-    pub ceilings: Ceilings,
-    /// Limits of each joint in the search.
-    pub held: Vec<HeldTo>,
-    /// Times of movement of the last plan, s, if they are known.
-    pub start: Option<Vec<f64>>,
-    /// The last plan under the same limits.
-    pub evaluation: Option<PlanEvaluation>,
-}
-
-impl Search {
-    /// Whether the last plan keeps the limits and ceilings of the search.
-    pub fn keeps(&self) -> bool {
-        self.evaluation.as_ref().is_some_and(|evaluation| {
-            evaluation.broken().iter().all(|margin| margin.share < 1.0 + 1e-6)
-                && evaluation.objectives.within(&self.ceilings)
-        })
-    }
-}
 
 /// Result of a search for timings.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,11 +43,7 @@ pub(super) fn retimed(
 ) -> Result<Timings, PlanError> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a budget")]
     let second = (evaluations as f64 * PREDICTED) as u64;
-    let first = TimingSearch {
-        budget: moea::Budget::Evaluations(evaluations - second),
-        seed,
-        ..TimingSearch::default()
-    };
+    let first = Search { budget: moea::Budget::Evaluations(evaluations - second), seed, ..Search::default() };
     let found = search(setup, &first, |progress| observer(progress.evaluations))?;
     let mut initial: Vec<Vec<f64>> = start.map(<[f64]>::to_vec).into_iter().collect();
     let within = found.front.iter().filter(|timing| timing.objectives.within(&ceilings));
