@@ -12,9 +12,6 @@ const KNOWN: &[(&str, &str)] = &[
         "src/log",
         "assemble.rs, overlap.rs, parallel.rs, quality.rs, read.rs, recording.rs, select_topics.rs, track.rs",
     ),
-    ("src/render/kit", "figure.rs, page, terminal.rs, terminal_style.rs"),
-    ("src/render/kit/page/paper", "legend.rs, panel.rs"),
-    ("src/workflow/compare", "gates.rs, outcome.rs, summary.rs"),
     ("src/workflow/contest", "run.rs, study.rs"),
     ("src/workflow/moea", "run.rs, study.rs"),
 ];
