@@ -27,6 +27,7 @@ pub use hydraulics::{Arm, Hydraulics};
 pub use inertia::Inertia;
 pub use inverse_dynamics::{LANES, Motion, Workspace, inverse_dynamics};
 pub use shape::{Mesh, Shape, Solid, quaternion_xyzw};
+pub use urdf::sliding_joints;
 
 /// Place and orientation of a frame in another; lengths in m.
 pub type Pose = nalgebra::IsometryMatrix3<f64>;

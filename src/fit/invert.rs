@@ -11,6 +11,7 @@ use super::{
     smooth::smooth,
 };
 use crate::{
+    math::range,
     series::{Series, Track},
     units::DEGREE_RAD,
 };
@@ -213,9 +214,7 @@ fn account(
     let acceleration =
         |of: &[(f64, f64)]| most(&mut of.windows(span + 1).map(|w| (w[span].1 - w[0].1) / ACCELERATION_S));
     let ratio = |sent: f64, planned: f64| if planned > 0.0 { sent / planned } else { 1.0 };
-    let (least, highest) = sent
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), s| (least.min(s.0), most.max(s.0)));
+    let [least, highest] = range(sent.iter().map(|s| s.0));
     JointCompensation {
         name: name.to_owned(),
         applied,
