@@ -3,7 +3,12 @@
 use serde::Serialize;
 
 use super::{Figures, GateResult, Measure, Scope, Summary, TransitionPair, Verdict};
-use crate::{log::SourceInfo, remark::Remarks, replay::Rules, series::Pair};
+use crate::{
+    log::SourceInfo,
+    remark::Remarks,
+    replay::{Kind, Rules},
+    series::Pair,
+};
 
 /// Before the change or after it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
