@@ -34,7 +34,7 @@ pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) ->
 pub(super) fn fitted(args: &FitArgs) -> Result<Fitted, CliError> {
     spare_inputs(args.output.as_deref(), &args.logs)?;
     spare_stdout(args.output.as_deref())?;
-    let fitted = fit(&Inputs { logs: args.logs.clone(), wanted: args.sent.wanted() })?;
+    let fitted = fit(&Inputs { logs: args.logs.clone(), read: args.sent.options() })?;
     if let Some(path) = args.output.as_deref().filter(|_| args.document().is_none()) {
         deliver(&LimitsFile::of(&fitted).toml()?, Some(path), &mut std::io::sink())?;
     }

@@ -7,7 +7,11 @@ use super::{
     args::ImportArgs,
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
-use crate::{render::import as words, workflow::import::run as import};
+use crate::{
+    document::pretty,
+    render::import as words,
+    workflow::import::{ImportDocument, run as import},
+};
 
 pub(super) fn run(
     args: &ImportArgs,
@@ -18,7 +22,7 @@ pub(super) fn run(
     spare_stdout(Some(&args.output))?;
     let imported = import(&args.inputs()?)?;
     if args.json {
-        deliver(&words::json(&imported), None, out)?;
+        deliver(&pretty(&ImportDocument::of(&imported)), None, out)?;
         say_remarks(&imported.remarks, err);
     } else {
         deliver(&shown(&words::document(&args.output.to_string_lossy(), &imported), None), None, out)?;

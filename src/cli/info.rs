@@ -8,14 +8,15 @@ use super::{
     output::{deliver, say_remarks, shown},
 };
 use crate::{
+    document::pretty,
     render::info as words,
-    workflow::info::{Inputs, run as look},
+    workflow::info::{InfoDocument, Inputs, run as look},
 };
 
 pub(super) fn run(args: &InfoArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     let survey = look(&Inputs { logs: args.logs.clone(), read: args.read.options() })?;
     if args.json {
-        deliver(&words::json(&survey), None, out)?;
+        deliver(&pretty(&InfoDocument::of(&survey)), None, out)?;
         say_remarks(&survey.remarks, err);
     } else {
         deliver(&shown(&words::document(&survey), None), None, out)?;

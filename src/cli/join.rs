@@ -7,7 +7,11 @@ use super::{
     args::JoinArgs,
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
-use crate::{render::join as words, workflow::join::run as join};
+use crate::{
+    document::pretty,
+    render::join as words,
+    workflow::join::{JoinDocument, run as join},
+};
 
 pub(super) fn run(args: &JoinArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
     let read = [args.logs.as_slice(), std::slice::from_ref(&args.plan)].concat();
@@ -15,7 +19,7 @@ pub(super) fn run(args: &JoinArgs, out: &mut impl Write, err: &mut impl Write) -
     spare_stdout(Some(&args.output))?;
     let joined = join(&args.inputs())?;
     if args.json {
-        deliver(&words::json(&joined), None, out)?;
+        deliver(&pretty(&JoinDocument::of(&joined)), None, out)?;
         say_remarks(&joined.remarks, err);
     } else {
         deliver(&shown(&words::document(&joined, &args.plan, &args.output), None), None, out)?;

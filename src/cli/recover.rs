@@ -8,8 +8,9 @@ use super::{
     output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
 };
 use crate::{
+    document::pretty,
     render::recover as words,
-    workflow::recover::{Inputs, run as recover},
+    workflow::recover::{Inputs, RecoverDocument, run as recover},
 };
 
 pub(super) fn run(
@@ -21,7 +22,7 @@ pub(super) fn run(
     spare_stdout(Some(&args.output))?;
     let recovered = recover(&Inputs { log: args.log.clone(), output: args.output.clone() })?;
     if args.json {
-        deliver(&words::json(&recovered), None, out)?;
+        deliver(&pretty(&RecoverDocument::of(&recovered)), None, out)?;
         say_remarks(&recovered.remarks, err);
     } else {
         let output = args.output.to_string_lossy();

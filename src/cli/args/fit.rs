@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{ReadArgs, ends, selector};
-use crate::{log::Selector, workflow::fit::observe::Wanted};
+use crate::log::{ReadOptions, Selector, SignalRole, WantedSignal};
 
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]
@@ -50,7 +50,9 @@ pub struct SentArgs {
 
 impl SentArgs {
     /// The same for the workflow.
-    pub fn wanted(&self) -> Wanted {
-        Wanted { read: self.read.options(), command: self.command.clone(), valve: self.valve.clone() }
+    pub fn options(&self) -> ReadOptions {
+        let signals = [(SignalRole::Command, &self.command), (SignalRole::Valve, &self.valve)]
+            .map(|(role, topic)| WantedSignal { role, topic: topic.clone() });
+        ReadOptions { signals: signals.into(), ..self.read.options() }
     }
 }

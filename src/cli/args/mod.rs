@@ -191,8 +191,8 @@ impl ReadArgs {
             }),
             planned_in_degrees: self.planned_degrees,
             measured_in_degrees: self.measured_degrees,
-            planned_is_no_angle: false,
             continuous: self.continuous.clone(),
+            ..ReadOptions::default()
         }
     }
 }
