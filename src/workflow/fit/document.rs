@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::{FitFailure, Fitted, FittedRun, torque::JointTorque};
+use super::{FitFailure, Fitted, FittedRun, LIMITS_FORMAT, torque::JointTorque};
 use crate::{
     document::{PROGRAM, pretty},
     fit::{Fit, JointFit, LEAST_SKILL, LeftOut},
@@ -12,9 +12,6 @@ use crate::{
 };
 
 const FORMAT: &str = "hydrotrace.fit.v1";
-/// Format of every file with limits.
-const LIMITS_FORMAT: &str = "hydrotrace.limits.v1";
-
 /// A fitted machine. Angles are radians, times seconds; pairs are for growing and for
 /// shrinking angles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -125,7 +122,7 @@ impl LimitsFile {
             Err(source) => return Err(FitFailure::Limits { path, source: Box::new(source) }),
         };
         if file.format != LIMITS_FORMAT {
-            return Err(FitFailure::Format { path, found: file.format, expected: LIMITS_FORMAT });
+            return Err(FitFailure::Format { path, found: file.format });
         }
         match file.fit.check() {
             Ok(()) => Ok(file),

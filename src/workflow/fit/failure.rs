@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::observe::ObserveFailure;
+use super::{LIMITS_FORMAT, observe::ObserveFailure};
 use crate::fit::FitError;
 
 /// Why there is no fit.
@@ -34,14 +34,12 @@ pub enum FitFailure {
         source: Box<toml::de::Error>,
     },
     /// A file of another kind or of a later version.
-    #[error("{} is of format {found:?}, expected {expected:?}", path.display())]
+    #[error("{} is of format {found:?}, expected {LIMITS_FORMAT:?}", path.display())]
     Format {
         /// The file.
         path: PathBuf,
         /// What it says.
         found: String,
-        /// Ours.
-        expected: &'static str,
     },
     /// A file of another arm.
     #[error("the limits in {} are of the joints {found}, the log has {expected}: not one in common", path.display())]
