@@ -12,12 +12,17 @@ use std::{
 use hydrotrace::{
     math::quantile,
     moea::{Budget, Contender, Settings, optimise, silent},
-    plan::{Reference, Search, search},
+    plan::{Reference, Search, TimingProblem, search},
     render::{contest_csv, contest_document, contest_json, contest_svg, kit::text},
+    task::Objective,
     workflow::contest::{Inputs, REFERENCE_PLANS, Row, Study, Subject, Whose, run},
 };
 
 const REFERENCE: u64 = 2000;
+
+fn three(values: &[f64]) -> [f64; 3] {
+    values.try_into().unwrap()
+}
 
 fn inputs() -> Inputs {
     Inputs {
@@ -41,15 +46,15 @@ fn a_cell_holds_what_its_seeds_reach_in_the_box_of_the_reference_front() {
     let setup = &inputs().subjects[1].request.setup;
     let long = Search { budget: Budget::Evaluations(REFERENCE), front: REFERENCE_PLANS, ..Search::default() };
     let front = search(setup, &long, |_| ControlFlow::Continue(())).unwrap().front;
-    let reference = Reference::of(front.iter().map(|timing| timing.objectives.as_array()));
+    let reference = Reference::of(front.iter().map(|timing| timing.objectives.plan()));
     let ruler = &STUDY.rulers[1];
-    assert_eq!((ruler.plans, ruler.ideal), (front.len(), reference.ideal()));
+    assert_eq!((ruler.plans, ruler.ideal), (front.len(), three(reference.ideal().plan())));
     let reached = [5, 6, 7].map(|seed| {
         let algorithm = Contender::named("nsga3").unwrap().algorithm;
         let settings = Settings { algorithm, seed, budget: Budget::Evaluations(600), ..Settings::default() };
-        let last = optimise(setup, &settings, silent).unwrap().population;
+        let last = optimise(&TimingProblem::of(setup), &settings, silent).unwrap().population;
         let kept = last.front().into_iter().filter(|&i| last.is_feasible(i));
-        reference.measure(kept.map(|i| [last.f(i)[0], last.f(i)[1], last.f(i)[2]]))
+        reference.measure(kept.map(|i| last.f(i)))
     });
     let cell = &STUDY.cells[9];
     let medians = [0.25, 0.5, 0.75].map(|p| quantile(reached.to_vec(), p));
@@ -100,20 +105,20 @@ fn the_papers_plans_have_their_known_worth_and_ours_are_no_worse_in_anything() {
         [("A", 61.6945, 306.67, false), ("B", 6.815_17, 155.81, false), ("C", 35.8176, 358.99, true)]
     {
         let theirs = row(Whose::Paper(plan)).evaluation.as_ref().unwrap();
-        let f = theirs.objectives.as_array();
+        let f = theirs.objectives.plan();
         assert!((f[1].to_degrees() / f2_deg_s3 - 1.0).abs() < 1e-5, "{plan} {f:?}");
         assert!((f[2] / f3_w - 1.0).abs() < 1e-4, "{plan} {f:?}");
         assert_eq!(!theirs.broken().is_empty(), broken, "{plan}");
         let ours = row(Whose::Better(plan)).evaluation.as_ref().unwrap();
         assert!(ours.broken().is_empty());
-        let better = ours.objectives.as_array();
-        assert!(better.iter().zip(f).all(|(ours, theirs)| *ours <= theirs), "{plan} {better:?} {f:?}");
+        let better = ours.objectives.plan();
+        assert!(better.iter().zip(f).all(|(ours, theirs)| ours <= theirs), "{plan} {better:?} {f:?}");
         let (smooth, thrifty) = (row(Whose::Smoothest(plan)), row(Whose::Thriftiest(plan)));
-        let of = |row: &Row| row.evaluation.as_ref().unwrap().objectives.as_array();
+        let of = |row: &Row| row.evaluation.as_ref().unwrap().objectives.plan().to_vec();
         assert!(of(smooth)[1] <= better[1] && of(thrifty)[2] <= better[2], "{plan}");
     }
     let stretched = row(Whose::Stretched);
-    let duration_s = stretched.evaluation.as_ref().unwrap().objectives.duration_s;
+    let duration_s = stretched.evaluation.as_ref().unwrap().objectives[Objective::Duration];
     assert!((duration_s - 18.94).abs() < 1e-9);
     // By the paper's own f2, less than half of its B.
     assert!(stretched.printed.unwrap().f2 < 0.5 * row(Whose::Paper("B")).printed.unwrap().f2);

@@ -17,14 +17,14 @@ use crate::{
     render::{
         kit::Document,
         next,
-        plan::{
-            self as words, broken_lines, ceiling_lines, judged_document, judged_json, judged_page,
-            motion_figures,
-        },
+        plan::{self as words, broken_lines, ceiling_lines, judged_document, judged_page, motion_figures},
     },
     workflow::{
-        carried::plan_log::PlanLog,
-        plan::{Options, PlanFailure, PlanRequest, Planned, run as search},
+        carried::{
+            Carried,
+            plan_log::{PlanLog, Planned as Steps},
+        },
+        plan::{Options, PlanDocument, PlanFailure, PlanRequest, Planned, run as search},
     },
 };
 
@@ -50,11 +50,11 @@ fn judge(
     let title = &request.task.title;
     let evaluation = PlanEvaluation::of(&request.setup, times_s).map_err(PlanFailure::from)?;
     let joints = request.setup.joint_names();
-    let document = judged_json(title, &joints, &evaluation, true);
-    write_log(args, request, &evaluation, &document, &BTreeMap::new())?;
+    let document = PlanDocument::evaluated(title, &joints, &evaluation, true);
+    write_log(args, request, &document, BTreeMap::new())?;
     let course = course(request, &evaluation)?;
     let rendered = if args.wants_json() {
-        document
+        document.json()
     } else if args.wants_html() {
         judged_page(title, &joints, &evaluation, &course)
     } else {
@@ -72,16 +72,16 @@ fn plan(
     err: &mut impl Write,
 ) -> Result<Outcome, CliError> {
     let Found { planned, document, algorithm, options } = found(args, request, out)?;
-    let (title, bounds) = (&request.task.title, &request.task.bounds);
+    let (title, ceilings) = (&request.task.title, &request.task.ceilings);
     let course = course(request, &planned.chosen)?;
     let rendered = if args.wants_json() {
-        document
+        document.json()
     } else if args.wants_html() {
-        words::page(title, algorithm, &options, bounds, &planned, &course)
+        words::page(&document, &options, ceilings, &planned, &course)
     } else {
-        shown(&written(args, words::document(title, algorithm, &options, bounds, &planned)), None)
+        shown(&written(args, words::document(title, algorithm, &options, ceilings, &planned)), None)
     };
-    figures::figures(&args.figures, err, || words::figures(title, &planned, &course))?;
+    figures::figures(&args.figures, err, || words::figures(&document, &course))?;
     deliver(&rendered, text_file(args.page()), out)?;
     if args.wants_json() || args.wants_html() {
         say_remarks(&planned.remarks, err);
@@ -100,7 +100,7 @@ fn written(args: &PlanArgs, document: Document) -> Document {
 /// What a search found, as it was written.
 pub(super) struct Found {
     pub(super) planned: Planned,
-    document: String,
+    document: PlanDocument,
     algorithm: &'static str,
     options: Options,
 }
@@ -118,7 +118,7 @@ pub(super) fn found(args: &PlanArgs, request: &PlanRequest, out: &mut impl Write
         }
     };
     watch.bar.finish_and_clear();
-    let document = words::json(title, algorithm, &options, &planned);
+    let document = PlanDocument::searched(title, algorithm, &options, &planned);
     let provenance = BTreeMap::from(
         [
             ("algorithm", algorithm.to_owned()),
@@ -129,7 +129,7 @@ pub(super) fn found(args: &PlanArgs, request: &PlanRequest, out: &mut impl Write
         ]
         .map(|(key, value)| (key.to_owned(), value)),
     );
-    write_log(args, request, &planned.chosen, &document, &provenance)?;
+    write_log(args, request, &document, provenance)?;
     Ok(Found { planned, document, algorithm, options })
 }
 
@@ -149,13 +149,14 @@ fn explained(
         PlanFailure::Infeasible(nearest) => {
             (nearest, broken_lines(&joints, request.task.interval_s[1], nearest))
         }
-        PlanFailure::Ceilings { nearest, share } => {
-            (nearest, ceiling_lines(&request.task.bounds, &joints, nearest, *share))
+        PlanFailure::Ceilings { nearest } => {
+            (nearest, ceiling_lines(&request.task.ceilings, &joints, nearest))
         }
         _ => return Ok(failure.into()),
     };
     if args.wants_json() {
-        deliver(&judged_json(&request.task.title, &joints, evaluation, false), None, out)?;
+        let document = PlanDocument::evaluated(&request.task.title, &joints, evaluation, false);
+        deliver(&document.json(), None, out)?;
     }
     Ok(CliError::NoPlan { failure: failure.to_string(), lines })
 }
@@ -163,18 +164,17 @@ fn explained(
 fn write_log(
     args: &PlanArgs,
     request: &PlanRequest,
-    evaluation: &PlanEvaluation,
-    document: &str,
-    provenance: &BTreeMap<String, String>,
+    document: &PlanDocument,
+    provenance: BTreeMap<String, String>,
 ) -> Result<(), CliError> {
     let Some(path) = args.log() else { return Ok(()) };
-    let motion = request.setup.motion(&evaluation.times_s).map_err(PlanFailure::from)?;
+    let motion = request.setup.motion(&document.chosen.entry.times_s).map_err(PlanFailure::from)?;
     let log = PlanLog {
-        setup: &request.setup,
-        task: &request.text,
-        document,
-        provenance,
-        motion: &motion,
+        plan: Steps::Motion(&motion, &document.joints),
+        command: None,
+        arm: Some(&request.setup.arm().chain),
+        trajectory: None,
+        carried: &Carried::default().with_plan(&request.text, document).with_provenance(provenance),
         rate_hz: args.rate,
     };
     let bytes = log.bytes()?;
@@ -204,7 +204,7 @@ impl Watch {
         if !self.bar.is_hidden() {
             let population = progress.population;
             let front = population.front();
-            let objectives = || front.iter().map(|&i| population.f(i)).map(|f| [f[0], f[1], f[2]]);
+            let objectives = || front.iter().map(|&i| population.f(i));
             if !front.is_empty() {
                 let reference = *self.reference.get_or_insert_with(|| Reference::of(objectives()));
                 self.bar.set_message(format!("hypervolume {:.4}", reference.measure(objectives())));

@@ -14,8 +14,8 @@ use super::{
 };
 use crate::{
     atomic_file::write_atomically,
-    render::{next, plan::judged_json, replan as words},
-    workflow::replan::{Inputs, Replanned, run as replan},
+    render::{next, replan as words},
+    workflow::replan::{Inputs, ReplanDocument, Replanned, run as replan},
 };
 
 /// Samples a second in the log; those of the loops that commands are sent to.
@@ -28,7 +28,7 @@ pub(super) fn run(
 ) -> Result<Outcome, CliError> {
     let replanned = replanned(args)?;
     let rendered = match &args.output {
-        _ if args.json => words::json(&replanned),
+        _ if args.json => ReplanDocument::of(&replanned).json(),
         Some(path) => {
             shown(&words::document(&replanned).with_above_remarks(next::next_written(path, &args.logs)), None)
         }
@@ -62,12 +62,6 @@ pub(super) fn replanned(args: &ReplanArgs) -> Result<Replanned, CliError> {
 
 /// Writes plan and command.
 fn write_log(inputs: &Inputs, replanned: &Replanned, path: &Path) -> Result<(), CliError> {
-    let document = match (&replanned.request, &replanned.evaluation) {
-        (Some(request), Some(evaluation)) => {
-            Some(judged_json(&request.task.title, &request.setup.joint_names(), evaluation, true))
-        }
-        _ => None,
-    };
     let provenance = BTreeMap::from(
         [
             ("fitted_to", replanned.fitted_to.join(", ")),
@@ -78,6 +72,6 @@ fn write_log(inputs: &Inputs, replanned: &Replanned, path: &Path) -> Result<(), 
         ]
         .map(|(key, value)| (key.to_owned(), value)),
     );
-    let bytes = replanned.log(document.as_deref(), &provenance, RATE_HZ)?;
+    let bytes = replanned.log(provenance, RATE_HZ)?;
     write_atomically(path, |file| Ok(file.write_all(&bytes)?))
 }

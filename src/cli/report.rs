@@ -153,7 +153,7 @@ impl Run for Args {
 
 /// The machine for the page; its joints must be those of the run.
 fn limits(path: &Path, report: &Report) -> Result<LimitsFile, CliError> {
-    let file = read_limits(path)?;
+    let file = LimitsFile::read(path)?;
     file.check_joints(path, report.pairs.iter().map(|pair| pair.name.as_str()))?;
     Ok(file)
 }

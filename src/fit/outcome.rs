@@ -9,6 +9,7 @@ pub const LEAST_SKILL: f64 = 0.3;
 
 /// A machine as its logs show it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Fit {
     /// Joints that could be fitted, in the order of the first log that has them.
     pub joints: Vec<JointFit>,

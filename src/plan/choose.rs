@@ -1,6 +1,6 @@
 //! Which plan of a front to run.
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 use super::{
     Evaluator, Setup, Timing,
@@ -10,14 +10,12 @@ use super::{
 };
 use crate::{
     moea::das_dennis,
-    task::{Bounds, Weights},
+    task::{ByObjective, Ceilings, Objective, Objectives, Weights},
 };
 
 /// How to choose among the plans that keep to the ceilings. Objectives are scaled by their range over
 /// those plans.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rule {
     /// The least weighted sum.
     Weights,
@@ -27,12 +25,44 @@ pub enum Rule {
     /// under all weights if the plan were not there (Branke, Deb, Dierolf and Osswald 2004,
     /// doi:10.1007/978-3-540-30217-9_73).
     Knee,
-    /// The least time.
-    Fastest,
-    /// The least jerk.
-    Smoothest,
-    /// The least power.
-    Thriftiest,
+    /// The best of one objective.
+    Best(Objective),
+}
+
+impl Rule {
+    /// Every rule.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let best = Objective::OF_PLAN.iter().map(|&objective| Self::Best(objective));
+        [Self::Weights, Self::Ideal, Self::Knee].into_iter().chain(best)
+    }
+
+    /// Its name in options and documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Weights => "weights",
+            Self::Ideal => "ideal",
+            Self::Knee => "knee",
+            Self::Best(objective) => objective.row().rule,
+        }
+    }
+
+    /// The rule of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().find(|rule| rule.name() == name)
+    }
+}
+
+impl Serialize for Rule {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for Rule {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        Self::named(&name).ok_or_else(|| D::Error::custom(format!("{name:?} is not a rule")))
+    }
 }
 
 /// A plan and why it was chosen.
@@ -42,7 +72,7 @@ pub struct Choice {
     pub timing: Timing,
     /// The rule.
     pub rule: Rule,
-    /// Weights of f1, f2 and f3, where the rule is by weights.
+    /// Weights, where the rule is by weights.
     pub weights: Option<Weights>,
     /// Plans of the front that keep to the ceilings; 0 if only the last descent reached them.
     pub within: usize,
@@ -61,8 +91,6 @@ pub enum NoChoice {
     Ceilings {
         /// The plan that comes nearest.
         nearest: Box<Timing>,
-        /// Its objectives by their ceilings, f1, f2, f3; 0 where there is none.
-        share: [f64; 3],
     },
 }
 
@@ -71,16 +99,10 @@ const LAST: u64 = 600;
 /// Divisions of the weights that knees are judged by.
 const WEIGHTS: usize = 12;
 
-/// Ceilings in the order f1, f2, f3; infinite where there are none.
-fn ceilings(bounds: &Bounds) -> [f64; 3] {
-    [bounds.duration_s, bounds.rms_jerk_rad_s3, bounds.rms_power_w]
-        .map(|bound| bound.unwrap_or(f64::INFINITY))
-}
-
-/// Indices of the plans that are best in f1, f2 and f3 (A, B and C of the paper's table 3); `None`
+/// Index of the plan that is best in each objective of a plan (A, B and C of the paper's table 3); `None`
 /// for an empty front.
-pub fn ends(front: &[Timing]) -> Option<[usize; 3]> {
-    Some([best_of(front, 0)?, best_of(front, 1)?, best_of(front, 2)?])
+pub fn ends(front: &[Timing]) -> Option<Vec<usize>> {
+    Objective::OF_PLAN.iter().map(|&objective| best_of(front, objective)).collect()
 }
 
 /// Chooses from a front; the chosen plan then descends by its rule as far as it goes.
@@ -92,15 +114,11 @@ pub fn ends(front: &[Timing]) -> Option<[usize; 3]> {
 pub fn choose(
     setup: &Setup,
     front: &[Timing],
-    bounds: &Bounds,
+    ceilings: &Ceilings,
     (rule, weights): (Rule, Option<Weights>),
 ) -> Result<Choice, NoChoice> {
-    let ceilings = ceilings(bounds);
-    let share = |timing: &Timing| {
-        let f = timing.objectives.as_array();
-        [f[0] / ceilings[0], f[1] / ceilings[1], f[2] / ceilings[2]]
-    };
-    let excess = |timing: &Timing| share(timing).into_iter().fold(1.0, f64::max);
+    let share = |timing: &Timing, k| timing.objectives[k] / ceilings[k];
+    let excess = |timing: &Timing| Objective::OF_PLAN.iter().map(|&k| share(timing, k)).fold(1.0, f64::max);
     let mut evaluator = Evaluator::new(setup);
     let mut within: Vec<&Timing> = front.iter().filter(|timing| excess(timing) <= 1.0).collect();
     let (count, mut used) = (within.len(), 0);
@@ -108,8 +126,8 @@ pub fn choose(
         let nearest = front.iter().min_by(|a, b| excess(a).total_cmp(&excess(b)));
         nearest.map(|nearest| {
             let goal = Goal {
-                merit: Merit::Logarithms([1.0 / 3.0; 3]),
-                ceilings: ceilings.map(|ceiling| ceiling * (1.0 - 1e-6)),
+                merit: Merit::even(),
+                ceilings: ceilings.map_plan(|k| ceilings[k] * (1.0 - 1e-6)),
                 evaluations: LAST,
                 trust: NEARLY,
                 enough: COARSE,
@@ -127,7 +145,7 @@ pub fn choose(
     };
     match &reached {
         Some(timing) if excess(timing) > 1.0 => {
-            return Err(NoChoice::Ceilings { nearest: Box::new(timing.clone()), share: share(timing) });
+            return Err(NoChoice::Ceilings { nearest: Box::new(timing.clone()) });
         }
         reached => within.extend(reached),
     }
@@ -140,7 +158,7 @@ pub fn choose(
     };
     let picked = picked.ok_or(NoChoice::Empty)?;
     // A knee is a knee of this front; from it one may only descend to what is better in everything.
-    let own = if rule == Rule::Knee { picked.objectives.as_array() } else { ceilings };
+    let own = if rule == Rule::Knee { picked.objectives } else { *ceilings };
     let goal = Goal { merit, ceilings: own, evaluations: LAST, trust: NEARLY, enough: FINE };
     let end = descend(setup, &mut evaluator, &picked.interval_s, &goal);
     used += end.evaluations;
@@ -154,63 +172,50 @@ pub fn choose(
 }
 
 fn worth(merit: Merit, timing: &Timing) -> f64 {
-    merit.of(timing.objectives.as_array())
+    merit.of(&timing.objectives)
 }
 
 /// Least and range of each objective.
 struct Scale {
-    ideal: [f64; 3],
-    range: [f64; 3],
+    ideal: Objectives,
+    range: ByObjective,
 }
 
 impl Scale {
     fn of(plans: &[&Timing]) -> Self {
-        let mut ideal = [f64::INFINITY; 3];
-        let mut worst = [0.0_f64; 3];
+        let (mut ideal, mut worst) = (Objectives::NONE, Objectives::ZERO);
         for timing in plans {
-            for (k, f) in timing.objectives.as_array().into_iter().enumerate() {
-                ideal[k] = ideal[k].min(f);
-                worst[k] = worst[k].max(f);
+            for &k in Objective::OF_PLAN {
+                ideal[k] = ideal[k].min(timing.objectives[k]);
+                worst[k] = worst[k].max(timing.objectives[k]);
             }
         }
-        let mut range = [1.0; 3];
-        for k in 0..3 {
-            range[k] = (worst[k] - ideal[k]).max(1e-9 * worst[k]).max(f64::MIN_POSITIVE);
-        }
-        Self { ideal, range }
+        let range = |k| (worst[k] - ideal[k]).max(1e-9 * worst[k]).max(f64::MIN_POSITIVE);
+        Self { ideal, range: ideal.map_plan(range) }
     }
 
     fn merit(&self, rule: Rule, weights: Option<Weights>) -> Merit {
         match rule {
             Rule::Weights => {
-                let given = weights.map_or([1.0; 3], |w| [w.duration, w.rms_jerk, w.rms_power]);
-                let sum: f64 = given.iter().sum();
-                let mut scaled = [0.0; 3];
-                for k in 0..3 {
-                    scaled[k] = given[k] / sum / self.range[k];
-                }
-                Merit::Sum(scaled)
+                let given = weights.unwrap_or(Weights::ZERO.map_plan(|_| 1.0));
+                let sum: f64 = given.plan().iter().sum();
+                Merit::Sum(given.map_plan(|k| given[k] / sum / self.range[k]))
             }
             Rule::Ideal => Merit::Distance { ideal: self.ideal, scale: self.range },
-            Rule::Knee => Merit::Logarithms([1.0 / 3.0; 3]),
-            Rule::Fastest => Merit::Logarithms([1.0, 0.0, 0.0]),
-            Rule::Smoothest => Merit::Logarithms([0.0, 1.0, 0.0]),
-            Rule::Thriftiest => Merit::Logarithms([0.0, 0.0, 1.0]),
+            Rule::Knee => Merit::even(),
+            Rule::Best(objective) => Merit::alone(objective),
         }
-    }
-
-    fn scaled(&self, timing: &Timing) -> [f64; 3] {
-        let f = timing.objectives.as_array();
-        std::array::from_fn(|k| (f[k] - self.ideal[k]) / self.range[k])
     }
 }
 
 /// The plan whose absence would cost most, summed over weights for which it is the best.
 fn knee<'a>(plans: &[&'a Timing], scale: &Scale) -> Option<&'a Timing> {
-    let scaled: Vec<[f64; 3]> = plans.iter().map(|timing| scale.scaled(timing)).collect();
+    let count = Objective::OF_PLAN.len();
+    let scaled = |f: &Objectives| f.map_plan(|k| (f[k] - scale.ideal[k]) / scale.range[k]);
+    let scaled: Vec<ByObjective> = plans.iter().map(|timing| scaled(&timing.objectives)).collect();
     let mut loss = vec![0.0; plans.len()];
-    for weights in das_dennis(3, WEIGHTS).unwrap_or_default().chunks_exact(3) {
-        let sum = |i: usize| -> f64 { scaled[i].iter().zip(weights).map(|(f, w)| f * w).sum() };
+    for weights in das_dennis(count, WEIGHTS).unwrap_or_default().chunks_exact(count) {
+        let sum = |i: usize| -> f64 { scaled[i].plan().iter().zip(weights).map(|(f, w)| f * w).sum() };
         let mut order: Vec<usize> = (0..plans.len()).collect();
         order.sort_by(|&a, &b| sum(a).total_cmp(&sum(b)));
         if let [best, second, ..] = order[..] {

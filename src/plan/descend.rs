@@ -10,25 +10,37 @@ use super::{
     quadratic::{PRICE, Solution, Step},
     tangent::{Cuts, Point, Slopes, dot},
 };
+use crate::task::{ByObjective, Ceilings, Objective, Objectives, Weights};
 
 /// What a descent lessens.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Merit {
     /// Sum of the objectives' logarithms by weights that sum to one.
-    Logarithms([f64; 3]),
+    Logarithms(Weights),
     /// Sum of the objectives by weights.
-    Sum([f64; 3]),
+    Sum(Weights),
     /// Distance to a point, each objective divided by a scale.
-    Distance { ideal: [f64; 3], scale: [f64; 3] },
+    Distance { ideal: Objectives, scale: ByObjective },
 }
 
 impl Merit {
-    pub(super) fn of(&self, objectives: [f64; 3]) -> f64 {
+    /// One objective alone.
+    pub(super) const fn alone(objective: Objective) -> Self {
+        Self::Logarithms(Weights::ZERO.with(objective, 1.0))
+    }
+
+    /// All objectives alike.
+    pub(super) fn even() -> Self {
+        Self::Logarithms(Weights::ZERO.map_plan(|_| 1.0 / Objective::OF_PLAN.len() as f64))
+    }
+
+    pub(super) fn of(&self, objectives: &Objectives) -> f64 {
+        let sum = |term: &dyn Fn(Objective) -> f64| Objective::OF_PLAN.iter().map(|&k| term(k)).sum::<f64>();
         match self {
-            Self::Logarithms(weights) => (0..3).map(|k| weights[k] * objectives[k].ln()).sum(),
-            Self::Sum(weights) => (0..3).map(|k| weights[k] * objectives[k]).sum(),
+            Self::Logarithms(weights) => sum(&|k| weights[k] * objectives[k].ln()),
+            Self::Sum(weights) => sum(&|k| weights[k] * objectives[k]),
             Self::Distance { ideal, scale } => {
-                (0..3).map(|k| ((objectives[k] - ideal[k]) / scale[k]).powi(2)).sum::<f64>().sqrt()
+                sum(&|k| ((objectives[k] - ideal[k]) / scale[k]).powi(2)).sqrt()
             }
         }
     }
@@ -42,15 +54,12 @@ pub(super) const NEARLY: f64 = 0.05;
 pub(super) const FINE: f64 = 1e-6;
 pub(super) const COARSE: f64 = 2e-4;
 
-/// No ceilings.
-pub(super) const FREE: [f64; 3] = [f64::INFINITY; 3];
-
 /// What a descent is to do.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Goal {
     pub(super) merit: Merit,
-    /// What the objectives must not exceed; infinite for none.
-    pub(super) ceilings: [f64; 3],
+    /// What the objectives must not exceed.
+    pub(super) ceilings: Ceilings,
     /// Evaluations at most, unless the start alone takes more.
     pub(super) evaluations: u64,
     /// Longest first step, in logarithms of the intervals.
@@ -244,8 +253,8 @@ mod tests {
     }
 
     const QUICK: Goal = Goal {
-        merit: Merit::Logarithms([1.0, 0.0, 0.0]),
-        ceilings: FREE,
+        merit: Merit::alone(Objective::Duration),
+        ceilings: Ceilings::NONE,
         evaluations: 1000,
         trust: FAR_OFF,
         enough: FINE,
@@ -261,7 +270,7 @@ mod tests {
             assert!(end.settled, "from {start_s:?}");
             let timing = end.timing.unwrap();
             assert!(timing.violation < 1e-5, "{}", timing.violation);
-            durations_s.push(timing.objectives.duration_s);
+            durations_s.push(timing.objectives[Objective::Duration]);
         }
         for duration_s in &durations_s {
             assert!((duration_s - 12.42065).abs() < 1e-3, "{durations_s:?}");
@@ -273,14 +282,14 @@ mod tests {
         let setup = task_1();
         let mut evaluator = Evaluator::new(&setup);
         let goal = Goal {
-            merit: Merit::Logarithms([0.0, 1.0, 0.0]),
-            ceilings: [30.0, f64::INFINITY, f64::INFINITY],
+            merit: Merit::alone(Objective::RmsJerk),
+            ceilings: Ceilings::NONE.with(Objective::Duration, 30.0),
             evaluations: 60,
             ..QUICK
         };
         let end = descend(&setup, &mut evaluator, &[5.0; 5], &goal);
         assert!(end.evaluations <= 60);
         let objectives = end.timing.unwrap().objectives;
-        assert!((objectives.duration_s - 30.0).abs() < 1e-3, "{objectives:?}");
+        assert!((objectives[Objective::Duration] - 30.0).abs() < 1e-3, "{objectives:?}");
     }
 }

@@ -8,30 +8,8 @@ use super::{
 use crate::{
     arm::LANES,
     spline::{Motion, Quantity},
+    task::{Objective, Objectives},
 };
-
-/// What a plan costs; all three are minimised.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Objectives {
-    /// Total time, dwells included, s (f1).
-    pub duration_s: f64,
-    /// Sum over joints of the root mean square jerk, rad/s³ (f2).
-    pub rms_jerk_rad_s3: f64,
-    /// Sum over joints of the root mean square power, W (f3).
-    pub rms_power_w: f64,
-}
-
-impl Objectives {
-    /// In the order f1, f2, f3.
-    pub fn as_array(&self) -> [f64; 3] {
-        [self.duration_s, self.rms_jerk_rad_s3, self.rms_power_w]
-    }
-
-    /// From the order f1, f2, f3.
-    pub fn from_array([duration_s, rms_jerk_rad_s3, rms_power_w]: [f64; 3]) -> Self {
-        Self { duration_s, rms_jerk_rad_s3, rms_power_w }
-    }
-}
 
 /// A timing and what it is worth.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,9 +30,9 @@ const SPLINES: [Quantity; 4] = Quantity::ALL;
 /// Nodes miss peaks by about 1 %, of jerk by up to 6 %.
 const COARSE: f64 = 0.75;
 const EXACT: f64 = 0.85;
-/// From here on a limit is broken by so much that the node serves again.
-const BROKEN: f64 = 1.5;
-const HOPELESS: f64 = 2.0;
+/// A plan this far beyond a limit is no candidate: from here to `COARSE_AGAIN` a blend back to the node.
+const FAR_BROKEN: f64 = 1.5;
+const COARSE_AGAIN: f64 = 2.0;
 
 /// Evaluates plans of one setup, one after the other; allocates nothing after the first.
 #[derive(Debug, Clone)]
@@ -100,13 +78,23 @@ impl Evaluator {
         self.motion.retime(&self.t_s).ok()?;
         self.motion.rms_jerk(&mut self.rms_jerk);
         self.mesh.integrate(setup, &self.motion);
-        self.weigh(setup);
+        self.limit_shares(setup);
+        Some(Objectives::NONE.map_plan(|objective| self.objective(objective)))
+    }
+
+    /// One objective of the plan evaluated last; not known of those that need a machine.
+    fn objective(&self, objective: Objective) -> f64 {
+        match objective {
+            Objective::Duration => self.motion.duration_s(),
+            Objective::RmsJerk => self.rms_jerk.iter().sum(),
+            Objective::RmsPower => self.joint_power_w().sum(),
+            Objective::StartError => f64::INFINITY,
+        }
+    }
+
+    fn joint_power_w(&self) -> impl Iterator<Item = f64> {
         let duration_s = self.motion.duration_s();
-        Some(Objectives {
-            duration_s,
-            rms_jerk_rad_s3: self.rms_jerk.iter().sum(),
-            rms_power_w: self.mesh.squared_power.iter().map(|sum| (sum / duration_s).sqrt()).sum(),
-        })
+        self.mesh.squared_power.iter().map(move |sum| (sum / duration_s).sqrt())
     }
 
     /// Sum of what the plan evaluated last exceeds its limits by, each as a share of the limit and at
@@ -122,8 +110,7 @@ impl Evaluator {
 
     /// Root mean square power by joint of the plan evaluated last, W.
     pub fn rms_power_w(&self) -> Vec<f64> {
-        let duration_s = self.motion.duration_s();
-        self.mesh.squared_power.iter().map(|sum| (sum / duration_s).sqrt()).collect()
+        self.joint_power_w().collect()
     }
 
     /// Work that the joints do and take up together in the plan evaluated last, J.
@@ -132,7 +119,7 @@ impl Evaluator {
     }
 
     /// Shares of all limits.
-    fn weigh(&mut self, setup: &Setup) {
+    fn limit_shares(&mut self, setup: &Setup) {
         let (width, joints) = (Limit::OF_JOINT.len(), setup.limits.len());
         let pieces = self.mesh.t_s.len() / LANES;
         self.peaks.resize(self.shares.len() * pieces * 2, 0.0);
@@ -236,7 +223,8 @@ fn peak(values: impl Iterator<Item = f64>) -> (usize, f64) {
 
 /// The share between nodes, as far as it matters.
 fn blend(coarse: f64, exact: impl FnOnce() -> f64) -> f64 {
-    let weight = ((coarse - COARSE) / (EXACT - COARSE)).min((HOPELESS - coarse) / (HOPELESS - BROKEN));
+    let weight =
+        ((coarse - COARSE) / (EXACT - COARSE)).min((COARSE_AGAIN - coarse) / (COARSE_AGAIN - FAR_BROKEN));
     if weight > 0.0 { coarse + weight.min(1.0) * (exact() - coarse).max(0.0) } else { coarse }
 }
 

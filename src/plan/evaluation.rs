@@ -1,8 +1,9 @@
 //! One plan, evaluated: its objectives and how near it comes to every limit.
 
-use super::{Evaluator, Margin, Objectives, PlanError, Setup, excess};
+use super::{Evaluator, Margin, PlanError, Setup, excess};
+use crate::task::Objectives;
 
-/// A plan, with all that can be said of it.
+/// A plan with its objectives, its costs by joint and its margins.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanEvaluation {
     /// Arrival at each key point, s, dwells counted.
@@ -34,8 +35,7 @@ impl PlanEvaluation {
         let mut evaluator = Evaluator::new(setup);
         let interval_s = setup.intervals_s(times_s)?;
         // The motion above is of the same times, so there is one.
-        let objectives =
-            evaluator.evaluate(setup, &interval_s).unwrap_or(Objectives::from_array([f64::INFINITY; 3]));
+        let objectives = evaluator.evaluate(setup, &interval_s).unwrap_or(Objectives::NONE);
         let rms_jerk_rad_s3 = evaluator.rms_jerk_rad_s3().to_vec();
         let (rms_power_w, energy_j) = (evaluator.rms_power_w(), evaluator.energy_j());
         let margins = setup.margins(&motion, &mut evaluator);

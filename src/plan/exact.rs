@@ -10,6 +10,7 @@ use super::{
     descend::{FINE, Goal, Merit, NEARLY, descend},
     front::thinned,
 };
+use crate::task::{Ceilings, Objective};
 
 /// Descents under ever tighter limits, and slowings down, that a plan is given.
 const TRIES: usize = 4;
@@ -62,7 +63,7 @@ pub(super) fn kept(
     setup: &Setup,
     timing: &Timing,
     merit: Merit,
-    ceilings: [f64; 3],
+    ceilings: Ceilings,
 ) -> (Option<Timing>, u64) {
     let mut evaluator = Evaluator::new(setup);
     let mut tight = setup.clone();
@@ -102,19 +103,20 @@ pub(super) fn kept_front(setup: &Setup, front: Vec<Timing>, most: usize) -> (Vec
     if sound {
         return (front, 0);
     }
-    let fastest = front.iter().min_by(|a, b| a.objectives.duration_s.total_cmp(&b.objectives.duration_s));
+    let fastest = front
+        .iter()
+        .min_by(|a, b| a.objectives[Objective::Duration].total_cmp(&b.objectives[Objective::Duration]));
     let mut used = 0;
     if let Some(fastest) = fastest.cloned() {
         // Slowing down all of it gave away time wherever the limit was kept.
         let quick =
             Timing { interval_s: fastest.interval_s.iter().map(|s| s * QUICKER).collect(), ..fastest };
-        let (found, evaluations) =
-            kept(setup, &quick, Merit::Logarithms([1.0, 0.0, 0.0]), super::descend::FREE);
+        let (found, evaluations) = kept(setup, &quick, Merit::alone(Objective::Duration), Ceilings::NONE);
         used = evaluations;
         front.extend(found);
     }
     let mut front = thinned(setup, &front, most);
-    front.sort_by(|a, b| a.objectives.duration_s.total_cmp(&b.objectives.duration_s));
+    front.sort_by(|a, b| a.objectives[Objective::Duration].total_cmp(&b.objectives[Objective::Duration]));
     (front, used)
 }
 

@@ -2,22 +2,24 @@
 
 use std::cmp::Ordering;
 
-use super::{Objectives, Setup, Timing};
-use crate::moea::{Archive, Population};
+use super::{Setup, Timing};
+use crate::{
+    moea::{Archive, Population},
+    task::{Objective, Objectives},
+};
 
 pub(super) fn population<'a>(setup: &Setup, timings: impl IntoIterator<Item = &'a Timing>) -> Population {
-    let mut population = Population::with_capacity(setup.interval_count(), 3, 0);
+    let mut population = Population::with_capacity(setup.interval_count(), Objective::OF_PLAN.len(), 0);
     for timing in timings {
-        population.push(&timing.interval_s, &timing.objectives.as_array(), timing.violation);
+        population.push(&timing.interval_s, timing.objectives.plan(), timing.violation);
     }
     population
 }
 
 pub(super) fn timing(population: &Population, i: usize) -> Timing {
-    let f = population.f(i);
     Timing {
         interval_s: population.x(i).to_vec(),
-        objectives: Objectives::from_array([f[0], f[1], f[2]]),
+        objectives: Objectives::from_slice(population.f(i)),
         violation: population.violation(i),
     }
 }
@@ -32,10 +34,11 @@ pub(super) fn thinned<'a>(
     all: impl IntoIterator<Item = &'a Timing>,
     most: usize,
 ) -> Vec<Timing> {
-    let mut archive = Archive::new(setup.interval_count(), 3, usize::MAX);
+    let mut archive = Archive::new(setup.interval_count(), Objective::OF_PLAN.len(), usize::MAX);
     archive.extend(&population(setup, all));
     let clear = timings(archive.population());
-    let mut archive = Archive::new(setup.interval_count(), 3, most.max(3));
+    let mut archive =
+        Archive::new(setup.interval_count(), Objective::OF_PLAN.len(), most.max(Objective::OF_PLAN.len()));
     archive.extend(&population(setup, &clear));
     timings(&archive.into_population())
 }
@@ -45,14 +48,14 @@ pub(super) fn least_broken(timings: impl IntoIterator<Item = Timing>) -> Option<
 }
 
 /// Index of the plan that is best in one objective; of equal ones the best in the next.
-pub(super) fn best_of(front: &[Timing], objective: usize) -> Option<usize> {
-    let key = |timing: &Timing| {
-        let f = timing.objectives.as_array();
-        [f[objective], f[(objective + 1) % 3], f[(objective + 2) % 3]]
+pub(super) fn best_of(front: &[Timing], objective: Objective) -> Option<usize> {
+    let from = objective as usize;
+    let key = |i: &usize| {
+        let f = front[*i].objectives.plan();
+        f[from..].iter().chain(&f[..from])
     };
     let compare = |a: &usize, b: &usize| {
-        let (a, b) = (key(&front[*a]), key(&front[*b]));
-        a.iter().zip(b).map(|(a, b)| a.total_cmp(&b)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+        key(a).zip(key(b)).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
     };
     (0..front.len()).min_by(compare)
 }

@@ -1,9 +1,9 @@
 //! What a plan must keep to.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A quantity with a limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Limit {
@@ -67,12 +67,12 @@ pub struct Margin {
     pub t_s: f64,
 }
 
-/// Share of a limit from which on it is broken; rounding is no break.
-pub const BROKEN: f64 = 1.0 + 1e-9;
+/// A limit is kept up to this share of it: 1 and some rounding.
+pub const KEPT_SHARE: f64 = 1.0 + 1e-9;
 
 impl Margin {
     /// Whether the limit is broken.
     pub fn broken(&self) -> bool {
-        self.share > BROKEN
+        self.share > KEPT_SHARE
     }
 }

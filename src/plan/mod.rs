@@ -26,9 +26,10 @@ mod tangent;
 
 pub use choose::{Choice, NoChoice, Rule, choose, ends};
 pub use error::PlanError;
-pub use evaluate::{Evaluator, Objectives, Timing, excess};
+pub use evaluate::{Evaluator, Timing, excess};
 pub use evaluation::PlanEvaluation;
-pub use limit::{BROKEN, Limit, Margin};
+pub use limit::{KEPT_SHARE, Limit, Margin};
+pub use problem::{Machine, NoMachine, TimingProblem};
 pub use reference::{BEYOND, Reference};
 pub use sampled_motion::SampledMotion;
 pub use search::{Found, Phase, Progress, Search, search};

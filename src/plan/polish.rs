@@ -7,6 +7,7 @@ use super::{
     descend::{COARSE, Descended, Goal, Merit, NEARLY, descend},
     front::thinned,
 };
+use crate::task::Objective;
 
 /// Shares of an objective that count as clearly better and as hardly worse.
 const CLEAR: f64 = 0.005;
@@ -44,8 +45,8 @@ pub(super) fn polish(setup: &Setup, plans: &[Timing], evaluations: u64) -> Polis
                 || Evaluator::new(setup),
                 |evaluator, timing| {
                     let goal = Goal {
-                        merit: Merit::Logarithms([1.0 / 3.0; 3]),
-                        ceilings: timing.objectives.as_array(),
+                        merit: Merit::even(),
+                        ceilings: timing.objectives,
                         evaluations: most,
                         trust: NEARLY,
                         enough: COARSE,
@@ -69,12 +70,12 @@ pub(super) fn polish(setup: &Setup, plans: &[Timing], evaluations: u64) -> Polis
 pub(super) fn beats(setup: &Setup, exact: &Timing, other: &Timing) -> bool {
     let dwell_s = setup.resting_s();
     let (a, b) = (exact.objectives, other.objectives);
-    let ratio = (b.duration_s - dwell_s) / (a.duration_s - dwell_s);
+    let ratio = (b[Objective::Duration] - dwell_s) / (a[Objective::Duration] - dwell_s);
     if exact.violation > 0.0 || !(1.0..SLOWER).contains(&ratio) {
         return false;
     }
-    let share = (a.duration_s / b.duration_s).sqrt();
-    let jerk = a.rms_jerk_rad_s3 * share * ratio.powf(-2.5) / b.rms_jerk_rad_s3;
-    let power = a.rms_power_w * share * ratio.powf(-0.5) / b.rms_power_w;
+    let share = (a[Objective::Duration] / b[Objective::Duration]).sqrt();
+    let jerk = a[Objective::RmsJerk] * share * ratio.powf(-2.5) / b[Objective::RmsJerk];
+    let power = a[Objective::RmsPower] * share * ratio.powf(-0.5) / b[Objective::RmsPower];
     jerk.max(power) < 1.0 + HAIR && jerk.min(power) < 1.0 - CLEAR
 }

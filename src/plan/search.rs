@@ -3,14 +3,17 @@
 use std::ops::ControlFlow;
 
 use super::{
-    Evaluator, PlanError, Setup, Timing,
-    descend::{FAR_OFF, FINE, FREE, Goal, Merit, descend},
+    Evaluator, PlanError, Setup, Timing, TimingProblem,
+    descend::{FAR_OFF, FINE, Goal, Merit, descend},
     exact,
     front::{least_broken, population, thinned, timing, timings},
     polish::{self, beats},
     seed::{Seeds, seeds},
 };
-use crate::moea::{self, Algorithm, Archive, Budget, Population};
+use crate::{
+    moea::{self, Algorithm, Archive, Budget, Population},
+    task::{Ceilings, Objective, Weights},
+};
 
 /// How to search.
 #[derive(Debug, Clone, PartialEq)]
@@ -131,11 +134,11 @@ pub fn search(
             other => other,
         },
         seed: search.seed,
-        archive: search.front.max(3),
+        archive: search.front.max(Objective::OF_PLAN.len()),
         initial: initial.iter().map(|timing| timing.interval_s.clone()).collect(),
         ..moea::Settings::default()
     };
-    let outcome = moea::optimise(setup, &settings, |progress| {
+    let outcome = moea::optimise(&TimingProblem::of(setup), &settings, |progress| {
         observer(&Progress {
             phase: Phase::Evolution,
             evaluations: used + progress.evaluations,
@@ -157,7 +160,7 @@ pub fn search(
     } else {
         thinned(setup, &evolved, search.front)
     };
-    front.sort_by(|a, b| a.objectives.duration_s.total_cmp(&b.objectives.duration_s));
+    front.sort_by(|a, b| a.objectives[Objective::Duration].total_cmp(&b.objectives[Objective::Duration]));
     let (front, more) = exact::kept_front(setup, front, search.front);
     evaluations += more;
     let _ = observer(&Progress {
@@ -183,8 +186,8 @@ pub fn search(
 fn nearest(setup: &Setup, timing: Timing) -> Option<Timing> {
     // With nothing to lessen but the price of the limit most broken.
     let goal = Goal {
-        merit: Merit::Logarithms([0.0; 3]),
-        ceilings: FREE,
+        merit: Merit::Logarithms(Weights::ZERO),
+        ceilings: Ceilings::NONE,
         evaluations: NEAREST,
         trust: FAR_OFF,
         enough: FINE,

@@ -9,8 +9,9 @@ use rayon::prelude::*;
 
 use super::{
     Evaluator, Setup, Timing,
-    descend::{COARSE, Descended, FAR_OFF, FINE, FREE, Goal, Merit, NEARLY, descend},
+    descend::{COARSE, Descended, FAR_OFF, FINE, Goal, Merit, NEARLY, descend},
 };
+use crate::task::{Ceilings, Objective, Weights};
 /// Weight of power against jerk, both as logarithms, on each curve. Power moves only near 1; at 1 jerk
 /// would be left to chance.
 const CURVES: [f64; 5] = [0.0, 0.5, 0.75, 0.92, 0.985];
@@ -63,12 +64,12 @@ pub(super) fn seeds(setup: &Setup, budget: u64) -> Seeds {
         .into_iter()
         .map(|curve| curve.into_iter().filter_map(|end| seeds.take(end)).collect())
         .collect();
-    let ends = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().zip([curves.first(), curves.last()]);
-    for (weights, curve) in ends {
+    let ends = [Objective::RmsJerk, Objective::RmsPower].into_iter().zip([curves.first(), curves.last()]);
+    for (objective, curve) in ends {
         let Some(slowest) = curve.and_then(|curve| curve.last()) else { continue };
         let goal = Goal {
-            merit: Merit::Logarithms(weights),
-            ceilings: FREE,
+            merit: Merit::alone(objective),
+            ceilings: Ceilings::NONE,
             evaluations: share(ENDS) / 2,
             trust: FAR_OFF,
             enough: FINE,
@@ -95,16 +96,16 @@ impl Seeds {
         let middle_s = (low * high).sqrt();
         let even = vec![middle_s; n];
         let smooth = Goal {
-            merit: Merit::Logarithms([0.0, 1.0, 0.0]),
-            ceilings: [setup.even_s(middle_s), f64::INFINITY, f64::INFINITY],
+            merit: Merit::alone(Objective::RmsJerk),
+            ceilings: Ceilings::NONE.with(Objective::Duration, setup.even_s(middle_s)),
             evaluations: evaluations / 8,
             trust: FAR_OFF,
             enough: FINE,
         };
         let shape = self.descend(setup, evaluator, &even, &smooth);
         let goal = |evaluations| Goal {
-            merit: Merit::Logarithms([1.0, 0.0, 0.0]),
-            ceilings: FREE,
+            merit: Merit::alone(Objective::Duration),
+            ceilings: Ceilings::NONE,
             evaluations,
             trust: FAR_OFF,
             enough: FINE,
@@ -115,7 +116,7 @@ impl Seeds {
         let ends = std::iter::once(from_even).chain(from_shape).filter(|end| end.timing.is_some());
         let key = |end: &Descended| {
             end.timing.as_ref().map_or((f64::INFINITY, f64::INFINITY), |timing| {
-                (timing.violation, timing.objectives.duration_s)
+                (timing.violation, timing.objectives[Objective::Duration])
             })
         };
         let ends: Vec<Descended> = ends.collect();
@@ -174,7 +175,7 @@ impl Seeds {
 }
 
 fn durations(setup: &Setup, fastest: &Timing) -> Vec<f64> {
-    let first_s = fastest.objectives.duration_s;
+    let first_s = fastest.objectives[Objective::Duration];
     let last_s = setup.even_s(setup.interval_s[1]);
     let near_fastest = NEAR_FASTEST.iter().map(|ratio| first_s * ratio);
     let mut durations_s: Vec<f64> = near_fastest.filter(|s| *s < NEAR_SLOWEST[0] * last_s).collect();
@@ -200,11 +201,13 @@ fn curve(setup: &Setup, fastest: &Timing, durations_s: &[f64], power: f64, most:
             last = first.clone().unwrap_or(last);
         }
         let duration_s = durations_s[i];
-        let ratio = (duration_s - dwell_s) / (last.objectives.duration_s - dwell_s);
+        let ratio = (duration_s - dwell_s) / (last.objectives[Objective::Duration] - dwell_s);
         let start_s: Vec<f64> = last.interval_s.iter().map(|s| s * ratio).collect();
         let goal = Goal {
-            merit: Merit::Logarithms([0.0, 1.0 - power, power]),
-            ceilings: [duration_s, f64::INFINITY, f64::INFINITY],
+            merit: Merit::Logarithms(
+                Weights::ZERO.with(Objective::RmsJerk, 1.0 - power).with(Objective::RmsPower, power),
+            ),
+            ceilings: Ceilings::NONE.with(Objective::Duration, duration_s),
             // The first has the longest way.
             evaluations: if step == 0 { 3 * most } else { most },
             trust: if step == 0 { FAR_OFF } else { NEARLY },

@@ -27,15 +27,15 @@ impl Point {
         let [low, high] = setup.interval_s;
         let interval_s: Vec<f64> = x.iter().map(|x| x.exp().clamp(low, high)).collect();
         let objectives = evaluator.evaluate(setup, &interval_s)?;
-        let f = objectives.as_array();
+        let f = objectives.plan();
         if !f.iter().all(|f| f.is_finite() && *f > 0.0) {
             return None;
         }
-        let ceilings = f.iter().zip(goal.ceilings).map(|(f, ceiling)| (f / ceiling).max(1e-6).ln());
+        let ceilings = f.iter().zip(goal.ceilings.plan()).map(|(f, ceiling)| (f / ceiling).max(1e-6).ln());
         let limits = evaluator.peaks.iter().map(|share| share.clamp(1e-6, 1e6).ln() + WITHIN);
         let constraint = ceilings.chain(limits).collect();
         let timing = Timing { interval_s, objectives, violation: evaluator.violation() };
-        Some(Self { x, timing, merit: goal.merit.of(f), constraint })
+        Some(Self { x, timing, merit: goal.merit.of(&objectives), constraint })
     }
 
     /// Merit and penalty.

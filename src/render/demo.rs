@@ -3,11 +3,14 @@
 use std::path::Path;
 
 use super::kit::{Document, Id, NONE, Section, Sentence, Table, counted, deg, optional, probability};
-use crate::workflow::{
-    compare::{Comparison, Measure, Scope, Summary, Verdict},
-    fit::Fitted,
-    plan::Planned,
-    replan::Replanned,
+use crate::{
+    task::Objective,
+    workflow::{
+        compare::{Comparison, Measure, Scope, Summary, Verdict},
+        fit::Fitted,
+        plan::Planned,
+        replan::Replanned,
+    },
 };
 
 /// What happened.
@@ -44,7 +47,7 @@ pub fn document(story: &Story<'_>) -> Document {
             "plan task-1.toml -o plan.mcap".to_owned(),
             format!(
                 "{:.2} s through the key points, chosen among {} plans",
-                planned.chosen.objectives.duration_s,
+                planned.chosen.objectives[Objective::Duration],
                 planned.front.len()
             ),
         ),

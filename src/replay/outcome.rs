@@ -1,6 +1,6 @@
 //! What a replay found. Field names are those of the JSON report.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Rules;
 use crate::series::Noise;
@@ -140,7 +140,7 @@ pub struct PathError {
 }
 
 /// From rest, or out of the opposite motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {

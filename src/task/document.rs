@@ -54,10 +54,12 @@ pub(super) struct Document {
     pub(super) limits: Limits,
     /// Ceilings on the objectives.
     #[serde(default)]
-    pub(super) objectives: Objectives,
-    /// How the objectives weigh against each other, each scaled by its range over the front.
-    #[cfg_attr(test, schemars(with = "Option<FileWeights>"))]
-    pub(super) weights: Option<Spanned<FileWeights>>,
+    #[cfg_attr(test, schemars(schema_with = "ceilings"))]
+    pub(super) objectives: BTreeMap<String, Spanned<f64>>,
+    /// How the objectives weigh against each other, each scaled by its range over the front; not negative, not all
+    /// zero; zero for those left out.
+    #[cfg_attr(test, schemars(schema_with = "weights"))]
+    pub(super) weights: Option<Spanned<BTreeMap<String, Spanned<f64>>>>,
 }
 
 /// A pose that the plan passes through; give `angles_deg` or `tool`.
@@ -138,34 +140,20 @@ pub(super) struct Limits {
     pub(super) tool_speed_m_s: Option<Spanned<f64>>,
 }
 
-/// Ceilings on the objectives.
-#[derive(Deserialize, Default)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-#[expect(clippy::struct_field_names, reason = "the keys of the file")]
-pub(super) struct Objectives {
-    /// Total time, s.
-    #[cfg_attr(test, schemars(with = "Option<f64>"))]
-    pub(super) max_duration_s: Option<Spanned<f64>>,
-    /// Sum over joints of the root mean square jerk.
-    #[cfg_attr(test, schemars(with = "Option<f64>"))]
-    pub(super) max_rms_jerk_deg_s3: Option<Spanned<f64>>,
-    /// Sum over joints of the root mean square power, W.
-    #[cfg_attr(test, schemars(with = "Option<f64>"))]
-    pub(super) max_rms_power_w: Option<Spanned<f64>>,
+#[cfg(test)]
+fn closed(mut schema: schemars::Schema) -> schemars::Schema {
+    schema.insert("additionalProperties".into(), false.into());
+    schema
 }
 
-/// Weights, not negative, not all zero.
-#[derive(Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub(super) struct FileWeights {
-    /// Of the total time.
-    pub(super) duration: f64,
-    /// Of the root mean square jerk.
-    pub(super) rms_jerk: f64,
-    /// Of the root mean square power.
-    pub(super) rms_power: f64,
+#[cfg(test)]
+fn ceilings(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    closed(super::objective::schema(|row| row.ceiling))
+}
+
+#[cfg(test)]
+fn weights(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    closed(super::objective::schema(|row| row.weight))
 }
 
 #[cfg(test)]

@@ -5,8 +5,10 @@ use std::{collections::BTreeMap, ops::Range};
 use toml::Spanned;
 
 use super::{
-    ArmSource, Boundary, Bounds, JointLimits, KeyPoint, Place, Task, TaskError, Weights,
-    document::{ByJoint, Document, End, FileWeights, Limits, Point, Tool},
+    ArmSource, Boundary, ByObjective, Ceilings, JointLimits, KeyPoint, Objective, Place, Task, TaskError,
+    Weights,
+    document::{ByJoint, Document, End, Limits, Point, Tool},
+    objective::Row,
 };
 use crate::units::radians_from_degrees;
 
@@ -57,24 +59,6 @@ pub(super) fn parse(text: &str) -> Result<Task, TaskError> {
         None => None,
         Some(times) => Some(reader.times(times, points.len())?),
     };
-    let weights = match &file.weights {
-        None => None,
-        Some(given) => {
-            let FileWeights { duration, rms_jerk, rms_power } = *given.get_ref();
-            let all = [duration, rms_jerk, rms_power];
-            if all.iter().any(|w| !(w.is_finite() && *w >= 0.0)) || all.iter().sum::<f64>() <= 0.0 {
-                let expected = "weights of zero or more, not all zero, are expected";
-                let line = line_of(text, &given.span());
-                return Err(TaskError::Value {
-                    line,
-                    key: "weights".into(),
-                    found: format!("{all:?}"),
-                    expected,
-                });
-            }
-            Some(Weights { duration, rms_jerk, rms_power })
-        }
-    };
     let bound = |key, value: &Option<Spanned<f64>>| match value {
         Some(given) => reader.positive(key, given).map(Some),
         None => Ok(None),
@@ -93,13 +77,8 @@ pub(super) fn parse(text: &str) -> Result<Task, TaskError> {
         interval_s,
         limits: reader.limits(&file.limits)?,
         tool_speed_m_s: bound("limits.tool_speed_m_s", &file.limits.tool_speed_m_s)?.unwrap_or(f64::INFINITY),
-        bounds: Bounds {
-            duration_s: bound("max_duration_s", &file.objectives.max_duration_s)?,
-            rms_jerk_rad_s3: bound("max_rms_jerk_deg_s3", &file.objectives.max_rms_jerk_deg_s3)?
-                .map(radians_from_degrees),
-            rms_power_w: bound("max_rms_power_w", &file.objectives.max_rms_power_w)?,
-        },
-        weights,
+        ceilings: reader.ceilings(&file.objectives)?,
+        weights: reader.weights(file.weights.as_ref())?,
         times_s,
     })
 }
@@ -146,6 +125,51 @@ impl Reader<'_> {
         } else {
             Err(self.value(key, given, "a number above zero is expected"))
         }
+    }
+
+    /// Numbers by objective of a plan; `key` is the objective's key in this table, `otherwise` what those left out get.
+    fn by_objective(
+        &self,
+        table: &BTreeMap<String, Spanned<f64>>,
+        key: fn(&Row) -> &'static str,
+        otherwise: f64,
+    ) -> Result<ByObjective, TaskError> {
+        let known = || Objective::OF_PLAN.iter().copied();
+        if let Some((name, value)) =
+            table.iter().find(|(name, _)| known().all(|objective| key(objective.row()) != name.as_str()))
+        {
+            let keys: Vec<String> = known().map(|objective| format!("`{}`", key(objective.row()))).collect();
+            let message = format!("unknown field `{name}`, expected one of {}", keys.join(", "));
+            return Err(TaskError::Syntax {
+                line: line_of(self.text, &value.span()),
+                message: syntax(&message),
+            });
+        }
+        let value = |objective: Objective| table.get(key(objective.row())).map(|value| *value.get_ref());
+        Ok(ByObjective::NONE.map_plan(|objective| value(objective).unwrap_or(otherwise)))
+    }
+
+    fn ceilings(&self, given: &BTreeMap<String, Spanned<f64>>) -> Result<Ceilings, TaskError> {
+        let shown = self.by_objective(given, |row| row.ceiling, f64::INFINITY)?;
+        given.iter().try_for_each(|(key, value)| self.positive(key, value).map(drop))?;
+        Ok(Ceilings::NONE.map_plan(|objective| objective.from_shown(shown[objective])))
+    }
+
+    fn weights(
+        &self,
+        given: Option<&Spanned<BTreeMap<String, Spanned<f64>>>>,
+    ) -> Result<Option<Weights>, TaskError> {
+        let Some(given) = given else { return Ok(None) };
+        let weights = self.by_objective(given.get_ref(), |row| row.weight, 0.0)?;
+        if weights.are_weights() {
+            return Ok(Some(weights));
+        }
+        Err(TaskError::Value {
+            line: line_of(self.text, &given.span()),
+            key: "weights".into(),
+            found: format!("{:?}", weights.plan()),
+            expected: "weights of zero or more, not all zero, are expected",
+        })
     }
 
     fn arm(&self, file: &Document) -> Result<ArmSource, TaskError> {

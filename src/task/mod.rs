@@ -3,13 +3,15 @@
 //! A task file is TOML with angles in degrees, as the paper's tables have them; this folder is the
 //! edge where they become radians. A task knows the names of joints and nothing of links.
 
+mod by_objective;
 mod document;
 mod error;
 mod file;
-mod weights;
+mod objective;
 
+pub use by_objective::{ByObjective, Ceilings, Objectives, Weights};
 pub use error::TaskError;
-pub use weights::{Bounds, Weights};
+pub use objective::Objective;
 
 use std::path::Path;
 
@@ -115,7 +117,7 @@ pub struct Task {
     /// Speed of the tool, m/s; infinite where none is given.
     pub tool_speed_m_s: f64,
     /// Ceilings on the objectives.
-    pub bounds: Bounds,
+    pub ceilings: Ceilings,
     /// How the objectives weigh against each other once the ceilings hold.
     pub weights: Option<Weights>,
     /// A time for each key point, s, if the plan is not to be optimised but evaluated.

@@ -33,7 +33,7 @@ fn degrees_become_radians_and_joints_take_their_order() {
     assert_eq!(task.points[2].place, Place::Tool { x_m: 1.0, z_m: 2.0, pitch_rad });
     assert!(task.limits[0].velocity_rad_s.is_infinite());
     assert!((task.limits[1].velocity_rad_s - 10.0 * DEGREE_RAD).abs() < 1e-15);
-    assert_eq!(task.bounds.rms_jerk_rad_s3, Some(std::f64::consts::PI));
+    assert_eq!(task.ceilings[Objective::RmsJerk], std::f64::consts::PI);
     assert_eq!((task.degree, task.interval_s), (6, [0.3, 20.0]));
     assert_eq!(task.start.velocity_rad_s, [0.0, 0.0]);
 }
@@ -91,13 +91,4 @@ fn every_shipped_task_is_one() {
     let task =
         Task::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs/tasks/task-1.toml")).unwrap();
     assert_eq!((task.points.len(), task.dwell_s()), (6, 2.0));
-}
-
-#[test]
-fn a_ceiling_that_binds_nothing_gets_a_remark() {
-    let bounds = Bounds { duration_s: Some(40.0), rms_jerk_rad_s3: Some(17.0), rms_power_w: None };
-    let mut remarks = crate::remark::Remarks::default();
-    bounds.remark_inactive(38.0, 0.03, 100.0, &mut remarks);
-    assert_eq!(remarks.as_slice().len(), 1);
-    assert!(remarks.as_slice()[0].message.starts_with("max_rms_jerk_deg_s3 is 567 times"));
 }

@@ -4,8 +4,8 @@ use rerun::{Color, LineStrips2D, Points2D, RecordingStream};
 
 use super::{ViewError, color, stream::single};
 use crate::{
-    units::degrees_from_radians,
-    workflow::view::{Front, Scene},
+    task::{Objective, Objectives},
+    workflow::{plan::PlanDocument, view::Scene},
 };
 
 /// Where the fronts of all runs are.
@@ -15,14 +15,14 @@ const WIDE: f64 = 2.4;
 /// What is to be seen along x and y: the axes and their words.
 pub(super) const SIGHT: [[f64; 2]; 2] = [[-0.3, WIDE + 0.3], [-0.12, 1.22]];
 
-/// Duration, s, jerk, rad/s³, power, W.
-type Objectives = [f64; 3];
-
 pub(super) fn send(rec: &RecordingStream, scenes: &[Scene]) -> Result<(), ViewError> {
-    let fronts: Vec<(usize, &Front)> =
+    let fronts: Vec<(usize, &PlanDocument)> =
         scenes.iter().enumerate().filter_map(|(i, scene)| Some((i, scene.front.as_ref()?))).collect();
-    let all: Vec<Objectives> =
-        fronts.iter().flat_map(|(_, front)| front.objectives.iter().chain(&front.chosen)).copied().collect();
+    let all: Vec<Objectives> = fronts
+        .iter()
+        .flat_map(|(_, plan)| objectives(plan).chain([&plan.chosen.entry.objectives]))
+        .copied()
+        .collect();
     if all.len() < 2 {
         return Ok(());
     }
@@ -31,17 +31,17 @@ pub(super) fn send(rec: &RecordingStream, scenes: &[Scene]) -> Result<(), ViewEr
     for (k, (run, front)) in fronts.iter().enumerate() {
         let name = scenes.get(*run).map_or("", |scene| &scene.name);
         // Runs of one plan hold the same front.
-        let known = fronts.iter().take(k).any(|(_, before)| before.objectives == front.objectives);
+        let known = fronts.iter().take(k).any(|(_, before)| before.front == front.front);
         if !known {
-            let points = Points2D::new(front.objectives.iter().map(|f| axes.place(f)))
-                .with_radii(front.objectives.iter().map(|f| axes.radius(f)))
+            let points = Points2D::new(objectives(front).map(|f| axes.place(f)))
+                .with_radii(objectives(front).map(|f| axes.radius(f)))
                 .with_colors([color::planned(*run)])
-                .with_labels(front.objectives.iter().map(words))
+                .with_labels(objectives(front).map(words))
                 .with_show_labels(false);
             rec.log_static(format!("{ROOT}/{k}/all"), &points)?;
         }
-        let same = fronts.iter().take(k).any(|(_, before)| before.chosen == front.chosen);
-        if let Some(chosen) = front.chosen.filter(|_| !same) {
+        let chosen = front.chosen.entry.objectives;
+        if !fronts.iter().take(k).any(|(_, before)| before.chosen.entry.objectives == chosen) {
             let whose = if fronts.len() > 1 { name } else { "chosen" };
             let point = Points2D::new([axes.place(&chosen)])
                 .with_radii([0.026_f32])
@@ -55,7 +55,8 @@ pub(super) fn send(rec: &RecordingStream, scenes: &[Scene]) -> Result<(), ViewEr
 }
 
 fn words(f: &Objectives) -> String {
-    format!("{:.2} s, {:.1} deg/s³, {:.0} W", f[0], degrees_from_radians(f[1]), f[2])
+    let each: Vec<String> = Objective::OF_PLAN.iter().map(|&k| k.text(f[k])).collect();
+    each.join(", ")
 }
 
 /// Fronts fall steeply and end flat: even steps would hide most of one in the corner.
@@ -63,20 +64,27 @@ fn log(value: f64) -> f64 {
     value.max(f64::MIN_POSITIVE).ln()
 }
 
-/// Least and most of each objective.
-struct Axes([[f64; 2]; 3]);
+/// The objectives to the right, upwards, and by size.
+const SHOWN: [Objective; 3] = [Objective::Duration, Objective::RmsJerk, Objective::RmsPower];
+
+/// Least and most of each objective shown.
+struct Axes([[f64; 2]; SHOWN.len()]);
+
+fn objectives(plan: &PlanDocument) -> impl Iterator<Item = &Objectives> {
+    plan.front.iter().map(|plan| &plan.objectives)
+}
 
 impl Axes {
     fn of(all: &[Objectives]) -> Self {
-        let range = |k: usize| {
+        let range = |k: Objective| {
             all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(f[k]), b.max(f[k])])
         };
-        Self([0, 1, 2].map(range))
+        Self(SHOWN.map(range))
     }
 
     fn share(&self, f: &Objectives, k: usize) -> f64 {
         let [least, most] = self.0[k].map(log);
-        (log(f[k]) - least) / (most - least).max(f64::MIN_POSITIVE)
+        (log(f[SHOWN[k]]) - least) / (most - least).max(f64::MIN_POSITIVE)
     }
 
     fn place(&self, f: &Objectives) -> [f32; 2] {
@@ -94,13 +102,13 @@ impl Axes {
         let lines =
             LineStrips2D::new([frame]).with_colors([grey]).with_radii([rerun::Radius::new_ui_points(0.7)]);
         rec.log_static(format!("{ROOT}/axes"), &lines)?;
-        let [duration_s, jerk_rad_s3, _] = self.0;
-        let jerk_deg_s3 = jerk_rad_s3.map(degrees_from_radians);
+        let [across, up, _] = SHOWN;
+        let [right, top, _] = self.0;
         let ticks = [
-            ([0.0, 1.08], format!("{:.1} s", duration_s[0])),
-            ([WIDE, 1.08], format!("{:.1} s", duration_s[1])),
-            ([-0.16, 0.96], format!("{:.1} deg/s³", jerk_deg_s3[0])),
-            ([-0.16, 0.0], format!("{:.1} deg/s³", jerk_deg_s3[1])),
+            ([0.0, 1.08], across.text(right[0])),
+            ([WIDE, 1.08], across.text(right[1])),
+            ([-0.16, 0.96], up.text(top[0])),
+            ([-0.16, 0.0], up.text(top[1])),
         ];
         let words = Points2D::new(ticks.iter().map(|(place, _)| single(*place)))
             .with_labels(ticks.iter().map(|(_, words)| words.as_str()))

@@ -34,7 +34,7 @@ pub use form::ReportFormat;
 pub use import::ImportArgs;
 pub use join::JoinArgs;
 pub use moea::{MoeaArgs, MoeaFormat, OperatorSet};
-pub use plan::{ChoiceArgs, PlanArgs, RuleName, SearchArgs};
+pub use plan::{ChoiceArgs, PlanArgs, SearchArgs};
 pub use replan::{ChangeArgs, ReplanArgs};
 pub use simulate::SimulateArgs;
 pub use terminal::{CompletionsArgs, ManArgs, TerminalArgs};

@@ -5,13 +5,16 @@ use std::{
     time::Duration,
 };
 
-use clap::{ArgAction, ValueEnum, builder::PossibleValuesParser};
+use clap::{
+    ArgAction,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
 
 use super::{FigureArgs, ends};
 use crate::{
     moea::{Budget, CONTENDERS, Contender},
     plan::{Rule, Search},
-    task::Weights,
+    task::{Objective, Weights},
     workflow::plan::Options,
 };
 
@@ -104,29 +107,29 @@ pub struct SearchArgs {
 #[command(next_help_heading = "Choosing")]
 pub struct ChoiceArgs {
     /// Rule; by default the task's weights, or the ideal
-    #[arg(long, value_enum, value_name = "RULE")]
-    pub choose: Option<RuleName>,
+    #[arg(long, value_name = "RULE", value_parser = rules())]
+    pub choose: Option<Rule>,
 
-    /// Weights of time, jerk and power, in place of the task's
-    #[arg(long, value_name = "T,J,P", value_parser = weights, conflicts_with = "choose")]
+    #[arg(long, value_name = "W,...", help = weights_help(), value_parser = weights, conflicts_with = "choose")]
+    /// Weights in place of the task's.
     pub weights: Option<Weights>,
 }
 
-/// Rules by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum RuleName {
-    /// Least weighted sum, equal weights if there are none
-    Weights,
-    /// Nearest to the best of every objective
-    Ideal,
-    /// Where giving up a little costs most
-    Knee,
-    /// Least time
-    Fastest,
-    /// Least jerk
-    Smoothest,
-    /// Least power
-    Thriftiest,
+/// Every rule by its name, with what it does.
+fn rules() -> impl TypedValueParser<Value = Rule> {
+    let said = |rule: Rule| match rule {
+        Rule::Weights => "Least weighted sum, equal weights if there are none".to_owned(),
+        Rule::Ideal => "Nearest to the best of every objective".to_owned(),
+        Rule::Knee => "Where giving up a little costs most".to_owned(),
+        Rule::Best(objective) => format!("Least {}", objective.row().name),
+    };
+    PossibleValuesParser::new(Rule::all().map(|rule| PossibleValue::new(rule.name()).help(said(rule))))
+        .try_map(|name| Rule::named(&name).ok_or("no rule"))
+}
+
+fn weights_help() -> String {
+    let names: Vec<&str> = Objective::OF_PLAN.iter().map(|objective| objective.row().short).collect();
+    format!("Weights in place of the task's, in this order: {}", names.join(", "))
 }
 
 impl PlanArgs {
@@ -164,16 +167,7 @@ impl PlanArgs {
             (_, _, Some(_)) => Budget::Observer,
             _ => default.budget,
         };
-        let rule = match self.choice.choose {
-            _ if self.choice.weights.is_some() => Some(Rule::Weights),
-            None => None,
-            Some(RuleName::Weights) => Some(Rule::Weights),
-            Some(RuleName::Ideal) => Some(Rule::Ideal),
-            Some(RuleName::Knee) => Some(Rule::Knee),
-            Some(RuleName::Fastest) => Some(Rule::Fastest),
-            Some(RuleName::Smoothest) => Some(Rule::Smoothest),
-            Some(RuleName::Thriftiest) => Some(Rule::Thriftiest),
-        };
+        let rule = self.choice.weights.map(|_| Rule::Weights).or(self.choice.choose);
         Options {
             search: Search {
                 algorithm: Contender::named(&self.search.algorithm)
@@ -218,12 +212,13 @@ fn seconds(text: &str) -> Result<Duration, String> {
 
 fn weights(text: &str) -> Result<Weights, String> {
     let values = text.split(',').map(|part| number(part, "a weight")).collect::<Result<Vec<_>, _>>()?;
-    match values[..] {
-        [duration, rms_jerk, rms_power]
-            if values.iter().all(|w| *w >= 0.0) && values.iter().sum::<f64>() > 0.0 =>
-        {
-            Ok(Weights { duration, rms_jerk, rms_power })
-        }
-        _ => Err(format!("{text:?} is not three weights of zero or more, not all zero, such as 1,1,2")),
+    let weights = Weights::from_slice(&values);
+    let count = Objective::OF_PLAN.len();
+    if values.len() == count && weights.are_weights() {
+        return Ok(weights);
     }
+    Err(format!(
+        "{text:?} is not {count} weights of zero or more, not all zero, such as {}",
+        vec!["1"; count].join(",")
+    ))
 }

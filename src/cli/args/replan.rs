@@ -24,7 +24,7 @@ pub struct ReplanArgs {
     #[arg(long, value_name = "FILE")]
     pub task: Option<PathBuf>,
 
-    /// One JSON document, as schemas/replan.v1.schema.json in the repository describes it
+    /// One JSON document, as schemas/replan.v2.schema.json in the repository describes it
     #[arg(long)]
     pub json: bool,
 

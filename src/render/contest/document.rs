@@ -39,7 +39,7 @@ struct Plan<'a> {
 
 fn plan(row: &Row) -> Plan<'_> {
     let evaluation = row.evaluation.as_ref();
-    let f = evaluation.map(|evaluation| evaluation.objectives.as_array());
+    let f = evaluation.map(|evaluation| [0, 1, 2].map(|k| evaluation.objectives.plan()[k]));
     Plan {
         plan: name(row.whose),
         printed_f2: row.printed.map(|printed| printed.f2),

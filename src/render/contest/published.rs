@@ -39,7 +39,7 @@ fn row(row: &Row, joints: &[String]) -> Vec<String> {
     let mut cells = vec![name(row.whose)];
     let (limit, worth) = match &row.evaluation {
         Some(evaluation) => {
-            let [f1, f2, f3] = evaluation.objectives.as_array();
+            let [f1, f2, f3] = [0, 1, 2].map(|k| evaluation.objectives.plan()[k]);
             let f2 = degrees_from_radians(f2);
             let worth = [format!("{f1:.2}"), format!("{f2:.4}"), format!("{f3:.2}")];
             (limit_cell(evaluation, joints), worth)

@@ -1,12 +1,8 @@
 //! What a fit found: tables, JSON, and the file that brings it back.
 
-mod document;
-mod file;
 mod page;
 mod tables;
 
-pub use document::fit_json as json;
-pub use file::limits_toml;
 pub(super) use page::fitted;
 pub use tables::document;
 

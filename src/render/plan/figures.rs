@@ -7,7 +7,7 @@ use crate::{
         Failure, Figure,
         figure::{figure, numbered},
     },
-    workflow::{plan::Planned, plan::front::Front},
+    workflow::plan::PlanDocument,
 };
 
 /// The plots of a search and of the motion it chose.
@@ -15,9 +15,9 @@ use crate::{
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn figures(title: &str, planned: &Planned, course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
-    let mut figures = front_figures(&Front::of(title, planned))?;
-    figures.extend(motion_figures(&planned.joints, course)?);
+pub fn figures(plan: &PlanDocument, course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
+    let mut figures = front_figures(plan)?;
+    figures.extend(motion_figures(&plan.joints, course)?);
     Ok(figures)
 }
 
@@ -31,6 +31,6 @@ pub fn motion_figures(joints: &[String], course: &SampledMotion) -> Result<Vec<F
 }
 
 /// The plots of a front.
-pub(in crate::render) fn front_figures(front: &Front) -> Result<Vec<Figure>, Failure> {
-    front_charts(front).into_iter().map(|(name, chart)| figure(name, &chart)).collect()
+pub(in crate::render) fn front_figures(front: &PlanDocument) -> Result<Vec<Figure>, Failure> {
+    front_charts(front).into_iter().map(|(name, chart)| figure(&name, &chart)).collect()
 }

@@ -10,21 +10,19 @@ use crate::{
             chart::{Chart, Panel, Role, Series, Size, span},
         },
     },
-    units::degrees_from_radians,
-    workflow::plan::front::Front,
+    task::{Objective, Objectives},
+    workflow::plan::PlanDocument,
 };
 
-/// Labels of f1, f2 and f3.
-const LABELS: [&str; 3] = ["Time (s)", "RMS jerk (deg/s\u{b3})", "RMS power (W)"];
-/// Objectives over each other.
-const VIEWS: [(&str, usize, usize); 3] =
-    [("Jerk over time", 0, 1), ("Power over time", 0, 2), ("Power over jerk", 1, 2)];
+/// Plans of a document beyond this are not shown.
+const MOST: usize = 5000;
 
-pub(in crate::render) fn front(front: &Front, plots: &mut Plots) -> Markup {
+pub(in crate::render) fn front(front: &PlanDocument, plots: &mut Plots) -> Markup {
     html! {
         p class="hint" {
-            (counted(front.plans.len(), "plan")) " of which none is better than another in everything. A is the fastest, B \
-            the smoothest, C takes the least power. Less is better on every axis."
+            (counted(front.front.len().min(MOST), "plan")) " on the Pareto front. "
+            @for objective in Objective::OF_PLAN { (objective.letter()) ": " (objective.row().best) ". " }
+            "Less is better on every axis."
             @if front.convergence.len() > 1 {
                 " On the way plans are judged less exactly than those of the last hypervolume."
             }
@@ -34,49 +32,54 @@ pub(in crate::render) fn front(front: &Front, plots: &mut Plots) -> Markup {
 }
 
 /// Plots with names for their files.
-pub(super) fn front_charts(front: &Front) -> Vec<(&'static str, Chart)> {
-    let mut charts: Vec<(&'static str, Chart)> = Vec::new();
-    if !front.plans.is_empty() {
-        let names = ["front-time-jerk", "front-time-power", "front-jerk-power"];
-        charts.extend(names.into_iter().zip(VIEWS.map(|view| projection(front, view))));
+pub(super) fn front_charts(front: &PlanDocument) -> Vec<(String, Chart)> {
+    let mut charts = Vec::new();
+    if !front.front.is_empty() {
+        let all = Objective::OF_PLAN;
+        for (k, across) in all.iter().enumerate() {
+            for up in &all[k + 1..] {
+                let name = format!("front-{}-{}", across.row().short, up.row().short).replace(' ', "-");
+                charts.push((name, projection(front, *across, *up)));
+            }
+        }
     }
     if front.convergence.len() > 1 {
-        charts.push(("convergence", convergence(front)));
+        charts.push(("convergence".to_owned(), convergence(front)));
     }
     charts
 }
 
-fn projection(front: &Front, (title, across, up): (&str, usize, usize)) -> Chart {
-    let named: Vec<(&str, [f64; 3])> = front
-        .best
-        .iter()
-        .flat_map(|best| ["A", "B", "C"].into_iter().zip(*best))
-        .chain([("chosen", front.chosen)])
-        .collect();
+fn projection(front: &PlanDocument, across: Objective, up: Objective) -> Chart {
+    let best = front.best().map(|(letter, objectives)| (letter.to_string(), objectives));
+    let named: Vec<(String, &Objectives)> =
+        best.chain([("chosen".to_owned(), &front.chosen.entry.objectives)]).collect();
+    let (upper, lower) = (up.row().short, across.row().short);
+    let mut title = format!("{upper} over {lower}");
+    title[..1].make_ascii_uppercase();
     let series = |name: &str, role, x, y, names| Series { name: name.to_owned(), role, x, y, names };
-    let of = |plans: &mut dyn Iterator<Item = [f64; 3]>, k: usize| {
-        plans.map(|f| shown(f, k)).collect::<Vec<f64>>()
+    let of = |plans: &mut dyn Iterator<Item = &Objectives>, k: Objective| {
+        plans.map(|f| (k.shown(f[k]) * 1e5).round() / 1e5).collect::<Vec<f64>>()
     };
-    let all = || front.plans.iter().copied();
+    let all = || front.front.iter().take(MOST).map(|plan| &plan.objectives);
     let few = || named.iter().map(|(_, f)| *f);
     let xs = vec![of(&mut all(), across), of(&mut few(), across)];
     let [low, high] = span(xs.iter().flatten().copied());
     let room = 0.05 * (high - low);
     Chart {
-        title: title.to_owned(),
-        x_label: LABELS[across],
+        title,
+        x_label: across.row().axis,
         xs,
         x_range: Some([low - room, high + 2.0 * room]),
         panels: vec![Panel {
-            label: LABELS[up].to_owned(),
+            label: up.row().axis.to_owned(),
             series: vec![
                 series("plan", Role::Point, 0, of(&mut all(), up), Vec::new()),
                 series(
-                    "A, B, C and chosen",
+                    "best and chosen",
                     Role::Named,
                     1,
                     of(&mut few(), up),
-                    named.iter().map(|(name, _)| (*name).to_owned()).collect(),
+                    named.iter().map(|(name, _)| name.clone()).collect(),
                 ),
             ],
             share: 1.0,
@@ -88,13 +91,7 @@ fn projection(front: &Front, (title, across, up): (&str, usize, usize)) -> Chart
     }
 }
 
-/// An objective as its label says.
-fn shown(f: [f64; 3], k: usize) -> f64 {
-    let value = if k == 1 { degrees_from_radians(f[k]) } else { f[k] };
-    (value * 1e5).round() / 1e5
-}
-
-fn convergence(front: &Front) -> Chart {
+fn convergence(front: &PlanDocument) -> Chart {
     let steps = &front.convergence;
     Chart {
         title: "How the front grew".to_owned(),

@@ -1,12 +1,10 @@
 //! What was planned.
 
-mod document;
 mod figures;
 mod front;
 mod page;
 mod tables;
 
-pub use document::{judged_json, plan_json as json};
 pub(super) use figures::front_figures;
 pub use figures::{figures, motion_figures};
 pub(super) use front::front;

@@ -16,30 +16,26 @@ use crate::{
             headed, next_steps, verdict,
         },
     },
-    task::Bounds,
+    task::{Ceilings, Objective},
     units::degrees_from_radians,
-    workflow::{
-        plan::front::Front,
-        plan::{Options, Planned},
-    },
+    workflow::plan::{Options, PlanDocument, Planned},
 };
 
 /// What a search found, as one page.
 pub fn page(
-    title: &str,
-    algorithm: &str,
+    plan: &PlanDocument,
     options: &Options,
-    bounds: &Bounds,
+    ceilings: &Ceilings,
     planned: &Planned,
     course: &SampledMotion,
 ) -> String {
-    let mut document = document(title, algorithm, options, bounds, planned);
+    let algorithm = plan.algorithm.as_deref().unwrap_or_default();
+    let mut document = document(&plan.title, algorithm, options, ceilings, planned);
     document.facts = facts(&planned.joints, algorithm, options, planned);
     let mut plots = Plots::default();
-    let found = Front::of(title, planned);
     let mut chapters = vec![
         Chapter { id: "summary", heading: "In short", body: summary(planned) },
-        Chapter { id: "front", heading: "The front", body: front(&found, &mut plots) },
+        Chapter { id: "front", heading: "The front", body: front(plan, &mut plots) },
         Chapter {
             id: "motion",
             heading: "The chosen motion",
@@ -90,14 +86,13 @@ fn facts(joints: &[String], algorithm: &str, options: &Options, planned: &Planne
 }
 
 fn summary(planned: &Planned) -> Markup {
-    let [a, b, c] = &planned.best;
     html! {
         div class="cards" {
             (limits(&planned.chosen, &planned.joints))
             (cost("Chosen", &planned.chosen))
-            (cost("A, the fastest", a))
-            (cost("B, the smoothest", b))
-            (cost("C, of least power", c))
+            @for (objective, plan) in Objective::OF_PLAN.iter().zip(&planned.best) {
+                (cost(&format!("{}, {}", objective.letter(), objective.row().best), plan))
+            }
         }
         (next_steps(&next(planned)))
     }
@@ -154,12 +149,10 @@ fn limits(evaluation: &PlanEvaluation, joints: &[String]) -> Markup {
 }
 
 fn cost(label: &str, evaluation: &PlanEvaluation) -> Markup {
-    let f = evaluation.objectives;
-    let body = html! {
-        p { (format!("RMS jerk {:.4} deg/s3", degrees_from_radians(f.rms_jerk_rad_s3))) }
-        p { (format!("RMS power {:.2} W", f.rms_power_w)) }
-    };
-    card("", label, &format!("{:.2} s", f.duration_s), &body)
+    let text = |k: Objective| k.text(evaluation.objectives[k]);
+    let (first, others) = Objective::OF_PLAN.split_first().unwrap_or((&Objective::Duration, &[]));
+    let body = html! { @for k in others { p { (k.row().name) " " (text(*k)) } } };
+    card("", label, &text(*first), &body)
 }
 
 fn next(planned: &Planned) -> Vec<Sentence> {

@@ -2,9 +2,9 @@
 
 use super::{name, shown};
 use crate::{
-    plan::{BEYOND, Limit, Margin, Objectives, PlanEvaluation, Rule},
-    render::kit::{Document, Id, NONE, Section, Sentence, Table},
-    task::Bounds,
+    plan::{BEYOND, Limit, Margin, PlanEvaluation, Rule},
+    render::kit::{Column, Document, Id, NONE, Section, Sentence, Table},
+    task::{Ceilings, Objective, Weights},
     units::degrees_from_radians,
     workflow::plan::{Options, Planned},
 };
@@ -21,12 +21,12 @@ pub fn document(
     title: &str,
     algorithm: &str,
     options: &Options,
-    bounds: &Bounds,
+    ceilings: &Ceilings,
     planned: &Planned,
 ) -> Document {
     let start = if options.search.seeded { "descents" } else { "random plans" };
     let searched = format!(
-        "{} plans of which none is better than another in everything, from {} evaluations: {algorithm}, started \
+        "{} plans on the Pareto front, from {} evaluations: {algorithm}, started \
          from {start}, seed {}. Hypervolume {:.4} of the box from the best of each objective to {BEYOND} times the \
          range.",
         planned.front.len(),
@@ -34,22 +34,26 @@ pub fn document(
         options.search.seed,
         planned.hypervolume,
     );
-    let [a, b, c] = &planned.best;
-    let named = [("A  fastest", a), ("B  smoothest", b), ("C  least power", c), ("chosen", &planned.chosen)];
-    let hasty = (planned.fastest_converged == Some(false)).then(|| {
+    let best = Objective::OF_PLAN.iter().zip(&planned.best);
+    let mut rows: Vec<Vec<String>> = best
+        .map(|(k, evaluation)| row(&format!("{}  {}", k.letter(), k.row().best), evaluation, &planned.joints))
+        .collect();
+    rows.push(row("chosen", &planned.chosen, &planned.joints));
+    let longer = (planned.fastest_converged == Some(false)).then(|| {
         Sentence::advice(
             "The fastest plan was still getting faster when its share of the evaluations was used up: give more with \
              --evaluations.",
         )
     });
-    let another = "Another: --choose fastest, smoothest, thriftiest, knee or ideal, --weights, or ceilings in the task.";
+    let rules: Vec<&str> = Rule::all().filter(|rule| *rule != Rule::Weights).map(Rule::name).collect();
+    let another = format!("Another: --choose {}; --weights; or ceilings in the task.", rules.join(", "));
     let mut document = Document::titled(title)
         .with(Section::plain(Id::SUMMARY, [Sentence::finding(searched)]))
-        .with(Section::new(Id::OTHER, "Plans", [plans(named, &planned.joints)]).with_all(hasty))
+        .with(Section::new(Id::OTHER, "Plans", [plans(rows)]).with_all(longer))
         .with(Section::new(
             Id::OTHER,
             "The chosen plan",
-            [Sentence::finding(reason(bounds, planned)), Sentence::advice(another)],
+            [Sentence::finding(reason(ceilings, planned)), Sentence::advice(another)],
         ));
     document.sections.extend(margins(&planned.chosen, &planned.joints));
     document.remarked(&planned.remarks)
@@ -58,19 +62,19 @@ pub fn document(
 /// One given plan, for people.
 pub fn judged_document(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Document {
     let work = format!("The joints do and take up {:.0} J of work together.", evaluation.energy_j);
-    let given = Section::plain(Id::SUMMARY, [plans([("given", evaluation)], joints)]);
+    let given = Section::plain(Id::SUMMARY, [plans([row("given", evaluation, joints)])]);
     let mut document = Document::titled(title).with(given.with(Sentence::finding(work)));
     document.sections.extend(margins(evaluation, joints));
     document
 }
 
-/// A row each.
-fn plans<const N: usize>(named: [(&str, &PlanEvaluation); N], joints: &[String]) -> Table {
-    Table::new(
-        &["plan", "arrivals s"],
-        &["time s", "RMS jerk deg/s3", "RMS power W", "nearest limit"],
-        named.map(|(name, evaluation)| row(name, evaluation, joints)),
-    )
+fn plans(rows: impl IntoIterator<Item = Vec<String>>) -> Table {
+    let costs = Objective::OF_PLAN.iter().map(|objective| {
+        let row = objective.row();
+        Column::numbers(row.heading).meaning(row.explanation)
+    });
+    let words = ["plan", "arrivals s"].map(Column::words).into_iter();
+    Table::of(words.chain(costs).chain([Column::numbers("nearest limit")]), rows)
 }
 
 fn kept(evaluation: &PlanEvaluation) -> String {
@@ -81,19 +85,13 @@ fn kept(evaluation: &PlanEvaluation) -> String {
 }
 
 fn row(name: &str, evaluation: &PlanEvaluation, joints: &[String]) -> Vec<String> {
-    let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = evaluation.objectives;
     let arrivals: Vec<String> = evaluation.times_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
-    let nearest = nearest(evaluation).into_iter().next();
-    vec![
-        name.to_owned(),
-        arrivals.join(" "),
-        format!("{duration_s:.2}"),
-        format!("{:.4}", degrees_from_radians(rms_jerk_rad_s3)),
-        format!("{rms_power_w:.2}"),
-        nearest.map_or(NONE.to_owned(), |margin| {
-            format!("{} % {}", percent(margin.share), subject(margin, joints))
-        }),
-    ]
+    let mut row = vec![name.to_owned(), arrivals.join(" ")];
+    row.extend(Objective::OF_PLAN.iter().map(|&k| k.number(evaluation.objectives[k])));
+    row.push(nearest(evaluation).first().map_or(NONE.to_owned(), |margin| {
+        format!("{} % {}", percent(margin.share), subject(margin, joints))
+    }));
+    row
 }
 
 /// The limit that is broken most, and how many more are, or the nearest.
@@ -132,37 +130,29 @@ fn subject(margin: &Margin, joints: &[String]) -> String {
 }
 
 /// Why a plan was chosen.
-fn reason(bounds: &Bounds, planned: &Planned) -> String {
+fn reason(ceilings: &Ceilings, planned: &Planned) -> String {
     let choice = &planned.choice;
     let why = match choice.rule {
         Rule::Weights => {
-            let weights = choice.weights.map_or(String::new(), |w| {
-                format!(" {} time, {} jerk, {} power", w.duration, w.rms_jerk, w.rms_power)
-            });
+            let each = |w: Weights| {
+                let each = Objective::OF_PLAN.iter().map(|&k| format!("{} {}", w[k], k.row().short));
+                format!(" {}", each.collect::<Vec<_>>().join(", "))
+            };
+            let weights = choice.weights.map_or(String::new(), each);
             format!("Least sum by the weights{weights}, each objective scaled by its range")
         }
         Rule::Ideal => "Nearest to the best of every objective, each scaled by its range".into(),
         Rule::Knee => "The knee: giving up a little of one objective costs most of another".into(),
-        Rule::Fastest => "The fastest".into(),
-        Rule::Smoothest => "The smoothest".into(),
-        Rule::Thriftiest => "The one of least power".into(),
+        Rule::Best(objective) => format!("The plan of least {}", objective.row().name),
     };
-    let ceilings = ceilings(bounds);
+    let text = |(k, ceiling): (Objective, f64)| trimmed(&format!("{:.6} {}", k.shown(ceiling), k.row().unit));
+    let ceilings: Vec<String> = ceilings.known().map(text).collect();
     let among = if ceilings.is_empty() {
         format!("all {}", choice.of)
     } else {
         format!("{} of {} within {}", choice.within, choice.of, ceilings.join(", "))
     };
     format!("{why}, among {among}; then moved to where the rule has its optimum.")
-}
-
-fn ceilings(bounds: &Bounds) -> Vec<String> {
-    let each = [
-        bounds.duration_s.map(|s| format!("{s} s")),
-        bounds.rms_jerk_rad_s3.map(|rad| format!("{:.6} deg/s3", degrees_from_radians(rad))),
-        bounds.rms_power_w.map(|w| format!("{w} W")),
-    ];
-    each.into_iter().flatten().map(|text| trimmed(&text)).collect()
 }
 
 /// Without the zeros that a fixed number of decimals leaves.
@@ -273,29 +263,14 @@ pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation)
 }
 
 /// What the nearest plan exceeds its ceilings by, a line each, and what holds it there.
-pub fn ceiling_lines(
-    bounds: &Bounds,
-    joints: &[String],
-    nearest: &PlanEvaluation,
-    share: [f64; 3],
-) -> Vec<String> {
-    let f = nearest.objectives;
-    let values = [
-        (format!("time {:.2} s", f.duration_s), bounds.duration_s.map(|s| format!("{s:.2} s"))),
-        (
-            format!("RMS jerk {:.4} deg/s3", degrees_from_radians(f.rms_jerk_rad_s3)),
-            bounds.rms_jerk_rad_s3.map(|rad| format!("{:.4} deg/s3", degrees_from_radians(rad))),
-        ),
-        (format!("RMS power {:.2} W", f.rms_power_w), bounds.rms_power_w.map(|w| format!("{w:.2} W"))),
-    ];
-    let mut lines: Vec<String> = values
-        .into_iter()
-        .zip(share)
-        .filter(|(_, share)| *share > 1.0)
-        .filter_map(|((value, ceiling), share)| {
-            Some(format!("{value}, {} is asked for: {:.1} % too much", ceiling?, 100.0 * (share - 1.0)))
-        })
-        .collect();
+pub fn ceiling_lines(ceilings: &Ceilings, joints: &[String], nearest: &PlanEvaluation) -> Vec<String> {
+    let over = |(k, ceiling): (Objective, f64)| {
+        let share = nearest.objectives[k] / ceiling;
+        let (name, found, asked) = (k.row().name, k.text(nearest.objectives[k]), k.text(ceiling));
+        (share > 1.0)
+            .then(|| format!("{name} {found}, {asked} is asked for: {:.1} % too much", 100.0 * (share - 1.0)))
+    };
+    let mut lines: Vec<String> = ceilings.known().filter_map(over).collect();
     let mut tight: Vec<&Margin> = nearest.margins.iter().filter(|margin| margin.share > TIGHT).collect();
     tight.sort_by(|a, b| b.share.total_cmp(&a.share));
     let tight: Vec<String> =

@@ -1,9 +1,7 @@
 //! What was planned again.
 
-mod document;
 mod tables;
 
-pub use document::replan_json as json;
 pub use tables::document;
 
 use crate::{plan::Limit, workflow::replan::Replanned};

@@ -8,6 +8,7 @@ use crate::{
         kit::{Block, Document, Fact, Id, NONE, Section, Sentence, Table, counted, deg, fact, optional},
         plan,
     },
+    task::Objective,
     units::degrees_from_radians,
     workflow::replan::{HeldTo, JointCommand, Origin, Predicted, Replanned},
 };
@@ -83,24 +84,12 @@ fn expected(replanned: &Replanned) -> Table {
             percent(before.duration_s, replanned.duration_s),
         ],
     ];
-    let costs =
-        (&replanned.objectives_before, replanned.evaluation.as_ref().map(|evaluation| evaluation.objectives));
-    if let (Some(was), Some(is)) = costs {
-        let [jerk, then] = [was.rms_jerk_rad_s3, is.rms_jerk_rad_s3];
-        rows.push(vec![
-            "RMS jerk deg/s3".into(),
-            format!("{:.4}", degrees_from_radians(jerk)),
-            NONE.into(),
-            format!("{:.4}", degrees_from_radians(then)),
-            percent(jerk, then),
-        ]);
-        rows.push(vec![
-            "RMS power W".into(),
-            format!("{:.1}", was.rms_power_w),
-            NONE.into(),
-            format!("{:.1}", is.rms_power_w),
-            percent(was.rms_power_w, is.rms_power_w),
-        ]);
+    if let (Some(was), Some(evaluation)) = (&replanned.objectives_before, &replanned.evaluation) {
+        let is = evaluation.objectives;
+        rows.extend(Objective::OF_PLAN.iter().filter(|k| **k != Objective::Duration).map(|&k| {
+            let change = percent(was[k], is[k]);
+            vec![k.row().heading.to_owned(), k.number(was[k]), NONE.into(), k.number(is[k]), change]
+        }));
     }
     Table::new(&[""], &["last run", "its model", "next run", "change"], rows)
 }

@@ -1,50 +1,42 @@
-//! A plan as a log that any MCAP tool opens: the trajectory, the plan sample by sample, the task and
-//! the front as files within, and where it comes from.
-
-use std::collections::BTreeMap;
+//! The log of a plan, for any MCAP tool: plan and command sample by sample, what to send as a trajectory, the arm, and
+//! what our logs carry.
 
 use super::{
+    Carried,
     arm_log::ArmLog,
     stamp::{START_NS, TRAJECTORY_HZ, instants},
 };
 use crate::{
-    log::{LogWriter, Point, Role, WriteError, WriteOptions},
-    plan::Setup,
+    arm::Chain,
+    log::{LogWriter, Point, Role, Topics, WriteError, WriteOptions},
+    math::State,
+    series::{Series, Track},
     spline::{Motion, Quantity, Samples},
     units::nanoseconds,
 };
 
-/// Name of the attached task.
-pub const TASK: &str = "task.toml";
-/// Name of an attached task of which only the arm counts: what the log holds does another thing.
-pub const ARM: &str = "arm.toml";
-/// Name of the attached front.
-pub const FRONT: &str = "plan.json";
-/// Name of the metadata that say where a plan comes from.
-pub const PROVENANCE: &str = "hydrotrace.plan";
-
-/// Key of the provenance that says when the times of the plan count from, s since the start of the log; 0 without.
-pub const STARTS: &str = "starts_s";
-
-/// Arrivals of the chosen plan in the document of a plan, s.
-pub fn chosen_times_s(document: &[u8]) -> Option<Vec<f64>> {
-    let document: serde_json::Value = serde_json::from_slice(document).ok()?;
-    document["chosen"]["times_s"].as_array()?.iter().map(serde_json::Value::as_f64).collect()
+/// Where joints should be over time, from 0 on.
+#[derive(Debug, Clone, Copy)]
+pub enum Planned<'a> {
+    /// A motion of joints of these names; its accelerations are known.
+    Motion(&'a Motion, &'a [String]),
+    /// Samples.
+    Series(&'a Series),
 }
 
 /// What to write.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct PlanLog<'a> {
-    /// The task on its arm.
-    pub setup: &'a Setup,
-    /// Text of the task file.
-    pub task: &'a str,
-    /// The document on plan and front, JSON.
-    pub document: &'a str,
-    /// Where it comes from.
-    pub provenance: &'a BTreeMap<String, String>,
-    /// The motion.
-    pub motion: &'a Motion,
+    /// Where the joints should be.
+    pub plan: Planned<'a>,
+    /// What to send, if that is not the plan; of the same joints.
+    pub command: Option<&'a Series>,
+    /// The arm of these joints, if it is known.
+    pub arm: Option<&'a Chain>,
+    /// Topic of what to send as a trajectory; `None`: ours.
+    pub trajectory: Option<&'a str>,
+    /// Task, plan and provenance.
+    pub carried: &'a Carried,
     /// Samples a second.
     pub rate_hz: f64,
 }
@@ -56,57 +48,110 @@ impl PlanLog<'_> {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn bytes(&self) -> Result<Vec<u8>, WriteError> {
-        let joints = self.setup.joint_names();
-        let joints: Vec<&str> = joints.iter().map(String::as_str).collect();
-        let mut log = LogWriter::new(Vec::new(), &joints, WriteOptions::default())?;
-        log.metadata(PROVENANCE, self.provenance)?;
-        let mut arm = ArmLog::begin(&mut log, &self.setup.arm().chain, &joints, START_NS, false)?;
-        let coarse = States::of(self.motion, instants(self.motion.duration_s(), TRAJECTORY_HZ).collect());
+        let names = self.plan.names();
+        let ours = Topics::default();
+        let trajectory = self.trajectory.map_or_else(|| ours.trajectory.clone(), str::to_owned);
+        let options = WriteOptions { topics: Topics { trajectory, ..ours }, ..WriteOptions::default() };
+        let mut log = LogWriter::new(Vec::new(), &names, options)?;
+        self.carried.begin(&mut log)?;
+        let mut arm = match self.arm {
+            Some(chain) => ArmLog::begin(&mut log, chain, &names, START_NS, false)?,
+            None => None,
+        };
+        let end_s = self.plan.end_s();
+        let sent = self.command.map_or(self.plan, Planned::Series);
+        let coarse = sent.states(&names, instants(end_s, TRAJECTORY_HZ).collect());
         log.trajectory_to_send(START_NS, &coarse.points().collect::<Vec<_>>())?;
-        let fine = States::of(self.motion, instants(self.motion.duration_s(), self.rate_hz).collect());
-        for point in fine.points() {
+        let fine_s: Vec<f64> = instants(end_s, self.rate_hz).collect();
+        let command = self.command.map(|command| Planned::Series(command).states(&names, fine_s.clone()));
+        let mut commanded = command.as_ref().map(States::points);
+        for point in self.plan.states(&names, fine_s).points() {
             let stamp_ns = START_NS + point.time_from_start_ns;
             log.joint_sample(Role::Planned, stamp_ns, point.position_rad, point.velocity_rad_s, &[])?;
             if let Some(arm) = &mut arm {
                 arm.sample(&mut log, stamp_ns, point.position_rad, None)?;
             }
+            if let Some(point) = commanded.as_mut().and_then(Iterator::next) {
+                log.joint_sample(Role::Command, stamp_ns, point.position_rad, point.velocity_rad_s, &[])?;
+            }
         }
-        log.attach(TASK, "application/toml", self.task.as_bytes(), START_NS)?;
-        log.attach(FRONT, "application/json", self.document.as_bytes(), START_NS)?;
+        self.carried.end(&mut log, START_NS)?;
         log.finish()
     }
 }
 
-/// States of a motion, instant by instant.
+impl Planned<'_> {
+    fn names(&self) -> Vec<&str> {
+        match self {
+            Self::Motion(_, joints) => joints.iter().map(String::as_str).collect(),
+            Self::Series(series) => series.tracks.iter().map(Track::name).collect(),
+        }
+    }
+
+    fn end_s(&self) -> f64 {
+        match self {
+            Self::Motion(motion, _) => motion.duration_s(),
+            Self::Series(series) => series.span_s().map_or(0.0, |[_, end_s]| end_s.max(0.0)),
+        }
+    }
+
+    fn states(&self, names: &[&str], t_s: Vec<f64>) -> States {
+        match self {
+            Self::Motion(motion, _) => {
+                let (joints, mut samples) = (motion.joints(), Samples::default());
+                motion.sample(&t_s, Quantity::Acceleration, &mut samples);
+                let of = |quantity| {
+                    let at = |i: usize| (0..joints).map(move |joint| (joint, i));
+                    (0..t_s.len()).flat_map(at).map(|(joint, i)| samples.of(quantity, joint)[i]).collect()
+                };
+                let values = [of(Quantity::Position), of(Quantity::Velocity), of(Quantity::Acceleration)];
+                States { t_s, joints, values }
+            }
+            Self::Series(series) => {
+                let (mut position, mut velocity) = (Vec::new(), Vec::new());
+                for t_s in &t_s {
+                    let [positions, velocities] = states(series, names, *t_s);
+                    position.extend(positions);
+                    velocity.extend(velocities);
+                }
+                States { t_s, joints: names.len(), values: [position, velocity, Vec::new()] }
+            }
+        }
+    }
+}
+
+/// States, instant by instant.
 struct States {
     t_s: Vec<f64>,
     joints: usize,
-    /// Position, velocity and acceleration, each `[instant][joint]`.
+    /// Position, velocity and, if it is known, acceleration, each `[instant][joint]`.
     values: [Vec<f64>; 3],
 }
 
 impl States {
-    fn of(motion: &Motion, t_s: Vec<f64>) -> Self {
-        let (joints, mut samples) = (motion.joints(), Samples::default());
-        motion.sample(&t_s, Quantity::Acceleration, &mut samples);
-        let values = [Quantity::Position, Quantity::Velocity, Quantity::Acceleration].map(|quantity| {
-            let at = |i: usize| (0..joints).map(move |joint| (joint, i));
-            (0..t_s.len()).flat_map(at).map(|(joint, i)| samples.of(quantity, joint)[i]).collect()
-        });
-        Self { t_s, joints, values }
-    }
-
     fn points(&self) -> impl Iterator<Item = Point<'_>> {
         self.t_s.iter().enumerate().map(|(i, t_s)| {
-            let own = i * self.joints..(i + 1) * self.joints;
+            let of = |values: &'_ Vec<f64>| -> std::ops::Range<usize> {
+                let first = (i * self.joints).min(values.len());
+                first..(first + self.joints).min(values.len())
+            };
             let [position, velocity, acceleration] = &self.values;
             Point {
-                position_rad: &position[own.clone()],
-                velocity_rad_s: &velocity[own.clone()],
-                acceleration_rad_s2: &acceleration[own.clone()],
+                position_rad: &position[of(position)],
+                velocity_rad_s: &velocity[of(velocity)],
+                acceleration_rad_s2: &acceleration[of(acceleration)],
                 effort_n_m: &[],
                 time_from_start_ns: nanoseconds(*t_s),
             }
         })
     }
+}
+
+/// Positions, rad, and speeds, rad/s, of some joints at an instant; NaN of one that the series lacks.
+pub(in crate::workflow) fn states(series: &Series, names: &[&str], t_s: f64) -> [Vec<f64>; 2] {
+    let unknown = State { position: f64::NAN, velocity: f64::NAN, acceleration: 0.0 };
+    let at = |name: &&str| series.track(name).map_or(unknown, |track| track.held_at(t_s));
+    let (position_rad, velocity_rad_s) =
+        names.iter().map(at).map(|state| (state.position, state.velocity)).unzip();
+    [position_rad, velocity_rad_s]
 }

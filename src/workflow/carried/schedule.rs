@@ -1,9 +1,7 @@
 //! When a run passes the key points of its task, as far as its log tells.
 
-use std::collections::BTreeMap;
-
-use super::plan_log::{FRONT, PROVENANCE, STARTS, TASK, chosen_times_s};
-use crate::{log::Recording, task::Task};
+use super::Carried;
+use crate::task::Task;
 
 /// A task and when its key points are reached and left.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,12 +13,9 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// From the files and metadata of a log that hydrotrace wrote; `None` of any other.
-    pub fn of(recording: &Recording) -> Option<Self> {
-        let file = |name: &str| recording.attachments.iter().find(|file| file.name == name);
-        let task = String::from_utf8_lossy(&file(TASK)?.data).into_owned();
-        let times_s = chosen_times_s(&file(FRONT)?.data)?;
-        let starts_s = starts_s(&recording.metadata)?;
+    /// Of a log that carries a task, a plan of it, and when it starts.
+    pub fn of(carried: &Carried) -> Option<Self> {
+        let (task, times_s, starts_s) = (carried.task()?, carried.times_s()?, carried.starts_s()?);
         let points = Task::parse(&task).ok()?.points;
         if points.len() != times_s.len() {
             return None;
@@ -77,11 +72,6 @@ impl Schedule {
     fn ends(&self) -> (f64, f64) {
         (self.knots_s.first().copied().unwrap_or(0.0), self.knots_s.last().copied().unwrap_or(0.0))
     }
-}
-
-/// When the times of a log's plan count from, s since the start of the log.
-pub fn starts_s(metadata: &BTreeMap<String, BTreeMap<String, String>>) -> Option<f64> {
-    metadata.get(PROVENANCE)?.get(STARTS)?.parse().ok().filter(|s: &f64| s.is_finite())
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use super::ContestFailure;
 use crate::{
-    plan::{Objectives, PlanEvaluation, Rule, Setup, Timing, choose, ends},
-    task::Bounds,
+    plan::{PlanEvaluation, Rule, Setup, Timing, choose, ends},
+    task::{Ceilings, Objective, Objectives},
 };
 
 /// What the paper prints of a plan: f2 as "N", f3 as "J".
@@ -73,19 +73,19 @@ pub(super) fn table_3(setup: &Setup, front: &[Timing]) -> Result<Table3, Contest
     for plan in &TABLE_3 {
         let name = plan.name;
         let evaluation = PlanEvaluation::of(setup, &plan.times_s)?;
-        let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } = evaluation.objectives;
+        let costs: Objectives = evaluation.objectives;
+        let duration_s = costs[Objective::Duration];
         let printed = Printed { f2: plan.f2, f3: Some(plan.f3) };
         rows.push(Row { whose: Whose::Paper(name), printed: Some(printed), evaluation: Some(evaluation) });
         if name == "B" {
             rows.push(stretched(setup, duration_s)?);
         }
-        let no_slower = Bounds { duration_s: Some(duration_s), ..Bounds::default() };
-        let no_worse =
-            Bounds { rms_jerk_rad_s3: Some(rms_jerk_rad_s3), rms_power_w: Some(rms_power_w), ..no_slower };
+        let no_slower = Ceilings::NONE.with(Objective::Duration, duration_s);
+        let no_worse = Ceilings::NONE.map_plan(|objective| costs[objective]);
         for (whose, bounds, rule) in [
             (Whose::Better(name), no_worse, Rule::Ideal),
-            (Whose::Smoothest(name), no_slower, Rule::Smoothest),
-            (Whose::Thriftiest(name), no_slower, Rule::Thriftiest),
+            (Whose::Smoothest(name), no_slower, Rule::Best(Objective::RmsJerk)),
+            (Whose::Thriftiest(name), no_slower, Rule::Best(Objective::RmsPower)),
         ] {
             let choice = choose(setup, front, &bounds, (rule, None)).ok();
             let evaluation = choice.map(|choice| of(setup, &choice.timing)).transpose()?;

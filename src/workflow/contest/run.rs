@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     moea::{Algorithm, Archive, Budget, MoeaError, Population, Settings, optimise, silent},
-    plan::{Found, Phase, Reference, Search, Setup, Timing, search},
+    plan::{Found, Phase, Reference, Search, Setup, Timing, TimingProblem, search},
     workflow::sample::{Watch, quartiles},
 };
 
@@ -111,7 +111,7 @@ fn reference(
     if front.is_empty() {
         return Err(ContestFailure::NoPlan { task: subject.name.clone() });
     }
-    let objectives = || front.iter().map(|timing| timing.objectives.as_array());
+    let objectives = || front.iter().map(|timing| timing.objectives.plan());
     let reference = Reference::of(objectives());
     let at_first = seeds.iter().map(|&seed| at_first(setup, seed)).collect::<Result<Vec<f64>, _>>()?;
     let ruler = Ruler {
@@ -119,8 +119,8 @@ fn reference(
         intervals: setup.interval_count(),
         evaluations,
         plans: front.len(),
-        ideal: reference.ideal(),
-        reference_point: reference.reference_point(),
+        ideal: three(&reference.ideal()),
+        reference_point: three(&reference.reference_point()),
         hypervolume: reference.measure(objectives()),
         feasible_at_first: quartiles(&at_first),
     };
@@ -131,7 +131,7 @@ fn reference(
 fn at_first(setup: &Setup, seed: u64) -> Result<f64, MoeaError> {
     let budget = Budget::Generations(1);
     let settings = Settings { algorithm: Algorithm::Nsga3, seed, budget, ..Settings::default() };
-    let first = optimise(setup, &settings, silent)?.population;
+    let first = optimise(&TimingProblem::of(setup), &settings, silent)?.population;
     let feasible = (0..first.len()).filter(|&i| first.is_feasible(i)).count();
     Ok(feasible as f64 / first.len().max(1) as f64)
 }
@@ -165,13 +165,13 @@ fn one(batch: &Batch<'_>, seed: u64, steps: u64) -> Result<Run, ContestFailure> 
         })?;
         let mut front = Population::with_capacity(setup.interval_count(), 3, found.front.len());
         for timing in &found.front {
-            front.push(&timing.interval_s, &timing.objectives.as_array(), timing.violation);
+            front.push(&timing.interval_s, timing.objectives.plan(), timing.violation);
         }
         (front.clone(), front, found.evaluations)
     } else {
         let archive = settings.front;
         let settings = Settings { algorithm, budget, seed, archive, ..Settings::default() };
-        let outcome = optimise(setup, &settings, |progress| {
+        let outcome = optimise(&TimingProblem::of(setup), &settings, |progress| {
             let all = progress.archive.map_or(progress.population, Archive::population);
             see(progress.evaluations, progress.population, all)
         })?;
@@ -195,7 +195,7 @@ impl Batch<'_> {
         let mut archive = Archive::new(self.ruler.intervals, 3, MEASURED_PLANS);
         archive.extend(population);
         let thinned = archive.into_population();
-        [&thinned, all].map(|set| self.reference.measure(plans(set).into_iter()))
+        [&thinned, all].map(|set| self.reference.measure(plans(set).iter().map(<[f64; 3]>::as_slice)))
     }
 }
 
@@ -203,4 +203,8 @@ impl Batch<'_> {
 fn plans(population: &Population) -> Vec<[f64; 3]> {
     let feasible = (0..population.len()).filter(|&i| population.is_feasible(i));
     feasible.filter_map(|i| <[f64; 3]>::try_from(population.f(i)).ok()).collect()
+}
+
+fn three(values: &crate::task::ByObjective) -> [f64; 3] {
+    std::array::from_fn(|k| values.plan()[k])
 }

@@ -5,13 +5,15 @@ use std::{collections::BTreeMap, path::PathBuf};
 use thiserror::Error;
 
 use super::{
-    carried::plan_log::ARM,
-    carried::series_log::SeriesLog,
+    carried::{
+        Carried,
+        plan_log::{PlanLog, Planned},
+    },
     plan::{PlanFailure, PlanRequest},
 };
 use crate::{
     fit::{Excitation, FitError, JointRoom, excite},
-    log::{Attachment, WriteError},
+    log::WriteError,
     plan::Setup,
     series::Series,
 };
@@ -101,11 +103,7 @@ fn rooms(setup: &Setup) -> Vec<JointRoom> {
 impl Excited {
     /// How long it takes, s.
     pub fn duration_s(&self) -> f64 {
-        self.command
-            .tracks
-            .iter()
-            .filter_map(|track| track.t_s().last())
-            .fold(0.0, |most: f64, t| most.max(*t))
+        self.command.span_s().map_or(0.0, |[_, end_s]| end_s)
     }
 
     /// The bytes of the log.
@@ -115,19 +113,15 @@ impl Excited {
     /// [`WriteError`] for joint names that no log can hold.
     pub fn log(&self, rate_hz: f64) -> Result<Vec<u8>, WriteError> {
         // So that whoever runs it knows its arm.
-        let task = self.task.as_ref().map(|text| Attachment {
-            name: ARM.to_owned(),
-            media_type: "application/toml".to_owned(),
-            data: text.as_bytes().to_vec(),
-        });
-        let provenance = BTreeMap::from([("made_by".to_owned(), "excite".to_owned())]);
-        SeriesLog {
-            plan: &self.command,
+        let carried =
+            self.task.as_ref().map_or_else(Carried::default, |task| Carried::default().with_arm_of(task));
+        let carried = carried.with_provenance(BTreeMap::from([("made_by".to_owned(), "excite".to_owned())]));
+        PlanLog {
+            plan: Planned::Series(&self.command),
             command: None,
             arm: None,
-            provenance: &provenance,
             trajectory: None,
-            files: task.as_slice(),
+            carried: &carried,
             rate_hz,
         }
         .bytes()

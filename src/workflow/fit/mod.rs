@@ -3,10 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
-
+mod document;
+mod failure;
 pub mod observe;
 pub mod torque;
+
+pub use document::{FitDocument, LimitsFile};
+pub use failure::FitFailure;
 
 use crate::{
     fit::{Fit, FitError, Observation, fit},
@@ -28,80 +31,8 @@ pub struct Inputs {
     pub wanted: Wanted,
 }
 
-/// Why there is no fit.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum FitFailure {
-    /// A log.
-    #[error(transparent)]
-    Observe(#[from] ObserveFailure),
-    /// What the logs hold.
-    #[error("the logs cannot be fitted")]
-    Fit(#[from] FitError),
-    /// A file with limits cannot be read.
-    #[error("cannot read {}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// A file is no limits.
-    #[error("{} does not hold limits; `hydrotrace fit LOG -o FILE` writes some", path.display())]
-    Limits {
-        /// The file.
-        path: PathBuf,
-        /// Line and reason.
-        source: Box<toml::de::Error>,
-    },
-    /// A file of another kind or of a later version.
-    #[error("{} is of format {found:?}, expected {FORMAT:?}", path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// What it says.
-        found: String,
-    },
-    /// A file of another arm.
-    #[error("the limits in {} are of the joints {found}, the log has {expected}: not one in common", path.display())]
-    OtherJoints {
-        /// The file.
-        path: PathBuf,
-        /// Its joints.
-        found: String,
-        /// Those of the log.
-        expected: String,
-    },
-    /// Numbers in a file that no machine has.
-    #[error("the limits in {} cannot be used", path.display())]
-    Values {
-        /// The file.
-        path: PathBuf,
-        /// Which.
-        source: FitError,
-    },
-}
-
-/// First line of every file with limits.
-pub const FORMAT: &str = "hydrotrace.limits.v1";
-
-/// A file with limits, TOML.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct LimitsFile {
-    /// Always [`FORMAT`].
-    pub format: String,
-    /// Names of the logs that were fitted.
-    pub logs: Vec<String>,
-    /// Torques from pressures, where the logs have them.
-    #[serde(default)]
-    pub torques: Vec<JointTorque>,
-    /// What was found.
-    #[serde(flatten)]
-    pub fit: Fit,
-}
-
 /// A run that was fitted.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FittedRun {
     /// Name of its log.
@@ -211,60 +142,7 @@ fn of_one_arm(logs: &[PathBuf], observed: &[Observed]) -> Result<(), FitError> {
     Ok(())
 }
 
-impl LimitsFile {
-    /// Checks that a log is of the machine, or of one that shares a joint with it.
-    ///
-    /// # Errors
-    ///
-    /// [`FitFailure::OtherJoints`].
-    pub fn check_joints<'a>(
-        &self,
-        path: &Path,
-        joints: impl Iterator<Item = &'a str> + Clone,
-    ) -> Result<(), FitFailure> {
-        if joints.clone().any(|name| self.fit.joint(name).is_some()) {
-            return Ok(());
-        }
-        let found: Vec<&str> = self.fit.joints.iter().map(|joint| joint.name.as_str()).collect();
-        let (found, expected) = (found.join(", "), joints.collect::<Vec<_>>().join(", "));
-        Err(FitFailure::OtherJoints { path: path.to_owned(), found, expected })
-    }
-}
-
 /// The file's own name.
 fn name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
-}
-
-impl Fitted {
-    /// As a file that [`read_limits`] reads.
-    pub fn file(&self) -> LimitsFile {
-        let logs = self.runs.iter().map(|run| run.log.clone()).collect();
-        let torques = self.torques.clone();
-        LimitsFile { format: FORMAT.to_owned(), logs, torques, fit: self.fit.clone() }
-    }
-}
-
-/// Reads a file with limits.
-///
-/// # Errors
-///
-/// [`FitFailure`] naming the file, and the line or joint.
-pub fn read_limits(path: &Path) -> Result<LimitsFile, FitFailure> {
-    let path = path.to_owned();
-    let text = match std::fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(source) => return Err(FitFailure::Read { path, source }),
-    };
-    let file: LimitsFile = match toml::from_str(&text) {
-        Ok(file) => file,
-        Err(source) => return Err(FitFailure::Limits { path, source: Box::new(source) }),
-    };
-    if file.format != FORMAT {
-        return Err(FitFailure::Format { path, found: file.format });
-    }
-    match file.fit.check() {
-        Ok(()) => Ok(file),
-        Err(source) => Err(FitFailure::Values { path, source }),
-    }
 }

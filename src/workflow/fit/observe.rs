@@ -123,11 +123,6 @@ impl Observed {
             valve: self.valve.as_ref(),
         }
     }
-
-    /// A file stored in the log.
-    pub fn attached(&self, name: &str) -> Option<&[u8]> {
-        self.recording.attachments.iter().find(|file| file.name == name).map(|file| file.data.as_slice())
-    }
 }
 
 /// What was read as a plan, on another origin of time.

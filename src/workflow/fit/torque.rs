@@ -7,8 +7,7 @@ use crate::{
     arm::Arm,
     math::{median, quantile},
     series::Track,
-    task::Task,
-    workflow::{carried::plan_log::TASK, plan::arm_of},
+    workflow::carried::Carried,
 };
 
 /// What a joint's cylinders did and could do. Pairs are for growing and for shrinking angles, both
@@ -30,10 +29,8 @@ pub struct JointTorque {
 /// Torques of all joints of a run whose log has pressures of both sides and a task with cylinders.
 pub fn torques(path: &std::path::Path, observed: &Observed) -> Vec<JointTorque> {
     let Some(pressures) = &observed.pressures else { return Vec::new() };
-    let arm = observed.attached(TASK).and_then(|text| {
-        let task = Task::parse(&String::from_utf8_lossy(text)).ok()?;
-        arm_of(&task, path.parent().unwrap_or(std::path::Path::new(""))).ok()
-    });
+    let folder = path.parent().unwrap_or(std::path::Path::new(""));
+    let arm = Carried::of(&observed.recording).arm(folder).and_then(Result::ok);
     let Some(arm) = arm else { return Vec::new() };
     let one = |measured: &Track| {
         let name = measured.name();

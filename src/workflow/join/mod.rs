@@ -7,9 +7,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::{
-    carried::plan_log::{PROVENANCE, STARTS},
-    carried::series_log::states,
-    carried::stamp::instants,
+    carried::{plan_log::states, stamp::instants},
     simulate::log::{LEAD_S, TAIL_S},
 };
 use crate::{
@@ -191,16 +189,15 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         })
         .collect();
     let received = (run.source.time_base == TimeBase::Header).then_some(run.source.recorder_delay_s);
-    let mut provenance = plan.provenance;
     // Later readers count from the first measurement: nothing else that they use is earlier.
-    let starts_s = zero_s + plan.starts_s - measured_s[0];
-    provenance.insert(STARTS.to_owned(), starts_s.to_string());
+    let starts_s = zero_s + plan.carried.starts_s().unwrap_or(0.0) - measured_s[0];
+    let carried = plan.carried.with_starts_s(starts_s);
     let addition = Addition {
         joints: names.clone(),
         samples,
         log_delay_ns: received.flatten().map_or(0, |[middle_s, _]| nanoseconds(middle_s)),
-        files: &plan.files,
-        metadata: (PROVENANCE, provenance),
+        files: carried.files(),
+        metadata: carried.metadata(),
     };
     let messages = join(&inputs.logs, &addition, &inputs.output)?;
     Ok(Joined {
@@ -212,7 +209,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         rest_s,
         joints: names.len(),
         messages,
-        files: plan.files.into_iter().map(|file| file.name).collect(),
+        files: carried.names(),
         remarks,
     })
 }

@@ -1,17 +1,13 @@
 //! The plan to join, and where in a run it was sent.
 
-use std::{collections::BTreeMap, path::Path};
+use std::path::Path;
 
 use super::JoinFailure;
 use crate::{
-    log::{Attachment, LogError, ReadOptions, Selector, Topics, read_plan},
+    log::{LogError, ReadOptions, Selector, Topics, read_plan},
     remark::{Code, Remarks},
     series::{Located, Series, locate},
-    workflow::{
-        carried::plan_log::{FRONT, PROVENANCE, TASK},
-        carried::schedule::starts_s,
-        fit::observe::on_origin,
-    },
+    workflow::{carried::Carried, fit::observe::on_origin},
 };
 
 /// What is left of a motion at most for a place to be its own, as a share.
@@ -24,11 +20,8 @@ pub(super) struct Plan {
     pub(super) planned: Series,
     /// Where it is not the plan.
     pub(super) command: Option<Series>,
-    /// Task and front.
-    pub(super) files: Vec<Attachment>,
-    pub(super) provenance: BTreeMap<String, String>,
-    /// When the times of the task's plan count from, s.
-    pub(super) starts_s: f64,
+    /// Task, plan and provenance.
+    pub(super) carried: Carried,
 }
 
 impl Plan {
@@ -42,14 +35,7 @@ impl Plan {
             Err(LogError::NoTopic { .. }) => None,
             Err(error) => return Err(error.into()),
         };
-        let named = |file: &&Attachment| [TASK, FRONT].contains(&file.name.as_str());
-        Ok(Self {
-            command,
-            files: plan.attachments.iter().filter(named).cloned().collect(),
-            provenance: plan.metadata.get(PROVENANCE).cloned().unwrap_or_default(),
-            starts_s: starts_s(&plan.metadata).unwrap_or(0.0),
-            planned: plan.planned,
-        })
+        Ok(Self { command, carried: Carried::of(&plan).of_plan(), planned: plan.planned })
     }
 
     /// First and last sample, s.

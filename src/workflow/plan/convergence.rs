@@ -20,7 +20,7 @@ const MOST: usize = 64;
 /// Fronts on the way, evenly spaced in generations however long the search.
 #[derive(Debug, Default)]
 pub(super) struct Growth {
-    fronts: Vec<(u64, Vec<[f64; 3]>)>,
+    fronts: Vec<(u64, Vec<Vec<f64>>)>,
     seen: u64,
     stride: u64,
 }
@@ -35,7 +35,7 @@ impl Growth {
         }
         let population = progress.population;
         let front = population.front().into_iter().filter(|&i| population.violation(i) <= 0.0);
-        let front = front.map(|i| population.f(i)).map(|f| [f[0], f[1], f[2]]).collect();
+        let front = front.map(|i| population.f(i).to_vec()).collect();
         self.fronts.push((progress.evaluations, front));
         if self.fronts.len() > MOST {
             let mut place = 0_usize;
@@ -51,8 +51,8 @@ impl Growth {
     /// what counts is the most until then.
     pub(super) fn steps(&self, reference: Reference, evaluations: u64, hypervolume: f64) -> Vec<Step> {
         let mut most: f64 = 0.0;
-        let step = |(evaluations, front): &(u64, Vec<[f64; 3]>)| {
-            most = most.max(reference.measure(front.iter().copied()));
+        let step = |(evaluations, front): &(u64, Vec<Vec<f64>>)| {
+            most = most.max(reference.measure(front.iter().map(Vec::as_slice)));
             Step { evaluations: *evaluations, hypervolume: most }
         };
         let before = self.fronts.iter().filter(|(then, _)| *then < evaluations);

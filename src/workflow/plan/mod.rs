@@ -1,146 +1,25 @@
-//! `plan`: from a task to a front of plans and the one to run, or from a time vector to its worth.
+//! `plan`: from a task to a front of plans and the one to run.
 
-use std::{
-    ops::ControlFlow,
-    path::{Path, PathBuf},
-};
-
-use thiserror::Error;
+use std::ops::ControlFlow;
 
 mod convergence;
-pub mod front;
+mod document;
+mod failure;
+mod request;
 
 use crate::{
-    arm::{Arm, ArmError},
     plan::{
-        Choice, NoChoice, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Setup, Timing,
-        choose, ends, search,
+        Choice, NoChoice, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Timing, choose, ends,
+        search,
     },
     remark::{Code, Remarks},
-    task::{ArmSource, Task, TaskError, Weights},
+    task::{Objectives, Weights},
 };
 use convergence::Growth;
 pub use convergence::Step;
-
-/// The first task of the paper.
-pub const SAMPLE_TASK: &str = include_str!("../../../sample-logs/tasks/task-1.toml");
-
-/// What to plan, as read from a file.
-#[derive(Debug, Clone)]
-pub struct PlanRequest {
-    /// The task.
-    pub task: Task,
-    /// Its text, to go with the plan.
-    pub text: String,
-    /// The task on its arm.
-    pub setup: Setup,
-}
-
-impl PlanRequest {
-    /// Reads a task file and the arm that it names.
-    ///
-    /// # Errors
-    ///
-    /// [`PlanFailure`] naming file and line.
-    pub fn read(path: &Path) -> Result<Self, PlanFailure> {
-        Self::parse(path, read(path)?)
-    }
-
-    /// The first task of the paper, on the sample arm.
-    ///
-    /// # Errors
-    ///
-    /// None but those of a program built wrongly.
-    pub fn sample() -> Result<Self, PlanFailure> {
-        Self::parse(Path::new("task-1.toml"), SAMPLE_TASK.to_owned())
-    }
-
-    /// Takes a task file's text; reads the arm that it names, from beside `path`.
-    ///
-    /// # Errors
-    ///
-    /// [`PlanFailure`] naming file and line.
-    pub fn parse(path: &Path, text: String) -> Result<Self, PlanFailure> {
-        let named = |source| PlanFailure::Task { path: path.to_owned(), source };
-        let task = Task::parse(&text).map_err(named)?;
-        let arm = arm_of(&task, path.parent().unwrap_or(Path::new("")))?;
-        let setup = Setup::new(&task, arm)
-            .map_err(|source| PlanFailure::Setup { path: path.to_owned(), source: Box::new(source) })?;
-        Ok(Self { task, text, setup })
-    }
-}
-
-/// The arm of a task whose files lie in a folder.
-///
-/// # Errors
-///
-/// [`PlanFailure`] naming the file.
-pub fn arm_of(task: &Task, folder: &Path) -> Result<Arm, PlanFailure> {
-    let ArmSource::File { urdf, hydraulics, tool } = &task.arm else { return Ok(Arm::sample()?) };
-    let text = read(&folder.join(urdf))?;
-    let Some(hydraulics) = hydraulics else {
-        return Ok(Arm::without_hydraulics((urdf, &text), tool.as_deref())?);
-    };
-    let cylinders = read(&folder.join(hydraulics))?;
-    Ok(Arm::new((urdf, &text), tool.as_deref(), (hydraulics, &cylinders))?)
-}
-
-fn read(path: &Path) -> Result<String, PlanFailure> {
-    std::fs::read_to_string(path).map_err(|source| PlanFailure::Read { path: path.to_owned(), source })
-}
-
-/// Why there is no plan.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum PlanFailure {
-    /// A file cannot be read.
-    #[error("cannot read {}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// The file is no task.
-    #[error("{} is no task", path.display())]
-    Task {
-        /// The file.
-        path: PathBuf,
-        /// Line and reason.
-        source: TaskError,
-    },
-    /// The task does not fit its arm.
-    #[error("{} cannot be planned", path.display())]
-    Setup {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: Box<PlanError>,
-    },
-    /// The arm's files.
-    #[error("the arm cannot be read")]
-    Arm(#[from] ArmError),
-    /// Times or settings.
-    #[error(transparent)]
-    Plan(Box<PlanError>),
-    /// No timing keeps all limits; what the nearest one breaks.
-    #[error("no plan keeps all limits")]
-    Infeasible(Box<PlanEvaluation>),
-    /// No plan keeps to the ceilings of the task.
-    #[error("no plan keeps to the ceilings of the task")]
-    Ceilings {
-        /// The nearest, which keeps all other limits.
-        nearest: Box<PlanEvaluation>,
-        /// Its objectives by their ceilings, f1, f2, f3; 0 where there is none.
-        share: [f64; 3],
-    },
-}
-
-impl From<PlanError> for PlanFailure {
-    fn from(error: PlanError) -> Self {
-        Self::Plan(Box::new(error))
-    }
-}
+pub use document::{ChosenPlan, MarginEntry, PlanDocument, PlanEntry};
+pub use failure::PlanFailure;
+pub use request::{PlanRequest, SAMPLE_TASK, arm_of};
 
 /// How to plan.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -158,14 +37,14 @@ pub struct Options {
 pub struct Planned {
     /// Names of the joints, base first.
     pub joints: Vec<String>,
-    /// Plans of which none is better than another in everything, fastest first.
+    /// Plans on the Pareto front, fastest first.
     pub front: Vec<Timing>,
     /// Their arrivals at the key points, s.
     pub times_s: Vec<Vec<f64>>,
-    /// Indices of the best in f1, f2 and f3: A, B and C.
-    pub ends: [usize; 3],
-    /// A, B and C with all that can be said of them.
-    pub best: [PlanEvaluation; 3],
+    /// Indices of the plan that is best in each objective: A, B and C.
+    pub ends: Vec<usize>,
+    /// A, B and C, evaluated.
+    pub best: Vec<PlanEvaluation>,
     /// The plan to run.
     pub chosen: PlanEvaluation,
     /// Why it.
@@ -217,10 +96,10 @@ pub fn run(
     };
     let weights = options.weights.or(task.weights);
     let rule = options.rule.unwrap_or(if weights.is_some() { Rule::Weights } else { Rule::Ideal });
-    let choice = match choose(setup, &found.front, &task.bounds, (rule, weights)) {
+    let choice = match choose(setup, &found.front, &task.ceilings, (rule, weights)) {
         Ok(choice) => choice,
-        Err(NoChoice::Ceilings { nearest, share }) => {
-            return Err(PlanFailure::Ceilings { nearest: Box::new(evaluation(&nearest)?), share });
+        Err(NoChoice::Ceilings { nearest }) => {
+            return Err(PlanFailure::Ceilings { nearest: Box::new(evaluation(&nearest)?) });
         }
         Err(NoChoice::Empty) => return Err(PlanError::Times { found: 0, expected: 1 }.into()),
     };
@@ -233,15 +112,12 @@ pub fn run(
         );
         remarks.add(Code::NoMass, weightless.len() as u64, message);
     }
-    let largest = |k: usize| {
-        found.front.iter().map(|timing| timing.objectives.as_array()[k]).fold(0.0, |most: f64, f| most.max(f))
-    };
-    task.bounds.remark_inactive(largest(0), largest(1), largest(2), &mut remarks);
-    let objectives = || found.front.iter().map(|timing| timing.objectives.as_array());
+    let objectives = || found.front.iter().map(|timing| timing.objectives.plan());
+    let largest = |k| found.front.iter().map(|timing| timing.objectives[k]).fold(0.0, f64::max);
+    task.ceilings.remark_inactive(&Objectives::ZERO.map_plan(largest), &mut remarks);
     let reference = Reference::of(objectives());
     let hypervolume = reference.measure(objectives());
-    let [a, b, c] = ends;
-    let best = [evaluation(&found.front[a])?, evaluation(&found.front[b])?, evaluation(&found.front[c])?];
+    let best = ends.iter().map(|&end| evaluation(&found.front[end])).collect::<Result<_, _>>()?;
     Ok(Planned {
         joints: setup.joint_names(),
         times_s: found.front.iter().map(|timing| setup.times_s(&timing.interval_s)).collect(),

@@ -1,10 +1,10 @@
 //! The command to send for a plan, held to the arm's limits.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     fit::{Compensation, Fit, FitError, JointCompensation, STEP_S, compensate},
-    plan::{BROKEN, Limit, Margin, Setup},
+    plan::{KEPT_SHARE, Limit, Margin, Setup},
     series::Series,
 };
 
@@ -12,7 +12,7 @@ use crate::{
 const GAINS: [f64; 4] = [0.75, 0.5, 0.25, 0.0];
 
 /// What is done to one joint.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointCommand {
     /// The correction.
@@ -61,7 +61,7 @@ pub(super) fn commanded(
         let same = |other: &&Margin| (other.limit, other.joint) == (margin.limit, margin.joint);
         allowed.iter().find(same).map_or(0.0, |found| found.share)
     };
-    let broken = |margin: &&Margin| margin.share > BROKEN.max(share_of_plan(margin) + 1e-9);
+    let broken = |margin: &&Margin| margin.share > KEPT_SHARE.max(share_of_plan(margin) + 1e-9);
     for share in GAINS {
         let margins = setup.sampled_margins(&series, STEP_S);
         let worst: Vec<(usize, Limit)> =

@@ -7,16 +7,10 @@ use super::{
     samples::{LEAD_S, TAIL_S, cut},
 };
 use crate::{
-    log::Attachment,
     series::{Series, Track},
     spline::Motion,
     units::DEGREE_RAD,
-    workflow::{
-        carried::plan_log::{FRONT, TASK, chosen_times_s},
-        carried::schedule::starts_s,
-        fit::observe::Observed,
-        plan::PlanRequest,
-    },
+    workflow::{carried::Carried, fit::observe::Observed, plan::PlanRequest},
 };
 
 /// Planned speed that is motion, rad/s.
@@ -36,8 +30,8 @@ pub(super) struct Last {
     pub(super) times_s: Option<Vec<f64>>,
     /// Where the controller takes trajectories.
     pub(super) trajectory: Option<String>,
-    /// Files of the log that go with the plan.
-    pub(super) files: Vec<Attachment>,
+    /// What the log carries of the plan.
+    pub(super) carried: Carried,
 }
 
 impl Last {
@@ -46,27 +40,26 @@ impl Last {
         let [from_s, to_s] =
             moving_s(planned).ok_or_else(|| ReplanFailure::AtRest { path: path.to_owned() })?;
         let plan = cut(planned, from_s - LEAD_S, to_s + TAIL_S)?;
-        let request = match (&inputs.task, observed.attached(TASK)) {
+        let carried = Carried::of(&observed.recording).of_plan();
+        let request = match (&inputs.task, carried.task()) {
             (Some(task), _) => Some(PlanRequest::read(task)?),
-            (None, Some(text)) => Some(PlanRequest::parse(path, String::from_utf8_lossy(text).into_owned())?),
+            (None, Some(text)) => Some(PlanRequest::parse(path, text)?),
             (None, None) => None,
         };
         if let Some(request) = &request {
             check_joints(path, request, planned)?;
         }
-        let times_s = observed.attached(FRONT).and_then(chosen_times_s);
-        let times_s = times_s
+        let times_s = carried
+            .times_s()
             .filter(|times_s| request.as_ref().is_some_and(|request| request.setup.motion(times_s).is_ok()));
-        let starts_s = starts_s(&observed.recording.metadata);
-        let named = |file: &&Attachment| [TASK, FRONT].contains(&file.name.as_str());
         Ok(Self {
             plan,
-            starts_s: starts_s.map(|s| s - (from_s - LEAD_S)),
+            starts_s: carried.starts_s().map(|s| s - (from_s - LEAD_S)),
             duration_s: to_s - from_s,
             request,
             times_s,
             trajectory: trajectory_topic(&observed.recording.source.planned_topic),
-            files: observed.recording.attachments.iter().filter(named).cloned().collect(),
+            carried,
         })
     }
 

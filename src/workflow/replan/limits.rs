@@ -1,6 +1,6 @@
 //! A task under the limits that its machine has shown.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     fit::{Estimated, Fit},
@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// Where a limit comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Origin {
@@ -23,16 +23,20 @@ pub enum Origin {
 }
 
 /// What a joint was held to.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct HeldTo {
     /// The joint.
     pub joint: String,
     /// Largest speed, rad/s; null for none.
+    #[serde(with = "crate::document::unbounded")]
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
     pub speed_rad_s: f64,
     /// Where it comes from.
     pub speed_origin: Origin,
     /// Largest acceleration, rad/s²; null for none.
+    #[serde(with = "crate::document::unbounded")]
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
     pub acceleration_rad_s2: f64,
     /// Where it comes from.
     pub acceleration_origin: Origin,

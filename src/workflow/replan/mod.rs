@@ -1,6 +1,7 @@
 //! `replan`: from the logs of runs to a plan and a command for the next one.
 
 mod command;
+mod document;
 mod failure;
 mod last;
 mod limits;
@@ -14,16 +15,16 @@ use std::{ops::ControlFlow, path::PathBuf};
 use rayon::prelude::*;
 
 pub use command::{Commanded, JointCommand};
+pub use document::ReplanDocument;
 pub use failure::ReplanFailure;
 pub use limits::{HeldTo, Origin};
 pub use outcome::{Before, Replanned, Search};
 pub use predicted::{Predicted, PredictedTransition, predicted};
-pub use retime::Retimed;
 pub use samples::{LEAD_S, TAIL_S};
 
 use super::{
     fit::observe::{Observed, Wanted},
-    fit::{self, read_limits},
+    fit::{self, LimitsFile},
 };
 use crate::{
     fit::{Compensation, Fit, JointFit},
@@ -31,6 +32,7 @@ use crate::{
     remark::{Code, Remarks},
     replay::Rules,
     series::{Series, Track},
+    task::{Ceilings, Objective, Objectives},
 };
 use last::Last;
 use samples::sampled;
@@ -147,7 +149,7 @@ pub fn run(
 /// The machine: fitted, or from a file; with the names of the logs behind it.
 fn machine(inputs: &Inputs, observed: &[Observed]) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
     if let Some(path) = &inputs.limits {
-        let file = read_limits(path)?;
+        let file = LimitsFile::read(path)?;
         let joints = observed.iter().flat_map(|run| &run.recording.measured.tracks).map(Track::name);
         file.check_joints(path, joints)?;
         return Ok((file.fit, file.logs, Remarks::default()));
@@ -170,17 +172,11 @@ fn searched(
     let setup = Setup::new(&task, request.setup.arm().clone())?;
     let start = last.times_s.as_ref().map(|times_s| setup.intervals_s(times_s)).transpose()?;
     let evaluation = last.times_s.as_ref().map(|times_s| PlanEvaluation::of(&setup, times_s)).transpose()?;
-    let own = [task.bounds.duration_s, task.bounds.rms_jerk_rad_s3, task.bounds.rms_power_w];
-    let grown = |factors: [f64; 3]| {
-        let most =
-            evaluation.as_ref().map_or([last.duration_s, f64::INFINITY, f64::INFINITY], |evaluation| {
-                evaluation.objectives.as_array()
-            });
-        std::array::from_fn(|k| (most[k] * factors[k]).min(own[k].unwrap_or(f64::INFINITY)))
-    };
     let time = (1.0 + inputs.time_growth) * (1.0 + 1e-9);
-    let cost = 1.0 + inputs.cost_growth;
-    let ceilings: [f64; 3] = grown([time, cost, cost]);
+    let growth = |objective| if objective == Objective::Duration { time } else { 1.0 + inputs.cost_growth };
+    let unknown = Objectives::NONE.with(Objective::Duration, last.duration_s);
+    let most = evaluation.as_ref().map_or(unknown, |evaluation| evaluation.objectives);
+    let ceilings = Ceilings::NONE.map_plan(|k| (most[k] * growth(k)).min(task.ceilings[k]));
     let found = retime::retimed(
         &setup,
         fit,

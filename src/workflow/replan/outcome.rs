@@ -2,28 +2,29 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::{
-    Candidate, Commanded, HeldTo, Inputs, LEAD_S, Predicted, ReplanFailure, last::Last, retime::Retimed,
-};
+use super::{Candidate, Commanded, HeldTo, Inputs, LEAD_S, Predicted, ReplanFailure, last::Last};
 use crate::{
     fit::Fit,
-    log::{Attachment, WriteError},
-    plan::{Objectives, PlanEvaluation},
+    log::WriteError,
+    plan::{PlanEvaluation, Timing},
     remark::{Code, Remarks},
     replay::{Rules, replay},
     series::{Series, align},
+    task::{Ceilings, Objective, Objectives},
     workflow::{
-        carried::plan_log::{FRONT, STARTS, TASK},
-        carried::series_log::SeriesLog,
+        carried::{
+            Carried,
+            plan_log::{PlanLog, Planned},
+        },
         fit::observe::Observed,
-        plan::PlanRequest,
+        plan::{PlanDocument, PlanRequest},
     },
 };
 
 /// The last run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Before {
     /// Starts and reversals that were measured.
@@ -60,12 +61,12 @@ impl Before {
 /// A search for other timings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Search {
-    /// Timings none better than another in everything, easiest to follow first.
-    pub front: Vec<Retimed>,
+    /// Timings on the Pareto front, least predicted start error first.
+    pub front: Vec<Timing>,
     /// Evaluations made.
     pub evaluations: u64,
-    /// What time, s, jerk, rad/s³, and power, W, were held to.
-    pub ceilings: [f64; 3],
+    /// What the objectives were held to.
+    pub ceilings: Ceilings,
     /// What each joint was held to.
     pub held: Vec<HeldTo>,
     /// Times of movement of the last plan, s, if they are known.
@@ -78,9 +79,8 @@ impl Search {
     /// Whether the last plan keeps the limits and ceilings of the search.
     pub fn keeps(&self) -> bool {
         self.evaluation.as_ref().is_some_and(|evaluation| {
-            let costs = evaluation.objectives.as_array();
             evaluation.broken().iter().all(|margin| margin.share < 1.0 + 1e-6)
-                && costs.iter().zip(self.ceilings).all(|(f, ceiling)| *f <= ceiling)
+                && evaluation.objectives.within(&self.ceilings)
         })
     }
 }
@@ -119,7 +119,7 @@ pub struct Replanned {
     pub remarks: Remarks,
     /// Where the controller takes trajectories, as far as the last log tells.
     pub trajectory: Option<String>,
-    files: Vec<Attachment>,
+    carried: Carried,
 }
 
 pub(super) fn replanned(
@@ -162,7 +162,7 @@ pub(super) fn replanned(
         }
     }
     let duration_s =
-        evaluation.as_ref().map_or(last.duration_s, |evaluation| evaluation.objectives.duration_s);
+        evaluation.as_ref().map_or(last.duration_s, |evaluation| evaluation.objectives[Objective::Duration]);
     let starts_s = if interval_s.is_some() { Some(LEAD_S) } else { last.starts_s };
     Ok(Replanned {
         fit,
@@ -180,48 +180,35 @@ pub(super) fn replanned(
         request: last.request,
         trajectory: last.trajectory,
         remarks,
-        files: last.files,
+        carried: last.carried,
     })
 }
 
 impl Replanned {
-    /// The bytes of the log: plan and command as channels of their own, and the task with the new plan,
-    /// whose `document` says what it is worth.
+    /// The bytes of the log: plan and command as channels of their own, and the task with the new plan.
     ///
     /// # Errors
     ///
     /// [`WriteError`] for joint names that no log can hold.
-    pub fn log(
-        &self,
-        document: Option<&str>,
-        provenance: &BTreeMap<String, String>,
-        rate_hz: f64,
-    ) -> Result<Vec<u8>, WriteError> {
-        let mut provenance = provenance.clone();
-        if let Some(starts_s) = self.starts_s {
-            provenance.insert(STARTS.to_owned(), starts_s.to_string());
-        }
-        let file = |name: &str, media_type: &str, text: &str| Attachment {
-            name: name.to_owned(),
-            media_type: media_type.to_owned(),
-            data: text.as_bytes().to_vec(),
-        };
-        let files = match (&self.request, document) {
-            (Some(request), Some(document)) => {
-                vec![file(TASK, "application/toml", &request.text), file(FRONT, "application/json", document)]
+    pub fn log(&self, provenance: BTreeMap<String, String>, rate_hz: f64) -> Result<Vec<u8>, WriteError> {
+        let mut carried = match (&self.request, &self.evaluation) {
+            (Some(request), Some(evaluation)) => {
+                let (title, joints) = (&request.task.title, request.setup.joint_names());
+                let plan = PlanDocument::evaluated(title, &joints, evaluation, true);
+                Carried::default().with_plan(&request.text, &plan)
             }
-            _ => self.files.clone(),
-        };
-        let command = self.command.as_ref().map(|command| &command.series);
-        let arm = self.request.as_ref().map(|request| &request.setup.arm().chain);
-        let trajectory = self.trajectory.as_deref();
-        SeriesLog {
-            plan: &self.plan,
-            command,
-            arm,
-            provenance: &provenance,
-            trajectory,
-            files: &files,
+            _ => self.carried.clone(),
+        }
+        .with_provenance(provenance);
+        if let Some(starts_s) = self.starts_s {
+            carried = carried.with_starts_s(starts_s);
+        }
+        PlanLog {
+            plan: Planned::Series(&self.plan),
+            command: self.command.as_ref().map(|command| &command.series),
+            arm: self.request.as_ref().map(|request| &request.setup.arm().chain),
+            trajectory: self.trajectory.as_deref(),
+            carried: &carried,
             rate_hz,
         }
         .bytes()

@@ -1,7 +1,7 @@
 //! What a machine is predicted to make of a plan, transition by transition, as a report would measure
 //! it.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     fit::{Fit, FitError, predict},
@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// Predicted tracking error of a run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Predicted {
     /// Mean peak error of the transitions, what the model cannot explain included, rad.
@@ -30,7 +30,7 @@ pub struct Predicted {
 }
 
 /// One start or reversal.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PredictedTransition {
     /// The joint.

@@ -7,12 +7,11 @@ use serde::Serialize;
 pub mod advice;
 
 use super::{
-    carried::plan_log::{FRONT, TASK},
-    carried::schedule::Schedule,
-    plan::front::Front,
+    carried::{Carried, PLAN, Schedule},
+    plan::PlanDocument,
 };
 use crate::{
-    log::{Attachment, LogError, ReadOptions, SourceInfo, read_recording},
+    log::{LogError, ReadOptions, SourceInfo, read_recording},
     remark::{Code, Remarks},
     replay::{Answer, Profiles, Replay, Rules, planned_starts, replay},
     series::{Pair, Series, align},
@@ -125,7 +124,7 @@ pub struct Report {
     /// When the key points of the task are passed, where the log tells.
     pub schedule: Option<Schedule>,
     /// The plans that the run's own was chosen from, where its log carries them.
-    pub front: Option<Front>,
+    pub front: Option<PlanDocument>,
 }
 
 impl Report {
@@ -142,7 +141,8 @@ impl Report {
 /// [`LogError`] if the log cannot be read or holds no planned and measured joints.
 pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     let recording = read_recording(&inputs.logs, &inputs.read)?;
-    let schedule = Schedule::of(&recording);
+    let carried = Carried::of(&recording);
+    let schedule = Schedule::of(&carried);
     let mut remarks = recording.remarks;
     let mut pairs = Vec::new();
     let mut alignment = Vec::new();
@@ -169,11 +169,11 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     let replay = replay(&pairs, &inputs.rules);
     ::log::info!("{} joints aligned, {} transitions found", pairs.len(), replay.transitions.len());
     let gates = gates(&inputs.gates, &replay);
-    let front = front(&recording.attachments, &mut remarks);
+    let front = front(&carried, &mut remarks);
     let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
     Ok(Report {
         logs: inputs.logs.iter().filter_map(name).collect(),
-        holds_task: recording.attachments.iter().any(|file| file.name == TASK),
+        holds_task: carried.task().is_some(),
         source: recording.source,
         alignment,
         replay,
@@ -186,12 +186,11 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     })
 }
 
-fn front(attachments: &[Attachment], remarks: &mut Remarks) -> Option<Front> {
-    let file = attachments.iter().find(|file| file.name == FRONT)?;
-    match Front::read(file)? {
-        Ok(front) => Some(front),
+fn front(carried: &Carried, remarks: &mut Remarks) -> Option<PlanDocument> {
+    match carried.plan()? {
+        Ok(plan) => Some(plan),
         Err(error) => {
-            remarks.add(Code::NotSupported, 1, format!("{FRONT} in the log is broken, left out: {error}"));
+            remarks.add(Code::NotSupported, 1, format!("{PLAN} in the log is broken, left out: {error}"));
             None
         }
     }

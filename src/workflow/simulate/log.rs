@@ -1,18 +1,20 @@
 //! `simulate`: from the log of a plan to a run of it, and to the run's log.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 use thiserror::Error;
 
 use super::super::{
-    carried::plan_log::{ARM, FRONT, TASK, chosen_times_s},
-    carried::schedule::starts_s,
+    carried::Carried,
     plan::{PlanFailure, arm_of},
-    simulate::{Inputs, Outputs, run},
+    simulate::{Content, Inputs, Outputs, run},
 };
 use crate::{
     arm::Arm,
-    log::{Attachment, LogError, ReadOptions, Selector, Topics, WriteError, read_plan},
+    log::{LogError, ReadOptions, Selector, Topics, WriteError, WriteOptions, read_plan},
     plan::{PlanError, Setup},
     plant::{Parameters, PayloadChange, Plant, PlantError},
     series::{Series, SignalError, Track},
@@ -75,12 +77,10 @@ pub enum SimulateFailure {
 pub struct Run {
     /// What came of it.
     pub outputs: Outputs,
-    /// Task and front, if the plan's log holds them.
-    pub attachments: Vec<Attachment>,
+    /// What the plan's log carries, with when its times count from in this run.
+    pub carried: Carried,
     /// Whether a command was sent that is not the plan.
     pub commanded: bool,
-    /// When the times of the plan count from, s.
-    pub starts_s: f64,
     /// The arm that ran it.
     pub arm: Arm,
 }
@@ -92,7 +92,7 @@ impl Run {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn log(&self) -> Result<Vec<u8>, WriteError> {
-        self.outputs.log_with(&self.attachments, self.starts_s, Some(&self.arm.chain))
+        self.outputs.log(&self.carried, Some(&self.arm.chain), Content::Everything, WriteOptions::default())
     }
 }
 
@@ -111,12 +111,10 @@ pub fn simulate(path: &Path, parameters: Parameters, seed: u64) -> Result<Run, S
 pub struct Prepared {
     /// What to run on which machine, rests counted.
     pub inputs: Inputs,
-    /// Task and front, if the plan's log holds them.
-    pub attachments: Vec<Attachment>,
+    /// What the plan's log carries, with when its times count from in this run.
+    pub carried: Carried,
     /// Whether the log holds a command that is not the plan.
     pub commanded: bool,
-    /// When the times of the plan count from, s.
-    pub starts_s: f64,
     /// The arm that is to run it.
     pub arm: Arm,
 }
@@ -128,8 +126,8 @@ impl Prepared {
     ///
     /// [`SimulateFailure::Plant`].
     pub fn run(self) -> Result<Run, SimulateFailure> {
-        let Self { inputs, attachments, commanded, starts_s, arm } = self;
-        Ok(Run { outputs: run(&inputs)?, attachments, commanded, starts_s, arm })
+        let Self { inputs, carried, commanded, arm } = self;
+        Ok(Run { outputs: run(&inputs)?, carried, commanded, arm })
     }
 }
 
@@ -143,19 +141,18 @@ pub fn prepare(path: &Path, parameters: Parameters, seed: u64) -> Result<Prepare
     let plan = read_plan(&paths, &ReadOptions::default())?;
     let topic = Selector { topic: Topics::default().command, field: None };
     let command = read_plan(&paths, &ReadOptions { planned: vec![topic], ..ReadOptions::default() }).ok();
-    let attached = |name: &str| plan.attachments.iter().find(|file| file.name == name);
-    let starts_s = LEAD_S + starts_s(&plan.metadata).unwrap_or(0.0);
+    let carried = Carried::of(&plan);
+    let starts_s = LEAD_S + carried.starts_s().unwrap_or(0.0);
+    let carried = carried.with_provenance(BTreeMap::new()).with_starts_s(starts_s);
     let folder = path.parent().unwrap_or(Path::new(""));
-    let (arm, payload) = match attached(TASK).or_else(|| attached(ARM)) {
+    let (arm, payload) = match carried.task_or_arm() {
         None => (sample_arm(path, &plan.planned)?, Vec::new()),
-        Some(file) => {
-            let text = String::from_utf8_lossy(&file.data);
-            let named = |source| SimulateFailure::Task { path: path.to_owned(), source };
-            let task = Task::parse(&text).map_err(named)?;
+        Some(task) => {
+            let task = task.map_err(|source| SimulateFailure::Task { path: path.to_owned(), source })?;
             let arm = arm_of(&task, folder)?;
-            let times_s = attached(FRONT).and_then(|file| chosen_times_s(&file.data));
-            let payload =
-                times_s.map_or(Ok(Vec::new()), |times_s| payload(&task, arm.clone(), &times_s, starts_s))?;
+            let payload = carried
+                .times_s()
+                .map_or(Ok(Vec::new()), |times_s| payload(&task, arm.clone(), &times_s, starts_s))?;
             (arm, payload)
         }
     };
@@ -164,8 +161,7 @@ pub fn prepare(path: &Path, parameters: Parameters, seed: u64) -> Result<Prepare
     let command = command.map_or(Ok(planned.clone()), |command| with_rests(&command.planned))?;
     let plant = Plant::new(&arm, parameters)?;
     let inputs = Inputs { plant, plan: planned, command, payload, seed };
-    let attachments = [TASK, ARM, FRONT].into_iter().filter_map(attached).cloned().collect();
-    Ok(Prepared { inputs, attachments, commanded, starts_s, arm })
+    Ok(Prepared { inputs, carried, commanded, arm })
 }
 
 /// The sample arm, for a log that names no other and whose joints are its.

@@ -1,24 +1,15 @@
 //! `simulate`: what a log would hold if a hydraulic arm ran a command.
 
-use std::collections::BTreeMap;
-
 pub mod log;
 
-use super::{
-    carried::arm_log::ArmLog,
-    carried::plan_log::{PROVENANCE, STARTS},
-    carried::stamp::START_NS,
-};
+use super::carried::{Carried, arm_log::ArmLog, stamp::START_NS, write_truth};
 use crate::{
     arm::Chain,
-    log::{Attachment, LogWriter, Role, WriteError, WriteOptions},
+    log::{LogWriter, Role, WriteError, WriteOptions},
     plant::{JointRecord, PayloadChange, Plant, PlantError, Record, Truth, simulate},
     series::{Series, Track},
     units::nanoseconds,
 };
-
-/// Name of the metadata that holds the truth, as JSON under the key `json`.
-pub const TRUTH: &str = "hydrotrace.plant";
 
 /// Stands for a sample that is not there.
 const UNKNOWN: (f64, f64) = (f64::NAN, f64::NAN);
@@ -95,48 +86,23 @@ fn at(track: &Track, t_s: &[f64]) -> Vec<(f64, f64)> {
 }
 
 impl Outputs {
-    /// The run as an MCAP log of ROS 2 messages: plan, command and measurement as joint states,
-    /// pressures and valves as interfaces of the joints, the truth as metadata.
+    /// The run as an MCAP log of ROS 2 messages: plan, command and measurement as joint states, the arm for tools
+    /// that draw it, the truth as metadata, and what the plan's log carried.
     ///
     /// # Errors
     ///
     /// [`WriteError`] for joint names that no log can hold.
-    pub fn log(&self) -> Result<Vec<u8>, WriteError> {
-        self.log_with(&[], 0.0, None)
-    }
-
-    /// As [`Outputs::log`], with files, with when the times of the plan count from, s, and with the arm for
-    /// tools that draw it.
-    ///
-    /// # Errors
-    ///
-    /// As [`Outputs::log`].
-    pub fn log_with(
+    pub fn log(
         &self,
-        files: &[Attachment],
-        starts_s: f64,
+        carried: &Carried,
         chain: Option<&Chain>,
-    ) -> Result<Vec<u8>, WriteError> {
-        self.log_as(files, starts_s, chain, (Content::Everything, WriteOptions::default()))
-    }
-
-    /// As [`Outputs::log_with`], with as much of the run as is asked for, and written as asked for.
-    ///
-    /// # Errors
-    ///
-    /// As [`Outputs::log`].
-    pub fn log_as(
-        &self,
-        files: &[Attachment],
-        starts_s: f64,
-        chain: Option<&Chain>,
-        (content, options): (Content, WriteOptions),
+        content: Content,
+        options: WriteOptions,
     ) -> Result<Vec<u8>, WriteError> {
         let names: Vec<&str> = self.record.joints.iter().map(|joint| joint.name.as_str()).collect();
         let mut log = LogWriter::new(Vec::new(), &names, options)?;
-        let truth = serde_json::to_string(&self.truth).unwrap_or_default();
-        log.metadata(TRUTH, &BTreeMap::from([("json".to_owned(), truth)]))?;
-        log.metadata(PROVENANCE, &BTreeMap::from([(STARTS.to_owned(), starts_s.to_string())]))?;
+        write_truth(&mut log, &self.truth)?;
+        carried.begin(&mut log)?;
         let mut arm = match chain {
             Some(chain) => ArmLog::begin(&mut log, chain, &names, START_NS, true)?,
             None => None,
@@ -176,9 +142,7 @@ impl Outputs {
                 ],
             )?;
         }
-        for file in files {
-            log.attach(&file.name, &file.media_type, &file.data, START_NS)?;
-        }
+        carried.end(&mut log, START_NS)?;
         log.finish()
     }
 }

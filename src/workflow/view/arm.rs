@@ -10,8 +10,7 @@ use crate::{
     log::{LogError, Recording, read_description},
     remark::Code,
     series::{Series, Track},
-    task::Task,
-    workflow::{carried::plan_log::TASK, plan::arm_of},
+    workflow::carried::Carried,
 };
 
 /// How often an arm is placed, a second; enough for the eye.
@@ -153,9 +152,7 @@ fn found(paths: &[PathBuf], recording: &Recording) -> Result<Option<FoundArm>, L
         Some(FoundArm { origin: ArmOrigin::Log, chain, still })
     };
     let tasks = || {
-        let file = recording.attachments.iter().find(|file| file.name == TASK)?;
-        let task = Task::parse(&String::from_utf8_lossy(&file.data)).ok()?;
-        let chain = arm_of(&task, folder_of(paths)).ok()?.chain;
+        let chain = Carried::of(recording).arm(folder_of(paths))?.ok()?.chain;
         whole(&chain).then_some(FoundArm { origin: ArmOrigin::Task, chain, still: Vec::new() })
     };
     let sample = || {

@@ -12,7 +12,7 @@ use thiserror::Error;
 
 pub use arm::{ArmOrigin, MovingArm, Poses, Sight};
 
-use super::carried::plan_log::FRONT;
+use super::{carried::Carried, plan::PlanDocument};
 use crate::{
     arm::ArmError,
     log::{LogError, ReadOptions, Recording, read_plan, read_recording},
@@ -77,18 +77,9 @@ pub struct Scene {
     /// The arm, if there is one of these joints.
     pub arm: Option<MovingArm>,
     /// Plans to choose from, if the log holds them.
-    pub front: Option<Front>,
+    pub front: Option<PlanDocument>,
     /// What was doubtful.
     pub remarks: Remarks,
-}
-
-/// Plans of which none is better than another in everything.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Front {
-    /// Duration, s, root mean square jerk, rad/s³, root mean square power, W; by plan.
-    pub objectives: Vec<[f64; 3]>,
-    /// The same of the plan that was chosen.
-    pub chosen: Option<[f64; 3]>,
 }
 
 /// Reads and places everything that is to be seen.
@@ -131,18 +122,7 @@ fn scene(
         joints.filter_map(|planned| align(planned, recording.measured.track(planned.name())?)).collect();
     let found = replay(&pairs, &inputs.rules);
     let arm = arm::find(&paths, &mut recording, given, &inputs.packages)?;
-    let front = recording.attachments.iter().find(|file| file.name == FRONT).and_then(|f| front(&f.data));
+    let front = Carried::of(&recording).plan().and_then(Result::ok);
     let Recording { planned, measured, remarks, .. } = recording;
     Ok(Scene { name, planned, measured, pairs, transitions: found.transitions, arm, front, remarks })
-}
-
-fn front(document: &[u8]) -> Option<Front> {
-    let document: serde_json::Value = serde_json::from_slice(document).ok()?;
-    let of = |plan: &serde_json::Value| -> Option<[f64; 3]> {
-        let value = |key: &str| plan[key].as_f64();
-        Some([value("duration_s")?, value("rms_jerk_rad_s3")?, value("rms_power_w")?])
-    };
-    let objectives: Vec<[f64; 3]> = document["front"].as_array()?.iter().filter_map(of).collect();
-    let chosen = of(&document["chosen"]);
-    (!objectives.is_empty() || chosen.is_some()).then_some(Front { objectives, chosen })
 }

@@ -7,8 +7,8 @@ use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
 use hydrotrace::{
     arm::Arm,
     moea::Budget,
-    plan::{Evaluator, Objectives, Search, Setup, ends, search},
-    task::Task,
+    plan::{Evaluator, Search, Setup, ends, search},
+    task::{Objective, Task},
 };
 use serde::Deserialize;
 
@@ -83,13 +83,12 @@ fn plans_have_the_objectives_and_peaks_that_scipy_and_pinocchio_find() {
             let setup = setup(&task, plan.dwell_s);
             let mut evaluator = Evaluator::new(&setup);
             let interval_s = setup.intervals_s(&plan.times_s).unwrap();
-            let Objectives { duration_s, rms_jerk_rad_s3, rms_power_w } =
-                evaluator.evaluate(&setup, &interval_s).unwrap();
-            assert!(off(duration_s, plan.duration_s) < 1e-12);
-            assert!(off(rms_jerk_rad_s3, plan.rms_jerk_rad_s3) < 1e-9, "{task} {:?}", plan.times_s);
+            let found = evaluator.evaluate(&setup, &interval_s).unwrap();
+            assert!(off(found[Objective::Duration], plan.duration_s) < 1e-12);
+            assert!(off(found[Objective::RmsJerk], plan.rms_jerk_rad_s3) < 1e-9, "{task} {:?}", plan.times_s);
             // Eight nodes a piece integrate the power of a plan that swings far out only roughly.
             let power = if plan.feasible() { 1e-6 } else { 5e-4 };
-            let found = off(rms_power_w, plan.rms_power_w);
+            let found = off(found[Objective::RmsPower], plan.rms_power_w);
             assert!(found < power, "{task} {:?}: {found:.1e}", plan.times_s);
             if plan.feasible() {
                 let violation = evaluator.violation();
@@ -116,7 +115,7 @@ fn a_search_of_20000_evaluations_reaches_the_independent_optima() {
     for (task, optima) in reference() {
         let settings = Search { budget: Budget::Evaluations(20_000), ..Search::default() };
         let found = search(&setup(&task, None), &settings, |_| ControlFlow::Continue(())).unwrap();
-        let front: Vec<[f64; 3]> = found.front.iter().map(|plan| plan.objectives.as_array()).collect();
+        let front: Vec<&[f64]> = found.front.iter().map(|plan| plan.objectives.plan()).collect();
         let best = ends(&found.front).unwrap();
         for (k, name) in ["fastest", "smoothest", "thriftiest"].into_iter().enumerate() {
             let ratio = front[best[k]][k] / optima.end(name)[k];

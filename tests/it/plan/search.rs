@@ -5,10 +5,8 @@ use std::{ops::ControlFlow, path::Path};
 use hydrotrace::{
     arm::Arm,
     moea::{Algorithm, Budget},
-    plan::{
-        Evaluator, Found, Limit, Margin, Objectives, Reference, Rule, Search, Setup, Timing, choose, search,
-    },
-    task::{Bounds, Place, Task},
+    plan::{Evaluator, Found, Limit, Margin, Reference, Rule, Search, Setup, Timing, choose, search},
+    task::{Ceilings, Objective, Objectives, Place, Task},
     units::degrees_from_radians,
 };
 use proptest::prelude::*;
@@ -51,7 +49,11 @@ fn the_papers_plans_have_the_objectives_computed_elsewhere_to_every_printed_digi
     for (setup, times_s, expected, feasible) in cases {
         let (found, violation, margins) = judged(setup, times_s);
         let digits = |text: &str| text.split('.').nth(1).unwrap().len();
-        let [f1, f2, f3] = [found.duration_s, degrees_from_radians(found.rms_jerk_rad_s3), found.rms_power_w];
+        let [f1, f2, f3] = [
+            found[Objective::Duration],
+            degrees_from_radians(found[Objective::RmsJerk]),
+            found[Objective::RmsPower],
+        ];
         let shown = [f1, f2, f3].into_iter().zip(expected).map(|(f, text)| format!("{f:.*}", digits(text)));
         assert_eq!(shown.collect::<Vec<_>>(), expected);
         assert_eq!(violation == 0.0, feasible);
@@ -91,8 +93,8 @@ fn plans_of_a_front_keep_every_limit_exactly_and_none_beats_another() {
         }
         for a in &found.front {
             let beats = |b: &Timing| {
-                let (a, b) = (a.objectives.as_array(), b.objectives.as_array());
-                a != b && a.iter().zip(b).all(|(a, b)| *a <= b)
+                let (a, b) = (a.objectives.plan(), b.objectives.plan());
+                a != b && a.iter().zip(b).all(|(a, b)| a <= b)
             };
             assert!(!found.front.iter().any(beats));
         }
@@ -113,13 +115,14 @@ fn the_number_of_threads_changes_nothing() {
 fn a_start_from_descents_misses_far_less_of_the_hypervolume_than_a_random_one_at_equal_evaluations() {
     for name in ["simulation.toml", "task-1.toml", "task-2.toml"] {
         let setup = setup(name);
-        let objectives = |options: &Search| -> Vec<[f64; 3]> {
-            front(&setup, options).front.iter().map(|timing| timing.objectives.as_array()).collect()
+        let objectives = |options: &Search| -> Vec<Vec<f64>> {
+            front(&setup, options).front.iter().map(|timing| timing.objectives.plan().to_vec()).collect()
         };
         let best = objectives(&Search { front: 1000, ..evaluations(15_000) });
-        let reference = Reference::of(best.iter().copied());
-        let all = reference.measure(best.into_iter());
-        let missing = |options: &Search| all - reference.measure(objectives(options).into_iter());
+        let reference = Reference::of(best.iter().map(Vec::as_slice));
+        let all = reference.measure(best.iter().map(Vec::as_slice));
+        let missing =
+            |options: &Search| all - reference.measure(objectives(options).iter().map(Vec::as_slice));
         let seeded = missing(&evaluations(3000));
         let random = missing(&Search { seeded: false, algorithm: Algorithm::Nsga3, ..evaluations(3000) });
         assert!(2.0 * seeded < random, "{name}: {seeded} and {random} of {all}");
@@ -136,7 +139,7 @@ fn any_degree_finds_about_the_same_fastest_plan() {
         let (_, _, margins) = judged(&setup, &setup.times_s(&fastest.interval_s));
         let most = margins.iter().map(|margin| margin.share).fold(0.0, f64::max);
         assert!(most < 1.0 + 1e-4, "degree {degree}: {most}");
-        fastest.objectives.duration_s
+        fastest.objectives[Objective::Duration]
     };
     for degree in [5, 6, 7] {
         let duration_s = fastest(degree);
@@ -209,20 +212,22 @@ fn a_task_that_no_timing_can_keep_names_what_is_nearest() {
 fn every_rule_chooses_the_plan_that_is_best_by_it() {
     let setup = setup("task-1.toml");
     let found = front(&setup, &evaluations(3000));
-    let bounds = Bounds { duration_s: Some(40.0), ..Bounds::default() };
-    let chosen = |rule| choose(&setup, &found.front, &bounds, (rule, None)).unwrap().timing;
-    let least = |k: usize| {
-        let within = found.front.iter().filter(|timing| timing.objectives.duration_s <= 40.0);
-        within.map(|timing| timing.objectives.as_array()[k]).fold(f64::INFINITY, f64::min)
+    let ceilings = Ceilings::NONE.with(Objective::Duration, 40.0);
+    let chosen = |rule| choose(&setup, &found.front, &ceilings, (rule, None)).unwrap().timing;
+    let least = |k: Objective| {
+        let within = found.front.iter().filter(|timing| timing.objectives[Objective::Duration] <= 40.0);
+        within.map(|timing| timing.objectives[k]).fold(f64::INFINITY, f64::min)
     };
-    for (k, rule) in [Rule::Fastest, Rule::Smoothest, Rule::Thriftiest].into_iter().enumerate() {
+    for &k in Objective::OF_PLAN {
+        let rule = Rule::Best(k);
         let timing = chosen(rule);
-        assert!(timing.objectives.as_array()[k] <= least(k), "{rule:?}");
-        assert!(timing.objectives.duration_s <= 40.0 && timing.violation == 0.0, "{rule:?}");
+        assert!(timing.objectives[k] <= least(k), "{rule:?}");
+        assert!(timing.objectives[Objective::Duration] <= 40.0 && timing.violation == 0.0, "{rule:?}");
     }
     for rule in [Rule::Weights, Rule::Ideal, Rule::Knee] {
-        let f = chosen(rule).objectives.as_array();
-        let beaten = |b: &Timing| b.objectives.as_array().iter().zip(f).all(|(b, f)| *b < f * (1.0 - 1e-4));
+        let f = chosen(rule).objectives;
+        let beaten =
+            |b: &Timing| b.objectives.plan().iter().zip(f.plan()).all(|(b, f)| *b < f * (1.0 - 1e-4));
         assert!(!found.front.iter().any(beaten), "{rule:?}");
     }
 }
@@ -239,7 +244,7 @@ proptest! {
         let slow: Vec<f64> = interval_s.iter().map(|s| s * stretch).collect();
         let (fast, _, fast_margins) = judged(&setup, &setup.times_s(&interval_s));
         let (slow, _, slow_margins) = judged(&setup, &setup.times_s(&slow));
-        let ratio = slow.rms_jerk_rad_s3 / fast.rms_jerk_rad_s3 * stretch.powi(3);
+        let ratio = slow[Objective::RmsJerk] / fast[Objective::RmsJerk] * stretch.powi(3);
         prop_assert!((ratio - 1.0).abs() < 1e-9);
         for (fast, slow) in fast_margins.iter().zip(&slow_margins) {
             let power = match fast.limit {

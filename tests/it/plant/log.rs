@@ -1,9 +1,12 @@
 //! A run as a log: what goes in comes out, and the report tells plan from command.
 
 use hydrotrace::{
-    log::{ReadOptions, read_recording},
+    log::{ReadOptions, WriteOptions, read_recording},
     plant::{Plant, Truth},
-    workflow::simulate::{Inputs, Outputs, TRUTH, run},
+    workflow::{
+        carried::Carried,
+        simulate::{Content, Inputs, Outputs, run},
+    },
 };
 
 use crate::support::machine::{POSE_DEG, command};
@@ -19,12 +22,16 @@ fn outputs() -> Outputs {
     run(&Inputs { plant, plan: swing(0.0), command: swing(0.2), payload: Vec::new(), seed: 1 }).unwrap()
 }
 
+fn log(outputs: &Outputs) -> Vec<u8> {
+    outputs.log(&Carried::default(), None, Content::Everything, WriteOptions::default()).unwrap()
+}
+
 #[test]
 fn plan_and_measurement_read_back_and_the_command_is_neither() {
     let outputs = outputs();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.mcap");
-    std::fs::write(&path, outputs.log().unwrap()).unwrap();
+    std::fs::write(&path, log(&outputs)).unwrap();
     let recording = read_recording(&[path], &ReadOptions::default()).unwrap();
     for (j, joint) in outputs.record.joints.iter().enumerate() {
         let measured = recording.measured.track(&joint.name).unwrap();
@@ -39,11 +46,14 @@ fn plan_and_measurement_read_back_and_the_command_is_neither() {
 #[test]
 fn equal_runs_give_equal_logs_that_hold_the_truth() {
     let outputs = outputs();
-    let bytes = outputs.log().unwrap();
-    assert!(bytes == outputs.log().unwrap());
+    let bytes = log(&outputs);
+    assert!(bytes == log(&outputs));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.mcap");
     std::fs::write(&path, bytes).unwrap();
     let recording = read_recording(&[path], &ReadOptions::default()).unwrap();
-    assert_eq!(serde_json::from_str::<Truth>(&recording.metadata[TRUTH]["json"]).unwrap(), outputs.truth);
+    assert_eq!(
+        serde_json::from_str::<Truth>(&recording.metadata["hydrotrace.plant"]["json"]).unwrap(),
+        outputs.truth
+    );
 }

@@ -2,20 +2,22 @@
 
 mod readme;
 
-use std::{collections::BTreeMap, error::Error, path::Path};
+use std::{error::Error, path::Path};
 
 use hydrotrace::{
     arm::Arm,
     fit::{Compensation, Excitation, JointRoom, Observation, compensate, excite, fit},
-    log::{Attachment, WriteOptions},
+    log::WriteOptions,
     plan::PlanEvaluation,
     plant::{JointRecord, Parameters, Plant},
-    render::plan::judged_json,
     series::{Series, Track},
     units::DEGREE_RAD,
     workflow::{
-        carried::plan_log::PlanLog,
-        plan::PlanRequest,
+        carried::{
+            Carried,
+            plan_log::{PlanLog, Planned},
+        },
+        plan::{PlanDocument, PlanRequest},
         simulate::log::{LEAD_S, Prepared, prepare},
         simulate::{Content, Inputs, Outputs, run},
     },
@@ -97,13 +99,14 @@ pub(super) fn logs() -> Result<Vec<PlantLog>, Box<dyn Error>> {
 fn prepared((text, times_s): Task, seed: u64) -> Result<Prepared, Box<dyn Error>> {
     let request = PlanRequest::parse(Path::new("task.toml"), text.to_owned())?;
     let evaluation = PlanEvaluation::of(&request.setup, times_s)?;
-    let document = judged_json(&request.task.title, &request.setup.joint_names(), &evaluation, true);
+    let joints = request.setup.joint_names();
+    let document = PlanDocument::evaluated(&request.task.title, &joints, &evaluation, true);
     let plan = PlanLog {
-        setup: &request.setup,
-        task: text,
-        document: &document,
-        provenance: &BTreeMap::new(),
-        motion: &request.setup.motion(times_s)?,
+        plan: Planned::Motion(&request.setup.motion(times_s)?, &joints),
+        command: None,
+        arm: Some(&request.setup.arm().chain),
+        trajectory: None,
+        carried: &Carried::default().with_plan(text, &document),
         rate_hz: RATE_HZ,
     };
     let folder = tempfile::tempdir()?;
@@ -115,7 +118,7 @@ fn prepared((text, times_s): Task, seed: u64) -> Result<Prepared, Box<dyn Error>
 fn task_run(title: Title, prepared: Prepared, content: Content) -> Result<PlantLog, Box<dyn Error>> {
     let seed = prepared.inputs.seed;
     let run = prepared.run()?;
-    written(title, seed, run.outputs, (&run.attachments, run.starts_s), content)
+    written(title, seed, run.outputs, &run.carried, content)
 }
 
 fn identification() -> Result<PlantLog, Box<dyn Error>> {
@@ -133,7 +136,7 @@ fn identification() -> Result<PlantLog, Box<dyn Error>> {
     let plan = excite(&joints, &Excitation { rest_s: LEAD_S, ..Excitation::minimal() })?;
     let (plant, command, seed) = (Plant::preset(PRESET)?, plan.clone(), 13);
     let outputs = run(&Inputs { plant, plan, command, payload: Vec::new(), seed })?;
-    written(IDENTIFICATION_RUN, seed, outputs, (&[], 0.0), Content::Joints)
+    written(IDENTIFICATION_RUN, seed, outputs, &Carried::default().with_starts_s(0.0), Content::Joints)
 }
 
 /// The plan of a run again, with the command that a fit to the run makes of it.
@@ -145,9 +148,9 @@ fn precompensated(again: Prepared, before: &PlantLog) -> Result<PlantLog, Box<dy
     let plan = &again.inputs.plan;
     let fit = fit(&[Observation { sent: plan, measured: &measured, valve: None }])?;
     let command = compensate(&fit, plan, Compensation::default())?.command;
-    let (seed, starts_s) = (14, again.starts_s);
+    let seed = 14;
     let outputs = run(&Inputs { command, seed, ..again.inputs })?;
-    written(PRECOMPENSATED_RUN, seed, outputs, (&again.attachments, starts_s), Content::Joints)
+    written(PRECOMPENSATED_RUN, seed, outputs, &again.carried, Content::Joints)
 }
 
 /// Writes a run, small: numbers as `f32`, slowest compression, chunks as large as a run.
@@ -155,7 +158,7 @@ fn written(
     (name, story): Title,
     seed: u64,
     mut outputs: Outputs,
-    (files, starts_s): (&[Attachment], f64),
+    carried: &Carried,
     content: Content,
 ) -> Result<PlantLog, Box<dyn Error>> {
     let pairs = outputs.planned.iter_mut().chain(&mut outputs.command).flatten();
@@ -173,7 +176,7 @@ fn written(
         joint.measured_rad_s.iter_mut().for_each(|x| *x = (*x / SPEED_STEP_RAD_S).round() * SPEED_STEP_RAD_S);
     }
     let options = WriteOptions { compression_level: 19, chunk_bytes: 1 << 24, ..WriteOptions::default() };
-    let bytes = outputs.log_as(files, starts_s, None, (content, options))?;
+    let bytes = outputs.log(carried, None, content, options)?;
     Ok(PlantLog { name, bytes, story, seed, outputs })
 }
 

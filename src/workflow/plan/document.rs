@@ -1,0 +1,298 @@
+//! The document of a plan: what `plan` and `replan` say, what their logs carry, what pages and viewer show of a log.
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::{Options, Planned, Step};
+use crate::{
+    document::{PROGRAM, pretty, unbounded},
+    plan::{Limit, Margin, PlanEvaluation, Rule},
+    remark::Remark,
+    task::{Objective, Objectives},
+};
+
+const FORMAT: &str = "hydrotrace.plan.v1";
+
+/// Plans of a task. Angles are radians, times seconds, f1 is the duration, f2 the root mean square
+/// jerk and f3 the root mean square power, both summed over joints.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct PlanDocument {
+    /// Always "hydrotrace.plan.v1".
+    pub format: String,
+    /// Name and version of the program that wrote it.
+    #[serde(default)]
+    pub program: String,
+    /// Title of the task.
+    pub title: String,
+    /// Names of the joints, base first.
+    #[serde(default)]
+    pub joints: Vec<String>,
+    /// Whether a plan keeps all limits and ceilings; if not, the exit code is 1.
+    #[serde(default)]
+    pub feasible: bool,
+    /// Evolutionary algorithm; null where a plan was only evaluated.
+    pub algorithm: Option<String>,
+    /// Whether the search started from descents.
+    pub seeded: Option<bool>,
+    /// Seed of the random numbers.
+    pub seed: Option<u64>,
+    /// Evaluations made.
+    #[serde(default)]
+    pub evaluations: u64,
+    /// Generations of the evolution.
+    pub generations: Option<u64>,
+    /// Whether more evaluations would find a faster plan than the fastest; null without descents.
+    #[serde(rename = "hasty", default, with = "inverted")]
+    #[cfg_attr(test, schemars(with = "Option<bool>"))]
+    pub fastest_converged: Option<bool>,
+    /// Share of the box between the best of each objective and 1.1 times the front's range that the
+    /// front dominates.
+    pub hypervolume: Option<f64>,
+    /// The same on the way, in the box of the final front; left out where nothing was searched.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub convergence: Vec<Step>,
+    /// Plans on the Pareto front, fastest first.
+    pub front: Vec<PlanEntry>,
+    /// Indices into the front of the plan that is best in each objective: A, B, C.
+    pub best: Option<Vec<usize>>,
+    /// The plan to run; of an infeasible task the nearest to being one.
+    pub chosen: ChosenPlan,
+    /// Doubts about the task; any makes the exit code 3.
+    #[serde(default)]
+    pub remarks: Vec<Remark>,
+}
+
+/// One plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct PlanEntry {
+    /// Arrival at each key point, s, dwells counted.
+    #[serde(default)]
+    pub times_s: Vec<f64>,
+    /// What it costs.
+    #[serde(flatten)]
+    pub objectives: Objectives,
+    /// Sum of what it exceeds limits by, as shares of them.
+    #[serde(default)]
+    pub violation: f64,
+}
+
+/// The plan to run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct ChosenPlan {
+    /// The plan.
+    #[serde(flatten)]
+    pub entry: PlanEntry,
+    /// How it was chosen; null where it was given.
+    #[cfg_attr(test, schemars(with = "Option<String>"))]
+    pub rule: Option<Rule>,
+    /// Weights of f1, f2 and f3, where the rule is by weights.
+    pub weights: Option<Vec<f64>>,
+    /// Plans of the front that keep to the ceilings.
+    pub within_ceilings: Option<usize>,
+    /// Root mean square jerk by joint, rad/s³.
+    #[serde(default)]
+    pub joint_rms_jerk_rad_s3: Vec<f64>,
+    /// Root mean square power by joint, W.
+    #[serde(default)]
+    pub joint_rms_power_w: Vec<f64>,
+    /// Work that the joints do and take up, J.
+    #[serde(default)]
+    pub energy_j: f64,
+    /// Every limit, and where the plan comes nearest to it.
+    #[serde(default)]
+    pub margins: Vec<MarginEntry>,
+}
+
+/// A limit and where a plan or a command comes nearest to it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct MarginEntry {
+    /// The quantity.
+    pub limit: Limit,
+    /// The joint; null for a limit of the arm as a whole.
+    pub joint: Option<String>,
+    /// Its value there: rad, rad/s, rad/s², rad/s³, N m, m/s, N or m³/s; null where it has no bound.
+    #[serde(with = "unbounded")]
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
+    pub value: f64,
+    /// What is allowed in that direction.
+    pub allowed: f64,
+    /// Share of what is allowed; above 1 the limit is broken; null where it has no bound.
+    #[serde(with = "unbounded")]
+    #[cfg_attr(test, schemars(with = "Option<f64>"))]
+    pub share: f64,
+    /// When, s.
+    pub t_s: f64,
+}
+
+impl MarginEntry {
+    /// Margins of an arm with these joints, base first.
+    pub fn all(margins: &[Margin], joints: &[String]) -> Vec<Self> {
+        let one = |margin: &Margin| Self {
+            limit: margin.limit,
+            joint: margin.joint.and_then(|joint| joints.get(joint)).cloned(),
+            value: margin.value,
+            allowed: margin.allowed,
+            share: margin.share,
+            t_s: margin.t_s,
+        };
+        margins.iter().map(one).collect()
+    }
+}
+
+impl PlanDocument {
+    /// Of one plan that was given, or of the nearest to one of an infeasible task.
+    pub fn evaluated(title: &str, joints: &[String], evaluation: &PlanEvaluation, feasible: bool) -> Self {
+        let entry = PlanEntry {
+            times_s: evaluation.times_s.clone(),
+            objectives: evaluation.objectives,
+            violation: evaluation.violation,
+        };
+        Self {
+            format: FORMAT.to_owned(),
+            program: PROGRAM.to_owned(),
+            title: title.to_owned(),
+            joints: joints.to_vec(),
+            feasible,
+            algorithm: None,
+            seeded: None,
+            seed: None,
+            evaluations: 1,
+            generations: None,
+            fastest_converged: None,
+            hypervolume: None,
+            convergence: Vec::new(),
+            front: if feasible { vec![entry.clone()] } else { Vec::new() },
+            best: None,
+            chosen: ChosenPlan {
+                entry,
+                rule: None,
+                weights: None,
+                within_ceilings: None,
+                joint_rms_jerk_rad_s3: evaluation.rms_jerk_rad_s3.clone(),
+                joint_rms_power_w: evaluation.rms_power_w.clone(),
+                energy_j: evaluation.energy_j,
+                margins: MarginEntry::all(&evaluation.margins, joints),
+            },
+            remarks: Vec::new(),
+        }
+    }
+
+    /// Of a search.
+    pub fn searched(title: &str, algorithm: &str, options: &Options, planned: &Planned) -> Self {
+        let choice = &planned.choice;
+        let alone = Self::evaluated(title, &planned.joints, &planned.chosen, true);
+        let plans = planned.front.iter().zip(&planned.times_s);
+        let entry = |(plan, times_s): (&crate::plan::Timing, &Vec<f64>)| PlanEntry {
+            times_s: times_s.clone(),
+            objectives: plan.objectives,
+            violation: plan.violation,
+        };
+        Self {
+            algorithm: Some(algorithm.to_owned()),
+            seeded: Some(options.search.seeded),
+            seed: Some(options.search.seed),
+            evaluations: planned.evaluations,
+            generations: Some(planned.generations),
+            fastest_converged: planned.fastest_converged,
+            hypervolume: Some(planned.hypervolume),
+            convergence: planned.convergence.clone(),
+            front: plans.map(entry).collect(),
+            best: Some(planned.ends.clone()),
+            chosen: ChosenPlan {
+                rule: Some(choice.rule),
+                weights: choice.weights.map(|weights| weights.plan().to_vec()),
+                within_ceilings: Some(choice.within),
+                ..alone.chosen
+            },
+            remarks: planned.remarks.as_slice().to_vec(),
+            ..alone
+        }
+    }
+
+    /// The document as text.
+    pub fn json(&self) -> String {
+        pretty(self)
+    }
+
+    /// Reads a document; `None` if it is not one of ours.
+    ///
+    /// # Errors
+    ///
+    /// Within, if it is one of ours and broken.
+    pub fn read(bytes: &[u8]) -> Option<Result<Self, serde_json::Error>> {
+        #[derive(Deserialize)]
+        struct Head {
+            format: String,
+        }
+        let head: Head = serde_json::from_slice(bytes).ok()?;
+        (head.format == FORMAT).then(|| serde_json::from_slice(bytes))
+    }
+
+    /// The best plan in each objective, with its letter.
+    pub fn best(&self) -> impl Iterator<Item = (char, &Objectives)> {
+        let places = self.best.iter().flatten().zip(Objective::OF_PLAN);
+        places
+            .filter_map(|(&place, objective)| Some((objective.letter(), &self.front.get(place)?.objectives)))
+    }
+}
+
+/// The document says whether the fastest plan was still getting faster.
+mod inverted {
+    use super::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[expect(clippy::ref_option, reason = "serde's form")]
+    pub(super) fn serialize<S: Serializer>(
+        converged: &Option<bool>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        converged.map(|converged| !converged).serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<bool>, D::Error> {
+        Ok(Option::<bool>::deserialize(deserializer)?.map(|hasty| !hasty))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::workflow::plan::PlanRequest;
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_plan() {
+        crate::schema::is_committed::<PlanDocument>("plan.v1.schema.json", "hydrotrace plan, version 1");
+    }
+
+    #[test]
+    fn a_document_reads_back_as_it_was_written() {
+        let request = PlanRequest::sample().unwrap();
+        let evaluation =
+            PlanEvaluation::of(&request.setup, &[0.0, 5.31, 11.47, 16.36, 26.27, 38.72]).unwrap();
+        let mut written = PlanDocument::evaluated("t", &request.setup.joint_names(), &evaluation, true);
+        written.fastest_converged = Some(true);
+        written.best = Some(vec![0, 0, 9]);
+        let read = PlanDocument::read(written.json().as_bytes()).unwrap().unwrap();
+        assert_eq!(read, written);
+        assert!(written.json().contains("\"hasty\": false"));
+        assert_eq!(read.best().map(|(letter, _)| letter).collect::<Vec<_>>(), ['A', 'B']);
+    }
+
+    #[test]
+    fn broken_documents_are_told_from_foreign_ones_and_old_ones_may_lack_keys() {
+        let plan = r#"{"duration_s": 2, "rms_jerk_rad_s3": 3, "rms_power_w": 4}"#;
+        let text = |best: &str| {
+            format!(
+                r#"{{"format": "{FORMAT}", "title": "t", "front": [{plan}], "best": {best}, "chosen": {plan}}}"#
+            )
+        };
+        let read = |text: &str| PlanDocument::read(text.as_bytes());
+        let found = read(&text("[0, 0, 0]")).unwrap().unwrap();
+        assert_eq!(found.front[0].objectives.plan(), [2.0, 3.0, 4.0]);
+        assert_eq!(found.best().count(), 3);
+        assert!(read(&text("\"x\"")).unwrap().is_err());
+        assert!(read("{\"plan\": 1}").is_none() && read("no json").is_none());
+    }
+}
