@@ -40,6 +40,13 @@ impl<'a> Console<'a> {
         self.out.write_all(text.as_bytes()).map_err(CliError::Output)
     }
 
+    /// The same at once, before the verb ends.
+    #[cfg(feature = "viewer")]
+    pub(super) fn announce(&mut self, text: &str) -> std::io::Result<()> {
+        self.out.write_all(text.as_bytes())?;
+        self.out.flush()
+    }
+
     /// Writes a document to standard output, with colours and folded lines on a terminal.
     pub(super) fn show(&mut self, document: &Document) -> Result<(), CliError> {
         self.print(&shown(document))
@@ -56,7 +63,11 @@ impl<'a> Console<'a> {
     pub(super) fn say_remarks(&mut self, remarks: &Remarks) {
         for remark in remarks.as_slice() {
             let text = harmless(&remark.message).replace('\n', "\u{fffd}");
-            self.say(format_args!("{DOUBT}remark:{DOUBT:#} {} x{}: {text}", remark.code.name(), remark.count));
+            self.say(format_args!(
+                "{DOUBT}remark:{DOUBT:#} {} x{}: {text}",
+                remark.code.name(),
+                remark.count
+            ));
         }
     }
 
@@ -84,6 +95,11 @@ impl<'a> Console<'a> {
             (true, false) => Outcome::Remarks,
             (true, true) => Outcome::Clean,
         })
+    }
+
+    /// Where a table goes row by row.
+    pub(super) fn out(&mut self) -> &mut dyn Write {
+        self.out
     }
 
     /// The outcome, if standard output took everything.
@@ -125,7 +141,7 @@ impl Form {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Target<'a> {
     pub(super) form: Form,
-    file: Option<&'a Path>,
+    pub(super) file: Option<&'a Path>,
 }
 
 impl<'a> Target<'a> {

@@ -40,9 +40,7 @@ impl CliError {
     }
 
     /// What failed, with the reason below it.
-    pub(super) fn step(
-        step: impl Into<String>,
-    ) -> impl FnOnce(Box<dyn Error + Send + Sync>) -> Self {
+    pub(super) fn step(step: impl Into<String>) -> impl FnOnce(Box<dyn Error + Send + Sync>) -> Self {
         let step = step.into();
         move |source| Self::Failed(Box::new(Step { step, source }))
     }

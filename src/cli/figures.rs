@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::value_parser;
 
+#[cfg(feature = "png")]
+use super::console::harmless;
 use super::{
     CliError,
     console::{Console, make_folder, write_file},
 };
-#[cfg(feature = "png")]
-use super::console::harmless;
 use crate::render::kit::{Failure, Figure};
 #[cfg(feature = "png")]
 use crate::render::kit::{Raster, raster};

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     render::{fit as words, next},
-    workflow::fit::{Fitted, Inputs, run},
+    workflow::fit::{FitDocument, Fitted, Inputs, LimitsFile, run},
 };
 
 const EXAMPLES: &str = "\
@@ -49,8 +49,9 @@ impl Args {
         spare_for_log(self.output.as_deref(), &self.logs)?;
         let fitted = run(&Inputs { logs: self.logs.clone(), wanted: self.sent.wanted() })?;
         if let Some(path) = self.output.as_deref().filter(|_| self.document().is_none()) {
-            let limits = words::limits_toml(&fitted.file());
-            let limits = limits.map_err(|error| CliError::step("the limits cannot be written")(error.into()))?;
+            let limits = LimitsFile::of(&fitted).toml();
+            let limits =
+                limits.map_err(|error| CliError::step("the limits cannot be written")(error.into()))?;
             write_file(path, limits.as_bytes())?;
         }
         Ok(fitted)
@@ -62,7 +63,7 @@ impl Run for Args {
         let fitted = self.fitted()?;
         let target = Target::new(Form::of(&[(self.json, Form::Json)], self.document()), self.document())?;
         let result = match &self.output {
-            _ if target.form == Form::Json => words::json(&fitted),
+            _ if target.form == Form::Json => FitDocument::of(&fitted).json(),
             Some(path) => {
                 let next = next::limits_written(path, &self.logs);
                 target.text(&words::document(&fitted).with_above_remarks(next))

@@ -130,12 +130,14 @@ pub fn main() -> ExitCode {
     let mut err = AutoStream::new(io::stderr(), choice);
     let mut out = io::stdout().lock();
     let result = args.command.run(&mut Console::new(&mut out, &mut err, args.terminal.quiet));
-    ExitCode::from(match result.and_then(|outcome| Console::new(&mut out, &mut err, false).flushed(outcome)) {
-        Ok(Outcome::Clean) => 0,
-        Ok(Outcome::Remarks) => 3,
-        Ok(Outcome::LimitBroken) => 4,
-        Err(error) => error.explained(&mut err),
-    })
+    ExitCode::from(
+        match result.and_then(|outcome| Console::new(&mut out, &mut err, false).flushed(outcome)) {
+            Ok(Outcome::Clean) => 0,
+            Ok(Outcome::Remarks) => 3,
+            Ok(Outcome::LimitBroken) => 4,
+            Err(error) => error.explained(&mut err),
+        },
+    )
 }
 
 #[cfg(test)]

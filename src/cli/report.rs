@@ -12,7 +12,7 @@ use super::{
 use crate::{
     render::report as words,
     workflow::{
-        fit::{LimitsFile, read_limits},
+        fit::LimitsFile,
         report::{Gates, Inputs, Report, run},
     },
 };
