@@ -23,13 +23,15 @@ pub(super) struct Delay {
 /// Directions and onsets, s, of all measured starts, reversals included: whether a plan asks for them or
 /// not.
 pub fn measured_starts(pair: &Pair, rules: &Rules) -> Vec<(i8, f64)> {
-    starts(pair, &Signals::new(pair, rules), rules)
+    let signals = Signals::new(pair, rules);
+    let seen = signals.measured.iter().filter(|m| m.starts());
+    seen.map(|m| (m.direction, measured_onset(pair, &signals, m, rules).at_s)).collect()
 }
 
-/// The same from known signals.
-pub(super) fn starts(pair: &Pair, signals: &Signals, rules: &Rules) -> Vec<(i8, f64)> {
-    let seen = signals.measured.iter().filter(|m| m.starts());
-    seen.map(|m| (m.direction, measured_onset(pair, signals, m, rules).at_s)).collect()
+/// Directions and ends, s, of all measured motions that end at rest.
+pub fn measured_stops(pair: &Pair, rules: &Rules) -> Vec<(i8, f64)> {
+    let signals = Signals::new(pair, rules);
+    signals.measured.iter().filter(|m| m.stops()).map(|m| (m.direction, m.end_s)).collect()
 }
 
 /// Start of a measured motion; the crossing of the stop threshold where no better is known.

@@ -16,24 +16,20 @@ mod outcome;
 mod path;
 mod profile;
 mod rules;
-mod score;
 mod signals;
-mod synthetic;
 mod tracking;
 mod transition;
 
 use rayon::prelude::*;
 
-pub use delay::measured_starts;
+pub use delay::{measured_starts, measured_stops};
 pub use outcome::{
     Answer, Concentration, ConcentrationTest, JointReplay, Kind, LagShare, OnsetMethod, PathError, Replay,
     Stop, Thresholds, TrackingError, Transition, Verdict, WholeRun,
 };
 pub use profile::{Profiles, STRETCHES};
 pub use rules::Rules;
-pub use score::{Score, Spread, conditions, detector_score};
 pub use signals::planned_starts;
-pub use synthetic::{Sensing, SyntheticRun, TrueMotion, synthetic_run};
 
 use crate::series::Pair;
 use concentration::{JointError, concentration};

@@ -2,19 +2,15 @@
 
 pub mod carried;
 pub mod compare;
-pub mod contest;
-pub mod detector;
 pub mod excite;
 pub mod export;
 pub mod fit;
 pub mod import;
 pub mod info;
 pub mod join;
-pub mod moea;
 pub mod plan;
 pub mod recover;
 pub mod replan;
 pub mod report;
-mod sample;
 pub mod simulate;
 pub mod view;

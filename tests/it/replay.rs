@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use hydrotrace::{
-    replay::{Answer, Replay, Rules, Sensing, Transition, detector_score, replay, synthetic_run},
+    replay::{Answer, Replay, Rules, Transition, replay},
     series::{JointKind, Pair},
     units::DEGREE_RAD,
 };
+use hydrotrace_bench::detector::{Sensing, detector_score, synthetic_run};
 use proptest::prelude::*;
 
 fn of(pair: &Pair) -> Replay {

@@ -52,7 +52,6 @@
 mod archive;
 pub mod benchmark;
 pub mod compare;
-mod contender;
 mod direction;
 mod evaluate;
 mod focus;
@@ -61,6 +60,7 @@ pub mod indicator;
 mod mating;
 mod moead;
 mod msops2;
+mod named;
 mod normalize;
 mod nsga2;
 mod nsga3;
@@ -74,9 +74,9 @@ mod survival;
 mod variation;
 
 pub use archive::Archive;
-pub use contender::{CONTENDERS, Contender};
 pub use direction::{Directions, MOST_DIRECTIONS, das_dennis, direction_count};
 pub use focus::Focus;
+pub use named::{ALGORITHMS, NamedAlgorithm};
 pub use optimise::{Outcome, Progress, optimise, silent};
 pub use population::Population;
 pub use problem::{Bounds, Problem};

@@ -16,7 +16,7 @@ use crate::{
         figures::FigureArgs,
         number::{any_seconds, rate_hz, within},
     },
-    moea::{Budget, CONTENDERS, Contender},
+    moea::{ALGORITHMS, Budget, NamedAlgorithm},
     plan::{Rule, Search},
     task::{Objective, Weights},
     workflow::plan::Options,
@@ -89,7 +89,7 @@ pub(super) struct SearchArgs {
         value_name = "NAME",
         default_value = "nsga3-fo",
         ignore_case = true,
-        value_parser = PossibleValuesParser::new(CONTENDERS.map(|c| c.name))
+        value_parser = PossibleValuesParser::new(ALGORITHMS.map(|c| c.name))
     )]
     pub(super) algorithm: String,
 
@@ -175,7 +175,7 @@ impl Args {
         let rule = self.choice.weights.map(|_| Rule::Weights).or(self.choice.choose);
         Options {
             search: Search {
-                algorithm: Contender::named(&self.search.algorithm)
+                algorithm: NamedAlgorithm::find(&self.search.algorithm)
                     .map_or(default.algorithm, |c| c.algorithm),
                 seeded: !self.search.no_seeded,
                 budget,

@@ -10,7 +10,7 @@ use super::{
     console::{Console, Form, Target, spare_for_log, write_file},
 };
 use crate::{
-    moea::Contender,
+    moea::NamedAlgorithm,
     plan::{PlanEvaluation, SampledMotion},
     remark::Remarks,
     render::{
@@ -96,7 +96,7 @@ impl Args {
     /// Searches with a progress bar and writes the chosen plan.
     pub(super) fn found(&self, request: &PlanRequest, console: &mut Console<'_>) -> Result<Found, CliError> {
         let (title, options) = (&request.task.title, self.options());
-        let algorithm = Contender::named(&self.search.algorithm).map_or("", |contender| contender.title);
+        let algorithm = NamedAlgorithm::find(&self.search.algorithm).map_or("", |named| named.title);
         let mut watch = Watch::new(self, &options);
         let planned = run(request, &options, |progress| watch.see(progress));
         watch.bar.finish_and_clear();

@@ -11,7 +11,7 @@ use plotters::{
 };
 
 /// Text and axes.
-pub const INK: RGBColor = RGBColor(51, 51, 51);
+pub(in crate::render) const INK: RGBColor = RGBColor(51, 51, 51);
 pub(super) const GRID: RGBColor = RGBColor(225, 225, 225);
 pub(super) const FONT: &str = "sans-serif";
 

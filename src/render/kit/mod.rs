@@ -11,7 +11,6 @@ mod layout;
 mod markdown;
 mod number;
 pub(in crate::render) mod page;
-pub mod picture;
 #[cfg(feature = "png")]
 mod raster;
 mod spark;

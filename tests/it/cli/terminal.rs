@@ -102,7 +102,7 @@ fn without_a_verb_the_help_is_said_as_bad_usage() {
     let run = hydrotrace(&[]);
     assert_eq!((run.status.code(), stdout(&run).as_str()), (Some(2), ""));
     let said = stderr(&run);
-    let places: Vec<usize> = ["demo", "report", "compare", "plan", "import", "info", "bench", "man"]
+    let places: Vec<usize> = ["demo", "report", "compare", "plan", "import", "info", "man"]
         .iter()
         .map(|verb| said.find(&format!("\n  {verb} ")).unwrap())
         .collect();
@@ -169,5 +169,4 @@ fn every_verb_has_a_manual_page_and_stands_on_the_first() {
         assert!(page.contains(".SH NAME") && page.contains(".SH SYNOPSIS"), "{page}");
     }
     assert!(read("hydrotrace-report.1").contains("max\\-rms\\-deg"));
-    assert!(read("hydrotrace-bench-moea.1").contains("NAME"));
 }

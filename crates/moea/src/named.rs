@@ -1,0 +1,54 @@
+//! Algorithms by name.
+
+use super::{Algorithm, Focus};
+
+/// An algorithm with the names it goes by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NamedAlgorithm {
+    /// As typed and written to files.
+    pub name: &'static str,
+    /// As in the literature.
+    pub title: &'static str,
+    /// The algorithm.
+    pub algorithm: Algorithm,
+}
+
+const fn focused(focus: Focus, adaptive_rates: bool) -> Algorithm {
+    Algorithm::Nsga3Fo { focus, adaptive_rates }
+}
+
+/// Every algorithm that has a name.
+pub const ALGORITHMS: [NamedAlgorithm; 9] = [
+    NamedAlgorithm { name: "nsga3-fo", title: "NSGA-III-FO", algorithm: Algorithm::NSGA3_FO },
+    NamedAlgorithm {
+        name: "nsga3-fo-literal",
+        title: "NSGA-III-FO, literal focus",
+        algorithm: focused(Focus::Literal, false),
+    },
+    NamedAlgorithm {
+        name: "nsga3-fo-signed",
+        title: "NSGA-III-FO, signed focus",
+        algorithm: focused(Focus::Signed, false),
+    },
+    NamedAlgorithm {
+        name: "nsga3-fo-adaptive",
+        title: "NSGA-III-FO, adaptive rates",
+        algorithm: focused(Focus::Local, true),
+    },
+    NamedAlgorithm { name: "nsga3", title: "NSGA-III", algorithm: Algorithm::Nsga3 },
+    NamedAlgorithm { name: "nsga2", title: "NSGA-II", algorithm: Algorithm::Nsga2 },
+    NamedAlgorithm { name: "moead", title: "MOEA/D", algorithm: Algorithm::Moead { normalized: false } },
+    NamedAlgorithm {
+        name: "moead-normalized",
+        title: "MOEA/D, normalised",
+        algorithm: Algorithm::Moead { normalized: true },
+    },
+    NamedAlgorithm { name: "msops2", title: "MSOPS-II", algorithm: Algorithm::Msops2 },
+];
+
+impl NamedAlgorithm {
+    /// The algorithm of a name, in any case.
+    pub fn find(name: &str) -> Option<Self> {
+        ALGORITHMS.into_iter().find(|named| named.name.eq_ignore_ascii_case(name))
+    }
+}
