@@ -125,7 +125,7 @@ struct Args {
 pub fn main() -> ExitCode {
     let matches = Args::command().color(terminal::early_choice(env::args_os())).get_matches();
     let args = Args::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
-    let choice = terminal::set_up(&args.terminal);
+    let choice = terminal::set_up(args.terminal);
     // Not locked: the log writes to it during the run.
     let mut err = AutoStream::new(io::stderr(), choice);
     let mut out = io::stdout().lock();

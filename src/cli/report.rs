@@ -85,6 +85,7 @@ struct FormatArgs {
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Limits (exit code 4 if not kept)")]
+#[expect(clippy::struct_field_names, reason = "the names of options")]
 struct GateArgs {
     /// Largest peak error in a transition
     #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]

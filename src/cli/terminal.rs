@@ -39,7 +39,7 @@ pub(super) fn early_choice(words: impl IntoIterator<Item = OsString>) -> clap::C
 }
 
 /// Sets the colours of standard output and starts the log; returns the colour choice for standard error.
-pub(super) fn set_up(args: &TerminalArgs) -> ColorChoice {
+pub(super) fn set_up(args: TerminalArgs) -> ColorChoice {
     let choice = match args.color {
         clap::ColorChoice::Auto => ColorChoice::Auto,
         clap::ColorChoice::Always => ColorChoice::Always,
