@@ -7,21 +7,18 @@ use std::{
 };
 
 use anstream::ColorChoice;
-use anstyle::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressStyle};
 use terminal_size::{Width, terminal_size_of};
 
-use super::{CliError, Outcome};
+use super::{
+    CliError, Outcome,
+    terminal::{DOUBT, FAILED, harmless},
+};
 use crate::{
     atomic_file::write_atomically,
     remark::Remarks,
     render::kit::{self, Document, Sentence, TerminalStyle},
 };
-
-/// Starts a line on a failure.
-pub(super) const FAILED: Style = AnsiColor::Red.on_default().bold();
-/// Starts a line on a doubt.
-const DOUBT: Style = AnsiColor::Yellow.on_default();
 
 /// Standard output for the result, standard error for words beside it.
 pub(super) struct Console<'a> {
@@ -203,11 +200,6 @@ pub(super) fn progress(steps: Option<u64>, template: &str) -> ProgressBar {
         bar.set_style(style);
     }
     bar
-}
-
-/// Text from logs without control characters, which could steer a terminal.
-pub(super) fn harmless(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
 /// Whether the name of a file has an ending.

@@ -6,7 +6,7 @@ use std::{
     io::{self, Write},
 };
 
-use super::console::{FAILED, harmless};
+use super::terminal::{FAILED, harmless};
 
 /// Why a command did not finish.
 #[derive(Debug)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::value_parser;
 
 #[cfg(feature = "png")]
-use super::console::harmless;
+use super::terminal::harmless;
 use super::{
     CliError,
     console::{Console, make_folder, write_file},

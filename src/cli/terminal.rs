@@ -6,10 +6,14 @@ use std::{
 };
 
 use anstream::{AutoStream, ColorChoice};
+use anstyle::{AnsiColor, Style};
 use clap::ArgAction;
 use log::{Level, LevelFilter};
 
-use super::console::harmless;
+/// Starts a line on a failure.
+pub(super) const FAILED: Style = AnsiColor::Red.on_default().bold();
+/// Starts a line on a doubt.
+pub(super) const DOUBT: Style = AnsiColor::Yellow.on_default();
 
 /// Colours, and how much is said besides results.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -63,6 +67,11 @@ pub(super) fn set_up(args: TerminalArgs) -> ColorChoice {
         .try_init();
     log::set_max_level(level);
     of(choice, AutoStream::choice(&io::stderr()))
+}
+
+/// Text from logs without control characters, which could steer a terminal.
+pub(super) fn harmless(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
 #[cfg(test)]
