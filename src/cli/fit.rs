@@ -47,7 +47,7 @@ impl Args {
     /// Fits the runs and writes the limits.
     pub(super) fn fitted(&self) -> Result<Fitted, CliError> {
         spare_for_log(self.output.as_deref(), &self.logs)?;
-        let fitted = run(&Inputs { logs: self.logs.clone(), wanted: self.sent.wanted() })?;
+        let fitted = run(&Inputs { logs: self.logs.clone(), read: self.sent.options() })?;
         if let Some(path) = self.output.as_deref().filter(|_| self.document().is_none()) {
             let limits = LimitsFile::of(&fitted).toml();
             let limits =
@@ -65,7 +65,8 @@ impl Run for Args {
         let result = match &self.output {
             _ if target.form == Form::Json => FitDocument::of(&fitted).json(),
             Some(path) => {
-                let next = next::limits_written(path, &self.logs);
+                let log = fitted.with_task.map_or(self.logs.last(), |place| self.logs.get(place));
+                let next = next::limits_written(path, log);
                 target.text(&words::document(&fitted).with_above_remarks(next))
             }
             None => target.text(&words::document(&fitted)),

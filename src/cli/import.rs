@@ -7,9 +7,10 @@ use super::{
     console::{Console, Target, spare_for_log},
 };
 use crate::{
+    document::pretty,
     log::{AngleUnit, Columns, CsvError, CsvOptions, Quantity, Role, Separator},
     render::import as words,
-    workflow::import::{Inputs, run},
+    workflow::import::{ImportDocument, Inputs, run},
 };
 
 const EXAMPLES: &str = "\
@@ -145,7 +146,7 @@ impl Run for Args {
         let imported = run(&self.request()?)?;
         let target = Target::stdout(self.json);
         let result = if self.json {
-            words::json(&imported)
+            pretty(&ImportDocument::of(&imported))
         } else {
             target.text(&words::document(&self.output.to_string_lossy(), &imported))
         };

@@ -8,8 +8,9 @@ use super::{
     read::ReadArgs,
 };
 use crate::{
+    document::pretty,
     render::info as words,
-    workflow::info::{Inputs, run},
+    workflow::info::{InfoDocument, Inputs, run},
 };
 
 /// Topics of a log, those that a report would use, and damage
@@ -31,7 +32,11 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let survey = run(&Inputs { logs: self.logs.clone(), read: self.read.options() })?;
         let target = Target::stdout(self.json);
-        let result = if self.json { words::json(&survey) } else { target.text(&words::document(&survey)) };
+        let result = if self.json {
+            pretty(&InfoDocument::of(&survey))
+        } else {
+            target.text(&words::document(&survey))
+        };
         console.finish(&target, &result, &survey.remarks, &[])
     }
 }

@@ -9,8 +9,9 @@ use super::{
     read::ReadArgs,
 };
 use crate::{
+    document::pretty,
     render::join as words,
-    workflow::join::{Inputs, run},
+    workflow::join::{Inputs, JoinDocument, run},
 };
 
 const EXAMPLES: &str = "\
@@ -65,7 +66,7 @@ impl Run for Args {
         let joined = run(&self.request())?;
         let target = Target::stdout(self.json);
         let result = if self.json {
-            words::json(&joined)
+            pretty(&JoinDocument::of(&joined))
         } else {
             target.text(&words::document(&joined, &self.plan, &self.output))
         };

@@ -2,10 +2,7 @@
 
 use clap::ValueEnum;
 
-use crate::{
-    log::{ReadOptions, Selector, TimeBase},
-    workflow::fit::observe::Wanted,
-};
+use crate::log::{ReadOptions, Selector, SignalRole, TimeBase, WantedSignal};
 
 /// Which topics, joints and clock to read.
 #[derive(Debug, clap::Args)]
@@ -86,8 +83,10 @@ pub(super) struct SentArgs {
 }
 
 impl SentArgs {
-    pub(super) fn wanted(&self) -> Wanted {
-        Wanted { read: self.read.options(), command: self.command.clone(), valve: self.valve.clone() }
+    pub(super) fn options(&self) -> ReadOptions {
+        let signals = [(SignalRole::Command, &self.command), (SignalRole::Valve, &self.valve)]
+            .map(|(role, topic)| WantedSignal { role, topic: topic.clone() });
+        ReadOptions { signals: signals.into(), ..self.read.options() }
     }
 }
 

@@ -7,8 +7,9 @@ use super::{
     console::{Console, Target, spare_for_log},
 };
 use crate::{
+    document::pretty,
     render::recover as words,
-    workflow::recover::{Inputs, run},
+    workflow::recover::{Inputs, RecoverDocument, run},
 };
 
 /// Save every intact message of a damaged log
@@ -32,7 +33,7 @@ impl Run for Args {
         let recovered = run(&Inputs { log: self.log.clone(), output: self.output.clone() })?;
         let target = Target::stdout(self.json);
         let result = if self.json {
-            words::json(&recovered)
+            pretty(&RecoverDocument::of(&recovered))
         } else {
             target.text(&words::document(&self.output.to_string_lossy(), &recovered))
         };

@@ -98,7 +98,7 @@ impl Args {
         let most_rad = change.max_correction_deg.unwrap_or(compensation.most_rad);
         Inputs {
             logs: self.logs.clone(),
-            wanted: self.sent.wanted(),
+            read: self.sent.options(),
             limits: self.limits.clone(),
             task: self.task.clone(),
             keep_plan: change.keep_plan,

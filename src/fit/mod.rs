@@ -76,9 +76,12 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
             moves
                 .then(|| {
                     let (mut joint, starts) = joint::joint(name, &runs);
-                    joint.valve_dead_band = logs
-                        .iter()
-                        .find_map(|log| valve::dead_band(log.valve?.track(name)?, log.measured.track(name)?));
+                    joint.valve_dead_band = logs.iter().find_map(|log| {
+                        valve::dead_band(
+                            log.valve.iter().find(|s| s.name() == *name)?,
+                            log.measured.track(name)?,
+                        )
+                    });
                     (joint, starts)
                 })
                 .ok_or(left_out)

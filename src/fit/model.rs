@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{FitError, simulate::Start};
+use super::FitError;
 use crate::units::DEGREE_RAD;
 
 /// Step of the simulation, s; that of the position loops it stands for.
@@ -114,12 +114,6 @@ impl Model {
     /// constant and half a step of the loop.
     pub fn lag_s(&self) -> f64 {
         self.dead_time_s + self.time_constant_s + 0.5 * STEP_S
-    }
-
-    /// Starts at rest where it is sent to first.
-    pub(super) fn at_rest(&self, sent: &[(f64, f64)]) -> Start {
-        let angle_rad = sent.first().map_or(0.0, |sent| sent.0) + self.offset_rad;
-        Start { angle_rad, speed_rad_s: 0.0, integral_rad_s: 0.0 }
     }
 }
 

@@ -4,7 +4,7 @@ use super::{
     FitError, Model,
     model::STEP_S,
     run::{sampled, steps_in},
-    simulate::simulate,
+    simulate::{Start, simulate},
 };
 use crate::series::Track;
 
@@ -24,7 +24,7 @@ pub fn predict(model: &Model, sent: &Track) -> Result<Track, FitError> {
     model.check(sent.name())?;
     let grid = grid(sent)?;
     let (mut wanted, mut angle_rad) = (Vec::new(), Vec::new());
-    simulate(model, &grid, model.at_rest(&grid), &mut wanted, &mut angle_rad);
+    simulate(model, &grid, Start::at_rest(model, &grid), &mut wanted, &mut angle_rad);
     let from_s = sent.t_s().first().copied().unwrap_or_default();
     let at = |t_s: &f64| {
         let step = steps_in(t_s - from_s);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{model::STEP_S, simulate::Start};
 use crate::{
-    series::{Series, Track, align, local_quadratic},
+    series::{Series, Signal, Track, align, local_quadratic},
     units::DEGREE_RAD,
 };
 
@@ -16,9 +16,8 @@ pub struct Observation<'a> {
     pub sent: &'a Series,
     /// What the joints did.
     pub measured: &'a Series,
-    /// Signal to the valve of each joint as a share of the full one, positive for growing angles, in
-    /// place of positions.
-    pub valve: Option<&'a Series>,
+    /// Signals to the valves, positive for growing angles; empty where they were not logged.
+    pub valve: &'a [Signal],
 }
 
 /// Sent speed above which a joint is meant to move, rad/s.

@@ -1,5 +1,11 @@
 //! Order statistics.
 
+/// Least and largest of some values; the empty range from infinity to minus infinity for none.
+pub fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    values.into_iter().fold(none, |[least, most], value| [least.min(value), most.max(value)])
+}
+
 /// The `p` quantile of ascending values by linear interpolation between order statistics
 /// (Hyndman and Fan's type 7, as `numpy.quantile`); NaN for no values.
 pub fn quantile_sorted(ascending: &[f64], p: f64) -> f64 {

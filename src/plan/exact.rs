@@ -7,8 +7,9 @@ use rayon::prelude::*;
 
 use super::{
     Evaluator, Limit, Margin, Setup, Timing,
-    descend::{FINE, Goal, Merit, NEARLY, descend},
+    descend::{FINE, NEARLY, descend},
     front::thinned,
+    goal::{Goal, Merit},
 };
 use crate::task::{Ceilings, Objective};
 

@@ -11,6 +11,7 @@ mod evaluate;
 mod evaluation;
 mod exact;
 mod front;
+mod goal;
 mod limit;
 mod margin;
 mod mesh;

@@ -4,9 +4,10 @@ use std::ops::ControlFlow;
 
 use super::{
     Evaluator, PlanError, Setup, Timing, TimingProblem,
-    descend::{FAR_OFF, FINE, Goal, Merit, descend},
+    descend::{FAR_OFF, FINE, descend},
     exact,
     front::{least_broken, population, thinned, timing, timings},
+    goal::{Goal, Merit},
     polish::{self, beats},
     seed::{Seeds, seeds},
 };

@@ -51,7 +51,10 @@ pub fn document(story: &Story<'_>) -> Document {
                 planned.front.len()
             ),
         ),
-        (story.machine[0].clone(), "valves, oil, friction, encoders; it starts late and badly".to_owned()),
+        (
+            story.machine[0].clone(),
+            "simulates valves, oil, friction, encoders; the arm starts late".to_owned(),
+        ),
         (
             "report run-1.mcap".to_owned(),
             format!(
@@ -64,7 +67,7 @@ pub fn document(story: &Story<'_>) -> Document {
         (
             "fit run-1.mcap -o limits.toml".to_owned(),
             format!(
-                "{} joints; what was not fitted to is predicted with R2 {:.2} to {:.2}",
+                "{} joints; in data not fitted to, R2 of the prediction is {:.2} to {:.2}",
                 fitted.fit.joints.len(),
                 skills().fold(f64::INFINITY, f64::min),
                 skills().fold(f64::NEG_INFINITY, f64::max)
@@ -73,7 +76,7 @@ pub fn document(story: &Story<'_>) -> Document {
         (
             "replan run-1.mcap --limits limits.toml -o next.mcap".to_owned(),
             format!(
-                "plan {}, command up to {} deg off it; {} deg expected",
+                "plan {}, command corrected by {} deg at most; peak error of {} deg expected",
                 if replanned.retimed { "re-timed" } else { "kept" },
                 deg(most),
                 deg(replanned.after.mean_peak_rad)
@@ -87,7 +90,7 @@ pub fn document(story: &Story<'_>) -> Document {
         .flat_map(|(command, found)| [format!("$ hydrotrace {command}"), format!("    {found}")]);
     let lines = lines.chain(luck(comparison).map(|luck| format!("    {luck}"))).map(Sentence::Finding);
     let last = format!(
-        "Plan {:.2} s before, {:.2} s after. Run any of these commands in {} for all that it says.",
+        "Plan {:.2} s before, {:.2} s after. Run any of these commands in {} to see its full output.",
         before.duration_s,
         replanned.duration_s,
         story.dir.display()
@@ -134,7 +137,7 @@ fn luck(comparison: &Comparison) -> Option<String> {
     let events = counted(all.events, "event");
     Some(match all.verdict {
         Verdict::TooFew => {
-            format!("{events} of starts: too few for a p below {}", probability(all.least_p()))
+            format!("{events} of starts are too few for p below {}", probability(all.least_p()))
         }
         _ => format!("{events} of starts, p = {}", probability(all.p_value)),
     })

@@ -28,13 +28,13 @@ pub fn document(excited: &Excited, file: &Path) -> Document {
         excited.duration_s(),
         file.display()
     );
-    let what = format!("One joint after the other, the others at rest: {}.", strokes.join("; "));
+    let what = format!("The joints move one after the other: {}.", strokes.join("; "));
     let numbers = ["home deg", "sent from", "to", "allowed from", "to"];
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(what)])
         .with(Table::new(&["joint"], &numbers, rows))
         .with(Sentence::advice(
-            "The arm must stand at home when it starts. The fast strokes are faster than a machine is, so that its \
-             limits show; --max-speed-deg-s tames them. Nothing here knows of obstacles: keep the area clear.",
+            "The arm must stand at home when the run starts. The fast strokes exceed the speed of most machines, to show \
+             the limits; --max-speed-deg-s slows them. Obstacles are not known: keep the area clear.",
         ));
     Document::titled(title).with(section)
 }

@@ -1,27 +1,7 @@
 //! How a CSV file was read.
 
-use serde::Serialize;
-
 use super::kit::{Block, Document, Id, NONE, Section, Sentence, Table, counted, fact};
-use crate::{document, log::Understood, remark::Remark, workflow::import::Outputs};
-
-#[derive(Serialize)]
-struct Json<'a> {
-    format: &'static str,
-    program: &'static str,
-    understood: &'a Understood,
-    remarks: &'a [Remark],
-}
-
-/// As JSON.
-pub fn json(imported: &Outputs) -> String {
-    document::pretty(&Json {
-        format: "hydrotrace.import.v1",
-        program: document::PROGRAM,
-        understood: &imported.understood,
-        remarks: imported.remarks.as_slice(),
-    })
-}
+use crate::{log::Understood, workflow::import::Outputs};
 
 /// As sentences and tables.
 pub fn document(output: &str, imported: &Outputs) -> Document {
@@ -35,7 +15,7 @@ pub fn document(output: &str, imported: &Outputs) -> Document {
         time.rate_hz
     );
     let header = match (u.header_line, u.unit_row) {
-        (0, _) => "none; columns go by their number".to_owned(),
+        (0, _) => "none; columns are named by their number".to_owned(),
         (line, false) => format!("line {line}"),
         (line, true) => format!("line {line}, units below it"),
     };
@@ -47,15 +27,15 @@ pub fn document(output: &str, imported: &Outputs) -> Document {
         format!("{}: {}", time.columns.join(" and "), time.form)
     };
     let counts =
-        if time.absolute { "" } else { "; no date, second 0 is put at 2025-10-09 08:53:20 UTC in every log" };
+        if time.absolute { "" } else { "; no date in the file: second 0 becomes 2025-10-09 08:53:20 UTC" };
     let read_as = vec![
         fact("cells", format!("separated by {}, decimal {}", u.separator, u.decimal)),
         fact("header", format!("{header}{above}")),
         fact("time", format!("{clock}{counts}")),
     ];
     let rows = columns.iter().map(|column| {
-        let unit = match column.unit {
-            Some(unit) if column.unit_from == "file" => unit.to_owned(),
+        let unit = match &column.unit {
+            Some(unit) if column.unit_from == "file" => unit.clone(),
             Some(unit) => format!("{unit} ({})", column.unit_from),
             None => NONE.to_owned(),
         };

@@ -1,55 +1,18 @@
-//! What was joined.
+//! The words of `join`.
 
 use std::path::Path;
 
-use serde::Serialize;
-
-use super::kit::{Block, Document, Id, Section, Sentence, counted, deg, fact};
-use crate::{document, remark::Remark, workflow::join::Joined};
-
-#[derive(Serialize)]
-struct Json<'a> {
-    format: &'static str,
-    program: &'static str,
-    sent: Option<&'a str>,
-    sent_is_command: bool,
-    at_s: f64,
-    rms_difference_rad: Option<f64>,
-    other_places: Option<usize>,
-    duration_s: f64,
-    rest_before_s: f64,
-    rest_after_s: f64,
-    joints: usize,
-    messages: u64,
-    files: &'a [String],
-    remarks: &'a [Remark],
-}
-
-/// As JSON.
-pub fn json(joined: &Joined) -> String {
-    document::pretty(&Json {
-        format: "hydrotrace.join.v1",
-        program: document::PROGRAM,
-        sent: joined.sent.as_deref(),
-        sent_is_command: joined.commanded,
-        at_s: joined.at_s,
-        rms_difference_rad: joined.located.map(|found| found.rms_rad),
-        other_places: joined.located.map(|found| found.others),
-        duration_s: joined.duration_s,
-        rest_before_s: joined.rest_s[0],
-        rest_after_s: joined.rest_s[1],
-        joints: joined.joints,
-        messages: joined.messages,
-        files: &joined.files,
-        remarks: joined.remarks.as_slice(),
-    })
-}
+use super::{
+    kit::{Block, Document, Id, Section, Sentence, counted, deg, fact},
+    next,
+};
+use crate::workflow::join::Joined;
 
 /// As sentences.
 pub fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {
     let Joined { sent, commanded, located, at_s, duration_s, rest_s, joints, messages, files, remarks } =
         joined;
-    let (plan, output) = (plan.display(), output.display());
+    let plan = plan.display();
     let what = if *commanded { "command" } else { "plan" };
     let sent = match (sent, located) {
         (Some(topic), Some(found)) => format!(
@@ -74,10 +37,8 @@ pub fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {
     if !files.is_empty() {
         facts.push(fact("files", files.join(", ")));
     }
-    let written = format!("{messages} messages of the run and the plan of {plan} written to {output}.");
-    let next = format!("hydrotrace report {output} says how the run followed its plan.");
-    let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)])
-        .with(Block::Facts(facts))
-        .with(Sentence::advice(next));
-    Document::default().with(section).remarked(remarks)
+    let written =
+        format!("{messages} messages of the run and the plan of {plan} written to {}.", output.display());
+    let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)]).with(Block::Facts(facts));
+    Document::default().with(next::report(section, output)).remarked(remarks)
 }

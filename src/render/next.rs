@@ -1,34 +1,42 @@
-//! What was written, and what to do with it.
+//! What was written, and the commands that come next.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::kit::{Id, Section, Sentence};
+use super::kit::{Block, Id, Section, Sentence, argument, command};
 
-fn next(text: String) -> Section {
-    Section::plain(Id::NEXT, [Sentence::Advice(text)])
+fn written(file: &str) -> Section {
+    Section::plain(Id::NEXT, [Sentence::finding(format!("Written to {file}."))])
+}
+
+fn step(section: Section, aim: &str, words: &[&str]) -> Section {
+    section.with(Sentence::advice(aim)).with(Block::Command(command(words)))
 }
 
 /// After `plan`.
 pub fn plan_written(log: &Path) -> Section {
-    let log = log.display();
-    next(format!("Written to {log}; hydrotrace simulate {log} -o run.mcap runs it on a simulated machine."))
+    let log = argument(log);
+    let aim = "To run it on a simulated machine:";
+    step(written(&log), aim, &["simulate", &log, "-o", "run.mcap"])
 }
 
-/// After `fit` of these logs.
-pub fn limits_written(limits: &Path, logs: &[impl AsRef<Path>]) -> Section {
-    let limits = limits.display();
-    let last = logs.last().map_or("LOG".into(), |log| log.as_ref().display().to_string());
-    next(format!(
-        "Written to {limits}; hydrotrace replan {last} --limits {limits} -o next.mcap plans the next run by it."
-    ))
+/// After `fit`; `log` is the run to plan again: one that holds a task, if there is one.
+pub fn limits_written(limits: &Path, log: Option<&PathBuf>) -> Section {
+    let limits = argument(limits);
+    let log = log.map_or("RUN.mcap".to_owned(), argument);
+    let aim = "To plan the next run, with half of the correction at first:";
+    step(written(&limits), aim, &["replan", &log, "--limits", &limits, "--gain", "0.5", "-o", "next.mcap"])
 }
 
 /// After `replan` of these logs.
-pub fn next_written(next_log: &Path, logs: &[impl AsRef<Path>]) -> Section {
-    let log = next_log.display();
-    let last = logs.last().map_or("LOG".into(), |log| log.as_ref().display().to_string());
-    next(format!(
-        "Written to {log}. After the run, hydrotrace join RUN.mcap --plan {log} -o after.mcap puts its plan into the \
-         recorder's log, and hydrotrace compare {last} after.mcap tells whether it helped."
-    ))
+pub fn next_written(next: &Path, logs: &[PathBuf]) -> Section {
+    let next = argument(next);
+    let last = logs.last().map_or("RUN.mcap".to_owned(), argument);
+    let aim = "After the run, to put the plan into the recorder's log:";
+    let joined = step(written(&next), aim, &["join", "RUN.mcap", "--plan", &next, "-o", "after.mcap"]);
+    step(joined, "To see whether the error became smaller:", &["compare", &last, "after.mcap"])
+}
+
+/// After a run was written.
+pub(super) fn report(section: Section, run: &Path) -> Section {
+    step(section, "To see how the arm followed its plan:", &["report", &argument(run)])
 }

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use super::kit::{Document, Id, Section, Sentence, counted};
+use super::{
+    kit::{Document, Id, Section, Sentence, counted},
+    next,
+};
 use crate::workflow::simulate::log::Run;
 
 /// One line on a run, and one on what to do with it.
@@ -11,13 +14,12 @@ pub fn document(run: &Run, plant: &str, seed: u64, file: &Path) -> Document {
     let duration_s = record.t_s.last().copied().unwrap_or(0.0);
     let what = if run.commanded { "the command" } else { "the plan" };
     let ran = format!(
-        "{duration_s:.2} s of {} running {what} on the plant {plant}, seed {seed}: {} in {}; the machine's truth is in \
-         its metadata.",
+        "{duration_s:.2} s of {} running {what} on the plant {plant}, seed {seed}: {} in {}; the true parameters \
+         of the machine are in its metadata.",
         counted(record.joints.len(), "joint"),
         counted(record.t_s.len(), "sample"),
         file.display(),
     );
-    let next = format!("hydrotrace report {} says how it followed.", file.display());
-    let sentences = [Sentence::finding(ran), Sentence::advice(next)];
-    Document::default().with(Section::plain(Id::SUMMARY, sentences))
+    let section = Section::plain(Id::SUMMARY, [Sentence::finding(ran)]);
+    Document::default().with(next::report(section, file))
 }

@@ -28,9 +28,8 @@ impl Profiles {
 
 /// First and last sample of all joints, s.
 fn span_s(pairs: &[Pair]) -> RangeInclusive<f64> {
-    let ends = pairs.iter().filter_map(|pair| Some((*pair.t_s.first()?, *pair.t_s.last()?)));
-    let [start_s, end_s] =
-        ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], (first, last)| [a.min(first), b.max(last)]);
+    let ends = pairs.iter().flat_map(|pair| [pair.t_s.first(), pair.t_s.last()]);
+    let [start_s, end_s] = crate::math::range(ends.flatten().copied());
     start_s..=end_s
 }
 

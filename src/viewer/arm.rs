@@ -7,8 +7,7 @@ use rerun::{
 
 use super::{
     ViewError, color,
-    scene::part,
-    stream::{Stream, Values, single},
+    stream::{Stream, Values, part, single},
 };
 use crate::{
     arm::{Pose, Shape, Solid, quaternion_xyzw},

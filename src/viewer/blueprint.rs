@@ -18,7 +18,7 @@ use super::{
     scene::{joint, lane, root},
     stream::{TIMELINE, single},
 };
-use crate::{units::degrees_from_radians, workflow::view::Scene};
+use crate::{math::range, units::degrees_from_radians, workflow::view::Scene};
 
 /// Joints of several runs that fit beside each other.
 const MOST_PLOTS: usize = 8;
@@ -175,8 +175,7 @@ fn angles(board: &mut Board, scenes: &[Scene], name: &str) -> ContainerLike {
     // The corner that the curve does not begin in.
     let position_rad =
         scenes.iter().find_map(|scene| scene.planned.track(name)).map_or(&[][..], |t| t.position());
-    let (least, most) =
-        position_rad.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), q| (a.min(*q), b.max(*q)));
+    let [least, most] = range(position_rad.iter().copied());
     let high = position_rad.first().is_some_and(|first| first - least > most - first);
     plot(board, view, if high { Corner2D::LeftBottom } else { Corner2D::LeftTop })
 }

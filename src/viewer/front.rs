@@ -76,10 +76,7 @@ fn objectives(plan: &PlanDocument) -> impl Iterator<Item = &Objectives> {
 
 impl Axes {
     fn of(all: &[Objectives]) -> Self {
-        let range = |k: Objective| {
-            all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(f[k]), b.max(f[k])])
-        };
-        Self(SHOWN.map(range))
+        Self(SHOWN.map(|k| crate::math::range(all.iter().map(|f| f[k]))))
     }
 
     fn share(&self, f: &Objectives, k: usize) -> f64 {

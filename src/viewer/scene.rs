@@ -6,7 +6,7 @@ use super::{
     ViewError, arm,
     arm::Look,
     color,
-    stream::{Stream, Values},
+    stream::{Stream, Values, part},
 };
 use crate::{
     replay::{Answer, Kind, Transition},
@@ -86,11 +86,6 @@ pub(super) fn joint(scene: &Scene, name: &str) -> String {
 pub(super) fn lane(scene: &Scene, name: &str, several: bool) -> String {
     let joint = format!("/starts/{}", part(name));
     if several { format!("{joint}/{}", part(&scene.name)) } else { joint }
-}
-
-/// A name as part of an entity's path.
-pub(super) fn part(name: &str) -> String {
-    rerun::EntityPathPart::new(name).escaped_string()
 }
 
 fn curve(rec: &RecordingStream, path: &str, name: &str, colour: Color, width: f32) -> Result<(), ViewError> {

@@ -15,6 +15,11 @@ pub(super) const TIMELINE: &str = "time";
 /// Rows of one piece; bounds what is in memory twice.
 const PIECE: usize = 4096;
 
+/// A name as part of an entity's path.
+pub(super) fn part(name: &str) -> String {
+    rerun::EntityPathPart::new(name).escaped_string()
+}
+
 /// One entity's values over time.
 pub(super) struct Stream {
     pub(super) path: String,

@@ -10,9 +10,9 @@ use crate::{
 
 pub(in crate::render) fn fitted(fit: &Fit) -> Markup {
     html! {
-        p class="hint" { "The closed loop of each joint as logs show it, with 95 % intervals." }
+        p class="hint" { "The closed loop of each joint as identified from logs, with 95 % intervals." }
         @for section in machine(fit) { (headed(&section)) }
-        p { (format!("Nine of ten held-out peaks lay below {:.2} times the predicted ones.", fit.peak_margin)) }
+        p { (format!("90 % of held-out peaks stay below {:.2} times the predicted ones.", fit.peak_margin)) }
         @if let Some(line) = left_out_line(fit) { p { (clean(&line)) } }
     }
 }

@@ -15,9 +15,9 @@ const LOOP: [(&str, Shown); 5] = [
         Shown { name: "dead band", of: |j| j.dead_band_rad_s, scale: degrees_from_radians, decimals: 2 },
     ),
     (
-        "floor deg",
+        "dead-band error deg",
         Shown {
-            name: "error floor",
+            name: "dead-band error",
             of: |j| j.dead_band_error_rad,
             scale: degrees_from_radians,
             decimals: 2,
@@ -93,19 +93,19 @@ pub fn document(fitted: &Fitted) -> Document {
     let logs: Vec<&str> = fitted.runs.iter().map(|run| run.log.as_str()).collect();
     let commanded = fitted.runs.iter().filter(|run| run.commanded).count();
     let sent = match commanded {
-        0 => "the plan is what was sent".to_owned(),
-        all if all == fitted.runs.len() => "what was sent is the logged command".to_owned(),
-        some => format!("what was sent is the logged command in {some} of them, else the plan"),
+        0 => "the plan was sent".to_owned(),
+        all if all == fitted.runs.len() => "the logged command was sent".to_owned(),
+        some => format!("the logged command was sent in {some} of the runs, the plan in the others"),
     };
     let seen = format!(
-        "{}, {samples} samples; {sent}. 95 % intervals hold what models of this form miss.",
+        "{}, {samples} samples; {sent}. Each value has a 95 % interval, widened for model error.",
         counted(fit.joints.len(), "joint")
     );
     let mut document = Document::titled(format!("Limits of the machine in {}", logs.join(", ")))
         .with(Section::plain(Id::SUMMARY, [Sentence::finding(seen)]));
     document.sections.extend(machine(fit));
     document.sections.extend(torques(&fitted.torques));
-    document.with(Section::new(Id::OTHER, "What to trust", trust(fitted))).remarked(&fitted.remarks)
+    document.with(Section::new(Id::OTHER, "How far to trust it", trust(fitted))).remarked(&fitted.remarks)
 }
 
 /// The numbers of a fit with their intervals.
@@ -114,12 +114,14 @@ pub(super) fn machine(fit: &Fit) -> Vec<Section> {
     let valves = Table::new(&["joint"], &["dead band + %", "dead band - %"], fit.joints.iter().map(row));
     let mut sections = vec![
         Section::new(Id::OTHER, "Closed loop", [table(&fit.joints, &LOOP, true)]).with(Sentence::note(
-            "Held-out R2: share of the tracking error that is predicted where it was not fitted; unexplained: what is \
-             then left after a start, mean of the peaks. Dead band: speed that must be wanted before the joint leaves \
-             rest; floor: the error that is not enough for it; gain: speed wanted by error; feed-forward: by speed sent.",
+            "Held-out R2: share of the tracking error that the model predicts in data it was not fitted to. Unexplained: mean \
+             peak of the error that it leaves there after a start. Dead band: speed that must be commanded before the joint \
+             leaves rest; dead-band error: the largest error that stays uncorrected in it. Gain: commanded speed per error; \
+             feed-forward: commanded speed per speed of the plan.",
         )),
         Section::new(Id::OTHER, "Limits", [table(&fit.joints, &LIMITS, false)]).with(Sentence::note(
-            "+ for growing, - for shrinking angles; >= was reached and is no limit; (brackets): prior, not data.",
+            "+ for growing, - for shrinking angles. >= x: x was reached, so the limit is higher. (x): an assumption, not \
+             measured.",
         )),
     ];
     if fit.joints.iter().any(|joint| joint.valve_dead_band.is_some()) {
@@ -140,7 +142,8 @@ fn torques(torques: &[JointTorque]) -> Option<Section> {
     let table = Table::new(&["joint"], &numbers, torques.iter().map(row));
     (!torques.is_empty()).then(|| {
         Section::new(Id::OTHER, "Torques from pressures", [table]).with(Sentence::note(
-            "Available: in every pose of the run at the logged supply pressure; friction and flow take some of it.",
+            "Available: torque at the logged supply pressure in the least favourable pose of the run; friction and flow \
+             losses reduce it.",
         ))
     })
 }
@@ -165,11 +168,11 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
     let fit = &fitted.fit;
     let good = fit.joints.iter().filter(|joint| joint.trusted()).count();
     let mut lines = vec![format!(
-        "{good} of {} predict held-out tracking error with R2 of {LEAST_SKILL} or more: commands may be made for them. \
-         Measured peaks stay below {:.2} times the predicted ones in nine of ten of {} held-out starts.",
+        "{good} of {} reach a held-out R2 of {LEAST_SKILL} or more, enough to make commands for them. In 90 % of {} held-out \
+         starts the measured peak stays below {:.2} times the predicted one.",
         counted(fit.joints.len(), "joint"),
-        fit.peak_margin,
-        fit.margin_starts
+        fit.margin_starts,
+        fit.peak_margin
     )];
     let all = || LOOP.iter().chain(&LIMITS).map(|(_, shown)| shown);
     let open: Vec<String> = all()
@@ -186,19 +189,19 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         })
         .collect();
     if open.is_empty() {
-        lines.push("All quantities are identified.".into());
+        lines.push("The logs identify every parameter.".into());
     } else {
-        lines.push(format!("Not identified: {}.", open.join("; ")));
+        lines.push(format!("The logs do not identify: {}.", open.join("; ")));
         let speed = fit.joints.iter().any(|joint| {
             !(joint.speed_limit_growing_rad_s.identified && joint.speed_limit_shrinking_rad_s.identified)
         });
         lines.push(if speed {
-            "Smooth runs never reach the limits; `hydrotrace excite` writes a run that does (strokes faster than the \
-             machine), which also narrows the dead band. Fit it together with these logs."
+            "Smooth runs never reach the limits of speed. `hydrotrace excite` writes a run that does, with strokes faster than \
+             the machine; it also narrows the interval of the dead band. Fit it together with these logs."
                 .into()
         } else {
-            "Acceleration limits hide behind the lag and were identified on no simulated machine either: the bounds are \
-             what is safe to ask for."
+            "The lag hides the limits of acceleration; no simulated machine showed them either. The values reached are safe \
+             to plan with."
                 .into()
         });
     }
@@ -210,7 +213,7 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
 pub(super) fn left_out_line(fit: &Fit) -> Option<String> {
     let one = |joint: &LeftOut| {
         let [sent, needed] = [joint.travel_rad, joint.least_travel_rad].map(deg);
-        format!("{} (sent through {sent} deg in all, {needed} are needed)", joint.name)
+        format!("{} (its command moves {sent} deg in all, {needed} deg are needed)", joint.name)
     };
     let joints: Vec<String> = fit.left_out.iter().map(one).collect();
     (!joints.is_empty()).then(|| format!("Not fitted: {}.", joints.join(", ")))

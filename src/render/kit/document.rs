@@ -73,6 +73,8 @@ pub enum Block {
     Remarks(Vec<Fact>),
     /// A table.
     Table(Table),
+    /// What to type, on a line of its own so that it can be pasted.
+    Command(String),
 }
 
 /// A sentence by what it is for.

@@ -22,6 +22,9 @@ pub fn markdown(document: &Document) -> String {
                 }
                 Block::Facts(list) | Block::Remarks(list) => facts(&mut out, list),
                 Block::Table(whole) => table(&mut out, whole),
+                Block::Command(line) => {
+                    let _ = writeln!(out, "    {}\n", clean(line));
+                }
             }
         }
     }

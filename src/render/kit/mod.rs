@@ -4,6 +4,7 @@
 
 mod axis;
 mod clean;
+mod command;
 mod csv;
 mod document;
 pub(in crate::render) mod figure;
@@ -18,6 +19,7 @@ mod table;
 mod terminal;
 mod terminal_style;
 
+pub use command::{argument, command};
 pub use csv::csv;
 pub use document::{Block, Document, Fact, Id, Section, Sentence, fact};
 pub use figure::{Failure, Figure};

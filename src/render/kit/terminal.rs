@@ -32,6 +32,10 @@ pub fn shown(document: &Document, style: TerminalStyle) -> String {
                 Block::Facts(list) => facts(&mut out, list, style, false),
                 Block::Remarks(list) => facts(&mut out, list, style, true),
                 Block::Table(whole) => table(&mut out, whole, style),
+                // Never folded: a line break would end the command.
+                Block::Command(line) => {
+                    let _ = writeln!(out, "{GAP}{}", clean(line));
+                }
             }
         }
     }

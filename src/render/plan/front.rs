@@ -24,7 +24,7 @@ pub(in crate::render) fn front(front: &PlanDocument, plots: &mut Plots) -> Marku
             @for objective in Objective::OF_PLAN { (objective.letter()) ": " (objective.row().best) ". " }
             "Less is better on every axis."
             @if front.convergence.len() > 1 {
-                " On the way plans are judged less exactly than those of the last hypervolume."
+                " During the search plans are evaluated on fewer points than at the end."
             }
         }
         div class="side" { @for (_, chart) in front_charts(front) { (plots.place(chart)) } }

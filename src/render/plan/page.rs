@@ -158,13 +158,13 @@ fn cost(label: &str, evaluation: &PlanEvaluation) -> Markup {
 fn next(planned: &Planned) -> Vec<Sentence> {
     let doubts = (!planned.remarks.is_empty()).then(|| {
         let doubts = counted(planned.remarks.as_slice().len(), "remark");
-        format!("Look at what is doubtful about the task: {doubts} below.")
+        format!("Check the task first: {doubts} below.")
     });
     let longer = (planned.fastest_converged == Some(false))
-        .then(|| "Search longer (--evaluations): the fastest plan was still getting faster.".to_owned());
+        .then(|| "Search longer (--evaluations): the fastest plan was still becoming faster.".to_owned());
     let always = [
-        "Another plan of the front may suit better: --choose fastest, smoothest, knee, or --weights.",
-        "Try the chosen plan on a simulated arm: hydrotrace simulate PLAN -o RUN, then report RUN.",
+        "If another plan of the front suits better: --choose fastest, smoothest, knee, or --weights.",
+        "Try the chosen plan on a simulated arm: hydrotrace simulate PLAN -o RUN, then hydrotrace report RUN.",
     ];
     let steps = doubts.into_iter().chain(longer).chain(always.map(str::to_owned));
     steps.map(Sentence::Advice).collect()

@@ -41,12 +41,12 @@ pub fn document(
     rows.push(row("chosen", &planned.chosen, &planned.joints));
     let longer = (planned.fastest_converged == Some(false)).then(|| {
         Sentence::advice(
-            "The fastest plan was still getting faster when its share of the evaluations was used up: give more with \
-             --evaluations.",
+            "The fastest plan was still becoming faster when the search ended: allow more --evaluations.",
         )
     });
     let rules: Vec<&str> = Rule::all().filter(|rule| *rule != Rule::Weights).map(Rule::name).collect();
-    let another = format!("Another: --choose {}; --weights; or ceilings in the task.", rules.join(", "));
+    let another =
+        format!("To choose another plan: --choose {}; --weights; or ceilings in the task.", rules.join(", "));
     let mut document = Document::titled(title)
         .with(Section::plain(Id::SUMMARY, [Sentence::finding(searched)]))
         .with(Section::new(Id::OTHER, "Plans", [plans(rows)]).with_all(longer))
@@ -61,7 +61,8 @@ pub fn document(
 
 /// One given plan, for people.
 pub fn judged_document(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Document {
-    let work = format!("The joints do and take up {:.0} J of work together.", evaluation.energy_j);
+    let work =
+        format!("All joints together turn over {:.0} J of work, driving and braking.", evaluation.energy_j);
     let given = Section::plain(Id::SUMMARY, [plans([row("given", evaluation, joints)])]);
     let mut document = Document::titled(title).with(given.with(Sentence::finding(work)));
     document.sections.extend(margins(evaluation, joints));
@@ -139,10 +140,12 @@ fn reason(ceilings: &Ceilings, planned: &Planned) -> String {
                 format!(" {}", each.collect::<Vec<_>>().join(", "))
             };
             let weights = choice.weights.map_or(String::new(), each);
-            format!("Least sum by the weights{weights}, each objective scaled by its range")
+            format!("Smallest weighted sum{weights}; each objective is scaled by its range")
         }
-        Rule::Ideal => "Nearest to the best of every objective, each scaled by its range".into(),
-        Rule::Knee => "The knee: giving up a little of one objective costs most of another".into(),
+        Rule::Ideal => "Nearest to the best values of all objectives, each scaled by its range".into(),
+        Rule::Knee => {
+            "The knee of the front: from here a small gain in one objective costs most in another".into()
+        }
         Rule::Best(objective) => format!("The plan of least {}", objective.row().name),
     };
     let text = |(k, ceiling): (Objective, f64)| trimmed(&format!("{:.6} {}", k.shown(ceiling), k.row().unit));
@@ -152,7 +155,7 @@ fn reason(ceilings: &Ceilings, planned: &Planned) -> String {
     } else {
         format!("{} of {} within {}", choice.within, choice.of, ceilings.join(", "))
     };
-    format!("{why}, among {among}; then moved to where the rule has its optimum.")
+    format!("{why}, chosen from {among}, then refined by this rule.")
 }
 
 /// Without the zeros that a fixed number of decimals leaves.
@@ -210,18 +213,18 @@ fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
     ];
     let all = format!("All together: {}, {}.", together(Limit::PumpFlow), together(Limit::ToolSpeed));
     let position = listed_position
-        .then(|| Sentence::note("Of a position, used is the way from the middle of its range to the end."));
+        .then(|| Sentence::note("For a position, 0 % is the middle of its range and 100 % its end."));
     [
         Section::new(
             Id::OTHER,
-            "Jerk, power, and use of each limit in %",
+            "Jerk, power, and percent of each limit used",
             [Table::new(&["joint"], &numbers, rows)],
         )
         .with(Sentence::finding(all)),
         Section::new(
             Id::OTHER,
             "Nearest limits",
-            [Table::new(&["limit"], &["value", "allowed", "used %", "at s"], listed)],
+            [Table::new(&["limit"], &["value", "allowed", "% of limit", "at s"], listed)],
         )
         .with_all(position)
         .with(Sentence::finding(kept(evaluation))),
@@ -243,7 +246,7 @@ fn allowed(margin: &Margin) -> String {
 pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation) -> Vec<String> {
     let lines = nearest.broken().into_iter().map(|margin| {
         format!(
-            "{} is {} at {:.2} s, {} is allowed: {} % too much",
+            "{} is {} at {:.2} s, {} is allowed: {} % above it",
             subject(margin, joints),
             shown(margin.limit, margin.value),
             margin.t_s,
@@ -256,7 +259,7 @@ pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation)
     if longest > 0 {
         let all = nearest.interval_s.len();
         lines.push(format!(
-            "{longest} of {all} intervals are the longest allowed, {longest_s} s (interval_s)"
+            "{longest} of {all} intervals have the longest duration allowed, {longest_s} s (interval_s)"
         ));
     }
     lines
@@ -267,8 +270,9 @@ pub fn ceiling_lines(ceilings: &Ceilings, joints: &[String], nearest: &PlanEvalu
     let over = |(k, ceiling): (Objective, f64)| {
         let share = nearest.objectives[k] / ceiling;
         let (name, found, asked) = (k.row().name, k.text(nearest.objectives[k]), k.text(ceiling));
-        (share > 1.0)
-            .then(|| format!("{name} {found}, {asked} is asked for: {:.1} % too much", 100.0 * (share - 1.0)))
+        (share > 1.0).then(|| {
+            format!("{name} {found}, the ceiling is {asked}: {:.1} % above it", 100.0 * (share - 1.0))
+        })
     };
     let mut lines: Vec<String> = ceilings.known().filter_map(over).collect();
     let mut tight: Vec<&Margin> = nearest.margins.iter().filter(|margin| margin.share > TIGHT).collect();
@@ -276,7 +280,7 @@ pub fn ceiling_lines(ceilings: &Ceilings, joints: &[String], nearest: &PlanEvalu
     let tight: Vec<String> =
         tight.iter().map(|margin| format!("{} at {:.2} s", subject(margin, joints), margin.t_s)).collect();
     if !tight.is_empty() {
-        lines.push(format!("limits that bind it: {}", tight.join(", ")));
+        lines.push(format!("limits that hold it there: {}", tight.join(", ")));
     }
     lines
 }

@@ -19,34 +19,41 @@ const NEAR: f64 = 0.9;
 /// A plan for the next run, for people.
 pub fn document(replanned: &Replanned) -> Document {
     let title = replanned.request.as_ref().map_or("the logged plan", |request| request.task.title.as_str());
-    let learnt = format!("Learnt from {}.", replanned.fitted_to.join(", "));
+    let learnt = format!("The machine was fitted to {}.", replanned.fitted_to.join(", "));
     let margin = format!(
-        "Expected peaks hold what the model left unexplained after held-out starts; nine of ten stay below: the \
-         predicted peak times {:.2}, or what was left unexplained in nine of ten.",
+        "Expected peaks include the error that the model left unexplained after held-out starts. 90 % of starts stay below \
+         the predicted peak times {:.2}, or below the error that 90 % of held-out starts left unexplained.",
         replanned.fit.peak_margin
     );
     let mut document = Document::titled(format!("Next run of {title}"))
         .with(Section::plain(Id::SUMMARY, [Sentence::finding(learnt)]))
         .with(Section::new(Id::OTHER, "Expected", [expected(replanned)]).with(Sentence::note(margin)))
-        .with(Section::new(Id::OTHER, "Levers", [Block::Facts(levers(replanned))]));
+        .with(Section::new(Id::OTHER, "What changes", [Block::Facts(levers(replanned))]));
     document.sections.extend(command(replanned));
     if let Some(search) = &replanned.search {
-        let numbers = ["speed deg/s", "by", "acceleration deg/s2", "by"];
+        let numbers = ["speed deg/s", "from", "acceleration deg/s2", "from"];
         let held = Table::new(&["joint"], &numbers, search.held.iter().map(held_row));
-        document.sections.push(Section::new(Id::OTHER, "The plan was held to", [held]));
+        document.sections.push(Section::new(Id::OTHER, "Limits of the new plan", [held]));
     }
     document.remarked(&replanned.remarks)
 }
 
 fn command(replanned: &Replanned) -> Option<Section> {
     let command = replanned.command.as_ref()?;
-    let numbers =
-        ["held-out R2", "gain", "off plan deg", "rms error deg", "then deg", "speed x", "acceleration x"];
+    let numbers = [
+        "held-out R2",
+        "gain",
+        "correction deg",
+        "rms error deg",
+        "with command deg",
+        "speed ratio",
+        "acceleration ratio",
+    ];
     let rows = command.joints.iter().map(|joint| command_row(replanned, joint));
     let section = Section::new(Id::OTHER, "Command", [Table::new(&["joint"], &numbers, rows)])
         .with(Sentence::note(
-            "Rms errors are predicted, of the plan sent as it is and then of the command; speed x and acceleration x are \
-             the command's peaks by those of the plan.",
+            "Rms error: predicted if the plan is sent as it is, then with the command. Ratios: peak speed and acceleration of the \
+             command over those of the plan.",
         ))
         .with_all(cut_off(&command.joints).map(Sentence::Advice));
     Some(section.with(Sentence::finding(nearest(replanned, &command.margins))))
@@ -66,7 +73,7 @@ fn expected(replanned: &Replanned) -> Table {
     let count = |p: &Predicted| p.transitions.len();
     let mut rows = vec![
         error("mean transition peak deg", before.measured_mean_peak_rad, |p| p.mean_peak_rad),
-        error("  nine of ten below deg", None, |p| p.mean_peak_margin_rad),
+        error("  90 % of starts below deg", None, |p| p.mean_peak_margin_rad),
         error("worst transition peak deg", before.measured_worst_peak_rad, |p| p.worst_peak_rad),
         error("sum of peaks deg", None, |p| p.sum_of_peaks_rad),
         vec![
@@ -91,14 +98,14 @@ fn expected(replanned: &Replanned) -> Table {
             vec![k.row().heading.to_owned(), k.number(was[k]), NONE.into(), k.number(is[k]), change]
         }));
     }
-    Table::new(&[""], &["last run", "its model", "next run", "change"], rows)
+    Table::new(&[""], &["last run", "model of it", "next run", "change"], rows)
 }
 
 fn levers(replanned: &Replanned) -> Vec<Fact> {
     let plan = match (&replanned.search, replanned.retimed, &replanned.evaluation) {
-        (None, ..) => "stays as it was".to_owned(),
+        (None, ..) => "unchanged".to_owned(),
         (Some(search), false, _) => format!(
-            "stays: of {} timings with no more time, jerk and power than allowed none is expected to follow better",
+            "unchanged: none of {} timings within the allowed time, jerk and power has a smaller expected error",
             search.front.len()
         ),
         (Some(search), true, evaluation) => {
@@ -106,7 +113,7 @@ fn levers(replanned: &Replanned) -> Vec<Fact> {
                 evaluation.times_s.iter().map(|t| format!("{t:.2}")).collect::<Vec<_>>().join(" ")
             });
             format!(
-                "re-timed, one of {} timings of {} evaluations: {times} s",
+                "re-timed, one of {} timings from {} evaluations: {times} s",
                 search.front.len(),
                 search.evaluations
             )
@@ -117,7 +124,7 @@ fn levers(replanned: &Replanned) -> Vec<Fact> {
         let applied = joints.iter().filter(|joint| joint.compensation.applied && joint.gain > 0.0);
         let most = joints.iter().map(|joint| joint.compensation.peak_correction_rad).fold(0.0, f64::max);
         format!(
-            "pre-compensated on {} of {}, up to {} deg off the plan",
+            "corrected on {} of {}, by {} deg at most",
             applied.count(),
             counted(joints.len(), "joint"),
             deg(most)
@@ -126,8 +133,7 @@ fn levers(replanned: &Replanned) -> Vec<Fact> {
     let ours = Topics::default();
     let trajectory = replanned.trajectory.as_deref().unwrap_or(&ours.trajectory);
     let samples = if replanned.command.is_some() { &ours.command } else { &ours.planned };
-    let send =
-        format!("{samples}, or the same as a trajectory, {trajectory}; judge against {}", ours.planned);
+    let send = format!("{samples}, or {trajectory} as a trajectory; compare the run with {}", ours.planned);
     vec![fact("plan", plan), fact("command", command), fact("send", send)]
 }
 
@@ -152,7 +158,7 @@ fn cut_off(joints: &[JointCommand]) -> Option<String> {
     let most = all.iter().map(|joint| joint.compensation.peak_correction_rad).reduce(f64::max)?;
     let names: Vec<&str> = all.iter().map(|joint| joint.compensation.name.as_str()).collect();
     Some(format!(
-        "Cut off at {} deg, gain counted, on {}: with a larger --max-correction-deg more of the error is expected to go.",
+        "The correction is limited to {} deg (gain included) on {}; a larger --max-correction-deg would remove more of the error.",
         deg(most),
         names.join(", ")
     ))
@@ -165,17 +171,17 @@ fn nearest(replanned: &Replanned, margins: &[Margin]) -> String {
         .collect();
     own.sort_by(|a, b| b.share.total_cmp(&a.share));
     let Some(worst) = own.first() else {
-        return "Without a task no limits of the arm are known: hold the command against yours before it is sent.".into();
+        return "Without a task the limits of the arm are unknown: check the command against yours before you send it.".into();
     };
     let near = own.iter().filter(|margin| margin.share > NEAR).count();
     let joint = joint_name(replanned, worst.joint).map_or(String::new(), |name| format!("{name} "));
     format!(
-        "Limits re-checked on the command: nearest is {joint}{}, {} of {} allowed at {:.2} s{}.",
+        "Limits were checked on the command: the nearest is {joint}{}, {} of {} allowed, at {:.2} s{}.",
         plan::name(worst.limit),
         plan::shown(worst.limit, worst.value.abs()),
         plan::shown(worst.limit, worst.allowed),
         worst.t_s,
-        if near > 1 { format!("; {near} are used to nine tenths or more") } else { String::new() }
+        if near > 1 { format!("; {near} are used to 90 % or more") } else { String::new() }
     )
 }
 
@@ -183,7 +189,7 @@ fn held_row(held: &HeldTo) -> Vec<String> {
     let by = |origin: Origin| match origin {
         Origin::Task => "the task",
         Origin::Fitted => "the fit",
-        Origin::Shown => "what was shown",
+        Origin::Shown => "values reached",
     };
     let number =
         |rad: f64| if rad.is_finite() { format!("{:.1}", degrees_from_radians(rad)) } else { NONE.into() };

@@ -6,7 +6,7 @@ use super::tables::{by_peak, lag_words, mostly_lag, verdicts, worst_sentence};
 use crate::{
     render::{
         kit::{
-            Sentence, clean, counted, deg, ms,
+            Sentence, argument, clean, command, counted, deg, ms,
             page::{
                 card, next_steps,
                 strip::{Row, bars},
@@ -115,14 +115,10 @@ fn whole_run(report: &Report) -> Markup {
     card("", "Whole run, all joints", &headline, &body)
 }
 
-/// A file's name as a shell takes it.
-fn argument(log: Option<&str>) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "._-/+:@%".contains(c);
-    match log {
-        Some(log) if !log.is_empty() && !log.starts_with('-') && log.chars().all(plain) => log.to_owned(),
-        Some(log) if !log.is_empty() => format!("'{}'", log.replace('\'', "'\\''")),
-        _ => "LOG".to_owned(),
-    }
+/// `replan` of this log with its plan kept.
+fn replan(log: Option<&str>) -> String {
+    let log = log.filter(|log| !log.is_empty()).map_or("LOG".to_owned(), argument);
+    command(&["replan", &log, "--keep-plan", "-o", "NEXT"])
 }
 
 fn words(step: &Advice) -> String {
@@ -138,15 +134,15 @@ fn words(step: &Advice) -> String {
         ),
         Advice::ShiftCommand { joint, lag_s, log } => format!(
             "The error is mostly lag, {joint} first ({} ms): speed feed-forward, or sending the command that much earlier, does \
-             most, and work on starts little. hydrotrace replan {} --keep-plan -o NEXT makes such a command from this log.",
+             most, and work on starts little. {} makes such a command from this log.",
             ms(*lag_s),
-            argument(log.as_deref()),
+            replan(log.as_deref()),
         ),
         Advice::EaseStarts { joint, delay_s, log, gentler } => format!(
-            "Work on starts from rest, {joint} first{}: hydrotrace replan {} --keep-plan -o NEXT makes a command from this log \
+            "Work on starts from rest, {joint} first{}: {} makes a command from this log \
              that compensates dead band and lag{}",
             delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {} ms late)", ms(s))),
-            argument(log.as_deref()),
+            replan(log.as_deref()),
             if *gentler {
                 "; without --keep-plan, a gentler plan too."
             } else {

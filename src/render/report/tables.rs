@@ -147,8 +147,7 @@ pub(super) fn mostly_lag(replay: &Replay) -> Option<String> {
 pub(super) fn lag_words(replay: &Replay) -> Option<String> {
     let share = replay.whole_run.lag_share?;
     let lags = replay.joints.iter().filter(|joint| joint.plan_moves).filter_map(|joint| joint.lag_s);
-    let [least, most] =
-        lags.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], lag_s| [a.min(lag_s), b.max(lag_s)]);
+    let [least, most] = crate::math::range(lags);
     let (least, most) = (ms(least), ms(most));
     let lag = if least == most { format!("{least} ms") } else { format!("{least} to {most} ms by joint") };
     Some(format!(

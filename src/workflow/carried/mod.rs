@@ -2,6 +2,7 @@
 
 pub mod arm_log;
 pub mod plan_log;
+pub mod rest;
 mod schedule;
 pub mod stamp;
 

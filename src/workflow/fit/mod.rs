@@ -13,12 +13,13 @@ pub use failure::FitFailure;
 
 use crate::{
     fit::{Fit, FitError, Observation, fit},
-    log::SourceInfo,
+    log::{ReadOptions, Recording, SignalRole, SourceInfo},
     remark::{Code, Remarks},
     series::Track,
+    workflow::carried::Carried,
 };
 use {
-    observe::{ObserveFailure, Observed, Wanted, observe},
+    observe::{ObserveFailure, observation, observe},
     torque::{JointTorque, torques},
 };
 
@@ -28,7 +29,7 @@ pub struct Inputs {
     /// Runs, each a file or a bag directory.
     pub logs: Vec<PathBuf>,
     /// What to read of each.
-    pub wanted: Wanted,
+    pub read: ReadOptions,
 }
 
 /// A run that was fitted.
@@ -54,6 +55,8 @@ pub struct Fitted {
     pub torques: Vec<JointTorque>,
     /// The runs.
     pub runs: Vec<FittedRun>,
+    /// Which run holds the task of its plan and so can be planned again: the last one that does.
+    pub with_task: Option<usize>,
     /// Doubts about the data.
     pub remarks: Remarks,
 }
@@ -64,7 +67,7 @@ pub struct Fitted {
 ///
 /// [`FitFailure`] naming the log.
 pub fn run(inputs: &Inputs) -> Result<Fitted, FitFailure> {
-    let observed = observed(&inputs.logs, &inputs.wanted)?;
+    let observed = observed(&inputs.logs, &inputs.read)?;
     Ok(of(&inputs.logs, &observed)?)
 }
 
@@ -73,8 +76,8 @@ pub fn run(inputs: &Inputs) -> Result<Fitted, FitFailure> {
 /// # Errors
 ///
 /// [`ObserveFailure`] naming the log.
-pub fn observed(logs: &[PathBuf], wanted: &Wanted) -> Result<Vec<Observed>, ObserveFailure> {
-    logs.iter().map(|path| observe(path, wanted)).collect()
+pub fn observed(logs: &[PathBuf], read: &ReadOptions) -> Result<Vec<Recording>, ObserveFailure> {
+    logs.iter().map(|path| observe(path, read)).collect()
 }
 
 /// Fits runs that were read from these logs.
@@ -82,9 +85,9 @@ pub fn observed(logs: &[PathBuf], wanted: &Wanted) -> Result<Vec<Observed>, Obse
 /// # Errors
 ///
 /// [`FitError`] if no joint can be fitted.
-pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
+pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> {
     of_one_arm(logs, observed)?;
-    let observations: Vec<Observation<'_>> = observed.iter().map(Observed::observation).collect();
+    let observations: Vec<Observation<'_>> = observed.iter().map(observation).collect();
     let fit = fit(&observations)?;
     for joint in &fit.joints {
         ::log::info!(
@@ -101,7 +104,7 @@ pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
     for (path, observed) in logs.iter().zip(observed) {
         let log = name(path);
         // A machine is fitted to what was sent, whatever was planned.
-        let doubts = observed.recording.remarks.clone().without(Code::PlanIsCommand);
+        let doubts = observed.remarks.clone().without(Code::PlanIsCommand);
         for remark in doubts.as_slice() {
             let message =
                 if logs.len() > 1 { format!("{log}: {}", remark.message) } else { remark.message.clone() };
@@ -109,9 +112,9 @@ pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
         }
         runs.push(FittedRun {
             log,
-            source: observed.recording.source.clone(),
+            source: observed.source.clone(),
             commanded: observed.command.is_some(),
-            valves: observed.valve.is_some(),
+            valves: observed.has(SignalRole::Valve),
         });
     }
     for joint in fit.joints.iter().filter(|joint| !joint.trusted()) {
@@ -125,14 +128,15 @@ pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
     }
     let torques = logs.iter().zip(observed).map(|(path, observed)| torques(path, observed));
     let torques = torques.into_iter().find(|torques| !torques.is_empty()).unwrap_or_default();
-    Ok(Fitted { fit, torques, runs, remarks })
+    let with_task = observed.iter().rposition(|observed| Carried::of(observed).task().is_some());
+    Ok(Fitted { fit, torques, runs, with_task, remarks })
 }
 
 /// Every log must share a joint with those before it: a machine is fitted, not several.
-fn of_one_arm(logs: &[PathBuf], observed: &[Observed]) -> Result<(), FitError> {
+fn of_one_arm(logs: &[PathBuf], observed: &[Recording]) -> Result<(), FitError> {
     let mut known: Vec<&str> = Vec::new();
     for (path, observed) in logs.iter().zip(observed) {
-        let own: Vec<&str> = observed.recording.measured.tracks.iter().map(Track::name).collect();
+        let own: Vec<&str> = observed.measured.tracks.iter().map(Track::name).collect();
         if !known.is_empty() && !own.iter().any(|name| known.contains(name)) {
             let (found, known) = (own.join(", "), known.join(", "));
             return Err(FitError::OtherArm { log: name(path), found, known });

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Candidate, Commanded, HeldTo, Inputs, LEAD_S, Predicted, ReplanFailure, last::Last};
+use super::{Candidate, Commanded, HeldTo, Inputs, Predicted, ReplanFailure, last::Last};
 use crate::{
     fit::Fit,
-    log::WriteError,
+    log::{Recording, WriteError},
     plan::{PlanEvaluation, Timing},
     remark::{Code, Remarks},
     replay::{Rules, replay},
@@ -17,8 +17,8 @@ use crate::{
         carried::{
             Carried,
             plan_log::{PlanLog, Planned},
+            rest::PLAN_LEAD_S,
         },
-        fit::observe::Observed,
         plan::{PlanDocument, PlanRequest},
     },
 };
@@ -40,8 +40,7 @@ pub struct Before {
 }
 
 impl Before {
-    pub(super) fn of(observed: &Observed, last: &Last, predicted: Predicted, rules: &Rules) -> Self {
-        let recording = &observed.recording;
+    pub(super) fn of(recording: &Recording, last: &Last, predicted: Predicted, rules: &Rules) -> Self {
         let pair =
             |measured: &crate::series::Track| align(recording.planned.track(measured.name())?, measured);
         let pairs: Vec<_> = recording.measured.tracks.iter().filter_map(pair).collect();
@@ -163,7 +162,7 @@ pub(super) fn replanned(
     }
     let duration_s =
         evaluation.as_ref().map_or(last.duration_s, |evaluation| evaluation.objectives[Objective::Duration]);
-    let starts_s = if interval_s.is_some() { Some(LEAD_S) } else { last.starts_s };
+    let starts_s = if interval_s.is_some() { Some(PLAN_LEAD_S) } else { last.starts_s };
     Ok(Replanned {
         fit,
         fitted_to,

@@ -197,11 +197,8 @@ fn front(carried: &Carried, remarks: &mut Remarks) -> Option<PlanDocument> {
 }
 
 fn no_overlap(planned: &Series, measured: &Series) -> LogError {
-    let span_s = |series: &Series| {
-        let ends = series.tracks.iter().filter_map(|t| Some((*t.t_s().first()?, *t.t_s().last()?)));
-        ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], (first, last)| [a.min(first), b.max(last)])
-    };
-    LogError::NoOverlap { planned_s: span_s(planned), measured_s: span_s(measured) }
+    let [planned_s, measured_s] = [planned, measured].map(|side| side.span_s().unwrap_or_default());
+    LogError::NoOverlap { planned_s, measured_s }
 }
 
 /// Measured samples without a plan are usual before and after a run; more than half is not.

@@ -6,6 +6,7 @@ use super::carried::{Carried, arm_log::ArmLog, stamp::START_NS, write_truth};
 use crate::{
     arm::Chain,
     log::{LogWriter, Role, WriteError, WriteOptions},
+    math::range,
     plant::{JointRecord, PayloadChange, Plant, PlantError, Record, Truth, simulate},
     series::{Series, Track},
     units::nanoseconds,
@@ -70,9 +71,7 @@ pub fn run(inputs: &Inputs) -> Result<Outputs, PlantError> {
     };
     let (planned, command) = (laid(plan)?, laid(command)?);
     let middle = |samples: &Vec<(f64, f64)>| {
-        let (least, most) = samples
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), (q, _)| (least.min(*q), most.max(*q)));
+        let [least, most] = range(samples.iter().map(|(q, _)| *q));
         0.5 * (least + most)
     };
     let pose_rad: Vec<f64> = planned.iter().map(middle).collect();

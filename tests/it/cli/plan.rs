@@ -118,7 +118,7 @@ fn a_ceiling_that_no_plan_keeps_says_by_how_much_and_which_limits_bind() {
     assert_eq!(run.status.code(), Some(1));
     assert_eq!(json(&run)["feasible"], false);
     let said = stderr(&run);
-    assert!(said.contains("time 12.4") && said.contains("10.00 s is asked for"), "{said}");
+    assert!(said.contains("time 12.4") && said.contains("the ceiling is 10.00 s"), "{said}");
     assert!(said.contains("limits that bind it: ") && said.contains("J2 jerk at"), "{said}");
 }
 

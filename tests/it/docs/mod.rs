@@ -74,7 +74,7 @@ fn verbs() -> Vec<String> {
     let list =
         help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
     list.filter_map(|line| line.strip_prefix("  ")?.split(' ').next())
-        .filter(|verb| !["", "bench", "help"].contains(verb))
+        .filter(|verb| !["", "help"].contains(verb))
         .map(str::to_owned)
         .collect()
 }

@@ -21,6 +21,7 @@ pub(in crate::render) fn blocks(blocks: &[Block]) -> Markup {
                 Block::Facts(facts) => { (list(facts)) }
                 Block::Remarks(facts) => { div class="remarks" { (list(facts)) } }
                 Block::Table(whole) => { (table(whole)) }
+                Block::Command(line) => { pre { code { (clean(line)) } } }
             }
         }
     }

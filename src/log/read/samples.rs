@@ -1,11 +1,12 @@
-//! From the samples of a table to tracks.
+//! From the columns of a table to the samples of joints.
 
 use std::{f64::consts::TAU, sync::Arc};
 
-use super::{quality::Gaps, source::Table};
+use super::quality::Gaps;
 use crate::{
+    log::source::Table,
     remark::{Code, Remarks},
-    series::{Clock, Track, split_at_gaps, velocity_agrees},
+    series::{Clock, JointKind, Quantity, Signal, Track, split_at_gaps, velocity_agrees},
     units::{radians_from_degrees, seconds_since},
 };
 
@@ -42,48 +43,74 @@ impl Axis {
     }
 }
 
-/// What numbers of a field are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Unit {
-    Radians,
-    Degrees,
-    /// No angles: nothing is known of what they may be.
-    Other,
+/// Samples of one field of one joint: finite, in order of time, in the unit of the log.
+pub(super) struct Samples {
+    pub(super) name: String,
+    t_s: Arc<[f64]>,
+    cuts: Vec<usize>,
+    values: Vec<f64>,
+    /// As many as values where the log gives velocities.
+    velocity: Vec<f64>,
 }
 
-/// One track a joint of a table's field; `last` if nobody asks the table for this field again,
-/// so that samples may be moved out of it.
-pub(super) fn tracks(
+impl Samples {
+    /// As the track of a joint; velocities that do not agree with the positions are left out.
+    pub(super) fn into_track(mut self, kind: JointKind, degrees: bool) -> Option<Track> {
+        if degrees && kind == JointKind::Turns {
+            let all = self.values.iter_mut().chain(&mut self.velocity);
+            all.for_each(|value| *value = radians_from_degrees(*value));
+        }
+        let usable = self.velocity.len() == self.values.len()
+            && self.velocity.iter().all(|v| v.is_finite())
+            && velocity_agrees(&self.t_s, &self.values, &self.velocity, &self.cuts);
+        let track = Track::of(kind, self.name, self.t_s, self.values, &self.cuts).ok()?;
+        if usable { track.with_velocity(self.velocity).ok() } else { Some(track) }
+    }
+
+    pub(super) fn into_signal(self, quantity: Quantity) -> Option<Signal> {
+        Signal::new(self.name, quantity, self.t_s, self.values, &self.cuts).ok()
+    }
+}
+
+/// The field to read of a table, and how.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reading {
+    pub(super) field: usize,
+    /// Whether values are positions of joints, so that impossible ones are dropped.
+    pub(super) positions: bool,
+    /// Whether this is the last use of the field, so that its samples may be moved out of the table.
+    pub(super) last: bool,
+}
+
+/// The samples of a table's field, by joint.
+pub(super) fn samples(
     table: &mut Table,
-    field: usize,
+    Reading { field, positions, last }: Reading,
     axis: &Axis,
-    unit: Unit,
-    last: bool,
     topic: &str,
     remarks: &mut Remarks,
-) -> Vec<Track> {
-    let mut tracks = Vec::new();
+) -> Vec<Samples> {
+    let mut found = Vec::new();
     let mut gap = Gaps::default();
     let mut spikes = 0;
-    let velocity_field = table.fields[field].velocity;
-    for (joint, name) in table.joints.clone().iter().enumerate() {
+    let velocity_field = table.fields[field].velocity.filter(|_| positions);
+    for (joint, name) in table.joints.clone().into_iter().enumerate() {
         let mut column =
             |field| if last { table.take_column(field, joint) } else { table.column(field, joint).to_vec() };
-        let (position, speed) = (column(field), velocity_field.map(column).unwrap_or_default());
-        let whole =
-            axis.as_read && position.len() == axis.rows.len() && position.iter().all(|q| q.is_finite());
-        let whole = whole
-            && !(0..position.len()).any(|k| {
-                unit != Unit::Other && is_spike(k, position.len(), |i| axis.t_s[i], |i| position[i])
-            });
-        let ((t_s, cuts, jumps), mut position, mut speed) = if whole {
-            ((axis.t_s.clone(), axis.cuts.clone(), axis.jumps.clone()), position, speed)
+        let (values, speed) = (column(field), velocity_field.map(column).unwrap_or_default());
+        let whole = axis.as_read
+            && values.len() == axis.rows.len()
+            && values.iter().all(|q| q.is_finite())
+            && !(positions
+                && (0..values.len()).any(|k| is_spike(k, values.len(), |i| axis.t_s[i], |i| values[i])));
+        let ((t_s, cuts, jumps), values, velocity) = if whole {
+            ((axis.t_s.clone(), axis.cuts.clone(), axis.jumps.clone()), values, speed)
         } else {
-            let at = |i: usize| position.get(axis.rows[i]).copied().unwrap_or(f64::NAN);
+            let at = |i: usize| values.get(axis.rows[i]).copied().unwrap_or(f64::NAN);
             let mut kept: Vec<usize> = (0..axis.rows.len()).filter(|&i| at(i).is_finite()).collect();
             // Far from the epoch neighbouring nanoseconds are the same second.
             kept.dedup_by(|later, earlier| axis.t_s[*later] <= axis.t_s[*earlier]);
-            if unit != Unit::Other {
+            if positions {
                 spikes += drop_spikes(&mut kept, &axis.t_s, at);
             }
             if kept.is_empty() {
@@ -92,30 +119,22 @@ pub(super) fn tracks(
             let speed = kept.iter().map_while(|&i| speed.get(axis.rows[i]).copied()).collect();
             (axis.kept(&kept), kept.iter().map(|&i| at(i)).collect(), speed)
         };
-        if unit == Unit::Degrees {
-            position.iter_mut().chain(&mut speed).for_each(|value| *value = radians_from_degrees(*value));
-        }
         gap.note(&t_s, &cuts, &jumps);
-        let usable = speed.len() == position.len()
-            && speed.iter().all(|v| v.is_finite())
-            && velocity_agrees(&t_s, &position, &speed, &cuts);
-        let track = Track::new(name, t_s, position, &cuts);
-        let track = if usable { track.and_then(|track| track.with_velocity(speed)) } else { track };
-        tracks.extend(track.ok());
+        found.push(Samples { name, t_s, cuts, values, velocity });
     }
     gap.remark(topic, remarks);
     let message =
         format!("values of {topic} that no joint can have (a jump there and back at once), dropped");
     remarks.add(Code::Implausible, spikes, message);
-    tracks
+    found
 }
 
-/// Faster than any joint, rad/s (deg/s where the log is in degrees).
+/// Faster than any joint, rad/s or m/s (deg/s where the log is in degrees).
 const FASTEST: f64 = 200.0;
-/// Larger than any angle, in radians or degrees.
+/// Larger than any position, in radians, degrees or metres.
 const LARGEST: f64 = 1e6;
 
-/// Whether sample `k` of `n` is no angle: too large, or off both its neighbours faster than any
+/// Whether sample `k` of `n` is no position of a joint: too large, or off both its neighbours faster than any
 /// joint moves. A full turn there and back is a joint without end stops.
 fn is_spike(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usize) -> f64) -> bool {
     if at(k).abs() > LARGEST {

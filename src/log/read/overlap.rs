@@ -1,19 +1,23 @@
-//! Several files as parts of one run: their order, and that none tells again what another has told.
+//! Orders the files of one run and rejects files whose samples overlap.
 
 use super::{
-    LogError, TimeBase,
-    assemble::stamps_of,
-    file::{Block, Layout, MessageRecord, Opcode, records},
-    read::{Content, Extracted, Source},
+    content::{Content, Extracted, Source},
     select_topics::Candidate,
-    source::Table,
 };
-use crate::units::{NS_PER_S, seconds_since};
+use crate::{
+    log::{
+        error::LogError,
+        file::{Block, Layout, MessageRecord, Opcode, records},
+        options::TimeBase,
+        source::Table,
+    },
+    units::{NS_PER_S, seconds_since},
+};
 
 /// Parts that meet may share this much: recorders split between threads.
 const SHARED_S: f64 = 1.0;
 
-/// When the recorder received the first message of a file, ns; the end of all times if it has none.
+/// When the recorder received the first message of a file, ns; `u64::MAX` if it has no message.
 pub(super) fn begins_ns(layout: &Layout<'_>) -> u64 {
     let first = |block: &Block<'_>| match block {
         // A chunk starts with the time of its first message.
@@ -26,13 +30,17 @@ pub(super) fn begins_ns(layout: &Layout<'_>) -> u64 {
     layout.blocks.iter().filter_map(first).find(|ns| *ns > 0).unwrap_or(u64::MAX)
 }
 
-/// Refuses files of which two have samples of one joint in one topic for the same time: which of them is
-/// the run is not for the order of the files to say.
-pub(super) fn check(extracted: &Extracted, chosen: &[&Candidate], base: TimeBase) -> Result<(), LogError> {
+/// Rejects two files with samples of one joint in one topic for the same time: the caller must say
+/// which of them is the run.
+pub(super) fn check<'a>(
+    extracted: &Extracted,
+    chosen: impl IntoIterator<Item = &'a Candidate>,
+    base: TimeBase,
+) -> Result<(), LogError> {
     for candidate in chosen {
         let source = &extracted.sources[candidate.source];
         let (Content::Table(table), Some(field)) = (&source.content, candidate.field) else { continue };
-        let stamp_ns = stamps_of(&table.stamps, base);
+        let stamp_ns = table.stamps.of(base);
         let parts = parts(source, table, stamp_ns);
         for (k, a) in parts.iter().enumerate() {
             for b in &parts[k + 1..] {

@@ -3,11 +3,17 @@
 use std::collections::BTreeSet;
 
 use super::{
-    LogError, ReadOptions, Selector, TopicInfo,
-    read::{Content, Extracted, Source, TopicCount},
-    source::{Form, Role},
+    content::{Content, Extracted, TopicCount},
+    topics::{fields_of, present},
 };
-use crate::suggest::nearest;
+use crate::{
+    log::{
+        error::LogError,
+        options::{ReadOptions, Selector, Sides},
+        source::{Form, Role},
+    },
+    suggest::nearest,
+};
 
 /// A topic and field that could serve.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,7 +29,7 @@ pub(super) struct Candidate {
     topic: String,
 }
 
-/// What was chosen.
+/// The chosen topics and fields.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Choice {
     pub(super) planned: Vec<Candidate>,
@@ -34,7 +40,7 @@ pub(super) struct Choice {
 }
 
 impl Choice {
-    /// Topics that are the plan for want of a better one: what was sent.
+    /// Topics of commands that serve as the plan because the log has no other.
     pub(super) fn commanded(&self) -> impl Iterator<Item = &str> {
         let sent = |c: &&Candidate| c.rank == COMMAND;
         self.planned.iter().filter(sent).map(|c| c.topic.as_str())
@@ -43,7 +49,7 @@ impl Choice {
 
 /// Rank of a plan by a name that says command.
 const COMMAND: u32 = 8;
-/// Rank of what is only used when the caller names it.
+/// Rank of fields that are used only if the caller names them.
 const ONLY_IF_NAMED: u32 = 9;
 
 const PLAN_WORDS: [&str; 8] =
@@ -54,15 +60,45 @@ fn has_word(topic: &str, words: &[&str]) -> bool {
     topic.to_ascii_lowercase().split(['/', '_', '-', '.']).any(|word| words.contains(&word))
 }
 
+/// Chooses the topics of the sides that are wanted.
 pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
+    let plan = || choose_one(extracted, options, Role::Planned);
+    let measurement = || choose_one(extracted, options, Role::Measured);
+    let missing = |error: &LogError| match error {
+        LogError::Missing { missing, .. } => Some(*missing),
+        _ => None,
+    };
+    if options.sides == Sides::Plan {
+        return plan();
+    }
+    let both = choose_both(extracted, options);
+    match (options.sides, both.as_ref().err().and_then(missing)) {
+        (Sides::PlanAtLeast | Sides::Any, Some(MEASURED)) => plan(),
+        (Sides::MeasurementAtLeast, Some(PLANNED)) => measurement(),
+        (Sides::Any, Some(PLANNED)) => measurement().map_err(|error| match error {
+            LogError::Missing { present, .. } => LogError::Missing {
+                missing: "planned, commanded or measured",
+                present,
+                flag: "--planned or --measured",
+            },
+            other => other,
+        }),
+        _ => both,
+    }
+}
+
+const PLANNED: &str = "planned";
+const MEASURED: &str = "measured";
+
+fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
     let planned = candidates(extracted, &options.planned, Role::Planned)?;
     let measured = candidates(extracted, &options.measured, Role::Measured)?;
     let missing = |missing, flag| LogError::Missing { missing, present: present(extracted), flag };
     if planned.is_empty() {
-        return Err(missing("planned", "--planned"));
+        return Err(missing(PLANNED, "--planned"));
     }
     if measured.is_empty() {
-        return Err(missing("measured", "--measured"));
+        return Err(missing(MEASURED, "--measured"));
     }
     let measured_joints: BTreeSet<&String> = measured.iter().flat_map(|c| &c.joints).collect();
     let first = planned.iter().find(|c| c.joints.iter().any(|joint| measured_joints.contains(joint)));
@@ -94,28 +130,25 @@ pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Cho
     Ok(Choice { planned, measured, why, rivals })
 }
 
-/// The plan alone, of a log that need not hold a measurement.
-pub(super) fn choose_plan(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
-    let planned = candidates(extracted, &options.planned, Role::Planned)?;
-    let Some(first) = planned.first() else {
-        return Err(LogError::Missing { missing: "planned", present: present(extracted), flag: "--planned" });
+/// One side alone.
+fn choose_one(extracted: &Extracted, options: &ReadOptions, role: Role) -> Result<Choice, LogError> {
+    let (asked, missing, flag) = match role {
+        Role::Measured => (&options.measured, MEASURED, "--measured"),
+        _ => (&options.planned, PLANNED, "--planned"),
     };
-    let explicit = !options.planned.is_empty();
-    let chosen = cover(planned.iter().filter(|c| explicit || c.rank == first.rank), None, Some(first));
-    let why = why(extracted, options, &chosen, &[]);
-    Ok(Choice { planned: chosen, measured: Vec::new(), why, rivals: Vec::new() })
-}
-
-/// The measurement alone, of a log that need not hold a plan.
-pub(super) fn choose_measured(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
-    let measured = candidates(extracted, &options.measured, Role::Measured)?;
-    if measured.is_empty() {
-        let present = present(extracted);
-        return Err(LogError::Missing { missing: "measured", present, flag: "--measured" });
+    let found = candidates(extracted, asked, role)?;
+    let Some(first) = found.first() else {
+        return Err(LogError::Missing { missing, present: present(extracted), flag });
+    };
+    let (mut planned, mut measured) = (Vec::new(), Vec::new());
+    if role == Role::Measured {
+        measured = cover(found.iter(), None, None);
+    } else {
+        let alike = found.iter().filter(|c| !asked.is_empty() || c.rank == first.rank);
+        planned = cover(alike, None, Some(first));
     }
-    let chosen = cover(measured.iter(), None, None);
-    let why = why(extracted, options, &[], &chosen);
-    Ok(Choice { planned: Vec::new(), measured: chosen, why, rivals: Vec::new() })
+    let why = why(extracted, options, &planned, &measured);
+    Ok(Choice { planned, measured, why, rivals: Vec::new() })
 }
 
 /// Leading parts of their names that two topics share.
@@ -129,7 +162,7 @@ fn namespace(topic: &str) -> impl Iterator<Item = &str> {
     stem.split('/').filter(|part| !part.is_empty())
 }
 
-/// What would have served as well as what was chosen, elsewhere.
+/// Topics of other namespaces that would have served as well.
 fn rivals(all: &[Candidate], chosen: &[Candidate], wanted: &BTreeSet<&String>) -> Vec<String> {
     let same_home = |a: &Candidate, b: &Candidate| namespace(&a.topic).eq(namespace(&b.topic));
     let rival = |c: &&Candidate| {
@@ -195,8 +228,8 @@ fn why(
 
 /// All that could serve in a role, best first; those the caller named, if any.
 fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<Vec<Candidate>, LogError> {
-    let mut found = Vec::new();
     if named.is_empty() {
+        let mut found = Vec::new();
         for source in 0..extracted.sources.len() {
             found.extend(
                 of_source(extracted, source, role, None).into_iter().filter(|c| c.rank < ONLY_IF_NAMED),
@@ -208,36 +241,32 @@ fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<V
         });
         return Ok(found);
     }
-    for selector in named {
-        let topic = extracted.topics.iter().position(|t| t.topic == selector.topic).ok_or_else(|| {
-            LogError::NoTopic {
-                topic: selector.topic.clone(),
-                nearest: nearest(&selector.topic, extracted.topics.iter().map(|t| t.topic.as_str())),
-                present: present(extracted),
-            }
+    named.iter().map(|selector| self::named(extracted, selector, role)).collect()
+}
+
+/// The candidate of a selector.
+pub(super) fn named(extracted: &Extracted, selector: &Selector, role: Role) -> Result<Candidate, LogError> {
+    let topic =
+        extracted.topics.iter().position(|t| t.topic == selector.topic).ok_or_else(|| LogError::NoTopic {
+            topic: selector.topic.clone(),
+            nearest: nearest(&selector.topic, extracted.topics.iter().map(|t| t.topic.as_str())),
+            present: present(extracted),
         })?;
-        let sources = (0..extracted.sources.len()).filter(|&s| extracted.sources[s].topic == topic);
-        let mut fitting: Vec<Candidate> =
-            sources.flat_map(|s| of_source(extracted, s, role, selector.field.as_deref())).collect();
-        fitting.sort_by_key(|c| (c.rank, c.field));
+    let sources = (0..extracted.sources.len()).filter(|&s| extracted.sources[s].topic == topic);
+    let fitting = sources.flat_map(|s| of_source(extracted, s, role, selector.field.as_deref()));
+    fitting.min_by_key(|c| (c.rank, c.field)).ok_or_else(|| {
         let TopicCount { topic: name, type_name, .. } = &extracted.topics[topic];
-        let none = || {
-            let fields = topic_info(extracted, topic, of_topic(extracted, topic)).joint_fields;
-            LogError::NoField {
-                topic: name.clone(),
-                type_name: type_name.as_str().into(),
-                nearest: selector
-                    .field
-                    .as_ref()
-                    .and_then(|f| nearest(f, fields.iter().map(String::as_str)))
-                    .map(String::into_boxed_str),
-                field: selector.field.as_deref().map(Box::from),
-                present: if fields.is_empty() { "none".to_owned() } else { fields.join(", ") },
-            }
-        };
-        found.push(fitting.into_iter().next().ok_or_else(none)?);
-    }
-    Ok(found)
+        let fields = fields_of(extracted, topic);
+        let near =
+            |field: &String| nearest(field, fields.iter().map(String::as_str)).map(String::into_boxed_str);
+        LogError::NoField {
+            topic: name.clone(),
+            type_name: type_name.as_str().into(),
+            nearest: selector.field.as_ref().and_then(near),
+            field: selector.field.as_deref().map(Box::from),
+            present: if fields.is_empty() { "none".to_owned() } else { fields.join(", ") },
+        }
+    })
 }
 
 fn of_source(extracted: &Extracted, source: usize, role: Role, field: Option<&str>) -> Vec<Candidate> {
@@ -255,7 +284,7 @@ fn of_source(extracted: &Extracted, source: usize, role: Role, field: Option<&st
         Content::Plans(plans) => {
             let joints: BTreeSet<&String> = plans.trajectories.iter().flat_map(|t| &t.joints).collect();
             let joints: Vec<String> = joints.into_iter().cloned().collect();
-            if role == Role::Measured || joints.is_empty() {
+            if role != Role::Planned || joints.is_empty() {
                 return Vec::new();
             }
             let rank = if topic.type_name.ends_with("JointTrajectory") { 3 } else { 6 };
@@ -303,75 +332,4 @@ fn rank(topic: &TopicCount, form: Form, field: Role, role: Role) -> u32 {
         }
         _ => ONLY_IF_NAMED,
     }
-}
-
-/// Topics with joints, for messages; all topics if there is none.
-fn present(extracted: &Extracted) -> String {
-    let with_joints: BTreeSet<usize> = extracted.sources.iter().map(|s| s.topic).collect();
-    let describe = |index: usize| {
-        let topic = &extracted.topics[index];
-        let messages = if topic.messages == 1 { "message" } else { "messages" };
-        format!("{} ({}, {} {messages})", topic.topic, topic.type_name, topic.messages)
-    };
-    let listed: Vec<String> = if with_joints.is_empty() {
-        (0..extracted.topics.len()).map(describe).collect()
-    } else {
-        with_joints.into_iter().map(describe).collect()
-    };
-    if listed.is_empty() { "no topics at all".to_owned() } else { listed.join(", ") }
-}
-
-fn of_topic(extracted: &Extracted, topic: usize) -> impl Iterator<Item = &Source> {
-    extracted.sources.iter().filter(move |source| source.topic == topic)
-}
-
-/// What `info` says of each topic, by name.
-pub(super) fn topic_infos(extracted: &Extracted) -> Vec<TopicInfo> {
-    let mut sources: Vec<Vec<&Source>> = vec![Vec::new(); extracted.topics.len()];
-    extracted.sources.iter().for_each(|source| sources[source.topic].push(source));
-    let infos = sources.into_iter().enumerate();
-    let mut infos: Vec<TopicInfo> =
-        infos.map(|(index, sources)| topic_info(extracted, index, sources.into_iter())).collect();
-    infos.sort_by(|a, b| (&a.topic, &a.type_name).cmp(&(&b.topic, &b.type_name)));
-    infos
-}
-
-fn topic_info<'a>(
-    extracted: &Extracted,
-    index: usize,
-    sources: impl Iterator<Item = &'a Source>,
-) -> TopicInfo {
-    let count = &extracted.topics[index];
-    let mut info = TopicInfo {
-        topic: count.topic.clone(),
-        type_name: count.type_name.clone(),
-        encoding: count.encoding.clone(),
-        messages: count.messages,
-        rate_hz: 0.0,
-        joint_fields: Vec::new(),
-        joints: Vec::new(),
-    };
-    let spread_s = count.last_log_ns.saturating_sub(count.first_log_ns) as f64 / crate::units::NS_PER_S;
-    if count.messages > 1 && spread_s > 0.0 {
-        info.rate_hz = (count.messages - 1) as f64 / spread_s;
-    }
-    for source in sources {
-        match &source.content {
-            Content::Table(table) => {
-                info.joints.extend(table.joints.iter().cloned());
-                for (k, field) in table.fields.iter().enumerate() {
-                    if !field.is_velocity && (0..table.joints.len()).any(|j| !table.column(k, j).is_empty()) {
-                        info.joint_fields.push(field.path.clone());
-                    }
-                }
-            }
-            Content::Plans(plans) => {
-                let joints: BTreeSet<&String> = plans.trajectories.iter().flat_map(|t| &t.joints).collect();
-                info.joints.extend(joints.into_iter().cloned());
-                info.joint_fields.push("points.positions".to_owned());
-            }
-            Content::Versioned(_) => {}
-        }
-    }
-    info
 }

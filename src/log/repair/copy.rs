@@ -3,15 +3,40 @@
 use std::{
     collections::{BTreeMap, btree_map::Entry},
     io::{Seek, Write},
+    path::Path,
 };
 
-use super::{
-    channel::Definitions,
-    file::{Layout, MessageRecord},
+use crate::{
+    atomic_file::AtomicError,
+    log::{
+        channel::Definitions,
+        error::LogError,
+        file::{Layout, MessageRecord},
+        write::WriteError,
+    },
 };
 
 /// Whatever went wrong while writing.
-pub(super) type Failure = Box<dyn std::error::Error + Send + Sync>;
+pub(super) struct CopyError(Box<dyn std::error::Error + Send + Sync>);
+
+impl CopyError {
+    /// The same of a file.
+    pub(super) fn of(self, output: &Path) -> LogError {
+        LogError::Copy { path: output.to_owned(), source: self.0 }
+    }
+}
+
+macro_rules! from {
+    ($($error:ty),*) => {$(
+        impl From<$error> for CopyError {
+            fn from(error: $error) -> Self {
+                Self(Box::new(error))
+            }
+        }
+    )*};
+}
+
+from!(AtomicError, WriteError, mcap::McapError);
 
 /// Channels of an old log as the new one numbers them.
 pub(super) struct Copier {
@@ -36,7 +61,7 @@ impl Copier {
         &mut self,
         writer: &mut mcap::Writer<W>,
         message: &MessageRecord<'_>,
-    ) -> Result<bool, Failure> {
+    ) -> Result<bool, CopyError> {
         let channel_id = match self.channels.entry(message.channel_id) {
             Entry::Occupied(known) => *known.get(),
             Entry::Vacant(new) => {
@@ -65,7 +90,7 @@ pub(super) fn copy_files<W: Write + Seek>(
     writer: &mut mcap::Writer<W>,
     layout: &Layout<'_>,
     replaced: &[&str],
-) -> Result<(), Failure> {
+) -> Result<(), CopyError> {
     let kept = |name: &str| !replaced.contains(&name);
     for attachment in layout.attachments.iter().filter(|file| kept(&file.name)) {
         writer.attach(&mcap::Attachment {
@@ -90,7 +115,7 @@ fn add_channel<W: Write + Seek>(
     writer: &mut mcap::Writer<W>,
     definitions: &Definitions,
     id: u16,
-) -> Result<Option<u16>, Failure> {
+) -> Result<Option<u16>, CopyError> {
     let Some(channel) = definitions.channels.get(&id) else { return Ok(None) };
     let schema = match definitions.schemas.get(&channel.schema_id) {
         Some(schema) => writer.add_schema(&schema.name, &schema.encoding, &schema.data)?,

@@ -1,15 +1,15 @@
-//! What looks wrong inside the data, said and counted.
+//! Remarks on data that look wrong.
 
 use std::f64::consts::{PI, TAU};
 
-use super::{
-    ReadOptions, TimeBase,
-    source::{MAX_JOINTS, Table},
-};
 use crate::{
+    log::{
+        options::{ReadOptions, TimeBase},
+        source::{Field, MAX_JOINTS, Role, Table},
+    },
     math::quantile,
     remark::{Code, Remarks},
-    series::{Clock, Series, Track},
+    series::{Clock, JointKind, Series, Track},
     units::{DEGREE_RAD, NS_PER_S},
 };
 
@@ -47,7 +47,8 @@ pub(super) fn of_clock(topic: &str, base: TimeBase, clock: &Clock, remarks: &mut
 }
 
 pub(super) fn of_table(topic: &str, table: &Table, remarks: &mut Remarks) {
-    for (k, field) in table.fields.iter().enumerate().filter(|(_, field)| !field.is_velocity) {
+    let positions = |field: &&Field| !field.is_velocity && field.role != Role::Beside;
+    for (k, field) in table.fields.iter().enumerate().filter(|(_, field)| positions(field)) {
         let path = &field.path;
         remarks.add(
             Code::NotFinite,
@@ -118,7 +119,7 @@ impl Gaps {
     }
 }
 
-/// Samples paused and slowed; none where the field is never filled.
+/// Numbers of samples paused and slowed; 0 where the field is never filled.
 fn scaling(factors: &[f64]) -> (u64, u64) {
     if !factors.iter().any(|&f| f > 0.0) {
         return (0, 0);
@@ -131,7 +132,7 @@ fn scaling(factors: &[f64]) -> (u64, u64) {
 
 /// Undoes full turns of joints declared continuous; remarks on them elsewhere.
 pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: &mut Remarks) {
-    for track in &mut series.tracks {
+    for track in series.tracks.iter_mut().filter(|track| track.kind() == JointKind::Turns) {
         let turns = turns(track);
         if turns == 0 {
             continue;
@@ -153,7 +154,7 @@ pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: 
     }
 }
 
-/// Steps between neighbouring samples that are nearer to a full turn than to nothing.
+/// Number of steps between neighbouring samples of about a full turn.
 fn turns(track: &Track) -> u64 {
     let steps = track.position().windows(2);
     steps.filter(|w| (w[1] - w[0]).abs() > PI && ((w[1] - w[0]).abs() - TAU).abs() < 1.0).count() as u64
@@ -193,7 +194,25 @@ const RATIO_TOLERANCE: f64 = 0.15;
 const TURN_AND_A_HALF_RAD: f64 = 1.5 * TAU;
 
 fn of_pair(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &mut Remarks) {
-    let (plan_rad, angle_rad) = (span(planned.position()), span(measured.position()));
+    if planned.kind() == JointKind::Turns {
+        of_units(planned, measured, options, remarks);
+    }
+    if let Some((from_s, to_s, samples)) = frozen(planned, measured) {
+        let name = planned.name();
+        remarks.add(
+            Code::FrozenSensor,
+            samples,
+            format!(
+                "samples of {name} repeat one value from {from_s:.2} s to {to_s:.2} s while the plan moves: \
+                 frozen sensor, or a joint that did not answer"
+            ),
+        );
+    }
+}
+
+/// Remarks on angles that look like degrees.
+fn of_units(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &mut Remarks) {
+    let (plan_rad, angle_rad) = (span_rad(planned.position()), span_rad(measured.position()));
     let near = |ratio: f64| (ratio / DEGREES_IN_RADIAN - 1.0).abs() < RATIO_TOLERANCE;
     let name = planned.name();
     if near(angle_rad / plan_rad) {
@@ -219,25 +238,17 @@ fn of_pair(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &m
         );
         remarks.add(Code::LooksLikeDegrees, 1, message);
     }
-    if let Some((from_s, to_s, samples)) = frozen(planned, measured) {
-        remarks.add(
-            Code::FrozenSensor,
-            samples,
-            format!(
-                "samples of {name} repeat one value from {from_s:.2} s to {to_s:.2} s while the plan moves: \
-                 frozen sensor, or a joint that did not answer"
-            ),
-        );
-    }
 }
 
 /// Range without the outermost hundredth at either end, rad.
-fn span(position_rad: &[f64]) -> f64 {
-    quantile(position_rad.to_vec(), 0.99) - quantile(position_rad.to_vec(), 0.01)
+fn span_rad(angle_rad: &[f64]) -> f64 {
+    quantile(angle_rad.to_vec(), 0.99) - quantile(angle_rad.to_vec(), 0.01)
 }
 
 /// A plan that moves by this much while the sensor repeats one value is beyond any dead-band.
 const FROZEN_PLAN_RAD: f64 = 3.0 * DEGREE_RAD;
+/// The same for a joint that slides.
+const FROZEN_PLAN_M: f64 = 0.02;
 const FROZEN_S: f64 = 0.5;
 
 /// The longest stretch of exactly one measured value while the plan moves: from, to, samples.
@@ -262,7 +273,11 @@ fn plan_moves(planned: &Track, from_s: f64, to_s: f64) -> bool {
     let range = |t: f64| planned.t_s().partition_point(|&s| s < t);
     let plan = &planned.position()[range(from_s)..range(to_s)];
     let (least, most) = plan.iter().fold((f64::MAX, f64::MIN), |(a, b), &q| (a.min(q), b.max(q)));
-    most - least > FROZEN_PLAN_RAD
+    let dead = match planned.kind() {
+        JointKind::Turns => FROZEN_PLAN_RAD,
+        JointKind::Slides => FROZEN_PLAN_M,
+    };
+    most - least > dead
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Decodes blocks on all threads and appends what they yield in the order of the file.
+//! Decodes blocks on all threads and appends their content in the order of the file.
 
 use std::{
     collections::BTreeMap,
@@ -9,17 +9,22 @@ use std::{
 };
 
 use super::{
-    decode::LayoutCache,
-    file::{Block, Blocks, Loss, MessageRecord, Opcode, records},
-    read::{Content, Extracted, Route, TopicCount},
-    source::Spec,
+    content::{Content, Extracted, Route, TopicCount},
+    description,
 };
-use crate::remark::Code;
+use crate::{
+    log::{
+        decode::LayoutCache,
+        file::{Block, Blocks, Loss, MessageRecord, Opcode, records},
+        source::Spec,
+    },
+    remark::Code,
+};
 
 /// A block, the channels of its file, and the file.
 pub(super) type Work<'a> = (Block<'a>, Arc<BTreeMap<u16, Route>>, usize);
 
-/// What one block yields; emptied and reused. Only what the block touches costs anything: files
+/// Content of one block; emptied and reused. Cost is by the topics that the block touches: files
 /// may have many channels and many blocks.
 struct Piece {
     contents: Vec<Option<Content>>,
@@ -27,6 +32,8 @@ struct Piece {
     is_touched: Vec<bool>,
     touched_contents: Vec<usize>,
     touched_topics: Vec<usize>,
+    /// Topics of URDFs, and the first text of each.
+    descriptions: Vec<(usize, String)>,
     unknown: u64,
     loss: Loss,
     /// Whether bytes follow the last whole record.
@@ -53,6 +60,7 @@ pub(super) fn read_blocks(work: &[Work<'_>], specs: &[Spec], joints: &[String], 
         is_touched: vec![false; specs.len()],
         touched_contents: Vec::new(),
         touched_topics: Vec::new(),
+        descriptions: Vec::new(),
         unknown: 0,
         loss: Loss::Nothing,
         has_tail: false,
@@ -123,6 +131,12 @@ impl Progress<'_> {
             for topic in piece.touched_topics.drain(..) {
                 self.out.topics[topic].add(&std::mem::take(&mut piece.topics[topic]));
             }
+            for (topic, text) in piece.descriptions.drain(..) {
+                let length = |topic: usize| self.out.topics[topic].topic.len();
+                if self.out.description.as_ref().is_none_or(|(known, _)| length(topic) < length(*known)) {
+                    self.out.description = Some((topic, text));
+                }
+            }
             self.unknown += piece.unknown;
             let remarks = &mut self.out.remarks;
             remarks.add(
@@ -152,29 +166,6 @@ impl Progress<'_> {
             piece.messages = 0;
             self.spare.push(piece);
         }
-    }
-}
-
-impl TopicCount {
-    fn add(&mut self, part: &Self) {
-        if part.messages == 0 {
-            return;
-        }
-        let first = self.messages == 0;
-        self.first_log_ns = if first { part.first_log_ns } else { self.first_log_ns.min(part.first_log_ns) };
-        self.last_log_ns = self.last_log_ns.max(part.last_log_ns);
-        self.messages += part.messages;
-        self.undecodable += part.undecodable;
-        self.unread += part.unread;
-        if self.first_error.is_none() {
-            self.first_error.clone_from(&part.first_error);
-        }
-    }
-
-    fn count(&mut self, log_ns: u64) {
-        self.first_log_ns = if self.messages == 0 { log_ns } else { self.first_log_ns.min(log_ns) };
-        self.last_log_ns = self.last_log_ns.max(log_ns);
-        self.messages += 1;
     }
 }
 
@@ -223,6 +214,11 @@ fn read_block(
                 topic.undecodable += 1;
                 topic.first_error.get_or_insert(error);
             }
+        } else if route.describes
+            && piece.descriptions.iter().all(|(known, _)| *known != route.topic)
+            && let Some(text) = description::text(message.data)
+        {
+            piece.descriptions.push((route.topic, text));
         }
     }
     if piece.loss == Loss::Nothing {

@@ -5,18 +5,18 @@ use std::{
     path::Path,
 };
 
-use super::{
-    LogError,
-    copy::{Copier, Failure, copy_files},
-    file::{Blocks, Layout, Loss, MappedFile, MessageRecord, Opcode, records, scan},
-    read::{describe_damage, not_mcap},
-};
+use super::copy::{Copier, CopyError, copy_files};
 use crate::{
-    atomic_file::{AtomicError, write_atomically},
+    atomic_file::write_atomically,
+    log::{
+        error::LogError,
+        file::{Blocks, Layout, Loss, MappedFile, MessageRecord, Opcode, records},
+        files::ScannedFile,
+    },
     remark::{Code, Remarks},
 };
 
-/// What a recovery saved.
+/// Counts of a recovery.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Recovered {
     /// Messages in the new log.
@@ -27,11 +27,11 @@ pub struct Recovered {
     pub dropped_blocks: u64,
     /// Attachments in the new log.
     pub attachments: usize,
-    /// What was lost or doubtful; empty if nothing was.
+    /// Losses and doubts; empty if there are none.
     pub remarks: Remarks,
 }
 
-/// Writes what is whole in `log`, the partial last chunk included, to `output`.
+/// Writes all whole messages of `log`, those of a partial last chunk included, to `output`.
 ///
 /// Messages keep their bytes, times and sequence numbers; attachments and metadata are copied.
 ///
@@ -40,10 +40,10 @@ pub struct Recovered {
 /// [`LogError`] if `log` is no log at all, or `output` cannot be written.
 pub fn recover(log: &Path, output: &Path) -> Result<Recovered, LogError> {
     let map = MappedFile::open(log).map_err(LogError::file("open", log))?;
-    let layout = scan(&map).ok_or_else(|| not_mcap(log, &map))?;
+    let file = ScannedFile::of(log, &map)?;
+    let layout = &file.layout;
     let mut remarks = Remarks::default();
-    let name = log.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    describe_damage(&name, &layout, &mut remarks);
+    file.remark_damage(&mut remarks);
     let mut saved = Recovered {
         messages: 0,
         blocks: layout.blocks.len(),
@@ -51,29 +51,16 @@ pub fn recover(log: &Path, output: &Path) -> Result<Recovered, LogError> {
         attachments: layout.attachments.len(),
         remarks,
     };
-    let written = write_atomically(output, |file| {
-        copy(&layout, file, &mut saved).map_err(|source| CopyError { source })
-    });
-    written.map_err(|error| LogError::Copy { path: output.to_owned(), source: error.source })?;
+    let written = write_atomically::<_, CopyError>(output, |file| copy(layout, file, &mut saved));
+    written.map_err(|error| error.of(output))?;
     Ok(saved)
-}
-
-/// Wraps whatever went wrong while writing.
-struct CopyError {
-    source: Failure,
-}
-
-impl From<AtomicError> for CopyError {
-    fn from(error: AtomicError) -> Self {
-        Self { source: Box::new(error) }
-    }
 }
 
 fn copy<W: Write + Seek>(
     layout: &Layout<'_>,
     file: &mut BufWriter<W>,
     saved: &mut Recovered,
-) -> Result<(), Failure> {
+) -> Result<(), CopyError> {
     let mut writer = mcap::WriteOptions::new()
         .profile(layout.profile.as_str())
         .library(concat!("hydrotrace ", env!("CARGO_PKG_VERSION")))

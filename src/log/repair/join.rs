@@ -1,22 +1,17 @@
 //! A log with a plan put into it.
 
-use std::{
-    collections::BTreeMap,
-    io::Write,
-    iter::Peekable,
-    path::{Path, PathBuf},
-    slice::Iter,
-};
+use std::{collections::BTreeMap, io::Write, iter::Peekable, path::Path, slice::Iter};
 
-use super::{
-    Attachment, LogError, LogWriter, Role, Topics, WriteError, WriteOptions, bag,
-    copy::{Copier, Failure, copy_files},
-    file::{Blocks, Layout, MappedFile, MessageRecord, Opcode, records, scan},
-    read::not_mcap,
-};
+use super::copy::{Copier, CopyError, copy_files};
 use crate::{
-    atomic_file::{AtomicError, write_atomically},
-    remark::Remarks,
+    atomic_file::write_atomically,
+    log::{
+        error::LogError,
+        file::{Blocks, Layout, MessageRecord, Opcode, records},
+        files::ScannedLog,
+        read::recording::Attachment,
+        write::{LogWriter, Options, Role, Topics, WriteError},
+    },
 };
 
 /// One instant of a plan, by joint: angle, rad, and speed, rad/s.
@@ -26,11 +21,11 @@ pub struct PlanSample {
     pub stamp_ns: i64,
     /// Where the joints should be.
     pub planned: [Vec<f64>; 2],
-    /// What was sent.
+    /// The command.
     pub command: [Vec<f64>; 2],
 }
 
-/// What to put into a log.
+/// Samples, files and metadata to put into a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Addition<'a> {
     /// The joints of the samples.
@@ -45,56 +40,31 @@ pub struct Addition<'a> {
     pub metadata: (&'a str, BTreeMap<String, String>),
 }
 
-/// Writes all messages, files and metadata of a run's logs to `output`, and the plan among them; what was
-/// sent too, where the logs do not have its topic. Returns the number of messages that were copied.
-///
-/// # Errors
-///
-/// [`LogError`] if a file is no log or has a plan on our topic, or `output` cannot be written.
-pub fn join(logs: &[PathBuf], addition: &Addition<'_>, output: &Path) -> Result<u64, LogError> {
-    let paths = bag::files(logs, &mut Remarks::default())?;
-    let maps = paths
-        .iter()
-        .map(|path| MappedFile::open(path).map_err(LogError::file("open", path)))
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut parts = Vec::with_capacity(paths.len());
-    let topics = Topics::default();
-    let mut commands = true;
-    for (path, map) in paths.iter().zip(&maps) {
-        let layout = scan(map).ok_or_else(|| not_mcap(path, map))?;
-        let copier = Copier::of(&layout);
-        if copier.has(&topics.planned) {
-            return Err(LogError::Planned { path: path.clone(), topic: topics.planned });
+impl ScannedLog<'_> {
+    /// Writes all messages, files and metadata of the run to `output`, and the plan among them; the
+    /// command too, where the log does not have its topic. Returns the number of messages copied.
+    ///
+    /// # Errors
+    ///
+    /// [`LogError`] if a file has a plan on our topic, or `output` cannot be written.
+    pub fn join(&self, addition: &Addition<'_>, output: &Path) -> Result<u64, LogError> {
+        let mut parts = Vec::with_capacity(self.files.len());
+        let topics = Topics::default();
+        let mut commands = true;
+        for file in &self.files {
+            let copier = Copier::of(&file.layout);
+            if copier.has(&topics.planned) {
+                return Err(LogError::Planned { path: file.path.to_owned(), topic: topics.planned });
+            }
+            commands &= !copier.has(&topics.command);
+            parts.push((&file.layout, copier));
         }
-        commands &= !copier.has(&topics.command);
-        parts.push((layout, copier));
-    }
-    let written = write_atomically(output, |file| {
-        let options = WriteOptions { log_delay_ns: addition.log_delay_ns, ..WriteOptions::default() };
-        let log = LogWriter::new(file, &addition.joints, options)?;
-        Ok(Joining { log, waiting: addition.samples.iter().peekable(), commands }.write(parts, addition)?)
-    });
-    written.map_err(|JoinError(source)| LogError::Copy { path: output.to_owned(), source })
-}
-
-/// Wraps whatever went wrong while writing.
-struct JoinError(Failure);
-
-impl From<AtomicError> for JoinError {
-    fn from(error: AtomicError) -> Self {
-        Self(Box::new(error))
-    }
-}
-
-impl From<WriteError> for JoinError {
-    fn from(error: WriteError) -> Self {
-        Self(Box::new(error))
-    }
-}
-
-impl From<Failure> for JoinError {
-    fn from(error: Failure) -> Self {
-        Self(error)
+        let written = write_atomically::<_, CopyError>(output, |file| {
+            let options = Options { log_delay_ns: addition.log_delay_ns, ..Options::default() };
+            let log = LogWriter::new(file, &addition.joints, options)?;
+            Joining { log, waiting: addition.samples.iter().peekable(), commands }.write(parts, addition)
+        });
+        written.map_err(|error| error.of(output))
     }
 }
 
@@ -105,7 +75,7 @@ struct Joining<'a, W: Write> {
 }
 
 impl<W: Write> Joining<'_, W> {
-    fn write(mut self, parts: Vec<(Layout<'_>, Copier)>, addition: &Addition<'_>) -> Result<u64, Failure> {
+    fn write(mut self, parts: Vec<(&Layout<'_>, Copier)>, addition: &Addition<'_>) -> Result<u64, CopyError> {
         let (name, entries) = &addition.metadata;
         let replaced: Vec<&str> =
             addition.files.iter().map(|file| file.name.as_str()).chain([*name]).collect();
@@ -117,7 +87,7 @@ impl<W: Write> Joining<'_, W> {
         let mut copied = 0;
         let mut blocks = Blocks::new();
         for (layout, mut copier) in parts {
-            copy_files(self.log.raw(), &layout, &replaced)?;
+            copy_files(self.log.raw(), layout, &replaced)?;
             for block in &layout.blocks {
                 let messages =
                     records(blocks.open(*block).0).filter(|record| record.opcode == Opcode::MESSAGE);
