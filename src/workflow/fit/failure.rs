@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::{document::LIMITS_FORMAT, observe::ObserveFailure};
+use super::{LIMITS_FORMAT, observe::ObserveFailure};
 use crate::fit::FitError;
 
 /// Why there is no fit.
