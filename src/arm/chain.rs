@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Rotation3, Translation3, Unit, Vector3};
 
-use super::{Inertia, Load, Pose, robot::Robot};
+use super::{Inertia, Pose, robot::Robot};
 
 /// What a joint may do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,6 +109,10 @@ impl Chain {
         Load(payload.map_or(own, |payload| own.with(&payload.seen_from(&self.tool))))
     }
 }
+
+/// What the last joint carries; made by [`Chain::load`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Load(pub(super) Inertia);
 
 /// A chain in the making, from the base outwards.
 pub(super) struct Builder {

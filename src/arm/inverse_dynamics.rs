@@ -8,15 +8,14 @@
 
 use multiversion::multiversion;
 
-use super::{Chain, GRAVITY_M_S2, Inertia, chain::Step};
+use super::{
+    Chain, GRAVITY_M_S2, Inertia,
+    chain::{Load, Step},
+};
 use crate::math::sin_cos;
 
 /// The number of instants that suits the widest vector units.
 pub const LANES: usize = 8;
-
-/// What the last joint carries; made by [`Chain::load`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Load(pub(super) Inertia);
 
 /// Motion of the joints, by joint and then by instant; the slices have an entry a joint.
 #[derive(Debug, Clone, Copy)]

@@ -19,14 +19,15 @@ mod robot;
 mod shape;
 mod urdf;
 
-pub use chain::{Chain, Joint, JointLimit};
+pub use chain::{Chain, Joint, JointLimit, Load};
 pub use cylinder::{Actuation, Cylinder, Linkage};
 pub use description::{GHOST, GHOST_RGBA};
 pub use error::ArmError;
 pub use hydraulics::{Arm, Hydraulics};
 pub use inertia::Inertia;
-pub use inverse_dynamics::{LANES, Load, Motion, Workspace, inverse_dynamics};
+pub use inverse_dynamics::{LANES, Motion, Workspace, inverse_dynamics};
 pub use shape::{Mesh, Shape, Solid, quaternion_xyzw};
+pub use urdf::sliding_joints;
 
 /// Place and orientation of a frame in another; lengths in m.
 pub type Pose = nalgebra::IsometryMatrix3<f64>;

@@ -43,6 +43,13 @@ impl Chain {
     }
 }
 
+/// Names of the joints of a URDF that slide; none if the text is no URDF.
+pub fn sliding_joints(text: &str) -> BTreeSet<String> {
+    let joints = parsed(text, &Witness("URDF")).map(|robot| robot.joints).unwrap_or_default();
+    let slides = |joint: &robot::Joint| joint.kind == JointKind::Prismatic;
+    joints.into_iter().filter(slides).map(|joint| joint.name).collect()
+}
+
 pub(super) fn parsed(text: &str, at: &Witness<'_>) -> Result<Robot, ArmError> {
     at.at_most("bytes", text.len(), LARGEST_TEXT)?;
     at.at_most("nested elements", nesting(text, at)?, DEEPEST)?;

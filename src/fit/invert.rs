@@ -7,10 +7,11 @@ use super::{
     model::STEP_S,
     predict::grid,
     run::{MOVES_RAD_S, steps_in},
-    simulate::simulate,
+    simulate::{Start, simulate},
     smooth::smooth,
 };
 use crate::{
+    math::range,
     series::{Series, Track},
     units::DEGREE_RAD,
 };
@@ -31,7 +32,7 @@ const UNTOUCHED_S: f64 = 0.2;
 /// take up a standing error without haste.
 const FREED_S: [f64; 2] = [0.2, 1.0];
 
-/// Speeds of the correction below this are none, so that a plan at rest stays a command at rest.
+/// Slower corrections count as zero, so that a plan at rest stays a command at rest.
 const STILL_RAD_S: f64 = 1e-4;
 
 /// Accelerations are differences of speeds over this, s.
@@ -62,7 +63,7 @@ pub struct Compensated {
     pub joints: Vec<JointCompensation>,
 }
 
-/// What was done to one joint.
+/// Correction of one joint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointCompensation {
@@ -97,8 +98,8 @@ pub struct JointCompensation {
 ///
 /// # Errors
 ///
-/// [`FitError::Setting`], [`FitError::Value`] for a model that is none, [`FitError::Duration`] for a
-/// plan longer than an hour.
+/// [`FitError::Setting`], [`FitError::Value`] for an impossible model, [`FitError::Duration`] for a plan longer than
+/// an hour.
 pub fn compensate(fit: &Fit, plan: &Series, settings: Compensation) -> Result<Compensated, FitError> {
     let bounded = |key, found: f64, most: f64| {
         let inside = (0.0..=most).contains(&found);
@@ -192,7 +193,7 @@ struct Workspace {
 impl Workspace {
     /// Root mean square distance of plan and predicted response, rad.
     fn rms_rad(&mut self, model: &Model, planned: &[(f64, f64)], sent: &[(f64, f64)]) -> f64 {
-        simulate(model, sent, model.at_rest(planned), &mut self.wanted, &mut self.angle_rad);
+        simulate(model, sent, Start::at_rest(model, planned), &mut self.wanted, &mut self.angle_rad);
         let squares = planned.iter().zip(&self.angle_rad).map(|(planned, angle)| (planned.0 - angle).powi(2));
         (squares.sum::<f64>() / planned.len().max(1) as f64).sqrt()
     }
@@ -213,9 +214,7 @@ fn account(
     let acceleration =
         |of: &[(f64, f64)]| most(&mut of.windows(span + 1).map(|w| (w[span].1 - w[0].1) / ACCELERATION_S));
     let ratio = |sent: f64, planned: f64| if planned > 0.0 { sent / planned } else { 1.0 };
-    let (least, highest) = sent
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), s| (least.min(s.0), most.max(s.0)));
+    let [least, highest] = range(sent.iter().map(|s| s.0));
     JointCompensation {
         name: name.to_owned(),
         applied,

@@ -9,7 +9,7 @@ use super::{
     run::Run,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
 };
-use crate::units::DEGREE_RAD;
+use crate::{math::range, units::DEGREE_RAD};
 
 /// Dead times to start from, s.
 const DEAD_TIMES_S: [f64; 3] = [0.08, 0.2, 0.35];
@@ -20,7 +20,7 @@ const ABOVE: [f64; 4] = [1.03, 1.03, 1.2, 1.2];
 /// Limits are looked for from no lower than this: rad/s and rad/s².
 const LOWEST: [f64; 4] = [DEGREE_RAD, DEGREE_RAD, 20.0 * DEGREE_RAD, 20.0 * DEGREE_RAD];
 
-/// Residuals of a machine that tell as much as one independent one, until they are measured.
+/// Statistical inefficiency until it is measured: correlated residuals per effective sample.
 const INEFFICIENCY: f64 = 50.0;
 
 /// Fits one joint, whose runs are not empty; with its held-out starts.
@@ -33,8 +33,7 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
         most(|run| run.sharpest_rad_s2[1]),
     ];
     let limits = [0, 1, 2, 3].map(|i| (ABOVE[i] * reached[i]).max(LOWEST[i]));
-    let angles = || runs.iter().flat_map(|run| run.sent.iter().map(|sent| sent.0));
-    let pose_rad = [angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max)];
+    let pose_rad = range(runs.iter().flat_map(|run| run.sent.iter().map(|sent| sent.0)));
     let priors = Priors::new(limits, pose_rad);
     let mut problem = Problem {
         runs,

@@ -1,8 +1,8 @@
-//! What the machine does with what it is sent: a small model of every joint's closed loop, fitted to
-//! logs, with what the logs do not tell left open.
+//! The response of the machine to its commands: a small model of every joint's closed loop, fitted to logs. Parameters
+//! that the logs cannot identify are marked, not guessed.
 //!
 //! [`fit`] takes sent and measured angles and yields a [`Model`] a joint, with intervals and with its
-//! skill on data it was not fitted to. [`predict`] answers a command with what the machine will do;
+//! skill on held-out data. [`predict`] answers a command with what the machine will do;
 //! [`compensate`] turns a plan into a command whose predicted response is the plan; [`excite`] makes a
 //! run from which a fit can tell the limits.
 //!
@@ -76,9 +76,12 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
             moves
                 .then(|| {
                     let (mut joint, starts) = joint::joint(name, &runs);
-                    joint.valve_dead_band = logs
-                        .iter()
-                        .find_map(|log| valve::dead_band(log.valve?.track(name)?, log.measured.track(name)?));
+                    joint.valve_dead_band = logs.iter().find_map(|log| {
+                        valve::dead_band(
+                            log.valve.iter().find(|s| s.name() == *name)?,
+                            log.measured.track(name)?,
+                        )
+                    });
                     (joint, starts)
                 })
                 .ok_or(left_out)

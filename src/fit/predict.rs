@@ -1,10 +1,10 @@
-//! What a joint will do with a command.
+//! The response of a joint to a command.
 
 use super::{
     FitError, Model,
     model::STEP_S,
     run::{sampled, steps_in},
-    simulate::simulate,
+    simulate::{Start, simulate},
 };
 use crate::series::Track;
 
@@ -18,13 +18,12 @@ const LONGEST_S: f64 = 3600.0;
 ///
 /// # Errors
 ///
-/// [`FitError::Duration`] for a command longer than an hour, [`FitError::Value`] for a model that is
-/// none.
+/// [`FitError::Duration`] for a command longer than an hour, [`FitError::Value`] for an impossible model.
 pub fn predict(model: &Model, sent: &Track) -> Result<Track, FitError> {
     model.check(sent.name())?;
     let grid = grid(sent)?;
     let (mut wanted, mut angle_rad) = (Vec::new(), Vec::new());
-    simulate(model, &grid, model.at_rest(&grid), &mut wanted, &mut angle_rad);
+    simulate(model, &grid, Start::at_rest(model, &grid), &mut wanted, &mut angle_rad);
     let from_s = sent.t_s().first().copied().unwrap_or_default();
     let at = |t_s: &f64| {
         let step = steps_in(t_s - from_s);

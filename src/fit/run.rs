@@ -1,10 +1,10 @@
-//! What logs say of one joint, cut into runs that can be simulated from their start.
+//! The logs of one joint, cut into runs that can be simulated from their start.
 
 use std::ops::Range;
 
 use super::{model::STEP_S, simulate::Start};
 use crate::{
-    series::{Series, Track, align, local_quadratic},
+    series::{Series, Signal, Track, align, local_quadratic},
     units::DEGREE_RAD,
 };
 
@@ -14,11 +14,10 @@ use crate::{
 pub struct Observation<'a> {
     /// The command if the log has one, else the plan.
     pub sent: &'a Series,
-    /// What the joints did.
+    /// Measured angles.
     pub measured: &'a Series,
-    /// Signal to the valve of each joint as a share of the full one, positive for growing angles, in
-    /// place of positions.
-    pub valve: Option<&'a Series>,
+    /// Signals to the valves, positive for growing angles; empty where they were not logged.
+    pub valve: &'a [Signal],
 }
 
 /// Sent speed above which a joint is meant to move, rad/s.

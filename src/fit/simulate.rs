@@ -20,6 +20,14 @@ pub(super) struct Start {
     pub(super) integral_rad_s: f64,
 }
 
+impl Start {
+    /// At rest where the joint is sent to first.
+    pub(super) fn at_rest(model: &Model, sent: &[(f64, f64)]) -> Self {
+        let angle_rad = sent.first().map_or(0.0, |sent| sent.0) + model.offset_rad;
+        Self { angle_rad, ..Self::default() }
+    }
+}
+
 /// Answers `sent`, angle and speed every [`STEP_S`], with the measured angle at the same instants.
 ///
 /// `wanted` is room for the speeds that the loop wants; nothing is allocated once it and `measured`

@@ -3,7 +3,7 @@
 use super::{
     Model,
     run::{starts, window_end},
-    simulate::simulate,
+    simulate::{Start, simulate},
 };
 
 /// The predicted error after a joint is sent off.
@@ -28,7 +28,7 @@ impl StartErrorPredictor {
     /// Predicts what a joint makes of `planned`, angle, rad, and speed, rad/s, every
     /// [`STEP_S`](super::STEP_S) from rest on, if it is sent as it is. O(steps).
     pub fn starts(&mut self, model: &Model, planned: &[(f64, f64)]) -> Vec<PredictedStart> {
-        simulate(model, planned, model.at_rest(planned), &mut self.wanted, &mut self.angle_rad);
+        simulate(model, planned, Start::at_rest(model, planned), &mut self.wanted, &mut self.angle_rad);
         let at = starts(planned);
         let error = |k: usize| match (planned.get(k), self.angle_rad.get(k)) {
             (Some(planned), Some(angle)) => (planned.0 - angle).abs(),

@@ -3,7 +3,7 @@
 use super::outcome::Estimated;
 use crate::{
     math::median,
-    series::{LocalFit, Track, local_quadratic},
+    series::{LocalFit, Signal, Track, local_quadratic},
     units::DEGREE_RAD,
 };
 
@@ -31,8 +31,8 @@ const DISCREPANCY: f64 = 0.12;
 /// Share of the full signal at which a joint begins to move, for growing and for shrinking angles:
 /// where the line through slow speeds against earlier signals meets no speed.
 ///
-/// `valve` holds signals in place of positions. `None` where a direction has too little slow motion.
-pub(super) fn dead_band(valve: &Track, measured: &Track) -> Option<[Estimated; 2]> {
+/// `None` where a direction has too little slow motion.
+pub(super) fn dead_band(valve: &Signal, measured: &Track) -> Option<[Estimated; 2]> {
     let (t_s, segments) = (measured.t_s(), measured.segments());
     let fits = local_quadratic(t_s, measured.position(), segments, WINDOW_S, 7);
     let one = |way: f64| -> Option<Estimated> {
@@ -51,7 +51,7 @@ pub(super) fn dead_band(valve: &Track, measured: &Track) -> Option<[Estimated; 2
             let delay_s = f64::from(step) * DELAY_STEP_S;
             let signals: Vec<(f64, f64)> = moving
                 .iter()
-                .filter_map(|(t_s, speed)| Some((*speed, way * valve.at(t_s - delay_s)?.position)))
+                .filter_map(|(t_s, speed)| Some((*speed, way * valve.at(t_s - delay_s)?)))
                 .collect();
             let Some((start, spread)) = line(&signals) else { continue };
             if best.is_none_or(|(_, least)| spread < least) {
@@ -89,6 +89,7 @@ fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::series::Quantity;
 
     #[test]
     fn a_valve_that_opens_late_on_one_side_is_found_out() {
@@ -102,7 +103,7 @@ mod tests {
                 angle
             })
             .collect();
-        let valve = Track::new("a", t_s.clone(), signal, &[]).unwrap();
+        let valve = Signal::new("a", Quantity::Share, t_s.clone(), signal, &[]).unwrap();
         let measured = Track::new("a", t_s, position, &[]).unwrap();
         let found = dead_band(&valve, &measured).unwrap().map(|side| side.value.unwrap());
         assert!((found[0] - 0.1).abs() < 0.004 && (found[1] - 0.06).abs() < 0.004, "{found:?}");

@@ -1,10 +1,10 @@
-//! From what the user named to the files of one recording, in order.
+//! Finds the files of one recording, in order, from paths of files and bag directories.
 
 use std::path::{Path, PathBuf};
 
 use yaml_rust2::parser::{Event, Parser};
 
-use super::LogError;
+use super::error::LogError;
 use crate::remark::{Code, Remarks};
 
 /// The files that together are one recording: files as given, bag directories opened.

@@ -7,8 +7,9 @@ use rayon::prelude::*;
 use super::{
     decode::{Program, Tree},
     file::{Block, Blocks, ChannelRecord, Layout, Opcode, SchemaRecord, records},
+    options::Selector,
     schema::Definition,
-    source::{Role, Selector, Spec, spec_for},
+    source::{Role, Spec, spec_for},
 };
 
 /// How the messages of one channel are read.

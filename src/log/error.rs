@@ -1,4 +1,4 @@
-//! What can stop the reading or writing of a log.
+//! Errors of reading and writing a log.
 
 use std::path::{Path, PathBuf};
 
@@ -6,63 +6,32 @@ use thiserror::Error;
 
 use crate::suggest::suggestion;
 
-/// Why a log yields nothing at all; doubts about parts of it are remarks instead.
+/// Why a log cannot be read or written; doubts about parts of it are remarks.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum LogError {
     /// The file system said no.
     #[error("cannot {action} {}", path.display())]
-    File {
-        /// What was tried: "open", "read", "write".
-        action: &'static str,
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    File { action: &'static str, path: PathBuf, source: std::io::Error },
     /// Neither magic bytes nor any record.
     #[error("{} is not an MCAP file: found {found}, expected the bytes 89 4D 43 41 50 30 0D 0A; {fix}", path.display())]
-    NotMcap {
-        /// The file.
-        path: PathBuf,
-        /// What it starts with.
-        found: String,
-        /// What to do.
-        fix: &'static str,
-    },
+    NotMcap { path: PathBuf, found: String, fix: &'static str },
     /// A table in text.
     #[error(
         "{0} looks like a CSV file, not like an MCAP log; make it one first: `hydrotrace import {0} -o run.mcap`",
         path.display()
     )]
-    IsTable {
-        /// The file.
-        path: PathBuf,
-    },
+    IsTable { path: PathBuf },
     /// A directory without a recording.
     #[error("{} holds no .mcap file; give a recording or a ROS 2 bag directory in MCAP format", path.display())]
-    EmptyBag {
-        /// The directory.
-        path: PathBuf,
-    },
+    EmptyBag { path: PathBuf },
     /// `metadata.yaml` is no bag description.
     #[error("{} is no rosbag2 description: {reason}", path.display())]
-    BagMetadata {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        reason: String,
-    },
+    BagMetadata { path: PathBuf, reason: String },
     /// A topic that the caller asked for.
     #[error("no topic {topic:?}{}; the log has {present}", suggestion(nearest.as_deref()))]
-    NoTopic {
-        /// Topic looked for.
-        topic: String,
-        /// A topic of nearly that name.
-        nearest: Option<String>,
-        /// Topics found.
-        present: String,
-    },
+    NoTopic { topic: String, nearest: Option<String>, present: String },
     /// A topic that the caller asked for holds no joint angles in that field.
     #[error(
         "topic {topic:?} ({type_name}) has no joint angles{}{}; it has {present}",
@@ -70,104 +39,50 @@ pub enum LogError {
         suggestion(nearest.as_deref())
     )]
     NoField {
-        /// The topic.
         topic: String,
-        /// Its type.
         type_name: Box<str>,
-        /// The field asked for.
         field: Option<Box<str>>,
-        /// A field of nearly that name.
         nearest: Option<Box<str>>,
-        /// Fields that are there.
         present: String,
     },
-    /// Nothing in the log is a plan, or nothing a measurement.
+    /// The log holds no plan, or no measurement.
     #[error("found no {missing} joint angles; the log has {present}; name them with {flag} TOPIC[:FIELD]")]
-    Missing {
-        /// "planned" or "measured", or all that would have served.
-        missing: &'static str,
-        /// Topics found.
-        present: String,
-        /// The option that names them.
-        flag: &'static str,
-    },
+    Missing { missing: &'static str, present: String, flag: &'static str },
     /// Planned and measured joints have no name in common.
     #[error(
         "planned joints ({planned}) and measured joints ({measured}) have no name in common; \
          choose other topics with --planned and --measured, or name the joints with --joints"
     )]
-    NoCommonJoint {
-        /// Planned joints.
-        planned: String,
-        /// Measured joints.
-        measured: String,
-    },
+    NoCommonJoint { planned: String, measured: String },
     /// Plan and measurement are of different times.
     #[error(
         "the plan covers {:.2} to {:.2} s, the measurement {:.2} to {:.2} s: they have no time in common; \
          if their clocks differ, try --time log",
         planned_s[0], planned_s[1], measured_s[0], measured_s[1]
     )]
-    NoOverlap {
-        /// First and last sample of the plan, s.
-        planned_s: [f64; 2],
-        /// First and last sample of the measurement, s.
-        measured_s: [f64; 2],
-    },
+    NoOverlap { planned_s: [f64; 2], measured_s: [f64; 2] },
     /// Two files of a run that are no parts of it.
     #[error(
         "{} and {} both have {topic} for the same {shared_s:.2} s and are no parts of one run; give the one that \
          counts, or put the plan of the other into it with `hydrotrace join`",
         files[0], files[1]
     )]
-    ToldTwice {
-        /// The topic.
-        topic: String,
-        /// Names of the files.
-        files: [String; 2],
-        /// How long both have it, s.
-        shared_s: f64,
-    },
+    ToldTwice { topic: String, files: [String; 2], shared_s: f64 },
     /// One field given as plan and as measurement.
     #[error("{field} is given as plan and as measurement; their difference would be nothing")]
-    SameField {
-        /// Topic and field.
-        field: String,
-    },
+    SameField { field: String },
     /// A joint that the caller asked for.
     #[error("no joint {joint:?}{}; the log has {present}", suggestion(nearest.as_deref()))]
-    NoJoint {
-        /// Joint looked for.
-        joint: String,
-        /// A joint of nearly that name.
-        nearest: Option<String>,
-        /// Joints found.
-        present: String,
-    },
+    NoJoint { joint: String, nearest: Option<String>, present: String },
     /// A clock that the caller asked for.
     #[error("the {clock} time of topic {topic:?} is zero or stands still; try --time log or leave it out")]
-    NoClock {
-        /// "header", "publish" or "log".
-        clock: &'static str,
-        /// The topic.
-        topic: String,
-    },
+    NoClock { clock: &'static str, topic: String },
     /// A log that is to get a plan has one.
     #[error("{} has a plan in {topic} already: `hydrotrace report` it as it is, or give the log as the recorder left it", path.display())]
-    Planned {
-        /// The log.
-        path: PathBuf,
-        /// The plan's topic.
-        topic: String,
-    },
+    Planned { path: PathBuf, topic: String },
     /// The writer of a log that copies another failed.
     #[error("cannot write the log {}", path.display())]
-    Copy {
-        /// The output.
-        path: PathBuf,
-        /// Why.
-        source: Box<dyn std::error::Error + Send + Sync>,
-    },
+    Copy { path: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
 }
 
 impl LogError {

@@ -1,31 +1,23 @@
 //! MCAP logs: the only part of the crate that sees the format.
 //!
 //! Reading: bytes become records (`file`), records become fields (`schema`, `decode`), fields
-//! become samples of topics (`source`, `read`), and two topics become planned and measured
-//! series. Writing: samples become messages of ROS 2 types (`write`). Other formats: `csv` reads
-//! tables of a controller, `export` writes tables.
+//! become samples of topics (`source`), and samples become plan, measurement and other signals
+//! (`read`), all in one pass. Writing: samples become messages of ROS 2 types (`write`). Logs from
+//! logs: `repair`. Other formats: `csv` reads tables of a controller, `export` writes tables.
 
-mod assemble;
 mod bag;
 mod channel;
-mod copy;
 mod csv;
 mod decode;
-mod description;
 mod error;
 mod export;
 mod file;
-mod join;
-mod overlap;
-mod parallel;
-mod quality;
+mod files;
+mod options;
 mod read;
-mod recording;
-mod recover;
+mod repair;
 mod schema;
-mod select_topics;
 mod source;
-mod track;
 mod write;
 
 pub use bag::recording_files;
@@ -33,17 +25,18 @@ pub use csv::{
     AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, Quantity, Separator, TimeRead, Understood,
     read_csv, read_csv_bytes,
 };
-pub use description::read_description;
 pub use error::LogError;
 pub use export::{ExportError, RunTable};
-pub use join::{Addition, PlanSample, join};
-pub use read::{Attachment, FileInfo};
-pub use recording::{
-    ReadOptions, Recording, SourceInfo, Survey, TimeBase, TopicInfo, read_measured, read_plan,
-    read_recording, survey, survey_bytes,
+pub use files::{LogFiles, ScannedLog};
+#[doc(hidden)]
+pub use files::{Passes, passes};
+pub use options::{ReadOptions, Selector, Sides, SignalRole, TimeBase, WantedSignal};
+pub use read::{
+    read_plan, read_recording,
+    recording::{Attachment, Command, FileInfo, Recording, SourceInfo, Survey, TopicInfo},
+    survey, survey_bytes,
 };
-pub use recover::{Recovered, recover};
-pub use source::Selector;
+pub use repair::{Addition, PlanSample, Recovered, recover};
 pub use write::{
     ControllerState, LogWriter, Options as WriteOptions, Point, Role, Topics, Transform, WriteError,
 };

@@ -8,4 +8,4 @@ mod statistic;
 pub use hermite::{State, cubic, linear, quintic};
 pub use paired::{SignedRank, half_interval, signed_rank};
 pub use sin_cos::sin_cos;
-pub use statistic::{SIGMA_PER_MAD, mad, median, quantile, quantile_sorted, span};
+pub use statistic::{SIGMA_PER_MAD, mad, median, quantile, quantile_sorted, range};

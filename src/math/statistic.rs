@@ -1,5 +1,11 @@
 //! Order statistics.
 
+/// Least and largest of some values; the empty range from infinity to minus infinity for none.
+pub fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    values.into_iter().fold(none, |[least, most], value| [least.min(value), most.max(value)])
+}
+
 /// The `p` quantile of ascending values by linear interpolation between order statistics
 /// (Hyndman and Fan's type 7, as `numpy.quantile`); NaN for no values.
 pub fn quantile_sorted(ascending: &[f64], p: f64) -> f64 {
@@ -41,11 +47,6 @@ pub const SIGMA_PER_MAD: f64 = 1.4826;
 pub fn mad(values: &[f64]) -> f64 {
     let centre = median(values.to_vec());
     median(values.iter().map(|v| (v - centre).abs()).collect())
-}
-
-/// Smallest and largest value; `None` without values.
-pub fn span(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
-    values.into_iter().map(|value| [value; 2]).reduce(|[a, b], [low, high]| [a.min(low), b.max(high)])
 }
 
 #[cfg(test)]

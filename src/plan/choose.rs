@@ -4,9 +4,10 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 use super::{
     Evaluator, Setup, Timing,
-    descend::{COARSE, FINE, Goal, Merit, NEARLY, descend},
+    descend::{COARSE, FINE, NEARLY, descend},
     exact,
     front::best_of,
+    goal::{Goal, Merit},
 };
 use crate::{
     moea::das_dennis,

@@ -1,7 +1,10 @@
 //! How near something given by samples comes to the limits of angles and speeds.
 
 use super::{Limit, Margin, Setup};
-use crate::{math::State, series::Series};
+use crate::{
+    math::{State, range},
+    series::Series,
+};
 
 /// Accelerations are differences of speeds over this, s.
 const ACCELERATION_S: f64 = 0.05;
@@ -16,9 +19,7 @@ impl Setup {
         let names = self.joint_names();
         let tracks: Vec<_> = names.iter().map(|name| sent.track(name)).collect();
         let stamps = || tracks.iter().flatten().flat_map(|track| [track.t_s().first(), track.t_s().last()]);
-        let (from_s, to_s) = stamps()
-            .flatten()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), t| (from.min(*t), to.max(*t)));
+        let [from_s, to_s] = range(stamps().flatten().copied());
         let mut tops: Vec<Margin> = Vec::new();
         let mut note = |limit, joint, value: f64, allowed: f64, share: f64, t_s| {
             if !allowed.is_finite() {

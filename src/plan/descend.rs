@@ -7,44 +7,10 @@
 
 use super::{
     Evaluator, Setup, Timing,
+    goal::Goal,
     quadratic::{PRICE, Solution, Step},
     tangent::{Cuts, Point, Slopes, dot},
 };
-use crate::task::{ByObjective, Ceilings, Objective, Objectives, Weights};
-
-/// What a descent lessens.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Merit {
-    /// Sum of the objectives' logarithms by weights that sum to one.
-    Logarithms(Weights),
-    /// Sum of the objectives by weights.
-    Sum(Weights),
-    /// Distance to a point, each objective divided by a scale.
-    Distance { ideal: Objectives, scale: ByObjective },
-}
-
-impl Merit {
-    /// One objective alone.
-    pub(super) const fn alone(objective: Objective) -> Self {
-        Self::Logarithms(Weights::ZERO.with(objective, 1.0))
-    }
-
-    /// All objectives alike.
-    pub(super) fn even() -> Self {
-        Self::Logarithms(Weights::ZERO.map_plan(|_| 1.0 / Objective::OF_PLAN.len() as f64))
-    }
-
-    pub(super) fn of(&self, objectives: &Objectives) -> f64 {
-        let sum = |term: &dyn Fn(Objective) -> f64| Objective::OF_PLAN.iter().map(|&k| term(k)).sum::<f64>();
-        match self {
-            Self::Logarithms(weights) => sum(&|k| weights[k] * objectives[k].ln()),
-            Self::Sum(weights) => sum(&|k| weights[k] * objectives[k]),
-            Self::Distance { ideal, scale } => {
-                sum(&|k| ((objectives[k] - ideal[k]) / scale[k]).powi(2)).sqrt()
-            }
-        }
-    }
-}
 
 /// First steps from far off, and from a plan that is nearly best.
 pub(super) const FAR_OFF: f64 = 0.4;
@@ -53,20 +19,6 @@ pub(super) const NEARLY: f64 = 0.05;
 /// Gains of merit that are worth going on for: of an end of the front, of a plan among many.
 pub(super) const FINE: f64 = 1e-6;
 pub(super) const COARSE: f64 = 2e-4;
-
-/// What a descent is to do.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Goal {
-    pub(super) merit: Merit,
-    /// What the objectives must not exceed.
-    pub(super) ceilings: Ceilings,
-    /// Evaluations at most, unless the start alone takes more.
-    pub(super) evaluations: u64,
-    /// Longest first step, in logarithms of the intervals.
-    pub(super) trust: f64,
-    /// The descent has settled when a step gains less than this.
-    pub(super) enough: f64,
-}
 
 /// Where a descent ended.
 #[derive(Debug, Clone)]
@@ -244,8 +196,11 @@ fn update(hessian: &mut [f64], step: &[f64], change: &[f64]) {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::{arm::Arm, task::Task};
+    use super::{super::goal::Merit, *};
+    use crate::{
+        arm::Arm,
+        task::{Ceilings, Objective, Task},
+    };
 
     fn task_1() -> Setup {
         let task = Task::parse(include_str!("../../sample-logs/tasks/task-1.toml")).unwrap();

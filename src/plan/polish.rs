@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 use super::{
     Evaluator, Setup, Timing,
-    descend::{COARSE, Descended, Goal, Merit, NEARLY, descend},
+    descend::{COARSE, Descended, NEARLY, descend},
     front::thinned,
+    goal::{Goal, Merit},
 };
 use crate::task::Objective;
 

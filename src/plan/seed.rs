@@ -9,7 +9,8 @@ use rayon::prelude::*;
 
 use super::{
     Evaluator, Setup, Timing,
-    descend::{COARSE, Descended, FAR_OFF, FINE, Goal, Merit, NEARLY, descend},
+    descend::{COARSE, Descended, FAR_OFF, FINE, NEARLY, descend},
+    goal::{Goal, Merit},
 };
 use crate::task::{Ceilings, Objective, Weights};
 /// Weight of power against jerk, both as logarithms, on each curve. Power moves only near 1; at 1 jerk

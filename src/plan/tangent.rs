@@ -1,6 +1,6 @@
 //! Values and slopes of merit and constraints at a timing.
 
-use super::{Evaluator, Setup, Timing, descend::Goal, quadratic::PRICE};
+use super::{Evaluator, Setup, Timing, goal::Goal, quadratic::PRICE};
 
 /// Step of the difference quotients, in logarithms.
 const DIFFERENCE: f64 = 1e-6;

@@ -1,27 +1,7 @@
 //! How a CSV file was read.
 
-use serde::Serialize;
-
 use super::kit::{Block, Document, Id, NONE, Section, Sentence, Table, counted, fact};
-use crate::{document, log::Understood, remark::Remark, workflow::import::Outputs};
-
-#[derive(Serialize)]
-struct Json<'a> {
-    format: &'static str,
-    program: &'static str,
-    understood: &'a Understood,
-    remarks: &'a [Remark],
-}
-
-/// As JSON.
-pub fn json(imported: &Outputs) -> String {
-    document::pretty(&Json {
-        format: "hydrotrace.import.v1",
-        program: document::PROGRAM,
-        understood: &imported.understood,
-        remarks: imported.remarks.as_slice(),
-    })
-}
+use crate::{log::Understood, workflow::import::Outputs};
 
 /// As sentences and tables.
 pub fn document(output: &str, imported: &Outputs) -> Document {
@@ -54,8 +34,8 @@ pub fn document(output: &str, imported: &Outputs) -> Document {
         fact("time", format!("{clock}{counts}")),
     ];
     let rows = columns.iter().map(|column| {
-        let unit = match column.unit {
-            Some(unit) if column.unit_from == "file" => unit.to_owned(),
+        let unit = match &column.unit {
+            Some(unit) if column.unit_from == "file" => unit.clone(),
             Some(unit) => format!("{unit} ({})", column.unit_from),
             None => NONE.to_owned(),
         };

@@ -1,48 +1,7 @@
 //! What is in a log.
 
-use serde::Serialize;
-
 use super::kit::{Block, Document, Id, Section, Sentence, Table, fact};
-use crate::{
-    document,
-    log::{FileInfo, SourceInfo, Survey, TopicInfo},
-    remark::Remark,
-};
-
-#[derive(Serialize)]
-struct Json<'a> {
-    format: &'static str,
-    program: &'static str,
-    files: &'a [FileInfo],
-    topics: &'a [TopicInfo],
-    attachments: &'a [String],
-    source: Option<&'a SourceInfo>,
-    no_report_because: Option<String>,
-    joints: Vec<&'a str>,
-    remarks: &'a [Remark],
-}
-
-/// As JSON.
-pub fn json(survey: &Survey) -> String {
-    document::pretty(&Json {
-        format: "hydrotrace.info.v1",
-        program: document::PROGRAM,
-        files: &survey.files,
-        topics: &survey.topics,
-        attachments: &survey.attachments,
-        source: survey.recording.as_ref().ok().map(|r| &r.source),
-        no_report_because: survey.recording.as_ref().err().map(ToString::to_string),
-        joints: joints(survey),
-        remarks: survey.remarks.as_slice(),
-    })
-}
-
-/// The joints that a report would cover.
-fn joints(survey: &Survey) -> Vec<&str> {
-    let Ok(recording) = &survey.recording else { return Vec::new() };
-    let planned = recording.planned.tracks.iter().map(crate::series::Track::name);
-    planned.filter(|name| recording.measured.track(name).is_some()).collect()
-}
+use crate::log::Survey;
 
 /// As headings, sentences and tables.
 pub fn document(survey: &Survey) -> Document {
@@ -88,7 +47,7 @@ fn used(survey: &Survey) -> Block {
                 fact("measured", format!("{}:{}", source.measured_topic, source.measured_field)),
                 fact("why", &source.why),
                 fact("clock", format!("{} ({})", source.time_base.name(), source.time_base_why)),
-                fact("joints", joints(survey).join(", ")),
+                fact("joints", survey.joints().collect::<Vec<_>>().join(", ")),
             ])
         }
         Err(error) => Sentence::finding(format!("nothing: {error}")).into(),

@@ -2,51 +2,11 @@
 
 use std::path::Path;
 
-use serde::Serialize;
-
 use super::{
     kit::{Block, Document, Id, Section, Sentence, counted, deg, fact},
     next,
 };
-use crate::{document, remark::Remark, workflow::join::Joined};
-
-#[derive(Serialize)]
-struct Json<'a> {
-    format: &'static str,
-    program: &'static str,
-    sent: Option<&'a str>,
-    sent_is_command: bool,
-    at_s: f64,
-    rms_difference_rad: Option<f64>,
-    other_places: Option<usize>,
-    duration_s: f64,
-    rest_before_s: f64,
-    rest_after_s: f64,
-    joints: usize,
-    messages: u64,
-    files: &'a [String],
-    remarks: &'a [Remark],
-}
-
-/// As JSON.
-pub fn json(joined: &Joined) -> String {
-    document::pretty(&Json {
-        format: "hydrotrace.join.v1",
-        program: document::PROGRAM,
-        sent: joined.sent.as_deref(),
-        sent_is_command: joined.commanded,
-        at_s: joined.at_s,
-        rms_difference_rad: joined.located.map(|found| found.rms_rad),
-        other_places: joined.located.map(|found| found.others),
-        duration_s: joined.duration_s,
-        rest_before_s: joined.rest_s[0],
-        rest_after_s: joined.rest_s[1],
-        joints: joined.joints,
-        messages: joined.messages,
-        files: &joined.files,
-        remarks: joined.remarks.as_slice(),
-    })
-}
+use crate::workflow::join::Joined;
 
 /// As sentences.
 pub fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {

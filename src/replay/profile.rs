@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::{math::span, series::Pair};
+use crate::series::Pair;
 
 /// Stretches of equal duration that a run is cut into.
 pub const STRETCHES: usize = 18;
@@ -28,8 +28,8 @@ impl Profiles {
 
 /// First and last sample of all joints, s.
 fn span_s(pairs: &[Pair]) -> RangeInclusive<f64> {
-    let ends = pairs.iter().filter_map(|pair| Some((*pair.t_s.first()?, *pair.t_s.last()?)));
-    let [start_s, end_s] = span(ends.flat_map(|(first, last)| [first, last])).unwrap_or_default();
+    let ends = pairs.iter().flat_map(|pair| [pair.t_s.first(), pair.t_s.last()]);
+    let [start_s, end_s] = crate::math::range(ends.flatten().copied());
     start_s..=end_s
 }
 

@@ -28,7 +28,7 @@ pub struct Pair {
     pub planned_interval_s: f64,
     /// Measured samples for which there is a plan: n.
     pub matched: usize,
-    /// Measured samples for which there is none, left out.
+    /// Measured samples without a plan, left out.
     pub unmatched: usize,
 }
 

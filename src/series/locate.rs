@@ -1,19 +1,19 @@
 //! Finds a stretch of motion within a longer one.
 
-use super::{Series, Track, track::span_s};
+use super::{JointKind, Series, Track, track::span_s};
 
 /// Where a motion was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Located {
     /// Time in the longer series at which the motion's own time is 0, s.
     pub at_s: f64,
-    /// Root mean square of what is left between the two, over all joints, rad.
+    /// Root mean square difference between the two, over all joints, rad.
     pub rms_rad: f64,
-    /// The same of the motion about its mean: what a find at nothing would leave, rad.
+    /// Root mean square of the motion about its mean, rad: the difference to a series at rest.
     pub spread_rad: f64,
     /// Joints of both.
     pub joints: usize,
-    /// Other places where as little is left.
+    /// Other places that fit as well.
     pub others: usize,
 }
 
@@ -29,16 +29,17 @@ const LEAST_RAD: f64 = 1e-4;
 const INSTANTS: usize = 2_000;
 /// Places of the first look that are looked at again.
 const PLACES: usize = 8;
-/// Two places that leave this much of one another are equally good, or both within this share of the motion.
+/// Places whose differences are within this factor, or within this share of the motion, fit equally well.
 const ALIKE: f64 = 1.5;
 const ALIKE_SHARE: f64 = 0.01;
 
-/// Looks for `motion` in `within` by its angles, over the joints of both; of equally good places the
-/// first. `None` if they share no joint, the motion is none, a part of
-/// it at most fits in, or one lasts three days.
+/// Looks for `motion` in `within` by its angles, over the joints that turn in both; of equally good
+/// places the first. `None` if they share no joint, the motion does not move, less than four fifths
+/// of it lie within, or one lasts three days.
 pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
-    let pairs: Vec<(&Track, &Track)> =
-        motion.tracks.iter().filter_map(|track| Some((track, within.track(track.name())?))).collect();
+    let turns = |track: &&Track| track.kind() == JointKind::Turns;
+    let both = |track| Some((track, within.track(Track::name(track)).filter(turns)?));
+    let pairs: Vec<(&Track, &Track)> = motion.tracks.iter().filter(turns).filter_map(both).collect();
     let [from_s, to_s] = span_s(pairs.iter().map(|pair| pair.0))?;
     let [start_s, end_s] = span_s(pairs.iter().map(|pair| pair.1))?;
     let spread_rad = spread_rad(&pairs, from_s, to_s);
@@ -122,7 +123,8 @@ fn first_look(
     (!apart.is_empty()).then_some(apart)
 }
 
-/// What is left when the first sample of the motion lies at `at_s`, rad; `None` where too little is seen.
+/// Root mean square difference when the first sample of the motion lies at `at_s`, rad; `None` where
+/// too few samples overlap.
 fn left_rad(pairs: &[(&Track, &Track)], [from_s, to_s]: [f64; 2], at_s: f64, instants: usize) -> Option<f64> {
     let (mut sum, mut seen) = (0.0, 0_usize);
     for (motion, within) in pairs {

@@ -5,9 +5,9 @@ use std::{ops::Range, sync::Arc};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::math::median;
+use crate::math::{linear, median};
 
-/// What the values of a [`Signal`] are, and so their unit.
+/// The quantity of the values of a [`Signal`], and so their unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -63,7 +63,7 @@ pub enum JointKind {
 }
 
 impl JointKind {
-    /// What the position of such a joint is.
+    /// The quantity of its position.
     pub const fn quantity(self) -> Quantity {
         match self {
             Self::Turns => Quantity::Angle,
@@ -94,48 +94,23 @@ pub struct Signal {
 /// Why samples do not make a [`Signal`] or a [`Track`](super::Track).
 #[derive(Debug, Clone, Error, PartialEq)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum SignalError {
     /// There are no samples.
     #[error("no samples")]
     Empty,
     /// The arrays have different lengths.
     #[error("{times} time stamps but {values} values of {array}")]
-    LengthMismatch {
-        /// Which array.
-        array: &'static str,
-        /// Number of time stamps, times the components.
-        times: usize,
-        /// Number of values.
-        values: usize,
-    },
+    LengthMismatch { array: &'static str, times: usize, values: usize },
     /// A sample is NaN or infinite.
     #[error("{array} {index} is not finite: {value}")]
-    NotFinite {
-        /// Which array.
-        array: &'static str,
-        /// Index of the value.
-        index: usize,
-        /// The value.
-        value: f64,
-    },
+    NotFinite { array: &'static str, index: usize, value: f64 },
     /// Time stands still or runs backwards.
     #[error("time does not increase at sample {index}: {previous_s} s then {next_s} s")]
-    NotIncreasing {
-        /// Index of the later sample.
-        index: usize,
-        /// The earlier stamp, s.
-        previous_s: f64,
-        /// The later stamp, s.
-        next_s: f64,
-    },
+    NotIncreasing { index: usize, previous_s: f64, next_s: f64 },
     /// A cut lies outside the samples or out of order.
     #[error("cut {cut} is not between the previous one and the {samples} samples")]
-    BadCut {
-        /// Index of the first sample after the cut.
-        cut: usize,
-        /// Number of samples.
-        samples: usize,
-    },
+    BadCut { cut: usize, samples: usize },
 }
 
 /// Where an instant lies among the samples.
@@ -196,7 +171,7 @@ impl Signal {
         &self.name
     }
 
-    /// What the values are.
+    /// The quantity of the values.
     pub const fn quantity(&self) -> Quantity {
         self.quantity
     }
@@ -236,13 +211,10 @@ impl Signal {
     /// The first component at a time inside a segment, by a line between samples; `None` between
     /// segments and outside.
     pub fn at(&self, t_s: f64) -> Option<f64> {
-        let x = self.values();
+        let (t, x) = (&self.t_s, self.values());
         Some(match self.place(&mut 0, t_s)? {
             Place::At(i) => x[i],
-            Place::After(i) => {
-                let share = (t_s - self.t_s[i]) / (self.t_s[i + 1] - self.t_s[i]);
-                x[i] + share * (x[i + 1] - x[i])
-            }
+            Place::After(i) => linear(x[i], x[i + 1], t[i + 1] - t[i], t_s - t[i]).position,
         })
     }
 

@@ -163,7 +163,7 @@ impl Track {
         self.segments().partition_point(|s| s.start <= i)
     }
 
-    /// Sample `i`; zero for what the source does not give.
+    /// Sample `i`; velocity 0 if the source gives none.
     fn knot(&self, i: usize) -> State {
         let velocity = self.velocity.as_ref().map_or(0.0, |v| v[i]);
         State { position: self.position()[i], velocity, acceleration: 0.0 }

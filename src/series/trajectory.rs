@@ -70,7 +70,7 @@ pub fn plan_tracks(trajectories: &[PlannedTrajectory], measured: &Series) -> (Se
     (Series { tracks }, replaced)
 }
 
-/// What one trajectory means for one joint, from its start until the next one starts.
+/// The part of one trajectory for one joint, from its start until the next one starts.
 struct Piece {
     start_s: f64,
     knots: Vec<Knot>,

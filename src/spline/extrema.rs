@@ -138,9 +138,7 @@ impl Spline {
 }
 
 fn hull(coefficients: &[f64]) -> (f64, f64) {
-    coefficients
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), c| (least.min(*c), most.max(*c)))
+    crate::math::range(coefficients.iter().copied()).into()
 }
 
 fn inside((least, most): (f64, f64), known: &Extrema) -> bool {

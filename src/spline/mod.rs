@@ -29,6 +29,7 @@ mod knots;
 mod motion;
 mod points;
 mod quadrature;
+mod quantity;
 mod sample;
 mod solve;
 #[expect(clippy::module_inception, reason = "the type the module is named for")]
@@ -40,5 +41,6 @@ pub use knots::Degree;
 pub use motion::{Dwell, Motion, Segment};
 pub use points::{Ends, KeyPoints};
 pub use quadrature::Gauss;
-pub use sample::{Quantity, Samples};
+pub use quantity::Quantity;
+pub use sample::Samples;
 pub use spline::Spline;

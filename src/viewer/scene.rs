@@ -6,7 +6,7 @@ use super::{
     ViewError, arm,
     arm::Look,
     color,
-    stream::{Stream, Values},
+    stream::{Stream, Values, part},
 };
 use crate::{
     replay::{Answer, Kind, Transition},
@@ -19,7 +19,8 @@ use crate::{
 const STATES: [(&str, [u8; 3]); 3] =
     [("follows", [70, 75, 85]), ("waits", [239, 83, 80]), ("settles", [237, 175, 60])];
 
-/// Sends what does not change with time; returns what does. `run` is its index among how many.
+/// Sends the parts that do not change with time and returns the streams that do. `run` is the index of the
+/// run and the number of runs.
 pub(super) fn send_static(
     rec: &RecordingStream,
     scene: &Scene,
@@ -88,11 +89,6 @@ pub(super) fn lane(scene: &Scene, name: &str, several: bool) -> String {
     if several { format!("{joint}/{}", part(&scene.name)) } else { joint }
 }
 
-/// A name as part of an entity's path.
-pub(super) fn part(name: &str) -> String {
-    rerun::EntityPathPart::new(name).escaped_string()
-}
-
 fn curve(rec: &RecordingStream, path: &str, name: &str, colour: Color, width: f32) -> Result<(), ViewError> {
     let lines = SeriesLines::new().with_names([name]).with_colors([colour]).with_widths([width]);
     Ok(rec.log_static(path, &lines)?)
@@ -109,7 +105,7 @@ fn errors(path: String, pair: &Pair) -> Stream {
     Stream { path, t_s: pair.t_s.clone(), values: Values::Scalars(values) }
 }
 
-/// A joint waits from its planned onset to the measured one, and settles until its error has.
+/// A joint waits from the planned onset to the measured one, and settles until its error stays in the band.
 fn states(path: String, scene: &Scene, joint: &str) -> Stream {
     let first_s = scene.planned.track(joint).and_then(|t| t.t_s().first().copied()).unwrap_or(0.0);
     let mut changes = vec![(first_s, "follows")];

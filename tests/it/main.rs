@@ -30,6 +30,7 @@ mod fit;
 mod golden;
 mod log_read;
 mod log_write;
+mod one_pass;
 mod plan;
 mod plant;
 mod replay;

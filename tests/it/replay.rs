@@ -83,6 +83,9 @@ proptest! {
             let e = joint.tracking_error;
             prop_assert!(e.peak >= e.p95 && e.peak >= e.mean_abs * (1.0 - 1e-9));
         }
+        // A joint's starts are its transitions, and there are no others.
+        let starts: usize = found.joints.iter().map(|joint| joint.starts).sum();
+        prop_assert_eq!(starts, found.transitions.len());
     }
 
     #[test]
@@ -250,7 +253,7 @@ fn a_joint_that_ignores_its_plan_has_an_unmatched_start_without_onset() {
     assert_eq!((found.joints[0].starts, found.joints[0].unanswered_starts), (1, 1));
     let transition = &found.transitions[0];
     assert_eq!((transition.measured_onset_s, transition.onset_delay_s), (None, None));
-    assert_eq!((transition.displacement_delay_s, transition.jump), (None, None));
+    assert_eq!((transition.displacement_delay_s, transition.jump_rad_s), (None, None));
     assert!((transition.peak_error - 12.0 * DEGREE_RAD).abs() < 1e-9);
 }
 

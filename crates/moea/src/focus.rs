@@ -1,12 +1,10 @@
 //! Mating of NSGA-III-FO: who is ahead mates more often.
 
-use rand_chacha::ChaCha8Rng;
-
 use super::{
     direction::neighbours,
-    mating::{Courtship, Mating, Pair, Permutation, fitter},
-    survival::Standing,
-    variation::{below, shuffle, unit},
+    mating::{Mating, MatingContext, Pair, Permutation, fitter},
+    random::Random,
+    survival::Ranking,
 };
 
 /// How the focus operator reads "distance to the reference plane".
@@ -64,20 +62,20 @@ impl Focused {
     }
 
     /// How far each member is behind whom it is compared with; orders members by it.
-    fn rate(&mut self, courtship: &Courtship<'_>, rng: &mut ChaCha8Rng) {
-        let (population, standing) = (courtship.population, courtship.standing);
+    fn rate(&mut self, context: &MatingContext<'_>, rng: &mut Random) {
+        let (population, ranking) = (context.population, context.ranking);
         self.lag.clear();
         match self.focus {
-            Focus::Literal => self.lag.extend(standing.plane.iter().map(|s| s.abs())),
-            Focus::Signed => self.lag.extend(&standing.plane),
+            Focus::Literal => self.lag.extend(ranking.plane.iter().map(|s| s.abs())),
+            Focus::Signed => self.lag.extend(&ranking.plane),
             Focus::Local => {
                 self.least.fill(f64::INFINITY);
-                for (&j, &s) in standing.direction.iter().zip(&standing.plane) {
+                for (&j, &s) in ranking.direction.iter().zip(&ranking.plane) {
                     if let Some(least) = self.least.get_mut(j) {
                         *least = least.min(s);
                     }
                 }
-                for (&j, &s) in standing.direction.iter().zip(&standing.plane) {
+                for (&j, &s) in ranking.direction.iter().zip(&ranking.plane) {
                     let near = self.neighbours.chunks_exact(self.near).nth(j);
                     let ahead =
                         near.map_or(s, |near| near.iter().fold(s, |least, &b| least.min(self.least[b])));
@@ -87,7 +85,7 @@ impl Focused {
         }
         self.order.clear();
         self.order.extend(0..population.len());
-        shuffle(&mut self.order, rng);
+        rng.shuffle(&mut self.order);
         let lag = &self.lag;
         self.order.sort_by(|&a, &b| {
             population.violation(a).total_cmp(&population.violation(b)).then(lag[a].total_cmp(&lag[b]))
@@ -98,16 +96,16 @@ impl Focused {
 impl Mating for Focused {
     fn pair(
         &mut self,
-        courtship: &Courtship<'_>,
+        context: &MatingContext<'_>,
         children: usize,
-        rng: &mut ChaCha8Rng,
+        rng: &mut Random,
         pairs: &mut Vec<Pair>,
     ) {
-        self.rate(courtship, rng);
+        self.rate(context, rng);
         pairs.clear();
-        self.choose(courtship, children, rng, pairs);
+        self.choose(context, children, rng, pairs);
         if self.adaptive_rates {
-            adapt(courtship.standing, pairs);
+            adapt(context.ranking, pairs);
         }
     }
 
@@ -119,21 +117,21 @@ impl Mating for Focused {
 impl Focused {
     fn choose(
         &mut self,
-        courtship: &Courtship<'_>,
+        context: &MatingContext<'_>,
         children: usize,
-        rng: &mut ChaCha8Rng,
+        rng: &mut Random,
         pairs: &mut Vec<Pair>,
     ) {
-        let population = courtship.population;
+        let population = context.population;
         let n = population.len();
         if self.focus == Focus::Literal {
             // The worst is barred, and the better half of the others by front mates.
-            let (standing, barred) = (courtship.standing, self.order.pop());
-            shuffle(&mut self.order, rng);
-            self.order.sort_by_key(|&i| standing.rank[i]);
+            let (ranking, barred) = (context.ranking, self.order.pop());
+            rng.shuffle(&mut self.order);
+            self.order.sort_by_key(|&i| ranking.rank[i]);
             let better = n.saturating_sub(2).div_ceil(2).clamp(1, n.max(1));
             for _ in 0..children.div_ceil(2) {
-                let mut draw = || self.order.get(below(better, rng)).copied().or(barred).unwrap_or(0);
+                let mut draw = || self.order.get(rng.below(better)).copied().or(barred).unwrap_or(0);
                 pairs.push(Pair::of(draw(), draw()));
             }
             return;
@@ -141,13 +139,13 @@ impl Focused {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of n")]
         let in_focus = ((SHARE * n as f64).ceil() as usize).clamp(1, n.max(1));
         // DIFFERENCE(step 3): the focus fades over the budget.
-        let pull = courtship.progress.map_or(0.5, |progress| 1.0 - progress.clamp(0.0, 1.0).powi(FADE));
+        let pull = context.progress.map_or(0.5, |progress| 1.0 - progress.clamp(0.0, 1.0).powi(FADE));
         self.permutation.draw(population, children.div_ceil(2), rng, &mut self.first);
         for &first in &self.first {
-            let second = if unit(rng) < pull {
-                self.order[below(in_focus, rng)]
+            let second = if rng.unit() < pull {
+                self.order[rng.below(in_focus)]
             } else {
-                fitter(population, below(n, rng), rng)
+                fitter(population, rng.below(n), rng)
             };
             pairs.push(Pair::of(first, second));
         }
@@ -159,12 +157,12 @@ impl Focused {
 ///
 /// DIFFERENCE(eq. 8, 9): as printed, with the largest fitness of the population against the
 /// mean, the first case never holds and rates stay at their maximum.
-fn adapt(standing: &Standing, pairs: &mut [Pair]) {
-    let finite = || standing.plane.iter().copied().filter(|s| s.is_finite());
+fn adapt(ranking: &Ranking, pairs: &mut [Pair]) {
+    let finite = || ranking.plane.iter().copied().filter(|s| s.is_finite());
     let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
     let least = finite().fold(f64::INFINITY, f64::min);
     for pair in pairs {
-        let better = standing.plane[pair.first].min(standing.plane[pair.second]);
+        let better = ranking.plane[pair.first].min(ranking.plane[pair.second]);
         if better > mean || mean <= least {
             continue;
         }

@@ -1,19 +1,18 @@
 //! One generation of an algorithm that merges parents and children and selects.
 
-use rand_chacha::ChaCha8Rng;
-
 use super::{
     Population,
-    mating::{Courtship, Mating, Pair},
+    mating::{Mating, MatingContext, Pair},
     problem::Bounds,
-    survival::{Standing, Survival},
+    random::Random,
+    survival::{Ranking, Survival},
     variation::{Operators, cross, mutate},
 };
 
 /// Random numbers of a run, one stream a purpose.
 pub(super) struct Streams {
-    pub(super) variation: ChaCha8Rng,
-    pub(super) survival: ChaCha8Rng,
+    pub(super) variation: Random,
+    pub(super) survival: Random,
 }
 
 /// An algorithm as the engine drives it.
@@ -63,7 +62,7 @@ impl Breeding {
         pair: Pair,
         wanted: usize,
         children: &mut Population,
-        rng: &mut ChaCha8Rng,
+        rng: &mut Random,
     ) {
         let (first, second) = (&mut self.pair.0, &mut self.pair.1);
         let parents = (population.x(pair.first), population.x(pair.second));
@@ -88,21 +87,17 @@ impl Breeding {
 
 /// A genetic algorithm: mating, variation, survival of the best of parents and children.
 pub(super) struct Genetic {
-    pub(super) mating: Box<dyn Mating + Send>,
-    pub(super) survival: Box<dyn Survival + Send>,
+    pub(super) mating: Box<dyn Mating>,
+    pub(super) survival: Box<dyn Survival>,
     pub(super) breeding: Breeding,
     pairs: Vec<Pair>,
     merged: Population,
     chosen: Vec<usize>,
-    standing: Standing,
+    ranking: Ranking,
 }
 
 impl Genetic {
-    pub(super) fn new(
-        mating: Box<dyn Mating + Send>,
-        survival: Box<dyn Survival + Send>,
-        breeding: Breeding,
-    ) -> Self {
+    pub(super) fn new(mating: Box<dyn Mating>, survival: Box<dyn Survival>, breeding: Breeding) -> Self {
         Self {
             mating,
             survival,
@@ -110,12 +105,12 @@ impl Genetic {
             pairs: Vec::new(),
             merged: Population::default(),
             chosen: Vec::new(),
-            standing: Standing::default(),
+            ranking: Ranking::default(),
         }
     }
 
     fn select(&mut self, population: &mut Population, keep: usize, streams: &mut Streams) {
-        self.survival.select(&self.merged, keep, &mut streams.survival, &mut self.chosen, &mut self.standing);
+        self.survival.select(&self.merged, keep, &mut streams.survival, &mut self.chosen, &mut self.ranking);
         population.clear();
         for &i in &self.chosen {
             population.push_from(&self.merged, i);
@@ -141,8 +136,8 @@ impl Method for Genetic {
         children: &mut Population,
         streams: &mut Streams,
     ) {
-        let courtship = Courtship { population, standing: &self.standing, progress };
-        self.mating.pair(&courtship, wanted, &mut streams.variation, &mut self.pairs);
+        let context = MatingContext { population, ranking: &self.ranking, progress };
+        self.mating.pair(&context, wanted, &mut streams.variation, &mut self.pairs);
         for &pair in &self.pairs {
             self.breeding.breed(population, pair, wanted, children, &mut streams.variation);
         }

@@ -1,27 +1,4 @@
-//! Optimises several objectives at once, by evolution.
-//!
-//! A [`Problem`] is a box of real variables and a function to several objectives, all
-//! minimised, and a total violation of constraints; [`optimise`] finds a set of solutions of
-//! which none is better than another in everything. Planning uses it (the paper's section
-//! III); it knows of no joint and no arm, and serves any problem.
-//!
-//! ```
-//! use moea::{Bounds, Problem, Settings, optimise, silent};
-//!
-//! struct Schaffer;
-//! impl Problem for Schaffer {
-//!     type Workspace = ();
-//!     fn bounds(&self) -> Vec<Bounds> { vec![(-10.0, 10.0)] }
-//!     fn objectives(&self) -> usize { 2 }
-//!     fn evaluate(&self, x: &[f64], f: &mut [f64], _: &mut ()) -> f64 {
-//!         (f[0], f[1]) = (x[0].powi(2), (x[0] - 2.0).powi(2));
-//!         0.0
-//!     }
-//! }
-//! let found = optimise(&Schaffer, &Settings::default(), silent)?.population;
-//! assert!(found.front().iter().all(|&i| (-0.01..2.01).contains(&found.x(i)[0])));
-//! # Ok::<(), moea::MoeaError>(())
-//! ```
+#![doc = include_str!("../README.md")]
 //!
 //! # The same on every machine
 //!
@@ -67,19 +44,24 @@ mod nsga3;
 mod optimise;
 mod population;
 mod problem;
+mod random;
 mod settings;
 mod sorting;
-mod stream;
 mod survival;
 mod variation;
 
 pub use archive::Archive;
 pub use direction::{Directions, MOST_DIRECTIONS, das_dennis, direction_count};
 pub use focus::Focus;
+pub use mating::{Mating, MatingContext, Pair, Uniform};
 pub use named::{ALGORITHMS, NamedAlgorithm};
-pub use optimise::{Outcome, Progress, optimise, silent};
+pub use nsga2::{Crowding, Tournament};
+pub use nsga3::Niching;
+pub use optimise::{Outcome, Progress, optimise, optimise_with, silent};
 pub use population::Population;
 pub use problem::{Bounds, Problem};
+pub use random::Random;
 pub use settings::{Algorithm, Budget, MoeaError, Settings};
 pub use sorting::{Sorting, dominates};
+pub use survival::{Ranking, Survival};
 pub use variation::Operators;

@@ -1,47 +1,42 @@
 //! Who mates with whom.
 
-use rand_chacha::ChaCha8Rng;
+use super::{Population, random::Random, survival::Ranking};
 
-use super::{
-    Population,
-    survival::Standing,
-    variation::{below, shuffle},
-};
-
-/// What is known when parents are chosen.
-pub(super) struct Courtship<'a> {
-    pub(super) population: &'a Population,
-    pub(super) standing: &'a Standing,
-    /// Share of the budget used, 0 to 1, if there is a budget.
-    pub(super) progress: Option<f64>,
+/// The state of a run when parents are chosen.
+#[derive(Debug, Clone, Copy)]
+pub struct MatingContext<'a> {
+    /// Members to choose from.
+    pub population: &'a Population,
+    /// The survival's findings on them.
+    pub ranking: &'a Ranking,
+    /// Share of the budget used, 0 to 1; `None` without a budget.
+    pub progress: Option<f64>,
 }
 
 /// Two parents, and factors on the rates of crossover and mutation of their children.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Pair {
-    pub(super) first: usize,
-    pub(super) second: usize,
-    pub(super) crossover: f64,
-    pub(super) mutation: f64,
+pub struct Pair {
+    /// Index of the first parent.
+    pub first: usize,
+    /// Index of the second parent.
+    pub second: usize,
+    /// Factor on the crossover rate.
+    pub crossover: f64,
+    /// Factor on the mutation rate.
+    pub mutation: f64,
 }
 
 impl Pair {
     /// Parents at full rates.
-    pub(super) fn of(first: usize, second: usize) -> Self {
+    pub fn of(first: usize, second: usize) -> Self {
         Self { first, second, crossover: 1.0, mutation: 1.0 }
     }
 }
 
 /// Chooses parents.
-pub(super) trait Mating {
+pub trait Mating: Send {
     /// Writes pairs of parents for at least `children` children, two children a pair.
-    fn pair(
-        &mut self,
-        courtship: &Courtship<'_>,
-        children: usize,
-        rng: &mut ChaCha8Rng,
-        pairs: &mut Vec<Pair>,
-    );
+    fn pair(&mut self, context: &MatingContext<'_>, children: usize, rng: &mut Random, pairs: &mut Vec<Pair>);
 
     /// Number of offspring slots that are not filled by new children.
     fn reserved(&self) -> usize {
@@ -62,7 +57,7 @@ impl Permutation {
         &mut self,
         population: &Population,
         count: usize,
-        rng: &mut ChaCha8Rng,
+        rng: &mut Random,
         out: &mut Vec<usize>,
     ) {
         let n = population.len();
@@ -70,7 +65,7 @@ impl Permutation {
         while out.len() < count && n > 0 {
             self.order.clear();
             self.order.extend(0..n);
-            shuffle(&mut self.order, rng);
+            rng.shuffle(&mut self.order);
             out.extend(self.order.iter().take(count - out.len()));
         }
         for first in out {
@@ -81,17 +76,17 @@ impl Permutation {
 
 /// `i`, or a random member that violates less: binary tournament on constraints alone
 /// (Jain and Deb 2014). Draws nothing when `i` is feasible.
-pub(super) fn fitter(population: &Population, i: usize, rng: &mut ChaCha8Rng) -> usize {
+pub(super) fn fitter(population: &Population, i: usize, rng: &mut Random) -> usize {
     if population.is_feasible(i) {
         return i;
     }
-    let other = below(population.len(), rng);
+    let other = rng.below(population.len());
     if population.violation(other) < population.violation(i) { other } else { i }
 }
 
-/// Mating of NSGA-III: nobody is preferred but for feasibility.
+/// Mating of NSGA-III: members are drawn alike; of two infeasible ones the one that violates less.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Uniform {
+pub struct Uniform {
     permutation: Permutation,
     first: Vec<usize>,
 }
@@ -99,12 +94,12 @@ pub(super) struct Uniform {
 impl Mating for Uniform {
     fn pair(
         &mut self,
-        courtship: &Courtship<'_>,
+        context: &MatingContext<'_>,
         children: usize,
-        rng: &mut ChaCha8Rng,
+        rng: &mut Random,
         pairs: &mut Vec<Pair>,
     ) {
-        let population = courtship.population;
+        let population = context.population;
         self.permutation.draw(population, 2 * children.div_ceil(2), rng, &mut self.first);
         pairs.clear();
         pairs.extend(self.first.chunks_exact(2).map(|pair| Pair::of(pair[0], pair[1])));

@@ -14,7 +14,6 @@ use super::{
     normalize::Normalizer,
     sorting::Sorting,
     survival::Feasibility,
-    variation::{below, shuffle},
 };
 
 /// Weight of the distance aside from the direction.
@@ -103,7 +102,7 @@ impl Method for Decomposition {
     fn begin(&mut self, population: &mut Population, streams: &mut Streams) {
         self.learn_ideal(population);
         self.visits.extend(0..population.len());
-        shuffle(&mut self.visits, &mut streams.variation);
+        streams.variation.shuffle(&mut self.visits);
     }
 
     fn batch(&self, _: usize) -> usize {
@@ -124,8 +123,8 @@ impl Method for Decomposition {
         let (owner, n) = (self.owner(), population.len());
         let near = self.near(owner);
         let pick = |at: usize| near[at].min(n - 1);
-        let first = pick(below(near.len(), &mut streams.variation));
-        let second = pick(below(near.len(), &mut streams.variation));
+        let first = pick(streams.variation.below(near.len()));
+        let second = pick(streams.variation.below(near.len()));
         self.breeding.breed(population, Pair::of(first, second), wanted, children, &mut streams.variation);
     }
 
@@ -152,7 +151,7 @@ impl Method for Decomposition {
         self.visit += 1;
         if self.visit >= self.visits.len() {
             self.visit = 0;
-            shuffle(&mut self.visits, &mut streams.variation);
+            streams.variation.shuffle(&mut self.visits);
         }
     }
 }

@@ -5,14 +5,12 @@
 //! Hughes 2007, doi 10.1109/CEC.2007.4424985. Differences: the mate of each member comes from
 //! the non-dominated members of the population in place of an archive without bounds.
 
-use rand_chacha::ChaCha8Rng;
-
 use super::{
     Population,
-    mating::{Courtship, Mating, Pair, fitter},
+    mating::{Mating, MatingContext, Pair, fitter},
+    random::Random,
     sorting::Sorting,
-    survival::{Feasibility, Standing, Survival},
-    variation::{below, unit},
+    survival::{Feasibility, Ranking, Survival},
 };
 
 /// Exponent of the angle in vector angle distance scaling.
@@ -126,12 +124,12 @@ impl Survival for Targets {
         &mut self,
         merged: &Population,
         keep: usize,
-        _: &mut ChaCha8Rng,
+        _: &mut Random,
         chosen: &mut Vec<usize>,
-        standing: &mut Standing,
+        ranking: &mut Ranking,
     ) {
         chosen.clear();
-        standing.clear();
+        ranking.clear();
         self.feasibility.split(merged);
         self.follow(merged, keep);
         self.rate(merged);
@@ -161,23 +159,23 @@ pub(super) struct NearMate {
 impl Mating for NearMate {
     fn pair(
         &mut self,
-        courtship: &Courtship<'_>,
+        context: &MatingContext<'_>,
         children: usize,
-        rng: &mut ChaCha8Rng,
+        rng: &mut Random,
         pairs: &mut Vec<Pair>,
     ) {
-        let population = courtship.population;
+        let population = context.population;
         let feasible: Vec<usize> = (0..population.len()).filter(|&i| population.is_feasible(i)).collect();
         self.sorting.sort(population, &feasible);
         let front = self.sorting.front(0);
         pairs.clear();
         for _ in 0..children.div_ceil(2) {
-            let first = fitter(population, below(population.len(), rng), rng);
+            let first = fitter(population, rng.below(population.len()), rng);
             let second = if front.is_empty() {
-                fitter(population, below(population.len(), rng), rng)
+                fitter(population, rng.below(population.len()), rng)
             } else {
-                let (a, b) = (front[below(front.len(), rng)], front[below(front.len(), rng)]);
-                let by_objectives = unit(rng) < 0.5;
+                let (a, b) = (front[rng.below(front.len())], front[rng.below(front.len())]);
+                let by_objectives = rng.unit() < 0.5;
                 let apart = |other: usize| -> f64 {
                     let (own, other) = if by_objectives {
                         (population.f(first), population.f(other))

@@ -6,19 +6,17 @@
 
 use std::cmp::Ordering;
 
-use rand_chacha::ChaCha8Rng;
-
 use super::{
     Population,
-    mating::{Courtship, Mating, Pair, Permutation},
+    mating::{Mating, MatingContext, Pair, Permutation},
+    random::Random,
     sorting::Sorting,
-    survival::{Feasibility, Standing, Survival},
-    variation::below,
+    survival::{Feasibility, Ranking, Survival},
 };
 
 /// Fronts first, then the least crowded of the front that overflows.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Crowding {
+pub struct Crowding {
     sorting: Sorting,
     feasibility: Feasibility,
     /// By member of the merged population.
@@ -56,12 +54,12 @@ impl Survival for Crowding {
         &mut self,
         merged: &Population,
         keep: usize,
-        _: &mut ChaCha8Rng,
+        _: &mut Random,
         chosen: &mut Vec<usize>,
-        standing: &mut Standing,
+        ranking: &mut Ranking,
     ) {
         chosen.clear();
-        standing.clear();
+        ranking.clear();
         self.feasibility.split(merged);
         self.sorting.sort(merged, &self.feasibility.feasible);
         self.distance.clear();
@@ -74,18 +72,18 @@ impl Survival for Crowding {
             let distance = &self.distance;
             self.order.sort_unstable_by(|&a, &b| distance[b].total_cmp(&distance[a]).then(a.cmp(&b)));
             chosen.extend(self.order.iter().take(keep - chosen.len()));
-            standing.rank.resize(chosen.len(), u32::try_from(rank).unwrap_or(u32::MAX));
+            ranking.rank.resize(chosen.len(), u32::try_from(rank).unwrap_or(u32::MAX));
             rank += 1;
         }
         chosen.extend(self.feasibility.infeasible.iter().take(keep - chosen.len()));
-        standing.rank.resize(chosen.len(), u32::MAX);
-        standing.crowding.extend(chosen.iter().map(|&i| self.distance[i]));
+        ranking.rank.resize(chosen.len(), u32::MAX);
+        ranking.crowding.extend(chosen.iter().map(|&i| self.distance[i]));
     }
 }
 
 /// Both parents win a tournament of two.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Tournament {
+pub struct Tournament {
     permutation: Permutation,
     first: Vec<usize>,
 }
@@ -93,21 +91,21 @@ pub(super) struct Tournament {
 impl Mating for Tournament {
     fn pair(
         &mut self,
-        courtship: &Courtship<'_>,
+        context: &MatingContext<'_>,
         children: usize,
-        rng: &mut ChaCha8Rng,
+        rng: &mut Random,
         pairs: &mut Vec<Pair>,
     ) {
-        let (population, standing) = (courtship.population, courtship.standing);
+        let (population, ranking) = (context.population, context.ranking);
         self.permutation.draw(population, 2 * children.div_ceil(2), rng, &mut self.first);
         pairs.clear();
         let mut winner = |a: usize| {
-            let b = below(population.len(), rng);
+            let b = rng.below(population.len());
             let order = population
                 .violation(a)
                 .total_cmp(&population.violation(b))
-                .then(standing.rank[a].cmp(&standing.rank[b]))
-                .then(standing.crowding[b].total_cmp(&standing.crowding[a]));
+                .then(ranking.rank[a].cmp(&ranking.rank[b]))
+                .then(ranking.crowding[b].total_cmp(&ranking.crowding[a]));
             if order == Ordering::Greater { b } else { a }
         };
         for pair in self.first.chunks_exact(2) {

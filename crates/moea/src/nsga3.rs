@@ -5,14 +5,12 @@
 //! Deb and Jain 2014, doi 10.1109/TEVC.2013.2281535; constraints after Jain and Deb 2014,
 //! doi 10.1109/TEVC.2013.2281534.
 
-use rand_chacha::ChaCha8Rng;
-
 use super::{
     Population,
     normalize::Normalizer,
+    random::Random,
     sorting::Sorting,
-    survival::{Feasibility, Standing, Survival},
-    variation::below,
+    survival::{Feasibility, Ranking, Survival},
 };
 
 /// Reference directions at unit length, objective by objective, so that projections on all of
@@ -64,7 +62,7 @@ impl Rays {
 
 /// Survival of NSGA-III for fixed reference directions.
 #[derive(Debug, Clone)]
-pub(super) struct Niching {
+pub struct Niching {
     rays: Rays,
     normalizer: Normalizer,
     sorting: Sorting,
@@ -83,7 +81,9 @@ pub(super) struct Niching {
 }
 
 impl Niching {
-    pub(super) fn new(directions: &[f64], m: usize) -> Self {
+    /// For reference directions, `[count][m]` in one slice, of a problem with `m` objectives.
+    pub fn new(directions: &[f64], m: usize) -> Self {
+        let m = m.max(1);
         let rays = Rays::new(directions, m);
         let count = rays.count;
         Self {
@@ -119,7 +119,7 @@ impl Niching {
     }
 
     /// Fills `chosen` (places among the candidates) from those at `sure..`, one niche at a time.
-    fn fill(&mut self, sure: usize, keep: usize, rng: &mut ChaCha8Rng, chosen: &mut Vec<usize>) {
+    fn fill(&mut self, sure: usize, keep: usize, rng: &mut Random, chosen: &mut Vec<usize>) {
         self.crowd.fill(0);
         for &direction in &self.direction[..sure] {
             self.crowd[direction] += 1;
@@ -145,7 +145,7 @@ impl Niching {
             // All niches that are least crowded get one member, in random order, before any
             // gets a second: the same as drawing them one by one.
             for taken in 0..self.tied.len().min(keep - chosen.len()) {
-                let other = taken + below(self.tied.len() - taken, rng);
+                let other = taken + rng.below(self.tied.len() - taken);
                 self.tied.swap(taken, other);
                 let j = self.tied[taken];
                 let waiting = &mut self.waiting[j];
@@ -158,7 +158,7 @@ impl Niching {
                     }
                     nearest
                 } else {
-                    below(waiting.len(), rng)
+                    rng.below(waiting.len())
                 };
                 chosen.push(waiting.swap_remove(pick));
                 self.crowd[j] += 1;
@@ -175,12 +175,12 @@ impl Survival for Niching {
         &mut self,
         merged: &Population,
         keep: usize,
-        rng: &mut ChaCha8Rng,
+        rng: &mut Random,
         chosen: &mut Vec<usize>,
-        standing: &mut Standing,
+        ranking: &mut Ranking,
     ) {
         chosen.clear();
-        standing.clear();
+        ranking.clear();
         self.feasibility.split(merged);
         let feasible = &self.feasibility.feasible;
         self.sorting.sort(merged, feasible);
@@ -200,16 +200,16 @@ impl Survival for Niching {
         } else {
             self.fill(sure, keep, rng, chosen);
         }
-        standing.rank.extend(chosen.iter().map(|&place| self.rank[place]));
-        standing.direction.extend(chosen.iter().map(|&place| self.direction[place]));
-        standing.plane.extend(chosen.iter().map(|&place| self.plane[place]));
+        ranking.rank.extend(chosen.iter().map(|&place| self.rank[place]));
+        ranking.direction.extend(chosen.iter().map(|&place| self.direction[place]));
+        ranking.plane.extend(chosen.iter().map(|&place| self.plane[place]));
         for place in chosen.iter_mut() {
             *place = self.candidates[*place];
         }
         let missing = keep.saturating_sub(chosen.len());
         chosen.extend(self.feasibility.infeasible.iter().take(missing));
-        standing.rank.resize(chosen.len(), u32::MAX);
-        standing.direction.resize(chosen.len(), usize::MAX);
-        standing.plane.resize(chosen.len(), f64::INFINITY);
+        ranking.rank.resize(chosen.len(), u32::MAX);
+        ranking.direction.resize(chosen.len(), usize::MAX);
+        ranking.plane.resize(chosen.len(), f64::INFINITY);
     }
 }

@@ -2,23 +2,21 @@
 
 use std::ops::ControlFlow;
 
-use rand_chacha::ChaCha8Rng;
-
 use super::{
     Algorithm, Budget, MoeaError, Population, Problem, Settings,
     archive::Archive,
     evaluate::evaluate,
     focus::Focused,
     genetic::{Breeding, Genetic, Method, Streams},
-    mating::Uniform,
+    mating::{Mating, Uniform},
     moead::Decomposition,
     msops2::{NearMate, Targets},
     nsga2::{Crowding, Tournament},
     nsga3::Niching,
     settings::{Checked, check},
-    variation::unit,
+    survival::Survival,
 };
-use crate::stream::{Stream, stream};
+use crate::random::{Random, Stream};
 
 /// What an observer sees after the first population and after every generation.
 #[derive(Debug, Clone, Copy)]
@@ -64,20 +62,51 @@ pub fn silent(_: &Progress<'_>) -> ControlFlow<()> {
 pub fn optimise<P: Problem>(
     problem: &P,
     settings: &Settings,
-    mut observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+    observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, MoeaError> {
     let checked = check(problem, settings)?;
+    let method = method(&checked, settings);
+    Ok(run(problem, settings, &checked, method, observer))
+}
+
+/// Minimises as [`optimise`] does, with a mating and a survival of the caller's in place of the
+/// algorithm of the settings.
+///
+/// # Errors
+///
+/// [`MoeaError`] when the settings do not fit the problem.
+pub fn optimise_with<P: Problem>(
+    problem: &P,
+    settings: &Settings,
+    mating: impl Mating + 'static,
+    survival: impl Survival + 'static,
+    observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Outcome, MoeaError> {
+    let settings = Settings { algorithm: Algorithm::Nsga3, ..settings.clone() };
+    let checked = check(problem, &settings)?;
+    let breeding = Breeding::new(settings.operators, checked.mutation_rate, checked.bounds.clone());
+    let method = Box::new(Genetic::new(Box::new(mating), Box::new(survival), breeding));
+    Ok(run(problem, &settings, &checked, method, observer))
+}
+
+fn run<P: Problem>(
+    problem: &P,
+    settings: &Settings,
+    checked: &Checked,
+    mut method: Box<dyn Method>,
+    mut observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Outcome {
     let (d, m, n) = (checked.bounds.len(), checked.objectives, checked.members);
     let mut streams = Streams {
-        variation: stream(settings.seed, Stream::Variation),
-        survival: stream(settings.seed, Stream::Survival),
+        variation: Random::new(settings.seed, Stream::Variation),
+        survival: Random::new(settings.seed, Stream::Survival),
     };
     let most = match settings.budget {
         Budget::Evaluations(most) => most,
         Budget::Generations(_) | Budget::Observer => u64::MAX,
     };
     let mut workspaces = Vec::new();
-    let mut population = start(&checked, settings, most);
+    let mut population = start(checked, settings, most);
     evaluate(problem, &mut population, 0, &mut workspaces);
     let mut archive = (settings.archive > 0).then(|| Archive::new(d, m, settings.archive));
     if let Some(archive) = &mut archive {
@@ -85,7 +114,6 @@ pub fn optimise<P: Problem>(
     }
     let mut run =
         Counted { evaluations: population.len() as u64, generation: 1, most, budget: settings.budget };
-    let mut method = method(&checked, settings);
     method.begin(&mut population, &mut streams);
     let mut children = Population::with_capacity(d, m, n);
     let mut flow = observer(&Progress {
@@ -122,13 +150,13 @@ pub fn optimise<P: Problem>(
             archive: archive.as_ref(),
         });
     }
-    Ok(Outcome {
+    Outcome {
         population,
         archive: archive.map(Archive::into_population),
         evaluations: run.evaluations,
         generations: run.generation,
         seed: settings.seed,
-    })
+    }
 }
 
 /// Evaluations and generations against the budget.
@@ -165,7 +193,7 @@ impl Counted {
 fn start(checked: &Checked, settings: &Settings, most: u64) -> Population {
     let size = checked.members.min(usize::try_from(most).unwrap_or(usize::MAX)).max(1);
     let mut population = Population::with_capacity(checked.bounds.len(), checked.objectives, size);
-    let mut rng = stream(settings.seed, Stream::Start);
+    let mut rng = Random::new(settings.seed, Stream::Start);
     let mut x = vec![0.0; checked.bounds.len()];
     for given in settings.initial.iter().take(size) {
         for ((x, &given), &(lower, upper)) in x.iter_mut().zip(given).zip(&checked.bounds) {
@@ -180,9 +208,9 @@ fn start(checked: &Checked, settings: &Settings, most: u64) -> Population {
     population
 }
 
-fn draw(bounds: &[(f64, f64)], x: &mut [f64], rng: &mut ChaCha8Rng) {
+fn draw(bounds: &[(f64, f64)], x: &mut [f64], rng: &mut Random) {
     for (x, &(lower, upper)) in x.iter_mut().zip(bounds) {
-        *x = (lower + unit(rng) * (upper - lower)).clamp(lower, upper);
+        *x = (lower + rng.unit() * (upper - lower)).clamp(lower, upper);
     }
 }
 

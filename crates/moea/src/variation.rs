@@ -5,9 +5,7 @@
 //! Deb and Agrawal 1995 (SBX, with the bounded spread of the authors' program); Deb and
 //! Goyal 1996 (mutation).
 
-use rand_chacha::{ChaCha8Rng, rand_core::Rng};
-
-use super::problem::Bounds;
+use super::{problem::Bounds, random::Random};
 
 /// Rates and distribution indices of crossover and mutation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,26 +33,6 @@ impl Operators {
         Self { crossover_rate: 1.0, crossover_eta: 20.0, mutation_rate: None, mutation_eta: 20.0 };
 }
 
-/// A number in `[0, 1)`.
-#[inline]
-pub(super) fn unit(rng: &mut ChaCha8Rng) -> f64 {
-    (rng.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
-}
-
-/// An index below `n`; 0 for an empty range.
-#[inline]
-#[expect(clippy::cast_possible_truncation, reason = "the high half of the product is below n")]
-pub(super) fn below(n: usize, rng: &mut ChaCha8Rng) -> usize {
-    ((u128::from(rng.next_u64()) * n as u128) >> 64) as usize
-}
-
-/// A uniformly random order.
-pub(super) fn shuffle<T>(items: &mut [T], rng: &mut ChaCha8Rng) {
-    for i in (1..items.len()).rev() {
-        items.swap(i, below(i + 1, rng));
-    }
-}
-
 /// Crosses two parents into two children.
 ///
 /// Each variable is blended with probability one half, and the blended values go to either
@@ -65,19 +43,19 @@ pub(super) fn cross(
     bounds: &[Bounds],
     parents: (&[f64], &[f64]),
     children: (&mut [f64], &mut [f64]),
-    rng: &mut ChaCha8Rng,
+    rng: &mut Random,
 ) {
     let (first, second) = children;
     first.copy_from_slice(parents.0);
     second.copy_from_slice(parents.1);
-    if rate < 1.0 && unit(rng) >= rate {
+    if rate < 1.0 && rng.unit() >= rate {
         return;
     }
     let exponent = Exponent::new(operators.crossover_eta);
     let mut coins = 0u64;
     for (k, (&(lower, upper), (a, b))) in bounds.iter().zip(first.iter_mut().zip(second)).enumerate() {
         if k % 32 == 0 {
-            coins = rng.next_u64();
+            coins = rng.bits();
         }
         let (blended, swapped) = (coins & 1 == 1, coins & 2 == 2);
         coins >>= 2;
@@ -86,7 +64,7 @@ pub(super) fn cross(
         if !blended || gap <= 1e-14 * (upper - lower) {
             continue;
         }
-        let u = unit(rng);
+        let u = rng.unit();
         let low_child = 0.5 * (low + high - exponent.spread(u, (low - lower) / gap) * gap);
         let high_child = 0.5 * (low + high + exponent.spread(u, (upper - high) / gap) * gap);
         let pair = (low_child.clamp(lower, upper), high_child.clamp(lower, upper));
@@ -126,13 +104,13 @@ impl Exponent {
 }
 
 /// Mutates each variable with probability `rate`.
-pub(super) fn mutate(eta: f64, rate: f64, bounds: &[Bounds], x: &mut [f64], rng: &mut ChaCha8Rng) {
+pub(super) fn mutate(eta: f64, rate: f64, bounds: &[Bounds], x: &mut [f64], rng: &mut Random) {
     let exponent = Exponent::new(eta);
     for (value, &(lower, upper)) in x.iter_mut().zip(bounds) {
-        if unit(rng) >= rate || upper <= lower {
+        if rng.unit() >= rate || upper <= lower {
             continue;
         }
-        let u = unit(rng);
+        let u = rng.unit();
         let span = upper - lower;
         let step = if u < 0.5 {
             let rest = exponent.raise(1.0 - (*value - lower) / span);

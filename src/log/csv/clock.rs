@@ -1,4 +1,4 @@
-//! Which column tells the time.
+//! Finds the column of the time.
 
 use super::{
     CsvError, CsvOptions,
@@ -56,13 +56,13 @@ pub(super) fn choose(
     }
 }
 
-/// A column that tells the time.
+/// A column of times.
 struct Found {
     source: TimeSource,
     /// Whether most rows have a stamp of their own.
     resolves: bool,
     absolute: bool,
-    /// What was guessed.
+    /// The guesses.
     doubt: Option<String>,
 }
 

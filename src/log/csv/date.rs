@@ -11,7 +11,7 @@ pub(super) struct DateForm {
     part: Part,
 }
 
-/// What of an instant a text gives.
+/// The part of an instant that a text gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
     Zoned,

@@ -1,4 +1,4 @@
-//! What a header says of its column.
+//! Reads role, quantity, joint and unit from the header of a column.
 
 use super::{
     Quantity, Role,
@@ -6,7 +6,7 @@ use super::{
     word::{Meaning, Word, words},
 };
 
-/// What a header says of its column.
+/// Role, quantity, joint and unit of a column by its header.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Label {
     pub(super) role: Option<Role>,

@@ -31,7 +31,7 @@ pub(super) struct Interface {
     pub(super) joint: usize,
 }
 
-/// What every column is.
+/// The use of every column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) joints: Vec<String>,
@@ -169,7 +169,7 @@ fn drop_repeats(head: &Head, drafts: &mut Vec<Draft>, remarks: &mut Remarks) -> 
 }
 
 /// Key and name of the joints that have plan and measurement; all of one side if the file has no other.
-/// What was sent stands for a plan that is not there.
+/// The command stands in for a plan if the file has none.
 fn joints(head: &Head, drafts: &[Draft], remarks: &mut Remarks) -> Result<Vec<(String, String)>, CsvError> {
     let side = |role: Role| {
         let mut list: Vec<&Draft> = Vec::new();

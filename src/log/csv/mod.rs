@@ -35,7 +35,7 @@ pub use understood::{ColumnRead, TimeRead, Understood};
 use super::{file::MappedFile, write::Role};
 use crate::remark::Remarks;
 
-/// What a column holds of a joint.
+/// The quantity of a joint that a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Quantity {
     /// Its angle.

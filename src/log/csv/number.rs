@@ -62,7 +62,7 @@ fn scientific(cell: &[u8], decimal_comma: bool, unit_ns: i64) -> Option<i64> {
     (value_ns.abs() < 9.0e18).then(|| value_ns.round() as i64)
 }
 
-/// What a cell looks like, before anyone knows how the file writes numbers.
+/// The kind of a cell, before the file's decimal mark is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Looks {
     Empty,

@@ -1,4 +1,4 @@
-//! What a caller may say about a CSV file that the file does not say itself.
+//! Options of reading a CSV file, for facts that the file does not state.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -9,7 +9,7 @@ use super::{CsvError, Quantity, Role, unit::Measure, unit::parse_unit};
 /// Joint to the column that holds it: a header, or `#3` for the third column.
 pub type Columns = Vec<(String, String)>;
 
-/// What a caller says about a CSV file; the default says nothing.
+/// Facts about a CSV file that the caller states; none by default.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CsvOptions {
     /// Between the cells; `None`: found.
@@ -30,7 +30,7 @@ pub struct CsvOptions {
     pub interfaces: BTreeMap<String, Columns>,
 }
 
-/// What lies between two cells.
+/// The separator of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Separator {
     /// One byte.
@@ -102,7 +102,7 @@ impl CsvOptions {
     ///
     /// # Errors
     ///
-    /// [`CsvError::MapFile`] if it cannot be read or says what no map says.
+    /// [`CsvError::MapFile`] if it cannot be read or has unknown keys.
     pub fn from_map(path: &Path) -> Result<Self, CsvError> {
         let fault = |reason: String| CsvError::MapFile { path: path.to_owned(), reason };
         let text = std::fs::read_to_string(path).map_err(|error| fault(error.to_string()))?;
@@ -138,7 +138,7 @@ impl CsvOptions {
         })
     }
 
-    /// These options, and those of `other` where these say nothing.
+    /// These options, completed by those of `other`.
     #[must_use]
     pub fn or(mut self, other: Self) -> Self {
         self.separator = self.separator.or(other.separator);
@@ -156,7 +156,7 @@ impl CsvOptions {
         self
     }
 
-    /// Checks what does not depend on the file.
+    /// Checks all that does not depend on the file.
     pub(super) fn check(&self) -> Result<(), CsvError> {
         let bad = |option, found: String, expected| CsvError::Option { option, found, expected };
         if let Some(rate_hz) = self.rate_hz.filter(|hz| !(hz.is_finite() && *hz > 0.0 && *hz <= 1e6)) {

@@ -31,7 +31,7 @@ pub(super) struct Column {
     example: Option<(String, u64)>,
 }
 
-/// What the rows hold.
+/// The content of the rows.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Cells {
     /// ns since 1970, `[rows]`.
@@ -101,7 +101,7 @@ pub(super) fn read(
     Ok(Cells { stamp_ns, received_ns, absolute, columns })
 }
 
-/// An error if most rows have no time, a remark if some have none.
+/// An error if most rows have no time, a remark if some rows have no time.
 fn judge_stamps(
     column: &str,
     stamped: u64,
@@ -128,7 +128,7 @@ fn judge_stamps(
     Ok(())
 }
 
-/// What a cell held where something else was expected, and the line.
+/// The text of an unexpected cell, and its line.
 fn such(example: Option<&(String, u64)>) -> String {
     example.map_or_else(String::new, |(text, line)| format!(", such as {text:?} in line {line}"))
 }

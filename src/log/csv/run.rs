@@ -19,7 +19,7 @@ const ORIGIN: &str = "hydrotrace.import";
 pub struct CsvRun {
     /// How the file was read.
     pub understood: Understood,
-    /// What was doubtful.
+    /// Doubts about the data.
     pub remarks: Remarks,
     layout: Layout,
     cells: Cells,

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::CsvError;
 
-/// What other files begin with.
+/// The first bytes of other kinds of files.
 const OTHERS: [(&[u8], &str, &str); 6] = [
     (b"\x89MCAP0\r\n", "an MCAP log", "`hydrotrace report` reads it as it is"),
     (b"PAR1", "a Parquet file", "give the CSV it was made from"),

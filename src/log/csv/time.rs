@@ -48,7 +48,7 @@ impl TimeSource {
         }
     }
 
-    /// What the times are, for a person.
+    /// The form of the times, for a person.
     pub(super) fn form(&self) -> String {
         match self {
             Self::Rate { hz } => format!("none used; rows come at {hz} Hz as given"),

@@ -1,6 +1,6 @@
 //! How a file was read, for a person to check.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{
     angle::Settled,
@@ -16,14 +16,15 @@ use crate::{
 };
 
 /// How a file was read.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Understood {
     /// Its name.
     pub file: String,
     /// Between its cells.
     pub separator: String,
     /// "comma" or "point".
-    pub decimal: &'static str,
+    pub decimal: String,
     /// Line of its header, 0 if it has none.
     pub header_line: u64,
     /// Whether a row of units follows.
@@ -43,7 +44,8 @@ pub struct Understood {
 }
 
 /// How rows were given their times.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TimeRead {
     /// Headers of its columns; none where a rate was given.
     pub columns: Vec<String>,
@@ -59,8 +61,9 @@ pub struct TimeRead {
     pub rate_hz: f64,
 }
 
-/// What a column became.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// The use of a column.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ColumnRead {
     /// Its number, from 1.
     pub number: usize,
@@ -71,9 +74,9 @@ pub struct ColumnRead {
     /// Of which joint.
     pub joint: String,
     /// Its unit in the file; `None` where it was kept as it is.
-    pub unit: Option<&'static str>,
+    pub unit: Option<String>,
     /// Who says so: "file", "option", "RTDE", "guess", "as given".
-    pub unit_from: &'static str,
+    pub unit_from: String,
     /// Cells with a number.
     pub numbers: u64,
     /// Cells without.
@@ -105,8 +108,8 @@ impl Understood {
                 header: head.names[column].clone(),
                 becomes,
                 joint: layout.joints[joint].clone(),
-                unit: settled.and_then(|settled| settled.unit).map(|unit| unit.name),
-                unit_from: settled.map_or("as given", |settled| settled.from),
+                unit: settled.and_then(|settled| settled.unit).map(|unit| unit.name.to_owned()),
+                unit_from: settled.map_or("as given", |settled| settled.from).to_owned(),
                 numbers,
                 empty: (rows as u64).saturating_sub(numbers),
             }
@@ -122,7 +125,7 @@ impl Understood {
         Self {
             file: file.to_owned(),
             separator: dialect.separator.name(),
-            decimal: if dialect.decimal_comma { "comma" } else { "point" },
+            decimal: if dialect.decimal_comma { "comma" } else { "point" }.to_owned(),
             header_line: head.line,
             unit_row: head.units.is_some(),
             rows_above: head.above,

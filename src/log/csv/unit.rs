@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::units::DEGREE_RAD;
 
-/// What a unit measures.
+/// The quantity that a unit measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Measure {
@@ -14,7 +14,7 @@ pub(super) enum Measure {
     AngularSpeed,
     Time,
     Pressure,
-    /// Something a header states that is none of these.
+    /// Any other unit that a header states.
     Other,
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Quantity, Role};
 
-/// What one word of a header says.
+/// The meaning of one word of a header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meaning {
     Role(Role),
@@ -16,163 +16,37 @@ pub(super) enum Meaning {
     Name,
 }
 
-const PLANNED: [&str; 21] = [
-    "target",
-    "planned",
-    "plan",
-    "desired",
-    "des",
-    "reference",
-    "ref",
-    "setpoint",
-    "set",
-    "sp",
-    "soll",
-    "sollwert",
-    "goal",
-    "nominal",
-    "nom",
-    "demand",
-    "wanted",
-    "consigne",
-    "trajectory",
-    "traj",
-    "fuehrung",
-];
-const MEASURED: [&str; 18] = [
-    "actual",
-    "act",
-    "measured",
-    "meas",
-    "feedback",
-    "fb",
-    "fbk",
-    "ist",
-    "istwert",
-    "real",
-    "sensor",
-    "encoder",
-    "enc",
-    "pv",
-    "measurement",
-    "reached",
-    "mess",
-    "messwert",
-];
-const COMMAND: [&str; 5] = ["command", "commands", "commanded", "cmd", "stell"];
-const POSITION: [&str; 11] =
-    ["q", "pos", "position", "positions", "posn", "angle", "angles", "winkel", "lage", "theta", "phi"];
-const VELOCITY: [&str; 11] = [
-    "qd",
-    "dq",
-    "vel",
-    "velocity",
-    "velocities",
-    "velo",
-    "speed",
-    "omega",
-    "geschwindigkeit",
-    "drehzahl",
-    "qdot",
-];
-const JOINT: [&str; 9] = ["j", "joint", "axis", "achse", "gelenk", "ax", "axes", "jnt", "joints"];
-const TIME: [&str; 12] = [
-    "time",
-    "timestamp",
-    "zeit",
-    "zeitstempel",
-    "date",
-    "datum",
-    "uhrzeit",
-    "datetime",
-    "stamp",
-    "elapsed",
-    "temps",
-    "clock",
-];
-const FOREIGN: [&str; 65] = [
-    "qdd",
-    "ddq",
-    "acc",
-    "accel",
-    "acceleration",
-    "beschleunigung",
-    "torque",
-    "tau",
-    "effort",
-    "moment",
-    "drehmoment",
-    "current",
-    "strom",
-    "voltage",
-    "spannung",
-    "power",
-    "leistung",
-    "temperature",
-    "temp",
-    "temperatur",
-    "pressure",
-    "druck",
-    "flow",
-    "valve",
-    "ventil",
-    "spool",
-    "force",
-    "kraft",
-    "mode",
-    "status",
-    "error",
-    "err",
-    "fehler",
-    "deviation",
-    "abweichung",
-    "lag",
-    "schleppfehler",
-    "tcp",
-    "tool",
-    "pose",
-    "cart",
-    "cartesian",
-    "output",
-    "input",
-    "digital",
-    "analog",
-    "safety",
-    "runtime",
-    "counter",
-    "index",
-    "scaling",
-    "fraction",
-    "robot",
-    "x",
-    "y",
-    "z",
-    "jerk",
-    "level",
-    "temperatures",
-    "currents",
-    "torques",
-    "forces",
-    "pressures",
-    "modes",
-    "voltages",
-];
+const PLANNED: &str = "target planned plan desired des reference ref setpoint set sp soll sollwert goal nominal nom demand \
+    wanted consigne trajectory traj fuehrung";
+const MEASURED: &str = "actual act measured meas feedback fb fbk ist istwert real sensor encoder enc pv measurement reached \
+    mess messwert";
+const COMMAND: &str = "command commands commanded cmd stell";
+const POSITION: &str = "q pos position positions posn angle angles winkel lage theta phi";
+const VELOCITY: &str = "qd dq vel velocity velocities velo speed omega geschwindigkeit drehzahl qdot";
+const JOINT: &str = "j joint axis achse gelenk ax axes jnt joints";
+const TIME: &str = "time timestamp zeit zeitstempel date datum uhrzeit datetime stamp elapsed temps clock";
+const FOREIGN: &str = "qdd ddq acc accel acceleration beschleunigung torque tau effort moment drehmoment current strom \
+    voltage spannung power leistung temperature temp temperatur pressure druck flow valve ventil spool \
+    force kraft mode status error err fehler deviation abweichung lag schleppfehler tcp tool pose cart \
+    cartesian output input digital analog safety runtime counter index scaling fraction robot x y z jerk \
+    level temperatures currents torques forces pressures modes voltages";
 
 fn meaning_of_word(word: &str) -> Meaning {
-    let lists: [(&[&str], Meaning); 8] = [
-        (&PLANNED, Meaning::Role(Role::Planned)),
-        (&MEASURED, Meaning::Role(Role::Measured)),
-        (&COMMAND, Meaning::Role(Role::Command)),
-        (&POSITION, Meaning::Quantity(Quantity::Position)),
-        (&VELOCITY, Meaning::Quantity(Quantity::Velocity)),
-        (&JOINT, Meaning::Joint),
-        (&TIME, Meaning::Time),
-        (&FOREIGN, Meaning::Foreign),
+    let lists = [
+        (PLANNED, Meaning::Role(Role::Planned)),
+        (MEASURED, Meaning::Role(Role::Measured)),
+        (COMMAND, Meaning::Role(Role::Command)),
+        (POSITION, Meaning::Quantity(Quantity::Position)),
+        (VELOCITY, Meaning::Quantity(Quantity::Velocity)),
+        (JOINT, Meaning::Joint),
+        (TIME, Meaning::Time),
+        (FOREIGN, Meaning::Foreign),
     ];
-    lists.iter().find(|(list, _)| list.contains(&word)).map_or(Meaning::Name, |(_, meaning)| *meaning)
+    let meant = lists.into_iter().find(|(list, _)| list.split_ascii_whitespace().any(|known| known == word));
+    meant.map_or(Meaning::Name, |(_, meaning)| meaning)
 }
 
-/// One word of a header: its text, what stood before it, what it says.
+/// One word of a header: its text, whether it stands apart, its meaning.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Word<'a> {
     pub(super) text: &'a str,

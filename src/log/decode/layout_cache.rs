@@ -1,4 +1,4 @@
-//! Finds the fields of a message where those of the message before were.
+//! Caches field offsets: a message whose lengths equal the previous one's is read without walking it.
 
 use super::sink::{Numbers, Sink, Slot, number_from, without_terminator};
 use crate::log::schema::Number;

@@ -16,14 +16,14 @@ pub(in crate::log) struct Want {
 /// One step over the bytes of a message.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Step {
-    /// Fixed bytes nobody asked for.
+    /// Fixed bytes to skip.
     Skip {
         align: u8,
         bytes: u32,
     },
     SkipText,
     SkipWideText,
-    /// So many sequences of numbers nobody asked for.
+    /// So many sequences of numbers to skip.
     SkipNumbers {
         number: Number,
         sequences: u32,
@@ -85,7 +85,7 @@ pub(in crate::log) struct Program {
     pub(super) delimited: Vec<Step>,
     /// Whether bytes may follow the last step.
     pub(super) open_ended: bool,
-    /// What compiling took: steps, and fields looked at.
+    /// Cost of compiling: steps, and fields looked at.
     pub(in crate::log) cost: usize,
 }
 

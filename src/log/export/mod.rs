@@ -6,10 +6,10 @@ mod parquet;
 
 use thiserror::Error;
 
-use super::{AngleUnit, Recording};
+use super::{csv::AngleUnit, read::recording::Recording};
 use crate::{
     atomic_file::AtomicError,
-    series::{Track, align},
+    series::{JointKind, Track, align},
     units::{DEGREE_RAD, NS_PER_S, seconds_since},
 };
 
@@ -33,7 +33,8 @@ pub enum ExportError {
 ///
 /// Columns: `stamp_ns` (since 1970), `time_s` (since the start of the run), and for each joint
 /// `J_planned_rad`, `J_planned_rad_s` where the plan gives speeds, `J_measured_rad`,
-/// `J_measured_rad_s`, `J_command_rad` and `J_error_rad`, as far as there are such. Plan and
+/// `J_measured_rad_s`, `J_command_rad` and `J_error_rad`, as far as there are such; `deg` if asked
+/// for, `m` in place of `rad` for joints that slide. Plan and
 /// measurement stand as they were sampled, each at its own instants, so that
 /// [`read_csv`](super::read_csv) gives the same run back; the error is planned minus measured at
 /// measured instants, the plan interpolated as a report does.
@@ -54,41 +55,41 @@ struct Samples {
 }
 
 impl RunTable {
-    /// Lays out the joints that both plan, or command where there is no plan, and measurement have; all of
-    /// one side if there is no other. `command` is a recording whose plan is what was sent.
-    pub fn new(recording: &Recording, command: Option<&Recording>, unit: AngleUnit) -> Self {
+    /// Lays out the joints that both plan, or command if there is no plan, and measurement have; all of
+    /// one side if there is no other.
+    pub fn new(recording: &Recording, unit: AngleUnit) -> Self {
         let epoch_ns = recording.source.epoch_ns;
         let (suffix, per_rad) = match unit {
             AngleUnit::Radians => ("rad", 1.0),
             AngleUnit::Degrees => ("deg", 1.0 / DEGREE_RAD),
         };
+        let command = recording.command.as_ref().map(|command| &command.series);
         let mut all: Vec<Samples> = Vec::new();
-        for joint in joints(recording, command) {
-            let mut add = |what: &str, epoch_ns: i64, t_s: &[f64], values: &[f64]| {
+        for joint in joints(recording) {
+            let mut add = |kind: JointKind, what: &str, per: &str, t_s: &[f64], values: &[f64]| {
+                let (unit, factor) = match kind {
+                    JointKind::Turns => (suffix, per_rad),
+                    JointKind::Slides => (kind.unit(), 1.0),
+                };
                 all.push(Samples {
-                    name: format!("{joint}_{what}").replace("{unit}", suffix),
+                    name: format!("{joint}_{what}_{unit}{per}"),
                     stamp_ns: t_s.iter().map(|&t_s| stamp_ns(epoch_ns, t_s)).collect(),
-                    values: values.iter().map(|value| value * per_rad).collect(),
+                    values: values.iter().map(|value| value * factor).collect(),
                 });
             };
-            let mut side = |what: &str, epoch_ns: i64, track: Option<&Track>| {
-                let Some(track) = track else { return };
-                add(&format!("{what}_{{unit}}"), epoch_ns, track.t_s(), track.position());
-                if let Some(speed_rad_s) = track.velocity() {
-                    add(&format!("{what}_{{unit}}_s"), epoch_ns, track.t_s(), speed_rad_s);
-                }
-            };
             let (planned, measured) = (recording.planned.track(joint), recording.measured.track(joint));
-            side("planned", epoch_ns, planned);
-            side("measured", epoch_ns, measured);
-            if let Some(sent) = command {
-                side("command", sent.source.epoch_ns, sent.planned.track(joint));
+            let command = command.and_then(|command| command.track(joint));
+            for (what, track) in [("planned", planned), ("measured", measured), ("command", command)] {
+                let Some(track) = track else { continue };
+                add(track.kind(), what, "", track.t_s(), track.position());
+                if let Some(velocity) = track.velocity() {
+                    add(track.kind(), what, "_s", track.t_s(), velocity);
+                }
             }
             if let Some(pair) = planned.zip(measured).and_then(|(planned, measured)| align(planned, measured))
             {
-                let error_rad: Vec<f64> =
-                    pair.planned.iter().zip(&pair.measured).map(|(r, y)| r - y).collect();
-                add("error_{unit}", epoch_ns, &pair.t_s, &error_rad);
+                let error: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(r, y)| r - y).collect();
+                add(pair.kind, "error", "", &pair.t_s, &error);
             }
         }
         Self::merge(epoch_ns, all)
@@ -135,16 +136,15 @@ impl RunTable {
 }
 
 /// Names of the joints of a table.
-fn joints<'a>(recording: &'a Recording, command: Option<&'a Recording>) -> Vec<&'a str> {
-    let sent = command.map_or(&[][..], |sent| &sent.planned.tracks);
-    let (planned, measured) = (&recording.planned.tracks[..], &recording.measured.tracks[..]);
-    let asked = if planned.is_empty() { sent } else { planned };
-    let names = |tracks: &'a [Track]| tracks.iter().map(Track::name);
-    match (asked.is_empty(), measured.is_empty()) {
-        (true, _) => names(measured).collect(),
-        (false, true) => names(asked).collect(),
-        (false, false) => names(asked).filter(|joint| recording.measured.track(joint).is_some()).collect(),
-    }
+fn joints(recording: &Recording) -> Vec<&str> {
+    let Recording { planned, measured, command, .. } = recording;
+    let asked = match command {
+        Some(command) if planned.tracks.is_empty() => &command.series,
+        _ => planned,
+    };
+    let (one, other) = if asked.tracks.is_empty() { (measured, asked) } else { (asked, measured) };
+    let names = one.tracks.iter().map(Track::name);
+    names.filter(|joint| other.tracks.is_empty() || other.track(joint).is_some()).collect()
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "saturates far beyond any log")]

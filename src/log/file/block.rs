@@ -14,7 +14,7 @@ pub(in crate::log) enum Block<'a> {
     Loose(&'a [u8]),
 }
 
-/// What a block lost.
+/// Bytes that a block lost.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::log) enum Loss {
     Nothing,
@@ -57,7 +57,7 @@ impl Blocks {
 }
 
 /// The records of an opened block, in order; stops where no whole record follows (none has the
-/// opcode 0, which is what lost pages hold).
+/// opcode 0, as pages lost at a power failure hold).
 pub(in crate::log) fn records(bytes: &[u8]) -> impl Iterator<Item = Record<'_>> {
     let mut at = 0;
     std::iter::from_fn(move || {

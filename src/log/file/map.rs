@@ -11,7 +11,7 @@ pub(in crate::log) struct MappedFile(Option<Mmap>);
 impl MappedFile {
     /// Maps a file for reading.
     ///
-    /// A log that another process is still appending to may be mapped: what is there at the
+    /// A log that another process is still appending to may be mapped: the bytes present at the
     /// call is seen. A file that another process *shortens* while it is mapped ends this process
     /// with SIGBUS; recorders do not do that.
     #[expect(unsafe_code, reason = "Mmap::map; soundness argued below")]

@@ -1,6 +1,6 @@
 //! MCAP bytes: where the records are, and how to get at them whatever has happened to the file.
 //!
-//! Nothing here trusts a length, a count or a checksum; nothing knows what a joint is.
+//! No length, count or checksum is trusted here; joints are not known here.
 
 mod block;
 mod compression;

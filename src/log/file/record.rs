@@ -41,7 +41,7 @@ impl<'a> Record<'a> {
         Some(Self { opcode: *opcode, body: bytes.get(start..end)?, end })
     }
 
-    /// What is there of a record that the file ends within: its type and the cut body.
+    /// The first part of a record that the file ends within: its type and the cut body.
     pub(in crate::log) fn cut_at(bytes: &'a [u8], at: usize) -> Option<(u8, &'a [u8])> {
         let rest = bytes.get(at..)?;
         let [opcode, length @ ..] = rest.first_chunk::<HEAD>()?;

@@ -22,7 +22,7 @@ pub(in crate::log) struct Layout<'a> {
     pub(in crate::log) schemas: Vec<SchemaRecord<'a>>,
     /// Channels outside chunks, those of the summary included; ids may repeat.
     pub(in crate::log) channels: Vec<ChannelRecord>,
-    /// Whether the channels outside chunks are known to be all there are.
+    /// Whether the channels outside chunks are known to be complete.
     pub(in crate::log) channels_complete: bool,
     pub(in crate::log) attachments: Vec<AttachmentRecord<'a>>,
     pub(in crate::log) metadata: Vec<MetadataRecord>,
@@ -31,18 +31,18 @@ pub(in crate::log) struct Layout<'a> {
     pub(in crate::log) profile: String,
 }
 
-/// What is wrong with the outer structure of a file.
+/// Faults in the outer structure of a file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(in crate::log) struct Damage {
     /// The end marker is missing: power loss or a kill.
     pub(in crate::log) not_closed: bool,
-    /// Bytes between records that are none.
+    /// Bytes between records that belong to no record.
     pub(in crate::log) skipped_bytes: u64,
     /// Attachments whose checksum does not hold.
     pub(in crate::log) broken_attachments: u64,
-    /// The checksum of the summary does not hold; it is not used.
+    /// The checksum of the summary does not hold; the summary is not used.
     pub(in crate::log) broken_summary: bool,
-    /// The checksum of the data does not hold, and no chunk has one of its own that tells where.
+    /// The checksum of the data does not hold, and no chunk has a checksum that locates the fault.
     pub(in crate::log) broken_data: bool,
 }
 
@@ -169,7 +169,7 @@ fn known(compression: &[u8]) -> bool {
     matches!(compression, b"" | b"zstd" | b"lz4")
 }
 
-/// Cheap checks that tell a record from noise: constant time, whatever the length.
+/// Cheap checks that distinguish a record from noise: constant time, whatever the length.
 fn plausible(record: &Record<'_>) -> bool {
     let length = record.body.len();
     match record.opcode {

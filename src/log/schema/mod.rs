@@ -82,7 +82,7 @@ pub(super) enum SchemaError {
     Line {
         /// Line in the schema text, from 1.
         line: usize,
-        /// What it says.
+        /// The text found.
         text: String,
     },
     /// A word where another was expected.
@@ -90,7 +90,7 @@ pub(super) enum SchemaError {
     Unexpected {
         /// The word found; empty at the end of the text.
         found: String,
-        /// What belongs there.
+        /// The text expected.
         expected: &'static str,
     },
     /// A type that the text does not define.

@@ -259,7 +259,7 @@ fn unexpected(found: &str, expected: &'static str) -> SchemaError {
     SchemaError::Unexpected { found: found.to_owned(), expected }
 }
 
-/// Replaces typedef names by what they stand for.
+/// Replaces typedef names by their types.
 fn expand(shape: &mut Shape<String>, aliases: &BTreeMap<String, Shape<String>>, depth: usize) {
     match shape {
         Shape::Array(_, of) | Shape::Sequence(of) if depth < MAX_DEPTH => expand(of, aliases, depth + 1),

@@ -1,18 +1,21 @@
-//! Which fields of which message types are joint angles, and whether they are plan or measurement.
+//! The fields of known message types that are joint positions, and which are plan or measurement.
 
-use super::{Selector, slot};
+use super::slot;
 use crate::log::{
     decode::{Slot, Want, shape_at},
+    options::Selector,
     schema::{Definition, Shape, plain_name},
 };
 
-/// What a field says of a joint.
+/// The meaning of a field for a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::log) enum Role {
     Planned,
     Measured,
     /// Depends on the topic.
     Either,
+    /// Another signal, read because the caller named it.
+    Beside,
 }
 
 /// A field of a table: one number a joint and message.

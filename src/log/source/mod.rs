@@ -1,4 +1,4 @@
-//! Topics that carry joints: which messages are read, for which fields, into what.
+//! Topics that carry joints: the messages and fields that are read, and the tables they fill.
 
 mod kind;
 mod plans;
@@ -33,25 +33,4 @@ pub(super) mod slot {
     pub(in crate::log) const VERSION: Slot = 13;
     /// The first of a table's own fields.
     pub(in crate::log) const FIELD: Slot = 32;
-}
-
-/// A topic with joint angles, as a caller names it: `TOPIC` or `TOPIC:FIELD`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Selector {
-    /// Topic name.
-    pub topic: String,
-    /// Path of the position field within the message, where the topic has several.
-    pub field: Option<String>,
-}
-
-impl Selector {
-    /// Splits at the last colon; topic names have none.
-    pub fn parse(text: &str) -> Self {
-        match text.rsplit_once(':') {
-            Some((topic, field)) if !field.is_empty() => {
-                Self { topic: topic.into(), field: Some(field.into()) }
-            }
-            _ => Self { topic: text.trim_end_matches(':').into(), field: None },
-        }
-    }
 }

@@ -20,9 +20,9 @@ pub(in crate::log) struct RawTrajectory {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(in crate::log) struct RawPoint {
     pub(in crate::log) since_start_ns: i64,
-    pub(in crate::log) position_rad: Vec<f64>,
-    pub(in crate::log) velocity_rad_s: Vec<f64>,
-    pub(in crate::log) acceleration_rad_s2: Vec<f64>,
+    pub(in crate::log) positions: Vec<f64>,
+    pub(in crate::log) velocities: Vec<f64>,
+    pub(in crate::log) accelerations: Vec<f64>,
 }
 
 /// All trajectories of a topic.
@@ -88,9 +88,9 @@ impl Sink for Plans {
     fn numbers(&mut self, slot: Slot, values: Numbers<'_>) {
         let Some(point) = self.current().points.last_mut() else { return };
         match slot {
-            slot::POSITIONS => point.position_rad = values.to_vec(),
-            slot::VELOCITIES => point.velocity_rad_s = values.to_vec(),
-            slot::ACCELERATIONS => point.acceleration_rad_s2 = values.to_vec(),
+            slot::POSITIONS => point.positions = values.to_vec(),
+            slot::VELOCITIES => point.velocities = values.to_vec(),
+            slot::ACCELERATIONS => point.accelerations = values.to_vec(),
             _ => {}
         }
     }

@@ -24,7 +24,7 @@ const OFFERED_QOS_PROFILES: &str = "\
   avoid_ros_namespace_conventions: false
 ";
 
-/// The same for what is said once: the last one is kept for those who come later.
+/// The same for messages sent once: the last one is kept for late subscribers.
 const LATCHED_QOS_PROFILES: &str = "\
 - history: 1
   depth: 1

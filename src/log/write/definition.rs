@@ -5,7 +5,7 @@ const DELIMITER: &str = "=======================================================
 
 macro_rules! definitions {
     ($($package:literal $name:literal,)*) => {
-        /// `package/Name` and what that type consists of.
+        /// `package/Name` and the definition of that type.
         const DEFINITIONS: &[(&str, &str)] = &[$((
             concat!($package, "/", $name),
             include_str!(concat!("../../../schemas/ros2/", $package, "/msg/", $name, ".msg")),

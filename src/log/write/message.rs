@@ -22,7 +22,7 @@ pub struct Point<'a> {
     pub time_from_start_ns: i64,
 }
 
-/// What a trajectory controller knows at one instant. Its error is reference minus feedback and
+/// The state of a trajectory controller at one instant. Its error is reference minus feedback and
 /// is computed on writing, for every quantity that both give.
 #[derive(Debug, Clone, Copy)]
 pub struct ControllerState<'a> {
@@ -30,7 +30,7 @@ pub struct ControllerState<'a> {
     pub reference: Point<'a>,
     /// Where they are.
     pub feedback: Point<'a>,
-    /// What the controller commands.
+    /// The controller's command.
     pub output: Point<'a>,
     /// Speed at which the trajectory runs, of that planned; 0 is a pause.
     pub speed_scaling_factor: f64,
@@ -75,7 +75,7 @@ pub(super) fn check_length(quantity: &'static str, values: &[f64], joints: usize
     Err(WriteError::LengthMismatch { quantity, joints, values: values.len() })
 }
 
-/// What every message begins with: `std_msgs/Header` without a frame, then the joint names.
+/// The start of every message: `std_msgs/Header` without a frame, then the joint names.
 pub(super) fn encode_header(cdr: &mut Cdr, stamp: Stamp, joint_names: &[String]) {
     cdr.begin();
     stamp.encode(cdr);

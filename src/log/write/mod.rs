@@ -278,7 +278,7 @@ impl<W: Write> LogWriter<W> {
         Ok(self.mcap.flush()?)
     }
 
-    /// What messages that are copied go through.
+    /// The writer underneath, for messages that are copied.
     pub(in crate::log) fn raw(&mut self) -> &mut Writer<NoSeek<W>> {
         &mut self.mcap
     }

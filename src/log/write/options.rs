@@ -60,9 +60,9 @@ pub struct Topics {
     pub description: String,
     /// `std_msgs/msg/String`: the URDF of the arm as planned, beside that of the arm as measured.
     pub planned_description: String,
-    /// `tf2_msgs/msg/TFMessage` of what moves.
+    /// `tf2_msgs/msg/TFMessage` of links that move.
     pub transforms: String,
-    /// `tf2_msgs/msg/TFMessage` of what does not.
+    /// `tf2_msgs/msg/TFMessage` of links that do not move.
     pub fixed_transforms: String,
     /// `sensor_msgs/msg/JointState`: plan minus measurement.
     pub tracking_error: String,
@@ -86,13 +86,13 @@ impl Default for Topics {
     }
 }
 
-/// What a joint sample says.
+/// Role of a joint sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// Where the plan wants the joints.
     Planned,
     /// Where the sensors say they are.
     Measured,
-    /// What was sent to the machine, where that differs from the plan.
+    /// The positions sent to the machine, where they differ from the plan.
     Command,
 }

@@ -1,4 +1,4 @@
-//! What tools that draw go by: the arm's description and where its links are.
+//! Messages for tools that draw the arm: its description and the poses of its links.
 
 use std::io::Write;
 

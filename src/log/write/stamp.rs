@@ -21,7 +21,7 @@ impl Stamp {
         Ok(Self { seconds, nanoseconds, log_time_ns })
     }
 
-    /// No stamp at all: what it stands on counts from when it is received.
+    /// No stamp: the times of the message count from its receipt.
     pub(super) fn unset(received_ns: i64) -> Result<Self, WriteError> {
         Ok(Self { seconds: 0, nanoseconds: 0, ..Self::new(received_ns, 0)? })
     }

@@ -2,7 +2,7 @@
 
 use super::tables::kind_of_all;
 use crate::{
-    math::span,
+    math,
     render::{
         kit::{Block, Id, Section, fact, ms},
         metric::{number, on_paper, position, unit},
@@ -15,7 +15,7 @@ pub(super) fn method(report: &Report) -> Option<Section> {
     let rules = &report.replay.rules;
     let joints = &report.replay.joints;
     let range = |of: &dyn Fn(usize) -> f64, show: &dyn Fn(f64) -> String| {
-        let [least, most] = span((0..joints.len()).map(of)).unwrap_or_default().map(show);
+        let [least, most] = math::range((0..joints.len()).map(of)).map(show);
         if least == most { least } else { format!("{least} to {most}") }
     };
     if joints.is_empty() {

@@ -2,7 +2,7 @@
 
 use super::method::method;
 use crate::{
-    math::span,
+    math::range,
     render::{
         kit::{
             Column, Document, Fact, Id, Section, Sentence, counted, fact, ms, probability, share as percents,
@@ -152,7 +152,7 @@ pub(super) fn mostly_lag(replay: &Replay) -> Option<String> {
 pub(super) fn lag_words(replay: &Replay) -> Option<String> {
     let share = replay.whole_run.lag_share?;
     let lags = replay.joints.iter().filter(|joint| joint.plan_moves).filter_map(|joint| joint.lag_s);
-    let [least, most] = span(lags)?;
+    let [least, most] = range(lags);
     let (least, most) = (ms(least), ms(most));
     let lag = if least == most { format!("{least} ms") } else { format!("{least} to {most} ms, by joint,") };
     Some(format!(

@@ -17,7 +17,7 @@ pub static JOINT: &[Row] = &[
     Row::new("rms", "rms", "rms error", "Root mean square tracking error, weighted by time.", Position, Number(|j| Some(j.tracking_error.rms)))
         .compared(Rms(|j| Some(j.tracking_error)))
         .limited(Judged::new(
-            Limit::new("rms", "max-rms-deg", Some("max-rms-mm"), "rms error", "Root mean square error of any joint over the run", Position),
+            Limit::new("rms", "max-rms-deg", Some("max-rms-mm"), "rms error", "Largest RMS error of a joint over the run", Position),
             |_| true,
             |j| Some(j.tracking_error.peak_time_s),
         )),
@@ -27,7 +27,7 @@ pub static JOINT: &[Row] = &[
     Row::new("peak", "peak", "peak error", "Largest tracking error.", Position, Number(|j| Some(j.tracking_error.peak)))
         .compared(Most)
         .limited(Judged::new(
-            Limit::new("peak", "max-peak-deg", Some("max-peak-mm"), "peak error", "Peak error of any joint over the run", Position),
+            Limit::new("peak", "max-peak-deg", Some("max-peak-mm"), "peak error", "Largest peak error of a joint over the run", Position),
             |_| true,
             |j| Some(j.tracking_error.peak_time_s),
         )),
@@ -36,7 +36,7 @@ pub static JOINT: &[Row] = &[
     Row::new("standstill_rms", "standstill rms", "rms error at standstill", "Root mean square error while the plan rests: the steady-state error.", Position, Number(|j| Some(j.standstill_error?.rms)))
         .compared(Rms(|j| j.standstill_error))
         .limited(Judged::new(
-            Limit::new("standstill-rms", "max-standstill-rms-deg", Some("max-standstill-rms-mm"), "rms error at standstill", "Root mean square error of any joint while its plan rests", Position),
+            Limit::new("standstill-rms", "max-standstill-rms-deg", Some("max-standstill-rms-mm"), "rms error at standstill", "Largest RMS error of a joint while its plan is at rest", Position),
             |j| j.standstill_error.is_some(),
             |j| Some(j.standstill_error?.peak_time_s),
         )),
@@ -46,7 +46,7 @@ pub static JOINT: &[Row] = &[
         .within(|j| j.lag_interval_s)
         .compared(Mean)
         .limited(Judged::new(
-            Limit::new("lag", "max-lag-ms", None, "lag", "Velocity lag of any joint", Duration).or("no lag in the range looked at"),
+            Limit::new("lag", "max-lag-ms", None, "lag", "Largest velocity lag of a joint", Duration).or("no lag in the range looked at"),
             // A joint that is asked to move and shows no lag within the range looked at is later.
             |j| j.plan_moves,
             |_| None,

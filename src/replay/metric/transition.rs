@@ -28,7 +28,7 @@ pub static TRANSITION: &[Row] = &[
         .or(|t| t.answer.word())
         .compared(Nothing)
         .limited(Judged::new(
-            Limit::new("onset-delay", "max-start-delay-ms", None, "start delay", "Delay of any start; a start without an answer breaks it", Duration)
+            Limit::new("onset-delay", "max-start-delay-ms", None, "start delay", "Largest delay of a start; a start that the machine does not answer exceeds it", Duration)
                 .or("a start without an answer"),
             |t| matches!(t.answer, Answer::Timed | Answer::Never),
             |t| Some(t.planned_onset_s),
@@ -39,7 +39,7 @@ pub static TRANSITION: &[Row] = &[
     Row::new(PEAK_ERROR, "peak", "peak error", "Largest tracking error in the window.", Position, Number(|t| Some(t.peak_error)))
         .compared(Nothing)
         .limited(Judged::new(
-            Limit::new("transition-peak", "max-transition-peak-deg", Some("max-transition-peak-mm"), "transition peak", "Peak error in any transition", Position),
+            Limit::new("transition-peak", "max-transition-peak-deg", Some("max-transition-peak-mm"), "transition peak", "Largest peak error in a transition", Position),
             |_| true,
             |t| Some(t.planned_onset_s + t.time_to_peak_s),
         )),

@@ -1,4 +1,4 @@
-//! `excite`: a run from which a fit can tell what runs of tasks leave open.
+//! `excite`: a run that identifies the parameters that runs of tasks leave open.
 
 use std::{collections::BTreeMap, path::PathBuf};
 
@@ -14,6 +14,7 @@ use super::{
 use crate::{
     fit::{Excitation, FitError, JointRoom, excite},
     log::WriteError,
+    math::range,
     plan::Setup,
     series::Series,
 };
@@ -94,7 +95,7 @@ fn rooms(setup: &Setup) -> Vec<JointRoom> {
     let points = setup.template().points();
     let of_joint = |(j, name): (usize, String)| {
         let angles = (0..points.len()).map(|point| points.of(point)[j]);
-        let (least, most) = angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), q| (a.min(q), b.max(q)));
+        let [least, most] = range(angles);
         JointRoom { name, home_rad: 0.5 * (least + most), range_rad: setup.range_rad(j) }
     };
     setup.joint_names().into_iter().enumerate().map(of_joint).collect()

@@ -13,15 +13,18 @@ pub use failure::FitFailure;
 
 use crate::{
     fit::{Fit, FitError, Observation, fit},
-    log::SourceInfo,
+    log::{ReadOptions, Recording, SignalRole, SourceInfo},
     remark::{Code, Remarks},
     series::Track,
     workflow::carried::Carried,
 };
 use {
-    observe::{ObserveFailure, Observed, Wanted, observe},
+    observe::{ObserveFailure, observation, observe},
     torque::{JointTorque, torques},
 };
+
+/// Format of every file with limits.
+const LIMITS_FORMAT: &str = "hydrotrace.limits.v1";
 
 /// What to fit.
 #[derive(Debug, Clone, Default)]
@@ -29,7 +32,7 @@ pub struct Inputs {
     /// Runs, each a file or a bag directory.
     pub logs: Vec<PathBuf>,
     /// What to read of each.
-    pub wanted: Wanted,
+    pub read: ReadOptions,
 }
 
 /// A run that was fitted.
@@ -67,7 +70,7 @@ pub struct Fitted {
 ///
 /// [`FitFailure`] naming the log.
 pub fn run(inputs: &Inputs) -> Result<Fitted, FitFailure> {
-    let observed = observed(&inputs.logs, &inputs.wanted)?;
+    let observed = observed(&inputs.logs, &inputs.read)?;
     Ok(of(&inputs.logs, &observed)?)
 }
 
@@ -76,8 +79,8 @@ pub fn run(inputs: &Inputs) -> Result<Fitted, FitFailure> {
 /// # Errors
 ///
 /// [`ObserveFailure`] naming the log.
-pub fn observed(logs: &[PathBuf], wanted: &Wanted) -> Result<Vec<Observed>, ObserveFailure> {
-    logs.iter().map(|path| observe(path, wanted)).collect()
+pub fn observed(logs: &[PathBuf], read: &ReadOptions) -> Result<Vec<Recording>, ObserveFailure> {
+    logs.iter().map(|path| observe(path, read)).collect()
 }
 
 /// Fits runs that were read from these logs.
@@ -85,9 +88,9 @@ pub fn observed(logs: &[PathBuf], wanted: &Wanted) -> Result<Vec<Observed>, Obse
 /// # Errors
 ///
 /// [`FitError`] if no joint can be fitted.
-pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
+pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> {
     of_one_arm(logs, observed)?;
-    let observations: Vec<Observation<'_>> = observed.iter().map(Observed::observation).collect();
+    let observations: Vec<Observation<'_>> = observed.iter().map(observation).collect();
     let fit = fit(&observations)?;
     for joint in &fit.joints {
         ::log::info!(
@@ -104,7 +107,7 @@ pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
     for (path, observed) in logs.iter().zip(observed) {
         let log = name(path);
         // A machine is fitted to what was sent, whatever was planned.
-        let doubts = observed.recording.remarks.clone().without(Code::PlanIsCommand);
+        let doubts = observed.remarks.clone().without(Code::PlanIsCommand);
         for remark in doubts.as_slice() {
             let message =
                 if logs.len() > 1 { format!("{log}: {}", remark.message) } else { remark.message.clone() };
@@ -112,9 +115,9 @@ pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
         }
         runs.push(FittedRun {
             log,
-            source: observed.recording.source.clone(),
+            source: observed.source.clone(),
             commanded: observed.command.is_some(),
-            valves: observed.valve.is_some(),
+            valves: observed.has(SignalRole::Valve),
         });
     }
     for joint in fit.joints.iter().filter(|joint| !joint.trusted()) {
@@ -128,15 +131,15 @@ pub fn of(logs: &[PathBuf], observed: &[Observed]) -> Result<Fitted, FitError> {
     }
     let torques = logs.iter().zip(observed).map(|(path, observed)| torques(path, observed));
     let torques = torques.into_iter().find(|torques| !torques.is_empty()).unwrap_or_default();
-    let with_task = observed.iter().rposition(|observed| Carried::of(&observed.recording).task().is_some());
+    let with_task = observed.iter().rposition(|observed| Carried::of(observed).task().is_some());
     Ok(Fitted { fit, torques, runs, with_task, remarks })
 }
 
 /// Every log must share a joint with those before it: a machine is fitted, not several.
-fn of_one_arm(logs: &[PathBuf], observed: &[Observed]) -> Result<(), FitError> {
+fn of_one_arm(logs: &[PathBuf], observed: &[Recording]) -> Result<(), FitError> {
     let mut known: Vec<&str> = Vec::new();
     for (path, observed) in logs.iter().zip(observed) {
-        let own: Vec<&str> = observed.recording.measured.tracks.iter().map(Track::name).collect();
+        let own: Vec<&str> = observed.measured.tracks.iter().map(Track::name).collect();
         if !known.is_empty() && !own.iter().any(|name| known.contains(name)) {
             let (found, known) = (own.join(", "), known.join(", "));
             return Err(FitError::OtherArm { log: name(path), found, known });

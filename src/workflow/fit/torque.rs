@@ -1,16 +1,16 @@
-//! Torques of cylinders from logged pressures, as far as log and arm tell them.
+//! Torques of cylinders from logged pressures.
 
 use serde::{Deserialize, Serialize};
 
-use super::observe::Observed;
 use crate::{
     arm::Arm,
+    log::{Recording, SignalRole},
     math::{median, quantile},
-    series::Track,
+    series::{Signal, Track},
     workflow::carried::Carried,
 };
 
-/// What a joint's cylinders did and could do. Pairs are for growing and for shrinking angles, both
+/// Torques that a joint's cylinders made and could make. Pairs are for growing and for shrinking angles, both
 /// positive, N m.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -21,44 +21,46 @@ pub struct JointTorque {
     pub samples: usize,
     /// Largest torque that the pressures made, 999 of 1000 samples below: the limit is not below.
     pub reached_n_m: [f64; 2],
-    /// What the cylinders give in every pose of the run at the supply pressure that was logged for half of the time; what
-    /// was reached where no supply pressure was logged.
+    /// Torque available in every pose of the run at the median supply pressure; the torque reached if no supply pressure
+    /// was logged.
     pub available_n_m: [f64; 2],
 }
 
 /// Torques of all joints of a run whose log has pressures of both sides and a task with cylinders.
-pub fn torques(path: &std::path::Path, observed: &Observed) -> Vec<JointTorque> {
-    let Some(pressures) = &observed.pressures else { return Vec::new() };
+pub fn torques(path: &std::path::Path, recording: &Recording) -> Vec<JointTorque> {
+    if !recording.has(SignalRole::CapPressure) || !recording.has(SignalRole::RodPressure) {
+        return Vec::new();
+    }
     let folder = path.parent().unwrap_or(std::path::Path::new(""));
-    let arm = Carried::of(&observed.recording).arm(folder).and_then(Result::ok);
+    let arm = Carried::of(recording).arm(folder).and_then(Result::ok);
     let Some(arm) = arm else { return Vec::new() };
     let one = |measured: &Track| {
         let name = measured.name();
-        let (cap, rod) = (pressures.cap_pa.track(name)?, pressures.rod_pa.track(name)?);
-        let supply = pressures.supply_pa.as_ref().and_then(|supply| supply.track(name));
-        torque(&arm, measured, cap, rod, supply)
+        let pressure = |role| recording.signal(role, name);
+        let (cap, rod) = (pressure(SignalRole::CapPressure)?, pressure(SignalRole::RodPressure)?);
+        torque(&arm, measured, cap, rod, pressure(SignalRole::SupplyPressure))
     };
-    observed.recording.measured.tracks.iter().filter_map(one).collect()
+    recording.measured.tracks.iter().filter_map(one).collect()
 }
 
 fn torque(
     arm: &Arm,
     measured: &Track,
-    cap: &Track,
-    rod: &Track,
-    supply: Option<&Track>,
+    cap: &Signal,
+    rod: &Signal,
+    supply: Option<&Signal>,
 ) -> Option<JointTorque> {
     let joint = arm.chain.joints().iter().position(|joint| joint.name == measured.name())?;
     let cylinder = (*arm.hydraulics.cylinders().get(joint)?)?;
     let (push_m2, pull_m2) = (cylinder.push_area_m2(), cylinder.pull_area_m2());
-    let supply_pa = supply.map(|track| median(track.position().to_vec()));
+    let supply_pa = supply.map(|signal| median(signal.values().to_vec()));
     let mut made = [Vec::new(), Vec::new()];
     let mut available_n_m = [f64::INFINITY; 2];
     for (&t_s, &angle_rad) in measured.t_s().iter().zip(measured.position()) {
-        let (Some(cap), Some(rod)) = (cap.at(t_s), rod.at(t_s)) else { continue };
+        let (Some(cap_pa), Some(rod_pa)) = (cap.at(t_s), rod.at(t_s)) else { continue };
         let (sin, cos) = angle_rad.sin_cos();
         let (_, lever_m) = cylinder.length_and_lever(sin, cos);
-        let torque_n_m = (cap.position * push_m2 - rod.position * pull_m2) * lever_m;
+        let torque_n_m = (cap_pa * push_m2 - rod_pa * pull_m2) * lever_m;
         for (made, way) in made.iter_mut().zip([1.0, -1.0]) {
             made.push((way * torque_n_m).max(0.0));
         }
@@ -84,6 +86,7 @@ fn torque(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::series::Quantity;
 
     #[test]
     fn a_cylinder_that_holds_a_load_made_the_torque_of_its_pressures_and_could_make_that_of_the_supply() {
@@ -91,8 +94,10 @@ mod tests {
         let name = arm.chain.joints()[0].name.clone();
         let cylinder = arm.hydraulics.cylinders()[0].unwrap();
         let t_s = vec![0.0, 1.0, 2.0];
-        let track = |value: f64| Track::new(name.clone(), t_s.clone(), vec![value; 3], &[]).unwrap();
-        let found = torque(&arm, &track(0.9), &track(5e6), &track(1e6), Some(&track(14e6))).unwrap();
+        let track = Track::new(name.clone(), t_s.clone(), vec![0.9; 3], &[]).unwrap();
+        let pressure =
+            |pa: f64| Signal::new(&name, Quantity::Pressure, t_s.clone(), vec![pa; 3], &[]).unwrap();
+        let found = torque(&arm, &track, &pressure(5e6), &pressure(1e6), Some(&pressure(14e6))).unwrap();
         let (sin, cos) = 0.9_f64.sin_cos();
         let lever_m = cylinder.length_and_lever(sin, cos).1;
         let made = (5e6 * cylinder.push_area_m2() - 1e6 * cylinder.pull_area_m2()) * lever_m;

@@ -1,8 +1,12 @@
 //! `import`: a CSV file becomes a log.
 
+mod document;
+
 use std::path::PathBuf;
 
 use thiserror::Error;
+
+pub use document::ImportDocument;
 
 use crate::{
     atomic_file::{AtomicError, write_atomically},
@@ -10,7 +14,7 @@ use crate::{
     remark::Remarks,
 };
 
-/// What to import, how, and to where.
+/// Input, options and output of an import.
 #[derive(Debug, Clone, Default)]
 pub struct Inputs {
     /// The CSV file.
@@ -21,12 +25,12 @@ pub struct Inputs {
     pub output: PathBuf,
 }
 
-/// What came of it.
+/// The result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outputs {
     /// How the file was read.
     pub understood: Understood,
-    /// What was doubtful.
+    /// Doubts about the data.
     pub remarks: Remarks,
 }
 

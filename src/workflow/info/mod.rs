@@ -1,15 +1,19 @@
-//! `info`: what is in a log, what a report would use, and how healthy it is.
+//! `info`: the content of a log, the topics that a report would use, and its damage.
+
+mod document;
 
 use std::path::PathBuf;
 
+pub use document::InfoDocument;
+
 use crate::log::{LogError, ReadOptions, Survey, survey};
 
-/// What to look at.
+/// Input of a survey.
 #[derive(Debug, Clone, Default)]
 pub struct Inputs {
     /// Files or bag directories of one run.
     pub logs: Vec<PathBuf>,
-    /// What to read, where the log alone does not tell.
+    /// Topics, joints, clock and units, where the log alone does not determine them.
     pub read: ReadOptions,
 }
 

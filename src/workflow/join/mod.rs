@@ -1,33 +1,35 @@
-//! `join`: the plan into the log of a run that holds what was sent and what came of it.
+//! `join`: adds the plan to the log of a run that holds command and measurement.
 
+mod document;
 mod place;
 
 use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::{
-    carried::{plan_log::states, stamp::instants},
-    simulate::log::{LEAD_S, TAIL_S},
+pub use document::JoinDocument;
+
+use super::carried::{
+    plan_log::states,
+    rest::{RUN_LEAD_S, RUN_TAIL_S},
+    stamp::instants,
 };
 use crate::{
-    log::{
-        Addition, LogError, PlanSample, ReadOptions, Recording, TimeBase, join, read_measured, read_recording,
-    },
+    log::{Addition, LogError, LogFiles, PlanSample, ReadOptions, Sides, TimeBase},
     remark::{Code, Remarks},
-    series::{Located, Series, SignalError, Track},
+    series::{Located, Series, Track},
     units::{DEGREE_RAD, nanoseconds},
 };
 use place::Plan;
 
-/// What to join, and to where.
+/// Run, plan and output of a join.
 #[derive(Debug, Clone, Default)]
 pub struct Inputs {
     /// Files or bag directories of one run.
     pub logs: Vec<PathBuf>,
     /// The log with the plan, and with the command that was made for it.
     pub plan: PathBuf,
-    /// What to read of the run; its plan is what was sent.
+    /// Topics of the run; its plan is the command.
     pub read: ReadOptions,
     /// When the first sample of the plan was sent, s from the start of the run's log; `None`: found by what
     /// was sent.
@@ -36,14 +38,15 @@ pub struct Inputs {
     pub output: PathBuf,
 }
 
-/// Why nothing was joined.
+/// Why a plan was not joined.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum JoinFailure {
     /// One of the logs.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// Nothing tells when the plan began.
+    /// The log does not hold what was sent, so the start of the plan is unknown.
     #[error(
         "the log of the run does not say what was sent, so that the start of its plan is unknown; name the \
          topic with --planned TOPIC[:FIELD], or the time of the plan's first sample with --at SECONDS"
@@ -55,53 +58,24 @@ pub enum JoinFailure {
          holds less than four fifths of it; --planned names another topic, --at SECONDS the time",
         plan.display()
     )]
-    Nowhere {
-        /// The plan's log.
-        plan: PathBuf,
-        /// What was sent.
-        topic: String,
-    },
+    Nowhere { plan: PathBuf, topic: String },
     /// Something else was sent.
     #[error(
         "what was sent on {topic} is not what {} holds: where it fits best, at {at_s:.2} s, it leaves {:.0} % of \
          the motion (10 % at most); --planned names another topic, --at SECONDS the time",
         plan.display(), 100.0 * share
     )]
-    SentOtherwise {
-        /// The plan's log.
-        plan: PathBuf,
-        /// What was sent.
-        topic: String,
-        /// The best place, s from the start of the run's log.
-        at_s: f64,
-        /// What it leaves, as a share of the motion.
-        share: f64,
-    },
+    SentOtherwise { plan: PathBuf, topic: String, at_s: f64, share: f64 },
     /// A plan that no run is.
     #[error("the plan in {} lasts {duration_s:.0} s, {LONGEST_S} s are the most", plan.display())]
-    TooLong {
-        /// The plan's log.
-        plan: PathBuf,
-        /// From its first to its last sample.
-        duration_s: f64,
-    },
+    TooLong { plan: PathBuf, duration_s: f64 },
     /// A time outside the run.
     #[error("--at {at_s} puts the plan at {at_s:.2} to {:.2} s, outside the measurement, {:.2} to {:.2} s",
         at_s + duration_s, measured_s[0], measured_s[1])]
-    Outside {
-        /// The time that was given.
-        at_s: f64,
-        /// How long the plan is.
-        duration_s: f64,
-        /// First and last measurement.
-        measured_s: [f64; 2],
-    },
-    /// Times that make no track.
-    #[error("the times of the command do not fit those of the plan")]
-    Track(#[from] SignalError),
+    Outside { at_s: f64, duration_s: f64, measured_s: [f64; 2] },
 }
 
-/// What was found, and what the new log holds.
+/// Where the plan was found, and the content of the new log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joined {
     /// Topic and field of what was sent, unless the caller gave the time alone.
@@ -122,7 +96,7 @@ pub struct Joined {
     pub messages: u64,
     /// Files that came with the plan.
     pub files: Vec<String>,
-    /// What was doubtful.
+    /// Doubts about the data.
     pub remarks: Remarks,
 }
 
@@ -133,18 +107,25 @@ const RESTS_RAD: f64 = 0.05 * DEGREE_RAD;
 /// Samples a second of the plan in the new log.
 const RATE_HZ: f64 = 100.0;
 
-/// Puts the plan where its command was sent.
+/// Adds the plan at the time at which its command was sent.
 ///
 /// # Errors
 ///
 /// [`JoinFailure`], naming what is missing; nothing is written then.
 pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     let plan = Plan::read(&inputs.plan)?;
-    let run = read_run(inputs)?;
+    let files = LogFiles::open(&inputs.logs)?;
+    let log = files.scan()?;
+    // The measurement is enough if the caller says when the plan began.
+    let sides = if inputs.at_s.is_some() { Sides::MeasurementAtLeast } else { Sides::Both };
+    let run = log.read(&ReadOptions { sides, ..inputs.read.clone() }).map_err(|error| match error {
+        LogError::Missing { missing: "planned", .. } => JoinFailure::NothingSent(error),
+        other => other.into(),
+    })?;
     // A run that was read without a plan has none.
     let sent = (!run.planned.tracks.is_empty()).then_some(&run.planned);
     let topic = format!("{}:{}", run.source.planned_topic, run.source.planned_field);
-    // That the log holds no plan is why it is joined.
+    // A missing plan is the reason for the join, no doubt.
     let mut remarks = run.remarks.clone().without(Code::PlanIsCommand);
     let [from_s, to_s] = plan.span_s();
     if to_s - from_s > LONGEST_S {
@@ -165,12 +146,12 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     }
     let rest_s = match sent {
         Some(sent) => [
-            rest_s(sent, start_s, -1.0, LEAD_S.min(start_s - measured_s[0])),
-            rest_s(sent, end_s, 1.0, TAIL_S.min(measured_s[1] - end_s)),
+            rest_s(sent, start_s, -1.0, RUN_LEAD_S.min(start_s - measured_s[0])),
+            rest_s(sent, end_s, 1.0, RUN_TAIL_S.min(measured_s[1] - end_s)),
         ],
         None => [0.0; 2],
     };
-    // As logged where that is not what was made, else as made: the log may have it more coarsely.
+    // As logged if it differs from the made one, else as made: the log may be coarser.
     let otherwise = located.is_some_and(|found| !place::is_same(&found));
     let command = match (commanded, &plan.command, sent) {
         (_, _, Some(sent)) if otherwise => (sent, 0.0),
@@ -199,7 +180,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         files: carried.files(),
         metadata: carried.metadata(),
     };
-    let messages = join(&inputs.logs, &addition, &inputs.output)?;
+    let messages = log.join(&addition, &inputs.output)?;
     Ok(Joined {
         sent: located.map(|_| topic),
         commanded,
@@ -214,21 +195,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     })
 }
 
-/// What was sent and measured; measured alone where the caller says when the plan began.
-fn read_run(inputs: &Inputs) -> Result<Recording, JoinFailure> {
-    match (read_recording(&inputs.logs, &inputs.read), inputs.at_s) {
-        (Ok(run), _) => Ok(run),
-        (Err(LogError::Missing { missing: "planned", .. }), Some(_)) => {
-            Ok(read_measured(&inputs.logs, &inputs.read)?)
-        }
-        (Err(error @ LogError::Missing { missing: "planned", .. }), None) => {
-            Err(JoinFailure::NothingSent(error))
-        }
-        (Err(error), _) => Err(error.into()),
-    }
-}
-
-/// How long what is sent stays where it is at an instant, before or after it, s.
+/// How long the command rests before or after an instant, s.
 fn rest_s(sent: &Series, at_s: f64, direction: f64, most_s: f64) -> f64 {
     let rests = |away_s: &f64| {
         sent.tracks.iter().all(|track| {

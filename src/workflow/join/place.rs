@@ -4,15 +4,15 @@ use std::path::Path;
 
 use super::JoinFailure;
 use crate::{
-    log::{LogError, ReadOptions, Selector, Topics, read_plan},
+    log::{ReadOptions, SignalRole, WantedSignal, read_plan},
     remark::{Code, Remarks},
     series::{Located, Series, locate},
-    workflow::{carried::Carried, fit::observe::on_origin},
+    workflow::carried::Carried,
 };
 
-/// What is left of a motion at most for a place to be its own, as a share.
+/// Largest difference, as a share of the motion, at which a place is taken to be that of the plan.
 const FITS: f64 = 0.1;
-/// The same for what was sent to be what was made.
+/// Largest difference, as a share, at which the sent signal is taken to be the planned one.
 const SAME: f64 = 0.01;
 
 /// A plan and its command, on the plan's clock.
@@ -26,16 +26,11 @@ pub(super) struct Plan {
 
 impl Plan {
     pub(super) fn read(path: &Path) -> Result<Self, JoinFailure> {
-        let paths = [path.to_owned()];
-        let plan = read_plan(&paths, &ReadOptions::default())?;
-        let topic = Selector { topic: Topics::default().command, field: None };
-        let command = match read_plan(&paths, &ReadOptions { planned: vec![topic], ..ReadOptions::default() })
-        {
-            Ok(command) => Some(on_origin(&command, plan.source.epoch_ns)?),
-            Err(LogError::NoTopic { .. }) => None,
-            Err(error) => return Err(error.into()),
-        };
-        Ok(Self { command, carried: Carried::of(&plan).of_plan(), planned: plan.planned })
+        let signals = vec![WantedSignal::usual(SignalRole::Command)];
+        let plan = read_plan(&[path.to_owned()], &ReadOptions { signals, ..ReadOptions::default() })?;
+        let carried = Carried::of(&plan).of_plan();
+        let command = plan.command.map(|command| command.series);
+        Ok(Self { command, carried, planned: plan.planned })
     }
 
     /// First and last sample, s.
@@ -80,12 +75,12 @@ impl Plan {
     }
 }
 
-/// Whether what was sent is what was made.
+/// Whether the sent signal is the planned one.
 pub(super) fn is_same(found: &Located) -> bool {
     share(found) <= SAME
 }
 
-/// What is left of the motion, as a share.
+/// Difference as a share of the motion.
 fn share(found: &Located) -> f64 {
     found.rms_rad / found.spread_rad
 }

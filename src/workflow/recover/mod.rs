@@ -1,10 +1,14 @@
-//! `recover`: everything of a damaged log that is whole, as a sound log.
+//! `recover`: a sound log of all whole messages of a damaged one.
+
+mod document;
 
 use std::path::PathBuf;
 
+pub use document::RecoverDocument;
+
 use crate::log::{LogError, Recovered, recover};
 
-/// What to recover, and to where.
+/// Input and output of a recovery.
 #[derive(Debug, Clone)]
 pub struct Inputs {
     /// The damaged log.

@@ -2,15 +2,19 @@
 
 use std::path::Path;
 
-use super::{
-    Inputs, ReplanFailure,
-    samples::{LEAD_S, TAIL_S, cut},
-};
+use super::{Inputs, ReplanFailure, samples::cut};
 use crate::{
+    log::Recording,
     series::{Series, Track},
     spline::Motion,
     units::DEGREE_RAD,
-    workflow::{carried::Carried, fit::observe::Observed, plan::PlanRequest},
+    workflow::{
+        carried::{
+            Carried,
+            rest::{PLAN_LEAD_S, PLAN_TAIL_S},
+        },
+        plan::PlanRequest,
+    },
 };
 
 /// Planned speed that is motion, rad/s.
@@ -18,7 +22,7 @@ const MOVES_RAD_S: f64 = 0.05 * DEGREE_RAD;
 
 /// The last run's plan.
 pub(super) struct Last {
-    /// Samples, from [`LEAD_S`] before the first motion on.
+    /// Samples, from [`PLAN_LEAD_S`] before the first motion on.
     pub(super) plan: Series,
     /// When the times of the task's plan count from, s.
     pub(super) starts_s: Option<f64>,
@@ -35,12 +39,12 @@ pub(super) struct Last {
 }
 
 impl Last {
-    pub(super) fn of(path: &Path, observed: &Observed, inputs: &Inputs) -> Result<Self, ReplanFailure> {
-        let planned = &observed.recording.planned;
+    pub(super) fn of(path: &Path, recording: &Recording, inputs: &Inputs) -> Result<Self, ReplanFailure> {
+        let planned = &recording.planned;
         let [from_s, to_s] =
             moving_s(planned).ok_or_else(|| ReplanFailure::AtRest { path: path.to_owned() })?;
-        let plan = cut(planned, from_s - LEAD_S, to_s + TAIL_S)?;
-        let carried = Carried::of(&observed.recording).of_plan();
+        let plan = cut(planned, from_s - PLAN_LEAD_S, to_s + PLAN_TAIL_S)?;
+        let carried = Carried::of(recording).of_plan();
         let request = match (&inputs.task, carried.task()) {
             (Some(task), _) => Some(PlanRequest::read(task)?),
             (None, Some(text)) => Some(PlanRequest::parse(path, text)?),
@@ -54,11 +58,11 @@ impl Last {
             .filter(|times_s| request.as_ref().is_some_and(|request| request.setup.motion(times_s).is_ok()));
         Ok(Self {
             plan,
-            starts_s: carried.starts_s().map(|s| s - (from_s - LEAD_S)),
+            starts_s: carried.starts_s().map(|s| s - (from_s - PLAN_LEAD_S)),
             duration_s: to_s - from_s,
             request,
             times_s,
-            trajectory: trajectory_topic(&observed.recording.source.planned_topic),
+            trajectory: trajectory_topic(&recording.source.planned_topic),
             carried,
         })
     }

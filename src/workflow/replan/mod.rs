@@ -20,14 +20,11 @@ pub use failure::ReplanFailure;
 pub use limits::{HeldTo, Origin};
 pub use outcome::{Before, Replanned, Search};
 pub use predicted::{Predicted, PredictedTransition, predicted};
-pub use samples::{LEAD_S, TAIL_S};
 
-use super::{
-    fit::observe::{Observed, Wanted},
-    fit::{self, LimitsFile},
-};
+use super::fit::{self, LimitsFile};
 use crate::{
     fit::{Compensation, Fit, JointFit},
+    log::{ReadOptions, Recording},
     plan::{PlanEvaluation, Setup},
     remark::{Code, Remarks},
     replay::Rules,
@@ -43,7 +40,7 @@ pub struct Inputs {
     /// Runs, each a file or a bag directory; the plan is that of the last.
     pub logs: Vec<PathBuf>,
     /// What to read of each.
-    pub wanted: Wanted,
+    pub read: ReadOptions,
     /// A file with limits in place of a fit to the runs.
     pub limits: Option<PathBuf>,
     /// The task in place of that in the last log.
@@ -70,7 +67,7 @@ impl Default for Inputs {
     fn default() -> Self {
         Self {
             logs: Vec::new(),
-            wanted: Wanted::default(),
+            read: ReadOptions::default(),
             limits: None,
             task: None,
             keep_plan: false,
@@ -88,8 +85,7 @@ impl Default for Inputs {
 /// Timings of the search that are looked at with their commands.
 const CANDIDATES: usize = 6;
 
-/// A new timing must be expected to lower the sum of all peaks by this share: less is no reason to run
-/// what has not been run.
+/// A new timing must be expected to lower the sum of all peaks by this share; otherwise the proven one stays.
 const WORTH: f64 = 0.02;
 
 /// Plans again.
@@ -105,7 +101,7 @@ pub fn run(
     if inputs.keep_plan && !inputs.precompensate {
         return Err(ReplanFailure::NothingToChange);
     }
-    let observed = fit::observed(&inputs.logs, &inputs.wanted).map_err(fit::FitFailure::from)?;
+    let observed = fit::observed(&inputs.logs, &inputs.read).map_err(fit::FitFailure::from)?;
     let (fit, fitted_to, mut remarks) = machine(inputs, &observed)?;
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
     let last = Last::of(path, newest, inputs)?;
@@ -147,10 +143,10 @@ pub fn run(
 }
 
 /// The machine: fitted, or from a file; with the names of the logs behind it.
-fn machine(inputs: &Inputs, observed: &[Observed]) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
+fn machine(inputs: &Inputs, observed: &[Recording]) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
     if let Some(path) = &inputs.limits {
         let file = LimitsFile::read(path)?;
-        let joints = observed.iter().flat_map(|run| &run.recording.measured.tracks).map(Track::name);
+        let joints = observed.iter().flat_map(|run| &run.measured.tracks).map(Track::name);
         file.check_joints(path, joints)?;
         return Ok((file.fit, file.logs, Remarks::default()));
     }

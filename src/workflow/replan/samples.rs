@@ -4,12 +4,8 @@ use crate::{
     plan::Setup,
     series::{Series, SignalError, Track},
     spline::{Motion, Quantity, Samples},
+    workflow::carried::rest::{PLAN_LEAD_S, PLAN_TAIL_S},
 };
-
-/// Rest before the plan, s: commands start before their plan.
-pub const LEAD_S: f64 = 1.5;
-/// Rest after the last motion, s.
-pub const TAIL_S: f64 = 1.0;
 
 /// A stretch of a series every [`STEP_S`](crate::fit::STEP_S), its times counted from its start; beyond its ends joints rest.
 pub(super) fn cut(series: &Series, from_s: f64, to_s: f64) -> Result<Series, SignalError> {
@@ -38,8 +34,8 @@ fn grid(duration_s: f64) -> Vec<f64> {
 /// A motion by samples, with rests before and after.
 pub(super) fn sampled(setup: &Setup, motion: &Motion) -> Result<Series, SignalError> {
     let duration_s = motion.duration_s();
-    let t_s = grid(duration_s + LEAD_S + TAIL_S);
-    let local_s: Vec<f64> = t_s.iter().map(|t| t - LEAD_S).collect();
+    let t_s = grid(duration_s + PLAN_LEAD_S + PLAN_TAIL_S);
+    let local_s: Vec<f64> = t_s.iter().map(|t| t - PLAN_LEAD_S).collect();
     let mut samples = Samples::default();
     motion.sample(&local_s, Quantity::Velocity, &mut samples);
     let inside = |(v, t): (&f64, &f64)| if (0.0..=duration_s).contains(t) { *v } else { 0.0 };

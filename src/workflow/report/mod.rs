@@ -57,12 +57,9 @@ pub fn report(recording: Recording, inputs: &Inputs) -> Result<Report, LogError>
     let mut remarks = recording.remarks.clone();
     let Analysis { alignment, pairs, replay } = analyse(&recording, &inputs.rules, &mut remarks);
     if pairs.is_empty() {
-        let span_s =
-            |series: &crate::series::Series| series.span_s().unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
-        return Err(LogError::NoOverlap {
-            planned_s: span_s(&recording.planned),
-            measured_s: span_s(&recording.measured),
-        });
+        let sides = [&recording.planned, &recording.measured];
+        let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
+        return Err(LogError::NoOverlap { planned_s, measured_s });
     }
     let gates = inputs.gates.judge(&replay);
     let front = front(&carried, &mut remarks);

@@ -8,23 +8,21 @@ use std::{
 use thiserror::Error;
 
 use super::super::{
-    carried::Carried,
+    carried::{
+        Carried,
+        rest::{RUN_LEAD_S, RUN_TAIL_S},
+    },
     plan::{PlanFailure, arm_of},
     simulate::{Content, Inputs, Outputs, run},
 };
 use crate::{
     arm::Arm,
-    log::{LogError, ReadOptions, Selector, Topics, WriteError, WriteOptions, read_plan},
+    log::{LogError, ReadOptions, SignalRole, WantedSignal, WriteError, WriteOptions, read_plan},
     plan::{PlanError, Setup},
     plant::{Parameters, PayloadChange, Plant, PlantError},
     series::{Series, SignalError, Track},
     task::{Task, TaskError},
 };
-
-/// How long the machine stands before the plan starts, s: a start from rest needs a rest.
-pub const LEAD_S: f64 = 2.0;
-/// How long it is watched after the plan's end, s.
-pub const TAIL_S: f64 = 3.0;
 
 /// Why nothing was simulated.
 #[derive(Debug, Error)]
@@ -34,7 +32,7 @@ pub enum SimulateFailure {
     #[error(transparent)]
     Log(#[from] LogError),
     /// The task within the log.
-    #[error("the task in {} is none", path.display())]
+    #[error("{} holds a broken task", path.display())]
     Task {
         /// The log.
         path: PathBuf,
@@ -137,12 +135,10 @@ impl Prepared {
 ///
 /// As [`simulate`].
 pub fn prepare(path: &Path, parameters: Parameters, seed: u64) -> Result<Prepared, SimulateFailure> {
-    let paths = [path.to_owned()];
-    let plan = read_plan(&paths, &ReadOptions::default())?;
-    let topic = Selector { topic: Topics::default().command, field: None };
-    let command = read_plan(&paths, &ReadOptions { planned: vec![topic], ..ReadOptions::default() }).ok();
+    let signals = vec![WantedSignal::usual(SignalRole::Command)];
+    let plan = read_plan(&[path.to_owned()], &ReadOptions { signals, ..ReadOptions::default() })?;
     let carried = Carried::of(&plan);
-    let starts_s = LEAD_S + carried.starts_s().unwrap_or(0.0);
+    let starts_s = RUN_LEAD_S + carried.starts_s().unwrap_or(0.0);
     let carried = carried.with_provenance(BTreeMap::new()).with_starts_s(starts_s);
     let folder = path.parent().unwrap_or(Path::new(""));
     let (arm, payload) = match carried.task_or_arm() {
@@ -157,8 +153,9 @@ pub fn prepare(path: &Path, parameters: Parameters, seed: u64) -> Result<Prepare
         }
     };
     let planned = with_rests(&plan.planned)?;
-    let commanded = command.is_some();
-    let command = command.map_or(Ok(planned.clone()), |command| with_rests(&command.planned))?;
+    let commanded = plan.command.is_some();
+    let command = plan.command.as_ref();
+    let command = command.map_or(Ok(planned.clone()), |command| with_rests(&command.series))?;
     let plant = Plant::new(&arm, parameters)?;
     let inputs = Inputs { plant, plan: planned, command, payload, seed };
     Ok(Prepared { inputs, carried, commanded, arm })
@@ -176,7 +173,7 @@ fn sample_arm(path: &Path, planned: &Series) -> Result<Arm, SimulateFailure> {
     Err(SimulateFailure::NoArm { path: path.to_owned(), found, sample })
 }
 
-/// What the tool carries, and from when on, rests counted.
+/// Payloads with their times, rests counted.
 fn payload(task: &Task, arm: Arm, times_s: &[f64], starts_s: f64) -> Result<Vec<PayloadChange>, PlanError> {
     let setup = Setup::new(task, arm)?;
     let motion = setup.motion(times_s)?;
@@ -198,10 +195,10 @@ fn with_rests(series: &Series) -> Result<Series, SignalError> {
     let tracks = series.tracks.iter().map(|track| {
         let step_s = track.sample_interval_s().clamp(1e-3, 0.1);
         let mut t_s = vec![0.0];
-        t_s.extend(track.t_s().iter().map(|t_s| LEAD_S + t_s - first_s(track)));
-        t_s.push(LEAD_S + end_s + step_s);
-        t_s.push(LEAD_S + end_s + TAIL_S);
-        let states: Vec<_> = t_s.iter().map(|t| track.held_at(t - LEAD_S + first_s(track))).collect();
+        t_s.extend(track.t_s().iter().map(|t_s| RUN_LEAD_S + t_s - first_s(track)));
+        t_s.push(RUN_LEAD_S + end_s + step_s);
+        t_s.push(RUN_LEAD_S + end_s + RUN_TAIL_S);
+        let states: Vec<_> = t_s.iter().map(|t| track.held_at(t - RUN_LEAD_S + first_s(track))).collect();
         let position_rad = states.iter().map(|state| state.position).collect();
         let velocity_rad_s = states.iter().map(|state| state.velocity).collect();
         Track::new(track.name().to_owned(), t_s, position_rad, &[])?.with_velocity(velocity_rad_s)

@@ -7,7 +7,7 @@ use nalgebra::{Vector2, Vector3};
 use super::{ViewFailure, mesh::Places};
 use crate::{
     arm::{Arm, Chain, Mesh, Pose, Shape},
-    log::{LogError, Recording, read_description},
+    log::Recording,
     remark::Code,
     series::{Series, Track},
     workflow::carried::Carried,
@@ -25,7 +25,7 @@ pub struct MovingArm {
     pub source: ArmOrigin,
     /// Names of its links, the base first.
     pub links: Vec<String>,
-    /// What is seen of it but for its meshes.
+    /// Its shapes but for meshes.
     pub shapes: Vec<Shape>,
     /// Its meshes that are at hand, and their files.
     pub meshes: Vec<(Mesh, PathBuf)>,
@@ -33,7 +33,7 @@ pub struct MovingArm {
     pub reach_m: f64,
     /// By the plan.
     pub planned: Poses,
-    /// By the measurement; without instants of a plan that nobody ran.
+    /// By the measurement; without instants for a plan that was not run.
     pub measured: Poses,
 }
 
@@ -51,7 +51,7 @@ pub enum ArmOrigin {
 }
 
 impl MovingArm {
-    /// From where all of the arm and of its tool's way is seen best; `None` of an arm that is nowhere.
+    /// The view point that shows the arm and its tool's path best; `None` without poses.
     ///
     /// From the side of the way that the tool is on, and a little from above.
     pub fn sight(&self) -> Option<Sight> {
@@ -82,13 +82,13 @@ impl MovingArm {
 pub struct Sight {
     /// The eye.
     pub from_m: [f64; 3],
-    /// What is in the middle.
+    /// The middle of the picture.
     pub to_m: [f64; 3],
 }
 
-/// Distance of the eye by the diagonal of what is to be seen.
+/// Distance of the eye by the diagonal of the scene.
 const FAR: f64 = 1.0;
-/// Least diagonal of what is to be seen by the arm's reach.
+/// Least diagonal of the scene by the arm's reach.
 const MARGIN: f64 = 0.3;
 
 /// Poses of all links in the base's frame.
@@ -100,14 +100,13 @@ pub struct Poses {
     pub poses: Vec<Vec<Pose>>,
 }
 
-/// The arm of a log, by the description that is given with its file, else as the log tells; `None` if nothing
-/// tells.
+/// The arm of a log, by the given description with its file, else by the log; `None` if there is neither.
 ///
 /// # Errors
 ///
-/// [`ViewFailure`] if the log cannot be read, or the description is of no arm of its joints.
+/// [`ViewFailure`] if the description is of no arm of its joints.
 pub(super) fn find(
-    paths: &[PathBuf],
+    log: &Path,
     recording: &mut Recording,
     given: Option<(&Path, &str)>,
     packages: &[PathBuf],
@@ -122,15 +121,15 @@ pub(super) fn find(
             })?;
             (Some(FoundArm { origin: ArmOrigin::File, chain, still }), file.parent().unwrap_or(Path::new("")))
         }
-        None => (found(paths, recording)?, folder_of(paths)),
+        None => (found(log, recording), folder_of(log)),
     };
     // Packages are looked for around the folder, so it must have a place.
     let folder = Path::new(".").join(folder).canonicalize().unwrap_or_default();
     Ok(arm.map(|arm| moving(arm, recording, Places { folder: &folder, packages })))
 }
 
-fn folder_of(paths: &[PathBuf]) -> &Path {
-    paths.first().and_then(|path| path.parent()).unwrap_or(Path::new(""))
+fn folder_of(log: &Path) -> &Path {
+    log.parent().unwrap_or(Path::new(""))
 }
 
 struct FoundArm {
@@ -142,24 +141,24 @@ struct FoundArm {
 
 /// The first arm of joints in the log: that of the log, of its task, of the samples. Only of the log's own
 /// may joints be missing.
-fn found(paths: &[PathBuf], recording: &Recording) -> Result<Option<FoundArm>, LogError> {
+fn found(log: &Path, recording: &Recording) -> Option<FoundArm> {
     let whole =
         |chain: &Chain| chain.joints().iter().all(|joint| recording.planned.track(&joint.name).is_some());
     let names: Vec<&str> = recording.planned.tracks.iter().map(Track::name).collect();
-    let described = read_description(paths)?;
     let own = || {
-        let (chain, still) = Chain::of_joints(described.as_deref()?, "robot_description", &names).ok()?;
+        let (chain, still) =
+            Chain::of_joints(recording.description.as_deref()?, "robot_description", &names).ok()?;
         Some(FoundArm { origin: ArmOrigin::Log, chain, still })
     };
     let tasks = || {
-        let chain = Carried::of(recording).arm(folder_of(paths))?.ok()?.chain;
+        let chain = Carried::of(recording).arm(folder_of(log))?.ok()?.chain;
         whole(&chain).then_some(FoundArm { origin: ArmOrigin::Task, chain, still: Vec::new() })
     };
     let sample = || {
         let chain = Arm::sample().ok()?.chain;
         whole(&chain).then_some(FoundArm { origin: ArmOrigin::Sample, chain, still: Vec::new() })
     };
-    Ok(own().or_else(tasks).or_else(sample))
+    own().or_else(tasks).or_else(sample)
 }
 
 fn moving(arm: FoundArm, recording: &mut Recording, places: Places<'_>) -> MovingArm {

@@ -1,4 +1,4 @@
-//! `view`: from the logs of runs to what is to be seen of them: arms that move, series, events, fronts.
+//! `view`: from the logs of runs to scenes: moving arms, series, events, fronts.
 
 mod arm;
 mod mesh;
@@ -19,18 +19,18 @@ use super::{
 };
 use crate::{
     arm::ArmError,
-    log::{LogError, ReadOptions, Recording, read_plan, read_recording},
+    log::{LogError, ReadOptions, Recording, Sides, read_recording},
     remark::Remarks,
     replay::{Rules, Transition},
     series::{Pair, Series},
 };
 
-/// What to show.
+/// Input of a view.
 #[derive(Debug, Clone, Default)]
 pub struct Inputs {
     /// Runs or plans, each a file or a bag directory.
     pub logs: Vec<PathBuf>,
-    /// What to read, where a log alone does not tell.
+    /// Topics, joints, clock and units, where a log alone does not determine them.
     pub read: ReadOptions,
     /// Thresholds of transitions.
     pub rules: Rules,
@@ -40,29 +40,20 @@ pub struct Inputs {
     pub packages: Vec<PathBuf>,
 }
 
-/// Why there is nothing to show.
+/// Why a view cannot be made.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ViewFailure {
     /// A log cannot be read or holds no planned joints.
     #[error(transparent)]
     Log(#[from] LogError),
     /// A description cannot be read.
     #[error("cannot read {}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     /// A description is of no arm of these joints.
     #[error("the joints {} of the log turn no arm of the description", joints.join(", "))]
-    Arm {
-        /// Joints of the log.
-        joints: Vec<String>,
-        /// What is wrong with the description.
-        source: ArmError,
-    },
+    Arm { joints: Vec<String>, source: ArmError },
 }
 
 /// One run or plan.
@@ -72,7 +63,7 @@ pub struct Scene {
     pub name: String,
     /// The plan.
     pub planned: Series,
-    /// The measurement; empty of a plan that nobody ran.
+    /// The measurement; empty for a plan that was not run.
     pub measured: Series,
     /// Plan and measurement where both exist, by joint.
     pub pairs: Vec<Pair>,
@@ -82,7 +73,7 @@ pub struct Scene {
     pub arm: Option<MovingArm>,
     /// Plans to choose from, if the log holds them.
     pub front: Option<PlanDocument>,
-    /// What was doubtful.
+    /// Doubts about the data.
     pub remarks: Remarks,
 }
 
@@ -116,14 +107,12 @@ fn scene(
     given: Option<(&Path, &str)>,
 ) -> Result<Scene, ViewFailure> {
     let paths = [path.to_owned()];
-    let mut recording = match read_recording(&paths, &inputs.read) {
-        // A plan that nobody ran yet.
-        Err(LogError::Missing { missing: "measured", .. }) => read_plan(&paths, &inputs.read)?,
-        other => other?,
-    };
+    // A plan that nobody ran yet has no measurement.
+    let read = ReadOptions { sides: Sides::PlanAtLeast, ..inputs.read.clone() };
+    let mut recording = read_recording(&paths, &read)?;
     let mut remarks = recording.remarks.clone();
     let Analysis { pairs, replay, .. } = analyse(&recording, &inputs.rules, &mut remarks);
-    let arm = arm::find(&paths, &mut recording, given, &inputs.packages)?;
+    let arm = arm::find(path, &mut recording, given, &inputs.packages)?;
     let front = Carried::of(&recording).plan().and_then(Result::ok);
     let Recording { planned, measured, .. } = recording;
     Ok(Scene { name, planned, measured, pairs, transitions: replay.transitions, arm, front, remarks })

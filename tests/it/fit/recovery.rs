@@ -3,7 +3,7 @@
 use hydrotrace::{
     fit::{Excitation, Observation, fit},
     plant::{JointRecord, Plant, simulate},
-    series::{Series, Track},
+    series::{Quantity, Signal},
     units::DEGREE_RAD,
 };
 
@@ -46,10 +46,11 @@ fn signals_to_the_valves_show_the_dead_band_of_each_direction() {
     let job = task(1);
     let record = simulate(&plant, &job.plan, &job.payload, 1).unwrap();
     let signals = |joint: &JointRecord| {
-        Track::new(&joint.name, record.t_s.clone(), joint.valve_command.clone(), &[]).unwrap()
+        let values = joint.valve_command.clone();
+        Signal::new(&joint.name, Quantity::Share, record.t_s.clone(), values, &[]).unwrap()
     };
-    let valve = Series { tracks: record.joints.iter().map(signals).collect() };
-    let log = Observation { sent: &job.plan, measured: &measured(&record), valve: Some(&valve) };
+    let valve: Vec<Signal> = record.joints.iter().map(signals).collect();
+    let log = Observation { sent: &job.plan, measured: &measured(&record), valve: &valve };
     let fit = fit(&[log]).unwrap();
     let truth = plant.truth(&HOME_DEG.map(|q| q * DEGREE_RAD), 0.0).unwrap();
     let mut found = 0;

@@ -81,7 +81,7 @@ pub(crate) fn measured(record: &Record) -> Series {
 /// A fit to what came of what was sent.
 pub(crate) fn fitted(logs: &[(&Series, &Series)]) -> Fit {
     let logs: Vec<Observation> =
-        logs.iter().map(|(sent, measured)| Observation { sent, measured, valve: None }).collect();
+        logs.iter().map(|(sent, measured)| Observation { sent, measured, valve: &[] }).collect();
     fit(&logs).unwrap()
 }
 

@@ -16,9 +16,10 @@ use hydrotrace::{
         carried::{
             Carried,
             plan_log::{PlanLog, Planned},
+            rest::RUN_LEAD_S,
         },
         plan::{PlanDocument, PlanRequest},
-        simulate::log::{LEAD_S, Prepared, prepare},
+        simulate::log::{Prepared, prepare},
         simulate::{Content, Inputs, Outputs, run},
     },
 };
@@ -133,7 +134,7 @@ fn identification() -> Result<PlantLog, Box<dyn Error>> {
             range_rad: [joint.limit.lower_rad, joint.limit.upper_rad],
         })
         .collect();
-    let plan = excite(&joints, &Excitation { rest_s: LEAD_S, ..Excitation::minimal() })?;
+    let plan = excite(&joints, &Excitation { rest_s: RUN_LEAD_S, ..Excitation::minimal() })?;
     let (plant, command, seed) = (Plant::preset(PRESET)?, plan.clone(), 13);
     let outputs = run(&Inputs { plant, plan, command, payload: Vec::new(), seed })?;
     written(IDENTIFICATION_RUN, seed, outputs, &Carried::default().with_starts_s(0.0), Content::Joints)
@@ -146,7 +147,7 @@ fn precompensated(again: Prepared, before: &PlantLog) -> Result<PlantLog, Box<dy
         |joint: &JointRecord| Track::new(&joint.name, record.t_s.clone(), joint.measured_rad.clone(), &[]);
     let measured = Series { tracks: record.joints.iter().map(track).collect::<Result<_, _>>()? };
     let plan = &again.inputs.plan;
-    let fit = fit(&[Observation { sent: plan, measured: &measured, valve: None }])?;
+    let fit = fit(&[Observation { sent: plan, measured: &measured, valve: &[] }])?;
     let command = compensate(&fit, plan, Compensation::default())?.command;
     let seed = 14;
     let outputs = run(&Inputs { command, seed, ..again.inputs })?;

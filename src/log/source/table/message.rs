@@ -6,7 +6,7 @@ use crate::log::{
     source::slot,
 };
 
-/// The message being read: nothing of it counts before it is complete.
+/// The message being read; its values count once it is complete.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Message {
     pub(super) second: f64,
@@ -24,7 +24,7 @@ pub(super) struct Message {
     pub(super) interface_places: Vec<Option<usize>>,
 }
 
-/// What a message says its joints are.
+/// The joints that a message names.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) enum Names {
     #[default]
@@ -40,7 +40,7 @@ impl Message {
         self.values.iter().map(Vec::len).max().unwrap_or(0)
     }
 
-    /// Fills up what the last groups lack: names and numbers are optional there.
+    /// Fills up missing names and numbers of the last groups: they are optional there.
     pub(super) fn close_groups(&mut self) {
         if self.groups == 0 {
             return;

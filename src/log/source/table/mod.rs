@@ -47,7 +47,7 @@ pub(in crate::log) struct Table {
 /// No arm has more; a topic that names more is not about joints.
 pub(in crate::log) const MAX_JOINTS: usize = 512;
 
-/// What the last message said of its joints.
+/// The joints of the last message.
 #[derive(Debug, Clone, Default, PartialEq)]
 struct Layout {
     names: Vec<String>,

@@ -1,5 +1,7 @@
 //! When messages were sampled, published and received.
 
+use crate::{log::options::TimeBase, math::median};
+
 /// The three clocks of every message of a topic, in the order of the file.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[expect(clippy::struct_field_names, reason = "units are in names")]
@@ -11,6 +13,32 @@ pub(in crate::log) struct Stamps {
 }
 
 impl Stamps {
+    /// The readings of one clock.
+    pub(in crate::log) fn of(&self, base: TimeBase) -> &[i64] {
+        match base {
+            TimeBase::Header => &self.header_ns,
+            TimeBase::Publish => &self.publish_ns,
+            TimeBase::Log => &self.log_ns,
+        }
+    }
+
+    /// Whether a clock is set and runs: most readings differ from the one before.
+    pub(in crate::log) fn runs(&self, base: TimeBase) -> bool {
+        let stamp_ns = self.of(base);
+        let set = stamp_ns.iter().filter(|&&ns| ns != 0).count();
+        let steps = stamp_ns.windows(2).filter(|w| w[0] != w[1]).count();
+        2 * set > stamp_ns.len() && 2 * steps >= stamp_ns.len().saturating_sub(1)
+    }
+
+    /// Least, median and largest delay from header stamp to recorder, ns.
+    #[expect(clippy::cast_possible_truncation, reason = "delays of a recording")]
+    pub(in crate::log) fn delays_ns(&self) -> Option<[i64; 3]> {
+        let both = self.log_ns.iter().zip(&self.header_ns).filter(|(_, header)| **header != 0);
+        let delays: Vec<i64> = both.map(|(log, header)| log.saturating_sub(*header)).collect();
+        let middle = median(delays.iter().map(|&ns| ns as f64).collect()) as i64;
+        Some([*delays.iter().min()?, middle, *delays.iter().max()?])
+    }
+
     pub(in crate::log) fn len(&self) -> usize {
         self.log_ns.len()
     }

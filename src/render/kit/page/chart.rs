@@ -153,9 +153,7 @@ impl Panel {
 
 /// Least and largest finite value, apart from each other even where there is only one.
 pub(in crate::render) fn span(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let finite = values.filter(|value| value.is_finite());
-    let [low, high] =
-        finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
+    let [low, high] = crate::math::range(values.filter(|value| value.is_finite()));
     match low.partial_cmp(&high) {
         Some(std::cmp::Ordering::Less) => [low, high],
         Some(std::cmp::Ordering::Equal) => [low - 0.5, high + 0.5],

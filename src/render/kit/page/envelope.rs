@@ -88,11 +88,8 @@ mod tests {
             let kept: Vec<usize> = envelope(&one(values.len()), &[&values], most).into_iter().flatten().collect();
             prop_assert!(kept.windows(2).all(|pair| pair[0] < pair[1]));
             prop_assert!(kept.len() <= most.max(values.len().min(most)) + 2);
-            let range = |values: &mut dyn Iterator<Item = f64>| {
-                values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)])
-            };
-            let all = range(&mut values.iter().copied());
-            let left = range(&mut kept.iter().map(|&i| values[i]));
+            let all = crate::math::range(values.iter().copied());
+            let left = crate::math::range(kept.iter().map(|&i| values[i]));
             prop_assert_eq!(all.map(f64::to_bits), left.map(f64::to_bits));
         }
     }

@@ -1,0 +1,156 @@
+//! Options of reading a log.
+
+use serde::{Deserialize, Serialize};
+
+use super::write::Topics;
+use crate::series::{JointKind, Quantity};
+
+/// Topics, joints, clock and units, where the log alone does not determine them.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// Which of plan and measurement the log must hold.
+    pub sides: Sides,
+    /// Topics of the plan; empty: found by type and name.
+    pub planned: Vec<Selector>,
+    /// Topics of the measurement; empty: found by type and name.
+    pub measured: Vec<Selector>,
+    /// Signals to read beside them, in the same pass.
+    pub signals: Vec<WantedSignal>,
+    /// Joints to read, and names for topics that carry none; empty: all.
+    pub joints: Vec<String>,
+    /// Which clock to use; `None`: the header's where it is usable.
+    pub time_base: Option<TimeBase>,
+    /// Plan and command are in degrees.
+    pub planned_in_degrees: bool,
+    /// The measurement is in degrees.
+    pub measured_in_degrees: bool,
+    /// Joints without end stops, whose angle may wrap by a full turn.
+    pub continuous: Vec<String>,
+}
+
+/// Which of plan and measurement are read; the others are empty.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Sides {
+    /// Both, of joints that they share.
+    #[default]
+    Both,
+    /// The plan.
+    Plan,
+    /// The plan, and the measurement if there is one.
+    PlanAtLeast,
+    /// The measurement, and the plan if there is one.
+    MeasurementAtLeast,
+    /// At least one of them.
+    Any,
+}
+
+/// A signal to read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WantedSignal {
+    /// Which.
+    pub role: SignalRole,
+    /// Where it is; then it must be there. `None`: where our own logs have it, if it is there.
+    pub topic: Option<Selector>,
+}
+
+/// Role of a signal beside plan and measurement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SignalRole {
+    /// The positions that were sent to the controller.
+    Command,
+    /// The signals that were sent to the valves.
+    Valve,
+    /// Pressures on the sides of the cylinders without a rod.
+    CapPressure,
+    /// Pressures on the sides of the rods.
+    RodPressure,
+    /// Pressures before the valves.
+    SupplyPressure,
+    /// Measured torques of joints that turn, forces of joints that slide.
+    Effort,
+}
+
+impl SignalRole {
+    /// The quantity of its values.
+    pub const fn quantity(self, kind: JointKind) -> Quantity {
+        match (self, kind) {
+            (Self::Command, _) => kind.quantity(),
+            (Self::Valve, _) => Quantity::Share,
+            (Self::CapPressure | Self::RodPressure | Self::SupplyPressure, _) => Quantity::Pressure,
+            (Self::Effort, JointKind::Turns) => Quantity::Torque,
+            (Self::Effort, JointKind::Slides) => Quantity::Force,
+        }
+    }
+
+    /// Where our own logs have it.
+    pub(super) fn usual(self) -> Selector {
+        let Topics { command, interfaces, measured, .. } = Topics::default();
+        let (topic, field) = match self {
+            Self::Command => (command, None),
+            Self::Valve => (interfaces, Some("valve_command")),
+            Self::CapPressure => (interfaces, Some("cap_pressure_pa")),
+            Self::RodPressure => (interfaces, Some("rod_pressure_pa")),
+            Self::SupplyPressure => (interfaces, Some("supply_pressure_pa")),
+            Self::Effort => (measured, Some("effort")),
+        };
+        Selector { topic, field: field.map(str::to_owned) }
+    }
+}
+
+impl WantedSignal {
+    /// A signal that is read if it is where our own logs have it.
+    pub const fn usual(role: SignalRole) -> Self {
+        Self { role, topic: None }
+    }
+
+    /// Where to look for it.
+    pub(super) fn selector(&self) -> Selector {
+        self.topic.clone().unwrap_or_else(|| self.role.usual())
+    }
+}
+
+/// Which clock the times of a run come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum TimeBase {
+    /// The stamp in the message: when the sample was taken.
+    Header,
+    /// When the message was published.
+    Publish,
+    /// When the recorder received it.
+    Log,
+}
+
+impl TimeBase {
+    /// The word for it on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Header => "header",
+            Self::Publish => "publish",
+            Self::Log => "log",
+        }
+    }
+}
+
+/// A topic as a caller names it: `TOPIC` or `TOPIC:FIELD`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Selector {
+    /// Topic name.
+    pub topic: String,
+    /// Path of the field within the message, where the topic has several.
+    pub field: Option<String>,
+}
+
+impl Selector {
+    /// Splits at the last colon; topic names have none.
+    pub fn parse(text: &str) -> Self {
+        match text.rsplit_once(':') {
+            Some((topic, field)) if !field.is_empty() => {
+                Self { topic: topic.into(), field: Some(field.into()) }
+            }
+            _ => Self { topic: text.trim_end_matches(':').into(), field: None },
+        }
+    }
+}

@@ -1,0 +1,339 @@
+//! From samples of topics to plan, measurement and other signals on one clock.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{
+    content::{Content, Extracted},
+    description, overlap, quality,
+    recording::{Command, Recording, SourceInfo},
+    samples::{Axis, Reading, Samples, samples},
+    select_topics::{Candidate, Choice, named},
+    time_base::time_base,
+    trajectories,
+};
+use crate::{
+    arm::sliding_joints,
+    log::{
+        error::LogError,
+        options::{ReadOptions, SignalRole, TimeBase, WantedSignal},
+        source::{Role, Stamps},
+    },
+    remark::{Code, Remarks},
+    series::{Clock, JointKind, Series, Signal, Track, continuous_clock},
+    suggest::nearest,
+    units::seconds_since,
+};
+
+pub(super) fn assemble(
+    mut extracted: Extracted,
+    choice: &Choice,
+    options: &ReadOptions,
+) -> Result<Recording, LogError> {
+    let mut remarks = std::mem::take(&mut extracted.remarks);
+    // A side that was not asked for, or need not be there, is no doubt.
+    let alone = (choice.planned.is_empty() || choice.measured.is_empty()).then(|| remarks.clone());
+    let (base, base_why) = time_base(&extracted, choice, options.time_base, &mut remarks)?;
+    overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?;
+    let plan_is_command = remark_choice(choice, options, &mut remarks);
+    let description = description::take(&mut extracted);
+    let sliding = description.as_deref().map(sliding_joints).unwrap_or_default();
+    // Those that are not there, where none was named, are no fault.
+    let beside = options.signals.iter().map(|wanted| match candidate(&extracted, wanted, base) {
+        Err(error) if wanted.topic.is_some() => Err(error),
+        other => Ok(other.ok().map(|candidate| (wanted, candidate))),
+    });
+    let beside: Vec<Option<(&WantedSignal, Candidate)>> = beside.collect::<Result<_, _>>()?;
+    let beside: Vec<(&WantedSignal, Candidate)> = beside.into_iter().flatten().collect();
+
+    let chosen = choice.measured.iter().chain(&choice.planned);
+    let mut assembly = Assembly::new(extracted, base, sliding, chosen, &mut remarks);
+    let mut pending: Vec<&Candidate> = choice.planned.iter().chain(beside.iter().map(|(_, c)| c)).collect();
+    let degrees = options.measured_in_degrees;
+    let mut measured = assembly.series(&choice.measured, &pending, degrees, None, &mut remarks);
+    pending.drain(..choice.planned.len());
+    let degrees = options.planned_in_degrees;
+    let mut planned =
+        assembly.series(&choice.planned, &pending, degrees, Some((choice, &measured)), &mut remarks);
+    let mut command = None;
+    let mut signals = BTreeMap::new();
+    for (wanted, candidate) in &beside {
+        pending.remove(0);
+        // Doubts about signals are not doubts about the run.
+        let mut doubts = Remarks::default();
+        assembly.add_axis(candidate, &mut doubts);
+        if wanted.role == SignalRole::Command {
+            let sent = std::slice::from_ref(candidate);
+            let mut series = assembly.series(sent, &pending, degrees, Some((choice, &measured)), &mut doubts);
+            match keep_joints(&mut series, &options.joints) {
+                Err(error) if wanted.topic.is_some() => return Err(error),
+                Err(_) => continue,
+                Ok(()) => quality::unwrap_turns(&mut series, &options.continuous, &mut doubts),
+            }
+            command = Some(Command { topic: assembly.topic(candidate).to_owned(), series });
+        } else {
+            let found = assembly.signals(candidate, wanted.role, &pending, &mut doubts);
+            let kept = |signal: &Signal| {
+                options.joints.is_empty() || options.joints.iter().any(|j| j == signal.name())
+            };
+            signals.insert(wanted.role, found.into_iter().filter(kept).collect());
+        }
+    }
+    for series in [&mut planned, &mut measured] {
+        keep_joints(series, &options.joints)?;
+        quality::unwrap_turns(series, &options.continuous, &mut remarks);
+    }
+    quality::of_pairs(&planned, &measured, options, &mut remarks);
+    let source = assembly.source_info(choice, base_why, &measured, &planned);
+    let Extracted { attachments, metadata, .. } = assembly.extracted;
+    let remarks = alone.unwrap_or(remarks);
+    Ok(Recording {
+        planned,
+        measured,
+        plan_is_command,
+        command,
+        signals,
+        source,
+        remarks,
+        attachments,
+        metadata,
+        description,
+    })
+}
+
+/// Remarks on the choice; returns whether the plan is a command.
+fn remark_choice(choice: &Choice, options: &ReadOptions, remarks: &mut Remarks) -> bool {
+    for rival in &choice.rivals {
+        let message = format!("{rival} measures the same joints and was not used; choose with --measured");
+        remarks.add(Code::Ambiguous, 1, message);
+    }
+    let commanded: Vec<&str> =
+        if options.planned.is_empty() { choice.commanded().collect() } else { Vec::new() };
+    if let [first, ..] = commanded.as_slice() {
+        let message = format!(
+            "{first} is what was sent, and nothing in the log looks like the plan behind it: the error is against \
+             the command, not against what was wanted; `hydrotrace join LOG --plan next.mcap` puts the plan into \
+             the log, --planned TOPIC names it"
+        );
+        remarks.add(Code::PlanIsCommand, commanded.len() as u64, message);
+    }
+    !commanded.is_empty()
+}
+
+/// Where a signal is, on a clock that runs.
+fn candidate(extracted: &Extracted, wanted: &WantedSignal, base: TimeBase) -> Result<Candidate, LogError> {
+    let role = if wanted.role == SignalRole::Command { Role::Planned } else { Role::Beside };
+    let candidate = named(extracted, &wanted.selector(), role)?;
+    if let Content::Table(table) = &extracted.sources[candidate.source].content
+        && !table.stamps.runs(base)
+    {
+        let topic = extracted.topic_of(candidate.source).topic.clone();
+        return Err(LogError::NoClock { clock: base.name(), topic });
+    }
+    overlap::check(extracted, [&candidate], base)?;
+    Ok(candidate)
+}
+
+/// The content of the files, and the time axes of the tables that are used.
+struct Assembly {
+    extracted: Extracted,
+    base: TimeBase,
+    epoch_ns: i64,
+    axes: BTreeMap<usize, Axis>,
+    jumps_ns: Vec<i64>,
+    sliding: BTreeSet<String>,
+}
+
+impl Assembly {
+    /// The epoch is the first stamp of all `chosen`.
+    fn new<'a>(
+        extracted: Extracted,
+        base: TimeBase,
+        sliding: BTreeSet<String>,
+        chosen: impl Iterator<Item = &'a Candidate>,
+        remarks: &mut Remarks,
+    ) -> Self {
+        let (axes, jumps_ns) = (BTreeMap::new(), Vec::new());
+        let mut new = Self { extracted, base, epoch_ns: 0, axes, jumps_ns, sliding };
+        let mut clocks = BTreeMap::new();
+        for candidate in chosen {
+            if !clocks.contains_key(&candidate.source)
+                && let Some(clock) = new.clock(candidate, remarks)
+            {
+                clocks.insert(candidate.source, clock);
+            }
+        }
+        new.epoch_ns = clocks.values().filter_map(|clock| clock.t_ns.first()).min().copied().unwrap_or(0);
+        new.axes =
+            clocks.into_iter().map(|(source, clock)| (source, Axis::new(clock, new.epoch_ns))).collect();
+        new
+    }
+
+    fn add_axis(&mut self, candidate: &Candidate, remarks: &mut Remarks) {
+        if !self.axes.contains_key(&candidate.source)
+            && let Some(clock) = self.clock(candidate, remarks)
+        {
+            self.axes.insert(candidate.source, Axis::new(clock, self.epoch_ns));
+        }
+    }
+
+    fn clock(&mut self, candidate: &Candidate, remarks: &mut Remarks) -> Option<Clock> {
+        let Content::Table(table) = &self.extracted.sources[candidate.source].content else { return None };
+        let clock = continuous_clock(table.stamps.of(self.base), &table.stamps.log_ns, &self.jumps_ns);
+        self.jumps_ns.extend(&clock.offsets_ns);
+        quality::of_clock(self.topic(candidate), self.base, &clock, remarks);
+        quality::of_table(self.topic(candidate), table, remarks);
+        Some(clock)
+    }
+
+    fn topic(&self, candidate: &Candidate) -> &str {
+        &self.extracted.topic_of(candidate.source).topic
+    }
+
+    fn kind(&self, joint: &str) -> JointKind {
+        if self.sliding.contains(joint) { JointKind::Slides } else { JointKind::Turns }
+    }
+
+    /// The samples of a field; moved out of the table unless it is `pending`.
+    fn samples(
+        &mut self,
+        candidate: &Candidate,
+        positions: bool,
+        pending: &[&Candidate],
+        remarks: &mut Remarks,
+    ) -> Vec<Samples> {
+        let name = self.topic(candidate).to_owned();
+        let (Content::Table(table), Some(field), Some(axis)) = (
+            &mut self.extracted.sources[candidate.source].content,
+            candidate.field,
+            self.axes.get(&candidate.source),
+        ) else {
+            return Vec::new();
+        };
+        let last = !pending.iter().any(|c| c.source == candidate.source && c.field == candidate.field);
+        samples(table, Reading { field, positions, last }, axis, &name, remarks)
+    }
+
+    /// The tracks of the chosen fields; of joints that several have, those of the first. Trajectories
+    /// become tracks at the stamps of the measurement.
+    fn series(
+        &mut self,
+        chosen: &[Candidate],
+        pending: &[&Candidate],
+        degrees: bool,
+        measured: Option<(&Choice, &Series)>,
+        remarks: &mut Remarks,
+    ) -> Series {
+        let mut series = Series::default();
+        for (place, candidate) in chosen.iter().enumerate() {
+            let pending: Vec<&Candidate> =
+                chosen[place + 1..].iter().chain(pending.iter().copied()).collect();
+            let found = self.samples(candidate, true, &pending, remarks);
+            let tracks = found.into_iter().filter_map(|one| {
+                let kind = self.kind(&one.name);
+                one.into_track(kind, degrees)
+            });
+            add_new(&mut series, tracks.collect());
+        }
+        for candidate in chosen {
+            let (Content::Plans(plans), Some((choice, measured))) =
+                (&self.extracted.sources[candidate.source].content, measured)
+            else {
+                continue;
+            };
+            let reading = trajectories::Reading {
+                base: self.base,
+                epoch_ns: self.epoch_ns,
+                measured: self.measured_stamps(choice),
+                degrees,
+                topic: self.topic(candidate),
+            };
+            let tracks = trajectories::planned(plans, &reading, |joint| self.kind(joint), measured, remarks);
+            add_new(&mut series, tracks);
+        }
+        series
+    }
+
+    fn signals(
+        &mut self,
+        candidate: &Candidate,
+        role: SignalRole,
+        pending: &[&Candidate],
+        remarks: &mut Remarks,
+    ) -> Vec<Signal> {
+        let found = self.samples(candidate, false, pending, remarks);
+        let signal = |one: Samples| {
+            let quantity = role.quantity(self.kind(&one.name));
+            one.into_signal(quantity)
+        };
+        found.into_iter().filter_map(signal).collect()
+    }
+
+    fn measured_stamps(&self, choice: &Choice) -> Option<&Stamps> {
+        match &self.extracted.sources[choice.measured.first()?.source].content {
+            Content::Table(table) => Some(&table.stamps),
+            _ => None,
+        }
+    }
+
+    fn source_info(
+        &self,
+        choice: &Choice,
+        time_base_why: String,
+        measured: &Series,
+        planned: &Series,
+    ) -> SourceInfo {
+        let join = |all: &[Candidate], text: &dyn Fn(&Candidate) -> String| {
+            let mut list: Vec<String> = all.iter().map(text).collect();
+            list.dedup();
+            list.join(", ")
+        };
+        let name = |c: &Candidate| self.topic(c).to_owned();
+        let field = |c: &Candidate| match (&self.extracted.sources[c.source].content, c.field) {
+            (Content::Table(table), Some(field)) => table.fields[field].path.clone(),
+            _ => "points.positions".to_owned(),
+        };
+        let stamps = self.measured_stamps(choice).filter(|_| self.base == TimeBase::Header);
+        let delays_ns = stamps.and_then(Stamps::delays_ns);
+        let ends = planned.tracks.iter().chain(&measured.tracks).filter_map(|t| t.t_s().last());
+        SourceInfo {
+            planned_topic: join(&choice.planned, &name),
+            planned_field: join(&choice.planned, &field),
+            measured_topic: join(&choice.measured, &name),
+            measured_field: join(&choice.measured, &field),
+            why: choice.why.clone(),
+            time_base: self.base,
+            time_base_why,
+            messages: choice.measured.iter().map(|c| self.extracted.topic_of(c.source).messages).sum(),
+            epoch_ns: self.epoch_ns,
+            duration_s: ends.copied().fold(0.0, f64::max),
+            recorder_delay_s: delays_ns
+                .map(|[_, middle, most]| [middle, most].map(|ns| seconds_since(0, ns))),
+        }
+    }
+}
+
+fn add_new(series: &mut Series, tracks: Vec<Track>) {
+    for track in tracks {
+        if series.track(track.name()).is_none() {
+            series.tracks.push(track);
+        }
+    }
+}
+
+/// Keeps the joints that the caller named, in the caller's order.
+fn keep_joints(series: &mut Series, wanted: &[String]) -> Result<(), LogError> {
+    if wanted.is_empty() {
+        return Ok(());
+    }
+    let mut kept = Vec::with_capacity(wanted.len());
+    for name in wanted {
+        let track = series.track(name).ok_or_else(|| LogError::NoJoint {
+            joint: name.clone(),
+            nearest: nearest(name, series.tracks.iter().map(Track::name)),
+            present: series.tracks.iter().map(Track::name).collect::<Vec<_>>().join(", "),
+        })?;
+        kept.push(track.clone());
+    }
+    series.tracks = kept;
+    Ok(())
+}

@@ -1,0 +1,153 @@
+//! Contents of the blocks of a recording, before plan and measurement are chosen.
+
+use std::collections::BTreeMap;
+
+use super::recording::{Attachment, FileInfo};
+use crate::{
+    log::{
+        channel::Decoder,
+        decode::LayoutCache,
+        file::MessageRecord,
+        source::{Form, Plans, Spec, Table, Versioned},
+    },
+    remark::Remarks,
+};
+
+/// Counts of a topic, whether it is read or not.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct TopicCount {
+    pub(super) topic: String,
+    pub(super) type_name: String,
+    pub(super) encoding: String,
+    pub(super) messages: u64,
+    pub(super) undecodable: u64,
+    pub(super) first_error: Option<String>,
+    pub(super) first_log_ns: u64,
+    pub(super) last_log_ns: u64,
+    /// Why messages of it were not read, and how many.
+    pub(super) problem: Option<String>,
+    pub(super) unread: u64,
+}
+
+/// Samples or trajectories of one topic.
+#[derive(Debug, Clone)]
+pub(super) enum Content {
+    Table(Box<Table>),
+    Plans(Plans),
+    Versioned(Versioned),
+}
+
+impl Content {
+    pub(super) fn new(spec: &Spec, joints: &[String]) -> Self {
+        match spec.form {
+            Form::Plans => Self::Plans(Plans::default()),
+            Form::Versioned | Form::VersionedNames => Self::Versioned(Versioned::default()),
+            form => Self::Table(Box::new(Table::new(form, &spec.fields, joints))),
+        }
+    }
+
+    pub(super) fn read(
+        &mut self,
+        decoder: &Decoder,
+        cache: &mut LayoutCache,
+        message: &MessageRecord<'_>,
+    ) -> Result<(), String> {
+        macro_rules! read {
+            ($sink:expr) => {{
+                match decoder {
+                    Decoder::Program(program) => {
+                        program.run(message.data, cache, $sink).map_err(|e| e.to_string())?
+                    }
+                    Decoder::Tree(tree) => tree.run(message.data, $sink)?,
+                }
+                $sink.commit(message.publish_time_ns, message.log_time_ns);
+            }};
+        }
+        match self {
+            Self::Table(table) => {
+                let table = &mut **table;
+                read!(table);
+            }
+            Self::Plans(plans) => read!(plans),
+            Self::Versioned(versioned) => read!(versioned),
+        }
+        Ok(())
+    }
+
+    /// Rows of a table.
+    pub(super) fn rows(&self) -> usize {
+        if let Self::Table(table) = self { table.len() } else { 0 }
+    }
+
+    pub(super) fn append(&mut self, other: &mut Self) {
+        match (self, other) {
+            (Self::Table(mine), Self::Table(theirs)) => mine.append(theirs),
+            (Self::Plans(mine), Self::Plans(theirs)) => mine.append(theirs),
+            (Self::Versioned(mine), Self::Versioned(theirs)) => mine.append(theirs),
+            _ => {}
+        }
+    }
+}
+
+/// One topic that holds joints, with its content.
+#[derive(Debug, Clone)]
+pub(super) struct Source {
+    /// Index into the topics.
+    pub(super) topic: usize,
+    pub(super) content: Content,
+    /// Files that it was read from, and how many rows came before each.
+    pub(super) parts: Vec<(usize, usize)>,
+}
+
+/// Content of all files.
+#[derive(Debug, Default)]
+pub(super) struct Extracted {
+    pub(super) files: Vec<FileInfo>,
+    pub(super) topics: Vec<TopicCount>,
+    pub(super) sources: Vec<Source>,
+    /// Index of the topic of a URDF, and its text: the first one of the topic with the shortest name.
+    pub(super) description: Option<(usize, String)>,
+    pub(super) attachments: Vec<Attachment>,
+    pub(super) metadata: BTreeMap<String, BTreeMap<String, String>>,
+    pub(super) remarks: Remarks,
+}
+
+impl Extracted {
+    /// The topic of a source.
+    pub(super) fn topic_of(&self, source: usize) -> &TopicCount {
+        &self.topics[self.sources[source].topic]
+    }
+}
+
+/// How one channel of one file is read.
+pub(super) struct Route {
+    pub(super) topic: usize,
+    pub(super) read: Option<(usize, Decoder)>,
+    /// Its messages may hold joints but cannot be read.
+    pub(super) unreadable: bool,
+    /// Its messages are URDFs.
+    pub(super) describes: bool,
+}
+
+impl TopicCount {
+    pub(super) fn add(&mut self, part: &Self) {
+        if part.messages == 0 {
+            return;
+        }
+        let first = self.messages == 0;
+        self.first_log_ns = if first { part.first_log_ns } else { self.first_log_ns.min(part.first_log_ns) };
+        self.last_log_ns = self.last_log_ns.max(part.last_log_ns);
+        self.messages += part.messages;
+        self.undecodable += part.undecodable;
+        self.unread += part.unread;
+        if self.first_error.is_none() {
+            self.first_error.clone_from(&part.first_error);
+        }
+    }
+
+    pub(super) fn count(&mut self, log_ns: u64) {
+        self.first_log_ns = if self.messages == 0 { log_ns } else { self.first_log_ns.min(log_ns) };
+        self.last_log_ns = self.last_log_ns.max(log_ns);
+        self.messages += 1;
+    }
+}

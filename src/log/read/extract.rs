@@ -1,0 +1,184 @@
+//! Reads all joint topics of a recording, in parallel over its blocks, in the order of the file.
+
+use std::{collections::BTreeMap, sync::Arc};
+
+use super::{
+    content::{Content, Extracted, Route, Source, TopicCount},
+    description, overlap,
+    parallel::read_blocks,
+    recording::{Attachment, FileInfo},
+};
+use crate::{
+    log::{
+        channel::{Channel, Definitions},
+        files::{ScannedFile, ScannedLog, count},
+        options::{ReadOptions, Selector},
+        source::{Role, Spec, Versioned},
+    },
+    remark::Code,
+};
+
+/// Decodes all that may be wanted, in one pass.
+pub(super) fn extract(log: &ScannedLog<'_>, options: &ReadOptions) -> Extracted {
+    count(|passes| passes.decoded += log.files.len() as u64);
+    let mut out = Extracted { remarks: log.remarks.clone(), ..Extracted::default() };
+    let mut files: Vec<&ScannedFile<'_>> = log.files.iter().collect();
+    if !log.ordered {
+        files.sort_by_cached_key(|file| (overlap::begins_ns(&file.layout), file.path));
+    }
+    files.iter().for_each(|file| describe(file, &mut out));
+    let selectors = selectors(options);
+    let before = out.remarks.clone();
+    let unknown = read_files(&files, &selectors, &options.joints, false, &mut out);
+    if unknown > 0 && files.iter().any(|file| file.layout.channels_complete) {
+        // A summary that leaves out channels is no summary: look for them in the chunks.
+        out = Extracted {
+            files: out.files,
+            attachments: out.attachments,
+            metadata: out.metadata,
+            remarks: before,
+            ..Extracted::default()
+        };
+        read_files(&files, &selectors, &options.joints, true, &mut out);
+    }
+    finish(&mut out);
+    out
+}
+
+/// The fields that the caller named, and the signals that are wanted.
+fn selectors(options: &ReadOptions) -> Vec<(Role, Selector)> {
+    let of = |role, list: &[Selector]| list.iter().map(move |s| (role, s.clone())).collect::<Vec<_>>();
+    let signals = options.signals.iter().map(|wanted| (Role::Beside, wanted.selector()));
+    [of(Role::Planned, &options.planned), of(Role::Measured, &options.measured), signals.collect()].concat()
+}
+
+/// Reads all blocks; returns how many messages are of no known channel.
+fn read_files(
+    files: &[&ScannedFile<'_>],
+    selectors: &[(Role, Selector)],
+    joints: &[String],
+    look_inside: bool,
+    out: &mut Extracted,
+) -> u64 {
+    let mut known = Known::default();
+    let mut work = Vec::new();
+    for (index, file) in files.iter().enumerate() {
+        let channels = Definitions::gather(&file.layout, look_inside).plan(selectors);
+        let routes = Arc::new(routes(channels, joints, &mut known, out));
+        work.extend(file.layout.blocks.iter().map(|block| (*block, routes.clone(), index)));
+    }
+    read_blocks(&work, &known.specs, joints, out)
+}
+
+fn describe(file: &ScannedFile<'_>, out: &mut Extracted) {
+    let ScannedFile { path, bytes, layout } = file;
+    file.remark_damage(&mut out.remarks);
+    ::log::info!("opened {}: {bytes} bytes in {} blocks", path.display(), layout.blocks.len());
+    out.files.push(FileInfo {
+        name: file.name(),
+        bytes: *bytes,
+        blocks: layout.blocks.len(),
+        closed: !layout.damage.not_closed,
+    });
+    out.attachments.extend(layout.attachments.iter().map(|a| Attachment {
+        name: a.name.clone(),
+        media_type: a.media_type.clone(),
+        data: a.data.to_vec(),
+    }));
+    for one in &layout.metadata {
+        out.metadata.entry(one.name.clone()).or_default().extend(one.entries.clone());
+    }
+}
+
+/// Topics by name and type, and the sources of each.
+#[derive(Default)]
+struct Known {
+    topics: BTreeMap<(String, String), usize>,
+    sources: BTreeMap<usize, Vec<usize>>,
+    specs: Vec<Spec>,
+}
+
+/// Joins the channels of a file to the topics and sources of the recording.
+fn routes(
+    channels: BTreeMap<u16, Channel>,
+    joints: &[String],
+    known: &mut Known,
+    out: &mut Extracted,
+) -> BTreeMap<u16, Route> {
+    let mut routes = BTreeMap::new();
+    for (id, channel) in channels {
+        let name = (channel.topic.clone(), channel.type_name.clone());
+        let topic = *known.topics.entry(name).or_insert_with(|| {
+            out.topics.push(TopicCount {
+                topic: channel.topic,
+                type_name: channel.type_name,
+                encoding: channel.encoding,
+                ..TopicCount::default()
+            });
+            out.topics.len() - 1
+        });
+        let unreadable = channel.problem.is_some();
+        if out.topics[topic].problem.is_none() {
+            out.topics[topic].problem = channel.problem;
+        }
+        let read = channel.reader.map(|(spec, decoder)| {
+            let of_topic = known.sources.entry(topic).or_default();
+            let same = of_topic.iter().copied().find(|&source| known.specs[source] == *spec);
+            let source = same.unwrap_or_else(|| {
+                out.sources.push(Source { topic, content: Content::new(&spec, joints), parts: Vec::new() });
+                known.specs.push((*spec).clone());
+                of_topic.push(known.specs.len() - 1);
+                known.specs.len() - 1
+            });
+            (source, decoder)
+        });
+        let describes = description::is_topic(&out.topics[topic].topic);
+        routes.insert(id, Route { topic, read, unreadable, describes });
+    }
+    routes
+}
+
+/// Turns counts into remarks, and versioned values into tables.
+fn finish(out: &mut Extracted) {
+    for topic in &out.topics {
+        if let Some(problem) = &topic.problem {
+            out.remarks.add(
+                Code::UnreadableSchema,
+                topic.unread.max(1),
+                format!("messages of {} ({}) skipped: {problem}", topic.topic, topic.type_name),
+            );
+        }
+        if let Some(error) = &topic.first_error {
+            out.remarks.add(
+                Code::UndecodableMessage,
+                topic.undecodable,
+                format!(
+                    "messages of {} that do not fit their schema, skipped; the first: {error}",
+                    topic.topic
+                ),
+            );
+        }
+    }
+    let (halves, mut sources): (Vec<_>, Vec<_>) = std::mem::take(&mut out.sources)
+        .into_iter()
+        .partition(|s| matches!(s.content, Content::Versioned(_)));
+    let stem =
+        |source: &Source| out.topics[source.topic].topic.rsplit_once('/').map(|(stem, _)| stem.to_owned());
+    let mut by_stem: BTreeMap<_, Vec<&Versioned>> = BTreeMap::new();
+    for half in &halves {
+        if let Content::Versioned(versioned) = &half.content
+            && versioned.has_names()
+        {
+            by_stem.entry(stem(half)).or_default().push(versioned);
+        }
+    }
+    for half in &halves {
+        if let Content::Versioned(values) = &half.content
+            && let Some(table) = by_stem.get(&stem(half)).and_then(|names| values.to_table(names))
+        {
+            let content = Content::Table(Box::new(table));
+            sources.push(Source { topic: half.topic, content, parts: Vec::new() });
+        }
+    }
+    out.sources = sources;
+}

@@ -1,0 +1,113 @@
+//! Reading: from the files of a run to plan, measurement and other signals.
+
+mod assemble;
+mod content;
+mod description;
+mod extract;
+mod overlap;
+mod parallel;
+mod quality;
+pub(super) mod recording;
+mod samples;
+mod select_topics;
+mod time_base;
+mod topics;
+mod trajectories;
+
+use std::path::{Path, PathBuf};
+
+use super::{
+    error::LogError,
+    files::{LogFiles, ScannedFile, ScannedLog},
+    options::{ReadOptions, Sides},
+};
+use crate::remark::Remarks;
+use {
+    assemble::assemble,
+    content::Extracted,
+    extract::extract,
+    recording::{Recording, Survey},
+    select_topics::choose,
+    topics::topic_infos,
+};
+
+/// Reads the files of one run (a bag directory counts as its files) in one pass.
+///
+/// # Errors
+///
+/// [`LogError`] if a file is no log, or something that the options require is not found in it.
+pub fn read_recording(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, LogError> {
+    LogFiles::open(paths)?.scan()?.read(options)
+}
+
+/// As [`read_recording`] with [`Sides::Plan`].
+///
+/// # Errors
+///
+/// [`LogError`] if a file is no log, or no planned joints are found in it.
+pub fn read_plan(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, LogError> {
+    read_recording(paths, &ReadOptions { sides: Sides::Plan, ..options.clone() })
+}
+
+/// Lists what is in a log and what a report would use.
+///
+/// # Errors
+///
+/// [`LogError`] if a file cannot be opened or is no log.
+pub fn survey(paths: &[PathBuf], options: &ReadOptions) -> Result<Survey, LogError> {
+    Ok(LogFiles::open(paths)?.scan()?.survey(options))
+}
+
+/// As [`survey`] of one file in memory, for fuzzing.
+///
+/// # Errors
+///
+/// [`LogError`] if the bytes are no log.
+#[doc(hidden)]
+pub fn survey_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Survey, LogError> {
+    let file = ScannedFile::of(Path::new("memory.mcap"), bytes)?;
+    let log = ScannedLog { files: vec![file], ordered: true, remarks: Remarks::default() };
+    Ok(log.survey(options))
+}
+
+impl ScannedLog<'_> {
+    /// Reads what the options say, in one pass.
+    ///
+    /// # Errors
+    ///
+    /// [`LogError`] if something that the options require is not found.
+    pub fn read(&self, options: &ReadOptions) -> Result<Recording, LogError> {
+        recording(extract(self, options), options)
+    }
+
+    fn survey(&self, options: &ReadOptions) -> Survey {
+        let extracted = extract(self, options);
+        let topics = topic_infos(&extracted);
+        let files = extracted.files.clone();
+        let attachments = extracted.attachments.iter().map(|a| a.name.clone()).collect();
+        let remarks = extracted.remarks.clone();
+        let recording = recording(extracted, options);
+        let remarks = recording.as_ref().map_or(remarks, |r| r.remarks.clone());
+        Survey { files, topics, attachments, recording, remarks }
+    }
+}
+
+fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
+    let choice = choose(&extracted, options)?;
+    for topic in topic_infos(&extracted) {
+        ::log::debug!(
+            "topic {} ({}): {} messages, joint positions in {:?}",
+            topic.topic,
+            topic.type_name,
+            topic.messages,
+            topic.joint_fields
+        );
+    }
+    let recording = assemble(extracted, &choice, options)?;
+    let source = &recording.source;
+    ::log::info!("planned {}:{}", source.planned_topic, source.planned_field);
+    ::log::info!("measured {}:{}", source.measured_topic, source.measured_field);
+    ::log::info!("chosen: {}", source.why);
+    ::log::info!("clock {}: {}", source.time_base.name(), source.time_base_why);
+    Ok(recording)
+}

@@ -1,0 +1,96 @@
+//! Orders the files of one run and rejects files whose samples overlap.
+
+use super::{
+    content::{Content, Extracted, Source},
+    select_topics::Candidate,
+};
+use crate::{
+    log::{
+        error::LogError,
+        file::{Block, Layout, MessageRecord, Opcode, records},
+        options::TimeBase,
+        source::Table,
+    },
+    units::{NS_PER_S, seconds_since},
+};
+
+/// Parts that meet may share this much: recorders split between threads.
+const SHARED_S: f64 = 1.0;
+
+/// When the recorder received the first message of a file, ns; `u64::MAX` if it has no message.
+pub(super) fn begins_ns(layout: &Layout<'_>) -> u64 {
+    let first = |block: &Block<'_>| match block {
+        // A chunk starts with the time of its first message.
+        Block::Chunk { body, .. } => body.first_chunk::<8>().map(|bytes| u64::from_le_bytes(*bytes)),
+        Block::Loose(bytes) => records(bytes)
+            .filter(|record| record.opcode == Opcode::MESSAGE)
+            .find_map(|record| MessageRecord::parse(record.body))
+            .map(|message| message.log_time_ns),
+    };
+    layout.blocks.iter().filter_map(first).find(|ns| *ns > 0).unwrap_or(u64::MAX)
+}
+
+/// Rejects two files with samples of one joint in one topic for the same time: the caller must say
+/// which of them is the run.
+pub(super) fn check<'a>(
+    extracted: &Extracted,
+    chosen: impl IntoIterator<Item = &'a Candidate>,
+    base: TimeBase,
+) -> Result<(), LogError> {
+    for candidate in chosen {
+        let source = &extracted.sources[candidate.source];
+        let (Content::Table(table), Some(field)) = (&source.content, candidate.field) else { continue };
+        let stamp_ns = table.stamps.of(base);
+        let parts = parts(source, table, stamp_ns);
+        for (k, a) in parts.iter().enumerate() {
+            for b in &parts[k + 1..] {
+                let from_ns = a.span_ns[0].max(b.span_ns[0]);
+                let shared_s = seconds_since(from_ns, a.span_ns[1].min(b.span_ns[1]));
+                let shortest_s = a.length_s().min(b.length_s());
+                if shared_s > SHARED_S.min(shortest_s / 2.0) && tell_alike(table, field, a, b) {
+                    let name = |part: &Part| extracted.files.get(part.file).map(|file| file.name.clone());
+                    return Err(LogError::ToldTwice {
+                        topic: extracted.topics[source.topic].topic.clone(),
+                        files: [name(a).unwrap_or_default(), name(b).unwrap_or_default()],
+                        shared_s,
+                    });
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The rows that one file gave to a table.
+struct Part {
+    file: usize,
+    rows: std::ops::Range<usize>,
+    span_ns: [i64; 2],
+}
+
+impl Part {
+    fn length_s(&self) -> f64 {
+        (self.span_ns[1] as f64 - self.span_ns[0] as f64) / NS_PER_S
+    }
+}
+
+fn parts(source: &Source, table: &Table, stamp_ns: &[i64]) -> Vec<Part> {
+    let ends = source.parts.iter().skip(1).map(|(_, row)| *row).chain([table.len()]);
+    let part = |(&(file, start), end): (&(usize, usize), usize)| {
+        let stamps = stamp_ns.get(start..end)?.iter().filter(|ns| **ns != 0);
+        let span_ns = [*stamps.clone().min()?, *stamps.max()?];
+        Some(Part { file, rows: start..end, span_ns })
+    };
+    source.parts.iter().zip(ends).filter_map(part).collect()
+}
+
+/// Whether both parts have numbers of one joint.
+fn tell_alike(table: &Table, field: usize, a: &Part, b: &Part) -> bool {
+    (0..table.joints.len()).any(|joint| {
+        let column = table.column(field, joint);
+        let told = |part: &Part| {
+            column.get(part.rows.clone()).is_some_and(|rows| rows.iter().any(|value| value.is_finite()))
+        };
+        told(a) && told(b)
+    })
+}

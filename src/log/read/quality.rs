@@ -1,0 +1,325 @@
+//! Remarks on data that look wrong.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::{
+    log::{
+        options::{ReadOptions, TimeBase},
+        source::{Field, MAX_JOINTS, Role, Table},
+    },
+    math::quantile,
+    remark::{Code, Remarks},
+    series::{Clock, JointKind, Series, Track},
+    units::{DEGREE_RAD, NS_PER_S},
+};
+
+pub(super) fn of_clock(topic: &str, base: TimeBase, clock: &Clock, remarks: &mut Remarks) {
+    let base = base.name();
+    remarks.add(
+        Code::UnusableStamp,
+        clock.unstamped,
+        format!("messages of {topic} without a {base} stamp, left out"),
+    );
+    remarks.add(
+        Code::UnusableStamp,
+        clock.misfits,
+        format!("messages of {topic} whose {base} stamp fits neither their neighbours nor the recorder's clock, dropped"),
+    );
+    remarks.add(
+        Code::DuplicateStamp,
+        clock.duplicates,
+        format!("samples of {topic} that repeat a {base} stamp, dropped"),
+    );
+    remarks.add(
+        Code::Reordered,
+        clock.reordered,
+        format!("samples of {topic} that came late, put in order of their {base} stamps"),
+    );
+    let jump_s = clock.longest_jump_ns as f64 / NS_PER_S;
+    remarks.add(
+        Code::ClockJump,
+        clock.cuts.len() as u64,
+        format!(
+            "jumps of the {base} clock in {topic}, by up to {jump_s:.3} s; the run is split there and \
+             time goes on by the recorder's clock"
+        ),
+    );
+}
+
+pub(super) fn of_table(topic: &str, table: &Table, remarks: &mut Remarks) {
+    let positions = |field: &&Field| !field.is_velocity && field.role != Role::Beside;
+    for (k, field) in table.fields.iter().enumerate().filter(|(_, field)| positions(field)) {
+        let path = &field.path;
+        remarks.add(
+            Code::NotFinite,
+            table.not_finite[k],
+            format!("values of {topic}:{path} that are NaN or infinite, dropped"),
+        );
+        remarks.add(
+            Code::LengthMismatch,
+            table.length_mismatch[k],
+            format!("messages of {topic} whose {path} is not as long as its list of joints, left out"),
+        );
+    }
+    remarks.add(
+        Code::JointsChange,
+        table.layout_changes,
+        format!("changes of order or set of the joints within {topic}; joined by name"),
+    );
+    remarks.add(
+        Code::NotSupported,
+        table.too_many,
+        format!("messages or joints of {topic} beyond the first {MAX_JOINTS} joints, left out"),
+    );
+    let (paused, slowed) = scaling(&table.speed_scaling);
+    remarks.add(
+        Code::Paused,
+        paused,
+        format!("samples of {topic} with the controller paused (speed scaling 0)"),
+    );
+    remarks.add(
+        Code::Paused,
+        slowed,
+        format!("samples of {topic} with the controller slowed (speed scaling below 1)"),
+    );
+}
+
+/// Silences of the joint that has most of them.
+#[derive(Default)]
+pub(super) struct Gaps {
+    count: u64,
+    longest_s: f64,
+    at_s: f64,
+}
+
+impl Gaps {
+    /// `jumps` ascend.
+    pub(super) fn note(&mut self, t_s: &[f64], cuts: &[usize], jumps: &[usize]) {
+        let mut here = Self::default();
+        for &cut in cuts.iter().filter(|cut| jumps.binary_search(cut).is_err()) {
+            here.count += 1;
+            let length_s = t_s[cut] - t_s[cut - 1];
+            if length_s > here.longest_s {
+                here.longest_s = length_s;
+                here.at_s = t_s[cut - 1];
+            }
+        }
+        if here.count > self.count {
+            *self = here;
+        }
+    }
+
+    pub(super) fn remark(&self, topic: &str, remarks: &mut Remarks) {
+        let Self { longest_s, at_s, .. } = self;
+        remarks.add(
+            Code::Gap,
+            self.count,
+            format!("gaps in {topic}, the longest {longest_s:.2} s after {at_s:.2} s; nothing is computed across them"),
+        );
+    }
+}
+
+/// Numbers of samples paused and slowed; 0 where the field is never filled.
+fn scaling(factors: &[f64]) -> (u64, u64) {
+    if !factors.iter().any(|&f| f > 0.0) {
+        return (0, 0);
+    }
+    let full = factors.iter().copied().fold(0.0, f64::max).min(1.0);
+    let paused = factors.iter().filter(|&&f| f <= 0.0).count();
+    let slowed = factors.iter().filter(|&&f| f > 0.0 && f < full - 1e-6).count();
+    (paused as u64, slowed as u64)
+}
+
+/// Undoes full turns of joints declared continuous; remarks on them elsewhere.
+pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: &mut Remarks) {
+    for track in series.tracks.iter_mut().filter(|track| track.kind() == JointKind::Turns) {
+        let turns = turns(track);
+        if turns == 0 {
+            continue;
+        }
+        let name = track.name().to_owned();
+        if continuous.contains(&name) {
+            if let Some(unwrapped) = unwrapped(track) {
+                *track = unwrapped;
+            }
+        } else {
+            remarks.add(
+                Code::Wrapped,
+                turns,
+                format!(
+                    "steps of a full turn in {name}; if the joint has no end stops, say --continuous {name}"
+                ),
+            );
+        }
+    }
+}
+
+/// Number of steps between neighbouring samples of about a full turn.
+fn turns(track: &Track) -> u64 {
+    let steps = track.position().windows(2);
+    steps.filter(|w| (w[1] - w[0]).abs() > PI && ((w[1] - w[0]).abs() - TAU).abs() < 1.0).count() as u64
+}
+
+fn unwrapped(track: &Track) -> Option<Track> {
+    let mut turns_rad = 0.0;
+    let mut previous: Option<f64> = None;
+    let position = track.position().iter().map(|&q| {
+        if let Some(before) = previous {
+            turns_rad -= TAU * ((q - before) / TAU).round();
+        }
+        previous = Some(q);
+        q + turns_rad
+    });
+    let cuts: Vec<usize> = track.segments().iter().skip(1).map(|s| s.start).collect();
+    Track::new(track.name(), track.t_s(), position.collect(), &cuts).ok()
+}
+
+pub(super) fn of_pairs(planned: &Series, measured: &Series, options: &ReadOptions, remarks: &mut Remarks) {
+    for track in &planned.tracks {
+        match measured.track(track.name()) {
+            None => unmeasured(track.name(), remarks),
+            Some(measured) => of_pair(track, measured, options, remarks),
+        }
+    }
+}
+
+pub(super) fn unmeasured(joint: &str, remarks: &mut Remarks) {
+    remarks.add(Code::UnpairedJoint, 1, format!("{joint} is planned but was not measured; left out"));
+}
+
+/// Ratios of measured to planned range that mean degrees in place of radians, or the reverse.
+const DEGREES_IN_RADIAN: f64 = 1.0 / DEGREE_RAD;
+const RATIO_TOLERANCE: f64 = 0.15;
+/// Joints with end stops span less.
+const TURN_AND_A_HALF_RAD: f64 = 1.5 * TAU;
+
+fn of_pair(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &mut Remarks) {
+    if planned.kind() == JointKind::Turns {
+        of_units(planned, measured, options, remarks);
+    }
+    if let Some((from_s, to_s, samples)) = frozen(planned, measured) {
+        let name = planned.name();
+        remarks.add(
+            Code::FrozenSensor,
+            samples,
+            format!(
+                "samples of {name} repeat one value from {from_s:.2} s to {to_s:.2} s while the plan moves: \
+                 frozen sensor, or a joint that did not answer"
+            ),
+        );
+    }
+}
+
+/// Remarks on angles that look like degrees.
+fn of_units(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &mut Remarks) {
+    let (plan_rad, angle_rad) = (span_rad(planned.position()), span_rad(measured.position()));
+    let near = |ratio: f64| (ratio / DEGREES_IN_RADIAN - 1.0).abs() < RATIO_TOLERANCE;
+    let name = planned.name();
+    if near(angle_rad / plan_rad) {
+        let cause = if options.planned_in_degrees {
+            "--planned-degrees does that to a plan in radians: drop it"
+        } else {
+            "measured in degrees? then say --measured-degrees"
+        };
+        let message = format!("{name} spans 57.3 times its plan: {cause}");
+        remarks.add(Code::LooksLikeDegrees, 1, message);
+    } else if near(plan_rad / angle_rad) {
+        let cause = if options.measured_in_degrees {
+            "--measured-degrees does that to a measurement in radians: drop it"
+        } else {
+            "in degrees? then say --planned-degrees"
+        };
+        let message = format!("the plan of {name} spans 57.3 times the measurement: {cause}");
+        remarks.add(Code::LooksLikeDegrees, 1, message);
+    } else if plan_rad.min(angle_rad) > TURN_AND_A_HALF_RAD && !options.continuous.iter().any(|c| c == name) {
+        let message = format!(
+            "{name} spans {angle_rad:.1} rad in plan and measurement: both in degrees? then say \
+             --planned-degrees --measured-degrees; or, if it has no end stops, --continuous {name}"
+        );
+        remarks.add(Code::LooksLikeDegrees, 1, message);
+    }
+}
+
+/// Range without the outermost hundredth at either end, rad.
+fn span_rad(angle_rad: &[f64]) -> f64 {
+    quantile(angle_rad.to_vec(), 0.99) - quantile(angle_rad.to_vec(), 0.01)
+}
+
+/// A plan that moves by this much while the sensor repeats one value is beyond any dead-band.
+const FROZEN_PLAN_RAD: f64 = 3.0 * DEGREE_RAD;
+/// The same for a joint that slides.
+const FROZEN_PLAN_M: f64 = 0.02;
+const FROZEN_S: f64 = 0.5;
+
+/// The longest stretch of exactly one measured value while the plan moves: from, to, samples.
+fn frozen(planned: &Track, measured: &Track) -> Option<(f64, f64, u64)> {
+    let (t_s, q) = (measured.t_s(), measured.position());
+    let mut longest: Option<(usize, usize)> = None;
+    let mut start = 0;
+    for i in 1..=q.len() {
+        if i < q.len() && q[i].to_bits() == q[start].to_bits() {
+            continue;
+        }
+        let long = t_s[i - 1] - t_s[start] > FROZEN_S && longest.is_none_or(|(a, b)| i - start > b - a);
+        if long && plan_moves(planned, t_s[start], t_s[i - 1]) {
+            longest = Some((start, i));
+        }
+        start = i;
+    }
+    longest.map(|(start, end)| (t_s[start], t_s[end - 1], (end - start) as u64))
+}
+
+fn plan_moves(planned: &Track, from_s: f64, to_s: f64) -> bool {
+    let range = |t: f64| planned.t_s().partition_point(|&s| s < t);
+    let plan = &planned.position()[range(from_s)..range(to_s)];
+    let (least, most) = plan.iter().fold((f64::MAX, f64::MIN), |(a, b), &q| (a.min(q), b.max(q)));
+    let dead = match planned.kind() {
+        JointKind::Turns => FROZEN_PLAN_RAD,
+        JointKind::Slides => FROZEN_PLAN_M,
+    };
+    most - least > dead
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn track(position: impl Fn(f64) -> f64) -> Track {
+        let t_s: Vec<f64> = (0..500).map(|k| f64::from(k) * 0.01).collect();
+        let q = t_s.iter().map(|&t| position(t)).collect();
+        Track::new("a", t_s, q, &[]).unwrap()
+    }
+
+    fn codes(planned: Track, measured: Track) -> Vec<Code> {
+        let mut remarks = Remarks::default();
+        let (planned, measured) = (Series { tracks: vec![planned] }, Series { tracks: vec![measured] });
+        of_pairs(&planned, &measured, &ReadOptions::default(), &mut remarks);
+        remarks.as_slice().iter().map(|r| r.code).collect()
+    }
+
+    #[test]
+    fn degrees_against_radians_are_noticed_and_equal_units_are_not() {
+        let plan = |t: f64| (t * 1.3).sin();
+        assert_eq!(codes(track(plan), track(move |t| plan(t) / DEGREE_RAD)), [Code::LooksLikeDegrees]);
+        assert_eq!(codes(track(move |t| plan(t) / DEGREE_RAD), track(plan)), [Code::LooksLikeDegrees]);
+        assert_eq!(codes(track(plan), track(move |t| plan(t) * 0.8)), []);
+    }
+
+    #[test]
+    fn a_sensor_that_stands_still_while_the_plan_moves_is_noticed() {
+        let frozen = |t: f64| if (1.0..2.0).contains(&t) { 0.1 } else { 0.1 * t };
+        assert_eq!(codes(track(|t| 0.1 * t), track(frozen)), [Code::FrozenSensor]);
+        assert_eq!(codes(track(|_| 0.0), track(|_| 0.0)), []);
+    }
+
+    #[test]
+    fn a_full_turn_is_undone_only_for_a_joint_declared_continuous() {
+        let wrapped = |t: f64| (t * 2.0 + PI).rem_euclid(TAU) - PI;
+        let mut series = Series { tracks: vec![track(wrapped)] };
+        let mut remarks = Remarks::default();
+        unwrap_turns(&mut series, &[], &mut remarks);
+        assert_eq!(remarks.as_slice()[0].code, Code::Wrapped);
+        unwrap_turns(&mut series, &["a".into()], &mut remarks);
+        assert!((series.tracks[0].position()[499] - 2.0 * 4.99).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,163 @@
+//! A recording as read from its log.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    log::{
+        error::LogError,
+        options::{SignalRole, TimeBase},
+    },
+    remark::Remarks,
+    series::{Series, Signal, Track},
+};
+
+/// A file of the recording.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct FileInfo {
+    /// Its name without the path.
+    pub name: String,
+    /// Its size.
+    pub bytes: u64,
+    /// Chunks, or runs of messages outside chunks.
+    pub blocks: usize,
+    /// Whether the recorder ended it properly.
+    pub closed: bool,
+}
+
+/// A file stored inside a log.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Attachment {
+    /// Its name.
+    pub name: String,
+    /// Its media type.
+    pub media_type: String,
+    /// Its content.
+    pub data: Vec<u8>,
+}
+
+/// Where the series come from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SourceInfo {
+    /// Topic and field of the plan; several are joined by a comma.
+    pub planned_topic: String,
+    /// Field of the plan within its messages.
+    pub planned_field: String,
+    /// Topic of the measurement.
+    pub measured_topic: String,
+    /// Field of the measurement within its messages.
+    pub measured_field: String,
+    /// Why these.
+    pub why: String,
+    /// The clock.
+    pub time_base: TimeBase,
+    /// Why this clock.
+    pub time_base_why: String,
+    /// Messages of the measured topic.
+    pub messages: u64,
+    /// The instant that times count from, ns since 1970.
+    pub epoch_ns: i64,
+    /// From the first to the last sample, s.
+    pub duration_s: f64,
+    /// Median and largest delay from the header's stamp to the recorder, s, where both exist.
+    pub recorder_delay_s: Option<[f64; 2]>,
+}
+
+/// A topic of the log.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct TopicInfo {
+    /// Its name.
+    pub topic: String,
+    /// Message type.
+    pub type_name: String,
+    /// Message encoding.
+    pub encoding: String,
+    /// Messages found.
+    pub messages: u64,
+    /// Mean rate over its own duration, Hz; 0 for a single message.
+    pub rate_hz: f64,
+    /// Fields that hold joint positions, for `--planned` and `--measured`.
+    pub joint_fields: Vec<String>,
+    /// Joints named in it.
+    pub joints: Vec<String>,
+}
+
+/// A run as read from its log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// The plan.
+    pub planned: Series,
+    /// The measurement.
+    pub measured: Series,
+    /// Whether the plan is the command, because the log holds no other plan.
+    pub plan_is_command: bool,
+    /// The command, if it was wanted and is there.
+    pub command: Option<Command>,
+    /// The other signals that were wanted and are there, by joint.
+    pub signals: BTreeMap<SignalRole, Vec<Signal>>,
+    /// Where plan and measurement come from.
+    pub source: SourceInfo,
+    /// Doubts about the data.
+    pub remarks: Remarks,
+    /// Files stored in the log.
+    pub attachments: Vec<Attachment>,
+    /// Named maps of texts stored in the log.
+    pub metadata: BTreeMap<String, BTreeMap<String, String>>,
+    /// The robot's URDF, as a message or a file of the log.
+    pub description: Option<String>,
+}
+
+/// The positions that were sent to the controller.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Command {
+    /// Its topic.
+    pub topic: String,
+    /// By joint, on the clock of plan and measurement.
+    pub series: Series,
+}
+
+impl Recording {
+    /// A signal of a joint.
+    pub fn signal(&self, role: SignalRole, joint: &str) -> Option<&Signal> {
+        self.signals.get(&role)?.iter().find(|signal| signal.name() == joint)
+    }
+
+    /// Whether the log holds a signal.
+    pub fn has(&self, role: SignalRole) -> bool {
+        self.signals.contains_key(&role)
+    }
+
+    /// A file stored in the log.
+    pub fn attached(&self, name: &str) -> Option<&Attachment> {
+        self.attachments.iter().find(|file| file.name == name)
+    }
+}
+
+/// The content of a log, whether or not a report can be made of it.
+#[derive(Debug)]
+pub struct Survey {
+    /// Its files.
+    pub files: Vec<FileInfo>,
+    /// Its topics, by name.
+    pub topics: Vec<TopicInfo>,
+    /// Names of the files stored in it.
+    pub attachments: Vec<String>,
+    /// The recording that a report would use, or why no report can be made.
+    pub recording: Result<Recording, LogError>,
+    /// Doubts about the files.
+    pub remarks: Remarks,
+}
+
+impl Survey {
+    /// The joints that a report would cover.
+    pub fn joints(&self) -> impl Iterator<Item = &str> {
+        let both = |recording: &'_ Recording, name: &str| recording.measured.track(name).is_some();
+        let recording = self.recording.iter();
+        recording
+            .flat_map(move |r| r.planned.tracks.iter().map(Track::name).filter(move |name| both(r, name)))
+    }
+}

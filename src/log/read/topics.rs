@@ -1,0 +1,82 @@
+//! Lists the topics of a log.
+
+use std::collections::BTreeSet;
+
+use super::{
+    content::{Content, Extracted, Source},
+    recording::TopicInfo,
+};
+use crate::units::NS_PER_S;
+
+/// Topics with joints, for messages; all topics if there is none.
+pub(super) fn present(extracted: &Extracted) -> String {
+    let with_joints: BTreeSet<usize> = extracted.sources.iter().map(|s| s.topic).collect();
+    let describe = |index: usize| {
+        let topic = &extracted.topics[index];
+        let messages = if topic.messages == 1 { "message" } else { "messages" };
+        format!("{} ({}, {} {messages})", topic.topic, topic.type_name, topic.messages)
+    };
+    let listed: Vec<String> = if with_joints.is_empty() {
+        (0..extracted.topics.len()).map(describe).collect()
+    } else {
+        with_joints.into_iter().map(describe).collect()
+    };
+    if listed.is_empty() { "no topics at all".to_owned() } else { listed.join(", ") }
+}
+
+/// Fields of a topic that hold numbers by joint.
+pub(super) fn fields_of(extracted: &Extracted, topic: usize) -> Vec<String> {
+    let sources = extracted.sources.iter().filter(|source| source.topic == topic);
+    topic_info(extracted, topic, sources).joint_fields
+}
+
+/// The topics for `info`, by name.
+pub(super) fn topic_infos(extracted: &Extracted) -> Vec<TopicInfo> {
+    let mut sources: Vec<Vec<&Source>> = vec![Vec::new(); extracted.topics.len()];
+    extracted.sources.iter().for_each(|source| sources[source.topic].push(source));
+    let infos = sources.into_iter().enumerate();
+    let mut infos: Vec<TopicInfo> =
+        infos.map(|(index, sources)| topic_info(extracted, index, sources.into_iter())).collect();
+    infos.sort_by(|a, b| (&a.topic, &a.type_name).cmp(&(&b.topic, &b.type_name)));
+    infos
+}
+
+fn topic_info<'a>(
+    extracted: &Extracted,
+    index: usize,
+    sources: impl Iterator<Item = &'a Source>,
+) -> TopicInfo {
+    let count = &extracted.topics[index];
+    let mut info = TopicInfo {
+        topic: count.topic.clone(),
+        type_name: count.type_name.clone(),
+        encoding: count.encoding.clone(),
+        messages: count.messages,
+        rate_hz: 0.0,
+        joint_fields: Vec::new(),
+        joints: Vec::new(),
+    };
+    let spread_s = count.last_log_ns.saturating_sub(count.first_log_ns) as f64 / NS_PER_S;
+    if count.messages > 1 && spread_s > 0.0 {
+        info.rate_hz = (count.messages - 1) as f64 / spread_s;
+    }
+    for source in sources {
+        match &source.content {
+            Content::Table(table) => {
+                info.joints.extend(table.joints.iter().cloned());
+                for (k, field) in table.fields.iter().enumerate() {
+                    if !field.is_velocity && (0..table.joints.len()).any(|j| !table.column(k, j).is_empty()) {
+                        info.joint_fields.push(field.path.clone());
+                    }
+                }
+            }
+            Content::Plans(plans) => {
+                let joints: BTreeSet<&String> = plans.trajectories.iter().flat_map(|t| &t.joints).collect();
+                info.joints.extend(joints.into_iter().cloned());
+                info.joint_fields.push("points.positions".to_owned());
+            }
+            Content::Versioned(_) => {}
+        }
+    }
+    info
+}

@@ -1,0 +1,125 @@
+//! From trajectory messages to the plan at the measured stamps.
+
+use std::collections::BTreeSet;
+
+use super::quality;
+use crate::{
+    log::{
+        options::TimeBase,
+        source::{Plans, RawTrajectory, Stamps},
+    },
+    remark::{Code, Remarks},
+    series::{JointKind, PlannedPoint, PlannedTrajectory, Series, Track, plan_tracks},
+    units::{radians_from_degrees, seconds_since},
+};
+
+/// How the numbers of trajectories are to be read.
+pub(super) struct Reading<'a> {
+    pub(super) base: TimeBase,
+    pub(super) epoch_ns: i64,
+    /// Stamps of the measurement, which tell how late messages are received.
+    pub(super) measured: Option<&'a Stamps>,
+    pub(super) degrees: bool,
+    pub(super) topic: &'a str,
+}
+
+/// The plan of every measured joint.
+pub(super) fn planned(
+    plans: &Plans,
+    reading: &Reading<'_>,
+    kind: impl Fn(&str) -> JointKind,
+    measured: &Series,
+    remarks: &mut Remarks,
+) -> Vec<Track> {
+    let mut trajectories = trajectories(plans, reading, kind, remarks);
+    trajectories.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
+    let (series, replaced) = plan_tracks(&trajectories, measured);
+    remarks.add(
+        Code::TrajectoryReplaced,
+        replaced,
+        format!("trajectories of {} that the next one, or a cancel, cut short", reading.topic),
+    );
+    let joints: BTreeSet<&str> =
+        trajectories.iter().flat_map(|t| &t.joints).map(|(joint, _)| joint.as_str()).collect();
+    for joint in joints.into_iter().filter(|joint| measured.track(joint).is_none()) {
+        quality::unmeasured(joint, remarks);
+    }
+    series.tracks
+}
+
+fn trajectories(
+    plans: &Plans,
+    reading: &Reading<'_>,
+    kind: impl Fn(&str) -> JointKind,
+    remarks: &mut Remarks,
+) -> Vec<PlannedTrajectory> {
+    let Reading { base, epoch_ns, topic, .. } = *reading;
+    let delays_ns = reading.measured.filter(|_| base == TimeBase::Header).and_then(Stamps::delays_ns);
+    // Least delay from header to recorder and the spread up to the median, ns.
+    let (delay_ns, spread_ns) = delays_ns.map_or((0, 0), |[least, middle, _]| (least, middle - least));
+    let mut out: Vec<PlannedTrajectory> = Vec::new();
+    let mut previous_end_s = 0.0;
+    for raw in &plans.trajectories {
+        let start_s = if raw.place > 0 && raw.header_ns == 0 {
+            previous_end_s
+        } else if raw.header_ns != 0 && base == TimeBase::Header {
+            seconds_since(epoch_ns, raw.header_ns)
+        } else {
+            let received_ns = if base == TimeBase::Publish { raw.publish_ns } else { raw.log_ns };
+            remarks.add(
+                Code::StartOnReceipt,
+                1,
+                format!(
+                    "trajectories of {topic} start when received; that is known to about {:.0} ms",
+                    (spread_ns as f64 / 1e6).max(1.0)
+                ),
+            );
+            seconds_since(epoch_ns, received_ns.saturating_sub(delay_ns))
+        };
+        match trajectory(raw, start_s, reading.degrees, &kind) {
+            Some(one) => {
+                previous_end_s = one.joints.iter().filter_map(|(_, p)| p.last()).map(|p| p.t_s).fold(start_s, f64::max);
+                out.push(one);
+            }
+            None => remarks.add(
+                Code::LengthMismatch,
+                1,
+                format!("trajectories of {topic} whose points do not fit their joints or whose times do not increase, skipped"),
+            ),
+        }
+    }
+    out
+}
+
+fn trajectory(
+    raw: &RawTrajectory,
+    start_s: f64,
+    degrees: bool,
+    kind: &impl Fn(&str) -> JointKind,
+) -> Option<PlannedTrajectory> {
+    let n = raw.joints.len();
+    let fits =
+        |values: &[f64]| values.is_empty() || values.len() == n && values.iter().all(|v| v.is_finite());
+    let sound = raw.points.iter().all(|p| {
+        p.positions.len() == n && [&p.positions, &p.velocities, &p.accelerations].iter().all(|v| fits(v))
+    });
+    let increasing = raw.points.windows(2).all(|w| w[0].since_start_ns < w[1].since_start_ns);
+    if !sound || !increasing || raw.points.first().is_some_and(|p| p.since_start_ns < 0) {
+        return None;
+    }
+    if raw.points.is_empty() {
+        return Some(PlannedTrajectory { start_s, joints: Vec::new() });
+    }
+    let joints = (0..n).map(|j| {
+        let degrees = degrees && kind(&raw.joints[j]) == JointKind::Turns;
+        let unit = |value: f64| if degrees { radians_from_degrees(value) } else { value };
+        let points = raw.points.iter().map(|p| PlannedPoint {
+            t_s: start_s + seconds_since(0, p.since_start_ns),
+            position: unit(p.positions[j]),
+            velocity: p.velocities.get(j).map(|&v| unit(v)),
+            acceleration: p.accelerations.get(j).map(|&a| unit(a)),
+        });
+        (raw.joints[j].clone(), points.collect())
+    });
+    Some(PlannedTrajectory { start_s, joints: joints.collect() })
+}

@@ -1,0 +1,118 @@
+//! A log with a plan put into it.
+
+use std::{collections::BTreeMap, io::Write, iter::Peekable, path::Path, slice::Iter};
+
+use super::copy::{Copier, CopyError, copy_files};
+use crate::{
+    atomic_file::write_atomically,
+    log::{
+        error::LogError,
+        file::{Blocks, Layout, MessageRecord, Opcode, records},
+        files::ScannedLog,
+        read::recording::Attachment,
+        write::{LogWriter, Options, Role, Topics, WriteError},
+    },
+};
+
+/// One instant of a plan, by joint: angle, rad, and speed, rad/s.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PlanSample {
+    /// Header stamp, ns since 1970.
+    pub stamp_ns: i64,
+    /// Where the joints should be.
+    pub planned: [Vec<f64>; 2],
+    /// The command.
+    pub command: [Vec<f64>; 2],
+}
+
+/// Samples, files and metadata to put into a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Addition<'a> {
+    /// The joints of the samples.
+    pub joints: Vec<&'a str>,
+    /// The plan, ascending in time.
+    pub samples: Vec<PlanSample>,
+    /// How much later than their stamps the log's messages were received, ns.
+    pub log_delay_ns: i64,
+    /// Files, in place of those of their names.
+    pub files: &'a [Attachment],
+    /// Name and entries of metadata, in place of those of this name.
+    pub metadata: (&'a str, BTreeMap<String, String>),
+}
+
+impl ScannedLog<'_> {
+    /// Writes all messages, files and metadata of the run to `output`, and the plan among them; the
+    /// command too, where the log does not have its topic. Returns the number of messages copied.
+    ///
+    /// # Errors
+    ///
+    /// [`LogError`] if a file has a plan on our topic, or `output` cannot be written.
+    pub fn join(&self, addition: &Addition<'_>, output: &Path) -> Result<u64, LogError> {
+        let mut parts = Vec::with_capacity(self.files.len());
+        let topics = Topics::default();
+        let mut commands = true;
+        for file in &self.files {
+            let copier = Copier::of(&file.layout);
+            if copier.has(&topics.planned) {
+                return Err(LogError::Planned { path: file.path.to_owned(), topic: topics.planned });
+            }
+            commands &= !copier.has(&topics.command);
+            parts.push((&file.layout, copier));
+        }
+        let written = write_atomically::<_, CopyError>(output, |file| {
+            let options = Options { log_delay_ns: addition.log_delay_ns, ..Options::default() };
+            let log = LogWriter::new(file, &addition.joints, options)?;
+            Joining { log, waiting: addition.samples.iter().peekable(), commands }.write(parts, addition)
+        });
+        written.map_err(|error| error.of(output))
+    }
+}
+
+struct Joining<'a, W: Write> {
+    log: LogWriter<W>,
+    waiting: Peekable<Iter<'a, PlanSample>>,
+    commands: bool,
+}
+
+impl<W: Write> Joining<'_, W> {
+    fn write(mut self, parts: Vec<(&Layout<'_>, Copier)>, addition: &Addition<'_>) -> Result<u64, CopyError> {
+        let (name, entries) = &addition.metadata;
+        let replaced: Vec<&str> =
+            addition.files.iter().map(|file| file.name.as_str()).chain([*name]).collect();
+        self.log.metadata(name, entries)?;
+        let start_ns = addition.samples.first().map_or(0, |sample| sample.stamp_ns);
+        for file in addition.files {
+            self.log.attach(&file.name, &file.media_type, &file.data, start_ns)?;
+        }
+        let mut copied = 0;
+        let mut blocks = Blocks::new();
+        for (layout, mut copier) in parts {
+            copy_files(self.log.raw(), layout, &replaced)?;
+            for block in &layout.blocks {
+                let messages =
+                    records(blocks.open(*block).0).filter(|record| record.opcode == Opcode::MESSAGE);
+                for message in messages.filter_map(|record| MessageRecord::parse(record.body)) {
+                    let log_ns = i64::try_from(message.log_time_ns).unwrap_or(i64::MAX);
+                    self.catch_up(log_ns.saturating_sub(addition.log_delay_ns))?;
+                    copied += u64::from(copier.message(self.log.raw(), &message)?);
+                }
+            }
+        }
+        self.catch_up(i64::MAX)?;
+        self.log.finish()?;
+        Ok(copied)
+    }
+
+    /// Writes the plan up to an instant.
+    fn catch_up(&mut self, until_ns: i64) -> Result<(), WriteError> {
+        while let Some(sample) = self.waiting.next_if(|sample| sample.stamp_ns <= until_ns) {
+            let [angle_rad, speed_rad_s] = &sample.planned;
+            self.log.joint_sample(Role::Planned, sample.stamp_ns, angle_rad, speed_rad_s, &[])?;
+            if self.commands {
+                let [angle_rad, speed_rad_s] = &sample.command;
+                self.log.joint_sample(Role::Command, sample.stamp_ns, angle_rad, speed_rad_s, &[])?;
+            }
+        }
+        Ok(())
+    }
+}

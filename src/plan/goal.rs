@@ -1,0 +1,51 @@
+//! What a descent lessens, and within what.
+
+use crate::task::{ByObjective, Ceilings, Objective, Objectives, Weights};
+
+/// What a descent lessens.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Merit {
+    /// Sum of the objectives' logarithms by weights that sum to one.
+    Logarithms(Weights),
+    /// Sum of the objectives by weights.
+    Sum(Weights),
+    /// Distance to a point, each objective divided by a scale.
+    Distance { ideal: Objectives, scale: ByObjective },
+}
+
+impl Merit {
+    /// One objective alone.
+    pub(super) const fn alone(objective: Objective) -> Self {
+        Self::Logarithms(Weights::ZERO.with(objective, 1.0))
+    }
+
+    /// All objectives alike.
+    pub(super) fn even() -> Self {
+        Self::Logarithms(Weights::ZERO.map_plan(|_| 1.0 / Objective::OF_PLAN.len() as f64))
+    }
+
+    pub(super) fn of(&self, objectives: &Objectives) -> f64 {
+        let sum = |term: &dyn Fn(Objective) -> f64| Objective::OF_PLAN.iter().map(|&k| term(k)).sum::<f64>();
+        match self {
+            Self::Logarithms(weights) => sum(&|k| weights[k] * objectives[k].ln()),
+            Self::Sum(weights) => sum(&|k| weights[k] * objectives[k]),
+            Self::Distance { ideal, scale } => {
+                sum(&|k| ((objectives[k] - ideal[k]) / scale[k]).powi(2)).sqrt()
+            }
+        }
+    }
+}
+
+/// What a descent is to do.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Goal {
+    pub(super) merit: Merit,
+    /// What the objectives must not exceed.
+    pub(super) ceilings: Ceilings,
+    /// Evaluations at most, unless the start alone takes more.
+    pub(super) evaluations: u64,
+    /// Longest first step, in logarithms of the intervals.
+    pub(super) trust: f64,
+    /// The descent has settled when a step gains less than this.
+    pub(super) enough: f64,
+}

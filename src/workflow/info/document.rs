@@ -1,0 +1,68 @@
+//! The JSON document of `info`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    document::PROGRAM,
+    log::{FileInfo, SourceInfo, Survey, TopicInfo},
+    remark::Remark,
+};
+
+/// What is in a log, and what a report would use. Times are seconds since the first sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct InfoDocument {
+    /// Always "hydrotrace.info.v1".
+    pub format: String,
+    /// Name and version of the program that wrote it.
+    pub program: String,
+    /// The files of the run, in order.
+    pub files: Vec<FileInfo>,
+    /// All topics, by name.
+    pub topics: Vec<TopicInfo>,
+    /// Names of the files stored in the log.
+    pub attachments: Vec<String>,
+    /// Where a report would take its data from; null if no report can be made.
+    pub source: Option<SourceInfo>,
+    /// Why no report can be made; null if one can.
+    pub no_report_because: Option<String>,
+    /// The joints that a report would cover.
+    pub joints: Vec<String>,
+    /// Doubts about the data.
+    pub remarks: Vec<Remark>,
+}
+
+impl InfoDocument {
+    /// The document of a survey.
+    pub fn of(survey: &Survey) -> Self {
+        let Survey { files, topics, attachments, recording, remarks } = survey;
+        Self {
+            format: "hydrotrace.info.v1".to_owned(),
+            program: PROGRAM.to_owned(),
+            files: files.clone(),
+            topics: topics.clone(),
+            attachments: attachments.clone(),
+            source: recording.as_ref().ok().map(|r| r.source.clone()),
+            no_report_because: recording.as_ref().err().map(ToString::to_string),
+            joints: survey.joints().map(str::to_owned).collect(),
+            remarks: remarks.as_slice().to_vec(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        log::{ReadOptions, survey},
+        schema::is_written_and_read,
+    };
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
+        let log = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs/task-1-run.mcap");
+        let document = InfoDocument::of(&survey(&[log], &ReadOptions::default()).unwrap());
+        assert!(!document.joints.is_empty());
+        is_written_and_read(&document, "info.v1.schema.json", "hydrotrace info, version 1");
+    }
+}

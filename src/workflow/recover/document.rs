@@ -1,0 +1,59 @@
+//! The JSON document of `recover`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{document::PROGRAM, log::Recovered, remark::Remark};
+
+/// How much of a damaged log was recovered.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct RecoverDocument {
+    /// Always "hydrotrace.recover.v1".
+    pub format: String,
+    /// Name and version of the program that wrote it.
+    pub program: String,
+    /// Messages in the new log.
+    pub messages: u64,
+    /// Chunks, or runs of messages outside chunks, that were read.
+    pub blocks: usize,
+    /// Blocks that could not be read at all.
+    pub dropped_blocks: u64,
+    /// Attachments in the new log.
+    pub attachments: usize,
+    /// Losses and doubts; empty if there are none.
+    pub remarks: Vec<Remark>,
+}
+
+impl RecoverDocument {
+    /// The document of a recovery.
+    pub fn of(recovered: &Recovered) -> Self {
+        let Recovered { messages, blocks, dropped_blocks, attachments, remarks } = recovered;
+        Self {
+            format: "hydrotrace.recover.v1".to_owned(),
+            program: PROGRAM.to_owned(),
+            messages: *messages,
+            blocks: *blocks,
+            dropped_blocks: *dropped_blocks,
+            attachments: *attachments,
+            remarks: remarks.as_slice().to_vec(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        remark::{Code, Remarks},
+        schema::is_written_and_read,
+    };
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
+        let mut remarks = Remarks::default();
+        remarks.add(Code::DamagedChunk, 1, "a chunk was dropped");
+        let recovered = Recovered { messages: 5, blocks: 2, dropped_blocks: 1, attachments: 3, remarks };
+        let document = RecoverDocument::of(&recovered);
+        is_written_and_read(&document, "recover.v1.schema.json", "hydrotrace recover, version 1");
+    }
+}
