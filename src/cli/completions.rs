@@ -1,14 +1,29 @@
-//! `completions`: what a shell is to complete.
-
-use std::io::Write;
+//! `completions`
 
 use clap::CommandFactory;
+use clap_complete::Shell;
 
-use super::{Args, CliError, Outcome, args::CompletionsArgs};
+use super::{CliError, Outcome, Run, console::Console};
 
-pub(super) fn run(args: &CompletionsArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
-    let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Args::command(), "hydrotrace", &mut script);
-    out.write_all(&script)?;
-    Ok(Outcome::Clean)
+const EXAMPLES: &str = "\
+Examples:
+  hydrotrace completions bash > ~/.local/share/bash-completion/completions/hydrotrace
+  hydrotrace completions zsh > ~/.zfunc/_hydrotrace
+  hydrotrace completions fish > ~/.config/fish/completions/hydrotrace.fish";
+
+/// Print the completions of a shell
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// The shell
+    shell: Shell,
+}
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let mut script = Vec::new();
+        clap_complete::generate(self.shell, &mut super::Args::command(), "hydrotrace", &mut script);
+        console.print(&String::from_utf8_lossy(&script))?;
+        Ok(Outcome::Clean)
+    }
 }

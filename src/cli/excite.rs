@@ -1,24 +1,84 @@
-//! `excite`: writes an identification run.
+//! `excite`
 
-use std::io::Write;
+use std::path::PathBuf;
 
 use super::{
-    CliError, Outcome,
-    args::ExciteArgs,
-    output::{deliver, shown, spare_inputs, spare_stdout},
+    CliError, Outcome, Run,
+    console::{Console, spare_for_log, write_file},
+    number::degrees,
 };
-use crate::{atomic_file::write_atomically, render::excite::document, workflow::excite::run as excite};
+use crate::{
+    fit::{Excitation, JointRoom},
+    render::excite as words,
+    units::radians_from_degrees,
+    workflow::excite::{Arm, Inputs, run},
+};
+
+const EXAMPLES: &str = "\
+Examples:
+  hydrotrace excite -o id.mcap --task task.toml
+  hydrotrace excite -o id.mcap --joint boom=40:20:60 --joint arm=90:70:110 --max-speed-deg-s 30";
 
 /// Samples a second in the log.
 const RATE_HZ: f64 = 100.0;
 
-pub(super) fn run(args: &ExciteArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
-    let read: Vec<_> = args.task.iter().cloned().collect();
-    spare_inputs(Some(&args.output), &read)?;
-    spare_stdout(Some(&args.output))?;
-    let excited = excite(&args.inputs())?;
-    let bytes = excited.log(RATE_HZ)?;
-    write_atomically(&args.output, |file| Ok::<(), CliError>(file.write_all(&bytes)?))?;
-    deliver(&shown(&document(&excited, &args.output), None), None, out)?;
-    Ok(Outcome::Clean)
+/// Write a run of slow and fast strokes, from which `fit` identifies limits
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// Write the run to FILE, an MCAP log
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+
+    /// The arm of this task, about the middle of its key points [default: the sample arm]
+    #[arg(long, value_name = "FILE")]
+    task: Option<PathBuf>,
+
+    /// A joint, its start and its range, degrees; repeat for every joint
+    #[arg(long = "joint", value_name = "NAME=HOME:LOW:HIGH", value_parser = room, conflicts_with = "task")]
+    joints: Vec<JointRoom>,
+
+    /// Strokes at five speeds, one minute per joint, instead of at two speeds in twenty seconds
+    #[arg(long)]
+    full: bool,
+
+    /// Largest speed of a joint; below the machine's own limit, that limit stays unknown
+    #[arg(long, value_name = "DEG/S", value_parser = degrees, allow_negative_numbers = true)]
+    max_speed_deg_s: Option<f64>,
+}
+
+impl Args {
+    fn request(&self) -> Inputs {
+        let arm = match (&self.task, self.joints.is_empty()) {
+            (Some(task), _) => Arm::Task(task.clone()),
+            (None, false) => Arm::Joints(self.joints.clone()),
+            (None, true) => Arm::Sample,
+        };
+        let excitation = if self.full { Excitation::full() } else { Excitation::minimal() };
+        Inputs { arm, excitation, most_rad_s: self.max_speed_deg_s.unwrap_or(f64::INFINITY) }
+    }
+}
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        spare_for_log(Some(&self.output), self.task.as_slice())?;
+        let excited = run(&self.request())?;
+        write_file(&self.output, &excited.log(RATE_HZ)?)?;
+        console.show(&words::document(&excited, &self.output))?;
+        Ok(Outcome::Clean)
+    }
+}
+
+fn room(text: &str) -> Result<JointRoom, String> {
+    let wrong = || format!("{text:?} is not NAME=HOME:LOW:HIGH in degrees, such as J1=60:30:90");
+    let (name, angles) = text.rsplit_once('=').ok_or_else(wrong)?;
+    let angles: Vec<f64> =
+        angles.split(':').map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    match angles[..] {
+        [home, low, high] if !name.is_empty() && low <= home && home <= high && (high - low).is_finite() => {
+            let [home_rad, low_rad, high_rad] = [home, low, high].map(radians_from_degrees);
+            Ok(JointRoom { name: name.to_owned(), home_rad, range_rad: [low_rad, high_rad] })
+        }
+        _ => Err(wrong()),
+    }
 }

@@ -1,54 +1,115 @@
-//! `export`: reads, writes a table.
+//! `export`
 
-use std::io::Write;
+use std::path::PathBuf;
 
 use super::{
-    CliError, Outcome,
-    args::ExportArgs,
-    output::{say_remarks, spare_inputs, spare_stdout, text_file},
+    CliError, Outcome, Run,
+    console::{Console, Form, Target, ends, spare_for_log, spare_inputs},
+    read::{ReadArgs, selector},
 };
 use crate::{
     atomic_file::write_atomically,
-    log::{AngleUnit, ExportError},
-    workflow::export::{Inputs, run as export},
+    log::{AngleUnit, ExportError, Selector},
+    workflow::export::{Inputs, run},
 };
 
-pub(super) fn run(
-    args: &ExportArgs,
-    out: &mut impl Write,
-    err: &mut impl Write,
-) -> Result<Outcome, CliError> {
-    spare_inputs(args.output.as_deref(), &args.logs)?;
-    let output = text_file(args.output.as_deref());
-    let parquet = match (args.wants_parquet(), &args.output) {
-        (Some(parquet), _) => parquet,
-        (None, Some(path)) => return Err(CliError::NoForm(path.clone())),
-        (None, None) => false,
-    };
-    if parquet {
-        spare_stdout(args.output.as_deref())?;
-    }
-    let exported = export(&Inputs {
-        logs: args.logs.clone(),
-        read: args.read.options(),
-        command: args.command.clone(),
-        unit: if args.degrees { AngleUnit::Degrees } else { AngleUnit::Radians },
-    })?;
-    let table = &exported.table;
-    match output {
-        Some(path) if parquet => {
-            write_atomically::<_, ExportError>(path, |file| table.write_parquet(file))?;
+const EXAMPLES: &str = "\
+Examples:
+  hydrotrace export run.mcap -o run.csv
+  hydrotrace export run.mcap -o run.parquet
+  hydrotrace export run.mcap --csv --degrees --joints joint_3
+  hydrotrace export next.mcap --csv --degrees -o next.csv
+
+One row per instant at which anything was sampled: stamp_ns (since 1970), time_s (since the start), and per
+joint J_planned_rad, J_planned_rad_s, J_measured_rad, J_command_rad and J_error_rad, if the log has them.
+Logs of plan and replan give plan and command. A cell without a sample is empty. The error is planned minus
+measured, with the plan interpolated. `hydrotrace import` turns the table into a log again, whose report
+has the same numbers.";
+
+/// Turn plan, command and measurement of a log into CSV or Parquet
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// Logs of one run: MCAP files or ROS 2 bag directories
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
+
+    #[command(flatten)]
+    format: FormatArgs,
+
+    /// Write to FILE; .csv and .parquet set the form. CSV without FILE goes to standard output
+    #[arg(short, long, value_name = "FILE", required_unless_present = "csv")]
+    output: Option<PathBuf>,
+
+    /// Angles in degrees; the names of the columns change with the unit
+    #[arg(long)]
+    degrees: bool,
+
+    /// Topic of the command that was sent, and its field if the topic has several
+    #[arg(long, value_name = "TOPIC[:FIELD]", value_parser = selector)]
+    command: Option<Selector>,
+
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+#[derive(Debug, clap::Args)]
+#[group(multiple = false)]
+struct FormatArgs {
+    /// Comma-separated values
+    #[arg(long)]
+    csv: bool,
+
+    /// Apache Parquet, compressed with zstd
+    #[arg(long)]
+    parquet: bool,
+}
+
+impl Args {
+    /// Whether to write Parquet, by option or ending.
+    fn is_parquet(&self) -> Result<bool, CliError> {
+        match &self.output {
+            _ if self.format.csv => Ok(false),
+            _ if self.format.parquet => Ok(true),
+            output if ends(output.as_deref(), "parquet") => Ok(true),
+            Some(path) if !ends(Some(path), "csv") => Err(CliError::Usage(format!(
+                "{} has neither the ending .csv nor .parquet; say --csv or --parquet",
+                path.display()
+            ))),
+            _ => Ok(false),
         }
-        Some(path) => write_atomically::<_, ExportError>(path, |file| table.write_csv(file))?,
-        None => table.write_csv(&mut *out).map_err(|error| match error {
-            ExportError::Output(error) => CliError::Output(error),
-            other => CliError::Export(other),
-        })?,
     }
-    say_remarks(&exported.remarks, err);
-    if let Some(path) = output {
-        let columns = table.column_names().count();
-        writeln!(out, "{} rows, {columns} columns written to {}.", table.rows(), path.display())?;
+}
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let file = self.output.as_deref();
+        spare_inputs(file, &self.logs)?;
+        let parquet = self.is_parquet()?;
+        if parquet {
+            spare_for_log(file, &self.logs)?;
+        }
+        let exported = run(&Inputs {
+            logs: self.logs.clone(),
+            read: self.read.options(),
+            command: self.command.clone(),
+            unit: if self.degrees { AngleUnit::Degrees } else { AngleUnit::Radians },
+        })?;
+        let table = &exported.table;
+        let target = Target::new(Form::Csv, file)?;
+        let said = if let Some(path) = target.file {
+            write_atomically::<_, ExportError>(path, |file| {
+                if parquet { table.write_parquet(file) } else { table.write_csv(file) }
+            })?;
+            let columns = table.column_names().count();
+            format!("{} rows, {columns} columns written to {}.\n", table.rows(), path.display())
+        } else {
+            table.write_csv(console.out()).map_err(|error| match error {
+                ExportError::Output(error) => CliError::Output(error),
+                other => other.into(),
+            })?;
+            String::new()
+        };
+        console.finish(&Target { file: None, ..target }, &said, &exported.remarks, &[])
     }
-    Ok(if exported.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

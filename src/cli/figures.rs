@@ -1,68 +1,93 @@
 //! `--figures`: the plots of a page as files.
 
-use std::{io::Write, path::Path};
+use std::path::PathBuf;
+
+use clap::value_parser;
 
 #[cfg(feature = "png")]
-use super::output::harmless;
-use super::{CliError, args::FigureArgs};
+use super::terminal::harmless;
+use super::{
+    CliError,
+    console::{Console, make_folder, write_file},
+};
+use crate::render::kit::{Failure, Figure};
 #[cfg(feature = "png")]
 use crate::render::kit::{Raster, raster};
-use crate::{atomic_file::write_atomically, render::kit::Figure};
 
-/// What drawing returns.
-type Drawn = Result<Vec<Figure>, Box<dyn std::error::Error + Send + Sync>>;
+/// Where figures go.
+#[derive(Debug, clap::Args)]
+pub(super) struct FigureArgs {
+    /// Write the plots of the page to DIR, as SVG files; DIR is made if needed
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
 
-/// Refuses what this build cannot write, before the work is done.
-#[cfg_attr(feature = "png", expect(clippy::unnecessary_wraps, reason = "a build without PNG refuses"))]
-pub(super) fn check(args: &FigureArgs) -> Result<(), CliError> {
-    #[cfg(not(feature = "png"))]
-    if args.figures_png.is_some() {
-        return Err(CliError::NoPng);
-    }
-    let _ = args;
-    Ok(())
+    /// Write each as PNG too, with DPI dots per inch [default: 300]
+    #[arg(
+        long,
+        value_name = "DPI",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "300",
+        requires = "figures",
+        value_parser = value_parser!(u32).range(50..=1200)
+    )]
+    figures_png: Option<u32>,
 }
 
-/// Draws, if that is asked for, and only then writes: what cannot be drawn leaves no file.
-pub(super) fn figures(
-    args: &FigureArgs,
-    err: &mut impl Write,
-    draw: impl FnOnce() -> Drawn,
-) -> Result<(), CliError> {
-    let Some(folder) = &args.figures else { return Ok(()) };
-    #[cfg(not(feature = "png"))]
-    let _ = err;
-    let figures = draw().map_err(CliError::Figures)?;
-    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
-    #[cfg(feature = "png")]
-    if let Some(dots_per_inch) = args.figures_png {
-        let mut all_lacking = std::collections::BTreeSet::new();
-        for Figure { name, svg } in &figures {
-            let Raster { png, lacking } = raster(svg, dots_per_inch).map_err(CliError::Figures)?;
-            files.push((format!("{name}.png"), png));
-            all_lacking.extend(lacking);
+impl FigureArgs {
+    /// Refuses PNG in a build without it, before the work is done.
+    pub(super) fn check(&self) -> Result<(), CliError> {
+        if cfg!(feature = "png") || self.figures_png.is_none() {
+            return Ok(());
         }
-        say_lacking(all_lacking, err);
+        Err(CliError::failed(
+            "this build writes no PNG; add it from the project's folder (40 more crates, about a minute):\n  \
+             cargo install --path . --features png\n\
+             or leave --figures-png out: --figures alone writes SVG",
+        ))
     }
-    files.extend(figures.into_iter().map(|figure| (format!("{}.svg", figure.name), figure.svg.into_bytes())));
-    std::fs::create_dir_all(folder).map_err(|source| CliError::Folder { path: folder.clone(), source })?;
-    files.iter().try_for_each(|(name, bytes)| write(&folder.join(name), bytes))
-}
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    write_atomically(path, |file| Ok(file.write_all(bytes)?))
-}
+    /// Draws all figures, then writes them: if one cannot be drawn, no file appears.
+    pub(super) fn write(
+        &self,
+        console: &mut Console<'_>,
+        draw: impl FnOnce() -> Result<Vec<Figure>, Failure>,
+    ) -> Result<(), CliError> {
+        let Some(folder) = &self.figures else { return Ok(()) };
+        let figures = draw().map_err(CliError::step("cannot draw the figures"))?;
+        let mut files = self.pixels(console, &figures)?;
+        files.extend(figures.into_iter().map(|one| (format!("{}.svg", one.name), one.svg.into_bytes())));
+        make_folder(folder)?;
+        files.iter().try_for_each(|(name, bytes)| write_file(&folder.join(name), bytes))
+    }
 
-/// Says what the font within lacks; a figure is no reason to fail.
-#[cfg(feature = "png")]
-fn say_lacking(lacking: impl IntoIterator<Item = String>, err: &mut impl Write) {
-    let lacking: Vec<String> = lacking.into_iter().collect();
-    if !lacking.is_empty() {
-        let lacking = harmless(&lacking.join(" "));
-        // A closed standard error does not make the figures wrong.
-        let _ = writeln!(
-            err,
-            "PNG figures show boxes for {lacking}, which their font lacks; the SVG files have them"
-        );
+    #[cfg(not(feature = "png"))]
+    #[expect(clippy::unused_self, clippy::unnecessary_wraps, reason = "as the build with PNG")]
+    fn pixels(&self, _: &mut Console<'_>, _: &[Figure]) -> Result<Vec<(String, Vec<u8>)>, CliError> {
+        Ok(Vec::new())
+    }
+
+    /// The figures as PNG, if asked for; says which characters the font lacks.
+    #[cfg(feature = "png")]
+    fn pixels(
+        &self,
+        console: &mut Console<'_>,
+        figures: &[Figure],
+    ) -> Result<Vec<(String, Vec<u8>)>, CliError> {
+        let Some(dots_per_inch) = self.figures_png else { return Ok(Vec::new()) };
+        let (mut files, mut lacking) = (Vec::new(), std::collections::BTreeSet::new());
+        for Figure { name, svg } in figures {
+            let drawn = raster(svg, dots_per_inch).map_err(CliError::step("cannot draw the figures"))?;
+            let Raster { png, lacking: missing } = drawn;
+            files.push((format!("{name}.png"), png));
+            lacking.extend(missing);
+        }
+        if !lacking.is_empty() {
+            let lacking = harmless(&lacking.into_iter().collect::<Vec<_>>().join(" "));
+            console.say(format_args!(
+                "PNG figures show boxes for {lacking}, which their font lacks; the SVG files have them"
+            ));
+        }
+        Ok(files)
     }
 }

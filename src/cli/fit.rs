@@ -1,42 +1,76 @@
-//! `fit`: fits, renders, writes the limits.
+//! `fit`
 
-use std::io::Write;
+use std::path::{Path, PathBuf};
 
 use super::{
-    CliError, Outcome,
-    args::FitArgs,
-    output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
+    CliError, Outcome, Run,
+    console::{Console, Form, Target, ends, spare_for_log, write_file},
+    read::SentArgs,
 };
 use crate::{
     render::{fit as words, next},
-    workflow::fit::{FitDocument, Fitted, Inputs, LimitsFile, run as fit},
+    workflow::fit::{FitDocument, Fitted, Inputs, LimitsFile, run},
 };
 
-pub(super) fn run(args: &FitArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
-    let fitted = fitted(args)?;
-    let json = args.json || args.document().is_some();
-    let rendered = match &args.output {
-        _ if json => FitDocument::of(&fitted).json(),
-        Some(path) => {
-            let log = fitted.with_task.map_or(args.logs.last(), |place| args.logs.get(place));
-            shown(&words::document(&fitted).with_above_remarks(next::limits_written(path, log)), None)
-        }
-        None => shown(&words::document(&fitted), None),
-    };
-    deliver(&rendered, args.document(), out)?;
-    if json {
-        say_remarks(&fitted.remarks, err);
-    }
-    Ok(if fitted.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+const EXAMPLES: &str = "\
+Examples:
+  hydrotrace fit run.mcap -o limits.toml
+  hydrotrace fit run-1.mcap run-2.mcap identification.mcap -o limits.toml
+  hydrotrace fit run.mcap --command /arm/command:position --json";
+
+/// Lag, dead band and limits of the machine, from logs of runs
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// Logs of runs of one machine, each a file or a bag directory; they are fitted together
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
+
+    /// Write the limits to FILE, TOML, for `replan --limits`; if FILE ends in .json, the document
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+
+    /// One JSON document (schemas/fit.v1.schema.json in the repository)
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    sent: SentArgs,
 }
 
-/// Fits the runs and writes the limits.
-pub(super) fn fitted(args: &FitArgs) -> Result<Fitted, CliError> {
-    spare_inputs(args.output.as_deref(), &args.logs)?;
-    spare_stdout(args.output.as_deref())?;
-    let fitted = fit(&Inputs { logs: args.logs.clone(), read: args.sent.options() })?;
-    if let Some(path) = args.output.as_deref().filter(|_| args.document().is_none()) {
-        deliver(&LimitsFile::of(&fitted).toml()?, Some(path), &mut std::io::sink())?;
+impl Args {
+    /// Where the document goes, if not to standard output.
+    fn document(&self) -> Option<&Path> {
+        self.output.as_deref().filter(|path| ends(Some(path), "json"))
     }
-    Ok(fitted)
+
+    /// Fits the runs and writes the limits.
+    pub(super) fn fitted(&self) -> Result<Fitted, CliError> {
+        spare_for_log(self.output.as_deref(), &self.logs)?;
+        let fitted = run(&Inputs { logs: self.logs.clone(), read: self.sent.options() })?;
+        if let Some(path) = self.output.as_deref().filter(|_| self.document().is_none()) {
+            let limits = LimitsFile::of(&fitted).toml();
+            let limits =
+                limits.map_err(|error| CliError::step("the limits cannot be written")(error.into()))?;
+            write_file(path, limits.as_bytes())?;
+        }
+        Ok(fitted)
+    }
+}
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let fitted = self.fitted()?;
+        let target = Target::new(Form::of(&[(self.json, Form::Json)], self.document()), self.document())?;
+        let result = match &self.output {
+            _ if target.form == Form::Json => FitDocument::of(&fitted).json(),
+            Some(path) => {
+                let log = fitted.with_task.map_or(self.logs.last(), |place| self.logs.get(place));
+                let next = next::limits_written(path, log);
+                target.text(&words::document(&fitted).with_above_remarks(next))
+            }
+            None => target.text(&words::document(&fitted)),
+        };
+        console.finish(&target, &result, &fitted.remarks, &[])
+    }
 }

@@ -1,25 +1,42 @@
-//! `info`: looks, renders.
+//! `info`
 
-use std::io::Write;
+use std::path::PathBuf;
 
 use super::{
-    CliError, Outcome,
-    args::InfoArgs,
-    output::{deliver, say_remarks, shown},
+    CliError, Outcome, Run,
+    console::{Console, Target},
+    read::ReadArgs,
 };
 use crate::{
     document::pretty,
     render::info as words,
-    workflow::info::{InfoDocument, Inputs, run as look},
+    workflow::info::{InfoDocument, Inputs, run},
 };
 
-pub(super) fn run(args: &InfoArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
-    let survey = look(&Inputs { logs: args.logs.clone(), read: args.read.options() })?;
-    if args.json {
-        deliver(&pretty(&InfoDocument::of(&survey)), None, out)?;
-        say_remarks(&survey.remarks, err);
-    } else {
-        deliver(&shown(&words::document(&survey), None), None, out)?;
+/// Topics of a log, those that a report would use, and damage
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Logs of one run: MCAP files or ROS 2 bag directories
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
+
+    /// One JSON document
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let survey = run(&Inputs { logs: self.logs.clone(), read: self.read.options() })?;
+        let target = Target::stdout(self.json);
+        let result = if self.json {
+            pretty(&InfoDocument::of(&survey))
+        } else {
+            target.text(&words::document(&survey))
+        };
+        console.finish(&target, &result, &survey.remarks, &[])
     }
-    Ok(if survey.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

@@ -1,28 +1,75 @@
-//! `join`: puts a plan into a log, says where.
+//! `join`
 
-use std::io::Write;
+use std::{path::PathBuf, slice::from_ref};
 
 use super::{
-    CliError, Outcome,
-    args::JoinArgs,
-    output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
+    CliError, Outcome, Run,
+    console::{Console, Target, spare_for_log},
+    number::seconds,
+    read::ReadArgs,
 };
 use crate::{
     document::pretty,
     render::join as words,
-    workflow::join::{JoinDocument, run as join},
+    workflow::join::{Inputs, JoinDocument, run},
 };
 
-pub(super) fn run(args: &JoinArgs, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
-    let read = [args.logs.as_slice(), std::slice::from_ref(&args.plan)].concat();
-    spare_inputs(Some(&args.output), &read)?;
-    spare_stdout(Some(&args.output))?;
-    let joined = join(&args.inputs())?;
-    if args.json {
-        deliver(&pretty(&JoinDocument::of(&joined)), None, out)?;
-        say_remarks(&joined.remarks, err);
-    } else {
-        deliver(&shown(&words::document(&joined, &args.plan, &args.output), None), None, out)?;
+const EXAMPLES: &str = "\
+Examples:
+  hydrotrace join field.mcap --plan next.mcap -o run-2.mcap
+  hydrotrace join field.mcap --plan next.mcap --planned /arm/controller_state:reference.positions -o run-2.mcap
+  hydrotrace join field.mcap --plan next.mcap --at 12.5 -o run-2.mcap";
+
+/// Put the plan into the log of a run that holds only what was sent
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// Logs of one run, with the command that was sent and the measurement: MCAP files or ROS 2 bag directories
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
+
+    /// The log that `replan` or `plan` wrote for this run
+    #[arg(long, value_name = "FILE")]
+    plan: PathBuf,
+
+    /// Write the run with its plan to FILE, an MCAP log
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+
+    /// Time of the plan's first sample, from the start of the run's log [default: found by the command]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    at: Option<f64>,
+
+    /// Print what was joined as one JSON document
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+impl Args {
+    fn request(&self) -> Inputs {
+        Inputs {
+            logs: self.logs.clone(),
+            plan: self.plan.clone(),
+            read: self.read.options(),
+            at_s: self.at,
+            output: self.output.clone(),
+        }
     }
-    Ok(if joined.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+}
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        spare_for_log(Some(&self.output), &[&self.logs, from_ref(&self.plan)].concat())?;
+        let joined = run(&self.request())?;
+        let target = Target::stdout(self.json);
+        let result = if self.json {
+            pretty(&JoinDocument::of(&joined))
+        } else {
+            target.text(&words::document(&joined, &self.plan, &self.output))
+        };
+        console.finish(&target, &result, &joined.remarks, &[])
+    }
 }

@@ -1,9 +1,12 @@
 //! The command line: arguments in, an exit code out. No arithmetic lives here.
+//!
+//! A verb is a file with its arguments, [`Run`], and two lines here: `mod` and a row of `verbs!`.
 
-pub mod args;
 mod compare;
 mod completions;
+mod console;
 mod demo;
+mod error;
 mod excite;
 mod export;
 mod figures;
@@ -12,171 +15,145 @@ mod import;
 mod info;
 mod join;
 mod man;
-mod output;
+mod number;
 mod plan;
+mod read;
 mod recover;
 mod replan;
 mod report;
 mod simulate;
-pub mod terminal;
+mod terminal;
 mod view;
 
-use std::io::Write;
+use std::{env, io, process::ExitCode};
 
-use thiserror::Error;
+use anstream::AutoStream;
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
-pub use args::{Args, Command};
-
-use output::{FAILED, harmless};
-
-use crate::{
-    atomic_file::AtomicError,
-    log::{CsvError, ExportError, LogError, WriteError},
-    workflow::{
-        compare::CompareFailure, excite::ExciteFailure, fit::FitFailure, import::ImportError,
-        join::JoinFailure, plan::PlanFailure, replan::ReplanFailure, simulate::log::SimulateFailure,
-    },
-};
+use console::Console;
+use error::CliError;
 
 /// How a run that did not fail ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
-    /// Nothing to remark.
+    /// Without remarks.
     Clean,
-    /// Finished, but with doubts about the data.
+    /// With remarks on the data.
     Remarks,
-    /// Finished, and a limit that the caller set was not kept.
-    GateFailed,
+    /// With a limit that is not kept.
+    LimitBroken,
 }
 
-/// Why a command did not finish.
-#[derive(Debug, Error)]
-enum CliError {
-    #[error(transparent)]
-    Log(#[from] LogError),
-    #[error(transparent)]
-    Csv(#[from] CsvError),
-    #[error(transparent)]
-    Import(#[from] ImportError),
-    #[error(transparent)]
-    Export(#[from] ExportError),
-    #[error(transparent)]
-    Atomic(#[from] AtomicError),
-    #[error(transparent)]
-    Plan(#[from] PlanFailure),
-    #[error(transparent)]
-    Simulate(#[from] SimulateFailure),
-    #[error("{failure}; what comes nearest:\n  {}", lines.join("\n  "))]
-    NoPlan { failure: String, lines: Vec<String> },
-    #[error(transparent)]
-    Compare(#[from] CompareFailure),
-    #[error(transparent)]
-    Fit(#[from] FitFailure),
-    #[error(transparent)]
-    Replan(#[from] ReplanFailure),
-    #[error(transparent)]
-    Excite(#[from] ExciteFailure),
-    #[error(transparent)]
-    Join(#[from] JoinFailure),
-    #[error("cannot make the folder {}", path.display())]
-    Folder { path: std::path::PathBuf, source: std::io::Error },
-    #[error("the words of a step are no command: {0}")]
-    Words(String),
-    #[cfg(not(feature = "viewer"))]
-    #[error(
-        "this build has no viewer; add it from the project's folder (350 more crates, some minutes):\n  \
-         cargo install --path . --features viewer\n\
-         or from anywhere, with the address of the repository for URL:\n  \
-         cargo install --git URL --features viewer\n\
-         the viewer itself, and plain logs without this command (those of plan, simulate and replan show the arm):\n  \
-         pip install rerun-sdk==0.36.3\n  \
-         rerun run.mcap"
-    )]
-    NoViewer,
-    #[cfg(feature = "viewer")]
-    #[error(transparent)]
-    View(#[from] crate::viewer::ViewError),
-    #[cfg(feature = "viewer")]
-    #[error(transparent)]
-    Scenes(#[from] crate::workflow::view::ViewFailure),
-    #[error("the limits cannot be written")]
-    Limits(#[from] toml::ser::Error),
-    #[error("the plan cannot be logged")]
-    Write(#[from] WriteError),
-    #[error("{} is what is read; give another name to --output", .0.display())]
-    Overwrite(std::path::PathBuf),
-    #[error("standard output is for text: it says what was done; give --output the name of a file")]
-    NoText,
-    #[error("{} does not say the form of the table by its ending, .csv or .parquet; say --csv or --parquet", .0.display())]
-    NoForm(std::path::PathBuf),
-    #[error("a page is for a browser, not for a terminal; give --output FILE or redirect it")]
-    Terminal,
-    #[cfg(not(feature = "png"))]
-    #[error(
-        "this build writes no PNG; add it from the project's folder (40 more crates, about a minute):\n  \
-         cargo install --path . --features png\n\
-         or leave --figures-png out: --figures alone writes SVG"
-    )]
-    NoPng,
-    #[error("cannot draw the figures")]
-    Figures(#[source] Box<dyn std::error::Error + Send + Sync>),
-    #[error("cannot write the output")]
-    Output(#[from] std::io::Error),
+/// Runs a verb as its arguments ask.
+trait Run {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError>;
 }
 
-/// Runs one command: results to `out`, errors and remarks, with escape codes, to `err`; returns the
-/// exit code.
-///
-/// 0 finished, 1 failed, 3 finished with remarks on the data, 4 finished but a limit was not
-/// kept; 2 is bad usage, which clap reports. A reader of `out` that goes away is success.
-pub fn run(args: &Args, out: &mut impl Write, err: &mut impl Write) -> u8 {
-    let mut silence = std::io::sink();
-    let said: &mut dyn Write = if args.terminal.quiet { &mut silence } else { &mut *err };
-    let result = command(&args.command, out, &mut { said });
-    ended(result, out, err)
-}
+/// The verbs: names of their variants, and the modules that hold their `Args`. Help lists them in this order.
+macro_rules! verbs {
+    ($($name:ident $verb:ident),* $(,)?) => {
+        #[derive(Debug, Subcommand)]
+        enum Command {
+            $($name($verb::Args)),*
+        }
 
-fn command(command: &Command, out: &mut impl Write, err: &mut impl Write) -> Result<Outcome, CliError> {
-    match command {
-        Command::Report(report) => report::run(report, out, err),
-        Command::Compare(compare) => compare::run(compare, out, err),
-        Command::Plan(plan) => plan::run(plan, out, err),
-        Command::Simulate(simulate) => simulate::run(simulate, out),
-        Command::Fit(fit) => fit::run(fit, out, err),
-        Command::Excite(excite) => excite::run(excite, out),
-        Command::Replan(replan) => replan::run(replan, out, err),
-        Command::Join(join) => join::run(join, out, err),
-        Command::Demo(demo) => demo::run(demo, out),
-        Command::Info(info) => info::run(info, out, err),
-        Command::Recover(recover) => recover::run(recover, out, err),
-        Command::Import(import) => import::run(import, out, err),
-        Command::Export(export) => export::run(export, out, err),
-        Command::View(view) => view::run(view, out, err),
-        Command::Completions(completions) => completions::run(completions, out),
-        Command::Man(man) => man::run(man, out),
-    }
-}
-
-/// The exit code; says why a command failed.
-fn ended(result: Result<Outcome, CliError>, out: &mut impl Write, err: &mut impl Write) -> u8 {
-    match result.and_then(|outcome| Ok(out.flush().map(|()| outcome)?)) {
-        Ok(Outcome::Clean) => 0,
-        Ok(Outcome::Remarks) => 3,
-        Ok(Outcome::GateFailed) => 4,
-        Err(CliError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => 0,
-        Err(error) => {
-            // Nothing is left to tell it to if standard error is gone.
-            let _ = writeln!(err, "{FAILED}error:{FAILED:#} {}", harmless(&error.to_string()));
-            let mut cause = std::error::Error::source(&error);
-            while let Some(inner) = cause {
-                let _ = writeln!(err, "  because: {}", harmless(&inner.to_string()));
-                cause = inner.source();
+        impl Run for Command {
+            fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+                match self {
+                    $(Self::$name(args) => args.run(console)),*
+                }
             }
-            let usage = matches!(
-                error,
-                CliError::Overwrite(_) | CliError::Terminal | CliError::NoText | CliError::NoForm(_)
-            );
-            if usage { 2 } else { 1 }
+        }
+
+        $(impl TryFrom<Command> for $verb::Args {
+            type Error = CliError;
+
+            fn try_from(command: Command) -> Result<Self, CliError> {
+                match command {
+                    Command::$name(args) => Ok(args),
+                    _ => Err(CliError::failed("these are the arguments of another verb")),
+                }
+            }
+        })*
+    };
+}
+
+verbs! {
+    Demo demo,
+    Report report,
+    Compare compare,
+    Plan plan,
+    Simulate simulate,
+    Fit fit,
+    Excite excite,
+    Replan replan,
+    Join join,
+    Import import,
+    Export export,
+    Info info,
+    Recover recover,
+    View view,
+    Completions completions,
+    Man man,
+}
+
+/// Tracking error of jointed arms from their logs, above all where a joint starts from rest.
+///
+/// Reads ROS 2 bags and other MCAP logs with planned and measured joint angles, and finds both
+/// topics by itself. Times are seconds from the start of the log.
+#[derive(Debug, Parser)]
+#[command(
+    name = "hydrotrace",
+    version,
+    max_term_width = 100,
+    after_help = "Exit codes: 0 finished, 1 failed, 2 bad usage, 3 finished with remarks on the data, \
+                  4 finished but a limit (--max-..., --min-...) was not kept."
+)]
+struct Args {
+    #[command(subcommand)]
+    command: Command,
+
+    #[command(flatten)]
+    terminal: terminal::TerminalArgs,
+}
+
+/// Runs the program on the arguments of this process.
+///
+/// The exit code is 0 if it finished, 1 if it failed, 2 for bad usage, 3 if it finished with remarks on
+/// the data, and 4 if it finished but a limit was not kept. A reader of standard output that closes it early
+/// is no failure.
+pub fn main() -> ExitCode {
+    let matches = Args::command().color(terminal::early_choice(env::args_os())).get_matches();
+    let args = Args::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    let choice = terminal::set_up(args.terminal);
+    // Not locked: the log writes to it during the run.
+    let mut err = AutoStream::new(io::stderr(), choice);
+    let mut out = io::stdout().lock();
+    let result = args.command.run(&mut Console::new(&mut out, &mut err, args.terminal.quiet));
+    ExitCode::from(
+        match result.and_then(|outcome| Console::new(&mut out, &mut err, false).flushed(outcome)) {
+            Ok(Outcome::Clean) => 0,
+            Ok(Outcome::Remarks) => 3,
+            Ok(Outcome::LimitBroken) => 4,
+            Err(error) => error.explained(&mut err),
+        },
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn definitions_are_consistent() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn every_verb_is_one_line_on_a_narrow_terminal() {
+        for verb in Args::command().get_subcommands() {
+            let about = verb.get_about().unwrap().to_string();
+            assert!(about.len() <= 80 - "  completions  ".len(), "{about}");
         }
     }
 }

@@ -1,32 +1,42 @@
-//! `recover`: saves, says what was lost.
+//! `recover`
 
-use std::io::Write;
+use std::{path::PathBuf, slice::from_ref};
 
 use super::{
-    CliError, Outcome,
-    args::RecoverArgs,
-    output::{deliver, say_remarks, shown, spare_inputs, spare_stdout},
+    CliError, Outcome, Run,
+    console::{Console, Target, spare_for_log},
 };
 use crate::{
     document::pretty,
     render::recover as words,
-    workflow::recover::{Inputs, RecoverDocument, run as recover},
+    workflow::recover::{Inputs, RecoverDocument, run},
 };
 
-pub(super) fn run(
-    args: &RecoverArgs,
-    out: &mut impl Write,
-    err: &mut impl Write,
-) -> Result<Outcome, CliError> {
-    spare_inputs(Some(&args.output), std::slice::from_ref(&args.log))?;
-    spare_stdout(Some(&args.output))?;
-    let recovered = recover(&Inputs { log: args.log.clone(), output: args.output.clone() })?;
-    if args.json {
-        deliver(&pretty(&RecoverDocument::of(&recovered)), None, out)?;
-        say_remarks(&recovered.remarks, err);
-    } else {
-        let output = args.output.to_string_lossy();
-        deliver(&shown(&words::document(&output, &recovered), None), None, out)?;
+/// Save every intact message of a damaged log
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// The damaged log
+    log: PathBuf,
+
+    /// Write the intact messages to OUT, an MCAP log
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+
+    /// Print what was saved as one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        spare_for_log(Some(&self.output), from_ref(&self.log))?;
+        let recovered = run(&Inputs { log: self.log.clone(), output: self.output.clone() })?;
+        let target = Target::stdout(self.json);
+        let result = if self.json {
+            pretty(&RecoverDocument::of(&recovered))
+        } else {
+            target.text(&words::document(&self.output.to_string_lossy(), &recovered))
+        };
+        console.finish(&target, &result, &recovered.remarks, &[])
     }
-    Ok(if recovered.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
 }

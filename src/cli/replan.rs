@@ -1,77 +1,156 @@
-//! `replan`: plans again, renders, writes the log.
+//! `replan`
 
-use std::{
-    collections::BTreeMap,
-    io::Write,
-    ops::ControlFlow,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeMap, ops::ControlFlow, path::PathBuf};
 
 use super::{
-    CliError, Outcome,
-    args::ReplanArgs,
-    output::{deliver, progress, say_remarks, shown, spare_inputs, spare_stdout},
+    CliError, Outcome, Run,
+    console::{Console, Target, progress, spare_for_log, write_file},
+    number::{degrees, growth_percent, share},
+    read::SentArgs,
 };
 use crate::{
-    atomic_file::write_atomically,
+    fit::Compensation,
     render::{next, replan as words},
-    workflow::replan::{Inputs, ReplanDocument, Replanned, run as replan},
+    workflow::replan::{Inputs, ReplanDocument, Replanned, run},
 };
 
-/// Samples a second in the log; those of the loops that commands are sent to.
+const EXAMPLES: &str = "\
+Examples:
+  hydrotrace replan run.mcap -o next.mcap
+  hydrotrace replan run.mcap -o next.mcap --gain 0.5
+  hydrotrace replan field.mcap -o next.mcap --keep-plan
+  hydrotrace replan run-1.mcap run-2.mcap --limits limits.toml --task task.toml -o next.mcap";
+
+/// Samples a second in the log; that of the control loops that commands are sent to.
 const RATE_HZ: f64 = 100.0;
 
-pub(super) fn run(
-    args: &ReplanArgs,
-    out: &mut impl Write,
-    err: &mut impl Write,
-) -> Result<Outcome, CliError> {
-    let replanned = replanned(args)?;
-    let rendered = match &args.output {
-        _ if args.json => ReplanDocument::of(&replanned).json(),
-        Some(path) => {
-            shown(&words::document(&replanned).with_above_remarks(next::next_written(path, &args.logs)), None)
+/// Plan and command for the next run, from logs of the last ones
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// Logs of runs of one machine, each a file or a bag directory; the plan is that of the last
+    #[arg(required = true, value_name = "RUN")]
+    logs: Vec<PathBuf>,
+
+    /// Write plan and command to FILE, an MCAP log with both as channels of their own
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+
+    /// Machine from FILE, which `fit` wrote, instead of a fit of the runs
+    #[arg(long, value_name = "FILE")]
+    limits: Option<PathBuf>,
+
+    /// The task, instead of the one in the last log
+    #[arg(long, value_name = "FILE")]
+    task: Option<PathBuf>,
+
+    /// One JSON document (schemas/replan.v2.schema.json in the repository)
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    change: ChangeArgs,
+
+    #[command(flatten)]
+    sent: SentArgs,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "What may change")]
+struct ChangeArgs {
+    /// Change only the command; needs no task and works on any log with planned and measured joints
+    #[arg(long, conflicts_with = "no_precompensation")]
+    keep_plan: bool,
+
+    /// Change only the plan, for controllers that take no separate command
+    #[arg(long)]
+    no_precompensation: bool,
+
+    /// Share of the correction to apply, 0 to 1; 0.5 for a cautious first run
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = share)]
+    gain: f64,
+
+    /// Largest difference between command and plan [default: 1.5]
+    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
+    max_correction_deg: Option<f64>,
+
+    /// Largest growth of the plan's duration
+    #[arg(long, value_name = "PERCENT", default_value = "0", value_parser = growth_percent)]
+    max_time_growth_percent: f64,
+
+    /// Largest growth of its jerk and of its power
+    #[arg(long, value_name = "PERCENT", default_value = "10", value_parser = growth_percent)]
+    max_cost_growth_percent: f64,
+
+    /// Evaluations of the search; 15 % of them predict start errors
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1000..=100_000_000))]
+    evaluations: u64,
+
+    /// Seed of the search
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+impl Args {
+    fn request(&self) -> Inputs {
+        let change = &self.change;
+        let compensation = Compensation { gain: change.gain, ..Compensation::default() };
+        let most_rad = change.max_correction_deg.unwrap_or(compensation.most_rad);
+        Inputs {
+            logs: self.logs.clone(),
+            read: self.sent.options(),
+            limits: self.limits.clone(),
+            task: self.task.clone(),
+            keep_plan: change.keep_plan,
+            precompensate: !change.no_precompensation,
+            compensation: Compensation { most_rad, ..compensation },
+            time_growth: change.max_time_growth_percent,
+            cost_growth: change.max_cost_growth_percent,
+            evaluations: change.evaluations,
+            seed: change.seed,
+            ..Inputs::default()
         }
-        None => shown(&words::document(&replanned), None),
-    };
-    deliver(&rendered, None, out)?;
-    if args.json {
-        say_remarks(&replanned.remarks, err);
     }
-    Ok(if replanned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+
+    /// Plans again with a progress bar, and writes plan and command.
+    pub(super) fn replanned(&self) -> Result<Replanned, CliError> {
+        let request = self.request();
+        let read: Vec<PathBuf> = self.logs.iter().chain(&self.limits).chain(&self.task).cloned().collect();
+        spare_for_log(self.output.as_deref(), &read)?;
+        let bar = progress(Some(request.evaluations), "{bar:30} {pos} evaluations");
+        let replanned = run(&request, |evaluations| {
+            bar.set_position(evaluations);
+            ControlFlow::Continue(())
+        });
+        bar.finish_and_clear();
+        let replanned = replanned?;
+        if let Some(path) = &self.output {
+            let provenance = [
+                ("fitted_to", replanned.fitted_to.join(", ")),
+                ("retimed", replanned.retimed.to_string()),
+                ("precompensated", replanned.command.is_some().to_string()),
+                ("gain", request.compensation.gain.to_string()),
+                ("seed", request.seed.to_string()),
+            ];
+            let provenance = BTreeMap::from(provenance.map(|(key, value)| (key.to_owned(), value)));
+            write_file(path, &replanned.log(provenance, RATE_HZ)?)?;
+        }
+        Ok(replanned)
+    }
 }
 
-/// Plans again with a progress bar, and writes plan and command.
-pub(super) fn replanned(args: &ReplanArgs) -> Result<Replanned, CliError> {
-    let inputs = args.inputs();
-    let read: Vec<PathBuf> = args.logs.iter().chain(&args.limits).chain(&args.task).cloned().collect();
-    spare_inputs(args.output.as_deref(), &read)?;
-    spare_stdout(args.output.as_deref())?;
-    let bar = progress(Some(inputs.evaluations), "{bar:30} {pos} evaluations");
-    let replanned = replan(&inputs, |evaluations| {
-        bar.set_position(evaluations);
-        ControlFlow::Continue(())
-    });
-    bar.finish_and_clear();
-    let replanned = replanned?;
-    if let Some(path) = &args.output {
-        write_log(&inputs, &replanned, path)?;
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let replanned = self.replanned()?;
+        let target = Target::stdout(self.json);
+        let result = match &self.output {
+            _ if self.json => ReplanDocument::of(&replanned).json(),
+            Some(path) => {
+                let next = next::next_written(path, &self.logs);
+                target.text(&words::document(&replanned).with_above_remarks(next))
+            }
+            None => target.text(&words::document(&replanned)),
+        };
+        console.finish(&target, &result, &replanned.remarks, &[])
     }
-    Ok(replanned)
-}
-
-/// Writes plan and command.
-fn write_log(inputs: &Inputs, replanned: &Replanned, path: &Path) -> Result<(), CliError> {
-    let provenance = BTreeMap::from(
-        [
-            ("fitted_to", replanned.fitted_to.join(", ")),
-            ("retimed", replanned.retimed.to_string()),
-            ("precompensated", replanned.command.is_some().to_string()),
-            ("gain", inputs.compensation.gain.to_string()),
-            ("seed", inputs.seed.to_string()),
-        ]
-        .map(|(key, value)| (key.to_owned(), value)),
-    );
-    let bytes = replanned.log(provenance, RATE_HZ)?;
-    write_atomically(path, |file| Ok(file.write_all(&bytes)?))
 }

@@ -1,39 +1,68 @@
-//! `simulate`: runs a plan on a simulated machine and writes the log of the run.
+//! `simulate`
 
-use std::{io::Write, path::Path};
+use std::{
+    path::{Path, PathBuf},
+    slice::from_ref,
+};
 
 use super::{
-    CliError, Outcome,
-    args::SimulateArgs,
-    output::{deliver, shown, spare_inputs, spare_stdout},
+    CliError, Outcome, Run,
+    console::{Console, spare_for_log, write_file},
 };
 use crate::{
-    atomic_file::write_atomically,
     plant::{Parameters, PlantError},
-    render::simulate::document,
-    workflow::simulate::log::{Run, SimulateFailure, simulate},
+    render::simulate as words,
+    workflow::simulate::log::{Run as Simulated, SimulateFailure, simulate},
 };
 
-pub(super) fn run(args: &SimulateArgs, out: &mut impl Write) -> Result<Outcome, CliError> {
-    let run = simulated(args)?;
-    deliver(&shown(&document(&run, &args.plant, args.seed, &args.output), None), None, out)?;
-    Ok(Outcome::Clean)
+const EXAMPLES: &str = "\
+Examples:
+  hydrotrace simulate plan.mcap -o run.mcap
+  hydrotrace simulate plan.mcap -o run.mcap --plant lag-limited --seed 7";
+
+/// Run a plan on a simulated hydraulic arm
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// Log with a plan, and with the command if it differs from the plan; its task names the arm
+    #[arg(value_name = "LOG")]
+    log: PathBuf,
+
+    /// Write the run to FILE, an MCAP log
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+
+    /// The machine: dead-band-limited, default, lag-limited, or a TOML file
+    #[arg(long, value_name = "PLANT", default_value = "default")]
+    plant: String,
+
+    /// Seed of noise, jitter and lost messages
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
 }
 
-/// Runs the plan and writes the run.
-pub(super) fn simulated(args: &SimulateArgs) -> Result<Run, CliError> {
-    spare_inputs(Some(&args.output), std::slice::from_ref(&args.log))?;
-    spare_stdout(Some(&args.output))?;
-    let run = simulate(&args.log, parameters(&args.plant).map_err(SimulateFailure::from)?, args.seed)?;
-    let bytes = run.log()?;
-    write_atomically(&args.output, |file| Ok::<(), CliError>(file.write_all(&bytes)?))?;
-    Ok(run)
+impl Args {
+    /// Runs the plan and writes the log of the run.
+    pub(super) fn simulated(&self) -> Result<Simulated, CliError> {
+        spare_for_log(Some(&self.output), from_ref(&self.log))?;
+        let run = simulate(&self.log, parameters(&self.plant).map_err(SimulateFailure::from)?, self.seed)?;
+        write_file(&self.output, &run.log()?)?;
+        Ok(run)
+    }
+}
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let run = self.simulated()?;
+        console.show(&words::document(&run, &self.plant, self.seed, &self.output))?;
+        Ok(Outcome::Clean)
+    }
 }
 
 /// A preset by its name, else a file.
 fn parameters(plant: &str) -> Result<Parameters, PlantError> {
     let named = Parameters::preset_names().any(|name| name == plant);
-    // What is neither a preset nor a file is more likely a misspelt preset.
+    // A word that is neither a preset nor a file is more likely a misspelt preset.
     if named || !Path::new(plant).exists() {
         Parameters::preset(plant)
     } else {

@@ -6,12 +6,35 @@ use std::{
 };
 
 use anstream::{AutoStream, ColorChoice};
+use anstyle::{AnsiColor, Style};
+use clap::ArgAction;
 use log::{Level, LevelFilter};
 
-use super::{args::TerminalArgs, output::harmless};
+/// Starts a line on a failure.
+pub(super) const FAILED: Style = AnsiColor::Red.on_default().bold();
+/// Starts a line on a doubt.
+pub(super) const DOUBT: Style = AnsiColor::Yellow.on_default();
 
-/// The choice of colours before arguments are parsed, for the help and for errors of usage.
-pub fn early_choice(words: impl IntoIterator<Item = OsString>) -> clap::ColorChoice {
+/// Colours, and how much is said besides results.
+#[derive(Debug, Clone, Copy, clap::Args)]
+#[command(next_help_heading = "Terminal")]
+pub(super) struct TerminalArgs {
+    /// Colours: auto (on a terminal, unless `NO_COLOR` is set), always or never
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", hide_default_value = true)]
+    #[arg(hide_possible_values = true)]
+    color: clap::ColorChoice,
+
+    /// Print only results and errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub(super) quiet: bool,
+
+    /// Print what is read, chosen and found; twice for more
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    verbose: u8,
+}
+
+/// The colour choice before arguments are parsed, for help and usage errors.
+pub(super) fn early_choice(words: impl IntoIterator<Item = OsString>) -> clap::ColorChoice {
     let words: Vec<String> = words.into_iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let apart = words.iter().zip(words.iter().skip(1)).filter(|(name, _)| *name == "--color");
     let joined = words.iter().filter_map(|word| word.strip_prefix("--color="));
@@ -19,9 +42,8 @@ pub fn early_choice(words: impl IntoIterator<Item = OsString>) -> clap::ColorCho
     last.and_then(|value| value.parse().ok()).unwrap_or_default()
 }
 
-/// Sets colours of results, by what standard output is, and starts the log; returns the choice for
-/// standard error.
-pub fn set_up(args: &TerminalArgs) -> ColorChoice {
+/// Sets the colours of standard output and starts the log; returns the colour choice for standard error.
+pub(super) fn set_up(args: TerminalArgs) -> ColorChoice {
     let choice = match args.color {
         clap::ColorChoice::Auto => ColorChoice::Auto,
         clap::ColorChoice::Always => ColorChoice::Always,
@@ -45,6 +67,11 @@ pub fn set_up(args: &TerminalArgs) -> ColorChoice {
         .try_init();
     log::set_max_level(level);
     of(choice, AutoStream::choice(&io::stderr()))
+}
+
+/// Text from logs without control characters, which could steer a terminal.
+pub(super) fn harmless(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
 #[cfg(test)]

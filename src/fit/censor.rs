@@ -15,8 +15,8 @@ pub(super) const ASKED: f64 = 1.3;
 
 /// Which of the limits the data show.
 ///
-/// The cost without a limit must exceed that with it by more than chance, both scaled down by how
-/// many residuals tell as much as one independent one; the cost without is that of a fit of its own.
+/// The cost without a limit must exceed the cost with it by more than chance; both are divided by the statistical
+/// inefficiency, and the cost without comes from a fit of its own.
 pub(super) fn seen(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> [bool; 4] {
     let mut residuals = Vec::new();
     let data = |residuals: &[f64]| residuals.iter().map(|r| cost(r / found.scale_rad)).sum::<f64>();

@@ -45,7 +45,7 @@ pub(super) struct Problem<'a> {
     /// Limits that the model has.
     pub(super) seen: [bool; 4],
     pub(super) part: Part,
-    /// Residuals that tell as much as one independent one: their cost is divided by it.
+    /// Statistical inefficiency: correlated residuals per effective sample; divides their cost.
     pub(super) inefficiency: f64,
 }
 

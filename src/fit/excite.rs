@@ -1,4 +1,4 @@
-//! A run from which a fit can tell what task runs leave open.
+//! A run that identifies the parameters that runs of tasks leave open.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
-//! How well the numbers of a model are known.
+//! Confidence intervals of the numbers of a model.
 //!
 //! Noise is the smaller part: machines are not of the model's form. On simulated machines fits miss
-//! by the discrepancies below, which are added in quadrature to what noise and priors leave.
+//! by the discrepancies below, which are added in quadrature to the deviations from noise and priors.
 
 use nalgebra::DMatrix;
 
@@ -17,7 +17,7 @@ use crate::units::DEGREE_RAD;
 /// Normal quantile of a two-sided 95 % interval.
 const QUANTILE: f64 = 1.96;
 
-/// Deviations of logarithms that no log narrows: what models of this form miss by.
+/// Model error as deviations of logarithms; no log narrows them.
 pub(super) mod discrepancy {
     /// Of the lag.
     pub(in crate::fit) const LAG: f64 = 0.07;
@@ -46,13 +46,13 @@ pub(super) mod discrepancy {
 /// Deviations of a logarithm above which a number is not identified.
 const VAGUE: f64 = 0.6;
 
-/// The data must narrow what was known beforehand to this share.
+/// The data must narrow the prior to this share.
 const NARROWED: f64 = 0.6;
 
 /// Sent speeds that change by less within a tenth of a second are smooth, rad/s.
 const SHARP_RAD_S: f64 = DEGREE_RAD;
 
-/// What is known of the parameters after the fit.
+/// Posterior of the parameters.
 #[derive(Debug, Clone)]
 pub(super) struct Knowledge {
     free: Vec<usize>,

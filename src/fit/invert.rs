@@ -32,7 +32,7 @@ const UNTOUCHED_S: f64 = 0.2;
 /// take up a standing error without haste.
 const FREED_S: [f64; 2] = [0.2, 1.0];
 
-/// Speeds of the correction below this are none, so that a plan at rest stays a command at rest.
+/// Slower corrections count as zero, so that a plan at rest stays a command at rest.
 const STILL_RAD_S: f64 = 1e-4;
 
 /// Accelerations are differences of speeds over this, s.
@@ -63,7 +63,7 @@ pub struct Compensated {
     pub joints: Vec<JointCompensation>,
 }
 
-/// What was done to one joint.
+/// Correction of one joint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointCompensation {
@@ -98,8 +98,8 @@ pub struct JointCompensation {
 ///
 /// # Errors
 ///
-/// [`FitError::Setting`], [`FitError::Value`] for a model that is none, [`FitError::Duration`] for a
-/// plan longer than an hour.
+/// [`FitError::Setting`], [`FitError::Value`] for an impossible model, [`FitError::Duration`] for a plan longer than
+/// an hour.
 pub fn compensate(fit: &Fit, plan: &Series, settings: Compensation) -> Result<Compensated, FitError> {
     let bounded = |key, found: f64, most: f64| {
         let inside = (0.0..=most).contains(&found);

@@ -20,7 +20,7 @@ const ABOVE: [f64; 4] = [1.03, 1.03, 1.2, 1.2];
 /// Limits are looked for from no lower than this: rad/s and rad/s².
 const LOWEST: [f64; 4] = [DEGREE_RAD, DEGREE_RAD, 20.0 * DEGREE_RAD, 20.0 * DEGREE_RAD];
 
-/// Residuals of a machine that tell as much as one independent one, until they are measured.
+/// Statistical inefficiency until it is measured: correlated residuals per effective sample.
 const INEFFICIENCY: f64 = 50.0;
 
 /// Fits one joint, whose runs are not empty; with its held-out starts.

@@ -1,8 +1,8 @@
-//! What the machine does with what it is sent: a small model of every joint's closed loop, fitted to
-//! logs, with what the logs do not tell left open.
+//! The response of the machine to its commands: a small model of every joint's closed loop, fitted to logs. Parameters
+//! that the logs cannot identify are marked, not guessed.
 //!
 //! [`fit`] takes sent and measured angles and yields a [`Model`] a joint, with intervals and with its
-//! skill on data it was not fitted to. [`predict`] answers a command with what the machine will do;
+//! skill on held-out data. [`predict`] answers a command with what the machine will do;
 //! [`compensate`] turns a plan into a command whose predicted response is the plan; [`excite`] makes a
 //! run from which a fit can tell the limits.
 //!

@@ -28,11 +28,11 @@ pub struct Model {
     pub dead_time_s: f64,
     /// Of the joint's speed, s.
     pub time_constant_s: f64,
-    /// Wanted speed by error, 1/s.
+    /// Wanted speed per position error, 1/s.
     pub position_gain_1_s: f64,
-    /// Growth of the wanted speed by error, 1/s².
+    /// Growth of the wanted speed per position error, 1/s².
     pub integral_gain_1_s2: f64,
-    /// Wanted speed by sent speed.
+    /// Wanted speed per sent speed.
     pub feed_forward: f64,
     /// Logarithm of the ratio of the gains for growing and shrinking angles.
     pub asymmetry: f64,
@@ -40,7 +40,7 @@ pub struct Model {
     pub dead_band_rad_s: f64,
     /// Middle of the dead band, rad/s.
     pub dead_band_centre_rad_s: f64,
-    /// What it takes beyond the dead band to leave rest, rad/s.
+    /// Wanted speed beyond the dead band that is needed to leave rest, rad/s.
     pub stiction_rad_s: f64,
     /// Measured angle less the one that the loop sees, rad.
     pub offset_rad: f64,

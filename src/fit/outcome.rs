@@ -15,8 +15,8 @@ pub struct Fit {
     pub joints: Vec<JointFit>,
     /// Joints that are sent and measured but hardly moved.
     pub left_out: Vec<LeftOut>,
-    /// What predicted peak errors are to be multiplied with: nine of ten measured peaks of held-out
-    /// starts lay below; 1.2 where there are fewer than ten.
+    /// Factor on predicted peak errors: 90 % of the measured peaks of held-out starts stayed below; 1.2 with fewer
+    /// than ten starts.
     pub peak_margin: f64,
     /// Number of starts behind the margin.
     pub margin_starts: usize,
@@ -46,29 +46,28 @@ pub struct JointFit {
     pub samples: usize,
     /// Robust scale of what the model leaves unexplained, rad.
     pub residual_rad: f64,
-    /// Residuals that tell as much as one independent one.
+    /// Statistical inefficiency: correlated residuals per effective sample.
     pub inefficiency: f64,
     /// Share of the squared tracking error (sent minus measured, about its mean) that is predicted
     /// where it was not fitted: time is dealt in blocks of 3 s to four parts in turn, and each part is
     /// predicted by a fit to the other three, simulated from the start of the run. 1 is perfect, 0 no
     /// better than the mean. It says how well runs like these are predicted, not others.
     pub held_out_r2: f64,
-    /// Peak of what the model does not explain of the error after a held-out start, mean and 0.9
-    /// quantile, rad: what is left of a start where a command makes up for the model exactly. `None`
-    /// without starts.
+    /// Peak of the unexplained error after held-out starts, mean and 0.9 quantile, rad: it remains even if a command
+    /// cancels the modelled error exactly. `None` without starts.
     pub unexplained_peak_rad: Option<[f64; 2]>,
     /// Dead time, time constant and half a period of the loop, s.
     pub lag_s: Estimated,
     /// Speed that must be wanted before the joint leaves rest, mean of both directions, rad/s: logs of
     /// angles do not tell the directions apart.
     pub dead_band_rad_s: Estimated,
-    /// Position error that stays below the dead band: its width by the position gain, rad.
+    /// Position error inside the dead band: its half width divided by the position gain, rad.
     pub dead_band_error_rad: Estimated,
-    /// Wanted speed by error, 1/s.
+    /// Wanted speed per position error, 1/s.
     pub position_gain_1_s: Estimated,
-    /// Growth of the wanted speed by error, 1/s².
+    /// Growth of the wanted speed per position error, 1/s².
     pub integral_gain_1_s2: Estimated,
-    /// Wanted speed by sent speed.
+    /// Wanted speed per sent speed.
     pub feed_forward: Estimated,
     /// Gain for growing angles by that for shrinking ones.
     pub gain_ratio: Estimated,
@@ -88,17 +87,17 @@ pub struct JointFit {
     pub model: Model,
 }
 
-/// A number with what the data say of it.
+/// An estimated number.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Estimated {
     /// Best guess; `None` for a limit that the joint never reached.
     pub value: Option<f64>,
-    /// 95 % interval, how wrong models of this form are included; `None` without a value.
+    /// 95 % interval, widened for model error; `None` without a value.
     pub interval: Option<[f64; 2]>,
-    /// Whether the data, and not what was known beforehand, decide it.
+    /// Whether the data decide it, and not the prior.
     pub identified: bool,
-    /// What was reached: a limit that does not show is not below.
+    /// Largest value reached: the limit is not below.
     pub lower_bound: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! The numbers of a model as an estimator sees them, with what is known of them beforehand.
+//! The numbers of a model as an estimator sees them, with their priors.
 //!
 //! Every parameter is measured from its prior mean in prior standard deviations; positive ones by
 //! their logarithm. A prior then costs half the sum of squares.
@@ -25,7 +25,7 @@ const POSE_CURVE: usize = 12;
 /// Speed limits for growing and shrinking angles, then acceleration limits.
 pub(super) const LIMITS: usize = 13;
 
-/// What is known of one parameter beforehand.
+/// Prior of one parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Prior {
     /// Median of a positive parameter, mean of another.
@@ -89,7 +89,7 @@ impl Priors {
         self.shared.get(parameter).copied().unwrap_or(INTEGRAL)
     }
 
-    /// The model that `x` stands for; limits that are not `seen` are none.
+    /// The model that `x` stands for, without the limits that were not `seen`.
     pub(super) fn model(&self, x: &[f64], seen: [bool; 4]) -> Model {
         let value = |i: usize| self.of(i).value(x.get(i).copied().unwrap_or_default());
         let limit = |i: usize| seen[i].then(|| value(LIMITS + i));
@@ -126,7 +126,7 @@ impl Prior {
         if self.positive { self.middle * step.exp() } else { self.middle + step }
     }
 
-    /// What stands for a value.
+    /// The parameter of a value.
     pub(super) fn place(&self, value: f64) -> f64 {
         let step = if self.positive { (value / self.middle).ln() } else { value - self.middle };
         step / self.deviation

@@ -1,4 +1,4 @@
-//! What a joint will do with a command.
+//! The response of a joint to a command.
 
 use super::{
     FitError, Model,
@@ -18,8 +18,7 @@ const LONGEST_S: f64 = 3600.0;
 ///
 /// # Errors
 ///
-/// [`FitError::Duration`] for a command longer than an hour, [`FitError::Value`] for a model that is
-/// none.
+/// [`FitError::Duration`] for a command longer than an hour, [`FitError::Value`] for an impossible model.
 pub fn predict(model: &Model, sent: &Track) -> Result<Track, FitError> {
     model.check(sent.name())?;
     let grid = grid(sent)?;

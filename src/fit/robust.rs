@@ -26,8 +26,8 @@ pub(super) fn cost(residual: f64) -> f64 {
     if magnitude <= TUNING { 0.5 * residual * residual } else { TUNING * (magnitude - 0.5 * TUNING) }
 }
 
-/// How many residuals tell as much as one independent one: variance of batch means times the batch
-/// by the variance (batch means, as for simulation output), at least 1.
+/// Statistical inefficiency: correlated residuals per effective sample, by batch means (variance of the means times
+/// the batch length, divided by the variance); at least 1.
 pub(super) fn inefficiency(residuals: &[f64]) -> f64 {
     let variance = |values: &[f64]| {
         let mean = values.iter().sum::<f64>() / values.len() as f64;

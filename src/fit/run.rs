@@ -1,4 +1,4 @@
-//! What logs say of one joint, cut into runs that can be simulated from their start.
+//! The logs of one joint, cut into runs that can be simulated from their start.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use crate::{
 pub struct Observation<'a> {
     /// The command if the log has one, else the plan.
     pub sent: &'a Series,
-    /// What the joints did.
+    /// Measured angles.
     pub measured: &'a Series,
     /// Signals to the valves, positive for growing angles; empty where they were not logged.
     pub valve: &'a [Signal],

@@ -1,4 +1,4 @@
-//! How well a model predicts what it was not fitted to.
+//! Prediction error of a model on held-out data.
 
 use super::{
     estimate::{Part, Problem, Workspace},
@@ -69,7 +69,7 @@ pub(super) fn skill(problem: &Problem, dead_time_s: f64, workspace: &mut Workspa
     Skill { held_out_r2, starts: starts(problem.runs, &errors) }
 }
 
-/// What was sent at a sample, rad.
+/// Sent angle at a sample, rad.
 fn sent_rad(run: &Run, sample: &Sample) -> f64 {
     match run.sent.get(sample.step..sample.step + 2) {
         Some([a, b]) => a.0 + sample.part * (b.0 - a.0),
@@ -106,7 +106,7 @@ pub(super) fn unexplained_rad(starts: &[HeldOutStart]) -> Option<[f64; 2]> {
     (!peaks.is_empty()).then(|| [mean, quantile(peaks, 0.9)])
 }
 
-/// What predicted peaks are to be multiplied with so that nine of ten measured ones lie below.
+/// Factor on predicted peaks: 90 % of the measured ones stay below.
 pub(super) fn margin(peak_ratios: Vec<f64>) -> f64 {
     if peak_ratios.len() < STARTS { MARGIN } else { quantile(peak_ratios, 0.9).clamp(1.0, 3.0) }
 }

@@ -11,14 +11,14 @@ use crate::{
     task::{Objective, Objectives},
 };
 
-/// A timing and what it is worth.
+/// A timing with its objectives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timing {
     /// Time of movement from each key point to the next, s.
     pub interval_s: Vec<f64>,
     /// What it costs.
     pub objectives: Objectives,
-    /// Sum of what it exceeds its limits by, as [`Evaluator::violation`]; 0 if all hold.
+    /// Sum of the excess over its limits, as [`Evaluator::violation`]; 0 if all hold.
     pub violation: f64,
 }
 
@@ -97,8 +97,7 @@ impl Evaluator {
         self.mesh.squared_power.iter().map(move |sum| (sum / duration_s).sqrt())
     }
 
-    /// Sum of what the plan evaluated last exceeds its limits by, each as a share of the limit and at
-    /// most ten.
+    /// Sum over limits of the excess of the plan evaluated last, each as a share of its limit, 10 at most.
     pub fn violation(&self) -> f64 {
         self.shares.iter().map(|share| excess(*share)).sum()
     }
@@ -210,8 +209,7 @@ impl Evaluator {
     }
 }
 
-/// What a share exceeds its limit by. At a dead centre the share has no bound, and ten times too much
-/// is as bad as any.
+/// How far a share exceeds its limit: 0 to 10. At a dead centre the share has no bound.
 pub fn excess(share: f64) -> f64 {
     (share - 1.0).clamp(0.0, 10.0)
 }

@@ -17,7 +17,7 @@ use crate::task::{Ceilings, Objective};
 const TRIES: usize = 4;
 /// Evaluations of each descent.
 const EVALUATIONS: u64 = 400;
-/// What is kept away from a limit that was found broken, as a share.
+/// Distance kept from a limit that was found broken, as a share of it.
 const CLEAR: f64 = 1e-6;
 
 impl Setup {
@@ -72,7 +72,7 @@ pub(super) fn kept(
     for _ in 0..TRIES {
         let Some(margins) = setup.exact(&here, &mut evaluator) else { return (None, used) };
         if keeps(&margins) {
-            return (judged(setup, &mut evaluator, here), used);
+            return (evaluated(setup, &mut evaluator, here), used);
         }
         tight = tight.tightened(&here, &margins, &mut evaluator);
         let goal = Goal { merit, ceilings, evaluations: EVALUATIONS, trust: NEARLY, enough: FINE };
@@ -121,7 +121,7 @@ pub(super) fn kept_front(setup: &Setup, front: Vec<Timing>, most: usize) -> (Vec
     (front, used)
 }
 
-/// What the fastest plan is sped up by before its last descent, so that it meets its limits again.
+/// Factor on the fastest plan's times before its last descent, so that it meets its limits again.
 const QUICKER: f64 = 0.97;
 
 /// The plan slowed down all along until it keeps its limits.
@@ -130,7 +130,7 @@ fn slow(setup: &Setup, evaluator: &mut Evaluator, interval_s: &[f64]) -> Option<
     for _ in 0..TRIES {
         let margins = setup.exact(&here, evaluator)?;
         if keeps(&margins) {
-            return judged(setup, evaluator, here);
+            return evaluated(setup, evaluator, here);
         }
         here = slowed(&here, &margins);
         if here.iter().any(|s| *s > setup.interval_s[1]) {
@@ -147,8 +147,8 @@ fn slowed(interval_s: &[f64], margins: &[Margin]) -> Vec<f64> {
     interval_s.iter().map(|s| s * by).collect()
 }
 
-/// With what it costs.
-fn judged(setup: &Setup, evaluator: &mut Evaluator, interval_s: Vec<f64>) -> Option<Timing> {
+/// With its objectives.
+fn evaluated(setup: &Setup, evaluator: &mut Evaluator, interval_s: Vec<f64>) -> Option<Timing> {
     let objectives = evaluator.evaluate(setup, &interval_s)?;
     Some(Timing { interval_s, objectives, violation: evaluator.violation() })
 }

@@ -1,4 +1,4 @@
-//! Sets of plans of which none is better than another in everything.
+//! Pareto fronts of plans.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,4 @@
-//! What a plan must keep to.
+//! Limits of a plan.
 
 use serde::{Deserialize, Serialize};
 
@@ -58,9 +58,9 @@ pub struct Margin {
     pub joint: Option<usize>,
     /// The value there, in the limit's unit; signed where the quantity is.
     pub value: f64,
-    /// What is allowed in that direction.
+    /// Largest value allowed in that direction.
     pub allowed: f64,
-    /// Value by what is allowed; of a range, distance from its middle by half its width. Above 1 the
+    /// Value divided by the allowed one; of a range, distance from its middle divided by half its width. Above 1 the
     /// limit is broken.
     pub share: f64,
     /// When, s.

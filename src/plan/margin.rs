@@ -128,7 +128,7 @@ impl Setup {
         Some(Margin { limit, joint, value: share * allowed, allowed, share, t_s })
     }
 
-    /// What is allowed of a mechanical quantity at an instant, with the sign that the quantity has.
+    /// Largest value allowed of a mechanical quantity at an instant, with the sign of the quantity.
     fn allowed(
         &self,
         motion: &Motion,

@@ -1,4 +1,4 @@
-//! Plans: what a timing of the key points costs, what it must keep to, and the best timings.
+//! Plans: objectives and limits of a timing of the key points, and the search for the best timings.
 //!
 //! A [`Setup`] is a task on its arm. An [`Evaluator`] gives the objectives of one timing and how
 //! near it comes to every limit; [`Setup::margins`] says the same exactly, with the place.

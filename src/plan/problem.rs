@@ -70,7 +70,7 @@ impl<M: Machine> Problem for TimingProblem<'_, M> {
         let over: f64 =
             found.plan().iter().zip(self.ceilings.plan()).map(|(f, ceiling)| excess(f / ceiling)).sum();
         let violation = evaluator.violation() + over;
-        // A prediction takes as long as a hundred evaluations; of a plan that cannot be run there is none.
+        // A prediction takes as long as a hundred evaluations: only plans that keep their limits get one.
         found[Objective::StartError] = if self.objectives.contains(&Objective::StartError) && violation <= 0.0
         {
             self.machine.start_error_rad(&evaluator.motion, memory)

@@ -24,7 +24,7 @@ pub(super) struct Step<'a> {
     pub(super) bounds: &'a [(f64, f64)],
 }
 
-/// What a step is.
+/// Solution of a step.
 pub(super) struct Solution {
     /// d, `[n]`.
     pub(super) step: Vec<f64>,

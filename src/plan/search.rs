@@ -58,10 +58,10 @@ pub enum Phase {
     Polish,
 }
 
-/// What an observer sees.
+/// State of a search, for its observer.
 #[derive(Debug, Clone, Copy)]
 pub struct Progress<'a> {
-    /// What is going on.
+    /// The stage.
     pub phase: Phase,
     /// Evaluations so far.
     pub evaluations: u64,
@@ -71,10 +71,10 @@ pub struct Progress<'a> {
     pub population: &'a Population,
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
-    /// Feasible plans of which none is better than another in everything, fastest first.
+    /// Feasible plans on the Pareto front, fastest first.
     pub front: Vec<Timing>,
     /// The plan that breaks limits least, where no plan keeps them all.
     pub nearest: Option<Timing>,
@@ -115,7 +115,7 @@ pub fn search(
     };
     let mut seeds = if search.seeded { seeds(setup, budget) } else { Seeds::default() };
     let used = seeds.evaluations;
-    // The directions' number of seeds, evenly over the front; if there is none, what is nearest.
+    // As many seeds as directions, evenly over the front; without feasible seeds the least broken one.
     let mut initial = thinned(setup, seeds.all(), search.population.unwrap_or(DIRECTIONS));
     if initial.is_empty() {
         initial.extend(least_broken(seeds.all().cloned()));

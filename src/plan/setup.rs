@@ -35,12 +35,11 @@ pub struct Setup {
     pub(super) template: Motion,
     /// Dwell that precedes each interval, s, `[points - 1]`; zero for none.
     pub(super) dwell_before_s: Vec<f64>,
-    /// What the last joint carries in each segment.
+    /// Load at the last joint in each segment.
     pub(super) loads: Vec<Load>,
     /// Shortest and longest interval, s.
     pub(super) interval_s: [f64; 2],
-    /// By row of the limits, what a peak between the instants of an evaluation is larger by; 1 unless that has
-    /// been seen.
+    /// Per limit: safety factor for peaks between evaluation nodes; 1 until one was found.
     pub(super) slack: Vec<f64>,
     /// Payload by segment, kg.
     payload_kg: Vec<f64>,

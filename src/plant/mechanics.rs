@@ -85,7 +85,7 @@ impl Mechanics {
     }
 }
 
-/// What the last joint carries with a payload at the tool, kg.
+/// Load at the last joint with a payload at the tool, kg.
 fn load(plant: &Plant, payload_kg: f64) -> Load {
     plant.chain.load(Inertia::point(payload_kg, nalgebra::Vector3::zeros()).as_ref())
 }

@@ -9,7 +9,7 @@ pub struct Record {
     pub t_s: Vec<f64>,
     /// Pressure before the valves, Pa.
     pub supply_pa: Vec<f64>,
-    /// What the tool carries, kg.
+    /// Payload at the tool, kg.
     pub payload_kg: Vec<f64>,
     /// One entry a joint, in the order of the arm.
     pub joints: Vec<JointRecord>,

@@ -38,7 +38,7 @@ struct Loop {
 ///
 /// # Errors
 ///
-/// [`PlantError`]: a joint without command, a run longer than an hour, a payload that is none, a
+/// [`PlantError`]: a joint without command, a run longer than an hour, an impossible payload, a
 /// pose that the supply cannot hold, an arm too light for the step.
 pub fn simulate(
     plant: &Plant,

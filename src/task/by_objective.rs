@@ -18,7 +18,7 @@ const INACTIVE: f64 = 10.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ByObjective([f64; Objective::COUNT]);
 
-/// What a plan costs.
+/// Costs of a plan.
 pub type Objectives = ByObjective;
 
 /// Ceilings on the objectives (paper, section V: "f1 must be less than 40, ..."); infinite for none.

@@ -1,6 +1,6 @@
 //! From the document to a checked task: degrees become radians, names become indices.
 
-use std::{collections::BTreeMap, ops::Range};
+use std::{collections::BTreeMap, ops::Range, path::Path};
 
 use toml::Spanned;
 
@@ -15,7 +15,29 @@ use crate::units::radians_from_degrees;
 /// Shortest and longest interval where the file gives none, s.
 const INTERVAL_S: [f64; 2] = [0.3, 20.0];
 
-pub(super) fn parse(text: &str) -> Result<Task, TaskError> {
+impl Task {
+    /// Reads the text of a task file.
+    ///
+    /// # Errors
+    ///
+    /// [`TaskError`], naming the line, what was found and what belongs there.
+    pub fn parse(text: &str) -> Result<Self, TaskError> {
+        parse(text)
+    }
+
+    /// Reads a task file.
+    ///
+    /// # Errors
+    ///
+    /// [`TaskError`] if the file cannot be read or is no task.
+    pub fn read(path: &Path) -> Result<Self, TaskError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| TaskError::Read { path: path.to_owned(), reason: source.to_string() })?;
+        Self::parse(&text)
+    }
+}
+
+fn parse(text: &str) -> Result<Task, TaskError> {
     let file: Document = toml::from_str(text).map_err(|error| TaskError::Syntax {
         line: line_of(text, &error.span().unwrap_or(0..0)),
         message: syntax(error.message()),

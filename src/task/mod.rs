@@ -13,8 +13,6 @@ pub use by_objective::{ByObjective, Ceilings, Objectives, Weights};
 pub use error::TaskError;
 pub use objective::Objective;
 
-use std::path::Path;
-
 /// Where the arm's description is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ArmSource {
@@ -125,26 +123,6 @@ pub struct Task {
 }
 
 impl Task {
-    /// Reads the text of a task file.
-    ///
-    /// # Errors
-    ///
-    /// [`TaskError`], naming the line, what was found and what belongs there.
-    pub fn parse(text: &str) -> Result<Self, TaskError> {
-        file::parse(text)
-    }
-
-    /// Reads a task file.
-    ///
-    /// # Errors
-    ///
-    /// [`TaskError`] if the file cannot be read or is no task.
-    pub fn read(path: &Path) -> Result<Self, TaskError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| TaskError::Read { path: path.to_owned(), reason: source.to_string() })?;
-        Self::parse(&text)
-    }
-
     /// Number of joints.
     pub fn joint_count(&self) -> usize {
         self.joints.len()

@@ -3,7 +3,7 @@
 
 use crate::units::{degrees_from_radians, radians_from_degrees};
 
-/// What a plan costs in one respect; less is better.
+/// One cost of a plan; less is better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Objective {
     /// Total time, dwells included, s (f1).
@@ -30,7 +30,7 @@ pub struct Row {
     pub name: &'static str,
     /// The same in a word or two, for titles of plots.
     pub short: &'static str,
-    /// What the plan that is best in it is called.
+    /// Name of the plan that is best in it.
     pub best: &'static str,
     /// The rule that chooses the plan that is best in it.
     pub rule: &'static str,

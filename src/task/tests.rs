@@ -1,5 +1,7 @@
 //! What a task file may say, and what it is told when it is wrong.
 
+use std::path::Path;
+
 use super::*;
 use crate::units::DEGREE_RAD;
 

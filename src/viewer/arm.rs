@@ -1,4 +1,4 @@
-//! The arm: solids and meshes that ride on its links, and the way of its tool.
+//! The arm: solids and meshes on its links, and the path of its tool.
 
 use rerun::{
     AlbedoFactor, Asset3D, Boxes3D, Color, Cylinders3D, Ellipsoids3D, FillMode, LineStrips3D, Radius,
@@ -23,8 +23,8 @@ pub(super) enum Look {
     Planned,
 }
 
-/// How much larger solids that others are seen through are on every side by the arm's reach, so that two never
-/// show at the same place.
+/// By how much a transparent solid is larger than the solid inside it, as a share of the arm's reach: their faces
+/// never coincide.
 const MARGIN: f64 = 0.002;
 /// Of tool paths, in points of the screen, whatever the size of the arm.
 const PATH_POINTS: f32 = 1.2;

@@ -1,4 +1,4 @@
-//! What is seen first: arm and starts on the left, errors, joints and words on the right.
+//! The first layout: arm and starts on the left; errors, joints and remarks on the right.
 
 use rerun::{
     blueprint::components::{Corner2D, LinkAxis, LoopMode, PanelState, PlayState},
@@ -23,7 +23,7 @@ use crate::{math::range, units::degrees_from_radians, workflow::view::Scene};
 /// Joints of several runs that fit beside each other.
 const MOST_PLOTS: usize = 8;
 
-/// The layout for some runs; `live` follows what arrives.
+/// The layout for some runs; with `live` the time follows the data.
 pub(super) fn of(scenes: &[Scene], live: bool) -> Board {
     let mut board = Board::default();
     let (mut left, mut right) = (Column::default(), Column::default());
@@ -70,7 +70,7 @@ pub(super) fn of(scenes: &[Scene], live: bool) -> Board {
     })
 }
 
-/// Views below each other with their shares of the height.
+/// Views above one another, each with its share of the height.
 #[derive(Default)]
 struct Column(Vec<(f32, ContainerLike)>);
 
@@ -115,7 +115,7 @@ fn arm(board: &mut Board, scenes: &[Scene]) -> Option<ContainerLike> {
     Some(board.with(view, &eye))
 }
 
-/// Of one run all joints together; of several a plot a joint, that the runs are compared in.
+/// One run: all joints in one plot. Several runs: a plot a joint, with a line a run.
 fn errors(board: &mut Board, scenes: &[Scene]) -> Option<ContainerLike> {
     let of = |name: &str| -> Vec<String> {
         let has = |scene: &&Scene| scene.pairs.iter().any(|pair| pair.name == name);
@@ -190,7 +190,7 @@ fn linked() -> TimeAxis {
     TimeAxis::new().with_link(LinkAxis::LinkToGlobal)
 }
 
-/// The front of a plan, if there is one, and what is said of the runs.
+/// The Pareto front of a plan, if there is one, and the remarks on the runs.
 fn below(board: &mut Board, scenes: &[Scene]) -> Tabs {
     let mut below: Vec<ContainerLike> = Vec::new();
     if scenes.iter().any(|scene| scene.front.as_ref().is_some_and(|front| front.objectives.len() > 1)) {

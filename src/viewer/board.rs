@@ -1,4 +1,4 @@
-//! A blueprint with what the crate rerun 0.36 has no setters for: legends, eyes, ranges and columns of views.
+//! A blueprint with the properties of views that the crate rerun 0.36 cannot set: legends, eyes, ranges, columns.
 
 use rerun::{
     Archetype, AsComponents, RecordingStream, RecordingStreamBuilder,
@@ -8,7 +8,7 @@ use rerun::{
 
 use super::ViewError;
 
-/// What Rerun knows our recordings and blueprints by.
+/// The name of our recordings and blueprints in Rerun.
 pub(super) const APPLICATION: &str = "hydrotrace";
 
 type Batches = Vec<rerun::SerializedComponentBatch>;

@@ -1,11 +1,11 @@
-//! Colours: the first run in the arm's own, others each in one of theirs.
+//! Colours: the first run has those of the arm, each other run one of its own.
 
 use rerun::Color;
 
 /// By run after the first.
 const OTHERS: [[u8; 3]; 4] = [[38, 190, 200], [190, 110, 255], [239, 83, 80], [120, 200, 60]];
 const FIRST: [u8; 3] = [237, 135, 26];
-/// Of joints, in their order; told apart by people who see few colours (Okabe and Ito 2008).
+/// Of joints, in their order; safe for colour-blind readers (Okabe and Ito 2008).
 const JOINTS: [[u8; 3]; 7] = [
     [230, 159, 0],
     [86, 180, 233],
@@ -15,9 +15,9 @@ const JOINTS: [[u8; 3]; 7] = [
     [213, 94, 0],
     [204, 121, 167],
 ];
-/// Of whatever is planned.
+/// Of planned motion.
 const PLANNED: [u8; 3] = [185, 220, 255];
-/// Of lines and words that belong to no run.
+/// Of axes and text.
 pub(super) const AXIS: [u8; 3] = [130, 135, 145];
 
 /// Of what is measured in a run; the first has the arm's own paint.

@@ -12,7 +12,7 @@ use crate::{
 pub(super) const ROOT: &str = "/plans";
 /// How much wider than high the axes are drawn.
 const WIDE: f64 = 2.4;
-/// What is to be seen along x and y: the axes and their words.
+/// Visible range along x and y, with room for the labels of the axes.
 pub(super) const SIGHT: [[f64; 2]; 2] = [[-0.3, WIDE + 0.3], [-0.12, 1.22]];
 
 pub(super) fn send(rec: &RecordingStream, scenes: &[Scene]) -> Result<(), ViewError> {
@@ -59,7 +59,7 @@ fn words(f: &Objectives) -> String {
     each.join(", ")
 }
 
-/// Fronts fall steeply and end flat: even steps would hide most of one in the corner.
+/// Logarithmic: a front falls steeply and ends flat, and a linear axis would hide most of it in a corner.
 fn log(value: f64) -> f64 {
     value.max(f64::MIN_POSITIVE).ln()
 }

@@ -1,4 +1,4 @@
-//! A run as it happened, for a viewer that is watched.
+//! Replays a run in real time.
 
 use std::{
     thread::sleep,
@@ -9,10 +9,10 @@ use rerun::RecordingStream;
 
 use super::{ViewError, stream::Stream};
 
-/// Between two pieces; more often than anybody sees.
+/// Time between two pieces, s; shorter than the eye notices.
 const PERIOD: Duration = Duration::from_millis(25);
 
-/// Sends what has happened by now, `speed` times as fast as it did, until all has.
+/// Sends the rows up to the current instant, `speed` times as fast as they were logged, until the end of the run.
 pub(super) fn play(rec: &RecordingStream, streams: &[Stream], speed: f64) -> Result<(), ViewError> {
     let first_s = streams.iter().filter_map(|s| s.t_s.first()).fold(f64::INFINITY, |a, b| a.min(*b));
     let start = Instant::now();

@@ -1,4 +1,4 @@
-//! What `view` found, in Rerun: the only part of the crate that sees it.
+//! Shows runs in Rerun; no other module uses that crate.
 
 mod arm;
 mod blueprint;
@@ -22,11 +22,11 @@ use crate::workflow::view::Scene;
 pub enum Target {
     /// A file.
     Save(PathBuf),
-    /// A viewer that is started.
+    /// Start a viewer.
     Spawn,
-    /// A viewer that listens at an address.
+    /// A viewer that already listens at an address.
     Connect(String),
-    /// A viewer for browsers that is started.
+    /// Start a viewer for browsers.
     Web,
 }
 
@@ -69,11 +69,11 @@ pub enum ViewError {
     },
 }
 
-/// How long a viewer may take to answer at first.
+/// Time that a viewer has for its first answer.
 const PATIENCE: Duration = Duration::from_secs(15);
 
-/// Shows runs; with a speed as they happened, so many times as fast, else at once. A viewer for browsers is
-/// announced by its address, and waited for.
+/// Shows runs, at once or in real time at a given speed. Announces the address of a viewer for browsers, and waits
+/// until it ends.
 ///
 /// # Errors
 ///

@@ -13,7 +13,7 @@ use super::ViewError;
 const PROGRAM: &str = "rerun";
 /// Where viewers listen for data, and where they serve their page.
 const PORTS: [u16; 2] = [9876, 9090];
-/// How long the program may take until it listens; its first start reads it from disk.
+/// Time that the program has until it listens; its first start is slow, from disk.
 const START: Duration = Duration::from_secs(60);
 const PERIOD: Duration = Duration::from_millis(50);
 
@@ -40,7 +40,7 @@ impl Page {
     }
 }
 
-/// Where the window of a viewer takes data: that which is open, else one that is started and outlives us.
+/// Address of the window of a viewer: an open one, or else a new one that outlives this program.
 pub(super) fn window() -> Result<String, ViewError> {
     let port = PORTS[0];
     if !listens(port) {

@@ -19,7 +19,8 @@ use crate::{
 const STATES: [(&str, [u8; 3]); 3] =
     [("follows", [70, 75, 85]), ("waits", [239, 83, 80]), ("settles", [237, 175, 60])];
 
-/// Sends what does not change with time; returns what does. `run` is its index among how many.
+/// Sends the parts that do not change with time and returns the streams that do. `run` is the index of the
+/// run and the number of runs.
 pub(super) fn send_static(
     rec: &RecordingStream,
     scene: &Scene,
@@ -104,7 +105,7 @@ fn errors(path: String, pair: &Pair) -> Stream {
     Stream { path, t_s: pair.t_s.clone(), values: Values::Scalars(values) }
 }
 
-/// A joint waits from its planned onset to the measured one, and settles until its error has.
+/// A joint waits from the planned onset to the measured one, and settles until its error stays in the band.
 fn states(path: String, scene: &Scene, joint: &str) -> Stream {
     let first_s = scene.planned.track(joint).and_then(|t| t.t_s().first().copied()).unwrap_or(0.0);
     let mut changes = vec![(first_s, "follows")];

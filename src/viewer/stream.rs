@@ -1,4 +1,4 @@
-//! What changes with time, one entity a stream, sent whole or piece by piece.
+//! Values over time, one entity a stream, sent whole or in pieces.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use crate::{
 
 /// The timeline of all streams: time since the start of the log.
 pub(super) const TIMELINE: &str = "time";
-/// Rows of one piece; bounds what is in memory twice.
+/// Rows of one piece; bounds the copies in memory.
 const PIECE: usize = 4096;
 
 /// A name as part of an entity's path.
@@ -30,13 +30,13 @@ pub(super) struct Stream {
 
 /// One value an instant.
 pub(super) enum Values {
-    /// What a curve shows.
+    /// The value of a curve.
     Scalars(Vec<f64>),
-    /// Where a link is.
+    /// The pose of a link.
     Poses(Vec<Pose>),
-    /// What a lane shows.
+    /// The state of a lane.
     States(Vec<&'static str>),
-    /// What is said, and whether as a warning.
+    /// A message, and whether it is a warning.
     Texts(Vec<(String, bool)>),
 }
 

@@ -2,11 +2,8 @@
 
 use super::page::{
     chart::Chart,
-    paper::{Paper, svg},
+    paper::{Failure, Paper, svg},
 };
-
-/// Why a picture could not be drawn: what the drawing library says.
-pub type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 /// A plot as a file of its own.
 #[derive(Debug, Clone, PartialEq, Eq)]

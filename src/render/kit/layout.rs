@@ -4,6 +4,9 @@ use textwrap::core::display_width;
 
 use super::{Align, Table};
 
+/// Between two columns of a table.
+pub(super) const GAP: &str = "  ";
+
 /// Characters that each column takes.
 pub(super) fn widths(table: &Table) -> Vec<usize> {
     let cell = |row: &[String], k: usize| row.get(k).map_or(0, |cell| display_width(cell));

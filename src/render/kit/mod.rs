@@ -22,9 +22,10 @@ mod terminal_style;
 pub use command::{argument, command};
 pub use csv::csv;
 pub use document::{Block, Document, Fact, Id, Section, Sentence, fact};
-pub use figure::{Failure, Figure};
+pub use figure::Figure;
 pub use markdown::markdown;
 pub use number::{NONE, counted, deg, ms, optional, percent, probability, share, short, signed, significant};
+pub use page::paper::Failure;
 #[cfg(feature = "png")]
 pub use raster::{Raster, raster};
 pub use table::{Align, Column, Table};

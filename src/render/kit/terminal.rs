@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::{Block, Document, Fact, Sentence, Table, TerminalStyle, clean, layout::filled};
-
-/// Between two columns of a table.
-pub(super) const GAP: &str = "  ";
+use super::{
+    Block, Document, Fact, Sentence, Table, TerminalStyle, clean,
+    layout::{GAP, filled},
+};
 
 /// For a plain file.
 pub fn text(document: &Document) -> String {

@@ -5,7 +5,10 @@ use std::collections::BTreeSet;
 use anstyle::{AnsiColor, Style};
 use textwrap::{Options, WordSeparator, WordSplitter};
 
-use super::{Align, Sentence, Table, layout::widths, terminal::GAP};
+use super::{
+    Align, Sentence, Table,
+    layout::{GAP, widths},
+};
 
 const STRONG: Style = Style::new().bold();
 const BAD: Style = AnsiColor::Red.on_default().bold();

@@ -111,7 +111,7 @@ impl Carried {
     ///
     /// # Errors
     ///
-    /// Within, if it is none.
+    /// Within, if its text is broken.
     pub fn task_or_arm(&self) -> Option<Result<Task, TaskError>> {
         Some(Task::parse(&self.task().or_else(|| self.text(ARM))?))
     }
@@ -125,7 +125,7 @@ impl Carried {
         Some(arm_of(&Task::parse(&self.task()?).ok()?, folder))
     }
 
-    /// The plan; `None` if there is none of ours.
+    /// The plan; `None` without a plan document of ours.
     ///
     /// # Errors
     ///

@@ -17,8 +17,8 @@ use thiserror::Error;
 pub use change::Change;
 pub use figures::Figures;
 pub use gates::{Gate, GateResult, Gates};
-pub use outcome::{Comparison, Run, Side, TransitionPair, Unpaired};
-pub use pairing::PairedBy;
+pub use outcome::{Comparison, Run, Side, Unpaired};
+pub use pairing::{PairedBy, TransitionPair};
 pub use summary::{Measure, Scope, Summary, Verdict};
 
 use super::report::{self, Report};

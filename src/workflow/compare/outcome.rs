@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::{Change, Figures, GateResult, Measure, PairedBy, Scope, Summary, Verdict};
+use super::{Figures, GateResult, Measure, Scope, Summary, TransitionPair, Verdict};
 use crate::{
     log::SourceInfo,
     remark::Remarks,
-    replay::{Answer, Kind, Rules},
+    replay::{Kind, Rules},
     series::Pair,
 };
 
@@ -46,34 +46,6 @@ pub struct Run {
     pub plan_difference_rad: Option<f64>,
     /// Whether it is the same plan.
     pub same_plan: bool,
-}
-
-/// One transition before and after.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct TransitionPair {
-    /// The joint.
-    pub joint: String,
-    /// From rest or not.
-    pub kind: Kind,
-    /// Sign of the planned motion, +1 or -1.
-    pub direction: i8,
-    /// When the plan starts in the first run before, s.
-    pub planned_onset_before_s: f64,
-    /// When it starts in the first run after, s.
-    pub planned_onset_after_s: f64,
-    /// How the two were found to be the same.
-    pub paired_by: PairedBy,
-    /// Largest error in the window, rad.
-    pub peak_error_rad: Change,
-    /// Root mean square error in the window, rad.
-    pub rms_error_rad: Change,
-    /// Measured minus planned onset, s; `None` where an answer has no instant in a run.
-    pub onset_delay_s: Change,
-    /// What became of the start before; of several runs the worst.
-    pub answer_before: Answer,
-    /// The same after.
-    pub answer_after: Answer,
 }
 
 /// A transition that is not found in every run, and is left out.

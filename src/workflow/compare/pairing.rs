@@ -2,8 +2,16 @@
 
 use serde::Serialize;
 
-use super::plans::{PlanDifference, plan_difference};
-use crate::{math::median, replay::Transition, series::Pair, workflow::report::Report};
+use super::{
+    Change,
+    plans::{PlanDifference, plan_difference},
+};
+use crate::{
+    math::median,
+    replay::{Answer, Kind, Transition},
+    series::Pair,
+    workflow::report::Report,
+};
 
 /// Planned onsets at most this far apart, clocks aligned, are the same, s.
 const SAME_ONSET_S: f64 = 0.3;
@@ -26,6 +34,34 @@ pub enum PairedBy {
     Task,
     /// The joint starts equally often in the same directions, in another rhythm.
     Order,
+}
+
+/// One transition before and after.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct TransitionPair {
+    /// The joint.
+    pub joint: String,
+    /// From rest or not.
+    pub kind: Kind,
+    /// Sign of the planned motion, +1 or -1.
+    pub direction: i8,
+    /// When the plan starts in the first run before, s.
+    pub planned_onset_before_s: f64,
+    /// When it starts in the first run after, s.
+    pub planned_onset_after_s: f64,
+    /// How the two were found to be the same.
+    pub paired_by: PairedBy,
+    /// Largest error in the window, rad.
+    pub peak_error_rad: Change,
+    /// Root mean square error in the window, rad.
+    pub rms_error_rad: Change,
+    /// Measured minus planned onset, s; `None` where an answer has no instant in a run.
+    pub onset_delay_s: Change,
+    /// What became of the start before; of several runs the worst.
+    pub answer_before: Answer,
+    /// The same after.
+    pub answer_after: Answer,
 }
 
 /// How another run corresponds to the first.

@@ -1,4 +1,4 @@
-//! `excite`: a run from which a fit can tell what runs of tasks leave open.
+//! `excite`: a run that identifies the parameters that runs of tasks leave open.
 
 use std::{collections::BTreeMap, path::PathBuf};
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::{FitFailure, Fitted, FittedRun, torque::JointTorque};
+use super::{FitFailure, Fitted, FittedRun, LIMITS_FORMAT, torque::JointTorque};
 use crate::{
     document::{PROGRAM, pretty},
     fit::{Fit, JointFit, LEAST_SKILL, LeftOut},
@@ -12,10 +12,7 @@ use crate::{
 };
 
 const FORMAT: &str = "hydrotrace.fit.v1";
-/// Format of every file with limits.
-pub(super) const LIMITS_FORMAT: &str = "hydrotrace.limits.v1";
-
-/// What logs say of a machine. Angles are radians, times seconds; pairs are for growing and for
+/// A fitted machine. Angles are radians, times seconds; pairs are for growing and for
 /// shrinking angles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -77,7 +74,7 @@ pub struct LimitsFile {
     /// Torques from pressures, where the logs have them.
     #[serde(default)]
     pub torques: Vec<JointTorque>,
-    /// What was found.
+    /// The fitted machine.
     #[serde(flatten)]
     pub fit: Fit,
 }

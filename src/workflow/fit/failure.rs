@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::{document::LIMITS_FORMAT, observe::ObserveFailure};
+use super::{LIMITS_FORMAT, observe::ObserveFailure};
 use crate::fit::FitError;
 
 /// Why there is no fit.
@@ -14,7 +14,7 @@ pub enum FitFailure {
     /// A log.
     #[error(transparent)]
     Observe(#[from] ObserveFailure),
-    /// What the logs hold.
+    /// The data.
     #[error("the logs cannot be fitted")]
     Fit(#[from] FitError),
     /// A file with limits cannot be read.

@@ -23,6 +23,9 @@ use {
     torque::{JointTorque, torques},
 };
 
+/// Format of every file with limits.
+const LIMITS_FORMAT: &str = "hydrotrace.limits.v1";
+
 /// What to fit.
 #[derive(Debug, Clone, Default)]
 pub struct Inputs {

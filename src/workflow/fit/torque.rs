@@ -1,4 +1,4 @@
-//! Torques of cylinders from logged pressures, as far as log and arm tell them.
+//! Torques of cylinders from logged pressures.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use crate::{
     workflow::carried::Carried,
 };
 
-/// What a joint's cylinders did and could do. Pairs are for growing and for shrinking angles, both
+/// Torques that a joint's cylinders made and could make. Pairs are for growing and for shrinking angles, both
 /// positive, N m.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -21,8 +21,8 @@ pub struct JointTorque {
     pub samples: usize,
     /// Largest torque that the pressures made, 999 of 1000 samples below: the limit is not below.
     pub reached_n_m: [f64; 2],
-    /// What the cylinders give in every pose of the run at the supply pressure that was logged for half of the time; what
-    /// was reached where no supply pressure was logged.
+    /// Torque available in every pose of the run at the median supply pressure; the torque reached if no supply pressure
+    /// was logged.
     pub available_n_m: [f64; 2],
 }
 

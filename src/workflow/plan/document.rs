@@ -69,7 +69,7 @@ pub struct PlanEntry {
     /// Arrival at each key point, s, dwells counted.
     #[serde(default)]
     pub times_s: Vec<f64>,
-    /// What it costs.
+    /// Its objectives.
     #[serde(flatten)]
     pub objectives: Objectives,
     /// Sum of what it exceeds limits by, as shares of them.
@@ -117,7 +117,7 @@ pub struct MarginEntry {
     #[serde(with = "unbounded")]
     #[cfg_attr(test, schemars(with = "Option<f64>"))]
     pub value: f64,
-    /// What is allowed in that direction.
+    /// Largest value allowed in that direction.
     pub allowed: f64,
     /// Share of what is allowed; above 1 the limit is broken; null where it has no bound.
     #[serde(with = "unbounded")]

@@ -32,7 +32,7 @@ pub struct Options {
     pub weights: Option<Weights>,
 }
 
-/// What was planned.
+/// Findings of `plan`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Planned {
     /// Names of the joints, base first.

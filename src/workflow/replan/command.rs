@@ -11,7 +11,7 @@ use crate::{
 /// Gains that are tried for a joint whose command breaks a limit, as shares of the gain asked for.
 const GAINS: [f64; 4] = [0.75, 0.5, 0.25, 0.0];
 
-/// What is done to one joint.
+/// The command of one joint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointCommand {

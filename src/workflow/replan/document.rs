@@ -12,7 +12,7 @@ use crate::{
 
 const FORMAT: &str = "hydrotrace.replan.v2";
 
-/// What to send next and what is expected of it. Angles are radians, times seconds.
+/// The plan and command of the next run with their predicted errors. Angles are radians, times seconds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ReplanDocument {
@@ -24,7 +24,7 @@ pub struct ReplanDocument {
     pub fitted_to: Vec<String>,
     /// The last run.
     pub before: Before,
-    /// What is expected of the next.
+    /// Prediction for the next run.
     pub after: Predicted,
     /// From the first to the last motion of the new plan, s.
     pub duration_s: f64,
@@ -38,7 +38,7 @@ pub struct ReplanDocument {
     pub times_s: Option<Vec<f64>>,
     /// Evaluations of the search; null without one.
     pub evaluations: Option<u64>,
-    /// What the search held each joint to.
+    /// Limits of each joint in the search.
     pub held_to: Vec<HeldTo>,
     /// The command by joint; empty without one.
     pub command: Vec<JointCommand>,

@@ -18,11 +18,11 @@ pub enum Origin {
     Task,
     /// The lower end of a fitted limit's interval.
     Fitted,
-    /// What the last plan asked for or the joint was seen to reach: beyond it nothing is known.
+    /// The largest value that the last plan asked for or the joint reached; nothing is known beyond it.
     Shown,
 }
 
-/// What a joint was held to.
+/// Limits of a joint in the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct HeldTo {

@@ -85,8 +85,7 @@ impl Default for Inputs {
 /// Timings of the search that are looked at with their commands.
 const CANDIDATES: usize = 6;
 
-/// A new timing must be expected to lower the sum of all peaks by this share: less is no reason to run
-/// what has not been run.
+/// A new timing must be expected to lower the sum of all peaks by this share; otherwise the proven one stays.
 const WORTH: f64 = 0.02;
 
 /// Plans again.

@@ -1,4 +1,4 @@
-//! What was planned again.
+//! Findings of `replan`.
 
 use std::collections::BTreeMap;
 
@@ -35,7 +35,7 @@ pub struct Before {
     pub measured_worst_peak_rad: Option<f64>,
     /// Of the plan, s; from the first to the last motion where its times are not known.
     pub duration_s: f64,
-    /// What the model makes of the same plan, sent as it is.
+    /// Prediction for the same plan, sent as it is.
     pub predicted: Predicted,
 }
 
@@ -64,13 +64,13 @@ pub struct Search {
     pub front: Vec<Timing>,
     /// Evaluations made.
     pub evaluations: u64,
-    /// What the objectives were held to.
+    /// Ceilings on the objectives.
     pub ceilings: Ceilings,
-    /// What each joint was held to.
+    /// Limits of each joint in the search.
     pub held: Vec<HeldTo>,
     /// Times of movement of the last plan, s, if they are known.
     pub start: Option<Vec<f64>>,
-    /// What the last plan is worth under the same limits.
+    /// The last plan under the same limits.
     pub evaluation: Option<PlanEvaluation>,
 }
 
@@ -93,7 +93,7 @@ pub struct Replanned {
     pub fitted_to: Vec<String>,
     /// The last run.
     pub before: Before,
-    /// What is expected of the next.
+    /// Prediction for the next run.
     pub after: Predicted,
     /// Of the new plan, s; from the first to the last motion where its times are not known.
     pub duration_s: f64,
@@ -101,12 +101,11 @@ pub struct Replanned {
     pub retimed: bool,
     /// The search, if there was one.
     pub search: Option<Search>,
-    /// The new plan with all that can be said of it, under the task's own limits; `None` without a task
-    /// or its times.
+    /// The new plan under the task's own limits; `None` without a task or its times.
     pub evaluation: Option<PlanEvaluation>,
     /// Objectives of the last plan, where they are known.
     pub objectives_before: Option<Objectives>,
-    /// The command, unless there is none.
+    /// The command, if one was made.
     pub command: Option<Commanded>,
     /// Where the joints should be.
     pub plan: Series,

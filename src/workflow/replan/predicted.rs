@@ -1,5 +1,4 @@
-//! What a machine is predicted to make of a plan, transition by transition, as a report would measure
-//! it.
+//! Predicted tracking error of a plan, transition by transition, as a report would measure it.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,11 +12,11 @@ use crate::{
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Predicted {
-    /// Mean peak error of the transitions, what the model cannot explain included, rad.
+    /// Mean peak error of the transitions, unexplained error included, rad.
     pub mean_peak_rad: f64,
     /// Largest expected peak, rad.
     pub worst_peak_rad: f64,
-    /// Mean of what nine of ten peaks stay below, rad.
+    /// Mean over transitions of the bound that 90 % of peaks stay below, rad.
     pub mean_peak_margin_rad: f64,
     /// Sum of the expected peaks, rad: a reversal less counts.
     pub sum_of_peaks_rad: f64,
@@ -41,14 +40,13 @@ pub struct PredictedTransition {
     pub planned_onset_s: f64,
     /// Peak error of the model's response, rad.
     pub modelled_peak_rad: f64,
-    /// The same with what models leave unexplained after held-out starts, added as independent, rad.
+    /// The same with the unexplained error after held-out starts, added as independent, rad.
     pub expected_peak_rad: f64,
-    /// What nine of ten measured peaks stay below, rad.
+    /// Bound that 90 % of measured peaks stay below, rad.
     pub peak_margin_rad: f64,
 }
 
-/// Predicts what comes of sending `sent` where `plan` is wanted; joints that the fit does not know
-/// are left out.
+/// Predicts the tracking error of `plan` if `sent` is sent; joints that the fit does not know are left out.
 ///
 /// # Errors
 ///

@@ -1,5 +1,5 @@
-//! Another timing of the key points that the machine follows better: NSGA-III-FO on time, jerk, power
-//! and the predicted error of all starts and reversals together.
+//! A timing of the key points with less start error: NSGA-III-FO on the objectives of a plan and the predicted peak
+//! errors of all starts and reversals together.
 
 use std::ops::ControlFlow;
 
@@ -17,7 +17,7 @@ const PREDICTED: f64 = 0.15;
 /// Plans kept of the second search.
 const KEPT: usize = 200;
 
-/// What a search for timings found.
+/// Result of a search for timings.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Timings {
     /// Least predicted start error first; empty if no plan keeps the limits.

@@ -32,7 +32,7 @@ pub enum SimulateFailure {
     #[error(transparent)]
     Log(#[from] LogError),
     /// The task within the log.
-    #[error("the task in {} is none", path.display())]
+    #[error("{} holds a broken task", path.display())]
     Task {
         /// The log.
         path: PathBuf,
@@ -173,7 +173,7 @@ fn sample_arm(path: &Path, planned: &Series) -> Result<Arm, SimulateFailure> {
     Err(SimulateFailure::NoArm { path: path.to_owned(), found, sample })
 }
 
-/// What the tool carries, and from when on, rests counted.
+/// Payloads with their times, rests counted.
 fn payload(task: &Task, arm: Arm, times_s: &[f64], starts_s: f64) -> Result<Vec<PayloadChange>, PlanError> {
     let setup = Setup::new(task, arm)?;
     let motion = setup.motion(times_s)?;

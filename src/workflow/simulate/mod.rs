@@ -1,4 +1,4 @@
-//! `simulate`: what a log would hold if a hydraulic arm ran a command.
+//! `simulate`: the log of a simulated hydraulic arm that runs a command.
 
 pub mod log;
 
@@ -22,16 +22,15 @@ pub struct Inputs {
     pub plant: Plant,
     /// Where the joints should be.
     pub plan: Series,
-    /// What is sent to the machine: the plan, or one that makes up for the machine. Both with
-    /// speeds, from time 0 on.
+    /// Command to the machine: the plan, or the plan corrected for the machine. Both with speeds, from time 0 on.
     pub command: Series,
-    /// What the tool carries, and from when on.
+    /// Payloads with their times.
     pub payload: Vec<PayloadChange>,
     /// Seed of noise, jitter and losses.
     pub seed: u64,
 }
 
-/// What came of it.
+/// A simulated run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outputs {
     /// The run.
@@ -40,7 +39,7 @@ pub struct Outputs {
     pub planned: Vec<Vec<(f64, f64)>>,
     /// Command by joint and sample of the record: angle, rad, and speed, rad/s.
     pub command: Vec<Vec<(f64, f64)>>,
-    /// What a fit should find, amid the angles of the plan and without payload.
+    /// True parameters at the middle of the plan's angles, without payload.
     pub truth: Truth,
 }
 

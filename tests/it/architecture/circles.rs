@@ -6,18 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::imports::uses;
 
 /// Folders that still hold circles, with all files in them. This list only shrinks.
-const KNOWN: &[(&str, &str)] = &[
-    ("crates/moea/src", "direction.rs, focus.rs, settings.rs, population.rs, sorting.rs"),
-    (
-        "src/log",
-        "assemble.rs, overlap.rs, parallel.rs, quality.rs, read.rs, recording.rs, select_topics.rs, track.rs",
-    ),
-    ("src/render/kit", "figure.rs, page, terminal.rs, terminal_style.rs"),
-    ("src/render/kit/page/paper", "legend.rs, panel.rs"),
-    ("src/workflow/compare", "gates.rs, outcome.rs, summary.rs"),
-    ("src/workflow/contest", "run.rs, study.rs"),
-    ("src/workflow/moea", "run.rs, study.rs"),
-];
+const KNOWN: &[(&str, &str)] =
+    &[("crates/moea/src", "direction.rs, focus.rs, settings.rs, population.rs, sorting.rs")];
 
 /// Every group of files and folders that use one another in a circle: their folder, and their names.
 fn circles(sources: &[(String, String)]) -> Vec<(String, String)> {

@@ -142,9 +142,9 @@ fn wrong_tasks_and_times_name_file_line_and_remedy() {
 fn bad_usage_is_exit_code_2_and_names_what_is_allowed() {
     for (args, expected) in [
         (vec![SIMULATION, "--algorithm", "nsga4"], "nsga3"),
-        (vec![SIMULATION, "--weights", "1,2"], "three weights"),
+        (vec![SIMULATION, "--weights", "1,2"], "3 weights"),
         (vec![SIMULATION, "--evaluations", "500", "--generations", "3"], "cannot be used with"),
-        (vec![SIMULATION, "-o", SIMULATION], "is what is read"),
+        (vec![SIMULATION, "-o", SIMULATION], "is an input"),
     ] {
         let run = plan(&args, "2");
         assert_eq!(run.status.code(), Some(2), "{args:?}");

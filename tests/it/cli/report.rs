@@ -175,7 +175,7 @@ fn a_report_never_replaces_the_log_it_reads() {
     for args in [&["report", name, "-o", name][..], &["recover", name, "-o", name]] {
         let run = hydrotrace(args);
         assert_eq!(run.status.code(), Some(2), "{}", stderr(&run));
-        assert!(stderr(&run).contains("is what is read"));
+        assert!(stderr(&run).contains("is an input"));
     }
     assert_eq!(fs::read(&log).unwrap(), before);
 }

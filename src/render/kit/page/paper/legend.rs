@@ -1,9 +1,9 @@
 //! Names of what is drawn beside a piece of it: colours alone tell nothing in print.
 
-use plotters::prelude::{Circle, Color, PathElement, RGBColor, Rectangle, Text};
+use plotters::prelude::{Circle, Color, PathElement, RGBColor, Rectangle, ShapeStyle, Text, WHITE};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{Area, Chart, Drawn, Paper, panel::dot};
+use super::{Area, Chart, Drawn, Paper};
 use crate::render::kit::{clean, page::chart::Role};
 
 pub(super) const BAND: RGBColor = RGBColor(232, 160, 32);
@@ -114,4 +114,14 @@ fn piece(area: &Area, mark: Mark, [x_mm, y_mm]: [f64; 2], paper: Paper) -> Drawn
         }
     }
     Ok(())
+}
+
+/// Circles, radii and fills, that make a point; those that are named are rings, told apart without colours.
+pub(super) fn dot(role: Role, paper: Paper) -> Vec<(u32, ShapeStyle)> {
+    let full = (paper.size(role.width_mm()), role.colour().mix(0.8).filled());
+    if role == Role::Named {
+        vec![(full.0, role.colour().filled()), (paper.size(0.5 * role.width_mm()), WHITE.filled())]
+    } else {
+        vec![full]
+    }
 }

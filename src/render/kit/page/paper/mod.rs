@@ -12,7 +12,6 @@ use plotters::{
 
 use super::chart::{Chart, Size};
 use crate::render::kit::{
-    Failure,
     axis::{FONT, INK},
     clean,
 };
@@ -20,6 +19,10 @@ use crate::render::kit::{
 pub(in crate::render) use rows::rows;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Why a picture could not be drawn: what the drawing library says.
+pub type Failure = Box<dyn std::error::Error + Send + Sync>;
+
 type Drawn = Result<(), Failure>;
 
 /// What pictures are drawn for. Lengths are millimetres on paper.

@@ -1,16 +1,13 @@
 //! The panels of a chart above one another, with their axes.
 
 use plotters::{
-    prelude::{
-        ChartBuilder, Circle, Color, EmptyElement, LineSeries, PathElement, Rectangle, ShapeStyle, Text,
-        WHITE,
-    },
+    prelude::{ChartBuilder, Circle, Color, EmptyElement, LineSeries, PathElement, Rectangle, Text},
     style::text_anchor::{HPos, Pos, VPos},
 };
 
 use super::{
     Area, Chart, Drawn, Paper,
-    legend::{BAND, strength},
+    legend::{BAND, dot, strength},
 };
 use crate::render::kit::{
     axis::{Axis, GRID, INK, steps},
@@ -163,16 +160,6 @@ impl Frame<'_> {
         };
         // Below the lowest are the numbers of the axis.
         [right, taken(1.0) <= taken(-1.0) || y - low < 0.1 * (high - low)]
-    }
-}
-
-/// Circles, radii and fills, that make a point; those that are named are rings, told apart without colours.
-pub(super) fn dot(role: Role, paper: Paper) -> Vec<(u32, ShapeStyle)> {
-    let full = (paper.size(role.width_mm()), role.colour().mix(0.8).filled());
-    if role == Role::Named {
-        vec![(full.0, role.colour().filled()), (paper.size(0.5 * role.width_mm()), WHITE.filled())]
-    } else {
-        vec![full]
     }
 }
 

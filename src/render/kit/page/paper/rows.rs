@@ -5,9 +5,8 @@ use plotters::{
     style::text_anchor::{HPos, Pos, VPos},
 };
 
-use super::{Paper, cut, document, panel};
+use super::{Failure, Paper, cut, document, panel};
 use crate::render::kit::{
-    Failure,
     axis::{Axis, GRID, INK, steps},
     page::{
         chart::{Role, span},

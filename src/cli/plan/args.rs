@@ -10,70 +10,78 @@ use clap::{
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 
-use super::{FigureArgs, ends};
 use crate::{
+    cli::{
+        console::{Form, ends},
+        figures::FigureArgs,
+        number::{any_seconds, rate_hz, within},
+    },
     moea::{ALGORITHMS, Budget, NamedAlgorithm},
     plan::{Rule, Search},
     task::{Objective, Weights},
     workflow::plan::Options,
 };
 
-/// Arguments of `plan`.
+const EXAMPLES: &str = "\
+Examples:
+  hydrotrace plan task.toml -o plan.mcap
+  hydrotrace plan task.toml --choose fastest
+  hydrotrace plan task.toml --times 0,2.01,3.77,5.79,6.53,8.85,10.48
+  hydrotrace plan task.toml --json --evaluations 100000 > plan.json";
+
+/// The best timings of a task's key points, and the chosen one as a log
 #[derive(Debug, clap::Args)]
-pub struct PlanArgs {
-    /// The task: a TOML file as schemas/task.schema.json in the repository describes it
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct Args {
+    /// The task: a TOML file (schemas/task.schema.json in the repository)
     #[arg(value_name = "TASK")]
-    pub task: PathBuf,
+    pub(super) task: PathBuf,
 
-    /// Write the chosen plan to FILE, an MCAP log with the task and the whole front within; a FILE that ends in
-    /// .html or .json gets the page or the document instead
+    /// Write the chosen plan to FILE, an MCAP log that also holds the task and the Pareto front; if FILE ends in
+    /// .html or .json, write the page or the document instead
     #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
+    pub(super) output: Option<PathBuf>,
 
-    /// Do not search: judge the plan with these arrivals at the key points, s, dwells counted
-    #[arg(long, value_name = "S,...", value_delimiter = ',', value_parser = time, allow_negative_numbers = true)]
-    pub times: Option<Vec<f64>>,
+    /// Evaluate one plan instead of searching: arrival times at the key points, s, dwells included
+    #[arg(long, value_name = "S,...", value_delimiter = ',', value_parser = any_seconds, allow_negative_numbers = true)]
+    pub(super) times: Option<Vec<f64>>,
 
-    /// One JSON document with the front, as schemas/plan.v1.schema.json in the repository describes it
+    /// One JSON document with the front (schemas/plan.v1.schema.json in the repository)
     #[arg(long)]
-    pub json: bool,
+    pub(super) json: bool,
 
-    /// One page for a browser with the front, the search and every limit; needs no network
+    /// One page for a browser: front, search and every limit; needs no network
     #[arg(long, conflicts_with = "json")]
-    pub html: bool,
+    pub(super) html: bool,
 
-    /// Its plots as files.
     #[command(flatten)]
-    pub figures: FigureArgs,
+    pub(super) figures: FigureArgs,
 
-    /// Samples a second in the log
-    #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate, allow_negative_numbers = true)]
-    pub rate: f64,
+    /// Sampling rate of the log
+    #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate_hz, allow_negative_numbers = true)]
+    pub(super) rate: f64,
 
-    /// How to search.
     #[command(flatten)]
-    pub search: SearchArgs,
+    pub(super) search: SearchArgs,
 
-    /// How to choose.
     #[command(flatten)]
-    pub choice: ChoiceArgs,
+    pub(super) choice: ChoiceArgs,
 }
 
-/// How to search.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Searching")]
-pub struct SearchArgs {
-    /// Evaluations altogether [default: 20000]
+pub(super) struct SearchArgs {
+    /// Budget in evaluations [default: 20000]
     #[arg(long, value_name = "N", group = "budget", value_parser = clap::value_parser!(u64).range(500..=1_000_000_000))]
-    pub evaluations: Option<u64>,
+    pub(super) evaluations: Option<u64>,
 
-    /// Generations of the evolution
+    /// Budget in generations
     #[arg(long, value_name = "N", group = "budget", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
-    pub generations: Option<u64>,
+    pub(super) generations: Option<u64>,
 
-    /// Seconds for the evolution; what it finds then depends on the machine
-    #[arg(long, value_name = "S", group = "budget", value_parser = seconds, allow_negative_numbers = true)]
-    pub time_budget: Option<Duration>,
+    /// Budget in seconds; the result then depends on the speed of the computer
+    #[arg(long, value_name = "S", group = "budget", value_parser = time_budget, allow_negative_numbers = true)]
+    pub(super) time_budget: Option<Duration>,
 
     /// Evolutionary algorithm
     #[arg(
@@ -83,36 +91,35 @@ pub struct SearchArgs {
         ignore_case = true,
         value_parser = PossibleValuesParser::new(ALGORITHMS.map(|c| c.name))
     )]
-    pub algorithm: String,
+    pub(super) algorithm: String,
 
-    /// Start from descents and end with them (the default)
+    /// Start and end with gradient descents (the default)
     #[arg(long, overrides_with = "no_seeded")]
-    pub seeded: bool,
+    pub(super) seeded: bool,
 
-    /// Start from random plans, as the paper does
+    /// Start from random plans, as in the paper
     #[arg(long, action = ArgAction::SetTrue)]
-    pub no_seeded: bool,
+    pub(super) no_seeded: bool,
 
-    /// Members of the population; by default as the directions ask (92)
+    /// Size of the population [default: 92, one per reference direction]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=100_000))]
-    pub population: Option<u32>,
+    pub(super) population: Option<u32>,
 
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1)]
-    pub seed: u64,
+    pub(super) seed: u64,
 }
 
-/// How to choose.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Choosing")]
-pub struct ChoiceArgs {
-    /// Rule; by default the task's weights, or the ideal
+pub(super) struct ChoiceArgs {
+    /// Rule that chooses the plan [default: the task's weights, else ideal]
     #[arg(long, value_name = "RULE", value_parser = rules())]
-    pub choose: Option<Rule>,
+    pub(super) choose: Option<Rule>,
 
     #[arg(long, value_name = "W,...", help = weights_help(), value_parser = weights, conflicts_with = "choose")]
     /// Weights in place of the task's.
-    pub weights: Option<Weights>,
+    pub(super) weights: Option<Weights>,
 }
 
 /// Every rule by its name, with what it does.
@@ -132,33 +139,31 @@ fn weights_help() -> String {
     format!("Weights in place of the task's, in this order: {}", names.join(", "))
 }
 
-impl PlanArgs {
-    /// Whether a page is wanted, by option or by the ending of the output.
-    pub fn wants_html(&self) -> bool {
-        self.html || !self.json && ends(self.output.as_deref(), "html")
-    }
-
-    /// The same of the document.
-    pub fn wants_json(&self) -> bool {
-        self.json || !self.html && ends(self.output.as_deref(), "json")
+impl Args {
+    /// The form, by option or ending.
+    pub(super) fn form(&self) -> Form {
+        let forms = [(self.json, Form::Json), (self.html, Form::Html)];
+        Form::of(&forms, self.output.as_deref())
     }
 
     /// Where the log goes.
-    pub fn log(&self) -> Option<&Path> {
+    pub(super) fn log(&self) -> Option<&Path> {
         self.output.as_deref().filter(|_| self.page().is_none())
     }
 
-    /// Where page or document go: a file of that ending, `-` for standard output, which is also meant without.
-    pub fn page(&self) -> Option<&Path> {
-        let fits = |path: &&Path| {
-            self.wants_html() && ends(Some(path), "html") || self.wants_json() && ends(Some(path), "json")
+    /// Where page or document go: to a file of that ending, else to standard output, which `-` names too.
+    pub(super) fn page(&self) -> Option<&Path> {
+        let form = self.form();
+        let fits = |path: &&Path| match form {
+            Form::Html => ends(Some(path), "html"),
+            Form::Json => ends(Some(path), "json"),
+            _ => false,
         };
-        let here = |path: &&Path| *path == Path::new("-") && (self.html || self.json);
+        let here = |path: &&Path| *path == Path::new("-") && form != Form::Text;
         self.output.as_deref().filter(|path| fits(path) || here(path))
     }
 
-    /// The same for the library.
-    pub fn options(&self) -> Options {
+    pub(super) fn options(&self) -> Options {
         let SearchArgs { evaluations, generations, time_budget, .. } = &self.search;
         let default = Search::default();
         let budget = match (evaluations, generations, time_budget) {
@@ -184,34 +189,15 @@ impl PlanArgs {
     }
 }
 
-fn number(text: &str, what: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(format!("{text:?} is not {what}")),
-    }
-}
-
-fn time(text: &str) -> Result<f64, String> {
-    number(text, "a time in seconds")
-}
-
-fn rate(text: &str) -> Result<f64, String> {
-    number(text, "a rate in hertz").and_then(|hz| {
-        if (1.0..=10_000.0).contains(&hz) { Ok(hz) } else { Err(format!("{hz} Hz is not within 1 to 10000")) }
-    })
-}
-
-fn seconds(text: &str) -> Result<Duration, String> {
-    let s = number(text, "a time in seconds")?;
-    if (0.0..=1e6).contains(&s) {
-        Ok(Duration::from_secs_f64(s))
-    } else {
-        Err(format!("{s} s is not within 0 to 1e6"))
-    }
+fn time_budget(text: &str) -> Result<Duration, String> {
+    within(text, [0.0, 1e6], "a time from 0 to 1e6 s").map(Duration::from_secs_f64)
 }
 
 fn weights(text: &str) -> Result<Weights, String> {
-    let values = text.split(',').map(|part| number(part, "a weight")).collect::<Result<Vec<_>, _>>()?;
+    let values = text
+        .split(',')
+        .map(|part| within(part, [0.0, f64::MAX], "a weight of zero or more"))
+        .collect::<Result<Vec<_>, _>>()?;
     let weights = Weights::from_slice(&values);
     let count = Objective::OF_PLAN.len();
     if values.len() == count && weights.are_weights() {

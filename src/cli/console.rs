@@ -1,0 +1,234 @@
+//! Where results go: standard output, or a file that appears whole or not at all; and what is said beside them.
+
+use std::{
+    fmt::Display,
+    io::{IsTerminal, Write},
+    path::{Path, PathBuf},
+};
+
+use anstream::ColorChoice;
+use indicatif::{ProgressBar, ProgressStyle};
+use terminal_size::{Width, terminal_size_of};
+
+use super::{
+    CliError, Outcome,
+    terminal::{DOUBT, FAILED, harmless},
+};
+use crate::{
+    atomic_file::write_atomically,
+    remark::Remarks,
+    render::kit::{self, Document, Sentence, TerminalStyle},
+};
+
+/// Standard output for the result, standard error for words beside it.
+pub(super) struct Console<'a> {
+    out: &'a mut dyn Write,
+    err: &'a mut dyn Write,
+    quiet: bool,
+}
+
+impl<'a> Console<'a> {
+    pub(super) fn new(out: &'a mut dyn Write, err: &'a mut dyn Write, quiet: bool) -> Self {
+        Self { out, err, quiet }
+    }
+
+    /// Writes to standard output.
+    pub(super) fn print(&mut self, text: &str) -> Result<(), CliError> {
+        self.out.write_all(text.as_bytes()).map_err(CliError::Output)
+    }
+
+    /// The same at once, before the verb ends.
+    #[cfg(feature = "viewer")]
+    pub(super) fn announce(&mut self, text: &str) -> std::io::Result<()> {
+        self.out.write_all(text.as_bytes())?;
+        self.out.flush()
+    }
+
+    /// Writes a document to standard output, with colours and folded lines on a terminal.
+    pub(super) fn show(&mut self, document: &Document) -> Result<(), CliError> {
+        self.print(&shown(document))
+    }
+
+    /// Says a line on standard error, unless `--quiet`. A closed standard error does not make a result wrong.
+    pub(super) fn say(&mut self, line: impl Display) {
+        if !self.quiet {
+            let _ = writeln!(self.err, "{line}");
+        }
+    }
+
+    /// Says remarks, whatever the form of the result.
+    pub(super) fn say_remarks(&mut self, remarks: &Remarks) {
+        for remark in remarks.as_slice() {
+            let text = harmless(&remark.message).replace('\n', "\u{fffd}");
+            self.say(format_args!(
+                "{DOUBT}remark:{DOUBT:#} {} x{}: {text}",
+                remark.code.name(),
+                remark.count
+            ));
+        }
+    }
+
+    /// The end of every verb: writes the result, says what it does not show, and tells how the run ended.
+    pub(super) fn finish(
+        &mut self,
+        target: &Target<'_>,
+        result: &str,
+        remarks: &Remarks,
+        verdicts: &[Sentence],
+    ) -> Result<Outcome, CliError> {
+        match target.file {
+            Some(file) => write_file(file, result.as_bytes())?,
+            None => self.print(result)?,
+        }
+        if !target.is_read_at_once() {
+            self.say_remarks(remarks);
+        }
+        let broken: Vec<&Sentence> = verdicts.iter().filter(|verdict| verdict.is_broken()).collect();
+        for verdict in &broken {
+            self.say(format_args!("{FAILED}gate:{FAILED:#} {}", harmless(&verdict.to_string())));
+        }
+        Ok(match (broken.is_empty(), remarks.is_empty()) {
+            (false, _) => Outcome::LimitBroken,
+            (true, false) => Outcome::Remarks,
+            (true, true) => Outcome::Clean,
+        })
+    }
+
+    /// Where a table goes row by row.
+    pub(super) fn out(&mut self) -> &mut dyn Write {
+        self.out
+    }
+
+    /// The outcome, if standard output took everything.
+    pub(super) fn flushed(&mut self, outcome: Outcome) -> Result<Outcome, CliError> {
+        self.out.flush().map(|()| outcome).map_err(CliError::Output)
+    }
+}
+
+/// Forms of a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    Text,
+    Markdown,
+    Json,
+    Csv,
+    Html,
+}
+
+impl Form {
+    fn ending(self) -> Option<&'static str> {
+        match self {
+            Self::Text => None,
+            Self::Markdown => Some("md"),
+            Self::Json => Some("json"),
+            Self::Csv => Some("csv"),
+            Self::Html => Some("html"),
+        }
+    }
+
+    /// Of the forms that a verb has: the one asked for, else that of the file's ending, else text.
+    pub(super) fn of(forms: &[(bool, Self)], file: Option<&Path>) -> Self {
+        let asked = forms.iter().find(|(asked, _)| *asked);
+        let by_file = || forms.iter().find(|(_, form)| form.ending().is_some_and(|with| ends(file, with)));
+        asked.or_else(by_file).map_or(Self::Text, |(_, form)| *form)
+    }
+}
+
+/// The form of a result, and its file; `None` for standard output.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Target<'a> {
+    pub(super) form: Form,
+    pub(super) file: Option<&'a Path>,
+}
+
+impl<'a> Target<'a> {
+    /// A megabyte of markup on a terminal helps nobody: refused.
+    pub(super) fn new(form: Form, file: Option<&'a Path>) -> Result<Self, CliError> {
+        let file = file.filter(|path| !is_stdout(path));
+        if form == Form::Html && file.is_none() && std::io::stdout().is_terminal() {
+            let why = "a page is for a browser, not for a terminal; give --output FILE or redirect it";
+            return Err(CliError::Usage(why.to_owned()));
+        }
+        Ok(Self { form, file })
+    }
+
+    /// Text on standard output, or JSON.
+    pub(super) fn stdout(json: bool) -> Self {
+        Self { form: if json { Form::Json } else { Form::Text }, file: None }
+    }
+
+    /// A document as text or Markdown.
+    pub(super) fn text(&self, document: &Document) -> String {
+        match (self.form, self.file) {
+            (Form::Markdown, _) => kit::markdown(document),
+            (_, Some(_)) => kit::text(document),
+            (_, None) => shown(document),
+        }
+    }
+
+    /// Whether remarks are seen in the result itself.
+    fn is_read_at_once(&self) -> bool {
+        self.file.is_none() && matches!(self.form, Form::Text | Form::Markdown)
+    }
+}
+
+/// A document for standard output: colours and folded lines only on a terminal.
+fn shown(document: &Document) -> String {
+    let coloured = matches!(ColorChoice::global(), ColorChoice::Always | ColorChoice::AlwaysAnsi);
+    let width = terminal_size_of(std::io::stdout()).map(|(Width(width), _)| usize::from(width));
+    kit::shown(document, TerminalStyle { coloured, width })
+}
+
+/// Writes a file, whole or not at all.
+pub(super) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
+    write_atomically(path, |file| file.write_all(bytes).map_err(CliError::Output))
+}
+
+/// Makes a folder, and those above it.
+pub(super) fn make_folder(path: &Path) -> Result<(), CliError> {
+    let failed = CliError::step(format!("cannot make the folder {}", path.display()));
+    std::fs::create_dir_all(path).map_err(|error| failed(error.into()))
+}
+
+/// A progress bar on standard error; hidden if that is no terminal, with `--verbose` and with `--quiet`.
+pub(super) fn progress(steps: Option<u64>, template: &str) -> ProgressBar {
+    if log::max_level() != log::LevelFilter::Warn {
+        return ProgressBar::hidden();
+    }
+    let bar = steps.map_or_else(ProgressBar::no_length, ProgressBar::new);
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// Whether the name of a file has an ending.
+pub(super) fn ends(file: Option<&Path>, with: &str) -> bool {
+    file.and_then(Path::extension).is_some_and(|ending| ending.eq_ignore_ascii_case(with))
+}
+
+fn is_stdout(path: &Path) -> bool {
+    ["-", "/dev/stdout", "/dev/fd/1"].iter().any(|name| path == Path::new(name))
+}
+
+/// Refuses to write over an input, which may be the only copy of a run.
+pub(super) fn spare_inputs(output: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
+    let same = |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
+    match output.filter(|output| inputs.iter().any(|input| same(input, output))) {
+        Some(output) => Err(CliError::Usage(format!(
+            "{} is an input of this command; give another name to --output",
+            output.display()
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// The same of a file that is not text and so does not go to standard output.
+pub(super) fn spare_for_log(output: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
+    spare_inputs(output, inputs)?;
+    if output.is_some_and(is_stdout) {
+        let why = "standard output is for text; give --output the name of a file";
+        return Err(CliError::Usage(why.to_owned()));
+    }
+    Ok(())
+}

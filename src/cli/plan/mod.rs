@@ -1,0 +1,174 @@
+//! `plan`: searches with a progress bar, or evaluates given times; writes the log.
+
+mod args;
+mod watch;
+
+use std::{collections::BTreeMap, slice::from_ref};
+
+use super::{
+    CliError, Outcome, Run,
+    console::{Console, Form, Target, spare_for_log, write_file},
+};
+use crate::{
+    moea::NamedAlgorithm,
+    plan::{PlanEvaluation, SampledMotion},
+    remark::Remarks,
+    render::{
+        kit::Document,
+        next,
+        plan::{self as words, broken_lines, ceiling_lines, judged_document, judged_page, motion_figures},
+    },
+    workflow::{
+        carried::{
+            Carried,
+            plan_log::{PlanLog, Planned as Steps},
+        },
+        plan::{Options, PlanDocument, PlanFailure, PlanRequest, Planned, run},
+    },
+};
+
+pub(super) use args::Args;
+use watch::Watch;
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        spare_for_log(self.log(), from_ref(&self.task))?;
+        let target = Target::new(self.form(), self.page())?;
+        self.figures.check()?;
+        let request = PlanRequest::read(&self.task)?;
+        match self.times.as_ref().or(request.task.times_s.as_ref()) {
+            Some(times_s) => self.evaluate(&request, times_s, &target, console),
+            None => self.search(&request, &target, console),
+        }
+    }
+}
+
+/// A finished search and its document.
+pub(super) struct Found {
+    pub(super) planned: Planned,
+    document: PlanDocument,
+    algorithm: &'static str,
+    options: Options,
+}
+
+impl Args {
+    fn evaluate(
+        &self,
+        request: &PlanRequest,
+        times_s: &[f64],
+        target: &Target<'_>,
+        console: &mut Console<'_>,
+    ) -> Result<Outcome, CliError> {
+        let title = &request.task.title;
+        let evaluation = PlanEvaluation::of(&request.setup, times_s).map_err(PlanFailure::from)?;
+        let joints = request.setup.joint_names();
+        let document = PlanDocument::evaluated(title, &joints, &evaluation, true);
+        self.write_log(request, &document, BTreeMap::new())?;
+        let course = course(request, &evaluation)?;
+        let result = match target.form {
+            Form::Json => document.json(),
+            Form::Html => judged_page(title, &joints, &evaluation, &course),
+            _ => target.text(&self.noted(judged_document(title, &joints, &evaluation))),
+        };
+        self.figures.write(console, || motion_figures(&joints, &course))?;
+        let outcome = console.finish(target, &result, &Remarks::default(), &[])?;
+        Ok(if evaluation.broken().is_empty() { outcome } else { Outcome::LimitBroken })
+    }
+
+    fn search(
+        &self,
+        request: &PlanRequest,
+        target: &Target<'_>,
+        console: &mut Console<'_>,
+    ) -> Result<Outcome, CliError> {
+        let Found { planned, document, algorithm, options } = self.found(request, console)?;
+        let (title, ceilings) = (&request.task.title, &request.task.ceilings);
+        let course = course(request, &planned.chosen)?;
+        let result = match target.form {
+            Form::Json => document.json(),
+            Form::Html => words::page(&document, &options, ceilings, &planned, &course),
+            _ => target.text(&self.noted(words::document(title, algorithm, &options, ceilings, &planned))),
+        };
+        self.figures.write(console, || words::figures(&document, &course))?;
+        console.finish(target, &result, &planned.remarks, &[])
+    }
+
+    /// Searches with a progress bar and writes the chosen plan.
+    pub(super) fn found(&self, request: &PlanRequest, console: &mut Console<'_>) -> Result<Found, CliError> {
+        let (title, options) = (&request.task.title, self.options());
+        let algorithm = NamedAlgorithm::find(&self.search.algorithm).map_or("", |named| named.title);
+        let mut watch = Watch::new(self, &options);
+        let planned = run(request, &options, |progress| watch.see(progress));
+        watch.bar.finish_and_clear();
+        let planned = match planned {
+            Ok(planned) => planned,
+            Err(failure) => return Err(self.explained(request, failure, console)?),
+        };
+        let document = PlanDocument::searched(title, algorithm, &options, &planned);
+        let provenance = [
+            ("algorithm", algorithm.to_owned()),
+            ("seeded", options.search.seeded.to_string()),
+            ("seed", options.search.seed.to_string()),
+            ("evaluations", planned.evaluations.to_string()),
+            ("generations", planned.generations.to_string()),
+        ];
+        let provenance = BTreeMap::from(provenance.map(|(key, value)| (key.to_owned(), value)));
+        self.write_log(request, &document, provenance)?;
+        Ok(Found { planned, document, algorithm, options })
+    }
+
+    /// The document, with where the log is if there is one.
+    fn noted(&self, document: Document) -> Document {
+        match self.log() {
+            Some(log) => document.with_above_remarks(next::plan_written(log)),
+            None => document,
+        }
+    }
+
+    /// The failure in the task's own terms; with `--json` its nearest plan is printed.
+    fn explained(
+        &self,
+        request: &PlanRequest,
+        failure: PlanFailure,
+        console: &mut Console<'_>,
+    ) -> Result<CliError, CliError> {
+        let joints = request.setup.joint_names();
+        let (evaluation, lines) = match &failure {
+            PlanFailure::Infeasible(nearest) => {
+                (nearest, broken_lines(&joints, request.task.interval_s[1], nearest))
+            }
+            PlanFailure::Ceilings { nearest } => {
+                (nearest, ceiling_lines(&request.task.ceilings, &joints, nearest))
+            }
+            _ => return Ok(failure.into()),
+        };
+        if self.form() == Form::Json {
+            let document = PlanDocument::evaluated(&request.task.title, &joints, evaluation, false);
+            console.print(&document.json())?;
+        }
+        Ok(CliError::failed(format!("{failure}; what comes nearest:\n  {}", lines.join("\n  "))))
+    }
+
+    fn write_log(
+        &self,
+        request: &PlanRequest,
+        document: &PlanDocument,
+        provenance: BTreeMap<String, String>,
+    ) -> Result<(), CliError> {
+        let Some(path) = self.log() else { return Ok(()) };
+        let motion = request.setup.motion(&document.chosen.entry.times_s).map_err(PlanFailure::from)?;
+        let log = PlanLog {
+            plan: Steps::Motion(&motion, &document.joints),
+            command: None,
+            arm: Some(&request.setup.arm().chain),
+            trajectory: None,
+            carried: &Carried::default().with_plan(&request.text, document).with_provenance(provenance),
+            rate_hz: self.rate,
+        };
+        write_file(path, &log.bytes()?)
+    }
+}
+
+fn course(request: &PlanRequest, evaluation: &PlanEvaluation) -> Result<SampledMotion, CliError> {
+    Ok(SampledMotion::of(&request.setup, evaluation).map_err(PlanFailure::from)?)
+}

@@ -1,0 +1,108 @@
+//! Options on what to read, shared by the verbs that read logs.
+
+use clap::ValueEnum;
+
+use crate::log::{ReadOptions, Selector, SignalRole, TimeBase, WantedSignal};
+
+/// Which topics, joints and clock to read.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Reading")]
+pub(super) struct ReadArgs {
+    /// Topic of the plan, and its field if the topic has several; repeat for several topics
+    #[arg(long, value_name = "TOPIC[:FIELD]", value_parser = selector)]
+    planned: Vec<Selector>,
+
+    /// Topic of the measurement, and its field if the topic has several; repeat for several topics
+    #[arg(long, value_name = "TOPIC[:FIELD]", value_parser = selector)]
+    measured: Vec<Selector>,
+
+    /// Joints to use, in this order; also the names of joints whose topic has no names
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    joints: Vec<String>,
+
+    /// Clock of the samples [default: header stamps, if they advance]
+    #[arg(long, value_enum, value_name = "CLOCK")]
+    time: Option<Time>,
+
+    /// The plan is in degrees
+    #[arg(long)]
+    planned_degrees: bool,
+
+    /// The measurement is in degrees
+    #[arg(long)]
+    measured_degrees: bool,
+
+    /// Joints without end stops, whose angles wrap at full turns
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    continuous: Vec<String>,
+}
+
+/// Clocks of a message.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Time {
+    /// When the sample was taken
+    Header,
+    /// When the message was published
+    Publish,
+    /// When the recorder received it
+    Log,
+}
+
+impl ReadArgs {
+    pub(super) fn options(&self) -> ReadOptions {
+        ReadOptions {
+            planned: self.planned.clone(),
+            measured: self.measured.clone(),
+            joints: self.joints.clone(),
+            time_base: self.time.map(|time| match time {
+                Time::Header => TimeBase::Header,
+                Time::Publish => TimeBase::Publish,
+                Time::Log => TimeBase::Log,
+            }),
+            planned_in_degrees: self.planned_degrees,
+            measured_in_degrees: self.measured_degrees,
+            continuous: self.continuous.clone(),
+            ..ReadOptions::default()
+        }
+    }
+}
+
+/// What to read of a run that is to be fitted.
+#[derive(Debug, clap::Args)]
+pub(super) struct SentArgs {
+    /// Topic of the command that was sent, if it differs from the plan
+    #[arg(long, value_name = "TOPIC[:FIELD]", value_parser = selector, help_heading = "Reading")]
+    command: Option<Selector>,
+
+    /// Topic of the valve signals, as shares of the full signal
+    #[arg(long, value_name = "TOPIC[:FIELD]", value_parser = selector, help_heading = "Reading")]
+    valve: Option<Selector>,
+
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+impl SentArgs {
+    pub(super) fn options(&self) -> ReadOptions {
+        let signals = [(SignalRole::Command, &self.command), (SignalRole::Valve, &self.valve)]
+            .map(|(role, topic)| WantedSignal { role, topic: topic.clone() });
+        ReadOptions { signals: signals.into(), ..self.read.options() }
+    }
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "the form of a clap parser")]
+pub(super) fn selector(text: &str) -> Result<Selector, String> {
+    Ok(Selector::parse(text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_topic_is_split_from_its_field_at_the_colon() {
+        let selector = selector("/arm/state:output.positions").unwrap();
+        let Selector { topic, field } = selector;
+        assert_eq!((topic.as_str(), field.as_deref()), ("/arm/state", Some("output.positions")));
+    }
+}
