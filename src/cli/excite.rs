@@ -22,7 +22,7 @@ Examples:
 /// Samples a second in the log.
 const RATE_HZ: f64 = 100.0;
 
-/// Write a run of slow and fast strokes, from which `fit` identifies limits
+/// Write a run of slow and fast strokes, for `fit` to find limits
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {

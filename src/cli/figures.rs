@@ -21,7 +21,7 @@ pub(super) struct FigureArgs {
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
 
-    /// Write each as PNG too, with DPI dots per inch [default: 300]
+    /// Write each as PNG too, with DPI dots per inch (300 if not given)
     #[arg(
         long,
         value_name = "DPI",

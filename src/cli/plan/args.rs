@@ -29,7 +29,7 @@ Examples:
   hydrotrace plan task.toml --times 0,2.01,3.77,5.79,6.53,8.85,10.48
   hydrotrace plan task.toml --json --evaluations 100000 > plan.json";
 
-/// The best timings of a task's key points, and the chosen one as a log
+/// The best timings of a task's key points, the chosen one as a log
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Args {
