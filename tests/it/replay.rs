@@ -253,7 +253,7 @@ fn a_joint_that_ignores_its_plan_has_an_unmatched_start_without_onset() {
     assert_eq!((found.joints[0].starts, found.joints[0].unanswered_starts), (1, 1));
     let transition = &found.transitions[0];
     assert_eq!((transition.measured_onset_s, transition.onset_delay_s), (None, None));
-    assert_eq!((transition.displacement_delay_s, transition.jump_rad_s), (None, None));
+    assert_eq!((transition.displacement_delay_s, transition.jump), (None, None));
     assert!((transition.peak_error - 12.0 * DEGREE_RAD).abs() < 1e-9);
 }
 
