@@ -88,8 +88,8 @@ def columns(path):
 
 
 def spelt(value):
-    """Names of metrics are keys now: peak_error for peak-error."""
-    return value.replace("_", "-") if isinstance(value, str) else value
+    """Names of metrics are keys now: peak_error for peak-error, onset_delay_s for onset-delay."""
+    return value.replace("_", "-").removesuffix("-s") if isinstance(value, str) else value
 
 
 def compare(old, new):

@@ -24,17 +24,6 @@ pub static TRANSITION: &[Row] = &[
     Row::new("direction", "dir", "direction", "Sign of the planned motion.", Sign, Number(|t| Some(f64::from(t.direction)))),
     Row::new("planned_onset_s", "at", "planned onset", "Time at which the plan starts.", Instant, Number(|t| Some(t.planned_onset_s))),
     Row::new("measured_onset_s", "", "measured onset", "Time at which the joint starts.", Instant, Number(|t| t.measured_onset_s)),
-    Row::new("onset_delay_s", "delay", "start delay", "Measured minus planned onset.", Duration, Number(|t| t.onset_delay_s))
-        .or(|t| t.answer.word())
-        .compared(Nothing)
-        .limited(Judged::new(
-            Limit::new("onset-delay", "max-start-delay-ms", None, "start delay", "Largest delay of a start; a start that the machine does not answer exceeds it", Duration)
-                .or("a start without an answer"),
-            |t| matches!(t.answer, Answer::Timed | Answer::Never),
-            |t| Some(t.planned_onset_s),
-        )),
-    Row::new("onset_delay_interval_s", "95 %", "interval of the start delay", "95 % confidence interval of the dead time.", Duration,
-        Interval(["onset_delay_low_s", "onset_delay_high_s"], |t| t.onset_delay_interval_s)),
     Row::new("displacement_delay_s", "", "displacement delay", "Time by which the joint has travelled a small distance later than its plan.", Duration, Number(|t| t.displacement_delay_s)),
     Row::new(PEAK_ERROR, "peak", "peak error", "Largest tracking error in the window.", Position, Number(|t| Some(t.peak_error)))
         .compared(Nothing)
@@ -48,6 +37,17 @@ pub static TRANSITION: &[Row] = &[
     Row::new("error_area", "", "error area", "Integral of the error magnitude over the window.", Area, Number(|t| Some(t.error_area))),
     Row::new("rms_error", "rms", "rms error", "Root mean square tracking error in the window.", Position, Number(|t| Some(t.rms_error)))
         .compared(Nothing),
+    Row::new("onset_delay_s", "delay", "start delay", "Measured minus planned onset.", Duration, Number(|t| t.onset_delay_s))
+        .or(|t| t.answer.word())
+        .compared(Nothing)
+        .limited(Judged::new(
+            Limit::new("onset-delay", "max-start-delay-ms", None, "start delay", "Largest delay of a start; a start that the machine does not answer exceeds it", Duration)
+                .or("a start without an answer"),
+            |t| matches!(t.answer, Answer::Timed | Answer::Never),
+            |t| Some(t.planned_onset_s),
+        )),
+    Row::new("onset_delay_interval_s", "95 %", "interval of the start delay", "95 % confidence interval of the dead time.", Duration,
+        Interval(["onset_delay_low_s", "onset_delay_high_s"], |t| t.onset_delay_interval_s)),
     Row::new("breakaway_error", "at onset", "error at the onset", "Tracking error when the joint starts, along the motion.", Position, Number(|t| t.breakaway_error)),
     Row::new("jump", "", "jump of speed", "Largest excess of measured over planned speed soon after the onset.", Speed, Number(|t| t.jump)),
     Row::new("overshoot", "overshoot", "overshoot", "Largest error of the opposite sign after the peak.", Position, Number(|t| Some(t.overshoot))),
