@@ -119,7 +119,7 @@ def compare(old, new):
         for line in pattern(added)[:60]:
             print("  added", line)
         wrong += len(changed) + len(lost)
-    for file in sorted(old.glob("*.csv")):
+    for file in sorted(old.glob("report-*.csv")):
         if not (new / file.name).exists():
             continue
         found = [columns(folder / file.name) for folder in (old, new)]
