@@ -139,6 +139,15 @@ impl Report {
 /// # Errors
 ///
 /// [`LogError`] if the log cannot be read or holds no planned and measured joints.
+///
+/// ```
+/// use hydrotrace::workflow::report::{Inputs, run};
+///
+/// let logs = vec!["sample-logs/panel-install.mcap".into()];
+/// let report = run(&Inputs { logs, ..Inputs::default() })?;
+/// assert!(report.replay.transitions.len() > 10 && report.gates_kept());
+/// # Ok::<(), hydrotrace::log::LogError>(())
+/// ```
 pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     let recording = read_recording(&inputs.logs, &inputs.read)?;
     let carried = Carried::of(&recording);
