@@ -18,7 +18,7 @@
 //!
 //! // Fit the machine: what came of what was sent.
 //! let machine = fit::run(&fit::Inputs { logs: logs.clone(), ..Default::default() })?;
-//! assert!(machine.fit.joints.iter().all(|joint| joint.held_out_r2 > 0.9));
+//! assert!(machine.fit.joints.iter().all(|joint| joint.trusted()));
 //!
 //! // Plan the next run under what the machine has shown, with a command that anticipates its response.
 //! let inputs = replan::Inputs { logs, keep_plan: true, ..Default::default() };
