@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let high = points.iter().map(|p| p.1).fold(f64::NEG_INFINITY, f64::max);
         (low - 0.05 * (high - low), high + 0.05 * (high - low))
     };
-    let peak = degrees_from_radians(start.peak_error_rad);
+    let peak = degrees_from_radians(start.peak_error);
     let peak_s = planned_s + start.time_to_peak_s;
     let (low, high) = span(&error);
     let peak_y = ERROR.1 - (peak - low) / (high - low) * (ERROR.1 - ERROR.0);

@@ -10,8 +10,9 @@ use super::{
     read::ReadArgs,
 };
 use crate::{
+    document::pretty,
     render::compare as words,
-    workflow::compare::{Gates, Inputs, run},
+    workflow::compare::{Document, Gates, Inputs, run},
 };
 
 const EXAMPLES: &str = "\
@@ -68,7 +69,7 @@ pub(super) struct Args {
 #[derive(Debug, clap::Args)]
 #[group(multiple = false)]
 struct FormatArgs {
-    /// One JSON document (schemas/compare.v1.schema.json in the repository)
+    /// One JSON document (schemas/compare.v2.schema.json in the repository)
     #[arg(long)]
     json: bool,
 
@@ -111,13 +112,12 @@ impl Args {
             before: [from_ref(&self.before), self.more_before.as_slice()].concat(),
             after: [from_ref(&self.after), self.more_after.as_slice()].concat(),
             read: self.read.options(),
-            gates: Gates {
-                min_peak_reduction: self.gates.min_peak_reduction_percent,
-                max_p: self.gates.max_p,
-                max_transition_growth_rad: self.gates.max_transition_growth_deg,
-                max_rms_ratio: self.gates.max_rms_ratio,
-                max_peak_ratio: self.gates.max_peak_ratio,
-            },
+            gates: Gates::default()
+                .with("peak-reduction", self.gates.min_peak_reduction_percent)
+                .with("p", self.gates.max_p)
+                .with("transition-growth", self.gates.max_transition_growth_deg)
+                .with("rms-ratio", self.gates.max_rms_ratio)
+                .with("peak-ratio", self.gates.max_peak_ratio),
             ..Inputs::default()
         }
     }
@@ -134,7 +134,7 @@ impl Run for Args {
         let comparison = run(&request)?;
         let most = MOST.map(|most| if self.all { usize::MAX } else { most });
         let result = match target.form {
-            Form::Json => words::json(&comparison),
+            Form::Json => pretty(&Document::of(&comparison)),
             Form::Html => words::page(&comparison, most[1]),
             _ => target.text(&words::document(&comparison, most[0])),
         };

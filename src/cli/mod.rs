@@ -11,6 +11,7 @@ mod excite;
 mod export;
 mod figures;
 mod fit;
+mod gates;
 mod import;
 mod info;
 mod join;

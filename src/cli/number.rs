@@ -19,6 +19,11 @@ pub(super) fn degrees(text: &str) -> Result<f64, String> {
     not_negative(text, "angle in degrees").map(radians_from_degrees)
 }
 
+/// Millimetres, as metres.
+pub(super) fn millimetres(text: &str) -> Result<f64, String> {
+    not_negative(text, "length in millimetres").map(|mm| mm / 1e3)
+}
+
 /// Milliseconds, as seconds.
 pub(super) fn milliseconds(text: &str) -> Result<f64, String> {
     not_negative(text, "time in milliseconds").map(|ms| ms / 1e3)

@@ -6,14 +6,15 @@ use super::{
     CliError, Outcome, Run,
     console::{Console, Form, Target, spare_inputs},
     figures::FigureArgs,
-    number::{degrees, milliseconds},
+    gates::GateArgs,
     read::ReadArgs,
 };
 use crate::{
+    document::pretty,
     render::report as words,
     workflow::{
         fit::LimitsFile,
-        report::{Gates, Inputs, Report, run},
+        report::{Document, Inputs, Report, run},
     },
 };
 
@@ -83,45 +84,9 @@ struct FormatArgs {
     html: bool,
 }
 
-#[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Limits (exit code 4 if not kept)")]
-#[expect(clippy::struct_field_names, reason = "the names of options")]
-struct GateArgs {
-    /// Largest peak error in a transition
-    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
-    max_transition_peak_deg: Option<f64>,
-
-    /// Largest RMS error of a joint over the run
-    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
-    max_rms_deg: Option<f64>,
-
-    /// Largest peak error of a joint over the run
-    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
-    max_peak_deg: Option<f64>,
-
-    /// Largest RMS error of a joint while its plan is at rest
-    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
-    max_standstill_rms_deg: Option<f64>,
-
-    /// Largest delay of a start; a start that the machine does not answer exceeds it
-    #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true)]
-    max_start_delay_ms: Option<f64>,
-
-    /// Largest velocity lag of a joint
-    #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true)]
-    max_lag_ms: Option<f64>,
-}
-
 impl Args {
     fn request(&self) -> Inputs {
-        let gates = Gates {
-            max_transition_peak_rad: self.gates.max_transition_peak_deg,
-            max_rms_rad: self.gates.max_rms_deg,
-            max_peak_rad: self.gates.max_peak_deg,
-            max_standstill_rms_rad: self.gates.max_standstill_rms_deg,
-            max_onset_delay_s: self.gates.max_start_delay_ms,
-            max_lag_s: self.gates.max_lag_ms,
-        };
+        let gates = self.gates.gates.clone();
         Inputs { logs: self.logs.clone(), read: self.read.options(), gates, ..Inputs::default() }
     }
 }
@@ -139,7 +104,7 @@ impl Run for Args {
         let name = names.collect::<Vec<_>>().join(", ");
         let most = MOST.map(|most| if self.all { usize::MAX } else { most });
         let result = match target.form {
-            Form::Json => words::json(&report),
+            Form::Json => pretty(&Document::of(&report)),
             Form::Csv => words::csv(&report),
             Form::Html => {
                 let limits = self.limits.as_deref().map(|path| limits(path, &report)).transpose()?;

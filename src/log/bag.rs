@@ -8,7 +8,11 @@ use super::error::LogError;
 use crate::remark::{Code, Remarks};
 
 /// The files that together are one recording: files as given, bag directories opened.
-pub(super) fn files(paths: &[PathBuf], remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogError> {
+///
+/// # Errors
+///
+/// [`LogError`] if a directory is no bag, or of another storage.
+pub fn recording_files(paths: &[PathBuf], remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogError> {
     let mut files = Vec::new();
     for path in paths {
         if path.is_dir() {
@@ -117,7 +121,8 @@ mod tests {
         let text =
             "rosbag2_bagfile_information:\n  storage_identifier: sqlite3\n  relative_file_paths: [a.db3]\n";
         std::fs::write(folder.path().join("metadata.yaml"), text).unwrap();
-        let error = files(&[folder.path().to_owned()], &mut Remarks::default()).unwrap_err().to_string();
+        let error =
+            recording_files(&[folder.path().to_owned()], &mut Remarks::default()).unwrap_err().to_string();
         assert!(error.contains("sqlite3") && error.contains("ros2 bag convert"), "{error}");
     }
 }

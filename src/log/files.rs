@@ -77,7 +77,8 @@ impl LogFiles {
             let map = MappedFile::open(&path).map_err(LogError::file("open", &path))?;
             Ok((path, map))
         };
-        let files = bag::files(paths, &mut remarks)?.into_iter().map(open).collect::<Result<_, _>>()?;
+        let files =
+            bag::recording_files(paths, &mut remarks)?.into_iter().map(open).collect::<Result<_, _>>()?;
         Ok(Self { files, ordered, remarks })
     }
 

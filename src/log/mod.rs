@@ -20,6 +20,7 @@ mod schema;
 mod source;
 mod write;
 
+pub use bag::recording_files;
 pub use csv::{
     AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, Quantity, Separator, TimeRead, Understood,
     read_csv, read_csv_bytes,

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use super::kit::{Document, Id, NONE, Section, Sentence, Table, counted, deg, optional, probability};
 use crate::{
+    replay::PEAK_ERROR,
     task::Objective,
     workflow::{
-        compare::{Comparison, Measure, Scope, Summary, Verdict},
+        compare::{Comparison, Scope, Summary, Verdict},
         fit::Fitted,
         plan::Planned,
         replan::Replanned,
@@ -112,7 +113,7 @@ pub fn document(story: &Story<'_>) -> Document {
 }
 
 fn peaks<'a>(comparison: &'a Comparison, scope: &Scope) -> Option<&'a Summary> {
-    comparison.summaries.iter().find(|s| s.measure == Measure::PeakError && s.scope == *scope)
+    comparison.summaries.iter().find(|s| s.measure.key == PEAK_ERROR && s.scope == *scope)
 }
 
 fn compared(comparison: &Comparison) -> String {

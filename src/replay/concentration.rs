@@ -88,22 +88,22 @@ pub(super) fn concentration(joints: &[JointError], rules: &Rules) -> Option<Conc
         return None;
     }
     let test = test(&events(inside_blocks, rules), &events(outside_blocks, rules));
-    let (rms_inside_rad, rms_outside_rad) = (inside.rms().unwrap_or(0.0), outside.rms().unwrap_or(0.0));
+    let (rms_inside, rms_outside) = (inside.rms().unwrap_or(0.0), outside.rms().unwrap_or(0.0));
     // Elsewhere is mostly rest; a plan that also moves there must be followed better there.
-    let beats_moving = moving.rms().is_none_or(|rms_rad| rms_inside_rad > rms_rad);
+    let beats_moving = moving.rms().is_none_or(|rms_rad| rms_inside > rms_rad);
     Some(Concentration {
-        rms_inside_rad,
-        rms_outside_rad,
-        rms_outside_moving_rad: moving.rms(),
+        rms_inside,
+        rms_outside,
+        rms_outside_moving: moving.rms(),
         time_share_inside: inside.time_s / time_s,
         squared_error_share_inside: if square > 0.0 { inside.square / square } else { 0.0 },
         test,
         verdict: match test {
             Some(test) if test.p_value >= rules.significance => Verdict::Undecided,
-            Some(test) if test.effect > 0.5 && rms_inside_rad > rms_outside_rad && beats_moving => {
+            Some(test) if test.effect > 0.5 && rms_inside > rms_outside && beats_moving => {
                 Verdict::Transitions
             }
-            Some(test) if test.effect < 0.5 && rms_outside_rad > rms_inside_rad => Verdict::Elsewhere,
+            Some(test) if test.effect < 0.5 && rms_outside > rms_inside => Verdict::Elsewhere,
             _ => Verdict::Undecided,
         },
     })

@@ -129,7 +129,7 @@ fn unshaken(
     if onset.interval_s[1] >= planned_s || early_rad.abs() >= rules.displacement_rad {
         return None;
     }
-    let level_rad_s = signals.thresholds.measured_start_rad_s;
+    let level_rad_s = signals.thresholds.measured_start;
     let crossing =
         (asked..motion.samples.end).find(|&i| along(motion, signals.measured_rad_s[i]) > level_rad_s)?;
     let search = Search {
@@ -152,7 +152,7 @@ fn reversal(
     blind_s: f64,
     rules: &Rules,
 ) -> Delay {
-    let (stop, start) = (signals.thresholds.measured_stop_rad_s, signals.thresholds.measured_start_rad_s);
+    let (stop, start) = (signals.thresholds.measured_stop, signals.thresholds.measured_start);
     let first = measured.segment.start.max(measured.samples.start.saturating_sub(1));
     let times = &pair.t_s[first..measured.samples.end];
     let speeds: Vec<f64> =

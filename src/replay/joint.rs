@@ -56,7 +56,9 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
     let transitions: Vec<Transition> = (0..planned.len())
         .map(|k| {
             let answer = answers[k].and_then(|answer: usize| measured.get(answer).copied());
-            transition(pair, &signals, &error, (planned[k], starts_s[k], untils_s[k]), answer, rules)
+            let found =
+                transition(pair, &signals, &error, (planned[k], starts_s[k], untils_s[k]), answer, rules);
+            Transition { index: k + 1, ..found }
         })
         .collect();
     let stops = stops(pair, &signals, &error, rules);
@@ -69,6 +71,7 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
     let count = |answer: Answer| transitions.iter().filter(|t| t.answer == answer).count();
     let replay = JointReplay {
         name: pair.name.clone(),
+        kind: pair.kind,
         moves,
         plan_moves: !signals.planned.is_empty(),
         tracking_error: tracking,
@@ -79,14 +82,16 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
         lag_interval_s: lag.interval_s,
         lag_motions: lag.motions,
         lag_share: lag.shift_s.and_then(|_| lag_share(&blocks, rules)),
+        peak_speed: signals.peaks[0],
+        peak_acceleration: signals.peaks[1],
         noise: signals.noise,
         sample_interval_s: signals.sample_interval_s,
         thresholds: signals.thresholds,
         starts: planned.len(),
         reversals: planned.iter().filter(|m| m.reversal).count(),
         stops: stops.iter().filter(|s| s.planned_s.is_some()).count(),
-        unmatched_starts: count(Answer::Never),
-        untimed_starts: count(Answer::Unclear) + count(Answer::Creeps),
+        unanswered_starts: count(Answer::Never),
+        undated_starts: count(Answer::Unclear) + count(Answer::Creeps),
         unplanned_starts: measured.len() - matched,
     };
     Some(Joint { replay, transitions, stops, blocks, error, moving })
@@ -140,7 +145,7 @@ fn stops(pair: &Pair, signals: &Signals, error: &[Sample], rules: &Rules) -> Vec
             direction: motion.direction,
             planned_s: Some(motion.end_s),
             measured_s: None,
-            error_rad: error.get(motion.samples.end - 1).map(|s| s.error_rad),
+            error: error.get(motion.samples.end - 1).map(|s| s.error_rad),
         })
         .collect();
     let mut unplanned = Vec::new();
@@ -158,7 +163,7 @@ fn stops(pair: &Pair, signals: &Signals, error: &[Sample], rules: &Rules) -> Vec
                 direction: motion.direction,
                 planned_s: None,
                 measured_s: Some(motion.end_s),
-                error_rad: None,
+                error: None,
             }),
         }
     }

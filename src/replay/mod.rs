@@ -8,25 +8,32 @@ mod answer;
 mod concentration;
 mod delay;
 mod joint;
+mod keyed;
 mod lag;
 mod lag_share;
+mod metric;
 mod motion;
 mod onset;
 mod outcome;
 mod path;
+mod peak_motion;
 mod profile;
 mod rules;
 mod signals;
 mod tracking;
 mod transition;
+pub(crate) mod unit;
 
 use rayon::prelude::*;
 
 pub use delay::{measured_starts, measured_stops};
+pub use keyed::{Keyed, Row};
+pub use metric::{Dimension, JOINT, Judged, Limit, Metric, PEAK_ERROR, Read, TRANSITION, Together, limits};
 pub use outcome::{
     Answer, Concentration, ConcentrationTest, JointReplay, Kind, LagShare, OnsetMethod, PathError, Replay,
     Stop, Thresholds, TrackingError, Transition, Verdict, WholeRun,
 };
+pub use peak_motion::peak_motion;
 pub use profile::{Profiles, STRETCHES};
 pub use rules::Rules;
 pub use signals::planned_starts;
@@ -37,7 +44,8 @@ use joint::{Joint, joint};
 
 /// Analyses one run, a pair a joint. O(n log n) in samples.
 ///
-/// Nothing is differentiated, matched or detected across the cuts between segments.
+/// Figures of all joints together exist only if all of them turn or all of them slide. Nothing is
+/// differentiated, matched or detected across the cuts between segments.
 ///
 /// ```
 /// use hydrotrace::{replay::{Rules, replay}, series::{Track, align}};
@@ -54,9 +62,10 @@ use joint::{Joint, joint};
 /// # Ok::<(), hydrotrace::series::SignalError>(())
 /// ```
 pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
+    let alike = pairs.windows(2).all(|pair| pair[0].kind == pair[1].kind);
     let (mut joints, path): (Vec<Joint>, _) = rayon::join(
         || pairs.par_iter().filter_map(|pair| joint(pair, rules)).collect(),
-        || path::path_error(pairs, rules),
+        || if alike { path::path_error(pairs, rules) } else { None },
     );
     let windows_s: Vec<Vec<[f64; 2]>> =
         joints.iter().map(|joint| joint.transitions.iter().map(|t| t.window_s).collect()).collect();
@@ -66,9 +75,11 @@ pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
         .filter(|(joint, _)| joint.replay.plan_moves)
         .map(|(joint, windows_s)| JointError { samples: &joint.error, moving: &joint.moving, windows_s })
         .collect();
-    let concentration = concentration(&errors, rules);
-    let tracking_error = tracking::tracking_error(joints.iter().flat_map(|joint| &joint.error));
-    let lag_share = joints.iter().any(|joint| joint.replay.lag_s.is_some()).then(|| {
+    let concentration = concentration(&errors, rules).filter(|_| alike);
+    let tracking_error =
+        tracking::tracking_error(joints.iter().flat_map(|joint| &joint.error)).filter(|_| alike);
+    let lagging = alike && joints.iter().any(|joint| joint.replay.lag_s.is_some());
+    let lag_share = lagging.then(|| {
         let blocks = joints.iter().flat_map(|joint| joint.blocks.iter().copied()).collect();
         lag_share::lag_share(&lag_share::events(blocks, rules), rules)
     });

@@ -1,12 +1,14 @@
-//! What a replay found. Field names are those of the JSON report.
+//! What a replay found. Field names are those of the report's document.
+//!
+//! Positions, errors and speeds of a joint are in its unit: rad and rad/s if it turns, m and m/s if it slides.
 
 use serde::{Deserialize, Serialize};
 
 use super::Rules;
-use crate::series::Noise;
+use crate::series::{JointKind, Noise};
 
 /// Analysis of one run; error is planned minus measured throughout.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Replay {
     /// Thresholds and windows used.
     pub rules: Rules,
@@ -21,12 +23,16 @@ pub struct Replay {
 }
 
 /// One joint over the whole run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointReplay {
     /// The joint.
     pub name: String,
-    /// Whether the measured angle moves: it answers a planned start, or one of its motions travels
+    /// The unit of its position: "rad" or "m".
+    #[serde(rename = "unit", with = "super::unit")]
+    #[cfg_attr(test, schemars(with = "String"))]
+    pub kind: JointKind,
+    /// Whether the measured position changes: it answers a planned start, or one of its motions travels
     /// [`Rules::moves_travel_rad`].
     pub moves: bool,
     /// Whether the plan moves.
@@ -47,7 +53,11 @@ pub struct JointReplay {
     pub lag_motions: usize,
     /// How much of its error that lag explains; `None` where there is no lag.
     pub lag_share: Option<LagShare>,
-    /// Noise of the measured angle.
+    /// Largest measured speed, over whole windows of the velocity fit.
+    pub peak_speed: Option<f64>,
+    /// Largest measured acceleration, likewise, in the joint's unit a second squared.
+    pub peak_acceleration: Option<f64>,
+    /// Noise of the measured position.
     pub noise: Noise,
     /// Median time between samples, s: nothing in time is known better than this.
     pub sample_interval_s: f64,
@@ -59,11 +69,11 @@ pub struct JointReplay {
     pub reversals: usize,
     /// Planned stops.
     pub stops: usize,
-    /// Planned starts that the joint never answers.
-    pub unmatched_starts: usize,
-    /// Planned starts whose answer has no instant: the joint creeps, or nobody can tell.
-    pub untimed_starts: usize,
-    /// Measured starts that no planned start asks for.
+    /// Planned starts that the joint does not answer.
+    pub unanswered_starts: usize,
+    /// Planned starts that the joint may have answered, at an instant that cannot be told.
+    pub undated_starts: usize,
+    /// Measured starts without a planned start.
     pub unplanned_starts: usize,
 }
 
@@ -71,7 +81,7 @@ pub struct JointReplay {
 ///
 /// The lag is that of the speeds, so a late start that is caught up with, or an offset, is not taken for one. The
 /// rest before the next motion counts with the motion.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LagShare {
     /// Share; 0 where the shift makes the error no smaller.
@@ -85,37 +95,37 @@ pub struct LagShare {
 }
 
 /// Detector settings of one joint.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Thresholds {
-    /// Start threshold on the plan, rad/s.
-    pub planned_start_rad_s: f64,
-    /// Stop threshold on the plan, rad/s.
-    pub planned_stop_rad_s: f64,
-    /// Start threshold on the measurement, median over samples, rad/s.
-    pub measured_start_rad_s: f64,
-    /// Stop threshold on the measurement, median over samples, rad/s.
-    pub measured_stop_rad_s: f64,
+    /// Speed above which the plan starts.
+    pub planned_start: f64,
+    /// Speed below which the plan rests.
+    pub planned_stop: f64,
+    /// Speed above which the joint starts, median over samples.
+    pub measured_start: f64,
+    /// Speed below which the joint rests, median over samples.
+    pub measured_stop: f64,
     /// Half window of the velocity fit, s.
     pub window_s: f64,
 }
 
 /// Statistics of the error at equal instants, each sample weighted with the time it stands for.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TrackingError {
-    /// Root mean square, rad.
-    pub rms_rad: f64,
-    /// Mean magnitude, rad.
-    pub mean_abs_rad: f64,
-    /// Largest magnitude, rad.
-    pub peak_rad: f64,
+    /// Root mean square.
+    pub rms: f64,
+    /// Mean magnitude.
+    pub mean_abs: f64,
+    /// Largest magnitude.
+    pub peak: f64,
     /// When that was, s.
     pub peak_time_s: f64,
-    /// Magnitude exceeded for 5 % of the time, rad.
-    pub p95_rad: f64,
-    /// Mean with its sign, rad.
-    pub bias_rad: f64,
+    /// 95 % of the time the magnitude is below this.
+    pub p95: f64,
+    /// Mean with its sign.
+    pub bias: f64,
     /// Number of samples.
     pub samples: usize,
     /// Time they stand for, s.
@@ -124,15 +134,15 @@ pub struct TrackingError {
 
 /// Distance from measured joint vectors to the planned joint path: of one joint its component, of all the
 /// Euclidean norm over joints, which is larger than any of them.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PathError {
-    /// Root mean square, rad.
-    pub rms_rad: f64,
-    /// Largest, rad.
-    pub peak_rad: f64,
-    /// Root mean square of the same distance to where the plan is at the same instant, rad.
-    pub timed_rms_rad: f64,
+    /// Root mean square.
+    pub rms: f64,
+    /// Largest.
+    pub peak: f64,
+    /// Root mean square of the same distance to where the plan is at the same instant.
+    pub timed_rms: f64,
     /// Number of measured joint vectors compared.
     pub samples: usize,
     /// Time between them, s.
@@ -140,23 +150,25 @@ pub struct PathError {
 }
 
 /// From rest, or out of the opposite motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// Static-to-dynamic.
+    #[default]
     Start,
     /// Dynamic to dynamic with the opposite sign.
     Reversal,
 }
 
 /// How the onsets of a transition were found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum OnsetMethod {
     /// From rest: where a curve that rests and then rises, fitted to the angle, passes the speed
     /// threshold at which the plan's onset is taken.
+    #[default]
     Fit,
     /// Out of the opposite motion: where both speeds cross the measured stop threshold.
     Crossing,
@@ -166,11 +178,12 @@ pub enum OnsetMethod {
 ///
 /// Only [`Answer::Never`] is a start without an answer: it alone counts as such and breaks limits on the delay.
 /// In ascending order of what it costs to know less.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Answer {
     /// A measured start answers it, and its instant is known.
+    #[default]
     Timed,
     /// Too small by plan, or too soon followed by the next start, to tell whether the joint follows.
     Unclear,
@@ -180,15 +193,23 @@ pub enum Answer {
     Never,
 }
 
-/// One planned start or reversal and how the joint answered.
+/// One planned start or reversal and how the joint answered; a row of [`TRANSITION`](super::TRANSITION) reads each field.
 ///
 /// The error is planned minus measured; "signed along the motion" is that times the direction,
 /// so positive means that the joint is behind.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Transition {
     /// The joint.
     pub joint: String,
+    /// The unit of its position: "rad" or "m".
+    #[serde(rename = "unit", with = "super::unit")]
+    #[cfg_attr(test, schemars(with = "String"))]
+    pub joint_kind: JointKind,
+    /// Its place among the planned starts of the joint, from 1, in order of time.
+    pub index: usize,
+    /// Joint and planned onset, which no setting of the measurement changes.
+    pub id: String,
     /// From rest or not.
     pub kind: Kind,
     /// Sign of the planned motion, +1 or -1.
@@ -207,22 +228,22 @@ pub struct Transition {
     pub onset_delay_interval_s: Option<[f64; 2]>,
     /// Time between plan and joint having travelled the displacement threshold, s.
     pub displacement_delay_s: Option<f64>,
-    /// Error at the measured onset, signed along the motion, rad.
-    pub breakaway_error_rad: Option<f64>,
-    /// Largest excess of measured over planned speed soon after the onset, rad/s.
-    pub jump_rad_s: Option<f64>,
-    /// Largest error magnitude in the window, rad.
-    pub peak_error_rad: f64,
-    /// The same with the sign of planned minus measured, rad.
-    pub peak_error_signed_rad: f64,
+    /// Error at the measured onset, signed along the motion.
+    pub breakaway_error: Option<f64>,
+    /// Largest excess of measured over planned speed soon after the onset.
+    pub jump: Option<f64>,
+    /// Largest error magnitude in the window.
+    pub peak_error: f64,
+    /// The same with the sign of planned minus measured.
+    pub peak_error_signed: f64,
     /// Time from the planned onset to that peak, s.
     pub time_to_peak_s: f64,
-    /// Integral of the error magnitude over the window, rad s.
-    pub error_area_rad_s: f64,
-    /// Root mean square error in the window, rad.
-    pub rms_error_rad: f64,
-    /// Largest error of the opposite sign after the peak, rad; 0 if there is none.
-    pub overshoot_rad: f64,
+    /// Integral of the error magnitude over the window, in the joint's unit times seconds.
+    pub error_area: f64,
+    /// Root mean square error in the window.
+    pub rms_error: f64,
+    /// Largest error of the opposite sign after the peak; 0 if there is none.
+    pub overshoot: f64,
     /// Time from the planned onset until the error, past its peak, stays in the settling band, s.
     pub settling_time_s: Option<f64>,
     /// The window: from the planned onset to the next one, the segment's end or the longest.
@@ -234,7 +255,7 @@ pub struct Transition {
 }
 
 /// A dynamic-to-static event, planned and measured.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Stop {
     /// The joint.
@@ -245,36 +266,36 @@ pub struct Stop {
     pub planned_s: Option<f64>,
     /// When the joint comes to rest, s.
     pub measured_s: Option<f64>,
-    /// Error when the plan comes to rest, planned minus measured, rad.
-    pub error_rad: Option<f64>,
+    /// Error when the plan comes to rest, planned minus measured.
+    pub error: Option<f64>,
 }
 
 /// All joints together.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct WholeRun {
-    /// Error pooled over joints; `None` without joints.
+    /// Error pooled over joints; `None` without joints, or if some turn and some slide.
     pub tracking_error: Option<TrackingError>,
     /// Norm over joints of the distance to the planned path, ignoring time; `None` where the
-    /// joints have no instants in common.
+    /// joints have no instants in common, or some turn and some slide.
     pub path_error: Option<PathError>,
     /// How much of the error of joints whose plan moves is gone when each joint's plan is shifted by its lag; a joint
     /// without a lag keeps its error. `None` where none has one.
     pub lag_share: Option<LagShare>,
-    /// Whether the error lives in the transitions; `None` if no plan moves.
+    /// Whether most of the error arises in the transitions; `None` if no plan moves, or if joints that turn and joints that slide do.
     pub concentration: Option<Concentration>,
 }
 
 /// Error inside transition windows against elsewhere, over joints whose plan moves.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Concentration {
-    /// Root mean square error inside, rad.
-    pub rms_inside_rad: f64,
-    /// Root mean square error elsewhere, rad.
-    pub rms_outside_rad: f64,
-    /// Root mean square error elsewhere while the plan moves, rad.
-    pub rms_outside_moving_rad: Option<f64>,
+    /// Root mean square error inside.
+    pub rms_inside: f64,
+    /// Root mean square error elsewhere.
+    pub rms_outside: f64,
+    /// Root mean square error elsewhere while the plan moves.
+    pub rms_outside_moving: Option<f64>,
     /// Share of joint time inside.
     pub time_share_inside: f64,
     /// Share of the squared error inside.
@@ -291,7 +312,7 @@ pub struct Concentration {
 /// Joints differ in scale, so each value is divided by its joint's root mean square error.
 /// Joints that start together are not independent, so values that begin within
 /// [`Rules::same_event_s`] are averaged into one event.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ConcentrationTest {
     /// Events inside.
@@ -304,8 +325,8 @@ pub struct ConcentrationTest {
     pub effect: f64,
 }
 
-/// Where the error lives.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+/// Where most of the error arises.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -313,6 +334,6 @@ pub enum Verdict {
     Transitions,
     /// Elsewhere.
     Elsewhere,
-    /// The run does not say.
+    /// Too few events to tell.
     Undecided,
 }

@@ -51,10 +51,10 @@ pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError
         peaks[path.joints] = peaks[path.joints].max(square.sqrt());
     }
     let sample_interval_s = if n > 1 { (path.t_s[n - 1] - path.t_s[0]) / (n - 1) as f64 } else { 0.0 };
-    let of = |((square, timed), peak_rad): ((&f64, &f64), &f64)| PathError {
-        rms_rad: (square / n as f64).sqrt(),
-        peak_rad: *peak_rad,
-        timed_rms_rad: (timed / n as f64).sqrt(),
+    let of = |((square, timed), peak): ((&f64, &f64), &f64)| PathError {
+        rms: (square / n as f64).sqrt(),
+        peak: *peak,
+        timed_rms: (timed / n as f64).sqrt(),
         samples: n,
         sample_interval_s,
     };
@@ -196,8 +196,8 @@ mod tests {
     fn being_late_on_the_path_is_no_path_error() {
         let (joints, norm) =
             path_error(&[pair(500, 0.213, 0.0), pair(500, 0.213, 0.0)], &Rules::default()).unwrap();
-        assert!(norm.timed_rms_rad > 0.05);
-        assert!(norm.peak_rad < 1e-12 && joints.iter().all(|j| j.peak_rad < 1e-12), "{norm:?}");
+        assert!(norm.timed_rms > 0.05);
+        assert!(norm.peak < 1e-12 && joints.iter().all(|j| j.peak < 1e-12), "{norm:?}");
     }
 
     #[test]
@@ -209,8 +209,8 @@ mod tests {
             pair
         };
         let (joints, norm) = path_error(&[pair(500, 0.1, 0.0), still(0.03)], &Rules::default()).unwrap();
-        assert!(joints[0].peak_rad < 1e-12);
-        assert!((joints[1].rms_rad - 0.03).abs() < 1e-12 && (norm.rms_rad - 0.03).abs() < 1e-12);
+        assert!(joints[0].peak < 1e-12);
+        assert!((joints[1].rms - 0.03).abs() < 1e-12 && (norm.rms - 0.03).abs() < 1e-12);
     }
 
     #[test]

@@ -11,18 +11,18 @@ pub const STRETCHES: usize = 18;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profiles {
     /// Largest |planned - measured| by joint and stretch, rad; `None` where nothing was measured.
-    pub peaks_rad: Vec<[Option<f64>; STRETCHES]>,
+    pub peaks: Vec<[Option<f64>; STRETCHES]>,
     /// The largest of all, rad.
-    pub most_rad: f64,
+    pub most: f64,
 }
 
 impl Profiles {
     /// Of joints in their order.
     pub fn of(pairs: &[Pair]) -> Self {
         let span_s = span_s(pairs);
-        let peaks_rad: Vec<_> = pairs.iter().map(|pair| peaks_rad(pair, &span_s)).collect();
-        let most_rad = peaks_rad.iter().flatten().flatten().fold(0.0, |most: f64, peak| most.max(*peak));
-        Self { peaks_rad, most_rad }
+        let peaks: Vec<_> = pairs.iter().map(|pair| peaks(pair, &span_s)).collect();
+        let most = peaks.iter().flatten().flatten().fold(0.0, |most: f64, peak| most.max(*peak));
+        Self { peaks, most }
     }
 }
 
@@ -33,21 +33,21 @@ fn span_s(pairs: &[Pair]) -> RangeInclusive<f64> {
     start_s..=end_s
 }
 
-fn peaks_rad(pair: &Pair, span_s: &RangeInclusive<f64>) -> [Option<f64>; STRETCHES] {
-    let mut peaks_rad = [None; STRETCHES];
+fn peaks(pair: &Pair, span_s: &RangeInclusive<f64>) -> [Option<f64>; STRETCHES] {
+    let mut peaks = [None; STRETCHES];
     let whole_s = span_s.end() - span_s.start();
     let angles = pair.planned.iter().zip(&pair.measured);
-    for (t_s, (planned_rad, measured_rad)) in pair.t_s.iter().zip(angles) {
+    for (t_s, (planned, measured)) in pair.t_s.iter().zip(angles) {
         let share = if whole_s > 0.0 { (t_s - span_s.start()) / whole_s } else { 0.0 };
         // The last sample belongs to the last stretch.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to the range")]
         let place = ((share * STRETCHES as f64) as usize).min(STRETCHES - 1);
-        let error_rad = (planned_rad - measured_rad).abs();
-        if let Some(peak) = peaks_rad.get_mut(place) {
-            *peak = Some(peak.map_or(error_rad, |most: f64| most.max(error_rad)));
+        let error = (planned - measured).abs();
+        if let Some(peak) = peaks.get_mut(place) {
+            *peak = Some(peak.map_or(error, |most: f64| most.max(error)));
         }
     }
-    peaks_rad
+    peaks
 }
 
 #[cfg(test)]
@@ -55,12 +55,12 @@ mod tests {
     use super::*;
     use crate::series::JointKind;
 
-    fn pair(t_s: Vec<f64>, error_rad: &[f64]) -> Pair {
+    fn pair(t_s: Vec<f64>, error: &[f64]) -> Pair {
         let n = t_s.len();
         Pair {
             name: "a".into(),
             kind: JointKind::Turns,
-            measured: error_rad.iter().map(|e| -e).collect(),
+            measured: error.iter().map(|e| -e).collect(),
             planned: vec![0.0; n],
             planned_velocity: None,
             segments: std::iter::once(0..n).collect(),
@@ -74,21 +74,21 @@ mod tests {
     #[test]
     fn one_sample_that_is_off_is_seen_and_where_nothing_was_measured_nothing_is() {
         let t_s: Vec<f64> = (0..=1800).map(|k| f64::from(k) * 0.01).collect();
-        let mut error_rad = vec![0.001; t_s.len()];
-        error_rad[1234] = -0.5;
+        let mut error = vec![0.001; t_s.len()];
+        error[1234] = -0.5;
         let late = pair(vec![9.0, 17.5], &[0.1, 0.2]);
-        let profiles = Profiles::of(&[pair(t_s, &error_rad), late]);
-        assert!((profiles.most_rad - 0.5).abs() < 1e-12);
-        for (place, peak) in profiles.peaks_rad[0].iter().enumerate() {
+        let profiles = Profiles::of(&[pair(t_s, &error), late]);
+        assert!((profiles.most - 0.5).abs() < 1e-12);
+        for (place, peak) in profiles.peaks[0].iter().enumerate() {
             assert_eq!(*peak, Some(if place == 12 { 0.5 } else { 0.001 }));
         }
-        let seen: Vec<usize> = (0..STRETCHES).filter(|k| profiles.peaks_rad[1][*k].is_some()).collect();
+        let seen: Vec<usize> = (0..STRETCHES).filter(|k| profiles.peaks[1][*k].is_some()).collect();
         assert_eq!(seen, [9, 17]);
     }
 
     #[test]
     fn a_single_instant_and_no_joint_at_all_are_runs_too() {
-        assert_eq!(Profiles::of(&[]), Profiles { peaks_rad: Vec::new(), most_rad: 0.0 });
-        assert_eq!(Profiles::of(&[pair(vec![3.0], &[0.1])]).peaks_rad[0][0], Some(0.1));
+        assert_eq!(Profiles::of(&[]), Profiles { peaks: Vec::new(), most: 0.0 });
+        assert_eq!(Profiles::of(&[pair(vec![3.0], &[0.1])]).peaks[0][0], Some(0.1));
     }
 }

@@ -1,11 +1,11 @@
 //! Every threshold and window of the analysis, in one place, printed with every report.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::units::DEGREE_RAD;
 
 /// Thresholds and windows. The default is for arms that move at 0.4 to 25 degrees per second.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Rules {
     /// Speed above which a joint has started, at least, rad/s.

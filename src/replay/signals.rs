@@ -3,6 +3,7 @@
 use super::{
     Rules, Thresholds,
     motion::{Motion, Speed},
+    peak_motion::of_fits,
 };
 use crate::{
     math::median,
@@ -24,6 +25,8 @@ pub(super) struct Signals {
     /// Least travel of a measured motion, rad.
     pub(super) min_travel_rad: f64,
     pub(super) deviation_rad_s: Vec<f64>,
+    /// Largest measured speed and acceleration.
+    pub(super) peaks: [Option<f64>; 2],
     pub(super) planned: Vec<Motion>,
     pub(super) measured: Vec<Motion>,
 }
@@ -40,6 +43,7 @@ impl Signals {
         let smooth_rad = of(|fit| fit.position);
         let measured_rad_s = of(|fit| fit.velocity);
         let mut deviation_rad_s = of(|fit| fit.velocity_gain_per_s);
+        let peaks = of_fits(pair, &fits, window_s);
         drop(fits);
         for deviation in &mut deviation_rad_s {
             *deviation *= noise.sigma;
@@ -71,10 +75,10 @@ impl Signals {
         };
         let usual = median(deviation_rad_s.clone());
         let thresholds = Thresholds {
-            planned_start_rad_s: rules.start_floor_rad_s,
-            planned_stop_rad_s: rules.stop_floor_rad_s,
-            measured_start_rad_s: rules.start_floor_rad_s.max(rules.start_sigmas * usual),
-            measured_stop_rad_s: rules.stop_floor_rad_s.max(rules.stop_sigmas * usual),
+            planned_start: rules.start_floor_rad_s,
+            planned_stop: rules.stop_floor_rad_s,
+            measured_start: rules.start_floor_rad_s.max(rules.start_sigmas * usual),
+            measured_stop: rules.stop_floor_rad_s.max(rules.stop_sigmas * usual),
             window_s,
         };
         let (planned, measured) = (planned.motions(rules), measured.motions(rules));
@@ -87,6 +91,7 @@ impl Signals {
             measured_rad_s,
             min_travel_rad,
             deviation_rad_s,
+            peaks,
             planned,
             measured,
         }

@@ -38,24 +38,24 @@ pub(super) fn samples(pair: &Pair) -> Vec<Sample> {
 /// Statistics of samples; `None` of none.
 pub(super) fn tracking_error<'a>(samples: impl Iterator<Item = &'a Sample> + Clone) -> Option<TrackingError> {
     let (mut count, mut time, mut sum, mut magnitude, mut square) = (0, 0.0, 0.0, 0.0, 0.0);
-    let (mut peak_rad, mut peak_time_s) = (-1.0, 0.0);
+    let (mut peak, mut peak_time_s) = (-1.0, 0.0);
     for s in samples.clone() {
         count += 1;
         time += s.weight_s;
         sum += s.weight_s * s.error_rad;
         magnitude += s.weight_s * s.error_rad.abs();
         square += s.weight_s * s.error_rad * s.error_rad;
-        if s.error_rad.abs() > peak_rad {
-            (peak_rad, peak_time_s) = (s.error_rad.abs(), s.t_s);
+        if s.error_rad.abs() > peak {
+            (peak, peak_time_s) = (s.error_rad.abs(), s.t_s);
         }
     }
     (count > 0).then(|| TrackingError {
-        rms_rad: (square / time).sqrt(),
-        mean_abs_rad: magnitude / time,
-        peak_rad,
+        rms: (square / time).sqrt(),
+        mean_abs: magnitude / time,
+        peak,
         peak_time_s,
-        p95_rad: weighted_quantile(samples.step_by(count / ENOUGH + 1), 0.95),
-        bias_rad: sum / time,
+        p95: weighted_quantile(samples.step_by(count / ENOUGH + 1), 0.95),
+        bias: sum / time,
         samples: count,
         duration_s: time,
     })

@@ -45,6 +45,9 @@ pub(super) fn transition(
 
     Transition {
         joint: pair.name.clone(),
+        joint_kind: pair.kind,
+        index: 0,
+        id: format!("{}@{planned_s:.3}", pair.name),
         kind: if planned.reversal { Kind::Reversal } else { Kind::Start },
         direction: planned.direction,
         planned_onset_s: planned_s,
@@ -58,16 +61,16 @@ pub(super) fn transition(
         onset_delay_s: measured_s.map(|at_s| at_s - planned_s),
         onset_delay_interval_s: interval_s,
         displacement_delay_s: displacement_delay_s(pair, signals, planned, (planned_s, end_s), rules),
-        breakaway_error_rad: measured_s
+        breakaway_error: measured_s
             .and_then(|at_s| error_at(error, &planned.segment, at_s))
             .map(|e| f64::from(planned.direction) * e),
-        jump_rad_s: measured_s.and_then(|at_s| jump_rad_s(pair, signals, planned, at_s, rules)),
-        peak_error_rad: peak_signed_rad.abs(),
-        peak_error_signed_rad: peak_signed_rad,
+        jump: measured_s.and_then(|at_s| jump_rad_s(pair, signals, planned, at_s, rules)),
+        peak_error: peak_signed_rad.abs(),
+        peak_error_signed: peak_signed_rad,
         time_to_peak_s: inside[peak].t_s - planned_s,
-        error_area_rad_s: inside.iter().map(|s| s.weight_s * s.error_rad.abs()).sum(),
-        rms_error_rad: (square / time_s).sqrt(),
-        overshoot_rad: inside[peak..].iter().map(|s| -sign * s.error_rad).fold(0.0, f64::max),
+        error_area: inside.iter().map(|s| s.weight_s * s.error_rad.abs()).sum(),
+        rms_error: (square / time_s).sqrt(),
+        overshoot: inside[peak..].iter().map(|s| -sign * s.error_rad).fold(0.0, f64::max),
         settling_time_s: settled_s(inside, peak, band_rad, rules).map(|at_s| at_s - planned_s),
         window_s: [planned_s, end_s],
         samples: inside.len(),

@@ -2,19 +2,17 @@
 
 use std::ops::Range;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::math::{SIGMA_PER_MAD, mad, median};
 
 /// Noise and step size of one position signal, in its unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Noise {
     /// Standard deviation of white noise on the position, at least that of rounding.
-    #[serde(rename = "sigma_rad")]
     pub sigma: f64,
     /// Step of the encoder where the signal shows one.
-    #[serde(rename = "lsb_rad")]
     pub lsb: Option<f64>,
 }
 

@@ -151,7 +151,7 @@ fn sentence(found: &Transition) -> String {
         Kind::Start => "start",
         Kind::Reversal => "reversal",
     };
-    let peak_deg = degrees_from_radians(found.peak_error_rad);
+    let peak_deg = degrees_from_radians(found.peak_error);
     if let Some(delay_s) = found.onset_delay_s {
         return format!(
             "{} {kind}: follows after {:.0} ms, peak error {peak_deg:.2}°",

@@ -81,7 +81,7 @@ proptest! {
         prop_assert!(serde_json::to_string(&found).is_ok());
         for joint in &found.joints {
             let e = joint.tracking_error;
-            prop_assert!(e.peak_rad >= e.p95_rad && e.peak_rad >= e.mean_abs_rad * (1.0 - 1e-9));
+            prop_assert!(e.peak >= e.p95 && e.peak >= e.mean_abs * (1.0 - 1e-9));
         }
         // A joint's starts are its transitions, and there are no others.
         let starts: usize = found.joints.iter().map(|joint| joint.starts).sum();
@@ -92,8 +92,8 @@ proptest! {
     fn a_joint_on_its_plan_has_no_error(mut pair in any_pair()) {
         pair.measured.clone_from(&pair.planned);
         let found = of(&pair);
-        prop_assert_eq!(found.joints[0].tracking_error.peak_rad, 0.0);
-        prop_assert!(found.transitions.iter().all(|t| t.peak_error_rad == 0.0 && t.error_area_rad_s == 0.0));
+        prop_assert_eq!(found.joints[0].tracking_error.peak, 0.0);
+        prop_assert!(found.transitions.iter().all(|t| t.peak_error == 0.0 && t.error_area == 0.0));
     }
 
     #[test]
@@ -117,8 +117,8 @@ proptest! {
         }
         let count = |wanted: &[Answer]| found.transitions.iter().filter(|t| wanted.contains(&t.answer)).count();
         let joint = &found.joints[0];
-        prop_assert_eq!(joint.unmatched_starts, count(&[Answer::Never]));
-        prop_assert_eq!(joint.untimed_starts, count(&[Answer::Creeps, Answer::Unclear]));
+        prop_assert_eq!(joint.unanswered_starts, count(&[Answer::Never]));
+        prop_assert_eq!(joint.undated_starts, count(&[Answer::Creeps, Answer::Unclear]));
         prop_assert_eq!(joint.starts, found.transitions.len());
     }
 }
@@ -132,7 +132,7 @@ proptest! {
         let mut off = pair.clone();
         off.measured.iter_mut().for_each(|y| *y -= offset);
         let (a, b) = (of(&pair), of(&off));
-        let shift = b.joints[0].tracking_error.bias_rad - a.joints[0].tracking_error.bias_rad;
+        let shift = b.joints[0].tracking_error.bias - a.joints[0].tracking_error.bias;
         prop_assert!((shift - offset).abs() < 1e-9);
         prop_assert!((a.joints[0].lag_s.unwrap() - b.joints[0].lag_s.unwrap()).abs() < 1e-6);
         prop_assert_eq!(a.transitions.len(), b.transitions.len());
@@ -175,7 +175,7 @@ proptest! {
             prop_assert!(low <= share.share && share.share <= high);
         }
         let path = whole.path_error.unwrap();
-        prop_assert!(path.rms_rad <= path.timed_rms_rad, "{path:?}");
+        prop_assert!(path.rms <= path.timed_rms, "{path:?}");
     }
 
     #[test]
@@ -190,13 +190,13 @@ proptest! {
             .iter()
             .map(|t| Transition {
                 direction: -t.direction,
-                peak_error_signed_rad: -t.peak_error_signed_rad,
+                peak_error_signed: -t.peak_error_signed,
                 ..t.clone()
             })
             .collect();
         prop_assert_eq!(&a.transitions, &back);
         prop_assert_eq!(a.joints[0].lag_s, b.joints[0].lag_s);
-        prop_assert_eq!(a.joints[0].tracking_error.bias_rad, -b.joints[0].tracking_error.bias_rad);
+        prop_assert_eq!(a.joints[0].tracking_error.bias, -b.joints[0].tracking_error.bias);
     }
 
     #[test]
@@ -219,7 +219,7 @@ fn a_log_that_opens_in_motion_has_no_transition_there() {
     let found = of(&recorded(t_s, angle.clone(), angle, std::iter::once(0..n).collect()));
     assert_eq!(found.transitions.len(), 1);
     assert!((found.transitions[0].planned_onset_s - 6.0).abs() < 0.02);
-    assert_eq!((found.joints[0].unplanned_starts, found.joints[0].unmatched_starts), (0, 0));
+    assert_eq!((found.joints[0].unplanned_starts, found.joints[0].unanswered_starts), (0, 0));
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn a_joint_at_rest_gets_no_invented_numbers() {
     let joint = &found.joints[0];
     assert!(!joint.moves && !joint.plan_moves);
     assert_eq!((joint.lag_s, joint.lag_correlation, joint.lag_interval_s), (None, None, None));
-    assert!((joint.standstill_error.unwrap().bias_rad - 0.01).abs() < 1e-12);
+    assert!((joint.standstill_error.unwrap().bias - 0.01).abs() < 1e-12);
     assert_eq!(found.whole_run.concentration, None);
 }
 
@@ -250,11 +250,11 @@ fn a_joint_that_ignores_its_plan_has_an_unmatched_start_without_onset() {
     let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
     let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
     let found = of(&recorded(t_s, planned, vec![0.0; 800], std::iter::once(0..800).collect()));
-    assert_eq!((found.joints[0].starts, found.joints[0].unmatched_starts), (1, 1));
+    assert_eq!((found.joints[0].starts, found.joints[0].unanswered_starts), (1, 1));
     let transition = &found.transitions[0];
     assert_eq!((transition.measured_onset_s, transition.onset_delay_s), (None, None));
-    assert_eq!((transition.displacement_delay_s, transition.jump_rad_s), (None, None));
-    assert!((transition.peak_error_rad - 12.0 * DEGREE_RAD).abs() < 1e-9);
+    assert_eq!((transition.displacement_delay_s, transition.jump), (None, None));
+    assert!((transition.peak_error - 12.0 * DEGREE_RAD).abs() < 1e-9);
 }
 
 #[test]
@@ -268,7 +268,7 @@ fn a_joint_that_creeps_into_its_motion_answers_without_an_instant() {
     assert_eq!(found.transitions[0].answer, Answer::Creeps);
     assert_eq!((found.transitions[0].measured_onset_s, found.transitions[0].onset_delay_s), (None, None));
     let joint = &found.joints[0];
-    assert_eq!((joint.starts, joint.unmatched_starts, joint.untimed_starts), (1, 0, 1));
+    assert_eq!((joint.starts, joint.unanswered_starts, joint.undated_starts), (1, 0, 1));
 }
 
 #[test]
@@ -285,7 +285,7 @@ fn a_drift_of_the_plan_just_before_a_large_move_says_nothing_of_the_joint() {
     // It is the short time that decides, not the small travel.
     let hasty = Rules { match_after_s: 0.3, ..Rules::default() };
     assert_eq!(answers(&replay(&[pair], &hasty)), [Answer::Never, Answer::Timed]);
-    assert_eq!((found.joints[0].unmatched_starts, found.joints[0].untimed_starts), (0, 1));
+    assert_eq!((found.joints[0].unanswered_starts, found.joints[0].undated_starts), (0, 1));
     // The same drift, had it gone on: a joint that stands still then is one that does not answer.
     let drift = |t: f64| 0.4 * DEGREE_RAD * (t - 2.0).clamp(0.0, 2.0);
     let planned: Vec<f64> = t_s.iter().map(|&t| drift(t) - ramp(t, 4.5)).collect();
@@ -331,7 +331,7 @@ fn a_joint_that_moves_the_other_way_answers_nothing() {
     let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
     let measured = t_s.iter().map(|&t| -ramp(t, 2.1)).collect();
     let found = of(&recorded(t_s, planned, measured, std::iter::once(0..800).collect()));
-    assert_eq!((found.joints[0].unmatched_starts, found.joints[0].unplanned_starts), (1, 1));
+    assert_eq!((found.joints[0].unanswered_starts, found.joints[0].unplanned_starts), (1, 1));
     assert_eq!(found.transitions[0].measured_onset_s, None);
 }
 
@@ -348,14 +348,14 @@ fn a_known_start_has_the_metrics_worked_out_by_hand() {
     // No joint jumps to speed as this one does: the fit gives it 30 ms for it.
     near(transition.onset_delay_s.unwrap(), 0.2, 0.02);
     near(transition.displacement_delay_s.unwrap(), 0.2, 1e-6);
-    near(transition.breakaway_error_rad.unwrap(), 0.8 * DEGREE_RAD, 0.1 * DEGREE_RAD);
-    near(transition.peak_error_rad, 0.8 * DEGREE_RAD, 1e-9);
+    near(transition.breakaway_error.unwrap(), 0.8 * DEGREE_RAD, 0.1 * DEGREE_RAD);
+    near(transition.peak_error, 0.8 * DEGREE_RAD, 1e-9);
     // 0.8 degrees for 3 s, less the two ramps of 0.2 s, which make up for each other.
-    near(transition.error_area_rad_s, 2.4 * DEGREE_RAD, 0.01 * DEGREE_RAD);
+    near(transition.error_area, 2.4 * DEGREE_RAD, 0.01 * DEGREE_RAD);
     near(transition.settling_time_s.unwrap(), 3.2, 0.05);
-    assert_eq!(transition.overshoot_rad, 0.0);
+    assert_eq!(transition.overshoot, 0.0);
     // Being late at the end is no standstill error.
-    assert!(found.joints[0].standstill_error.unwrap().peak_rad < 1e-12);
+    assert!(found.joints[0].standstill_error.unwrap().peak < 1e-12);
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn the_real_log_reports_what_other_tools_found() {
     let joints = report["joints"].as_array().unwrap();
     assert_eq!(joints.len(), 7);
     assert_eq!((&joints[6]["moves"], &joints[6]["lag_s"]), (&Value::Bool(false), &Value::Null));
-    let peaks: Vec<f64> = joints.iter().map(|j| number(&j["tracking_error"]["peak_rad"])).collect();
+    let peaks: Vec<f64> = joints.iter().map(|j| number(&j["tracking_error"]["peak"])).collect();
     assert!((peaks[5] - 0.0788).abs() < 0.0001, "{peaks:?}");
     assert!(peaks.iter().all(|p| *p <= peaks[5]), "{peaks:?}");
     for (index, joint) in joints.iter().enumerate().take(6) {

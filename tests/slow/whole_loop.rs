@@ -47,7 +47,7 @@ fn one_loop(folder: &Path, lever: &str, plant: &str, task: &str, seed: u32) -> f
     let comparison = json(folder, "compare before.mcap after.mcap");
     let (all, run) = (&comparison["summaries"][0], &comparison["whole_run"][0]);
     assert!(all["pairs"].as_u64().unwrap() >= 12, "{all}");
-    for (ratio, most) in [("rms_rad", 0.6), ("peak_rad", 0.8)] {
+    for (ratio, most) in [("rms", 0.6), ("peak", 0.8)] {
         assert!(run[ratio]["ratio"].as_f64().unwrap() < most, "{plant} {task} {seed}: {}", run[ratio]);
     }
     all["relative_change"].as_f64().unwrap()

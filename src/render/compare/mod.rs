@@ -1,33 +1,45 @@
 //! What a change did to the tracking error of a task.
 
-mod document;
 mod figures;
 mod page;
 mod short;
 mod tables;
 
-pub use document::compare_json as json;
 pub use figures::figures;
 pub use page::page;
 pub use short::verdicts;
 pub use tables::document;
 
-use super::kit::{NONE, deg, ms, optional};
-use crate::workflow::compare::{Change, Measure, Verdict};
+use super::{kit::NONE, metric::Units};
+use crate::{
+    replay::Dimension,
+    series::JointKind,
+    workflow::compare::{Change, Comparison, Scope, Verdict},
+};
 
-/// How a measure is shown, and its unit.
-fn unit(measure: Measure) -> (fn(f64) -> String, &'static str) {
-    match measure {
-        Measure::PeakError | Measure::RmsError => (deg, "deg"),
-        Measure::OnsetDelay => (ms, "ms"),
+/// Whether the joints of a scope turn or slide.
+fn kind(comparison: &Comparison, scope: &Scope) -> JointKind {
+    let of = comparison.whole_run.iter().find(|figures| match scope {
+        Scope::Joint(joint) => figures.joint.as_ref() == Some(joint),
+        Scope::All | Scope::Starts => true,
+    });
+    of.map_or(JointKind::Turns, |figures| figures.kind)
+}
+
+fn scope(scope: &Scope) -> String {
+    match scope {
+        Scope::All => "all".to_owned(),
+        Scope::Starts => "from rest".to_owned(),
+        Scope::Joint(joint) => joint.clone(),
     }
 }
 
 /// `before -> after`; nothing where neither is known.
-fn arrow(change: &Change, show: fn(f64) -> String) -> String {
+fn arrow(change: &Change, dimension: Dimension, kind: JointKind, units: Units) -> String {
+    let show = |value| units.optional(dimension, kind, value);
     match (change.before, change.after) {
         (None, None) => NONE.to_owned(),
-        (before, after) => format!("{} -> {}", optional(before, show), optional(after, show)),
+        (before, after) => format!("{} -> {}", show(before), show(after)),
     }
 }
 

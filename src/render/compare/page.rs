@@ -2,11 +2,11 @@
 
 use maud::{Markup, html};
 
-use super::{short::verdicts, tables::document};
+use super::{kind, scope, short::verdicts, tables::document};
 use crate::{
     render::{
         kit::{
-            self, Id, Sentence, clean, deg,
+            self, Id, Sentence, clean,
             page::{
                 Chapter, Plots, card,
                 chart::{Chart, Panel, Role, Series, Size, at, rounded, span, times},
@@ -17,11 +17,11 @@ use crate::{
             },
             percent, probability, signed,
         },
-        transition::{direction, kind},
+        metric::{number, on_paper, position, unit},
     },
+    replay::{Dimension, Keyed, Metric, PEAK_ERROR, Transition},
     series::Pair,
-    units::degrees_from_radians,
-    workflow::compare::{Comparison, Measure, Scope, TransitionPair, Verdict},
+    workflow::compare::{Change, Comparison, Scope, TransitionPair, Verdict},
 };
 
 /// Places of a series at most, nearly.
@@ -70,12 +70,13 @@ fn change(comparison: &Comparison) -> Markup {
         Verdict::Equal => ("open", "Nothing changed"),
         Verdict::TooFew => ("open", "Too few to tell"),
     };
-    let peak = comparison.overall(Measure::PeakError);
+    let peak = comparison.overall(PEAK_ERROR);
+    let kind = kind(comparison, &Scope::All);
     let body = html! {
         @if let Some(peak) = peak {
             @if let (Some(before), Some(after)) = (peak.mean_before, peak.mean_after) {
                 p {
-                    (format!("{}° -> {}° in the mean", deg(before), deg(after)))
+                    (format!("mean {} -> {}", position(kind, before), position(kind, after)))
                     (peak.relative_change.map_or(String::new(), |share| format!(" ({} %)", percent(share))))
                 }
             }
@@ -87,35 +88,39 @@ fn change(comparison: &Comparison) -> Markup {
 
 fn whole_run(comparison: &Comparison) -> Markup {
     let Some(all) = comparison.whole_run.first() else { return html! {} };
-    let arrow = |before: Option<f64>, after: Option<f64>| match (before, after) {
-        (Some(before), Some(after)) => format!("{}° -> {}°", deg(before), deg(after)),
+    let arrow = |key: &str| match all.changes.get(key) {
+        Change { before: Some(before), after: Some(after), .. } => {
+            format!("{} -> {}", position(all.kind, before), position(all.kind, after))
+        }
         _ => "not known".to_owned(),
     };
     let body = html! {
-        p { "peak " (arrow(all.peak_rad.before, all.peak_rad.after)) }
-        p { "at rest " (arrow(all.standstill_rms_rad.before, all.standstill_rms_rad.after)) }
+        p { "peak " (arrow("peak")) }
+        p { "rms at standstill " (arrow("standstill_rms")) }
     };
-    card("", "Rms error, whole run", &arrow(all.rms_rad.before, all.rms_rad.after), &body)
+    card("", "Rms error, whole run", &arrow("rms"), &body)
 }
 
-/// Mean changes of the peak error, degrees: of all pairs, of starts from rest, of each joint.
+/// Mean changes of the peak error, degrees or millimetres: of all pairs, of starts from rest, of each joint.
 pub(super) fn change_rows(comparison: &Comparison) -> Vec<Row> {
-    let of = comparison.summaries.iter().filter(|summary| summary.measure == Measure::PeakError);
+    let of = comparison.summaries.iter().filter(|summary| summary.measure.key == PEAK_ERROR);
     let rows = of.filter_map(|summary| {
         let mean = summary.mean_difference?;
         let interval = summary.interval_95;
+        let kind = kind(comparison, &summary.scope);
+        let alone = |d: f64| number(Dimension::Position, kind, d);
         Some(Row {
-            name: match &summary.scope {
-                Scope::All => "all".to_owned(),
-                Scope::Starts => "from rest".to_owned(),
-                Scope::Joint(joint) => joint.clone(),
-            },
-            value: degrees_from_radians(mean),
-            interval: interval.map(|ends| ends.map(degrees_from_radians)),
+            name: scope(&summary.scope),
+            value: on_paper(kind, mean),
+            interval: interval.map(|ends| ends.map(|end| on_paper(kind, end))),
             text: format!(
-                "{}°{}",
-                signed(mean, deg),
-                interval.map_or(String::new(), |[a, b]| format!(" ({}..{})", signed(a, deg), signed(b, deg)))
+                "{}{}",
+                signed(mean, |d| position(kind, d)),
+                interval.map_or(String::new(), |[a, b]| format!(
+                    " ({}..{})",
+                    signed(a, alone),
+                    signed(b, alone)
+                ))
             ),
             strong: summary.scope == Scope::All,
         })
@@ -126,33 +131,43 @@ pub(super) fn change_rows(comparison: &Comparison) -> Vec<Row> {
 fn scatters(comparison: &Comparison, plots: &mut Plots) -> Markup {
     html! {
         p class="hint" { "Each point is one transition; below the line it became smaller." }
-        div class="side" { @for chart in pair_charts(comparison) { (plots.place(chart)) } }
+        div class="side" { @for (_, chart) in pair_charts(comparison) { (plots.place(chart)) } }
     }
 }
 
-/// Every pair of transitions, after over before: peak errors, delays of starts.
-pub(super) fn pair_charts(comparison: &Comparison) -> [Chart; 2] {
-    let peak =
-        scatter(comparison, "Peak error", ["Peak error before (deg)", "Peak error after (deg)"], |pair| {
-            Some((pair.peak_error_rad.before?, pair.peak_error_rad.after?))
-                .map(|(a, b)| (rounded(degrees_from_radians(a)), rounded(degrees_from_radians(b))))
+/// Every pair of transitions, after over before: a chart for each metric that is compared.
+pub(super) fn pair_charts(comparison: &Comparison) -> Vec<(&'static str, Chart)> {
+    let chart = |metric: &'static Metric<Transition>| {
+        let of_all = kind(comparison, &Scope::All);
+        let unit = unit(metric.dimension, of_all);
+        let place = |value: f64, pair: &TransitionPair| {
+            let of_joint = metric.dimension.is_of_joint();
+            rounded(if of_joint { on_paper(pair.joint_kind, value) } else { 1e3 * value })
+        };
+        let labels = ["before", "after"].map(|side| format!("{} {side} ({unit})", capital(metric.name)));
+        let chart = scatter(comparison, &capital(metric.name), labels, |pair| {
+            let change = pair.changes.get(metric.key);
+            Some((place(change.before?, pair), place(change.after?, pair)))
         });
-    let late =
-        scatter(comparison, "Start delay", ["Start delay before (ms)", "Start delay after (ms)"], |pair| {
-            Some((rounded(1e3 * pair.onset_delay_s.before?), rounded(1e3 * pair.onset_delay_s.after?)))
-        });
-    [peak, late]
+        (metric.name, chart)
+    };
+    Metric::<Transition>::rows().into_iter().map(chart).collect()
+}
+
+fn capital(name: &str) -> String {
+    let (first, rest) = name.split_at(1);
+    first.to_uppercase() + rest
 }
 
 fn scatter(
     comparison: &Comparison,
     title: &str,
-    [x_label, y_label]: [&'static str; 2],
+    [x_label, y_label]: [String; 2],
     of: impl Fn(&TransitionPair) -> Option<(f64, f64)>,
 ) -> Chart {
     let named = |pair: &TransitionPair| {
-        let direction = direction(pair.direction);
-        format!("{} {} {direction} {:.2} s", pair.joint, kind(pair.kind), pair.planned_onset_before_s)
+        let direction = number(Dimension::Sign, pair.joint_kind, f64::from(pair.direction));
+        format!("{} {} {direction} {:.2} s", pair.joint, pair.kind.name(), pair.planned_onset_before_s)
     };
     let pairs: Vec<(String, f64, f64)> = comparison
         .pairs
@@ -165,11 +180,11 @@ fn scatter(
     let series = |name: &str, role, x, y, names| Series { name: name.to_owned(), role, x, y, names };
     Chart {
         title: title.to_owned(),
-        x_label,
+        x_label: x_label.into(),
         xs: vec![pairs.iter().map(|(_, before, _)| *before).collect(), ends.to_vec()],
         x_range: Some(ends),
         panels: vec![Panel {
-            label: y_label.to_owned(),
+            label: y_label,
             series: vec![
                 series("no change", Role::Guide, 1, ends.to_vec(), Vec::new()),
                 series(
@@ -219,19 +234,24 @@ fn named<'a>(pairs: &'a [Pair], joint: &str) -> Option<&'a Pair> {
 fn over_time(joint: &str, before: &Pair, after: &Pair, offset_s: f64) -> Chart {
     let mut xs = Vec::new();
     let mut series = |name: &str, role, pair: &Pair, shift_s: f64| {
-        let error_rad: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| p - m).collect();
-        let places = envelope(&pair.segments, &[&error_rad], MOST);
+        let error: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| p - m).collect();
+        let places = envelope(&pair.segments, &[&error], MOST);
         xs.push(times(&pair.t_s, &places).into_iter().map(|t_s| rounded(t_s - shift_s)).collect());
-        let y = at(&error_rad, &places).map(|rad| rounded(degrees_from_radians(rad))).collect();
+        let y = at(&error, &places).map(|value| rounded(on_paper(pair.kind, value))).collect();
         Series { name: name.to_owned(), role, x: xs.len() - 1, y, names: Vec::new() }
     };
     let series =
         vec![series("before", Role::Before, before, 0.0), series("after", Role::Measured, after, offset_s)];
     Chart {
         title: joint.to_owned(),
-        x_label: "Time (s)",
+        x_label: "Time (s)".into(),
         xs,
-        panels: vec![Panel { label: "Error (deg)".to_owned(), series, share: 1.0, range: None }],
+        panels: vec![Panel {
+            label: format!("Error ({})", unit(Dimension::Position, before.kind)),
+            series,
+            share: 1.0,
+            range: None,
+        }],
         group: Some("run"),
         height: 190,
         ..Chart::default()

@@ -1,15 +1,21 @@
 //! A comparison in three lines, and its limits in one each.
 
+use super::kind;
 use crate::{
-    render::kit::{Sentence, counted, deg, optional, percent, probability, signed},
-    workflow::compare::{Change, Comparison, Gate, GateResult, Measure, Summary, Verdict},
+    render::{
+        kit::{Sentence, counted, optional, percent, probability, signed},
+        metric::{position, with_unit},
+    },
+    replay::PEAK_ERROR,
+    series::JointKind,
+    workflow::compare::{Comparison, Form, GateResult, Scope, Summary, Verdict},
 };
 
 /// Verdict, whole run, plans; then joints that call for a word, and limits.
 pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     let mut lines = Vec::new();
-    match comparison.overall(Measure::PeakError) {
-        Some(peak) if peak.pairs > 0 => lines.push(verdict(peak)),
+    match comparison.overall(PEAK_ERROR) {
+        Some(peak) if peak.pairs > 0 => lines.push(verdict(peak, kind(comparison, &Scope::All))),
         _ => lines.push("No transition is found in every run: there is none to compare.".to_owned()),
     }
     lines.extend(whole_run(comparison));
@@ -17,15 +23,16 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     lines.into_iter().map(Sentence::Finding).chain(verdicts(comparison)).collect()
 }
 
-fn verdict(peak: &Summary) -> String {
+fn verdict(peak: &Summary, kind: JointKind) -> String {
+    let shown = |error: f64| position(kind, error);
     let numbers = format!(
-        "{} -> {} deg in the mean, {} deg{}{}",
-        optional(peak.mean_before, deg),
-        optional(peak.mean_after, deg),
-        optional(peak.mean_difference, |d| signed(d, deg)),
+        "mean {} -> {}, {}{}{}",
+        optional(peak.mean_before, shown),
+        optional(peak.mean_after, shown),
+        optional(peak.mean_difference, |d| signed(d, shown)),
         peak.relative_change.map_or(String::new(), |share| format!(" ({} %)", percent(share))),
         peak.interval_95.map_or(String::new(), |[low, high]| {
-            format!(", 95 % interval {}..{} deg", signed(low, deg), signed(high, deg))
+            format!(", 95 % interval {} to {}", signed(low, shown), signed(high, shown))
         }),
     );
     let counts = format!(
@@ -41,15 +48,14 @@ fn verdict(peak: &Summary) -> String {
         Verdict::Larger => format!("The peak error at transitions became larger: {numbers}; {counts}."),
         Verdict::NotShown => {
             format!(
-                "Whether the peak error at transitions changed is open, luck could explain it: {numbers}; {counts}."
+                "No change of the peak error at transitions is shown, chance could explain it: {numbers}; {counts}."
             )
         }
         Verdict::Equal => {
             format!("The peak error at transitions is the same in {}; p = 1.", counted(peak.pairs, "pair"))
         }
         Verdict::TooFew => format!(
-            "Whether the peak error at transitions changed cannot be told from {}, of which no p is below {}: {numbers}; \
-             {counts}.",
+            "Not enough starts to tell whether the peak error changed ({}; the smallest possible p is {}): {numbers}; {counts}.",
             counted(peak.events, "event"),
             probability(peak.least_p())
         ),
@@ -58,26 +64,23 @@ fn verdict(peak: &Summary) -> String {
 
 fn whole_run(comparison: &Comparison) -> Option<String> {
     let all = comparison.whole_run.first()?;
-    let of = |name: &str, change: &Change| {
-        let share = change.ratio.map_or(String::new(), |ratio| format!(" ({} %)", percent(ratio - 1.0)));
-        let both = change.before.zip(change.after);
-        both.map(|(before, after)| format!("{name} {} -> {} deg{share}", deg(before), deg(after)))
-    };
-    let figures = [
-        of("rms", &all.rms_rad),
-        of("peak", &all.peak_rad),
-        of("at rest", &all.standstill_rms_rad),
-        of("path", &all.path_rms_rad),
-    ];
-    let figures: Vec<String> = figures.into_iter().flatten().collect();
+    let shown = ["rms", "peak", "standstill_rms", "path_rms"];
+    let figures =
+        all.changes.iter().filter(|(metric, _)| shown.contains(&metric.key)).map(|(metric, change)| {
+            let share = change.ratio.map_or(String::new(), |ratio| format!(" ({} %)", percent(ratio - 1.0)));
+            let show = |value: f64| with_unit(metric.dimension, all.kind, value);
+            let both = change.before.zip(change.after);
+            both.map(|(before, after)| format!("{} {} -> {}{share}", metric.name, show(before), show(after)))
+        });
+    let figures: Vec<String> = figures.flatten().collect();
     (!figures.is_empty()).then(|| format!("Whole run, all joints: {}.", figures.join(", ")))
 }
 
 fn plans(comparison: &Comparison) -> String {
     let duration = |runs: &[crate::workflow::compare::Run]| runs.first().and_then(|run| run.plan_duration_s);
-    let most = comparison.after.iter().map(|run| run.plan_difference_rad).reduce(|a, b| Some(a?.max(b?)));
-    let apart = most.flatten().map_or("they share too little time to compare angles".to_owned(), |most| {
-        format!("at equal times they differ by {} deg at most", deg(most))
+    let most = comparison.after.iter().map(|run| run.plan_difference).reduce(|a, b| Some(a?.max(b?)));
+    let apart = most.flatten().map_or("they share too little time to compare them".to_owned(), |most| {
+        format!("at equal times they differ by at most {}", position(kind(comparison, &Scope::All), most))
     });
     let long = match (duration(&comparison.before), duration(&comparison.after)) {
         (Some(before), Some(after)) => format!("{before:.2} s before, {after:.2} s after"),
@@ -94,50 +97,32 @@ fn plans(comparison: &Comparison) -> String {
 
 /// One for each limit that was set.
 pub fn verdicts(comparison: &Comparison) -> Vec<Sentence> {
-    comparison.gates.iter().map(gate).collect()
+    comparison.gates.iter().map(|result| gate(comparison, result)).collect()
 }
 
-fn gate(result: &GateResult) -> Sentence {
-    let percents = |share: f64| format!("{:.1} %", 100.0 * share);
-    let ratio = |ratio: f64| format!("{ratio:.3}");
-    let (name, limit, found) = match result.gate {
-        Gate::PeakReduction => (
-            "reduction of the mean transition peak",
-            format!("{} at least", percents(result.limit)),
-            result.found.map(percents),
-        ),
-        Gate::P => (
-            "p of a reduction of transition peaks",
-            format!("{} at most", probability(result.limit)),
-            result.found.map(|p| {
-                let no_reduction = !result.kept && p <= result.limit;
-                format!("{}{}", probability(p), if no_reduction { ", and no reduction" } else { "" })
-            }),
-        ),
-        Gate::TransitionGrowth => (
-            "growth of a transition's peak",
-            format!("{} deg at most", deg(result.limit)),
-            result.found.map(|growth| {
-                let joint = result.joint.as_deref().unwrap_or_default();
-                let at = result.time_s.map_or(String::new(), |t| format!(" at {t:.2} s"));
-                format!("{} deg, {joint}{at}", signed(growth, deg))
-            }),
-        ),
-        Gate::RmsRatio => (
-            "rms error after over before",
-            format!("{} at most", ratio(result.limit)),
-            result.found.map(ratio),
-        ),
-        Gate::PeakRatio => (
-            "peak error after over before",
-            format!("{} at most", ratio(result.limit)),
-            result.found.map(ratio),
-        ),
+fn gate(comparison: &Comparison, result: &GateResult) -> Sentence {
+    let of = Scope::Joint(result.joint.clone().unwrap_or_default());
+    let show = |value: f64| match result.gate.form {
+        Form::Reduction => format!("{:.1} %", 100.0 * value),
+        Form::Probability => probability(value),
+        Form::Growth => position(kind(comparison, &of), value),
+        Form::Ratio => format!("{value:.3}"),
     };
-    let found = found.unwrap_or("nothing to compare".to_owned());
+    let side = if result.gate.form == Form::Reduction { "at least" } else { "at most" };
+    let behind = match (&result.joint, result.time_s, result.gate.form) {
+        (Some(joint), Some(at_s), _) => format!(", {joint} at {at_s:.2} s"),
+        (.., Form::Probability) if !result.kept && result.found.is_some_and(|p| p <= result.limit) => {
+            ", and no reduction".to_owned()
+        }
+        _ => String::new(),
+    };
+    let found = result.found.map_or("nothing to compare".to_owned(), |found| match result.gate.form {
+        Form::Growth => signed(found, show) + &behind,
+        _ => show(found) + &behind,
+    });
     Sentence::Verdict {
-        limit: format!("Limit on {name}"),
+        limit: format!("Limit on {}", result.gate.name),
         kept: result.kept,
-        found: format!("{found}; {limit}."),
+        found: format!("{found}; {} {side}.", show(result.limit)),
     }
 }

@@ -1,16 +1,16 @@
 //! A comparison as headings, sentences and tables, worst first.
 
-use super::{arrow, short::in_short, unit, word};
+use super::{arrow, kind, scope, short::in_short, word};
 use crate::{
     render::{
         kit::{
-            Block, Document, Fact, Id, NONE, Section, Sentence, Table, counted, deg, fact, ms, optional,
+            Block, Column, Document, Fact, Id, NONE, Section, Sentence, Table, counted, fact, optional,
             percent, probability, signed,
         },
-        transition::{direction, kind, late},
+        metric::{Units, number, position},
     },
-    units::degrees_from_radians,
-    workflow::compare::{Comparison, Figures, Measure, Run, Scope, Side, Summary, TransitionPair},
+    replay::{Answer, Dimension, Keyed, Metric, PEAK_ERROR, Transition},
+    workflow::compare::{Comparison, Figures, Run, Side, Summary, TransitionPair},
 };
 
 /// Everything a person reads of a comparison; `most` is how many pairs to list.
@@ -19,9 +19,9 @@ pub fn document(comparison: &Comparison, most: usize) -> Document {
     let title = format!("{} -> {}", names(&comparison.before), names(&comparison.after));
     let mut document = Document { facts: run_facts(comparison), ..Document::titled(title) }
         .with(Section::new(Id::SUMMARY, "In short", in_short(comparison)));
-    let measures = [Measure::PeakError, Measure::RmsError, Measure::OnsetDelay];
+    let metrics = Metric::<Transition>::rows();
     document.sections.extend(pairs(comparison, most));
-    document.sections.extend(measures.into_iter().filter_map(|measure| summary(comparison, measure)));
+    document.sections.extend(metrics.into_iter().filter_map(|metric| summary(comparison, metric)));
     let whole_run = [figures_table(&comparison.whole_run)];
     document.sections.push(Section::new(Id::OTHER, "Whole run, before -> after", whole_run));
     document.sections.extend(unpaired(comparison));
@@ -54,33 +54,38 @@ fn run_facts(comparison: &Comparison) -> Vec<Fact> {
 
 fn pairs(comparison: &Comparison, most: usize) -> Option<Section> {
     let mut worst: Vec<&TransitionPair> = comparison.pairs.iter().collect();
-    let growth = |pair: &TransitionPair| pair.peak_error_rad.difference.unwrap_or(f64::NEG_INFINITY);
+    let growth = |pair: &TransitionPair| pair.changes.get(PEAK_ERROR).difference.unwrap_or(f64::NEG_INFINITY);
     worst.sort_by(|a, b| growth(b).total_cmp(&growth(a)));
+    let units = Units::of(worst.iter().map(|pair| pair.joint_kind));
+    let mut columns: Vec<Column> = ["joint", "kind", "dir"].map(Column::words).into();
+    columns.extend(["at s", "after"].map(Column::numbers));
+    for metric in Metric::<Transition>::rows() {
+        let heading = units.heading(metric.heading, metric.dimension);
+        columns.push(Column::numbers(heading).meaning(metric.explanation));
+        columns.extend(["after", "change"].map(Column::numbers));
+    }
     let rows = worst.iter().take(most).map(|pair| {
-        let (peak, rms, delay) = (&pair.peak_error_rad, &pair.rms_error_rad, &pair.onset_delay_s);
-        vec![
+        let mut row = vec![
             pair.joint.clone(),
-            kind(pair.kind).to_owned(),
-            direction(pair.direction).to_owned(),
+            pair.kind.name().to_owned(),
+            number(Dimension::Sign, pair.joint_kind, f64::from(pair.direction)),
             format!("{:.2}", pair.planned_onset_before_s),
             format!("{:.2}", pair.planned_onset_after_s),
-            optional(peak.before, deg),
-            optional(peak.after, deg),
-            optional(peak.difference, |d| signed(d, deg)),
-            optional(peak.ratio, |ratio| format!("{ratio:.2}")),
-            optional(rms.before, deg),
-            optional(rms.after, deg),
-            optional(rms.difference, |d| signed(d, deg)),
-            late(delay.before, pair.answer_before),
-            late(delay.after, pair.answer_after),
-            optional(delay.difference, |d| signed(d, ms)),
-        ]
+        ];
+        for (metric, change) in pair.changes.iter() {
+            let show = |value: f64| units.cell(metric.dimension, pair.joint_kind, value);
+            // What a single start without this number says instead.
+            let or = |value: Option<f64>, answer: Answer| {
+                let start = Transition { answer, ..Transition::default() };
+                value.map_or_else(|| (metric.missing)(&start).to_owned(), show)
+            };
+            row.push(or(change.before, pair.answer_before));
+            row.push(or(change.after, pair.answer_after));
+            row.push(optional(change.difference, |d| signed(d, show)));
+        }
+        row
     });
-    let numbers = [
-        "at s", "after", "peak deg", "after", "change", "ratio", "rms deg", "after", "change", "late ms",
-        "after", "change",
-    ];
-    let table = Table::new(&["joint", "kind", "dir"], &numbers, rows);
+    let table = Table::of(columns, rows.collect::<Vec<_>>());
     let more = (worst.len() > most).then(|| {
         Sentence::note(format!("and {} more that did better (--all lists them)", worst.len() - most))
     });
@@ -89,38 +94,39 @@ fn pairs(comparison: &Comparison, most: usize) -> Option<Section> {
     })
 }
 
-fn summary(comparison: &Comparison, measure: Measure) -> Option<Section> {
-    let of = comparison.summaries.iter().filter(|s| s.measure == measure);
-    let rows: Vec<Vec<String>> = of.filter(|s| s.pairs > 0).map(summary_row).collect();
-    let (title, before) = match measure {
-        Measure::PeakError => ("Peak error at transitions", "before deg"),
-        Measure::RmsError => ("Rms error at transitions", "before deg"),
-        Measure::OnsetDelay => ("Start delay, where answered before and after", "before ms"),
-    };
-    let numbers = [
-        before, "after", "change", "95 %", "median", "%", "p", "verdict", "pairs", "events", "smaller",
-        "larger",
-    ];
+fn summary(comparison: &Comparison, metric: &Metric<Transition>) -> Option<Section> {
+    let of: Vec<&Summary> =
+        comparison.summaries.iter().filter(|s| s.measure.key == metric.key && s.pairs > 0).collect();
+    let units = Units::of(of.iter().map(|summary| kind(comparison, &summary.scope)));
+    let before = units.heading("before", metric.dimension);
+    let columns = std::iter::once(Column::words("transitions"))
+        .chain(std::iter::once(Column::numbers(before).meaning(metric.explanation)))
+        .chain(
+            [
+                "after", "change", "95 %", "median", "%", "p", "verdict", "pairs", "events", "smaller",
+                "larger",
+            ]
+            .map(Column::numbers),
+        );
+    let rows: Vec<Vec<String>> = of.iter().map(|summary| summary_row(comparison, summary, units)).collect();
     let some = !rows.is_empty();
-    some.then(|| Section::new(Id::OTHER, title, [Table::new(&["transitions"], &numbers, rows)]))
+    let title = format!("Change of the {} at transitions", metric.name);
+    some.then(|| Section::new(Id::OTHER, title, [Table::of(columns, rows)]))
 }
 
-fn summary_row(summary: &Summary) -> Vec<String> {
-    let (show, _) = unit(summary.measure);
-    let scope = match &summary.scope {
-        Scope::All => "all".to_owned(),
-        Scope::Starts => "from rest".to_owned(),
-        Scope::Joint(joint) => joint.clone(),
-    };
+fn summary_row(comparison: &Comparison, summary: &Summary, units: Units) -> Vec<String> {
+    let kind = kind(comparison, &summary.scope);
+    let show = |value: f64| units.cell(summary.measure.dimension, kind, value);
+    let signed = |value: f64| signed(value, show);
     vec![
-        scope,
+        scope(&summary.scope),
         optional(summary.mean_before, show),
         optional(summary.mean_after, show),
-        optional(summary.mean_difference, |d| signed(d, show)),
+        optional(summary.mean_difference, signed),
         summary
             .interval_95
-            .map_or(NONE.to_owned(), |[low, high]| format!("{}..{}", signed(low, show), signed(high, show))),
-        optional(summary.median_difference, |d| signed(d, show)),
+            .map_or(NONE.to_owned(), |[low, high]| format!("{}..{}", signed(low), signed(high))),
+        optional(summary.median_difference, signed),
         optional(summary.relative_change, percent),
         probability(summary.p_value),
         word(summary.verdict).to_owned(),
@@ -132,33 +138,19 @@ fn summary_row(summary: &Summary) -> Vec<String> {
 }
 
 fn figures_table(figures: &[Figures]) -> Table {
-    let tenth = |rad: f64| format!("{:.1}", degrees_from_radians(rad));
-    let rows = figures.iter().map(|f| {
-        vec![
-            f.joint.clone().unwrap_or("all".to_owned()),
-            arrow(&f.rms_rad, deg),
-            optional(f.rms_rad.ratio, |ratio| format!("{ratio:.2}")),
-            arrow(&f.p95_rad, deg),
-            arrow(&f.peak_rad, deg),
-            arrow(&f.standstill_rms_rad, deg),
-            arrow(&f.path_rms_rad, deg),
-            arrow(&f.lag_s, ms),
-            arrow(&f.peak_speed_rad_s, tenth),
-            arrow(&f.peak_acceleration_rad_s2, tenth),
-        ]
+    let units = Units::of(figures.iter().map(|f| f.kind));
+    let metrics = figures.first().into_iter().flat_map(|f| f.changes.iter()).map(|(metric, _)| {
+        let heading = if metric.heading.is_empty() { metric.name } else { metric.heading };
+        Column::numbers(units.heading(heading, metric.dimension)).meaning(metric.explanation)
     });
-    let numbers = [
-        "rms deg",
-        "ratio",
-        "p95 deg",
-        "peak deg",
-        "at rest deg",
-        "path deg",
-        "lag ms",
-        "speed deg/s",
-        "accel deg/s2",
-    ];
-    Table::new(&["joint"], &numbers, rows)
+    let rows = figures.iter().map(|f| {
+        let cells = f.changes.iter().map(|(metric, change)| arrow(change, metric.dimension, f.kind, units));
+        std::iter::once(f.joint.clone().unwrap_or("all".to_owned())).chain(cells).collect()
+    });
+    Table::of(
+        std::iter::once(Column::words("joint")).chain(metrics).collect::<Vec<_>>(),
+        rows.collect::<Vec<Vec<String>>>(),
+    )
 }
 
 fn unpaired(comparison: &Comparison) -> Option<Section> {
@@ -168,13 +160,13 @@ fn unpaired(comparison: &Comparison) -> Option<Section> {
         vec![
             if several { format!("{side} {}", u.run) } else { side.to_owned() },
             u.joint.clone(),
-            kind(u.kind).to_owned(),
-            direction(u.direction).to_owned(),
+            u.kind.name().to_owned(),
+            number(Dimension::Sign, u.joint_kind, f64::from(u.direction)),
             format!("{:.2}", u.planned_onset_s),
-            deg(u.peak_error_rad),
+            position(u.joint_kind, u.peak_error),
         ]
     });
-    let table = Table::new(&["only", "joint", "kind", "dir"], &["at s", "peak deg"], rows);
+    let table = Table::new(&["only", "joint", "kind", "dir"], &["at s", "peak"], rows);
     let some = !comparison.unpaired.is_empty();
     some.then(|| Section::new(Id::OTHER, "Transitions without a counterpart, left out", [table]))
 }
@@ -183,7 +175,7 @@ fn how(comparison: &Comparison) -> Vec<Fact> {
     let rules = &comparison.rules;
     let exact = comparison.summaries.iter().all(|s| s.p_is_exact);
     let runs = comparison.before.len().min(comparison.after.len());
-    let luck = if runs > 1 {
+    let chance = if runs > 1 {
         "values are means over the runs of a side, which evens out what differs from run to run; p and interval go by \
          the spread over transitions, so that more runs give no more events"
             .to_owned()
@@ -213,6 +205,6 @@ fn how(comparison: &Comparison) -> Vec<Fact> {
                 rules.significance
             ),
         ),
-        fact("luck", luck),
+        fact("chance", chance),
     ]
 }

@@ -67,7 +67,7 @@ fn projection(front: &PlanDocument, across: Objective, up: Objective) -> Chart {
     let room = 0.05 * (high - low);
     Chart {
         title,
-        x_label: across.row().axis,
+        x_label: across.row().axis.into(),
         xs,
         x_range: Some([low - room, high + 2.0 * room]),
         panels: vec![Panel {
@@ -95,7 +95,7 @@ fn convergence(front: &PlanDocument) -> Chart {
     let steps = &front.convergence;
     Chart {
         title: "How the front grew".to_owned(),
-        x_label: "Evaluations",
+        x_label: "Evaluations".into(),
         xs: vec![steps.iter().map(|step| step.evaluations as f64).collect()],
         panels: vec![Panel {
             label: "Hypervolume".to_owned(),

@@ -129,7 +129,7 @@ fn joint_motion(joint: &str, t_s: &[f64], angle_rad: &[f64], speed_rad_s: &[f64]
     };
     Chart {
         title: joint.to_owned(),
-        x_label: "Time (s)",
+        x_label: "Time (s)".into(),
         xs: vec![t_s.iter().copied().map(rounded).collect()],
         panels: vec![
             panel("Angle (deg)", "angle", Role::Measured, angle_rad),

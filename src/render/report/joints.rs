@@ -6,18 +6,20 @@ use maud::{Markup, html};
 
 use super::tables::lag;
 use crate::{
-    render::kit::{
-        clean, deg, ms,
-        page::{
-            Plots,
-            chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, times},
-            envelope::envelope,
-            strip::{Row, intervals},
+    render::{
+        kit::{
+            clean, ms,
+            page::{
+                Plots,
+                chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, times},
+                envelope::envelope,
+                strip::{Row, intervals},
+            },
         },
+        metric::{on_paper, position, unit},
     },
-    replay::{JointReplay, Transition},
+    replay::{Dimension, JointReplay, Transition},
     series::Pair,
-    units::degrees_from_radians,
     workflow::report::Report,
 };
 
@@ -51,35 +53,36 @@ pub(super) fn joint_charts(report: &Report) -> Vec<(String, Chart)> {
 }
 
 fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Transition]) -> Chart {
-    let error_rad: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| p - m).collect();
-    let places = envelope(&pair.segments, &[&pair.planned, &pair.measured, &error_rad], MOST);
-    let degrees =
-        |values: &[f64]| at(values, &places).map(|rad| rounded(degrees_from_radians(rad))).collect();
+    let error: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| p - m).collect();
+    let places = envelope(&pair.segments, &[&pair.planned, &pair.measured, &error], MOST);
+    let shown =
+        |values: &[f64]| at(values, &places).map(|value| rounded(on_paper(pair.kind, value))).collect();
+    let unit = unit(Dimension::Position, pair.kind);
     let series = |name: &str, role, y| Series { name: name.to_owned(), role, x: 0, y, names: Vec::new() };
     let note = numbers.map_or(String::new(), |joint| {
         let late = joint.lag_s.map_or(String::new(), |s| format!(", lag {} ms", ms(s)));
         let error = &joint.tracking_error;
-        format!("rms {}°, peak {}°{late}", deg(error.rms_rad), deg(error.peak_rad))
+        format!("rms {}, peak {}{late}", position(pair.kind, error.rms), position(pair.kind, error.peak))
     });
     Chart {
         title: pair.name.clone(),
         note,
-        x_label: "Time (s)",
+        x_label: "Time (s)".into(),
         xs: vec![times(&pair.t_s, &places)],
         x_range: None,
         panels: vec![
             Panel {
-                label: "Angle (deg)".to_owned(),
+                label: format!("Position ({unit})"),
                 series: vec![
-                    series("planned", Role::Planned, degrees(&pair.planned)),
-                    series("measured", Role::Measured, degrees(&pair.measured)),
+                    series("planned", Role::Planned, shown(&pair.planned)),
+                    series("measured", Role::Measured, shown(&pair.measured)),
                 ],
                 share: 0.6,
                 range: None,
             },
             Panel {
-                label: "Error (deg)".to_owned(),
-                series: vec![series("error", Role::Error, degrees(&error_rad))],
+                label: format!("Error ({unit})"),
+                series: vec![series("error", Role::Error, shown(&error))],
                 share: 0.4,
                 range: None,
             },

@@ -1,23 +1,29 @@
 //! How the numbers of a report were made: thresholds, windows, counts, resolution.
 
+use super::tables::kind_of_all;
 use crate::{
-    render::kit::{Block, Id, Section, deg, fact, ms},
+    math,
+    render::{
+        kit::{Block, Id, Section, fact, ms},
+        metric::{number, on_paper, position, unit},
+    },
+    replay::Dimension,
     workflow::report::Report,
 };
 
 pub(super) fn method(report: &Report) -> Option<Section> {
     let rules = &report.replay.rules;
     let joints = &report.replay.joints;
-    let range = |of: &dyn Fn(usize) -> f64, show: fn(f64) -> String| {
-        let values: Vec<f64> = (0..joints.len()).map(of).collect();
-        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let (least, most) = (show(least), show(most));
+    let range = |of: &dyn Fn(usize) -> f64, show: &dyn Fn(f64) -> String| {
+        let [least, most] = math::range((0..joints.len()).map(of)).map(show);
         if least == most { least } else { format!("{least} to {most}") }
     };
     if joints.is_empty() {
         return None;
     }
+    let kind = kind_of_all(&report.replay);
+    let speed = unit(Dimension::Speed, kind);
+    let deg_or_mm = |value: f64| number(Dimension::Position, kind, value);
     let unmatched: usize = report.alignment.iter().map(|a| a.unmatched).sum();
     let matched: usize = report.alignment.iter().map(|a| a.matched).sum();
     let segments = report.alignment.iter().map(|a| a.segments).max().unwrap_or(0);
@@ -37,21 +43,22 @@ pub(super) fn method(report: &Report) -> Option<Section> {
         fact(
             "start",
             format!(
-                "speed above {} deg/s (plan), {} deg/s (measured, from its noise), rest below {} and {}; travel of at least {} deg",
-                deg(rules.start_floor_rad_s),
-                range(&|j| joints[j].thresholds.measured_start_rad_s, deg),
-                deg(rules.stop_floor_rad_s),
-                range(&|j| joints[j].thresholds.measured_stop_rad_s, deg),
-                deg(rules.min_travel_rad),
+                "a plan starts above {} {speed} and rests below {}; a joint starts above {} {speed} and rests below {}, by its noise; \
+                 it travels at least {}",
+                deg_or_mm(rules.start_floor_rad_s),
+                deg_or_mm(rules.stop_floor_rad_s),
+                range(&|j| joints[j].thresholds.measured_start, &deg_or_mm),
+                range(&|j| joints[j].thresholds.measured_stop, &deg_or_mm),
+                position(kind, rules.min_travel_rad),
             ),
         ),
         fact(
-            "late",
+            "delay",
             format!(
-                "when plan and joint pass the same speed; never: within the window the joint covers less than {:.0} % of the \
-                 planned travel; creeps: it covers more, but was under way or crept into the motion, so it leaves rest at no \
-                 instant; unclear: planned too small for its noise, or the next start comes within {:.0} s. Only never is no \
-                 answer",
+                "time between plan and joint passing the same speed. never: within the window the joint covers less than \
+                 {:.0} % of the planned travel. creeps: it covers more, but moved before or crept into the motion, so its start \
+                 has no time. unclear: the planned motion is too small for the noise, or the next start comes within {:.0} s. Only \
+                 never counts as unanswered; creeps and unclear count as undated",
                 100.0 * rules.follow_share,
                 rules.match_after_s,
             ),
@@ -59,37 +66,36 @@ pub(super) fn method(report: &Report) -> Option<Section> {
         fact(
             "speed",
             format!(
-                "local quadratic over +-{} ms; noise {} deg, time resolution {} ms",
-                range(&|j| joints[j].thresholds.window_s, ms),
-                range(&|j| joints[j].noise.sigma, |rad| format!(
-                    "{:.4}",
-                    crate::units::degrees_from_radians(rad)
-                )),
-                range(&|j| joints[j].sample_interval_s, ms),
+                "slope of a local quadratic over +-{} ms; noise {} {}, time resolution {} ms",
+                range(&|j| joints[j].thresholds.window_s, &ms),
+                range(&|j| joints[j].noise.sigma, &|noise| format!("{:.4}", on_paper(kind, noise))),
+                unit(Dimension::Position, kind),
+                range(&|j| joints[j].sample_interval_s, &ms),
             ),
         ),
         fact(
             "window",
             format!(
-                "peak, rms, area from the planned start up to the next one, {:.0} s at most; settled within {} deg for {} ms",
+                "peak, rms and area are taken from the planned start to the next one, at most {:.0} s; an error is settled within \
+                 {} for {} ms",
                 rules.transition_window_s,
-                deg(rules.settle_band_rad),
+                position(kind, rules.settle_band_rad),
                 ms(rules.settle_hold_s)
             ),
         ),
         fact(
             "lag",
             format!(
-                "shift of best correlation of the speeds within +-{} ms, over moving stretches",
+                "time shift within +-{} ms at which measured and planned speed correlate best, while the plan moves",
                 ms(rules.lag_max_s)
             ),
         ),
         fact(
-            "by lag",
+            "due to lag",
             format!(
-                "share of the squared error that is gone when the plan is shifted by that lag, rests included; interval over \
-                 planned motions, those within {:.0} s of each other as one event; from {:.0} % on, which halves the rms, \
-                 the error is mostly lag",
+                "share of the squared error that is gone when the plan is shifted by that lag, rests included; its interval is over \
+                 planned motions, of which those within {:.0} s of each other count as one event. From {:.0} % on, which halves \
+                 the rms error, the error is mostly lag",
                 rules.same_event_s,
                 100.0 * rules.mostly_lag_share,
             ),

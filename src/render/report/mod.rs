@@ -3,7 +3,6 @@
 mod csv;
 mod figures;
 mod joints;
-mod json;
 mod method;
 mod page;
 mod summary;
@@ -14,6 +13,5 @@ mod tiles;
 
 pub use csv::csv;
 pub use figures::figures;
-pub use json::report_json as json;
 pub use page::page;
 pub use tables::{document, verdicts};

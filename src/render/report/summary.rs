@@ -1,12 +1,12 @@
-//! What a reader sees first: verdict, worst transition, where the error lives, what to do next.
+//! What a reader sees first: verdict, worst transition, where the error arises, what to do next.
 
 use maud::{Markup, html};
 
-use super::tables::{by_peak, lag_words, mostly_lag, verdicts, worst_sentence};
+use super::tables::{by_peak, kind_of_all, lag_words, mostly_lag, verdicts, worst_sentence};
 use crate::{
     render::{
         kit::{
-            Sentence, argument, clean, command, counted, deg, ms,
+            Sentence, argument, clean, command, counted, ms,
             page::{
                 card, next_steps,
                 strip::{Row, bars},
@@ -14,10 +14,9 @@ use crate::{
             },
             probability,
         },
-        transition::kind,
+        metric::{on_paper, position},
     },
     replay::Verdict,
-    units::degrees_from_radians,
     workflow::report::{
         Report,
         advice::{Advice, advice},
@@ -51,21 +50,31 @@ fn worst(report: &Report) -> Markup {
             "Show it"
         }
     };
-    let headline = format!("{}°: {} of {}", deg(worst.peak_error_rad), kind(worst.kind), worst.joint);
+    let headline =
+        format!("{}: {} of {}", position(worst.joint_kind, worst.peak_error), worst.kind.name(), worst.joint);
     card("", "Worst transition", &headline, &body)
 }
 
+/// Events that the test needs to tell, nearly.
+const NEEDED: usize = 6;
+
 fn place_of_error(report: &Report) -> Markup {
     let Some(c) = &report.replay.whole_run.concentration else {
-        let body = html! { p { "No plan moves." } };
-        return card("", "Where the error lives", "Open", &body);
+        let body = html! { p { "No plan moves, or some joints turn and some slide." } };
+        return card("", "Where the error arises", "Cannot be told", &body);
     };
     let lag = lag_words(&report.replay);
+    let events = c.test.map_or(0, |test| test.inside_count);
+    let undecided = if events < NEEDED {
+        format!("Not enough starts to tell ({events}; {NEEDED} are needed)")
+    } else {
+        "No clear difference".to_owned()
+    };
     let headline = match c.verdict {
         _ if mostly_lag(&report.replay).is_some() => "Mostly lag",
         Verdict::Transitions => "In the transitions",
         Verdict::Elsewhere => "Outside the transitions",
-        Verdict::Undecided => "The run does not say",
+        Verdict::Undecided => &undecided,
     };
     let body = html! {
         (concentration_bars(report))
@@ -79,34 +88,36 @@ fn place_of_error(report: &Report) -> Markup {
             ))
         }
     };
-    card("", "Where the error lives", headline, &body)
+    card("", "Where the error arises", headline, &body)
 }
 
 /// Root mean square errors inside and outside.
 pub(super) fn concentration_bars(report: &Report) -> Markup {
     let Some(c) = &report.replay.whole_run.concentration else { return html! {} };
-    let row = |name: &str, rad: f64, strong| Row {
+    let kind = kind_of_all(&report.replay);
+    let row = |name: &str, error: f64, strong| Row {
         name: name.to_owned(),
-        value: degrees_from_radians(rad),
+        value: on_paper(kind, error),
         interval: None,
-        text: format!("{}°", deg(rad)),
+        text: position(kind, error),
         strong,
     };
-    let mut rows = vec![row("inside", c.rms_inside_rad, true), row("elsewhere", c.rms_outside_rad, false)];
-    rows.extend(c.rms_outside_moving_rad.map(|rad| row("elsewhere, moving", rad, false)));
+    let mut rows = vec![row("inside", c.rms_inside, true), row("elsewhere", c.rms_outside, false)];
+    rows.extend(c.rms_outside_moving.map(|error| row("elsewhere, moving", error, false)));
     bars(&rows)
 }
 
 fn whole_run(report: &Report) -> Markup {
     let whole = &report.replay.whole_run;
+    let kind = kind_of_all(&report.replay);
     let headline =
-        whole.tracking_error.map_or("-".to_owned(), |error| format!("{}° rms", deg(error.rms_rad)));
+        whole.tracking_error.map_or("-".to_owned(), |error| format!("{} rms", position(kind, error.rms)));
     let body = html! {
         @if let Some(error) = whole.tracking_error {
-            p { (format!("peak {}° at {:.2} s, 95 % of the time below {}°", deg(error.peak_rad), error.peak_time_s, deg(error.p95_rad))) }
+            p { (format!("peak {} at {:.2} s; 95 % of the time below {}", position(kind, error.peak), error.peak_time_s, position(kind, error.p95))) }
         }
         @if let Some(path) = whole.path_error {
-            p { (format!("norm over joints off the planned path: {}° rms time ignored, {}° with time, {}° peak time ignored", deg(path.rms_rad), deg(path.timed_rms_rad), deg(path.peak_rad))) }
+            p { (format!("distance to the planned path, whatever the time, norm over joints: rms {}, peak {}; rms {} with time", position(kind, path.rms), position(kind, path.peak), position(kind, path.timed_rms))) }
         }
         @if !report.remarks.is_empty() {
             p { a href="#remarks" { (counted(report.remarks.as_slice().len(), "remark") + " on the data") } }

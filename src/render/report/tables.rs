@@ -2,15 +2,17 @@
 
 use super::method::method;
 use crate::{
+    math::range,
     render::{
         kit::{
-            Document, Fact, Id, NONE, Section, Sentence, Table, counted, deg, fact, ms, optional,
-            probability, share as percents, spark,
+            Column, Document, Fact, Id, Section, Sentence, counted, fact, ms, probability, share as percents,
+            spark,
         },
-        transition::{direction, kind, late},
+        metric::{Units, position, with_unit},
     },
-    replay::{Answer, JointReplay, Profiles, Replay, Transition, Verdict},
-    workflow::report::{Gate, GateResult, Report},
+    replay::{Answer, JOINT, JointReplay, Profiles, Replay, TRANSITION, Transition, Verdict},
+    series::JointKind,
+    workflow::report::{GateResult, Report},
 };
 
 /// Everything a person reads of a report; `most` is how many transitions to list.
@@ -63,11 +65,12 @@ fn in_short(report: &Report) -> Vec<Sentence> {
 
 fn findings(report: &Report) -> Vec<String> {
     let replay = &report.replay;
+    let of_all = kind_of_all(replay);
     let mut lines = Vec::new();
     match by_peak(replay).first() {
-        Some(worst) => lines.push(format!("Worst {}: {}", kind(worst.kind), worst_sentence(worst))),
+        Some(worst) => lines.push(format!("Worst {}: {}", worst.kind.name(), worst_sentence(worst))),
         None if replay.joints.iter().all(|j| !j.plan_moves) => {
-            lines.push("No joint is asked to move: there is no transition to judge.".to_owned());
+            lines.push("No joint has a plan that moves: there is no transition to judge.".to_owned());
         }
         None => lines.push("No planned start from rest was found.".to_owned()),
     }
@@ -75,9 +78,11 @@ fn findings(report: &Report) -> Vec<String> {
     if let Some(c) = &replay.whole_run.concentration {
         let place = match (mostly_lag(replay), c.verdict) {
             (Some(_), _) => "Transitions hold it because the joints move there",
-            (None, Verdict::Transitions) => "The error lives in the transitions",
-            (None, Verdict::Elsewhere) => "The error lives outside the transitions",
-            (None, Verdict::Undecided) => "Whether the error lives in the transitions is open",
+            (None, Verdict::Transitions) => "Most of the error arises in the transitions",
+            (None, Verdict::Elsewhere) => "Most of the error arises outside the transitions",
+            (None, Verdict::Undecided) => {
+                "Whether most of the error arises in the transitions cannot be told"
+            }
         };
         let test = c.test.map_or("too few stretches to test".to_owned(), |t| {
             format!(
@@ -88,44 +93,44 @@ fn findings(report: &Report) -> Vec<String> {
             )
         });
         let moving = c
-            .rms_outside_moving_rad
-            .map_or("rest".to_owned(), |rms_rad| format!("{} while moving", deg(rms_rad)));
+            .rms_outside_moving
+            .map_or("at rest".to_owned(), |rms| format!("{} while the plan moves", position(of_all, rms)));
         lines.push(format!(
-            "{place}: rms {} deg inside, {} deg elsewhere ({moving}); {:.0} % of the squared error in {:.0} % of the time ({test}).",
-            deg(c.rms_inside_rad),
-            deg(c.rms_outside_rad),
+            "{place}: rms {} inside, {} elsewhere ({moving}); {:.0} % of the squared error in {:.0} % of the time ({test}).",
+            position(of_all, c.rms_inside),
+            position(of_all, c.rms_outside),
             100.0 * c.squared_error_share_inside,
             100.0 * c.time_share_inside,
         ));
     }
     if mostly_lag(replay).is_none() && replay.whole_run.concentration.is_some() {
         lines.push(match lag_words(replay) {
-            Some(lag) => format!("The part that is lag: {lag}."),
-            None => "How much of it is lag cannot be told: no joint shows one.".to_owned(),
+            Some(lag) => format!("Share of lag: {lag}."),
+            None => "Share of lag: cannot be told, because no joint shows a lag.".to_owned(),
         });
     }
     if let Some(path) = &replay.whole_run.path_error {
         lines.push(format!(
-            "Path error, which ignores time, as the norm over all joints: rms {} deg, where the same norm with time is {} deg; \
-             peak {} deg ({} instants, single run).",
-            deg(path.rms_rad),
-            deg(path.timed_rms_rad),
-            deg(path.peak_rad),
+            "Distance to the planned path, whatever the time, as the norm over all joints: rms {}, peak {}; rms {} with \
+             time ({} instants).",
+            position(of_all, path.rms),
+            position(of_all, path.peak),
+            position(of_all, path.timed_rms),
             path.samples
         ));
     }
     for joint in &replay.joints {
         match (joint.plan_moves, joint.moves) {
             (false, false) if joint.unplanned_starts > 0 => lines.push(format!(
-                "{} is not asked to move and is only shaken: {} of less than {} deg, unasked.",
+                "The plan of {} rests; the joint is shaken by the others: {} of less than {}, unplanned.",
                 joint.name,
                 counted(joint.unplanned_starts, "start"),
-                deg(replay.rules.moves_travel_rad)
+                position(joint.kind, replay.rules.moves_travel_rad)
             )),
-            (false, false) => lines.push(format!("{} does not move and is not asked to.", joint.name)),
+            (false, false) => lines.push(format!("{} does not move, and neither does its plan.", joint.name)),
             (true, false) => {
                 lines.push(format!(
-                    "{} is asked to move and does not ({}).",
+                    "{} does not move although its plan does ({}).",
                     joint.name,
                     counted(joint.starts, "planned start")
                 ));
@@ -147,17 +152,23 @@ pub(super) fn mostly_lag(replay: &Replay) -> Option<String> {
 pub(super) fn lag_words(replay: &Replay) -> Option<String> {
     let share = replay.whole_run.lag_share?;
     let lags = replay.joints.iter().filter(|joint| joint.plan_moves).filter_map(|joint| joint.lag_s);
-    let [least, most] = crate::math::range(lags);
+    let [least, most] = range(lags);
     let (least, most) = (ms(least), ms(most));
-    let lag = if least == most { format!("{least} ms") } else { format!("{least} to {most} ms by joint") };
+    let lag = if least == most { format!("{least} ms") } else { format!("{least} to {most} ms, by joint,") };
     Some(format!(
-        "{lag} at the planned speed {} {} of the squared error ({}{}; mostly lag from {:.0} % on)",
-        if least == most { "explains" } else { "explain" },
+        "a lag of {lag} causes {} of the squared error ({}{}; mostly lag from {:.0} % on)",
         percents(share.share),
-        share.interval.map_or(String::new(), |[a, b]| format!("95 % {:.0}..{}, ", 100.0 * a, percents(b))),
+        share
+            .interval
+            .map_or(String::new(), |[a, b]| { format!("95 % interval {:.0}..{}, ", 100.0 * a, percents(b)) }),
         counted(share.events, "event"),
         100.0 * replay.rules.mostly_lag_share,
     ))
+}
+
+/// Whether joints turn or slide, where all of them do the same.
+pub(super) fn kind_of_all(replay: &Replay) -> JointKind {
+    replay.joints.first().map_or(JointKind::Turns, |joint| joint.kind)
 }
 
 pub(super) fn worst_sentence(worst: &Transition) -> String {
@@ -165,49 +176,30 @@ pub(super) fn worst_sentence(worst: &Transition) -> String {
         Some(delay_s) if delay_s >= 0.0 => format!("leaves {} ms after its plan", ms(delay_s)),
         Some(delay_s) => format!("leaves {} ms before its plan", ms(-delay_s)),
         None => match worst.answer {
-            Answer::Creeps => "creeps or is under way when its plan starts".to_owned(),
-            Answer::Unclear => "has too small a planned motion to tell when it answers".to_owned(),
-            Answer::Timed | Answer::Never => "never answers its plan".to_owned(),
+            Answer::Creeps => "creeps or already moves when its plan starts".to_owned(),
+            Answer::Unclear => "has a planned motion too small to tell when it starts".to_owned(),
+            Answer::Timed | Answer::Never => "does not follow its plan".to_owned(),
         },
     };
     format!(
-        "{} at {:.2} s {lateness}; its error peaks at {} deg, {} ms after the planned start.",
+        "{} at {:.2} s {lateness}; its error peaks at {}, {} ms after the planned start.",
         worst.joint,
         worst.planned_onset_s,
-        deg(worst.peak_error_rad),
+        position(worst.joint_kind, worst.peak_error),
         ms(worst.time_to_peak_s)
     )
 }
 
 pub(super) fn by_peak(replay: &Replay) -> Vec<&Transition> {
     let mut worst: Vec<&Transition> = replay.transitions.iter().collect();
-    worst.sort_by(|a, b| b.peak_error_rad.total_cmp(&a.peak_error_rad));
+    worst.sort_by(|a, b| b.peak_error.total_cmp(&a.peak_error));
     worst
 }
 
 fn transitions(replay: &Replay, most: usize) -> Option<Section> {
     let all = by_peak(replay);
-    let rows = all.iter().take(most).map(|t| {
-        let interval =
-            t.onset_delay_interval_s.map_or(NONE.to_owned(), |[a, b]| format!("{}..{}", ms(a), ms(b)));
-        vec![
-            t.joint.clone(),
-            kind(t.kind).to_owned(),
-            direction(t.direction).to_owned(),
-            format!("{:.2}", t.planned_onset_s),
-            late(t.onset_delay_s, t.answer),
-            interval,
-            deg(t.peak_error_rad),
-            ms(t.time_to_peak_s),
-            deg(t.rms_error_rad),
-            optional(t.breakaway_error_rad, deg),
-            deg(t.overshoot_rad),
-            optional(t.settling_time_s, ms),
-        ]
-    });
-    let numbers =
-        ["at s", "late ms", "95 %", "peak deg", "after ms", "rms deg", "break deg", "over deg", "settled ms"];
-    let table = Table::new(&["joint", "kind", "dir"], &numbers, rows);
+    let units = Units::of(replay.joints.iter().map(|joint| joint.kind));
+    let table = units.table(TRANSITION, all.iter().take(most).map(|t| (*t, t.joint_kind)));
     let more = (all.len() > most).then(|| {
         Sentence::note(format!("and {} more with smaller peaks (--all lists them)", all.len() - most))
     });
@@ -216,53 +208,22 @@ fn transitions(replay: &Replay, most: usize) -> Option<Section> {
 }
 
 fn joints(replay: &Replay, profiles: &Profiles) -> Section {
-    let rows = replay.joints.iter().enumerate().map(|(k, j)| {
-        let error = &j.tracking_error;
-        vec![
-            j.name.clone(),
-            profiles.peaks_rad.get(k).map_or(String::new(), |peaks| spark(peaks, profiles.most_rad)),
-            deg(error.rms_rad),
-            deg(error.mean_abs_rad),
-            deg(error.p95_rad),
-            deg(error.peak_rad),
-            format!("{:.2}", error.peak_time_s),
-            deg(error.bias_rad),
-            optional(j.standstill_error.map(|e| e.rms_rad), deg),
-            lag(j),
-            optional(j.lag_correlation, |c| format!("{c:.3}")),
-            j.lag_share.map_or(NONE.to_owned(), |lag| percents(lag.share)),
-            (j.starts - j.reversals).to_string(),
-            j.reversals.to_string(),
-            j.unmatched_starts.to_string(),
-            j.untimed_starts.to_string(),
-            j.unplanned_starts.to_string(),
-        ]
-    });
-    let numbers = [
-        "rms deg",
-        "mean",
-        "p95",
-        "peak",
-        "at s",
-        "bias",
-        "at rest",
-        "lag ms",
-        "corr",
-        "by lag",
-        "starts",
-        "rev",
-        "no answer",
-        "untimed",
-        "unasked",
-    ];
-    Section::new(Id::JOINTS, "Joints", [Table::new(&["joint", "error over the run"], &numbers, rows)])
+    let units = Units::of(replay.joints.iter().map(|joint| joint.kind));
+    let mut table = units.table(JOINT, replay.joints.iter().map(|joint| (joint, joint.kind)));
+    table
+        .columns
+        .insert(1, Column::words("error over the run").meaning("Largest error in each part of the run."));
+    for (k, row) in table.rows.iter_mut().enumerate() {
+        let line = profiles.peaks.get(k).map_or(String::new(), |peaks| spark(peaks, profiles.most));
+        row.insert(1, line);
+    }
+    Section::new(Id::JOINTS, "Joints", [table])
 }
 
+/// A lag with its interval.
 pub(super) fn lag(joint: &JointReplay) -> String {
-    match (joint.lag_s, joint.lag_interval_s) {
-        (Some(lag_s), Some([a, b])) => format!("{} ({}..{})", ms(lag_s), ms(a), ms(b)),
-        (lag_s, _) => optional(lag_s, ms),
-    }
+    let interval = joint.lag_interval_s.map_or(String::new(), |[a, b]| format!(" ({}..{})", ms(a), ms(b)));
+    joint.lag_s.map_or("-".to_owned(), |lag_s| ms(lag_s) + &interval)
 }
 
 /// One for each limit that was set.
@@ -271,21 +232,15 @@ pub fn verdicts(report: &Report) -> Vec<Sentence> {
 }
 
 fn verdict(result: &GateResult) -> Sentence {
-    let (name, unit, show): (_, _, fn(f64) -> String) = match result.gate {
-        Gate::TransitionPeak => ("transition peak", "deg", deg),
-        Gate::Rms => ("rms error", "deg", deg),
-        Gate::Peak => ("peak error", "deg", deg),
-        Gate::StandstillRms => ("rms error at standstill", "deg", deg),
-        Gate::OnsetDelay => ("start delay", "ms", ms),
-        Gate::Lag => ("lag", "ms", ms),
+    let (gate, kind) = (result.gate, result.kind());
+    let allowed = format!("{} allowed", with_unit(gate.dimension, kind, result.limit));
+    let sentence = |found: String| Sentence::Verdict {
+        limit: format!("Limit on {}", gate.name),
+        kept: result.kept,
+        found: format!("{found}, {allowed}."),
     };
-    let limit = format!("{} {unit} allowed", show(result.limit));
-    let sentence =
-        |found: String| Sentence::Verdict { limit: format!("Limit on {name}"), kept: result.kept, found };
-    let Some(joint) = &result.joint else { return sentence(format!("nothing to measure, {limit}.")) };
+    let Some(joint) = &result.joint else { return sentence("nothing to measure".to_owned()) };
     let time = result.time_s.map_or(String::new(), |t| format!(" at {t:.2} s"));
-    let missing =
-        if result.gate == Gate::Lag { "no lag in the range looked at" } else { "a start without an answer" };
-    let worst = result.worst.map_or(missing.to_owned(), |w| format!("{} {unit}", show(w)));
-    sentence(format!("{joint}{time} has {worst}, {limit}."))
+    let worst = result.worst.map_or(gate.missing.to_owned(), |w| with_unit(gate.dimension, kind, w));
+    sentence(format!("{joint}{time} has {worst}"))
 }

@@ -6,18 +6,17 @@ use super::tables::by_peak;
 use crate::{
     render::{
         kit::{
-            clean, counted, deg, ms,
+            clean, counted, ms,
             page::{
                 Plots,
                 chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, span, times},
                 envelope::envelope,
             },
         },
-        transition::{answer_word, direction, kind},
+        metric::{number, on_paper, position, unit},
     },
-    replay::Transition,
+    replay::{Dimension, Transition},
     series::Pair,
-    units::degrees_from_radians,
     workflow::report::Report,
 };
 
@@ -38,7 +37,7 @@ pub(super) fn transitions(report: &Report, plots: &mut Plots) -> Markup {
     }
     html! {
         p class="hint" {
-            "Every planned start, from the instant of the plan, worst first. Above: planned and measured angle from there, \
+            "Every planned start, from the instant of the plan, worst first. Above: planned and measured position from there, \
              upwards in the direction of motion; below: how far the joint is behind, on one scale for all. Shaded until \
              the joint leaves rest. A click shows it in the whole run."
             @if left > 0 { " " (counted(left, "smaller one")) " not drawn." }
@@ -95,43 +94,44 @@ fn tile(transition: &Transition, pair: &Pair) -> Chart {
     };
     let segments: Vec<_> = pair.segments.iter().filter_map(cut).collect();
     let places = envelope(&segments, &[&planned, &measured, &behind], PLACES);
-    let degrees = |values: &[f64], base: f64, sign: f64| {
+    let shown = |values: &[f64], base: f64, sign: f64| {
         at(values, &places)
-            .map(|rad| rounded(degrees_from_radians(sign * (rad - base))))
+            .map(|value| rounded(on_paper(pair.kind, sign * (value - base))))
             .collect::<Vec<f64>>()
     };
+    let unit = unit(Dimension::Position, pair.kind);
     let series = |name: &str, role, y| Series { name: name.to_owned(), role, x: 0, y, names: Vec::new() };
     let late = transition.measured_onset_s.map(|s| s - onset_s).filter(|late_s| *late_s > 0.0);
     Chart {
         title: format!(
             "{} {} {} at {onset_s:.2} s",
             transition.joint,
-            kind(transition.kind),
-            direction(transition.direction),
+            transition.kind.name(),
+            number(Dimension::Sign, pair.kind, sign),
         ),
         note: format!(
-            "peak {}°, {}",
-            deg(transition.peak_error_rad),
+            "peak {}, {}",
+            position(pair.kind, transition.peak_error),
             transition
                 .onset_delay_s
-                .map_or_else(|| answer_word(transition.answer).to_owned(), |s| format!("{} ms late", ms(s))),
+                .map_or_else(|| transition.answer.word().to_owned(), |s| format!("{} ms late", ms(s))),
         ),
-        x_label: "Time from the planned start (s)",
+        x_label: "Time from the planned start (s)".into(),
         xs: vec![times(&t_s, &places)],
         x_range: None,
         panels: vec![
             Panel {
-                label: "Angle (deg)".to_owned(),
+                label: format!("Position ({unit})"),
                 series: vec![
-                    series("planned", Role::Planned, degrees(&planned, base, sign)),
-                    series("measured", Role::Measured, degrees(&measured, base, sign)),
+                    series("planned", Role::Planned, shown(&planned, base, sign)),
+                    series("measured", Role::Measured, shown(&measured, base, sign)),
                 ],
                 share: 0.5,
                 range: None,
             },
             Panel {
-                label: "Behind (deg)".to_owned(),
-                series: vec![series("behind", Role::Error, degrees(&behind, 0.0, 1.0))],
+                label: format!("Behind ({unit})"),
+                series: vec![series("behind", Role::Error, shown(&behind, 0.0, 1.0))],
                 share: 0.5,
                 range: None,
             },

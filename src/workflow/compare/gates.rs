@@ -1,50 +1,137 @@
 //! Limits on a change.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::{Change, Figures, Measure, Scope, Summary, TransitionPair};
+use super::{
+    figures::Figures,
+    pair::TransitionPair,
+    summary::{Scope, Summary},
+};
+use crate::{
+    replay::{Keyed, PEAK_ERROR, Row},
+    series::JointKind,
+};
 
-/// What a change must keep; `None` is no limit.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Gates {
-    /// Reduction of the mean transition peak, as a share of that before.
-    pub min_peak_reduction: Option<f64>,
-    /// Two-sided p of the change in transition peaks, which must be a reduction.
-    pub max_p: Option<f64>,
-    /// Growth of any transition's peak, rad.
-    pub max_transition_growth_rad: Option<f64>,
-    /// Root mean square error over the run and all joints, after over before.
-    pub max_rms_ratio: Option<f64>,
-    /// Peak error over the run and all joints, after over before.
-    pub max_peak_ratio: Option<f64>,
+/// A limit on a change.
+#[derive(Debug)]
+pub struct Gate {
+    /// As in documents.
+    pub key: &'static str,
+    /// What is limited, in sentences.
+    pub name: &'static str,
+    /// What the number is.
+    pub form: Form,
+    find: fn(&Found<'_>) -> Option<Worst>,
 }
 
-/// A quantity that can be limited.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum Gate {
-    /// Reduction of the mean transition peak, a share.
-    PeakReduction,
-    /// Two-sided p of a reduction of transition peaks.
-    P,
-    /// Growth of a transition's peak, rad.
-    TransitionGrowth,
-    /// Ratio of root mean square errors.
-    RmsRatio,
-    /// Ratio of peak errors.
-    PeakRatio,
+/// What a limited number is, and the side of it that is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// A reduction as a share, at least.
+    Reduction,
+    /// The probability of a reduction by chance, at most.
+    Probability,
+    /// An error in the joint's unit, at most.
+    Growth,
+    /// After over before, at most.
+    Ratio,
 }
+
+/// What is judged.
+struct Found<'a> {
+    peak: Option<&'a Summary>,
+    pairs: &'a [TransitionPair],
+    figures: Option<&'a Figures>,
+}
+
+/// The number found; where, for a transition; and whether it is of no reduction.
+#[derive(Default)]
+struct Worst {
+    value: f64,
+    pair: Option<(String, f64, JointKind)>,
+    no_reduction: bool,
+}
+
+/// One row a limit.
+static GATES: &[Gate] = &[
+    Gate {
+        key: "peak-reduction",
+        name: "reduction of the mean transition peak",
+        form: Form::Reduction,
+        find: |found| {
+            let peak = found.peak?;
+            let value = match (peak.relative_change, peak.mean_difference) {
+                (Some(change), _) => -change,
+                // Nothing to reduce.
+                (None, Some(difference)) if difference <= 0.0 => 0.0,
+                _ => return None,
+            };
+            Some(Worst { value, ..Worst::default() })
+        },
+    },
+    Gate {
+        key: "p",
+        name: "p of a reduction of transition peaks",
+        form: Form::Probability,
+        find: |found| {
+            let peak = found.peak.filter(|peak| peak.pairs > 0)?;
+            let no_reduction = peak.mean_difference.is_none_or(|difference| difference >= 0.0);
+            Some(Worst { value: peak.p_value, no_reduction, ..Worst::default() })
+        },
+    },
+    Gate {
+        key: "transition-growth",
+        name: "growth of a transition's peak",
+        form: Form::Growth,
+        find: |found| {
+            let growth =
+                |pair: &TransitionPair| pair.changes.get(PEAK_ERROR).difference.unwrap_or(f64::NEG_INFINITY);
+            let worst = found.pairs.iter().max_by(|a, b| growth(a).total_cmp(&growth(b)))?;
+            let pair = Some((worst.joint.clone(), worst.planned_onset_before_s, worst.joint_kind));
+            Some(Worst { value: growth(worst), pair, no_reduction: false })
+        },
+    },
+    Gate {
+        key: "rms-ratio",
+        name: "rms error after over before",
+        form: Form::Ratio,
+        find: |found| ratio(found, "rms"),
+    },
+    Gate {
+        key: "peak-ratio",
+        name: "peak error after over before",
+        form: Form::Ratio,
+        find: |found| ratio(found, "peak"),
+    },
+];
+
+fn ratio(found: &Found<'_>, key: &str) -> Option<Worst> {
+    Some(Worst { value: found.figures?.changes.get(key).ratio?, ..Worst::default() })
+}
+
+impl Keyed for Gate {
+    fn key(&self) -> &'static str {
+        self.key
+    }
+
+    fn rows() -> Vec<&'static Self> {
+        GATES.iter().collect()
+    }
+}
+
+/// The limits that a change must keep.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Gates(Vec<(Row<Gate>, f64)>);
 
 /// A limit and what was found against it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct GateResult {
     /// Which limit.
-    pub gate: Gate,
+    pub gate: Row<Gate>,
     /// The limit, in SI units.
     pub limit: f64,
-    /// What was found; `None` where nothing could be compared, which keeps no limit.
+    /// What was found; `None` if nothing could be compared, which keeps no limit.
     pub found: Option<f64>,
     /// The joint it was found at, for the growth of a transition.
     pub joint: Option<String>,
@@ -54,52 +141,39 @@ pub struct GateResult {
     pub kept: bool,
 }
 
-/// Judges every limit that is set.
-pub(super) fn gates(
-    limits: &Gates,
-    pairs: &[TransitionPair],
-    summaries: &[Summary],
-    figures: &[Figures],
-) -> Vec<GateResult> {
-    let peak = summaries.iter().find(|s| s.measure == Measure::PeakError && s.scope == Scope::All);
-    let reduction = peak.and_then(|peak| match (peak.relative_change, peak.mean_difference) {
-        (Some(change), _) => Some(-change),
-        // Nothing to reduce.
-        (None, Some(difference)) if difference <= 0.0 => Some(0.0),
-        _ => None,
-    });
-    let of = |change: fn(&Figures) -> Change| figures.first().and_then(|all| change(all).ratio);
-    let result = |gate, limit, found: Option<f64>, kept: bool| GateResult {
-        gate,
-        limit,
-        found,
-        joint: None,
-        time_s: None,
-        kept: kept && found.is_some(),
-    };
-    let at_most =
-        |gate, limit: f64, found: Option<f64>| result(gate, limit, found, found.is_some_and(|f| f <= limit));
-    let p = peak.filter(|peak| peak.pairs > 0);
-    let reduced = p.and_then(|peak| peak.mean_difference).is_some_and(|difference| difference < 0.0);
-    let results = [
-        limits.min_peak_reduction.map(|limit| {
-            result(Gate::PeakReduction, limit, reduction, reduction.is_some_and(|r| r >= limit))
-        }),
-        limits.max_p.map(|limit| {
-            let kept = reduced && p.is_some_and(|peak| peak.p_value <= limit);
-            result(Gate::P, limit, p.map(|peak| peak.p_value), kept)
-        }),
-        limits.max_transition_growth_rad.map(|limit| {
-            let growth = |pair: &TransitionPair| pair.peak_error_rad.difference.unwrap_or(f64::NEG_INFINITY);
-            let worst = pairs.iter().max_by(|a, b| growth(a).total_cmp(&growth(b)));
+impl Gates {
+    /// With a limit more, by its key, in SI units; a key of no limit adds none.
+    #[must_use]
+    pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
+        self.0.extend(Row::find(key).zip(value));
+        self
+    }
+
+    /// Judges every limit.
+    pub(super) fn judge(
+        &self,
+        pairs: &[TransitionPair],
+        summaries: &[Summary],
+        figures: &[Figures],
+    ) -> Vec<GateResult> {
+        let peak = summaries.iter().find(|s| s.measure.key == PEAK_ERROR && s.scope == Scope::All);
+        let found = Found { peak, pairs, figures: figures.first() };
+        let judge = |&(gate, limit): &(Row<Gate>, f64)| {
+            let worst = (gate.find)(&found);
+            let kept = worst.as_ref().is_some_and(|worst| match gate.form {
+                Form::Reduction => worst.value >= limit,
+                Form::Probability | Form::Growth | Form::Ratio => worst.value <= limit && !worst.no_reduction,
+            });
+            let pair = worst.as_ref().and_then(|worst| worst.pair.as_ref());
             GateResult {
-                joint: worst.map(|pair| pair.joint.clone()),
-                time_s: worst.map(|pair| pair.planned_onset_before_s),
-                ..at_most(Gate::TransitionGrowth, limit, worst.map(growth))
+                gate,
+                limit,
+                found: worst.as_ref().map(|worst| worst.value),
+                joint: pair.map(|(joint, _, _)| joint.clone()),
+                time_s: pair.map(|(_, at_s, _)| *at_s),
+                kept,
             }
-        }),
-        limits.max_rms_ratio.map(|limit| at_most(Gate::RmsRatio, limit, of(|all| all.rms_rad))),
-        limits.max_peak_ratio.map(|limit| at_most(Gate::PeakRatio, limit, of(|all| all.peak_rad))),
-    ];
-    results.into_iter().flatten().collect()
+        };
+        self.0.iter().map(judge).collect()
+    }
 }

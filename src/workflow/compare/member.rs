@@ -2,10 +2,14 @@
 
 use std::path::Path;
 
-use super::{Change, PairedBy, Run, Side, TransitionPair, Unpaired, pairing::Match};
+use super::{
+    change::{Change, Changes},
+    pair::{Run, Side, TransitionPair, Unpaired},
+    pairing::{Match, PairedBy},
+};
 use crate::{
     remark::{Code, Remarks},
-    replay::{Answer, Replay, Transition},
+    replay::{Answer, Metric, Replay, Transition},
     workflow::report::Report,
 };
 
@@ -30,7 +34,7 @@ impl Member<'_> {
             transitions: replay.transitions.iter().filter(|t| joints.contains(&t.joint)).count(),
             plan_duration_s: plan_duration_s(replay, joints),
             offset_s: self.matched.offset_s,
-            plan_difference_rad: plans.map(|plans| plans.most_rad),
+            plan_difference: plans.map(|plans| plans.most_rad),
             same_plan: plans.is_some_and(|plans| plans.same),
         }
     }
@@ -95,9 +99,10 @@ pub(super) fn pairs(
             members.filter_map(|(m, (j, by))| Some((m.report.replay.transitions.get(*j)?, *by))).collect()
         };
         let (before, after) = (of(Side::Before), of(Side::After));
-        let change = |value: fn(&Transition) -> Option<f64>| {
-            let values =
-                |side: &[(&Transition, PairedBy)]| side.iter().map(|(t, _)| value(t)).collect::<Vec<_>>();
+        let change = |metric: &Metric<Transition>| {
+            let values = |side: &[(&Transition, PairedBy)]| {
+                side.iter().map(|(t, _)| metric.number(t)).collect::<Vec<_>>()
+            };
             Change::of_runs(&values(&before), &values(&after))
         };
         let worst = |side: &[(&Transition, PairedBy)]| {
@@ -108,6 +113,7 @@ pub(super) fn pairs(
             .find(|way| before.iter().chain(&after).any(|(_, by)| by == way));
         pairs.push(TransitionPair {
             joint: transition.joint.clone(),
+            joint_kind: transition.joint_kind,
             kind: transition.kind,
             direction: transition.direction,
             planned_onset_before_s: transition.planned_onset_s,
@@ -115,11 +121,9 @@ pub(super) fn pairs(
                 .first()
                 .map_or(transition.planned_onset_s, |(t, _)| t.planned_onset_s),
             paired_by: by.unwrap_or(PairedBy::Clock),
-            peak_error_rad: change(|t| Some(t.peak_error_rad)),
-            rms_error_rad: change(|t| Some(t.rms_error_rad)),
-            onset_delay_s: change(|t| t.onset_delay_s),
             answer_before: worst(&before),
             answer_after: worst(&after),
+            changes: Changes::of(change),
         });
     }
     let alone = |(member, used): (&Member<'_>, Vec<bool>)| {
@@ -129,10 +133,11 @@ pub(super) fn pairs(
                 side: member.side,
                 run: member.number,
                 joint: t.joint.clone(),
+                joint_kind: t.joint_kind,
                 kind: t.kind,
                 direction: t.direction,
                 planned_onset_s: t.planned_onset_s,
-                peak_error_rad: t.peak_error_rad,
+                peak_error: t.peak_error,
             })
             .collect::<Vec<_>>()
     };

@@ -1,10 +1,12 @@
 //! `compare`: what a change did to the tracking error of a task, from runs before and after it.
 
 mod change;
+mod document;
 mod figures;
 mod gates;
 mod member;
 mod outcome;
+mod pair;
 mod pairing;
 mod plans;
 mod same;
@@ -14,12 +16,14 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-pub use change::Change;
+pub use change::{Change, Changes};
+pub use document::Document;
 pub use figures::Figures;
-pub use gates::{Gate, GateResult, Gates};
-pub use outcome::{Comparison, Run, Side, Unpaired};
-pub use pairing::{PairedBy, TransitionPair};
-pub use summary::{Measure, Scope, Summary, Verdict};
+pub use gates::{Form, Gate, GateResult, Gates};
+pub use outcome::Comparison;
+pub use pair::{Run, Side, TransitionPair, Unpaired};
+pub use pairing::PairedBy;
+pub use summary::{Scope, Summary, Verdict};
 
 use super::report::{self, Report};
 use crate::{
@@ -28,7 +32,6 @@ use crate::{
     replay::Rules,
 };
 use figures::figures;
-use gates::gates;
 use member::{Member, pairs};
 use pairing::matched;
 use same::is_same;
@@ -128,7 +131,7 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     }
     let summaries = summaries(&pairs, &joints, &inputs.rules);
     let whole_run = figures(&before, &after, &joints, &inputs.rules);
-    let gates = gates(&inputs.gates, &pairs, &summaries, &whole_run);
+    let gates = inputs.gates.judge(&pairs, &summaries, &whole_run);
     let runs = |side: Side| all.iter().filter(|m| m.side == side).map(|m| m.run(&joints)).collect();
     let (runs_before, runs_after) = (runs(Side::Before), runs(Side::After));
     let samples = |reports: &mut [Report]| {

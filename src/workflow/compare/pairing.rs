@@ -1,17 +1,9 @@
 //! Which transition of one run is which of another.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::{
-    Change,
-    plans::{PlanDifference, plan_difference},
-};
-use crate::{
-    math::median,
-    replay::{Answer, Kind, Transition},
-    series::Pair,
-    workflow::report::Report,
-};
+use super::plans::{PlanDifference, plan_difference};
+use crate::{math::median, replay::Transition, series::Pair, workflow::report::Report};
 
 /// Planned onsets at most this far apart, clocks aligned, are the same, s.
 const SAME_ONSET_S: f64 = 0.3;
@@ -24,7 +16,7 @@ const SAME_RHYTHM: f64 = 0.8;
 const MOST_MISSING: usize = 8;
 
 /// How two transitions were found to be the same one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum PairedBy {
@@ -34,34 +26,6 @@ pub enum PairedBy {
     Task,
     /// The joint starts equally often in the same directions, in another rhythm.
     Order,
-}
-
-/// One transition before and after.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct TransitionPair {
-    /// The joint.
-    pub joint: String,
-    /// From rest or not.
-    pub kind: Kind,
-    /// Sign of the planned motion, +1 or -1.
-    pub direction: i8,
-    /// When the plan starts in the first run before, s.
-    pub planned_onset_before_s: f64,
-    /// When it starts in the first run after, s.
-    pub planned_onset_after_s: f64,
-    /// How the two were found to be the same.
-    pub paired_by: PairedBy,
-    /// Largest error in the window, rad.
-    pub peak_error_rad: Change,
-    /// Root mean square error in the window, rad.
-    pub rms_error_rad: Change,
-    /// Measured minus planned onset, s; `None` where an answer has no instant in a run.
-    pub onset_delay_s: Change,
-    /// What became of the start before; of several runs the worst.
-    pub answer_before: Answer,
-    /// The same after.
-    pub answer_after: Answer,
 }
 
 /// How another run corresponds to the first.
@@ -245,33 +209,9 @@ impl<'a> Starts<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::replay::{Answer, Kind, OnsetMethod};
 
     fn start(direction: i8, at_s: f64) -> Transition {
-        Transition {
-            joint: "a".into(),
-            kind: Kind::Start,
-            direction,
-            planned_onset_s: at_s,
-            answer: Answer::Never,
-            measured_onset_s: None,
-            onset_method: OnsetMethod::Fit,
-            onset_delay_s: None,
-            onset_delay_interval_s: None,
-            displacement_delay_s: None,
-            breakaway_error_rad: None,
-            jump_rad_s: None,
-            peak_error_rad: 0.0,
-            peak_error_signed_rad: 0.0,
-            time_to_peak_s: 0.0,
-            error_area_rad_s: 0.0,
-            rms_error_rad: 0.0,
-            overshoot_rad: 0.0,
-            settling_time_s: None,
-            window_s: [at_s, at_s + 1.0],
-            samples: 1,
-            time_resolution_s: 0.01,
-        }
+        Transition { joint: "a".into(), direction, planned_onset_s: at_s, ..Transition::default() }
     }
 
     fn partners(a: &[Transition], b: &[Transition], offset_s: f64, same: bool) -> Vec<Option<usize>> {

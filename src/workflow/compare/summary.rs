@@ -1,28 +1,15 @@
-//! Whether transitions changed, by how much, and whether that is luck.
+//! Whether transitions changed, by how much, and whether chance explains it.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::TransitionPair;
+use super::pair::TransitionPair;
 use crate::{
     math::{half_interval, median, signed_rank},
-    replay::{Kind, Rules},
+    replay::{Keyed, Kind, Metric, Row, Rules, Transition},
 };
 
-/// What is compared of a transition.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum Measure {
-    /// Largest error in the window, rad.
-    PeakError,
-    /// Root mean square error in the window, rad.
-    RmsError,
-    /// Measured minus planned onset, s, where the joint answers before and after.
-    OnsetDelay,
-}
-
 /// Which transitions.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Scope {
@@ -35,7 +22,7 @@ pub enum Scope {
 }
 
 /// What the rank test says at [`Rules::significance`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -43,7 +30,7 @@ pub enum Verdict {
     Smaller,
     /// Larger after.
     Larger,
-    /// No change that luck could not explain.
+    /// Chance explains the change.
     NotShown,
     /// No value changed.
     Equal,
@@ -51,12 +38,12 @@ pub enum Verdict {
     TooFew,
 }
 
-/// One quantity over paired transitions; differences are after minus before, in rad or s.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// One metric over paired transitions; differences are after minus before.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Summary {
-    /// Which quantity.
-    pub measure: Measure,
+    /// Key of the metric.
+    pub measure: Row<Metric<Transition>>,
     /// Of which transitions.
     pub scope: Scope,
     /// Pairs with a value on both sides.
@@ -64,7 +51,7 @@ pub struct Summary {
     /// Groups of pairs that begin within [`Rules::same_event_s`] of one another, over all joints: they share
     /// pump and moment, so they count once in interval and test.
     pub events: usize,
-    /// Mean before; `None` without pairs, as all that follows.
+    /// Mean before; `None` without pairs, like the values that follow.
     pub mean_before: Option<f64>,
     /// Mean after.
     pub mean_after: Option<f64>,
@@ -95,30 +82,37 @@ impl Summary {
     }
 }
 
-/// Every measure over all transitions, over starts from rest where there are others, and by joint.
+/// Every metric over all transitions, over starts from rest if there are reversals too, and by joint.
 pub(super) fn summaries(pairs: &[TransitionPair], joints: &[String], rules: &Rules) -> Vec<Summary> {
     let mixed = pairs.iter().any(|p| p.kind == Kind::Start) && pairs.iter().any(|p| p.kind == Kind::Reversal);
     let scopes = [Some(Scope::All), mixed.then_some(Scope::Starts)];
     let scopes = scopes.into_iter().flatten().chain(joints.iter().cloned().map(Scope::Joint));
-    let measures = [Measure::PeakError, Measure::RmsError, Measure::OnsetDelay];
-    scopes.flat_map(|scope| measures.map(|measure| summary(pairs, measure, scope.clone(), rules))).collect()
+    let metrics = Metric::<Transition>::rows();
+    let of = |scope: Scope| metrics.iter().map(move |metric| summary(pairs, metric, scope.clone(), rules));
+    scopes.flat_map(of).collect()
 }
 
-fn summary(pairs: &[TransitionPair], measure: Measure, scope: Scope, rules: &Rules) -> Summary {
+fn summary(
+    pairs: &[TransitionPair],
+    metric: &'static Metric<Transition>,
+    scope: Scope,
+    rules: &Rules,
+) -> Summary {
     let within = |pair: &&TransitionPair| match &scope {
         Scope::All => true,
         Scope::Starts => pair.kind == Kind::Start,
         Scope::Joint(joint) => pair.joint == *joint,
     };
-    let change = |pair: &TransitionPair| match measure {
-        Measure::PeakError => pair.peak_error_rad,
-        Measure::RmsError => pair.rms_error_rad,
-        Measure::OnsetDelay => pair.onset_delay_s,
-    };
+    let change = |pair: &TransitionPair| pair.changes.get(metric.key);
+    // Positions of joints that turn and of joints that slide have no common mean.
+    let kind = pairs.iter().find(within).map(|pair| pair.joint_kind);
+    let alike = |pair: &&TransitionPair| !metric.dimension.is_of_joint() || Some(pair.joint_kind) == kind;
+    let comparable = pairs.iter().filter(within).all(|pair| alike(&pair));
     // When, before, after.
     let mut found: Vec<[f64; 3]> = pairs
         .iter()
         .filter(within)
+        .filter(|_| comparable)
         .filter_map(|pair| Some([pair.planned_onset_before_s, change(pair).before?, change(pair).after?]))
         .collect();
     found.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -152,7 +146,7 @@ fn summary(pairs: &[TransitionPair], measure: Measure, scope: Scope, rules: &Rul
         (_, true) => Verdict::Larger,
     };
     Summary {
-        measure,
+        measure: Row(metric),
         scope,
         pairs: found.len(),
         events: events.len(),

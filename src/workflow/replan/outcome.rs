@@ -45,7 +45,7 @@ impl Before {
             |measured: &crate::series::Track| align(recording.planned.track(measured.name())?, measured);
         let pairs: Vec<_> = recording.measured.tracks.iter().filter_map(pair).collect();
         let found = replay(&pairs, rules);
-        let peaks = || found.transitions.iter().map(|t| t.peak_error_rad);
+        let peaks = || found.transitions.iter().map(|t| t.peak_error);
         let count = found.transitions.len();
         Self {
             measured_transitions: count,

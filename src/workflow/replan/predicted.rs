@@ -62,7 +62,7 @@ pub fn predicted(fit: &Fit, plan: &Series, sent: &Series, rules: &Rules) -> Resu
     let transition = |t: &crate::replay::Transition| {
         let [mean, q90] =
             fit.joint(&t.joint).and_then(|joint| joint.unexplained_peak_rad).unwrap_or([0.0; 2]);
-        let modelled_peak_rad = t.peak_error_rad;
+        let modelled_peak_rad = t.peak_error;
         PredictedTransition {
             joint: t.joint.clone(),
             kind: t.kind,

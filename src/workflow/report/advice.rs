@@ -1,6 +1,6 @@
 //! What to do about what a report found.
 
-use super::Report;
+use super::outcome::Report;
 use crate::replay::{JointReplay, Transition, Verdict};
 
 /// A next step, the most urgent first.
@@ -69,13 +69,13 @@ pub fn advice(report: &Report) -> Vec<Advice> {
     if !report.remarks.is_empty() {
         advice.push(Advice::ClearDoubts(report.remarks.as_slice().len()));
     }
-    let stuck = replay.joints.iter().filter(|joint| joint.unmatched_starts > 0);
-    advice.extend(stuck.max_by_key(|joint| joint.unmatched_starts).map(|joint| Advice::FreeJoint {
+    let stuck = replay.joints.iter().filter(|joint| joint.unanswered_starts > 0);
+    advice.extend(stuck.max_by_key(|joint| joint.unanswered_starts).map(|joint| Advice::FreeJoint {
         joint: joint.name.clone(),
-        unanswered: joint.unmatched_starts,
+        unanswered: joint.unanswered_starts,
         starts: joint.starts,
     }));
-    let worst = replay.transitions.iter().max_by(|a, b| a.peak_error_rad.total_cmp(&b.peak_error_rad));
+    let worst = replay.transitions.iter().max_by(|a, b| a.peak_error.total_cmp(&b.peak_error));
     let Some(worst) = worst else {
         advice.push(Advice::RecordStarts);
         return advice;
@@ -110,7 +110,7 @@ fn mostly_lag(report: &Report) -> Option<(String, f64)> {
     let joints = report.replay.joints.iter().filter_map(|joint| Some((joint, joint.lag_s?)));
     let own = |joint: &JointReplay| joint.lag_share.is_some_and(|lag| lag.mostly);
     let (joint, lag_s) = joints.max_by(|(a, _), (b, _)| {
-        let rms_rad = |joint: &JointReplay| joint.tracking_error.rms_rad;
+        let rms_rad = |joint: &JointReplay| joint.tracking_error.rms;
         own(a).cmp(&own(b)).then(rms_rad(a).total_cmp(&rms_rad(b)))
     })?;
     Some((joint.name.clone(), lag_s))
@@ -123,8 +123,7 @@ fn outside(report: &Report) -> Option<Advice> {
     if let Some((joint, lag_s)) = latest {
         return Some(Advice::ShortenLag { joint: joint.name.clone(), lag_s });
     }
-    let worst =
-        joints.iter().max_by(|a, b| a.tracking_error.peak_rad.total_cmp(&b.tracking_error.peak_rad))?;
+    let worst = joints.iter().max_by(|a, b| a.tracking_error.peak.total_cmp(&b.tracking_error.peak))?;
     Some(Advice::LookOutside { joint: worst.name.clone(), time_s: worst.tracking_error.peak_time_s })
 }
 

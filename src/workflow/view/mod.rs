@@ -12,13 +12,17 @@ use thiserror::Error;
 
 pub use arm::{ArmOrigin, MovingArm, Poses, Sight};
 
-use super::{carried::Carried, plan::PlanDocument};
+use super::{
+    carried::Carried,
+    plan::PlanDocument,
+    report::{Analysis, analyse},
+};
 use crate::{
     arm::ArmError,
     log::{LogError, ReadOptions, Recording, Sides, read_recording},
     remark::Remarks,
-    replay::{Rules, Transition, replay},
-    series::{Pair, Series, align},
+    replay::{Rules, Transition},
+    series::{Pair, Series},
 };
 
 /// Input of a view.
@@ -106,12 +110,10 @@ fn scene(
     // A plan that nobody ran yet has no measurement.
     let read = ReadOptions { sides: Sides::PlanAtLeast, ..inputs.read.clone() };
     let mut recording = read_recording(&paths, &read)?;
-    let joints = recording.planned.tracks.iter();
-    let pairs: Vec<Pair> =
-        joints.filter_map(|planned| align(planned, recording.measured.track(planned.name())?)).collect();
-    let found = replay(&pairs, &inputs.rules);
+    let mut remarks = recording.remarks.clone();
+    let Analysis { pairs, replay, .. } = analyse(&recording, &inputs.rules, &mut remarks);
     let arm = arm::find(path, &mut recording, given, &inputs.packages)?;
     let front = Carried::of(&recording).plan().and_then(Result::ok);
-    let Recording { planned, measured, remarks, .. } = recording;
-    Ok(Scene { name, planned, measured, pairs, transitions: found.transitions, arm, front, remarks })
+    let Recording { planned, measured, .. } = recording;
+    Ok(Scene { name, planned, measured, pairs, transitions: replay.transitions, arm, front, remarks })
 }

@@ -40,7 +40,7 @@ fn list<'a>(document: &'a Value, name: &str) -> &'a Vec<Value> {
 
 /// The summary of peak errors over all transitions.
 fn overall(document: &Value) -> &Value {
-    list(document, "summaries").iter().find(|s| s["measure"] == "peak-error" && s["scope"] == "all").unwrap()
+    list(document, "summaries").iter().find(|s| s["measure"] == "peak_error" && s["scope"] == "all").unwrap()
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn a_run_compared_with_itself_shows_no_difference() {
     assert_eq!((&document["verdict"], &document["same_plan"]), (&"equal".into(), &true.into()));
     assert_eq!((list(&document, "pairs").len(), list(&document, "unpaired").len()), (24, 0));
     for pair in list(&document, "pairs") {
-        for measure in ["peak_error_rad", "rms_error_rad", "onset_delay_s"] {
+        for measure in ["peak_error", "rms_error", "onset_delay_s"] {
             assert_eq!(
                 (pair[measure]["difference"].as_f64(), pair[measure]["ratio"].as_f64()),
                 (Some(0.0), Some(1.0))
@@ -66,7 +66,7 @@ fn a_run_compared_with_itself_shows_no_difference() {
         );
     }
     for figures in list(&document, "whole_run") {
-        assert_eq!(figures["rms_rad"]["ratio"], 1.0);
+        assert_eq!(figures["rms"]["ratio"], 1.0);
         assert_eq!(figures["peak_speed_rad_s"]["difference"], 0.0);
     }
 }
@@ -79,7 +79,7 @@ fn swapping_before_and_after_negates_every_difference() {
     let mut changed = 0;
     for (a, b) in list(&there, "pairs").iter().zip(list(&back, "pairs")) {
         assert_eq!((&a["joint"], &a["kind"], &a["direction"]), (&b["joint"], &b["kind"], &b["direction"]));
-        let [d, e] = [a, b].map(|pair| number(&pair["peak_error_rad"]["difference"]));
+        let [d, e] = [a, b].map(|pair| number(&pair["peak_error"]["difference"]));
         assert!(d == -e, "{d} {e}");
         changed += usize::from(d != 0.0);
     }
@@ -111,7 +111,7 @@ fn a_machine_that_follows_better_is_found_to_in_three_lines() {
     let document = json(RUNS.path(), &["lag.mcap", "band.mcap"]);
     let peak = overall(&document);
     let mean: f64 =
-        list(&document, "pairs").iter().map(|p| p["peak_error_rad"]["difference"].as_f64().unwrap()).sum();
+        list(&document, "pairs").iter().map(|p| p["peak_error"]["difference"].as_f64().unwrap()).sum();
     let pairs = list(&document, "pairs").len() as f64;
     assert!((peak["mean_difference"].as_f64().unwrap() - mean / pairs).abs() < 1e-12);
     // Joints that start together count once.
@@ -247,8 +247,8 @@ fn json_is_as_the_schema_says_and_equal_calls_give_equal_bytes() {
     let gates = ["lag.mcap", "slow.mcap", "--max-p", "0.05", "--max-transition-growth-deg", "1"];
     for (folder, args) in [(RUNS.path(), &gates[..]), (samples(), &[SOUND, "gaps.mcap"])] {
         let document = json(folder, args);
-        hold_to_schema(&document, "compare.v1");
-        assert_eq!(document["format"], "hydrotrace.compare.v1");
+        hold_to_schema(&document, "compare.v2");
+        assert_eq!(document["format"], "hydrotrace.compare.v2");
         assert_eq!(document, json(folder, args));
     }
 }

@@ -72,7 +72,7 @@ fn degrees_and_radians_of_an_export_mean_the_same_run() {
     );
     assert_eq!(said(&hydrotrace(folder.path(), &["import", "a.csv", "-o", "a.mcap"])).0, 0);
     let (before, after) = (report(folder.path(), &log), report(folder.path(), "a.mcap"));
-    let rms = |report: &Value| report["joints"][2]["tracking_error"]["rms_rad"].as_f64().unwrap();
+    let rms = |report: &Value| report["joints"][2]["tracking_error"]["rms"].as_f64().unwrap();
     assert!((rms(&before) / rms(&after) - 1.0).abs() < 1e-9);
     assert_eq!(before["alignment"], after["alignment"]);
 }
@@ -99,7 +99,7 @@ fn the_error_of_an_export_is_the_one_that_is_reported() {
     let peak = errors.fold(0.0_f64, |most, error| most.max(error.abs()));
     let reported = &report(folder.path(), &log)["joints"][2];
     assert_eq!(reported["name"], "joint_3");
-    assert_eq!(reported["tracking_error"]["peak_rad"].as_f64(), Some(peak));
+    assert_eq!(reported["tracking_error"]["peak"].as_f64(), Some(peak));
 }
 
 #[test]
@@ -225,7 +225,7 @@ fn flags_and_a_map_file_say_the_same() {
     let field = ["report", "a.mcap", "--json", "--measured", "/dynamic_joint_states:cap_pressure_pa"];
     let text = said(&hydrotrace(folder.path(), &field)).1;
     let report: Value = serde_json::from_str(&text).unwrap();
-    let peak = report["joints"][0]["tracking_error"]["peak_rad"].as_f64().unwrap();
+    let peak = report["joints"][0]["tracking_error"]["peak"].as_f64().unwrap();
     assert!((peak - 2.5e5).abs() < 1e3, "2.5 bar are {peak} Pa");
 }
 

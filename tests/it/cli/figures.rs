@@ -63,7 +63,7 @@ fn every_verb_writes_the_plots_of_its_page() {
     let compare = figures(&["compare", RUN, CHANGED]);
     let expected: Vec<String> = (1..=6).map(|k| format!("error-{k:02}-J{k}.svg")).collect();
     let mut all: Vec<&str> = expected.iter().map(String::as_str).collect();
-    all.extend(["pairs-peak-error.svg", "pairs-start-delay.svg"]);
+    all.extend(["pairs-peak-error.svg", "pairs-rms-error.svg", "pairs-start-delay.svg"]);
     all.insert(0, "change-of-peak-error.svg");
     assert_eq!(names(&compare), all);
 

@@ -111,7 +111,7 @@ fn peaks_deg(report: &Value) -> Vec<(String, f64)> {
     let transitions = report["transitions"].as_array().unwrap().iter();
     let mut peaks: Vec<(String, f64)> = transitions
         .map(|t| {
-            let peak = t["peak_error_rad"].as_f64().unwrap().to_degrees();
+            let peak = t["peak_error"].as_f64().unwrap().to_degrees();
             (t["joint"].as_str().unwrap().to_owned(), peak)
         })
         .collect();

@@ -160,8 +160,8 @@ fn reports_are_as_their_schema_says() {
         let run =
             hydrotrace(&["report", log, "--json", "--max-rms-deg", "90", "--max-start-delay-ms", "900"]);
         let report: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
-        hold_to_schema(&report, "report.v1");
-        assert_eq!(report["format"], "hydrotrace.report.v1");
+        hold_to_schema(&report, "report.v2");
+        assert_eq!(report["format"], "hydrotrace.report.v2");
     }
 }
 

@@ -18,12 +18,8 @@ fn with_run() -> tempfile::TempDir {
 /// Mean transition peak of a run, rad.
 fn mean_peak_rad(folder: &Path, log: &str) -> f64 {
     let report = json(folder, &format!("report {log}"));
-    let peaks: Vec<f64> = report["transitions"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|t| t["peak_error_rad"].as_f64().unwrap())
-        .collect();
+    let peaks: Vec<f64> =
+        report["transitions"].as_array().unwrap().iter().map(|t| t["peak_error"].as_f64().unwrap()).collect();
     peaks.iter().sum::<f64>() / peaks.len() as f64
 }
 

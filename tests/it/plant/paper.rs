@@ -32,7 +32,7 @@ fn figures(preset: &str, (plan, payload): &(Series, Vec<PayloadChange>), seeds: 
         let found = replay(&pairs, &Rules::default());
         let mut run_most = 0.0_f64;
         for transition in &found.transitions {
-            let peak = degrees_from_radians(transition.peak_error_rad);
+            let peak = degrees_from_radians(transition.peak_error);
             peaks.push(peak);
             run_most = run_most.max(peak);
             if transition.planned_onset_s < REST_S + 1.5 {

@@ -28,7 +28,7 @@ pub(crate) fn figures(job: &Job, measured: &Series) -> Figures {
         .map(|track| align(job.plan.track(track.name()).unwrap(), track).unwrap())
         .collect();
     let found = replay(&pairs, &Rules::default());
-    let peaks: Vec<f64> = found.transitions.iter().map(|t| t.peak_error_rad / DEGREE_RAD).collect();
+    let peaks: Vec<f64> = found.transitions.iter().map(|t| t.peak_error / DEGREE_RAD).collect();
     let mut acceleration = [0.0; 6];
     for (most, pair) in acceleration.iter_mut().zip(&pairs) {
         let fits = local_quadratic(&pair.t_s, &pair.measured, &pair.segments, 0.15, 9);
@@ -37,7 +37,7 @@ pub(crate) fn figures(job: &Job, measured: &Series) -> Figures {
     Figures {
         mean_peak: peaks.iter().sum::<f64>() / peaks.len() as f64,
         worst_peak: peaks.iter().copied().fold(0.0, f64::max),
-        rms: found.whole_run.tracking_error.unwrap().rms_rad / DEGREE_RAD,
+        rms: found.whole_run.tracking_error.unwrap().rms / DEGREE_RAD,
         acceleration,
     }
 }

@@ -85,7 +85,7 @@ pub(crate) fn scratch() -> tempfile::TempDir {
     folder
 }
 
-/// Holds a document to a committed schema, say `report.v1`.
+/// Holds a document to a committed schema, say `report.v2`.
 pub(crate) fn hold_to_schema(document: &Value, name: &str) {
     let schema = std::fs::read_to_string(root().join(format!("schemas/{name}.schema.json"))).unwrap();
     let validator = jsonschema::validator_for(&serde_json::from_str(&schema).unwrap()).unwrap();

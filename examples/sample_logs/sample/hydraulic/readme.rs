@@ -81,7 +81,7 @@ fn did(log: &PlantLog) -> Result<String, Box<dyn Error>> {
     };
     let pairs = record.joints.iter().zip(&log.outputs.planned).map(pair).collect::<Result<Vec<_>, _>>()?;
     let found = replay(&pairs, &Rules::default());
-    let peaks = || found.transitions.iter().map(|t| degrees_from_radians(t.peak_error_rad));
+    let peaks = || found.transitions.iter().map(|t| degrees_from_radians(t.peak_error));
     let both = log.outputs.planned.iter().flatten().zip(log.outputs.command.iter().flatten());
     let off = both.map(|(planned, sent)| degrees_from_radians((planned.0 - sent.0).abs()));
     let supply_pa = record.supply_pa.iter().copied().fold(f64::INFINITY, f64::min);

@@ -1,5 +1,7 @@
 //! What a plot shows, whatever draws it: the script on a screen, or a picture on paper.
 
+use std::borrow::Cow;
+
 use plotters::style::RGBColor;
 use serde::Serialize;
 
@@ -11,7 +13,7 @@ pub(in crate::render) struct Chart {
     /// What to know of it, in a few numbers.
     pub(in crate::render) note: String,
     /// The horizontal axis and its unit.
-    pub(in crate::render) x_label: &'static str,
+    pub(in crate::render) x_label: Cow<'static, str>,
     /// Horizontal coordinates, which series point into.
     pub(in crate::render) xs: Vec<Vec<f64>>,
     /// Range of the horizontal axis, where several charts are to compare; otherwise that of the coordinates.

@@ -112,7 +112,7 @@ impl Frame<'_> {
             mesh.y_desc(panel.label.clone());
         }
         if last && self.outer[0] {
-            mesh.x_desc(chart.x_label);
+            mesh.x_desc(&*chart.x_label);
         }
         mesh.draw()?;
         if low < 0.0 && high > 0.0 {

@@ -1,0 +1,99 @@
+//! The document of a comparison, as `schemas/compare.v2.schema.json` describes it.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Comparison, Figures, GateResult, Run, Summary, TransitionPair, Unpaired, Verdict};
+use crate::{document::PROGRAM, remark::Remark, replay::Rules};
+
+/// What the format is called.
+const FORMAT: &str = "hydrotrace.compare.v2";
+
+/// What a change did to the tracking error of a task. Times are seconds since the first sample of a run; positions,
+/// errors and speeds of a joint are in its unit, rad or m; errors are planned minus measured, differences after minus
+/// before. Values of a side with several runs are their means.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Document {
+    /// Always "hydrotrace.compare.v2".
+    pub format: String,
+    /// Name and version of the program that wrote it.
+    pub program: String,
+    /// The runs before the change.
+    pub before: Vec<Run>,
+    /// The runs after it.
+    pub after: Vec<Run>,
+    /// Whether every run after executes the plan of the first run before.
+    pub same_plan: bool,
+    /// Joints that every run has.
+    pub joints: Vec<String>,
+    /// What became of the peak error over all paired transitions.
+    pub verdict: Verdict,
+    /// Every metric over all transitions, over starts from rest if there are reversals too, and by joint.
+    pub summaries: Vec<Summary>,
+    /// Paired transitions, by joint and time.
+    pub pairs: Vec<TransitionPair>,
+    /// Transitions that are not found in every run, left out.
+    pub unpaired: Vec<Unpaired>,
+    /// Whole-run figures of all joints together, then of each.
+    pub whole_run: Vec<Figures>,
+    /// The limits that were set, each with what was found against it.
+    pub gates: Vec<GateResult>,
+    /// Whether every limit is kept; if not, the exit code is 4.
+    pub gates_kept: bool,
+    /// Thresholds and windows used.
+    pub rules: Rules,
+    /// Doubts about the data or the pairing; any makes the exit code 3.
+    pub remarks: Vec<Remark>,
+}
+
+impl Document {
+    /// The document of a comparison.
+    pub fn of(comparison: &Comparison) -> Self {
+        Self {
+            format: FORMAT.to_owned(),
+            program: PROGRAM.to_owned(),
+            before: comparison.before.clone(),
+            after: comparison.after.clone(),
+            same_plan: comparison.same_plan(),
+            joints: comparison.joints.clone(),
+            verdict: comparison.verdict(),
+            summaries: comparison.summaries.clone(),
+            pairs: comparison.pairs.clone(),
+            unpaired: comparison.unpaired.clone(),
+            whole_run: comparison.whole_run.clone(),
+            gates: comparison.gates.clone(),
+            gates_kept: comparison.gates_kept(),
+            rules: comparison.rules.clone(),
+            remarks: comparison.remarks.as_slice().to_vec(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::workflow::compare::{Gates, Inputs, run};
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_comparison() {
+        crate::schema::is_committed::<Document>("compare.v2.schema.json", "hydrotrace comparison, version 2");
+    }
+
+    #[test]
+    fn a_document_reads_back_as_it_was_written() {
+        let logs = |name: &str| {
+            vec![std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name)]
+        };
+        let gates = ["peak-reduction", "p", "transition-growth", "rms-ratio", "peak-ratio"];
+        let inputs = Inputs {
+            before: logs("panel-install.mcap"),
+            after: logs("gaps.mcap"),
+            gates: gates.into_iter().fold(Gates::default(), |gates, key| gates.with(key, Some(0.5))),
+            ..Inputs::default()
+        };
+        let document = Document::of(&run(&inputs).unwrap());
+        let text = crate::document::pretty(&document);
+        assert_eq!(serde_json::from_str::<Document>(&text).unwrap(), document);
+        assert_eq!(document.gates.len(), 5);
+    }
+}

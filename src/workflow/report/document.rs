@@ -1,0 +1,115 @@
+//! The document of a report, as `schemas/report.v2.schema.json` describes it.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Alignment, GateResult, LogFile, Report, log_files};
+use crate::{
+    document::PROGRAM,
+    log::SourceInfo,
+    remark::Remark,
+    replay::{JointReplay, Rules, Stop, Transition, WholeRun},
+};
+
+/// What the format is called.
+const FORMAT: &str = "hydrotrace.report.v2";
+
+/// A tracking-error report of one run. Times are seconds since the first sample of the run; positions, errors and
+/// speeds of a joint are in its unit, rad or m; errors are planned minus measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Document {
+    /// Always "hydrotrace.report.v2".
+    pub format: String,
+    /// Name and version of the program that wrote it.
+    pub program: String,
+    /// The files of the run.
+    pub logs: Vec<LogFile>,
+    /// The machine: the entry "machine" of the log's metadata.
+    pub machine: Option<String>,
+    /// The run: the entry "run" of the log's metadata.
+    pub run: Option<String>,
+    /// Where the data come from.
+    pub source: SourceInfo,
+    /// How plan and measurement were matched, by joint.
+    pub alignment: Vec<Alignment>,
+    /// Each joint over the whole run.
+    pub joints: Vec<JointReplay>,
+    /// Planned starts and reversals, by joint, then time.
+    pub transitions: Vec<Transition>,
+    /// Dynamic-to-static events, by joint, then time.
+    pub stops: Vec<Stop>,
+    /// All joints together, in their unit.
+    pub whole_run: WholeRun,
+    /// The limits that were set, each with the worst value found against it.
+    pub gates: Vec<GateResult>,
+    /// Whether every limit is kept; if not, the exit code is 4.
+    pub gates_kept: bool,
+    /// Thresholds and windows used.
+    pub rules: Rules,
+    /// Doubts about the data; any makes the exit code 3.
+    pub remarks: Vec<Remark>,
+}
+
+impl Document {
+    /// The document of a report; reads the logs again, for their digests.
+    pub fn of(report: &Report) -> Self {
+        Self {
+            format: FORMAT.to_owned(),
+            program: PROGRAM.to_owned(),
+            logs: log_files(&report.paths),
+            machine: report.machine.clone(),
+            run: report.run.clone(),
+            source: report.source.clone(),
+            alignment: report.alignment.clone(),
+            joints: report.replay.joints.clone(),
+            transitions: report.replay.transitions.clone(),
+            stops: report.replay.stops.clone(),
+            whole_run: report.replay.whole_run.clone(),
+            gates: report.gates.clone(),
+            gates_kept: report.gates_kept(),
+            rules: report.replay.rules.clone(),
+            remarks: report.remarks.as_slice().to_vec(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        replay::TRANSITION,
+        series::JointKind,
+        workflow::report::{Gates, Inputs, run},
+    };
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_report() {
+        crate::schema::is_committed::<Document>("report.v2.schema.json", "hydrotrace report, version 2");
+    }
+
+    fn document() -> Document {
+        let log = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs/gaps.mcap");
+        let gates = crate::replay::limits()
+            .fold(Gates::default(), |gates, limit| gates.with(limit, JointKind::Turns, 0.01));
+        Document::of(&run(&Inputs { logs: vec![log], gates, ..Inputs::default() }).unwrap())
+    }
+
+    #[test]
+    fn a_document_reads_back_as_it_was_written() {
+        let document = document();
+        let text = crate::document::pretty(&document);
+        assert_eq!(serde_json::from_str::<Document>(&text).unwrap(), document);
+        let [log] = document.logs.as_slice() else { panic!("one log") };
+        assert_eq!((log.name.as_str(), log.sha256.as_ref().map(String::len)), ("gaps.mcap", Some(64)));
+    }
+
+    #[test]
+    fn a_transition_has_the_keys_of_its_table() {
+        let transition = serde_json::to_value(&document().transitions[0]).unwrap();
+        let mut keys: Vec<&str> = transition.as_object().unwrap().keys().map(String::as_str).collect();
+        let mut rows: Vec<&str> = TRANSITION.iter().map(|metric| metric.key).collect();
+        keys.sort_unstable();
+        rows.sort_unstable();
+        assert_eq!(keys, rows);
+    }
+}

@@ -1,0 +1,170 @@
+//! Limits on the metrics of a run, and what was found against them.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    replay::{JOINT, JointReplay, Judged, Limit, Metric, Replay, Row, TRANSITION, Transition},
+    series::JointKind,
+};
+
+/// The limits that a run must keep.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Gates(Vec<Gate>);
+
+/// A limit with its value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Gate {
+    limit: Row<Limit>,
+    kind: JointKind,
+    value: f64,
+}
+
+/// A limit and the worst that was found against it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct GateResult {
+    /// Which limit.
+    pub gate: Row<Limit>,
+    /// Its unit: that of the joints judged, "rad" or "m", if it is a position, else "s".
+    pub unit: String,
+    /// The limit, in its unit.
+    pub limit: f64,
+    /// The worst value; `None` if nothing could be measured, or a start was not answered.
+    pub worst: Option<f64>,
+    /// The joint it was found at.
+    pub joint: Option<String>,
+    /// When, s; for a mean over the run when the error peaked.
+    pub time_s: Option<f64>,
+    /// Whether the limit is kept.
+    pub kept: bool,
+}
+
+impl GateResult {
+    /// Whether the joints judged turn or slide.
+    pub fn kind(&self) -> JointKind {
+        if self.unit == JointKind::Slides.unit() { JointKind::Slides } else { JointKind::Turns }
+    }
+}
+
+/// Where a limited metric was found: value, joint, time.
+type Found<'a> = (Option<f64>, &'a str, Option<f64>);
+
+impl Gates {
+    /// With a limit more, in SI units; a limit on positions judges the joints of one kind.
+    #[must_use]
+    pub fn with(mut self, limit: &'static Limit, kind: JointKind, value: f64) -> Self {
+        self.0.push(Gate { limit: Row(limit), kind, value });
+        self
+    }
+
+    /// Judges every limit.
+    pub(super) fn judge(&self, replay: &Replay) -> Vec<GateResult> {
+        let one = |gate: &Gate| {
+            let transitions = of(TRANSITION, gate).map(|metric| {
+                let all = replay.transitions.iter().map(|t: &Transition| (t, t.joint.as_str(), t.joint_kind));
+                found(metric, gate, all)
+            });
+            let joints = || {
+                let all = replay.joints.iter().map(|j: &JointReplay| (j, j.name.as_str(), j.kind));
+                of(JOINT, gate).map(|metric| found(metric, gate, all))
+            };
+            worst(gate, transitions.or_else(joints).unwrap_or_default())
+        };
+        self.0.iter().map(one).collect()
+    }
+}
+
+/// The metric that a limit is on, with what it judges.
+fn of<T>(table: &'static [Metric<T>], gate: &Gate) -> Option<(&'static Metric<T>, &'static Judged<T>)> {
+    table.iter().find_map(|metric| {
+        let judged = metric.limit.as_ref().filter(|judged| judged.limit.key == gate.limit.key)?;
+        Some((metric, judged))
+    })
+}
+
+fn found<'a, T: 'a>(
+    (metric, judged): (&Metric<T>, &Judged<T>),
+    gate: &Gate,
+    all: impl Iterator<Item = (&'a T, &'a str, JointKind)>,
+) -> Vec<Found<'a>> {
+    all.filter(|(_, _, kind)| !metric.dimension.is_of_joint() || *kind == gate.kind)
+        .filter(|(one, _, _)| (judged.counts)(one))
+        .map(|(one, joint, _)| (metric.number(one), joint, (judged.at_s)(one)))
+        .collect()
+}
+
+/// The worst of what was found; what could not be measured is worse than any number.
+fn worst(gate: &Gate, found: Vec<Found<'_>>) -> GateResult {
+    let of = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
+    let worst = found.into_iter().max_by(|a, b| of(a.0).total_cmp(&of(b.0)));
+    GateResult {
+        gate: gate.limit,
+        unit: if gate.limit.dimension.is_of_joint() { gate.kind.unit() } else { "s" }.to_owned(),
+        limit: gate.value,
+        worst: worst.and_then(|(value, _, _)| value),
+        joint: worst.map(|(_, joint, _)| joint.to_owned()),
+        time_s: worst.and_then(|(_, _, time_s)| time_s),
+        kept: worst.is_none_or(|(value, _, _)| of(value) <= gate.value),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        replay::{Rules, replay},
+        series::Pair,
+    };
+
+    fn gate(key: &str, value: f64) -> Gate {
+        Gate { limit: Row::find(key).unwrap(), kind: JointKind::Turns, value }
+    }
+
+    #[test]
+    fn a_start_that_was_never_answered_breaks_every_limit_on_delay() {
+        let found = vec![(Some(0.1), "a", Some(1.0)), (None, "b", Some(2.0))];
+        let result = worst(&gate("onset-delay", 10.0), found);
+        assert_eq!((result.kept, result.worst, result.joint.as_deref()), (false, None, Some("b")));
+    }
+
+    /// A joint that follows 12 degrees in 3 s from 4 s on, having crept before, or does not.
+    fn replayed(follows: bool) -> Replay {
+        let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
+        let ramp = |t: f64| 0.07 * (t - 4.0).clamp(0.0, 3.0);
+        let creep = |t: f64| 0.005 * (t - 1.0).clamp(0.0, 3.0);
+        let position = |of: &dyn Fn(f64) -> f64| t_s.iter().map(|t| of(*t)).collect::<Vec<f64>>();
+        let pair = Pair {
+            name: "a".into(),
+            kind: JointKind::Turns,
+            planned: position(&ramp),
+            planned_velocity: None,
+            measured: position(&|t| if follows { creep(t) + ramp(t) } else { 0.0 }),
+            segments: std::iter::once(0..t_s.len()).collect(),
+            planned_interval_s: 0.01,
+            matched: t_s.len(),
+            unmatched: 0,
+            t_s,
+        };
+        replay(&[pair], &Rules::default())
+    }
+
+    #[test]
+    fn only_a_start_that_is_never_answered_breaks_a_limit_on_delay_for_want_of_one() {
+        let limits = Gates(vec![gate("onset-delay", 0.3)]);
+        let judged = |follows: bool| limits.judge(&replayed(follows)).remove(0);
+        assert_eq!((judged(true).kept, judged(true).worst, judged(true).joint), (true, None, None));
+        assert_eq!((judged(false).kept, judged(false).joint.as_deref()), (false, Some("a")));
+    }
+
+    #[test]
+    fn the_limit_itself_is_kept() {
+        assert!(worst(&gate("rms", 0.1), vec![(Some(0.1), "a", None)]).kept);
+    }
+
+    #[test]
+    fn a_limit_in_metres_judges_no_joint_that_turns() {
+        let in_metres = Gate { kind: JointKind::Slides, ..gate("rms", 0.0) };
+        let judged = Gates(vec![in_metres]).judge(&replayed(false)).remove(0);
+        assert_eq!((judged.unit.as_str(), judged.kept, judged.joint), ("m", true, None));
+    }
+}

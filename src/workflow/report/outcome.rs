@@ -1,0 +1,68 @@
+//! What a report found.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::gates::GateResult;
+use crate::{
+    log::SourceInfo,
+    remark::Remarks,
+    replay::{Profiles, Replay},
+    series::Pair,
+    workflow::{carried::Schedule, plan::PlanDocument},
+};
+
+/// How the plan of one joint met its measurement.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Alignment {
+    /// The joint.
+    pub joint: String,
+    /// Measured samples with a plan.
+    pub matched: usize,
+    /// Measured samples without one, left out.
+    pub unmatched: usize,
+    /// Continuous stretches.
+    pub segments: usize,
+}
+
+/// A report, before it is rendered.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Names of the files of the run, without their folders.
+    pub logs: Vec<String>,
+    /// The files and bag directories themselves.
+    pub paths: Vec<PathBuf>,
+    /// The machine, if metadata of the log name it.
+    pub machine: Option<String>,
+    /// The run, if metadata of the log name it.
+    pub run: Option<String>,
+    /// Whether the log holds the task of its plan, so that a gentler plan can be made from it.
+    pub holds_task: bool,
+    /// Where the data come from.
+    pub source: SourceInfo,
+    /// How plan and measurement were matched, by joint.
+    pub alignment: Vec<Alignment>,
+    /// What was found.
+    pub replay: Replay,
+    /// The limits that were set, each with its outcome.
+    pub gates: Vec<GateResult>,
+    /// What was doubtful.
+    pub remarks: Remarks,
+    /// Each joint's error over the run, in the order of its joints.
+    pub profiles: Profiles,
+    /// The aligned samples, for plots.
+    pub pairs: Vec<Pair>,
+    /// When the key points of the task are passed, where the log tells.
+    pub schedule: Option<Schedule>,
+    /// The plans that the run's own was chosen from, where its log carries them.
+    pub front: Option<PlanDocument>,
+}
+
+impl Report {
+    /// Whether every limit is kept.
+    pub fn gates_kept(&self) -> bool {
+        self.gates.iter().all(|gate| gate.kept)
+    }
+}
