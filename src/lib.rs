@@ -1,8 +1,55 @@
-//! Tracking error of jointed arms, from their logs.
+//! Where and by how much an arm leaves its plan, and what to send next.
 //!
-//! hydrotrace reads planned and measured joint angles from MCAP logs, finds the instants at
-//! which a joint is asked to leave rest (static-to-dynamic transitions), and says by how much
-//! and how late the machine followed. See `ARCHITECTURE.md` for the layers.
+//! hydrotrace reads planned and measured joints from logs (MCAP, ROS 2 bags), finds the instants at which a
+//! joint is to leave rest (static-to-dynamic transitions), measures dead time and tracking error there, fits
+//! each joint's closed loop, and computes plan and command of the next run. The whole loop:
+//!
+//! ```
+//! use std::{collections::BTreeMap, ops::ControlFlow};
+//! use hydrotrace::workflow::{fit, replan, report};
+//!
+//! let logs = vec!["sample-logs/task-1-run.mcap".into()];
+//!
+//! // Read the run and measure its tracking error.
+//! let found = report::run(&report::Inputs { logs: logs.clone(), ..Default::default() })?;
+//! for start in found.replay.transitions.iter().filter(|start| start.onset_delay_s > Some(0.3)) {
+//!     println!("{} leaves {:.2} s late", start.joint, start.onset_delay_s.unwrap_or_default());
+//! }
+//!
+//! // Fit the machine: what came of what was sent.
+//! let machine = fit::run(&fit::Inputs { logs: logs.clone(), ..Default::default() })?;
+//! assert!(machine.fit.joints.iter().all(|joint| joint.trusted()));
+//!
+//! // Plan the next run under what the machine has shown, with a command that anticipates its response.
+//! let inputs = replan::Inputs { logs, keep_plan: true, ..Default::default() };
+//! let next = replan::run(&inputs, |_evaluations| ControlFlow::Continue(()))?;
+//!
+//! // Write plan, command, task and arm as an MCAP log: here 100 samples a second.
+//! let bytes = next.log(BTreeMap::new(), 100.0)?;
+//! assert!(bytes.starts_with(b"\x89MCAP0\r\n"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Where to begin
+//!
+//! | to | use |
+//! |---|---|
+//! | read a log into series | [`log::read_recording`] |
+//! | write a log from a control loop | [`log::LogWriter`] |
+//! | measure tracking error of series in memory | [`series::align`], [`replay::replay`] |
+//! | fit series in memory | [`fit::fit`] |
+//! | plan a task | [`workflow::plan::run`] |
+//! | do what a verb of the program does | [`workflow`]: a folder a verb |
+//! | optimise a problem of your own | [`moea::optimise`] |
+//!
+//! Angles are radians, lengths metres; every other quantity has its SI unit in its name. Doubts about data
+//! are [`remark::Remarks`] in the findings; errors are enums with numbers in their fields. Equal inputs, seed
+//! and build give equal bytes on any number of threads. `ARCHITECTURE.md` shows the layers.
+//!
+//! # Features
+//!
+//! `cli` (default) is the program; the library without features knows no terminal, page or plot. `parquet`
+//! writes tables as Parquet, `png` figures as pixels, `viewer` shows runs in Rerun.
 
 // ground
 pub mod atomic_file;

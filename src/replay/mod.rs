@@ -44,7 +44,23 @@ use joint::{Joint, joint};
 
 /// Analyses one run, a pair a joint. O(n log n) in samples.
 ///
-/// Figures of all joints together exist only if all of them turn or all of them slide. Nothing is differentiated, matched or detected across the cuts between segments.
+/// Figures of all joints together exist only if all of them turn or all of them slide. Nothing is
+/// differentiated, matched or detected across the cuts between segments.
+///
+/// ```
+/// use hydrotrace::{replay::{Rules, replay}, series::{Track, align}};
+///
+/// // 0.1 rad/s from 1 s on; the joint starts 0.25 s later.
+/// let t_s: Vec<f64> = (0..500).map(|k| 0.01 * f64::from(k)).collect();
+/// let ramp = |start_s: f64| t_s.iter().map(|t| 0.1 * (t - start_s).clamp(0.0, 2.0)).collect::<Vec<_>>();
+/// let planned = Track::new("boom", t_s.clone(), ramp(1.0), &[])?;
+/// let measured = Track::new("boom", t_s.clone(), ramp(1.25), &[])?;
+///
+/// let pairs: Vec<_> = align(&planned, &measured).into_iter().collect();
+/// let found = replay(&pairs, &Rules::default());
+/// assert!((found.transitions[0].onset_delay_s.unwrap() - 0.25).abs() < 0.02);
+/// # Ok::<(), hydrotrace::series::SignalError>(())
+/// ```
 pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
     let alike = pairs.windows(2).all(|pair| pair[0].kind == pair[1].kind);
     let (mut joints, path): (Vec<Joint>, _) = rayon::join(

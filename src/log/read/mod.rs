@@ -36,6 +36,16 @@ use {
 /// # Errors
 ///
 /// [`LogError`] if a file is no log, or something that the options require is not found in it.
+///
+/// ```
+/// use hydrotrace::log::{ReadOptions, read_recording};
+///
+/// let run = read_recording(&["sample-logs/panel-install.mcap".into()], &ReadOptions::default())?;
+/// let boom = &run.measured.tracks[0];
+/// assert_eq!((boom.name(), boom.kind().unit()), ("joint_1", "rad"));
+/// assert!(boom.t_s().windows(2).all(|pair| pair[0] < pair[1]));
+/// # Ok::<(), hydrotrace::log::LogError>(())
+/// ```
 pub fn read_recording(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, LogError> {
     LogFiles::open(paths)?.scan()?.read(options)
 }

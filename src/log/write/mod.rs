@@ -47,6 +47,20 @@ use stamp::Stamp;
 /// log time and the publish time. Values are written as given, NaN and infinities too: a log says what happened.
 ///
 /// Call [`finish`](Self::finish); dropping the writer closes the log too, but hides failures.
+///
+/// ```
+/// use hydrotrace::log::{LogWriter, Role, WriteOptions};
+///
+/// let mut log = LogWriter::new(Vec::new(), &["boom", "stick"], WriteOptions::default())?;
+/// for k in 0..100 {
+///     let (stamp_ns, angle_rad) = (1_700_000_000_000_000_000 + k * 10_000_000, 0.001 * k as f64);
+///     log.joint_sample(Role::Planned, stamp_ns, &[angle_rad, 0.5], &[0.1, 0.0], &[])?;
+///     log.joint_sample(Role::Measured, stamp_ns, &[0.9 * angle_rad, 0.5], &[], &[])?;
+/// }
+/// let bytes = log.finish()?;
+/// assert!(bytes.ends_with(b"\x89MCAP0\r\n"));
+/// # Ok::<(), hydrotrace::log::WriteError>(())
+/// ```
 pub struct LogWriter<W: Write> {
     mcap: Writer<NoSeek<W>>,
     joint_names: Vec<String>,

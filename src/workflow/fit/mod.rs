@@ -69,6 +69,15 @@ pub struct Fitted {
 /// # Errors
 ///
 /// [`FitFailure`] naming the log.
+///
+/// ```
+/// use hydrotrace::workflow::fit::{Inputs, run};
+///
+/// let logs = vec!["sample-logs/identification-run.mcap".into()];
+/// let machine = run(&Inputs { logs, ..Inputs::default() })?;
+/// assert!(machine.fit.joints.iter().all(|joint| joint.trusted()));
+/// # Ok::<(), hydrotrace::workflow::fit::FitFailure>(())
+/// ```
 pub fn run(inputs: &Inputs) -> Result<Fitted, FitFailure> {
     let observed = observed(&inputs.logs, &inputs.read)?;
     Ok(of(&inputs.logs, &observed)?)

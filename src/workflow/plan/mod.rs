@@ -69,6 +69,18 @@ pub struct Planned {
 /// # Errors
 ///
 /// [`PlanFailure`] if no plan keeps all limits, or none the ceilings, with what comes nearest.
+///
+/// ```
+/// use std::{ops::ControlFlow, path::Path};
+/// use hydrotrace::workflow::plan::{Options, PlanRequest, run};
+///
+/// let request = PlanRequest::read(Path::new("sample-logs/tasks/task-1.toml"))?;
+/// let mut options = Options::default();
+/// options.search.budget = hydrotrace::moea::Budget::Evaluations(500);
+/// let planned = run(&request, &options, |_| ControlFlow::Continue(()))?;
+/// assert!(planned.chosen.margins.iter().all(|margin| margin.share < 1.0 + 1e-6));
+/// # Ok::<(), hydrotrace::workflow::plan::PlanFailure>(())
+/// ```
 pub fn run(
     request: &PlanRequest,
     options: &Options,

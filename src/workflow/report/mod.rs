@@ -43,6 +43,15 @@ pub struct Inputs {
 /// # Errors
 ///
 /// [`LogError`] if the log cannot be read or holds no planned and measured joints.
+///
+/// ```
+/// use hydrotrace::workflow::report::{Inputs, run};
+///
+/// let logs = vec!["sample-logs/panel-install.mcap".into()];
+/// let report = run(&Inputs { logs, ..Inputs::default() })?;
+/// assert!(report.replay.transitions.len() > 10 && report.gates_kept());
+/// # Ok::<(), hydrotrace::log::LogError>(())
+/// ```
 pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
     report(read_recording(&inputs.logs, &inputs.read)?, inputs)
 }

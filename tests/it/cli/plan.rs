@@ -107,7 +107,7 @@ fn a_task_that_no_timing_keeps_says_what_binds_where_and_by_how_much() {
     assert!(run.stdout.is_empty() && !log.exists());
     let said = stderr(&run);
     assert!(said.contains("J3 speed is 2.7") && said.contains("0.50 deg/s is allowed"), "{said}");
-    assert!(said.contains("longest allowed, 20 s (interval_s)"), "{said}");
+    assert!(said.contains("longest duration allowed, 20 s (interval_s)"), "{said}");
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn a_ceiling_that_no_plan_keeps_says_by_how_much_and_which_limits_bind() {
     assert_eq!(json(&run)["feasible"], false);
     let said = stderr(&run);
     assert!(said.contains("time 12.4") && said.contains("the ceiling is 10.00 s"), "{said}");
-    assert!(said.contains("limits that bind it: ") && said.contains("J2 jerk at"), "{said}");
+    assert!(said.contains("limits that hold it there: ") && said.contains("J2 jerk at"), "{said}");
 }
 
 #[test]
@@ -160,8 +160,7 @@ fn the_page_goes_where_the_output_ends_in_html_and_the_log_elsewhere() {
     let page = plan(&[&[TASK_1, "--html", "-o", &file("plan.html")], &budget[..]].concat(), "2");
     assert_eq!((page.status.code(), stdout(&page).as_str()), (Some(3), ""));
     let text = fs::read_to_string(file("plan.html")).unwrap();
-    for word in ["limits kept", "A, the fastest", "How the front grew", "The chosen motion", "inactive-bound"]
-    {
+    for word in ["limits kept", "A, fastest", "How the front grew", "The chosen motion", "inactive-bound"] {
         assert!(text.contains(word), "{word}");
     }
     let both = plan(&[&[TASK_1, "--html", "-o", &file("plan.mcap")], &budget[..]].concat(), "1");
