@@ -67,7 +67,7 @@ pub(super) struct Args {
 #[group(multiple = false)]
 #[expect(clippy::struct_excessive_bools, reason = "options of which at most one is given")]
 struct FormatArgs {
-    /// One JSON document (schemas/report.v1.schema.json in the repository)
+    /// One JSON document (schemas/report.v2.schema.json in the repository)
     #[arg(long)]
     json: bool,
 

@@ -22,6 +22,13 @@ pub struct Replay {
     pub whole_run: WholeRun,
 }
 
+impl Replay {
+    /// Whether the joints turn or slide: the first one's kind, for figures of all exist only if they are alike.
+    pub fn kind(&self) -> JointKind {
+        self.joints.first().map_or(JointKind::Turns, |joint| joint.kind)
+    }
+}
+
 /// One joint over the whole run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]

@@ -1,6 +1,5 @@
 //! How the numbers of a report were made: thresholds, windows, counts, resolution.
 
-use super::tables::kind_of_all;
 use crate::{
     math,
     render::{
@@ -21,7 +20,7 @@ pub(super) fn method(report: &Report) -> Option<Section> {
     if joints.is_empty() {
         return None;
     }
-    let kind = kind_of_all(&report.replay);
+    let kind = report.replay.kind();
     let speed = unit(Dimension::Speed, kind);
     let deg_or_mm = |value: f64| number(Dimension::Position, kind, value);
     let unmatched: usize = report.alignment.iter().map(|a| a.unmatched).sum();

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::tables::{by_peak, kind_of_all, lag_words, mostly_lag, verdicts, worst_sentence};
+use super::tables::{by_peak, lag_words, mostly_lag, verdicts, worst_sentence};
 use crate::{
     render::{
         kit::{
@@ -94,7 +94,7 @@ fn place_of_error(report: &Report) -> Markup {
 /// Root mean square errors inside and outside.
 pub(super) fn concentration_bars(report: &Report) -> Markup {
     let Some(c) = &report.replay.whole_run.concentration else { return html! {} };
-    let kind = kind_of_all(&report.replay);
+    let kind = report.replay.kind();
     let row = |name: &str, error: f64, strong| Row {
         name: name.to_owned(),
         value: on_paper(kind, error),
@@ -109,7 +109,7 @@ pub(super) fn concentration_bars(report: &Report) -> Markup {
 
 fn whole_run(report: &Report) -> Markup {
     let whole = &report.replay.whole_run;
-    let kind = kind_of_all(&report.replay);
+    let kind = report.replay.kind();
     let headline =
         whole.tracking_error.map_or("-".to_owned(), |error| format!("{} rms", position(kind, error.rms)));
     let body = html! {

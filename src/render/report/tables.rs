@@ -11,7 +11,6 @@ use crate::{
         metric::{Units, position, with_unit},
     },
     replay::{Answer, JOINT, JointReplay, Profiles, Replay, TRANSITION, Transition, Verdict},
-    series::JointKind,
     workflow::report::{GateResult, Report},
 };
 
@@ -65,7 +64,7 @@ fn in_short(report: &Report) -> Vec<Sentence> {
 
 fn findings(report: &Report) -> Vec<String> {
     let replay = &report.replay;
-    let of_all = kind_of_all(replay);
+    let of_all = replay.kind();
     let mut lines = Vec::new();
     match by_peak(replay).first() {
         Some(worst) => lines.push(format!("Worst {}: {}", worst.kind.name(), worst_sentence(worst))),
@@ -164,11 +163,6 @@ pub(super) fn lag_words(replay: &Replay) -> Option<String> {
         counted(share.events, "event"),
         100.0 * replay.rules.mostly_lag_share,
     ))
-}
-
-/// Whether joints turn or slide, where all of them do the same.
-pub(super) fn kind_of_all(replay: &Replay) -> JointKind {
-    replay.joints.first().map_or(JointKind::Turns, |joint| joint.kind)
 }
 
 pub(super) fn worst_sentence(worst: &Transition) -> String {

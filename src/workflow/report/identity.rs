@@ -23,10 +23,12 @@ pub struct LogFile {
     pub sha256: Option<String>,
 }
 
-/// The files of a run, in the order in which they are read.
+/// The files of a run by name, whatever the order in which they were given.
 pub fn log_files(paths: &[PathBuf]) -> Vec<LogFile> {
     let files = recording_files(paths, &mut Remarks::default()).unwrap_or_else(|_| paths.to_vec());
-    files.iter().map(|path| log_file(path)).collect()
+    let mut files: Vec<LogFile> = files.iter().map(|path| log_file(path)).collect();
+    files.sort_by(|a, b| a.name.cmp(&b.name));
+    files
 }
 
 fn log_file(path: &Path) -> LogFile {

@@ -110,10 +110,11 @@ fn scene(
     // A plan that nobody ran yet has no measurement.
     let read = ReadOptions { sides: Sides::PlanAtLeast, ..inputs.read.clone() };
     let mut recording = read_recording(&paths, &read)?;
-    let mut remarks = recording.remarks.clone();
-    let Analysis { pairs, replay, .. } = analyse(&recording, &inputs.rules, &mut remarks);
+    let mut doubts = Remarks::default();
+    let Analysis { pairs, replay, .. } = analyse(&recording, &inputs.rules, &mut doubts);
+    recording.remarks.extend(doubts);
     let arm = arm::find(path, &mut recording, given, &inputs.packages)?;
     let front = Carried::of(&recording).plan().and_then(Result::ok);
-    let Recording { planned, measured, .. } = recording;
+    let Recording { planned, measured, remarks, .. } = recording;
     Ok(Scene { name, planned, measured, pairs, transitions: replay.transitions, arm, front, remarks })
 }

@@ -148,7 +148,7 @@ fn the_ending_of_a_file_says_the_form_unless_an_option_does() {
     for (words, file, start) in [
         (REPORT, "a.html", "<!DOCTYPE html>"),
         (REPORT, "a.JSON", "{"),
-        (REPORT, "a.csv", "joint,"),
+        (REPORT, "a.csv", "run,joint,"),
         (REPORT, "a.md", "#"),
         (REPORT, "a.txt", "panel-install.mcap\nrun "),
         ("report SAMPLES/panel-install.mcap --json", "b.html", "{"),
