@@ -28,7 +28,9 @@ use rayon::prelude::*;
 
 pub use delay::{measured_starts, measured_stops};
 pub use keyed::{Keyed, Row};
-pub use metric::{Dimension, JOINT, Judged, Limit, Metric, PEAK_ERROR, Read, TRANSITION, Together, limits};
+pub use metric::{
+    Dimension, JOINT, Judged, Limit, Metric, PEAK_ERROR, Read, ReadInterval, TRANSITION, Together, limits,
+};
 pub use outcome::{
     Answer, Concentration, ConcentrationTest, JointReplay, Kind, LagShare, OnsetMethod, PathError, Replay,
     Stop, Thresholds, TrackingError, Transition, Verdict, WholeRun,

@@ -174,7 +174,7 @@ impl Reader<'_> {
     fn ceilings(&self, given: &BTreeMap<String, Spanned<f64>>) -> Result<Ceilings, TaskError> {
         let shown = self.by_objective(given, |row| row.ceiling, f64::INFINITY)?;
         given.iter().try_for_each(|(key, value)| self.positive(key, value).map(drop))?;
-        Ok(Ceilings::NONE.map_plan(|objective| objective.from_shown(shown[objective])))
+        Ok(Ceilings::NONE.map_plan(|objective| objective.si_of_shown(shown[objective])))
     }
 
     fn weights(

@@ -149,7 +149,7 @@ impl Objective {
     }
 
     /// A value in SI from one in the unit of task files.
-    pub(super) fn from_shown(self, value: f64) -> f64 {
+    pub(super) fn si_of_shown(self, value: f64) -> f64 {
         if self.row().angular { radians_from_degrees(value) } else { value }
     }
 

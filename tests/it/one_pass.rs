@@ -14,6 +14,9 @@ use hydrotrace::{
     workflow::{export, fit, join, replan, report, view},
 };
 
+/// Stamp of the first sample.
+const START_NS: i64 = 1_790_000_000_000_000_000;
+
 fn sample(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name)
 }
@@ -127,7 +130,6 @@ fn lift(folder: &Path, attached: bool) -> PathBuf {
         <joint name="lift" type="prismatic"><parent link="base"/><child link="torso"/></joint>
         <joint name="turn" type="revolute"><parent link="torso"/><child link="arm"/></joint></robot>"#;
     let mut log = LogWriter::new(Vec::new(), &["lift", "turn"], WriteOptions::default()).unwrap();
-    const START_NS: i64 = 1_790_000_000_000_000_000;
     if attached {
         log.attach("lift.urdf", "application/xml", urdf.as_bytes(), START_NS).unwrap();
     } else {
@@ -159,7 +161,7 @@ fn a_joint_that_slides_is_a_track_in_metres() {
             signals: effort,
             ..ReadOptions::default()
         };
-        let run = read_recording(&[path.clone()], &options).unwrap();
+        let run = read_recording(std::slice::from_ref(&path), &options).unwrap();
         let lift = run.measured.track("lift").unwrap();
         assert_eq!((lift.kind(), lift.kind().unit()), (JointKind::Slides, "m"));
         assert!(lift.position().iter().any(|m| *m > 19.0));

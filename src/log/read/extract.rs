@@ -26,7 +26,9 @@ pub(super) fn extract(log: &ScannedLog<'_>, options: &ReadOptions) -> Extracted 
     if !log.ordered {
         files.sort_by_cached_key(|file| (overlap::begins_ns(&file.layout), file.path));
     }
-    files.iter().for_each(|file| describe(file, &mut out));
+    for file in &files {
+        describe(file, &mut out);
+    }
     let selectors = selectors(options);
     let before = out.remarks.clone();
     let unknown = read_files(&files, &selectors, &options.joints, false, &mut out);

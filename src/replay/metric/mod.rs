@@ -72,6 +72,9 @@ pub enum Together {
     Mean,
 }
 
+/// Reads the interval of a figure.
+pub type ReadInterval<T> = fn(&T) -> Option<[f64; 2]>;
+
 /// A metric of `T`.
 #[derive(Debug)]
 pub struct Metric<T: 'static> {
@@ -88,7 +91,7 @@ pub struct Metric<T: 'static> {
     /// How it is read.
     pub read: Read<T>,
     /// Shown behind it in tables, in brackets.
-    pub interval: Option<fn(&T) -> Option<[f64; 2]>>,
+    pub interval: Option<ReadInterval<T>>,
     /// Shown in tables in place of a number that could not be measured.
     pub missing: fn(&T) -> &'static str,
     /// Whether `compare` compares it.

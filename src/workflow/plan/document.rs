@@ -243,7 +243,7 @@ impl PlanDocument {
 mod inverted {
     use super::{Deserialize, Deserializer, Serialize, Serializer};
 
-    #[expect(clippy::ref_option, reason = "serde's form")]
+    #[expect(clippy::ref_option, clippy::trivially_copy_pass_by_ref, reason = "serde's form")]
     pub(super) fn serialize<S: Serializer>(
         converged: &Option<bool>,
         serializer: S,

@@ -43,7 +43,7 @@ fn the_demo_tells_what_its_files_hold_and_they_are_those_of_the_commands_it_name
     assert!(told.contains(&shown), "{shown}\n{told}");
     let comparison = json(&demo, "compare run-1.mcap run-2.mcap");
     let all = &comparison["summaries"][0];
-    assert_eq!((&all["measure"], &all["scope"]), (&"peak-error".into(), &"all".into()));
+    assert_eq!((&all["measure"], &all["scope"]), (&"peak_error".into(), &"all".into()));
     let shown = format!(
         "{:.3} -> {:.3} deg in the mean ({:+.0} %)",
         all["mean_before"].as_f64().unwrap().to_degrees(),

@@ -33,7 +33,7 @@ fn parse(text: &str) -> Vec<Piece> {
         let command = line.strip_prefix("$ ").filter(|_| block == "```console" && !of_demo);
         match (command, pieces.last_mut()) {
             (Some(command), _) => {
-                pieces.push(Piece::Shown { command: command.to_owned(), lines: Vec::new() })
+                pieces.push(Piece::Shown { command: command.to_owned(), lines: Vec::new() });
             }
             (None, Some(Piece::Shown { lines, .. })) if block == "```console" => lines.push(line.to_owned()),
             _ if block == "```sh run" => pieces.push(Piece::Silent(line.to_owned())),

@@ -53,6 +53,9 @@ pub trait Subject: Sync {
     }
 }
 
+/// The cells of a reference in a table.
+pub type ReferenceRow = fn(&ReferenceFacts) -> Vec<String>;
+
 /// What is the same for all subjects of a study.
 #[derive(Debug, Clone, Copy)]
 pub struct Form {
@@ -67,7 +70,7 @@ pub struct Form {
     /// Heading of the table of measures.
     pub heading: &'static str,
     /// Columns of the table of references that are words, those that are numbers, and a row.
-    pub reference: (&'static [&'static str], &'static [&'static str], fn(&ReferenceFacts) -> Vec<String>),
+    pub reference: (&'static [&'static str], &'static [&'static str], ReferenceRow),
     /// The paper's figures beside ours.
     pub paper: fn(&Study) -> Vec<Section>,
     /// Charts of the curves.
