@@ -1,6 +1,6 @@
 //! The command line: arguments in, an exit code out. No arithmetic lives here.
 //!
-//! A verb is a file with its arguments, [`Run`], and two lines here: `mod` and a row of `verbs!`.
+//! A verb is a file with its arguments, `Run`, and two lines here: `mod` and a row of `verbs!`.
 
 mod compare;
 mod completions;
