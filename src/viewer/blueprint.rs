@@ -193,7 +193,7 @@ fn linked() -> TimeAxis {
 /// The Pareto front of a plan, if there is one, and the remarks on the runs.
 fn below(board: &mut Board, scenes: &[Scene]) -> Tabs {
     let mut below: Vec<ContainerLike> = Vec::new();
-    if scenes.iter().any(|scene| scene.front.as_ref().is_some_and(|front| front.objectives.len() > 1)) {
+    if scenes.iter().any(|scene| scene.front.as_ref().is_some_and(|front| front.front.len() > 1)) {
         let view = Spatial2DView::new("Plans: duration right, jerk up (logarithmic), power by size");
         let view = view.with_origin(front::ROOT).with_contents(["+ $origin/**"]);
         let [x, y] = front::SIGHT;
