@@ -21,6 +21,7 @@ RENAMED = {
     "unanswered_starts": "unmatched_starts",
     "undated_starts": "untimed_starts",
 }
+OBJECTIVES = ["duration_s", "rms_jerk_rad_s3", "rms_power_w"]
 # Texts and names of formats may change; these keys are not compared.
 FREE = re.compile(r"(^|/)(format|program|message|why|time_base_why|explanation)$")
 
@@ -72,6 +73,9 @@ def flat(value, path=""):
 
 def old_name(path):
     parts = [RENAMED.get(part, part) for part in path.split("/")]
+    # The objectives of a plan were a list.
+    if len(parts) > 2 and parts[-2] in ("objectives_before", "objectives_after") and parts[-1] in OBJECTIVES:
+        parts[-1] = str(OBJECTIVES.index(parts[-1]))
     return "/".join(parts)
 
 
