@@ -33,6 +33,18 @@ fn root(drop_pa: f64) -> (f64, f64) {
     (drop_pa * slope, slope)
 }
 
+/// Gain of an edge with a counterbalance valve behind it that is open by a share.
+fn behind(gain: f64, valve: &Valve, share: f64) -> f64 {
+    if valve.counterbalance_pa <= 0.0 {
+        return gain;
+    }
+    let holding = COUNTERBALANCE * valve.flow_gain_m3_s_sqrt_pa * share;
+    if holding > 0.0 { gain * holding / gain.hypot(holding) } else { 0.0 }
+}
+
+/// Flow gain of an open counterbalance valve by that of an open edge.
+const COUNTERBALANCE: f64 = 2.0;
+
 impl Pressures {
     /// Force of the pistons, positive where they push, N.
     pub(super) fn force_n(&self, size: &Size) -> f64 {
@@ -52,6 +64,12 @@ impl Pressures {
         step_s: f64,
     ) -> f64 {
         let gain = valve.flow_gain_m3_s_sqrt_pa * opening.abs();
+        // What leaves passes the counterbalance valve of its side too.
+        let (cap_gain, rod_gain) = if opening > 0.0 {
+            (gain, behind(gain, valve, valve.counterbalance(self.rod_pa, self.cap_pa)))
+        } else {
+            (behind(gain, valve, valve.counterbalance(self.cap_pa, self.rod_pa)), gain)
+        };
         let ((into_cap, cap_slope), (into_rod, rod_slope)) = if opening > 0.0 {
             (root(supply_pa - self.cap_pa), root(supply.return_pressure_pa - self.rod_pa))
         } else if opening < 0.0 {
@@ -64,13 +82,13 @@ impl Pressures {
         let bulk = step_s * supply.bulk_modulus_pa;
         let cap_rate = bulk / (chambers.dead_volume_m3 + size.cap_area_m2 * out_m);
         let rod_rate = bulk / (chambers.dead_volume_m3 + size.rod_area_m2 * (size.stroke_m - out_m));
-        let cap_net = gain * into_cap - size.cap_area_m2 * speed_m_s - leak_m3_s;
-        let rod_net = gain * into_rod + size.rod_area_m2 * speed_m_s + leak_m3_s;
+        let cap_net = cap_gain * into_cap - size.cap_area_m2 * speed_m_s - leak_m3_s;
+        let rod_net = rod_gain * into_rod + size.rod_area_m2 * speed_m_s + leak_m3_s;
         let leakage = chambers.leakage_m3_s_pa;
         self.cap_pa =
-            (self.cap_pa + cap_rate * cap_net / (1.0 + cap_rate * (gain * cap_slope + leakage))).max(0.0);
+            (self.cap_pa + cap_rate * cap_net / (1.0 + cap_rate * (cap_gain * cap_slope + leakage))).max(0.0);
         self.rod_pa =
-            (self.rod_pa + rod_rate * rod_net / (1.0 + rod_rate * (gain * rod_slope + leakage))).max(0.0);
+            (self.rod_pa + rod_rate * rod_net / (1.0 + rod_rate * (rod_gain * rod_slope + leakage))).max(0.0);
         gain * if opening > 0.0 { into_cap } else { into_rod }
     }
 }

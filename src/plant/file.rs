@@ -9,6 +9,7 @@ use super::{
     JointParameters, Parameters, PlantError,
     quantity::{Place, QUANTITIES, Quantity, check},
 };
+use crate::input_file;
 
 /// More than any file of a plant.
 const LARGEST_TEXT: usize = 1 << 20;
@@ -20,7 +21,8 @@ type Table = BTreeMap<String, Spanned<Values>>;
 #[serde(deny_unknown_fields)]
 struct File {
     title: String,
-    joints: Spanned<Vec<String>>,
+    base: Option<Spanned<String>>,
+    joints: Option<Spanned<Vec<String>>>,
     #[serde(default)]
     supply: Table,
     #[serde(default)]
@@ -29,6 +31,8 @@ struct File {
     cylinder: Table,
     #[serde(default)]
     friction: Table,
+    #[serde(default)]
+    link: Table,
     #[serde(default)]
     control: Table,
     #[serde(default)]
@@ -48,7 +52,9 @@ enum Values {
 
 impl Parameters {
     /// Reads the text of a plant file: every quantity of `sample-logs/plant/default.toml`, as one
-    /// number or, where joints may differ, as a table by joint. Angles are in degrees.
+    /// number or, where joints may differ, as a table by joint. Angles are in degrees. What only some
+    /// machines have may be left out. A file with `base`, the name of a preset, holds only what differs
+    /// from it.
     ///
     /// # Errors
     ///
@@ -62,16 +68,15 @@ impl Parameters {
             line: line_of(text, &error.span().unwrap_or(0..0)),
             message: error.message().trim().replace('\n', " "),
         })?;
-        let mut reader = Reader { text, joints: file.joints.get_ref().clone(), lines: BTreeMap::new() };
-        reader.check_joints(&file.joints)?;
-        let joint = |name: &String| JointParameters { name: name.clone(), ..JointParameters::default() };
-        let mut parameters =
-            Self { title: file.title, joints: reader.joints.iter().map(joint).collect(), ..Self::default() };
+        let mut parameters = begin(text, &file)?;
+        let joints = parameters.joints.iter().map(|joint| joint.name.clone()).collect();
+        let mut reader = Reader { text, joints, whole: file.base.is_none(), lines: BTreeMap::new() };
         let tables = [
             ("supply", &file.supply),
             ("valve", &file.valve),
             ("cylinder", &file.cylinder),
             ("friction", &file.friction),
+            ("link", &file.link),
             ("control", &file.control),
             ("encoder", &file.encoder),
             ("log", &file.log),
@@ -93,7 +98,7 @@ impl Parameters {
     ///
     /// [`PlantError`] if the file cannot be read or describes no plant.
     pub fn read(path: &Path) -> Result<Self, PlantError> {
-        let text = std::fs::read_to_string(path)
+        let text = input_file::read_to_string(path)
             .map_err(|source| PlantError::Read { path: path.to_owned(), reason: source.to_string() })?;
         Self::parse(&text)
     }
@@ -104,27 +109,56 @@ fn line_of(text: &str, span: &Range<usize>) -> usize {
     1 + memchr::memchr_iter(b'\n', &text.as_bytes()[..span.start.min(text.len())]).count()
 }
 
+/// The base's numbers, else joints all of whose numbers are zero.
+fn begin(text: &str, file: &File) -> Result<Parameters, PlantError> {
+    let title = file.title.clone();
+    let refuse =
+        |span: Range<usize>, message| Err(PlantError::Syntax { line: line_of(text, &span), message });
+    match (&file.base, &file.joints) {
+        (Some(base), None) => match Parameters::preset(base.get_ref()) {
+            Ok(base) => Ok(Parameters { title, ..base }),
+            Err(error) => refuse(base.span(), format!("base: {error}")),
+        },
+        (None, Some(given)) => {
+            let joint = |name: &String| JointParameters { name: name.clone(), ..JointParameters::default() };
+            let joints = given.get_ref().iter().map(joint).collect();
+            match twice(given.get_ref()) {
+                None => Ok(Parameters { title, joints, ..Parameters::default() }),
+                Some(found) => refuse(
+                    given.span(),
+                    format!("joints: found {found}; name every joint of the arm once, in its order"),
+                ),
+            }
+        }
+        (Some(_), Some(given)) => refuse(
+            given.span(),
+            "joints: found beside base; they are those of the base: leave them out".into(),
+        ),
+        (None, None) => refuse(0..0, "missing field `joints`".into()),
+    }
+}
+
+/// What is wrong with the names of joints.
+fn twice(names: &[String]) -> Option<String> {
+    let mut sorted: Vec<&String> = names.iter().collect();
+    sorted.sort_unstable();
+    match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Some(format!("{:?} twice", pair[0])),
+        None => sorted.is_empty().then(|| "none".to_owned()),
+    }
+}
+
 struct Reader<'a> {
     text: &'a str,
     joints: Vec<String>,
+    /// Whether the file has no base and so all that a machine cannot lack.
+    whole: bool,
     /// Where each quantity stands.
     lines: BTreeMap<(&'static str, &'static str), usize>,
 }
 
 impl Reader<'_> {
-    fn check_joints(&self, given: &Spanned<Vec<String>>) -> Result<(), PlantError> {
-        let mut sorted = self.joints.clone();
-        sorted.sort_unstable();
-        let found = match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => format!("{:?} twice", pair[0]),
-            None if sorted.is_empty() => "none".to_owned(),
-            None => return Ok(()),
-        };
-        let message = format!("joints: found {found}; name every joint of the arm once, in its order");
-        Err(PlantError::Syntax { line: line_of(self.text, &given.span()), message })
-    }
-
-    /// Takes the numbers of one table; every quantity of it must be there, and nothing else.
+    /// Takes the numbers of one table, which holds nothing else.
     fn table(&mut self, name: &str, table: &Table, into: &mut Parameters) -> Result<(), PlantError> {
         let known = || QUANTITIES.iter().filter(|quantity| quantity.key.0 == name);
         let stray = table.iter().find(|(key, _)| !known().any(|quantity| quantity.key.1 == key.as_str()));
@@ -148,6 +182,10 @@ impl Reader<'_> {
     ) -> Result<(), PlantError> {
         let key = || format!("{}.{}", quantity.key.0, quantity.key.1);
         let Some(given) = given else {
+            // Zero, or as in the base.
+            if quantity.optional || !self.whole {
+                return Ok(());
+            }
             let ((least, most), by_joint) = (quantity.range, matches!(quantity.place, Place::Joint(_)));
             return Err(PlantError::MissingKey { key: key(), least, most, by_joint });
         };
@@ -254,6 +292,24 @@ mod tests {
                 "line {at}: friction.breakaway_n of J1 is 500; no less than coulomb_n, 650 N, is expected"
             )
         );
+    }
+
+    #[test]
+    fn a_file_with_a_base_holds_what_differs() {
+        let parse = |text: &str| Parameters::parse(text).map_err(|error| error.to_string());
+        let late = parse("title = \"late\"\nbase = \"default\"\n[valve]\ndead_time_s = 0.3").unwrap();
+        let mut expected = Parameters::preset("default").unwrap();
+        expected.title = "late".into();
+        expected.joints.iter_mut().for_each(|joint| joint.valve.dead_time_s = 0.3);
+        assert_eq!(late, expected);
+        let error = parse("title = \"\"\nbase = \"softt\"").unwrap_err();
+        assert!(
+            error.starts_with("line 2: base: there is no plant \"softt\", did you mean \"soft\"?"),
+            "{error}"
+        );
+        let error = parse("title = \"\"\nbase = \"default\"\njoints = [\"J1\"]").unwrap_err();
+        assert!(error.starts_with("line 3: joints: found beside base"), "{error}");
+        assert_eq!(parse("title = \"\"").unwrap_err(), "line 1: missing field `joints`");
     }
 
     #[test]

@@ -40,6 +40,7 @@ mod tests {
         viscous_n_s_m: 3000.0,
         bristle_stiffness_n_m: 6e6,
         bristle_damping_n_s_m: 6e3,
+        drift: 0.0,
     };
 
     fn steady(speed_m_s: f64, steps: usize) -> f64 {

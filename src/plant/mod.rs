@@ -3,8 +3,9 @@
 //!
 //! [`simulate`] sends a command to a [`Plant`] and returns what a log of the machine would hold,
 //! with what no log holds: the angle without noise. [`Plant::truth`] says what a fit to that log
-//! should find. Three presets differ in what limits them; all their numbers are in
-//! `sample-logs/plant`. They are engineering guesses: no log of the arm of the paper was at hand.
+//! should find. Three presets differ in what limits them, eleven have structures that these lack
+//! (loops, valves, links, days); all their numbers are in `sample-logs/plant`. They are engineering
+//! guesses: no log of the arm of the paper was at hand.
 //!
 //! By joint: the position loop's signal waits a dead time, moves a spool through play, lag and slew
 //! rate; past its overlap the spool opens two edges; oil flows by the root of the pressure drop,
@@ -13,8 +14,9 @@
 //! matrix, weight, centrifugal and Coriolis torques. What the loop and the log see of the angle
 //! lies behind backlash, noise and quantisation.
 //!
-//! Not modelled: bending of links and hoses, oil temperature and ageing, load-holding and relief
-//! valves, pressure waves in lines, cavitation (pressures stop at zero), leakage of the valves,
+//! Links bend joint by joint, without pushing back on the arm. Hoses are volumes of oil.
+//!
+//! Not modelled: oil temperature and ageing, relief valves, pressure waves in lines, cavitation (pressures stop at zero), leakage of the valves,
 //! dynamics of the pump, friction that depends on pressure, play of the joint under changing loads
 //! (the backlash lies before the sensor only), swinging payloads, anti-windup of the loop. The
 //! payload is a point at the tool.
@@ -29,6 +31,7 @@ mod encoder;
 mod error;
 mod file;
 mod friction;
+mod link;
 mod machine;
 mod mechanics;
 mod parameters;
@@ -37,6 +40,7 @@ mod preset;
 mod quantity;
 mod random;
 mod record;
+mod set_value;
 mod simulate;
 mod truth;
 mod valve;
@@ -44,7 +48,7 @@ mod variation;
 
 pub use error::PlantError;
 pub use parameters::{
-    Chambers, Control, Cycle, Encoder, Friction, JointParameters, Parameters, Supply, Valve,
+    Chambers, Control, Cycle, Encoder, Friction, JointParameters, Link, Parameters, Supply, Valve,
 };
 pub use payload::PayloadChange;
 pub use record::{JointRecord, Record};

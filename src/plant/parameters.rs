@@ -46,6 +46,18 @@ pub struct Cycle {
     pub loss: f64,
     /// How long the arm takes to take over a new payload, s.
     pub payload_ramp_s: f64,
+    /// Set values reach the loop this often and are held in between; 0: with every turn, s.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub set_value_period_s: f64,
+    /// Each comes late by a random time of up to this, none before an earlier one, s.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub set_value_jitter_s: f64,
+}
+
+/// Structures that a machine lacks stay out of its JSON, as if there were none.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
+fn is_zero(value: &f64) -> bool {
+    value.abs() < f64::MIN_POSITIVE
 }
 
 /// Numbers of one joint.
@@ -59,6 +71,9 @@ pub struct JointParameters {
     pub chambers: Chambers,
     /// Friction of rods, pistons and bearings, at the rods.
     pub friction: Friction,
+    /// What bends between cylinder and sensor.
+    #[serde(default, skip_serializing_if = "Link::is_rigid")]
+    pub link: Link,
     /// The position loop.
     pub control: Control,
     /// The angle sensor.
@@ -82,6 +97,23 @@ pub struct Valve {
     pub spool_slew_1_s: f64,
     /// Flow through one edge by opening and square root of pressure drop, m³/(s √Pa).
     pub flow_gain_m3_s_sqrt_pa: f64,
+    /// Edges are metering notches: flow grows with the opening to the power of 1 + this, the same at
+    /// full opening.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub progression: f64,
+    /// Oil leaves a side through a counterbalance valve that begins to open once the pressure of this
+    /// side and `counterbalance_pilot_ratio` times that of the other add up to this; 0: none, Pa.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub counterbalance_pa: f64,
+    /// Pilot area by relief area.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub counterbalance_pilot_ratio: f64,
+    /// The null is off by up to this either way, another amount each run.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub null_drift: f64,
+    /// The dead time is off by up to this either way, another amount each run, s.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub dead_time_drift_s: f64,
 }
 
 /// The oil on both sides of the pistons of a joint.
@@ -108,11 +140,34 @@ pub struct Friction {
     pub bristle_stiffness_n_m: f64,
     /// Its damping, N s/m.
     pub bristle_damping_n_s_m: f64,
+    /// Coulomb, breakaway and viscous friction are off by up to this share, another each run.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub drift: f64,
+}
+
+/// A link that bends: a light mass on a spring, which joint and sensor hang between. What it does
+/// to the joint is left out, and each joint bends by itself.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Link {
+    /// Its own frequency; 0: rigid, Hz.
+    pub frequency_hz: f64,
+    /// Share of critical damping.
+    pub damping_ratio: f64,
+}
+
+impl Link {
+    pub(super) fn is_rigid(&self) -> bool {
+        is_zero(&self.frequency_hz)
+    }
 }
 
 /// Position loop with feed-forward of speed and compensation of the valve's overlap:
 /// w = `feed_forward` * planned speed + `position_gain` * error + integral,
 /// signal = w / `nominal_speed` + compensation * clip(w / `compensation_speed`, ±1).
+///
+/// A cascade has a speed loop within: w grows by `speed_gain` * (w - speed) and by the integral of
+/// `speed_integral_gain` * (w - speed). An axis module has a positioning window: no signal while w
+/// is less than what an error of the window's size makes it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Control {
     /// Wanted speed by error, 1/s.
@@ -129,6 +184,18 @@ pub struct Control {
     pub compensation_speed_rad_s: f64,
     /// While the plan rests, an error below this leaves the integral as it is, rad.
     pub freeze_error_rad: f64,
+    /// Time constant with which set values are smoothed before the loop, s.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub set_value_filter_s: f64,
+    /// Wanted speed by error of the speed.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub speed_gain: f64,
+    /// Growth of the wanted speed by error of the speed, 1/s.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub speed_integral_gain_1_s: f64,
+    /// Half width of the positioning window, rad.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub window_rad: f64,
 }
 
 /// An angle sensor behind a joint with play.

@@ -3,15 +3,33 @@
 use super::{Parameters, Plant, PlantError};
 use crate::{arm::Arm, suggest::nearest};
 
-/// Names and texts.
-const PRESETS: [(&str, &str); 3] = [
-    ("dead-band-limited", include_str!("../../sample-logs/plant/dead-band-limited.toml")),
-    ("default", include_str!("../../sample-logs/plant/default.toml")),
-    ("lag-limited", include_str!("../../sample-logs/plant/lag-limited.toml")),
+/// A name, and the text of the file of that name.
+macro_rules! presets {
+    ($($name:literal),* $(,)?) => {
+        [$(($name, include_str!(concat!("../../sample-logs/plant/", $name, ".toml")))),*]
+    };
+}
+
+/// Names and texts: by what limits the machine, then by what its structure has that the first three lack.
+const PRESETS: [(&str, &str); 14] = presets![
+    "dead-band-limited",
+    "default",
+    "lag-limited",
+    "backlash",
+    "cascade",
+    "changing",
+    "counterbalance",
+    "flexible-link",
+    "held-set-values",
+    "position-only",
+    "positioning-window",
+    "progressive-edges",
+    "soft",
+    "stick-slip",
 ];
 
 impl Parameters {
-    /// Names of the presets: by what limits them.
+    /// Names of the presets: by what limits them, or by their structure.
     pub fn preset_names() -> impl Iterator<Item = &'static str> {
         PRESETS.iter().map(|(name, _)| *name)
     }
@@ -59,7 +77,9 @@ mod tests {
             assert_eq!(Plant::preset(name).unwrap().joints().count(), 6);
         }
         let error = Plant::preset("fast").unwrap_err().to_string();
-        assert_eq!(error, "there is no plant \"fast\"; there are dead-band-limited, default, lag-limited");
+        assert!(error.starts_with(
+            "there is no plant \"fast\"; there are dead-band-limited, default, lag-limited, backlash, cascade, "
+        ));
         let error = Plant::preset("laglimited").unwrap_err().to_string();
         assert!(error.contains("did you mean \"lag-limited\"?"), "{error}");
     }

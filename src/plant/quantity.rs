@@ -24,6 +24,8 @@ pub(super) struct Quantity {
     pub(super) range: (f64, f64),
     /// A random machine differs by up to this share either way.
     pub(super) spread: f64,
+    /// Whether a file may leave it out, for zero: a structure that most machines lack.
+    pub(super) optional: bool,
 }
 
 const fn shared(
@@ -32,7 +34,7 @@ const fn shared(
     spread: f64,
     of: fn(&mut Parameters) -> &mut f64,
 ) -> Quantity {
-    Quantity { key, place: Place::Machine(of), unit: 1.0, range, spread }
+    Quantity { key, place: Place::Machine(of), unit: 1.0, range, spread, optional: false }
 }
 
 const fn joint(
@@ -41,15 +43,31 @@ const fn joint(
     spread: f64,
     of: fn(&mut JointParameters) -> &mut f64,
 ) -> Quantity {
-    Quantity { key, place: Place::Joint(of), unit: 1.0, range, spread }
+    Quantity { key, place: Place::Joint(of), unit: 1.0, range, spread, optional: false }
 }
 
 const fn degrees(quantity: Quantity) -> Quantity {
     Quantity { unit: DEGREE_RAD, ..quantity }
 }
 
+const fn optional(
+    key: (&'static str, &'static str),
+    most: f64,
+    of: fn(&mut JointParameters) -> &mut f64,
+) -> Quantity {
+    Quantity { optional: true, ..joint(key, (0.0, most), 0.0, of) }
+}
+
+const fn optional_shared(
+    key: (&'static str, &'static str),
+    most: f64,
+    of: fn(&mut Parameters) -> &mut f64,
+) -> Quantity {
+    Quantity { optional: true, ..shared(key, (0.0, most), 0.0, of) }
+}
+
 /// All of them, in the order of the file.
-pub(super) const QUANTITIES: [Quantity; 36] = [
+pub(super) const QUANTITIES: [Quantity; 50] = [
     shared(("supply", "pressure_pa"), (1e5, 1e8), 0.0, |p| &mut p.supply.pressure_pa),
     shared(("supply", "return_pressure_pa"), (0.0, 1e8), 0.0, |p| &mut p.supply.return_pressure_pa),
     shared(("supply", "flow_m3_s"), (1e-7, 1.0), 0.2, |p| &mut p.supply.flow_m3_s),
@@ -63,6 +81,11 @@ pub(super) const QUANTITIES: [Quantity; 36] = [
     joint(("valve", "spool_lag_s"), (1e-3, 2.0), 0.4, |p| &mut p.valve.spool_lag_s),
     joint(("valve", "spool_slew_1_s"), (0.1, 1e4), 0.4, |p| &mut p.valve.spool_slew_1_s),
     joint(("valve", "flow_gain_m3_s_sqrt_pa"), (1e-12, 1e-4), 0.2, |p| &mut p.valve.flow_gain_m3_s_sqrt_pa),
+    optional(("valve", "progression"), 4.0, |p| &mut p.valve.progression),
+    optional(("valve", "counterbalance_pa"), 1e8, |p| &mut p.valve.counterbalance_pa),
+    optional(("valve", "counterbalance_pilot_ratio"), 20.0, |p| &mut p.valve.counterbalance_pilot_ratio),
+    optional(("valve", "null_drift"), 0.3, |p| &mut p.valve.null_drift),
+    optional(("valve", "dead_time_drift_s"), 1.0, |p| &mut p.valve.dead_time_drift_s),
     joint(("cylinder", "dead_volume_m3"), (1e-7, 1.0), 0.3, |p| &mut p.chambers.dead_volume_m3),
     joint(("cylinder", "leakage_m3_s_pa"), (0.0, 1e-9), 0.5, |p| &mut p.chambers.leakage_m3_s_pa),
     joint(("friction", "coulomb_n"), (1e-3, 1e6), 0.4, |p| &mut p.friction.coulomb_n),
@@ -71,6 +94,9 @@ pub(super) const QUANTITIES: [Quantity; 36] = [
     joint(("friction", "viscous_n_s_m"), (0.0, 1e7), 0.4, |p| &mut p.friction.viscous_n_s_m),
     joint(("friction", "bristle_stiffness_n_m"), (1e3, 1e9), 0.2, |p| &mut p.friction.bristle_stiffness_n_m),
     joint(("friction", "bristle_damping_n_s_m"), (0.0, 1e7), 0.2, |p| &mut p.friction.bristle_damping_n_s_m),
+    optional(("friction", "drift"), 0.9, |p| &mut p.friction.drift),
+    optional(("link", "frequency_hz"), 100.0, |p| &mut p.link.frequency_hz),
+    optional(("link", "damping_ratio"), 1.0, |p| &mut p.link.damping_ratio),
     shared(("control", "period_s"), (STEP_S, 1.0), 0.0, |p| &mut p.cycle.period_s),
     joint(("control", "position_gain_1_s"), (0.0, 100.0), 0.25, |p| &mut p.control.position_gain_1_s),
     joint(("control", "integral_gain_1_s2"), (0.0, 100.0), 0.3, |p| &mut p.control.integral_gain_1_s2),
@@ -83,6 +109,12 @@ pub(super) const QUANTITIES: [Quantity; 36] = [
         &mut p.control.compensation_speed_rad_s
     })),
     degrees(joint(("control", "freeze_error_deg"), (0.0, 10.0), 0.0, |p| &mut p.control.freeze_error_rad)),
+    optional(("control", "set_value_filter_s"), 10.0, |p| &mut p.control.set_value_filter_s),
+    optional_shared(("control", "set_value_period_s"), 1.0, |p| &mut p.cycle.set_value_period_s),
+    optional_shared(("control", "set_value_jitter_s"), 1.0, |p| &mut p.cycle.set_value_jitter_s),
+    optional(("control", "speed_gain"), 100.0, |p| &mut p.control.speed_gain),
+    optional(("control", "speed_integral_gain_1_s"), 1000.0, |p| &mut p.control.speed_integral_gain_1_s),
+    degrees(optional(("control", "window_deg"), 10.0, |p| &mut p.control.window_rad)),
     degrees(joint(("encoder", "backlash_deg"), (0.0, 10.0), 0.4, |p| &mut p.encoder.backlash_rad)),
     degrees(joint(("encoder", "noise_deg"), (0.0, 10.0), 0.0, |p| &mut p.encoder.noise_rad)),
     degrees(joint(("encoder", "count_deg"), (1e-9, 10.0), 0.0, |p| &mut p.encoder.count_rad)),

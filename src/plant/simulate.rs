@@ -1,10 +1,12 @@
 //! A command goes in, a log comes out.
 
+use std::borrow::Cow;
+
 use rand_distr::{Bernoulli, Distribution, StandardNormal};
 
 use super::{
-    PayloadChange, Plant, PlantError, Record, STEP_S, controller::Integral, encoder::Sensor,
-    machine::Machine, payload::Payload,
+    PayloadChange, Plant, PlantError, Record, STEP_S, controller::Integral, encoder::Sensor, link::Bend,
+    machine::Machine, payload::Payload, set_value,
 };
 use crate::{
     rng::{Stream, stream},
@@ -23,6 +25,7 @@ struct Loop {
     command: Vec<(f64, f64)>,
     integral: Integral,
     sensor: Sensor,
+    bend: Bend,
     /// Signals sent so far, by period.
     sent: Vec<f64>,
     /// The step at which the next signal arrives, and which one it is.
@@ -34,7 +37,7 @@ struct Loop {
 ///
 /// `command` has a track with positions and speeds for every joint, in any order; before its first
 /// sample, after its last and across cuts a track holds its angle. Equal arguments give equal
-/// records; the seed moves noise, jitter and losses only.
+/// records; the seed moves noise, jitter and losses, and what the machine draws anew each run.
 ///
 /// # Errors
 ///
@@ -46,10 +49,18 @@ pub fn simulate(
     payload: &[PayloadChange],
     seed: u64,
 ) -> Result<Record, PlantError> {
+    let today;
+    let plant = match plant.parameters.of_run(seed) {
+        Cow::Borrowed(_) => plant,
+        Cow::Owned(parameters) => {
+            today = Plant { parameters, ..plant.clone() };
+            &today
+        }
+    };
     let cycle = &plant.parameters.cycle;
     let payload = Payload::new(payload, cycle.payload_ramp_s)?;
     let steps_a_period = steps(cycle.period_s);
-    let (mut loops, periods) = loops(plant, command)?;
+    let (mut loops, periods) = loops(plant, command, seed)?;
     let start_rad: Vec<f64> = loops.iter().map(|l| l.sensor.seen_rad).collect();
     let mut machine = Machine::at_rest(plant, &start_rad, payload.mass_kg(0.0))?;
     let mut record = Record::with_room(plant.joints(), periods + 1);
@@ -76,7 +87,8 @@ pub fn simulate(
             let noise: f64 = StandardNormal.sample(&mut noise);
             let read_rad = own.sensor.reading_rad(&joint.encoder, 0.0, noise);
             own.sensor.take(read_rad, cycle.period_s, cycle.speed_filter_s);
-            let signal = own.integral.turn(&joint.control, own.command[period], read_rad, cycle.period_s);
+            let seen = (read_rad, own.sensor.driver_rad_s);
+            let signal = own.integral.turn(&joint.control, own.command[period], seen, cycle.period_s);
             own.sent.push(signal);
             if lost {
                 continue;
@@ -101,7 +113,8 @@ pub fn simulate(
             machine.step(|| payload.mass_kg(step as f64 * STEP_S));
             step += 1;
             for ((own, state), joint) in loops.iter_mut().zip(&machine.states).zip(&plant.parameters.joints) {
-                own.sensor.step(&joint.encoder, state.position_rad);
+                own.bend.step(&joint.link, state.speed_rad_s);
+                own.sensor.step(&joint.encoder, state.position_rad + own.bend.angle_rad);
             }
         }
     }
@@ -109,7 +122,7 @@ pub fn simulate(
 }
 
 /// Loops at the start of the command, and the number of periods that it lasts.
-fn loops(plant: &Plant, command: &Series) -> Result<(Vec<Loop>, usize), PlantError> {
+fn loops(plant: &Plant, command: &Series, seed: u64) -> Result<(Vec<Loop>, usize), PlantError> {
     let cycle = &plant.parameters.cycle;
     let mut tracks = Vec::with_capacity(plant.axes.len());
     for name in plant.joints() {
@@ -124,17 +137,17 @@ fn loops(plant: &Plant, command: &Series) -> Result<(Vec<Loop>, usize), PlantErr
     }
     // Within rounding, a command that ends with a period ends with it.
     let periods = whole(duration_s / cycle.period_s + 1e-6);
+    let instants_s = set_value::instants_s(cycle, periods, seed);
     let own = |((track, _), joint): (&(&Track, &[f64]), &super::JointParameters)| {
-        let state = |period| track.held_at(period as f64 * cycle.period_s);
-        let command: Vec<(f64, f64)> =
-            (0..=periods).map(state).map(|state| (state.position, state.velocity)).collect();
-
+        let states = instants_s.iter().map(|&t_s| track.held_at(t_s));
+        let mut command: Vec<(f64, f64)> = states.map(|state| (state.position, state.velocity)).collect();
+        set_value::smooth(&joint.control, cycle.period_s, &mut command);
         Loop {
             sensor: Sensor::new(command.first().map_or(0.0, |first| first.0)),
             command,
             integral: Integral::default(),
+            bend: Bend::default(),
             sent: Vec::with_capacity(periods + 1),
-
             arrival: (steps(joint.valve.dead_time_s), 0),
         }
     };

@@ -4,7 +4,12 @@
 
 use std::fmt::Write;
 
-use super::{cylinder::steady_speed_m_s, machine::Machine, mechanics::Mechanics, *};
+use super::{
+    cylinder::{Pressures, steady_speed_m_s},
+    machine::Machine,
+    mechanics::Mechanics,
+    *,
+};
 use crate::{
     arm::{Motion, Workspace},
     units::DEGREE_RAD,
@@ -304,4 +309,26 @@ fn oil_flows_once_the_wanted_speed_leaves_the_true_dead_band() {
         assert!(way_rad(0.98).abs() < 1e-9, "joint {j} {way}");
         assert!(way_rad(1.1) > 5e-4, "joint {j} {way}: {}", way_rad(1.1));
     }
+}
+
+#[test]
+fn oil_leaves_past_a_counterbalance_valve_only_once_load_and_pilot_open_it() {
+    let least = |preset: &str| {
+        let mut parameters = Parameters::preset(preset).unwrap();
+        without_leaks(&mut parameters);
+        let plant = Plant::new(&Arm::sample().unwrap(), parameters).unwrap();
+        let mut least_pa = f64::INFINITY;
+        for (j, signal) in (0..6).flat_map(|j| [(j, 0.3), (j, -0.3)]) {
+            let mut machine = Machine::at_rest(&plant, &POSE_RAD, 0.0).unwrap();
+            machine.states[j].signal = signal;
+            run(&mut machine, 0.8);
+            let Pressures { cap_pa, rod_pa } = machine.states[j].pressures;
+            let extends = machine.states[j].spool.travel > 0.0;
+            let (feeds_pa, drains_pa) = if extends { (cap_pa, rod_pa) } else { (rod_pa, cap_pa) };
+            least_pa = least_pa.min(drains_pa + 2.5 * feeds_pa);
+        }
+        least_pa
+    };
+    let (with_pa, without_pa) = (least("counterbalance"), least("default"));
+    assert!(with_pa > 30e6 && without_pa < 25e6, "{with_pa} and {without_pa} Pa");
 }

@@ -79,7 +79,8 @@ impl Plant {
         let overlap = ways.map(|way| if way > 0.0 { valve.overlap_extend } else { valve.overlap_retract });
         let speed_at = |way: f64, opening: f64| {
             let parts = (&axis.size, valve, &joint.friction);
-            (steady_speed_m_s(parts, &self.parameters.supply, way * opening, force_n) / lever_m).abs()
+            (steady_speed_m_s(parts, &self.parameters.supply, way * valve.port(opening), force_n) / lever_m)
+                .abs()
         };
         let both = |of: &dyn Fn(usize) -> f64| [of(0), of(1)];
         // The play keeps the spool short of the full signal.
@@ -90,7 +91,10 @@ impl Plant {
             name: joint.name.clone(),
             dead_time_s: valve.dead_time_s,
             lag_s: valve.dead_time_s + valve.spool_lag_s + 0.5 * cycle.period_s,
-            dead_band_rad_s: overlap.map(|overlap| control.wanted_rad_s(overlap + valve.hysteresis)),
+            dead_band_rad_s: overlap.map(|overlap| {
+                let opens_rad_s = control.wanted_rad_s(overlap + valve.hysteresis);
+                opens_rad_s.max(control.window_rad_s()) / (1.0 + control.speed_gain)
+            }),
             speed_limit_rad_s,
             acceleration_limit_rad_s2: slope.map(|slope| slope * valve.spool_slew_1_s),
             gain: slope.map(|slope| slope / control.nominal_speed_rad_s),

@@ -6,3 +6,4 @@ mod paper;
 mod robust;
 mod runs;
 mod starts;
+mod structures;
