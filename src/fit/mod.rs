@@ -3,7 +3,7 @@
 //!
 //! [`fit`] takes sent and measured angles and yields a [`Model`] a joint, with intervals and with its
 //! skill on held-out data. [`predict`] answers a command with what the machine will do;
-//! [`compensate`] turns a plan into a command whose predicted response is the plan; [`excite`] makes a
+//! [`learn`] turns a plan and its runs into a correction that makes the next run better; [`excite`] makes a
 //! run from which a fit can tell the limits.
 //!
 //! Smooth runs never reach the limits of speed and acceleration, which then are bounds and no
@@ -14,8 +14,8 @@ mod error;
 mod estimate;
 mod excite;
 mod interval;
-mod invert;
 mod joint;
+mod learn;
 mod model;
 mod outcome;
 mod parameters;
@@ -24,7 +24,6 @@ mod robust;
 mod run;
 mod simulate;
 mod skill;
-mod smooth;
 mod start_error;
 mod valve;
 
@@ -32,7 +31,7 @@ use rayon::prelude::*;
 
 pub use error::FitError;
 pub use excite::{Excitation, JointRoom, Ramp, excite};
-pub use invert::{Compensated, Compensation, JointCompensation, compensate};
+pub use learn::{Character, JointStep, Learning, Learnt, Oscillation, Room, Step, Trial, learn};
 pub use model::{Model, STEP_S};
 pub use outcome::{Estimated, Fit, JointFit, LEAST_SKILL, LeftOut};
 pub use predict::predict;

@@ -1,11 +1,13 @@
 //! Small numerics with no noun of the domain in them.
 
 mod hermite;
+mod lowpass;
 mod paired;
 mod sin_cos;
 mod statistic;
 
 pub use hermite::{State, cubic, linear, quintic};
+pub use lowpass::lowpass;
 pub use paired::{SignedRank, half_interval, signed_rank};
 pub use sin_cos::sin_cos;
 pub use statistic::{SIGMA_PER_MAD, mad, median, quantile, quantile_sorted, range};

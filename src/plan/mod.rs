@@ -26,6 +26,7 @@ mod setup;
 mod tangent;
 
 pub use choose::{Choice, NoChoice, Rule, choose, ends};
+pub use command_margin::Interpolation;
 pub use error::PlanError;
 pub use evaluate::{Evaluator, Timing, excess};
 pub use evaluation::PlanEvaluation;

@@ -27,6 +27,10 @@ pub(crate) struct Args {
 pub(crate) enum StudyArgs {
     /// Precision and recall of the transition detector on synthetic joints with known motions
     Detector(DetectorArgs),
+    /// What is left of the tracking error run after run, on simulated machines of many structures
+    #[command(after_help = "Examples:\n  hydrotrace-bench learning --runs 3\n  \
+                      hydrotrace-bench learning --machine default --plan 0,3 --seeds 4 --proportional")]
+    Learning(LearningArgs),
     /// What the evolutionary algorithms reach on problems with known fronts, beside the paper
     #[command(after_help = "Examples:\n  hydrotrace-bench moea --operators platemo --seeds 31\n  \
                       hydrotrace-bench moea --problem DTLZ1,DTLZ3 --algorithm nsga3-fo,nsga3 --evaluations 5000\n  \
@@ -51,6 +55,33 @@ pub(crate) struct DetectorArgs {
 
     #[command(flatten)]
     pub(crate) format: Format,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct LearningArgs {
+    /// Machines, by the names of presets of the plant; all of them without
+    #[arg(long, value_delimiter = ',', value_name = "NAME")]
+    pub(crate) machine: Vec<String>,
+
+    /// Plans by number, 0 to 4
+    #[arg(long, value_delimiter = ',', default_value = "0,1,2,3,4", value_name = "N")]
+    pub(crate) plan: Vec<usize>,
+
+    /// Seeds, from 1 on
+    #[arg(long, default_value_t = 2, value_parser = value_parser!(u64).range(1..=1000))]
+    pub(crate) seeds: u64,
+
+    /// Runs with a command
+    #[arg(long, default_value_t = 4, value_parser = value_parser!(u64).range(1..=100))]
+    pub(crate) runs: u64,
+
+    /// Proportional iterative learning in place of ours
+    #[arg(long)]
+    pub(crate) proportional: bool,
+
+    /// One JSON document
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, clap::Args)]

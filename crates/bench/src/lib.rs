@@ -5,8 +5,11 @@
 //! statistics, tables, curves and document.
 
 pub mod detector;
+pub mod learning;
 pub mod problems;
 #[cfg(test)]
+#[allow(dead_code, reason = "the library has a use for each part")]
+#[path = "../../../src/schema.rs"]
 mod schema;
 pub mod study;
 pub mod tasks;

@@ -13,10 +13,13 @@ use std::{
 use clap::Parser;
 use hydrotrace::{
     atomic_file::{AtomicError, write_atomically},
+    plant::Parameters,
     render::kit::{Document, markdown, text},
 };
 use hydrotrace_bench::{
-    detector, problems,
+    detector,
+    learning::{self, Teacher},
+    problems,
     study::{self, Form, Study, curve_svg, curves_csv, document, front_csv},
     tasks,
 };
@@ -46,6 +49,25 @@ fn run(study: &StudyArgs) -> Result<(), Box<dyn Error>> {
             let found = detector::run(args.seed, args.runs, || bar.inc(1));
             bar.finish_and_clear();
             show(&args.format, || found.json(), || found.document())
+        }
+        StudyArgs::Learning(args) => {
+            let machines = if args.machine.is_empty() {
+                Parameters::preset_names().map(str::to_owned).collect()
+            } else {
+                args.machine.clone()
+            };
+            let teacher = if args.proportional { Teacher::Proportional } else { Teacher::Learn };
+            let (jobs, seeds, runs) = (args.plan.clone(), (1..=args.seeds).collect(), args.runs);
+            let inputs = learning::Inputs { machines, jobs, seeds, runs, teacher };
+            let bar =
+                progress((inputs.machines.len() * inputs.jobs.len() * inputs.seeds.len()) as u64, "cells");
+            let found = learning::run(&inputs, || bar.inc(1))?;
+            bar.finish_and_clear();
+            if args.json {
+                return Ok(write_out(&serde_json::to_string(&found)?)?);
+            }
+            write_out(&learning::table(&found))?;
+            Ok(())
         }
         StudyArgs::Moea(args) => {
             let shared = args.shared.inputs("msops2", [5_000, 20_000, 50_000], args.front.is_some());
@@ -117,8 +139,13 @@ fn show(
         Format { markdown: true, .. } => markdown(&document()),
         Format { .. } => text(&document()),
     };
-    match io::stdout().write_all(shown.as_bytes()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
+    Ok(write_out(&shown)?)
+}
+
+/// Writes to standard output. A reader that goes away is no failure.
+fn write_out(text: &str) -> io::Result<()> {
+    match io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error),
         _ => Ok(()),
     }
 }

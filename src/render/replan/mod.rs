@@ -1,8 +1,9 @@
 //! What was planned again.
 
+mod learning;
 mod tables;
 
-pub use tables::document;
+pub(crate) use tables::document;
 
 use crate::{plan::Limit, workflow::replan::Replanned};
 
@@ -12,4 +13,5 @@ fn joint_name(replanned: &Replanned, joint: Option<usize>) -> Option<String> {
 }
 
 /// The limits that a command is held against.
-const OF_COMMAND: [Limit; 4] = [Limit::Position, Limit::Speed, Limit::Acceleration, Limit::RodSpeed];
+const OF_COMMAND: [Limit; 5] =
+    [Limit::Position, Limit::Speed, Limit::Acceleration, Limit::Jerk, Limit::RodSpeed];

@@ -1,62 +1,36 @@
 //! A plan for the next run as tables.
 
-use super::{OF_COMMAND, joint_name};
+use super::learning;
 use crate::{
     log::Topics,
-    plan::Margin,
-    render::{
-        kit::{Block, Document, Fact, Id, NONE, Section, Sentence, Table, counted, deg, fact, optional},
-        plan,
-    },
+    render::kit::{Block, Document, Fact, Id, NONE, Section, Sentence, Table, counted, deg, fact, optional},
     task::Objective,
     units::degrees_from_radians,
-    workflow::replan::{HeldTo, JointCommand, Origin, Predicted, Replanned},
+    workflow::replan::{Commanded, HeldTo, Origin, Predicted, Replanned},
 };
 
-/// A limit used more than this is near.
-const NEAR: f64 = 0.9;
-
 /// A plan for the next run, for people.
-pub fn document(replanned: &Replanned) -> Document {
+pub(crate) fn document(replanned: &Replanned) -> Document {
     let title = replanned.request.as_ref().map_or("the logged plan", |request| request.task.title.as_str());
     let learnt = format!("The machine was fitted to {}.", replanned.fitted_to.join(", "));
+    let verdict = learning::verdict(replanned).map(Sentence::Advice);
     let margin = format!(
         "Expected peaks include the error that the model left unexplained after held-out starts. 90 % of starts stay below \
          the predicted peak times {:.2}, or below the error that 90 % of held-out starts left unexplained.",
         replanned.fit.peak_margin
     );
     let mut document = Document::titled(format!("Next run of {title}"))
-        .with(Section::plain(Id::SUMMARY, [Sentence::finding(learnt)]))
+        .with(Section::plain(Id::SUMMARY, verdict.into_iter().chain([Sentence::finding(learnt)])))
         .with(Section::new(Id::OTHER, "Expected", [expected(replanned)]).with(Sentence::note(margin)))
         .with(Section::new(Id::OTHER, "What changes", [Block::Facts(levers(replanned))]));
-    document.sections.extend(command(replanned));
+    document.sections.extend(learning::runs(replanned));
+    document.sections.extend(learning::command(replanned));
     if let Some(search) = &replanned.search {
         let numbers = ["speed deg/s", "from", "acceleration deg/s2", "from"];
         let held = Table::new(&["joint"], &numbers, search.held.iter().map(held_row));
         document.sections.push(Section::new(Id::OTHER, "Limits of the new plan", [held]));
     }
     document.remarked(&replanned.remarks)
-}
-
-fn command(replanned: &Replanned) -> Option<Section> {
-    let command = replanned.command.as_ref()?;
-    let numbers = [
-        "held-out R2",
-        "gain",
-        "correction deg",
-        "rms error deg",
-        "with command deg",
-        "speed ratio",
-        "acceleration ratio",
-    ];
-    let rows = command.joints.iter().map(|joint| command_row(replanned, joint));
-    let section = Section::new(Id::OTHER, "Command", [Table::new(&["joint"], &numbers, rows)])
-        .with(Sentence::note(
-            "Rms error: predicted if the plan is sent as it is, then with the command. Ratios: peak speed and acceleration of the \
-             command over those of the plan.",
-        ))
-        .with_all(cut_off(&command.joints).map(Sentence::Advice));
-    Some(section.with(Sentence::finding(nearest(replanned, &command.margins))))
 }
 
 fn percent(now: f64, then: f64) -> String {
@@ -67,7 +41,7 @@ fn expected(replanned: &Replanned) -> Table {
     let (before, after) = (&replanned.before, &replanned.after);
     let now = &before.predicted;
     let error = |name: &str, measured: Option<f64>, of: fn(&Predicted) -> f64| {
-        let change = percent(of(now), of(after));
+        let change = percent(measured.unwrap_or(of(now)), of(after));
         vec![name.to_owned(), optional(measured, deg), deg(of(now)), deg(of(after)), change]
     };
     let count = |p: &Predicted| p.transitions.len();
@@ -119,10 +93,11 @@ fn levers(replanned: &Replanned) -> Vec<Fact> {
             )
         }
     };
-    let command = replanned.command.as_ref().map_or("is the plan".to_owned(), |command| {
+    let command = replanned.command.as_ref().filter(|command| command.applied());
+    let command = command.map_or("is the plan".to_owned(), |command| {
         let joints = &command.joints;
-        let applied = joints.iter().filter(|joint| joint.compensation.applied && joint.gain > 0.0);
-        let most = joints.iter().map(|joint| joint.compensation.peak_correction_rad).fold(0.0, f64::max);
+        let applied = joints.iter().filter(|joint| joint.applied());
+        let most = joints.iter().map(|joint| joint.peak_correction_rad).fold(0.0, f64::max);
         format!(
             "corrected on {} of {}, by {} deg at most",
             applied.count(),
@@ -132,57 +107,13 @@ fn levers(replanned: &Replanned) -> Vec<Fact> {
     });
     let ours = Topics::default();
     let trajectory = replanned.trajectory.as_deref().unwrap_or(&ours.trajectory);
-    let samples = if replanned.command.is_some() { &ours.command } else { &ours.planned };
+    let samples = if replanned.command.as_ref().is_some_and(Commanded::applied) {
+        &ours.command
+    } else {
+        &ours.planned
+    };
     let send = format!("{samples}, or {trajectory} as a trajectory; compare the run with {}", ours.planned);
     vec![fact("plan", plan), fact("command", command), fact("send", send)]
-}
-
-fn command_row(replanned: &Replanned, joint: &JointCommand) -> Vec<String> {
-    let made = &joint.compensation;
-    let skill = replanned.fit.joint(&made.name).map(|fit| format!("{:.2}", fit.held_out_r2));
-    vec![
-        made.name.clone(),
-        skill.unwrap_or_else(|| NONE.to_owned()),
-        format!("{:.2}", joint.gain),
-        deg(made.peak_correction_rad),
-        optional(made.plain_rms_rad, deg),
-        optional(made.compensated_rms_rad, deg),
-        format!("{:.2}", made.speed_ratio),
-        format!("{:.2}", made.acceleration_ratio),
-    ]
-}
-
-/// Which corrections would have been larger.
-fn cut_off(joints: &[JointCommand]) -> Option<String> {
-    let all: Vec<&JointCommand> = joints.iter().filter(|joint| joint.compensation.cut_off).collect();
-    let most = all.iter().map(|joint| joint.compensation.peak_correction_rad).reduce(f64::max)?;
-    let names: Vec<&str> = all.iter().map(|joint| joint.compensation.name.as_str()).collect();
-    Some(format!(
-        "The correction is limited to {} deg (gain included) on {}; a larger --max-correction-deg would remove more of the error.",
-        deg(most),
-        names.join(", ")
-    ))
-}
-
-fn nearest(replanned: &Replanned, margins: &[Margin]) -> String {
-    let mut own: Vec<&Margin> = margins
-        .iter()
-        .filter(|margin| OF_COMMAND.contains(&margin.limit) || margin.joint.is_none())
-        .collect();
-    own.sort_by(|a, b| b.share.total_cmp(&a.share));
-    let Some(worst) = own.first() else {
-        return "Without a task the limits of the arm are unknown: check the command against yours before you send it.".into();
-    };
-    let near = own.iter().filter(|margin| margin.share > NEAR).count();
-    let joint = joint_name(replanned, worst.joint).map_or(String::new(), |name| format!("{name} "));
-    format!(
-        "Limits were checked on the command: the nearest is {joint}{}, {} of {} allowed, at {:.2} s{}.",
-        plan::name(worst.limit),
-        plan::shown(worst.limit, worst.value.abs()),
-        plan::shown(worst.limit, worst.allowed),
-        worst.t_s,
-        if near > 1 { format!("; {near} are used to 90 % or more") } else { String::new() }
-    )
 }
 
 fn held_row(held: &HeldTo) -> Vec<String> {

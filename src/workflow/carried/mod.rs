@@ -2,32 +2,48 @@
 
 pub mod arm_log;
 pub mod plan_log;
+mod promise;
 pub mod rest;
 mod schedule;
 pub mod stamp;
+mod worth;
 
-use std::{collections::BTreeMap, io::Write, path::Path};
+use std::{
+    collections::BTreeMap,
+    io::Write,
+    path::{Component, Path},
+};
 
+pub use promise::Promise;
 pub use schedule::Schedule;
+use sha2::{Digest, Sha256};
+pub use worth::worth;
 
-use super::plan::{PlanDocument, PlanFailure, arm_of};
+use super::plan::{PlanDocument, PlanFailure, TaskFiles};
 use crate::{
     arm::Arm,
+    input_file,
     log::{Attachment, LogWriter, Recording, WriteError},
     plant::Truth,
-    task::{Task, TaskError},
+    remark::{Code, Remarks},
+    task::{ArmSource, Task, TaskError},
 };
 
 /// Name of the attached task.
 const TASK: &str = "task.toml";
 /// Name of an attached task of which only the arm counts: the log holds another motion.
 const ARM: &str = "arm.toml";
+/// Names of the attached files of the task's arm.
+const URDF: &str = "robot.urdf";
+const HYDRAULICS: &str = "hydraulics.toml";
 /// Name of the attached plan.
 pub const PLAN: &str = "plan.json";
 /// Name of the metadata that say where a plan comes from.
 const PROVENANCE: &str = "hydrotrace.plan";
 /// Key of the provenance: when the times of the plan count from, s since the start of the log; 0 without.
 const STARTS: &str = "starts_s";
+/// Start of the keys of the provenance that hold the SHA-256 of the files, by name.
+const SHA256: &str = "sha256.";
 /// Name of the metadata that hold a simulated machine's truth, as JSON under the key [`JSON`].
 const TRUTH: &str = "hydrotrace.plant";
 const JSON: &str = "json";
@@ -44,29 +60,26 @@ pub struct Carried {
 impl Carried {
     /// What a log carries; files of other programs are left out.
     pub fn of(recording: &Recording) -> Self {
-        let ours = |file: &&Attachment| [TASK, ARM, PLAN].contains(&file.name.as_str());
+        let ours = |file: &&Attachment| [TASK, ARM, PLAN, URDF, HYDRAULICS].contains(&file.name.as_str());
         let mut files: Vec<Attachment> = recording.attachments.iter().filter(ours).cloned().collect();
         files.dedup_by(|a, b| a.name == b.name);
-        Self { files, provenance: recording.metadata.get(PROVENANCE).cloned().unwrap_or_default() }
+        let mut provenance = recording.metadata.get(PROVENANCE).cloned().unwrap_or_default();
+        provenance.retain(|key, _| !key.starts_with(SHA256));
+        Self { files, provenance }
     }
 
-    /// A task and a plan of it.
+    /// A task with its arm, and a plan of it.
     #[must_use]
-    pub fn with_plan(self, task: &str, plan: &PlanDocument) -> Self {
-        let file = |name: &str, kind: &str, data: &str| Attachment {
-            name: name.to_owned(),
-            media_type: kind.to_owned(),
-            data: data.as_bytes().to_vec(),
-        };
-        let files = vec![file(TASK, "application/toml", task), file(PLAN, "application/json", &plan.json())];
+    pub fn with_plan(self, task: &TaskFiles, plan: &PlanDocument) -> Self {
+        let mut files = attached(TASK, task);
+        files.push(attachment(PLAN, "application/json", &plan.json()));
         Self { files, ..self }
     }
 
     /// A task of which only the arm counts.
     #[must_use]
-    pub fn with_arm_of(self, task: &str) -> Self {
-        let (name, media_type) = (ARM.to_owned(), "application/toml".to_owned());
-        Self { files: vec![Attachment { name, media_type, data: task.as_bytes().to_vec() }], ..self }
+    pub fn with_arm_of(self, task: &TaskFiles) -> Self {
+        Self { files: attached(ARM, task), ..self }
     }
 
     /// The provenance in place of what was there.
@@ -82,10 +95,24 @@ impl Carried {
         self
     }
 
+    /// What is expected of the run of this command.
+    #[must_use]
+    pub fn with_promise(mut self, promise: &Promise) -> Self {
+        self.provenance.extend(promise.entries());
+        self
+    }
+
+    /// What was expected of the run, if its command came with a promise.
+    pub fn promise(&self) -> Option<Promise> {
+        Promise::of(&self.provenance)
+    }
+
     /// Without a task of which only the arm counts.
     #[must_use]
     pub fn of_plan(mut self) -> Self {
-        self.files.retain(|file| file.name != ARM);
+        if self.file(ARM).is_some() {
+            self.files.retain(|file| ![ARM, URDF, HYDRAULICS].contains(&file.name.as_str()));
+        }
         self
     }
 
@@ -116,13 +143,45 @@ impl Carried {
         Some(Task::parse(&self.task().or_else(|| self.text(ARM))?))
     }
 
-    /// The arm of the task in a log of this folder.
+    /// The task with the files of its arm, or of the one of which only the arm counts.
+    pub fn task_files(&self) -> Option<TaskFiles> {
+        let task = self.task().or_else(|| self.text(ARM))?;
+        Some(TaskFiles { task, urdf: self.text(URDF), hydraulics: self.text(HYDRAULICS) })
+    }
+
+    /// The arm of the task.
     ///
     /// # Errors
     ///
-    /// Within, if the arm's files are broken.
-    pub fn arm(&self, folder: &Path) -> Option<Result<Arm, PlanFailure>> {
-        Some(arm_of(&Task::parse(&self.task()?).ok()?, folder))
+    /// Within, if the arm's files are broken or were not carried.
+    pub fn arm(&self) -> Option<Result<Arm, PlanFailure>> {
+        Some(self.task_files()?.arm(&Task::parse(&self.task()?).ok()?))
+    }
+
+    /// Says of files beside the log that they are not those of the arm that it carries, which counts.
+    pub fn remark_others(&self, log: &Path, remarks: &mut Remarks) {
+        let Some(files) = self.task_files() else { return };
+        let Ok(Task { arm: ArmSource::File { urdf, hydraulics, .. }, .. }) = Task::parse(&files.task) else {
+            return;
+        };
+        let folder = log.parent().unwrap_or(Path::new(""));
+        for (name, carried) in [(Some(urdf), files.urdf), (hydraulics, files.hydraulics)] {
+            let (Some(name), Some(carried)) = (name, carried) else { continue };
+            // Of what a log names only a plain name is looked at, and only a file.
+            let plain =
+                matches!(Path::new(&name).components().collect::<Vec<_>>()[..], [Component::Normal(_)]);
+            let beside = folder.join(&name);
+            if plain
+                && beside.is_file()
+                && input_file::read_to_string(&beside).is_ok_and(|text| text != carried)
+            {
+                let message = format!(
+                    "{name} beside the log is not the one that its plan was made with, which the log carries and which \
+                     is used; plan again for the other"
+                );
+                remarks.add(Code::OtherFile, 1, message);
+            }
+        }
     }
 
     /// The plan; `None` without a plan document of ours.
@@ -144,9 +203,17 @@ impl Carried {
         self.provenance.get(STARTS)?.parse().ok().filter(|s: &f64| s.is_finite())
     }
 
-    /// Name and entries of the metadata.
+    /// Name and entries of the metadata, with the SHA-256 of every file where an arm's are among them: the sample arm
+    /// is the program's own.
     pub fn metadata(&self) -> (&'static str, BTreeMap<String, String>) {
-        (PROVENANCE, self.provenance.clone())
+        let hash = |file: &Attachment| {
+            (format!("{SHA256}{}", file.name), format!("{:x}", Sha256::digest(&file.data)))
+        };
+        let mut entries = self.provenance.clone();
+        if self.file(URDF).is_some() {
+            entries.extend(self.files.iter().map(hash));
+        }
+        (PROVENANCE, entries)
     }
 
     /// The files.
@@ -160,7 +227,8 @@ impl Carried {
     ///
     /// [`WriteError`].
     pub fn begin<W: Write>(&self, log: &mut LogWriter<W>) -> Result<(), WriteError> {
-        log.metadata(PROVENANCE, &self.provenance)
+        let (name, entries) = self.metadata();
+        log.metadata(name, &entries)
     }
 
     /// Writes the files, after the samples, stamped with the start of the log.
@@ -171,6 +239,18 @@ impl Carried {
     pub fn end<W: Write>(&self, log: &mut LogWriter<W>, start_ns: i64) -> Result<(), WriteError> {
         self.files.iter().try_for_each(|file| log.attach(&file.name, &file.media_type, &file.data, start_ns))
     }
+}
+
+fn attachment(name: &str, media_type: &str, data: &str) -> Attachment {
+    Attachment { name: name.to_owned(), media_type: media_type.to_owned(), data: data.as_bytes().to_vec() }
+}
+
+/// A task under a name, and the files of its arm.
+fn attached(name: &str, task: &TaskFiles) -> Vec<Attachment> {
+    let mut files = vec![attachment(name, "application/toml", &task.task)];
+    files.extend(task.urdf.iter().map(|text| attachment(URDF, "application/xml", text)));
+    files.extend(task.hydraulics.iter().map(|text| attachment(HYDRAULICS, "application/toml", text)));
+    files
 }
 
 /// Writes what a fit should find of a simulated machine.

@@ -24,13 +24,22 @@ pub enum Planned<'a> {
     Series(&'a Series),
 }
 
+/// What to send in place of a plan.
+#[derive(Debug, Clone, Copy)]
+pub struct Command<'a> {
+    /// Samples, of the plan's joints.
+    pub series: &'a Series,
+    /// Accelerations at these samples, rad/s², by track; none if they are not known.
+    pub acceleration_rad_s2: &'a [Vec<f64>],
+}
+
 /// What to write.
 #[derive(Debug, Clone, Copy)]
 pub struct PlanLog<'a> {
     /// Where the joints should be.
     pub plan: Planned<'a>,
     /// What to send, if that is not the plan; of the same joints.
-    pub command: Option<&'a Series>,
+    pub command: Option<Command<'a>>,
     /// The arm of these joints, if it is known.
     pub arm: Option<&'a Chain>,
     /// Topic of what to send as a trajectory; `None`: ours.
@@ -59,11 +68,14 @@ impl PlanLog<'_> {
             None => None,
         };
         let end_s = self.plan.end_s();
-        let sent = self.command.map_or(self.plan, Planned::Series);
-        let coarse = sent.states(&names, instants(end_s, TRAJECTORY_HZ).collect());
+        let coarse_s: Vec<f64> = instants(end_s, TRAJECTORY_HZ).collect();
+        let coarse = match &self.command {
+            Some(command) => command.states(&names, coarse_s),
+            None => self.plan.states(&names, coarse_s),
+        };
         log.trajectory_to_send(START_NS, &coarse.points().collect::<Vec<_>>())?;
         let fine_s: Vec<f64> = instants(end_s, self.rate_hz).collect();
-        let command = self.command.map(|command| Planned::Series(command).states(&names, fine_s.clone()));
+        let command = self.command.map(|command| command.states(&names, fine_s.clone()));
         let mut commanded = command.as_ref().map(States::points);
         for point in self.plan.states(&names, fine_s).points() {
             let stamp_ns = START_NS + point.time_from_start_ns;
@@ -117,6 +129,25 @@ impl Planned<'_> {
                 States { t_s, joints: names.len(), values: [position, velocity, Vec::new()] }
             }
         }
+    }
+}
+
+impl Command<'_> {
+    /// Accelerations only where all of the instants are samples.
+    fn states(&self, names: &[&str], t_s: Vec<f64>) -> States {
+        let mut found = Planned::Series(self.series).states(names, t_s);
+        let at = |name: &&str, t_s: f64| -> Option<f64> {
+            let joint = self.series.tracks.iter().position(|track| track.name() == *name)?;
+            let stamps = self.series.tracks.get(joint)?.t_s();
+            let sample = stamps.partition_point(|stamp| *stamp < t_s - 1e-6);
+            stamps.get(sample).filter(|stamp| (*stamp - t_s).abs() < 1e-6)?;
+            self.acceleration_rad_s2.get(joint)?.get(sample).copied()
+        };
+        let all = found.t_s.iter().flat_map(|t_s| names.iter().map(|name| at(name, *t_s)));
+        if let Some(acceleration) = all.collect::<Option<Vec<f64>>>() {
+            found.values[2] = acceleration;
+        }
+        found
     }
 }
 

@@ -1,27 +1,66 @@
-//! The command to send for a plan, held to the arm's limits.
+//! The command to send for a plan: what was learnt, held to the arm's limits as a controller interpolates it.
 
 use serde::{Deserialize, Serialize};
 
+use super::ReplanFailure;
 use crate::{
-    fit::{Compensation, Fit, FitError, JointCompensation, STEP_S, compensate},
-    plan::{KEPT_SHARE, Limit, Margin, Setup},
-    series::Series,
+    fit::{Fit, Learning, Learnt, Oscillation, Room, STEP_S, Step, Trial, learn, predict},
+    math::{State, range},
+    plan::{Interpolation, KEPT_SHARE, Limit, Margin, Setup},
+    series::{Series, Track, align},
+    spline::{Motion, Quantity, Samples},
 };
 
-/// Gains that are tried for a joint whose command breaks a limit, as shares of the gain asked for.
-const GAINS: [f64; 4] = [0.75, 0.5, 0.25, 0.0];
+/// Shares that are tried of a correction that breaks a limit of its joint or of the arm.
+const SHARES: [f64; 6] = [0.97, 0.9, 0.75, 0.5, 0.25, 0.0];
+
+/// Steps from one point of a trajectory to the next: of the samples, and of the trajectory in the log.
+const STRIDES: [usize; 2] = [1, 4];
+
+/// A plan and a motion are the same if their angles differ by no more, rad.
+const SAME_RAD: f64 = 1e-6;
 
 /// The command of one joint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointCommand {
-    /// The correction.
-    #[serde(flatten)]
-    pub compensation: JointCompensation,
+    /// The joint.
+    pub name: String,
+    /// How its correction came about.
+    pub step: Step,
+    /// Periodicity of what the model leaves unexplained; null without a run of this plan.
+    pub oscillation: Option<Oscillation>,
+    /// Frequency above which nothing is learnt, Hz.
+    pub cut_off_hz: f64,
+    /// Root mean square error of each run of this plan below 1.5 Hz, rad.
+    pub rms_error_rad: Vec<f64>,
+    /// The part of it that comes differently each time, rad; null with fewer than two runs.
+    pub spread_rad: Option<f64>,
+    /// Predicted root mean square error of the plan sent as it is, rad; null if the fit does not know the joint.
+    pub plain_rms_rad: Option<f64>,
+    /// The same of the command, rad.
+    pub compensated_rms_rad: Option<f64>,
+    /// Largest distance of command and plan, rad.
+    pub peak_correction_rad: f64,
+    /// Largest distance that was allowed, rad.
+    pub most_correction_rad: f64,
+    /// Lowest and highest angle of the command, rad.
+    pub range_rad: [f64; 2],
+    /// Largest speed of the command by that of the plan; 1 for a plan at rest.
+    pub speed_ratio: f64,
+    /// Largest acceleration of the command by that of the plan; 1 for a plan at rest.
+    pub acceleration_ratio: f64,
     /// Share of the correction that is applied.
-    pub gain: f64,
-    /// The limit for which that is less than was asked for.
+    pub share: f64,
+    /// The limit for which that is less than one.
     pub because: Option<Limit>,
+}
+
+impl JointCommand {
+    /// Whether the joint is corrected.
+    pub fn applied(&self) -> bool {
+        self.step != Step::None && self.share > 0.0
+    }
 }
 
 /// A command, and how near it comes to the arm's limits.
@@ -29,62 +68,229 @@ pub struct JointCommand {
 pub struct Commanded {
     /// What to send.
     pub series: Series,
+    /// Its accelerations, rad/s², by track and sample.
+    pub acceleration_rad_s2: Vec<Vec<f64>>,
     /// One entry a joint of the plan.
     pub joints: Vec<JointCommand>,
+    /// Joints that hunt; with three or more nothing is corrected.
+    pub hunting: usize,
     /// The limits of the task's arm; empty without a task.
     pub margins: Vec<Margin>,
 }
 
-/// A command for a plan. Where it breaks a limit of position, speed, acceleration or rod that the plan
-/// keeps, the joint's gain is lowered until it does not.
+impl Commanded {
+    /// Whether it differs from the plan.
+    pub fn applied(&self) -> bool {
+        self.joints.iter().any(JointCommand::applied)
+    }
+}
+
+/// A plan with what is known of it.
+pub(super) struct Subject<'a> {
+    pub(super) plan: &'a Series,
+    /// Its motion and when that starts, s.
+    pub(super) motion: Option<(Motion, f64)>,
+    pub(super) setup: Option<&'a Setup>,
+}
+
+/// A command for a plan, by its runs and a fit. Limits of the joints are kept by construction; where the limits of the arm
+/// as a whole or of rods are not, corrections are made smaller until they are.
 ///
 /// # Errors
 ///
-/// [`FitError`] for settings out of range.
+/// [`ReplanFailure`] for settings out of range.
 pub(super) fn commanded(
     fit: &Fit,
-    plan: &Series,
-    settings: Compensation,
-    setup: Option<&Setup>,
-) -> Result<Commanded, FitError> {
-    let made = compensate(fit, plan, settings)?;
-    let mut series = made.command;
-    let of = |compensation: JointCompensation| {
-        let gain = if compensation.applied { settings.gain } else { 0.0 };
-        JointCommand { compensation, gain, because: None }
+    subject: &Subject,
+    runs: &[Trial],
+    settings: Learning,
+) -> Result<Commanded, ReplanFailure> {
+    let Subject { plan, setup, .. } = subject;
+    let planned: Vec<Vec<[f64; 4]>> = plan.tracks.iter().map(|track| subject.derivatives(track)).collect();
+    let index = |name: &str| plan.tracks.iter().position(|track| track.name() == name);
+    let names = setup.map(Setup::joint_names).unwrap_or_default();
+    let room = |name: &str| {
+        let (range_rad, most) =
+            setup.and_then(|s| s.joint_limits(names.iter().position(|own| own == name)?))?;
+        Some(Room { range_rad, most, planned: planned.get(index(name)?)?.clone() })
     };
-    let mut joints: Vec<JointCommand> = made.joints.into_iter().map(of).collect();
-    let Some(setup) = setup else { return Ok(Commanded { series, joints, margins: Vec::new() }) };
-    let names = setup.joint_names();
-    let allowed = setup.sampled_margins(plan, STEP_S);
-    let share_of_plan = |margin: &Margin| {
-        let same = |other: &&Margin| (other.limit, other.joint) == (margin.limit, margin.joint);
-        allowed.iter().find(same).map_or(0.0, |found| found.share)
-    };
-    let broken = |margin: &&Margin| margin.share > KEPT_SHARE.max(share_of_plan(margin) + 1e-9);
-    for share in GAINS {
-        let margins = setup.sampled_margins(&series, STEP_S);
-        let worst: Vec<(usize, Limit)> =
-            margins.iter().filter(broken).filter_map(|margin| Some((margin.joint?, margin.limit))).collect();
-        if worst.is_empty() {
-            break;
-        }
-        for (j, joint) in joints.iter_mut().enumerate() {
-            let name = &joint.compensation.name;
-            let Some((_, limit)) = worst.iter().find(|(k, _)| names.get(*k) == Some(name)) else { continue };
-            let Some(track) = plan.tracks.get(j) else { continue };
-            let alone = Series { tracks: vec![track.clone()] };
-            let gain = share * settings.gain;
-            let again = compensate(fit, &alone, Compensation { gain, ..settings })?;
-            let (Some(track), Some(compensation)) =
-                (again.command.tracks.into_iter().next(), again.joints.into_iter().next())
-            else {
-                continue;
+    let learnt = learn(fit, plan, runs, settings, room)?;
+    let mut shares: Vec<(f64, Option<Limit>)> = vec![(1.0, None); plan.tracks.len()];
+    let mut margins = Vec::new();
+    if let Some(setup) = setup {
+        let sent = |shares: &[(f64, Option<Limit>)]| -> Vec<Vec<State>> {
+            let of = |name: &String| {
+                let j = index(name)?;
+                Some(states(&planned[j], &learnt.joints[j].correction, shares[j].0))
             };
-            series.tracks[j] = track;
-            *joint = JointCommand { compensation, gain, because: Some(*limit) };
+            names.iter().filter_map(of).collect()
+        };
+        let none = vec![(0.0, None); shares.len()];
+        let own = checked(setup, &sent(&none));
+        let broken = |(how, margin): &&(Checked, Margin)| {
+            let same = |(other, own): &&(Checked, Margin)| {
+                (other, own.limit, own.joint) == (how, margin.limit, margin.joint)
+            };
+            let least = own.iter().find(same).map_or(0.0, |(_, own)| own.share);
+            margin.share > KEPT_SHARE.max(least + 1e-9)
+        };
+        let mut found = checked(setup, &sent(&shares));
+        for share in SHARES {
+            let worst: Vec<&Margin> = found.iter().filter(broken).map(|(_, margin)| margin).collect();
+            if worst.is_empty() {
+                break;
+            }
+            for (j, of) in shares.iter_mut().enumerate() {
+                let is = |margin: &&&Margin| {
+                    margin.joint.is_none_or(|k| names.get(k).is_some_and(|name| index(name) == Some(j)))
+                };
+                if let Some(margin) = worst.iter().find(is) {
+                    *of = (share, Some(margin.limit));
+                }
+            }
+            found = checked(setup, &sent(&shares));
+        }
+        margins = nearest(found);
+    }
+    let share_of = |name: &str| index(name).map_or(1.0, |j| shares[j].0);
+    let series = learnt.command(plan, share_of)?;
+    let acceleration_rad_s2 = (planned.iter().zip(&learnt.joints).zip(&shares))
+        .map(|((planned, joint), (share, _))| {
+            planned
+                .iter()
+                .zip(&joint.correction)
+                .map(|(planned, made)| planned[2] + share * made[2])
+                .collect()
+        })
+        .collect();
+    let joints = joints(fit, plan, &series, &planned, &learnt, &shares)?;
+    Ok(Commanded { series, acceleration_rad_s2, joints, hunting: learnt.hunting, margins })
+}
+
+/// How something is interpolated, and how many steps a point lies after the one before.
+type Checked = (Interpolation, usize);
+
+/// All margins, by interpolation.
+fn checked(setup: &Setup, sent: &[Vec<State>]) -> Vec<(Checked, Margin)> {
+    let mut all = Vec::new();
+    for stride in STRIDES {
+        let points: Vec<Vec<State>> =
+            sent.iter().map(|states| states.iter().copied().step_by(stride).collect()).collect();
+        for how in Interpolation::ALL {
+            let found = setup.command_margins(&points, stride as f64 * STEP_S, how);
+            all.extend(found.into_iter().map(|margin| ((how, stride), margin)));
         }
     }
-    let margins = setup.sampled_margins(&series, STEP_S);
-    Ok(Commanded { series, joints, margins })
+    all
+}
+
+/// Of each limit the margin that is used most.
+fn nearest(all: Vec<(Checked, Margin)>) -> Vec<Margin> {
+    let mut tops: Vec<Margin> = Vec::new();
+    for (_, margin) in all {
+        match tops.iter_mut().find(|top| (top.limit, top.joint) == (margin.limit, margin.joint)) {
+            Some(top) if top.share >= margin.share => {}
+            Some(top) => *top = margin,
+            None => tops.push(margin),
+        }
+    }
+    tops
+}
+
+fn states(planned: &[[f64; 4]], correction: &[[f64; 3]], share: f64) -> Vec<State> {
+    let one = |(planned, made): (&[f64; 4], &[f64; 3])| State {
+        position: planned[0] + share * made[0],
+        velocity: planned[1] + share * made[1],
+        acceleration: planned[2] + share * made[2],
+    };
+    planned.iter().zip(correction).map(one).collect()
+}
+
+impl Subject<'_> {
+    /// Angle, speed, acceleration and jerk of a joint's plan every step: of its motion where that is known, otherwise by
+    /// differences of speeds.
+    fn derivatives(&self, track: &Track) -> Vec<[f64; 4]> {
+        let (t_s, position, speed) = (track.t_s(), track.position(), track.velocity());
+        let last = t_s.len().saturating_sub(1);
+        let slope = |values: &dyn Fn(usize) -> f64, k: usize| {
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+            (values(after) - values(before)) / ((after - before).max(1) as f64 * STEP_S)
+        };
+        let speed_at = |k: usize| speed.map_or_else(|| slope(&|i| position[i], k), |speed| speed[k]);
+        let acceleration: Vec<f64> = (0..t_s.len()).map(|k| slope(&speed_at, k)).collect();
+        let mut states: Vec<[f64; 4]> = (0..t_s.len())
+            .map(|k| [position[k], speed_at(k), acceleration[k], slope(&|i| acceleration[i], k)])
+            .collect();
+        self.by_motion(track, &mut states);
+        states
+    }
+
+    fn by_motion(&self, track: &Track, states: &mut [[f64; 4]]) {
+        let (Some((motion, starts_s)), Some(setup)) = (&self.motion, self.setup) else { return };
+        let Some(joint) = setup.joint_names().iter().position(|name| name == track.name()) else { return };
+        let local_s: Vec<f64> = track.t_s().iter().map(|t_s| t_s - starts_s).collect();
+        let mut samples = Samples::default();
+        motion.sample(&local_s, Quantity::Jerk, &mut samples);
+        let position = samples.of(Quantity::Position, joint);
+        if !states.iter().zip(position).all(|(state, own)| (state[0] - own).abs() < SAME_RAD) {
+            return;
+        }
+        let end_s = motion.duration_s();
+        let (rise, jerk) = (samples.of(Quantity::Acceleration, joint), samples.of(Quantity::Jerk, joint));
+        for (((state, t_s), rise), jerk) in states.iter_mut().zip(&local_s).zip(rise).zip(jerk) {
+            let inside = (0.0..=end_s).contains(t_s);
+            (state[2], state[3]) = if inside { (*rise, *jerk) } else { (0.0, 0.0) };
+        }
+    }
+}
+
+/// What is said of each joint.
+fn joints(
+    fit: &Fit,
+    plan: &Series,
+    sent: &Series,
+    planned: &[Vec<[f64; 4]>],
+    learnt: &Learnt,
+    shares: &[(f64, Option<Limit>)],
+) -> Result<Vec<JointCommand>, ReplanFailure> {
+    let mut joints = Vec::with_capacity(learnt.joints.len());
+    for (((made, planned), (share, because)), (track, sent)) in
+        learnt.joints.iter().zip(planned).zip(shares).zip(plan.tracks.iter().zip(&sent.tracks))
+    {
+        let rms_rad = |sent: &Track| -> Result<Option<f64>, ReplanFailure> {
+            let Some(joint) = fit.joint(&made.name) else { return Ok(None) };
+            let response = predict(&joint.model, sent)?;
+            let squares = align(track, &response).map_or(0.0, |pair| {
+                let errors = pair.planned.iter().zip(&pair.measured).map(|(p, m)| (p - m).powi(2));
+                errors.sum::<f64>() / pair.planned.len().max(1) as f64
+            });
+            Ok(Some(squares.sqrt()))
+        };
+        let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |most, x| most.max(x.abs()));
+        let ratio = |derivative: usize| {
+            let plain = most(&mut planned.iter().map(|state| state[derivative]));
+            let both = planned.iter().zip(&made.correction);
+            let now = most(&mut both.map(|(state, made)| state[derivative] + share * made[derivative]));
+            if plain > 0.0 { now / plain } else { 1.0 }
+        };
+        let [least, highest] = range(sent.position().iter().copied());
+        joints.push(JointCommand {
+            name: made.name.clone(),
+            step: made.step,
+            oscillation: made.oscillation,
+            cut_off_hz: made.cut_off_hz,
+            rms_error_rad: made.rms_error_rad.clone(),
+            spread_rad: made.spread_rad,
+            plain_rms_rad: rms_rad(track)?,
+            compensated_rms_rad: rms_rad(sent)?,
+            peak_correction_rad: share * most(&mut made.correction.iter().map(|made| made[0])),
+            most_correction_rad: made.most_rad,
+            range_rad: [least, highest],
+            speed_ratio: ratio(1),
+            acceleration_ratio: ratio(2),
+            share: *share,
+            because: *because,
+        });
+    }
+    Ok(joints)
 }

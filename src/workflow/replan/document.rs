@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Before, HeldTo, JointCommand, Predicted, Replanned};
+use super::{Before, Decision, HeldTo, JointCommand, PastRun, Predicted, Replanned};
 use crate::{
     document::{PROGRAM, pretty},
     remark::Remark,
@@ -10,13 +10,13 @@ use crate::{
     workflow::plan::MarginEntry,
 };
 
-const FORMAT: &str = "hydrotrace.replan.v2";
+const FORMAT: &str = "hydrotrace.replan.v3";
 
 /// The plan and command of the next run with their predicted errors. Angles are radians, times seconds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ReplanDocument {
-    /// Always "hydrotrace.replan.v2".
+    /// Always "hydrotrace.replan.v3".
     pub format: String,
     /// Name and version of the program that wrote it.
     pub program: String,
@@ -24,6 +24,10 @@ pub struct ReplanDocument {
     pub fitted_to: Vec<String>,
     /// The last run.
     pub before: Before,
+    /// Runs of this plan so far.
+    pub runs: Vec<PastRun>,
+    /// Whether the new command is worth sending.
+    pub decision: Decision,
     /// Prediction for the next run.
     pub after: Predicted,
     /// From the first to the last motion of the new plan, s.
@@ -59,6 +63,8 @@ impl ReplanDocument {
             program: PROGRAM.to_owned(),
             fitted_to: replanned.fitted_to.clone(),
             before: replanned.before.clone(),
+            runs: replanned.past.runs.clone(),
+            decision: replanned.past.decision.clone(),
             after: replanned.after.clone(),
             duration_s: replanned.duration_s,
             retimed: replanned.retimed,
@@ -90,8 +96,8 @@ mod tests {
     #[test]
     fn the_committed_schema_is_that_of_the_next_plan() {
         crate::schema::is_committed::<ReplanDocument>(
-            "replan.v2.schema.json",
-            "hydrotrace replan, version 2",
+            "replan.v3.schema.json",
+            "hydrotrace replan, version 3",
         );
     }
 

@@ -11,7 +11,7 @@ use crate::{
     workflow::{
         carried::{
             Carried,
-            rest::{PLAN_LEAD_S, PLAN_TAIL_S},
+            rest::{COMMAND_TAIL_S, PLAN_LEAD_S},
         },
         plan::PlanRequest,
     },
@@ -19,6 +19,9 @@ use crate::{
 
 /// Planned speed that is motion, rad/s.
 const MOVES_RAD_S: f64 = 0.05 * DEGREE_RAD;
+
+/// The longest time without a plan within one motion, s.
+const LONGEST_HOLE_S: f64 = 60.0;
 
 /// The last run's plan.
 pub(super) struct Last {
@@ -43,11 +46,11 @@ impl Last {
         let planned = &recording.planned;
         let [from_s, to_s] =
             moving_s(planned).ok_or_else(|| ReplanFailure::AtRest { path: path.to_owned() })?;
-        let plan = cut(planned, from_s - PLAN_LEAD_S, to_s + PLAN_TAIL_S)?;
+        let plan = cut(planned, from_s - PLAN_LEAD_S, to_s + COMMAND_TAIL_S)?;
         let carried = Carried::of(recording).of_plan();
-        let request = match (&inputs.task, carried.task()) {
+        let request = match (&inputs.task, carried.task_files()) {
             (Some(task), _) => Some(PlanRequest::read(task)?),
-            (None, Some(text)) => Some(PlanRequest::parse(path, text)?),
+            (None, Some(files)) => Some(PlanRequest::of(path, files)?),
             (None, None) => None,
         };
         if let Some(request) = &request {
@@ -94,18 +97,42 @@ fn trajectory_topic(planned: &str) -> Option<String> {
     }
 }
 
-/// When the first joint starts to move and the last one stops, s.
-fn moving_s(series: &Series) -> Option<[f64; 2]> {
+/// When the first joint starts to move and the last one stops, s, in the newest part of the log in which one moves.
+pub(super) fn moving_s(series: &Series) -> Option<[f64; 2]> {
+    parts_s(series).into_iter().rev().find_map(|part_s| moving_within_s(series, part_s))
+}
+
+/// Parts of a log with holes between them in which no joint has a plan: a clock was set, or recording paused. What
+/// lies on two sides of one is not one motion.
+fn parts_s(series: &Series) -> Vec<[f64; 2]> {
+    let span = |track: &Track| {
+        let t_s = track.t_s().to_vec();
+        track.segments().iter().map(move |part| [t_s[part.start], t_s[part.end - 1]]).collect::<Vec<_>>()
+    };
+    let mut all: Vec<[f64; 2]> = series.tracks.iter().flat_map(span).collect();
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut parts: Vec<[f64; 2]> = Vec::new();
+    for [from_s, to_s] in all {
+        match parts.last_mut() {
+            Some(part) if from_s - part[1] <= LONGEST_HOLE_S => part[1] = part[1].max(to_s),
+            _ => parts.push([from_s, to_s]),
+        }
+    }
+    parts
+}
+
+fn moving_within_s(series: &Series, [begin_s, end_s]: [f64; 2]) -> Option<[f64; 2]> {
     let mut found: Option<[f64; 2]> = None;
     for track in &series.tracks {
         let (t_s, angle_rad) = (track.t_s(), track.position());
+        let within = t_s.partition_point(|t| *t < begin_s)..t_s.partition_point(|t| *t <= end_s);
         let moving = |k: usize| {
             let fast = track.velocity().is_some_and(|speed| speed[k].abs() > MOVES_RAD_S);
-            fast || (k > 0
+            fast || (k > within.start
                 && (angle_rad[k] - angle_rad[k - 1]).abs() > MOVES_RAD_S * (t_s[k] - t_s[k - 1]).max(1e-3))
         };
-        let first = (0..track.len()).find(|&k| moving(k));
-        let last = (0..track.len()).rev().find(|&k| moving(k));
+        let first = within.clone().find(|&k| moving(k));
+        let last = within.clone().rev().find(|&k| moving(k));
         if let (Some(first), Some(last)) = (first, last) {
             let [from, to] = found.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
             found = Some([from.min(t_s[first]), to.max(t_s[last])]);

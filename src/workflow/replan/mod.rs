@@ -1,14 +1,18 @@
 //! `replan`: from the logs of runs to a plan and a command for the next one.
 
 mod command;
+#[cfg(test)]
+mod command_laws;
 mod document;
 mod failure;
+mod history;
 mod last;
 mod limits;
 mod outcome;
 mod predicted;
 mod retime;
 mod samples;
+mod warp;
 
 use std::{ops::ControlFlow, path::PathBuf};
 
@@ -17,22 +21,27 @@ use rayon::prelude::*;
 pub use command::{Commanded, JointCommand};
 pub use document::ReplanDocument;
 pub use failure::ReplanFailure;
+pub use history::{Decision, PastRun};
 pub use limits::{HeldTo, Origin};
 pub use outcome::{Before, Replanned, Search};
-pub use predicted::{Predicted, PredictedTransition, predicted};
+pub use predicted::{Predicted, PredictedTransition, predicted, promised};
 
 use super::fit::{self, LimitsFile};
 use crate::{
-    fit::{Compensation, Fit, JointFit},
+    fit::{Fit, JointFit, Learning, Trial},
     log::{ReadOptions, Recording},
     plan::{PlanEvaluation, Setup},
     remark::{Code, Remarks},
     replay::Rules,
     series::{Series, Track},
     task::{Ceilings, Objective, Objectives},
+    workflow::carried::rest::PLAN_LEAD_S,
 };
+use command::{Subject, commanded};
+use history::History;
 use last::Last;
 use samples::sampled;
+use warp::Warp;
 
 /// What to plan again, and what may be changed.
 #[derive(Debug, Clone)]
@@ -49,8 +58,10 @@ pub struct Inputs {
     pub keep_plan: bool,
     /// Whether a command is made.
     pub precompensate: bool,
+    /// Whether other timings are searched though runs of this plan were corrected already: learning starts anew.
+    pub retime: bool,
     /// How far a command may leave its plan.
-    pub compensation: Compensation,
+    pub learning: Learning,
     /// How much longer the plan may take, as a share.
     pub time_growth: f64,
     /// How much rougher it may be and how much more power it may take, as a share.
@@ -72,7 +83,8 @@ impl Default for Inputs {
             task: None,
             keep_plan: false,
             precompensate: true,
-            compensation: Compensation::default(),
+            retime: false,
+            learning: Learning::default(),
             time_growth: 0.0,
             cost_growth: 0.1,
             evaluations: 20_000,
@@ -105,6 +117,9 @@ pub fn run(
     let (fit, fitted_to, mut remarks) = machine(inputs, &observed)?;
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
     let last = Last::of(path, newest, inputs)?;
+    if inputs.task.is_none() {
+        last.carried.remark_others(path, &mut remarks);
+    }
     if inputs.precompensate
         && !last.plan.tracks.iter().any(|t| fit.joint(t.name()).is_some_and(JointFit::trusted))
     {
@@ -120,11 +135,15 @@ pub fn run(
     }
     let before =
         Before::of(newest, &last, predicted(&fit, &last.plan, &last.plan, &inputs.rules)?, &inputs.rules);
+    let history = History::of(&inputs.logs, &observed, &last.plan, &inputs.rules)?;
+    let learns = inputs.precompensate && history.begun() && !inputs.retime;
     let search = match &last.request {
-        Some(request) if !inputs.keep_plan => Some(searched(inputs, &fit, &last, request, observer)?),
+        Some(request) if !inputs.keep_plan && !learns => {
+            Some(searched(inputs, &fit, &last, request, observer)?)
+        }
         _ => None,
     };
-    if search.is_none() && !inputs.keep_plan {
+    if search.is_none() && !inputs.keep_plan && !learns {
         if !inputs.precompensate {
             return Err(ReplanFailure::NoTask { path: path.clone() });
         }
@@ -133,13 +152,16 @@ pub fn run(
         remarks.add(Code::NotSupported, 1, message);
     }
     let setup = last.request.as_ref().map(|request| &request.setup);
+    let decision = if learns { history.decision() } else { Decision::Send };
     let options = candidates(&last, search.as_ref())?;
+    let maker = Maker { inputs, fit: &fit, setup, last: &last, history: &history, decision: &decision };
     let made: Vec<Candidate> = options
         .into_par_iter()
-        .map(|(interval_s, plan)| Candidate::of(inputs, &fit, setup, interval_s, plan))
+        .map(|(interval_s, plan)| maker.candidate(interval_s, plan))
         .collect::<Result<_, _>>()?;
     let chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
-    outcome::replanned(inputs, (fit, fitted_to), last, before, search, chosen, remarks)
+    let past = outcome::Past { runs: history.runs, decision };
+    outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)
 }
 
 /// The machine: fitted, or from a file; with the names of the logs behind it.
@@ -199,6 +221,9 @@ fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, Repl
         return Ok(vec![(None, last.plan.clone())]);
     }
     let sample = |interval_s: &Vec<f64>| -> Result<Sampled, ReplanFailure> {
+        if search.start.as_ref() == Some(interval_s) {
+            return Ok((Some(interval_s.clone()), last.plan.clone()));
+        }
         let motion = request.setup.motion(&request.setup.times_s(interval_s))?;
         Ok((Some(interval_s.clone()), sampled(&request.setup, &motion)?))
     };
@@ -213,23 +238,63 @@ pub(super) struct Candidate {
     pub(super) predicted: Predicted,
 }
 
-impl Candidate {
-    fn of(
-        inputs: &Inputs,
-        fit: &Fit,
-        setup: Option<&Setup>,
-        interval_s: Option<Vec<f64>>,
-        plan: Series,
-    ) -> Result<Self, ReplanFailure> {
+/// Makes candidates.
+struct Maker<'a> {
+    inputs: &'a Inputs,
+    fit: &'a Fit,
+    setup: Option<&'a Setup>,
+    last: &'a Last,
+    history: &'a History,
+    decision: &'a Decision,
+}
+
+impl Maker<'_> {
+    /// `interval_s` is that of another plan than the last; its runs say nothing of this one.
+    fn candidate(&self, interval_s: Option<Vec<f64>>, plan: Series) -> Result<Candidate, ReplanFailure> {
+        let Self { inputs, fit, setup, last, history, decision } = self;
+        let kept = plan == last.plan;
+        let motion = match (&interval_s, setup) {
+            (Some(interval_s), Some(setup)) if !kept => {
+                Some((setup.motion(&setup.times_s(interval_s))?, PLAN_LEAD_S))
+            }
+            _ => last.motion().zip(last.starts_s),
+        };
+        let warped = if kept { None } else { self.warped(interval_s.as_deref(), &plan) };
+        let trials = match &warped {
+            _ if kept => history.trials(),
+            Some(measured) => vec![Trial { sent: &plan, measured }],
+            None => Vec::new(),
+        };
+        let keep = match decision {
+            Decision::Keep { run, .. } if kept => Some(*run),
+            _ => None,
+        };
+        let learning = Learning { keep, ..inputs.learning };
         let command = if inputs.precompensate {
-            let made = command::commanded(fit, &plan, inputs.compensation, setup)?;
-            made.joints.iter().any(|joint| joint.compensation.applied).then_some(made)
+            let subject = Subject { plan: &plan, motion, setup: *setup };
+            Some(commanded(fit, &subject, &trials, learning)?)
         } else {
             None
         };
         let sent = command.as_ref().map_or(&plan, |command| &command.series);
-        let predicted = predicted(fit, &plan, sent, &inputs.rules)?;
-        Ok(Self { interval_s, plan, command, predicted })
+        let newest = keep.unwrap_or(trials.len().saturating_sub(1));
+        let base = trials.get(newest).map(|trial| (trial.sent, trial.measured));
+        let spread_rad =
+            |name: &str| command.as_ref()?.joints.iter().find(|joint| joint.name == name)?.spread_rad;
+        let predicted = promised(fit, &plan, sent, base, spread_rad, &inputs.rules)?;
+        Ok(Candidate { interval_s, plan, command, predicted })
+    }
+
+    /// What the newest run tells of another timing.
+    fn warped(&self, interval_s: Option<&[f64]>, plan: &Series) -> Option<Series> {
+        let Self { fit, setup, last, history, .. } = self;
+        let (starts_s, old_s) = (last.starts_s?, last.times_s.as_ref()?);
+        let new_s = setup.as_ref()?.times_s(interval_s?);
+        let warp = Warp {
+            old_s: old_s.iter().map(|t_s| starts_s + t_s).collect(),
+            new_s: new_s.iter().map(|t_s| PLAN_LEAD_S + t_s).collect(),
+        };
+        warp.run(fit, plan, history.newest()?)
     }
 }
 

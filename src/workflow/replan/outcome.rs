@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Candidate, Commanded, HeldTo, Inputs, Predicted, ReplanFailure, last::Last};
+use super::{Candidate, Commanded, Decision, HeldTo, PastRun, Predicted, ReplanFailure, last::Last};
 use crate::{
     fit::Fit,
     log::{Recording, WriteError},
@@ -15,13 +15,16 @@ use crate::{
     task::{Ceilings, Objective, Objectives},
     workflow::{
         carried::{
-            Carried,
-            plan_log::{PlanLog, Planned},
+            Carried, Promise,
+            plan_log::{Command, PlanLog, Planned},
             rest::PLAN_LEAD_S,
         },
         plan::{PlanDocument, PlanRequest},
     },
 };
+
+/// Less of a correction than this is worth a remark.
+const LEAST_SHARE: f64 = 0.85;
 
 /// The last run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -107,6 +110,8 @@ pub struct Replanned {
     pub objectives_before: Option<Objectives>,
     /// The command, if one was made.
     pub command: Option<Commanded>,
+    /// Runs of the plan so far.
+    pub past: Past,
     /// Where the joints should be.
     pub plan: Series,
     /// When the times of the task's plan count from, s.
@@ -120,11 +125,20 @@ pub struct Replanned {
     carried: Carried,
 }
 
+/// The runs of the plan so far, and what follows from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Past {
+    /// In their order.
+    pub runs: Vec<PastRun>,
+    /// Whether to go on.
+    pub decision: Decision,
+}
+
 pub(super) fn replanned(
-    inputs: &Inputs,
     (fit, fitted_to): (Fit, Vec<String>),
     last: Last,
     before: Before,
+    past: Past,
     search: Option<Search>,
     chosen: Candidate,
     mut remarks: Remarks,
@@ -151,17 +165,18 @@ pub(super) fn replanned(
         remarks.add(Code::BeyondLimit, 1, message);
     }
     if let Some(command) = &command {
-        for joint in command.joints.iter().filter(|joint| joint.because.is_some()) {
+        for joint in command.joints.iter().filter(|joint| joint.share < LEAST_SHARE) {
             let message = format!(
-                "the gain of {} is {:.2}, not {:.2}: its command would break a limit",
-                joint.compensation.name, joint.gain, inputs.compensation.gain
+                "{:.0} % of the correction of {} is applied: more of it would break a limit",
+                100.0 * joint.share,
+                joint.name
             );
             remarks.add(Code::BeyondLimit, 1, message);
         }
     }
     let duration_s =
         evaluation.as_ref().map_or(last.duration_s, |evaluation| evaluation.objectives[Objective::Duration]);
-    let starts_s = if interval_s.is_some() { Some(PLAN_LEAD_S) } else { last.starts_s };
+    let starts_s = if retimed { Some(PLAN_LEAD_S) } else { last.starts_s };
     Ok(Replanned {
         fit,
         fitted_to,
@@ -173,6 +188,7 @@ pub(super) fn replanned(
         evaluation,
         objectives_before,
         command,
+        past,
         plan,
         starts_s,
         request: last.request,
@@ -183,6 +199,14 @@ pub(super) fn replanned(
 }
 
 impl Replanned {
+    /// What is expected of the next run.
+    pub fn promise(&self) -> Promise {
+        Promise {
+            mean_peak_rad: self.after.mean_peak_rad,
+            mean_peak_margin_rad: self.after.mean_peak_margin_rad,
+        }
+    }
+
     /// The bytes of the log: plan and command as channels of their own, and the task with the new plan.
     ///
     /// # Errors
@@ -193,17 +217,22 @@ impl Replanned {
             (Some(request), Some(evaluation)) => {
                 let (title, joints) = (&request.task.title, request.setup.joint_names());
                 let plan = PlanDocument::evaluated(title, &joints, evaluation, true);
-                Carried::default().with_plan(&request.text, &plan)
+                Carried::default().with_plan(&request.files, &plan)
             }
             _ => self.carried.clone(),
         }
-        .with_provenance(provenance);
+        .with_provenance(provenance)
+        .with_promise(&self.promise());
         if let Some(starts_s) = self.starts_s {
             carried = carried.with_starts_s(starts_s);
         }
         PlanLog {
             plan: Planned::Series(&self.plan),
-            command: self.command.as_ref().map(|command| &command.series),
+            command: self
+                .command
+                .as_ref()
+                .filter(|made| made.applied())
+                .map(|made| Command { series: &made.series, acceleration_rad_s2: &made.acceleration_rad_s2 }),
             arm: self.request.as_ref().map(|request| &request.setup.arm().chain),
             trajectory: self.trajectory.as_deref(),
             carried: &carried,

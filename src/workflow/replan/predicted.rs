@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     fit::{Fit, FitError, predict},
     replay::{Kind, Rules, replay},
-    series::{Series, align},
+    series::{Pair, Series, Track, align},
 };
 
 /// Predicted tracking error of a run.
@@ -52,16 +52,63 @@ pub struct PredictedTransition {
 ///
 /// [`FitError`] for a plan longer than an hour.
 pub fn predicted(fit: &Fit, plan: &Series, sent: &Series, rules: &Rules) -> Result<Predicted, FitError> {
+    promised(fit, plan, sent, None, |_| None, rules)
+}
+
+/// Peak of what differs from run to run by its root mean square, in the mean and nine times of ten.
+const PEAKS_OF_SPREAD: [f64; 2] = [2.0, 3.0];
+
+/// The same from what was sent and what came in a run of this plan, if one is known: the model then tells only what changes.
+///
+/// # Errors
+///
+/// As [`predicted`].
+pub fn promised(
+    fit: &Fit,
+    plan: &Series,
+    sent: &Series,
+    run: Option<(&Series, &Series)>,
+    spread_rad: impl Fn(&str) -> Option<f64>,
+    rules: &Rules,
+) -> Result<Predicted, FitError> {
     let mut pairs = Vec::new();
     for track in &plan.tracks {
         let (Some(joint), Some(sent)) = (fit.joint(track.name()), sent.track(track.name())) else { continue };
         let response = predict(&joint.model, sent)?;
+        let before =
+            run.and_then(|(sent, came)| Some((sent.track(track.name())?, came.track(track.name())?)));
+        let response = match before {
+            Some((sent, came)) => changed(came, &predict(&joint.model, sent)?, response),
+            None => response,
+        };
         pairs.extend(align(track, &response));
     }
-    let found = replay(&pairs, rules);
+    let left_rad = |name: &str| left_rad(fit, name, spread_rad(name));
+    Ok(summary(&left_rad, fit.peak_margin, &pairs, rules))
+}
+
+/// What came before, and what the model says that changes.
+fn changed(came: &Track, modelled_before: &Track, modelled: Track) -> Track {
+    let position = (modelled.t_s().iter().zip(modelled.position()))
+        .map(|(t_s, now)| came.held_at(*t_s).position + now - modelled_before.held_at(*t_s).position)
+        .collect();
+    Track::new(modelled.name(), modelled.t_s(), position, &[]).unwrap_or(modelled)
+}
+
+/// Peak error that comes beside the modelled one, mean and 0.9 quantile, rad: by the spread of runs where it is known, by held-out
+/// starts of the fit otherwise.
+fn left_rad(fit: &Fit, name: &str, spread_rad: Option<f64>) -> [f64; 2] {
+    let unexplained = fit.joint(name).and_then(|joint| joint.unexplained_peak_rad).unwrap_or([0.0; 2]);
+    match spread_rad {
+        Some(spread_rad) => [0, 1].map(|k| (PEAKS_OF_SPREAD[k] * spread_rad).min(unexplained[k])),
+        None => unexplained,
+    }
+}
+
+fn summary(left_rad: &dyn Fn(&str) -> [f64; 2], margin: f64, pairs: &[Pair], rules: &Rules) -> Predicted {
+    let found = replay(pairs, rules);
     let transition = |t: &crate::replay::Transition| {
-        let [mean, q90] =
-            fit.joint(&t.joint).and_then(|joint| joint.unexplained_peak_rad).unwrap_or([0.0; 2]);
+        let [mean, q90] = left_rad(&t.joint);
         let modelled_peak_rad = t.peak_error;
         PredictedTransition {
             joint: t.joint.clone(),
@@ -69,14 +116,14 @@ pub fn predicted(fit: &Fit, plan: &Series, sent: &Series, rules: &Rules) -> Resu
             planned_onset_s: t.planned_onset_s,
             modelled_peak_rad,
             expected_peak_rad: modelled_peak_rad.hypot(mean),
-            peak_margin_rad: (fit.peak_margin * modelled_peak_rad).max(modelled_peak_rad.hypot(q90)),
+            peak_margin_rad: (margin * modelled_peak_rad).max(modelled_peak_rad.hypot(q90)),
         }
     };
     let transitions: Vec<PredictedTransition> = found.transitions.iter().map(transition).collect();
     let count = transitions.len().max(1) as f64;
     let sum = |of: fn(&PredictedTransition) -> f64| transitions.iter().map(of).sum::<f64>();
     let of_kind = |kind| transitions.iter().filter(|t| t.kind == kind).count();
-    Ok(Predicted {
+    Predicted {
         mean_peak_rad: sum(|t| t.expected_peak_rad) / count,
         worst_peak_rad: transitions.iter().map(|t| t.expected_peak_rad).fold(0.0, f64::max),
         mean_peak_margin_rad: sum(|t| t.peak_margin_rad) / count,
@@ -84,5 +131,5 @@ pub fn predicted(fit: &Fit, plan: &Series, sent: &Series, rules: &Rules) -> Resu
         starts: of_kind(Kind::Start),
         reversals: of_kind(Kind::Reversal),
         transitions,
-    })
+    }
 }

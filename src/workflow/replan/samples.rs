@@ -4,7 +4,7 @@ use crate::{
     plan::Setup,
     series::{Series, SignalError, Track},
     spline::{Motion, Quantity, Samples},
-    workflow::carried::rest::{PLAN_LEAD_S, PLAN_TAIL_S},
+    workflow::carried::rest::{COMMAND_TAIL_S, PLAN_LEAD_S},
 };
 
 /// A stretch of a series every [`STEP_S`](crate::fit::STEP_S), its times counted from its start; beyond its ends joints rest.
@@ -34,7 +34,7 @@ fn grid(duration_s: f64) -> Vec<f64> {
 /// A motion by samples, with rests before and after.
 pub(super) fn sampled(setup: &Setup, motion: &Motion) -> Result<Series, SignalError> {
     let duration_s = motion.duration_s();
-    let t_s = grid(duration_s + PLAN_LEAD_S + PLAN_TAIL_S);
+    let t_s = grid(duration_s + PLAN_LEAD_S + COMMAND_TAIL_S);
     let local_s: Vec<f64> = t_s.iter().map(|t| t - PLAN_LEAD_S).collect();
     let mut samples = Samples::default();
     motion.sample(&local_s, Quantity::Velocity, &mut samples);

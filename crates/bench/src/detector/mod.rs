@@ -304,6 +304,6 @@ fn assign(truth: &[(i8, f64)], found: &[(i8, f64)]) -> Vec<(usize, usize)> {
 mod tests {
     #[test]
     fn the_committed_schema_is_that_of_the_document() {
-        crate::schema::is_committed::<super::Detector>("detector.v1.schema.json");
+        crate::schema::is_committed::<super::Detector>("detector.v1.schema.json", "Detector");
     }
 }

@@ -7,7 +7,7 @@ use std::{collections::BTreeMap, ops::ControlFlow};
 
 use hydrotrace::render::kit::significant;
 use moea::{
-    Budget, MoeaError, Operators, Population, Problem, Settings, benchmark::Benchmark, compare::Yardstick,
+    Budget, MoeaError, Operators, Population, Problem, Settings, benchmark::Benchmark, compare::Reference,
     optimise,
 };
 use rayon::prelude::*;
@@ -71,28 +71,28 @@ pub const FORM: Form = Form {
 pub struct KnownFront {
     problem: Benchmark,
     operators: Operators,
-    yardstick: Yardstick,
+    reference: Reference,
     facts: ReferenceFacts,
 }
 
 impl KnownFront {
     /// Computes the front.
     pub fn new(problem: Benchmark, operators: Operators) -> Self {
-        let yardstick = Yardstick::of(&problem, FRONT_POINTS);
+        let reference = Reference::of(&problem, FRONT_POINTS);
         let facts = ReferenceFacts {
             subject: problem.name(),
             objectives: problem.objectives(),
             variables: problem.bounds().len(),
-            members: yardstick.points(),
+            members: reference.points(),
             ideal: vec![0.0; problem.objectives()],
-            reference_point: yardstick.reference(),
+            reference_point: reference.reference_point(),
             searched: None,
         };
-        Self { problem, operators, yardstick, facts }
+        Self { problem, operators, reference, facts }
     }
 
     fn values(&self, population: &Population) -> Vec<f64> {
-        let quality = self.yardstick.measure(population);
+        let quality = self.reference.measure(population);
         vec![quality.igd, quality.igd_plus, quality.hypervolume]
     }
 }

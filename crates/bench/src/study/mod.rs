@@ -382,6 +382,6 @@ pub struct Front {
 mod tests {
     #[test]
     fn the_committed_schema_is_that_of_the_document() {
-        crate::schema::is_committed::<super::Study>("study.v1.schema.json");
+        crate::schema::is_committed::<super::Study>("study.v1.schema.json", "Study");
     }
 }

@@ -156,7 +156,7 @@ impl ArmTask {
         evaluations: u64,
         seeds: &[u64],
     ) -> Result<Self, TaskFailure> {
-        let PlanRequest { setup, text, .. } = request;
+        let PlanRequest { setup, files, .. } = request;
         let budget = Budget::Evaluations(evaluations);
         let long = Search { budget, front: REFERENCE_PLANS, ..Search::default() };
         let Found { front, evaluations, .. } = search(&setup, &long, |_| ControlFlow::Continue(()))?;
@@ -179,7 +179,7 @@ impl ArmTask {
                 feasible_at_first: quartiles(&at_first),
             }),
         };
-        Ok(Self { setup, front, reference, facts, in_table_3: text == task::SIMULATION })
+        Ok(Self { setup, front, reference, facts, in_table_3: files.task == task::SIMULATION })
     }
 
     /// Hypervolumes of at most [`MEASURED_PLANS`] of a population, spread evenly, and of all found; the

@@ -8,7 +8,7 @@ use hydrotrace_bench::{
     study::{Inputs, Study, curve_svg, curves_csv, document, front_csv, run},
 };
 use moea::{
-    Budget, NamedAlgorithm, Operators, Population, Settings, benchmark::Benchmark, compare::Yardstick,
+    Budget, NamedAlgorithm, Operators, Population, Settings, benchmark::Benchmark, compare::Reference,
     indicator::hypervolume, optimise, silent,
 };
 
@@ -26,7 +26,7 @@ fn a_cell_holds_what_its_seeds_reach() {
     assert_eq!((order.len(), order[0], order[4]), (12, ("DTLZ2", 300, "nsga3-fo"), ("DTLZ2", 1000, "nsga3")));
     let cell = &study.cells[4];
     let problem = Benchmark::named("DTLZ2", 3).unwrap();
-    let yardstick = Yardstick::of(&problem, FRONT_POINTS);
+    let reference = Reference::of(&problem, FRONT_POINTS);
     let reached = [5, 6, 7].map(|seed| {
         let settings = Settings {
             algorithm: NamedAlgorithm::find("NSGA3").unwrap().algorithm,
@@ -35,7 +35,7 @@ fn a_cell_holds_what_its_seeds_reach() {
             operators: Operators::PLATEMO,
             ..Settings::default()
         };
-        yardstick.measure(&optimise(&problem, &settings, silent).unwrap().population).igd
+        reference.measure(&optimise(&problem, &settings, silent).unwrap().population).igd
     });
     assert_eq!(cell.samples["igd"].median, quantile(reached.to_vec(), 0.5));
     assert_eq!(cell.samples["igd"].q3, quantile(reached.to_vec(), 0.75));

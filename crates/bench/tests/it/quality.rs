@@ -8,7 +8,7 @@ use hydrotrace_bench::{
     study::{Against, Inputs, Verdict, quartiles, run},
 };
 use moea::{
-    Algorithm, Bounds, Budget, Operators, Problem, Settings, benchmark::Benchmark, compare::Yardstick,
+    Algorithm, Bounds, Budget, Operators, Problem, Settings, benchmark::Benchmark, compare::Reference,
     indicator::igd, optimise, silent,
 };
 use rayon::prelude::*;
@@ -37,11 +37,11 @@ fn conforms(seeds: std::ops::RangeInclusive<u64>) {
     let pymoo = reference("moea-pymoo-nsga3.json");
     for (name, generations, gate) in CONFORMANCE {
         let problem = Benchmark::named(name, 3).unwrap();
-        let yardstick = Yardstick::of(&problem, 91);
+        let reference = Reference::of(&problem, 91);
         let seeds: Vec<u64> = seeds.clone().collect();
         let reached = |&seed: &u64| {
             let settings = settings(Algorithm::Nsga3, seed, 92 * generations);
-            yardstick.measure(&optimise(&problem, &settings, silent).unwrap().population).igd
+            reference.measure(&optimise(&problem, &settings, silent).unwrap().population).igd
         };
         let igd: Vec<f64> = seeds.par_iter().map(reached).collect();
         let theirs = numbers(&pymoo["problems"][name.to_lowercase()]["igd"]);

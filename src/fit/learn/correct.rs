@@ -1,0 +1,179 @@
+//! The correction of one joint that is wanted next: from its model, from what came of what was sent, or from both.
+
+use super::{
+    super::{
+        model::{Model, STEP_S},
+        run::steps_in,
+        simulate::{Start, simulate},
+    },
+    answer::Answer,
+    oscillation::Character,
+};
+use crate::math::lowpass;
+
+/// A correction acts this much later than the lag says, s.
+const BEYOND_LAG_S: f64 = 0.05;
+
+/// Frequency above which a calm joint's error is not learnt, Hz.
+const CALM_HZ: f64 = 0.5;
+
+/// The same of one that oscillates, by its frequency.
+const OF_OSCILLATION: f64 = 0.35;
+
+/// A model is inverted below this, Hz: of a calm joint beside data and alone, and of one that oscillates.
+const CALM_INVERTED_HZ: f64 = 0.6;
+pub(super) const CALM_MODEL_HZ: f64 = 1.0;
+const INVERTED_HZ: f64 = 4.0;
+
+/// Rounds of the inversion, and the share of the predicted error that one corrects.
+const ROUNDS: usize = 60;
+const SHARE: f64 = 0.5;
+
+/// Share of a first measured error that is corrected.
+const FIRST_GAIN: f64 = 0.9;
+
+/// Weight of the model = this / (this + square of the unexplained share of the error).
+const TRUSTED: f64 = 0.5;
+
+/// Of one joint: what its corrections are made with.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Manner {
+    pub(super) character: Character,
+    /// Frequency above which nothing is learnt, Hz.
+    pub(super) cut_off_hz: f64,
+    /// Steps by which a correction precedes its effect.
+    ahead: usize,
+    /// Largest correction, rad.
+    pub(super) most_rad: f64,
+}
+
+impl Manner {
+    pub(super) fn new(model: &Model, character: Character, frequency_hz: f64, most_rad: f64) -> Self {
+        let cut_off_hz = match character {
+            Character::Calm => CALM_HZ,
+            Character::Rings | Character::Hunts => CALM_HZ.min(OF_OSCILLATION * frequency_hz),
+        };
+        Self { character, cut_off_hz, ahead: steps_in(model.lag_s() + BEYOND_LAG_S), most_rad }
+    }
+
+    fn calm(&self) -> bool {
+        self.character == Character::Calm
+    }
+
+    /// The value that an error asks for: earlier by the lag, without what is too fast to be learnt.
+    pub(super) fn learnt(&self, error_rad: &[f64], gain: f64) -> Vec<f64> {
+        let mut slow = error_rad.to_vec();
+        lowpass(&mut slow, self.cut_off_hz, STEP_S);
+        let last = slow.len().saturating_sub(1);
+        (0..slow.len()).map(|k| gain * slow[(k + self.ahead).min(last)]).collect()
+    }
+}
+
+/// Room for simulations.
+#[derive(Default)]
+pub(super) struct Workspace {
+    wanted: Vec<f64>,
+    angle_rad: Vec<f64>,
+    sent: Vec<(f64, f64)>,
+}
+
+impl Workspace {
+    /// Response of the model to what was sent, rad.
+    pub(super) fn response(&mut self, model: &Model, sent: &[(f64, f64)]) -> &[f64] {
+        simulate(model, sent, Start::at_rest(model, sent), &mut self.wanted, &mut self.angle_rad);
+        &self.angle_rad
+    }
+
+    /// Response to the plan with a correction.
+    fn corrected(&mut self, model: &Model, planned: &[(f64, f64)], correction_rad: &[f64]) -> &[f64] {
+        self.sent.clear();
+        let last = planned.len().saturating_sub(1);
+        for (k, planned) in planned.iter().enumerate() {
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+            let span_s = (after - before).max(1) as f64 * STEP_S;
+            let speed_rad_s = (correction_rad[after] - correction_rad[before]) / span_s;
+            self.sent.push((planned.0 + correction_rad[k], planned.1 + speed_rad_s));
+        }
+        simulate(model, &self.sent, Start::at_rest(model, planned), &mut self.wanted, &mut self.angle_rad);
+        &self.angle_rad
+    }
+}
+
+/// The correction whose predicted response, with a disturbance that repeats itself, is the plan.
+pub(super) fn inverted(
+    model: &Model,
+    manner: &Manner,
+    planned: &[(f64, f64)],
+    (disturbance_rad, calm_hz): (Option<&[f64]>, f64),
+    workspace: &mut Workspace,
+) -> Vec<f64> {
+    let last = planned.len().saturating_sub(1);
+    // What a loop that rings leaves unexplained is not the same in the next run.
+    let disturbance_rad = disturbance_rad.filter(|_| manner.calm());
+    let inner_hz = if manner.calm() { calm_hz } else { INVERTED_HZ };
+    let mut correction_rad = vec![0.0; planned.len()];
+    let mut best = (f64::INFINITY, correction_rad.clone());
+    for _ in 0..=ROUNDS {
+        let response = workspace.corrected(model, planned, &correction_rad);
+        let error_rad: Vec<f64> = (planned.iter().zip(response).enumerate())
+            .map(|(k, (planned, response))| planned.0 - response - disturbance_rad.map_or(0.0, |d| d[k]))
+            .collect();
+        let left = rms(&error_rad);
+        if left < best.0 {
+            best = (left, correction_rad.clone());
+        }
+        for (k, correction) in correction_rad.iter_mut().enumerate() {
+            *correction += SHARE * error_rad[(k + manner.ahead).min(last)];
+        }
+        lowpass(&mut correction_rad, inner_hz, STEP_S);
+        for correction in &mut correction_rad {
+            *correction = correction.clamp(-manner.most_rad, manner.most_rad);
+        }
+    }
+    if !manner.calm() {
+        lowpass(&mut best.1, manner.cut_off_hz, STEP_S);
+    }
+    best.1
+}
+
+/// A first correction, from the model and from the run behind it: what was sent, what the model makes of it,
+/// and what came.
+pub(super) fn first(
+    model: &Model,
+    manner: &Manner,
+    planned: &[(f64, f64)],
+    run: &Answer,
+    skill: f64,
+    workspace: &mut Workspace,
+) -> (Vec<f64>, f64) {
+    let unexplained_rad = unexplained_rad(run, model, workspace);
+    let error_rad = run.error_rad(planned);
+    let beta = model_weight(manner, &unexplained_rad, &error_rad, skill);
+    let mut disturbance_rad = unexplained_rad;
+    lowpass(&mut disturbance_rad, manner.cut_off_hz, STEP_S);
+    let by_model = inverted(model, manner, planned, (Some(&disturbance_rad), CALM_INVERTED_HZ), workspace);
+    let by_data = manner.learnt(&error_rad, FIRST_GAIN);
+    let blend = by_model.iter().zip(&by_data).map(|(model, data)| beta * model + (1.0 - beta) * data);
+    (blend.collect(), beta)
+}
+
+/// Measured less modelled angles, rad.
+pub(super) fn unexplained_rad(run: &Answer, model: &Model, workspace: &mut Workspace) -> Vec<f64> {
+    let response = workspace.response(model, &run.sent);
+    run.measured_rad.iter().zip(response).map(|(measured, response)| measured - response).collect()
+}
+
+/// How much a model counts beside data, 0 to 1.
+pub(super) fn model_weight(manner: &Manner, unexplained_rad: &[f64], error_rad: &[f64], skill: f64) -> f64 {
+    let hunts = manner.character == Character::Hunts;
+    if hunts || (manner.calm() && skill < 0.0) {
+        return 0.0;
+    }
+    let left = rms(unexplained_rad) / rms(error_rad).max(f64::MIN_POSITIVE);
+    let beta = TRUSTED / (TRUSTED + left * left);
+    if beta.is_finite() { beta } else { 0.0 }
+}
+
+pub(super) fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}

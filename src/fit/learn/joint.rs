@@ -1,0 +1,217 @@
+//! One joint: its runs, and the correction that follows from them.
+
+use std::ops::Range;
+
+use super::{
+    super::{FitError, JointFit, Model, model::STEP_S},
+    JointStep, Learning, Room, Step, Trial,
+    answer::Answer,
+    correct::{CALM_MODEL_HZ, Manner, Workspace, first, inverted, rms, unexplained_rad},
+    oscillation::{Character, Oscillation},
+    shape::{Wanted, shaped},
+};
+use crate::{math::lowpass, series::Track, units::DEGREE_RAD};
+
+/// Part of these over which a wanted correction fades, s.
+const FADES_S: f64 = 0.5;
+
+/// Largest correction without a largest error, rad, and by the largest error.
+const CAP_RAD: f64 = 1.5 * DEGREE_RAD;
+
+const CAP_BY_ERROR: f64 = 1.25;
+
+/// Frequency of what is left of a finished correction by half, Hz, and by that of what is learnt.
+const FINISHED_HZ: f64 = 1.2;
+
+const FINISHED_BY_CUT_OFF: f64 = 2.0;
+
+/// Errors are compared below this, Hz.
+const COMPARED_HZ: f64 = 1.5;
+
+/// An error that is larger than the best so far by this factor has grown.
+const GROWN: f64 = 1.1;
+
+/// Share of an error that a later run corrects: of a calm joint, of one that rings slowly, of one that rings fast
+/// or hunts.
+const GAINS: [f64; 3] = [0.7, 0.6, 0.9];
+
+/// Between slow and fast, Hz.
+const FAST_HZ: f64 = 1.5;
+
+/// Corrections below this are none, rad.
+const NONE_RAD: f64 = 1e-3 * DEGREE_RAD;
+
+/// One joint with its runs.
+pub(super) struct Joint<'a> {
+    fit: Option<&'a JointFit>,
+    name: &'a str,
+    pub(super) planned: Vec<(f64, f64)>,
+    answers: Vec<Answer>,
+    pub(super) oscillation: Option<Oscillation>,
+    workspace: Workspace,
+}
+
+impl<'a> Joint<'a> {
+    pub(super) fn of(fit: Option<&'a JointFit>, track: &'a Track, runs: &[Trial]) -> Result<Self, FitError> {
+        let mut planned = super::super::predict::grid(track)?;
+        planned.pop();
+        let from_s = track.t_s().first().copied().unwrap_or_default();
+        let answer = |trial: &Trial| Answer::of(trial, track.name(), from_s, planned.len());
+        let answers: Vec<Answer> = runs.iter().filter_map(answer).collect();
+        let mut workspace = Workspace::default();
+        let newest = fit.zip(answers.last());
+        let oscillation =
+            newest.map(|(fit, run)| Oscillation::of(&unexplained_rad(run, &fit.model, &mut workspace)));
+        Ok(Self { fit, name: track.name(), planned, answers, oscillation, workspace })
+    }
+
+    pub(super) fn next(
+        mut self,
+        settings: Learning,
+        all_ring: bool,
+        untouched: bool,
+        free: &[Range<usize>],
+        room: &impl Fn(&str) -> Option<Room>,
+    ) -> JointStep {
+        let errors: Vec<Vec<f64>> = self.answers.iter().map(|run| run.error_rad(&self.planned)).collect();
+        let largest_rad = errors.iter().flatten().fold(0.0_f64, |most, error| most.max(error.abs()));
+        let most_rad = settings.most_rad.unwrap_or(CAP_RAD.max(CAP_BY_ERROR * largest_rad));
+        let rms_error_rad: Vec<f64> = errors.iter().map(|error_rad| compared(error_rad)).collect();
+        let nothing = vec![[0.0; 3]; self.planned.len()];
+        let mut made = JointStep {
+            name: self.name.to_owned(),
+            step: Step::None,
+            oscillation: self.oscillation,
+            rms_error_rad,
+            spread_rad: None,
+            most_rad,
+            cut_off_hz: 0.0,
+            correction: nothing,
+        };
+        let Some(fit) = self.fit.filter(|_| !untouched && !free.is_empty() && settings.gain > 0.0) else {
+            return made;
+        };
+        let mut character = self.oscillation.map_or(Character::Calm, |found| found.character);
+        if all_ring && character == Character::Calm {
+            character = Character::Rings;
+        }
+        let frequency_hz = self.oscillation.map_or(f64::INFINITY, |found| found.frequency_hz);
+        let manner = Manner::new(&fit.model, character, frequency_hz, most_rad);
+        made.cut_off_hz = manner.cut_off_hz;
+        made.spread_rad = self.spread_rad(&fit.model);
+        let (step, mut wanted_rad) = self.wanted(fit, &manner, &made.rms_error_rad, settings);
+        made.step = step;
+        fade(&mut wanted_rad, free);
+        let wanted = Wanted {
+            correction_rad: &wanted_rad,
+            cut_off_hz: FINISHED_HZ.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz),
+            most_rad,
+            share: settings.share,
+        };
+        made.correction = shaped(wanted, free, room(self.name).as_ref());
+        made
+    }
+
+    /// What the last two runs differ by though the model says that they should not, rad.
+    fn spread_rad(&mut self, model: &Model) -> Option<f64> {
+        let [.., before, last] = &self.answers[..] else { return None };
+        let before_rad = unexplained_rad(before, model, &mut self.workspace);
+        let last_rad = unexplained_rad(last, model, &mut self.workspace);
+        let difference_rad: Vec<f64> = last_rad.iter().zip(&before_rad).map(|(a, b)| a - b).collect();
+        Some(compared(&difference_rad) / std::f64::consts::SQRT_2)
+    }
+
+    /// The correction before it is made to fit its plan.
+    fn wanted(
+        &mut self,
+        fit: &JointFit,
+        manner: &Manner,
+        rms_rad: &[f64],
+        settings: Learning,
+    ) -> (Step, Vec<f64>) {
+        let gain = settings.gain;
+        let Self { planned, answers, workspace, .. } = self;
+        let scaled = |mut values: Vec<f64>, by: f64| {
+            for x in &mut values {
+                *x *= by;
+            }
+            values
+        };
+        let Some(newest) = answers.last() else {
+            if !fit.trusted() {
+                return (Step::None, vec![0.0; planned.len()]);
+            }
+            let by_model = inverted(&fit.model, manner, planned, (None, CALM_MODEL_HZ), workspace);
+            return (Step::Model, scaled(by_model, gain));
+        };
+        if let Some((from, run)) = settings.keep.and_then(|from| Some((from, answers.get(from)?))) {
+            return (Step::Kept { from }, run.correction_rad(planned));
+        }
+        let corrected = |run: &Answer| run.correction_rad(planned).iter().any(|d| d.abs() > NONE_RAD);
+        if !corrected(newest) && answers.len() == 1 {
+            let (wanted, model_weight) =
+                first(&fit.model, manner, planned, newest, fit.held_out_r2, workspace);
+            return (Step::First { model_weight }, scaled(wanted, gain));
+        }
+        let (from, trust) = trusted(rms_rad);
+        let usual = match manner.character {
+            Character::Calm => GAINS[0],
+            Character::Rings if manner.cut_off_hz < FAST_HZ * 0.35 => GAINS[1],
+            Character::Rings | Character::Hunts => GAINS[2],
+        };
+        let gain = gain * trust * usual;
+        let run = &answers[from];
+        let mut next = run.correction_rad(planned);
+        for (next, more) in next.iter_mut().zip(manner.learnt(&run.error_rad(planned), gain)) {
+            *next = (*next + more).clamp(-manner.most_rad, manner.most_rad);
+        }
+        if manner.character != Character::Calm {
+            lowpass(&mut next, manner.cut_off_hz, STEP_S);
+        }
+        (Step::Later { from, gain }, next)
+    }
+}
+
+/// Size of an error below [`COMPARED_HZ`], rad.
+fn compared(error_rad: &[f64]) -> f64 {
+    let mut slow = error_rad.to_vec();
+    lowpass(&mut slow, COMPARED_HZ, STEP_S);
+    rms(&slow)
+}
+
+/// The run to go on from, and what is left of trust in a step: half for each run that grew the error.
+fn trusted(rms_rad: &[f64]) -> (usize, f64) {
+    let (mut best, mut trust) = (0, 1.0);
+    for (k, now) in rms_rad.iter().enumerate().skip(1) {
+        let grown = *now > GROWN * rms_rad[best];
+        if grown {
+            trust *= 0.5;
+        }
+        if *now < rms_rad[best] {
+            best = k;
+        }
+    }
+    let last = rms_rad.len().saturating_sub(1);
+    let from = if rms_rad.get(last).is_some_and(|now| *now > GROWN * rms_rad[best]) { best } else { last };
+    (from, trust)
+}
+
+/// Fades a wanted correction out towards the ends of its stretches.
+fn fade(wanted_rad: &mut [f64], free: &[Range<usize>]) {
+    let mut weight = vec![0.0; wanted_rad.len()];
+    let over = FADES_S / STEP_S;
+    for stretch in free {
+        for k in stretch.clone() {
+            let [since, until] =
+                [k - stretch.start, stretch.end - 1 - k].map(|steps| smooth_step(steps as f64 / over));
+            weight[k] = since * until;
+        }
+    }
+    wanted_rad.iter_mut().zip(weight).for_each(|(wanted, weight)| *wanted *= weight);
+}
+
+/// From 0 to 1 with zero speed and acceleration at both.
+fn smooth_step(share: f64) -> f64 {
+    let x = share.clamp(0.0, 1.0);
+    x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+}
