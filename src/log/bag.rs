@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 use yaml_rust2::parser::{Event, Parser};
 
 use super::error::LogError;
-use crate::remark::{Code, Remarks};
+use crate::{
+    input_file,
+    remark::{Code, Remarks},
+};
 
 /// The files that together are one recording: files as given, bag directories opened.
 ///
@@ -57,7 +60,7 @@ fn directory(path: &Path, remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogErro
 /// `relative_file_paths` of a rosbag2 description.
 fn named_files(description: &Path) -> Result<Vec<String>, LogError> {
     let bad = |reason: String| LogError::BagMetadata { path: description.to_owned(), reason };
-    let text = std::fs::read_to_string(description).map_err(LogError::file("read", description))?;
+    let text = input_file::read_to_string(description).map_err(LogError::file("read", description))?;
     let mut names = None;
     let mut key = String::new();
     // Walked as events: a tree would let aliases and nesting ask for any amount of memory.

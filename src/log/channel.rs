@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::{
     decode::{Program, Tree},
-    file::{Block, Blocks, ChannelRecord, Layout, Opcode, SchemaRecord, records},
+    file::{Block, Blocks, ChannelRecord, Layout, Opcode, SchemaRecord, Source, records},
     options::Selector,
     schema::Definition,
     source::{Role, Spec, spec_for},
@@ -47,7 +47,7 @@ pub(super) struct OwnedSchema {
 impl Definitions {
     /// Gathers definitions outside chunks, and those inside if the former may be incomplete or
     /// the caller says so.
-    pub(super) fn gather(layout: &Layout<'_>, look_inside: bool) -> Self {
+    pub(super) fn gather(layout: &Layout, source: &Source, look_inside: bool) -> Self {
         let mut all = Self { schemas: BTreeMap::new(), channels: BTreeMap::new() };
         layout.schemas.iter().for_each(|schema| all.add_schema(schema));
         layout.channels.iter().for_each(|channel| all.add_channel(channel.clone()));
@@ -60,7 +60,7 @@ impl Definitions {
         let inside: Vec<Self> = layout
             .blocks
             .par_iter()
-            .map_init(Blocks::new, |blocks, block| Self::inside(blocks, *block))
+            .map_init(Blocks::new, |blocks, block| Self::inside(blocks, *block, source))
             .collect();
         for one in inside {
             one.schemas.into_iter().for_each(|(id, schema)| {
@@ -71,9 +71,9 @@ impl Definitions {
         all
     }
 
-    fn inside(blocks: &mut Blocks, block: Block<'_>) -> Self {
+    fn inside(blocks: &mut Blocks, block: Block, source: &Source) -> Self {
         let mut found = Self { schemas: BTreeMap::new(), channels: BTreeMap::new() };
-        for record in records(blocks.open(block).0) {
+        for record in records(blocks.open(block, source).0) {
             match record.opcode {
                 Opcode::SCHEMA => {
                     if let Some(schema) = SchemaRecord::parse(record.body) {
@@ -91,11 +91,11 @@ impl Definitions {
         found
     }
 
-    fn add_schema(&mut self, schema: &SchemaRecord<'_>) {
+    fn add_schema(&mut self, schema: &SchemaRecord) {
         self.schemas.entry(schema.id).or_insert_with(|| OwnedSchema {
             name: schema.name.clone(),
             encoding: schema.encoding.clone(),
-            data: schema.data.to_vec(),
+            data: schema.data.clone(),
         });
     }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::suggest::suggestion;
+use crate::{suggest::suggestion, text::shell_argument};
 
 /// Why a log cannot be read or written; doubts about parts of it are remarks.
 #[derive(Debug, Error)]
@@ -19,8 +19,8 @@ pub enum LogError {
     NotMcap { path: PathBuf, found: String, fix: &'static str },
     /// A table in text.
     #[error(
-        "{0} looks like a CSV file, not like an MCAP log; make it one first: `hydrotrace import {0} -o run.mcap`",
-        path.display()
+        "{} looks like a CSV file, not like an MCAP log; make it one first: `hydrotrace import {} -o run.mcap`",
+        path.display(), shell_argument(path)
     )]
     IsTable { path: PathBuf },
     /// A directory without a recording.

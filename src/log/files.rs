@@ -8,14 +8,14 @@ use std::{
 use super::{
     bag,
     error::LogError,
-    file::{Layout, MappedFile, scan},
+    file::{Layout, Source, Span, scan},
 };
 use crate::remark::{Code, Remarks};
 
-/// The files of one run, mapped into memory.
+/// The files of one run, open.
 #[derive(Debug)]
 pub struct LogFiles {
-    files: Vec<(PathBuf, MappedFile)>,
+    files: Vec<(PathBuf, Source)>,
     /// Whether their order is known, as in a bag; single files are ordered by the recorder's clock.
     ordered: bool,
     remarks: Remarks,
@@ -33,8 +33,8 @@ pub struct ScannedLog<'a> {
 #[derive(Debug)]
 pub(super) struct ScannedFile<'a> {
     pub(super) path: &'a Path,
-    pub(super) bytes: u64,
-    pub(super) layout: Layout<'a>,
+    pub(super) source: &'a Source,
+    pub(super) layout: Layout,
 }
 
 /// How often files of logs were opened, scanned and decoded by the current thread.
@@ -74,8 +74,8 @@ impl LogFiles {
         let ordered = paths.iter().any(|path| path.is_dir());
         let open = |path: PathBuf| {
             count(|passes| passes.opened += 1);
-            let map = MappedFile::open(&path).map_err(LogError::file("open", &path))?;
-            Ok((path, map))
+            let source = Source::open(&path).map_err(LogError::file("open", &path))?;
+            Ok((path, source))
         };
         let files =
             bag::recording_files(paths, &mut remarks)?.into_iter().map(open).collect::<Result<_, _>>()?;
@@ -88,17 +88,21 @@ impl LogFiles {
     ///
     /// [`LogError::NotMcap`] or [`LogError::IsTable`].
     pub fn scan(&self) -> Result<ScannedLog<'_>, LogError> {
-        let files = self.files.iter().map(|(path, map)| ScannedFile::of(path, map));
+        let files = self.files.iter().map(|(path, source)| ScannedFile::of(path, source));
         let files = files.collect::<Result<_, _>>()?;
         Ok(ScannedLog { files, ordered: self.ordered, remarks: self.remarks.clone() })
     }
 }
 
 impl<'a> ScannedFile<'a> {
-    pub(super) fn of(path: &'a Path, bytes: &'a [u8]) -> Result<Self, LogError> {
+    pub(super) fn of(path: &'a Path, source: &'a Source) -> Result<Self, LogError> {
         count(|passes| passes.scanned += 1);
-        let layout = scan(bytes).ok_or_else(|| not_mcap(path, bytes))?;
-        Ok(Self { path, bytes: bytes.len() as u64, layout })
+        let Some(layout) = scan(source) else {
+            let mut start = Vec::new();
+            source.read(LOOKED_AT, &mut start).map_err(LogError::file("read", path))?;
+            return Err(not_mcap(path, &start));
+        };
+        Ok(Self { path, source, layout })
     }
 
     /// Its name without the path.
@@ -109,6 +113,10 @@ impl<'a> ScannedFile<'a> {
     /// Remarks on the outer structure of a file.
     pub(super) fn remark_damage(&self, remarks: &mut Remarks) {
         let (name, damage) = (self.name(), self.layout.damage);
+        if let Some(fault) = &self.layout.fault {
+            let message = format!("{name} could not be read to its end: {fault}; read as far as that");
+            remarks.add(Code::DamagedBytes, 1, message);
+        }
         remarks.add(
             Code::NotClosed,
             u64::from(damage.not_closed),
@@ -157,11 +165,13 @@ fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
     LogError::NotMcap { path: path.to_owned(), found, fix }
 }
 
-/// Whether bytes are text whose first lines are split alike, or text of a file named as a table.
-fn is_table(path: &Path, bytes: &[u8]) -> bool {
-    const LOOK: usize = 4096;
+/// As much of a file as tells what it is if it is no log.
+pub(super) const LOOKED_AT: Span = Span { start: 0, end: 4096 };
+
+/// Whether the first bytes of a file are text whose first lines are split alike, or text of a file named as a table.
+pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
     const LINES: usize = 3;
-    let text = String::from_utf8_lossy(bytes.get(..LOOK).unwrap_or(bytes));
+    let text = String::from_utf8_lossy(bytes);
     if text.trim().is_empty() || text.chars().any(|c| c.is_control() && !c.is_whitespace()) {
         return false;
     }

@@ -7,6 +7,7 @@
 
 mod bag;
 mod channel;
+mod contents;
 mod csv;
 mod decode;
 mod error;
@@ -21,6 +22,7 @@ mod source;
 mod write;
 
 pub use bag::recording_files;
+pub use contents::{Contents, contents};
 pub use csv::{
     AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, Quantity, Separator, TimeRead, Understood,
     read_csv, read_csv_bytes,

@@ -32,7 +32,7 @@ pub use options::{AngleUnit, Columns, CsvOptions, Separator};
 pub use run::CsvRun;
 pub use understood::{ColumnRead, TimeRead, Understood};
 
-use super::{file::MappedFile, write::Role};
+use super::{file::Source, write::Role};
 use crate::remark::Remarks;
 
 /// The quantity of a joint that a column holds.
@@ -50,9 +50,10 @@ pub enum Quantity {
 ///
 /// [`CsvError`], which says what the file lacks and which option gives it.
 pub fn read_csv(path: &Path, options: &CsvOptions) -> Result<CsvRun, CsvError> {
-    let map = MappedFile::open(path).map_err(|source| CsvError::File { path: path.to_owned(), source })?;
+    let bytes = Source::open(path).and_then(|source| source.whole());
+    let bytes = bytes.map_err(|source| CsvError::File { path: path.to_owned(), source })?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    read_csv_bytes(&name, &map, options)
+    read_csv_bytes(&name, &bytes, options)
 }
 
 /// As [`read_csv`] of a file in memory.

@@ -5,6 +5,7 @@ use std::{collections::BTreeMap, path::Path};
 use serde::Deserialize;
 
 use super::{CsvError, Quantity, Role, unit::Measure, unit::parse_unit};
+use crate::input_file;
 
 /// Joint to the column that holds it: a header, or `#3` for the third column.
 pub type Columns = Vec<(String, String)>;
@@ -105,7 +106,7 @@ impl CsvOptions {
     /// [`CsvError::MapFile`] if it cannot be read or has unknown keys.
     pub fn from_map(path: &Path) -> Result<Self, CsvError> {
         let fault = |reason: String| CsvError::MapFile { path: path.to_owned(), reason };
-        let text = std::fs::read_to_string(path).map_err(|error| fault(error.to_string()))?;
+        let text = input_file::read_to_string(path).map_err(|error| fault(error.to_string()))?;
         let file: MapFile =
             toml::from_str(&text).map_err(|error| fault(error.to_string().trim().to_owned()))?;
         let separator = match &file.separator {

@@ -59,6 +59,7 @@ pub(super) fn read(
     let (mut row, mut ragged, mut unstamped) = (0_u64, 0_u64, 0_u64);
     let mut ragged_line = None;
     let mut unstamped_example = None;
+    let mut ends = Ends::default();
     while let Some(line) = rows.next(&mut record) {
         if line < head.first_line {
             continue;
@@ -79,6 +80,7 @@ pub(super) fn read(
             continue;
         };
         stamp_ns.push(ns);
+        ends.note(record.iter().next_back().unwrap_or_default(), dialect.decimal_comma);
         for (&at, column) in &mut columns {
             column.push(cell(at), line, dialect.decimal_comma);
         }
@@ -89,6 +91,12 @@ pub(super) fn read(
             dialect.width
         );
         remarks.add(Code::LengthMismatch, ragged, message);
+    }
+    if !text.ends_with(b"\n") && ends.is_cut() {
+        stamp_ns.pop();
+        columns.values_mut().for_each(Column::pop);
+        let message = "last row, which breaks off in a number: the file was cut there; left out";
+        remarks.add(Code::NotClosed, 1, message);
     }
     let absolute = time.settle(&mut stamp_ns);
     let outside = drop_outside(&mut stamp_ns, &mut columns);
@@ -133,7 +141,41 @@ fn such(example: Option<&(String, u64)>) -> String {
     example.map_or_else(String::new, |(text, line)| format!(", such as {text:?} in line {line}"))
 }
 
+/// How the last cells of the rows end, to tell a number that was cut from one that is short.
+#[derive(Default)]
+struct Ends {
+    rows: u64,
+    /// Fewest digits behind the decimal mark in all rows but the last.
+    fewest: Option<usize>,
+    /// The same of the last row, and whether it ends where no number does.
+    last: Option<(usize, bool)>,
+}
+
+impl Ends {
+    fn note(&mut self, cell: &[u8], decimal_comma: bool) {
+        let cell = cell.trim_ascii();
+        let mark = if decimal_comma { b',' } else { b'.' };
+        let digits = memchr::memchr(mark, cell).map_or(0, |at| cell.len() - at - 1);
+        if let Some((last, _)) = self.last {
+            self.fewest = Some(self.fewest.map_or(last, |fewest| fewest.min(last)));
+        }
+        let open = cell.last().is_some_and(|&end| end == mark || b"+-eE".contains(&end));
+        self.last = Some((digits, open));
+        self.rows += 1;
+    }
+
+    fn is_cut(&self) -> bool {
+        let short = |digits: usize| self.fewest.is_some_and(|fewest| digits < fewest);
+        self.rows > 3 && self.last.is_some_and(|(digits, open)| open || short(digits))
+    }
+}
+
 impl Column {
+    /// Without the last row.
+    fn pop(&mut self) {
+        self.numbers -= u64::from(self.values.pop().is_some_and(f64::is_finite));
+    }
+
     fn push(&mut self, cell: &[u8], line: u64, decimal_comma: bool) {
         let value = number(cell, decimal_comma).filter(|value| value.is_finite());
         if value.is_some() {

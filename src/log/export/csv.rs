@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use super::{ExportError, RunTable};
+use crate::text::spreadsheet_cell;
 
 impl RunTable {
     /// Writes comma-separated values with a header; a cell without a sample is empty. Numbers have
@@ -17,7 +18,9 @@ impl RunTable {
             ::csv::ErrorKind::Io(error) => ExportError::Output(error),
             other => ExportError::Output(std::io::Error::other(format!("{other:?}"))),
         };
-        writer.write_record(self.column_names()).map_err(failed)?;
+        writer
+            .write_record(self.column_names().map(|name| spreadsheet_cell(name).into_owned()))
+            .map_err(failed)?;
         let mut cell = String::new();
         for (row, (stamp_ns, time_s)) in self.stamp_ns.iter().zip(&self.time_s).enumerate() {
             let mut write = |text: std::fmt::Arguments<'_>| {

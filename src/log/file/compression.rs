@@ -20,8 +20,11 @@ pub(super) enum Yield {
 /// Messages differ at least in their times, which keeps real chunks far below this; one that
 /// promises more is not believed, so that a few bytes cannot ask for gigabytes.
 const MAX_EXPANSION: u64 = 1000;
+/// The same of lz4, by its format.
+const MAX_EXPANSION_LZ4: u64 = 256;
 const ALWAYS_ALLOWED: u64 = 1 << 20;
-const NEVER_MORE: u64 = 1 << 30;
+/// A chunk is held in memory, by every thread; recorders write one or a few megabytes.
+const NEVER_MORE: u64 = 1 << 28;
 
 impl Decompressor {
     pub(super) fn new() -> Self {
@@ -42,12 +45,13 @@ impl Decompressor {
             let end = usize::try_from(promised).unwrap_or(usize::MAX).min(compressed.len());
             return Ok((&compressed[..end], whole));
         }
-        let allowed = (compressed.len() as u64).saturating_mul(MAX_EXPANSION).saturating_add(ALWAYS_ALLOWED);
+        let expansion = if compression == b"lz4" { MAX_EXPANSION_LZ4 } else { MAX_EXPANSION };
+        let allowed = (compressed.len() as u64).saturating_mul(expansion).saturating_add(ALWAYS_ALLOWED);
         let allowed = allowed.min(NEVER_MORE);
         let size = match usize::try_from(if cut { promised.min(allowed) } else { promised }) {
             Ok(size) if size as u64 <= allowed => size,
             _ => {
-                return Err(format!("it promises over {MAX_EXPANSION} times its size or {NEVER_MORE} bytes"));
+                return Err(format!("it promises over {expansion} times its size or {NEVER_MORE} bytes"));
             }
         };
         self.out.clear();
@@ -81,6 +85,7 @@ impl Decompressor {
 
 /// Appends until `size` bytes are there, the input ends, or it proves broken.
 fn read_up_to(from: impl Read, size: usize, out: &mut Vec<u8>) {
+    out.reserve_exact(size);
     // An error ends the reading; what came before it stays in `out`.
     let _ = from.take(size as u64).read_to_end(out);
 }
@@ -115,6 +120,20 @@ mod tests {
         assert_eq!(out.len(), 1 << 20);
         assert!(decompressor.out.capacity() < 4 << 20);
         assert!(decompressor.run(b"zstd", &bomb, 8 << 30, false).is_err());
+    }
+
+    #[test]
+    fn a_bomb_of_lz4_is_stopped_by_what_its_chunk_says_and_by_what_its_codec_can() {
+        let mut encoder = lz4_flex::frame::FrameEncoder::new(Vec::new());
+        std::io::Write::write_all(&mut encoder, &vec![0; 64 << 20]).unwrap();
+        let bomb = encoder.finish().unwrap();
+        let mut decompressor = Decompressor::new();
+        let (out, _) = decompressor.run(b"lz4", &bomb, 1 << 20, false).unwrap();
+        assert_eq!(out.len(), 1 << 20);
+        assert!(decompressor.out.capacity() < 2 << 20);
+        let most = bomb.len() as u64 * MAX_EXPANSION_LZ4 + ALWAYS_ALLOWED;
+        assert!(decompressor.run(b"lz4", &bomb, most + 1, false).is_err());
+        assert!(decompressor.run(b"lz4", &vec![0; 4 << 20], 1 << 30, false).is_err());
     }
 
     #[test]

@@ -4,11 +4,14 @@
 
 mod block;
 mod compression;
-mod map;
 mod record;
 mod scan;
+mod source;
+mod span;
+mod walk;
 
 pub(super) use block::{Block, Blocks, Loss, records};
-pub(super) use map::MappedFile;
 pub(super) use record::{ChannelRecord, MessageRecord, Opcode, SchemaRecord};
 pub(super) use scan::{Layout, scan};
+pub(super) use source::Source;
+pub(super) use span::Span;

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use super::span::Span;
+
 /// Record types by their byte in the file.
 pub(in crate::log) struct Opcode;
 
@@ -12,6 +14,7 @@ impl Opcode {
     pub(in crate::log) const CHANNEL: u8 = 0x04;
     pub(in crate::log) const MESSAGE: u8 = 0x05;
     pub(in crate::log) const CHUNK: u8 = 0x06;
+    pub(super) const MESSAGE_INDEX: u8 = 0x07;
     pub(in crate::log) const ATTACHMENT: u8 = 0x09;
     pub(in crate::log) const STATISTICS: u8 = 0x0B;
     pub(in crate::log) const METADATA: u8 = 0x0C;
@@ -40,22 +43,14 @@ impl<'a> Record<'a> {
         let end = start.checked_add(length)?;
         Some(Self { opcode: *opcode, body: bytes.get(start..end)?, end })
     }
-
-    /// The first part of a record that the file ends within: its type and the cut body.
-    pub(in crate::log) fn cut_at(bytes: &'a [u8], at: usize) -> Option<(u8, &'a [u8])> {
-        let rest = bytes.get(at..)?;
-        let [opcode, length @ ..] = rest.first_chunk::<HEAD>()?;
-        let body = &rest[HEAD..];
-        (u64::from_le_bytes(*length) > body.len() as u64).then_some((*opcode, body))
-    }
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::log) struct SchemaRecord<'a> {
+pub(in crate::log) struct SchemaRecord {
     pub(in crate::log) id: u16,
     pub(in crate::log) name: String,
     pub(in crate::log) encoding: String,
-    pub(in crate::log) data: &'a [u8],
+    pub(in crate::log) data: Vec<u8>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -88,13 +83,13 @@ pub(in crate::log) struct ChunkRecord<'a> {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::log) struct AttachmentRecord<'a> {
+pub(in crate::log) struct AttachmentRecord {
     pub(in crate::log) log_time_ns: u64,
     pub(in crate::log) create_time_ns: u64,
     pub(in crate::log) name: String,
     pub(in crate::log) media_type: String,
-    pub(in crate::log) data: &'a [u8],
-    pub(in crate::log) crc_holds: bool,
+    /// Where its bytes are.
+    pub(in crate::log) data: Span,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -149,10 +144,10 @@ impl<'a> Fields<'a> {
     }
 }
 
-impl<'a> SchemaRecord<'a> {
-    pub(in crate::log) fn parse(body: &'a [u8]) -> Option<Self> {
+impl SchemaRecord {
+    pub(in crate::log) fn parse(body: &[u8]) -> Option<Self> {
         let mut f = Fields(body);
-        Some(Self { id: f.u16()?, name: f.text()?, encoding: f.text()?, data: f.block()? })
+        Some(Self { id: f.u16()?, name: f.text()?, encoding: f.text()?, data: f.block()?.to_vec() })
     }
 }
 
@@ -196,16 +191,15 @@ impl<'a> ChunkRecord<'a> {
     }
 }
 
-impl<'a> AttachmentRecord<'a> {
-    pub(in crate::log) fn parse(body: &'a [u8]) -> Option<Self> {
-        let mut f = Fields(body);
+impl AttachmentRecord {
+    /// From the start of its body. Its checksum, of all before it, follows its data.
+    pub(super) fn parse(head: &[u8], body: Span) -> Option<Self> {
+        let mut f = Fields(head);
         let (log_time_ns, create_time_ns, name, media_type) = (f.u64()?, f.u64()?, f.text()?, f.text()?);
-        let length = usize::try_from(f.u64()?).ok()?;
-        let data = f.bytes(length)?;
-        let checked = body.len() - f.0.len();
-        let crc = f.u32()?;
-        let crc_holds = crc == 0 || crc == crc32fast::hash(&body[..checked]);
-        Some(Self { log_time_ns, create_time_ns, name, media_type, data, crc_holds })
+        let length = f.u64()?;
+        let start = body.start + (head.len() - f.0.len()) as u64;
+        let end = start.checked_add(length).filter(|end| end.saturating_add(4) <= body.end)?;
+        Some(Self { log_time_ns, create_time_ns, name, media_type, data: Span { start, end } })
     }
 }
 
@@ -246,12 +240,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_record_longer_than_the_file_is_none_and_recognised_as_cut() {
+    fn a_record_longer_than_its_block_is_none() {
         let mut bytes = vec![Opcode::CHUNK];
         bytes.extend(u64::MAX.to_le_bytes());
         bytes.extend([1, 2, 3]);
         assert!(Record::at(&bytes, 0).is_none());
-        assert_eq!(Record::cut_at(&bytes, 0), Some((Opcode::CHUNK, &[1_u8, 2, 3][..])));
         assert!(Record::at(&bytes, 4).is_none());
     }
 

@@ -1,34 +1,42 @@
 //! Finds the records of a file by walking their headers; no summary or index is needed.
 
 use super::{
-    block::Block,
+    block::{Block, Kind},
     record::{
-        AttachmentRecord, ChannelRecord, ChunkRecord, MetadataRecord, Opcode, Record, SchemaRecord,
+        AttachmentRecord, ChannelRecord, ChunkRecord, MessageRecord, MetadataRecord, Opcode, SchemaRecord,
         channel_count, data_crc, profile, summary_start_and_crc,
     },
+    source::Source,
+    span::Span,
+    walk::{Found, HEAD, Walk},
 };
 
 const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
 
 /// Messages outside chunks are grouped into blocks of about this size, bytes.
-const LOOSE_BLOCK: usize = 1 << 20;
+const LOOSE_BLOCK: u64 = 1 << 20;
+
+/// More than the times and names of an attachment take, bytes.
+const ATTACHMENT_HEAD: u64 = 1 << 16;
 
 /// Where everything is in one file.
 #[derive(Debug, Default)]
-pub(in crate::log) struct Layout<'a> {
+pub(in crate::log) struct Layout {
     /// Runs of messages in file order.
-    pub(in crate::log) blocks: Vec<Block<'a>>,
+    pub(in crate::log) blocks: Vec<Block>,
     /// Schemas outside chunks, those of the summary included; ids may repeat.
-    pub(in crate::log) schemas: Vec<SchemaRecord<'a>>,
+    pub(in crate::log) schemas: Vec<SchemaRecord>,
     /// Channels outside chunks, those of the summary included; ids may repeat.
     pub(in crate::log) channels: Vec<ChannelRecord>,
     /// Whether the channels outside chunks are known to be complete.
     pub(in crate::log) channels_complete: bool,
-    pub(in crate::log) attachments: Vec<AttachmentRecord<'a>>,
+    pub(in crate::log) attachments: Vec<AttachmentRecord>,
     pub(in crate::log) metadata: Vec<MetadataRecord>,
     pub(in crate::log) damage: Damage,
     /// Of the header; empty if it is damaged.
     pub(in crate::log) profile: String,
+    /// Why the file system did not give all of the file.
+    pub(in crate::log) fault: Option<String>,
 }
 
 /// Faults in the outer structure of a file.
@@ -47,184 +55,231 @@ pub(in crate::log) struct Damage {
 }
 
 /// Walks a file; `None` if nothing in it looks like MCAP.
-pub(in crate::log) fn scan(bytes: &[u8]) -> Option<Layout<'_>> {
-    let mut layout = Layout::default();
-    let has_magic = bytes.starts_with(MAGIC);
-    let mut at = if has_magic { MAGIC.len() } else { 0 };
-    let mut loose: Option<usize> = None;
-    let mut channels_promised = None;
-    let mut footer = false;
-    let mut before_summary = None;
-    layout.damage.not_closed = true;
-    while at < bytes.len() {
-        if footer && bytes[at..].starts_with(MAGIC) {
-            layout.damage.not_closed = false;
-            layout.damage.skipped_bytes += (bytes.len() - at - MAGIC.len()) as u64;
-            break;
-        }
-        if let Some(body) = cut_chunk(bytes, at) {
-            close_loose(&mut layout, bytes, &mut loose, at);
-            layout.blocks.push(Block::Chunk { body, cut: true });
-            break;
-        }
-        let found = Record::at(bytes, at).filter(plausible).or_else(|| chunk_by_inner_length(bytes, at));
-        let Some(record) = found else {
-            close_loose(&mut layout, bytes, &mut loose, at);
-            if let Some(next) = resync(bytes, at + 1) {
-                layout.damage.skipped_bytes += (next - at) as u64;
-                at = next;
-                continue;
+pub(in crate::log) fn scan(source: &Source) -> Option<Layout> {
+    let mut scan = Scan { walk: Walk::of(source), layout: Layout::default(), loose: None };
+    scan.run().then(|| Layout { fault: scan.walk.into_fault().map(|fault| fault.to_string()), ..scan.layout })
+}
+
+struct Scan<'a> {
+    walk: Walk<'a>,
+    layout: Layout,
+    /// Where a run of messages outside chunks began, and its first time.
+    loose: Option<(u64, u64)>,
+}
+
+impl Scan<'_> {
+    /// Whether anything looks like MCAP.
+    fn run(&mut self) -> bool {
+        let has_magic = self.walk.starts_with(0, MAGIC);
+        let magic = MAGIC.len() as u64;
+        let length = self.walk.length();
+        let mut at = if has_magic { magic } else { 0 };
+        let mut channels_promised = None;
+        let mut footer = false;
+        let mut before_summary = None;
+        self.layout.damage.not_closed = true;
+        while at < length {
+            if footer && self.walk.starts_with(at, MAGIC) {
+                self.layout.damage.not_closed = false;
+                self.layout.damage.skipped_bytes += length - at - magic;
+                break;
             }
-            match Record::cut_at(bytes, at) {
-                Some((Opcode::CHUNK, body))
-                    if ChunkRecord::parse(body).is_some_and(|c| known(c.compression)) =>
-                {
-                    layout.blocks.push(Block::Chunk { body, cut: true });
+            if let Some(body) = self.cut_chunk(at) {
+                self.close_loose(at);
+                self.chunk(body, true);
+                break;
+            }
+            let Some(record) = self.plausible_at(at).or_else(|| self.chunk_by_inner_length(at)) else {
+                self.close_loose(at);
+                if let Some(next) = self.resync(at + 1) {
+                    self.layout.damage.skipped_bytes += next - at;
+                    at = next;
+                    continue;
                 }
-                _ => layout.damage.skipped_bytes += (bytes.len() - at) as u64,
+                match self.walk.cut_record(at) {
+                    Some((Found { opcode: Opcode::CHUNK, body }, _)) if self.is_known_chunk(body) => {
+                        self.chunk(body, true);
+                    }
+                    _ => self.layout.damage.skipped_bytes += length - at,
+                }
+                break;
+            };
+            let in_loose = matches!(record.opcode, Opcode::MESSAGE | Opcode::SCHEMA | Opcode::CHANNEL);
+            if !in_loose || self.loose.is_some_and(|(start, _)| at - start >= LOOSE_BLOCK) {
+                self.close_loose(at);
             }
-            break;
-        };
-        let in_loose = matches!(record.opcode, Opcode::MESSAGE | Opcode::SCHEMA | Opcode::CHANNEL);
-        if !in_loose || loose.is_some_and(|start| at - start >= LOOSE_BLOCK) {
-            close_loose(&mut layout, bytes, &mut loose, at);
+            if record.opcode == Opcode::MESSAGE && self.loose.is_none() {
+                let message = MessageRecord::parse(self.walk.look(record.body));
+                self.loose = Some((at, message.map_or(0, |message| message.log_time_ns)));
+            }
+            match record.opcode {
+                Opcode::CHUNK => self.chunk(record.body, false),
+                Opcode::STATISTICS => channels_promised = channel_count(self.walk.look(record.body)),
+                Opcode::DATA_END => {
+                    before_summary = Some((self.layout.schemas.len(), self.layout.channels.len()));
+                    let loose = self.layout.blocks.iter().any(|block| block.kind == Kind::Loose);
+                    self.layout.damage.broken_data |= loose && !self.data_holds(at, record.body);
+                }
+                Opcode::FOOTER => {
+                    footer = true;
+                    if let Some((schemas, channels)) =
+                        before_summary.filter(|_| !self.summary_holds(at, record.body))
+                    {
+                        self.layout.damage.broken_summary = true;
+                        self.layout.schemas.truncate(schemas);
+                        self.layout.channels.truncate(channels);
+                        channels_promised = None;
+                    }
+                }
+                _ => self.small(record),
+            }
+            at = record.body.end;
         }
-        if record.opcode == Opcode::MESSAGE && loose.is_none() {
-            loose = Some(at);
-        }
+        self.close_loose(at.min(length));
+        let layout = &mut self.layout;
+        let mut ids: Vec<u16> = layout.channels.iter().map(|c| c.id).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        layout.channels_complete = channels_promised.is_some_and(|count| count as usize == ids.len());
+        has_magic || !layout.blocks.is_empty() || !layout.channels.is_empty()
+    }
+
+    /// Takes in a record that is read now.
+    fn small(&mut self, record: Found) {
+        let (walk, layout) = (&mut self.walk, &mut self.layout);
         match record.opcode {
-            Opcode::HEADER => layout.profile = profile(record.body).unwrap_or_default(),
-            Opcode::SCHEMA => layout.schemas.extend(SchemaRecord::parse(record.body)),
-            Opcode::CHANNEL => layout.channels.extend(ChannelRecord::parse(record.body)),
-            Opcode::CHUNK => layout.blocks.push(Block::Chunk { body: record.body, cut: false }),
-            Opcode::METADATA => layout.metadata.extend(MetadataRecord::parse(record.body)),
-            Opcode::STATISTICS => channels_promised = channel_count(record.body),
-            Opcode::DATA_END => {
-                before_summary = Some((layout.schemas.len(), layout.channels.len()));
-                let loose = layout.blocks.iter().any(|block| matches!(block, Block::Loose(_)));
-                layout.damage.broken_data |= loose && !data_holds(&bytes[..at], record.body);
-            }
-            Opcode::FOOTER => {
-                footer = true;
-                if let Some((schemas, channels)) =
-                    before_summary.filter(|_| !summary_holds(bytes, at, record.body))
-                {
-                    layout.damage.broken_summary = true;
-                    layout.schemas.truncate(schemas);
-                    layout.channels.truncate(channels);
-                    channels_promised = None;
+            Opcode::HEADER => layout.profile = profile(&walk.body(record.body)).unwrap_or_default(),
+            Opcode::SCHEMA => layout.schemas.extend(SchemaRecord::parse(&walk.body(record.body))),
+            Opcode::CHANNEL => layout.channels.extend(ChannelRecord::parse(&walk.body(record.body))),
+            Opcode::METADATA => layout.metadata.extend(MetadataRecord::parse(&walk.body(record.body))),
+            Opcode::ATTACHMENT => {
+                let head = walk.body(record.body.first(ATTACHMENT_HEAD));
+                let attachment = AttachmentRecord::parse(&head, record.body);
+                let mut holds = |file: &AttachmentRecord| {
+                    let end = file.data.end;
+                    let crc = data_crc(&walk.body(Span { start: end, end: end + 4 }));
+                    crc.is_some_and(|crc| crc == 0 || walk.crc(Span { end, ..record.body }) == Some(crc))
+                };
+                match attachment.filter(&mut holds) {
+                    Some(attachment) => layout.attachments.push(attachment),
+                    None => layout.damage.broken_attachments += 1,
                 }
             }
-            Opcode::ATTACHMENT => match AttachmentRecord::parse(record.body) {
-                Some(attachment) if attachment.crc_holds => layout.attachments.push(attachment),
-                _ => layout.damage.broken_attachments += 1,
-            },
             _ => {}
         }
-        at = record.end;
     }
-    close_loose(&mut layout, bytes, &mut loose, at.min(bytes.len()));
-    let mut ids: Vec<u16> = layout.channels.iter().map(|c| c.id).collect();
-    ids.sort_unstable();
-    ids.dedup();
-    layout.channels_complete = channels_promised.is_some_and(|count| count as usize == ids.len());
-    let empty = layout.blocks.is_empty() && layout.channels.is_empty();
-    (has_magic || !empty).then_some(layout)
-}
 
-fn close_loose<'a>(layout: &mut Layout<'a>, bytes: &'a [u8], loose: &mut Option<usize>, end: usize) {
-    if let Some(start) = loose.take() {
-        layout.blocks.push(Block::Loose(&bytes[start..end]));
+    fn chunk(&mut self, body: Span, cut: bool) {
+        // A chunk starts with the time of its first message.
+        let begins_ns = self.walk.look(body).first_chunk().map_or(0, |bytes| u64::from_le_bytes(*bytes));
+        self.layout.blocks.push(Block { kind: Kind::Chunk { cut }, span: body, begins_ns });
     }
-}
 
-/// Whether the data before a `DataEnd` are as they were written, or have no checksum. Some
-/// writers leave the magic out.
-fn data_holds(data: &[u8], data_end: &[u8]) -> bool {
-    let holds = |crc| {
-        [0, MAGIC.len()].iter().any(|&from| crc == crc32fast::hash(data.get(from..).unwrap_or_default()))
-    };
-    data_crc(data_end).is_none_or(|crc| crc == 0 || holds(crc))
-}
-
-/// Whether the summary before the footer at `at` is as it was written, or has no checksum.
-fn summary_holds(bytes: &[u8], at: usize, footer: &[u8]) -> bool {
-    // The checksum ends before itself: a record's head and two offsets into the footer.
-    const CHECKED: usize = 9 + 16;
-    let Some((start, crc)) = summary_start_and_crc(footer) else { return false };
-    let summary = usize::try_from(start).ok().and_then(|start| bytes.get(start..at + CHECKED));
-    start == 0 || crc == 0 || summary.is_some_and(|summary| crc == crc32fast::hash(summary))
-}
-
-/// A chunk that goes on beyond the end of the file, as both its lengths say.
-fn cut_chunk(bytes: &[u8], at: usize) -> Option<&[u8]> {
-    let (opcode, body) = Record::cut_at(bytes, at)?;
-    let length = u64::from_le_bytes(*bytes.get(at + 1..)?.first_chunk()?);
-    let chunk = (opcode == Opcode::CHUNK).then(|| ChunkRecord::parse(body)).flatten()?;
-    let inner = chunk.compressed_size.checked_add(40 + chunk.compression.len() as u64)?;
-    (known(chunk.compression) && inner == length).then_some(body)
-}
-
-fn known(compression: &[u8]) -> bool {
-    matches!(compression, b"" | b"zstd" | b"lz4")
-}
-
-/// Cheap checks that distinguish a record from noise: constant time, whatever the length.
-fn plausible(record: &Record<'_>) -> bool {
-    let length = record.body.len();
-    match record.opcode {
-        Opcode::FOOTER => length == 20,
-        Opcode::SCHEMA | Opcode::CHANNEL => length >= 12,
-        Opcode::MESSAGE => length >= 22,
-        Opcode::CHUNK => ChunkRecord::parse(record.body).is_some_and(|chunk| {
-            let head = 40 + chunk.compression.len();
-            chunk.compressed_size.checked_add(head as u64) == Some(length as u64)
-        }),
-        Opcode::DATA_END => length == 4,
-        Opcode::HEADER | 0x07..=0x0E => length >= 8,
-        0x80.. => true,
-        _ => false,
-    }
-}
-
-/// A chunk whose outer length is broken but whose inner one leads to another record.
-fn chunk_by_inner_length(bytes: &[u8], at: usize) -> Option<Record<'_>> {
-    const HEAD: usize = 9;
-    if *bytes.get(at)? != Opcode::CHUNK {
-        return None;
-    }
-    let rest = bytes.get(at + HEAD..)?;
-    let chunk = ChunkRecord::parse(rest).filter(|chunk| known(chunk.compression))?;
-    let length = usize::try_from(chunk.compressed_size).ok()?.checked_add(40 + chunk.compression.len())?;
-    let body = rest.get(..length)?;
-    let end = at + HEAD + length;
-    Record::at(bytes, end).filter(plausible)?;
-    Some(Record { opcode: Opcode::CHUNK, body, end })
-}
-
-/// The next place that is surely a record: a chunk whose lengths agree, or three plausible
-/// records in a row (fewer at the end of the file).
-fn resync(bytes: &[u8], from: usize) -> Option<usize> {
-    (from..bytes.len()).find(|&at| {
-        if !matches!(bytes[at], 0x02..=0x0F) {
-            return false;
+    fn close_loose(&mut self, end: u64) {
+        if let Some((start, begins_ns)) = self.loose.take() {
+            self.layout.blocks.push(Block { kind: Kind::Loose, span: Span { start, end }, begins_ns });
         }
-        let Some(first) = Record::at(bytes, at).filter(plausible) else { return false };
+    }
+
+    /// Whether the data before a `DataEnd` at `end` are as they were written, or have no checksum. Some
+    /// writers leave the magic out.
+    fn data_holds(&mut self, end: u64, data_end: Span) -> bool {
+        let Some(crc) = data_crc(self.walk.look(data_end)).filter(|crc| *crc != 0) else { return true };
+        [0, MAGIC.len() as u64].iter().any(|&start| self.walk.crc(Span { start, end }) == Some(crc))
+    }
+
+    /// Whether the summary before the footer at `at` is as it was written, or has no checksum.
+    fn summary_holds(&mut self, at: u64, footer: Span) -> bool {
+        // The checksum ends before itself: a record's head and two offsets into the footer.
+        const CHECKED: u64 = HEAD + 16;
+        let Some((start, crc)) = summary_start_and_crc(self.walk.look(footer)) else { return false };
+        let summary = Span { start, end: at + CHECKED };
+        start == 0 || crc == 0 || (start <= summary.end && self.walk.crc(summary) == Some(crc))
+    }
+
+    /// A chunk that goes on beyond the end of the file, as both its lengths say.
+    fn cut_chunk(&mut self, at: u64) -> Option<Span> {
+        let (Found { opcode, body }, length) = self.walk.cut_record(at)?;
+        if opcode != Opcode::CHUNK {
+            return None;
+        }
+        let chunk = ChunkRecord::parse(self.walk.look(body))?;
+        let inner = chunk.compressed_size.checked_add(40 + chunk.compression.len() as u64)?;
+        (known(chunk.compression) && inner == length).then_some(body)
+    }
+
+    fn is_known_chunk(&mut self, body: Span) -> bool {
+        ChunkRecord::parse(self.walk.look(body)).is_some_and(|chunk| known(chunk.compression))
+    }
+
+    /// The record at `at` if cheap checks do not tell it for noise: constant time, whatever its length.
+    fn plausible_at(&mut self, at: u64) -> Option<Found> {
+        let record = self.walk.record(at)?;
+        let length = record.body.length();
+        let plausible = match record.opcode {
+            Opcode::FOOTER => length == 20,
+            Opcode::SCHEMA | Opcode::CHANNEL => length >= 12,
+            Opcode::MESSAGE => length >= 22,
+            Opcode::CHUNK => ChunkRecord::parse(self.walk.look(record.body)).is_some_and(|chunk| {
+                chunk.compressed_size.checked_add(40 + chunk.compression.len() as u64) == Some(length)
+            }),
+            Opcode::DATA_END => length == 4,
+            // An index of no message has six bytes.
+            Opcode::MESSAGE_INDEX => length >= 6,
+            Opcode::HEADER | 0x08..=0x0E => length >= 8,
+            0x80.. => true,
+            _ => false,
+        };
+        plausible.then_some(record)
+    }
+
+    /// A chunk whose outer length is broken but whose inner one leads to another record.
+    fn chunk_by_inner_length(&mut self, at: u64) -> Option<Found> {
+        if !self.walk.starts_with(at, &[Opcode::CHUNK]) {
+            return None;
+        }
+        let start = at.checked_add(HEAD)?;
+        let rest = Span { start, end: self.walk.length() };
+        let chunk = ChunkRecord::parse(self.walk.look(rest)).filter(|chunk| known(chunk.compression))?;
+        let length = chunk.compressed_size.checked_add(40 + chunk.compression.len() as u64)?;
+        let body = Span { start, end: start.checked_add(length).filter(|end| *end <= rest.end)? };
+        self.plausible_at(body.end)?;
+        Some(Found { opcode: Opcode::CHUNK, body })
+    }
+
+    /// The next place that is surely a record: a chunk whose lengths agree, or three plausible
+    /// records in a row (fewer at the end of the file).
+    fn resync(&mut self, mut from: u64) -> Option<u64> {
+        loop {
+            let at = self.walk.next_candidate(from)?;
+            if self.is_surely_record(at) {
+                return Some(at);
+            }
+            from = at + 1;
+        }
+    }
+
+    fn is_surely_record(&mut self, at: u64) -> bool {
+        let Some(first) = self.plausible_at(at) else { return false };
         if first.opcode == Opcode::CHUNK {
-            return ChunkRecord::parse(first.body).is_some_and(|chunk| known(chunk.compression));
+            return self.is_known_chunk(first.body);
         }
-        let mut next = first.end;
+        let mut next = first.body.end;
         for _ in 0..2 {
-            if next == bytes.len() || bytes[next..].starts_with(MAGIC) {
+            if next == self.walk.length() || self.walk.starts_with(next, MAGIC) {
                 return true;
             }
-            match Record::at(bytes, next).filter(plausible) {
-                Some(record) if record.opcode != Opcode::HEADER => next = record.end,
+            match self.plausible_at(next) {
+                Some(record) if record.opcode != Opcode::HEADER => next = record.body.end,
                 _ => return false,
             }
         }
         true
-    })
+    }
+}
+
+fn known(compression: &[u8]) -> bool {
+    matches!(compression, b"" | b"zstd" | b"lz4")
 }
 
 #[cfg(test)]
@@ -240,6 +295,10 @@ mod tests {
         record(Opcode::CHUNK, &[&[0; 16][..], &size, &[0; 8], &size, payload].concat())
     }
 
+    fn scanned(bytes: &[u8]) -> Option<Layout> {
+        scan(&bytes.to_vec().into())
+    }
+
     fn file(parts: &[Vec<u8>]) -> Vec<u8> {
         [&MAGIC[..], &parts.concat()].concat()
     }
@@ -249,7 +308,7 @@ mod tests {
         let mut bad = chunk(b"bbbb");
         bad[1] = 200;
         let bytes = file(&[chunk(b"aaaa"), bad, chunk(b"cccc")]);
-        let layout = scan(&bytes).unwrap();
+        let layout = scanned(&bytes).unwrap();
         assert_eq!(layout.blocks.len(), 3);
         assert_eq!(layout.damage, Damage { not_closed: true, ..Damage::default() });
     }
@@ -257,23 +316,23 @@ mod tests {
     #[test]
     fn noise_between_chunks_is_skipped_and_counted() {
         let bytes = file(&[chunk(b"aaaa"), vec![0; 4096], chunk(b"cccc")]);
-        let layout = scan(&bytes).unwrap();
+        let layout = scanned(&bytes).unwrap();
         assert_eq!((layout.blocks.len(), layout.damage.skipped_bytes), (2, 4096));
     }
 
     #[test]
     fn a_cut_chunk_is_found_as_such() {
         let whole = file(&[chunk(b"aaaa"), chunk(&[7; 100])]);
-        let layout = scan(&whole[..whole.len() - 50]).unwrap();
+        let layout = scanned(&whole[..whole.len() - 50]).unwrap();
         assert!(matches!(
             layout.blocks[..],
-            [Block::Chunk { cut: false, .. }, Block::Chunk { cut: true, .. }]
+            [Block { kind: Kind::Chunk { cut: false }, .. }, Block { kind: Kind::Chunk { cut: true }, .. }]
         ));
     }
 
     #[test]
     fn what_is_not_mcap_is_none() {
-        assert!(scan(b"").is_none());
-        assert!(scan(b"time;joint1;joint2\n0;1;2\n").is_none());
+        assert!(scanned(b"").is_none());
+        assert!(scanned(b"time;joint1;joint2\n0;1;2\n").is_none());
     }
 }

@@ -18,6 +18,9 @@ use crate::{
     remark::Code,
 };
 
+/// More than any of ours, bytes; of one that is larger only the name is read.
+const LARGEST_ATTACHMENT: u64 = 64 << 20;
+
 /// Decodes all that may be wanted, in one pass.
 pub(super) fn extract(log: &ScannedLog<'_>, options: &ReadOptions) -> Extracted {
     count(|passes| passes.decoded += log.files.len() as u64);
@@ -65,28 +68,39 @@ fn read_files(
     let mut known = Known::default();
     let mut work = Vec::new();
     for (index, file) in files.iter().enumerate() {
-        let channels = Definitions::gather(&file.layout, look_inside).plan(selectors);
+        let channels = Definitions::gather(&file.layout, file.source, look_inside).plan(selectors);
         let routes = Arc::new(routes(channels, joints, &mut known, out));
-        work.extend(file.layout.blocks.iter().map(|block| (*block, routes.clone(), index)));
+        work.extend(file.layout.blocks.iter().map(|block| (*block, file.source, routes.clone(), index)));
     }
     read_blocks(&work, &known.specs, joints, out)
 }
 
 fn describe(file: &ScannedFile<'_>, out: &mut Extracted) {
-    let ScannedFile { path, bytes, layout } = file;
+    let ScannedFile { path, source, layout } = file;
+    let bytes = source.length();
     file.remark_damage(&mut out.remarks);
     ::log::info!("opened {}: {bytes} bytes in {} blocks", path.display(), layout.blocks.len());
     out.files.push(FileInfo {
         name: file.name(),
-        bytes: *bytes,
+        bytes,
         blocks: layout.blocks.len(),
         closed: !layout.damage.not_closed,
     });
-    out.attachments.extend(layout.attachments.iter().map(|a| Attachment {
-        name: a.name.clone(),
-        media_type: a.media_type.clone(),
-        data: a.data.to_vec(),
-    }));
+    for attachment in &layout.attachments {
+        let (name, media_type, mut data) =
+            (attachment.name.clone(), attachment.media_type.clone(), Vec::new());
+        if attachment.data.length() > LARGEST_ATTACHMENT {
+            out.attachments.push(Attachment { name, media_type, data });
+            continue;
+        }
+        match source.read(attachment.data, &mut data) {
+            Ok(()) => out.attachments.push(Attachment { name, media_type, data }),
+            Err(error) => {
+                let message = format!("attachments that cannot be read, dropped: {error}");
+                out.remarks.add(Code::DamagedBytes, 1, message);
+            }
+        }
+    }
     for one in &layout.metadata {
         out.metadata.entry(one.name.clone()).or_default().extend(one.entries.clone());
     }

@@ -75,7 +75,8 @@ pub fn survey(paths: &[PathBuf], options: &ReadOptions) -> Result<Survey, LogErr
 /// [`LogError`] if the bytes are no log.
 #[doc(hidden)]
 pub fn survey_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Survey, LogError> {
-    let file = ScannedFile::of(Path::new("memory.mcap"), bytes)?;
+    let source = bytes.to_vec().into();
+    let file = ScannedFile::of(Path::new("memory.mcap"), &source)?;
     let log = ScannedLog { files: vec![file], ordered: true, remarks: Remarks::default() };
     Ok(log.survey(options))
 }

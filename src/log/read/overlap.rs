@@ -5,12 +5,7 @@ use super::{
     select_topics::Candidate,
 };
 use crate::{
-    log::{
-        error::LogError,
-        file::{Block, Layout, MessageRecord, Opcode, records},
-        options::TimeBase,
-        source::Table,
-    },
+    log::{error::LogError, file::Layout, options::TimeBase, source::Table},
     units::{NS_PER_S, seconds_since},
 };
 
@@ -18,16 +13,8 @@ use crate::{
 const SHARED_S: f64 = 1.0;
 
 /// When the recorder received the first message of a file, ns; `u64::MAX` if it has no message.
-pub(super) fn begins_ns(layout: &Layout<'_>) -> u64 {
-    let first = |block: &Block<'_>| match block {
-        // A chunk starts with the time of its first message.
-        Block::Chunk { body, .. } => body.first_chunk::<8>().map(|bytes| u64::from_le_bytes(*bytes)),
-        Block::Loose(bytes) => records(bytes)
-            .filter(|record| record.opcode == Opcode::MESSAGE)
-            .find_map(|record| MessageRecord::parse(record.body))
-            .map(|message| message.log_time_ns),
-    };
-    layout.blocks.iter().filter_map(first).find(|ns| *ns > 0).unwrap_or(u64::MAX)
+pub(super) fn begins_ns(layout: &Layout) -> u64 {
+    layout.blocks.iter().map(|block| block.begins_ns).find(|ns| *ns > 0).unwrap_or(u64::MAX)
 }
 
 /// Rejects two files with samples of one joint in one topic for the same time: the caller must say

@@ -15,14 +15,14 @@ use super::{
 use crate::{
     log::{
         decode::LayoutCache,
-        file::{Block, Blocks, Loss, MessageRecord, Opcode, records},
+        file::{Block, Blocks, Loss, MessageRecord, Opcode, Source, records},
         source::Spec,
     },
     remark::Code,
 };
 
-/// A block, the channels of its file, and the file.
-pub(super) type Work<'a> = (Block<'a>, Arc<BTreeMap<u16, Route>>, usize);
+/// A block, the file that it is in, the channels of that, and its index.
+pub(super) type Work<'a> = (Block, &'a Source, Arc<BTreeMap<u16, Route>>, usize);
 
 /// Content of one block; emptied and reused. Cost is by the topics that the block touches: files
 /// may have many channels and many blocks.
@@ -76,10 +76,10 @@ pub(super) fn read_blocks(work: &[Work<'_>], specs: &[Spec], joints: &[String], 
         let _release = ReleaseOnPanic { progress: &progress, moved: &moved };
         loop {
             let index = counter.fetch_add(1, Ordering::Relaxed);
-            let Some((block, routes, _)) = work.get(index) else { return };
+            let Some((block, source, routes, _)) = work.get(index) else { return };
             let mut piece = lock(&progress).spare.pop().unwrap_or_else(fresh);
             let new = |source: usize| Content::new(&specs[source], joints);
-            read_block(&mut blocks, *block, routes, &new, &mut piece);
+            read_block(blocks.open(*block, source), routes, &new, &mut piece);
             let mut state = lock(&progress);
             // A thread may run ahead of the slowest by a few blocks only: memory stays bounded.
             while index > state.next + 4 * threads {
@@ -116,7 +116,7 @@ impl Drop for ReleaseOnPanic<'_, '_> {
 impl Progress<'_> {
     fn append_ready(&mut self) {
         while let Some(mut piece) = self.waiting.remove(&self.next) {
-            let file = self.work.get(self.next).map_or(0, |(_, _, file)| *file);
+            let file = self.work.get(self.next).map_or(0, |(_, _, _, file)| *file);
             self.next += 1;
             for source in piece.touched_contents.drain(..) {
                 piece.is_touched[source] = false;
@@ -154,7 +154,7 @@ impl Progress<'_> {
                         piece.messages
                     ),
                 ),
-                Loss::Dropped(reason) => {
+                Loss::Doubtful(reason) | Loss::Dropped(reason) => {
                     remarks.add(Code::DamagedChunk, 1, format!("a chunk was dropped: {reason}"));
                 }
             }
@@ -170,13 +170,11 @@ impl Progress<'_> {
 }
 
 fn read_block(
-    blocks: &mut Blocks,
-    block: Block<'_>,
+    (bytes, loss): (&[u8], Loss),
     routes: &BTreeMap<u16, Route>,
     new: &impl Fn(usize) -> Content,
     piece: &mut Piece,
 ) {
-    let (bytes, loss) = blocks.open(block);
     piece.loss = loss;
     let mut end = 0;
     let mut last: Option<(u16, &Route)> = None;

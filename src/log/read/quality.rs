@@ -176,11 +176,42 @@ fn unwrapped(track: &Track) -> Option<Track> {
 
 pub(super) fn of_pairs(planned: &Series, measured: &Series, options: &ReadOptions, remarks: &mut Remarks) {
     for track in &planned.tracks {
+        of_plan(track, remarks);
         match measured.track(track.name()) {
             None => unmeasured(track.name(), remarks),
             Some(measured) => of_pair(track, measured, options, remarks),
         }
     }
+}
+
+/// A planned step within one sample that no joint can follow: rad or m, and rad/s or m/s; larger than the steps beside
+/// it by the factor.
+const LEAST_STEP: f64 = 0.2;
+const STEP_SPEED: f64 = 20.0;
+const STEP_ALONE: f64 = 10.0;
+
+/// Remarks on a plan that jumps.
+fn of_plan(track: &Track, remarks: &mut Remarks) {
+    let (t_s, position) = (track.t_s(), track.position());
+    let (mut jumps, mut largest) = (0, (0.0_f64, 0.0));
+    for part in track.segments() {
+        let step = |k: usize| (position[k] - position[k - 1]).abs();
+        for k in part.start + 1..part.end {
+            let beside = [k - 1, k + 1].into_iter().filter(|k| (part.start + 1..part.end).contains(k));
+            let most_beside = beside.map(step).fold(0.0, f64::max);
+            let far = step(k) > LEAST_STEP.max(STEP_SPEED * (t_s[k] - t_s[k - 1]));
+            if far && step(k) > STEP_ALONE * most_beside {
+                jumps += 1;
+                largest = if step(k) > largest.0 { (step(k), t_s[k]) } else { largest };
+            }
+        }
+    }
+    let ((most, at_s), name, unit) = (largest, track.name(), track.kind().unit());
+    let message = format!(
+        "steps of the plan of {name} within one sample, the largest of {most:.3} {unit} at {at_s:.2} s: the plan itself \
+         jumps, which no joint can follow"
+    );
+    remarks.add(Code::PlanJumps, jumps, message);
 }
 
 pub(super) fn unmeasured(joint: &str, remarks: &mut Remarks) {

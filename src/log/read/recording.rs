@@ -34,7 +34,7 @@ pub struct Attachment {
     pub name: String,
     /// Its media type.
     pub media_type: String,
-    /// Its content.
+    /// Its content; empty if it is longer than 64 MiB.
     pub data: Vec<u8>,
 }
 

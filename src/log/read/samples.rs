@@ -131,6 +131,12 @@ pub(super) fn samples(
 
 /// Faster than any joint, rad/s or m/s (deg/s where the log is in degrees).
 const FASTEST: f64 = 200.0;
+/// Faster than any joint there and back within two samples, in the same units, and how far off at least; with
+/// neighbours that are calm by comparison.
+const FAST: f64 = 20.0;
+const FAR: f64 = 0.5;
+/// Steps of the neighbours by the sample's own.
+const CALM: f64 = 0.1;
 /// Larger than any position, in radians, degrees or metres.
 const LARGEST: f64 = 1e6;
 
@@ -149,7 +155,16 @@ fn is_spike(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usize) -
     }
     let (before_s, after_s) = (t_s(k) - t_s(k - 1), t_s(k + 1) - t_s(k));
     let turn = || [TAU, 360.0].iter().any(|turn| (there.abs() - turn).abs() < 0.1 * turn);
-    there.abs() > FASTEST * before_s && back.abs() > FASTEST * after_s && !turn()
+    let faster = |speed: f64| there.abs() > speed * before_s && back.abs() > speed * after_s;
+    let least = there.abs().min(back.abs());
+    let step = |i: usize| (at(i + 1) - at(i)).abs();
+    let alone = || {
+        let calm = |step: f64| step < CALM * least;
+        calm((at(k + 1) - at(k - 1)).abs())
+            && (k < 2 || calm(step(k - 2)))
+            && (k + 2 >= n || calm(step(k + 1)))
+    };
+    (faster(FASTEST) || least > FAR && faster(FAST) && alone()) && !turn()
 }
 
 /// Drops samples that no joint can have; returns how many.

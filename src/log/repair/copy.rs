@@ -9,10 +9,7 @@ use std::{
 use crate::{
     atomic_file::AtomicError,
     log::{
-        channel::Definitions,
-        error::LogError,
-        file::{Layout, MessageRecord},
-        write::WriteError,
+        channel::Definitions, error::LogError, file::MessageRecord, files::ScannedFile, write::WriteError,
     },
 };
 
@@ -36,7 +33,7 @@ macro_rules! from {
     )*};
 }
 
-from!(AtomicError, WriteError, mcap::McapError);
+from!(AtomicError, WriteError, mcap::McapError, std::io::Error);
 
 /// Channels of an old log as the new one numbers them.
 pub(super) struct Copier {
@@ -47,8 +44,12 @@ pub(super) struct Copier {
 }
 
 impl Copier {
-    pub(super) fn of(layout: &Layout<'_>) -> Self {
-        Self { definitions: Definitions::gather(layout, true), channels: BTreeMap::new(), unknown: 0 }
+    pub(super) fn of(file: &ScannedFile<'_>) -> Self {
+        Self {
+            definitions: Definitions::gather(&file.layout, file.source, true),
+            channels: BTreeMap::new(),
+            unknown: 0,
+        }
     }
 
     /// Whether the old log has a topic.
@@ -88,17 +89,19 @@ impl Copier {
 /// Copies attachments and metadata, but for those whose names are `replaced`.
 pub(super) fn copy_files<W: Write + Seek>(
     writer: &mut mcap::Writer<W>,
-    layout: &Layout<'_>,
+    file: &ScannedFile<'_>,
     replaced: &[&str],
 ) -> Result<(), CopyError> {
     let kept = |name: &str| !replaced.contains(&name);
+    let (layout, mut data) = (&file.layout, Vec::new());
     for attachment in layout.attachments.iter().filter(|file| kept(&file.name)) {
+        file.source.read(attachment.data, &mut data)?;
         writer.attach(&mcap::Attachment {
             log_time: attachment.log_time_ns,
             create_time: attachment.create_time_ns,
             name: attachment.name.clone(),
             media_type: attachment.media_type.clone(),
-            data: attachment.data.into(),
+            data: data.as_slice().into(),
         })?;
     }
     for one in layout.metadata.iter().filter(|one| kept(&one.name)) {

@@ -7,8 +7,8 @@ use crate::{
     atomic_file::write_atomically,
     log::{
         error::LogError,
-        file::{Blocks, Layout, MessageRecord, Opcode, records},
-        files::ScannedLog,
+        file::{Blocks, MessageRecord, Opcode, records},
+        files::{ScannedFile, ScannedLog},
         read::recording::Attachment,
         write::{LogWriter, Options, Role, Topics, WriteError},
     },
@@ -52,12 +52,12 @@ impl ScannedLog<'_> {
         let topics = Topics::default();
         let mut commands = true;
         for file in &self.files {
-            let copier = Copier::of(&file.layout);
+            let copier = Copier::of(file);
             if copier.has(&topics.planned) {
                 return Err(LogError::Planned { path: file.path.to_owned(), topic: topics.planned });
             }
             commands &= !copier.has(&topics.command);
-            parts.push((&file.layout, copier));
+            parts.push((file, copier));
         }
         let written = write_atomically::<_, CopyError>(output, |file| {
             let options = Options { log_delay_ns: addition.log_delay_ns, ..Options::default() };
@@ -75,7 +75,11 @@ struct Joining<'a, W: Write> {
 }
 
 impl<W: Write> Joining<'_, W> {
-    fn write(mut self, parts: Vec<(&Layout<'_>, Copier)>, addition: &Addition<'_>) -> Result<u64, CopyError> {
+    fn write(
+        mut self,
+        parts: Vec<(&ScannedFile<'_>, Copier)>,
+        addition: &Addition<'_>,
+    ) -> Result<u64, CopyError> {
         let (name, entries) = &addition.metadata;
         let replaced: Vec<&str> =
             addition.files.iter().map(|file| file.name.as_str()).chain([*name]).collect();
@@ -86,11 +90,11 @@ impl<W: Write> Joining<'_, W> {
         }
         let mut copied = 0;
         let mut blocks = Blocks::new();
-        for (layout, mut copier) in parts {
-            copy_files(self.log.raw(), layout, &replaced)?;
-            for block in &layout.blocks {
-                let messages =
-                    records(blocks.open(*block).0).filter(|record| record.opcode == Opcode::MESSAGE);
+        for (file, mut copier) in parts {
+            copy_files(self.log.raw(), file, &replaced)?;
+            for block in &file.layout.blocks {
+                let messages = records(blocks.open(*block, file.source).0)
+                    .filter(|record| record.opcode == Opcode::MESSAGE);
                 for message in messages.filter_map(|record| MessageRecord::parse(record.body)) {
                     let log_ns = i64::try_from(message.log_time_ns).unwrap_or(i64::MAX);
                     self.catch_up(log_ns.saturating_sub(addition.log_delay_ns))?;

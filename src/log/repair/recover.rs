@@ -1,6 +1,7 @@
 //! Copies everything of a damaged log that is whole into a sound one.
 
 use std::{
+    collections::BTreeMap,
     io::{BufWriter, Seek, Write},
     path::Path,
 };
@@ -10,7 +11,7 @@ use crate::{
     atomic_file::write_atomically,
     log::{
         error::LogError,
-        file::{Blocks, Layout, Loss, MappedFile, MessageRecord, Opcode, records},
+        file::{Blocks, Loss, MessageRecord, Opcode, Source, records},
         files::ScannedFile,
     },
     remark::{Code, Remarks},
@@ -21,6 +22,8 @@ use crate::{
 pub struct Recovered {
     /// Messages in the new log.
     pub messages: u64,
+    /// Of these, from chunks that are not as they were written: some may be wrong.
+    pub doubtful: u64,
     /// Chunks, or runs of messages outside chunks, that were read.
     pub blocks: usize,
     /// Of these, dropped whole.
@@ -39,39 +42,57 @@ pub struct Recovered {
 ///
 /// [`LogError`] if `log` is no log at all, or `output` cannot be written.
 pub fn recover(log: &Path, output: &Path) -> Result<Recovered, LogError> {
-    let map = MappedFile::open(log).map_err(LogError::file("open", log))?;
-    let file = ScannedFile::of(log, &map)?;
+    let source = Source::open(log).map_err(LogError::file("open", log))?;
+    let file = ScannedFile::of(log, &source)?;
     let layout = &file.layout;
     let mut remarks = Remarks::default();
     file.remark_damage(&mut remarks);
     let mut saved = Recovered {
         messages: 0,
+        doubtful: 0,
         blocks: layout.blocks.len(),
         dropped_blocks: 0,
         attachments: layout.attachments.len(),
         remarks,
     };
-    let written = write_atomically::<_, CopyError>(output, |file| copy(layout, file, &mut saved));
+    let written = write_atomically::<_, CopyError>(output, |output| copy(&file, output, &mut saved));
     written.map_err(|error| error.of(output))?;
     Ok(saved)
 }
 
+/// Chunks by what is wrong with them: number, first byte, and a count.
+type Places = BTreeMap<String, Vec<(usize, u64, u64)>>;
+
+/// The sum of the counts, and the first chunks in words.
+fn places(chunks: &[(usize, u64, u64)]) -> (u64, String) {
+    const MOST: usize = 5;
+    let named = |(number, at, _): &(usize, u64, u64)| format!("chunk {number} (at byte {at})");
+    let first: Vec<String> = chunks.iter().take(MOST).map(named).collect();
+    let more = match chunks.len().saturating_sub(MOST) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (chunks.iter().map(|(.., count)| count).sum(), format!("{}{more}", first.join(", ")))
+}
+
 fn copy<W: Write + Seek>(
-    layout: &Layout<'_>,
-    file: &mut BufWriter<W>,
+    file: &ScannedFile<'_>,
+    output: &mut BufWriter<W>,
     saved: &mut Recovered,
 ) -> Result<(), CopyError> {
+    let layout = &file.layout;
     let mut writer = mcap::WriteOptions::new()
         .profile(layout.profile.as_str())
         .library(concat!("hydrotrace ", env!("CARGO_PKG_VERSION")))
         .compression(Some(mcap::Compression::Zstd))
         .compression_threads(0)
-        .create(file)?;
-    copy_files(&mut writer, layout, &[])?;
-    let mut copier = Copier::of(layout);
+        .create(output)?;
+    copy_files(&mut writer, file, &[])?;
+    let mut copier = Copier::of(file);
     let mut blocks = Blocks::new();
-    for block in &layout.blocks {
-        let (bytes, loss) = blocks.open(*block);
+    let (mut doubtful, mut dropped) = (Places::new(), Places::new());
+    for (number, block) in (1..).zip(&layout.blocks) {
+        let (bytes, loss) = blocks.open_doubtful(*block, file.source);
         let before = saved.messages;
         let mut end = 0;
         for record in records(bytes) {
@@ -95,11 +116,26 @@ fn copy<W: Write + Seek>(
                     format!("the file ends within a chunk; {kept} whole messages before the cut were kept");
                 saved.remarks.add(Code::PartialChunk, 1, message);
             }
+            Loss::Doubtful(reason) => {
+                let kept = saved.messages - before;
+                saved.doubtful += kept;
+                doubtful.entry(reason).or_default().push((number, block.span.start, kept));
+            }
             Loss::Dropped(reason) => {
                 saved.dropped_blocks += 1;
-                saved.remarks.add(Code::DamagedChunk, 1, format!("a chunk was dropped: {reason}"));
+                dropped.entry(reason).or_default().push((number, block.span.start, 1));
             }
         }
+    }
+    for (reason, chunks) in &doubtful {
+        let (kept, places) = places(chunks);
+        let message =
+            format!("messages of chunks were kept of which some may be wrong: of {places} {reason}");
+        saved.remarks.add(Code::DamagedChunk, kept.max(1), message);
+    }
+    for (reason, chunks) in &dropped {
+        let (count, places) = places(chunks);
+        saved.remarks.add(Code::DamagedChunk, count, format!("chunks were dropped: of {places} {reason}"));
     }
     saved.remarks.add(
         Code::UnknownChannel,

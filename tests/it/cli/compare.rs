@@ -170,14 +170,14 @@ fn exit_code_1_says_which_log_and_what_the_runs_have() {
 }
 
 #[test]
-fn exit_code_2_when_the_output_is_a_run_or_a_limit_is_no_number() {
+fn an_output_that_is_a_run_is_refused_and_a_limit_that_is_no_number_is_bad_usage() {
     let sound = samples().join(SOUND);
     let sound = sound.to_str().unwrap();
     let run = hydrotrace(
         RUNS.path(),
         &["compare", "lag.mcap", sound, "--more-after", "band.mcap", "-o", "band.mcap"],
     );
-    assert_eq!(run.status.code(), Some(2), "{}", stderr(&run));
+    assert_eq!(run.status.code(), Some(1), "{}", stderr(&run));
     for limit in ["lots", "101"] {
         let run = hydrotrace(samples(), &["compare", SOUND, SOUND, "--min-peak-reduction-percent", limit]);
         assert_eq!(run.status.code(), Some(2));
@@ -218,6 +218,8 @@ fn exit_code_4_says_which_limit_and_what_was_found() {
         ("--min-peak-reduction-percent", "99", "99.0 % at least"),
         ("--max-p", "0.000001", "p of a reduction"),
         ("--max-transition-growth-deg", "0", ""),
+        // Nothing that slides: nothing to judge.
+        ("--max-transition-growth-mm", "5", "nothing to judge; 5.00 mm at most"),
         ("--max-rms-ratio", "0.01", "0.010 at most"),
         ("--max-peak-ratio", "0.01", "0.010 at most"),
     ] {

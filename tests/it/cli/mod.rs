@@ -1,14 +1,19 @@
 //! The built binary, as an operator and a script meet it.
 
+mod carried;
 mod compare;
 mod csv;
 mod figures;
+#[cfg(unix)]
+mod hostile;
 mod join;
 #[cfg(unix)]
 mod output;
 mod plan;
 mod report;
 mod simulate;
+#[cfg(unix)]
+mod spared;
 mod tables;
 mod terminal;
 mod view;

@@ -144,7 +144,6 @@ fn bad_usage_is_exit_code_2_and_names_what_is_allowed() {
         (vec![SIMULATION, "--algorithm", "nsga4"], "nsga3"),
         (vec![SIMULATION, "--weights", "1,2"], "3 weights"),
         (vec![SIMULATION, "--evaluations", "500", "--generations", "3"], "cannot be used with"),
-        (vec![SIMULATION, "-o", SIMULATION], "is an input"),
     ] {
         let run = plan(&args, "2");
         assert_eq!(run.status.code(), Some(2), "{args:?}");

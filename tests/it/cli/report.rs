@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path, process::Stdio};
 
-use crate::support::{command, hold_to_schema, root, run_at_root as hydrotrace, stderr, stdout};
+use crate::support::{command, hold_to_schema, root, run_at_root as hydrotrace, run_line, stderr, stdout};
 
 const CLEAN: &str = "sample-logs/panel-install.mcap";
 const DOUBTFUL: &str = "sample-logs/gaps.mcap";
@@ -174,7 +174,7 @@ fn a_report_never_replaces_the_log_it_reads() {
     let name = log.to_str().unwrap();
     for args in [&["report", name, "-o", name][..], &["recover", name, "-o", name]] {
         let run = hydrotrace(args);
-        assert_eq!(run.status.code(), Some(2), "{}", stderr(&run));
+        assert_eq!(run.status.code(), Some(1), "{}", stderr(&run));
         assert!(stderr(&run).contains("is an input"));
     }
     assert_eq!(fs::read(&log).unwrap(), before);
@@ -254,4 +254,25 @@ fn figures_are_written_beside_a_report_of_any_form() {
     names.sort();
     assert_eq!(names.len(), 9);
     assert_eq!((names[0].as_str(), names[8].as_str()), ("joint-01-joint_1.svg", "transitions-02.svg"));
+}
+
+#[test]
+fn a_limit_with_nothing_to_judge_is_not_kept_unless_that_is_allowed() {
+    let folder = tempfile::tempdir().unwrap();
+    let still: String = (0..500).map(|k| format!("{},0.5,0.5\n", 0.01 * f64::from(k))).collect();
+    for (name, rows) in [("still", still.as_str()), ("one", "0.0,0.5,0.5\n0.01,0.5,0.5\n")] {
+        let table = format!("time_s,a_planned_rad,a_measured_rad\n{rows}");
+        std::fs::write(folder.path().join(format!("{name}.csv")), table).unwrap();
+        run_line(folder.path(), &format!("import {name}.csv -o {name}.mcap"));
+        assert!(folder.path().join(format!("{name}.mcap")).exists());
+        for limit in ["--max-transition-peak-deg 10", "--max-start-delay-ms 9000", "--max-rms-mm 10"] {
+            let judged = |more: &str| run_line(folder.path(), &format!("report {name}.mcap {limit}{more}"));
+            let run = judged("");
+            assert_eq!(run.status.code(), Some(4), "{name} {limit}: {}", stdout(&run));
+            assert!(stdout(&run).contains("NOT KEPT: nothing to judge"), "{name}: {}", stdout(&run));
+            let run = judged(" --allow-empty");
+            assert!(matches!(run.status.code(), Some(0 | 3)), "{name} {limit}: {}", stdout(&run));
+            assert!(stdout(&run).contains("kept: nothing to judge"), "{name}: {}", stdout(&run));
+        }
+    }
 }

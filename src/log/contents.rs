@@ -1,0 +1,61 @@
+//! What a file holds, by its structure alone: to say what would be lost with it.
+
+use std::{collections::BTreeSet, fs::File, path::Path};
+
+use super::{
+    channel::Definitions,
+    file::{Source, scan},
+    files::{LOOKED_AT, is_table},
+};
+
+/// What a file holds, as far as its first bytes and its records tell.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Contents {
+    /// An MCAP log.
+    Log {
+        /// Names of its topics; empty of a log without a summary.
+        topics: BTreeSet<String>,
+        /// Names of its metadata.
+        metadata: BTreeSet<String>,
+    },
+    /// A recording of another format, and which.
+    Recording(&'static str),
+    /// Rows of cells, and the first line.
+    Table(String),
+    /// Anything else.
+    Other,
+}
+
+/// Formats of recordings by their first bytes.
+const RECORDINGS: [(&[u8], &str); 4] = [
+    (b"SQLite format 3\0", "a database, as ROS 2 bags are"),
+    (b"#ROSBAG", "a ROS 1 bag"),
+    (b"MDF     ", "an MF4 recording"),
+    (b"ULog", "a ULog recording"),
+];
+
+/// What a file holds. Its name is not remembered as that of an input.
+///
+/// # Errors
+///
+/// As the file system says.
+pub fn contents(path: &Path) -> std::io::Result<Contents> {
+    let source = Source::of(File::open(path)?)?;
+    let mut bytes = Vec::new();
+    source.read(LOOKED_AT, &mut bytes)?;
+    if let Some((_, what)) = RECORDINGS.iter().find(|(start, _)| bytes.starts_with(start)) {
+        return Ok(Contents::Recording(what));
+    }
+    if let Some(layout) = scan(&source) {
+        let channels = Definitions::gather(&layout, &source, false).channels;
+        return Ok(Contents::Log {
+            topics: channels.into_values().map(|channel| channel.topic).collect(),
+            metadata: layout.metadata.into_iter().map(|one| one.name).collect(),
+        });
+    }
+    if is_table(path, &bytes) {
+        let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
+        return Ok(Contents::Table(String::from_utf8_lossy(line).into_owned()));
+    }
+    Ok(Contents::Other)
+}

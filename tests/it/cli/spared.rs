@@ -1,0 +1,176 @@
+//! Nothing that a command read is written over, and what is replaced is replaced with care.
+
+use std::{
+    fs,
+    os::unix::fs::{MetadataExt as _, PermissionsExt as _, symlink},
+    path::Path,
+    process::{Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use crate::support::{command, run_line, said, sample, scratch};
+
+/// A folder with a bag, a run, limits, a plant, a plan and a task of an own arm.
+fn workshop() -> tempfile::TempDir {
+    let folder = scratch();
+    let path = folder.path();
+    fs::create_dir(path.join("bag")).unwrap();
+    fs::copy(sample("task-1-run.mcap"), path.join("bag/bag_0.mcap")).unwrap();
+    fs::copy(sample("task-1-run.mcap"), path.join("run.mcap")).unwrap();
+    let metadata =
+        "rosbag2_bagfile_information:\n  storage_identifier: mcap\n  relative_file_paths: [bag_0.mcap]\n";
+    fs::write(path.join("bag/metadata.yaml"), metadata).unwrap();
+    fs::copy(sample("plc-trace.csv"), path.join("trace.csv")).unwrap();
+    fs::write(path.join("map.toml"), "rate_hz = 100\n").unwrap();
+    for line in ["fit run.mcap -o limits.toml", "plan task-1.toml --times 0,20,40,60,82,102 -o plan.mcap"] {
+        let (code, _, error) = said(&run_line(path, line));
+        assert_eq!(code, 0, "{line}: {error}");
+    }
+    own_arm(path);
+    let plant = fs::read_dir(sample("plant")).unwrap().next().unwrap().unwrap().path();
+    fs::copy(plant, path.join("plant.toml")).unwrap();
+    folder
+}
+
+/// `own.toml`: the task on an arm with files of its own.
+fn own_arm(path: &Path) {
+    for file in ["arm.urdf", "hydraulics.toml"] {
+        fs::copy(sample("arm").join(file), path.join(file)).unwrap();
+    }
+    let task = fs::read_to_string(path.join("task-1.toml")).unwrap();
+    let arm = "arm = \"arm.urdf\"\nhydraulics = \"hydraulics.toml\"";
+    fs::write(path.join("own.toml"), task.replace("arm = \"sample\"", arm)).unwrap();
+}
+
+#[test]
+fn no_file_that_was_read_is_written_over_whatever_its_name() {
+    let folder = workshop();
+    let path = folder.path();
+    symlink("bag/bag_0.mcap", path.join("link.json")).unwrap();
+    fs::hard_link(path.join("bag/bag_0.mcap"), path.join("twin.json")).unwrap();
+    for (line, output) in [
+        ("report bag --json", "bag/bag_0.mcap"),
+        ("report bag --json", "bag/metadata.yaml"),
+        ("report bag --json", "link.json"),
+        ("report bag --json", "twin.json"),
+        ("report bag --json", "bag/../bag/bag_0.mcap"),
+        ("report run.mcap --html --limits limits.toml", "limits.toml"),
+        ("report bag --figures drawn", "bag/metadata.yaml"),
+        ("export bag --csv", "bag/bag_0.mcap"),
+        ("fit bag", "bag/bag_0.mcap"),
+        ("replan run.mcap --limits limits.toml --keep-plan", "limits.toml"),
+        ("replan bag --keep-plan", "bag/bag_0.mcap"),
+        ("compare bag run.mcap --json", "bag/bag_0.mcap"),
+        ("join bag --plan plan.mcap", "plan.mcap"),
+        ("import trace.csv --map map.toml", "map.toml"),
+        ("simulate plan.mcap", "plan.mcap"),
+        ("plan task-1.toml --times 0,20,40,60,82,102", "task-1.toml"),
+        ("plan own.toml --times 0,20,40,60,82,102", "arm.urdf"),
+        ("plan own.toml --times 0,20,40,60,82,102", "hydraulics.toml"),
+        ("excite --task own.toml", "arm.urdf"),
+        ("simulate plan.mcap --plant plant.toml", "plant.toml"),
+        ("recover run.mcap", "run.mcap"),
+    ] {
+        let before = fs::read(path.join(output)).unwrap();
+        let count = fs::read_dir(path).unwrap().count();
+        for force in ["", " --force"] {
+            let (code, text, error) = said(&run_line(path, &format!("{line} -o {output}{force}")));
+            assert_eq!((code, text.as_str()), (1, ""), "{line} -o {output}{force}: {error}");
+            assert!(error.contains("is an input of this command"), "{line} -o {output}: {error}");
+            assert!(fs::read(path.join(output)).unwrap() == before, "{line} -o {output}");
+            assert_eq!(
+                fs::read_dir(path).unwrap().count(),
+                count,
+                "{line} -o {output}: something was written"
+            );
+        }
+    }
+}
+
+#[test]
+fn recordings_and_commands_are_replaced_only_by_force() {
+    let folder = workshop();
+    let path = folder.path();
+    let made = said(&run_line(path, "replan run.mcap --limits limits.toml --keep-plan -o next.mcap"));
+    assert!(matches!(made.0, 0 | 3), "{made:?}");
+    fs::copy(sample("panel-install.mcap"), path.join("recorded.mcap")).unwrap();
+    fs::write(path.join("old.db3"), b"SQLite format 3\0and so on").unwrap();
+    for output in ["recorded.mcap", "next.mcap", "old.db3", "trace.csv"] {
+        let before = fs::read(path.join(output)).unwrap();
+        let (code, text, error) = said(&run_line(path, &format!("report run.mcap --json -o {output}")));
+        assert_eq!((code, text.as_str()), (1, ""), "{output}: {error}");
+        assert!(error.contains(output) && error.contains("--force"), "{error}");
+        assert!(fs::read(path.join(output)).unwrap() == before, "{output}");
+        let (code, _, error) = said(&run_line(path, &format!("report run.mcap --json -o {output} --force")));
+        assert_eq!(code, 0, "{output}: {error}");
+        assert!(fs::read(path.join(output)).unwrap().starts_with(b"{"), "{output}");
+    }
+    // What can be made again is.
+    for line in [
+        "plan task-1.toml --times 0,20,40,60,82,102 -o plan.mcap",
+        "simulate plan.mcap -o simulated.mcap",
+        "export run.mcap -o table.csv",
+        "report run.mcap -o starts.csv",
+        "fit run.mcap -o limits.toml",
+    ] {
+        for time in ["first", "second"] {
+            let (code, _, error) = said(&run_line(path, line));
+            assert_eq!(code, 0, "{line}, {time}: {error}");
+        }
+    }
+}
+
+#[test]
+fn what_is_replaced_keeps_its_mode_and_its_name_may_be_as_long_as_names_are() {
+    let folder = workshop();
+    let path = folder.path();
+    let name = format!("{}.json", "n".repeat(250));
+    for mode in [0o600, 0o640, 0o755] {
+        fs::write(path.join(&name), "{}").unwrap();
+        fs::set_permissions(path.join(&name), fs::Permissions::from_mode(mode)).unwrap();
+        let inode = path.join(&name).metadata().unwrap().ino();
+        let (code, _, error) = said(&run_line(path, &format!("report run.mcap -o {name}")));
+        assert_eq!(code, 0, "{error}");
+        let found = path.join(&name).metadata().unwrap();
+        assert_eq!(found.permissions().mode() & 0o7777, mode);
+        assert!(found.ino() != inode && found.len() > 1000);
+    }
+}
+
+/// Names of files that are no one's result.
+fn left(path: &Path) -> Vec<String> {
+    let names = fs::read_dir(path).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| name.contains("partial")).collect()
+}
+
+#[test]
+fn an_interrupt_leaves_nothing_and_what_a_kill_left_is_gone_after_the_next_run() {
+    let folder = workshop();
+    let path = folder.path();
+    let mut caught = [0, 0];
+    for attempt in 0..60 {
+        let signal = ["INT", "KILL"][attempt % 2];
+        let mut run = command(path);
+        let mut run = run.args(["export", "run.mcap", "--csv", "-o", "table.csv"]);
+        run = run.stdout(Stdio::null()).stderr(Stdio::null());
+        let mut run = run.spawn().unwrap();
+        let (patience, id) = (Instant::now(), run.id().to_string());
+        let own = || left(path).into_iter().filter(|name| name.contains(&format!("-{id}-"))).count();
+        // Once its file is there it is being written.
+        while own() == 0 && run.try_wait().unwrap().is_none() {
+            assert!(patience.elapsed() < Duration::from_secs(60));
+            thread::sleep(Duration::from_micros(200));
+        }
+        let _ =
+            Command::new("kill").args([&format!("-{signal}"), id.as_str()]).stderr(Stdio::null()).status();
+        let ended = run.wait().unwrap();
+        caught[attempt % 2] += u32::from(!ended.success());
+        if signal == "INT" {
+            assert_eq!(own(), 0, "attempt {attempt}");
+        }
+    }
+    assert!(caught.iter().all(|caught| *caught > 0), "no run was caught writing: {caught:?}");
+    assert_eq!(said(&run_line(path, "export run.mcap --csv -o table.csv")).0, 0);
+    assert_eq!(left(path), Vec::<String>::new());
+}
