@@ -51,15 +51,24 @@
 //! `cli` (default) is the program; the library without features knows no terminal, page or plot. `parquet`
 //! writes tables as Parquet, `png` figures as pixels, `viewer` shows runs in Rerun.
 
+// Hidden: for the program, its tests and studies, without a promise.
+
 // ground
+#[doc(hidden)]
 pub mod atomic_file;
+#[doc(hidden)]
 pub mod document;
+#[doc(hidden)]
+pub mod input_file;
+#[doc(hidden)]
 pub mod math;
 pub mod remark;
+#[doc(hidden)]
 pub mod rng;
 #[cfg(test)]
 mod schema;
-pub mod suggest;
+mod suggest;
+mod text;
 pub mod units;
 
 // nouns
@@ -81,8 +90,10 @@ pub mod workflow;
 
 // edges
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod render;
 #[cfg(feature = "viewer")]
-pub mod viewer;
+mod viewer;

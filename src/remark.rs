@@ -25,6 +25,8 @@ pub enum Code {
     UndecodableMessage,
     /// A file of a split recording that is named but absent.
     MissingFile,
+    /// A file beside a log that differs from the one that the log carries, which counts.
+    OtherFile,
     /// Arrays whose length differs from the list of joint names.
     LengthMismatch,
     /// Samples that are NaN or infinite, dropped.
@@ -63,6 +65,8 @@ pub enum Code {
     Ambiguous,
     /// Values that no joint can have, dropped.
     Implausible,
+    /// A plan that steps farther within a sample than any joint moves.
+    PlanJumps,
     /// A limit of what this program understands.
     NotSupported,
     /// Something that the data do not say, taken from how they look.
@@ -117,7 +121,8 @@ pub struct Remark {
 }
 
 /// Remarks in the order of their first appearance, equal ones summed.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "Vec<Remark>", into = "Vec<Remark>")]
 pub struct Remarks {
     list: Vec<Remark>,
     index: BTreeMap<(Code, String), usize>,
@@ -148,11 +153,7 @@ impl Remarks {
     /// All but those of one kind.
     #[must_use]
     pub fn without(self, code: Code) -> Self {
-        let mut left = Self::default();
-        for remark in self.list.into_iter().filter(|remark| remark.code != code) {
-            left.add(remark.code, remark.count, remark.message);
-        }
-        left
+        self.list.into_iter().filter(|remark| remark.code != code).collect::<Vec<_>>().into()
     }
 
     /// The remarks, in order of first appearance.
@@ -163,6 +164,20 @@ impl Remarks {
     /// Whether there is nothing to remark.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
+    }
+}
+
+impl From<Vec<Remark>> for Remarks {
+    fn from(list: Vec<Remark>) -> Self {
+        let mut remarks = Self::default();
+        remarks.extend(Self { list, ..Self::default() });
+        remarks
+    }
+}
+
+impl From<Remarks> for Vec<Remark> {
+    fn from(remarks: Remarks) -> Self {
+        remarks.list
     }
 }
 

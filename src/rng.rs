@@ -13,6 +13,10 @@ pub enum Stream {
     Sampling = 3,
     /// Parameters of a random hydraulic machine.
     Machine = 4,
+    /// Delays of set values on their way to a machine.
+    SetValues = 5,
+    /// What differs from run to run of one machine.
+    Run = 6,
 }
 
 /// The stream for one purpose: equal arguments give equal numbers on every platform, and

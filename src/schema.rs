@@ -27,6 +27,6 @@ where
     T: JsonSchema + Serialize + DeserializeOwned + PartialEq + Debug,
 {
     is_committed::<T>(file, title);
-    let read: T = serde_json::from_str(&crate::document::pretty(document)).unwrap();
+    let read: T = serde_json::from_str(&serde_json::to_string(document).unwrap()).unwrap();
     assert_eq!(read, *document);
 }

@@ -4,7 +4,7 @@
 const LIKE: f64 = 0.8;
 
 /// The name most like the one looked for, whatever the case of its letters, if any is like it.
-pub fn nearest<'a>(name: &str, present: impl IntoIterator<Item = &'a str>) -> Option<String> {
+pub(crate) fn nearest<'a>(name: &str, present: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let wanted = name.to_lowercase();
     present
         .into_iter()
@@ -15,7 +15,7 @@ pub fn nearest<'a>(name: &str, present: impl IntoIterator<Item = &'a str>) -> Op
 }
 
 /// `, did you mean "x"?` for the middle of an error, or nothing.
-pub fn suggestion(nearest: Option<&str>) -> String {
+pub(crate) fn suggestion(nearest: Option<&str>) -> String {
     nearest.map(|name| format!(", did you mean {name:?}?")).unwrap_or_default()
 }
 

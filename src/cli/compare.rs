@@ -6,13 +6,13 @@ use super::{
     CliError, Outcome, Run,
     console::{Console, Form, Target, spare_inputs},
     figures::FigureArgs,
-    number::{degrees, probability, ratio, reduction_percent},
+    number::{degrees, millimetres, probability, ratio, reduction_percent},
     read::ReadArgs,
 };
 use crate::{
     document::pretty,
     render::compare as words,
-    workflow::compare::{Document, Gates, Inputs, run},
+    workflow::compare::{Gates, Inputs, run},
 };
 
 const EXAMPLES: &str = "\
@@ -85,6 +85,10 @@ struct FormatArgs {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Limits (exit code 4 if not kept)")]
 struct GateArgs {
+    /// Limits with nothing to judge are kept: without it they are not
+    #[arg(long)]
+    allow_empty: bool,
+
     /// Smallest reduction of the mean peak error at transitions
     #[arg(long, value_name = "PERCENT", value_parser = reduction_percent, allow_negative_numbers = true)]
     min_peak_reduction_percent: Option<f64>,
@@ -96,6 +100,10 @@ struct GateArgs {
     /// Largest growth of the peak error at one transition
     #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     max_transition_growth_deg: Option<f64>,
+
+    /// Largest growth of the peak error at one transition, of joints that slide
+    #[arg(long, value_name = "MM", value_parser = millimetres, allow_negative_numbers = true)]
+    max_transition_growth_mm: Option<f64>,
 
     /// Largest RMS error over the run and all joints, after divided by before
     #[arg(long, value_name = "RATIO", value_parser = ratio, allow_negative_numbers = true)]
@@ -116,8 +124,10 @@ impl Args {
                 .with("peak-reduction", self.gates.min_peak_reduction_percent)
                 .with("p", self.gates.max_p)
                 .with("transition-growth", self.gates.max_transition_growth_deg)
+                .with("transition-growth-sliding", self.gates.max_transition_growth_mm)
                 .with("rms-ratio", self.gates.max_rms_ratio)
-                .with("peak-ratio", self.gates.max_peak_ratio),
+                .with("peak-ratio", self.gates.max_peak_ratio)
+                .with_empty_kept(self.gates.allow_empty),
             ..Inputs::default()
         }
     }
@@ -134,11 +144,11 @@ impl Run for Args {
         let comparison = run(&request)?;
         let most = MOST.map(|most| if self.all { usize::MAX } else { most });
         let result = match target.form {
-            Form::Json => pretty(&Document::of(&comparison)),
+            Form::Json => pretty(&comparison),
             Form::Html => words::page(&comparison, most[1]),
             _ => target.text(&words::document(&comparison, most[0])),
         };
-        self.figures.write(console, || words::figures(&comparison))?;
+        self.figures.write(console, &target, || words::figures(&comparison))?;
         console.finish(&target, &result, &comparison.remarks, &words::verdicts(&comparison))
     }
 }

@@ -15,7 +15,8 @@ use super::{
     terminal::{DOUBT, FAILED, harmless},
 };
 use crate::{
-    atomic_file::write_atomically,
+    atomic_file::{may_write, write_atomically},
+    input_file::will_read,
     remark::Remarks,
     render::kit::{self, Document, Sentence, TerminalStyle},
 };
@@ -211,16 +212,12 @@ fn is_stdout(path: &Path) -> bool {
     ["-", "/dev/stdout", "/dev/fd/1"].iter().any(|name| path == Path::new(name))
 }
 
-/// Refuses to write over an input, which may be the only copy of a run.
+/// Refuses an output before any work is done for it: one of the inputs, or what is to be kept.
 pub(super) fn spare_inputs(output: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
-    let same = |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
-    match output.filter(|output| inputs.iter().any(|input| same(input, output))) {
-        Some(output) => Err(CliError::Usage(format!(
-            "{} is an input of this command; give another name to --output",
-            output.display()
-        ))),
-        None => Ok(()),
+    for input in inputs {
+        will_read(input);
     }
+    Ok(output.map_or(Ok(()), may_write)?)
 }
 
 /// The same of a file that is not text and so does not go to standard output.

@@ -10,6 +10,7 @@ use super::{
     fit, plan, replan, simulate,
 };
 use crate::{
+    input_file,
     render::demo::{Story, document},
     workflow::{
         compare::run as compare_runs,
@@ -32,7 +33,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "DIR", default_value = "hydrotrace-demo")]
     dir: PathBuf,
 
-    /// The machine: dead-band-limited, default, lag-limited, or a TOML file
+    /// The machine: one of those of the guide, such as lag-limited or soft, or a TOML file
     #[arg(long, value_name = "PLANT", default_value = "default")]
     plant: String,
 
@@ -45,7 +46,7 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let dir = &self.dir;
         make_folder(dir)?;
-        write_file(&dir.join(TASK), SAMPLE_TASK.as_bytes())?;
+        begin(dir)?;
         let bar = progress(None, "{spinner} {msg}");
         bar.enable_steady_tick(std::time::Duration::from_millis(100));
         let say = |words: &[&str]| bar.set_message(format!("hydrotrace {}", words.join(" ")));
@@ -82,6 +83,17 @@ impl Run for Args {
         }))?;
         Ok(if replanned.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
     }
+}
+
+/// Writes the task. Where an earlier demo did, removes the command that it left; of another one the same name stays,
+/// and is not replaced.
+fn begin(dir: &Path) -> Result<(), CliError> {
+    let (task, next) = (dir.join(TASK), dir.join(NEXT));
+    if !input_file::read_to_string(&task).is_ok_and(|text| text == SAMPLE_TASK) {
+        return write_file(&task, SAMPLE_TASK.as_bytes());
+    }
+    let failed = CliError::step(format!("cannot replace {}", next.display()));
+    if next.is_file() { std::fs::remove_file(next).map_err(|error| failed(error.into())) } else { Ok(()) }
 }
 
 /// The arguments of a verb from its words, with files in a folder.

@@ -8,11 +8,14 @@ use clap::value_parser;
 use super::terminal::harmless;
 use super::{
     CliError,
-    console::{Console, make_folder, write_file},
+    console::{Console, Target, make_folder, write_file},
 };
-use crate::render::kit::{Failure, Figure};
 #[cfg(feature = "png")]
 use crate::render::kit::{Raster, raster};
+use crate::{
+    atomic_file::may_write,
+    render::kit::{Failure, Figure},
+};
 
 /// Where figures go.
 #[derive(Debug, clap::Args)]
@@ -51,9 +54,12 @@ impl FigureArgs {
     pub(super) fn write(
         &self,
         console: &mut Console<'_>,
+        target: &Target<'_>,
         draw: impl FnOnce() -> Result<Vec<Figure>, Failure>,
     ) -> Result<(), CliError> {
         let Some(folder) = &self.figures else { return Ok(()) };
+        // By now all inputs are known: nothing appears if the result beside the figures may not.
+        target.file.map_or(Ok(()), may_write)?;
         let figures = draw().map_err(CliError::step("cannot draw the figures"))?;
         let mut files = self.pixels(console, &figures)?;
         files.extend(figures.into_iter().map(|one| (format!("{}.svg", one.name), one.svg.into_bytes())));

@@ -1,6 +1,6 @@
 //! The limits of a report, an option for each row of the tables of metrics that has one.
 
-use clap::{Arg, ArgMatches, Command, error::Error};
+use clap::{Arg, ArgAction, ArgMatches, Command, error::Error};
 
 use super::number::{degrees, millimetres, milliseconds};
 use crate::{
@@ -16,6 +16,9 @@ pub(super) struct GateArgs {
     pub(super) gates: Gates,
 }
 
+const HEADING: &str = "Limits (exit code 4 if not kept)";
+const ALLOW_EMPTY: &str = "allow-empty";
+
 /// Every option with its limit and the joints it judges.
 fn options() -> impl Iterator<Item = (&'static str, &'static Limit, JointKind)> {
     limits().flat_map(|limit| {
@@ -27,10 +30,7 @@ fn options() -> impl Iterator<Item = (&'static str, &'static Limit, JointKind)> 
 impl clap::Args for GateArgs {
     fn augment_args(command: Command) -> Command {
         let option = |(option, limit, kind): (&'static str, &'static Limit, JointKind)| {
-            let option = Arg::new(option)
-                .long(option)
-                .help_heading("Limits (exit code 4 if not kept)")
-                .allow_negative_numbers(true);
+            let option = Arg::new(option).long(option).help_heading(HEADING).allow_negative_numbers(true);
             match (limit.dimension, kind) {
                 (Dimension::Position, JointKind::Turns) => {
                     option.help(limit.help).value_name("DEG").value_parser(degrees)
@@ -42,7 +42,12 @@ impl clap::Args for GateArgs {
                 _ => option.help(limit.help).value_name("MS").value_parser(milliseconds),
             }
         };
-        command.args(options().map(option))
+        let allow_empty = Arg::new(ALLOW_EMPTY)
+            .long(ALLOW_EMPTY)
+            .help_heading(HEADING)
+            .help("Limits with nothing to judge are kept: without it they are not")
+            .action(ArgAction::SetTrue);
+        command.args(options().map(option)).arg(allow_empty)
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -56,7 +61,7 @@ impl clap::FromArgMatches for GateArgs {
             matches.get_one::<f64>(option).map(|value| (limit, kind, *value))
         });
         let gates = set.fold(Gates::default(), |gates, (limit, kind, value)| gates.with(limit, kind, value));
-        Ok(Self { gates })
+        Ok(Self { gates: gates.with_empty_kept(matches.get_flag(ALLOW_EMPTY)) })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {

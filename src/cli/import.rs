@@ -10,7 +10,7 @@ use crate::{
     document::pretty,
     log::{AngleUnit, Columns, CsvError, CsvOptions, Quantity, Role, Separator},
     render::import as words,
-    workflow::import::{ImportDocument, Inputs, run},
+    workflow::import::{Inputs, run},
 };
 
 const EXAMPLES: &str = "\
@@ -146,7 +146,7 @@ impl Run for Args {
         let imported = run(&self.request()?)?;
         let target = Target::stdout(self.json);
         let result = if self.json {
-            pretty(&ImportDocument::of(&imported))
+            pretty(&imported)
         } else {
             target.text(&words::document(&self.output.to_string_lossy(), &imported))
         };

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     document::pretty,
     render::join as words,
-    workflow::join::{Inputs, JoinDocument, run},
+    workflow::join::{Inputs, run},
 };
 
 const EXAMPLES: &str = "\
@@ -66,7 +66,7 @@ impl Run for Args {
         let joined = run(&self.request())?;
         let target = Target::stdout(self.json);
         let result = if self.json {
-            pretty(&JoinDocument::of(&joined))
+            pretty(&joined)
         } else {
             target.text(&words::document(&joined, &self.plan, &self.output))
         };

@@ -14,6 +14,8 @@ mod fit;
 mod gates;
 mod import;
 mod info;
+#[cfg(unix)]
+mod interrupt;
 mod join;
 mod man;
 mod number;
@@ -31,6 +33,7 @@ use std::{env, io, process::ExitCode};
 use anstream::AutoStream;
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
+use crate::{atomic_file, input_file, workflow::carried::worth};
 use console::Console;
 use error::CliError;
 
@@ -114,6 +117,10 @@ struct Args {
     #[command(subcommand)]
     command: Command,
 
+    /// Let an output replace a recording or a command that is there
+    #[arg(long, global = true)]
+    force: bool,
+
     #[command(flatten)]
     terminal: terminal::TerminalArgs,
 }
@@ -127,6 +134,12 @@ pub fn main() -> ExitCode {
     let matches = Args::command().color(terminal::early_choice(env::args_os())).get_matches();
     let args = Args::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let choice = terminal::set_up(args.terminal);
+    input_file::remember();
+    if !args.force {
+        atomic_file::keep(worth);
+    }
+    #[cfg(unix)]
+    interrupt::watch();
     // Not locked: the log writes to it during the run.
     let mut err = AutoStream::new(io::stderr(), choice);
     let mut out = io::stdout().lock();

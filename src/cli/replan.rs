@@ -9,9 +9,9 @@ use super::{
     read::SentArgs,
 };
 use crate::{
-    fit::Compensation,
+    fit::Learning,
     render::{next, replan as words},
-    workflow::replan::{Inputs, ReplanDocument, Replanned, run},
+    workflow::replan::{Commanded, Inputs, ReplanDocument, Replanned, run},
 };
 
 const EXAMPLES: &str = "\
@@ -19,6 +19,7 @@ Examples:
   hydrotrace replan run.mcap -o next.mcap
   hydrotrace replan run.mcap -o next.mcap --gain 0.5
   hydrotrace replan field.mcap -o next.mcap --keep-plan
+  hydrotrace replan run-1.mcap run-2.mcap run-3.mcap -o next.mcap
   hydrotrace replan run-1.mcap run-2.mcap --limits limits.toml --task task.toml -o next.mcap";
 
 /// Samples a second in the log; that of the control loops that commands are sent to.
@@ -44,7 +45,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "FILE")]
     task: Option<PathBuf>,
 
-    /// One JSON document (schemas/replan.v2.schema.json in the repository)
+    /// One JSON document (schemas/replan.v3.schema.json in the repository)
     #[arg(long)]
     json: bool,
 
@@ -66,11 +67,15 @@ struct ChangeArgs {
     #[arg(long)]
     no_precompensation: bool,
 
+    /// Search other timings though runs of this plan were corrected already; learning starts anew
+    #[arg(long, conflicts_with = "keep_plan")]
+    retime: bool,
+
     /// Share of the correction to apply, 0 to 1; 0.5 for a cautious first run
     #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = share)]
     gain: f64,
 
-    /// Largest difference between command and plan [default: 1.5]
+    /// Largest difference between command and plan [default: 1.25 times the largest error, at least 1.5]
     #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     max_correction_deg: Option<f64>,
 
@@ -94,8 +99,8 @@ struct ChangeArgs {
 impl Args {
     fn request(&self) -> Inputs {
         let change = &self.change;
-        let compensation = Compensation { gain: change.gain, ..Compensation::default() };
-        let most_rad = change.max_correction_deg.unwrap_or(compensation.most_rad);
+        let learning =
+            Learning { gain: change.gain, most_rad: change.max_correction_deg, ..Learning::default() };
         Inputs {
             logs: self.logs.clone(),
             read: self.sent.options(),
@@ -103,7 +108,8 @@ impl Args {
             task: self.task.clone(),
             keep_plan: change.keep_plan,
             precompensate: !change.no_precompensation,
-            compensation: Compensation { most_rad, ..compensation },
+            retime: change.retime,
+            learning,
             time_growth: change.max_time_growth_percent,
             cost_growth: change.max_cost_growth_percent,
             evaluations: change.evaluations,
@@ -128,8 +134,8 @@ impl Args {
             let provenance = [
                 ("fitted_to", replanned.fitted_to.join(", ")),
                 ("retimed", replanned.retimed.to_string()),
-                ("precompensated", replanned.command.is_some().to_string()),
-                ("gain", request.compensation.gain.to_string()),
+                ("precompensated", replanned.command.as_ref().is_some_and(Commanded::applied).to_string()),
+                ("gain", request.learning.gain.to_string()),
                 ("seed", request.seed.to_string()),
             ];
             let provenance = BTreeMap::from(provenance.map(|(key, value)| (key.to_owned(), value)));

@@ -112,7 +112,7 @@ impl Run for Args {
             }
             Form::Text | Form::Markdown => target.text(&words::document(&name, &report, most[0])),
         };
-        self.figures.write(console, || words::figures(&report))?;
+        self.figures.write(console, &target, || words::figures(&report))?;
         console.finish(&target, &result, &report.remarks, &words::verdicts(&report))
     }
 }

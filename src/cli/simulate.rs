@@ -32,7 +32,7 @@ pub(super) struct Args {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
-    /// The machine: dead-band-limited, default, lag-limited, or a TOML file
+    /// The machine: one of those of the guide, such as lag-limited or soft, or a TOML file
     #[arg(long, value_name = "PLANT", default_value = "default")]
     plant: String,
 
@@ -55,7 +55,8 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let run = self.simulated()?;
         console.show(&words::document(&run, &self.plant, self.seed, &self.output))?;
-        Ok(Outcome::Clean)
+        console.say_remarks(&run.remarks);
+        Ok(if run.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
     }
 }
 

@@ -1,7 +1,9 @@
 //! Colours and the log of a run, for the whole program.
 
 use std::{
+    borrow::Cow,
     ffi::OsString,
+    fmt::Write as _,
     io::{self, Write},
 };
 
@@ -9,6 +11,8 @@ use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
 use clap::ArgAction;
 use log::{Level, LevelFilter};
+
+use crate::text;
 
 /// Starts a line on a failure.
 pub(super) const FAILED: Style = AnsiColor::Red.on_default().bold();
@@ -69,14 +73,49 @@ pub(super) fn set_up(args: TerminalArgs) -> ColorChoice {
     of(choice, AutoStream::choice(&io::stderr()))
 }
 
-/// Text from logs without control characters, which could steer a terminal.
+/// Digits in a row that no number in a message needs.
+const MOST_DIGITS: usize = 40;
+/// Of these, shown.
+const SHOWN_DIGITS: usize = 6;
+
+/// Text from logs without characters that could steer a terminal, and without endless numbers.
 pub(super) fn harmless(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c }).collect()
+    let line = |c| if c == '\n' { c } else { text::harmless(c) };
+    with_short_numbers(text).chars().map(line).collect()
+}
+
+/// With numbers of hundreds of digits cut short.
+fn with_short_numbers(text: &str) -> Cow<'_, str> {
+    let is_digit = |c: char| c.is_ascii_digit();
+    if !text.as_bytes().windows(MOST_DIGITS + 1).any(|run| run.iter().all(u8::is_ascii_digit)) {
+        return text.into();
+    }
+    let (mut out, mut rest) = (String::new(), text);
+    while let Some(start) = rest.find(is_digit) {
+        let (before, from) = rest.split_at(start);
+        let (digits, after) = from.split_at(from.find(|c| !is_digit(c)).unwrap_or(from.len()));
+        out.push_str(before);
+        if digits.len() > MOST_DIGITS {
+            // Writing to memory does not fail.
+            let _ = write!(out, "{}... ({} digits)", &digits[..SHOWN_DIGITS], digits.len());
+        } else {
+            out.push_str(digits);
+        }
+        rest = after;
+    }
+    (out + rest).into()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_of_hundreds_of_digits_are_cut() {
+        let long = format!("found {}, 12 expected", 1e300);
+        assert_eq!(with_short_numbers(&long), "found 100000... (301 digits), 12 expected");
+        assert_eq!(with_short_numbers("1760000000000000000 ns"), "1760000000000000000 ns");
+    }
 
     #[test]
     fn the_last_choice_of_colours_is_the_one_that_holds() {

@@ -79,6 +79,7 @@ impl Run for Args {
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         use crate::{
+            text::shell_argument,
             viewer::{Target, show},
             workflow::view::{Inputs, run},
         };
@@ -90,6 +91,8 @@ impl Run for Args {
             packages: packages(),
             ..Inputs::default()
         })?;
+        // By now meshes are known, which the viewer opens.
+        self.target.save.as_deref().map_or(Ok(()), crate::atomic_file::may_write)?;
         let target = match (&self.target.save, &self.target.connect) {
             (Some(path), _) => Target::Save(path.clone()),
             (None, Some(url)) => Target::Connect(url.clone()),
@@ -103,7 +106,11 @@ impl Run for Args {
             |address: &str| console.announce(&format!("{address} shows it; Ctrl-C ends it.\n"));
         show(&scenes, &target, self.speed, &mut announce)?;
         if let Target::Save(path) = &target {
-            console.print(&format!("{} written; rerun {} opens it.\n", path.display(), path.display()))?;
+            console.print(&format!(
+                "{} written; rerun {} opens it.\n",
+                path.display(),
+                shell_argument(path)
+            ))?;
         }
         let doubtful = scenes.iter().any(|scene| !scene.remarks.is_empty());
         Ok(if doubtful { Outcome::Remarks } else { Outcome::Clean })

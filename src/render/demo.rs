@@ -16,32 +16,32 @@ use crate::{
 
 /// What happened.
 #[derive(Debug)]
-pub struct Story<'a> {
+pub(crate) struct Story<'a> {
     /// Where the files are.
-    pub dir: &'a Path,
+    pub(crate) dir: &'a Path,
     /// The words of both simulations.
-    pub machine: [String; 2],
+    pub(crate) machine: [String; 2],
     /// The first plan.
-    pub planned: &'a Planned,
+    pub(crate) planned: &'a Planned,
     /// The machine.
-    pub fitted: &'a Fitted,
+    pub(crate) fitted: &'a Fitted,
     /// The second plan.
-    pub replanned: &'a Replanned,
+    pub(crate) replanned: &'a Replanned,
     /// Both runs.
-    pub comparison: &'a Comparison,
+    pub(crate) comparison: &'a Comparison,
 }
 
 /// Columns of a bar for the largest value.
 const WIDTH: f64 = 40.0;
 
 /// The loop, for people.
-pub fn document(story: &Story<'_>) -> Document {
+pub(crate) fn document(story: &Story<'_>) -> Document {
     let Story { planned, fitted, replanned, comparison, .. } = story;
     let before = &replanned.before;
     let skills = || fitted.fit.joints.iter().map(|joint| joint.held_out_r2);
     let commands = replanned.command.as_ref();
     let most = commands.map_or(0.0, |command| {
-        command.joints.iter().map(|joint| joint.compensation.peak_correction_rad).fold(0.0, f64::max)
+        command.joints.iter().map(|joint| joint.peak_correction_rad).fold(0.0, f64::max)
     });
     let steps = [
         (

@@ -6,7 +6,7 @@ use super::kit::{Document, Id, NONE, Section, Sentence, Table, counted};
 use crate::{units::degrees_from_radians, workflow::excite::Excited};
 
 /// An identification run, for people.
-pub fn document(excited: &Excited, file: &Path) -> Document {
+pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
     let number = |rad: f64| format!("{:.1}", degrees_from_radians(rad));
     let strokes: Vec<String> = excited
         .excitation

@@ -1,10 +1,10 @@
 //! How a CSV file was read.
 
 use super::kit::{Block, Document, Id, NONE, Section, Sentence, Table, counted, fact};
-use crate::{log::Understood, workflow::import::Outputs};
+use crate::{log::Understood, workflow::import::Imported};
 
 /// As sentences and tables.
-pub fn document(output: &str, imported: &Outputs) -> Document {
+pub(crate) fn document(output: &str, imported: &Imported) -> Document {
     let Understood { file, time, joints, columns, unused, .. } = &imported.understood;
     let u = &imported.understood;
     let written = format!(

@@ -4,7 +4,7 @@ use super::kit::{Block, Document, Id, Section, Sentence, Table, fact};
 use crate::log::Survey;
 
 /// As headings, sentences and tables.
-pub fn document(survey: &Survey) -> Document {
+pub(crate) fn document(survey: &Survey) -> Document {
     let files = survey.files.iter().map(|f| {
         let state = if f.closed { "closed properly" } else { "NOT CLOSED" };
         let bytes = if f.bytes < 10_000 {

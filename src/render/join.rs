@@ -9,11 +9,11 @@ use super::{
 use crate::workflow::join::Joined;
 
 /// As sentences.
-pub fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {
-    let Joined { sent, commanded, located, at_s, duration_s, rest_s, joints, messages, files, remarks } =
+pub(crate) fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {
+    let Joined { sent, sent_is_command, located, at_s, duration_s, joints, messages, files, remarks, .. } =
         joined;
     let plan = plan.display();
-    let what = if *commanded { "command" } else { "plan" };
+    let what = if *sent_is_command { "command" } else { "plan" };
     let sent = match (sent, located) {
         (Some(topic), Some(found)) => format!(
             "{topic}: the {what} of {plan} from {at_s:.3} s on, {} deg rms apart on {}",
@@ -29,8 +29,8 @@ pub fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {
             format!(
                 "{duration_s:.2} s of {} in /planned/joint_states, held {:.2} s before and {:.2} s after",
                 counted(*joints, "joint"),
-                rest_s[0],
-                rest_s[1]
+                joined.rest_before_s,
+                joined.rest_after_s
             ),
         ),
     ];

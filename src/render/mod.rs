@@ -1,18 +1,18 @@
 //! Renders what a workflow found, a file or folder of words a verb on one kit: text, Markdown, JSON, CSV, pages,
 //! pictures. Nothing is computed here; degrees and milliseconds are.
 
-pub mod compare;
-pub mod demo;
-pub mod excite;
-pub mod fit;
-pub mod import;
-pub mod info;
-pub mod join;
+pub(crate) mod compare;
+pub(crate) mod demo;
+pub(crate) mod excite;
+pub(crate) mod fit;
+pub(crate) mod import;
+pub(crate) mod info;
+pub(crate) mod join;
 pub mod kit;
 mod metric;
-pub mod next;
+pub(crate) mod next;
 pub mod plan;
-pub mod recover;
-pub mod replan;
-pub mod report;
-pub mod simulate;
+pub(crate) mod recover;
+pub(crate) mod replan;
+pub(crate) mod report;
+pub(crate) mod simulate;

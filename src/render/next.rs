@@ -13,14 +13,14 @@ fn step(section: Section, aim: &str, words: &[&str]) -> Section {
 }
 
 /// After `plan`.
-pub fn plan_written(log: &Path) -> Section {
+pub(crate) fn plan_written(log: &Path) -> Section {
     let log = argument(log);
     let aim = "To run it on a simulated machine:";
     step(written(&log), aim, &["simulate", &log, "-o", "run.mcap"])
 }
 
 /// After `fit`; `log` is the run to plan again: one that holds a task, if there is one.
-pub fn limits_written(limits: &Path, log: Option<&PathBuf>) -> Section {
+pub(crate) fn limits_written(limits: &Path, log: Option<&PathBuf>) -> Section {
     let limits = argument(limits);
     let log = log.map_or("RUN.mcap".to_owned(), argument);
     let aim = "To plan the next run, with half of the correction at first:";
@@ -28,12 +28,19 @@ pub fn limits_written(limits: &Path, log: Option<&PathBuf>) -> Section {
 }
 
 /// After `replan` of these logs.
-pub fn next_written(next: &Path, logs: &[PathBuf]) -> Section {
+pub(crate) fn next_written(next: &Path, logs: &[PathBuf]) -> Section {
     let next = argument(next);
     let last = logs.last().map_or("RUN.mcap".to_owned(), argument);
     let aim = "After the run, to put the plan into the recorder's log:";
     let joined = step(written(&next), aim, &["join", "RUN.mcap", "--plan", &next, "-o", "after.mcap"]);
-    step(joined, "To see whether the error became smaller:", &["compare", &last, "after.mcap"])
+    let compared =
+        step(joined, "To see whether the error became smaller:", &["compare", &last, "after.mcap"]);
+    let mut words: Vec<String> = vec!["replan".to_owned()];
+    words.extend(logs.iter().map(argument));
+    let again = format!("next-{}.mcap", logs.len() + 1);
+    words.extend(["after.mcap", "-o", &again].map(str::to_owned));
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    step(compared, "To learn from it too, until nothing more is to be gained:", &words)
 }
 
 /// After a run was written.

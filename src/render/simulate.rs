@@ -9,7 +9,7 @@ use super::{
 use crate::workflow::simulate::log::Run;
 
 /// One line on a run, and one on what to do with it.
-pub fn document(run: &Run, plant: &str, seed: u64, file: &Path) -> Document {
+pub(crate) fn document(run: &Run, plant: &str, seed: u64, file: &Path) -> Document {
     let record = &run.outputs.record;
     let duration_s = record.t_s.last().copied().unwrap_or(0.0);
     let what = if run.commanded { "the command" } else { "the plan" };

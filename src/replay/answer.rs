@@ -18,11 +18,11 @@ pub(super) fn untimed(
     rules: &Rules,
 ) -> Answer {
     let needed_rad = rules.follow_share * rise_rad(&pair.planned[window.clone()], direction);
-    if rise_rad(&signals.measured_rad[window.clone()], direction) >= needed_rad.max(signals.min_travel_rad) {
+    if rise_rad(&signals.measured_rad[window.clone()], direction) >= needed_rad.max(signals.min_travel) {
         return Answer::Creeps;
     }
     let lasts_s = pair.t_s[window.end - 1] - pair.t_s[window.start];
-    if needed_rad < signals.min_travel_rad || lasts_s < rules.match_after_s {
+    if needed_rad < signals.min_travel || lasts_s < rules.match_after_s {
         Answer::Unclear
     } else {
         Answer::Never

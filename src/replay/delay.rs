@@ -46,6 +46,7 @@ pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, ru
         crossing_s: motion.start_s,
         rest_s: motion.rest_before_s,
         window_s: signals.thresholds.window_s,
+        stop_speed: signals.sizes.stop_speed,
     };
     onset_of(pair, &search, rules).unwrap_or(at_crossing)
 }
@@ -54,7 +55,7 @@ pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, ru
 ///
 /// Between a sample at rest and the first one above the threshold the plan is taken to
 /// accelerate evenly, which its travel and its speed then date.
-pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> f64 {
+pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion) -> f64 {
     if motion.reversal {
         return motion.start_s;
     }
@@ -66,7 +67,7 @@ pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion, r
         None if i < last => along(motion, angle_rad[i + 1] - angle_rad[i]) / (t_s[i + 1] - t_s[i]),
         None => along(motion, signals.planned_rad_s[i]),
     };
-    let faster = |i: usize| speed_rad_s(i) > rules.stop_floor_rad_s;
+    let faster = |i: usize| speed_rad_s(i) > signals.sizes.stop_speed;
     let Some(mut above) = motion.samples.clone().find(|&i| faster(i)) else { return motion.start_s };
     while above > motion.segment.start && faster(above - 1) {
         above -= 1;
@@ -77,7 +78,7 @@ pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion, r
     let at_speed_rad_s = speed_rad_s(above);
     let travel_rad = along(motion, angle_rad[above] - angle_rad[above - 1]).max(0.0);
     let lasted_s = 2.0 * travel_rad / at_speed_rad_s;
-    let passes_s = lasted_s * rules.stop_floor_rad_s / at_speed_rad_s;
+    let passes_s = lasted_s * signals.sizes.stop_speed / at_speed_rad_s;
     (t_s[above] - lasted_s + passes_s).clamp(t_s[above - 1], t_s[above])
 }
 
@@ -126,7 +127,7 @@ fn unshaken(
     let at = |t_s: f64| motion.segment.start + times.partition_point(|&t| t < t_s);
     let (from, asked) = (at(onset.at_s), at(planned_s));
     let early_rad = pair.measured.get(asked)? - pair.measured.get(from)?;
-    if onset.interval_s[1] >= planned_s || early_rad.abs() >= rules.displacement_rad {
+    if onset.interval_s[1] >= planned_s || early_rad.abs() >= signals.sizes.displacement {
         return None;
     }
     let level_rad_s = signals.thresholds.measured_start;
@@ -138,6 +139,7 @@ fn unshaken(
         crossing_s: pair.t_s[crossing],
         rest_s: pair.t_s[crossing] - planned_s + signals.thresholds.window_s,
         window_s: signals.thresholds.window_s,
+        stop_speed: signals.sizes.stop_speed,
     };
     onset_of(pair, &search, rules)
 }

@@ -42,7 +42,7 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
     let lag = lag(&speeds, &signals.planned, signals.sample_interval_s, rules);
 
     let planned: Vec<&Motion> = signals.planned.iter().filter(|m| m.starts()).collect();
-    let starts_s: Vec<f64> = planned.iter().map(|m| planned_onset_s(pair, &signals, m, rules)).collect();
+    let starts_s: Vec<f64> = planned.iter().map(|m| planned_onset_s(pair, &signals, m)).collect();
     let closes_s = |k: usize| pair.t_s[planned[k].segment.end - 1];
     let until_s = |k: usize| starts_s.get(k + 1).map_or(closes_s(k), |next_s| closes_s(k).min(*next_s));
     let untils_s: Vec<f64> = (0..planned.len()).map(until_s).collect();
@@ -64,7 +64,7 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
     let stops = stops(pair, &signals, &error, rules);
     let matched = answers.iter().flatten().count();
     let moves = matched > 0
-        || signals.measured.iter().any(|m| travel_rad(&pair.measured, m) >= rules.moves_travel_rad);
+        || signals.measured.iter().any(|m| travel_rad(&pair.measured, m) >= signals.sizes.moves_travel);
     // What does not move has no lag, however well its noise fits.
     let lag = if moves { lag } else { Lag::default() };
     let blocks = blocks(pair, &error, &signals.planned_rad_s, &signals.planned, lag.shift_s);

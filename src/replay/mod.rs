@@ -37,7 +37,7 @@ pub use outcome::{
 };
 pub use peak_motion::peak_motion;
 pub use profile::{Profiles, STRETCHES};
-pub use rules::Rules;
+pub use rules::{Rules, Sizes};
 pub use signals::planned_starts;
 
 use crate::series::Pair;

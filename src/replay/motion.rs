@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::Rules;
+use super::{Rules, Sizes};
 
 /// One signal as the state machine sees it; arrays are `[n]`.
 pub(super) struct Speed<'a> {
@@ -13,8 +13,10 @@ pub(super) struct Speed<'a> {
     /// Standard deviation of each velocity, rad/s; `None` for a plan, which has no noise.
     pub(super) deviation_rad_s: Option<&'a [f64]>,
     pub(super) segments: &'a [Range<usize>],
-    /// Net travel of a motion, at least, rad.
-    pub(super) min_travel_rad: f64,
+    /// Net travel of a motion, at least.
+    pub(super) min_travel: f64,
+    /// Thresholds of a joint of this kind.
+    pub(super) sizes: Sizes,
 }
 
 /// A stretch of motion in one direction, inside one segment.
@@ -63,8 +65,8 @@ impl Speed<'_> {
     pub(super) fn thresholds(&self, i: usize, rules: &Rules) -> (f64, f64) {
         let deviation = self.deviation_rad_s.map_or(0.0, |d| d[i]);
         (
-            rules.start_floor_rad_s.max(rules.start_sigmas * deviation),
-            rules.stop_floor_rad_s.max(rules.stop_sigmas * deviation),
+            self.sizes.start_speed.max(rules.start_sigmas * deviation),
+            self.sizes.stop_speed.max(rules.stop_sigmas * deviation),
         )
     }
 
@@ -127,7 +129,7 @@ impl Speed<'_> {
     fn is_motion(&self, motion: &Motion, rules: &Rules) -> bool {
         let (first, last) = (motion.samples.start, motion.samples.end - 1);
         let travel_rad = f64::from(motion.direction) * (self.position_rad[last] - self.position_rad[first]);
-        motion.end_s - motion.start_s >= rules.min_motion_s && travel_rad >= self.min_travel_rad
+        motion.end_s - motion.start_s >= rules.min_motion_s && travel_rad >= self.min_travel
     }
 
     /// Tells openings and reversals, which need the motion before.
@@ -183,7 +185,8 @@ mod tests {
             velocity_rad_s: &velocity_rad_s,
             deviation_rad_s: None,
             segments,
-            min_travel_rad: rules.min_travel_rad,
+            min_travel: rules.turning.min_travel,
+            sizes: rules.turning,
         };
         speed.motions(&rules)
     }

@@ -62,9 +62,11 @@ pub(super) struct Search {
     pub(super) crossing_s: f64,
     pub(super) rest_s: f64,
     pub(super) window_s: f64,
+    /// The threshold of the onset.
+    pub(super) stop_speed: f64,
 }
 
-/// When the speed of a motion first passed [`Rules::stop_floor_rad_s`]. `None` with fewer than
+/// When the speed of a motion first passed [`Search::stop_speed`]. `None` with fewer than
 /// six samples to fit.
 pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &Rules) -> Option<Onset> {
     let Search { segment, crossing_s, window_s, .. } = search;
@@ -96,7 +98,7 @@ pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &
     let grid = (-(back as i64)..=on as i64).map(|k| k as f64 * rules.onset_step_s);
     let fits: Vec<Fit> = grid
         .flat_map(|t0| RISES.map(|rise| Fit::new(&t, &x, t0, rise)))
-        .filter(|fit| fit.onset_s(rules.stop_floor_rad_s).is_some_and(|s| s <= times[end - 1] - crossing_s))
+        .filter(|fit| fit.onset_s(search.stop_speed).is_some_and(|s| s <= times[end - 1] - crossing_s))
         .collect();
     let best = fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares))?;
     let freedom = ((t.len() as f64 - 4.0).max(1.0) / best.redundancy(&t, &x)).max(1.0);
@@ -104,7 +106,7 @@ pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &
     let mut onsets: Vec<(f64, f64)> = fits
         .iter()
         .filter_map(|fit| {
-            let at_s = fit.onset_s(rules.stop_floor_rad_s)?;
+            let at_s = fit.onset_s(search.stop_speed)?;
             Some((at_s, (0.5 * (best.squares - fit.squares) / variance).exp()))
         })
         .collect();

@@ -40,7 +40,7 @@ pub struct JointReplay {
     #[cfg_attr(test, schemars(with = "String"))]
     pub kind: JointKind,
     /// Whether the measured position changes: it answers a planned start, or one of its motions travels
-    /// [`Rules::moves_travel_rad`].
+    /// [`Sizes::moves_travel`](super::Sizes::moves_travel).
     pub moves: bool,
     /// Whether the plan moves.
     pub plan_moves: bool,

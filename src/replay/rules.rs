@@ -2,22 +2,56 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::units::DEGREE_RAD;
+use crate::{series::JointKind, units::DEGREE_RAD};
 
-/// Thresholds and windows. The default is for arms that move at 0.4 to 25 degrees per second.
+/// Thresholds of positions and speeds, in the unit of a joint's position and that unit per second.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Sizes {
+    /// Speed above which a joint has started, at least.
+    pub start_speed: f64,
+    /// Speed below which a joint has stopped, at least.
+    pub stop_speed: f64,
+    /// Speed that the fit window is widened for when the signal is noisy.
+    pub target_speed: f64,
+    /// Net travel of a motion, at least.
+    pub min_travel: f64,
+    /// A joint without an answered start moves if one of its motions travels this far; less is
+    /// being shaken by the others.
+    pub moves_travel: f64,
+    /// Travel at which plan and measurement are compared for the displacement delay.
+    pub displacement: f64,
+    /// Error band of settling, at least.
+    pub settle_band: f64,
+}
+
+impl Sizes {
+    /// Of joints that turn, where one is a tenth of a degree, and of joints that slide, where one is two millimetres.
+    fn of(one: f64) -> Self {
+        Self {
+            start_speed: one,
+            stop_speed: 0.5 * one,
+            target_speed: 2.0 * one,
+            min_travel: 0.5 * one,
+            moves_travel: 2.0 * one,
+            displacement: one,
+            settle_band: one,
+        }
+    }
+}
+
+/// Thresholds and windows. The default is for arms that move at 0.4 to 25 degrees or 8 to 500 mm per second.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Rules {
-    /// Speed above which a joint has started, at least, rad/s.
-    pub start_floor_rad_s: f64,
-    /// Speed below which a joint has stopped, at least, rad/s.
-    pub stop_floor_rad_s: f64,
+    /// Thresholds of joints that turn, rad and rad/s.
+    pub turning: Sizes,
+    /// Thresholds of joints that slide, m and m/s.
+    pub sliding: Sizes,
     /// Start threshold of a measured speed, in standard deviations of that speed.
     pub start_sigmas: f64,
     /// Stop threshold of a measured speed, in standard deviations of that speed.
     pub stop_sigmas: f64,
-    /// Speed that the fit window is widened for when the signal is noisy, rad/s.
-    pub target_speed_rad_s: f64,
     /// Narrowest half window of the velocity fit, s.
     pub window_min_s: f64,
     /// Widest half window of the velocity fit, s.
@@ -28,15 +62,10 @@ pub struct Rules {
     pub planned_window_s: f64,
     /// Shortest motion, s.
     pub min_motion_s: f64,
-    /// Net travel of a motion, at least, rad.
-    pub min_travel_rad: f64,
     /// Net travel of a measured motion, at least, in standard deviations of the angle.
     pub min_travel_sigmas: f64,
     /// Net travel of a measured motion, at least, in encoder steps.
     pub min_travel_lsbs: f64,
-    /// A joint without an answered start moves if one of its motions travels this far; less is
-    /// being shaken by the others, rad.
-    pub moves_travel_rad: f64,
     /// Rest shorter than this joins two motions of the same direction, and makes a reversal of
     /// two motions of opposite direction, s.
     pub min_rest_s: f64,
@@ -61,12 +90,8 @@ pub struct Rules {
     pub follow_share: f64,
     /// Longest window of a transition, s.
     pub transition_window_s: f64,
-    /// Travel at which plan and measurement are compared for the displacement delay, rad.
-    pub displacement_rad: f64,
     /// How long after the measured onset a jump of speed is looked for, s.
     pub jump_window_s: f64,
-    /// Error band of settling, at least, rad.
-    pub settle_band_rad: f64,
     /// Error band of settling, in standard deviations of the angle.
     pub settle_sigmas: f64,
     /// How long the error must stay in the band, s.
@@ -97,20 +122,17 @@ pub struct Rules {
 impl Default for Rules {
     fn default() -> Self {
         Self {
-            start_floor_rad_s: 0.10 * DEGREE_RAD,
-            stop_floor_rad_s: 0.05 * DEGREE_RAD,
+            turning: Sizes::of(0.1 * DEGREE_RAD),
+            sliding: Sizes::of(0.002),
             start_sigmas: 6.0,
             stop_sigmas: 3.0,
-            target_speed_rad_s: 0.20 * DEGREE_RAD,
             window_min_s: 0.08,
             window_max_s: 0.25,
             window_points: 7,
             planned_window_s: 0.03,
             min_motion_s: 0.12,
-            min_travel_rad: 0.05 * DEGREE_RAD,
             min_travel_sigmas: 5.0,
             min_travel_lsbs: 2.0,
-            moves_travel_rad: 0.2 * DEGREE_RAD,
             min_rest_s: 0.20,
             opening_rest_s: 0.10,
             onset_before_s: 0.70,
@@ -122,9 +144,7 @@ impl Default for Rules {
             match_after_s: 1.0,
             follow_share: 0.3,
             transition_window_s: 4.0,
-            displacement_rad: 0.1 * DEGREE_RAD,
             jump_window_s: 0.4,
-            settle_band_rad: 0.1 * DEGREE_RAD,
             settle_sigmas: 5.0,
             settle_hold_s: 0.3,
             standstill_after_s: 1.0,
@@ -142,11 +162,19 @@ impl Default for Rules {
 }
 
 impl Rules {
+    /// Thresholds of a joint of this kind.
+    pub fn sizes(&self, kind: JointKind) -> &Sizes {
+        match kind {
+            JointKind::Turns => &self.turning,
+            JointKind::Slides => &self.sliding,
+        }
+    }
+
     /// Half window of the velocity fit, s: as narrow as lets a motion at the target speed pass
     /// the start threshold (an even window of n samples within h has the slope deviation
     /// sigma sqrt(1.5 dt / h³)).
-    pub fn window_s(&self, sample_interval_s: f64, sigma_rad: f64) -> f64 {
-        let noise = self.start_sigmas * sigma_rad / self.target_speed_rad_s;
+    pub fn window_s(&self, kind: JointKind, sample_interval_s: f64, sigma: f64) -> f64 {
+        let noise = self.start_sigmas * sigma / self.sizes(kind).target_speed;
         let needed_s = (1.5 * sample_interval_s * noise * noise).cbrt();
         needed_s.min(self.window_max_s).max(self.window_min_s)
     }

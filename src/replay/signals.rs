@@ -1,7 +1,7 @@
 //! Planned and measured speed of one joint, and the motions in each.
 
 use super::{
-    Rules, Thresholds,
+    Rules, Sizes, Thresholds,
     motion::{Motion, Speed},
     peak_motion::of_fits,
 };
@@ -22,8 +22,10 @@ pub(super) struct Signals {
     /// Measured angle, smoothed, rad.
     pub(super) measured_rad: Vec<f64>,
     pub(super) measured_rad_s: Vec<f64>,
-    /// Least travel of a measured motion, rad.
-    pub(super) min_travel_rad: f64,
+    /// Least travel of a measured motion.
+    pub(super) min_travel: f64,
+    /// Thresholds of a joint of this kind.
+    pub(super) sizes: Sizes,
     pub(super) deviation_rad_s: Vec<f64>,
     /// Largest measured speed and acceleration.
     pub(super) peaks: [Option<f64>; 2],
@@ -34,9 +36,10 @@ pub(super) struct Signals {
 impl Signals {
     pub(super) fn new(pair: &Pair, rules: &Rules) -> Self {
         let (t_s, segments) = (&pair.t_s, &pair.segments);
+        let sizes = *rules.sizes(pair.kind);
         let noise = noise(t_s, &pair.measured, segments);
         let sample_interval_s = sample_interval_s(pair);
-        let window_s = rules.window_s(sample_interval_s, noise.sigma);
+        let window_s = rules.window_s(pair.kind, sample_interval_s, noise.sigma);
 
         let fits = local_quadratic(t_s, &pair.measured, segments, window_s, rules.window_points);
         let of = |value: fn(&LocalFit) -> f64| fits.iter().map(value).collect::<Vec<f64>>();
@@ -54,8 +57,8 @@ impl Signals {
             fits.iter().map(|fit| fit.velocity).collect()
         });
 
-        let min_travel_rad = rules
-            .min_travel_rad
+        let min_travel = sizes
+            .min_travel
             .max(rules.min_travel_sigmas * noise.sigma)
             .max(rules.min_travel_lsbs * noise.lsb.unwrap_or(0.0));
         let planned = Speed {
@@ -64,21 +67,22 @@ impl Signals {
             velocity_rad_s: &planned_rad_s,
             deviation_rad_s: None,
             segments,
-            min_travel_rad: rules.min_travel_rad,
+            min_travel: sizes.min_travel,
+            sizes,
         };
         let measured = Speed {
             position_rad: &smooth_rad,
             velocity_rad_s: &measured_rad_s,
             deviation_rad_s: Some(&deviation_rad_s),
-            min_travel_rad,
+            min_travel,
             ..planned
         };
         let usual = median(deviation_rad_s.clone());
         let thresholds = Thresholds {
-            planned_start: rules.start_floor_rad_s,
-            planned_stop: rules.stop_floor_rad_s,
-            measured_start: rules.start_floor_rad_s.max(rules.start_sigmas * usual),
-            measured_stop: rules.stop_floor_rad_s.max(rules.stop_sigmas * usual),
+            planned_start: sizes.start_speed,
+            planned_stop: sizes.stop_speed,
+            measured_start: sizes.start_speed.max(rules.start_sigmas * usual),
+            measured_stop: sizes.stop_speed.max(rules.stop_sigmas * usual),
             window_s,
         };
         let (planned, measured) = (planned.motions(rules), measured.motions(rules));
@@ -89,7 +93,8 @@ impl Signals {
             planned_rad_s,
             measured_rad: smooth_rad,
             measured_rad_s,
-            min_travel_rad,
+            min_travel,
+            sizes,
             deviation_rad_s,
             peaks,
             planned,
@@ -101,6 +106,7 @@ impl Signals {
 /// When a plan leaves rest, by its own samples, s.
 pub fn planned_starts(planned: &Track, rules: &Rules) -> Vec<f64> {
     let (t_s, segments) = (planned.t_s(), planned.segments());
+    let sizes = *rules.sizes(planned.kind());
     let sloped = |angle_rad: &[f64]| -> Vec<f64> {
         let fits = local_quadratic(t_s, angle_rad, segments, rules.planned_window_s, PLAN_POINTS);
         fits.iter().map(|fit| fit.velocity).collect()
@@ -112,7 +118,8 @@ pub fn planned_starts(planned: &Track, rules: &Rules) -> Vec<f64> {
         velocity_rad_s: &velocity_rad_s,
         deviation_rad_s: None,
         segments,
-        min_travel_rad: rules.min_travel_rad,
+        min_travel: sizes.min_travel,
+        sizes,
     };
     speed.motions(rules).iter().filter(|m| m.starts()).map(|m| m.start_s).collect()
 }

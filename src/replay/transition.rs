@@ -41,7 +41,7 @@ pub(super) fn transition(
     let time_s: f64 = inside.iter().map(|s| s.weight_s).sum();
     let square: f64 = inside.iter().map(|s| s.weight_s * s.error_rad * s.error_rad).sum();
     let steps: Vec<f64> = inside.windows(2).map(|w| w[1].t_s - w[0].t_s).collect();
-    let band_rad = rules.settle_band_rad.max(rules.settle_sigmas * signals.noise.sigma);
+    let band_rad = signals.sizes.settle_band.max(rules.settle_sigmas * signals.noise.sigma);
 
     Transition {
         joint: pair.name.clone(),
@@ -126,7 +126,7 @@ fn displacement_delay_s(
     (onset_s, end_s): (f64, f64),
     rules: &Rules,
 ) -> Option<f64> {
-    let travel_rad = rules.displacement_rad.max(rules.settle_sigmas * signals.noise.sigma);
+    let travel_rad = signals.sizes.displacement.max(rules.settle_sigmas * signals.noise.sigma);
     let times = &pair.t_s[planned.segment.clone()];
     let first = planned.segment.start + times.partition_point(|&t| t < onset_s);
     let end = planned.segment.start + times.partition_point(|&t| t <= end_s + rules.match_after_s);

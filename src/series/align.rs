@@ -51,7 +51,8 @@ pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
         matched: 0,
         unmatched: 0,
     };
-    let mut velocity = Vec::with_capacity(n);
+    let gives_velocity = planned.velocity().is_some();
+    let mut velocity = Vec::with_capacity(if gives_velocity { n } else { 0 });
     let mut cursor = 0;
     for segment in measured.segments() {
         let mut start = pair.t_s.len();
@@ -69,7 +70,9 @@ pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
                 Some(plan) => {
                     pair.t_s.push(t_s);
                     pair.planned.push(plan.position);
-                    velocity.push(plan.velocity);
+                    if gives_velocity {
+                        velocity.push(plan.velocity);
+                    }
                     pair.measured.push(measured.position()[i]);
                 }
                 None => pair.unmatched += 1,
@@ -80,7 +83,7 @@ pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
         }
     }
     pair.matched = pair.t_s.len();
-    pair.planned_velocity = planned.velocity().map(|_| velocity);
+    pair.planned_velocity = gives_velocity.then_some(velocity);
     (pair.matched > 0).then_some(pair)
 }
 

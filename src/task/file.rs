@@ -10,7 +10,7 @@ use super::{
     document::{ByJoint, Document, End, Limits, Point, Tool},
     objective::Row,
 };
-use crate::units::radians_from_degrees;
+use crate::{input_file, units::radians_from_degrees};
 
 /// Shortest and longest interval where the file gives none, s.
 const INTERVAL_S: [f64; 2] = [0.3, 20.0];
@@ -31,7 +31,7 @@ impl Task {
     ///
     /// [`TaskError`] if the file cannot be read or is no task.
     pub fn read(path: &Path) -> Result<Self, TaskError> {
-        let text = std::fs::read_to_string(path)
+        let text = input_file::read_to_string(path)
             .map_err(|source| TaskError::Read { path: path.to_owned(), reason: source.to_string() })?;
         Self::parse(&text)
     }

@@ -19,7 +19,7 @@ use crate::workflow::view::Scene;
 
 /// Where to show.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Target {
+pub(crate) enum Target {
     /// A file.
     Save(PathBuf),
     /// Start a viewer.
@@ -33,7 +33,7 @@ pub enum Target {
 /// Why nothing is shown.
 #[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum ViewError {
+pub(crate) enum ViewError {
     /// Rerun does not take it.
     #[error("the viewer cannot be reached or written to")]
     Rerun(#[from] RecordingStreamError),
@@ -78,7 +78,7 @@ const PATIENCE: Duration = Duration::from_secs(15);
 /// # Errors
 ///
 /// [`ViewError`] if the viewer cannot be started, reached or written to, or `announce` fails.
-pub fn show(
+pub(crate) fn show(
     scenes: &[Scene],
     target: &Target,
     speed: Option<f64>,

@@ -13,4 +13,5 @@ pub mod recover;
 pub mod replan;
 pub mod report;
 pub mod simulate;
+#[doc(hidden)]
 pub mod view;

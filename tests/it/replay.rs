@@ -1,9 +1,9 @@
 //! Laws of the replay that hold for every run, and the gates of its detector.
 
-use std::ops::Range;
+use std::{ops::Range, slice::from_ref};
 
 use hydrotrace::{
-    replay::{Answer, Replay, Rules, Transition, replay},
+    replay::{Answer, Replay, Rules, Sizes, Transition, replay},
     series::{JointKind, Pair},
     units::DEGREE_RAD,
 };
@@ -11,7 +11,7 @@ use hydrotrace_bench::detector::{Sensing, detector_score, synthetic_run};
 use proptest::prelude::*;
 
 fn of(pair: &Pair) -> Replay {
-    replay(std::slice::from_ref(pair), &Rules::default())
+    replay(from_ref(pair), &Rules::default())
 }
 
 fn noiseless(seed: u64, delay_s: f64) -> Pair {
@@ -36,6 +36,21 @@ fn recorded(t_s: Vec<f64>, planned: Vec<f64>, measured: Vec<f64>, segments: Vec<
 /// A ramp from rest at `start_s`, of 4 degrees per second for 3 s.
 fn ramp(t_s: f64, start_s: f64) -> f64 {
     4.0 * DEGREE_RAD * (t_s - start_s).clamp(0.0, 3.0)
+}
+
+#[test]
+fn joints_that_turn_and_that_slide_are_found_by_thresholds_of_their_own() {
+    let t_s: Vec<f64> = (0..600).map(|k| f64::from(k) * 0.01).collect();
+    let along = |at_s: f64| t_s.iter().map(|t| ramp(*t, at_s)).collect();
+    let (planned, measured) = (along(1.0), along(1.2));
+    let turns = recorded(t_s, planned, measured, vec![Range { start: 0, end: 600 }]);
+    let slides = Pair { kind: JointKind::Slides, ..turns.clone() };
+    let found = |rules: &Rules| [&turns, &slides].map(|pair| replay(from_ref(pair), rules).transitions.len());
+    let (default, never) = (Rules::default(), 1.0);
+    let sizes = |of: Sizes| Sizes { start_speed: never, ..of };
+    assert_eq!(found(&default), [1, 1]);
+    assert_eq!(found(&Rules { turning: sizes(default.turning), ..default.clone() }), [0, 1]);
+    assert_eq!(found(&Rules { sliding: sizes(default.sliding), ..default }), [1, 0]);
 }
 
 fn onsets(replay: &Replay) -> Vec<(i8, f64, Option<f64>)> {

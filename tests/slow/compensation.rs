@@ -2,7 +2,7 @@
 
 use cpu_time::ProcessTime;
 use hydrotrace::{
-    fit::{Compensation, Excitation, compensate},
+    fit::{Excitation, Learning, learn},
     plant::{Plant, Variation},
 };
 
@@ -92,8 +92,8 @@ fn commands_from_other_runs_of_the_machine_help_too() {
             [("task 1 to 2", 0, 1), ("task 2 to 1", 1, 0), ("trial to 1", 2, 0), ("trial to 2", 2, 1)]
         {
             let job = &jobs[done];
-            let made = compensate(&fits[learnt], &job.plan, Compensation::default()).unwrap();
-            let (before, after) = tried(&plant, job, &made.command, 1);
+            let made = learn(&fits[learnt], &job.plan, &[], Learning::default(), |_| None).unwrap();
+            let (before, after) = tried(&plant, job, &made.command(&job.plan, |_| 1.0).unwrap(), 1);
             let title = format!("{preset} {title}");
             row(&title, &before, &after);
             check(&title, &before, &after, (0.6, 3.0));

@@ -40,7 +40,7 @@ fn loops(lever: &str) {
 /// Relative change of the mean peak over the transitions of one loop.
 fn one_loop(folder: &Path, lever: &str, plant: &str, task: &str, seed: u32) -> f64 {
     clean(folder, &format!("simulate {task}.mcap -o before.mcap --plant {plant} --seed {seed}"));
-    let promised = json(folder, &format!("replan before.mcap -o next.mcap {lever}"));
+    let promised = json(folder, &format!("replan before.mcap -o next.mcap --force {lever}"));
     let (was, is) = (&promised["before"]["duration_s"], &promised["duration_s"]);
     assert!(is.as_f64().unwrap() <= was.as_f64().unwrap() * (1.0 + 1e-9), "{was} {is}");
     clean(folder, &format!("simulate next.mcap -o after.mcap --plant {plant} --seed {}", seed + 100));

@@ -20,7 +20,7 @@ pub struct Quality {
 
 /// What a population is measured against.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Yardstick {
+pub struct Reference {
     front: Vec<f64>,
     nadir: Vec<f64>,
 }
@@ -28,7 +28,7 @@ pub struct Yardstick {
 /// How far beyond the front the hypervolume's reference point lies.
 const BEYOND: f64 = 1.1;
 
-impl Yardstick {
+impl Reference {
     /// Measures against a front, `[n][objectives]` in one slice.
     pub fn new(front: Vec<f64>, objectives: usize) -> Self {
         let m = objectives.max(1);
@@ -48,7 +48,7 @@ impl Yardstick {
     }
 
     /// The hypervolume's reference point in the problem's own objectives, `[objectives]`.
-    pub fn reference(&self) -> Vec<f64> {
+    pub fn reference_point(&self) -> Vec<f64> {
         self.nadir.iter().map(|nadir| BEYOND * nadir).collect()
     }
 

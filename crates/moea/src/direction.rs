@@ -1,6 +1,6 @@
 //! Reference directions on the unit simplex.
 
-use super::MoeaError;
+use super::error::MoeaError;
 
 /// More directions than this are refused: a population of that size cannot be meant.
 pub const MOST_DIRECTIONS: usize = 100_000;

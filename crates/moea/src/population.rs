@@ -72,17 +72,6 @@ impl Population {
         &self.f
     }
 
-    /// Members that are feasible and dominated by no feasible member, in order.
-    /// O(n log n) comparisons of members when few fronts stand behind one another, O(n²) at worst.
-    pub fn front(&self) -> Vec<usize> {
-        let feasible: Vec<usize> = (0..self.len()).filter(|&i| self.is_feasible(i)).collect();
-        let mut sorting = super::sorting::Sorting::default();
-        sorting.sort(self, &feasible);
-        let mut first = sorting.front(0).to_vec();
-        first.sort_unstable();
-        first
-    }
-
     /// Feasible members of which only the objectives are known, `[n][objectives]` in one slice.
     pub fn from_objectives(f: &[f64], objectives: usize) -> Self {
         let n = f.len() / objectives.max(1);

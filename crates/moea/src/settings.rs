@@ -1,9 +1,8 @@
 //! What a run is asked to do.
 
-use thiserror::Error;
-
 use super::{
     direction::Directions,
+    error::MoeaError,
     focus::Focus,
     problem::{Bounds, Problem},
     variation::Operators,
@@ -83,64 +82,6 @@ impl Default for Settings {
             initial: Vec::new(),
         }
     }
-}
-
-/// Why a problem cannot be run with these settings.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum MoeaError {
-    /// Nothing to vary.
-    #[error("the problem has no variables")]
-    NoVariables,
-    /// Nothing to minimise.
-    #[error("the problem has no objectives")]
-    NoObjectives,
-    /// A bound is not a finite number, or lower and upper are swapped.
-    #[error("variable {index} cannot lie between {lower} and {upper}")]
-    Bounds {
-        /// Index of the variable.
-        index: usize,
-        /// Its lower bound.
-        lower: f64,
-        /// Its upper bound.
-        upper: f64,
-    },
-    /// An initial member has the wrong length or a value that is not finite.
-    #[error("initial member {member} has {given} finite values, the problem has {wanted} variables")]
-    Initial {
-        /// Index of the member.
-        member: usize,
-        /// Number of finite values given.
-        given: usize,
-        /// Number of variables.
-        wanted: usize,
-    },
-    /// A rate is not a probability, or a distribution index is negative.
-    #[error("{name} is {value}; rates lie in 0 to 1, distribution indices in 0 to 1000")]
-    Operator {
-        /// Name of the setting.
-        name: &'static str,
-        /// What was given.
-        value: f64,
-    },
-    /// More directions than anyone can mean.
-    #[error("{divisions} divisions for {objectives} objectives give more than {most} directions")]
-    TooManyDirections {
-        /// Number of objectives.
-        objectives: usize,
-        /// Divisions asked for.
-        divisions: usize,
-        /// The limit.
-        most: usize,
-    },
-    /// A larger population than anyone can mean.
-    #[error("a population of {wanted} is more than {most}")]
-    TooManyMembers {
-        /// Members asked for.
-        wanted: usize,
-        /// The limit.
-        most: usize,
-    },
 }
 
 /// Largest population.

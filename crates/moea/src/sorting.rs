@@ -73,6 +73,19 @@ impl Sorting {
     }
 }
 
+impl Population {
+    /// Members that are feasible and dominated by no feasible member, in order.
+    /// O(n log n) comparisons of members when few fronts stand behind one another, O(n²) at worst.
+    pub fn front(&self) -> Vec<usize> {
+        let feasible: Vec<usize> = (0..self.len()).filter(|&i| self.is_feasible(i)).collect();
+        let mut sorting = Sorting::default();
+        sorting.sort(self, &feasible);
+        let mut first = sorting.front(0).to_vec();
+        first.sort_unstable();
+        first
+    }
+}
+
 /// Whether a member placed before `f` dominates it; the first objective of all of them is no
 /// worse by the order of visits. Later ones are closer and asked first.
 fn dominated_by_earlier(placed: &[f64], f: &[f64]) -> bool {

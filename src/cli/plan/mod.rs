@@ -70,7 +70,7 @@ impl Args {
             Form::Html => judged_page(title, &joints, &evaluation, &course),
             _ => target.text(&self.noted(judged_document(title, &joints, &evaluation))),
         };
-        self.figures.write(console, || motion_figures(&joints, &course))?;
+        self.figures.write(console, target, || motion_figures(&joints, &course))?;
         let outcome = console.finish(target, &result, &Remarks::default(), &[])?;
         Ok(if evaluation.broken().is_empty() { outcome } else { Outcome::LimitBroken })
     }
@@ -89,7 +89,7 @@ impl Args {
             Form::Html => words::page(&document, &options, ceilings, &planned, &course),
             _ => target.text(&self.noted(words::document(title, algorithm, &options, ceilings, &planned))),
         };
-        self.figures.write(console, || words::figures(&document, &course))?;
+        self.figures.write(console, target, || words::figures(&document, &course))?;
         console.finish(target, &result, &planned.remarks, &[])
     }
 
@@ -162,7 +162,7 @@ impl Args {
             command: None,
             arm: Some(&request.setup.arm().chain),
             trajectory: None,
-            carried: &Carried::default().with_plan(&request.text, document).with_provenance(provenance),
+            carried: &Carried::default().with_plan(&request.files, document).with_provenance(provenance),
             rate_hz: self.rate,
         };
         write_file(path, &log.bytes()?)

@@ -22,7 +22,7 @@ use crate::{
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn figures(comparison: &Comparison) -> Result<Vec<Figure>, Failure> {
+pub(crate) fn figures(comparison: &Comparison) -> Result<Vec<Figure>, Failure> {
     let mut figures = Vec::new();
     let changes = change_rows(comparison);
     if !changes.is_empty() {

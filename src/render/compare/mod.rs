@@ -5,10 +5,10 @@ mod page;
 mod short;
 mod tables;
 
-pub use figures::figures;
-pub use page::page;
-pub use short::verdicts;
-pub use tables::document;
+pub(crate) use figures::figures;
+pub(crate) use page::page;
+pub(crate) use short::verdicts;
+pub(crate) use tables::document;
 
 use super::{kit::NONE, metric::Units};
 use crate::{

@@ -28,7 +28,7 @@ use crate::{
 const MOST: usize = 4000;
 
 /// What a change did, as one page; `most` is how many pairs its table lists.
-pub fn page(comparison: &Comparison, most: usize) -> String {
+pub(crate) fn page(comparison: &Comparison, most: usize) -> String {
     let document = document(comparison, most);
     let apart = [Id::REMARKS, Id::METHOD];
     let numbers = document.sections.iter().filter(|section| !apart.contains(&section.id));
@@ -63,7 +63,7 @@ fn summary(comparison: &Comparison) -> Markup {
 }
 
 fn change(comparison: &Comparison) -> Markup {
-    let (class, headline) = match comparison.verdict() {
+    let (class, headline) = match comparison.verdict {
         Verdict::Smaller => ("good", "Peaks became smaller"),
         Verdict::Larger => ("bad", "Peaks became larger"),
         Verdict::NotShown => ("open", "No change shown"),

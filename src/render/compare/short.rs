@@ -91,21 +91,20 @@ fn plans(comparison: &Comparison) -> String {
         1 => "1 transition has no counterpart".to_owned(),
         n => format!("{n} transitions have no counterpart"),
     };
-    let which = if comparison.same_plan() { "The same plan" } else { "Different plans" };
+    let which = if comparison.same_plan { "The same plan" } else { "Different plans" };
     format!("{which} ({long}): {apart}; {left}.")
 }
 
 /// One for each limit that was set.
-pub fn verdicts(comparison: &Comparison) -> Vec<Sentence> {
-    comparison.gates.iter().map(|result| gate(comparison, result)).collect()
+pub(crate) fn verdicts(comparison: &Comparison) -> Vec<Sentence> {
+    comparison.gates.iter().map(gate).collect()
 }
 
-fn gate(comparison: &Comparison, result: &GateResult) -> Sentence {
-    let of = Scope::Joint(result.joint.clone().unwrap_or_default());
+fn gate(result: &GateResult) -> Sentence {
     let show = |value: f64| match result.gate.form {
         Form::Reduction => format!("{:.1} %", 100.0 * value),
         Form::Probability => probability(value),
-        Form::Growth => position(kind(comparison, &of), value),
+        Form::Growth(kind) => position(kind, value),
         Form::Ratio => format!("{value:.3}"),
     };
     let side = if result.gate.form == Form::Reduction { "at least" } else { "at most" };
@@ -116,8 +115,8 @@ fn gate(comparison: &Comparison, result: &GateResult) -> Sentence {
         }
         _ => String::new(),
     };
-    let found = result.found.map_or("nothing to compare".to_owned(), |found| match result.gate.form {
-        Form::Growth => signed(found, show) + &behind,
+    let found = result.found.map_or("nothing to judge".to_owned(), |found| match result.gate.form {
+        Form::Growth(_) => signed(found, show) + &behind,
         _ => show(found) + &behind,
     });
     Sentence::Verdict {

@@ -10,11 +10,11 @@ use crate::{
         metric::{Units, number, position},
     },
     replay::{Answer, Dimension, Keyed, Metric, PEAK_ERROR, Transition},
-    workflow::compare::{Comparison, Figures, Run, Side, Summary, TransitionPair},
+    workflow::compare::{Comparison, Figures, Form, Gate, Run, Side, Summary, TransitionPair},
 };
 
 /// Everything a person reads of a comparison; `most` is how many pairs to list.
-pub fn document(comparison: &Comparison, most: usize) -> Document {
+pub(crate) fn document(comparison: &Comparison, most: usize) -> Document {
     let names = |runs: &[Run]| runs.iter().map(|run| run.log.clone()).collect::<Vec<_>>().join(", ");
     let title = format!("{} -> {}", names(&comparison.before), names(&comparison.after));
     let mut document = Document { facts: run_facts(comparison), ..Document::titled(title) }
@@ -139,18 +139,30 @@ fn summary_row(comparison: &Comparison, summary: &Summary, units: Units) -> Vec<
 
 fn figures_table(figures: &[Figures]) -> Table {
     let units = Units::of(figures.iter().map(|f| f.kind));
-    let metrics = figures.first().into_iter().flat_map(|f| f.changes.iter()).map(|(metric, _)| {
+    let metrics = figures.first().into_iter().flat_map(|f| f.changes.iter()).flat_map(|(metric, _)| {
         let heading = if metric.heading.is_empty() { metric.name } else { metric.heading };
-        Column::numbers(units.heading(heading, metric.dimension)).meaning(metric.explanation)
+        let column = Column::numbers(units.heading(heading, metric.dimension)).meaning(metric.explanation);
+        let ratio = || Column::numbers("ratio").meaning("After divided by before.");
+        std::iter::once(column).chain(has_ratio(metric.key).then(ratio))
     });
     let rows = figures.iter().map(|f| {
-        let cells = f.changes.iter().map(|(metric, change)| arrow(change, metric.dimension, f.kind, units));
+        let cells = f.changes.iter().flat_map(|(metric, change)| {
+            let ratio = || optional(change.ratio, |ratio| format!("{ratio:.2}"));
+            std::iter::once(arrow(change, metric.dimension, f.kind, units))
+                .chain(has_ratio(metric.key).then(ratio))
+        });
         std::iter::once(f.joint.clone().unwrap_or("all".to_owned())).chain(cells).collect()
     });
     Table::of(
         std::iter::once(Column::words("joint")).chain(metrics).collect::<Vec<_>>(),
         rows.collect::<Vec<Vec<String>>>(),
     )
+}
+
+/// Whether the ratio of a metric has a column: a limit can be set on it.
+fn has_ratio(key: &str) -> bool {
+    let limited = |gate: &&Gate| gate.form == Form::Ratio && gate.key.strip_suffix("-ratio") == Some(key);
+    Gate::rows().iter().any(limited)
 }
 
 fn unpaired(comparison: &Comparison) -> Option<Section> {

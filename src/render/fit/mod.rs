@@ -4,7 +4,7 @@ mod page;
 mod tables;
 
 pub(super) use page::fitted;
-pub use tables::document;
+pub(crate) use tables::document;
 
 use crate::fit::{Estimated, JointFit};
 

@@ -87,7 +87,7 @@ fn valve(joint: &JointFit, side: usize) -> Estimated {
 }
 
 /// A fit, for people.
-pub fn document(fitted: &Fitted) -> Document {
+pub(crate) fn document(fitted: &Fitted) -> Document {
     let fit = &fitted.fit;
     let samples: usize = fit.joints.iter().map(|joint| joint.samples).sum();
     let logs: Vec<&str> = fitted.runs.iter().map(|run| run.log.as_str()).collect();

@@ -1,6 +1,6 @@
 //! Names come from logs, and may hold anything.
 
-/// Without control characters, which would reach the reader's terminal.
+/// Without characters that would steer the reader's terminal or turn text round.
 pub(in crate::render) fn clean(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
+    text.chars().map(crate::text::harmless).collect()
 }

@@ -7,11 +7,11 @@ use super::page::{
 
 /// A plot as a file of its own.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Figure {
+pub(crate) struct Figure {
     /// Letters, digits, `-` and `_`: safe as a file's, without an ending.
-    pub name: String,
+    pub(crate) name: String,
     /// An SVG document, 85 mm wide; 180 mm, where it is of many small plots.
-    pub svg: String,
+    pub(crate) svg: String,
 }
 
 /// One a joint, in their order.

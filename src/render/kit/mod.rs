@@ -19,18 +19,20 @@ mod table;
 mod terminal;
 mod terminal_style;
 
-pub use command::{argument, command};
-pub use csv::csv;
 pub use document::{Block, Document, Fact, Id, Section, Sentence, fact};
-pub use figure::Figure;
 pub use markdown::markdown;
 pub use number::{NONE, counted, deg, ms, optional, percent, probability, share, short, signed, significant};
-pub use page::paper::Failure;
-#[cfg(feature = "png")]
-pub use raster::{Raster, raster};
 pub use table::{Align, Column, Table};
-pub use terminal::{shown, text};
-pub use terminal_style::TerminalStyle;
+pub use terminal::text;
+
+pub(crate) use command::{argument, command};
+pub(crate) use csv::csv;
+pub(crate) use figure::Figure;
+pub(crate) use page::paper::Failure;
+#[cfg(feature = "png")]
+pub(crate) use raster::{Raster, raster};
+pub(crate) use terminal::shown;
+pub(crate) use terminal_style::TerminalStyle;
 
 pub(in crate::render) use clean::clean;
 pub(in crate::render) use spark::spark;

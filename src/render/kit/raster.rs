@@ -14,11 +14,11 @@ const INCHES_M: f64 = 1.0 / 0.0254;
 
 /// A figure in pixels.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Raster {
+pub(crate) struct Raster {
     /// A PNG file.
-    pub png: Vec<u8>,
+    pub(crate) png: Vec<u8>,
     /// What the font lacks, and is drawn as a box.
-    pub lacking: BTreeSet<String>,
+    pub(crate) lacking: BTreeSet<String>,
 }
 
 /// An SVG document of a size on paper as a PNG file of so many dots per inch, on white.
@@ -28,7 +28,10 @@ pub struct Raster {
 /// # Errors
 ///
 /// What the libraries say: a document that is none, a size that no memory holds.
-pub fn raster(svg: &str, dots_per_inch: u32) -> Result<Raster, Box<dyn std::error::Error + Send + Sync>> {
+pub(crate) fn raster(
+    svg: &str,
+    dots_per_inch: u32,
+) -> Result<Raster, Box<dyn std::error::Error + Send + Sync>> {
     let mut fonts = Database::new();
     fonts.load_font_data(ttf_noto_sans::REGULAR.to_vec());
     let family = fonts.faces().next().and_then(|face| face.families.first()).map(|(name, _)| name.clone());

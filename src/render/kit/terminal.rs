@@ -13,7 +13,7 @@ pub fn text(document: &Document) -> String {
 }
 
 /// For a terminal.
-pub fn shown(document: &Document, style: TerminalStyle) -> String {
+pub(crate) fn shown(document: &Document, style: TerminalStyle) -> String {
     let mut out = String::new();
     if let Some(title) = &document.title {
         let _ = writeln!(out, "{}", style.strong(&clean(title)));

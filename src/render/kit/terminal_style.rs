@@ -20,11 +20,11 @@ const MOST_KEYS: usize = 5;
 
 /// What a text may use; by default nothing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct TerminalStyle {
+pub(crate) struct TerminalStyle {
     /// Escape codes: heads bold, limits kept green and broken ones red, remarks yellow.
-    pub coloured: bool,
+    pub(crate) coloured: bool,
     /// Characters in a line, beyond which sentences are folded and tables cut into blocks.
-    pub width: Option<usize>,
+    pub(crate) width: Option<usize>,
 }
 
 impl TerminalStyle {

@@ -15,7 +15,7 @@ use crate::{
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn figures(plan: &PlanDocument, course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
+pub(crate) fn figures(plan: &PlanDocument, course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
     let mut figures = front_figures(plan)?;
     figures.extend(motion_figures(&plan.joints, course)?);
     Ok(figures)
@@ -26,7 +26,7 @@ pub fn figures(plan: &PlanDocument, course: &SampledMotion) -> Result<Vec<Figure
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn motion_figures(joints: &[String], course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
+pub(crate) fn motion_figures(joints: &[String], course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
     numbered("motion", &motion_charts(joints, course))
 }
 

@@ -6,10 +6,11 @@ mod page;
 mod tables;
 
 pub(super) use figures::front_figures;
-pub use figures::{figures, motion_figures};
+pub(crate) use figures::{figures, motion_figures};
 pub(super) use front::front;
-pub use page::{judged_page, page};
-pub use tables::{broken_lines, ceiling_lines, document, judged_document, limit_cell};
+pub(crate) use page::{judged_page, page};
+pub use tables::limit_cell;
+pub(crate) use tables::{broken_lines, ceiling_lines, document, judged_document};
 
 use crate::{plan::Limit, units::degrees_from_radians};
 

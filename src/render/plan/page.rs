@@ -22,7 +22,7 @@ use crate::{
 };
 
 /// What a search found, as one page.
-pub fn page(
+pub(crate) fn page(
     plan: &PlanDocument,
     options: &Options,
     ceilings: &Ceilings,
@@ -48,7 +48,7 @@ pub fn page(
 }
 
 /// One plan that was given, as one page.
-pub fn judged_page(
+pub(crate) fn judged_page(
     title: &str,
     joints: &[String],
     evaluation: &PlanEvaluation,

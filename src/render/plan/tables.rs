@@ -17,7 +17,7 @@ const NEAREST: usize = 6;
 const AT_POINT_S: f64 = 1e-6;
 
 /// What was planned, for people.
-pub fn document(
+pub(crate) fn document(
     title: &str,
     algorithm: &str,
     options: &Options,
@@ -60,7 +60,7 @@ pub fn document(
 }
 
 /// One given plan, for people.
-pub fn judged_document(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Document {
+pub(crate) fn judged_document(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Document {
     let work =
         format!("All joints together turn over {:.0} J of work, driving and braking.", evaluation.energy_j);
     let given = Section::plain(Id::SUMMARY, [plans([row("given", evaluation, joints)])]);
@@ -243,7 +243,7 @@ fn allowed(margin: &Margin) -> String {
 }
 
 /// What the nearest timing of an infeasible task breaks, a line each, the worst first.
-pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation) -> Vec<String> {
+pub(crate) fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation) -> Vec<String> {
     let lines = nearest.broken().into_iter().map(|margin| {
         format!(
             "{} is {} at {:.2} s, {} is allowed: {} % above it",
@@ -266,7 +266,7 @@ pub fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation)
 }
 
 /// What the nearest plan exceeds its ceilings by, a line each, and what holds it there.
-pub fn ceiling_lines(ceilings: &Ceilings, joints: &[String], nearest: &PlanEvaluation) -> Vec<String> {
+pub(crate) fn ceiling_lines(ceilings: &Ceilings, joints: &[String], nearest: &PlanEvaluation) -> Vec<String> {
     let over = |(k, ceiling): (Objective, f64)| {
         let share = nearest.objectives[k] / ceiling;
         let (name, found, asked) = (k.row().name, k.text(nearest.objectives[k]), k.text(ceiling));

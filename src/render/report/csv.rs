@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// One row a transition, in order of joint and time; remarks follow as lines that start with `#`.
-pub fn csv(report: &Report) -> String {
+pub(crate) fn csv(report: &Report) -> String {
     let run = report.run.clone().unwrap_or_else(|| report.logs.join(", "));
     let rows = report
         .replay
@@ -21,7 +21,7 @@ pub fn csv(report: &Report) -> String {
         .map(|t| std::iter::once(run.clone()).chain(csv_cells(TRANSITION, t)).collect());
     let mut text = kit::csv(std::iter::once("run").chain(csv_columns(TRANSITION)), rows);
     for remark in report.remarks.as_slice() {
-        let message = remark.message.replace(['\n', '\r'], " ");
+        let message = kit::clean(&remark.message);
         let _ = writeln!(text, "# {} x{}: {message}", remark.code.name(), remark.count);
     }
     text

@@ -24,7 +24,7 @@ use crate::{
 /// # Errors
 ///
 /// What the drawing library says.
-pub fn figures(report: &Report) -> Result<Vec<Figure>, Failure> {
+pub(crate) fn figures(report: &Report) -> Result<Vec<Figure>, Failure> {
     const COLUMNS: usize = 3;
     /// What a page of paper holds.
     const ON_A_PAGE: usize = 5 * COLUMNS;

@@ -21,6 +21,7 @@ pub(super) fn method(report: &Report) -> Option<Section> {
         return None;
     }
     let kind = report.replay.kind();
+    let sizes = rules.sizes(kind);
     let speed = unit(Dimension::Speed, kind);
     let deg_or_mm = |value: f64| number(Dimension::Position, kind, value);
     let unmatched: usize = report.alignment.iter().map(|a| a.unmatched).sum();
@@ -44,11 +45,11 @@ pub(super) fn method(report: &Report) -> Option<Section> {
             format!(
                 "a plan starts above {} {speed} and rests below {}; a joint starts above {} {speed} and rests below {}, by its noise; \
                  it travels at least {}",
-                deg_or_mm(rules.start_floor_rad_s),
-                deg_or_mm(rules.stop_floor_rad_s),
+                deg_or_mm(sizes.start_speed),
+                deg_or_mm(sizes.stop_speed),
                 range(&|j| joints[j].thresholds.measured_start, &deg_or_mm),
                 range(&|j| joints[j].thresholds.measured_stop, &deg_or_mm),
-                position(kind, rules.min_travel_rad),
+                position(kind, sizes.min_travel),
             ),
         ),
         fact(
@@ -78,7 +79,7 @@ pub(super) fn method(report: &Report) -> Option<Section> {
                 "peak, rms and area are taken from the planned start to the next one, at most {:.0} s; an error is settled within \
                  {} for {} ms",
                 rules.transition_window_s,
-                position(kind, rules.settle_band_rad),
+                position(kind, sizes.settle_band),
                 ms(rules.settle_hold_s)
             ),
         ),

@@ -11,7 +11,7 @@ mod tables;
 mod tests;
 mod tiles;
 
-pub use csv::csv;
-pub use figures::figures;
-pub use page::page;
-pub use tables::{document, verdicts};
+pub(crate) use csv::csv;
+pub(crate) use figures::figures;
+pub(crate) use page::page;
+pub(crate) use tables::{document, verdicts};

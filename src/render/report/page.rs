@@ -24,7 +24,7 @@ use crate::{
 /// One page that answers the questions by itself; `most` is how many transitions its table lists.
 ///
 /// Whatever comes from the log is shown as text, whatever it looks like.
-pub fn page(name: &str, report: &Report, fit: Option<&Fit>, most: usize) -> String {
+pub(crate) fn page(name: &str, report: &Report, fit: Option<&Fit>, most: usize) -> String {
     let document = document(name, report, most);
     let mut plots = Plots::default();
     let mut chapters = vec![

@@ -11,11 +11,12 @@ use crate::{
         metric::{Units, position, with_unit},
     },
     replay::{Answer, JOINT, JointReplay, Profiles, Replay, TRANSITION, Transition, Verdict},
+    series::JointKind,
     workflow::report::{GateResult, Report},
 };
 
 /// Everything a person reads of a report; `most` is how many transitions to list.
-pub fn document(name: &str, report: &Report, most: usize) -> Document {
+pub(crate) fn document(name: &str, report: &Report, most: usize) -> Document {
     let mut document = Document { facts: source_facts(report), ..Document::titled(name) }.with(Section::new(
         Id::SUMMARY,
         "In short",
@@ -62,6 +63,22 @@ fn in_short(report: &Report) -> Vec<Sentence> {
     lines
 }
 
+/// What the command promised beside what came.
+fn promised(report: &Report) -> Option<String> {
+    let promised = report.promised?;
+    let peaks: Vec<f64> = report.replay.transitions.iter().map(|t| t.peak_error).collect();
+    let came = (!peaks.is_empty()).then(|| peaks.iter().sum::<f64>() / peaks.len() as f64)?;
+    let kept = if came <= promised.mean_peak_margin_rad { "kept" } else { "not kept" };
+    let kind = JointKind::Turns;
+    Some(format!(
+        "The command promised a mean peak of {} (below {} in nine runs of ten) over {}; {} came: {kept}.",
+        position(kind, promised.mean_peak_rad),
+        position(kind, promised.mean_peak_margin_rad),
+        counted(peaks.len(), "start and reversal").replace("start and reversals", "starts and reversals"),
+        position(kind, came),
+    ))
+}
+
 fn findings(report: &Report) -> Vec<String> {
     let replay = &report.replay;
     let of_all = replay.kind();
@@ -73,6 +90,7 @@ fn findings(report: &Report) -> Vec<String> {
         }
         None => lines.push("No planned start from rest was found.".to_owned()),
     }
+    lines.extend(promised(report));
     lines.extend(mostly_lag(replay).map(|lag| format!("The error is mostly lag: {lag}.")));
     if let Some(c) = &replay.whole_run.concentration {
         let place = match (mostly_lag(replay), c.verdict) {
@@ -124,7 +142,7 @@ fn findings(report: &Report) -> Vec<String> {
                 "The plan of {} rests; the joint is shaken by the others: {} of less than {}, unplanned.",
                 joint.name,
                 counted(joint.unplanned_starts, "start"),
-                position(joint.kind, replay.rules.moves_travel_rad)
+                position(joint.kind, replay.rules.sizes(joint.kind).moves_travel)
             )),
             (false, false) => lines.push(format!("{} does not move, and neither does its plan.", joint.name)),
             (true, false) => {
@@ -221,7 +239,7 @@ pub(super) fn lag(joint: &JointReplay) -> String {
 }
 
 /// One for each limit that was set.
-pub fn verdicts(report: &Report) -> Vec<Sentence> {
+pub(crate) fn verdicts(report: &Report) -> Vec<Sentence> {
     report.gates.iter().map(verdict).collect()
 }
 
@@ -233,7 +251,7 @@ fn verdict(result: &GateResult) -> Sentence {
         kept: result.kept,
         found: format!("{found}, {allowed}."),
     };
-    let Some(joint) = &result.joint else { return sentence("nothing to measure".to_owned()) };
+    let Some(joint) = &result.joint else { return sentence("nothing to judge".to_owned()) };
     let time = result.time_s.map_or(String::new(), |t| format!(" at {t:.2} s"));
     let worst = result.worst.map_or(gate.missing.to_owned(), |w| with_unit(gate.dimension, kind, w));
     sentence(format!("{joint}{time} has {worst}"))

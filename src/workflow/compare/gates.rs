@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     figures::Figures,
     pair::TransitionPair,
-    summary::{Scope, Summary},
+    summary::{Summary, overall},
 };
 use crate::{
     replay::{Keyed, PEAK_ERROR, Row},
@@ -31,8 +31,8 @@ pub enum Form {
     Reduction,
     /// The probability of a reduction by chance, at most.
     Probability,
-    /// An error in the joint's unit, at most.
-    Growth,
+    /// An error of joints of this kind, in their unit, at most.
+    Growth(JointKind),
     /// After over before, at most.
     Ratio,
 }
@@ -48,7 +48,7 @@ struct Found<'a> {
 #[derive(Default)]
 struct Worst {
     value: f64,
-    pair: Option<(String, f64, JointKind)>,
+    pair: Option<(String, f64)>,
     no_reduction: bool,
 }
 
@@ -82,14 +82,14 @@ static GATES: &[Gate] = &[
     Gate {
         key: "transition-growth",
         name: "growth of a transition's peak",
-        form: Form::Growth,
-        find: |found| {
-            let growth =
-                |pair: &TransitionPair| pair.changes.get(PEAK_ERROR).difference.unwrap_or(f64::NEG_INFINITY);
-            let worst = found.pairs.iter().max_by(|a, b| growth(a).total_cmp(&growth(b)))?;
-            let pair = Some((worst.joint.clone(), worst.planned_onset_before_s, worst.joint_kind));
-            Some(Worst { value: growth(worst), pair, no_reduction: false })
-        },
+        form: Form::Growth(JointKind::Turns),
+        find: |found| growth(found, JointKind::Turns),
+    },
+    Gate {
+        key: "transition-growth-sliding",
+        name: "growth of a transition's peak, joints that slide",
+        form: Form::Growth(JointKind::Slides),
+        find: |found| growth(found, JointKind::Slides),
     },
     Gate {
         key: "rms-ratio",
@@ -104,6 +104,14 @@ static GATES: &[Gate] = &[
         find: |found| ratio(found, "peak"),
     },
 ];
+
+fn growth(found: &Found<'_>, kind: JointKind) -> Option<Worst> {
+    let of_kind = found.pairs.iter().filter(|pair| pair.joint_kind == kind);
+    let grown = of_kind.filter_map(|pair| Some((pair.changes.get(PEAK_ERROR).difference?, pair)));
+    let (value, worst) = grown.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let pair = Some((worst.joint.clone(), worst.planned_onset_before_s));
+    Some(Worst { value, pair, no_reduction: false })
+}
 
 fn ratio(found: &Found<'_>, key: &str) -> Option<Worst> {
     Some(Worst { value: found.figures?.changes.get(key).ratio?, ..Worst::default() })
@@ -121,7 +129,11 @@ impl Keyed for Gate {
 
 /// The limits that a change must keep.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Gates(Vec<(Row<Gate>, f64)>);
+pub struct Gates {
+    gates: Vec<(Row<Gate>, f64)>,
+    /// Whether a limit is kept by runs of which nothing can be compared.
+    empty_is_kept: bool,
+}
 
 /// A limit and what was found against it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -131,13 +143,13 @@ pub struct GateResult {
     pub gate: Row<Gate>,
     /// The limit, in SI units.
     pub limit: f64,
-    /// What was found; `None` if nothing could be compared, which keeps no limit.
+    /// What was found; `None` if nothing could be compared.
     pub found: Option<f64>,
     /// The joint it was found at, for the growth of a transition.
     pub joint: Option<String>,
     /// When its plan starts before, s.
     pub time_s: Option<f64>,
-    /// Whether the limit is kept.
+    /// Whether the limit is kept; not if nothing could be compared, unless that was allowed.
     pub kept: bool,
 }
 
@@ -145,8 +157,14 @@ impl Gates {
     /// With a limit more, by its key, in SI units; a key of no limit adds none.
     #[must_use]
     pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
-        self.0.extend(Row::find(key).zip(value));
+        self.gates.extend(Row::find(key).zip(value));
         self
+    }
+
+    /// Where nothing can be compared, limits are kept.
+    #[must_use]
+    pub fn with_empty_kept(self, empty_is_kept: bool) -> Self {
+        Self { empty_is_kept, ..self }
     }
 
     /// Judges every limit.
@@ -156,24 +174,26 @@ impl Gates {
         summaries: &[Summary],
         figures: &[Figures],
     ) -> Vec<GateResult> {
-        let peak = summaries.iter().find(|s| s.measure.key == PEAK_ERROR && s.scope == Scope::All);
+        let peak = overall(summaries, PEAK_ERROR);
         let found = Found { peak, pairs, figures: figures.first() };
         let judge = |&(gate, limit): &(Row<Gate>, f64)| {
             let worst = (gate.find)(&found);
-            let kept = worst.as_ref().is_some_and(|worst| match gate.form {
+            let kept = worst.as_ref().map_or(self.empty_is_kept, |worst| match gate.form {
                 Form::Reduction => worst.value >= limit,
-                Form::Probability | Form::Growth | Form::Ratio => worst.value <= limit && !worst.no_reduction,
+                Form::Probability | Form::Growth(_) | Form::Ratio => {
+                    worst.value <= limit && !worst.no_reduction
+                }
             });
             let pair = worst.as_ref().and_then(|worst| worst.pair.as_ref());
             GateResult {
                 gate,
                 limit,
                 found: worst.as_ref().map(|worst| worst.value),
-                joint: pair.map(|(joint, _, _)| joint.clone()),
-                time_s: pair.map(|(_, at_s, _)| *at_s),
+                joint: pair.map(|(joint, _)| joint.clone()),
+                time_s: pair.map(|(_, at_s)| *at_s),
                 kept,
             }
         };
-        self.0.iter().map(judge).collect()
+        self.gates.iter().map(judge).collect()
     }
 }

@@ -5,7 +5,6 @@ mod document;
 mod figures;
 mod gates;
 mod member;
-mod outcome;
 mod pair;
 mod pairing;
 mod plans;
@@ -17,25 +16,26 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 pub use change::{Change, Changes};
-pub use document::Document;
+pub use document::Comparison;
 pub use figures::Figures;
 pub use gates::{Form, Gate, GateResult, Gates};
-pub use outcome::Comparison;
 pub use pair::{Run, Side, TransitionPair, Unpaired};
 pub use pairing::PairedBy;
 pub use summary::{Scope, Summary, Verdict};
 
 use super::report::{self, Report};
 use crate::{
+    document::PROGRAM,
     log::{LogError, ReadOptions},
     remark::{Code, Remarks},
-    replay::Rules,
+    replay::{PEAK_ERROR, Rules},
 };
+use document::FORMAT;
 use figures::figures;
 use member::{Member, pairs};
 use pairing::matched;
 use same::is_same;
-use summary::summaries;
+use summary::{overall, summaries};
 
 /// What to compare, how, and what must hold.
 #[derive(Debug, Clone, Default)]
@@ -133,22 +133,27 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     let whole_run = figures(&before, &after, &joints, &inputs.rules);
     let gates = inputs.gates.judge(&pairs, &summaries, &whole_run);
     let runs = |side: Side| all.iter().filter(|m| m.side == side).map(|m| m.run(&joints)).collect();
-    let (runs_before, runs_after) = (runs(Side::Before), runs(Side::After));
+    let (runs_before, runs_after): (Vec<Run>, Vec<Run>) = (runs(Side::Before), runs(Side::After));
     let samples = |reports: &mut [Report]| {
         reports.first_mut().map_or_else(Vec::new, |report| std::mem::take(&mut report.pairs))
     };
     Ok(Comparison {
-        samples: [samples(&mut before), samples(&mut after)],
+        format: FORMAT.to_owned(),
+        program: PROGRAM.to_owned(),
+        same_plan: runs_after.iter().all(|run| run.same_plan),
         before: runs_before,
         after: runs_after,
         joints: joints.clone(),
+        verdict: overall(&summaries, PEAK_ERROR).map_or(Verdict::TooFew, |peak| peak.verdict),
         summaries,
         pairs,
         unpaired,
         whole_run,
+        gates_kept: gates.iter().all(|gate| gate.kept),
         gates,
         rules: inputs.rules.clone(),
         remarks,
+        samples: [samples(&mut before), samples(&mut after)],
     })
 }
 

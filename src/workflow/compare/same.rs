@@ -1,10 +1,12 @@
 //! Whether two runs are one: nothing can have changed between them.
 
 use std::{
-    fs::{self, File},
+    fs,
     io::{self, BufReader, Read},
     path::Path,
 };
+
+use crate::input_file;
 
 /// Whether two paths lead to one file or bag, or to files of equal content.
 pub(super) fn is_same(a: &Path, b: &Path) -> bool {
@@ -17,7 +19,7 @@ pub(super) fn is_same(a: &Path, b: &Path) -> bool {
 }
 
 fn equal(a: &Path, b: &Path) -> io::Result<bool> {
-    let bytes = |path: &Path| File::open(path).map(|file| BufReader::new(file).bytes());
+    let bytes = |path: &Path| input_file::open(path).map(|file| BufReader::new(file).bytes());
     let (mut a, mut b) = (bytes(a)?, bytes(b)?);
     loop {
         match (a.next().transpose()?, b.next().transpose()?) {

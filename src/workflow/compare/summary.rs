@@ -163,3 +163,8 @@ fn summary(
         verdict,
     }
 }
+
+/// That of a metric over all transitions.
+pub(super) fn overall<'a>(summaries: &'a [Summary], key: &str) -> Option<&'a Summary> {
+    summaries.iter().find(|summary| summary.measure.key == key && summary.scope == Scope::All)
+}

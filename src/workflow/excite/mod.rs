@@ -9,7 +9,7 @@ use super::{
         Carried,
         plan_log::{PlanLog, Planned},
     },
-    plan::{PlanFailure, PlanRequest},
+    plan::{PlanFailure, PlanRequest, TaskFiles},
 };
 use crate::{
     fit::{Excitation, FitError, JointRoom, excite},
@@ -62,8 +62,8 @@ pub struct Excited {
     pub excitation: Excitation,
     /// What to send.
     pub command: Series,
-    /// Text of the task whose arm is driven.
-    pub task: Option<String>,
+    /// The task whose arm is driven.
+    pub task: Option<TaskFiles>,
 }
 
 /// Writes the run.
@@ -87,7 +87,7 @@ pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
     }
     excitation.ramps.dedup_by(|a, b| a.speed_rad_s >= b.speed_rad_s && a.travel_rad <= b.travel_rad);
     let command = excite(&joints, &excitation)?;
-    Ok(Excited { joints, excitation, command, task: request.map(|request| request.text) })
+    Ok(Excited { joints, excitation, command, task: request.map(|request| request.files) })
 }
 
 /// Every joint about the middle of what its key points ask for, within its range.

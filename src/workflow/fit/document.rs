@@ -8,6 +8,7 @@ use super::{FitFailure, Fitted, FittedRun, LIMITS_FORMAT, torque::JointTorque};
 use crate::{
     document::{PROGRAM, pretty},
     fit::{Fit, JointFit, LEAST_SKILL, LeftOut},
+    input_file,
     remark::Remark,
 };
 
@@ -113,7 +114,7 @@ impl LimitsFile {
     /// [`FitFailure`] naming the file, and the line or joint.
     pub fn read(path: &Path) -> Result<Self, FitFailure> {
         let path = path.to_owned();
-        let text = match std::fs::read_to_string(&path) {
+        let text = match input_file::read_to_string(&path) {
             Ok(text) => text,
             Err(source) => return Err(FitFailure::Read { path, source }),
         };

@@ -138,8 +138,7 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
         );
         remarks.add(Code::PoorFit, 1, message);
     }
-    let torques = logs.iter().zip(observed).map(|(path, observed)| torques(path, observed));
-    let torques = torques.into_iter().find(|torques| !torques.is_empty()).unwrap_or_default();
+    let torques = observed.iter().map(torques).find(|torques| !torques.is_empty()).unwrap_or_default();
     let with_task = observed.iter().rposition(|observed| Carried::of(observed).task().is_some());
     Ok(Fitted { fit, torques, runs, with_task, remarks })
 }

@@ -27,12 +27,11 @@ pub struct JointTorque {
 }
 
 /// Torques of all joints of a run whose log has pressures of both sides and a task with cylinders.
-pub fn torques(path: &std::path::Path, recording: &Recording) -> Vec<JointTorque> {
+pub fn torques(recording: &Recording) -> Vec<JointTorque> {
     if !recording.has(SignalRole::CapPressure) || !recording.has(SignalRole::RodPressure) {
         return Vec::new();
     }
-    let folder = path.parent().unwrap_or(std::path::Path::new(""));
-    let arm = Carried::of(recording).arm(folder).and_then(Result::ok);
+    let arm = Carried::of(recording).arm().and_then(Result::ok);
     let Some(arm) = arm else { return Vec::new() };
     let one = |measured: &Track| {
         let name = measured.name();

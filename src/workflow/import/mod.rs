@@ -6,12 +6,11 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-pub use document::ImportDocument;
+pub use document::Imported;
 
 use crate::{
     atomic_file::{AtomicError, write_atomically},
-    log::{CsvError, CsvOptions, Understood, WriteError, read_csv},
-    remark::Remarks,
+    log::{CsvError, CsvOptions, WriteError, read_csv},
 };
 
 /// Input, options and output of an import.
@@ -23,15 +22,6 @@ pub struct Inputs {
     pub options: CsvOptions,
     /// The log to write; it appears whole or not at all.
     pub output: PathBuf,
-}
-
-/// The result.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outputs {
-    /// How the file was read.
-    pub understood: Understood,
-    /// Doubts about the data.
-    pub remarks: Remarks,
 }
 
 /// Why there is no log.
@@ -53,8 +43,8 @@ pub enum ImportError {
 /// # Errors
 ///
 /// [`ImportError`]; then there is no output.
-pub fn run(inputs: &Inputs) -> Result<Outputs, ImportError> {
+pub fn run(inputs: &Inputs) -> Result<Imported, ImportError> {
     let run = read_csv(&inputs.file, &inputs.options)?;
     write_atomically(&inputs.output, |file| run.write(file).map(|_| ()).map_err(ImportError::from))?;
-    Ok(Outputs { understood: run.understood, remarks: run.remarks })
+    Ok(Imported::new(run.understood, run.remarks))
 }

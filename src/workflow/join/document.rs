@@ -1,15 +1,17 @@
-//! The JSON document of `join`.
+//! What `join` found: its JSON document.
 
 use serde::{Deserialize, Serialize};
 
-use super::Joined;
-use crate::{document::PROGRAM, remark::Remark};
+use crate::{remark::Remarks, series::Located};
+
+/// What the format is called.
+pub(super) const FORMAT: &str = "hydrotrace.join.v1";
 
 /// Where the plan was sent, and what the new log holds. Times are seconds since the start of the
 /// run's log.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct JoinDocument {
+pub struct Joined {
     /// Always "hydrotrace.join.v1".
     pub format: String,
     /// Name and version of the program that wrote it.
@@ -38,51 +40,37 @@ pub struct JoinDocument {
     /// Names of the files that came with the plan.
     pub files: Vec<String>,
     /// Doubts about the data.
-    pub remarks: Vec<Remark>,
-}
-
-impl JoinDocument {
-    /// The document of a join.
-    pub fn of(joined: &Joined) -> Self {
-        Self {
-            format: "hydrotrace.join.v1".to_owned(),
-            program: PROGRAM.to_owned(),
-            sent: joined.sent.clone(),
-            sent_is_command: joined.commanded,
-            at_s: joined.at_s,
-            rms_difference_rad: joined.located.map(|found| found.rms_rad),
-            other_places: joined.located.map(|found| found.others),
-            duration_s: joined.duration_s,
-            rest_before_s: joined.rest_s[0],
-            rest_after_s: joined.rest_s[1],
-            joints: joined.joints,
-            messages: joined.messages,
-            files: joined.files.clone(),
-            remarks: joined.remarks.as_slice().to_vec(),
-        }
-    }
+    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
+    pub remarks: Remarks,
+    /// Where the plan was found; not written.
+    #[serde(skip)]
+    pub located: Option<Located>,
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{remark::Remarks, schema::is_written_and_read};
+    use crate::{document::PROGRAM, schema::is_written_and_read};
 
     #[test]
     fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let joined = Joined {
+        let document = Joined {
+            format: FORMAT.to_owned(),
+            program: PROGRAM.to_owned(),
             sent: Some("/sent:positions".into()),
-            commanded: true,
-            located: None,
+            sent_is_command: true,
             at_s: 1.5,
+            rms_difference_rad: Some(0.001),
+            other_places: Some(1),
             duration_s: 20.0,
-            rest_s: [1.0, 3.0],
+            rest_before_s: 1.0,
+            rest_after_s: 3.0,
             joints: 4,
             messages: 1000,
             files: vec!["task.toml".into()],
             remarks: Remarks::default(),
+            located: None,
         };
-        let document = JoinDocument::of(&joined);
         is_written_and_read(&document, "join.v1.schema.json", "hydrotrace join, version 1");
     }
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-pub use document::JoinDocument;
+pub use document::Joined;
 
 use super::carried::{
     plan_log::states,
@@ -15,9 +15,10 @@ use super::carried::{
     stamp::instants,
 };
 use crate::{
+    document::PROGRAM,
     log::{Addition, LogError, LogFiles, PlanSample, ReadOptions, Sides, TimeBase},
-    remark::{Code, Remarks},
-    series::{Located, Series, Track},
+    remark::Code,
+    series::{Series, Track},
     units::{DEGREE_RAD, nanoseconds},
 };
 use place::Plan;
@@ -73,31 +74,6 @@ pub enum JoinFailure {
     #[error("--at {at_s} puts the plan at {at_s:.2} to {:.2} s, outside the measurement, {:.2} to {:.2} s",
         at_s + duration_s, measured_s[0], measured_s[1])]
     Outside { at_s: f64, duration_s: f64, measured_s: [f64; 2] },
-}
-
-/// Where the plan was found, and the content of the new log.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Joined {
-    /// Topic and field of what was sent, unless the caller gave the time alone.
-    pub sent: Option<String>,
-    /// Whether what was sent is the command, and not the plan itself.
-    pub commanded: bool,
-    /// Where it was found.
-    pub located: Option<Located>,
-    /// When the first sample of the plan was sent, s from the start of the run's log.
-    pub at_s: f64,
-    /// From the first to the last sample of the plan, s.
-    pub duration_s: f64,
-    /// Rest that was added before and after, s.
-    pub rest_s: [f64; 2],
-    /// Joints of the plan.
-    pub joints: usize,
-    /// Messages of the run.
-    pub messages: u64,
-    /// Files that came with the plan.
-    pub files: Vec<String>,
-    /// Doubts about the data.
-    pub remarks: Remarks,
 }
 
 /// Longest plan, s.
@@ -182,16 +158,21 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     };
     let messages = log.join(&addition, &inputs.output)?;
     Ok(Joined {
+        format: document::FORMAT.to_owned(),
+        program: PROGRAM.to_owned(),
         sent: located.map(|_| topic),
-        commanded,
-        located,
+        sent_is_command: commanded,
         at_s: start_s,
+        rms_difference_rad: located.map(|found| found.rms_rad),
+        other_places: located.map(|found| found.others),
         duration_s: to_s - from_s,
-        rest_s,
+        rest_before_s: rest_s[0],
+        rest_after_s: rest_s[1],
         joints: names.len(),
         messages,
         files: carried.names(),
         remarks,
+        located,
     })
 }
 

@@ -22,6 +22,15 @@ pub enum PlanFailure {
         /// Why.
         source: std::io::Error,
     },
+    /// A log's task names a file that the log does not hold.
+    #[error(
+        "the log's task names its arm's file {file:?}, which the log does not hold, and what a log names is not read \
+         from elsewhere; plan again, or name the task file with --task where the verb has it"
+    )]
+    NotCarried {
+        /// The file.
+        file: String,
+    },
     /// The file is no task.
     #[error("{} is no task", path.display())]
     Task {

@@ -19,7 +19,7 @@ use convergence::Growth;
 pub use convergence::Step;
 pub use document::{ChosenPlan, MarginEntry, PlanDocument, PlanEntry};
 pub use failure::PlanFailure;
-pub use request::{PlanRequest, SAMPLE_TASK, arm_of};
+pub use request::{PlanRequest, SAMPLE_TASK, TaskFiles};
 
 /// How to plan.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::PlanFailure;
 use crate::{
     arm::Arm,
+    input_file,
     plan::Setup,
     task::{ArmSource, Task},
 };
@@ -12,13 +13,25 @@ use crate::{
 /// The first task of the paper.
 pub const SAMPLE_TASK: &str = include_str!("../../../sample-logs/tasks/task-1.toml");
 
+/// A task and the files of its arm, byte by byte as they were read: what goes with a plan, so that it needs no
+/// other file.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct TaskFiles {
+    /// The task.
+    pub task: String,
+    /// The URDF; `None` of the sample arm.
+    pub urdf: Option<String>,
+    /// Cylinders and pump; `None` of an arm without, or the sample arm.
+    pub hydraulics: Option<String>,
+}
+
 /// What to plan, as read from a file.
 #[derive(Debug, Clone)]
 pub struct PlanRequest {
     /// The task.
     pub task: Task,
-    /// Its text, to go with the plan.
-    pub text: String,
+    /// Its text and the files of its arm, to go with the plan.
+    pub files: TaskFiles,
     /// The task on its arm.
     pub setup: Setup,
 }
@@ -48,30 +61,53 @@ impl PlanRequest {
     ///
     /// [`PlanFailure`] naming file and line.
     pub fn parse(path: &Path, text: String) -> Result<Self, PlanFailure> {
-        let named = |source| PlanFailure::Task { path: path.to_owned(), source };
-        let task = Task::parse(&text).map_err(named)?;
-        let arm = arm_of(&task, path.parent().unwrap_or(Path::new("")))?;
+        let (mut urdf, mut hydraulics) = (None, None);
+        if let ArmSource::File { urdf: arm, hydraulics: cylinders, .. } = parsed(path, &text)?.arm {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            urdf = Some(read(&folder.join(arm))?);
+            hydraulics = cylinders.map(|file| read(&folder.join(file))).transpose()?;
+        }
+        Self::of(path, TaskFiles { task: text, urdf, hydraulics })
+    }
+
+    /// Takes a task and the files of its arm, as a log carries them; reads no other file. `path` is named in errors.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanFailure`] naming file and line.
+    pub fn of(path: &Path, files: TaskFiles) -> Result<Self, PlanFailure> {
+        let task = parsed(path, &files.task)?;
+        let arm = files.arm(&task)?;
         let setup = Setup::new(&task, arm)
             .map_err(|source| PlanFailure::Setup { path: path.to_owned(), source: Box::new(source) })?;
-        Ok(Self { task, text, setup })
+        Ok(Self { task, files, setup })
     }
 }
 
-/// The arm of a task whose files lie in a folder.
-///
-/// # Errors
-///
-/// [`PlanFailure`] naming the file.
-pub fn arm_of(task: &Task, folder: &Path) -> Result<Arm, PlanFailure> {
-    let ArmSource::File { urdf, hydraulics, tool } = &task.arm else { return Ok(Arm::sample()?) };
-    let text = read(&folder.join(urdf))?;
-    let Some(hydraulics) = hydraulics else {
-        return Ok(Arm::without_hydraulics((urdf, &text), tool.as_deref())?);
-    };
-    let cylinders = read(&folder.join(hydraulics))?;
-    Ok(Arm::new((urdf, &text), tool.as_deref(), (hydraulics, &cylinders))?)
+impl TaskFiles {
+    /// The arm of the task.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanFailure`] naming the file.
+    pub fn arm(&self, task: &Task) -> Result<Arm, PlanFailure> {
+        let ArmSource::File { urdf, hydraulics, tool } = &task.arm else { return Ok(Arm::sample()?) };
+        let there = |text: &Option<String>, file: &String| {
+            text.clone().ok_or_else(|| PlanFailure::NotCarried { file: file.clone() })
+        };
+        let text = there(&self.urdf, urdf)?;
+        let Some(hydraulics) = hydraulics else {
+            return Ok(Arm::without_hydraulics((urdf, &text), tool.as_deref())?);
+        };
+        let cylinders = there(&self.hydraulics, hydraulics)?;
+        Ok(Arm::new((urdf, &text), tool.as_deref(), (hydraulics, &cylinders))?)
+    }
+}
+
+fn parsed(path: &Path, text: &str) -> Result<Task, PlanFailure> {
+    Task::parse(text).map_err(|source| PlanFailure::Task { path: path.to_owned(), source })
 }
 
 fn read(path: &Path) -> Result<String, PlanFailure> {
-    std::fs::read_to_string(path).map_err(|source| PlanFailure::Read { path: path.to_owned(), source })
+    input_file::read_to_string(path).map_err(|source| PlanFailure::Read { path: path.to_owned(), source })
 }

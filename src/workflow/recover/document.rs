@@ -14,6 +14,9 @@ pub struct RecoverDocument {
     pub program: String,
     /// Messages in the new log.
     pub messages: u64,
+    /// Of these, from chunks that are not as they were written: some may be wrong.
+    #[serde(default)]
+    pub doubtful_messages: u64,
     /// Chunks, or runs of messages outside chunks, that were read.
     pub blocks: usize,
     /// Blocks that could not be read at all.
@@ -27,11 +30,12 @@ pub struct RecoverDocument {
 impl RecoverDocument {
     /// The document of a recovery.
     pub fn of(recovered: &Recovered) -> Self {
-        let Recovered { messages, blocks, dropped_blocks, attachments, remarks } = recovered;
+        let Recovered { messages, doubtful, blocks, dropped_blocks, attachments, remarks } = recovered;
         Self {
             format: "hydrotrace.recover.v1".to_owned(),
             program: PROGRAM.to_owned(),
             messages: *messages,
+            doubtful_messages: *doubtful,
             blocks: *blocks,
             dropped_blocks: *dropped_blocks,
             attachments: *attachments,
@@ -52,7 +56,8 @@ mod tests {
     fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
         let mut remarks = Remarks::default();
         remarks.add(Code::DamagedChunk, 1, "a chunk was dropped");
-        let recovered = Recovered { messages: 5, blocks: 2, dropped_blocks: 1, attachments: 3, remarks };
+        let recovered =
+            Recovered { messages: 5, doubtful: 2, blocks: 2, dropped_blocks: 1, attachments: 3, remarks };
         let document = RecoverDocument::of(&recovered);
         is_written_and_read(&document, "recover.v1.schema.json", "hydrotrace recover, version 1");
     }

@@ -21,6 +21,16 @@ pub struct Analysis {
 
 /// Aligns the joints of a recording and replays them; remarks what plan or measurement lacks.
 pub fn analyse(recording: &Recording, rules: &Rules, remarks: &mut Remarks) -> Analysis {
+    let (alignment, pairs) = aligned(recording, rules, remarks);
+    Analysis::of(alignment, pairs, rules)
+}
+
+/// The first half of [`analyse`], after which the recording is no longer needed.
+pub(super) fn aligned(
+    recording: &Recording,
+    rules: &Rules,
+    remarks: &mut Remarks,
+) -> (Vec<Alignment>, Vec<Pair>) {
     let (mut pairs, mut alignment) = (Vec::new(), Vec::new());
     for planned in &recording.planned.tracks {
         let Some(measured) = recording.measured.track(planned.name()) else { continue };
@@ -39,9 +49,15 @@ pub fn analyse(recording: &Recording, rules: &Rules, remarks: &mut Remarks) -> A
         pairs.push(pair);
     }
     remark_unseen(&recording.planned, &pairs, rules, remarks);
-    let replay = replay(&pairs, rules);
-    ::log::info!("{} joints aligned, {} transitions found", pairs.len(), replay.transitions.len());
-    Analysis { alignment, pairs, replay }
+    (alignment, pairs)
+}
+
+impl Analysis {
+    pub(super) fn of(alignment: Vec<Alignment>, pairs: Vec<Pair>, rules: &Rules) -> Self {
+        let replay = replay(&pairs, rules);
+        ::log::info!("{} joints aligned, {} transitions found", pairs.len(), replay.transitions.len());
+        Self { alignment, pairs, replay }
+    }
 }
 
 /// Measured samples without a plan are usual before and after a run; more than half is not.

@@ -8,6 +8,7 @@ use crate::{
     log::SourceInfo,
     remark::Remark,
     replay::{JointReplay, Rules, Stop, Transition, WholeRun},
+    workflow::carried::Promise,
 };
 
 /// What the format is called.
@@ -28,6 +29,8 @@ pub struct Document {
     pub machine: Option<String>,
     /// The run: the entry "run" of the log's metadata.
     pub run: Option<String>,
+    /// What the command of this run promised; null without a promise in the log.
+    pub promised: Option<Promise>,
     /// Where the data come from.
     pub source: SourceInfo,
     /// How plan and measurement were matched, by joint.
@@ -59,6 +62,7 @@ impl Document {
             logs: log_files(&report.paths),
             machine: report.machine.clone(),
             run: report.run.clone(),
+            promised: report.promised,
             source: report.source.clone(),
             alignment: report.alignment.clone(),
             joints: report.replay.joints.clone(),

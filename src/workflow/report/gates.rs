@@ -9,7 +9,11 @@ use crate::{
 
 /// The limits that a run must keep.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Gates(Vec<Gate>);
+pub struct Gates {
+    gates: Vec<Gate>,
+    /// Whether a limit is kept by a run in which there is nothing to judge.
+    empty_is_kept: bool,
+}
 
 /// A limit with its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,13 +33,13 @@ pub struct GateResult {
     pub unit: String,
     /// The limit, in its unit.
     pub limit: f64,
-    /// The worst value; `None` if nothing could be measured, or a start was not answered.
+    /// The worst value; `None` if there was nothing to judge, or a start was not answered.
     pub worst: Option<f64>,
-    /// The joint it was found at.
+    /// The joint it was found at; `None` if there was nothing to judge.
     pub joint: Option<String>,
     /// When, s; for a mean over the run when the error peaked.
     pub time_s: Option<f64>,
-    /// Whether the limit is kept.
+    /// Whether the limit is kept; not if there was nothing to judge, unless that was allowed.
     pub kept: bool,
 }
 
@@ -53,8 +57,14 @@ impl Gates {
     /// With a limit more, in SI units; a limit on positions judges the joints of one kind.
     #[must_use]
     pub fn with(mut self, limit: &'static Limit, kind: JointKind, value: f64) -> Self {
-        self.0.push(Gate { limit: Row(limit), kind, value });
+        self.gates.push(Gate { limit: Row(limit), kind, value });
         self
+    }
+
+    /// Where there is nothing to judge, limits are kept: a run without a start keeps those on starts.
+    #[must_use]
+    pub fn with_empty_kept(self, empty_is_kept: bool) -> Self {
+        Self { empty_is_kept, ..self }
     }
 
     /// Judges every limit.
@@ -68,9 +78,9 @@ impl Gates {
                 let all = replay.joints.iter().map(|j: &JointReplay| (j, j.name.as_str(), j.kind));
                 of(JOINT, gate).map(|metric| found(metric, gate, all))
             };
-            worst(gate, transitions.or_else(joints).unwrap_or_default())
+            worst(gate, transitions.or_else(joints).unwrap_or_default(), self.empty_is_kept)
         };
-        self.0.iter().map(one).collect()
+        self.gates.iter().map(one).collect()
     }
 }
 
@@ -94,7 +104,7 @@ fn found<'a, T: 'a>(
 }
 
 /// The worst of what was found; what could not be measured is worse than any number.
-fn worst(gate: &Gate, found: Vec<Found<'_>>) -> GateResult {
+fn worst(gate: &Gate, found: Vec<Found<'_>>, empty_is_kept: bool) -> GateResult {
     let of = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
     let worst = found.into_iter().max_by(|a, b| of(a.0).total_cmp(&of(b.0)));
     GateResult {
@@ -104,7 +114,7 @@ fn worst(gate: &Gate, found: Vec<Found<'_>>) -> GateResult {
         worst: worst.and_then(|(value, _, _)| value),
         joint: worst.map(|(_, joint, _)| joint.to_owned()),
         time_s: worst.and_then(|(_, _, time_s)| time_s),
-        kept: worst.is_none_or(|(value, _, _)| of(value) <= gate.value),
+        kept: worst.map_or(empty_is_kept, |(value, _, _)| of(value) <= gate.value),
     }
 }
 
@@ -123,7 +133,7 @@ mod tests {
     #[test]
     fn a_start_that_was_never_answered_breaks_every_limit_on_delay() {
         let found = vec![(Some(0.1), "a", Some(1.0)), (None, "b", Some(2.0))];
-        let result = worst(&gate("onset-delay", 10.0), found);
+        let result = worst(&gate("onset-delay", 10.0), found, false);
         assert_eq!((result.kept, result.worst, result.joint.as_deref()), (false, None, Some("b")));
     }
 
@@ -149,22 +159,28 @@ mod tests {
     }
 
     #[test]
-    fn only_a_start_that_is_never_answered_breaks_a_limit_on_delay_for_want_of_one() {
-        let limits = Gates(vec![gate("onset-delay", 0.3)]);
-        let judged = |follows: bool| limits.judge(&replayed(follows)).remove(0);
-        assert_eq!((judged(true).kept, judged(true).worst, judged(true).joint), (true, None, None));
-        assert_eq!((judged(false).kept, judged(false).joint.as_deref()), (false, Some("a")));
+    fn a_limit_with_nothing_to_judge_is_not_kept_unless_that_is_allowed() {
+        let limits = Gates { gates: vec![gate("onset-delay", 0.3)], empty_is_kept: false };
+        let judged = |limits: &Gates, follows: bool| limits.judge(&replayed(follows)).remove(0);
+        // A joint that crept before has no dead time.
+        let crept = judged(&limits, true);
+        assert_eq!((crept.kept, crept.worst, crept.joint), (false, None, None));
+        let allowed = limits.with_empty_kept(true);
+        assert!(judged(&allowed, true).kept);
+        let never = judged(&allowed, false);
+        assert_eq!((never.kept, never.joint.as_deref()), (false, Some("a")));
     }
 
     #[test]
     fn the_limit_itself_is_kept() {
-        assert!(worst(&gate("rms", 0.1), vec![(Some(0.1), "a", None)]).kept);
+        assert!(worst(&gate("rms", 0.1), vec![(Some(0.1), "a", None)], false).kept);
     }
 
     #[test]
     fn a_limit_in_metres_judges_no_joint_that_turns() {
         let in_metres = Gate { kind: JointKind::Slides, ..gate("rms", 0.0) };
-        let judged = Gates(vec![in_metres]).judge(&replayed(false)).remove(0);
+        let limits = Gates { gates: vec![in_metres], empty_is_kept: true };
+        let judged = limits.judge(&replayed(false)).remove(0);
         assert_eq!((judged.unit.as_str(), judged.kept, judged.joint), ("m", true, None));
     }
 }

@@ -9,6 +9,7 @@ mod outcome;
 
 use std::path::PathBuf;
 
+use analysis::aligned;
 pub use analysis::{Analysis, analyse};
 pub use document::Document;
 pub use gates::{GateResult, Gates};
@@ -61,15 +62,18 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
 /// # Errors
 ///
 /// [`LogError`] if plan and measurement never overlap.
-pub fn report(recording: Recording, inputs: &Inputs) -> Result<Report, LogError> {
+pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, LogError> {
     let carried = Carried::of(&recording);
     let mut remarks = recording.remarks.clone();
-    let Analysis { alignment, pairs, replay } = analyse(&recording, &inputs.rules, &mut remarks);
+    let (alignment, pairs) = aligned(&recording, &inputs.rules, &mut remarks);
     if pairs.is_empty() {
         let sides = [&recording.planned, &recording.measured];
         let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
         return Err(LogError::NoOverlap { planned_s, measured_s });
     }
+    // A long run's series take as much memory as its pairs.
+    (recording.planned, recording.measured) = Default::default();
+    let Analysis { alignment, pairs, replay } = Analysis::of(alignment, pairs, &inputs.rules);
     let gates = inputs.gates.judge(&replay);
     let front = front(&carried, &mut remarks);
     let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -79,6 +83,7 @@ pub fn report(recording: Recording, inputs: &Inputs) -> Result<Report, LogError>
         paths: inputs.logs.clone(),
         machine: named("machine"),
         run: named("run"),
+        promised: carried.promise(),
         holds_task: carried.task().is_some(),
         schedule: Schedule::of(&carried),
         source: recording.source,

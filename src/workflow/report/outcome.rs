@@ -10,7 +10,10 @@ use crate::{
     remark::Remarks,
     replay::{Profiles, Replay},
     series::Pair,
-    workflow::{carried::Schedule, plan::PlanDocument},
+    workflow::{
+        carried::{Promise, Schedule},
+        plan::PlanDocument,
+    },
 };
 
 /// How the plan of one joint met its measurement.
@@ -38,6 +41,8 @@ pub struct Report {
     pub machine: Option<String>,
     /// The run, if metadata of the log name it.
     pub run: Option<String>,
+    /// What the command of this run promised, if the log carries it.
+    pub promised: Option<Promise>,
     /// Whether the log holds the task of its plan, so that a gentler plan can be made from it.
     pub holds_task: bool,
     /// Where the data come from.

@@ -12,7 +12,7 @@ use super::super::{
         Carried,
         rest::{RUN_LEAD_S, RUN_TAIL_S},
     },
-    plan::{PlanFailure, arm_of},
+    plan::PlanFailure,
     simulate::{Content, Inputs, Outputs, run},
 };
 use crate::{
@@ -20,6 +20,7 @@ use crate::{
     log::{LogError, ReadOptions, SignalRole, WantedSignal, WriteError, WriteOptions, read_plan},
     plan::{PlanError, Setup},
     plant::{Parameters, PayloadChange, Plant, PlantError},
+    remark::Remarks,
     series::{Series, SignalError, Track},
     task::{Task, TaskError},
 };
@@ -81,6 +82,8 @@ pub struct Run {
     pub commanded: bool,
     /// The arm that ran it.
     pub arm: Arm,
+    /// Doubts about the plan's log.
+    pub remarks: Remarks,
 }
 
 impl Run {
@@ -115,6 +118,8 @@ pub struct Prepared {
     pub commanded: bool,
     /// The arm that is to run it.
     pub arm: Arm,
+    /// Doubts about the plan's log.
+    pub remarks: Remarks,
 }
 
 impl Prepared {
@@ -124,8 +129,8 @@ impl Prepared {
     ///
     /// [`SimulateFailure::Plant`].
     pub fn run(self) -> Result<Run, SimulateFailure> {
-        let Self { inputs, carried, commanded, arm } = self;
-        Ok(Run { outputs: run(&inputs)?, carried, commanded, arm })
+        let Self { inputs, carried, commanded, arm, remarks } = self;
+        Ok(Run { outputs: run(&inputs)?, carried, commanded, arm, remarks })
     }
 }
 
@@ -139,13 +144,18 @@ pub fn prepare(path: &Path, parameters: Parameters, seed: u64) -> Result<Prepare
     let plan = read_plan(&[path.to_owned()], &ReadOptions { signals, ..ReadOptions::default() })?;
     let carried = Carried::of(&plan);
     let starts_s = RUN_LEAD_S + carried.starts_s().unwrap_or(0.0);
-    let carried = carried.with_provenance(BTreeMap::new()).with_starts_s(starts_s);
-    let folder = path.parent().unwrap_or(Path::new(""));
+    let promised = carried.promise();
+    let mut carried = carried.with_provenance(BTreeMap::new()).with_starts_s(starts_s);
+    if let Some(promised) = promised {
+        carried = carried.with_promise(&promised);
+    }
+    let mut remarks = Remarks::default();
     let (arm, payload) = match carried.task_or_arm() {
         None => (sample_arm(path, &plan.planned)?, Vec::new()),
         Some(task) => {
             let task = task.map_err(|source| SimulateFailure::Task { path: path.to_owned(), source })?;
-            let arm = arm_of(&task, folder)?;
+            carried.remark_others(path, &mut remarks);
+            let arm = carried.task_files().unwrap_or_default().arm(&task)?;
             let payload = carried
                 .times_s()
                 .map_or(Ok(Vec::new()), |times_s| payload(&task, arm.clone(), &times_s, starts_s))?;
@@ -158,7 +168,7 @@ pub fn prepare(path: &Path, parameters: Parameters, seed: u64) -> Result<Prepare
     let command = command.map_or(Ok(planned.clone()), |command| with_rests(&command.series))?;
     let plant = Plant::new(&arm, parameters)?;
     let inputs = Inputs { plant, plan: planned, command, payload, seed };
-    Ok(Prepared { inputs, carried, commanded, arm })
+    Ok(Prepared { inputs, carried, commanded, arm, remarks })
 }
 
 /// The sample arm, for a log that names no other and whose joints are its.

@@ -121,7 +121,7 @@ pub(super) fn find(
             })?;
             (Some(FoundArm { origin: ArmOrigin::File, chain, still }), file.parent().unwrap_or(Path::new("")))
         }
-        None => (found(log, recording), folder_of(log)),
+        None => (found(recording), folder_of(log)),
     };
     // Packages are looked for around the folder, so it must have a place.
     let folder = Path::new(".").join(folder).canonicalize().unwrap_or_default();
@@ -141,7 +141,7 @@ struct FoundArm {
 
 /// The first arm of joints in the log: that of the log, of its task, of the samples. Only of the log's own
 /// may joints be missing.
-fn found(log: &Path, recording: &Recording) -> Option<FoundArm> {
+fn found(recording: &Recording) -> Option<FoundArm> {
     let whole =
         |chain: &Chain| chain.joints().iter().all(|joint| recording.planned.track(&joint.name).is_some());
     let names: Vec<&str> = recording.planned.tracks.iter().map(Track::name).collect();
@@ -151,7 +151,7 @@ fn found(log: &Path, recording: &Recording) -> Option<FoundArm> {
         Some(FoundArm { origin: ArmOrigin::Log, chain, still })
     };
     let tasks = || {
-        let chain = Carried::of(recording).arm(folder_of(log))?.ok()?.chain;
+        let chain = Carried::of(recording).arm()?.ok()?.chain;
         whole(&chain).then_some(FoundArm { origin: ArmOrigin::Task, chain, still: Vec::new() })
     };
     let sample = || {

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::input_file;
+
 /// Kinds of files that are taken for meshes; nothing else is opened, whatever a log says.
 const KINDS: [&str; 5] = ["dae", "glb", "gltf", "obj", "stl"];
 /// More than any mesh of an arm.
@@ -35,7 +37,10 @@ impl Places<'_> {
             Some(_) => return None,
             None => self.folder.join(uri),
         };
-        is_mesh(&found).then_some(found)
+        let found = is_mesh(&found).then_some(found)?;
+        // The viewer opens it.
+        input_file::will_read(&found);
+        Some(found)
     }
 }
 

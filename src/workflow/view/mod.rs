@@ -19,6 +19,7 @@ use super::{
 };
 use crate::{
     arm::ArmError,
+    input_file,
     log::{LogError, ReadOptions, Recording, Sides, read_recording},
     remark::Remarks,
     replay::{Rules, Transition},
@@ -84,7 +85,7 @@ pub struct Scene {
 /// [`ViewFailure`] if a log cannot be read or holds no planned joints, or a description that is given does
 /// not fit it.
 pub fn run(inputs: &Inputs) -> Result<Vec<Scene>, ViewFailure> {
-    let given = inputs.urdf.as_deref().map(|path| match std::fs::read_to_string(path) {
+    let given = inputs.urdf.as_deref().map(|path| match input_file::read_to_string(path) {
         Ok(text) => Ok((path, text)),
         Err(source) => Err(ViewFailure::Read { path: path.to_owned(), source }),
     });

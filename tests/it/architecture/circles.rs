@@ -5,10 +5,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::imports::uses;
 
-/// Folders that still hold circles, with all files in them. This list only shrinks.
-const KNOWN: &[(&str, &str)] =
-    &[("crates/moea/src", "direction.rs, focus.rs, settings.rs, population.rs, sorting.rs")];
-
 /// Every group of files and folders that use one another in a circle: their folder, and their names.
 fn circles(sources: &[(String, String)]) -> Vec<(String, String)> {
     let mut folders: BTreeMap<String, BTreeMap<String, BTreeSet<String>>> = BTreeMap::new();
@@ -68,15 +64,7 @@ fn no_two_files_use_one_another() {
         .flat_map(|root| circles(&super::sources(root)).into_iter().map(move |circle| (root, circle)))
         .map(|(root, (folder, files))| (format!("{root}/{folder}").trim_end_matches('/').to_owned(), files))
         .collect();
-    let known =
-        |folder: &str| KNOWN.iter().find(|(known, _)| *known == folder).map_or("", |(_, files)| files);
-    let new: Vec<_> = found
-        .iter()
-        .filter(|(folder, files)| files.split(", ").any(|file| !known(folder).split(", ").any(|k| k == file)))
-        .collect();
-    assert!(new.is_empty(), "circles of imports: {new:#?}");
-    let gone: Vec<_> = KNOWN.iter().filter(|(known, _)| !found.iter().any(|(f, _)| f == known)).collect();
-    assert!(gone.is_empty(), "these circles are gone; take them out of the list: {gone:#?}");
+    assert!(found.is_empty(), "circles of imports: {found:#?}");
 }
 
 #[test]

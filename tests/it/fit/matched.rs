@@ -1,7 +1,7 @@
 //! Fits to responses of the model itself: what is lost is lost by the estimator.
 
 use hydrotrace::{
-    fit::{Compensation, Excitation, Fit, FitError, JointRoom, Model, compensate, excite, predict},
+    fit::{Excitation, Fit, FitError, JointRoom, Learning, Model, Step, excite, learn, predict},
     rng::{Stream, stream},
     series::{Series, Track, split_at_gaps},
     units::DEGREE_RAD,
@@ -110,7 +110,7 @@ fn a_fit_does_not_depend_on_the_number_of_threads_and_survives_a_file() {
 }
 
 #[test]
-fn a_compensated_command_leaves_the_model_a_fifth_of_the_error_and_keeps_its_speeds() {
+fn a_command_by_the_model_alone_leaves_a_fifth_of_the_error_and_ends_where_the_plan_does() {
     let plan = {
         let t_s: Vec<f64> = (0..=1500).map(|k| f64::from(k) * 0.01).collect();
         let rate = std::f64::consts::PI / 6.0;
@@ -125,24 +125,30 @@ fn a_compensated_command_leaves_the_model_a_fifth_of_the_error_and_keeps_its_spe
     };
     let trial = trial(&["J"]);
     let mut fit = fitted(&[(&trial, &measured(&trial, 1, |_| false))]);
-    let made = compensate(&fit, &plan, Compensation::default()).unwrap();
-    let joint = &made.joints[0];
-    assert!(joint.applied);
-    assert!(joint.compensated_rms_rad.unwrap() < 0.2 * joint.plain_rms_rad.unwrap(), "{joint:?}");
-    assert!(joint.peak_correction_rad <= 1.5 * DEGREE_RAD);
-    let command = &made.command.tracks[0];
-    let (q, v) = (command.position(), command.velocity().unwrap());
+    let made = |fit: &Fit, gain| learn(fit, &plan, &[], Learning { gain, ..Learning::default() }, |_| None);
+    let found = made(&fit, 1.0).unwrap();
+    assert_eq!(found.joints[0].step, Step::Model);
+    let command = found.command(&plan, |_| 1.0).unwrap();
+    let rms_rad = |sent: &Series| {
+        let response = predict(&fit.joints[0].model, &sent.tracks[0]).unwrap();
+        let squares = plan.tracks[0].position().iter().zip(response.position()).map(|(p, m)| (p - m).powi(2));
+        (squares.sum::<f64>() / response.len() as f64).sqrt()
+    };
+    assert!(rms_rad(&command) < 0.2 * rms_rad(&plan), "{} {}", rms_rad(&command), rms_rad(&plan));
+    let (q, v) = (command.tracks[0].position(), command.tracks[0].velocity().unwrap());
+    let planned = plan.tracks[0].position();
+    assert!(q.iter().zip(planned).all(|(sent, planned)| (sent - planned).abs() <= 1.5 * DEGREE_RAD));
+    assert_eq!((q[0], q[q.len() - 1]), (planned[0], planned[planned.len() - 1]));
     for k in 1..q.len() - 1 {
         let slope = (q[k + 1] - q[k - 1]) / 0.02;
         assert!((slope - v[k]).abs() < 2e-3, "{k}: {slope} {}", v[k]);
     }
-    let none = compensate(&fit, &plan, Compensation { gain: 0.0, ..Compensation::default() }).unwrap();
-    assert_eq!(none.command, plan);
+    let none = made(&fit, 0.0).unwrap();
+    assert_eq!(none.command(&plan, |_| 1.0).unwrap(), plan);
     fit.joints[0].held_out_r2 = 0.2;
-    let refused = compensate(&fit, &plan, Compensation::default()).unwrap();
-    assert!(!refused.joints[0].applied && refused.command == plan);
+    assert_eq!(made(&fit, 1.0).unwrap().joints[0].step, Step::None);
     fit.joints[0].model.dead_time_s = -1.0;
-    let error = compensate(&fit, &plan, Compensation::default()).unwrap_err();
+    let error = made(&fit, 1.0).unwrap_err();
     assert!(matches!(error, FitError::Value { key: "dead_time_s", .. }), "{error}");
 }
 

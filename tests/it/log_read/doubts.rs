@@ -204,3 +204,39 @@ fn one_broken_schema_of_a_split_recording_is_said() {
     assert_eq!(recording.measured.tracks[0].len(), 30);
     assert_eq!(count(&recording.remarks, Code::UnreadableSchema), 20, "{:?}", recording.remarks);
 }
+
+#[test]
+fn one_sample_far_off_between_calm_neighbours_is_dropped_and_counted() {
+    for off_rad in [1.0, -2.0, 0.7] {
+        let mut log = Log::default();
+        add_joint_state(&mut log, "/planned/joint_states", plan);
+        let spoilt = move |k: i64| {
+            let mut values = measurement(k);
+            values[0] += if k == 20 { off_rad } else { 0.0 };
+            values
+        };
+        add_joint_state(&mut log, "/joint_states", spoilt);
+        let recording = read(&log);
+        assert_eq!(count(&recording.remarks, Code::Implausible), 1, "{off_rad}");
+        let track = recording.measured.track("a").unwrap();
+        assert_eq!((track.len(), recording.measured.track("b").unwrap().len()), (49, 50));
+        assert!(track.position().windows(2).all(|pair| (pair[1] - pair[0]).abs() < 0.2), "{off_rad}");
+    }
+}
+
+#[test]
+fn a_plan_that_jumps_is_said_to() {
+    let mut log = Log::default();
+    let jumps = |k: i64| {
+        let mut values = plan(k);
+        values[1] += if k >= 30 { 0.96 } else { 0.0 };
+        values
+    };
+    add_joint_state(&mut log, "/planned/joint_states", jumps);
+    add_joint_state(&mut log, "/joint_states", measurement);
+    let recording = read(&log);
+    let remark = recording.remarks.as_slice().iter().find(|remark| remark.code == Code::PlanJumps).unwrap();
+    assert_eq!(remark.count, 1);
+    assert!(remark.message.contains("the plan of b") && remark.message.contains("0.60 s"), "{remark:?}");
+    assert_eq!(recording.planned.track("b").unwrap().len(), 50, "a step is no spike");
+}

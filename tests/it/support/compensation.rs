@@ -2,7 +2,7 @@
 
 use hydrotrace::{
     arm::Arm,
-    fit::{Compensation, compensate},
+    fit::{Learning, Trial, learn},
     plant::{Parameters, Plant, Variation},
     replay::{Rules, replay},
     series::{Pair, Series, align, local_quadratic},
@@ -47,7 +47,10 @@ pub(crate) const PRESETS: [&str; 3] = ["dead-band-limited", "default", "lag-limi
 /// The command that a fit to a run of the plan makes.
 pub(crate) fn learnt(plant: &Plant, job: &Job, seed: u64) -> Series {
     let plain = run(plant, &job.plan, job, seed);
-    compensate(&fitted(&[(&job.plan, &plain)]), &job.plan, Compensation::default()).unwrap().command
+    let trial = Trial { sent: &job.plan, measured: &plain };
+    let fit = fitted(&[(&job.plan, &plain)]);
+    let found = learn(&fit, &job.plan, &[trial], Learning::default(), |_| None).unwrap();
+    found.command(&job.plan, |_| 1.0).unwrap()
 }
 
 /// Runs of the plan and of a command on a machine as it is then.

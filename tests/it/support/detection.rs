@@ -2,7 +2,7 @@
 
 use hydrotrace::{
     plant::{JointRecord, PayloadChange, Record, simulate},
-    replay::{Rules, measured_starts, planned_starts},
+    replay::{Rules, Sizes, measured_starts, planned_starts},
     series::{Series, Track},
     units::DEGREE_RAD,
 };
@@ -73,7 +73,7 @@ impl Tally {
             self.real += late_s.len();
             self.found += found.len();
             self.late_s.extend(late_s.into_iter().flatten());
-            let far = Rules { min_travel_rad: TRAVEL_RAD, ..rules.clone() };
+            let far = Rules { turning: Sizes { min_travel: TRAVEL_RAD, ..rules.turning }, ..rules.clone() };
             let late_s = self::late_s(&real_starts(record, joint, &far), &found);
             self.far += late_s.len();
             self.far_found += late_s.iter().flatten().count();

@@ -6,7 +6,7 @@ use std::{error::Error, path::Path};
 
 use hydrotrace::{
     arm::Arm,
-    fit::{Compensation, Excitation, JointRoom, Observation, compensate, excite, fit},
+    fit::{Excitation, JointRoom, Learning, Observation, Trial, excite, fit, learn},
     log::WriteOptions,
     plan::PlanEvaluation,
     plant::{JointRecord, Parameters, Plant},
@@ -107,7 +107,7 @@ fn prepared((text, times_s): Task, seed: u64) -> Result<Prepared, Box<dyn Error>
         command: None,
         arm: Some(&request.setup.arm().chain),
         trajectory: None,
-        carried: &Carried::default().with_plan(text, &document),
+        carried: &Carried::default().with_plan(&request.files, &document),
         rate_hz: RATE_HZ,
     };
     let folder = tempfile::tempdir()?;
@@ -148,7 +148,8 @@ fn precompensated(again: Prepared, before: &PlantLog) -> Result<PlantLog, Box<dy
     let measured = Series { tracks: record.joints.iter().map(track).collect::<Result<_, _>>()? };
     let plan = &again.inputs.plan;
     let fit = fit(&[Observation { sent: plan, measured: &measured, valve: &[] }])?;
-    let command = compensate(&fit, plan, Compensation::default())?.command;
+    let trial = Trial { sent: plan, measured: &measured };
+    let command = learn(&fit, plan, &[trial], Learning::default(), |_| None)?.command(plan, |_| 1.0)?;
     let seed = 14;
     let outputs = run(&Inputs { command, seed, ..again.inputs })?;
     written(PRECOMPENSATED_RUN, seed, outputs, &again.carried, Content::Joints)

@@ -127,7 +127,7 @@ pub(in crate::render) fn page(
                     }
                 }
                 footer { "Made by " (PROGRAM) ". This page is one file and fetches nothing." }
-                script id="data" type="application/json" { (PreEscaped(embedded(&plots.0))) }
+                script id="data" type="application/json" { (PreEscaped(clean(&embedded(&plots.0)))) }
                 script { (PreEscaped(SCRIPT)) }
             }
         }

@@ -21,7 +21,7 @@ pub(in crate::render) use rows::rows;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Why a picture could not be drawn: what the drawing library says.
-pub type Failure = Box<dyn std::error::Error + Send + Sync>;
+pub(crate) type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 type Drawn = Result<(), Failure>;
 
