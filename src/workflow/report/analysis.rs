@@ -77,7 +77,9 @@ impl Analysis {
     pub(super) fn of(alignment: Vec<Alignment>, mut pairs: Vec<Pair>, rules: &Rules) -> Self {
         let replay = replay(&pairs, rules);
         // Of no more use, and a third of what a long run takes.
-        pairs.iter_mut().for_each(|pair| pair.planned_velocity = None);
+        for pair in &mut pairs {
+            pair.planned_velocity = None;
+        }
         ::log::info!("{} joints aligned, {} transitions found", pairs.len(), replay.transitions.len());
         Self { alignment, pairs, replay }
     }
