@@ -25,7 +25,8 @@ pub enum Code {
     UndecodableMessage,
     /// A file of a split recording that is named but absent.
     MissingFile,
-    /// A file beside a log that differs from the one that the log carries, which counts.
+    /// A file beside a log that differs from the one that the log carries, which counts; or one in it that differs from
+    /// what was written there.
     OtherFile,
     /// Arrays whose length differs from the list of joint names.
     LengthMismatch,

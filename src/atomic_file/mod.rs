@@ -150,6 +150,25 @@ pub fn write_atomically<T, E: From<AtomicError>>(
     Ok(value)
 }
 
+/// As [`write_atomically`], for a writer that opens its file by itself, under the name that it is given.
+///
+/// # Errors
+///
+/// As [`write_atomically`].
+pub fn write_by_name<T, E: From<AtomicError>>(
+    target: &Path,
+    write: impl FnOnce(&Path) -> Result<T, E>,
+) -> Result<T, E> {
+    may_write(target)?;
+    let Some(place) = resolve(target)? else { return write(target) };
+    let (partial, file) = Partial::beside(&place).map_err(failed("write", target))?;
+    let value = write(partial.path())?;
+    file.sync_all().map_err(failed("write", target))?;
+    drop(file);
+    partial.put(&place).map_err(failed("replace", target))?;
+    Ok(value)
+}
+
 fn fill<T, E: From<AtomicError>>(
     file: File,
     target: &Path,

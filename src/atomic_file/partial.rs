@@ -64,6 +64,11 @@ impl Partial {
         Err(io::Error::new(io::ErrorKind::AlreadyExists, "every temporary name is taken"))
     }
 
+    /// Its name until then.
+    pub(super) fn path(&self) -> &Path {
+        &self.0
+    }
+
     /// Puts the file in its place, for good.
     pub(super) fn put(self, place: &Path) -> io::Result<()> {
         {

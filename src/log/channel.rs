@@ -103,11 +103,16 @@ impl Definitions {
         self.channels.entry(channel.id).or_insert(channel);
     }
 
-    /// Decides for every channel whether and how it is read.
-    pub(super) fn plan(self, selectors: &[(Role, Selector)]) -> BTreeMap<u16, Channel> {
+    /// Decides for every channel whether and how it is read; `speeds` says of a topic whose type does not tell plan
+    /// from measurement whether its speeds are.
+    pub(super) fn plan(
+        self,
+        selectors: &[(Role, Selector)],
+        speeds: &impl Fn(&str) -> bool,
+    ) -> BTreeMap<u16, Channel> {
         let empty = OwnedSchema { name: String::new(), encoding: String::new(), data: Vec::new() };
         // Channels of one schema share their reader: files may have many of both.
-        let mut readers: BTreeMap<(u16, String, Option<String>), Reader> = BTreeMap::new();
+        let mut readers: BTreeMap<(u16, String, Option<String>, bool), Reader> = BTreeMap::new();
         let mut steps_left = MAX_STEPS;
         let Self { schemas, channels } = self;
         let plan = channels.into_iter().map(|(id, record)| {
@@ -115,10 +120,11 @@ impl Definitions {
             let mine = selectors.iter().filter(|(_, s)| s.topic == record.topic);
             let mine: Vec<_> = mine.map(|(role, s)| (*role, s)).collect();
             let topic = (!mine.is_empty()).then(|| record.topic.clone());
-            let key = (record.schema_id, record.encoding.clone(), topic);
+            let speeds = speeds(&record.topic) || mine.iter().any(|(role, _)| *role != Role::Measured);
+            let key = (record.schema_id, record.encoding.clone(), topic, speeds);
             let (reader, problem) = readers
                 .entry(key)
-                .or_insert_with(|| reader(schema, &record.encoding, &mine, &mut steps_left))
+                .or_insert_with(|| reader(schema, &record.encoding, (&mine, speeds), &mut steps_left))
                 .clone();
             let type_name = schema.name.clone();
             let channel =
@@ -135,12 +141,10 @@ const MAX_STEPS: usize = 1_000_000;
 /// How to read a channel, or why it cannot be read though it may hold joints.
 type Reader = (Option<(Arc<Spec>, Decoder)>, Option<String>);
 
-fn reader(
-    schema: &OwnedSchema,
-    encoding: &str,
-    selectors: &[(Role, &Selector)],
-    steps_left: &mut usize,
-) -> Reader {
+/// The fields that the caller named, and whether speeds are wanted.
+type Wanted<'a> = (&'a [(Role, &'a Selector)], bool);
+
+fn reader(schema: &OwnedSchema, encoding: &str, selectors: Wanted<'_>, steps_left: &mut usize) -> Reader {
     match encoding {
         "cdr" => cdr(schema, selectors, steps_left),
         "json" => tree(schema, selectors, |spec| Ok(Tree::json(&spec.wants))),
@@ -153,7 +157,7 @@ fn reader(
     }
 }
 
-fn cdr(schema: &OwnedSchema, selectors: &[(Role, &Selector)], steps_left: &mut usize) -> Reader {
+fn cdr(schema: &OwnedSchema, selectors: Wanted<'_>, steps_left: &mut usize) -> Reader {
     let definition = match Definition::parse(&schema.name, &schema.encoding, &schema.data) {
         Ok(definition) => definition,
         Err(problem) => {
@@ -172,11 +176,7 @@ fn cdr(schema: &OwnedSchema, selectors: &[(Role, &Selector)], steps_left: &mut u
     }
 }
 
-fn tree(
-    schema: &OwnedSchema,
-    selectors: &[(Role, &Selector)],
-    tree: impl Fn(&Spec) -> Result<Tree, String>,
-) -> Reader {
+fn tree(schema: &OwnedSchema, selectors: Wanted<'_>, tree: impl Fn(&Spec) -> Result<Tree, String>) -> Reader {
     match spec_for(&schema.name, None, selectors) {
         None => (None, None),
         Some(spec) => match tree(&spec) {

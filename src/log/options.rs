@@ -24,6 +24,8 @@ pub struct ReadOptions {
     pub planned_in_degrees: bool,
     /// The measurement is in degrees.
     pub measured_in_degrees: bool,
+    /// Whether to read the speeds that come with measured positions, too.
+    pub measured_velocities: bool,
     /// Joints without end stops, whose angle may wrap by a full turn.
     pub continuous: Vec<String>,
 }

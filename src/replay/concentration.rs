@@ -8,8 +8,8 @@ use statrs::stats_tests::{
 use super::{Concentration, ConcentrationTest, Rules, Verdict, tracking::Sample};
 
 /// What the comparison needs of one joint whose plan moves.
-pub(super) struct JointError<'a> {
-    pub(super) samples: &'a [Sample],
+pub(super) struct JointError<'a, S> {
+    pub(super) samples: S,
     /// For each sample, whether the plan moves.
     pub(super) moving: &'a [bool],
     /// Transition windows, ascending, s.
@@ -23,7 +23,7 @@ struct Sum {
 }
 
 impl Sum {
-    fn add(&mut self, sample: &Sample) {
+    fn add(&mut self, sample: Sample) {
         self.time_s += sample.weight_s;
         self.square += sample.weight_s * sample.error_rad * sample.error_rad;
     }
@@ -40,7 +40,10 @@ struct Block {
 }
 
 /// Compares the error inside transition windows with that elsewhere; `None` without joints.
-pub(super) fn concentration(joints: &[JointError], rules: &Rules) -> Option<Concentration> {
+pub(super) fn concentration<'a, S: Iterator<Item = Sample>>(
+    joints: impl Iterator<Item = JointError<'a, S>>,
+    rules: &Rules,
+) -> Option<Concentration> {
     let (mut inside, mut outside, mut moving) = (Sum::default(), Sum::default(), Sum::default());
     let (mut inside_blocks, mut outside_blocks) = (Vec::new(), Vec::new());
     for joint in joints {
@@ -49,7 +52,7 @@ pub(super) fn concentration(joints: &[JointError], rules: &Rules) -> Option<Conc
         // 2k + 1 inside window k, 2k in the stretch before it.
         let mut place = usize::MAX;
         let mut k = 0;
-        for (sample, &plan_moves) in joint.samples.iter().zip(joint.moving) {
+        for (sample, &plan_moves) in joint.samples.zip(joint.moving) {
             whole.add(sample);
             while joint.windows_s.get(k).is_some_and(|w| w[1] <= sample.t_s) {
                 k += 1;
@@ -150,8 +153,9 @@ mod tests {
                 Sample { t_s, error_rad, weight_s: 0.1 }
             })
             .collect();
-        let joint = JointError { samples: &samples, moving: &[false; 1000], windows_s: &windows_s };
-        concentration(&[joint], &Rules::default()).unwrap()
+        let samples = samples.into_iter();
+        let joint = JointError { samples, moving: &[false; 1000], windows_s: &windows_s };
+        concentration(std::iter::once(joint), &Rules::default()).unwrap()
     }
 
     #[test]

@@ -8,31 +8,30 @@ use super::{
     motion::Motion,
     onset::Onset,
     signals::Signals,
-    tracking::{Sample, at_standstill, samples, tracking_error},
+    tracking::{at_standstill, samples, tracking_error},
     transition::transition,
 };
 use crate::series::Pair;
 
 /// What is found in one pair, before joints are compared.
-pub(super) struct Joint {
+pub(super) struct Joint<'a> {
+    pub(super) pair: &'a Pair,
     pub(super) replay: JointReplay,
     pub(super) transitions: Vec<Transition>,
     pub(super) stops: Vec<Stop>,
     /// Its planned motions with their error, and what a lag leaves of it.
     pub(super) blocks: Vec<Block>,
-    pub(super) error: Vec<Sample>,
     /// For each sample, whether the plan moves.
     pub(super) moving: Vec<bool>,
 }
 
 /// Analyses one joint; `None` for a pair without samples, which no constructor makes.
-pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
-    let error = samples(pair);
-    let tracking = tracking_error(error.iter())?;
+pub(super) fn joint<'a>(pair: &'a Pair, rules: &Rules) -> Option<Joint<'a>> {
+    let tracking = tracking_error(samples(pair))?;
     let signals = Signals::new(pair, rules);
     let rest = at_standstill(&pair.t_s, &pair.segments, &signals.planned, rules);
-    let standing = error.iter().zip(&rest).filter(|(_, rest)| **rest).map(|(sample, _)| sample);
-    let mut moving = vec![false; error.len()];
+    let standing = samples(pair).zip(&rest).filter(|(_, rest)| **rest).map(|(sample, _)| sample);
+    let mut moving = vec![false; pair.t_s.len()];
     signals.planned.iter().for_each(|motion| moving[motion.samples.clone()].fill(true));
     let speeds = Speeds {
         t_s: &pair.t_s,
@@ -56,18 +55,17 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
     let transitions: Vec<Transition> = (0..planned.len())
         .map(|k| {
             let answer = answers[k].and_then(|answer: usize| measured.get(answer).copied());
-            let found =
-                transition(pair, &signals, &error, (planned[k], starts_s[k], untils_s[k]), answer, rules);
+            let found = transition(pair, &signals, (planned[k], starts_s[k], untils_s[k]), answer, rules);
             Transition { index: k + 1, ..found }
         })
         .collect();
-    let stops = stops(pair, &signals, &error, rules);
+    let stops = stops(pair, &signals, rules);
     let matched = answers.iter().flatten().count();
     let moves = matched > 0
         || signals.measured.iter().any(|m| travel_rad(&pair.measured, m) >= signals.sizes.moves_travel);
     // What does not move has no lag, however well its noise fits.
     let lag = if moves { lag } else { Lag::default() };
-    let blocks = blocks(pair, &error, &signals.planned_rad_s, &signals.planned, lag.shift_s);
+    let blocks = blocks(pair, &signals.planned_rad_s, &signals.planned, lag.shift_s);
     let count = |answer: Answer| transitions.iter().filter(|t| t.answer == answer).count();
     let replay = JointReplay {
         name: pair.name.clone(),
@@ -94,7 +92,7 @@ pub(super) fn joint(pair: &Pair, rules: &Rules) -> Option<Joint> {
         undated_starts: count(Answer::Unclear) + count(Answer::Creeps),
         unplanned_starts: measured.len() - matched,
     };
-    Some(Joint { replay, transitions, stops, blocks, error, moving })
+    Some(Joint { pair, replay, transitions, stops, blocks, moving })
 }
 
 /// Travel of a motion, rad.
@@ -136,7 +134,7 @@ fn answers(
 
 /// Dynamic-to-static events; a measured stop belongs to the latest planned one that it could
 /// follow, whatever its direction: a joint that overshoots comes to rest on its way back.
-fn stops(pair: &Pair, signals: &Signals, error: &[Sample], rules: &Rules) -> Vec<Stop> {
+fn stops(pair: &Pair, signals: &Signals, rules: &Rules) -> Vec<Stop> {
     let planned: Vec<&Motion> = signals.planned.iter().filter(|m| m.stops()).collect();
     let mut stops: Vec<Stop> = planned
         .iter()
@@ -145,7 +143,7 @@ fn stops(pair: &Pair, signals: &Signals, error: &[Sample], rules: &Rules) -> Vec
             direction: motion.direction,
             planned_s: Some(motion.end_s),
             measured_s: None,
-            error: error.get(motion.samples.end - 1).map(|s| s.error_rad),
+            error: motion.samples.clone().last().map(|i| pair.planned[i] - pair.measured[i]),
         })
         .collect();
     let mut unplanned = Vec::new();

@@ -7,7 +7,11 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::{LagShare, Rules, motion::Motion, tracking::Sample};
+use super::{
+    LagShare, Rules,
+    motion::Motion,
+    tracking::{Sample, sample},
+};
 use crate::series::Pair;
 
 /// A planned motion up to the next one.
@@ -23,7 +27,6 @@ pub(super) struct Block {
 /// One block a motion; all of the error is left where no lag is known.
 pub(super) fn blocks(
     pair: &Pair,
-    error: &[Sample],
     planned_rad_s: &[f64],
     motions: &[Motion],
     lag_s: Option<f64>,
@@ -34,7 +37,7 @@ pub(super) fn blocks(
     for segment in &pair.segments {
         let mut cursor = segment.start;
         for i in segment.clone() {
-            let Sample { t_s, error_rad, weight_s } = error[i];
+            let Sample { t_s, error_rad, weight_s } = sample(pair, segment, i);
             while motions.get(place + 1).is_some_and(|next| next.start_s <= t_s) {
                 place += 1;
             }

@@ -43,6 +43,14 @@ pub use signals::planned_starts;
 use crate::series::Pair;
 use concentration::{JointError, concentration};
 use joint::{Joint, joint};
+use tracking::{samples, tracking_error};
+
+/// Samples of a joint of a long run.
+const LONG: usize = 200_000;
+
+fn joints<'a>(pairs: &'a [Pair], rules: &Rules) -> Vec<Joint<'a>> {
+    pairs.par_iter().filter_map(|pair| joint(pair, rules)).collect()
+}
 
 /// Analyses one run, a pair a joint. O(n log n) in samples.
 ///
@@ -65,21 +73,21 @@ use joint::{Joint, joint};
 /// ```
 pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
     let alike = pairs.windows(2).all(|pair| pair[0].kind == pair[1].kind);
+    // Of a long run one joint is at work at a time: each needs a fourth of what all of them hold.
+    let long = pairs.iter().any(|pair| pair.t_s.len() > LONG);
+    let at_once = if long { 1 } else { pairs.len().max(1) };
     let (mut joints, path): (Vec<Joint>, _) = rayon::join(
-        || pairs.par_iter().filter_map(|pair| joint(pair, rules)).collect(),
+        || pairs.chunks(at_once).flat_map(|some| joints(some, rules)).collect(),
         || if alike { path::path_error(pairs, rules) } else { None },
     );
     let windows_s: Vec<Vec<[f64; 2]>> =
         joints.iter().map(|joint| joint.transitions.iter().map(|t| t.window_s).collect()).collect();
-    let errors: Vec<JointError> = joints
-        .iter()
-        .zip(&windows_s)
-        .filter(|(joint, _)| joint.replay.plan_moves)
-        .map(|(joint, windows_s)| JointError { samples: &joint.error, moving: &joint.moving, windows_s })
-        .collect();
-    let concentration = concentration(&errors, rules).filter(|_| alike);
+    let errors = joints.iter().zip(&windows_s).filter(|(joint, _)| joint.replay.plan_moves).map(
+        |(joint, windows_s)| JointError { samples: samples(joint.pair), moving: &joint.moving, windows_s },
+    );
+    let concentration = concentration(errors, rules).filter(|_| alike);
     let tracking_error =
-        tracking::tracking_error(joints.iter().flat_map(|joint| &joint.error)).filter(|_| alike);
+        tracking_error(joints.iter().flat_map(|joint| samples(joint.pair))).filter(|_| alike);
     let lagging = alike && joints.iter().any(|joint| joint.replay.lag_s.is_some());
     let lag_share = lagging.then(|| {
         let blocks = joints.iter().flat_map(|joint| joint.blocks.iter().copied()).collect();

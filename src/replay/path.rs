@@ -3,7 +3,8 @@
 use super::{PathError, Rules};
 use crate::series::Pair;
 
-/// Joint vectors at common instants, `[n, joints]` row-major.
+/// Joint vectors at common instants, `[n, joints]` row-major; those that no window needs any more are forgotten.
+#[derive(Default)]
 struct Path {
     joints: usize,
     t_s: Vec<f64>,
@@ -13,6 +14,16 @@ struct Path {
     connected: Vec<bool>,
 }
 
+/// Instants that are forgotten at once.
+const FORGOTTEN: usize = 4096;
+
+/// Sums over the instants: of every joint, and of their norm last.
+struct Sums {
+    squares: Vec<f64>,
+    peaks: Vec<f64>,
+    timed: Vec<f64>,
+}
+
 /// Path error of each joint and their norm.
 ///
 /// For every measured joint vector the nearest point on the planned polyline in joint space is
@@ -20,77 +31,29 @@ struct Path {
 /// Taken at the first joint's stamps, thinned to about [`Rules::path_rate_hz`], where every joint has
 /// data; `None` where there is none. O(n window).
 pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError>, PathError)> {
-    let path = Path::new(pairs, rules);
-    let n = path.t_s.len();
-    if n == 0 {
-        return None;
-    }
-    let mut squares = vec![0.0; path.joints + 1];
-    let mut peaks = vec![0.0_f64; path.joints + 1];
-    let mut timed = vec![0.0; path.joints + 1];
-    let (mut first, mut end) = (0, 0);
-    for i in 0..n {
-        while path.t_s[i] - path.t_s[first] > rules.path_window_s {
-            first += 1;
+    let lead = pairs.first()?;
+    let mut path = Path { joints: pairs.len(), ..Path::default() };
+    let zeros = || vec![0.0; pairs.len() + 1];
+    let mut sums = Sums { squares: zeros(), peaks: zeros(), timed: zeros() };
+    // Less than the step, so that jitter around it loses no stamps.
+    let step_s = 0.75 / rules.path_rate_hz;
+    let mut cursors = vec![Cursor::default(); pairs.len()];
+    let (mut last_s, mut last_places) = (f64::NEG_INFINITY, Vec::new());
+    let (mut n, mut begins_s) = (0_usize, f64::INFINITY);
+    // The instants within the window of the one that is judged.
+    let (mut first, mut judged, mut end) = (0, 0, 0);
+    for t_s in lead.t_s.iter().copied().chain([f64::INFINITY]) {
+        if t_s - last_s < step_s {
+            continue;
         }
-        while end < n && path.t_s[end] - path.t_s[i] <= rules.path_window_s {
-            end += 1;
-        }
-        let (at, share) = path.nearest(i, first, end);
-        let mut square = 0.0;
-        for j in 0..path.joints {
-            let off = path.offset(i, j, at, share);
-            square += off * off;
-            squares[j] += off * off;
-            peaks[j] = peaks[j].max(off.abs());
-            let now = path.offset(i, j, i, 0.0);
-            timed[j] += now * now;
-            timed[path.joints] += now * now;
-        }
-        squares[path.joints] += square;
-        peaks[path.joints] = peaks[path.joints].max(square.sqrt());
-    }
-    let sample_interval_s = if n > 1 { (path.t_s[n - 1] - path.t_s[0]) / (n - 1) as f64 } else { 0.0 };
-    let of = |((square, timed), peak): ((&f64, &f64), &f64)| PathError {
-        rms: (square / n as f64).sqrt(),
-        peak: *peak,
-        timed_rms: (timed / n as f64).sqrt(),
-        samples: n,
-        sample_interval_s,
-    };
-    let mut errors: Vec<PathError> = squares.iter().zip(&timed).zip(&peaks).map(of).collect();
-    let norm = errors.pop()?;
-    Some((errors, norm))
-}
-
-impl Path {
-    fn new(pairs: &[Pair], rules: &Rules) -> Self {
-        let mut path = Path {
-            joints: pairs.len(),
-            t_s: Vec::new(),
-            planned_rad: Vec::new(),
-            measured_rad: Vec::new(),
-            connected: Vec::new(),
-        };
-        let Some(lead) = pairs.first() else {
-            return path;
-        };
-        // Less than the step, so that jitter around it loses no stamps.
-        let step_s = 0.75 / rules.path_rate_hz;
-        let mut cursors = vec![Cursor::default(); pairs.len()];
-        let mut last_s = f64::NEG_INFINITY;
-        let mut last_places: Vec<usize> = Vec::new();
-        for &t_s in &lead.t_s {
-            if t_s - last_s < step_s {
-                continue;
-            }
+        if t_s.is_finite() {
             let found: Option<Vec<_>> =
                 pairs.iter().zip(&mut cursors).map(|(pair, cursor)| cursor.at(pair, t_s)).collect();
             let Some(found) = found else {
                 continue;
             };
             let places: Vec<usize> = cursors.iter().map(|c| c.segment).collect();
-            last_s = t_s;
+            (last_s, n, begins_s) = (t_s, n + 1, begins_s.min(t_s));
             path.t_s.push(t_s);
             path.connected.push(places == last_places);
             last_places = places;
@@ -99,7 +62,58 @@ impl Path {
                 path.measured_rad.push(measured);
             }
         }
-        path
+        while judged < path.t_s.len() && t_s - path.t_s[judged] > rules.path_window_s {
+            while path.t_s[judged] - path.t_s[first] > rules.path_window_s {
+                first += 1;
+            }
+            while end < path.t_s.len() && path.t_s[end] - path.t_s[judged] <= rules.path_window_s {
+                end += 1;
+            }
+            sums.add(&path, judged, path.nearest(judged, first, end));
+            judged += 1;
+        }
+        if first >= FORGOTTEN {
+            path.forget(first);
+            (first, judged, end) = (0, judged - first, end - first);
+        }
+    }
+    let sample_interval_s = if n > 1 { (last_s - begins_s) / (n - 1) as f64 } else { 0.0 };
+    let of = |((square, timed), peak): ((&f64, &f64), &f64)| PathError {
+        rms: (square / n as f64).sqrt(),
+        peak: *peak,
+        timed_rms: (timed / n as f64).sqrt(),
+        samples: n,
+        sample_interval_s,
+    };
+    let mut errors: Vec<PathError> = sums.squares.iter().zip(&sums.timed).zip(&sums.peaks).map(of).collect();
+    let norm = errors.pop().filter(|_| n > 0)?;
+    Some((errors, norm))
+}
+
+impl Sums {
+    /// Takes in instant `i`, whose nearest point of the plan is a share of the piece from `at` on.
+    fn add(&mut self, path: &Path, i: usize, (at, share): (usize, f64)) {
+        let (norm, mut square) = (path.joints, 0.0);
+        for j in 0..path.joints {
+            let off = path.offset(i, j, at, share);
+            square += off * off;
+            self.squares[j] += off * off;
+            self.peaks[j] = self.peaks[j].max(off.abs());
+            let now = path.offset(i, j, i, 0.0);
+            self.timed[j] += now * now;
+            self.timed[norm] += now * now;
+        }
+        self.squares[norm] += square;
+        self.peaks[norm] = self.peaks[norm].max(square.sqrt());
+    }
+}
+
+impl Path {
+    fn forget(&mut self, instants: usize) {
+        self.t_s.drain(..instants);
+        self.connected.drain(..instants);
+        self.planned_rad.drain(..instants * self.joints);
+        self.measured_rad.drain(..instants * self.joints);
     }
 
     /// The piece of plan from sample `at` on that passes nearest to measured vector `i`, and
@@ -188,7 +202,7 @@ mod tests {
             planned_interval_s: 0.01,
             matched: t_s.len(),
             unmatched: 0,
-            t_s,
+            t_s: t_s.into(),
         }
     }
 
@@ -216,7 +230,7 @@ mod tests {
     #[test]
     fn joints_without_a_common_instant_have_no_path_error() {
         let mut later = pair(10, 0.0, 0.0);
-        later.t_s.iter_mut().for_each(|t| *t += 100.0);
+        later.t_s = later.t_s.iter().map(|t| t + 100.0).collect();
         assert_eq!(path_error(&[pair(10, 0.0, 0.0), later], &Rules::default()), None);
         assert_eq!(path_error(&[], &Rules::default()), None);
     }

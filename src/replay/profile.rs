@@ -67,7 +67,7 @@ mod tests {
             planned_interval_s: 0.01,
             matched: n,
             unmatched: 0,
-            t_s,
+            t_s: t_s.into(),
         }
     }
 

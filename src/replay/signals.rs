@@ -1,24 +1,29 @@
 //! Planned and measured speed of one joint, and the motions in each.
 
+use std::{borrow::Cow, ops::Range};
+
 use super::{
     Rules, Sizes, Thresholds,
     motion::{Motion, Speed},
-    peak_motion::of_fits,
+    peak_motion::Peaks,
 };
 use crate::{
     math::median,
-    series::{LocalFit, Noise, Pair, Track, local_quadratic, noise},
+    series::{Noise, Pair, Track, each_local_quadratic, noise},
 };
 
 /// Fewest samples in the velocity fit to a plan that gives no speeds.
 const PLAN_POINTS: usize = 5;
 
+/// More deviations than this make their median no better; longer signals are thinned evenly.
+const ENOUGH: usize = 200_000;
+
 /// What the detector derives from a pair; arrays are `[n]`.
-pub(super) struct Signals {
+pub(super) struct Signals<'a> {
     pub(super) noise: Noise,
     pub(super) sample_interval_s: f64,
     pub(super) thresholds: Thresholds,
-    pub(super) planned_rad_s: Vec<f64>,
+    pub(super) planned_rad_s: Cow<'a, [f64]>,
     /// Measured angle, smoothed, rad.
     pub(super) measured_rad: Vec<f64>,
     pub(super) measured_rad_s: Vec<f64>,
@@ -33,29 +38,24 @@ pub(super) struct Signals {
     pub(super) measured: Vec<Motion>,
 }
 
-impl Signals {
-    pub(super) fn new(pair: &Pair, rules: &Rules) -> Self {
+impl<'a> Signals<'a> {
+    pub(super) fn new(pair: &'a Pair, rules: &Rules) -> Self {
         let (t_s, segments) = (&pair.t_s, &pair.segments);
         let sizes = *rules.sizes(pair.kind);
         let noise = noise(t_s, &pair.measured, segments);
         let sample_interval_s = sample_interval_s(pair);
         let window_s = rules.window_s(pair.kind, sample_interval_s, noise.sigma);
 
-        let fits = local_quadratic(t_s, &pair.measured, segments, window_s, rules.window_points);
-        let of = |value: fn(&LocalFit) -> f64| fits.iter().map(value).collect::<Vec<f64>>();
-        let smooth_rad = of(|fit| fit.position);
-        let measured_rad_s = of(|fit| fit.velocity);
-        let mut deviation_rad_s = of(|fit| fit.velocity_gain_per_s);
-        let peaks = of_fits(pair, &fits, window_s);
-        drop(fits);
-        for deviation in &mut deviation_rad_s {
-            *deviation *= noise.sigma;
-        }
-
-        let planned_rad_s = pair.planned_velocity.clone().unwrap_or_else(|| {
-            let fits = local_quadratic(t_s, &pair.planned, segments, rules.planned_window_s, PLAN_POINTS);
-            fits.iter().map(|fit| fit.velocity).collect()
+        let column = || vec![0.0; t_s.len()];
+        let (mut smooth_rad, mut measured_rad_s, mut deviation_rad_s) = (column(), column(), column());
+        let (mut peaks, window) = (Peaks::default(), (window_s, rules.window_points));
+        each_local_quadratic(t_s, &pair.measured, segments, window, |segment, i, fit| {
+            (smooth_rad[i], measured_rad_s[i]) = (fit.position, fit.velocity);
+            deviation_rad_s[i] = fit.velocity_gain_per_s * noise.sigma;
+            peaks.take(t_s, window_s, (segment, i), &fit);
         });
+        let given = pair.planned_velocity.as_deref().map(Cow::Borrowed);
+        let planned_rad_s = given.unwrap_or_else(|| slopes(t_s, &pair.planned, segments, rules).into());
 
         let min_travel = sizes
             .min_travel
@@ -77,7 +77,8 @@ impl Signals {
             min_travel,
             ..planned
         };
-        let usual = median(deviation_rad_s.clone());
+        let stride = deviation_rad_s.len() / ENOUGH + 1;
+        let usual = median(deviation_rad_s.iter().step_by(stride).copied().collect());
         let thresholds = Thresholds {
             planned_start: sizes.start_speed,
             planned_stop: sizes.stop_speed,
@@ -96,7 +97,7 @@ impl Signals {
             min_travel,
             sizes,
             deviation_rad_s,
-            peaks,
+            peaks: peaks.0,
             planned,
             measured,
         }
@@ -107,11 +108,8 @@ impl Signals {
 pub fn planned_starts(planned: &Track, rules: &Rules) -> Vec<f64> {
     let (t_s, segments) = (planned.t_s(), planned.segments());
     let sizes = *rules.sizes(planned.kind());
-    let sloped = |angle_rad: &[f64]| -> Vec<f64> {
-        let fits = local_quadratic(t_s, angle_rad, segments, rules.planned_window_s, PLAN_POINTS);
-        fits.iter().map(|fit| fit.velocity).collect()
-    };
-    let velocity_rad_s = planned.velocity().map_or_else(|| sloped(planned.position()), <[f64]>::to_vec);
+    let given = planned.velocity().map(Cow::Borrowed);
+    let velocity_rad_s = given.unwrap_or_else(|| slopes(t_s, planned.position(), segments, rules).into());
     let speed = Speed {
         t_s,
         position_rad: planned.position(),
@@ -122,6 +120,14 @@ pub fn planned_starts(planned: &Track, rules: &Rules) -> Vec<f64> {
         sizes,
     };
     speed.motions(rules).iter().filter(|m| m.starts()).map(|m| m.start_s).collect()
+}
+
+/// Speeds of a plan that gives none.
+fn slopes(t_s: &[f64], angle_rad: &[f64], segments: &[Range<usize>], rules: &Rules) -> Vec<f64> {
+    let mut velocity_rad_s = vec![0.0; t_s.len()];
+    let window = (rules.planned_window_s, PLAN_POINTS);
+    each_local_quadratic(t_s, angle_rad, segments, window, |_, i, fit| velocity_rad_s[i] = fit.velocity);
+    velocity_rad_s
 }
 
 /// Median time between neighbours inside segments, s; 0 where there are none.

@@ -14,29 +14,25 @@ pub(super) struct Sample {
 }
 
 /// The 95 % quantile is taken over at most about this many samples, evenly thinned.
-const ENOUGH: usize = 1_000_000;
+const ENOUGH: usize = 250_000;
 /// A lone sample stands for next to no time.
 const LONE_S: f64 = 1e-9;
 
-/// The error of a joint; each sample stands for half the way to its neighbours in its segment.
-pub(super) fn samples(pair: &Pair) -> Vec<Sample> {
-    let mut samples = Vec::with_capacity(pair.t_s.len());
-    for segment in &pair.segments {
-        let (first, last) = (segment.start, segment.end.saturating_sub(1));
-        for i in segment.clone() {
-            let span_s = pair.t_s[(i + 1).min(last)] - pair.t_s[i.saturating_sub(1).max(first)];
-            samples.push(Sample {
-                t_s: pair.t_s[i],
-                error_rad: pair.planned[i] - pair.measured[i],
-                weight_s: (0.5 * span_s).max(LONE_S),
-            });
-        }
-    }
-    samples
+/// The error of a joint, computed where it is asked for: a long run has no room for it.
+pub(super) fn samples(pair: &Pair) -> impl Iterator<Item = Sample> + Clone {
+    pair.segments.iter().flat_map(|segment| segment.clone().map(|i| sample(pair, segment, i)))
+}
+
+/// The error at sample `i` of a segment; it stands for half the way to its neighbours there.
+pub(super) fn sample(pair: &Pair, segment: &Range<usize>, i: usize) -> Sample {
+    let (first, last) = (segment.start, segment.end.saturating_sub(1));
+    let span_s = pair.t_s[(i + 1).min(last)] - pair.t_s[i.saturating_sub(1).max(first)];
+    let error_rad = pair.planned[i] - pair.measured[i];
+    Sample { t_s: pair.t_s[i], error_rad, weight_s: (0.5 * span_s).max(LONE_S) }
 }
 
 /// Statistics of samples; `None` of none.
-pub(super) fn tracking_error<'a>(samples: impl Iterator<Item = &'a Sample> + Clone) -> Option<TrackingError> {
+pub(super) fn tracking_error(samples: impl Iterator<Item = Sample> + Clone) -> Option<TrackingError> {
     let (mut count, mut time, mut sum, mut magnitude, mut square) = (0, 0.0, 0.0, 0.0, 0.0);
     let (mut peak, mut peak_time_s) = (-1.0, 0.0);
     for s in samples.clone() {
@@ -62,7 +58,7 @@ pub(super) fn tracking_error<'a>(samples: impl Iterator<Item = &'a Sample> + Clo
 }
 
 /// The smallest magnitude that at least the share `p` of the time does not exceed.
-fn weighted_quantile<'a>(samples: impl Iterator<Item = &'a Sample>, p: f64) -> f64 {
+fn weighted_quantile(samples: impl Iterator<Item = Sample>, p: f64) -> f64 {
     let mut magnitudes: Vec<(f64, f64)> = samples.map(|s| (s.error_rad.abs(), s.weight_s)).collect();
     magnitudes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let wanted = p * magnitudes.iter().map(|m| m.1).sum::<f64>();

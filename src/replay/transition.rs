@@ -7,7 +7,7 @@ use super::{
     motion::Motion,
     onset::Onset,
     signals::Signals,
-    tracking::Sample,
+    tracking::{Sample, sample},
 };
 use crate::{math::median, series::Pair};
 
@@ -16,7 +16,6 @@ use crate::{math::median, series::Pair};
 pub(super) fn transition(
     pair: &Pair,
     signals: &Signals,
-    error: &[Sample],
     (planned, starts_s, until_s): (&Motion, f64, f64),
     measured: Option<(&Motion, Onset)>,
     rules: &Rules,
@@ -30,7 +29,7 @@ pub(super) fn transition(
     // A motion has samples after its onset, so its window is never empty.
     let first = first.min(planned.segment.end - 1);
     let window = first..end.max(first + 1);
-    let inside = &error[window.clone()];
+    let inside: Vec<Sample> = window.clone().map(|i| sample(pair, &planned.segment, i)).collect();
 
     let peak = inside
         .iter()
@@ -62,7 +61,7 @@ pub(super) fn transition(
         onset_delay_interval_s: interval_s,
         displacement_delay_s: displacement_delay_s(pair, signals, planned, (planned_s, end_s), rules),
         breakaway_error: measured_s
-            .and_then(|at_s| error_at(error, &planned.segment, at_s))
+            .and_then(|at_s| error_at(pair, &planned.segment, at_s))
             .map(|e| f64::from(planned.direction) * e),
         jump: measured_s.and_then(|at_s| jump_rad_s(pair, signals, planned, at_s, rules)),
         peak_error: peak_signed_rad.abs(),
@@ -71,7 +70,7 @@ pub(super) fn transition(
         error_area: inside.iter().map(|s| s.weight_s * s.error_rad.abs()).sum(),
         rms_error: (square / time_s).sqrt(),
         overshoot: inside[peak..].iter().map(|s| -sign * s.error_rad).fold(0.0, f64::max),
-        settling_time_s: settled_s(inside, peak, band_rad, rules).map(|at_s| at_s - planned_s),
+        settling_time_s: settled_s(&inside, peak, band_rad, rules).map(|at_s| at_s - planned_s),
         window_s: [planned_s, end_s],
         samples: inside.len(),
         time_resolution_s: if steps.is_empty() { signals.sample_interval_s } else { median(steps) }
@@ -97,13 +96,13 @@ fn settled_s(inside: &[Sample], peak: usize, band_rad: f64, rules: &Rules) -> Op
 }
 
 /// The error at a time in a segment, linear between samples, rad.
-fn error_at(error: &[Sample], segment: &std::ops::Range<usize>, at_s: f64) -> Option<f64> {
-    let inside = error.get(segment.clone())?;
-    let above = inside.partition_point(|s| s.t_s <= at_s);
-    let a = inside.get(above.checked_sub(1)?)?;
-    let Some(b) = inside.get(above) else {
+fn error_at(pair: &Pair, segment: &std::ops::Range<usize>, at_s: f64) -> Option<f64> {
+    let above = segment.start + pair.t_s.get(segment.clone())?.partition_point(|&t_s| t_s <= at_s);
+    let a = sample(pair, segment, above.checked_sub(1).filter(|i| segment.contains(i))?);
+    if !segment.contains(&above) {
         return (a.t_s >= at_s).then_some(a.error_rad);
-    };
+    }
+    let b = sample(pair, segment, above);
     Some(a.error_rad + (at_s - a.t_s) / (b.t_s - a.t_s) * (b.error_rad - a.error_rad))
 }
 

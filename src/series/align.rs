@@ -1,6 +1,6 @@
 //! Lays a plan onto measured stamps.
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
 use super::{JointKind, Track};
 
@@ -14,8 +14,8 @@ pub struct Pair {
     pub name: String,
     /// Whether it turns or slides.
     pub kind: JointKind,
-    /// Measured stamps, s since the start of the log.
-    pub t_s: Vec<f64>,
+    /// Measured stamps, s since the start of the log; joints of one topic share them.
+    pub t_s: Arc<[f64]>,
     /// Plan at these stamps.
     pub planned: Vec<f64>,
     /// Velocity of the plan, per second, where the plan gives one.
@@ -42,7 +42,7 @@ pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
     let mut pair = Pair {
         name: measured.name().to_owned(),
         kind: measured.kind(),
-        t_s: Vec::with_capacity(n),
+        t_s: Arc::default(),
         planned: Vec::with_capacity(n),
         planned_velocity: None,
         measured: Vec::with_capacity(n),
@@ -51,24 +51,25 @@ pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
         matched: 0,
         unmatched: 0,
     };
+    let mut t_s = Vec::with_capacity(n);
     let gives_velocity = planned.velocity().is_some();
     let mut velocity = Vec::with_capacity(if gives_velocity { n } else { 0 });
     let mut cursor = 0;
     for segment in measured.segments() {
-        let mut start = pair.t_s.len();
+        let mut start = t_s.len();
         let mut plan_segment = None;
         for i in segment.clone() {
-            let t_s = measured.t_s()[i];
-            let found = planned.at_after(&mut cursor, t_s);
+            let at_s = measured.t_s()[i];
+            let found = planned.at_after(&mut cursor, at_s);
             let inside = found.map(|_| planned.segment_of(cursor));
-            if inside != plan_segment && pair.t_s.len() > start {
-                pair.segments.push(start..pair.t_s.len());
-                start = pair.t_s.len();
+            if inside != plan_segment && t_s.len() > start {
+                pair.segments.push(start..t_s.len());
+                start = t_s.len();
             }
             plan_segment = inside;
             match found {
                 Some(plan) => {
-                    pair.t_s.push(t_s);
+                    t_s.push(at_s);
                     pair.planned.push(plan.position);
                     if gives_velocity {
                         velocity.push(plan.velocity);
@@ -78,11 +79,12 @@ pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
                 None => pair.unmatched += 1,
             }
         }
-        if pair.t_s.len() > start {
-            pair.segments.push(start..pair.t_s.len());
+        if t_s.len() > start {
+            pair.segments.push(start..t_s.len());
         }
     }
-    pair.matched = pair.t_s.len();
+    pair.matched = t_s.len();
+    pair.t_s = if pair.unmatched == 0 { measured.signal().shared_t_s() } else { t_s.into() };
     pair.planned_velocity = gives_velocity.then_some(velocity);
     (pair.matched > 0).then_some(pair)
 }

@@ -35,6 +35,19 @@ pub fn local_quadratic(
     min_points: usize,
 ) -> Vec<LocalFit> {
     let mut fits = vec![LocalFit::default(); t_s.len()];
+    each_local_quadratic(t_s, position, segments, (half_width_s, min_points), |_, i, fit| fits[i] = fit);
+    fits
+}
+
+/// As [`local_quadratic`], one fit after another, for series too long to hold all of them: with its segment and the
+/// index of its sample. A window is a half width and the fewest samples.
+pub fn each_local_quadratic(
+    t_s: &[f64],
+    position: &[f64],
+    segments: &[Range<usize>],
+    (half_width_s, min_points): (f64, usize),
+    mut visit: impl FnMut(&Range<usize>, usize, LocalFit),
+) {
     for segment in segments {
         let (t, x) = (&t_s[segment.clone()], &position[segment.clone()]);
         let mut window = 0..0;
@@ -47,10 +60,9 @@ pub fn local_quadratic(
                 sums.slide(t, x, &window, &next);
             }
             window = next;
-            fits[segment.start + i] = sums.fit(t[i], window.len());
+            visit(segment, segment.start + i, sums.fit(t[i], window.len()));
         }
     }
-    fits
 }
 
 /// The samples within the half width of sample `i`; windows only move forward.

@@ -15,7 +15,7 @@ mod trajectory;
 
 pub use align::{Pair, align};
 pub use clock::{Clock, continuous_clock};
-pub use derivative::{LocalFit, local_quadratic};
+pub use derivative::{LocalFit, each_local_quadratic, local_quadratic};
 pub use locate::{Located, locate};
 pub use noise::{Noise, noise};
 pub use signal::{JointKind, Quantity, Signal, SignalError};

@@ -176,6 +176,11 @@ impl Signal {
         self.quantity
     }
 
+    /// The stamps, for another signal at the same times.
+    pub(super) fn shared_t_s(&self) -> Arc<[f64]> {
+        self.t_s.clone()
+    }
+
     /// Stamps, s since the start of the log, strictly increasing.
     pub fn t_s(&self) -> &[f64] {
         &self.t_s

@@ -15,7 +15,10 @@ use std::{io, path::PathBuf, time::Duration};
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamError, SerializationError};
 use thiserror::Error;
 
-use crate::workflow::view::Scene;
+use crate::{
+    atomic_file::{AtomicError, write_by_name},
+    workflow::view::Scene,
+};
 
 /// Where to show.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,6 +43,9 @@ pub(crate) enum ViewError {
     /// Rerun does not take the values.
     #[error("the viewer does not take the data")]
     Values(#[from] SerializationError),
+    /// The file cannot be written.
+    #[error(transparent)]
+    File(#[from] AtomicError),
     /// Nobody listens, or no longer.
     #[error(
         "no viewer takes the data at {place} ({reason}); start one there with `rerun`, or leave --connect out"
@@ -85,7 +91,9 @@ pub(crate) fn show(
     announce: &mut dyn FnMut(&str) -> io::Result<()>,
 ) -> Result<(), ViewError> {
     match target {
-        Target::Save(path) => send(&builder(scenes).save(path)?, scenes, speed, &path.to_string_lossy()),
+        Target::Save(path) => write_by_name(path, |partial| {
+            send(&builder(scenes).save(partial)?, scenes, speed, &path.to_string_lossy())
+        }),
         Target::Connect(url) => connect(url, scenes, speed),
         Target::Spawn => connect(&process::window()?, scenes, speed),
         Target::Web => {

@@ -29,7 +29,7 @@ fn recorded(t_s: Vec<f64>, planned: Vec<f64>, measured: Vec<f64>, segments: Vec<
         planned_interval_s: 0.01,
         matched: t_s.len(),
         unmatched: 0,
-        t_s,
+        t_s: t_s.into(),
     }
 }
 

@@ -12,6 +12,8 @@
 
 mod compensation;
 mod detection;
+#[cfg(target_os = "linux")]
+mod memory;
 mod real_log;
 mod recovery;
 #[path = "../it/support/mod.rs"]

@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn every_number_reads_back_as_it_is_printed() {
-        for value in [f64::MIN_POSITIVE, -5e-324, f64::MAX, -2.235291569183627e-31, 0.1, -0.0] {
+        for value in [f64::MIN_POSITIVE, -5e-324, f64::MAX, -2.235_291_569_183_627e-31, 0.1, -0.0] {
             let cell = format!("{value}");
             assert_eq!(number(cell.as_bytes(), false).map(f64::to_bits), Some(value.to_bits()), "{cell}");
             let cell = cell.replace('.', ",");

@@ -141,32 +141,60 @@ fn such(example: Option<&(String, u64)>) -> String {
     example.map_or_else(String::new, |(text, line)| format!(", such as {text:?} in line {line}"))
 }
 
+/// Rows before the last that tell how long a whole number should be.
+const NEIGHBOURS: usize = 3;
+
 /// How the last cells of the rows end, to tell a number that was cut from one that is short.
 #[derive(Default)]
 struct Ends {
     rows: u64,
     /// Fewest digits behind the decimal mark in all rows but the last.
     fewest: Option<usize>,
-    /// The same of the last row, and whether it ends where no number does.
-    last: Option<(usize, bool)>,
+    /// The last rows but one, and the last.
+    beside: [End; NEIGHBOURS],
+    last: End,
+}
+
+/// How one row ends.
+#[derive(Debug, Clone, Copy, Default)]
+struct End {
+    /// Digits behind the decimal mark.
+    digits: usize,
+    /// Digits of a whole number, 0 of others, and the number.
+    whole: usize,
+    value: f64,
+    /// Ends where no number does.
+    open: bool,
 }
 
 impl Ends {
     fn note(&mut self, cell: &[u8], decimal_comma: bool) {
         let cell = cell.trim_ascii();
         let mark = if decimal_comma { b',' } else { b'.' };
-        let digits = memchr::memchr(mark, cell).map_or(0, |at| cell.len() - at - 1);
-        if let Some((last, _)) = self.last {
-            self.fewest = Some(self.fewest.map_or(last, |fewest| fewest.min(last)));
+        if self.rows > 0 {
+            self.fewest = Some(self.fewest.map_or(self.last.digits, |fewest| fewest.min(self.last.digits)));
+            self.beside.rotate_left(1);
+            self.beside[NEIGHBOURS - 1] = self.last;
         }
-        let open = cell.last().is_some_and(|&end| end == mark || b"+-eE".contains(&end));
-        self.last = Some((digits, open));
+        let unsigned = cell.strip_prefix(b"-").unwrap_or(cell);
+        let whole = if unsigned.iter().all(u8::is_ascii_digit) { unsigned.len() } else { 0 };
+        self.last = End {
+            digits: memchr::memchr(mark, cell).map_or(0, |at| cell.len() - at - 1),
+            whole,
+            value: number(cell, decimal_comma).unwrap_or_default(),
+            open: cell.last().is_some_and(|&end| end == mark || b"+-eE".contains(&end)),
+        };
         self.rows += 1;
     }
 
     fn is_cut(&self) -> bool {
-        let short = |digits: usize| self.fewest.is_some_and(|fewest| digits < fewest);
-        self.rows > 3 && self.last.is_some_and(|(digits, open)| open || short(digits))
+        let [first, second, before] = self.beside;
+        let short = self.fewest.is_some_and(|fewest| self.last.digits < fewest);
+        let step = |a: End, b: End| (a.value - b.value).abs();
+        // 99 after 100 is shorter, too, but no farther than the rows before it are from each other.
+        let far = step(self.last, before) > 3.0 * step(before, second).max(step(second, first));
+        let shorter = far && self.last.whole > 0 && self.beside.iter().all(|end| self.last.whole < end.whole);
+        self.rows > NEIGHBOURS as u64 && (self.last.open || short || shorter)
     }
 }
 

@@ -45,8 +45,13 @@ pub(super) fn assemble(
     let beside: Vec<Option<(&WantedSignal, Candidate)>> = beside.collect::<Result<_, _>>()?;
     let beside: Vec<(&WantedSignal, Candidate)> = beside.into_iter().flatten().collect();
 
+    let delays_ns = measured_stamps(&extracted, choice).filter(|_| base == TimeBase::Header);
+    let delays_ns = delays_ns.and_then(Stamps::delays_ns);
+    // Trajectories are laid onto the stamps of the measurement.
+    let laid = |c: &&Candidate| matches!(extracted.sources[c.source].content, Content::Plans(_));
+    let laid_onto = choice.planned.iter().find(laid).and(choice.measured.first()).map(|c| c.source);
     let chosen = choice.measured.iter().chain(&choice.planned);
-    let mut assembly = Assembly::new(extracted, base, sliding, chosen, &mut remarks);
+    let mut assembly = Assembly::new(extracted, base, (sliding, laid_onto), chosen, &mut remarks);
     let mut pending: Vec<&Candidate> = choice.planned.iter().chain(beside.iter().map(|(_, c)| c)).collect();
     let degrees = options.measured_in_degrees;
     let mut measured = assembly.series(&choice.measured, &pending, degrees, None, &mut remarks);
@@ -83,7 +88,7 @@ pub(super) fn assemble(
         quality::unwrap_turns(series, &options.continuous, &mut remarks);
     }
     quality::of_pairs(&planned, &measured, options, &mut remarks);
-    let source = assembly.source_info(choice, base_why, &measured, &planned);
+    let source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
     let Extracted { attachments, metadata, .. } = assembly.extracted;
     let remarks = alone.unwrap_or(remarks);
     Ok(Recording {
@@ -141,6 +146,8 @@ struct Assembly {
     axes: BTreeMap<usize, Axis>,
     jumps_ns: Vec<i64>,
     sliding: BTreeSet<String>,
+    /// The source whose stamps are still needed once it has an axis.
+    laid_onto: Option<usize>,
 }
 
 impl Assembly {
@@ -148,12 +155,12 @@ impl Assembly {
     fn new<'a>(
         extracted: Extracted,
         base: TimeBase,
-        sliding: BTreeSet<String>,
+        (sliding, laid_onto): (BTreeSet<String>, Option<usize>),
         chosen: impl Iterator<Item = &'a Candidate>,
         remarks: &mut Remarks,
     ) -> Self {
         let (axes, jumps_ns) = (BTreeMap::new(), Vec::new());
-        let mut new = Self { extracted, base, epoch_ns: 0, axes, jumps_ns, sliding };
+        let mut new = Self { extracted, base, epoch_ns: 0, axes, jumps_ns, sliding, laid_onto };
         let mut clocks = BTreeMap::new();
         for candidate in chosen {
             if !clocks.contains_key(&candidate.source)
@@ -182,6 +189,11 @@ impl Assembly {
         self.jumps_ns.extend(&clock.offsets_ns);
         quality::of_clock(self.topic(candidate), self.base, &clock, remarks);
         quality::of_table(self.topic(candidate), table, remarks);
+        if self.laid_onto != Some(candidate.source)
+            && let Content::Table(table) = &mut self.extracted.sources[candidate.source].content
+        {
+            table.stamps = Stamps::default();
+        }
         Some(clock)
     }
 
@@ -243,7 +255,7 @@ impl Assembly {
             let reading = trajectories::Reading {
                 base: self.base,
                 epoch_ns: self.epoch_ns,
-                measured: self.measured_stamps(choice),
+                measured: measured_stamps(&self.extracted, choice),
                 degrees,
                 topic: self.topic(candidate),
             };
@@ -268,19 +280,12 @@ impl Assembly {
         found.into_iter().filter_map(signal).collect()
     }
 
-    fn measured_stamps(&self, choice: &Choice) -> Option<&Stamps> {
-        match &self.extracted.sources[choice.measured.first()?.source].content {
-            Content::Table(table) => Some(&table.stamps),
-            _ => None,
-        }
-    }
-
     fn source_info(
         &self,
         choice: &Choice,
         time_base_why: String,
-        measured: &Series,
-        planned: &Series,
+        delays_ns: Option<[i64; 3]>,
+        [measured, planned]: [&Series; 2],
     ) -> SourceInfo {
         let join = |all: &[Candidate], text: &dyn Fn(&Candidate) -> String| {
             let mut list: Vec<String> = all.iter().map(text).collect();
@@ -292,8 +297,6 @@ impl Assembly {
             (Content::Table(table), Some(field)) => table.fields[field].path.clone(),
             _ => "points.positions".to_owned(),
         };
-        let stamps = self.measured_stamps(choice).filter(|_| self.base == TimeBase::Header);
-        let delays_ns = stamps.and_then(Stamps::delays_ns);
         let ends = planned.tracks.iter().chain(&measured.tracks).filter_map(|t| t.t_s().last());
         SourceInfo {
             planned_topic: join(&choice.planned, &name),
@@ -309,6 +312,13 @@ impl Assembly {
             recorder_delay_s: delays_ns
                 .map(|[_, middle, most]| [middle, most].map(|ns| seconds_since(0, ns))),
         }
+    }
+}
+
+fn measured_stamps<'a>(extracted: &'a Extracted, choice: &Choice) -> Option<&'a Stamps> {
+    match &extracted.sources[choice.measured.first()?.source].content {
+        Content::Table(table) => Some(&table.stamps),
+        _ => None,
     }
 }
 

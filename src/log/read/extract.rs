@@ -7,6 +7,7 @@ use super::{
     description, overlap,
     parallel::read_blocks,
     recording::{Attachment, FileInfo},
+    select_topics::is_measured,
 };
 use crate::{
     log::{
@@ -34,7 +35,7 @@ pub(super) fn extract(log: &ScannedLog<'_>, options: &ReadOptions) -> Extracted 
     }
     let selectors = selectors(options);
     let before = out.remarks.clone();
-    let unknown = read_files(&files, &selectors, &options.joints, false, &mut out);
+    let unknown = read_files(&files, &selectors, options, false, &mut out);
     if unknown > 0 && files.iter().any(|file| file.layout.channels_complete) {
         // A summary that leaves out channels is no summary: look for them in the chunks.
         out = Extracted {
@@ -44,7 +45,7 @@ pub(super) fn extract(log: &ScannedLog<'_>, options: &ReadOptions) -> Extracted 
             remarks: before,
             ..Extracted::default()
         };
-        read_files(&files, &selectors, &options.joints, true, &mut out);
+        read_files(&files, &selectors, options, true, &mut out);
     }
     finish(&mut out);
     out
@@ -61,18 +62,19 @@ fn selectors(options: &ReadOptions) -> Vec<(Role, Selector)> {
 fn read_files(
     files: &[&ScannedFile<'_>],
     selectors: &[(Role, Selector)],
-    joints: &[String],
+    options: &ReadOptions,
     look_inside: bool,
     out: &mut Extracted,
 ) -> u64 {
     let mut known = Known::default();
     let mut work = Vec::new();
+    let speeds = |topic: &str| options.measured_velocities || !is_measured(topic);
     for (index, file) in files.iter().enumerate() {
-        let channels = Definitions::gather(&file.layout, file.source, look_inside).plan(selectors);
-        let routes = Arc::new(routes(channels, joints, &mut known, out));
+        let channels = Definitions::gather(&file.layout, file.source, look_inside).plan(selectors, &speeds);
+        let routes = Arc::new(routes(channels, &options.joints, &mut known, out));
         work.extend(file.layout.blocks.iter().map(|block| (*block, file.source, routes.clone(), index)));
     }
-    read_blocks(&work, &known.specs, joints, out)
+    read_blocks(&work, &known.specs, &options.joints, out)
 }
 
 fn describe(file: &ScannedFile<'_>, out: &mut Extracted) {

@@ -13,7 +13,7 @@ use crate::{
 /// The time axis that all joints of a table share.
 pub(super) struct Axis {
     t_s: Arc<[f64]>,
-    /// Rows of the table at these times.
+    /// Rows of the table at these times; empty if they are all there, as they lie in the table.
     rows: Vec<usize>,
     /// Backward jumps of the clock.
     jumps: Vec<usize>,
@@ -25,16 +25,26 @@ pub(super) struct Axis {
 
 impl Axis {
     pub(super) fn new(clock: Clock, epoch_ns: i64) -> Self {
-        let t_s: Arc<[f64]> = clock.t_ns.iter().map(|&ns| seconds_since(epoch_ns, ns)).collect();
-        let as_read =
-            clock.rows.iter().enumerate().all(|(i, &row)| i == row) && t_s.windows(2).all(|w| w[0] < w[1]);
-        Self { cuts: cuts(&t_s, &clock.cuts), t_s, rows: clock.rows, jumps: clock.cuts, as_read }
+        let Clock { t_ns, mut rows, cuts: jumps, .. } = clock;
+        let whole = rows.iter().enumerate().all(|(i, &row)| i == row);
+        if whole {
+            rows = Vec::new();
+        }
+        let t_s: Arc<[f64]> = t_ns.iter().map(|&ns| seconds_since(epoch_ns, ns)).collect();
+        drop(t_ns);
+        let as_read = whole && t_s.windows(2).all(|w| w[0] < w[1]);
+        Self { cuts: cuts(&t_s, &jumps), t_s, rows, jumps, as_read }
+    }
+
+    /// The row of the table at time `i`.
+    fn row(&self, i: usize) -> usize {
+        self.rows.get(i).copied().unwrap_or(i)
     }
 
     /// The axis without the samples that are missing in a column: times, cuts and jumps.
     fn kept(&self, kept: &[usize]) -> (Arc<[f64]>, Vec<usize>, Vec<usize>) {
         let jumps: Vec<usize> = self.jumps.iter().map(|cut| kept.partition_point(|i| i < cut)).collect();
-        if kept.len() == self.rows.len() {
+        if kept.len() == self.t_s.len() {
             return (self.t_s.clone(), self.cuts.clone(), jumps);
         }
         let t_s: Arc<[f64]> = kept.iter().map(|&i| self.t_s[i]).collect();
@@ -99,15 +109,15 @@ pub(super) fn samples(
             |field| if last { table.take_column(field, joint) } else { table.column(field, joint).to_vec() };
         let (values, speed) = (column(field), velocity_field.map(column).unwrap_or_default());
         let whole = axis.as_read
-            && values.len() == axis.rows.len()
+            && values.len() == axis.t_s.len()
             && values.iter().all(|q| q.is_finite())
             && !(positions
                 && (0..values.len()).any(|k| is_spike(k, values.len(), |i| axis.t_s[i], |i| values[i])));
         let ((t_s, cuts, jumps), values, velocity) = if whole {
             ((axis.t_s.clone(), axis.cuts.clone(), axis.jumps.clone()), values, speed)
         } else {
-            let at = |i: usize| values.get(axis.rows[i]).copied().unwrap_or(f64::NAN);
-            let mut kept: Vec<usize> = (0..axis.rows.len()).filter(|&i| at(i).is_finite()).collect();
+            let at = |i: usize| values.get(axis.row(i)).copied().unwrap_or(f64::NAN);
+            let mut kept: Vec<usize> = (0..axis.t_s.len()).filter(|&i| at(i).is_finite()).collect();
             // Far from the epoch neighbouring nanoseconds are the same second.
             kept.dedup_by(|later, earlier| axis.t_s[*later] <= axis.t_s[*earlier]);
             if positions {
@@ -116,7 +126,7 @@ pub(super) fn samples(
             if kept.is_empty() {
                 continue;
             }
-            let speed = kept.iter().map_while(|&i| speed.get(axis.rows[i]).copied()).collect();
+            let speed = kept.iter().map_while(|&i| speed.get(axis.row(i)).copied()).collect();
             (axis.kept(&kept), kept.iter().map(|&i| at(i)).collect(), speed)
         };
         gap.note(&t_s, &cuts, &jumps);

@@ -60,6 +60,11 @@ fn has_word(topic: &str, words: &[&str]) -> bool {
     topic.to_ascii_lowercase().split(['/', '_', '-', '.']).any(|word| words.contains(&word))
 }
 
+/// Whether a topic is a measurement by its name, if it holds joints at all.
+pub(super) fn is_measured(topic: &str) -> bool {
+    !has_word(topic, &PLAN_WORDS) && !has_word(topic, &COMMAND_WORDS)
+}
+
 /// Chooses the topics of the sides that are wanted.
 pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
     let plan = || choose_one(extracted, options, Role::Planned);
@@ -327,7 +332,7 @@ fn rank(topic: &TopicCount, form: Form, field: Role, role: Role) -> u32 {
             Form::Interfaces => 4,
             _ => 3,
         },
-        (Role::Measured, Role::Either) if !plan && !command && !array => {
+        (Role::Measured, Role::Either) if is_measured(&topic.topic) && !array => {
             if has_word(&topic.topic, &["error"]) { ONLY_IF_NAMED } else { 2 }
         }
         _ => ONLY_IF_NAMED,

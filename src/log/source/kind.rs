@@ -62,15 +62,18 @@ const STAMPS: [&str; 3] = ["header.stamp", "stamp", "timestamp"];
 const NAMES: [&str; 3] = ["joint_names", "names", "name"];
 
 /// How to read messages of this type, `None` if it holds no joints and `selectors` name none of
-/// its fields. Without a definition (JSON, Protobuf) every spelling is tried on each message.
+/// its fields; with speeds where plan or measurement depends on the topic, if they are wanted. Without a definition (JSON, Protobuf) every spelling is tried on each message.
 pub(in crate::log) fn spec_for(
     type_name: &str,
     definition: Option<&Definition>,
-    selectors: &[(Role, &Selector)],
+    (selectors, speeds): (&[(Role, &Selector)], bool),
 ) -> Option<Spec> {
     let plain = plain_name(&type_name.replace('.', "/"));
-    let mut builder =
-        Builder { definition, spec: Spec { form: Form::Table, fields: Vec::new(), wants: Vec::new() } };
+    let mut builder = Builder {
+        definition,
+        speeds,
+        spec: Spec { form: Form::Table, fields: Vec::new(), wants: Vec::new() },
+    };
     match plain.as_str() {
         "control_msgs/JointTrajectoryControllerState" | "control_msgs/FollowJointTrajectory_Feedback" => {
             builder.controller("");
@@ -93,7 +96,7 @@ pub(in crate::log) fn spec_for(
             builder.want("interface_values.interface_names", slot::INTERFACES);
             builder.want("interface_values.values", slot::VALUES);
             builder.stamp_near("interface_values");
-            builder.interface("position", Some("velocity"), Role::Measured);
+            builder.interface("position", speeds.then_some("velocity"), Role::Measured);
         }
         "pal_statistics_msgs/StatisticsNames" => {
             builder.spec.form = Form::VersionedNames;
@@ -116,6 +119,7 @@ pub(in crate::log) fn spec_for(
 
 struct Builder<'a> {
     definition: Option<&'a Definition>,
+    speeds: bool,
     spec: Spec,
 }
 
@@ -192,7 +196,8 @@ impl Builder<'_> {
         if self.spec.fields.iter().any(|field| field.path == path) || !self.has(path) {
             return;
         }
-        let with_velocity = !velocity.is_empty() && self.has(velocity);
+        let asked = self.speeds || role != Role::Either;
+        let with_velocity = asked && !velocity.is_empty() && self.has(velocity);
         let at = self.spec.fields.len();
         let fields = 1 + usize::from(with_velocity);
         let Ok(first) = u8::try_from(at + fields) else { return };

@@ -4,7 +4,10 @@
 use std::collections::BTreeMap;
 
 use super::{Field, Form, Role, Stamps, Table, slot, table::stamp_ns};
-use crate::log::decode::{Numbers, Sink, Slot, Texts};
+use crate::log::{
+    decode::{Numbers, Sink, Slot, Texts},
+    options::TimeBase,
+};
 
 /// Either half: the lists of names by version, or the values.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -89,7 +92,7 @@ impl Versioned {
         for (row, (version, values)) in self.versions.iter().zip(&self.values).enumerate() {
             let Some(places) = known.get(version) else { continue };
             let (header, publish, log) =
-                (self.stamps.header_ns[row], self.stamps.publish_ns[row], self.stamps.log_ns[row]);
+                (self.stamps.header_ns[row], self.stamps.of(TimeBase::Publish)[row], self.stamps.log_ns[row]);
             let cells = places.iter().filter_map(|(place, joint, field)| {
                 values.get(*place).map(|&value| (joint.as_str(), *field, value))
             });

@@ -55,6 +55,8 @@ pub struct Carried {
     files: Vec<Attachment>,
     /// Where the plan comes from.
     provenance: BTreeMap<String, String>,
+    /// Names of files that are not those that were written, by their SHA-256.
+    altered: Vec<String>,
 }
 
 impl Carried {
@@ -64,8 +66,13 @@ impl Carried {
         let mut files: Vec<Attachment> = recording.attachments.iter().filter(ours).cloned().collect();
         files.dedup_by(|a, b| a.name == b.name);
         let mut provenance = recording.metadata.get(PROVENANCE).cloned().unwrap_or_default();
+        let altered = |file: &&Attachment| {
+            let written = provenance.get(&format!("{SHA256}{}", file.name));
+            written.is_some_and(|hash| *hash != sha256(file))
+        };
+        let altered = files.iter().filter(altered).map(|file| file.name.clone()).collect();
         provenance.retain(|key, _| !key.starts_with(SHA256));
-        Self { files, provenance }
+        Self { files, provenance, altered }
     }
 
     /// A task with its arm, and a plan of it.
@@ -158,8 +165,19 @@ impl Carried {
         Some(self.task_files()?.arm(&Task::parse(&self.task()?).ok()?))
     }
 
+    /// Says which files are not those that were written.
+    pub fn remark_altered(&self, remarks: &mut Remarks) {
+        for name in &self.altered {
+            let message = format!(
+                "{name} in the log is not the one that was written into it, by its SHA-256; it is used as it is"
+            );
+            remarks.add(Code::OtherFile, 1, message);
+        }
+    }
+
     /// Says of files beside the log that they are not those of the arm that it carries, which counts.
     pub fn remark_others(&self, log: &Path, remarks: &mut Remarks) {
+        self.remark_altered(remarks);
         let Some(files) = self.task_files() else { return };
         let Ok(Task { arm: ArmSource::File { urdf, hydraulics, .. }, .. }) = Task::parse(&files.task) else {
             return;
@@ -206,9 +224,7 @@ impl Carried {
     /// Name and entries of the metadata, with the SHA-256 of every file where an arm's are among them: the sample arm
     /// is the program's own.
     pub fn metadata(&self) -> (&'static str, BTreeMap<String, String>) {
-        let hash = |file: &Attachment| {
-            (format!("{SHA256}{}", file.name), format!("{:x}", Sha256::digest(&file.data)))
-        };
+        let hash = |file: &Attachment| (format!("{SHA256}{}", file.name), sha256(file));
         let mut entries = self.provenance.clone();
         if self.file(URDF).is_some() {
             entries.extend(self.files.iter().map(hash));
@@ -239,6 +255,10 @@ impl Carried {
     pub fn end<W: Write>(&self, log: &mut LogWriter<W>, start_ns: i64) -> Result<(), WriteError> {
         self.files.iter().try_for_each(|file| log.attach(&file.name, &file.media_type, &file.data, start_ns))
     }
+}
+
+fn sha256(file: &Attachment) -> String {
+    format!("{:x}", Sha256::digest(&file.data))
 }
 
 fn attachment(name: &str, media_type: &str, data: &str) -> Attachment {

@@ -105,7 +105,7 @@ mod tests {
             planned_interval_s: 0.01,
             matched: 800,
             unmatched: 0,
-            t_s,
+            t_s: t_s.into(),
         }
     }
 

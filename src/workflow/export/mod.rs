@@ -40,7 +40,12 @@ pub struct Outputs {
 /// the name given for the command.
 pub fn run(inputs: &Inputs) -> Result<Outputs, LogError> {
     let command = WantedSignal { role: SignalRole::Command, topic: inputs.command.clone() };
-    let read = ReadOptions { sides: Sides::Any, signals: vec![command], ..inputs.read.clone() };
+    let read = ReadOptions {
+        sides: Sides::Any,
+        signals: vec![command],
+        measured_velocities: true,
+        ..inputs.read.clone()
+    };
     let mut recording = read_recording(&inputs.logs, &read)?;
     let remarks = std::mem::take(&mut recording.remarks).without(Code::PlanIsCommand);
     let planned_topic = &recording.source.planned_topic;

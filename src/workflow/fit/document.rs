@@ -113,12 +113,18 @@ impl LimitsFile {
     ///
     /// [`FitFailure`] naming the file, and the line or joint.
     pub fn read(path: &Path) -> Result<Self, FitFailure> {
+        let read = |source| FitFailure::Read { path: path.to_owned(), source };
+        Self::parse(path, &input_file::read_to_string(path).map_err(read)?)
+    }
+
+    /// Reads the text of such a file.
+    ///
+    /// # Errors
+    ///
+    /// As [`LimitsFile::read`].
+    pub fn parse(path: &Path, text: &str) -> Result<Self, FitFailure> {
         let path = path.to_owned();
-        let text = match input_file::read_to_string(&path) {
-            Ok(text) => text,
-            Err(source) => return Err(FitFailure::Read { path, source }),
-        };
-        let file: Self = match toml::from_str(&text) {
+        let file: Self = match toml::from_str(text) {
             Ok(file) => file,
             Err(source) => return Err(FitFailure::Limits { path, source: Box::new(source) }),
         };

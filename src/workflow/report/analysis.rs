@@ -1,11 +1,13 @@
 //! From a recording to what its joints did: every verb that judges a run starts here.
 
+use std::borrow::Borrow;
+
 use super::outcome::Alignment;
 use crate::{
     log::Recording,
     remark::{Code, Remarks},
     replay::{Replay, Rules, planned_starts, replay},
-    series::{Pair, Series, align},
+    series::{Pair, Track, align},
 };
 
 /// Plan and measurement of a run, aligned and judged.
@@ -20,21 +22,33 @@ pub struct Analysis {
 }
 
 /// Aligns the joints of a recording and replays them; remarks what plan or measurement lacks.
-pub fn analyse(recording: &Recording, rules: &Rules, remarks: &mut Remarks) -> Analysis {
-    let (alignment, pairs) = aligned(recording, rules, remarks);
+pub fn analyse<'a>(recording: &'a Recording, rules: &Rules, remarks: &mut Remarks) -> Analysis {
+    let both = |planned: &'a Track| Some((planned, recording.measured.track(planned.name())?));
+    let (alignment, pairs) = aligned(recording.planned.tracks.iter().filter_map(both), rules, remarks);
     Analysis::of(alignment, pairs, rules)
 }
 
-/// The first half of [`analyse`], after which the recording is no longer needed.
-pub(super) fn aligned(
-    recording: &Recording,
+/// Planned and measured tracks by joint, moved out of a recording.
+pub(super) fn taken(recording: &mut Recording) -> impl Iterator<Item = (Track, Track)> {
+    let planned = std::mem::take(&mut recording.planned.tracks);
+    let mut measured = std::mem::take(&mut recording.measured.tracks);
+    planned.into_iter().filter_map(move |planned| {
+        let at = measured.iter().position(|track| track.name() == planned.name())?;
+        Some((planned, measured.swap_remove(at)))
+    })
+}
+
+/// The first half of [`analyse`]. Tracks that are given away are freed joint by joint: a long run's take as much memory
+/// as its pairs.
+pub(super) fn aligned<T: Borrow<Track>>(
+    joints: impl Iterator<Item = (T, T)>,
     rules: &Rules,
     remarks: &mut Remarks,
 ) -> (Vec<Alignment>, Vec<Pair>) {
-    let (mut pairs, mut alignment) = (Vec::new(), Vec::new());
-    for planned in &recording.planned.tracks {
-        let Some(measured) = recording.measured.track(planned.name()) else { continue };
-        let Some(pair) = align(planned, measured) else {
+    let (mut pairs, mut alignment, mut hidden) = (Vec::<Pair>::new(), Vec::new(), Vec::new());
+    for (planned, measured) in joints {
+        let (planned, measured): (&Track, &Track) = (planned.borrow(), measured.borrow());
+        let Some(mut pair) = align(planned, measured) else {
             let message = format!("{} has no plan while it was measured; left out", planned.name());
             remarks.add(Code::UnpairedJoint, 1, message);
             continue;
@@ -46,15 +60,26 @@ pub(super) fn aligned(
             unmatched: pair.unmatched,
             segments: pair.segments.len(),
         });
+        if let Some(before) = pairs.last().filter(|before| before.t_s == pair.t_s) {
+            pair.t_s = before.t_s.clone();
+        }
+        let seen = |at_s: &f64| {
+            pair.segments.iter().any(|s| (pair.t_s[s.start]..=pair.t_s[s.end - 1]).contains(at_s))
+        };
+        hidden.push(planned_starts(planned, rules).iter().filter(|at_s| !seen(at_s)).count());
         pairs.push(pair);
     }
-    remark_unseen(&recording.planned, &pairs, rules, remarks);
+    remark_unseen(&pairs, &hidden, remarks);
     (alignment, pairs)
 }
 
 impl Analysis {
-    pub(super) fn of(alignment: Vec<Alignment>, pairs: Vec<Pair>, rules: &Rules) -> Self {
+    pub(super) fn of(alignment: Vec<Alignment>, mut pairs: Vec<Pair>, rules: &Rules) -> Self {
         let replay = replay(&pairs, rules);
+        // Of no more use, and a third of what a long run takes.
+        for pair in &mut pairs {
+            pair.planned_velocity = None;
+        }
         ::log::info!("{} joints aligned, {} transitions found", pairs.len(), replay.transitions.len());
         Self { alignment, pairs, replay }
     }
@@ -64,8 +89,8 @@ impl Analysis {
 const MOST_UNMATCHED: f64 = 0.5;
 
 /// Remarks planned starts without a measurement, and joints most of whose samples have no plan.
-fn remark_unseen(planned: &Series, pairs: &[Pair], rules: &Rules, remarks: &mut Remarks) {
-    for pair in pairs {
+fn remark_unseen(pairs: &[Pair], hidden: &[usize], remarks: &mut Remarks) {
+    for (pair, hidden) in pairs.iter().zip(hidden) {
         let all = pair.matched + pair.unmatched;
         if pair.unmatched as f64 > MOST_UNMATCHED * all as f64 {
             // One line for all joints.
@@ -73,12 +98,7 @@ fn remark_unseen(planned: &Series, pairs: &[Pair], rules: &Rules, remarks: &mut 
                            start is only seen where the plan also shows the rest before it";
             remarks.add(Code::Unmatched, pair.unmatched as u64, message);
         }
-        let Some(track) = planned.track(&pair.name) else { continue };
-        let seen = |at_s: &f64| {
-            pair.segments.iter().any(|s| (pair.t_s[s.start]..=pair.t_s[s.end - 1]).contains(at_s))
-        };
-        let hidden = planned_starts(track, rules).iter().filter(|at_s| !seen(at_s)).count();
         let message = format!("planned starts of {} lie where nothing was measured; not judged", pair.name);
-        remarks.add(Code::Unmatched, hidden as u64, message);
+        remarks.add(Code::Unmatched, *hidden as u64, message);
     }
 }

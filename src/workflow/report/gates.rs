@@ -153,7 +153,7 @@ mod tests {
             planned_interval_s: 0.01,
             matched: t_s.len(),
             unmatched: 0,
-            t_s,
+            t_s: t_s.into(),
         };
         replay(&[pair], &Rules::default())
     }

@@ -9,8 +9,8 @@ mod outcome;
 
 use std::path::PathBuf;
 
-use analysis::aligned;
 pub use analysis::{Analysis, analyse};
+use analysis::{aligned, taken};
 pub use document::Document;
 pub use gates::{GateResult, Gates};
 pub use identity::{LogFile, log_files};
@@ -65,14 +65,13 @@ pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
 pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, LogError> {
     let carried = Carried::of(&recording);
     let mut remarks = recording.remarks.clone();
-    let (alignment, pairs) = aligned(&recording, &inputs.rules, &mut remarks);
+    carried.remark_altered(&mut remarks);
+    let sides = [&recording.planned, &recording.measured];
+    let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
+    let (alignment, pairs) = aligned(taken(&mut recording), &inputs.rules, &mut remarks);
     if pairs.is_empty() {
-        let sides = [&recording.planned, &recording.measured];
-        let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
         return Err(LogError::NoOverlap { planned_s, measured_s });
     }
-    // A long run's series take as much memory as its pairs.
-    (recording.planned, recording.measured) = Default::default();
     let Analysis { alignment, pairs, replay } = Analysis::of(alignment, pairs, &inputs.rules);
     let gates = inputs.gates.judge(&replay);
     let front = front(&carried, &mut remarks);

@@ -106,7 +106,6 @@ pub struct Poses {
 ///
 /// [`ViewFailure`] if the description is of no arm of its joints.
 pub(super) fn find(
-    log: &Path,
     recording: &mut Recording,
     given: Option<(&Path, &str)>,
     packages: &[PathBuf],
@@ -119,17 +118,13 @@ pub(super) fn find(
                 joints: names.iter().map(ToString::to_string).collect(),
                 source,
             })?;
-            (Some(FoundArm { origin: ArmOrigin::File, chain, still }), file.parent().unwrap_or(Path::new("")))
+            (Some(FoundArm { origin: ArmOrigin::File, chain, still }), file.parent())
         }
-        None => (found(recording), folder_of(log)),
+        None => (found(recording), None),
     };
     // Packages are looked for around the folder, so it must have a place.
-    let folder = Path::new(".").join(folder).canonicalize().unwrap_or_default();
-    Ok(arm.map(|arm| moving(arm, recording, Places { folder: &folder, packages })))
-}
-
-fn folder_of(log: &Path) -> &Path {
-    log.parent().unwrap_or(Path::new(""))
+    let folder = folder.and_then(|folder| Path::new(".").join(folder).canonicalize().ok());
+    Ok(arm.map(|arm| moving(arm, recording, Places { folder: folder.as_deref(), packages })))
 }
 
 struct FoundArm {
@@ -176,8 +171,8 @@ fn moving(arm: FoundArm, recording: &mut Recording, places: Places<'_>) -> Movin
     }
     if let Some(first) = absent.first() {
         let message = format!(
-            "meshes of the arm are not at hand, blocks stand in for them: {first} first; a URDF beside its \
-             package (--urdf FILE) or AMENT_PREFIX_PATH finds them"
+            "meshes of the arm are not at hand, blocks stand in for them: {first} first; --urdf FILE, the \
+             URDF beside its package or with AMENT_PREFIX_PATH set, finds them (no path is followed that a log names)"
         );
         remarks.add(Code::MissingFile, absent.len() as u64, message);
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::input_file;
 
-/// Kinds of files that are taken for meshes; nothing else is opened, whatever a log says.
+/// Kinds of files that are taken for meshes; nothing else is opened, whatever a description says.
 const KINDS: [&str; 5] = ["dae", "glb", "gltf", "obj", "stl"];
 /// More than any mesh of an arm.
 const LARGEST_BYTES: u64 = 256 << 20;
@@ -12,8 +12,8 @@ const LARGEST_BYTES: u64 = 256 << 20;
 /// Where meshes are looked for.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Places<'a> {
-    /// The folder of the description, or of the log that holds it.
-    pub(super) folder: &'a Path,
+    /// The folder of the description that was given; without one nothing is looked for: a log names files of others.
+    pub(super) folder: Option<&'a Path>,
     /// Folders that hold packages, or are one.
     pub(super) packages: &'a [PathBuf],
 }
@@ -22,10 +22,11 @@ impl Places<'_> {
     /// The file of a mesh by its name in a description, which may begin with `package://` or `file://`.
     /// Packages are also looked for around the folder.
     pub(super) fn find(&self, uri: &str) -> Option<PathBuf> {
+        let folder = self.folder?;
         let found = match uri.split_once("://") {
             Some(("package" | "model", rest)) => {
                 let (package, rest) = rest.split_once('/')?;
-                let around = self.packages.iter().map(PathBuf::as_path).chain(self.folder.ancestors());
+                let around = self.packages.iter().map(PathBuf::as_path).chain(folder.ancestors());
                 let mut candidates = around.flat_map(|place| {
                     let own =
                         (place.file_name().is_some_and(|name| name == package)).then(|| place.join(rest));
@@ -35,7 +36,7 @@ impl Places<'_> {
             }
             Some(("file", rest)) => PathBuf::from(rest),
             Some(_) => return None,
-            None => self.folder.join(uri),
+            None => folder.join(uri),
         };
         let found = is_mesh(&found).then_some(found)?;
         // The viewer opens it.
@@ -68,7 +69,7 @@ mod tests {
             std::fs::write(path, "solid").unwrap();
         }
         let (folder, packages) = (package.join("urdf"), [root.path().join("far/share")]);
-        let places = Places { folder: &folder, packages: &packages };
+        let places = Places { folder: Some(&folder), packages: &packages };
         assert_eq!(places.find("package://robot/meshes/a.stl"), Some(package.join("meshes/a.stl")));
         assert_eq!(places.find("package://other/c.dae"), Some(other.join("c.dae")));
         assert_eq!(places.find("b.OBJ"), Some(folder.join("b.OBJ")));
@@ -84,5 +85,6 @@ mod tests {
             assert_eq!(places.find(none), None, "{none}");
         }
         assert_eq!(Places { packages: &[], ..places }.find("package://other/c.dae"), None);
+        assert_eq!(Places { folder: None, ..places }.find("package://other/c.dae"), None);
     }
 }

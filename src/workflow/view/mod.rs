@@ -114,7 +114,7 @@ fn scene(
     let mut doubts = Remarks::default();
     let Analysis { pairs, replay, .. } = analyse(&recording, &inputs.rules, &mut doubts);
     recording.remarks.extend(doubts);
-    let arm = arm::find(path, &mut recording, given, &inputs.packages)?;
+    let arm = arm::find(&mut recording, given, &inputs.packages)?;
     let front = Carried::of(&recording).plan().and_then(Result::ok);
     let Recording { planned, measured, remarks, .. } = recording;
     Ok(Scene { name, planned, measured, pairs, transitions: replay.transitions, arm, front, remarks })

@@ -87,10 +87,31 @@ fn what_a_log_names_is_not_read() {
     }
 }
 
+#[test]
+fn a_file_in_a_log_that_is_not_the_one_that_was_written_is_noticed() {
+    use std::collections::BTreeMap;
+    let folder = scratch();
+    let task = fs::read_to_string(folder.path().join("task-1.toml")).unwrap();
+    let sound = format!("{:x}", <sha2::Sha256 as sha2::Digest>::digest(&task));
+    for (hash, noticed) in [(sound, false), ("0".repeat(64), true)] {
+        let entries = BTreeMap::from([("sha256.task.toml".to_owned(), hash)]);
+        fs::write(folder.path().join("run.mcap"), with_task_and(&task, &entries)).unwrap();
+        let (_, text, error) = said(&run_line(folder.path(), "report run.mcap"));
+        let says = text.contains("task.toml in the log is not the one that was written");
+        assert_eq!(says, noticed, "{text} {error}");
+    }
+}
+
 /// A log of a short plan with this task attached.
 fn with_task(task: &str) -> Vec<u8> {
+    with_task_and(task, &std::collections::BTreeMap::new())
+}
+
+/// The same with these entries of the plan's provenance.
+fn with_task_and(task: &str, provenance: &std::collections::BTreeMap<String, String>) -> Vec<u8> {
     use hydrotrace::log::{LogWriter, Role, WriteOptions};
     let mut log = LogWriter::new(Vec::new(), &["joint_1"], WriteOptions::default()).unwrap();
+    log.metadata("hydrotrace.plan", provenance).unwrap();
     for k in 0..400_i32 {
         let stamp_ns = 1_760_000_000_000_000_000 + i64::from(k) * 10_000_000;
         let angle_rad = 0.1 * (0.01 * f64::from(k) - 1.0).clamp(0.0, 2.0);

@@ -180,6 +180,30 @@ fn no_number_in_an_error_has_hundreds_of_digits() {
 }
 
 #[test]
+fn a_table_that_was_cut_in_a_whole_number_is_read_without_it_and_a_shorter_number_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = |numbers: &dyn Fn(i32) -> i32| -> String {
+        let row = |k: i32| format!("{:.3},{},{}\n", 0.01 * f64::from(k), numbers(k), numbers(k));
+        (0..300).map(row).collect()
+    };
+    let rows = |text: &str| {
+        fs::write(folder.path().join("t.csv"), format!("time_s,a_planned_mrad,a_measured_mrad\n{text}"))
+            .unwrap();
+        let run = run_line(folder.path(), "import t.csv -o t.mcap --force --json");
+        let document: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap_or_default();
+        document["understood"]["rows"].clone()
+    };
+    let counts = table(&|k| 1200 + k % 9);
+    assert_eq!(rows(&counts), 300);
+    assert_eq!(rows(counts.trim_end()), 300);
+    for cut in 1..=3 {
+        assert_eq!(rows(&counts[..counts.len() - 1 - cut]), 299, "cut by {cut}");
+    }
+    // The last number is shorter than those before it because it is smaller.
+    assert_eq!(rows(table(&|k| 99 + 299 - k).trim_end()), 300);
+}
+
+#[test]
 fn a_table_that_was_cut_in_its_last_number_is_read_without_it() {
     let folder = tempfile::tempdir().unwrap();
     let rows: String = (0..300)
@@ -205,4 +229,38 @@ fn a_table_that_was_cut_in_its_last_number_is_read_without_it() {
         let document: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
         assert_eq!(document["understood"]["rows"], 300);
     }
+}
+
+/// A file of the system that opens, has a length, and fails when it is read.
+#[cfg(target_os = "linux")]
+const FAILS: &str = "/sys/class/net/lo/speed";
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_that_fails_when_it_is_read_is_an_error_that_names_the_file() {
+    if fs::metadata(FAILS).map_or(0, |file| file.len()) == 0 || fs::read(FAILS).is_ok() {
+        println!("no file here that fails: left out");
+        return;
+    }
+    let folder = scratch();
+    let bag = folder.path().join("bag");
+    fs::create_dir(&bag).unwrap();
+    fs::copy(sample("task-1-run.mcap"), bag.join("bag_0.mcap")).unwrap();
+    fs::copy(sample("task-1-run.mcap"), folder.path().join("run.mcap")).unwrap();
+    std::os::unix::fs::symlink(FAILS, bag.join("bag_1.mcap")).unwrap();
+    for line in [
+        format!("report {FAILS}"),
+        format!("info {FAILS}"),
+        format!("recover {FAILS} -o out.mcap"),
+        format!("import {FAILS} -o out.mcap"),
+        format!("plan {FAILS}"),
+        format!("replan run.mcap --limits {FAILS} -o out.mcap"),
+        "report bag".to_owned(),
+        "fit bag -o out.toml".to_owned(),
+    ] {
+        let (code, _, error) = said(&run_line(folder.path(), &line));
+        assert!(code == 1 && error.contains("cannot") && error.contains("because"), "{line}: {code} {error}");
+        assert!(error.contains(FAILS) || error.contains("bag_1.mcap"), "{line}: {error}");
+    }
+    assert!(!folder.path().join("out.mcap").exists() && !folder.path().join("out.toml").exists());
 }

@@ -174,3 +174,23 @@ fn an_interrupt_leaves_nothing_and_what_a_kill_left_is_gone_after_the_next_run()
     assert_eq!(said(&run_line(path, "export run.mcap --csv -o table.csv")).0, 0);
     assert_eq!(left(path), Vec::<String>::new());
 }
+
+#[test]
+fn a_writer_by_name_replaces_the_file_when_it_is_done_and_not_when_it_fails() {
+    use hydrotrace::atomic_file::{AtomicError, write_by_name};
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("run.rrd");
+    fs::write(&target, "old").unwrap();
+    let write = |good: bool| {
+        write_by_name(&target, |path| {
+            fs::write(path, "new").unwrap();
+            assert_eq!(fs::read_to_string(&target).unwrap(), "old");
+            if good { Ok(()) } else { Err(AtomicError::NotAFile { path: "given up".into() }) }
+        })
+    };
+    assert!(write(false).is_err());
+    assert_eq!(fs::read_to_string(&target).unwrap(), "old");
+    assert!(write(true).is_ok());
+    assert_eq!(fs::read_to_string(&target).unwrap(), "new");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}

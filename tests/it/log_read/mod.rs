@@ -13,6 +13,7 @@ mod encode;
 mod file;
 mod json;
 mod limits;
+mod matrix;
 mod mutations;
 mod protobuf;
 mod schema;

@@ -1,4 +1,5 @@
-//! A writer may be killed at any instant.
+//! A writer may be killed at any instant. `HYDROTRACE_KILLS=1000 cargo test --test it log_write::kill -- --nocapture`
+//! kills more often than once.
 
 use std::{
     cell::RefCell,
@@ -13,7 +14,7 @@ use mcap::{MessageStream, read};
 use super::{JOINTS, START_NS};
 
 /// How many messages a torn log gives before it breaks off.
-fn readable(bytes: &[u8]) -> usize {
+pub(super) fn readable(bytes: &[u8]) -> usize {
     let options = read::Options::IgnoreEndMagic | read::Options::ValidateChunkCrcs;
     match MessageStream::new_with_options(bytes, options) {
         Ok(messages) => messages.take_while(Result::is_ok).count(),
@@ -21,7 +22,7 @@ fn readable(bytes: &[u8]) -> usize {
     }
 }
 
-fn sample<W: Write>(log: &mut LogWriter<W>, k: i64) -> Result<(), WriteError> {
+pub(super) fn sample<W: Write>(log: &mut LogWriter<W>, k: i64) -> Result<(), WriteError> {
     let position_rad = [0.1 * k as f64, 0.0, 1.0];
     log.joint_sample(Role::Measured, START_NS + k * 20_000_000, &position_rad, &[], &[])
 }
@@ -104,24 +105,39 @@ fn a_killed_process_loses_nothing_it_had_flushed() {
     if let Some(path) = std::env::var_os(VICTIM) {
         return be_killed(path.as_ref());
     }
+    let count = std::env::var("HYDROTRACE_KILLS").map_or(1, |text| text.parse().unwrap());
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("live.mcap");
+    let [mut announced, mut read] = [0; 2];
+    for k in 0..count {
+        let found = killed(&folder.path().join("live.mcap"), k);
+        announced += found.0;
+        read += found.1;
+    }
+    println!("{count} kills: {announced} samples were flushed, {read} read back");
+}
+
+/// Samples that a process said it had flushed before it was killed, and those that can be read.
+fn killed(path: &std::path::Path, k: usize) -> (usize, usize) {
     let mut child = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "log_write::kill::a_killed_process_loses_nothing_it_had_flushed", "--nocapture"])
-        .env(VICTIM, &path)
+        .env(VICTIM, path)
         .stdout(Stdio::piped())
         .spawn()
         .unwrap();
     let announced = io::BufRead::lines(io::BufReader::new(child.stdout.take().unwrap()))
         .map_while(Result::ok)
         .filter_map(|line| line.split_once("flushed ").and_then(|(_, n)| n.parse::<usize>().ok()))
-        .find(|&n| n >= 2000)
+        .find(|&n| n >= 500 * (1 + k * 7 % 40))
         .unwrap();
+    std::thread::sleep(std::time::Duration::from_micros(137 * (k as u64 % 31)));
     child.kill().unwrap();
     child.wait().unwrap();
-    let bytes = std::fs::read(&path).unwrap();
+    let bytes = std::fs::read(path).unwrap();
+    std::fs::remove_file(path).unwrap();
     assert!(!bytes.ends_with(mcap::MAGIC), "the log was closed");
-    assert!(readable(&bytes) >= announced, "{} of {announced}", readable(&bytes));
+    let read = readable(&bytes);
+    assert!(read >= announced, "kill {k}: {read} of {announced}");
+    (announced, read)
 }
 
 /// Logs without end and says how many samples are safe.

@@ -1,6 +1,7 @@
 //! What `LogWriter` promises, checked with the crate `mcap` and a decoder of our own.
 
 pub(crate) mod decode;
+mod faults;
 mod kill;
 mod peers;
 mod robot;

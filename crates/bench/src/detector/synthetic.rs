@@ -92,7 +92,7 @@ pub fn synthetic_run(seed: u64, sensing: &Sensing) -> SyntheticRun {
         planned_interval_s: 1.0 / sensing.rate_hz,
         matched: n,
         unmatched: 0,
-        t_s,
+        t_s: t_s.into(),
     };
     SyntheticRun { pair, motions }
 }

@@ -8,7 +8,8 @@ use crate::{log::options::TimeBase, math::median};
 pub(in crate::log) struct Stamps {
     /// From the message itself; 0 where it has none.
     pub(in crate::log) header_ns: Vec<i64>,
-    pub(in crate::log) publish_ns: Vec<i64>,
+    /// Empty as long as each is that of the recorder, as most recorders have it.
+    publish_ns: Vec<i64>,
     pub(in crate::log) log_ns: Vec<i64>,
 }
 
@@ -17,8 +18,8 @@ impl Stamps {
     pub(in crate::log) fn of(&self, base: TimeBase) -> &[i64] {
         match base {
             TimeBase::Header => &self.header_ns,
-            TimeBase::Publish => &self.publish_ns,
-            TimeBase::Log => &self.log_ns,
+            TimeBase::Publish if !self.publish_ns.is_empty() => &self.publish_ns,
+            TimeBase::Publish | TimeBase::Log => &self.log_ns,
         }
     }
 
@@ -45,7 +46,10 @@ impl Stamps {
 
     pub(in crate::log::source) fn push_ns(&mut self, header_ns: i64, publish_ns: i64, log_ns: i64) {
         self.header_ns.push(header_ns);
-        self.publish_ns.push(publish_ns);
+        if publish_ns != log_ns || !self.publish_ns.is_empty() {
+            self.tell_apart();
+            self.publish_ns.push(publish_ns);
+        }
         self.log_ns.push(log_ns);
     }
 
@@ -56,8 +60,18 @@ impl Stamps {
 
     pub(in crate::log::source) fn append(&mut self, other: &Self) {
         self.header_ns.extend_from_slice(&other.header_ns);
-        self.publish_ns.extend_from_slice(&other.publish_ns);
+        if !(self.publish_ns.is_empty() && other.publish_ns.is_empty()) {
+            self.tell_apart();
+            self.publish_ns.extend_from_slice(other.of(TimeBase::Publish));
+        }
         self.log_ns.extend_from_slice(&other.log_ns);
+    }
+
+    /// From here on publish times have a place of their own.
+    fn tell_apart(&mut self) {
+        if self.publish_ns.is_empty() {
+            self.publish_ns.clone_from(&self.log_ns);
+        }
     }
 
     pub(in crate::log::source) fn clear(&mut self) {
