@@ -69,12 +69,8 @@ impl Knowledge {
         let mut residuals = Vec::new();
         problem.residuals(x, workspace, &mut residuals);
         let inefficiency = inefficiency(&residuals);
-        let (normal, _) = problem.normal(x, &free, &residuals, scale_rad, workspace);
-        let information = normal / inefficiency + DMatrix::identity(free.len(), free.len());
-        // Information of at least the priors has an inverse.
-        let covariance = information
-            .cholesky()
-            .map_or_else(|| DMatrix::identity(free.len(), free.len()), |cholesky| cholesky.inverse());
+        let normal = problem.normal(x, &free, &residuals, scale_rad, workspace);
+        let covariance = normal.covariance(inefficiency, x, &free);
         let jump_rad_s =
             problem.runs.iter().map(|run| run.asked[2].max(run.asked[3])).fold(0.0, f64::max) * ASKED_OVER_S;
         let sharp = jump_rad_s > problem.model(x).dead_band_rad_s.max(SHARP_RAD_S);

@@ -6,7 +6,7 @@ use super::{
     interval::{Knowledge, discrepancy},
     outcome::{Estimated, JointFit},
     parameters::{ASYMMETRY, FEED_FORWARD, INTEGRAL_GAIN, LIMITS, POSITION_GAIN, Priors, SHARED},
-    run::Run,
+    run::{Run, steps_in},
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
 };
 use crate::{math::range, units::DEGREE_RAD};
@@ -20,30 +20,38 @@ const ABOVE: [f64; 4] = [1.03, 1.03, 1.2, 1.2];
 /// Limits are looked for from no lower than this: rad/s and rad/s².
 const LOWEST: [f64; 4] = [DEGREE_RAD, DEGREE_RAD, 20.0 * DEGREE_RAD, 20.0 * DEGREE_RAD];
 
+/// Motion that is enough to search in, s: of longer logs some runs are, and the rest counts in the last rounds.
+const ENOUGH_S: f64 = 150.0;
+
+/// The same for fits that leave a part out, s.
+const ENOUGH_TO_HOLD_OUT_S: f64 = 450.0;
+
+/// Rounds over all runs after a search in some.
+const ROUNDS: usize = 3;
+
+/// Rounds of the fits that leave a part out.
+const FOLD_ROUNDS: usize = 5;
+
 /// Statistical inefficiency until it is measured: correlated residuals per effective sample.
 const INEFFICIENCY: f64 = 50.0;
 
 /// Fits one joint, whose runs are not empty; with its held-out starts.
 pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
-    let most = |of: fn(&Run) -> f64| runs.iter().map(of).fold(0.0, f64::max);
-    let reached = [
-        most(|run| run.fastest_rad_s[0]),
-        most(|run| run.fastest_rad_s[1]),
-        most(|run| run.sharpest_rad_s2[0]),
-        most(|run| run.sharpest_rad_s2[1]),
-    ];
+    let reached = [0, 1, 2, 3].map(|i| runs.iter().map(|run| run.reached()[i]).fold(0.0, f64::max));
     let limits = [0, 1, 2, 3].map(|i| (ABOVE[i] * reached[i]).max(LOWEST[i]));
     let pose_rad = range(runs.iter().flat_map(|run| run.sent.iter().map(|sent| sent.0)));
     let priors = Priors::new(limits, pose_rad);
+    let place = telling(runs, ENOUGH_S);
+    let some = of(&place, runs);
     let mut problem = Problem {
-        runs,
+        runs: &some,
         priors: &priors,
         seen: asked_for(runs, limits),
         part: Part::All,
         inefficiency: INEFFICIENCY,
     };
     let mut workspace = Workspace::default();
-    let mut found = problem.search(&DEAD_TIMES_S, &vec![0.0; SHARED + runs.len()], &mut workspace);
+    let mut found = problem.search(&DEAD_TIMES_S, &vec![0.0; SHARED + some.len()], &mut workspace);
     // What goes may have stood in for what stays.
     for _ in 0..2 {
         problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);
@@ -54,11 +62,49 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
         problem.seen = seen;
         found = problem.descend(found.x, 30, &mut workspace);
     }
+    if some.len() < runs.len() {
+        problem.runs = runs;
+        found.x.truncate(SHARED);
+        found.x.resize(SHARED + runs.len(), 0.0);
+        let x = problem.settled(found.x, found.scale_rad, &mut workspace);
+        found = problem.descend(x, ROUNDS, &mut workspace);
+        problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);
+    }
     let knowledge = Knowledge::new(&problem, &found.x, found.scale_rad, &mut workspace);
-    let model = problem.model(&found.x);
-    let skill = skill(&problem, model.dead_time_s, &mut workspace);
+    let place = telling(runs, ENOUGH_TO_HOLD_OUT_S);
+    let held_out = of(&place, runs);
+    let x: Vec<f64> = found.x[..SHARED].iter().copied().chain(of(&place, &found.x[SHARED..])).collect();
+    let skill = skill(&Problem { runs: &held_out, ..problem.clone() }, &x, FOLD_ROUNDS, &mut workspace);
     let samples = runs.iter().map(|run| run.samples.len()).sum();
     (report(name, &problem, &found, &knowledge, reached, samples, &skill), skill.starts)
+}
+
+/// Which runs tell enough: all, or of long logs some that are spread evenly, and those that reached or were asked
+/// for most.
+fn telling(runs: &[Run], enough_s: f64) -> Vec<usize> {
+    let enough = steps_in(enough_s);
+    let total: usize = runs.iter().map(|run| run.sent.len()).sum();
+    if total <= enough {
+        return (0..runs.len()).collect();
+    }
+    let mut chosen = vec![false; runs.len()];
+    for i in 0..8 {
+        let most = |run: &Run| [run.asked, run.reached()][i / 4][i % 4];
+        let best = (0..runs.len()).max_by(|a, b| most(&runs[*a]).total_cmp(&most(&runs[*b])).then(b.cmp(a)));
+        best.into_iter().for_each(|run| chosen[run] = true);
+    }
+    let (mut before, mut taken) = (0, 0);
+    for (run, chosen) in runs.iter().zip(&mut chosen) {
+        // So much of each part of the log that the whole is enough.
+        *chosen |= taken * total < before * enough || before == 0;
+        before += run.sent.len();
+        taken += if *chosen { run.sent.len() } else { 0 };
+    }
+    (0..runs.len()).filter(|run| chosen[*run]).collect()
+}
+
+fn of<T: Clone>(places: &[usize], all: &[T]) -> Vec<T> {
+    places.iter().map(|place| all[*place].clone()).collect()
 }
 
 /// Limits that were asked for far enough to show; looking for others costs time.

@@ -32,6 +32,9 @@ const AFTER_S: f64 = 3.0;
 /// Shortest run, s.
 const SHORTEST_S: f64 = 2.0;
 
+/// Longer motions are cut, s.
+const LONGEST_S: f64 = 70.0;
+
 /// After a start in motion the first errors are those of the unknown state, s.
 const SETTLE_S: f64 = 0.6;
 
@@ -89,6 +92,12 @@ impl Run {
     /// Distance that the joint was sent, rad.
     pub(super) fn travel_rad(&self) -> f64 {
         self.sent.windows(2).map(|w| (w[1].0 - w[0].0).abs()).sum()
+    }
+
+    /// Largest measured speeds for growing and shrinking angles, rad/s, and changes of speed, rad/s².
+    pub(super) fn reached(&self) -> [f64; 4] {
+        let (fastest, sharpest) = (self.fastest_rad_s, self.sharpest_rad_s2);
+        [fastest[0], fastest[1], sharpest[0], sharpest[1]]
     }
 
     /// Where the window after a start ends.
@@ -198,7 +207,8 @@ fn asked(sent: &[(f64, f64)]) -> [f64; 4] {
     asked
 }
 
-/// Grid points of motions with some rest around them; long rests are left out.
+/// Grid points of motions with some rest around them; long rests are left out, long motions cut where they are
+/// slowest.
 fn motions(sent: &[(f64, f64)]) -> Vec<Range<usize>> {
     let (before, after) = (steps_in(BEFORE_S), steps_in(AFTER_S));
     let mut motions: Vec<Range<usize>> = Vec::new();
@@ -209,7 +219,22 @@ fn motions(sent: &[(f64, f64)]) -> Vec<Range<usize>> {
             _ => motions.push(k.saturating_sub(before)..end),
         }
     }
-    motions
+    motions.into_iter().flat_map(|whole| pieces(sent, whole)).collect()
+}
+
+/// A motion, cut into pieces if it is long.
+fn pieces(sent: &[(f64, f64)], mut whole: Range<usize>) -> Vec<Range<usize>> {
+    let mut pieces = Vec::new();
+    while whole.len() > steps_in(LONGEST_S) {
+        let earliest = whole.start + steps_in(LONGEST_S) / 3;
+        let slowest = (earliest..2 * earliest - whole.start)
+            .min_by(|a, b| sent[*a].1.abs().total_cmp(&sent[*b].1.abs()))
+            .unwrap_or(earliest);
+        pieces.push(whole.start..slowest);
+        whole.start = slowest;
+    }
+    pieces.push(whole);
+    pieces
 }
 
 /// Where a joint is sent off: from rest, or backwards.
