@@ -17,9 +17,6 @@ const DIFFERENCE: f64 = 2e-3;
 /// Residuals are never told apart more finely, rad: resolution of an encoder of 16 bits.
 const FINEST_RAD: f64 = 0.002 * DEGREE_RAD;
 
-/// Rounds that bring integrals alone to where they belong.
-const SETTLING: usize = 3;
-
 /// A round that gains less than this in the cost, a logarithm of likelihood, is one of the last.
 const GAIN: f64 = 0.02;
 
@@ -168,6 +165,18 @@ impl Problem<'_> {
         }
     }
 
+    /// Measured less predicted angle of the longest run, rad, every step of the model.
+    pub(super) fn longest_left_rad(&self, x: &[f64], workspace: &mut Workspace) -> Vec<f64> {
+        let longest = self.runs.iter().zip(x.iter().skip(SHARED)).max_by_key(|(run, _)| run.sent.len());
+        let Some((run, &integral)) = longest else { return Vec::new() };
+        workspace.simulate(&self.model(x), run, Priors::integral_rad_s(integral));
+        let left = run.samples.iter().map(|sample| (sample.step, sample.measured_rad - workspace.at(sample)));
+        let mut left_rad = Vec::with_capacity(run.sent.len());
+        // A step without a sample keeps the value before.
+        left.for_each(|(step, left)| left_rad.resize(step + 1 - run.samples[0].step, left));
+        left_rad
+    }
+
     /// As [`inefficiency`] of the residuals.
     pub(super) fn measured_inefficiency(&self, x: &[f64], workspace: &mut Workspace) -> f64 {
         let mut residuals = Vec::new();
@@ -209,7 +218,7 @@ impl Problem<'_> {
             let lane = |lane: usize| {
                 let mut x = own;
                 x[group[(lane / 2).min(group.len() - 1)].1] +=
-                    if lane % 2 == 0 { DIFFERENCE } else { -DIFFERENCE };
+                    if lane.is_multiple_of(2) { DIFFERENCE } else { -DIFFERENCE };
                 let integral_rad_s = Priors::integral_rad_s(x[SHARED]);
                 (self.model(&x), Start { integral_rad_s, ..run.start })
             };
@@ -269,18 +278,6 @@ impl Problem<'_> {
         Estimate { x, scale_rad }
     }
 
-    /// `x` with the integral that suits each run, the shared parameters as they are.
-    pub(super) fn settled(&self, mut x: Vec<f64>, scale_rad: f64, workspace: &mut Workspace) -> Vec<f64> {
-        let mut residuals = Vec::new();
-        for _ in 0..SETTLING {
-            self.residuals(&x, workspace, &mut residuals);
-            let normal = self.normal(&x, &[], &residuals, scale_rad, workspace);
-            let step = normal.with_priors(self.inefficiency, &x, &[]).step(0.0).unwrap_or_default();
-            x.iter_mut().skip(SHARED).zip(step).for_each(|(x, step)| *x -= step.clamp(-1.0, 1.0));
-        }
-        x
-    }
-
     /// `x` less a step, no longer than each parameter may go at once. An integral that may not go all the way holds
     /// up no other.
     fn moved(&self, x: &[f64], free: &[usize], step: &[f64]) -> Vec<f64> {
@@ -289,9 +286,12 @@ impl Problem<'_> {
         let excess = |(i, s): (&usize, &f64)| s.abs() / longest(*i);
         let shrink = free.iter().zip(shared).map(excess).fold(1.0, f64::max);
         let mut moved = x.to_vec();
-        free.iter().zip(shared).for_each(|(i, s)| moved[*i] -= s / shrink);
-        let most = longest(SHARED);
-        moved.iter_mut().skip(SHARED).zip(own).for_each(|(x, s)| *x -= (s / shrink).clamp(-most, most));
+        for (i, s) in free.iter().zip(shared) {
+            moved[*i] -= s / shrink;
+        }
+        for (x, s) in moved.iter_mut().skip(SHARED).zip(own) {
+            *x -= (s / shrink).clamp(-longest(SHARED), longest(SHARED));
+        }
         moved
     }
 

@@ -1,6 +1,7 @@
 //! One joint from its runs to what is known of it.
 
 use super::{
+    Character, Oscillation,
     censor::{ASKED, seen},
     estimate::{Estimate, Part, Problem, Workspace},
     interval::{Knowledge, discrepancy},
@@ -15,7 +16,7 @@ use crate::{math::range, units::DEGREE_RAD};
 const DEAD_TIMES_S: [f64; 3] = [0.08, 0.2, 0.35];
 
 /// A limit is looked for from this far above what was reached.
-const ABOVE: [f64; 4] = [1.03, 1.03, 1.2, 1.2];
+const ABOVE: [f64; 4] = [1.1, 1.1, 1.2, 1.2];
 
 /// Limits are looked for from no lower than this: rad/s and rad/s².
 const LOWEST: [f64; 4] = [DEGREE_RAD, DEGREE_RAD, 20.0 * DEGREE_RAD, 20.0 * DEGREE_RAD];
@@ -26,8 +27,11 @@ const ENOUGH_S: f64 = 150.0;
 /// The same for fits that leave a part out, s.
 const ENOUGH_TO_HOLD_OUT_S: f64 = 450.0;
 
+/// Slowest time constant of an integral that shows, s.
+const SLOWEST_INTEGRAL_S: f64 = 20.0;
+
 /// Rounds over all runs after a search in some.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 4;
 
 /// Rounds of the fits that leave a part out.
 const FOLD_ROUNDS: usize = 5;
@@ -37,12 +41,11 @@ const INEFFICIENCY: f64 = 50.0;
 
 /// Fits one joint, whose runs are not empty; with its held-out starts.
 pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
-    let reached = [0, 1, 2, 3].map(|i| runs.iter().map(|run| run.reached()[i]).fold(0.0, f64::max));
+    let reached = [0, 1, 2, 3].map(|i| runs.iter().map(|run| run.reached[i]).fold(0.0, f64::max));
     let limits = [0, 1, 2, 3].map(|i| (ABOVE[i] * reached[i]).max(LOWEST[i]));
     let pose_rad = range(runs.iter().flat_map(|run| run.sent.iter().map(|sent| sent.0)));
     let priors = Priors::new(limits, pose_rad);
-    let place = telling(runs, ENOUGH_S);
-    let some = of(&place, runs);
+    let some = of(&telling(runs, ENOUGH_S), runs);
     let mut problem = Problem {
         runs: &some,
         priors: &priors,
@@ -55,7 +58,7 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
     // What goes may have stood in for what stays.
     for _ in 0..2 {
         problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);
-        let seen = seen(&problem, &found, &mut workspace);
+        let seen = seen(&problem, &found, reached, &mut workspace);
         if seen == problem.seen {
             break;
         }
@@ -66,17 +69,23 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
         problem.runs = runs;
         found.x.truncate(SHARED);
         found.x.resize(SHARED + runs.len(), 0.0);
-        let x = problem.settled(found.x, found.scale_rad, &mut workspace);
-        found = problem.descend(x, ROUNDS, &mut workspace);
+        found = problem.descend(found.x, ROUNDS, &mut workspace);
         problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);
     }
-    let knowledge = Knowledge::new(&problem, &found.x, found.scale_rad, &mut workspace);
+    // No limit is below what was reached.
+    for i in (0..4).filter(|i| problem.seen[*i]) {
+        found.x[LIMITS + i] = found.x[LIMITS + i].max(priors.of(LIMITS + i).place(reached[i]));
+    }
+    let mut knowledge = Knowledge::new(&problem, &found.x, found.scale_rad, &mut workspace);
     let place = telling(runs, ENOUGH_TO_HOLD_OUT_S);
     let held_out = of(&place, runs);
     let x: Vec<f64> = found.x[..SHARED].iter().copied().chain(of(&place, &found.x[SHARED..])).collect();
     let skill = skill(&Problem { runs: &held_out, ..problem.clone() }, &x, FOLD_ROUNDS, &mut workspace);
     let samples = runs.iter().map(|run| run.samples.len()).sum();
-    (report(name, &problem, &found, &knowledge, reached, samples, &skill), skill.starts)
+    let left = Oscillation::of(&problem.longest_left_rad(&found.x, &mut workspace));
+    knowledge.holds = left.character == Character::Calm && skill.held_out_r2 >= 0.0;
+    let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
+    (joint, skill.starts)
 }
 
 /// Which runs tell enough: all, or of long logs some that are spread evenly, and those that reached or were asked
@@ -89,9 +98,9 @@ fn telling(runs: &[Run], enough_s: f64) -> Vec<usize> {
     }
     let mut chosen = vec![false; runs.len()];
     for i in 0..8 {
-        let most = |run: &Run| [run.asked, run.reached()][i / 4][i % 4];
-        let best = (0..runs.len()).max_by(|a, b| most(&runs[*a]).total_cmp(&most(&runs[*b])).then(b.cmp(a)));
-        best.into_iter().for_each(|run| chosen[run] = true);
+        let most = |run: &usize| [runs[*run].asked, runs[*run].reached][i / 4][i % 4];
+        let best = (0..runs.len()).max_by(|a, b| most(a).total_cmp(&most(b)).then(b.cmp(a)));
+        chosen[best.unwrap_or_default()] = true;
     }
     let (mut before, mut taken) = (0, 0);
     for (run, chosen) in runs.iter().zip(&mut chosen) {
@@ -125,17 +134,20 @@ fn report(
     let one = |i: usize, value: f64, discrepancy: f64| {
         knowledge.positive(value, &[(i, problem.priors.of(i).deviation)], discrepancy)
     };
-    let limit = |i: usize, discrepancy: f64| {
+    let limit = |i: usize| {
         let bound = Some(reached[i]);
         if problem.seen[i] {
             let value = problem.priors.of(LIMITS + i).value(found.x[LIMITS + i]);
-            Estimated { lower_bound: bound, ..one(LIMITS + i, value, discrepancy) }
+            Estimated { lower_bound: bound, ..one(LIMITS + i, value, discrepancy::LIMIT[i]) }
         } else {
             Estimated { lower_bound: bound, ..Estimated::default() }
         }
     };
     let position_gain = knowledge.missed(discrepancy::POSITION_GAIN, discrepancy::SMOOTH_POSITION_GAIN);
     let integral_gain = knowledge.missed(discrepancy::INTEGRAL_GAIN, discrepancy::SMOOTH_INTEGRAL_GAIN);
+    let mut integral = one(INTEGRAL_GAIN, model.integral_gain_1_s2, integral_gain);
+    // One that acts more slowly than runs last cannot be told from none.
+    integral.identified &= model.position_gain_1_s < SLOWEST_INTEGRAL_S * model.integral_gain_1_s2;
     let [dead_band_rad_s, dead_band_error_rad] = knowledge.dead_band(problem, &found.x);
     JointFit {
         name: name.to_owned(),
@@ -144,18 +156,19 @@ fn report(
         residual_rad: found.scale_rad,
         inefficiency: knowledge.inefficiency,
         held_out_r2: skill.held_out_r2,
+        model_holds: knowledge.holds,
         unexplained_peak_rad: unexplained_rad(&skill.starts),
         lag_s: knowledge.lag(problem, &found.x),
         dead_band_rad_s,
         dead_band_error_rad,
         position_gain_1_s: one(POSITION_GAIN, model.position_gain_1_s, position_gain),
-        integral_gain_1_s2: one(INTEGRAL_GAIN, model.integral_gain_1_s2, integral_gain),
+        integral_gain_1_s2: integral,
         feed_forward: one(FEED_FORWARD, model.feed_forward, discrepancy::GAIN),
         gain_ratio: one(ASYMMETRY, model.asymmetry.exp(), discrepancy::GAIN),
-        speed_limit_growing_rad_s: limit(0, discrepancy::GROWING),
-        speed_limit_shrinking_rad_s: limit(1, discrepancy::SHRINKING),
-        acceleration_limit_growing_rad_s2: limit(2, discrepancy::ACCELERATION),
-        acceleration_limit_shrinking_rad_s2: limit(3, discrepancy::ACCELERATION),
+        speed_limit_growing_rad_s: limit(0),
+        speed_limit_shrinking_rad_s: limit(1),
+        acceleration_limit_growing_rad_s2: limit(2),
+        acceleration_limit_shrinking_rad_s2: limit(3),
         valve_dead_band: None,
         model,
     }

@@ -53,6 +53,9 @@ const SPARSEST_S: f64 = 0.2;
 /// Window of a measured speed, half, s.
 const SPEED_WINDOW_S: f64 = 0.1;
 
+/// A speed is reached that is held so long on average, s.
+const REACHED_OVER_S: f64 = 0.5;
+
 /// Longest stretch after a start in which its peak error is looked for, s.
 const WINDOW_S: f64 = 4.0;
 
@@ -78,10 +81,8 @@ pub(super) struct Run {
     pub(super) start: Start,
     /// Measured angles, in order.
     pub(super) samples: Vec<Sample>,
-    /// Largest measured speeds for growing and shrinking angles, rad/s.
-    pub(super) fastest_rad_s: [f64; 2],
-    /// Largest measured changes of speed that add to positive and negative ones, rad/s².
-    pub(super) sharpest_rad_s2: [f64; 2],
+    /// Largest measured speeds for growing and shrinking angles, rad/s, and changes of speed, rad/s².
+    pub(super) reached: [f64; 4],
     /// Largest sent speeds, rad/s, and changes of it, rad/s².
     pub(super) asked: [f64; 4],
     /// Grid points at which the joint is sent off, from rest or backwards.
@@ -92,12 +93,6 @@ impl Run {
     /// Distance that the joint was sent, rad.
     pub(super) fn travel_rad(&self) -> f64 {
         self.sent.windows(2).map(|w| (w[1].0 - w[0].0).abs()).sum()
-    }
-
-    /// Largest measured speeds for growing and shrinking angles, rad/s, and changes of speed, rad/s².
-    pub(super) fn reached(&self) -> [f64; 4] {
-        let (fastest, sharpest) = (self.fastest_rad_s, self.sharpest_rad_s2);
-        [fastest[0], fastest[1], sharpest[0], sharpest[1]]
     }
 
     /// Where the window after a start ends.
@@ -171,12 +166,12 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
                 samples.push(Sample { step, part: at - step as f64, measured_rad, fold: fold(step) });
             }
             let extreme = |of: &dyn Fn(usize) -> f64| (first..last).map(of).fold(0.0, f64::max);
-            let fastest_rad_s = [1.0, -1.0].map(|way| extreme(&|i| way * fits[i].velocity));
+            let fastest = fastest_rad_s(&pair.t_s[first..last], &pair.measured[first..last]);
             let rise = |i: usize| {
                 let span_s = (pair.t_s[i] - pair.t_s[i.saturating_sub(10).max(first)]).max(STEP_S);
                 (fits[i].velocity - fits[i.saturating_sub(10).max(first)].velocity) / span_s
             };
-            let sharpest_rad_s2 = [1.0, -1.0].map(|way| extreme(&|i| way * rise(i)));
+            let sharpest = [1.0, -1.0].map(|way| extreme(&|i| way * rise(i)));
             let sent = whole[steps.clone()].to_vec();
             runs.push(Run {
                 asked: asked(&sent),
@@ -184,12 +179,24 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
                 sent,
                 start: Start { angle_rad: fit.position, speed_rad_s, integral_rad_s: 0.0 },
                 samples,
-                fastest_rad_s,
-                sharpest_rad_s2,
+                reached: [fastest[0], fastest[1], sharpest[0], sharpest[1]],
             });
         }
     }
     runs
+}
+
+/// Largest mean speeds for growing and shrinking angles, rad/s: over a time in which noise averages out.
+fn fastest_rad_s(t_s: &[f64], angle_rad: &[f64]) -> [f64; 2] {
+    let mut fastest = [0.0_f64; 2];
+    for (from, from_s) in t_s.iter().enumerate() {
+        let to = t_s.partition_point(|t_s| t_s - from_s < REACHED_OVER_S);
+        if let Some(to_s) = t_s.get(to) {
+            let speed_rad_s = (angle_rad[to] - angle_rad[from]) / (to_s - from_s);
+            fastest = [fastest[0].max(speed_rad_s), fastest[1].max(-speed_rad_s)];
+        }
+    }
+    fastest
 }
 
 /// Largest sent speeds for growing and shrinking angles, rad/s, and changes of speed over a tenth of

@@ -95,7 +95,7 @@ fn lanes<const N: usize>(
         let moves = sent_rad_s.abs() > 0.0;
         let mut wants = [0.0; N];
         for i in 0..N {
-            seen[i] = lower(upper(seen[i], angle[i] - half_play[i]), angle[i] + half_play[i]);
+            seen[i] = within(seen[i], angle[i] - half_play[i], angle[i] + half_play[i]);
             let error_rad = sent_rad - seen[i];
             let grows = moves || error_rad.abs() >= FREEZE_RAD;
             integral[i] += if grows { integral_step[i] * error_rad } else { 0.0 };
@@ -108,7 +108,7 @@ fn lanes<const N: usize>(
             let late = k.saturating_sub(whole[i]);
             let (new, old) = (wanted[late * N + i], wanted[late.saturating_sub(1) * N + i]);
             let arrived = new + part[i] * (old - new);
-            upper(arrived - up[i], 0.0) + lower(arrived - down[i], 0.0)
+            within(arrived - up[i], 0.0, f64::INFINITY) + within(arrived - down[i], f64::NEG_INFINITY, 0.0)
         });
         if target.iter().any(|beyond| *beyond != 0.0) {
             for i in 0..N {
@@ -119,52 +119,42 @@ fn lanes<const N: usize>(
             }
             for i in 0..N {
                 let way = target[i].signum();
-                let off = lower(upper(angle[i], lowest[i]), highest[i]) - 0.5 * (lowest[i] + highest[i]);
+                let off = within(angle[i], lowest[i], highest[i]) - 0.5 * (lowest[i] + highest[i]);
                 let exponent = way * (asymmetry[i] + bent[i] * off) + (slope[i] + curve[i] * off) * off;
-                target[i] = upper(lower(exp(exponent) * target[i], fastest[i]), slowest[i]);
+                target[i] = within(exp(exponent) * target[i], slowest[i], fastest[i]);
             }
         }
         for i in 0..N {
             let before = speed[i];
-            speed[i] += upper(lower(approach[i] * (target[i] - speed[i]), most[i]), least[i]);
+            speed[i] += within(approach[i] * (target[i] - speed[i]), least[i], most[i]);
             angle[i] += 0.5 * STEP_S * (before + speed[i]);
         }
     }
 }
 
-/// The larger of two numbers; the second if one is none. A single instruction, as [`f64::max`] is not.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
-fn upper(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
+/// A number held between two; without the care for what is no number of [`f64::clamp`] two instructions.
+#[inline]
+fn within(x: f64, lowest: f64, highest: f64) -> f64 {
+    let x = if x > lowest { x } else { lowest };
+    if x < highest { x } else { highest }
 }
 
-/// The smaller of two numbers, in the same way.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
-fn lower(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// The exponential function to 4e-16 for numbers within 20, the nearest of these for others: a Taylor polynomial
-/// about the nearest power of two, in a form that compilers turn into vector code.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
+/// The exponential function to 5e-16 within 20 of 0: a Taylor polynomial, in a form that compilers turn into vectors.
+#[inline]
 fn exp(x: f64) -> f64 {
     /// Adding it leaves the nearest whole number in the low bits.
     const ROUND: f64 = 1.5 * (1_u64 << 52) as f64;
     /// ln 2 in two parts; the first ends in zeros, so that its products with small whole numbers are exact.
     const LN_2: [f64; 2] = [f64::from_bits(0x3FE6_2E42_FEE0_0000), f64::from_bits(0x3DEA_39EF_3579_3C76)];
-    let x = lower(upper(x, -20.0), 20.0);
+    let x = within(x, -20.0, 20.0);
     let shifted = x * std::f64::consts::LOG2_E + ROUND;
     let whole = shifted - ROUND;
     let r = (x - whole * LN_2[0]) - whole * LN_2[1];
     let y = r * r;
     let even = [1.0 / 2.0, 1.0 / 24.0, 1.0 / 720.0, 1.0 / 40_320.0, 1.0 / 3_628_800.0, 1.0 / 479_001_600.0];
     let odd = [1.0 / 6.0, 1.0 / 120.0, 1.0 / 5_040.0, 1.0 / 362_880.0, 1.0 / 39_916_800.0];
-    let even = 1.0 + y * even.iter().rev().fold(0.0, |sum, term| sum * y + term);
-    let odd = 1.0 + y * odd.iter().rev().fold(0.0, |sum, term| sum * y + term);
-    (even + r * odd) * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
+    let [even, odd] = [&even[..], &odd].map(|terms| terms.iter().rev().fold(0.0, |sum, term| sum * y + term));
+    (1.0 + y * even + r * (1.0 + y * odd)) * f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52)
 }
 
 /// Whether a joint stays at rest though `beyond` more than the dead band is wanted.
@@ -182,10 +172,9 @@ mod tests {
 
     #[test]
     fn powers_are_those_of_the_library() {
-        for k in -2000..=2000 {
-            let x = f64::from(k) * 0.0103;
+        for x in (-2000..=2000).map(|k| f64::from(k) * 0.0103) {
             let truth = x.clamp(-20.0, 20.0).exp();
-            assert!((exp(x) - truth).abs() <= 4e-16 * truth, "{x}: {} {truth}", exp(x));
+            assert!((exp(x) - truth).abs() <= 5e-16 * truth, "{x}: {} {truth}", exp(x));
         }
     }
 }
