@@ -23,6 +23,7 @@ mod sampled_motion;
 mod search;
 mod seed;
 mod setup;
+mod speed_room;
 mod tangent;
 
 pub use choose::{Choice, NoChoice, Rule, choose, ends};
@@ -36,3 +37,4 @@ pub use reference::{BEYOND, Reference};
 pub use sampled_motion::SampledMotion;
 pub use search::{Found, Phase, Progress, Search, search};
 pub use setup::Setup;
+pub use speed_room::SpeedRoom;

@@ -12,6 +12,7 @@ pub mod kit;
 mod metric;
 pub(crate) mod next;
 pub mod plan;
+mod promise;
 pub(crate) mod recover;
 pub(crate) mod replan;
 pub(crate) mod report;

@@ -32,6 +32,8 @@ pub struct Room {
     pub most: [f64; 3],
     /// Angle, speed, acceleration and jerk of the plan, every [`STEP_S`].
     pub planned: Vec<[f64; 4]>,
+    /// Lowest and highest speed by step, rad/s, as rods, pump and tool have it; empty where they leave any.
+    pub speed_rad_s: Vec<[f64; 2]>,
 }
 
 impl Room {
@@ -44,7 +46,9 @@ impl Room {
         let end = samples.end.min(self.planned.len());
         let inside = self.planned.get(samples.start.min(end)..end).unwrap_or_default();
         let (mut least, mut most) = (f64::NEG_INFINITY, f64::INFINITY);
-        for planned in inside.iter().map(|planned| planned[derivative]) {
+        for (k, planned) in inside.iter().map(|planned| planned[derivative]).enumerate() {
+            let own = self.speed_rad_s.get(samples.start + k).filter(|_| derivative == 1);
+            let [low, high] = own.map_or([low, high], |[least, most]| [low.max(*least), high.min(*most)]);
             (least, most) = (least.max(low - planned), most.min(high - planned));
         }
         [least.min(0.0), most.max(0.0)]
@@ -258,7 +262,7 @@ mod tests {
     fn a_step_is_softened_until_every_limit_is_kept_and_no_more() {
         let step: Vec<f64> = (0..N).map(|k| if (400..800).contains(&k) { 0.05 } else { 0.0 }).collect();
         let planned = (0..N).map(|k| [0.0, 0.05 * (k as f64 * 0.01).sin(), 0.1, 0.0]).collect();
-        let room = Room { range_rad: [-0.02, 0.03], most: [0.1, 0.2, 0.4], planned };
+        let room = Room { range_rad: [-0.02, 0.03], most: [0.1, 0.2, 0.4], planned, speed_rad_s: Vec::new() };
         let curve = shaped(wanted(&step), std::slice::from_ref(&(0..N)), Some(&room));
         let (mut nearest, mut before) = ([0.0_f64; 4], 0.0);
         for (state, planned) in curve.iter().zip(&room.planned) {
@@ -280,7 +284,7 @@ mod tests {
     fn a_plan_at_its_limit_or_beyond_leaves_no_room_but_zero() {
         let step = vec![0.05; N];
         let planned = vec![[0.0, 0.1, 0.2, 0.4]; N];
-        let room = Room { range_rad: [-1.0, 1.0], most: [0.1, 0.1, 0.1], planned };
+        let room = Room { range_rad: [-1.0, 1.0], most: [0.1, 0.1, 0.1], planned, speed_rad_s: Vec::new() };
         let curve = shaped(wanted(&step), std::slice::from_ref(&(0..N)), Some(&room));
         assert!(curve.iter().all(|state| state[0].abs() < 1e-6));
         assert!(shaped(wanted(&step), &[0..40, 100..101], None).iter().all(|state| state[0] == 0.0));

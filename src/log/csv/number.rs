@@ -3,7 +3,8 @@
 /// The number in a cell; `None` if it is none. NaN and infinities, which some programs write as
 /// words, are numbers here.
 pub(super) fn number(cell: &[u8], decimal_comma: bool) -> Option<f64> {
-    const LONGEST: usize = 48;
+    // A number near zero without an exponent has some 345 characters, and `export` writes those.
+    const LONGEST: usize = 400;
     let cell = cell.trim_ascii();
     if cell.is_empty() || cell.len() > LONGEST {
         return None;
@@ -107,6 +108,16 @@ mod tests {
         assert_eq!(nanoseconds(b"0.30000000000000004", false, 1_000_000_000), Some(300_000_000));
         assert_eq!(nanoseconds(b"1.5e-3", false, 1_000_000_000), Some(1_500_000));
         assert_eq!(nanoseconds(b"99999999999", false, 1_000_000_000), None);
+    }
+
+    #[test]
+    fn every_number_reads_back_as_it_is_printed() {
+        for value in [f64::MIN_POSITIVE, -5e-324, f64::MAX, -2.235291569183627e-31, 0.1, -0.0] {
+            let cell = format!("{value}");
+            assert_eq!(number(cell.as_bytes(), false).map(f64::to_bits), Some(value.to_bits()), "{cell}");
+            let cell = cell.replace('.', ",");
+            assert_eq!(number(cell.as_bytes(), true).map(f64::to_bits), Some(value.to_bits()), "{cell}");
+        }
     }
 
     #[test]

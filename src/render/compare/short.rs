@@ -5,6 +5,7 @@ use crate::{
     render::{
         kit::{Sentence, counted, optional, percent, probability, signed},
         metric::{position, with_unit},
+        promise,
     },
     replay::PEAK_ERROR,
     series::JointKind,
@@ -20,6 +21,10 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     }
     lines.extend(whole_run(comparison));
     lines.push(plans(comparison));
+    lines.extend(comparison.after.iter().filter_map(|run| {
+        let of = if comparison.after.len() > 1 { format!(" of {}", run.log) } else { String::new() };
+        promise::sentence(run.promised.as_ref()?, &of)
+    }));
     lines.into_iter().map(Sentence::Finding).chain(verdicts(comparison)).collect()
 }
 

@@ -73,8 +73,21 @@ pub(super) fn runs(replanned: &Replanned) -> Option<Section> {
         )
         .with(Sentence::note(
             "Mean peak error of starts and reversals: what its command promised, and what came.",
-        )),
+        ))
+        .with_all(distrust(replanned).map(Sentence::Finding)),
     )
+}
+
+/// What a broken promise costs.
+fn distrust(replanned: &Replanned) -> Option<String> {
+    let (trust, last) = (replanned.past.trust, replanned.past.runs.last()?);
+    (trust < 1.0).then(|| {
+        format!(
+            "{} came above what nine runs of ten should stay below: {:.0} % of the usual step is taken.",
+            last.log,
+            100.0 * trust
+        )
+    })
 }
 
 /// The command joint by joint.

@@ -9,9 +9,9 @@ use crate::{
             spark,
         },
         metric::{Units, position, with_unit},
+        promise,
     },
     replay::{Answer, JOINT, JointReplay, Profiles, Replay, TRANSITION, Transition, Verdict},
-    series::JointKind,
     workflow::report::{GateResult, Report},
 };
 
@@ -63,22 +63,6 @@ fn in_short(report: &Report) -> Vec<Sentence> {
     lines
 }
 
-/// What the command promised beside what came.
-fn promised(report: &Report) -> Option<String> {
-    let promised = report.promised?;
-    let peaks: Vec<f64> = report.replay.transitions.iter().map(|t| t.peak_error).collect();
-    let came = (!peaks.is_empty()).then(|| peaks.iter().sum::<f64>() / peaks.len() as f64)?;
-    let kept = if came <= promised.mean_peak_margin_rad { "kept" } else { "not kept" };
-    let kind = JointKind::Turns;
-    Some(format!(
-        "The command promised a mean peak of {} (below {} in nine runs of ten) over {}; {} came: {kept}.",
-        position(kind, promised.mean_peak_rad),
-        position(kind, promised.mean_peak_margin_rad),
-        counted(peaks.len(), "start and reversal").replace("start and reversals", "starts and reversals"),
-        position(kind, came),
-    ))
-}
-
 fn findings(report: &Report) -> Vec<String> {
     let replay = &report.replay;
     let of_all = replay.kind();
@@ -90,7 +74,7 @@ fn findings(report: &Report) -> Vec<String> {
         }
         None => lines.push("No planned start from rest was found.".to_owned()),
     }
-    lines.extend(promised(report));
+    lines.extend(report.promised.and_then(|held| promise::sentence(&held, "")));
     lines.extend(mostly_lag(replay).map(|lag| format!("The error is mostly lag: {lag}.")));
     if let Some(c) = &replay.whole_run.concentration {
         let place = match (mostly_lag(replay), c.verdict) {

@@ -14,7 +14,7 @@ use std::{
     path::{Component, Path},
 };
 
-pub use promise::Promise;
+pub use promise::{Held, Promise};
 pub use schedule::Schedule;
 use sha2::{Digest, Sha256};
 pub use worth::worth;

@@ -67,14 +67,8 @@ impl PlanLog<'_> {
             Some(chain) => ArmLog::begin(&mut log, chain, &names, START_NS, false)?,
             None => None,
         };
-        let end_s = self.plan.end_s();
-        let coarse_s: Vec<f64> = instants(end_s, TRAJECTORY_HZ).collect();
-        let coarse = match &self.command {
-            Some(command) => command.states(&names, coarse_s),
-            None => self.plan.states(&names, coarse_s),
-        };
-        log.trajectory_to_send(START_NS, &coarse.points().collect::<Vec<_>>())?;
-        let fine_s: Vec<f64> = instants(end_s, self.rate_hz).collect();
+        log.trajectory_to_send(START_NS, &self.to_send().points().collect::<Vec<_>>())?;
+        let fine_s: Vec<f64> = instants(self.plan.end_s(), self.rate_hz).collect();
         let command = self.command.map(|command| command.states(&names, fine_s.clone()));
         let mut commanded = command.as_ref().map(States::points);
         for point in self.plan.states(&names, fine_s).points() {
@@ -89,6 +83,15 @@ impl PlanLog<'_> {
         }
         self.carried.end(&mut log, START_NS)?;
         log.finish()
+    }
+
+    /// The trajectory to send: the command, or the plan without one.
+    pub(in crate::workflow) fn to_send(self) -> States {
+        let (names, t_s) = (self.plan.names(), instants(self.plan.end_s(), TRAJECTORY_HZ).collect());
+        match &self.command {
+            Some(command) => command.states(&names, t_s),
+            None => self.plan.states(&names, t_s),
+        }
     }
 }
 
@@ -152,7 +155,7 @@ impl Command<'_> {
 }
 
 /// States, instant by instant.
-struct States {
+pub(in crate::workflow) struct States {
     t_s: Vec<f64>,
     joints: usize,
     /// Position, velocity and, if it is known, acceleration, each `[instant][joint]`.
@@ -160,7 +163,7 @@ struct States {
 }
 
 impl States {
-    fn points(&self) -> impl Iterator<Item = Point<'_>> {
+    pub(in crate::workflow) fn points(&self) -> impl Iterator<Item = Point<'_>> {
         self.t_s.iter().enumerate().map(|(i, t_s)| {
             let of = |values: &'_ Vec<f64>| -> std::ops::Range<usize> {
                 let first = (i * self.joints).min(values.len());

@@ -17,7 +17,34 @@ pub struct Promise {
     pub mean_peak_margin_rad: f64,
 }
 
+/// A promise beside what came.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Held {
+    /// What the command promised.
+    #[serde(flatten)]
+    pub promised: Promise,
+    /// Mean peak error that came, rad; null without a start or reversal.
+    pub measured_mean_peak_rad: Option<f64>,
+    /// Starts and reversals that were measured.
+    pub transitions: usize,
+}
+
+impl Held {
+    /// Whether the mean stayed below what nine runs of ten stay below; `None` if nothing was measured.
+    pub fn kept(&self) -> Option<bool> {
+        Some(self.measured_mean_peak_rad? <= self.promised.mean_peak_margin_rad)
+    }
+}
+
 impl Promise {
+    /// Held to the peak errors of starts and reversals, rad.
+    pub fn held(self, peaks_rad: impl Iterator<Item = f64>) -> Held {
+        let (transitions, sum) = peaks_rad.fold((0, 0.0), |(count, sum), peak| (count + 1, sum + peak));
+        let measured_mean_peak_rad = (transitions > 0).then(|| sum / transitions as f64);
+        Held { promised: self, measured_mean_peak_rad, transitions }
+    }
+
     /// As entries of the provenance.
     pub(super) fn entries(&self) -> [(String, String); 2] {
         [(EXPECTED, self.mean_peak_rad), (MARGIN, self.mean_peak_margin_rad)]

@@ -36,6 +36,7 @@ impl Member<'_> {
             offset_s: self.matched.offset_s,
             plan_difference: plans.map(|plans| plans.most_rad),
             same_plan: plans.is_some_and(|plans| plans.same),
+            promised: self.report.promised,
         }
     }
 

@@ -7,6 +7,7 @@ use crate::{
     log::SourceInfo,
     replay::{Answer, Kind, Metric, Transition},
     series::JointKind,
+    workflow::carried::Held,
 };
 
 /// Before the change or after it.
@@ -45,6 +46,9 @@ pub struct Run {
     pub plan_difference: Option<f64>,
     /// Whether it is the same plan.
     pub same_plan: bool,
+    /// What its command promised, beside what came; null without a promise in the log.
+    #[serde(default)]
+    pub promised: Option<Held>,
 }
 
 /// One transition before and after.

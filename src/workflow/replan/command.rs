@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::ReplanFailure;
 use crate::{
     fit::{Fit, Learning, Learnt, Oscillation, Room, STEP_S, Step, Trial, learn, predict},
-    math::{State, range},
-    plan::{Interpolation, KEPT_SHARE, Limit, Margin, Setup},
+    math::{State, lowpass, range},
+    plan::{Interpolation, KEPT_SHARE, Limit, Margin, Setup, SpeedRoom},
     series::{Series, Track, align},
     spline::{Motion, Quantity, Samples},
 };
@@ -16,6 +16,15 @@ const SHARES: [f64; 6] = [0.97, 0.9, 0.75, 0.5, 0.25, 0.0];
 
 /// Steps from one point of a trajectory to the next: of the samples, and of the trajectory in the log.
 const STRIDES: [usize; 2] = [1, 4];
+
+/// Shares of a limit are solved for as exactly as this.
+pub(super) const SOLVED: f64 = 1e-6;
+
+/// Times that what rods, pump and tool leave is dealt anew.
+const ROUNDS: usize = 4;
+
+/// Accelerations of samples are told below this, Hz.
+const KNOWN_HZ: f64 = 2.0;
 
 /// A plan and a motion are the same if their angles differ by no more, rad.
 const SAME_RAD: f64 = 1e-6;
@@ -106,19 +115,28 @@ pub(super) fn commanded(
     settings: Learning,
 ) -> Result<Commanded, ReplanFailure> {
     let Subject { plan, setup, .. } = subject;
-    let planned: Vec<Vec<[f64; 4]>> = plan.tracks.iter().map(|track| subject.derivatives(track)).collect();
+    let (planned, exact) = subject.derivatives();
     let index = |name: &str| plan.tracks.iter().position(|track| track.name() == name);
     let names = setup.map(Setup::joint_names).unwrap_or_default();
-    let room = |name: &str| {
-        let (range_rad, most) =
-            setup.and_then(|s| s.joint_limits(names.iter().position(|own| own == name)?))?;
-        Some(Room { range_rad, most, planned: planned.get(index(name)?)?.clone() })
+    let taught = |narrowed: &SpeedRoom| {
+        let room = |name: &str| {
+            let own = names.iter().position(|own| own == name)?;
+            let (range_rad, most) = setup.and_then(|s| s.joint_limits(own))?;
+            let planned = planned.get(index(name)?)?.clone();
+            Some(Room {
+                range_rad,
+                most,
+                planned,
+                speed_rad_s: narrowed.get(own).cloned().unwrap_or_default(),
+            })
+        };
+        learn(fit, plan, runs, settings, room)
     };
-    let learnt = learn(fit, plan, runs, settings, room)?;
+    let mut learnt = taught(&SpeedRoom::new())?;
     let mut shares: Vec<(f64, Option<Limit>)> = vec![(1.0, None); plan.tracks.len()];
     let mut margins = Vec::new();
     if let Some(setup) = setup {
-        let sent = |shares: &[(f64, Option<Limit>)]| -> Vec<Vec<State>> {
+        let sent = |learnt: &Learnt, shares: &[(f64, Option<Limit>)]| -> Vec<Vec<State>> {
             let of = |name: &String| {
                 let j = index(name)?;
                 Some(states(&planned[j], &learnt.joints[j].correction, shares[j].0))
@@ -126,15 +144,31 @@ pub(super) fn commanded(
             names.iter().filter_map(of).collect()
         };
         let none = vec![(0.0, None); shares.len()];
-        let own = checked(setup, &sent(&none));
+        let own = sent(&learnt, &none);
+        let steps = own.iter().map(Vec::len).min().unwrap_or_default();
+        let mut narrowed: SpeedRoom = vec![vec![[f64::NEG_INFINITY, f64::INFINITY]; steps]; own.len()];
+        for _ in 0..ROUNDS {
+            if !setup.narrow(&own, &sent(&learnt, &shares), &mut narrowed) {
+                break;
+            }
+            learnt = taught(&narrowed)?;
+        }
+        // Samples without their motion tell no acceleration exactly.
+        let told = |(_, margin): &(Checked, Margin)| {
+            exact || !matches!(margin.limit, Limit::Acceleration | Limit::Jerk)
+        };
+        let checked = |sent: &[Vec<State>]| -> Vec<(Checked, Margin)> {
+            checked(setup, sent).into_iter().filter(told).collect()
+        };
+        let own = checked(&own);
         let broken = |(how, margin): &&(Checked, Margin)| {
             let same = |(other, own): &&(Checked, Margin)| {
                 (other, own.limit, own.joint) == (how, margin.limit, margin.joint)
             };
             let least = own.iter().find(same).map_or(0.0, |(_, own)| own.share);
-            margin.share > KEPT_SHARE.max(least + 1e-9)
+            margin.share > KEPT_SHARE.max(least) + SOLVED
         };
-        let mut found = checked(setup, &sent(&shares));
+        let mut found = checked(&sent(&learnt, &shares));
         for share in SHARES {
             let worst: Vec<&Margin> = found.iter().filter(broken).map(|(_, margin)| margin).collect();
             if worst.is_empty() {
@@ -148,7 +182,7 @@ pub(super) fn commanded(
                     *of = (share, Some(margin.limit));
                 }
             }
-            found = checked(setup, &sent(&shares));
+            found = checked(&sent(&learnt, &shares));
         }
         margins = nearest(found);
     }
@@ -207,41 +241,55 @@ fn states(planned: &[[f64; 4]], correction: &[[f64; 3]], share: f64) -> Vec<Stat
 }
 
 impl Subject<'_> {
-    /// Angle, speed, acceleration and jerk of a joint's plan every step: of its motion where that is known, otherwise by
-    /// differences of speeds.
-    fn derivatives(&self, track: &Track) -> Vec<[f64; 4]> {
-        let (t_s, position, speed) = (track.t_s(), track.position(), track.velocity());
-        let last = t_s.len().saturating_sub(1);
-        let slope = |values: &dyn Fn(usize) -> f64, k: usize| {
-            let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
-            (values(after) - values(before)) / ((after - before).max(1) as f64 * STEP_S)
+    /// Angle, speed, acceleration and jerk of each joint's plan every step, and whether they are those of its motion; otherwise
+    /// they are smoothed differences.
+    fn derivatives(&self) -> (Vec<Vec<[f64; 4]>>, bool) {
+        let exact: Option<Vec<Vec<[f64; 4]>>> =
+            self.plan.tracks.iter().map(|track| self.by_motion(track)).collect();
+        let Some(exact) = exact else {
+            return (self.plan.tracks.iter().map(by_differences).collect(), false);
         };
-        let speed_at = |k: usize| speed.map_or_else(|| slope(&|i| position[i], k), |speed| speed[k]);
-        let acceleration: Vec<f64> = (0..t_s.len()).map(|k| slope(&speed_at, k)).collect();
-        let mut states: Vec<[f64; 4]> = (0..t_s.len())
-            .map(|k| [position[k], speed_at(k), acceleration[k], slope(&|i| acceleration[i], k)])
-            .collect();
-        self.by_motion(track, &mut states);
-        states
+        (exact, true)
     }
 
-    fn by_motion(&self, track: &Track, states: &mut [[f64; 4]]) {
-        let (Some((motion, starts_s)), Some(setup)) = (&self.motion, self.setup) else { return };
-        let Some(joint) = setup.joint_names().iter().position(|name| name == track.name()) else { return };
+    /// `None` if the samples are not those of the motion.
+    fn by_motion(&self, track: &Track) -> Option<Vec<[f64; 4]>> {
+        let (motion, starts_s) = self.motion.as_ref()?;
+        let joint = self.setup?.joint_names().iter().position(|name| name == track.name())?;
         let local_s: Vec<f64> = track.t_s().iter().map(|t_s| t_s - starts_s).collect();
         let mut samples = Samples::default();
         motion.sample(&local_s, Quantity::Jerk, &mut samples);
         let position = samples.of(Quantity::Position, joint);
-        if !states.iter().zip(position).all(|(state, own)| (state[0] - own).abs() < SAME_RAD) {
-            return;
-        }
+        let same = track.position().iter().zip(position).all(|(a, b)| (a - b).abs() < SAME_RAD);
         let end_s = motion.duration_s();
-        let (rise, jerk) = (samples.of(Quantity::Acceleration, joint), samples.of(Quantity::Jerk, joint));
-        for (((state, t_s), rise), jerk) in states.iter_mut().zip(&local_s).zip(rise).zip(jerk) {
-            let inside = (0.0..=end_s).contains(t_s);
-            (state[2], state[3]) = if inside { (*rise, *jerk) } else { (0.0, 0.0) };
-        }
+        let state = |k: usize| {
+            let inside = |quantity| {
+                let within = (0.0..=end_s).contains(&local_s[k]);
+                if within { samples.of(quantity, joint)[k] } else { 0.0 }
+            };
+            let speed = track.velocity().map_or_else(|| inside(Quantity::Velocity), |speed| speed[k]);
+            [track.position()[k], speed, inside(Quantity::Acceleration), inside(Quantity::Jerk)]
+        };
+        same.then(|| (0..track.len()).map(state).collect())
     }
+}
+
+/// Angle, speed, acceleration and jerk by differences.
+fn by_differences(track: &Track) -> Vec<[f64; 4]> {
+    let (position, last) = (track.position(), track.len().saturating_sub(1));
+    let slopes = |values: &[f64]| -> Vec<f64> {
+        let slope = |k: usize| {
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+            (values[after] - values[before]) / ((after - before).max(1) as f64 * STEP_S)
+        };
+        (0..values.len()).map(slope).collect()
+    };
+    let speed = track.velocity().map_or_else(|| slopes(position), <[f64]>::to_vec);
+    let mut smooth = speed.clone();
+    lowpass(&mut smooth, KNOWN_HZ, STEP_S);
+    let acceleration = slopes(&smooth);
+    let jerk = slopes(&acceleration);
+    (0..track.len()).map(|k| [position[k], speed[k], acceleration[k], jerk[k]]).collect()
 }
 
 /// What is said of each joint.

@@ -1,20 +1,25 @@
-//! What holds for every command: made from random plans, answers, models and gains.
+//! What holds for every command: made from random tasks, plans, answers, models and gains.
 
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
+use rayon::prelude::*;
 
-use super::command::{Commanded, Subject, commanded};
+use super::command::{Commanded, SOLVED, Subject, commanded};
 use crate::{
     arm::Arm,
     fit::{Fit, Learning, Observation, STEP_S, Trial, fit},
     math::State,
-    plan::{Interpolation, KEPT_SHARE, Setup},
+    plan::{Interpolation, KEPT_SHARE, Limit, Margin, PlanEvaluation, Setup},
     rng::{Stream, stream},
     series::{Series, Track},
-    task::Task,
+    task::{KeyPoint, Place, Task},
     workflow::{
-        carried::rest::PLAN_LEAD_S,
-        replan::{ReplanFailure, samples::sampled},
+        carried::{
+            Carried,
+            plan_log::{Command, PlanLog, Planned},
+            rest::PLAN_LEAD_S,
+        },
+        replan::samples::sampled,
     },
 };
 
@@ -25,13 +30,7 @@ const TIMES_S: [f64; 6] = [0.0, 7.744, 15.307, 22.863, 30.976, 38.72];
 
 /// Commands of one call of the tests; with `HYDROTRACE_COMMANDS` so many.
 fn count() -> u64 {
-    std::env::var("HYDROTRACE_COMMANDS").ok().and_then(|count| count.parse().ok()).unwrap_or(6)
-}
-
-struct Case {
-    setup: Setup,
-    plan: Series,
-    command: Commanded,
+    std::env::var("HYDROTRACE_COMMANDS").ok().and_then(|count| count.parse().ok()).unwrap_or(12)
 }
 
 fn uniform(rng: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
@@ -59,90 +58,224 @@ fn answer(sent: &Series, rng: &mut ChaCha8Rng) -> Series {
     Series { tracks: sent.tracks.iter().map(one).collect() }
 }
 
+/// A model of each joint, to be varied.
 fn machine(plan: &Series, rng: &mut ChaCha8Rng) -> Fit {
     let measured = answer(plan, rng);
-    let mut fit = fit(&[Observation { sent: plan, measured: &measured, valve: &[] }]).unwrap();
+    fit(&[Observation { sent: plan, measured: &measured, valve: &[] }]).unwrap()
+}
+
+/// Another machine.
+fn varied(fit: &Fit, rng: &mut ChaCha8Rng) -> Fit {
+    let mut fit = fit.clone();
     for joint in &mut fit.joints {
         joint.held_out_r2 = uniform(rng, -1.0, 1.0);
+        let model = &mut joint.model;
+        model.dead_time_s = uniform(rng, 0.0, 0.5);
+        model.time_constant_s = uniform(rng, 0.01, 0.5);
+        model.feed_forward = uniform(rng, 0.0, 1.3);
+        model.position_gain_1_s = uniform(rng, 0.2, 4.0);
+        model.integral_gain_1_s2 = uniform(rng, 0.0, 1.5);
+        model.dead_band_rad_s = uniform(rng, 0.0, 0.05);
+        model.asymmetry = uniform(rng, -0.4, 0.4);
     }
     fit
 }
 
-/// One command of a task whose times are stretched at random, from up to three runs.
-fn case(fit: &Fit, base: &Setup, seed: u64) -> Result<Case, ReplanFailure> {
+/// Poses within those of the paper's task, some with a rest; limits from half to twice the paper's arm's.
+fn task(rng: &mut ChaCha8Rng) -> Task {
+    let mut task = Task::parse(TASK).unwrap();
+    let pose_of = |point: &KeyPoint| match &point.place {
+        Place::Joints(angle_rad) => angle_rad.clone(),
+        Place::Tool { .. } => Vec::new(),
+    };
+    let poses: Vec<Vec<f64>> = task.points.iter().map(pose_of).collect();
+    let count = 2 + (uniform(rng, 0.0, 3.999)) as usize;
+    task.points = (0..count)
+        .map(|k| {
+            let between = |j: usize| {
+                let all = || poses.iter().map(|pose| pose[j]);
+                let (low, high) =
+                    (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+                (low, high)
+            };
+            let angle_rad = (0..task.joints.len())
+                .map(|j| {
+                    let (low, high) = between(j);
+                    uniform(rng, low, high)
+                })
+                .collect();
+            let rests = k > 0 && k + 1 < count && uniform(rng, 0.0, 1.0) < 0.4;
+            KeyPoint {
+                name: format!("{k}"),
+                place: Place::Joints(angle_rad),
+                dwell_s: rests.then(|| uniform(rng, 0.5, 4.0)),
+                payload_kg: None,
+            }
+        })
+        .collect();
+    for limits in &mut task.limits {
+        limits.velocity_rad_s *= uniform(rng, 0.5, 2.0);
+        limits.acceleration_rad_s2 *= uniform(rng, 0.5, 2.0);
+        limits.jerk_rad_s3 *= uniform(rng, 0.5, 2.0);
+        limits.rod_speed_m_s = uniform(rng, 0.05, 0.5);
+    }
+    task.tool_speed_m_s = uniform(rng, 0.3, 3.0);
+    task.times_s = None;
+    task
+}
+
+/// A task and times at which its plan keeps what a command has to keep, by a margin of up to a third; `None` where its
+/// poses are none for the arm.
+fn planned(rng: &mut ChaCha8Rng) -> Option<(Setup, Vec<f64>)> {
+    let setup = Setup::new(&task(rng), Arm::sample().unwrap()).ok()?;
+    let mut interval_s: Vec<f64> = (0..setup.interval_count()).map(|_| uniform(rng, 1.0, 4.0)).collect();
+    for _ in 0..14 {
+        let times_s = setup.times_s(&interval_s);
+        let evaluation = PlanEvaluation::of(&setup, &times_s).ok()?;
+        let keeps =
+            evaluation.broken().iter().all(|margin| matches!(margin.limit, Limit::Torque | Limit::RodForce));
+        let by = if keeps { uniform(rng, 1.002, 1.1) } else { 1.15 };
+        for interval in &mut interval_s {
+            *interval = (by * *interval).min(20.0);
+        }
+        if keeps {
+            return Some((setup.clone(), setup.times_s(&interval_s)));
+        }
+    }
+    None
+}
+
+struct Case {
+    setup: Setup,
+    plan: Series,
+    command: Commanded,
+    /// The plan itself as a command.
+    plain: Commanded,
+}
+
+/// One command of a random task, from up to three runs.
+fn case(fit: &Fit, seed: u64) -> Case {
     let mut rng = stream(seed, Stream::SensorNoise);
-    let stretch = uniform(&mut rng, 1.0, 1.3);
-    let times_s: Vec<f64> = TIMES_S.iter().map(|t_s| stretch * t_s).collect();
-    let setup = base.clone();
-    let motion = setup.motion(&times_s)?;
-    let plan = sampled(&setup, &motion)?;
+    let (setup, times_s) = (0..50).find_map(|_| planned(&mut rng)).unwrap();
+    let fit = varied(fit, &mut rng);
+    let plan = sampled(&setup, &setup.motion(&times_s).unwrap()).unwrap();
     let mut runs = vec![(plan.clone(), answer(&plan, &mut rng))];
     let settings = Learning {
         gain: uniform(&mut rng, 0.1, 1.0),
         most_rad: seed.is_multiple_of(2).then(|| uniform(&mut rng, 0.0, 0.2)),
         ..Learning::default()
     };
-    let made = |runs: &[(Series, Series)]| {
+    let made = |runs: &[(Series, Series)], settings: Learning| {
         let trials: Vec<Trial> = runs.iter().map(|(sent, measured)| Trial { sent, measured }).collect();
-        let motion = Some((setup.motion(&times_s)?, PLAN_LEAD_S));
+        let motion = Some((setup.motion(&times_s).unwrap(), PLAN_LEAD_S));
         let subject = Subject { plan: &plan, motion, setup: Some(&setup) };
-        commanded(fit, &subject, &trials, settings)
+        commanded(&fit, &subject, &trials, settings).unwrap()
     };
-    let mut command = made(&runs)?;
+    let mut command = made(&runs, settings);
     for _ in 0..seed % 3 {
         let sent = command.series.clone();
         let measured = answer(&sent, &mut rng);
         runs.push((sent, measured));
-        command = made(&runs)?;
+        command = made(&runs, settings);
     }
-    Ok(Case { setup, plan, command })
+    let plain = made(&runs, Learning { gain: 0.0, ..settings });
+    Case { setup, plan, command, plain }
 }
 
-#[test]
-fn no_command_breaks_a_limit_of_its_plan_or_ends_elsewhere_or_in_motion() {
-    let setup = Setup::new(&Task::parse(TASK).unwrap(), Arm::sample().unwrap()).unwrap();
-    let plan = sampled(&setup, &setup.motion(&TIMES_S).unwrap()).unwrap();
-    let fit = machine(&plan, &mut stream(0, Stream::SensorNoise));
-    let mut corrected = 0;
-    for seed in 1..=count() {
-        let Case { setup, plan, command } = case(&fit, &setup, seed).unwrap();
-        corrected += usize::from(command.applied());
-        let names = setup.joint_names();
-        let mut sent = Vec::new();
-        for (name, (track, acceleration)) in
-            names.iter().zip(command.series.tracks.iter().zip(&command.acceleration_rad_s2))
-        {
-            let (planned, speed) = (plan.track(name).unwrap(), track.velocity().unwrap());
-            let last = track.len() - 1;
-            assert_eq!(track.name(), name);
-            assert_eq!((track.len(), acceleration.len()), (planned.len(), planned.len()));
-            for k in [0, last] {
-                assert_eq!(
-                    track.position()[k].to_bits(),
-                    planned.position()[k].to_bits(),
-                    "seed {seed}, {name}: an end is moved"
-                );
-                assert!(
-                    speed[k].abs() < 1e-12 && acceleration[k].abs() < 1e-12,
-                    "seed {seed}, {name}: an end moves"
-                );
+/// One broken law of a command, if there is one.
+fn broken(seed: u64, Case { setup, plan, command, plain }: &Case) -> Option<String> {
+    let names = setup.joint_names();
+    for (name, (track, acceleration)) in
+        names.iter().zip(command.series.tracks.iter().zip(&command.acceleration_rad_s2))
+    {
+        let (own, speed) = (plan.track(name)?, track.velocity()?);
+        if track.name() != name || track.len() != own.len() || acceleration.len() != own.len() {
+            return Some(format!("{seed}: {name} has {} samples, its plan {}", track.len(), own.len()));
+        }
+        for k in [0, track.len() - 1] {
+            if track.position()[k].to_bits() != own.position()[k].to_bits() {
+                return Some(format!("{seed}: an end of {name} is moved"));
             }
-            let state = |k: usize| State {
+            if speed[k].abs() > 1e-12 || acceleration[k].abs() > 1e-12 {
+                return Some(format!("{seed}: an end of {name} moves"));
+            }
+        }
+    }
+    for how in Interpolation::ALL {
+        for stride in [1, 4] {
+            let margins = |of: &Commanded| {
+                let points: Vec<Vec<State>> =
+                    states(of).map(|all| all.into_iter().step_by(stride).collect()).collect();
+                setup.command_margins(&points, stride as f64 * STEP_S, how)
+            };
+            let own = margins(plain);
+            let over = |margin: &&Margin| {
+                let same = |own: &&Margin| (own.limit, own.joint) == (margin.limit, margin.joint);
+                let plain = own.iter().find(same).map_or(0.0, |own| own.share);
+                margin.share > KEPT_SHARE.max(plain) + SOLVED
+            };
+            if let Some(margin) = margins(command).iter().find(over) {
+                return Some(format!("{seed}: {how:?} every {stride}: {margin:?}"));
+            }
+        }
+    }
+    refused(plan, command, &names).map(|rule| format!("{seed}: {rule}"))
+}
+
+fn states(of: &Commanded) -> impl Iterator<Item = Vec<State>> {
+    of.series.tracks.iter().zip(&of.acceleration_rad_s2).map(|(track, acceleration)| {
+        let speed = track.velocity().unwrap();
+        (0..track.len())
+            .map(|k| State {
                 position: track.position()[k],
                 velocity: speed[k],
                 acceleration: acceleration[k],
-            };
-            sent.push((0..track.len()).map(state).collect::<Vec<State>>());
+            })
+            .collect()
+    })
+}
+
+/// Why a trajectory controller would refuse a command; its rules, with their source, are those of `cli::trajectory`.
+fn refused(plan: &Series, command: &Commanded, names: &[String]) -> Option<&'static str> {
+    let log = PlanLog {
+        plan: Planned::Series(plan),
+        command: Some(Command { series: &command.series, acceleration_rad_s2: &command.acceleration_rad_s2 }),
+        arm: None,
+        trajectory: None,
+        carried: &Carried::default(),
+        rate_hz: 100.0,
+    };
+    let sent = log.to_send();
+    let mut before_ns = -1;
+    for point in sent.points() {
+        if point.time_from_start_ns <= before_ns {
+            return Some("times do not increase");
         }
-        for how in Interpolation::ALL {
-            for stride in [1, 4] {
-                let points: Vec<Vec<State>> =
-                    sent.iter().map(|all| all.iter().copied().step_by(stride).collect()).collect();
-                for margin in setup.command_margins(&points, stride as f64 * STEP_S, how) {
-                    assert!(margin.share <= KEPT_SHARE, "seed {seed}, {how:?} {stride}: {margin:?}");
-                }
+        before_ns = point.time_from_start_ns;
+        for values in [point.position_rad, point.velocity_rad_s, point.acceleration_rad_s2] {
+            if values.len() != names.len() || values.iter().any(|value| !value.is_finite()) {
+                return Some("a point lacks a number");
             }
         }
     }
+    let at_end =
+        sent.points().last()?.velocity_rad_s.iter().fold(0.0_f64, |most, speed| most.max(speed.abs()));
+    (at_end > f64::from(f32::EPSILON)).then_some("it ends in motion")
+}
+
+#[test]
+fn no_command_breaks_a_limit_a_rule_of_the_controller_or_the_end_of_its_plan() {
+    let setup = Setup::new(&Task::parse(TASK).unwrap(), Arm::sample().unwrap()).unwrap();
+    let plan = sampled(&setup, &setup.motion(&TIMES_S).unwrap()).unwrap();
+    let fit = machine(&plan, &mut stream(0, Stream::SensorNoise));
+    let of = |seed: u64| {
+        let case = case(&fit, seed);
+        (broken(seed, &case), usize::from(case.command.applied()))
+    };
+    let found: Vec<(Option<String>, usize)> = (1..=count()).into_par_iter().map(of).collect();
+    let corrected: usize = found.iter().map(|(_, corrected)| corrected).sum();
+    let broken: Vec<String> = found.into_iter().filter_map(|(broken, _)| broken).collect();
+    println!("{} commands, {corrected} of them no plain plan, {} break a law", count(), broken.len());
+    assert!(broken.is_empty(), "{broken:#?}");
     assert!(corrected as u64 > count() / 2, "{corrected}");
 }

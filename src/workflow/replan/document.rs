@@ -28,6 +28,8 @@ pub struct ReplanDocument {
     pub runs: Vec<PastRun>,
     /// Whether the new command is worth sending.
     pub decision: Decision,
+    /// Share of the usual gain that is left: less than one where the newest run came above its promise.
+    pub trust: f64,
     /// Prediction for the next run.
     pub after: Predicted,
     /// From the first to the last motion of the new plan, s.
@@ -65,6 +67,7 @@ impl ReplanDocument {
             before: replanned.before.clone(),
             runs: replanned.past.runs.clone(),
             decision: replanned.past.decision.clone(),
+            trust: replanned.past.trust,
             after: replanned.after.clone(),
             duration_s: replanned.duration_s,
             retimed: replanned.retimed,

@@ -4,7 +4,11 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{ReplanFailure, last::moving_s, samples::cut};
+use super::{
+    ReplanFailure,
+    last::moving_s,
+    samples::{cut, found_at_s, within},
+};
 use crate::{
     fit::Trial,
     log::Recording,
@@ -13,18 +17,14 @@ use crate::{
     workflow::carried::{Carried, Promise, rest::PLAN_LEAD_S},
 };
 
-/// Plans whose angles differ by less are the same, rad.
-const SAME_RAD: f64 = 1e-3;
-
-/// Rounds that bring a plan onto the clock of another, and the longest step of one, s.
-const ROUNDS: usize = 3;
-const MOST_AHEAD_S: f64 = 0.5;
-
 /// A correction below this is none, rad.
 const NONE_RAD: f64 = 1e-3;
 
 /// A run whose mean peak is not below this share of the best before it was not worth its correction.
 const WORTH: f64 = 0.9;
+
+/// Share of the usual gain that is left however much a command broke its promise.
+const LEAST_TRUST: f64 = 0.5;
 
 /// One run of the plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -76,17 +76,10 @@ impl History {
         let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
         for (path, recording) in paths.iter().zip(recordings) {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
-            let mut starts_s = from_s - PLAN_LEAD_S;
-            let mut planned = cut(&recording.planned, starts_s, starts_s + end_s)?;
-            // The first moving sample tells the start to a sample; the whole plan tells it better.
-            for _ in 0..ROUNDS {
-                starts_s -= ahead_s(&planned, plan);
-                planned = cut(&recording.planned, starts_s, starts_s + end_s)?;
-            }
-            let on_clock = |series: &Series| cut(series, starts_s, starts_s + end_s);
-            if !same(&planned, plan) {
+            let Some(starts_s) = found_at_s(plan, &recording.planned, from_s - PLAN_LEAD_S)? else {
                 continue;
-            }
+            };
+            let on_clock = |series: &Series| cut(series, starts_s, starts_s + end_s);
             let sent = recording.command.as_ref().map_or(&recording.planned, |command| &command.series);
             let (sent, measured) = (on_clock(sent)?, on_clock(&recording.measured)?);
             let pairs: Vec<_> = (recording.measured.tracks.iter())
@@ -121,6 +114,14 @@ impl History {
         self.runs.iter().any(|run| run.corrected)
     }
 
+    /// Share of the usual gain, by what the newest command promised: less than one where more came than nine runs of ten
+    /// should have, in the ratio of the two, and no less than a half.
+    pub(super) fn trust(&self) -> f64 {
+        let of = |run: &PastRun| Some(run.promised?.mean_peak_margin_rad / run.mean_peak_rad?);
+        let ratio = self.runs.last().filter(|run| run.corrected).and_then(of).unwrap_or(1.0);
+        if ratio.is_finite() { ratio.clamp(LEAST_TRUST, 1.0) } else { 1.0 }
+    }
+
     /// Whether the last correction was worth it.
     pub(super) fn decision(&self) -> Decision {
         let peaks: Vec<(usize, f64)> =
@@ -138,34 +139,6 @@ impl History {
     }
 }
 
-/// How far a plan is ahead of another of equal samples, s: the shift of least squares, at most [`MOST_AHEAD_S`].
-fn ahead_s(planned: &Series, plan: &Series) -> f64 {
-    let (mut along, mut square) = (0.0, 0.0);
-    for track in &plan.tracks {
-        let Some(other) = planned.track(track.name()) else { continue };
-        let steps = track.t_s().windows(2).zip(track.position().windows(2));
-        for ((t_s, position), other) in steps.zip(other.position()) {
-            let speed = (position[1] - position[0]) / (t_s[1] - t_s[0]);
-            along += speed * (other - position[0]);
-            square += speed * speed;
-        }
-    }
-    if square > 0.0 { (along / square).clamp(-MOST_AHEAD_S, MOST_AHEAD_S) } else { 0.0 }
-}
-
-fn same(planned: &Series, plan: &Series) -> bool {
-    planned.tracks.len() == plan.tracks.len() && within(planned, plan, SAME_RAD)
-}
-
-fn within(series: &Series, plan: &Series, most_rad: f64) -> bool {
-    plan.tracks.iter().all(|plan| {
-        series.track(plan.name()).is_some_and(|track| {
-            let pairs = track.position().iter().zip(plan.position());
-            track.len() == plan.len() && pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < most_rad
-        })
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -181,16 +154,24 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_recorded_between_the_samples_is_brought_onto_the_clock() {
-        use crate::series::Track;
-        let wave = |shift_s: f64| {
-            let t_s: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.01).collect();
-            let position = t_s.iter().map(|t| 0.3 * (0.4 * (t + shift_s)).sin()).collect();
-            Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] }
+    fn a_broken_promise_lowers_the_gain_and_a_kept_one_does_not() {
+        let trust = |promised: Option<f64>, came: f64, corrected: bool| {
+            let promised =
+                promised.map(|margin| Promise { mean_peak_rad: 0.5 * margin, mean_peak_margin_rad: margin });
+            let mut history = history(&[came]);
+            history.runs[0].promised = promised;
+            history.runs[0].corrected = corrected;
+            history.trust()
         };
-        for shift_s in [-0.2, -0.004, 0.0, 0.0071, 0.15] {
-            let found = ahead_s(&wave(shift_s), &wave(0.0));
-            assert!((found - shift_s).abs() < 0.01 * shift_s.abs() + 1e-4, "{shift_s} {found}");
+        for (promised, came, corrected, expected) in [
+            (Some(0.2), 0.1, true, 1.0),
+            (Some(0.2), 0.2, true, 1.0),
+            (Some(0.2), 0.25, true, 0.8),
+            (Some(0.2), 5.0, true, 0.5),
+            (Some(0.2), 5.0, false, 1.0),
+            (None, 5.0, true, 1.0),
+        ] {
+            assert!((trust(promised, came, corrected) - expected).abs() < 1e-12, "{promised:?} {came}");
         }
     }
 

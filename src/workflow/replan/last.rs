@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use super::{Inputs, ReplanFailure, samples::cut};
+use super::{
+    Inputs, ReplanFailure,
+    samples::{cut, found_at_s, sampled},
+};
 use crate::{
     log::Recording,
     series::{Series, Track},
@@ -46,7 +49,6 @@ impl Last {
         let planned = &recording.planned;
         let [from_s, to_s] =
             moving_s(planned).ok_or_else(|| ReplanFailure::AtRest { path: path.to_owned() })?;
-        let plan = cut(planned, from_s - PLAN_LEAD_S, to_s + COMMAND_TAIL_S)?;
         let carried = Carried::of(recording).of_plan();
         let request = match (&inputs.task, carried.task_files()) {
             (Some(task), _) => Some(PlanRequest::read(task)?),
@@ -59,9 +61,23 @@ impl Last {
         let times_s = carried
             .times_s()
             .filter(|times_s| request.as_ref().is_some_and(|request| request.setup.motion(times_s).is_ok()));
+        let near_s = from_s - PLAN_LEAD_S;
+        let motion = request.as_ref().zip(times_s.as_ref());
+        // Samples of a log are a little late or early each, which no derivative of them forgives: the motion is exact.
+        let exact = match motion.map(|(request, times_s)| (&request.setup, request.setup.motion(times_s))) {
+            Some((setup, Ok(motion))) => {
+                let plan = sampled(setup, &motion)?;
+                found_at_s(&plan, planned, near_s)?.map(|_| plan)
+            }
+            _ => None,
+        };
+        let starts_s = match exact {
+            Some(_) => Some(PLAN_LEAD_S),
+            None => carried.starts_s().map(|s| s - near_s),
+        };
         Ok(Self {
-            plan,
-            starts_s: carried.starts_s().map(|s| s - (from_s - PLAN_LEAD_S)),
+            plan: exact.map_or_else(|| cut(planned, near_s, to_s + COMMAND_TAIL_S), Ok)?,
+            starts_s,
             duration_s: to_s - from_s,
             request,
             times_s,

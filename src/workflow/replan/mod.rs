@@ -160,7 +160,7 @@ pub fn run(
         .map(|(interval_s, plan)| maker.candidate(interval_s, plan))
         .collect::<Result<_, _>>()?;
     let chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
-    let past = outcome::Past { runs: history.runs, decision };
+    let past = outcome::Past { trust: history.trust(), runs: history.runs, decision };
     outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)
 }
 
@@ -269,7 +269,8 @@ impl Maker<'_> {
             Decision::Keep { run, .. } if kept => Some(*run),
             _ => None,
         };
-        let learning = Learning { keep, ..inputs.learning };
+        let gain = inputs.learning.gain * if kept { history.trust() } else { 1.0 };
+        let learning = Learning { gain, keep, ..inputs.learning };
         let command = if inputs.precompensate {
             let subject = Subject { plan: &plan, motion, setup: *setup };
             Some(commanded(fit, &subject, &trials, learning)?)

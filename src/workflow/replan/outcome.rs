@@ -132,6 +132,8 @@ pub struct Past {
     pub runs: Vec<PastRun>,
     /// Whether to go on.
     pub decision: Decision,
+    /// Share of the usual gain that the newest command's promise leaves.
+    pub trust: f64,
 }
 
 pub(super) fn replanned(

@@ -8,7 +8,7 @@ use crate::{
     log::SourceInfo,
     remark::Remark,
     replay::{JointReplay, Rules, Stop, Transition, WholeRun},
-    workflow::carried::Promise,
+    workflow::carried::Held,
 };
 
 /// What the format is called.
@@ -29,8 +29,8 @@ pub struct Document {
     pub machine: Option<String>,
     /// The run: the entry "run" of the log's metadata.
     pub run: Option<String>,
-    /// What the command of this run promised; null without a promise in the log.
-    pub promised: Option<Promise>,
+    /// What the command of this run promised, beside what came; null without a promise in the log.
+    pub promised: Option<Held>,
     /// Where the data come from.
     pub source: SourceInfo,
     /// How plan and measurement were matched, by joint.

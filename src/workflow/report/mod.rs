@@ -83,7 +83,9 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, LogEr
         paths: inputs.logs.clone(),
         machine: named("machine"),
         run: named("run"),
-        promised: carried.promise(),
+        promised: carried
+            .promise()
+            .map(|promise| promise.held(replay.transitions.iter().map(|t| t.peak_error))),
         holds_task: carried.task().is_some(),
         schedule: Schedule::of(&carried),
         source: recording.source,

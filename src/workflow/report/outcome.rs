@@ -11,7 +11,7 @@ use crate::{
     replay::{Profiles, Replay},
     series::Pair,
     workflow::{
-        carried::{Promise, Schedule},
+        carried::{Held, Schedule},
         plan::PlanDocument,
     },
 };
@@ -41,8 +41,8 @@ pub struct Report {
     pub machine: Option<String>,
     /// The run, if metadata of the log name it.
     pub run: Option<String>,
-    /// What the command of this run promised, if the log carries it.
-    pub promised: Option<Promise>,
+    /// What the command of this run promised, beside what came, if the log carries it.
+    pub promised: Option<Held>,
     /// Whether the log holds the task of its plan, so that a gentler plan can be made from it.
     pub holds_task: bool,
     /// Where the data come from.

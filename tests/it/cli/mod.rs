@@ -16,5 +16,6 @@ mod simulate;
 mod spared;
 mod tables;
 mod terminal;
+mod trajectory;
 mod view;
 mod whole_loop;

@@ -1,6 +1,6 @@
 //! What `LogWriter` promises, checked with the crate `mcap` and a decoder of our own.
 
-mod decode;
+pub(crate) mod decode;
 mod kill;
 mod peers;
 mod robot;

@@ -1,24 +1,22 @@
 //! What the machines of the study do: the paper's tasks at several timings, with payload.
 
+use std::path::Path;
+
 use hydrotrace::{
-    arm::Arm,
-    plan::Setup,
-    plant::PayloadChange,
-    series::{Series, Track},
-    spline::{Motion, Quantity, Samples},
-    task::Task,
+    plan::PlanEvaluation,
+    workflow::{
+        carried::{
+            Carried,
+            plan_log::{PlanLog, Planned},
+        },
+        plan::{PlanDocument, PlanRequest},
+    },
 };
 
 use super::LearningError;
 
 /// Step of plans and commands, s.
 const STEP_S: f64 = 0.01;
-
-/// Rest before a motion, s.
-const LEAD_S: f64 = 1.5;
-
-/// Rest after it in a plan, s.
-const TAIL_S: f64 = 3.0;
 
 /// Task texts by number.
 const TASKS: [&str; 2] = [
@@ -36,18 +34,12 @@ const TIMINGS: [(&str, usize, &[f64]); 5] = [
 ];
 
 /// A plan to repeat.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Job {
     /// What people call it.
     pub title: &'static str,
-    /// The task on its arm.
-    pub setup: Setup,
-    /// The motion, which starts 1.5 s after the first sample of the plan.
-    pub motion: Motion,
-    /// Its samples, with rests.
-    pub plan: Series,
-    /// Payload by time.
-    pub payload: Vec<PayloadChange>,
+    /// The log of the plan, with task and arm.
+    pub log: Vec<u8>,
 }
 
 impl Job {
@@ -61,32 +53,20 @@ impl Job {
     }
 
     fn of(title: &'static str, task: &str, times_s: &[f64]) -> Result<Self, LearningError> {
-        let setup = Setup::new(&Task::parse(task)?, Arm::sample()?)?;
-        let motion = setup.motion(times_s)?;
-        let plan = sampled(&setup, &motion)?;
-        let change = |(segment, &mass_kg): (&hydrotrace::spline::Segment, &f64)| PayloadChange {
-            at_s: LEAD_S + segment.start_s,
-            mass_kg,
+        let request = PlanRequest::parse(Path::new("task.toml"), task.to_owned())?;
+        let evaluation = PlanEvaluation::of(&request.setup, times_s)?;
+        let joints = request.setup.joint_names();
+        let document = PlanDocument::evaluated(title, &joints, &evaluation, true);
+        let motion = request.setup.motion(times_s)?;
+        let carried = Carried::default().with_plan(&request.files, &document);
+        let log = PlanLog {
+            plan: Planned::Motion(&motion, &joints),
+            command: None,
+            arm: Some(&request.setup.arm().chain),
+            trajectory: None,
+            carried: &carried,
+            rate_hz: 1.0 / STEP_S,
         };
-        let payload = motion.segments().iter().zip(setup.payload_kg()).map(change).collect();
-        Ok(Self { title, setup, motion, plan, payload })
+        Ok(Self { title, log: log.bytes()? })
     }
-}
-
-fn sampled(setup: &Setup, motion: &Motion) -> Result<Series, LearningError> {
-    let duration_s = motion.duration_s();
-    let end_s = LEAD_S + duration_s + TAIL_S;
-    let mut t_s = vec![0.0];
-    while let Some(last) = t_s.last().filter(|last| **last < end_s) {
-        t_s.push(last + STEP_S);
-    }
-    let local_s: Vec<f64> = t_s.iter().map(|t| t - LEAD_S).collect();
-    let mut samples = Samples::default();
-    motion.sample(&local_s, Quantity::Velocity, &mut samples);
-    let inside = |(v, t): (&f64, &f64)| if (0.0..=duration_s).contains(t) { *v } else { 0.0 };
-    let one = |(j, name): (usize, String)| {
-        let speed = samples.of(Quantity::Velocity, j).iter().zip(&local_s).map(inside).collect();
-        Track::new(name, t_s.clone(), samples.of(Quantity::Position, j).to_vec(), &[])?.with_velocity(speed)
-    };
-    Ok(Series { tracks: setup.joint_names().into_iter().enumerate().map(one).collect::<Result<_, _>>()? })
 }

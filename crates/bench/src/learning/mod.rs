@@ -1,24 +1,38 @@
-//! Commands run after run on simulated machines of many structures: what is left of the error, beside a plain
-//! proportional learning law.
+//! Commands run after run on simulated machines of many structures, by the verbs that a user calls: what is left of the
+//! error, and what was promised of it, beside a plain proportional learning law.
 
 mod job;
+mod machine;
 mod peer;
 mod score;
 mod table;
 
+use std::{
+    collections::BTreeMap,
+    io,
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+};
+
 use hydrotrace::{
-    arm::ArmError,
-    fit::{Fit, FitError, Learning, Observation, Step, Trial, fit, learn},
+    fit::{FitError, Step},
+    log::WriteError,
     plan::PlanError,
-    plant::{Parameters, Plant, PlantError, simulate},
-    series::{Series, SignalError, Track},
-    task::TaskError,
+    plant::PlantError,
+    series::SignalError,
+    units::degrees_from_radians,
+    workflow::{
+        plan::PlanFailure,
+        replan::{JointCommand, ReplanFailure, Replanned},
+        simulate::log::SimulateFailure,
+    },
 };
 use rayon::prelude::*;
 use serde::Serialize;
 use thiserror::Error;
 
 pub use job::Job;
+use machine::{Machine, Ran};
 pub use score::Score;
 pub use table::table;
 
@@ -27,29 +41,38 @@ pub use table::table;
 pub enum LearningError {
     /// A task.
     #[error(transparent)]
-    Task(#[from] TaskError),
-    /// An arm.
-    #[error(transparent)]
-    Arm(#[from] ArmError),
+    Task(#[from] PlanFailure),
     /// A plan.
     #[error(transparent)]
     Plan(#[from] PlanError),
     /// A machine.
     #[error(transparent)]
     Plant(#[from] PlantError),
-    /// A fit or a command.
+    /// A fit.
     #[error(transparent)]
     Fit(#[from] FitError),
+    /// A run.
+    #[error(transparent)]
+    Simulate(#[from] SimulateFailure),
+    /// A command.
+    #[error(transparent)]
+    Replan(#[from] ReplanFailure),
     /// Samples.
     #[error(transparent)]
     Signal(#[from] SignalError),
+    /// A log.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A file between two verbs.
+    #[error("a log of the study cannot be written")]
+    File(#[from] io::Error),
 }
 
 /// Who makes the commands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Teacher {
-    /// [`learn`].
+    /// `replan`, from the logs of all runs so far.
     Learn,
     /// Proportional iterative learning.
     Proportional,
@@ -70,6 +93,8 @@ pub struct Cell {
     pub again: Score,
     /// Runs with commands, in their order.
     pub runs: Vec<Score>,
+    /// Mean peak that each command promised, and what nine runs of ten stay below, deg.
+    pub promised_deg: Vec<Option<[f64; 2]>>,
     /// How each joint's correction came about, by run.
     pub notes: Vec<String>,
 }
@@ -115,64 +140,61 @@ pub fn run(inputs: &Inputs, done: impl Fn() + Sync) -> Result<Vec<Cell>, Learnin
 /// Seeds of one cell's runs lie so far apart.
 const SEEDS_A_CELL: u64 = 1000;
 
-fn cell(machine: &str, job: &Job, seed: u64, inputs: &Inputs) -> Result<Cell, LearningError> {
-    let plant = Plant::new(job.setup.arm(), Parameters::preset(machine)?)?;
-    let tried = |sent: &Series, run: u64| -> Result<(Series, Score), LearningError> {
-        let record = simulate(&plant, &held(sent)?, &job.payload, SEEDS_A_CELL * seed + run)?;
-        let score = Score::of(&job.plan, &record)?;
-        Ok((cut(&score::series(&record, false)?, &job.plan)?, score))
+/// Seed of the plan's second run, beside those of the runs with commands.
+const AGAIN: u64 = 500;
+
+fn cell(name: &str, job: &Job, seed: u64, inputs: &Inputs) -> Result<Cell, LearningError> {
+    let folder = tempfile::tempdir()?;
+    let file = |name: String, bytes: &[u8]| -> Result<PathBuf, LearningError> {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes)?;
+        Ok(path)
     };
-    let (measured, plain) = tried(&job.plan, 0)?;
-    let (_, again) = tried(&job.plan, 500)?;
-    let mut logs = vec![(job.plan.clone(), measured)];
-    let (mut runs, mut notes) = (Vec::new(), Vec::new());
+    let plan = file("plan.mcap".to_owned(), &job.log)?;
+    let machine = Machine { name, seed: SEEDS_A_CELL * seed };
+    let plain = machine.runs(&plan, 0, None)?;
+    let again = machine.runs(&plan, AGAIN, None)?.score;
+    let mut logs = vec![file("run-0.mcap".to_owned(), &plain.log)?];
+    let mut all: Vec<Ran> = vec![plain];
+    let (mut promised_deg, mut notes) = (Vec::new(), Vec::new());
     for run in 1..=inputs.runs {
-        let (command, note) = match inputs.teacher {
-            Teacher::Learn => taught(job, &logs)?,
-            Teacher::Proportional => (peer::next(job, &logs)?, String::new()),
+        let ran = match inputs.teacher {
+            Teacher::Learn => {
+                let next = replanned(&logs)?;
+                let sent = file(format!("next-{run}.mcap"), &next.log(BTreeMap::new(), 100.0)?)?;
+                let promise = next.promise();
+                promised_deg.push(Some(
+                    [promise.mean_peak_rad, promise.mean_peak_margin_rad].map(degrees_from_radians),
+                ));
+                notes.push(note(&next));
+                machine.runs(&sent, run, None)?
+            }
+            Teacher::Proportional => {
+                promised_deg.push(None);
+                notes.push(String::new());
+                machine.runs(&plan, run, Some(peer::next(&all)?))?
+            }
         };
-        let (measured, score) = tried(&command, run)?;
-        runs.push(score);
-        notes.push(note);
-        logs.push((command, measured));
+        logs.push(file(format!("run-{run}.mcap"), &ran.log)?);
+        all.push(ran);
     }
-    let (machine, job) = (machine.to_owned(), job.title.to_owned());
-    Ok(Cell { machine, job, seed, plain, again, runs, notes })
+    let mut scores = all.into_iter().map(|ran| ran.score);
+    let plain = scores.next().unwrap_or_else(|| again.clone());
+    let (machine, job) = (name.to_owned(), job.title.to_owned());
+    Ok(Cell { machine, job, seed, plain, again, runs: scores.collect(), promised_deg, notes })
 }
 
-/// As the log of a run would end: some seconds after the plan.
-fn cut(measured: &Series, plan: &Series) -> Result<Series, SignalError> {
-    let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
-    let one = |track: &Track| {
-        let count = track.t_s().partition_point(|t_s| *t_s <= end_s);
-        Track::new(track.name(), &track.t_s()[..count], track.position()[..count].to_vec(), &[])
+fn replanned(logs: &[PathBuf]) -> Result<Replanned, LearningError> {
+    let inputs = hydrotrace::workflow::replan::Inputs {
+        logs: logs.iter().map(PathBuf::as_path).map(Path::to_owned).collect(),
+        keep_plan: true,
+        ..Default::default()
     };
-    Ok(Series { tracks: measured.tracks.iter().map(one).collect::<Result<_, _>>()? })
+    Ok(hydrotrace::workflow::replan::run(&inputs, |_| ControlFlow::Continue(()))?)
 }
 
-/// What is sent, its last angle held for some time.
-fn held(sent: &Series) -> Result<Series, SignalError> {
-    let one = |track: &Track| {
-        let last = track.t_s().last().copied().unwrap_or_default();
-        let state = track.held_at(last);
-        let t_s: Vec<f64> = track.t_s().iter().copied().chain([last + 0.01, last + score::HELD_S]).collect();
-        let angle = track.position().iter().copied().chain([state.position; 2]).collect();
-        let speed = track.velocity().unwrap_or_default().iter().copied().chain([0.0; 2]).collect();
-        Track::new(track.name(), t_s, angle, &[])?.with_velocity(speed)
-    };
-    Ok(Series { tracks: sent.tracks.iter().map(one).collect::<Result<_, _>>()? })
-}
-
-fn fitted(logs: &[(Series, Series)]) -> Result<Fit, FitError> {
-    let observed: Vec<Observation> =
-        logs.iter().map(|(sent, measured)| Observation { sent, measured, valve: &[] }).collect();
-    fit(&observed)
-}
-
-fn taught(job: &Job, logs: &[(Series, Series)]) -> Result<(Series, String), LearningError> {
-    let trials: Vec<Trial> = logs.iter().map(|(sent, measured)| Trial { sent, measured }).collect();
-    let found = learn(&fitted(&logs[..1])?, &job.plan, &trials, Learning::default(), |_| None)?;
-    let note = |joint: &hydrotrace::fit::JointStep| {
+fn note(next: &Replanned) -> String {
+    let of = |joint: &JointCommand| {
         let rings = joint.oscillation.map_or(String::new(), |o| {
             format!(
                 " a1 {:.2} a2 {:.2} {:.2} Hz {:?}",
@@ -186,24 +208,7 @@ fn taught(job: &Job, logs: &[(Series, Series)]) -> Result<(Series, String), Lear
             Step::Kept { from } => format!("kept {from}"),
             Step::None => "none".to_owned(),
         };
-        format!("{}: {step}{rings}", joint.name)
+        format!("{}: {step}, share {:.2}{rings}", joint.name, joint.share)
     };
-    let notes: Vec<String> = found.joints.iter().map(note).collect();
-    Ok((found.command(&job.plan, |_| 1.0)?, notes.join("; ")))
-}
-
-/// The plan with corrections, by joint and step.
-fn sent(plan: &Series, corrections: &[&[[f64; 3]]]) -> Result<Series, SignalError> {
-    let one = |(track, correction): (&Track, &&[[f64; 3]])| {
-        let add = |values: &[f64], k: usize| {
-            values
-                .iter()
-                .zip(*correction)
-                .map(|(value, correction)| value + correction[k])
-                .collect::<Vec<f64>>()
-        };
-        let speed = add(track.velocity().unwrap_or_default(), 1);
-        Track::new(track.name(), track.t_s(), add(track.position(), 0), &[])?.with_velocity(speed)
-    };
-    Ok(Series { tracks: plan.tracks.iter().zip(corrections).map(one).collect::<Result<_, _>>()? })
+    next.command.iter().flat_map(|command| &command.joints).map(of).collect::<Vec<_>>().join("; ")
 }

@@ -2,8 +2,8 @@
 
 use hydrotrace::{
     plant::Record,
-    replay::{Rules, replay},
-    series::{Series, SignalError, Track, align, local_quadratic},
+    replay::{Replay, Rules, replay},
+    series::{Pair, Series, SignalError, Track, align, local_quadratic},
     units::degrees_from_radians,
 };
 use serde::Serialize;
@@ -16,6 +16,8 @@ pub(super) const HELD_S: f64 = 10.0;
 pub struct Score {
     /// Mean peak of starts and reversals, deg.
     pub mean_peak_deg: f64,
+    /// The same of the angles that the encoder gives, as a report has it, deg.
+    pub measured_mean_peak_deg: f64,
     /// The largest of them, deg.
     pub worst_peak_deg: f64,
     /// Root mean square error of the whole run, deg.
@@ -42,11 +44,15 @@ impl Score {
         let pairs: Vec<_> =
             truth.tracks.iter().filter_map(|track| align(plan.track(track.name())?, track)).collect();
         let found = replay(&pairs, &Rules::default());
-        let peaks = || found.transitions.iter().map(|t| degrees_from_radians(t.peak_error));
         let measured = series(record, false)?;
-        let measured_pairs =
-            measured.tracks.iter().filter_map(|track| align(plan.track(track.name())?, track));
-        let peak_of = |pair: hydrotrace::series::Pair| {
+        let measured_pairs: Vec<_> =
+            measured.tracks.iter().filter_map(|track| align(plan.track(track.name())?, track)).collect();
+        let peaks = |found: &Replay| -> Vec<f64> {
+            found.transitions.iter().map(|t| degrees_from_radians(t.peak_error)).collect()
+        };
+        let mean = |peaks: &[f64]| peaks.iter().sum::<f64>() / peaks.len().max(1) as f64;
+        let true_deg = peaks(&found);
+        let peak_of = |pair: &Pair| {
             let fits = local_quadratic(&pair.t_s, &pair.measured, &pair.segments, 0.15, 9);
             fits.iter().map(|fit| degrees_from_radians(fit.acceleration.abs())).fold(0.0, f64::max)
         };
@@ -55,10 +61,11 @@ impl Score {
             degrees_from_radians((planned - track.held_at(f64::INFINITY).position).abs())
         };
         Ok(Self {
-            mean_peak_deg: peaks().sum::<f64>() / found.transitions.len().max(1) as f64,
-            worst_peak_deg: peaks().fold(0.0, f64::max),
+            mean_peak_deg: mean(&true_deg),
+            measured_mean_peak_deg: mean(&peaks(&replay(&measured_pairs, &Rules::default()))),
+            worst_peak_deg: true_deg.iter().copied().fold(0.0, f64::max),
             rms_deg: found.whole_run.tracking_error.as_ref().map_or(0.0, |e| degrees_from_radians(e.rms)),
-            acceleration_deg_s2: measured_pairs.map(peak_of).collect(),
+            acceleration_deg_s2: measured_pairs.iter().map(peak_of).collect(),
             end_error_deg: truth.tracks.iter().map(held).fold(0.0, f64::max),
         })
     }

@@ -1,0 +1,17 @@
+//! What a command promised, beside what came.
+
+use super::{kit::counted, metric::position};
+use crate::{series::JointKind, workflow::carried::Held};
+
+/// In a sentence; `None` where nothing was measured. `of` says whose command it was, with a blank in front.
+pub(super) fn sentence(held: &Held, of: &str) -> Option<String> {
+    let kept = if held.kept()? { "kept" } else { "not kept" };
+    let shown = |peak_rad: f64| position(JointKind::Turns, peak_rad);
+    Some(format!(
+        "The command{of} promised a mean peak of {} (below {} in nine runs of ten); {} came in {}: {kept}.",
+        shown(held.promised.mean_peak_rad),
+        shown(held.promised.mean_peak_margin_rad),
+        shown(held.measured_mean_peak_rad?),
+        counted(held.transitions, "transition"),
+    ))
+}
