@@ -2,6 +2,7 @@
 
 use super::{
     estimate::{Estimate, Problem, Workspace},
+    interval::{QUANTILE, discrepancy::LIMIT},
     parameters::LIMITS,
     robust::{cost, inefficiency},
 };
@@ -16,8 +17,14 @@ pub(super) const ASKED: f64 = 1.3;
 /// Which of the limits the data show.
 ///
 /// The cost without a limit must exceed the cost with it by more than chance; both are divided by the statistical
-/// inefficiency, and the cost without comes from a fit of its own.
-pub(super) fn seen(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> [bool; 4] {
+/// inefficiency, and the cost without comes from a fit of its own. A limit whose interval ends below what was
+/// `reached` is none.
+pub(super) fn seen(
+    problem: &Problem,
+    found: &Estimate,
+    reached: [f64; 4],
+    workspace: &mut Workspace,
+) -> [bool; 4] {
     let mut residuals = Vec::new();
     let data = |residuals: &[f64]| residuals.iter().map(|r| cost(r / found.scale_rad)).sum::<f64>();
     problem.residuals(&found.x, workspace, &mut residuals);
@@ -35,7 +42,8 @@ pub(super) fn seen(problem: &Problem, found: &Estimate, workspace: &mut Workspac
         }
         let value = problem.priors.of(LIMITS + limit).value(found.x[LIMITS + limit]);
         let asked = problem.runs.iter().map(|run| run.asked[limit]).fold(0.0, f64::max);
-        seen[limit] &= shows && asked > ASKED * value;
+        let highest = value * (QUANTILE * LIMIT[limit]).exp();
+        seen[limit] &= shows && asked > ASKED * value && highest >= reached[limit];
     }
     seen
 }

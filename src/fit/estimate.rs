@@ -7,7 +7,7 @@ use super::{
     parameters::{DEAD_TIME, LIMITS, Priors, SHARED, STICTION},
     robust::{cost, inefficiency, scale, weight},
     run::{Run, Sample},
-    simulate::simulate,
+    simulate::{LANES, Start, simulate, simulate_lanes},
 };
 use crate::units::DEGREE_RAD;
 
@@ -65,6 +65,69 @@ pub(super) struct Workspace {
     angle_rad: Vec<f64>,
 }
 
+/// The weighted normal equations of the data, in scales. The integral of a run moves that run alone, so its rows
+/// are eliminated one by one: the cost of a solution grows with the number of runs, not with its cube.
+#[derive(Debug, Clone)]
+pub(super) struct Normal {
+    /// Of the shared parameters that move.
+    shared: DMatrix<f64>,
+    slope: DVector<f64>,
+    /// Run by run: the products of its integral with the shared parameters, its own square, its slope.
+    runs: Vec<(DVector<f64>, f64, f64)>,
+}
+
+impl Normal {
+    /// With the priors, for data whose cost is divided by their inefficiency.
+    fn with_priors(mut self, inefficiency: f64, x: &[f64], free: &[usize]) -> Self {
+        self.shared /= inefficiency;
+        self.slope /= inefficiency;
+        for (k, &i) in free.iter().enumerate() {
+            self.shared[(k, k)] += 1.0;
+            self.slope[k] += x[i];
+        }
+        for ((cross, square, slope), x) in self.runs.iter_mut().zip(x.iter().skip(SHARED)) {
+            *cross /= inefficiency;
+            *square = *square / inefficiency + 1.0;
+            *slope = *slope / inefficiency + x;
+        }
+        self
+    }
+
+    /// The shared parameters' part once the integrals are eliminated, each diagonal lifted by `damping`.
+    fn reduced(&self, damping: f64) -> (DMatrix<f64>, DVector<f64>) {
+        let (mut shared, mut slope) = (self.shared.clone(), self.slope.clone());
+        for k in 0..slope.len() {
+            shared[(k, k)] += damping * self.shared[(k, k)];
+        }
+        for (cross, square, own) in &self.runs {
+            let lifted = (1.0 + damping) * square;
+            shared.ger(-1.0 / lifted, cross, cross, 1.0);
+            slope.axpy(-own / lifted, cross, 1.0);
+        }
+        (shared, slope)
+    }
+
+    /// The step of all parameters that move: the shared ones, then the integrals.
+    fn step(&self, damping: f64) -> Option<Vec<f64>> {
+        let (shared, slope) = self.reduced(damping);
+        let step = shared.cholesky()?.solve(&slope);
+        let own = self
+            .runs
+            .iter()
+            .map(|(cross, square, own)| (own - cross.dot(&step)) / ((1.0 + damping) * square));
+        let step: Vec<f64> = step.iter().copied().chain(own).collect();
+        step.iter().all(|s| s.is_finite()).then_some(step)
+    }
+
+    /// Covariance of the shared parameters with data and priors.
+    pub(super) fn covariance(self, inefficiency: f64, x: &[f64], free: &[usize]) -> DMatrix<f64> {
+        let (information, _) = self.with_priors(inefficiency, x, free).reduced(0.0);
+        // Information of at least the priors has an inverse.
+        let size = information.nrows();
+        information.cholesky().map_or_else(|| DMatrix::identity(size, size), |cholesky| cholesky.inverse())
+    }
+}
+
 impl Workspace {
     /// Measured less predicted angle at the samples of a run that count, rad.
     fn residuals(&mut self, model: &Model, run: &Run, integral_rad_s: f64, part: Part, out: &mut Vec<f64>) {
@@ -75,7 +138,7 @@ impl Workspace {
     }
 
     pub(super) fn simulate(&mut self, model: &Model, run: &Run, integral_rad_s: f64) {
-        let start = super::simulate::Start { integral_rad_s, ..run.start };
+        let start = Start { integral_rad_s, ..run.start };
         simulate(model, &run.sent, start, &mut self.wanted, &mut self.angle_rad);
     }
 
@@ -102,6 +165,18 @@ impl Problem<'_> {
         }
     }
 
+    /// Measured less predicted angle of the longest run, rad, every step of the model.
+    pub(super) fn longest_left_rad(&self, x: &[f64], workspace: &mut Workspace) -> Vec<f64> {
+        let longest = self.runs.iter().zip(x.iter().skip(SHARED)).max_by_key(|(run, _)| run.sent.len());
+        let Some((run, &integral)) = longest else { return Vec::new() };
+        workspace.simulate(&self.model(x), run, Priors::integral_rad_s(integral));
+        let left = run.samples.iter().map(|sample| (sample.step, sample.measured_rad - workspace.at(sample)));
+        let mut left_rad = Vec::with_capacity(run.sent.len());
+        // A step without a sample keeps the value before.
+        left.for_each(|(step, left)| left_rad.resize(step + 1 - run.samples[0].step, left));
+        left_rad
+    }
+
     /// As [`inefficiency`] of the residuals.
     pub(super) fn measured_inefficiency(&self, x: &[f64], workspace: &mut Workspace) -> f64 {
         let mut residuals = Vec::new();
@@ -116,51 +191,51 @@ impl Problem<'_> {
         if total.is_nan() { f64::INFINITY } else { total }
     }
 
-    /// Indices of the parameters that move.
+    /// Indices of the shared parameters that move.
     pub(super) fn free(&self) -> Vec<usize> {
-        let fixed = |i: usize| (LIMITS..SHARED).contains(&i) && !self.seen[i - LIMITS];
-        (0..SHARED + self.runs.len()).filter(|&i| !fixed(i)).collect()
+        let fixed = |i: usize| i >= LIMITS && !self.seen[i - LIMITS];
+        (0..SHARED).filter(|&i| !fixed(i)).collect()
     }
 
-    /// Slopes of the residuals in scales, `[sample, free parameter]`.
-    pub(super) fn slopes(
+    /// Slopes of a run's residuals in scales, a column a parameter: those of `free`, then its integral.
+    fn slopes(
         &self,
         x: &[f64],
         free: &[usize],
+        r: usize,
         scale_rad: f64,
         workspace: &mut Workspace,
     ) -> DMatrix<f64> {
-        let counts: Vec<usize> = self
-            .runs
-            .iter()
-            .map(|run| run.samples.iter().filter(|sample| self.part.has(sample)).count())
-            .collect();
-        let mut slopes = DMatrix::zeros(counts.iter().sum(), free.len());
-        let (mut ahead, mut behind, mut x) = (Vec::new(), Vec::new(), x.to_vec());
+        let run = &self.runs[r];
+        let counted = || run.samples.iter().filter(|sample| self.part.has(sample));
+        let mut slopes = DMatrix::zeros(counted().count(), free.len() + 1);
         // No log of angles tells stiction from dead band: it stays as known beforehand, no better.
-        for (column, &i) in free.iter().enumerate().filter(|(_, i)| **i != STICTION) {
-            let (kept, mut first) = (x[i], 0);
-            let own = i.checked_sub(SHARED);
-            ahead.clear();
-            behind.clear();
-            for (r, run) in self.runs.iter().enumerate() {
-                // The integral of a run moves that run alone.
-                if own.is_some_and(|own| own != r) {
+        let moving = free.iter().copied().enumerate().filter(|(_, i)| *i != STICTION);
+        let columns: Vec<(usize, usize)> = moving.chain([(free.len(), SHARED)]).collect();
+        let own: [f64; SHARED + 1] = std::array::from_fn(|i| x[if i < SHARED { i } else { SHARED + r }]);
+        let share = 1.0 / (2.0 * DIFFERENCE * scale_rad);
+        for group in columns.chunks(LANES / 2) {
+            let lane = |lane: usize| {
+                let mut x = own;
+                x[group[(lane / 2).min(group.len() - 1)].1] +=
+                    if lane.is_multiple_of(2) { DIFFERENCE } else { -DIFFERENCE };
+                let integral_rad_s = Priors::integral_rad_s(x[SHARED]);
+                (self.model(&x), Start { integral_rad_s, ..run.start })
+            };
+            let lanes: [(Model, Start); LANES] = std::array::from_fn(lane);
+            let Workspace { wanted, angle_rad } = workspace;
+            let (models, starts) =
+                (lanes.each_ref().map(|lane| &lane.0), lanes.each_ref().map(|lane| lane.1));
+            simulate_lanes(models, &run.sent, starts, wanted, angle_rad);
+            for (row, sample) in counted().enumerate() {
+                let Some(at) = angle_rad.get(LANES * sample.step..LANES * (sample.step + 2)) else {
                     continue;
+                };
+                for (place, (column, _)) in group.iter().enumerate() {
+                    let change = |k: usize| at[k + 2 * place + 1] - at[k + 2 * place];
+                    let (here, next) = (change(0), change(LANES));
+                    slopes[(row, *column)] = (here + sample.part * (next - here)) * share;
                 }
-                for (step, out) in [(DIFFERENCE, &mut ahead), (-DIFFERENCE, &mut behind)] {
-                    x[i] = kept + step;
-                    let integral = Priors::integral_rad_s(x.get(SHARED + r).copied().unwrap_or_default());
-                    workspace.residuals(&self.model(&x), run, integral, self.part, out);
-                }
-            }
-            x[i] = kept;
-            if let Some(own) = own {
-                first = counts.iter().take(own).sum();
-            }
-            let share = 1.0 / (2.0 * DIFFERENCE * scale_rad);
-            for (row, (a, b)) in ahead.iter().zip(&behind).enumerate() {
-                slopes[(first + row, column)] = (a - b) * share;
             }
         }
         slopes
@@ -176,21 +251,11 @@ impl Problem<'_> {
         for _ in 0..rounds {
             let scale_rad = scale(residuals.iter().copied(), FINEST_RAD);
             let before = self.cost(&x, &residuals, scale_rad);
-            let (mut normal, mut slope) = self.normal(&x, &free, &residuals, scale_rad, workspace);
-            normal /= self.inefficiency;
-            slope /= self.inefficiency;
-            for (k, &i) in free.iter().enumerate() {
-                normal[(k, k)] += 1.0;
-                slope[k] += x[i];
-            }
+            let normal = self.normal(&x, &free, &residuals, scale_rad, workspace);
+            let normal = normal.with_priors(self.inefficiency, &x, &free);
             let mut better = before;
             for _ in 0..6 {
-                let mut damped = normal.clone();
-                for k in 0..free.len() {
-                    damped[(k, k)] += damping * normal[(k, k)];
-                }
-                let step = damped.cholesky().map(|cholesky| cholesky.solve(&slope));
-                if let Some(step) = step.filter(|step| step.iter().all(|s| s.is_finite())) {
+                if let Some(step) = normal.step(damping) {
                     let moved = self.moved(&x, &free, &step);
                     self.residuals(&moved, workspace, &mut trial);
                     let cost = self.cost(&moved, &trial, scale_rad);
@@ -213,18 +278,24 @@ impl Problem<'_> {
         Estimate { x, scale_rad }
     }
 
-    /// `x` less a step, no longer than each parameter may go at once.
-    fn moved(&self, x: &[f64], free: &[usize], step: &DVector<f64>) -> Vec<f64> {
-        let excess = |(&i, s): (&usize, &f64)| s.abs() / self.priors.of(i).longest_step();
-        let shrink = free.iter().zip(step.iter()).map(excess).fold(1.0, f64::max);
+    /// `x` less a step, no longer than each parameter may go at once. An integral that may not go all the way holds
+    /// up no other.
+    fn moved(&self, x: &[f64], free: &[usize], step: &[f64]) -> Vec<f64> {
+        let longest = |i: usize| self.priors.of(i).longest_step();
+        let (shared, own) = step.split_at(free.len());
+        let excess = |(i, s): (&usize, &f64)| s.abs() / longest(*i);
+        let shrink = free.iter().zip(shared).map(excess).fold(1.0, f64::max);
         let mut moved = x.to_vec();
-        for (&i, s) in free.iter().zip(step.iter()) {
-            moved[i] -= s / shrink;
+        for (i, s) in free.iter().zip(shared) {
+            moved[*i] -= s / shrink;
+        }
+        for (x, s) in moved.iter_mut().skip(SHARED).zip(own) {
+            *x -= (s / shrink).clamp(-longest(SHARED), longest(SHARED));
         }
         moved
     }
 
-    /// Weighted normal matrix and slope of the data, in scales.
+    /// Weighted normal equations of the data, in scales.
     pub(super) fn normal(
         &self,
         x: &[f64],
@@ -232,19 +303,30 @@ impl Problem<'_> {
         residuals_rad: &[f64],
         scale_rad: f64,
         workspace: &mut Workspace,
-    ) -> (DMatrix<f64>, DVector<f64>) {
-        let mut slopes = self.slopes(x, free, scale_rad, workspace);
-        let roots: Vec<f64> = residuals_rad.iter().map(|r| weight(r / scale_rad).sqrt()).collect();
-        for mut column in slopes.column_iter_mut() {
-            for (slope, root) in column.iter_mut().zip(&roots) {
-                *slope *= root;
+    ) -> Normal {
+        let own = free.len();
+        let mut normal =
+            Normal { shared: DMatrix::zeros(own, own), slope: DVector::zeros(own), runs: Vec::new() };
+        let mut first = 0;
+        for r in 0..self.runs.len() {
+            let mut slopes = self.slopes(x, free, r, scale_rad, workspace);
+            let residuals = DVector::from_column_slice(&residuals_rad[first..first + slopes.nrows()]);
+            first += slopes.nrows();
+            let roots = residuals.map(|r| weight(r / scale_rad).sqrt());
+            for mut column in slopes.column_iter_mut() {
+                column.component_mul_assign(&roots);
             }
+            let slope = slopes.tr_mul(&(residuals / scale_rad).component_mul(&roots));
+            let square = slopes.tr_mul(&slopes);
+            normal.shared += square.view((0, 0), (own, own));
+            normal.slope += slope.rows(0, own);
+            normal.runs.push((
+                square.view((0, own), (own, 1)).column(0).into_owned(),
+                square[(own, own)],
+                slope[own],
+            ));
         }
-        let weighted = DVector::from_iterator(
-            roots.len(),
-            residuals_rad.iter().zip(&roots).map(|(r, w)| r / scale_rad * w),
-        );
-        (slopes.tr_mul(&slopes), slopes.tr_mul(&weighted))
+        normal
     }
 
     /// The best of descents from several dead times.

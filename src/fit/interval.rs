@@ -15,22 +15,18 @@ use super::{
 use crate::units::DEGREE_RAD;
 
 /// Normal quantile of a two-sided 95 % interval.
-const QUANTILE: f64 = 1.96;
+pub(super) const QUANTILE: f64 = 1.96;
 
 /// Model error as deviations of logarithms; no log narrows them.
 pub(super) mod discrepancy {
     /// Of the lag.
-    pub(in crate::fit) const LAG: f64 = 0.07;
+    pub(in crate::fit) const LAG: f64 = 0.11;
     /// Of the lag where no start is sharp.
     pub(in crate::fit) const SMOOTH_LAG: f64 = 0.50;
     /// Of the dead band.
     pub(in crate::fit) const DEAD_BAND: f64 = 0.20;
-    /// Of the largest speed of growing angles.
-    pub(in crate::fit) const GROWING: f64 = 0.12;
-    /// Of the largest speed of shrinking angles.
-    pub(in crate::fit) const SHRINKING: f64 = 0.07;
-    /// Of the largest accelerations.
-    pub(in crate::fit) const ACCELERATION: f64 = 0.75;
+    /// Of the largest speeds of growing and of shrinking angles, and of the largest accelerations.
+    pub(in crate::fit) const LIMIT: [f64; 4] = [0.12, 0.12, 0.75, 0.75];
     /// Of the position gain.
     pub(in crate::fit) const POSITION_GAIN: f64 = 0.15;
     /// Of the position gain where no start is sharp.
@@ -50,7 +46,7 @@ const VAGUE: f64 = 0.6;
 const NARROWED: f64 = 0.6;
 
 /// Sent speeds that change by less within a tenth of a second are smooth, rad/s.
-const SHARP_RAD_S: f64 = DEGREE_RAD;
+const SHARP_RAD_S: f64 = 2.5 * DEGREE_RAD;
 
 /// Posterior of the parameters.
 #[derive(Debug, Clone)]
@@ -60,6 +56,8 @@ pub(super) struct Knowledge {
     pub(super) inefficiency: f64,
     /// Whether a start asks for more than the dead band within the lag.
     sharp: bool,
+    /// Whether the machine answers as the model does; if not, nothing is claimed of its numbers.
+    pub(super) holds: bool,
 }
 
 impl Knowledge {
@@ -69,16 +67,12 @@ impl Knowledge {
         let mut residuals = Vec::new();
         problem.residuals(x, workspace, &mut residuals);
         let inefficiency = inefficiency(&residuals);
-        let (normal, _) = problem.normal(x, &free, &residuals, scale_rad, workspace);
-        let information = normal / inefficiency + DMatrix::identity(free.len(), free.len());
-        // Information of at least the priors has an inverse.
-        let covariance = information
-            .cholesky()
-            .map_or_else(|| DMatrix::identity(free.len(), free.len()), |cholesky| cholesky.inverse());
+        let normal = problem.normal(x, &free, &residuals, scale_rad, workspace);
+        let covariance = normal.covariance(inefficiency, x, &free);
         let jump_rad_s =
             problem.runs.iter().map(|run| run.asked[2].max(run.asked[3])).fold(0.0, f64::max) * ASKED_OVER_S;
         let sharp = jump_rad_s > problem.model(x).dead_band_rad_s.max(SHARP_RAD_S);
-        Self { free, covariance, inefficiency, sharp }
+        Self { free, covariance, inefficiency, sharp, holds: true }
     }
 
     /// The discrepancy of logs with sharp starts, or that of logs without.
@@ -109,9 +103,9 @@ impl Knowledge {
         let reach = (QUANTILE * deviation).exp();
         Estimated {
             value: Some(value),
-            interval: Some([value / reach, value * reach]),
-            identified: deviation <= VAGUE && own <= NARROWED * before,
-            lower_bound: None,
+            interval: self.holds.then_some([value / reach, value * reach]),
+            identified: self.holds && deviation <= VAGUE && own <= NARROWED * before,
+            ..Estimated::default()
         }
     }
 
@@ -123,8 +117,9 @@ impl Knowledge {
         let parts = [part(DEAD_TIME, model.dead_time_s), part(TIME_CONSTANT, model.time_constant_s)];
         let missed = self.missed(discrepancy::LAG, discrepancy::SMOOTH_LAG);
         let found = self.positive(lag_s, &parts, missed);
-        // Within the lag a smooth start does not leave the dead band: its delay is the band's.
-        Estimated { identified: found.identified && self.sharp, ..found }
+        // Within the lag a smooth start does not leave the dead band: its delay is the band's, and bounds the lag.
+        let upper_bound = found.interval.map(|[_, most_s]| most_s).filter(|_| !self.sharp);
+        Estimated { identified: found.identified && self.sharp, upper_bound, ..found }
     }
 
     /// What must be wanted before the joint leaves rest: dead band and stiction, which no log of angles

@@ -1,12 +1,13 @@
 //! One joint from its runs to what is known of it.
 
 use super::{
+    Character, Oscillation,
     censor::{ASKED, seen},
     estimate::{Estimate, Part, Problem, Workspace},
     interval::{Knowledge, discrepancy},
     outcome::{Estimated, JointFit},
     parameters::{ASYMMETRY, FEED_FORWARD, INTEGRAL_GAIN, LIMITS, POSITION_GAIN, Priors, SHARED},
-    run::Run,
+    run::{Run, steps_in},
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
 };
 use crate::{math::range, units::DEGREE_RAD};
@@ -15,50 +16,104 @@ use crate::{math::range, units::DEGREE_RAD};
 const DEAD_TIMES_S: [f64; 3] = [0.08, 0.2, 0.35];
 
 /// A limit is looked for from this far above what was reached.
-const ABOVE: [f64; 4] = [1.03, 1.03, 1.2, 1.2];
+const ABOVE: [f64; 4] = [1.1, 1.1, 1.2, 1.2];
 
 /// Limits are looked for from no lower than this: rad/s and rad/s².
 const LOWEST: [f64; 4] = [DEGREE_RAD, DEGREE_RAD, 20.0 * DEGREE_RAD, 20.0 * DEGREE_RAD];
+
+/// Motion that is enough to search in, s: of longer logs some runs are, and the rest counts in the last rounds.
+const ENOUGH_S: f64 = 150.0;
+
+/// The same for fits that leave a part out, s.
+const ENOUGH_TO_HOLD_OUT_S: f64 = 450.0;
+
+/// Slowest time constant of an integral that shows, s.
+const SLOWEST_INTEGRAL_S: f64 = 20.0;
+
+/// Rounds over all runs after a search in some.
+const ROUNDS: usize = 4;
+
+/// Rounds of the fits that leave a part out.
+const FOLD_ROUNDS: usize = 5;
 
 /// Statistical inefficiency until it is measured: correlated residuals per effective sample.
 const INEFFICIENCY: f64 = 50.0;
 
 /// Fits one joint, whose runs are not empty; with its held-out starts.
 pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
-    let most = |of: fn(&Run) -> f64| runs.iter().map(of).fold(0.0, f64::max);
-    let reached = [
-        most(|run| run.fastest_rad_s[0]),
-        most(|run| run.fastest_rad_s[1]),
-        most(|run| run.sharpest_rad_s2[0]),
-        most(|run| run.sharpest_rad_s2[1]),
-    ];
+    let reached = [0, 1, 2, 3].map(|i| runs.iter().map(|run| run.reached[i]).fold(0.0, f64::max));
     let limits = [0, 1, 2, 3].map(|i| (ABOVE[i] * reached[i]).max(LOWEST[i]));
     let pose_rad = range(runs.iter().flat_map(|run| run.sent.iter().map(|sent| sent.0)));
     let priors = Priors::new(limits, pose_rad);
+    let some = of(&telling(runs, ENOUGH_S), runs);
     let mut problem = Problem {
-        runs,
+        runs: &some,
         priors: &priors,
         seen: asked_for(runs, limits),
         part: Part::All,
         inefficiency: INEFFICIENCY,
     };
     let mut workspace = Workspace::default();
-    let mut found = problem.search(&DEAD_TIMES_S, &vec![0.0; SHARED + runs.len()], &mut workspace);
+    let mut found = problem.search(&DEAD_TIMES_S, &vec![0.0; SHARED + some.len()], &mut workspace);
     // What goes may have stood in for what stays.
     for _ in 0..2 {
         problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);
-        let seen = seen(&problem, &found, &mut workspace);
+        let seen = seen(&problem, &found, reached, &mut workspace);
         if seen == problem.seen {
             break;
         }
         problem.seen = seen;
         found = problem.descend(found.x, 30, &mut workspace);
     }
-    let knowledge = Knowledge::new(&problem, &found.x, found.scale_rad, &mut workspace);
-    let model = problem.model(&found.x);
-    let skill = skill(&problem, model.dead_time_s, &mut workspace);
+    if some.len() < runs.len() {
+        problem.runs = runs;
+        found.x.truncate(SHARED);
+        found.x.resize(SHARED + runs.len(), 0.0);
+        found = problem.descend(found.x, ROUNDS, &mut workspace);
+        problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);
+    }
+    // No limit is below what was reached.
+    for i in (0..4).filter(|i| problem.seen[*i]) {
+        found.x[LIMITS + i] = found.x[LIMITS + i].max(priors.of(LIMITS + i).place(reached[i]));
+    }
+    let mut knowledge = Knowledge::new(&problem, &found.x, found.scale_rad, &mut workspace);
+    let place = telling(runs, ENOUGH_TO_HOLD_OUT_S);
+    let held_out = of(&place, runs);
+    let x: Vec<f64> = found.x[..SHARED].iter().copied().chain(of(&place, &found.x[SHARED..])).collect();
+    let skill = skill(&Problem { runs: &held_out, ..problem.clone() }, &x, FOLD_ROUNDS, &mut workspace);
     let samples = runs.iter().map(|run| run.samples.len()).sum();
-    (report(name, &problem, &found, &knowledge, reached, samples, &skill), skill.starts)
+    let left = Oscillation::of(&problem.longest_left_rad(&found.x, &mut workspace));
+    knowledge.holds = left.character == Character::Calm && skill.held_out_r2 >= 0.0;
+    let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
+    (joint, skill.starts)
+}
+
+/// Which runs tell enough: all, or of long logs some that are spread evenly, and those that reached or were asked
+/// for most.
+fn telling(runs: &[Run], enough_s: f64) -> Vec<usize> {
+    let enough = steps_in(enough_s);
+    let total: usize = runs.iter().map(|run| run.sent.len()).sum();
+    if total <= enough {
+        return (0..runs.len()).collect();
+    }
+    let mut chosen = vec![false; runs.len()];
+    for i in 0..8 {
+        let most = |run: &usize| [runs[*run].asked, runs[*run].reached][i / 4][i % 4];
+        let best = (0..runs.len()).max_by(|a, b| most(a).total_cmp(&most(b)).then(b.cmp(a)));
+        chosen[best.unwrap_or_default()] = true;
+    }
+    let (mut before, mut taken) = (0, 0);
+    for (run, chosen) in runs.iter().zip(&mut chosen) {
+        // So much of each part of the log that the whole is enough.
+        *chosen |= taken * total < before * enough || before == 0;
+        before += run.sent.len();
+        taken += if *chosen { run.sent.len() } else { 0 };
+    }
+    (0..runs.len()).filter(|run| chosen[*run]).collect()
+}
+
+fn of<T: Clone>(places: &[usize], all: &[T]) -> Vec<T> {
+    places.iter().map(|place| all[*place].clone()).collect()
 }
 
 /// Limits that were asked for far enough to show; looking for others costs time.
@@ -79,17 +134,20 @@ fn report(
     let one = |i: usize, value: f64, discrepancy: f64| {
         knowledge.positive(value, &[(i, problem.priors.of(i).deviation)], discrepancy)
     };
-    let limit = |i: usize, discrepancy: f64| {
+    let limit = |i: usize| {
         let bound = Some(reached[i]);
         if problem.seen[i] {
             let value = problem.priors.of(LIMITS + i).value(found.x[LIMITS + i]);
-            Estimated { lower_bound: bound, ..one(LIMITS + i, value, discrepancy) }
+            Estimated { lower_bound: bound, ..one(LIMITS + i, value, discrepancy::LIMIT[i]) }
         } else {
             Estimated { lower_bound: bound, ..Estimated::default() }
         }
     };
     let position_gain = knowledge.missed(discrepancy::POSITION_GAIN, discrepancy::SMOOTH_POSITION_GAIN);
     let integral_gain = knowledge.missed(discrepancy::INTEGRAL_GAIN, discrepancy::SMOOTH_INTEGRAL_GAIN);
+    let mut integral = one(INTEGRAL_GAIN, model.integral_gain_1_s2, integral_gain);
+    // One that acts more slowly than runs last cannot be told from none.
+    integral.identified &= model.position_gain_1_s < SLOWEST_INTEGRAL_S * model.integral_gain_1_s2;
     let [dead_band_rad_s, dead_band_error_rad] = knowledge.dead_band(problem, &found.x);
     JointFit {
         name: name.to_owned(),
@@ -98,18 +156,19 @@ fn report(
         residual_rad: found.scale_rad,
         inefficiency: knowledge.inefficiency,
         held_out_r2: skill.held_out_r2,
+        model_holds: knowledge.holds,
         unexplained_peak_rad: unexplained_rad(&skill.starts),
         lag_s: knowledge.lag(problem, &found.x),
         dead_band_rad_s,
         dead_band_error_rad,
         position_gain_1_s: one(POSITION_GAIN, model.position_gain_1_s, position_gain),
-        integral_gain_1_s2: one(INTEGRAL_GAIN, model.integral_gain_1_s2, integral_gain),
+        integral_gain_1_s2: integral,
         feed_forward: one(FEED_FORWARD, model.feed_forward, discrepancy::GAIN),
         gain_ratio: one(ASYMMETRY, model.asymmetry.exp(), discrepancy::GAIN),
-        speed_limit_growing_rad_s: limit(0, discrepancy::GROWING),
-        speed_limit_shrinking_rad_s: limit(1, discrepancy::SHRINKING),
-        acceleration_limit_growing_rad_s2: limit(2, discrepancy::ACCELERATION),
-        acceleration_limit_shrinking_rad_s2: limit(3, discrepancy::ACCELERATION),
+        speed_limit_growing_rad_s: limit(0),
+        speed_limit_shrinking_rad_s: limit(1),
+        acceleration_limit_growing_rad_s2: limit(2),
+        acceleration_limit_shrinking_rad_s2: limit(3),
         valve_dead_band: None,
         model,
     }

@@ -53,6 +53,10 @@ pub struct JointFit {
     /// predicted by a fit to the other three, simulated from the start of the run. 1 is perfect, 0 no
     /// better than the mean. It says how well runs like these are predicted, not others.
     pub held_out_r2: f64,
+    /// Whether the machine answers as the model does. If not, what is left of the model rings, or the model predicts
+    /// held-out data worse than their mean: no number has an interval.
+    #[serde(default)]
+    pub model_holds: bool,
     /// Peak of the unexplained error after held-out starts, mean and 0.9 quantile, rad: it remains even if a command
     /// cancels the modelled error exactly. `None` without starts.
     pub unexplained_peak_rad: Option<[f64; 2]>,
@@ -99,6 +103,9 @@ pub struct Estimated {
     pub identified: bool,
     /// Largest value reached: the limit is not below.
     pub lower_bound: Option<f64>,
+    /// A lag that smooth starts do not show is not above.
+    #[serde(default)]
+    pub upper_bound: Option<f64>,
 }
 
 impl Fit {

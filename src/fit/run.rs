@@ -32,6 +32,9 @@ const AFTER_S: f64 = 3.0;
 /// Shortest run, s.
 const SHORTEST_S: f64 = 2.0;
 
+/// Longer motions are cut, s.
+const LONGEST_S: f64 = 70.0;
+
 /// After a start in motion the first errors are those of the unknown state, s.
 const SETTLE_S: f64 = 0.6;
 
@@ -49,6 +52,9 @@ const SPARSEST_S: f64 = 0.2;
 
 /// Window of a measured speed, half, s.
 const SPEED_WINDOW_S: f64 = 0.1;
+
+/// A speed is reached that is held so long on average, s.
+const REACHED_OVER_S: f64 = 0.5;
 
 /// Longest stretch after a start in which its peak error is looked for, s.
 const WINDOW_S: f64 = 4.0;
@@ -75,10 +81,8 @@ pub(super) struct Run {
     pub(super) start: Start,
     /// Measured angles, in order.
     pub(super) samples: Vec<Sample>,
-    /// Largest measured speeds for growing and shrinking angles, rad/s.
-    pub(super) fastest_rad_s: [f64; 2],
-    /// Largest measured changes of speed that add to positive and negative ones, rad/s².
-    pub(super) sharpest_rad_s2: [f64; 2],
+    /// Largest measured speeds for growing and shrinking angles, rad/s, and changes of speed, rad/s².
+    pub(super) reached: [f64; 4],
     /// Largest sent speeds, rad/s, and changes of it, rad/s².
     pub(super) asked: [f64; 4],
     /// Grid points at which the joint is sent off, from rest or backwards.
@@ -162,12 +166,12 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
                 samples.push(Sample { step, part: at - step as f64, measured_rad, fold: fold(step) });
             }
             let extreme = |of: &dyn Fn(usize) -> f64| (first..last).map(of).fold(0.0, f64::max);
-            let fastest_rad_s = [1.0, -1.0].map(|way| extreme(&|i| way * fits[i].velocity));
+            let fastest = fastest_rad_s(&pair.t_s[first..last], &pair.measured[first..last]);
             let rise = |i: usize| {
                 let span_s = (pair.t_s[i] - pair.t_s[i.saturating_sub(10).max(first)]).max(STEP_S);
                 (fits[i].velocity - fits[i.saturating_sub(10).max(first)].velocity) / span_s
             };
-            let sharpest_rad_s2 = [1.0, -1.0].map(|way| extreme(&|i| way * rise(i)));
+            let sharpest = [1.0, -1.0].map(|way| extreme(&|i| way * rise(i)));
             let sent = whole[steps.clone()].to_vec();
             runs.push(Run {
                 asked: asked(&sent),
@@ -175,12 +179,24 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
                 sent,
                 start: Start { angle_rad: fit.position, speed_rad_s, integral_rad_s: 0.0 },
                 samples,
-                fastest_rad_s,
-                sharpest_rad_s2,
+                reached: [fastest[0], fastest[1], sharpest[0], sharpest[1]],
             });
         }
     }
     runs
+}
+
+/// Largest mean speeds for growing and shrinking angles, rad/s: over a time in which noise averages out.
+fn fastest_rad_s(t_s: &[f64], angle_rad: &[f64]) -> [f64; 2] {
+    let mut fastest = [0.0_f64; 2];
+    for (from, from_s) in t_s.iter().enumerate() {
+        let to = t_s.partition_point(|t_s| t_s - from_s < REACHED_OVER_S);
+        if let Some(to_s) = t_s.get(to) {
+            let speed_rad_s = (angle_rad[to] - angle_rad[from]) / (to_s - from_s);
+            fastest = [fastest[0].max(speed_rad_s), fastest[1].max(-speed_rad_s)];
+        }
+    }
+    fastest
 }
 
 /// Largest sent speeds for growing and shrinking angles, rad/s, and changes of speed over a tenth of
@@ -198,7 +214,8 @@ fn asked(sent: &[(f64, f64)]) -> [f64; 4] {
     asked
 }
 
-/// Grid points of motions with some rest around them; long rests are left out.
+/// Grid points of motions with some rest around them; long rests are left out, long motions cut where they are
+/// slowest.
 fn motions(sent: &[(f64, f64)]) -> Vec<Range<usize>> {
     let (before, after) = (steps_in(BEFORE_S), steps_in(AFTER_S));
     let mut motions: Vec<Range<usize>> = Vec::new();
@@ -209,7 +226,22 @@ fn motions(sent: &[(f64, f64)]) -> Vec<Range<usize>> {
             _ => motions.push(k.saturating_sub(before)..end),
         }
     }
-    motions
+    motions.into_iter().flat_map(|whole| pieces(sent, whole)).collect()
+}
+
+/// A motion, cut into pieces if it is long.
+fn pieces(sent: &[(f64, f64)], mut whole: Range<usize>) -> Vec<Range<usize>> {
+    let mut pieces = Vec::new();
+    while whole.len() > steps_in(LONGEST_S) {
+        let earliest = whole.start + steps_in(LONGEST_S) / 3;
+        let slowest = (earliest..2 * earliest - whole.start)
+            .min_by(|a, b| sent[*a].1.abs().total_cmp(&sent[*b].1.abs()))
+            .unwrap_or(earliest);
+        pieces.push(whole.start..slowest);
+        whole.start = slowest;
+    }
+    pieces.push(whole);
+    pieces
 }
 
 /// Where a joint is sent off: from rest, or backwards.

@@ -38,16 +38,15 @@ impl HeldOutStart {
     }
 }
 
-/// Fits all parts of the data but one, and predicts that, for each in turn.
-pub(super) fn skill(problem: &Problem, dead_time_s: f64, workspace: &mut Workspace) -> Skill {
+/// Fits all parts of the data but one, in so many rounds from the fit to all of it, and predicts that one, for
+/// each in turn.
+pub(super) fn skill(problem: &Problem, x: &[f64], rounds: usize, workspace: &mut Workspace) -> Skill {
     // Tracking error, measured and predicted, of every sample.
     let mut errors: Vec<Vec<(f64, f64)>> =
         problem.runs.iter().map(|run| vec![(0.0, 0.0); run.samples.len()]).collect();
-    let mut x = vec![0.0; SHARED + problem.runs.len()];
-    x[super::parameters::DEAD_TIME] = problem.priors.of(super::parameters::DEAD_TIME).place(dead_time_s);
     for fold in 0..FOLDS {
         let rest = Problem { part: Part::Without(fold), ..problem.clone() };
-        let found = rest.descend(x.clone(), 25, workspace);
+        let found = rest.descend(x.to_vec(), rounds, workspace);
         let model = rest.model(&found.x);
         for ((run, errors), &integral) in
             problem.runs.iter().zip(&mut errors).zip(found.x.iter().skip(SHARED))
@@ -83,10 +82,10 @@ fn starts(runs: &[Run], errors: &[Vec<(f64, f64)>]) -> Vec<HeldOutStart> {
     for (run, errors) in runs.iter().zip(errors) {
         for (k, &start) in run.starts.iter().enumerate() {
             let end = run.window_end(k);
-            let inside = |sample: &Sample| (start..end).contains(&sample.step);
-            let within = || run.samples.iter().zip(errors).filter(|(sample, _)| inside(sample));
-            let peak = |of: fn(&(f64, f64)) -> f64| within().map(|(_, e)| of(e).abs()).fold(0.0, f64::max);
-            if within().next().is_some() {
+            let until = |step: usize| run.samples.partition_point(|sample| sample.step < step);
+            let within = &errors[until(start)..until(end).max(until(start))];
+            let peak = |of: fn(&(f64, f64)) -> f64| within.iter().map(|e| of(e).abs()).fold(0.0, f64::max);
+            if !within.is_empty() {
                 found.push(HeldOutStart {
                     measured_rad: peak(|e| e.0),
                     predicted_rad: peak(|e| e.1),

@@ -65,7 +65,7 @@ pub(super) fn dead_band(valve: &Signal, measured: &Track) -> Option<[Estimated; 
             value: Some(start),
             interval: Some([start / reach, start * reach]),
             identified: deviation < 0.3,
-            lower_bound: None,
+            ..Estimated::default()
         })
     };
     Some([one(1.0)?, one(-1.0)?])

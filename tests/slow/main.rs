@@ -16,6 +16,7 @@ mod detection;
 mod memory;
 mod real_log;
 mod recovery;
+mod structures;
 #[path = "../it/support/mod.rs"]
 #[allow(dead_code, reason = "shared with the tests that run always")]
 mod support;

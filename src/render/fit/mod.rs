@@ -30,7 +30,10 @@ impl Shown {
                 format!("{} ({}..{})", number(value), number(low), number(high))
             }
             (_, _, Some(bound)) => format!(">= {}", number(bound)),
-            (Some(value), ..) => format!("({})", number(value)),
+            (Some(value), ..) => match found.upper_bound {
+                Some(bound) => format!("<= {}", number(bound)),
+                None => format!("({})", number(value)),
+            },
             _ => crate::render::kit::NONE.to_owned(),
         }
     }

@@ -27,7 +27,7 @@ const LOOP: [(&str, Shown); 5] = [
     ("feed-forward", Shown { name: "feed-forward", of: |j| j.feed_forward, scale: |k| k, decimals: 2 }),
 ];
 
-const LIMITS: [(&str, Shown); 4] = [
+const LIMITS: [(&str, Shown); 2] = [
     (
         "speed + deg/s",
         Shown {
@@ -44,24 +44,6 @@ const LIMITS: [(&str, Shown); 4] = [
             of: |j| j.speed_limit_shrinking_rad_s,
             scale: degrees_from_radians,
             decimals: 1,
-        },
-    ),
-    (
-        "acceleration + deg/s2",
-        Shown {
-            name: "acceleration limit, growing",
-            of: |j| j.acceleration_limit_growing_rad_s2,
-            scale: degrees_from_radians,
-            decimals: 0,
-        },
-    ),
-    (
-        "acceleration - deg/s2",
-        Shown {
-            name: "acceleration limit, shrinking",
-            of: |j| j.acceleration_limit_shrinking_rad_s2,
-            scale: degrees_from_radians,
-            decimals: 0,
         },
     ),
 ];
@@ -117,7 +99,8 @@ pub(super) fn machine(fit: &Fit) -> Vec<Section> {
             "Held-out R2: share of the tracking error that the model predicts in data it was not fitted to. Unexplained: mean \
              peak of the error that it leaves there after a start. Dead band: speed that must be commanded before the joint \
              leaves rest; dead-band error: the largest error that stays uncorrected in it. Gain: commanded speed per error; \
-             feed-forward: commanded speed per speed of the plan.",
+             feed-forward: commanded speed per speed of the plan. <= x: starts are too smooth to show the lag, and it is below. \
+             A recorder that stamps the measurement late looks like a lag of that size.",
         )),
         Section::new(Id::OTHER, "Limits", [table(&fit.joints, &LIMITS, false)]).with(Sentence::note(
             "+ for growing, - for shrinking angles. >= x: x was reached, so the limit is higher. (x): an assumption, not \
@@ -180,7 +163,7 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
             let joints: Vec<&str> = fit
                 .joints
                 .iter()
-                .filter(|joint| !(shown.of)(joint).identified)
+                .filter(|joint| joint.model_holds && !(shown.of)(joint).identified)
                 .map(|joint| joint.name.as_str())
                 .collect();
             let of =
@@ -192,18 +175,20 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         lines.push("The logs identify every parameter.".into());
     } else {
         lines.push(format!("The logs do not identify: {}.", open.join("; ")));
-        let speed = fit.joints.iter().any(|joint| {
-            !(joint.speed_limit_growing_rad_s.identified && joint.speed_limit_shrinking_rad_s.identified)
-        });
-        lines.push(if speed {
-            "Smooth runs never reach the limits of speed. `hydrotrace excite` writes a run that does, with strokes faster than \
-             the machine; it also narrows the interval of the dead band. Fit it together with these logs."
+        lines.extend(open.iter().any(|open| open.starts_with("speed")).then(|| {
+            "Smooth runs never reach the limits of speed. `hydrotrace excite` writes a run that does, with strokes \
+             faster than the machine; it also narrows the interval of the dead band. Fit it together with these logs."
                 .into()
-        } else {
-            "The lag hides the limits of acceleration; no simulated machine showed them either. The values reached are safe \
-             to plan with."
-                .into()
-        });
+        }));
+    }
+    let not: Vec<&str> =
+        fit.joints.iter().filter(|joint| !joint.model_holds).map(|joint| joint.name.as_str()).collect();
+    if !not.is_empty() {
+        lines.push(format!(
+            "The model does not hold for {}: what it leaves unexplained rings, or it predicts worse than the mean. Numbers \
+             of these joints have no intervals.",
+            not.join(", ")
+        ));
     }
     lines.extend(left_out_line(fit));
     lines.into_iter().map(Sentence::Finding).collect()

@@ -132,7 +132,7 @@ fn a_fit_shows_its_numbers_intervals_and_what_was_never_reached() {
         value: Some(value),
         interval: Some([0.9 * value, 1.1 * value]),
         identified: true,
-        lower_bound: None,
+        ..Estimated::default()
     };
     let reached = Estimated { lower_bound: Some(0.25), ..Estimated::default() };
     let model: Model = serde_json::from_value(serde_json::json!({
@@ -150,6 +150,7 @@ fn a_fit_shows_its_numbers_intervals_and_what_was_never_reached() {
         residual_rad: 0.0,
         inefficiency: 1.0,
         held_out_r2: 0.875,
+        model_holds: true,
         unexplained_peak_rad: None,
         lag_s: known(0.2),
         dead_band_rad_s: known(0.01),

@@ -105,7 +105,7 @@ mod tests {
 
     fn found(low: f64, high: f64) -> Estimated {
         let value = Some((low * high).sqrt());
-        Estimated { value, interval: Some([low, high]), identified: true, lower_bound: Some(0.5 * low) }
+        Estimated { value, interval: Some([low, high]), identified: true, ..bound(0.5 * low) }
     }
 
     #[test]

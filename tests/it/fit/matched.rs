@@ -95,6 +95,41 @@ fn gaps_and_a_plan_without_speeds_do_not_mislead() {
 }
 
 #[test]
+fn long_logs_are_searched_in_parts_and_fitted_as_a_whole() {
+    let plan = trial(&["J"]);
+    let logs: Vec<Series> = (1..=12).map(|seed| measured(&plan, seed, |_| false)).collect();
+    let one = fitted(&[(&plan, &logs[0])]);
+    let all = fitted(&logs.iter().map(|log| (&plan, log)).collect::<Vec<_>>());
+    assert_eq!((all.joints[0].runs, all.joints[0].samples), (12, 12 * one.joints[0].samples));
+    assert!(worst(&all) < 0.03, "{} {:?}", worst(&all), all.joints[0]);
+}
+
+#[test]
+fn no_limit_is_below_what_was_reached() {
+    let plan = trial(&["J"]);
+    let fast = measured(&plan, 1, |_| false);
+    let slow = Model { speed_limit_rad_s: [Some(0.31), Some(0.25)], ..MODEL };
+    let slow = Series { tracks: vec![predict(&slow, &plan.tracks[0]).unwrap()] };
+    let fit = fitted(&[(&plan, &fast), (&plan, &slow), (&plan, &slow), (&plan, &slow)]);
+    for (limit, reached) in
+        [(fit.joints[0].speed_limit_growing_rad_s, 0.35), (fit.joints[0].speed_limit_shrinking_rad_s, 0.28)]
+    {
+        let bound = limit.lower_bound.unwrap();
+        assert!((bound - reached).abs() < 0.01, "{limit:?}");
+        assert!(limit.value.is_none_or(|value| value >= bound * (1.0 - 1e-12)), "{limit:?}");
+    }
+}
+
+#[test]
+fn smooth_starts_bound_the_lag() {
+    let t_s: Vec<f64> = (0..=3000).map(|k| f64::from(k) * 0.01).collect();
+    let position = t_s.iter().map(|t| 0.9 + 0.1 * (1.0 - (0.4 * (t - 1.5).clamp(0.0, 25.0)).cos())).collect();
+    let plan = Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] };
+    let lag_s = fitted(&[(&plan, &measured(&plan, 1, |_| false))]).joints[0].lag_s;
+    assert!(!lag_s.identified && lag_s.upper_bound.unwrap() > MODEL.lag_s(), "{lag_s:?}");
+}
+
+#[test]
 fn a_fit_does_not_depend_on_the_number_of_threads_and_survives_a_file() {
     let plan = trial(&["A", "B"]);
     let log = measured(&plan, 1, |_| false);

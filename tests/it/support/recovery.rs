@@ -19,14 +19,16 @@ pub(crate) struct Column {
     pub(crate) covered: usize,
     /// Of numbers that the data do not decide.
     pub(crate) guesses: Vec<f64>,
-    /// Joints whose truth lies below what is said to have been reached.
+    /// Joints whose truth lies outside a bound.
     pub(crate) refuted: usize,
 }
 
 impl Column {
     pub(crate) fn add(&mut self, found: &Estimated, truth: f64) {
         self.joints += 1;
-        self.refuted += usize::from(found.lower_bound.is_some_and(|bound| bound > truth));
+        let refuted = found.lower_bound.is_some_and(|bound| bound > truth)
+            || found.upper_bound.is_some_and(|bound| bound < truth);
+        self.refuted += usize::from(refuted);
         let error = found.value.map(|value| (value / truth).ln());
         if found.identified {
             let [low, high] = found.interval.unwrap();
