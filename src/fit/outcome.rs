@@ -55,7 +55,7 @@ pub struct JointFit {
     pub held_out_r2: f64,
     /// Whether the machine answers as the model does. If not, what is left of the model rings, or the model predicts
     /// held-out data worse than their mean: no number has an interval.
-    #[serde(default)]
+    #[serde(default = "holds")]
     pub model_holds: bool,
     /// Peak of the unexplained error after held-out starts, mean and 0.9 quantile, rad: it remains even if a command
     /// cancels the modelled error exactly. `None` without starts.
@@ -106,6 +106,11 @@ pub struct Estimated {
     /// A lag that smooth starts do not show is not above.
     #[serde(default)]
     pub upper_bound: Option<f64>,
+}
+
+/// What files say that were written before this was asked.
+const fn holds() -> bool {
+    true
 }
 
 impl Fit {

@@ -147,14 +147,17 @@ fn a_joined_log_reports_fits_and_compares_as_one_that_always_had_its_plan() {
     assert_eq!((&compared["same_plan"], &compared["verdict"]), (&Value::Bool(true), &Value::from("smaller")));
     assert!(compared["pairs"].as_array().unwrap().len() >= found.len() - 2);
     done(at, "replan run-2.mcap --evaluations 1000 -o next-2.mcap");
-    let lags = |path: &Path| {
+    // Smooth starts leave the lag open: what the one log gives lies within the interval of the other.
+    let lags = |path: &Path, key: &str| -> Vec<Value> {
         let fit = json(at, &format!("fit {}", path.display()));
-        let joints = fit["joints"].as_array().unwrap().clone();
-        joints.iter().map(|joint| joint["lag_s"]["value"].as_f64().unwrap_or(f64::NAN)).collect::<Vec<_>>()
+        fit["joints"].as_array().unwrap().iter().map(|joint| joint["lag_s"][key].clone()).collect()
     };
-    let (expected, found) = (lags(&RUNS.path().join("whole.mcap")), lags(&at.join("run-2.mcap")));
-    for (expected, found) in expected.iter().zip(&found) {
-        assert!((expected - found).abs() < 0.15 * expected || expected.is_nan(), "{expected} {found}");
+    let intervals = lags(&RUNS.path().join("whole.mcap"), "interval");
+    let found = lags(&at.join("run-2.mcap"), "value");
+    assert_eq!((intervals.len(), found.len()), (6, 6));
+    for (interval, found) in intervals.iter().zip(&found).filter(|(interval, _)| !interval.is_null()) {
+        let [low, high] = [0, 1].map(|k| interval[k].as_f64().unwrap());
+        assert!((low..=high).contains(&found.as_f64().unwrap()), "{interval} {found}");
     }
 }
 
