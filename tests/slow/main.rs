@@ -14,6 +14,7 @@ mod compensation;
 mod detection;
 mod real_log;
 mod recovery;
+mod structures;
 #[path = "../it/support/mod.rs"]
 #[allow(dead_code, reason = "shared with the tests that run always")]
 mod support;

@@ -154,7 +154,7 @@ fn a_joined_log_reports_fits_and_compares_as_one_that_always_had_its_plan() {
     };
     let (expected, found) = (lags(&RUNS.path().join("whole.mcap")), lags(&at.join("run-2.mcap")));
     for (expected, found) in expected.iter().zip(&found) {
-        assert!((expected - found).abs() < 0.15 * expected || expected.is_nan(), "{expected} {found}");
+        assert!((expected - found).abs() < 0.20 * expected || expected.is_nan(), "{expected} {found}");
     }
 }
 

@@ -1,0 +1,55 @@
+//! Fits to machines of other structure: their intervals hold the truth, or the model is said not to hold.
+
+use hydrotrace::{
+    fit::Excitation,
+    plant::{Parameters, Plant},
+};
+
+use crate::support::{
+    machine::{excitation, fitted, run, task},
+    recovery::{QUANTITIES, middle_rad},
+};
+
+/// Structures that a fit takes for its own though their intervals miss: a set value that is filtered, a loop for the
+/// speed with an integral, and a valve whose edges open gradually.
+const MISSED: [&str; 3] = ["position-only", "cascade", "progressive-edges"];
+
+#[test]
+#[ignore = "minutes; in release by .ci/run"]
+fn intervals_hold_nine_in_ten_truths_on_all_structures_but_three() {
+    let mut short = Vec::new();
+    for preset in Parameters::preset_names() {
+        let (mut claimed, mut covered) = (0, 0);
+        let plant = Plant::preset(preset).unwrap();
+        for (name, job) in [("excite", excitation(&Excitation::minimal())), ("task 1", task(1))] {
+            let truth = plant.truth(&middle_rad(&job.plan), 0.0).unwrap();
+            let fit = fitted(&[(&job.plan, &run(&plant, &job.plan, &job, 1))]);
+            let holding = fit.joints.iter().filter(|joint| joint.model_holds).count();
+            print!("{preset}, {name}: holds for {holding} of {};", fit.joints.len());
+            for (quantity, found, truth_of) in QUANTITIES {
+                let (mut here, mut hit) = (0, 0);
+                for joint in &fit.joints {
+                    let truth = truth.joints.iter().find(|truth| truth.name == joint.name).unwrap();
+                    let number = found(joint);
+                    assert!(joint.model_holds || (!number.identified && number.interval.is_none()));
+                    if number.identified {
+                        let [low, high] = number.interval.unwrap();
+                        here += 1;
+                        hit += usize::from((low..=high).contains(&truth_of(truth)));
+                    }
+                }
+                if here > 0 {
+                    print!(" {quantity} {hit}/{here}");
+                }
+                (claimed, covered) = (claimed + here, covered + hit);
+            }
+            println!();
+        }
+        let coverage = f64::from(covered as u32) / f64::from(claimed as u32);
+        println!("{preset}: {covered} of {claimed}, {coverage:.3}");
+        if coverage < 0.90 {
+            short.push(preset);
+        }
+    }
+    assert!(short.iter().all(|preset| MISSED.contains(preset)), "{short:?}");
+}
