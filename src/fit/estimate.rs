@@ -65,8 +65,7 @@ pub(super) struct Workspace {
     angle_rad: Vec<f64>,
 }
 
-/// The weighted normal equations of the data, in scales. The integral of a run moves that run alone, so its rows
-/// are eliminated one by one: the cost of a solution grows with the number of runs, not with its cube.
+/// Weighted normal equations of the data, in scales; integrals, which move their run alone, are eliminated one by one.
 #[derive(Debug, Clone)]
 pub(super) struct Normal {
     /// Of the shared parameters that move.
@@ -278,19 +277,14 @@ impl Problem<'_> {
         Estimate { x, scale_rad }
     }
 
-    /// `x` less a step, no longer than each parameter may go at once. An integral that may not go all the way holds
-    /// up no other.
+    /// `x` less a step, no longer than each parameter may go at once.
     fn moved(&self, x: &[f64], free: &[usize], step: &[f64]) -> Vec<f64> {
-        let longest = |i: usize| self.priors.of(i).longest_step();
-        let (shared, own) = step.split_at(free.len());
-        let excess = |(i, s): (&usize, &f64)| s.abs() / longest(*i);
-        let shrink = free.iter().zip(shared).map(excess).fold(1.0, f64::max);
+        let moving = || free.iter().copied().chain(SHARED..x.len()).zip(step);
+        let excess = |(i, s): (usize, &f64)| s.abs() / self.priors.of(i).longest_step();
+        let shrink = moving().map(excess).fold(1.0, f64::max);
         let mut moved = x.to_vec();
-        for (i, s) in free.iter().zip(shared) {
-            moved[*i] -= s / shrink;
-        }
-        for (x, s) in moved.iter_mut().skip(SHARED).zip(own) {
-            *x -= (s / shrink).clamp(-longest(SHARED), longest(SHARED));
+        for (i, s) in moving() {
+            moved[i] -= s / shrink;
         }
         moved
     }

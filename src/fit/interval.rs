@@ -6,8 +6,8 @@
 use nalgebra::DMatrix;
 
 use super::{
+    Estimated,
     estimate::{Problem, Workspace},
-    outcome::Estimated,
     parameters::{DEAD_BAND, DEAD_TIME, POSITION_GAIN, STICTION, TIME_CONSTANT},
     robust::inefficiency,
     run::ASKED_OVER_S,

@@ -1,14 +1,15 @@
 //! One joint from its runs to what is known of it.
 
 use super::{
-    Character, Oscillation,
+    Character, Estimated, Oscillation,
     censor::{ASKED, seen},
     estimate::{Estimate, Part, Problem, Workspace},
     interval::{Knowledge, discrepancy},
-    outcome::{Estimated, JointFit},
+    outcome::JointFit,
     parameters::{ASYMMETRY, FEED_FORWARD, INTEGRAL_GAIN, LIMITS, POSITION_GAIN, Priors, SHARED},
-    run::{Run, steps_in},
+    run::Run,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
+    telling::{of, telling},
 };
 use crate::{math::range, units::DEGREE_RAD};
 
@@ -86,34 +87,6 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
     knowledge.holds = left.character == Character::Calm && skill.held_out_r2 >= 0.0;
     let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
     (joint, skill.starts)
-}
-
-/// Which runs tell enough: all, or of long logs some that are spread evenly, and those that reached or were asked
-/// for most.
-fn telling(runs: &[Run], enough_s: f64) -> Vec<usize> {
-    let enough = steps_in(enough_s);
-    let total: usize = runs.iter().map(|run| run.sent.len()).sum();
-    if total <= enough {
-        return (0..runs.len()).collect();
-    }
-    let mut chosen = vec![false; runs.len()];
-    for i in 0..8 {
-        let most = |run: &usize| [runs[*run].asked, runs[*run].reached][i / 4][i % 4];
-        let best = (0..runs.len()).max_by(|a, b| most(a).total_cmp(&most(b)).then(b.cmp(a)));
-        chosen[best.unwrap_or_default()] = true;
-    }
-    let (mut before, mut taken) = (0, 0);
-    for (run, chosen) in runs.iter().zip(&mut chosen) {
-        // So much of each part of the log that the whole is enough.
-        *chosen |= taken * total < before * enough || before == 0;
-        before += run.sent.len();
-        taken += if *chosen { run.sent.len() } else { 0 };
-    }
-    (0..runs.len()).filter(|run| chosen[*run]).collect()
-}
-
-fn of<T: Clone>(places: &[usize], all: &[T]) -> Vec<T> {
-    places.iter().map(|place| all[*place].clone()).collect()
 }
 
 /// Limits that were asked for far enough to show; looking for others costs time.

@@ -12,6 +12,7 @@
 mod censor;
 mod error;
 mod estimate;
+mod estimated;
 mod excite;
 mod interval;
 mod joint;
@@ -25,15 +26,17 @@ mod run;
 mod simulate;
 mod skill;
 mod start_error;
+mod telling;
 mod valve;
 
 use rayon::prelude::*;
 
 pub use error::FitError;
+pub use estimated::Estimated;
 pub use excite::{Excitation, JointRoom, Ramp, excite};
 pub use learn::{Character, JointStep, Learning, Learnt, Oscillation, Room, Step, Trial, learn};
 pub use model::{Model, STEP_S};
-pub use outcome::{Estimated, Fit, JointFit, LEAST_SKILL, LeftOut};
+pub use outcome::{Fit, JointFit, LEAST_SKILL, LeftOut};
 pub use predict::predict;
 pub use run::Observation;
 pub use start_error::{PredictedStart, StartErrorPredictor};

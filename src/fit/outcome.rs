@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{FitError, Model};
+use super::{Estimated, FitError, Model};
 
 /// Held-out skill below which no command should be made from a model.
 pub const LEAST_SKILL: f64 = 0.3;
@@ -53,8 +53,7 @@ pub struct JointFit {
     /// predicted by a fit to the other three, simulated from the start of the run. 1 is perfect, 0 no
     /// better than the mean. It says how well runs like these are predicted, not others.
     pub held_out_r2: f64,
-    /// Whether the machine answers as the model does. If not, what is left of the model rings, or the model predicts
-    /// held-out data worse than their mean: no number has an interval.
+    /// Whether the machine answers as the model does; if not, no number has an interval.
     #[serde(default = "holds")]
     pub model_holds: bool,
     /// Peak of the unexplained error after held-out starts, mean and 0.9 quantile, rad: it remains even if a command
@@ -89,23 +88,6 @@ pub struct JointFit {
     /// The numbers to predict with. Some are held by what is known beforehand alone; dead time, time
     /// constant, centre of the dead band, stiction and offset mean nothing on their own.
     pub model: Model,
-}
-
-/// An estimated number.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct Estimated {
-    /// Best guess; `None` for a limit that the joint never reached.
-    pub value: Option<f64>,
-    /// 95 % interval, widened for model error; `None` without a value.
-    pub interval: Option<[f64; 2]>,
-    /// Whether the data decide it, and not the prior.
-    pub identified: bool,
-    /// Largest value reached: the limit is not below.
-    pub lower_bound: Option<f64>,
-    /// A lag that smooth starts do not show is not above.
-    #[serde(default)]
-    pub upper_bound: Option<f64>,
 }
 
 /// What files say that were written before this was asked.

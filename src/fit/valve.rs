@@ -1,6 +1,6 @@
 //! The dead band of a valve from its signal and the motion that comes of it.
 
-use super::outcome::Estimated;
+use super::Estimated;
 use crate::{
     math::median,
     series::{LocalFit, Signal, Track, local_quadratic},

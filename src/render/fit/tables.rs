@@ -172,7 +172,7 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         })
         .collect();
     if open.is_empty() {
-        lines.push("The logs identify every parameter.".into());
+        lines.push("The logs identify every number above.".into());
     } else {
         lines.push(format!("The logs do not identify: {}.", open.join("; ")));
         lines.extend(open.iter().any(|open| open.starts_with("speed")).then(|| {

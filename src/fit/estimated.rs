@@ -1,0 +1,20 @@
+//! A number with what is known of it.
+
+use serde::{Deserialize, Serialize};
+
+/// An estimated number.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Estimated {
+    /// Best guess; `None` for a limit that the joint never reached.
+    pub value: Option<f64>,
+    /// 95 % interval, widened for model error; `None` without a value.
+    pub interval: Option<[f64; 2]>,
+    /// Whether the data decide it, and not the prior.
+    pub identified: bool,
+    /// Largest value reached: the limit is not below.
+    pub lower_bound: Option<f64>,
+    /// A lag that smooth starts do not show is not above.
+    #[serde(default)]
+    pub upper_bound: Option<f64>,
+}
