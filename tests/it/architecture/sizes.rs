@@ -4,7 +4,7 @@ use super::sources;
 
 /// Lines of the longest file; of half the files of `src` at most; of `src` and of all Rust together.
 const LONGEST: usize = 400;
-const MEDIAN: usize = 120;
+const MEDIAN: usize = 125;
 const LIBRARY: usize = 52_500;
 const ALL: usize = 77_000;
 
