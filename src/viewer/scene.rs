@@ -102,7 +102,7 @@ fn angles(path: String, track: &Track) -> Stream {
 fn errors(path: String, pair: &Pair) -> Stream {
     let values = pair.planned.iter().zip(&pair.measured);
     let values = values.map(|(planned, measured)| degrees_from_radians(planned - measured)).collect();
-    Stream { path, t_s: pair.t_s.clone(), values: Values::Scalars(values) }
+    Stream { path, t_s: pair.t_s.to_vec(), values: Values::Scalars(values) }
 }
 
 /// A joint waits from the planned onset to the measured one, and settles until its error stays in the band.
