@@ -6,7 +6,7 @@ use super::sources;
 const LONGEST: usize = 400;
 const MEDIAN: usize = 120;
 const LIBRARY: usize = 52_500;
-const ALL: usize = 76_000;
+const ALL: usize = 77_000;
 
 const FOLDERS: [&str; 6] = ["src", "crates", "tests", "benches", "examples", "fuzz"];
 
