@@ -89,7 +89,7 @@ fn task(rng: &mut ChaCha8Rng) -> Task {
         Place::Tool { .. } => Vec::new(),
     };
     let poses: Vec<Vec<f64>> = task.points.iter().map(pose_of).collect();
-    let count = 2 + (uniform(rng, 0.0, 3.999)) as usize;
+    let count = [2, 3, 4, 5].into_iter().find(|_| uniform(rng, 0.0, 1.0) < 0.3).unwrap_or(6);
     task.points = (0..count)
         .map(|k| {
             let between = |j: usize| {

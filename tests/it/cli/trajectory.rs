@@ -1,8 +1,8 @@
 //! What a trajectory controller of ROS 2 refuses, and that nothing we write to be sent is refused.
 //!
-//! The rules are those of `JointTrajectoryController::validate_trajectory_msg` (ros2_controllers,
-//! joint_trajectory_controller/src/joint_trajectory_controller.cpp, August 2026), with its parameters as they are unless
-//! somebody sets them: no partial goals, no speed at the end, no integration.
+//! The rules are those of `JointTrajectoryController::validate_trajectory_msg` in the file
+//! `joint_trajectory_controller/src/joint_trajectory_controller.cpp` of `ros-controls/ros2_controllers` (August 2026), with its
+//! parameters as they are unless somebody sets them: no partial goals, no speed at the end, no integration.
 
 use std::path::Path;
 
