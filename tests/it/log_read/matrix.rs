@@ -30,7 +30,7 @@ fn find(bytes: &[u8], opcode: u8, nth: usize) -> usize {
 
 /// A byte half way from the fifth chunk to the sixth: in its messages, or of a small one in the index that follows it.
 fn inside(bytes: &[u8]) -> usize {
-    (find(bytes, CHUNK, 4) + find(bytes, CHUNK, 5)) / 2
+    usize::midpoint(find(bytes, CHUNK, 4), find(bytes, CHUNK, 5))
 }
 
 const DAMAGE: [(&str, Spoil); 18] = [
