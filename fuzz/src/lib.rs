@@ -8,7 +8,7 @@ use std::{path::Path, sync::OnceLock};
 
 use hydrotrace::{
     arm::{Arm, Chain, Hydraulics, sliding_joints},
-    log::{CsvOptions, ReadOptions, read_csv_bytes, survey_bytes},
+    log::{CsvOptions, ReadOptions, read_csv_bytes, survey, survey_bytes},
     plant::Parameters,
     task::Task,
     workflow::fit::LimitsFile,
@@ -18,8 +18,9 @@ use hydrotrace::{
 pub type Target = (&'static str, fn(&[u8]), usize);
 
 /// All of them.
-pub const TARGETS: [Target; 11] = [
-    ("read_log", read_log, 300),
+pub const TARGETS: [Target; 12] = [
+    ("read_log", read_log, 290),
+    ("forms", forms, 10),
     ("schema", schema, 100),
     ("cdr", cdr, 100),
     ("json", json, 60),
@@ -35,6 +36,14 @@ pub const TARGETS: [Target; 11] = [
 /// Any bytes as a log.
 pub fn read_log(bytes: &[u8]) {
     let _ = survey_bytes(bytes, &ReadOptions::default());
+}
+
+/// Any bytes as a file of any form: packed, a bag in SQLite, a table.
+pub fn forms(bytes: &[u8]) {
+    let path = std::env::temp_dir().join(format!("hydrotrace-fuzz-{}", std::process::id()));
+    if std::fs::write(&path, bytes).is_ok() {
+        let _ = survey(&[path], &ReadOptions::default());
+    }
 }
 
 /// Any text as the definition of a message type, any bytes as its message: the first byte chooses the notation, a

@@ -3,13 +3,14 @@
 use std::sync::OnceLock;
 
 /// Type, notation of its definition, and encoding of its messages.
-pub const NOTATIONS: [(&str, &str, &str); 6] = [
+pub const NOTATIONS: [(&str, &str, &str); 7] = [
     ("sensor_msgs/msg/JointState", "ros2idl", "cdr"),
     ("trajectory_msgs/msg/JointTrajectory", "ros2msg", "cdr"),
     ("foxglove.JointStates", "protobuf", "protobuf"),
     ("sensor_msgs/msg/JointState", "ros2msg", "cdr"),
     ("control_msgs/msg/DynamicJointState", "ros2msg", "cdr"),
     ("control_msgs/msg/JointTrajectoryControllerState", "ros2idl", "cdr"),
+    ("sensor_msgs/JointState", "ros1msg", "ros1"),
 ];
 
 macro_rules! message {

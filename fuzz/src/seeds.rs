@@ -73,6 +73,13 @@ pub fn of(target: &str) -> Vec<Vec<u8>> {
             all.push([&[0][..], idl.as_bytes(), &[0, 0, 1, 0, 0]].concat());
             all
         }
+        "forms" => {
+            let mut all = vec![small_log(true)];
+            for ending in ["db3", "gz", "zstd", "parquet", "csv"] {
+                all.extend(files("fuzz/seeds/forms", ending));
+            }
+            all
+        }
         "cdr" => messages(),
         "json" => vec![
             br#"{"timestamp":{"sec":1,"nsec":5},"joints":[{"name":"a","position":0.5},{"name":"b","position":-1e-3,"velocity":2}]}"#

@@ -1,6 +1,7 @@
 //! Files that appear whole or not at all, and never in the place of what is worth more.
 
 mod partial;
+mod temporary;
 
 use std::{
     fs::{self, File, OpenOptions},
@@ -14,6 +15,7 @@ use thiserror::Error;
 use crate::input_file::was_read;
 use partial::Partial;
 pub use partial::give_up;
+pub(crate) use temporary::Temporary;
 
 /// Why a file did not appear.
 #[derive(Debug, Error)]

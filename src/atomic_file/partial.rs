@@ -17,7 +17,7 @@ const MOST_NAMES: u32 = 10_000;
 /// The files that this process is writing.
 static WRITTEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-fn written() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+pub(super) fn written() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     document::pretty,
-    log::{AngleUnit, Columns, CsvError, CsvOptions, Quantity, Role, Separator},
+    log::{AngleUnit, Columns, CsvError, CsvOptions, LengthUnit, Quantity, Role, Separator},
     render::import as words,
     workflow::import::{Inputs, run},
 };
@@ -20,11 +20,15 @@ Examples:
   hydrotrace import trace.csv -o trace.mcap --degrees --time-unit ms
   hydrotrace import trace.csv -o trace.mcap --rate 50 --planned J1=soll_1 --measured J1=#4
   hydrotrace import trace.csv -o trace.mcap --interface cap_pressure_pa:J1=pA_1,J2=pA_2
-  hydrotrace import trace.csv -o trace.mcap --map arm.toml
+  hydrotrace import trace.csv -o trace.mcap --planned BOOM=measured+error --slides BOOM=mm
+  hydrotrace import trace.csv -o trace.mcap --save-map arm.toml
+  hydrotrace import next.csv -o next.mcap --map arm.toml
 
-A column is given by its header, or by its number as #3. A map file holds the same as the options:
+A column is given by its header, by its number as #3, or as a sum such as #3+#4, 0.5*raw-12: the factors and
+constants are in the unit of the column. A map file holds the same as the options:
   time = \"Zeit\"         # also: separator, decimal_comma, time_unit, rate_hz
   angle_unit = \"deg\"
+  slides = { BOOM = \"mm\" }
   [planned]             # also: [measured] [command] [planned_velocity] [measured_velocity]
   J1 = \"q_soll_1\"
   [interface.cap_pressure_pa]
@@ -54,6 +58,10 @@ pub(super) struct Args {
     /// File (TOML) that assigns the columns; options given here override it
     #[arg(long, value_name = "FILE", help_heading = "Columns")]
     map: Option<PathBuf>,
+
+    /// Write how the columns were read to FILE, to be given as --map for the next file of the same form
+    #[arg(long, value_name = "FILE", help_heading = "Columns")]
+    save_map: Option<PathBuf>,
 
     /// Column of the time
     #[arg(long, value_name = "COLUMN", help_heading = "Columns", conflicts_with = "rate")]
@@ -99,6 +107,10 @@ pub(super) struct Args {
     #[arg(long, help_heading = "Form of the file")]
     radians: bool,
 
+    /// Joints that slide, and the unit of their columns: m, cm or mm; columns of other joints are angles
+    #[arg(long, value_name = "JOINT=UNIT,...", value_delimiter = ',', value_parser = slides, help_heading = "Form of the file")]
+    slides: Vec<(String, LengthUnit)>,
+
     /// Separator of the cells: a character, or comma, semicolon, tab, space
     #[arg(long, value_name = "CHAR", value_parser = separator, help_heading = "Form of the file")]
     separator: Option<Separator>,
@@ -115,7 +127,7 @@ pub(super) struct Args {
 impl Args {
     /// Reads the map file, too.
     fn request(&self) -> Result<Inputs, CsvError> {
-        let map = self.map.as_deref().map(CsvOptions::from_map).transpose()?.unwrap_or_default();
+        let read_map = self.map.as_deref().map(CsvOptions::from_map).transpose()?.unwrap_or_default();
         let flag = |yes: bool, no: bool| if yes { Some(true) } else { no.then_some(false) };
         let columns = [
             (Role::Planned, Quantity::Position, &self.planned),
@@ -133,10 +145,12 @@ impl Args {
             rate_hz: self.rate,
             angle_unit: flag(self.degrees, self.radians)
                 .map(|degrees| if degrees { AngleUnit::Degrees } else { AngleUnit::Radians }),
+            slides: self.slides.iter().cloned().collect(),
             columns: columns.map(|(role, quantity, columns)| ((role, quantity), columns.clone())).collect(),
             interfaces: self.interface.iter().cloned().collect(),
         };
-        Ok(Inputs { file: self.file.clone(), options: own.or(map), output: self.output.clone() })
+        let (file, output, map) = (self.file.clone(), self.output.clone(), self.save_map.clone());
+        Ok(Inputs { file, options: own.or(read_map), output, map })
     }
 }
 
@@ -163,6 +177,15 @@ fn pair(text: &str) -> Result<(String, String), String> {
         _ => Err(format!(
             "{text:?} is not JOINT=COLUMN, such as J1=q_soll_1; a column with a comma goes as #3"
         )),
+    }
+}
+
+/// `JOINT=UNIT`.
+fn slides(text: &str) -> Result<(String, LengthUnit), String> {
+    let found = text.split_once('=').map(|(joint, unit)| (joint.trim(), LengthUnit::parse(unit.trim())));
+    match found {
+        Some((joint, Some(unit))) if !joint.is_empty() => Ok((joint.to_owned(), unit)),
+        _ => Err(format!("{text:?} is not JOINT=UNIT with m, cm or mm, such as BOOM=mm")),
     }
 }
 

@@ -32,6 +32,10 @@ pub(super) struct ReadArgs {
     #[arg(long)]
     measured_degrees: bool,
 
+    /// Joints that slide: their positions are lengths in m
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    slides: Vec<String>,
+
     /// Joints without end stops, whose angles wrap at full turns
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     continuous: Vec<String>,
@@ -61,6 +65,7 @@ impl ReadArgs {
             }),
             planned_in_degrees: self.planned_degrees,
             measured_in_degrees: self.measured_degrees,
+            slides: self.slides.clone(),
             continuous: self.continuous.clone(),
             ..ReadOptions::default()
         }

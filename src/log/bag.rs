@@ -46,10 +46,12 @@ fn directory(path: &Path, remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogErro
         }
     }
     let entries = std::fs::read_dir(path).map_err(LogError::file("read", path))?;
-    let mut found: Vec<PathBuf> = entries
-        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
-        .filter(|path| path.extension().is_some_and(|extension| extension == "mcap"))
-        .collect();
+    let entries: Vec<PathBuf> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
+    let ending = |ending: &&str| {
+        let named = |path: &&PathBuf| path.to_string_lossy().ends_with(*ending);
+        entries.iter().filter(named).cloned().collect::<Vec<PathBuf>>()
+    };
+    let mut found = ENDINGS.iter().map(ending).find(|found| !found.is_empty()).unwrap_or_default();
     found.sort_by_key(|path| natural_key(path));
     if found.is_empty() {
         return Err(LogError::EmptyBag { path: path.to_owned() });
@@ -70,9 +72,10 @@ fn named_files(description: &Path) -> Result<Vec<String>, LogError> {
             Event::StreamEnd => break,
             Event::Scalar(value, ..) => match key.as_str() {
                 LIST => names.get_or_insert_with(Vec::new).push(value),
-                "storage_identifier" if value != "mcap" => {
+                "storage_identifier" if !STORAGES.contains(&value.as_str()) => {
                     return Err(bad(format!(
-                        "storage is {value:?}, expected \"mcap\"; convert with `ros2 bag convert` to MCAP storage"
+                        "storage is {value:?}, expected \"mcap\" or \"sqlite3\"; convert with `ros2 bag convert` to \
+                         MCAP storage"
                     )));
                 }
                 "storage_identifier" => key.clear(),
@@ -87,6 +90,10 @@ fn named_files(description: &Path) -> Result<Vec<String>, LogError> {
     }
     names.ok_or_else(|| bad(format!("it has no list {LIST}")))
 }
+
+const STORAGES: [&str; 2] = ["mcap", "sqlite3"];
+/// Endings of the files of a bag, the first one counts where it is there with several.
+const ENDINGS: [&str; 4] = [".mcap", ".db3", ".mcap.zstd", ".db3.zstd"];
 
 const LIST: &str = "relative_file_paths";
 
@@ -122,10 +129,10 @@ mod tests {
     fn a_bag_of_another_storage_says_how_to_convert_it() {
         let folder = tempfile::tempdir().unwrap();
         let text =
-            "rosbag2_bagfile_information:\n  storage_identifier: sqlite3\n  relative_file_paths: [a.db3]\n";
+            "rosbag2_bagfile_information:\n  storage_identifier: hdf5\n  relative_file_paths: [a.h5]\n";
         std::fs::write(folder.path().join("metadata.yaml"), text).unwrap();
         let error =
             recording_files(&[folder.path().to_owned()], &mut Remarks::default()).unwrap_err().to_string();
-        assert!(error.contains("sqlite3") && error.contains("ros2 bag convert"), "{error}");
+        assert!(error.contains("hdf5") && error.contains("ros2 bag convert"), "{error}");
     }
 }

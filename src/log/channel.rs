@@ -104,11 +104,12 @@ impl Definitions {
     }
 
     /// Decides for every channel whether and how it is read; `speeds` says of a topic whose type does not tell plan
-    /// from measurement whether its speeds are.
+    /// from measurement whether its speeds are, `alone` names the joint of a topic with one number a message.
     pub(super) fn plan(
         self,
         selectors: &[(Role, Selector)],
         speeds: &impl Fn(&str) -> bool,
+        alone: &impl Fn(&str) -> Option<String>,
     ) -> BTreeMap<u16, Channel> {
         let empty = OwnedSchema { name: String::new(), encoding: String::new(), data: Vec::new() };
         // Channels of one schema share their reader: files may have many of both.
@@ -122,10 +123,15 @@ impl Definitions {
             let topic = (!mine.is_empty()).then(|| record.topic.clone());
             let speeds = speeds(&record.topic) || mine.iter().any(|(role, _)| *role != Role::Measured);
             let key = (record.schema_id, record.encoding.clone(), topic, speeds);
-            let (reader, problem) = readers
-                .entry(key)
-                .or_insert_with(|| reader(schema, &record.encoding, (&mine, speeds), &mut steps_left))
-                .clone();
+            let read = || {
+                let (mut reader, problem) =
+                    reader(schema, &record.encoding, (&mine, speeds), &mut steps_left);
+                if let Some((spec, _)) = reader.as_mut().filter(|_| !mine.is_empty()) {
+                    Arc::make_mut(spec).alone = alone(&record.topic);
+                }
+                (reader, problem)
+            };
+            let (reader, problem) = readers.entry(key).or_insert_with(read).clone();
             let type_name = schema.name.clone();
             let channel =
                 Channel { topic: record.topic, type_name, encoding: record.encoding, reader, problem };
@@ -146,7 +152,7 @@ type Wanted<'a> = (&'a [(Role, &'a Selector)], bool);
 
 fn reader(schema: &OwnedSchema, encoding: &str, selectors: Wanted<'_>, steps_left: &mut usize) -> Reader {
     match encoding {
-        "cdr" => cdr(schema, selectors, steps_left),
+        "cdr" | "ros1" => cdr(schema, selectors, steps_left),
         "json" => tree(schema, selectors, |spec| Ok(Tree::json(&spec.wants))),
         "protobuf" => tree(schema, selectors, |spec| Tree::protobuf(&schema.name, &schema.data, &spec.wants)),
         other => {
@@ -161,8 +167,8 @@ fn cdr(schema: &OwnedSchema, selectors: Wanted<'_>, steps_left: &mut usize) -> R
     let definition = match Definition::parse(&schema.name, &schema.encoding, &schema.data) {
         Ok(definition) => definition,
         Err(problem) => {
-            // A type that a recorder left undescribed matters only where joints may be lost.
-            let matters = !schema.data.is_empty() || spec_for(&schema.name, None, selectors).is_some();
+            // What is not understood matters only where joints may be lost.
+            let matters = spec_for(&schema.name, None, selectors).is_some();
             return (None, matters.then(|| problem.to_string()));
         }
     };

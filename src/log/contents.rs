@@ -5,7 +5,7 @@ use std::{collections::BTreeSet, fs::File, path::Path};
 use super::{
     channel::Definitions,
     file::{Source, scan},
-    files::{LOOKED_AT, is_table},
+    looks::{LOOKED_AT, is_table},
 };
 
 /// What a file holds, as far as its first bytes and its records tell.

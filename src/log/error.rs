@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use super::csv::CsvError;
 use crate::{suggest::suggestion, text::shell_argument};
 
 /// Why a log cannot be read or written; doubts about parts of it are remarks.
@@ -17,14 +18,18 @@ pub enum LogError {
     /// Neither magic bytes nor any record.
     #[error("{} is not an MCAP file: found {found}, expected the bytes 89 4D 43 41 50 30 0D 0A; {fix}", path.display())]
     NotMcap { path: PathBuf, found: String, fix: &'static str },
-    /// A table in text.
+    /// A table that does not say all that is needed.
     #[error(
-        "{} looks like a CSV file, not like an MCAP log; make it one first: `hydrotrace import {} -o run.mcap`",
+        "{} is a table that leaves something open; `hydrotrace import {} -o run.mcap` takes options for that, and \
+         the log that it writes is read as any other",
         path.display(), shell_argument(path)
     )]
-    IsTable { path: PathBuf },
+    Table { path: PathBuf, source: Box<CsvError> },
+    /// A file of another form that cannot be read.
+    #[error("cannot read {}: {reason}", path.display())]
+    Form { path: PathBuf, reason: String },
     /// A directory without a recording.
-    #[error("{} holds no .mcap file; give a recording or a ROS 2 bag directory in MCAP format", path.display())]
+    #[error("{} holds no .mcap or .db3 file; give a recording or a ROS 2 bag directory", path.display())]
     EmptyBag { path: PathBuf },
     /// `metadata.yaml` is no bag description.
     #[error("{} is no rosbag2 description: {reason}", path.display())]
@@ -46,8 +51,8 @@ pub enum LogError {
         present: String,
     },
     /// The log holds no plan, or no measurement.
-    #[error("found no {missing} joint angles; the log has {present}; name them with {flag} TOPIC[:FIELD]")]
-    Missing { missing: &'static str, present: String, flag: &'static str },
+    #[error("found no {missing} joint angles; the log has {present}; name them with {fix}")]
+    Missing { missing: &'static str, present: String, fix: String },
     /// Planned and measured joints have no name in common.
     #[error(
         "planned joints ({planned}) and measured joints ({measured}) have no name in common; \

@@ -8,7 +8,9 @@ use std::{
 use super::{
     bag,
     error::LogError,
-    file::{Layout, Source, Span, scan},
+    file::{Layout, Source, scan},
+    foreign,
+    looks::LOOKED_AT,
 };
 use crate::remark::{Code, Remarks};
 
@@ -72,13 +74,15 @@ impl LogFiles {
     pub fn open(paths: &[PathBuf]) -> Result<Self, LogError> {
         let mut remarks = Remarks::default();
         let ordered = paths.iter().any(|path| path.is_dir());
+        let mut doubts = Remarks::default();
         let open = |path: PathBuf| {
             count(|passes| passes.opened += 1);
-            let source = Source::open(&path).map_err(LogError::file("open", &path))?;
+            let source = foreign::open_log(&path, &mut doubts)?;
             Ok((path, source))
         };
         let files =
             bag::recording_files(paths, &mut remarks)?.into_iter().map(open).collect::<Result<_, _>>()?;
+        remarks.extend(doubts);
         Ok(Self { files, ordered, remarks })
     }
 
@@ -86,7 +90,7 @@ impl LogFiles {
     ///
     /// # Errors
     ///
-    /// [`LogError::NotMcap`] or [`LogError::IsTable`].
+    /// [`LogError::NotMcap`].
     pub fn scan(&self) -> Result<ScannedLog<'_>, LogError> {
         let files = self.files.iter().map(|(path, source)| ScannedFile::of(path, source));
         let files = files.collect::<Result<_, _>>()?;
@@ -148,40 +152,23 @@ impl<'a> ScannedFile<'a> {
 }
 
 fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
-    if is_table(path, bytes) {
-        return LogError::IsTable { path: path.to_owned() };
-    }
     let start: Vec<String> = bytes.iter().take(8).map(|byte| format!("{byte:02X}")).collect();
     let fix = match bytes {
         [] => "the file is empty",
-        [b'#', b'R', b'O', b'S', ..] => "convert the ROS 1 bag first, for example with rosbags-convert",
-        [b'S', b'Q', b'L', b'i', ..] => {
-            "convert the SQLite bag first, with `ros2 bag convert` to MCAP storage"
+        [b'#', b'R', b'O', b'S', ..] => {
+            "it is a ROS 1 bag: `pip install rosbags`, then `rosbags-convert --src X.bag --dst X --dst-storage mcap`"
         }
-        [0x28, 0xB5, 0x2F, 0xFD, ..] => "decompress it first, with `zstd -d`",
+        [b'S', b'Q', b'L', b'i', ..] => {
+            "it is an SQLite bag, which this build does not read: convert it with `ros2 bag convert` to MCAP storage"
+        }
+        [b'M', b'D', b'F', b' ', ..] => {
+            "it is an MF4 recording: `pip install asammdf`, then `asammdf` exports its channels as CSV"
+        }
+        [b'U', b'L', b'o', b'g', ..] => {
+            "it is a PX4 ULog: `pip install pyulog`, then `ulog2csv` makes CSV of it"
+        }
         _ => "give an .mcap recording or a ROS 2 bag directory",
     };
     let found = if start.is_empty() { "nothing".to_owned() } else { start.join(" ") };
     LogError::NotMcap { path: path.to_owned(), found, fix }
-}
-
-/// As much of a file as tells what it is if it is no log.
-pub(super) const LOOKED_AT: Span = Span { start: 0, end: 4096 };
-
-/// Whether the first bytes of a file are text whose first lines are split alike, or text of a file named as a table.
-pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
-    const LINES: usize = 3;
-    let text = String::from_utf8_lossy(bytes);
-    if text.trim().is_empty() || text.chars().any(|c| c.is_control() && !c.is_whitespace()) {
-        return false;
-    }
-    let named = path
-        .extension()
-        .is_some_and(|ending| ["csv", "tsv"].iter().any(|one| ending.eq_ignore_ascii_case(one)));
-    let alike = |separator: char| {
-        let lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#')).take(LINES);
-        let counts: Vec<usize> = lines.map(|line| line.matches(separator).count()).collect();
-        counts.len() == LINES && counts[0] > 0 && counts.iter().all(|count| *count == counts[0])
-    };
-    named || [';', ',', '\t'].into_iter().any(alike)
 }

@@ -14,6 +14,9 @@ mod error;
 mod export;
 mod file;
 mod files;
+mod foreign;
+mod joint_kind;
+mod looks;
 mod options;
 mod read;
 mod repair;
@@ -24,14 +27,15 @@ mod write;
 pub use bag::recording_files;
 pub use contents::{Contents, contents};
 pub use csv::{
-    AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, Quantity, Separator, TimeRead, Understood,
-    read_csv, read_csv_bytes,
+    AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, LengthUnit, Quantity, Separator, TimeRead,
+    Understood, read_csv_bytes,
 };
 pub use error::LogError;
 pub use export::{ExportError, RunTable};
 pub use files::{LogFiles, ScannedLog};
 #[doc(hidden)]
 pub use files::{Passes, passes};
+pub use foreign::read_csv;
 pub use options::{ReadOptions, Selector, Sides, SignalRole, TimeBase, WantedSignal};
 pub use read::{
     read_plan, read_recording,

@@ -26,6 +26,8 @@ pub struct ReadOptions {
     pub measured_in_degrees: bool,
     /// Whether to read the speeds that come with measured positions, too.
     pub measured_velocities: bool,
+    /// Joints that slide, whose positions are in m; those that the log's URDF calls prismatic do anyway.
+    pub slides: Vec<String>,
     /// Joints without end stops, whose angle may wrap by a full turn.
     pub continuous: Vec<String>,
 }

@@ -121,7 +121,7 @@ impl Look<'_> {
             return Ok(self.found(TimeSource::Date { column, form: form.clone() }, doubt));
         }
         let given = self.options.time_unit.as_deref().and_then(parse_unit);
-        let stated = self.labels.get(column).and_then(|label| label.unit);
+        let stated = self.labels.get(column).and_then(|label| label.stated);
         if let Some(other) = stated.filter(|unit| given.is_none() && unit.measure != Measure::Time) {
             return Err(CsvError::WrongUnit {
                 column: name(),

@@ -53,8 +53,8 @@ pub enum CsvError {
     )]
     NoPair { planned: String, measured: String },
     /// An interface of a joint that the log does not have.
-    #[error("interface {interface:?} names the joint {joint:?}{}; the joints are {present}", suggestion(nearest.as_deref()))]
-    NoJoint { interface: String, joint: String, nearest: Option<String>, present: String },
+    #[error("{what} names the joint {joint:?}{}; the joints are {present}", suggestion(nearest.as_deref()))]
+    NoJoint { what: String, joint: String, nearest: Option<String>, present: String },
     /// There is no time.
     #[error(
         "no column looks like a time{why}; the columns are {present}; say --time COLUMN, or --rate HZ if there is none"
@@ -67,7 +67,8 @@ pub enum CsvError {
     TimeUnit { column: String, step: f64 },
     /// Angles without a unit, too large for radians.
     #[error(
-        "column {column:?} says no unit and reaches {reach}, too far for radians; say --degrees or --radians"
+        "column {column:?} says no unit and reaches {reach}, too far for radians; say --degrees, --radians, or \
+         --slides JOINT=mm of a joint that slides"
     )]
     AngleUnit { column: String, reach: f64 },
     /// A column in a unit of something else.
@@ -75,6 +76,15 @@ pub enum CsvError {
         "column {column:?} is in {unit}, which is no {expected}; map another column or correct its header"
     )]
     WrongUnit { column: String, unit: String, expected: &'static str },
+    /// A sum of columns in different units.
+    #[error("{text:?} adds {} to {}; columns of one unit are expected", units[0], units[1])]
+    MixedUnits { text: String, units: [String; 2] },
+    /// A joint that turns by one column and slides by another.
+    #[error(
+        "the columns of {joint} are in {} and in {}; a joint turns (rad, deg) or slides (m, cm, mm)",
+        units[0], units[1]
+    )]
+    MixedKinds { joint: String, units: [String; 2] },
     /// A column that is used and mostly holds no numbers.
     #[error(
         "{numbers} cells of column {column:?} are numbers with a decimal {decimal}, {bad} are not{example}; {fix}"

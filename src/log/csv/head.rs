@@ -1,5 +1,7 @@
 //! Where the numbers begin, and the names above them.
 
+use std::collections::BTreeSet;
+
 use ::csv::ByteRecord;
 
 use super::{
@@ -8,6 +10,7 @@ use super::{
     rows::{Rows, cell_text},
     unit::parse_unit,
 };
+use crate::remark::{Code, Remarks};
 
 /// The names of the columns and the first rows below them.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -30,7 +33,7 @@ pub(super) struct Head {
 
 const SAMPLE_ROWS: usize = 200;
 
-pub(super) fn read_head(text: &[u8], dialect: Dialect) -> Head {
+pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) -> Head {
     let start = head(text);
     let mut rows = Rows::new(start, dialect.separator);
     let mut record = ByteRecord::new();
@@ -51,9 +54,26 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect) -> Head {
         }
     }
     // A header may lack the empty cell that a trailing separator adds to every row, or have it alone.
-    above.retain(|(_, cells)| {
+    let fits = |cells: &[String]| {
         cells.len().abs_diff(dialect.width) <= 1 && cells.iter().any(|cell| !cell.is_empty())
-    });
+    };
+    if !above.iter().any(|(_, cells)| fits(cells)) {
+        above.retain(|(_, cells)| are_names(cells));
+        if let Some((line, cells)) = above.last_mut() {
+            let message = format!(
+                "the header, line {line}, has {} cells and the rows have {}; its names are taken from the left",
+                cells.len(),
+                dialect.width
+            );
+            remarks.add(Code::LengthMismatch, 1, message);
+            cells.resize(dialect.width, String::new());
+        }
+    }
+    let named = above.iter().rposition(|(_, cells)| fits(cells));
+    let below = named.map_or(0, |at| above.len() - at - 1) as u64;
+    let message = "rows between the header and the first row of numbers that have other cells; left out";
+    remarks.add(Code::LengthMismatch, below, message);
+    above.retain(|(_, cells)| fits(cells));
     if above.len() > 1 && above.last().is_some_and(|(_, cells)| is_units(cells)) {
         found.units = above.pop().map(|(_, cells)| cells);
     }
@@ -81,6 +101,15 @@ fn is_data(record: &ByteRecord, width: usize) -> bool {
     record.len() == width && !all.is_empty() && 2 * words < all.len()
 }
 
+/// Whether the cells of a row may be the names of columns: several, none a number, no two alike.
+fn are_names(cells: &[String]) -> bool {
+    let named: Vec<&String> = cells.iter().filter(|cell| !cell.is_empty()).collect();
+    let distinct: BTreeSet<&String> = named.iter().copied().collect();
+    named.len() > 1
+        && distinct.len() == named.len()
+        && named.iter().all(|cell| looks(cell.as_bytes()) == Looks::Text)
+}
+
 fn is_units(cells: &[String]) -> bool {
     let stated = |cell: &String| !cell.is_empty() && cell != "-";
     cells.iter().any(stated)
@@ -105,7 +134,14 @@ mod tests {
     use crate::log::csv::{CsvOptions, dialect::detect};
 
     fn of(text: &str) -> Head {
-        read_head(text.as_bytes(), detect("a.csv", text.as_bytes(), &CsvOptions::default()).unwrap())
+        let dialect = detect("a.csv", text.as_bytes(), &CsvOptions::default()).unwrap();
+        read_head(text.as_bytes(), dialect, &mut Remarks::default())
+    }
+
+    #[test]
+    fn a_header_longer_than_the_rows_is_kept() {
+        let head = of("t,q_set,q_act,note,operator\n0,1,2\n1,1,2\n2,1,2\n");
+        assert_eq!((head.names.as_slice(), head.line), (&["t", "q_set", "q_act"].map(str::to_owned)[..], 1));
     }
 
     #[test]

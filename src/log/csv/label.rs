@@ -7,19 +7,25 @@ use super::{
 };
 
 /// Role, quantity, joint and unit of a column by its header.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Label {
     pub(super) role: Option<Role>,
     pub(super) quantity: Option<Quantity>,
     pub(super) unit: Option<Unit>,
+    /// The unit that it ends with, even where that is read as a word.
+    pub(super) stated: Option<Unit>,
+    /// Its words in lower case.
+    pub(super) words: Vec<String>,
     /// The joint as other columns of it would also write it: lower case.
     pub(super) key: String,
     /// The joint as it is written here.
     pub(super) joint: String,
     pub(super) is_time: bool,
     pub(super) is_joint: bool,
-    /// Only a role says that this may be a joint: it needs a partner.
+    /// Only a role or a length says that this may be a joint: it needs a partner.
     pub(super) is_weak: bool,
+    /// Key and name of the joint if the `d` of `q_d_1` means desired.
+    pub(super) desired: Option<(String, String)>,
 }
 
 /// Endings that `export` writes; the joint's name before them is taken as it is.
@@ -28,23 +34,38 @@ const OWN: [(&str, Role); 3] =
 
 /// Reads a header; `below` is the cell of a row of units.
 pub(super) fn label(header: &str, below: Option<&str>) -> Label {
-    let (name, stated) = without_unit(header.trim());
-    let unit = stated.or_else(|| below.and_then(parse_unit));
+    let header = header.trim();
+    let (name, stated) = without_unit(header);
+    let mut unit = stated.or_else(|| below.and_then(parse_unit));
     if let Some((joint, role)) = own(name).filter(|_| unit.is_some()) {
-        let speed = unit.is_some_and(|unit| unit.measure == Measure::AngularSpeed);
+        let speeds = [Measure::AngularSpeed, Measure::LinearSpeed];
+        let speed = unit.is_some_and(|unit| speeds.contains(&unit.measure));
         let quantity = if speed { Quantity::Velocity } else { Quantity::Position };
         return Label {
             role: Some(role),
             quantity: Some(quantity),
             unit,
+            stated: unit,
+            words: vec![joint.to_lowercase()],
             key: joint.to_owned(),
             joint: joint.to_owned(),
             is_time: false,
             is_joint: true,
             is_weak: false,
+            desired: None,
         };
     }
-    let words = words(name);
+    let mut words = words(name);
+    let timely = |words: &[Word<'_>]| {
+        let lone_t = matches!(words, [word] if word.text.eq_ignore_ascii_case("t"));
+        lone_t || words.iter().any(|word| word.meaning == Meaning::Time)
+    };
+    let is_time_unit = unit.is_some_and(|unit| unit.measure == Measure::Time);
+    if is_time_unit && stated.is_some() && !header.ends_with([']', ')']) && !timely(&words) {
+        // `Boom Ms` is measured, not in ms.
+        (unit, words) = (below.and_then(parse_unit), self::words(header));
+    }
+    let timely = timely(&words);
     let means = |meaning: Meaning| words.iter().any(|word| word.meaning == meaning);
     let role = words.iter().find_map(|word| match word.meaning {
         // What is a command as well was sent: `target_cmd`.
@@ -58,18 +79,50 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     });
     let measure = unit.map(|unit| unit.measure);
     let quantity = match measure {
-        Some(Measure::Angle) => Some(Quantity::Position),
-        Some(Measure::AngularSpeed) => Some(Quantity::Velocity),
+        Some(Measure::Angle | Measure::Length) => Some(Quantity::Position),
+        Some(Measure::AngularSpeed | Measure::LinearSpeed) => Some(Quantity::Velocity),
         _ => quantity,
     };
-    let lone_t = matches!(words.as_slice(), [word] if word.text.eq_ignore_ascii_case("t"));
-    let timely = means(Meaning::Time) || lone_t;
     let is_time = timely && matches!(measure, None | Some(Measure::Time)) && !means(Meaning::Foreign);
-    let angular = matches!(measure, None | Some(Measure::Angle | Measure::AngularSpeed));
-    let strong = quantity.is_some() || means(Meaning::Joint);
-    let is_joint = !timely && angular && !means(Meaning::Foreign) && (strong || role.is_some());
+    let long = matches!(measure, Some(Measure::Length | Measure::LinearSpeed));
+    let fits = long || matches!(measure, None | Some(Measure::Angle | Measure::AngularSpeed));
+    let strong = quantity.is_some() && !long || means(Meaning::Joint);
+    let is_joint = !timely && fits && !means(Meaning::Foreign) && (strong || role.is_some() || long);
     let joint = joint_name(&words);
-    Label { role, quantity, unit, key: joint.to_lowercase(), joint, is_time, is_joint, is_weak: !strong }
+    let desired = role.is_none().then(|| without_d(&words)).flatten();
+    let desired = desired.map(|words| joint_name(&words)).map(|joint| (joint.to_lowercase(), joint));
+    let key = joint.to_lowercase();
+    let stated = stated.or(unit);
+    let words = words.iter().map(|word| word.text.to_lowercase()).collect();
+    Label { role, quantity, unit, stated, words, key, joint, is_time, is_joint, is_weak: !strong, desired }
+}
+
+/// The words without a `d` that follows a word for the position, if there is one.
+fn without_d<'a>(words: &[Word<'a>]) -> Option<Vec<Word<'a>>> {
+    let position = Meaning::Quantity(Quantity::Position);
+    let at =
+        words.windows(2).position(|w| w[0].meaning == position && w[1].text.eq_ignore_ascii_case("d"))?;
+    let kept = words.iter().enumerate().filter(|(index, _)| *index != at + 1);
+    Some(kept.map(|(_, word)| word.clone()).collect())
+}
+
+/// Settles what only all headers together tell: that `q_d_1` is the plan of `q_1`, and that `J1_planned_rad` and
+/// `J1_actual_rad` are of one joint.
+pub(super) fn settle(labels: &mut [Label]) {
+    for at in 0..labels.len() {
+        let other = |key: &str| {
+            labels.iter().enumerate().any(|(index, label)| index != at && label.is_joint && label.key == key)
+        };
+        let lower = labels[at].key.to_lowercase();
+        let desired = labels[at].desired.clone().filter(|(key, _)| other(key));
+        let alone = labels[at].is_joint && !other(&labels[at].key) && other(&lower);
+        if let Some((key, joint)) = desired {
+            (labels[at].key, labels[at].joint) = (key, joint);
+            labels[at].role = Some(Role::Planned);
+        } else if alone {
+            labels[at].key = lower;
+        }
+    }
 }
 
 fn own(name: &str) -> Option<(&str, Role)> {
@@ -161,11 +214,42 @@ mod tests {
             "temperature",
             "pressure_set [bar]",
             "J1_error_rad",
-            "cylinder pos [mm]",
             "counter",
         ] {
             assert!(!label(header, None).is_joint, "{header}");
         }
+    }
+
+    #[test]
+    fn a_length_is_that_of_a_joint_that_has_a_partner() {
+        for (header, unit) in [("boom_set_mm", "mm"), ("boom set [cm]", "cm"), ("boom_set_m", "m")] {
+            let label = label(header, None);
+            let said = (label.joint.as_str(), label.role, label.unit.map(|unit| unit.name));
+            assert_eq!(said, ("boom", Some(Role::Planned), Some(unit)), "{header}");
+            assert!(label.is_joint && label.is_weak, "{header}");
+        }
+        assert!(!label("tool x [mm]", None).is_joint);
+    }
+
+    #[test]
+    fn a_unit_of_time_behind_a_joint_is_a_word() {
+        let label = label("Boom Ms", None);
+        assert_eq!((label.joint.as_str(), label.role, label.unit), ("Boom", Some(Role::Measured), None));
+    }
+
+    #[test]
+    fn headers_together_tell_what_one_does_not() {
+        let settled = |headers: [&str; 2]| {
+            let mut labels = headers.map(|header| label(header, None));
+            settle(&mut labels);
+            labels.map(|label| (label.role, label.key))
+        };
+        let (plan, real) = (Some(Role::Planned), Some(Role::Measured));
+        assert_eq!(settled(["q_d_1", "q_1"]), [(plan, "joint_1".into()), (None, "joint_1".into())]);
+        assert_eq!(settled(["q_d_1", "q_2"]), [(None, "d_1".into()), (None, "joint_2".into())]);
+        assert_eq!(settled(["J1_planned_rad", "J1_actual_rad"]), [(plan, "j1".into()), (real, "j1".into())]);
+        let own = ["q_planned_rad", "Q_measured_rad"];
+        assert_eq!(settled(own), [(plan, "q".into()), (real, "q".into())]);
     }
 
     #[test]

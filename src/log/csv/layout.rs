@@ -119,8 +119,12 @@ pub(super) fn lay_out(
     for (name, columns) in &options.interfaces {
         for (joint, column) in columns {
             let column = find(column, &format!("interface {name}"), &head.names)?;
-            let joint = place(&joint.to_lowercase()).ok_or_else(|| CsvError::NoJoint {
-                interface: name.clone(),
+            let known = place(joint).or_else(|| {
+                let joint = joint.to_lowercase();
+                joints.iter().position(|(key, _)| key.to_lowercase() == joint)
+            });
+            let joint = known.ok_or_else(|| CsvError::NoJoint {
+                what: format!("interface {name:?}"),
                 joint: joint.clone(),
                 nearest: nearest(joint, joints.iter().map(|(_, name)| name.as_str())),
                 present: joints.iter().map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(", "),

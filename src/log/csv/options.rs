@@ -1,11 +1,10 @@
 //! Options of reading a CSV file, for facts that the file does not state.
 
-use std::{collections::BTreeMap, path::Path};
+use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::{CsvError, Quantity, Role, unit::Measure, unit::parse_unit};
-use crate::input_file;
 
 /// Joint to the column that holds it: a header, or `#3` for the third column.
 pub type Columns = Vec<(String, String)>;
@@ -25,6 +24,8 @@ pub struct CsvOptions {
     pub rate_hz: Option<f64>,
     /// Unit of angles whose column states none.
     pub angle_unit: Option<AngleUnit>,
+    /// Joints that slide, and the unit of their columns, which then holds whatever a header says.
+    pub slides: BTreeMap<String, LengthUnit>,
     /// Columns given for a role and quantity; these are then not looked for.
     pub columns: BTreeMap<(Role, Quantity), Columns>,
     /// Other quantities by joint, kept as interfaces of `control_msgs/DynamicJointState`.
@@ -41,7 +42,7 @@ pub enum Separator {
 }
 
 /// Unit of an angle; a speed is in the same unit a second.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AngleUnit {
     /// deg
@@ -50,6 +51,40 @@ pub enum AngleUnit {
     /// rad
     #[serde(alias = "rad")]
     Radians,
+}
+
+/// Unit of a length; a speed is in the same unit a second.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LengthUnit {
+    /// mm
+    #[serde(rename = "mm")]
+    Millimetres,
+    /// cm
+    #[serde(rename = "cm")]
+    Centimetres,
+    /// m
+    #[serde(rename = "m")]
+    Metres,
+}
+
+impl LengthUnit {
+    /// Reads a unit as a person types it.
+    pub fn parse(text: &str) -> Option<Self> {
+        match text {
+            "mm" => Some(Self::Millimetres),
+            "cm" => Some(Self::Centimetres),
+            "m" => Some(Self::Metres),
+            _ => None,
+        }
+    }
+
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Millimetres => "mm",
+            Self::Centimetres => "cm",
+            Self::Metres => "m",
+        }
+    }
 }
 
 impl Separator {
@@ -79,66 +114,7 @@ impl Separator {
     }
 }
 
-/// The document of a map file.
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct MapFile {
-    separator: Option<String>,
-    decimal_comma: Option<bool>,
-    time: Option<String>,
-    time_unit: Option<String>,
-    rate_hz: Option<f64>,
-    angle_unit: Option<AngleUnit>,
-    planned: BTreeMap<String, String>,
-    measured: BTreeMap<String, String>,
-    command: BTreeMap<String, String>,
-    planned_velocity: BTreeMap<String, String>,
-    measured_velocity: BTreeMap<String, String>,
-    command_velocity: BTreeMap<String, String>,
-    interface: BTreeMap<String, BTreeMap<String, String>>,
-}
-
 impl CsvOptions {
-    /// Reads a map file (TOML).
-    ///
-    /// # Errors
-    ///
-    /// [`CsvError::MapFile`] if it cannot be read or has unknown keys.
-    pub fn from_map(path: &Path) -> Result<Self, CsvError> {
-        let fault = |reason: String| CsvError::MapFile { path: path.to_owned(), reason };
-        let text = input_file::read_to_string(path).map_err(|error| fault(error.to_string()))?;
-        let file: MapFile =
-            toml::from_str(&text).map_err(|error| fault(error.to_string().trim().to_owned()))?;
-        let separator = match &file.separator {
-            None => None,
-            Some(text) => Some(Separator::parse(text).ok_or_else(|| {
-                fault(format!(
-                    "separator = {text:?}: one character or comma, semicolon, tab, space is expected"
-                ))
-            })?),
-        };
-        let list = |map: BTreeMap<String, String>| map.into_iter().collect::<Columns>();
-        let columns = [
-            (Role::Planned, Quantity::Position, file.planned),
-            (Role::Measured, Quantity::Position, file.measured),
-            (Role::Command, Quantity::Position, file.command),
-            (Role::Planned, Quantity::Velocity, file.planned_velocity),
-            (Role::Measured, Quantity::Velocity, file.measured_velocity),
-            (Role::Command, Quantity::Velocity, file.command_velocity),
-        ];
-        let columns = columns.into_iter().filter(|(_, _, map)| !map.is_empty());
-        Ok(Self {
-            separator,
-            decimal_comma: file.decimal_comma,
-            time: file.time,
-            time_unit: file.time_unit,
-            rate_hz: file.rate_hz,
-            angle_unit: file.angle_unit,
-            columns: columns.map(|(role, quantity, map)| ((role, quantity), list(map))).collect(),
-            interfaces: file.interface.into_iter().map(|(name, map)| (name, list(map))).collect(),
-        })
-    }
-
     /// These options, completed by those of `other`.
     #[must_use]
     pub fn or(mut self, other: Self) -> Self {
@@ -148,6 +124,9 @@ impl CsvOptions {
         self.time_unit = self.time_unit.or(other.time_unit);
         self.rate_hz = self.rate_hz.or(other.rate_hz);
         self.angle_unit = self.angle_unit.or(other.angle_unit);
+        for (joint, unit) in other.slides {
+            self.slides.entry(joint).or_insert(unit);
+        }
         for (key, columns) in other.columns {
             self.columns.entry(key).or_insert(columns);
         }

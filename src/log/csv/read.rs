@@ -199,6 +199,12 @@ impl Ends {
 }
 
 impl Column {
+    /// A column of numbers, NaN where there is none.
+    pub(super) fn of(values: Vec<f64>) -> Self {
+        let numbers = values.iter().filter(|value| value.is_finite()).count() as u64;
+        Self { values, numbers, ..Self::default() }
+    }
+
     /// Without the last row.
     fn pop(&mut self) {
         self.numbers -= u64::from(self.values.pop().is_some_and(f64::is_finite));

@@ -4,15 +4,16 @@ use std::{collections::BTreeMap, io::Write};
 
 use super::{Quantity, Role, Understood, layout::Layout, read::Cells};
 use crate::{
-    log::{LogWriter, WriteError, WriteOptions},
+    log::{LogWriter, WriteError, WriteOptions, joint_kind},
     remark::Remarks,
+    series::JointKind,
 };
 
 /// Columns of one quantity, `[joints]`; `None` for a joint without one.
 type ByJoint<'a> = Vec<Option<&'a [f64]>>;
 
 /// Name of the metadata that says where an imported log comes from.
-const ORIGIN: &str = "hydrotrace.import";
+pub(in crate::log) const ORIGIN: &str = "hydrotrace.import";
 
 /// A run as a CSV file gave it: SI units, one row an instant.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,12 +23,19 @@ pub struct CsvRun {
     /// Doubts about the data.
     pub remarks: Remarks,
     layout: Layout,
+    /// `[joints]`
+    kinds: Vec<JointKind>,
     cells: Cells,
 }
 
 impl CsvRun {
-    pub(super) fn new(layout: Layout, cells: Cells, understood: Understood, remarks: Remarks) -> Self {
-        Self { understood, remarks, layout, cells }
+    pub(super) fn new(
+        (layout, kinds): (Layout, Vec<JointKind>),
+        cells: Cells,
+        understood: Understood,
+        remarks: Remarks,
+    ) -> Self {
+        Self { understood, remarks, layout, kinds, cells }
     }
 
     /// Writes the run as an MCAP log of ROS 2 messages. A row gives a message of plan, measurement
@@ -46,6 +54,10 @@ impl CsvRun {
         let mut origin: BTreeMap<String, String> = columns.collect();
         origin.extend([("file".to_owned(), understood.file.clone()), ("time".to_owned(), time)]);
         log.metadata(ORIGIN, &origin)?;
+        let kinds = joint_kind::entries(layout.joints.iter().zip(&self.kinds));
+        if !kinds.is_empty() {
+            log.metadata(joint_kind::METADATA, &kinds)?;
+        }
         let positions = |role| self.by_joint(role, Quantity::Position);
         let velocities = |role| self.by_joint(role, Quantity::Velocity);
         let sides: Vec<(Role, [ByJoint<'_>; 2])> = [Role::Planned, Role::Measured, Role::Command]

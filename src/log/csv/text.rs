@@ -5,16 +5,14 @@ use std::borrow::Cow;
 use super::CsvError;
 
 /// The first bytes of other kinds of files.
-const OTHERS: [(&[u8], &str, &str); 6] = [
+const OTHERS: [(&[u8], &str, &str); 4] = [
     (b"\x89MCAP0\r\n", "an MCAP log", "`hydrotrace report` reads it as it is"),
-    (b"PAR1", "a Parquet file", "give the CSV it was made from"),
     (b"PK\x03\x04", "a spreadsheet or an archive", "save the sheet as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old spreadsheet", "save the sheet as CSV"),
-    (b"\x1f\x8b", "a gzip archive", "unpack it first"),
     (
         b"SQLite format 3\0",
         "an SQLite file, such as a ROS 2 bag",
-        "convert it with `ros2 bag convert` to MCAP",
+        "`hydrotrace report` reads bags as they are",
     ),
 ];
 

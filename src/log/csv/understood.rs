@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    angle::Settled,
     dialect::Dialect,
     head::Head,
     layout::{Layout, describe},
     read::Cells,
+    si::Settled,
     time::TimeSource,
 };
 use crate::{
@@ -89,7 +89,7 @@ impl Understood {
         dialect: Dialect,
         head: &Head,
         time: &TimeSource,
-        layout: &Layout,
+        (layout, added): (&Layout, &[usize]),
         cells: &Cells,
         units: &[Settled],
     ) -> Self {
@@ -120,7 +120,9 @@ impl Understood {
         columns.sort_by_key(|column| column.number);
         let taken = time.columns();
         let unused = (0..head.names.len()).filter(|column| {
-            !taken.contains(column) && !columns.iter().any(|used| used.number == column + 1)
+            !taken.contains(column)
+                && !added.contains(column)
+                && !columns.iter().any(|used| used.number == column + 1)
         });
         Self {
             file: file.to_owned(),

@@ -12,6 +12,8 @@ use crate::units::DEGREE_RAD;
 pub(super) enum Measure {
     Angle,
     AngularSpeed,
+    Length,
+    LinearSpeed,
     Time,
     Pressure,
     /// Any other unit that a header states.
@@ -32,9 +34,12 @@ const fn unit(name: &'static str, measure: Measure, factor: f64) -> Unit {
 
 pub(super) const RADIAN: Unit = unit("rad", Measure::Angle, 1.0);
 pub(super) const DEGREE: Unit = unit("deg", Measure::Angle, DEGREE_RAD);
+const MILLIMETRE: Unit = unit("mm", Measure::Length, 1e-3);
+const CENTIMETRE: Unit = unit("cm", Measure::Length, 1e-2);
+const METRE: Unit = unit("m", Measure::Length, 1.0);
 
 /// Spellings, in lower case and with `deg` for the degree sign.
-const UNITS: [(&[&str], Unit); 21] = [
+const UNITS: [(&[&str], Unit); 27] = [
     (&["rad", "radian", "radians"], RADIAN),
     (&["deg", "degree", "degrees", "grad"], DEGREE),
     (&["mrad"], unit("mrad", Measure::Angle, 1e-3)),
@@ -47,6 +52,12 @@ const UNITS: [(&[&str], Unit); 21] = [
     ),
     (&["mrad/s", "mrad_s"], unit("mrad/s", Measure::AngularSpeed, 1e-3)),
     (&["rpm", "1/min", "u/min"], unit("rpm", Measure::AngularSpeed, TAU / 60.0)),
+    (&["mm", "millimetre", "millimetres", "millimeter", "millimeters"], MILLIMETRE),
+    (&["cm", "centimetre", "centimetres", "centimeter", "centimeters"], CENTIMETRE),
+    (&["m", "metre", "metres", "meter", "meters"], METRE),
+    (&["mm/s", "mm_s", "mm/sec"], unit("mm/s", Measure::LinearSpeed, 1e-3)),
+    (&["cm/s", "cm_s", "cm/sec"], unit("cm/s", Measure::LinearSpeed, 1e-2)),
+    (&["m/s", "m_s", "m/sec"], unit("m/s", Measure::LinearSpeed, 1.0)),
     (&["s", "sec", "secs", "seconds", "second"], unit("s", Measure::Time, 1e9)),
     (&["ms", "msec", "milliseconds", "millis"], unit("ms", Measure::Time, 1e6)),
     (&["us", "µs", "μs", "usec", "microseconds", "micros"], unit("us", Measure::Time, 1e3)),
@@ -59,13 +70,17 @@ const UNITS: [(&[&str], Unit); 21] = [
     (&["bar"], unit("bar", Measure::Pressure, 1e5)),
     (&["psi"], unit("psi", Measure::Pressure, 6_894.757_293_168)),
     (
-        &[
-            "nm", "n m", "n*m", "a", "ma", "v", "mv", "n", "kn", "mm", "m", "cm", "%", "c", "degc", "l/min",
-            "hz",
-        ],
+        &["nm", "n m", "n*m", "a", "ma", "v", "mv", "n", "kn", "%", "c", "degc", "l/min", "hz"],
         unit("another unit", Measure::Other, 1.0),
     ),
 ];
+
+impl Unit {
+    /// The unit of a speed: this one a second.
+    pub(super) fn per_second(self) -> Self {
+        parse_unit(&format!("{}/s", self.name)).unwrap_or(self)
+    }
+}
 
 /// The unit that a text names, if it is one.
 pub(super) fn parse_unit(text: &str) -> Option<Unit> {
@@ -75,9 +90,9 @@ pub(super) fn parse_unit(text: &str) -> Option<Unit> {
 
 /// The unit that ends a name, as in `q1_deg` or `J1_planned_rad_s`, and the name without it.
 pub(super) fn split_suffix(name: &str) -> Option<(&str, Unit)> {
-    const SUFFIXES: [&str; 15] = [
-        "rad_s", "deg_s", "mrad_s", "rad", "deg", "mrad", "mdeg", "ms", "us", "ns", "s", "bar", "mbar", "pa",
-        "°",
+    const SUFFIXES: [&str; 21] = [
+        "rad_s", "deg_s", "mrad_s", "mm_s", "cm_s", "m_s", "rad", "deg", "mrad", "mdeg", "mm", "cm", "m",
+        "ms", "us", "ns", "s", "bar", "mbar", "pa", "°",
     ];
     let lower = name.to_lowercase();
     let suffix = SUFFIXES.iter().find(|suffix| {
@@ -108,6 +123,8 @@ mod tests {
         assert_eq!(split("q1_deg"), Some(("q1", "deg")));
         assert_eq!(split("J1_planned_rad_s"), Some(("J1_planned", "rad/s")));
         assert_eq!(split("stamp_ns"), Some(("stamp", "ns")));
+        assert_eq!(split("boom_set_mm"), Some(("boom_set", "mm")));
+        assert_eq!(split("boom_measured_m_s"), Some(("boom_measured", "m/s")));
         assert_eq!(split("axes"), None);
         assert_eq!(split("İ_deg").map(|(stem, _)| stem), Some("İ"));
     }

@@ -19,7 +19,7 @@ pub(super) enum Meaning {
 const PLANNED: &str = "target planned plan desired des reference ref setpoint set sp soll sollwert goal nominal nom demand \
     wanted consigne trajectory traj fuehrung";
 const MEASURED: &str = "actual act measured meas feedback fb fbk ist istwert real sensor encoder enc pv measurement reached \
-    mess messwert";
+    mess messwert ms";
 const COMMAND: &str = "command commands commanded cmd stell";
 const POSITION: &str = "q pos position positions posn angle angles winkel lage theta phi";
 const VELOCITY: &str = "qd dq vel velocity velocities velo speed omega geschwindigkeit drehzahl qdot";

@@ -85,6 +85,8 @@ pub(in crate::log) struct Program {
     pub(super) delimited: Vec<Step>,
     /// Whether bytes may follow the last step.
     pub(super) open_ended: bool,
+    /// Whether messages are those of ROS 1: no header before, no padding within.
+    pub(super) packed: bool,
     /// Cost of compiling: steps, and fields looked at.
     pub(in crate::log) cost: usize,
 }
@@ -122,7 +124,8 @@ impl Program {
                 present: root.fields.iter().map(|(name, _)| name.clone()).collect(),
             });
         }
-        Ok(Self { steps: compiler.steps, delimited, open_ended: definition.open_ended, cost: compiler.cost })
+        let Definition { open_ended, packed, .. } = *definition;
+        Ok(Self { steps: compiler.steps, delimited, open_ended, packed, cost: compiler.cost })
     }
 }
 

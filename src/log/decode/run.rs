@@ -52,7 +52,10 @@ impl Program {
         cache: &mut LayoutCache,
         sink: &mut impl Sink,
     ) -> Result<(), RunError> {
-        let Some((&[zero, kind, _, _], body)) = message.split_first_chunk::<4>() else {
+        // What ROS 1 writes is little-endian without a header.
+        let header =
+            if self.packed { Some((&[0, 1, 0, 0], message)) } else { message.split_first_chunk::<4>() };
+        let Some((&[zero, kind, _, _], body)) = header else {
             return Err(RunError::NoHeader { bytes: message.len() });
         };
         if zero == 0 && cache.report(kind, body, sink) {
@@ -65,7 +68,7 @@ impl Program {
         };
         match (zero, kind) {
             (0, 0) => walk(false, 8, NO_SIZES),
-            (0, 1) => walk(true, 8, NO_SIZES),
+            (0, 1) => walk(true, if self.packed { 1 } else { 8 }, NO_SIZES),
             // XCDR2, plain: lists of structs carry their size; some writers leave it out.
             (0, 0x06 | 0x07 | 0x10 | 0x11) => {
                 let little = kind & 1 == 1;
@@ -96,7 +99,8 @@ impl Program {
             reader.steps::<false, S>(0, steps, sink)?
         };
         let left = reader.body.len().saturating_sub(end);
-        if left > MAX_PADDING && !self.open_ended {
+        let padding = if self.packed { 0 } else { MAX_PADDING };
+        if left > padding && !self.open_ended {
             return Err(RunError::Long { left });
         }
         reader.cache.finish();
@@ -243,7 +247,10 @@ impl<'a> Reader<'a> {
         if fixed.is_none() {
             self.cache.note(Found::Texts(slot, start, at));
             let raw = &self.body[start..at];
-            sink.texts(slot, Texts::Wire { little_endian: LITTLE, count: count as usize, raw });
+            sink.texts(
+                slot,
+                Texts::Wire { little_endian: LITTLE, padded: self.widest > 1, count: count as usize, raw },
+            );
         }
         Self::check_end(at, list_end)
     }

@@ -71,8 +71,8 @@ impl Numbers<'_> {
 #[derive(Debug, Clone, Copy)]
 pub(in crate::log) enum Texts<'a> {
     /// `raw`: the count and everything up to the end of the last text, starting at a multiple
-    /// of four bytes. Lengths have been checked.
-    Wire { little_endian: bool, count: usize, raw: &'a [u8] },
+    /// of four bytes, unless nothing is padded. Lengths have been checked.
+    Wire { little_endian: bool, padded: bool, count: usize, raw: &'a [u8] },
     /// Texts that were parsed from text.
     Parsed(&'a [String]),
 }
@@ -81,11 +81,11 @@ impl Texts<'_> {
     pub(in crate::log) fn to_vec(self) -> Vec<String> {
         match self {
             Self::Parsed(texts) => texts.to_vec(),
-            Self::Wire { little_endian, count, raw } => {
+            Self::Wire { little_endian, padded, count, raw } => {
                 let mut at = 4;
                 let mut texts = Vec::with_capacity(count);
                 for _ in 0..count {
-                    at = (at + 3) & !3;
+                    at = if padded { (at + 3) & !3 } else { at };
                     let Some(length) = raw.get(at..at + 4).and_then(|b| b.first_chunk::<4>()) else { break };
                     let length =
                         if little_endian { u32::from_le_bytes(*length) } else { u32::from_be_bytes(*length) }

@@ -44,6 +44,23 @@ impl Source {
         self.length
     }
 
+    /// Writes all of it.
+    #[cfg_attr(not(feature = "sqlite"), expect(dead_code, reason = "for databases that are unpacked"))]
+    pub(in crate::log) fn copy(&self, into: &mut impl io::Write) -> io::Result<()> {
+        const PIECE: u64 = 1 << 20;
+        let mut bytes = Vec::new();
+        let mut at = 0;
+        while at < self.length {
+            self.read(Span { start: at, end: at + PIECE }, &mut bytes)?;
+            if bytes.is_empty() {
+                break;
+            }
+            into.write_all(&bytes)?;
+            at += bytes.len() as u64;
+        }
+        Ok(())
+    }
+
     /// All of it.
     pub(in crate::log) fn whole(&self) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();

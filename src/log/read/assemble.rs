@@ -15,6 +15,7 @@ use crate::{
     arm::sliding_joints,
     log::{
         error::LogError,
+        joint_kind,
         options::{ReadOptions, SignalRole, TimeBase, WantedSignal},
         source::{Role, Stamps},
     },
@@ -36,7 +37,9 @@ pub(super) fn assemble(
     overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?;
     let plan_is_command = remark_choice(choice, options, &mut remarks);
     let description = description::take(&mut extracted);
-    let sliding = description.as_deref().map(sliding_joints).unwrap_or_default();
+    let mut sliding = description.as_deref().map(sliding_joints).unwrap_or_default();
+    sliding.extend(joint_kind::sliding(&extracted.metadata));
+    sliding.extend(options.slides.iter().cloned());
     // Those that are not there, where none was named, are no fault.
     let beside = options.signals.iter().map(|wanted| match candidate(&extracted, wanted, base) {
         Err(error) if wanted.topic.is_some() => Err(error),

@@ -1,6 +1,6 @@
 //! Contents of the blocks of a recording, before plan and measurement are chosen.
 
-use std::collections::BTreeMap;
+use std::{borrow::Cow, collections::BTreeMap, io::Read};
 
 use super::recording::{Attachment, FileInfo};
 use crate::{
@@ -42,7 +42,7 @@ impl Content {
         match spec.form {
             Form::Plans => Self::Plans(Plans::default()),
             Form::Versioned | Form::VersionedNames => Self::Versioned(Versioned::default()),
-            form => Self::Table(Box::new(Table::new(form, &spec.fields, joints))),
+            form => Self::Table(Box::new(Table::new(form, &spec.fields, joints, spec.alone.as_deref()))),
         }
     }
 
@@ -52,13 +52,14 @@ impl Content {
         cache: &mut LayoutCache,
         message: &MessageRecord<'_>,
     ) -> Result<(), String> {
+        let data = unpacked(decoder, message.data)?;
         macro_rules! read {
             ($sink:expr) => {{
                 match decoder {
                     Decoder::Program(program) => {
-                        program.run(message.data, cache, $sink).map_err(|e| e.to_string())?
+                        program.run(&data, cache, $sink).map_err(|e| e.to_string())?
                     }
-                    Decoder::Tree(tree) => tree.run(message.data, $sink)?,
+                    Decoder::Tree(tree) => tree.run(&data, $sink)?,
                 }
                 $sink.commit(message.publish_time_ns, message.log_time_ns);
             }};
@@ -87,6 +88,21 @@ impl Content {
             _ => {}
         }
     }
+}
+
+/// More than a message of joints has, bytes.
+const MOST_UNPACKED: u64 = 1 << 26;
+
+/// The bytes of a message. A recorder may pack each for itself; what starts as zstd does is no CDR.
+fn unpacked<'a>(decoder: &Decoder, data: &'a [u8]) -> Result<Cow<'a, [u8]>, String> {
+    const ZSTD: [u8; 4] = [0x28, 0xB5, 0x2F, 0xFD];
+    if !(matches!(decoder, Decoder::Program(_)) && data.starts_with(&ZSTD)) {
+        return Ok(Cow::Borrowed(data));
+    }
+    let mut bytes = Vec::new();
+    let reader = zstd::stream::read::Decoder::with_buffer(data).map_err(|error| error.to_string())?;
+    reader.take(MOST_UNPACKED).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    Ok(Cow::Owned(bytes))
 }
 
 /// One topic that holds joints, with its content.

@@ -12,6 +12,7 @@ use super::{
 use crate::{
     log::{
         channel::{Channel, Definitions},
+        csv::joint_in,
         files::{ScannedFile, ScannedLog, count},
         options::{ReadOptions, Selector},
         source::{Role, Spec, Versioned},
@@ -70,11 +71,27 @@ fn read_files(
     let mut work = Vec::new();
     let speeds = |topic: &str| options.measured_velocities || !is_measured(topic);
     for (index, file) in files.iter().enumerate() {
-        let channels = Definitions::gather(&file.layout, file.source, look_inside).plan(selectors, &speeds);
+        let alone = |topic: &str| alone(topic, options);
+        let channels =
+            Definitions::gather(&file.layout, file.source, look_inside).plan(selectors, &speeds, &alone);
         let routes = Arc::new(routes(channels, &options.joints, &mut known, out));
         work.extend(file.layout.blocks.iter().map(|block| (*block, file.source, routes.clone(), index)));
     }
     read_blocks(&work, &known.specs, &options.joints, out)
+}
+
+/// The joint of a topic that is one of several of a side: the one named in the same place, else as the topic is called.
+fn alone(topic: &str, options: &ReadOptions) -> Option<String> {
+    let place = [&options.planned, &options.measured].into_iter().find_map(|side| {
+        let place = side.iter().position(|selector| selector.topic == topic)?;
+        Some((place, side.len()))
+    });
+    let (place, count) = place?;
+    match options.joints.as_slice() {
+        [] => Some(joint_in(topic)),
+        joints if joints.len() == count => Some(joints[place].clone()),
+        _ => None,
+    }
 }
 
 fn describe(file: &ScannedFile<'_>, out: &mut Extracted) {

@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 
 use super::{
     content::{Content, Extracted, TopicCount},
-    topics::{fields_of, present},
+    topics::{fields_of, lacks_positions, present},
 };
 use crate::{
     log::{
+        csv::ORIGIN,
         error::LogError,
         options::{ReadOptions, Selector, Sides},
         source::{Form, Role},
@@ -69,7 +70,7 @@ pub(super) fn is_measured(topic: &str) -> bool {
 pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
     let plan = || choose_one(extracted, options, Role::Planned);
     let measurement = || choose_one(extracted, options, Role::Measured);
-    let missing = |error: &LogError| match error {
+    let lacks = |error: &LogError| match error {
         LogError::Missing { missing, .. } => Some(*missing),
         _ => None,
     };
@@ -77,15 +78,13 @@ pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Cho
         return plan();
     }
     let both = choose_both(extracted, options);
-    match (options.sides, both.as_ref().err().and_then(missing)) {
+    match (options.sides, both.as_ref().err().and_then(lacks)) {
         (Sides::PlanAtLeast | Sides::Any, Some(MEASURED)) => plan(),
         (Sides::MeasurementAtLeast, Some(PLANNED)) => measurement(),
         (Sides::Any, Some(PLANNED)) => measurement().map_err(|error| match error {
-            LogError::Missing { present, .. } => LogError::Missing {
-                missing: "planned, commanded or measured",
-                present,
-                flag: "--planned or --measured",
-            },
+            LogError::Missing { .. } => {
+                missing(extracted, "planned, commanded or measured", "--planned or --measured")
+            }
             other => other,
         }),
         _ => both,
@@ -95,15 +94,24 @@ pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Cho
 const PLANNED: &str = "planned";
 const MEASURED: &str = "measured";
 
+/// What a log lacks, and how to say where it is: of a table by its columns, which is for `import`.
+fn missing(extracted: &Extracted, missing: &'static str, flag: &str) -> LogError {
+    let fix = if extracted.metadata.contains_key(ORIGIN) {
+        format!("{flag} JOINT=COLUMN,... of `hydrotrace import`")
+    } else {
+        format!("{flag} TOPIC[:FIELD]")
+    };
+    LogError::Missing { missing, present: present(extracted), fix }
+}
+
 fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
     let planned = candidates(extracted, &options.planned, Role::Planned)?;
     let measured = candidates(extracted, &options.measured, Role::Measured)?;
-    let missing = |missing, flag| LogError::Missing { missing, present: present(extracted), flag };
     if planned.is_empty() {
-        return Err(missing(PLANNED, "--planned"));
+        return Err(missing(extracted, PLANNED, "--planned"));
     }
     if measured.is_empty() {
-        return Err(missing(MEASURED, "--measured"));
+        return Err(missing(extracted, MEASURED, "--measured"));
     }
     let measured_joints: BTreeSet<&String> = measured.iter().flat_map(|c| &c.joints).collect();
     let first = planned.iter().find(|c| c.joints.iter().any(|joint| measured_joints.contains(joint)));
@@ -137,13 +145,13 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
 
 /// One side alone.
 fn choose_one(extracted: &Extracted, options: &ReadOptions, role: Role) -> Result<Choice, LogError> {
-    let (asked, missing, flag) = match role {
+    let (asked, side, flag) = match role {
         Role::Measured => (&options.measured, MEASURED, "--measured"),
         _ => (&options.planned, PLANNED, "--planned"),
     };
     let found = candidates(extracted, asked, role)?;
     let Some(first) = found.first() else {
-        return Err(LogError::Missing { missing, present: present(extracted), flag });
+        return Err(missing(extracted, side, flag));
     };
     let (mut planned, mut measured) = (Vec::new(), Vec::new());
     if role == Role::Measured {
@@ -269,7 +277,13 @@ pub(super) fn named(extracted: &Extracted, selector: &Selector, role: Role) -> R
             type_name: type_name.as_str().into(),
             nearest: selector.field.as_ref().and_then(near),
             field: selector.field.as_deref().map(Box::from),
-            present: if fields.is_empty() { "none".to_owned() } else { fields.join(", ") },
+            present: match fields.as_slice() {
+                [] if lacks_positions(extracted, topic) => {
+                    "joints without positions, at most speeds".to_owned()
+                }
+                [] => "none".to_owned(),
+                fields => fields.join(", "),
+            },
         }
     })
 }

@@ -6,7 +6,7 @@ use super::{
     content::{Content, Extracted, Source},
     recording::TopicInfo,
 };
-use crate::units::NS_PER_S;
+use crate::{log::source::Table, units::NS_PER_S};
 
 /// Topics with joints, for messages; all topics if there is none.
 pub(super) fn present(extracted: &Extracted) -> String {
@@ -14,7 +14,8 @@ pub(super) fn present(extracted: &Extracted) -> String {
     let describe = |index: usize| {
         let topic = &extracted.topics[index];
         let messages = if topic.messages == 1 { "message" } else { "messages" };
-        format!("{} ({}, {} {messages})", topic.topic, topic.type_name, topic.messages)
+        let lacks = if lacks_positions(extracted, index) { ", without positions" } else { "" };
+        format!("{} ({}, {} {messages}{lacks})", topic.topic, topic.type_name, topic.messages)
     };
     let listed: Vec<String> = if with_joints.is_empty() {
         (0..extracted.topics.len()).map(describe).collect()
@@ -22,6 +23,21 @@ pub(super) fn present(extracted: &Extracted) -> String {
         with_joints.into_iter().map(describe).collect()
     };
     if listed.is_empty() { "no topics at all".to_owned() } else { listed.join(", ") }
+}
+
+/// Whether the messages of a topic name joints and never give a position, as where only speeds are recorded.
+pub(super) fn lacks_positions(extracted: &Extracted, topic: usize) -> bool {
+    let sources = extracted.sources.iter().filter(|source| source.topic == topic);
+    let mut tables = sources.filter_map(|source| match &source.content {
+        Content::Table(table) => Some(table),
+        _ => None,
+    });
+    let lacks = |table: &Table| {
+        let positions = table.fields.iter().enumerate().filter(|(_, field)| !field.is_velocity);
+        let columns = positions.flat_map(|(k, _)| &table.columns[k]);
+        !table.joints.is_empty() && !columns.flatten().any(|value| value.is_finite())
+    };
+    tables.clone().next().is_some() && tables.all(|table| lacks(table))
 }
 
 /// Fields of a topic that hold numbers by joint.

@@ -11,8 +11,9 @@ use crate::{
     atomic_file::write_atomically,
     log::{
         error::LogError,
-        file::{Blocks, Loss, MessageRecord, Opcode, Source, records},
+        file::{Blocks, Loss, MessageRecord, Opcode, records},
         files::ScannedFile,
+        foreign,
     },
     remark::{Code, Remarks},
 };
@@ -42,10 +43,11 @@ pub struct Recovered {
 ///
 /// [`LogError`] if `log` is no log at all, or `output` cannot be written.
 pub fn recover(log: &Path, output: &Path) -> Result<Recovered, LogError> {
-    let source = Source::open(log).map_err(LogError::file("open", log))?;
+    let mut doubts = Remarks::default();
+    let source = foreign::open_log(log, &mut doubts)?;
     let file = ScannedFile::of(log, &source)?;
     let layout = &file.layout;
-    let mut remarks = Remarks::default();
+    let mut remarks = doubts;
     file.remark_damage(&mut remarks);
     let mut saved = Recovered {
         messages: 0,

@@ -63,6 +63,8 @@ pub(super) struct Definition {
     pub(super) structs: Vec<Struct<usize>>,
     /// Whether messages may go on after the last field known here.
     pub(super) open_ended: bool,
+    /// Whether messages are laid out as ROS 1 does: no header before, no padding within.
+    pub(super) packed: bool,
 }
 
 /// Why a schema text yields no definition.
@@ -70,7 +72,7 @@ pub(super) struct Definition {
 #[non_exhaustive]
 pub(super) enum SchemaError {
     /// The text is of a kind that is not read.
-    #[error("schema encoding {encoding:?} of {name:?} is not one of ros2msg, ros2idl")]
+    #[error("schema encoding {encoding:?} of {name:?} is not one of ros2msg, ros2idl, ros1msg")]
     Encoding {
         /// The encoding found.
         encoding: String,
@@ -136,11 +138,21 @@ impl Definition {
         }
         let structs = match encoding {
             "ros2msg" => ros2msg::parse(name, &text)?,
+            "ros1msg" => ros1(ros2msg::parse(name, &text)?),
             "ros2idl" => ros2idl::parse(&text)?,
             _ => return Err(SchemaError::Encoding { encoding: encoding.to_owned(), name: name.to_owned() }),
         };
-        resolve(&plain_name(name), structs)
+        let definition = resolve(&plain_name(name), structs)?;
+        Ok(Self { packed: encoding == "ros1msg", ..definition })
     }
+}
+
+/// Structs as ROS 1 writes them: one without a field takes no byte.
+fn ros1(mut structs: Vec<Struct<String>>) -> Vec<Struct<String>> {
+    for one in &mut structs {
+        one.fields.retain(|(name, _)| name != ros2msg::NO_FIELD);
+    }
+    structs
 }
 
 /// `package/Type` from `package/msg/Type`, `package::msg::Type` and the like.
@@ -189,7 +201,7 @@ fn resolve(root: &str, mut structs: Vec<Struct<String>>) -> Result<Definition, S
             Ok(Struct { name: one.name.clone(), fields })
         })
         .collect::<Result<_, SchemaError>>()?;
-    Ok(Definition { structs, open_ended: false })
+    Ok(Definition { structs, open_ended: false, packed: false })
 }
 
 fn resolve_shape(

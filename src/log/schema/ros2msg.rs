@@ -3,13 +3,22 @@
 
 use super::{Number, SchemaError, Shape, Struct, plain_name};
 
+/// The one byte that the wire of ROS 2 has where a message has no field.
+pub(super) const NO_FIELD: &str = "structure_needs_at_least_one_member";
+
 pub(super) fn parse(root: &str, text: &str) -> Result<Vec<Struct<String>>, SchemaError> {
     let mut structs = vec![Struct { name: plain_name(root), fields: Vec::new() }];
     let mut after_rule = false;
     for (index, raw) in text.lines().enumerate() {
         let line = raw.trim();
-        if line.len() >= 40 && line.bytes().all(|byte| byte == b'=') {
+        if line.len() >= 3 && line.bytes().all(|byte| byte == b'=') {
             after_rule = true;
+            continue;
+        }
+        if line == "---" {
+            // The answer of a service, or the result of an action, is a message of its own.
+            structs
+                .push(Struct { name: format!("{}_{}", plain_name(root), structs.len()), fields: Vec::new() });
             continue;
         }
         if after_rule && !line.is_empty() {
@@ -36,9 +45,8 @@ pub(super) fn parse(root: &str, text: &str) -> Result<Vec<Struct<String>>, Schem
         }
     }
     for one in &mut structs {
-        // The wire has one byte where a message has no field.
         if one.fields.is_empty() {
-            one.fields.push(("structure_needs_at_least_one_member".into(), Shape::Number(Number::U8)));
+            one.fields.push((NO_FIELD.into(), Shape::Number(Number::U8)));
         }
     }
     Ok(structs)

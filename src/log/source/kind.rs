@@ -54,6 +54,8 @@ pub(in crate::log) struct Spec {
     pub(in crate::log) form: Form,
     pub(in crate::log) fields: Vec<Field>,
     pub(in crate::log) wants: Vec<Want>,
+    /// The joint whose only number a message may hold.
+    pub(in crate::log) alone: Option<String>,
 }
 
 const SECONDS: [&str; 3] = ["sec", "secs", "seconds"];
@@ -72,7 +74,7 @@ pub(in crate::log) fn spec_for(
     let mut builder = Builder {
         definition,
         speeds,
-        spec: Spec { form: Form::Table, fields: Vec::new(), wants: Vec::new() },
+        spec: Spec { form: Form::Table, fields: Vec::new(), wants: Vec::new(), alone: None },
     };
     match plain.as_str() {
         "control_msgs/JointTrajectoryControllerState" | "control_msgs/FollowJointTrajectory_Feedback" => {

@@ -73,7 +73,7 @@ impl Versioned {
             field("command.velocity", Role::Planned, None, true),
             field("state.position", Role::Measured, None, false),
         ];
-        let mut table = Table::new(Form::Versioned, &fields, &[]);
+        let mut table = Table::new(Form::Versioned, &fields, &[], None);
         let mut known: BTreeMap<u64, Vec<(usize, String, usize)>> = BTreeMap::new();
         for (version, names) in halves.iter().flat_map(|half| &half.names) {
             let places = names.iter().enumerate().filter_map(|(place, name)| {

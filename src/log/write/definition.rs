@@ -35,7 +35,7 @@ definitions! {
 
 /// The `ros2msg` text of a type, `package/Name`, followed by those of all types it uses, each
 /// once, in the order of their first use. Empty if the type is not among ours.
-pub(super) fn ros2msg(root: &str) -> String {
+pub(in crate::log) fn ros2msg(root: &str) -> String {
     let mut types = vec![root];
     let mut text = String::new();
     let mut done = 0;

@@ -23,6 +23,7 @@ use mcap::{
     write::{NoSeek, Writer},
 };
 
+pub(in crate::log) use definition::ros2msg;
 pub use error::WriteError;
 pub use message::{ControllerState, Point};
 pub use options::{Options, Role, Topics};

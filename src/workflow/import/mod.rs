@@ -2,7 +2,7 @@
 
 mod document;
 
-use std::path::PathBuf;
+use std::{io::Write, path::PathBuf};
 
 use thiserror::Error;
 
@@ -22,6 +22,8 @@ pub struct Inputs {
     pub options: CsvOptions,
     /// The log to write; it appears whole or not at all.
     pub output: PathBuf,
+    /// Where to write how the columns were read, to read the next file alike.
+    pub map: Option<PathBuf>,
 }
 
 /// Why there is no log.
@@ -33,6 +35,9 @@ pub enum ImportError {
     /// The log cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The map takes no more.
+    #[error("cannot write the map")]
+    Map(#[source] std::io::Error),
     /// The log cannot be put in place.
     #[error(transparent)]
     Atomic(#[from] AtomicError),
@@ -46,5 +51,9 @@ pub enum ImportError {
 pub fn run(inputs: &Inputs) -> Result<Imported, ImportError> {
     let run = read_csv(&inputs.file, &inputs.options)?;
     write_atomically(&inputs.output, |file| run.write(file).map(|_| ()).map_err(ImportError::from))?;
+    if let Some(path) = &inputs.map {
+        let text = inputs.options.to_map(&run.understood);
+        write_atomically(path, |file| file.write_all(text.as_bytes()).map_err(ImportError::Map))?;
+    }
     Ok(Imported::new(run.understood, run.remarks))
 }

@@ -10,29 +10,29 @@ use crate::support::{run_args as hydrotrace, said};
 
 const SAMPLES: [&str; 5] = ["panel-install", "still-joint", "gaps", "power-loss", "trajectory-only"];
 
-fn report(folder: &Path, log: &str) -> Value {
+pub(super) fn report(folder: &Path, log: &str) -> Value {
     serde_json::from_slice(&hydrotrace(folder, &["report", log, "--json"]).stdout).unwrap()
 }
 
-fn sample(name: &str) -> String {
+pub(super) fn sample(name: &str) -> String {
     crate::support::sample(name).to_str().unwrap().to_owned()
 }
 
 /// Imports a text and gives exit code, standard output, standard error.
-fn import(text: impl AsRef<[u8]>, args: &[&str]) -> (i32, String, String) {
+pub(super) fn import(text: impl AsRef<[u8]>, args: &[&str]) -> (i32, String, String) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a.csv"), text).unwrap();
     said(&hydrotrace(folder.path(), &[&["import", "a.csv", "-o", "a.mcap"], args].concat()))
 }
 
 /// A joint that is asked to move by 0.5 rad at 2 s and follows 0.1 s later, sampled at 50 Hz.
-fn moves(t_s: f64) -> [f64; 2] {
+pub(super) fn moves(t_s: f64) -> [f64; 2] {
     let at = |t_s: f64| 0.25 * (1.0 - ((t_s - 2.0).clamp(0.0, 3.0) / 3.0 * std::f64::consts::PI).cos());
     [at(t_s), at(t_s - 0.1)]
 }
 
 /// Rows of that joint below a header, with a time in the given unit.
-fn trace(header: &str, per_second: f64, separator: &str, scale: f64) -> String {
+pub(super) fn trace(header: &str, per_second: f64, separator: &str, scale: f64) -> String {
     let mut text = format!("{header}\n");
     for k in 0..500 {
         let t_s = f64::from(k) * 0.02;
@@ -268,7 +268,7 @@ fn what_is_not_understood_is_an_error_that_names_the_way_out() {
     let good = trace("t [s];J1 soll [deg];J1 ist [deg]", 1.0, ";", 30.0);
     let headless = good.split_once('\n').unwrap().1.to_owned();
     for (text, args, column, fix) in [
-        (trace("t;q1_soll;q1_ist", 1.0, ";", 30.0), &[][..], "\"q1_soll\"", "--degrees or --radians"),
+        (trace("t;q1_soll;q1_ist", 1.0, ";", 30.0), &[][..], "\"q1_soll\"", "say --degrees, --radians"),
         (trace("x;J1 soll;J1 ist", 1.0, ";", 1.0), &[], "x, J1 soll", "--time COLUMN, or --rate HZ"),
         (trace("t;alpha;beta", 1.0, ";", 1.0), &[], "t, alpha, beta", "--planned JOINT=COLUMN"),
         (trace("t;J1 soll;J2 ist", 1.0, ";", 1.0), &[], "of J1", "--measured JOINT=COLUMN"),
@@ -290,8 +290,8 @@ fn what_is_not_understood_is_an_error_that_names_the_way_out() {
         (
             trace("t [s];J1 soll [mm];J1 ist [deg]", 1.0, ";", 1.0),
             &["--planned", "J1=#2"],
-            "[mm]",
-            "no angle",
+            "J1 are in mm and in deg",
+            "a joint turns",
         ),
         (trace("t;J1 soll;J1 ist", 0.0, ";", 1.0), &["--degrees"], "\"t\"", "--time-unit"),
         (headless, &[], "column_2", "--time COLUMN"),

@@ -1,6 +1,7 @@
 //! The built binary, as an operator and a script meet it.
 
 mod carried;
+mod columns;
 mod compare;
 mod csv;
 mod figures;

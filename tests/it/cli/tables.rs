@@ -179,14 +179,17 @@ fn a_clock_that_goes_back_splits_the_run_and_costs_no_row() {
 }
 
 #[test]
-fn a_table_given_as_a_log_is_told_what_to_become() {
+fn a_table_that_leaves_something_open_is_told_what_to_become() {
     let folder = folder("t,J1_ref_deg,J1_act_deg,J2_ref_deg,J2_act_deg");
-    fs::copy(folder.path().join("a.csv"), folder.path().join("trace.log")).unwrap();
+    assert_eq!(said(&hydrotrace(folder.path(), "report a.csv")).0, 0);
+    let text = fs::read_to_string(folder.path().join("a.csv")).unwrap().replace("_deg", "");
+    fs::write(folder.path().join("a.csv"), &text).unwrap();
+    fs::write(folder.path().join("trace.log"), &text).unwrap();
     for words in ["report a.csv", "info a.csv", "report trace.log", "compare a.csv a.csv"] {
         let (code, _, error) = said(&hydrotrace(folder.path(), words));
         assert_eq!(code, 1, "{words}");
         assert!(
-            error.contains("looks like a CSV file") && error.contains("`hydrotrace import "),
+            error.contains("leaves something open") && error.contains("`hydrotrace import "),
             "{words}: {error}"
         );
         assert!(!error.contains("4D 43"), "{words}: {error}");

@@ -72,8 +72,8 @@ fn files_that_are_no_log_say_what_they_are() {
     for (bytes, found, fix) in [
         (&b""[..], "nothing", "the file is empty"),
         (b"#ROSBAG V2.0\n", "23 52 4F 53 42 41 47 20", "rosbags-convert"),
-        (b"SQLite format 3\0", "53 51 4C 69 74 65 20 66", "ros2 bag convert"),
-        (b"\x28\xB5\x2F\xFD", "28 B5 2F FD", "zstd -d"),
+        (b"MDF     4.10", "4D 44 46 20 20 20 20 20", "asammdf"),
+        (b"ULog\x01\x12\x35\x01", "55 4C 6F 67 01 12 35 01", "ulog2csv"),
         (b"time;a;b\n0;1;2\n", "74 69 6D 65 3B 61 3B 62", "give an .mcap recording"),
     ] {
         let message = read_bytes(bytes, &ReadOptions::default()).unwrap_err().to_string();
@@ -90,7 +90,7 @@ fn files_that_are_no_log_say_what_they_are() {
     let empty = store(&[]);
     let empty = hydrotrace::log::read_recording(&[empty.folder.path().to_owned()], &ReadOptions::default())
         .unwrap_err();
-    assert!(empty.to_string().contains("holds no .mcap file; give a recording"), "{empty}");
+    assert!(empty.to_string().contains("holds no .mcap or .db3 file; give a recording"), "{empty}");
 }
 
 #[test]

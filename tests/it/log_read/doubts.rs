@@ -153,11 +153,12 @@ fn what_a_broken_message_said_of_joints_does_not_count() {
 #[test]
 fn a_broken_schema_costs_its_channel_and_says_why() {
     let mut log = log_of(|k| (NAMES.to_vec(), measurement(k)));
-    let odd = log.channel(Channel::cdr("/odd", "odd_msgs/msg/Odd").with_schema("ros2msg", "float64[ x\n"));
-    let ros1 = log
-        .channel(Channel::cdr("/ros1", "sensor_msgs/msg/JointState").with_schema("ros1msg", "float64 x\n"));
+    let odd = log
+        .channel(Channel::cdr("/odd", "sensor_msgs/msg/JointState").with_schema("ros2msg", "float64[ x\n"));
+    let idl =
+        log.channel(Channel::cdr("/idl", "sensor_msgs/msg/JointState").with_schema("omgidl", "float64 x\n"));
     let secret = log.channel(Channel::cdr("/secret", "sensor_msgs/msg/JointState").encoded("xml"));
-    for channel in [odd, odd, ros1, secret] {
+    for channel in [odd, odd, idl, secret] {
         log.send(channel, stamp(5), vec![0; 9]);
     }
     let recording = read(&log);
@@ -167,7 +168,7 @@ fn a_broken_schema_costs_its_channel_and_says_why() {
     assert_eq!(codes(&recording.remarks), [Code::UnreadableSchema; 3], "{said:?}");
     assert_eq!(said[0].0, 2);
     assert!(said[0].1.contains("/odd") && said[0].1.contains("float64[ x"), "{said:?}");
-    assert!(said[1].1.contains("ros1msg") && said[2].1.contains("xml"), "{said:?}");
+    assert!(said[1].1.contains("omgidl") && said[2].1.contains("xml"), "{said:?}");
 }
 
 #[test]

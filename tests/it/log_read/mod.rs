@@ -11,6 +11,7 @@ mod determinism;
 mod doubts;
 mod encode;
 mod file;
+mod forms;
 mod json;
 mod limits;
 mod matrix;

@@ -70,7 +70,7 @@ impl Sink for Table {
             slot::SECOND => self.message.second = value,
             slot::NANOSECOND => self.message.nanosecond = value,
             slot::SPEED_SCALING => self.message.speed_scaling = value,
-            _ if slot >= slot::FIELD && self.message.groups > 0 => {
+            _ if slot >= slot::FIELD => {
                 self.numbers(slot, Numbers::Parsed(&[value]));
             }
             _ => {}

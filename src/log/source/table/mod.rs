@@ -38,6 +38,8 @@ pub(in crate::log) struct Table {
     first_names: Vec<String>,
     /// Names to use where messages carry none.
     default_joints: Vec<String>,
+    /// Name to use for one number without one.
+    alone: Option<String>,
     /// Joint to its index.
     index: BTreeMap<String, usize>,
     /// Emptied columns, kept for their memory.
@@ -61,8 +63,8 @@ struct Layout {
 }
 
 impl Table {
-    /// `joints` are the names to use where messages carry none.
-    pub(in crate::log) fn new(form: Form, fields: &[Field], joints: &[String]) -> Self {
+    /// `joints` are the names to use where messages carry none, `alone` that for a single number.
+    pub(in crate::log) fn new(form: Form, fields: &[Field], joints: &[String], alone: Option<&str>) -> Self {
         Self {
             form,
             fields: fields.to_vec(),
@@ -82,6 +84,7 @@ impl Table {
             layout: Layout::default(),
             first_names: Vec::new(),
             default_joints: joints.to_vec(),
+            alone: alone.map(str::to_owned),
             index: BTreeMap::new(),
             spare: Vec::new(),
         }
@@ -202,7 +205,8 @@ impl Table {
         let spare = std::mem::take(&mut self.spare);
         let (fields, joints) = (std::mem::take(&mut self.fields), std::mem::take(&mut self.default_joints));
         let stamps = std::mem::take(&mut self.stamps);
-        *self = Self { spare, ..Self::new(self.form, &fields, &joints) };
+        let alone = self.alone.take();
+        *self = Self { spare, ..Self::new(self.form, &fields, &joints, alone.as_deref()) };
         self.stamps = stamps;
         self.stamps.clear();
     }
@@ -241,7 +245,9 @@ impl Table {
                 if places == 0 || self.layout.nameless == Some(places) {
                     return;
                 }
-                let names: Vec<String> = if self.default_joints.is_empty() {
+                let names: Vec<String> = if let Some(alone) = self.alone.as_ref().filter(|_| places == 1) {
+                    vec![alone.clone()]
+                } else if self.default_joints.is_empty() {
                     (1..=places.min(MAX_JOINTS + 1)).map(|place| format!("joint_{place}")).collect()
                 } else {
                     self.default_joints.clone()

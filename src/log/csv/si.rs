@@ -1,0 +1,206 @@
+//! Numbers of columns become SI, by the unit that each column states or is given.
+
+use super::{
+    AngleUnit, CsvError, CsvOptions, Quantity,
+    head::Head,
+    label::Label,
+    layout::{Layout, Use},
+    read::Cells,
+    unit::{DEGREE, Measure, RADIAN, Unit, parse_unit},
+};
+use crate::{
+    remark::{Code, Remarks},
+    series::JointKind,
+    suggest::nearest,
+};
+
+/// The unit of a column and who says so.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Settled {
+    pub(super) column: usize,
+    pub(super) unit: Option<Unit>,
+    pub(super) from: &'static str,
+}
+
+/// Joints with end stops stay within one and a half turns to either side, rad.
+const FARTHEST_RAD: f64 = 3.0 * std::f64::consts::PI;
+
+/// Converts the columns in use; also how each joint moves, `[joints]`.
+pub(super) fn to_si(
+    head: &Head,
+    labels: &[Label],
+    layout: &Layout,
+    options: &CsvOptions,
+    cells: &mut Cells,
+    remarks: &mut Remarks,
+) -> Result<(Vec<Settled>, Vec<JointKind>), CsvError> {
+    let stated = |column: usize| labels.get(column).and_then(|label| label.unit);
+    let lengths = lengths(layout, options, &stated)?;
+    let turns = |one: &&Use| one.quantity == Quantity::Position && lengths[one.joint].is_none();
+    let fallback = fallback(head, options, layout.uses.iter().filter(turns).map(|one| stated(one.column)));
+    let mut settled = Vec::new();
+    let mut guessed: Vec<&str> = Vec::new();
+    for one in &layout.uses {
+        let (unit, from) = match lengths[one.joint] {
+            Some(length) => length.of(one.quantity, stated(one.column)),
+            None => angle(one, stated(one.column), fallback, head, cells, options)?,
+        };
+        if from == "guess" && lengths[one.joint].is_none() {
+            guessed.push(&head.names[one.column]);
+        }
+        scale(cells, one.column, unit.factor);
+        settled.push(Settled { column: one.column, unit: Some(unit), from });
+    }
+    if let Some(first) = guessed.first() {
+        let unit = fallback.map_or(RADIAN, |(unit, _)| unit).name;
+        let message = format!(
+            "columns that say no unit, such as {first:?}, taken as {unit}; else say --degrees or --radians"
+        );
+        remarks.add(Code::Guessed, guessed.len() as u64, message);
+    }
+    for one in &layout.interfaces {
+        let unit = stated(one.column).filter(|_| one.name.ends_with("_pa"));
+        match unit {
+            Some(unit) if unit.measure == Measure::Pressure => {
+                scale(cells, one.column, unit.factor);
+                settled.push(Settled { column: one.column, unit: Some(unit), from: "file" });
+            }
+            Some(unit) => {
+                let (column, unit) = (head.names[one.column].clone(), unit.name.to_owned());
+                return Err(CsvError::WrongUnit { column, unit, expected: "pressure" });
+            }
+            None => {
+                let doubt = one.name.ends_with("_pa");
+                let message = format!("columns of {} that say no unit, taken as Pa", one.name);
+                remarks.add(Code::Guessed, u64::from(doubt), message);
+                settled.push(Settled { column: one.column, unit: None, from: "as given" });
+            }
+        }
+    }
+    let kind = |length: &Option<Length>| length.map_or(JointKind::Turns, |_| JointKind::Slides);
+    Ok((settled, lengths.iter().map(kind).collect()))
+}
+
+/// The unit of the positions of a joint that slides, and whether the caller says so.
+#[derive(Debug, Clone, Copy)]
+struct Length {
+    unit: Unit,
+    given: bool,
+}
+
+impl Length {
+    /// The unit of one of its columns, and who says so.
+    fn of(self, quantity: Quantity, stated: Option<Unit>) -> (Unit, &'static str) {
+        let (unit, measure) = match quantity {
+            Quantity::Position => (self.unit, Measure::Length),
+            Quantity::Velocity => (self.unit.per_second(), Measure::LinearSpeed),
+        };
+        match stated.filter(|stated| stated.measure == measure) {
+            _ if self.given => (unit, "option"),
+            Some(stated) => (stated, "file"),
+            None => (unit, "guess"),
+        }
+    }
+}
+
+/// The joints that slide, `[joints]`: those that the caller calls so, and those whose columns are in units of length.
+fn lengths(
+    layout: &Layout,
+    options: &CsvOptions,
+    stated: &impl Fn(usize) -> Option<Unit>,
+) -> Result<Vec<Option<Length>>, CsvError> {
+    let of = |(index, joint): (usize, &String)| {
+        let given = options.slides.iter().find(|(name, _)| name.to_lowercase() == joint.to_lowercase());
+        if let Some(unit) = given.and_then(|(_, unit)| parse_unit(unit.name())) {
+            return Ok(Some(Length { unit, given: true }));
+        }
+        let uses = layout.uses.iter().filter(|one| one.joint == index);
+        let units: Vec<Unit> = uses.filter_map(|one| stated(one.column)).collect();
+        let first = |all: [Measure; 2]| units.iter().find(|unit| all.contains(&unit.measure));
+        let slides = first([Measure::Length, Measure::LinearSpeed]);
+        match (slides, first([Measure::Angle, Measure::AngularSpeed])) {
+            (Some(long), Some(angle)) => {
+                let units = [long, angle].map(|unit| unit.name.to_owned());
+                Err(CsvError::MixedKinds { joint: joint.clone(), units })
+            }
+            (Some(long), None) => Ok(Some(Length { unit: *long, given: false })),
+            (None, _) => Ok(None),
+        }
+    };
+    if let Some(name) = options
+        .slides
+        .keys()
+        .find(|name| layout.joints.iter().all(|joint| joint.to_lowercase() != name.to_lowercase()))
+    {
+        return Err(CsvError::NoJoint {
+            what: "--slides".to_owned(),
+            joint: name.clone(),
+            nearest: nearest(name, layout.joints.iter().map(String::as_str)),
+            present: layout.joints.join(", "),
+        });
+    }
+    layout.joints.iter().enumerate().map(of).collect()
+}
+
+/// The unit of a column of a joint that turns, and who says so.
+fn angle(
+    one: &Use,
+    stated: Option<Unit>,
+    fallback: Option<(Unit, &'static str)>,
+    head: &Head,
+    cells: &Cells,
+    options: &CsvOptions,
+) -> Result<(Unit, &'static str), CsvError> {
+    let (wanted, expected) = match one.quantity {
+        Quantity::Position => (Measure::Angle, "angle"),
+        Quantity::Velocity => (Measure::AngularSpeed, "speed of a joint"),
+    };
+    let named = options.columns.contains_key(&(one.role, one.quantity));
+    let (angle, from) = match (stated, fallback) {
+        (Some(unit), _) if unit.measure == wanted => return Ok((unit, "file")),
+        // The caller names the column and the unit: that holds against a header.
+        (_, Some((unit, "option"))) if named => (unit, "option"),
+        (Some(unit), _) => {
+            let column = head.names[one.column].clone();
+            return Err(CsvError::WrongUnit { column, unit: unit.name.to_owned(), expected });
+        }
+        (None, Some((unit, from))) => (unit, from),
+        (None, None) => {
+            let reach = cells.columns.get(&one.column).map_or(0.0, super::read::Column::reach);
+            if one.quantity == Quantity::Position && reach > FARTHEST_RAD {
+                return Err(CsvError::AngleUnit { column: head.names[one.column].clone(), reach });
+            }
+            (RADIAN, "guess")
+        }
+    };
+    let speed = one.quantity == Quantity::Velocity;
+    let speed = speed.then(|| parse_unit(if angle == DEGREE { "deg/s" } else { "rad/s" })).flatten();
+    Ok((speed.unwrap_or(angle), from))
+}
+
+/// What columns are in that say nothing: what the caller says, what the kind of file is known to
+/// use, or what all other columns say.
+fn fallback(
+    head: &Head,
+    options: &CsvOptions,
+    stated: impl Iterator<Item = Option<Unit>>,
+) -> Option<(Unit, &'static str)> {
+    match options.angle_unit {
+        Some(AngleUnit::Degrees) => return Some((DEGREE, "option")),
+        Some(AngleUnit::Radians) => return Some((RADIAN, "option")),
+        None => {}
+    }
+    let has = |name: &str| head.names.iter().any(|other| other == name);
+    if has("target_q_0") && has("actual_q_0") {
+        return Some((RADIAN, "RTDE"));
+    }
+    let mut stated = stated.flatten();
+    let first = stated.next()?;
+    stated.all(|unit| unit == first).then_some((first, "guess"))
+}
+
+fn scale(cells: &mut Cells, column: usize, factor: f64) {
+    if let Some(column) = cells.columns.get_mut(&column).filter(|_| factor.to_bits() != 1.0_f64.to_bits()) {
+        column.values.iter_mut().for_each(|value| *value *= factor);
+    }
+}

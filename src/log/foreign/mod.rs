@@ -1,0 +1,78 @@
+//! Files of other forms, each made a log before anything else sees it: packed files, ROS 2 bags in SQLite, tables.
+
+mod packed;
+#[cfg(feature = "parquet")]
+mod parquet;
+#[cfg(feature = "sqlite")]
+mod sqlite;
+mod table;
+#[cfg(feature = "sqlite")]
+mod undescribed;
+
+use std::{io, path::Path};
+
+use super::{
+    csv::{CsvError, CsvOptions, CsvRun, read_csv_bytes},
+    error::LogError,
+    file::Source,
+    looks::{LOOKED_AT, is_table},
+};
+use crate::remark::Remarks;
+
+/// First bytes of forms.
+const SQLITE: &[u8] = b"SQLite format 3\0";
+const PARQUET: &[u8] = b"PAR1";
+
+/// Opens a file as a log, whatever its form; what is no form known here is left as it is.
+pub(super) fn open_log(path: &Path, remarks: &mut Remarks) -> Result<Source, LogError> {
+    let source = open(path).map_err(LogError::file("open", path))?;
+    let mut start = Vec::new();
+    source.read(LOOKED_AT, &mut start).map_err(LogError::file("read", path))?;
+    match start.as_slice() {
+        #[cfg(feature = "sqlite")]
+        bytes if bytes.starts_with(SQLITE) => sqlite::log(path, &source, remarks),
+        #[cfg(feature = "parquet")]
+        bytes if bytes.starts_with(PARQUET) => {
+            let text = parquet::table(&source)
+                .map_err(|error| LogError::Form { path: path.to_owned(), reason: error.to_string() })?;
+            table::log(path, &text, remarks)
+        }
+        bytes if is_table(&packed::name_within(path), bytes) => {
+            let text = source.whole().map_err(LogError::file("read", path))?;
+            table::log(path, &text, remarks)
+        }
+        _ => Ok(source),
+    }
+}
+
+/// Reads a CSV file, or another table: packed by gzip or zstd, or in Parquet.
+///
+/// # Errors
+///
+/// [`CsvError`], which says what the file lacks and which option gives it.
+pub fn read_csv(path: &Path, options: &CsvOptions) -> Result<CsvRun, CsvError> {
+    let bytes = table_text(path).map_err(|source| CsvError::File { path: path.to_owned(), source })?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    read_csv_bytes(&name, &bytes, options)
+}
+
+/// The text of a table, packed or not, in text or in Parquet.
+fn table_text(path: &Path) -> io::Result<Vec<u8>> {
+    let source = open(path)?;
+    let mut start = Vec::new();
+    source.read(LOOKED_AT, &mut start)?;
+    #[cfg(feature = "parquet")]
+    if start.starts_with(PARQUET) {
+        return parquet::table(&source).map_err(io::Error::other);
+    }
+    source.whole()
+}
+
+/// Opens a file; one that is packed whole, unpacked.
+///
+/// # Errors
+///
+/// As the file system says, or where what is packed is broken.
+fn open(path: &Path) -> io::Result<Source> {
+    packed::unpacked(Source::open(path)?)
+}

@@ -1,0 +1,109 @@
+//! Tables as people write them: lengths, sums, maps, and tables given as they are.
+
+use std::{fmt::Write as _, fs};
+
+use serde_json::Value;
+
+use super::csv::{import, moves, report, sample, trace};
+use crate::support::{run_args as hydrotrace, said};
+
+#[test]
+fn a_header_says_lengths_plans_and_measurements_in_many_ways() {
+    // Header, arguments, and what became of the columns: joint, unit, and the length of the planned stroke.
+    for (header, scale, args, joint, unit) in [
+        ("t_s,boom_set_mm,boom_act_mm", 1000.0, &[][..], "boom", "mm"),
+        ("t_s,boom_set_cm,boom_act_cm", 100.0, &[], "boom", "cm"),
+        ("t_s,boom_set_m,boom_act_m", 1.0, &[], "boom", "m"),
+        ("t_s,boom set [mm],boom act [mm]", 1000.0, &[], "boom", "mm"),
+        ("t_s,boom set,boom act", 1000.0, &["--slides", "BOOM=mm"], "boom", "mm"),
+        ("t_s,J1_planned_rad,J1_actual_rad", 1.0, &[], "J1", "rad"),
+        ("t_s,q_d_1,q_1", 1.0, &[], "joint_1", "rad"),
+        ("t_s,Boom Sp,Boom Ms", 1.0, &[], "Boom", "rad"),
+        (
+            "t_s,a [bar],b [bar]",
+            57.3,
+            &["--planned", "B=a [bar]", "--measured", "B=b [bar]", "--degrees"],
+            "B",
+            "deg",
+        ),
+        ("t_s,q_set_1,q_act_1,remark,operator", 1.0, &[], "joint_1", "rad"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.csv"), trace(header, 1.0, ",", scale)).unwrap();
+        let import = [&["import", "a.csv", "-o", "a.mcap", "--json"], args].concat();
+        let (code, text, error) = said(&hydrotrace(folder.path(), &import));
+        assert!(code == 0 || code == 3, "{header}: {error}");
+        let read: Value = serde_json::from_str(&text).unwrap();
+        let columns = read["understood"]["columns"].as_array().unwrap();
+        let found: Vec<_> =
+            columns.iter().map(|c| (c["becomes"].as_str().unwrap(), c["joint"].as_str().unwrap())).collect();
+        assert_eq!(found, [("planned position", joint), ("measured position", joint)], "{header}");
+        assert!(columns.iter().all(|column| column["unit"] == unit), "{header}: {columns:?}");
+        let found = report(folder.path(), "a.mcap");
+        let of_joint = &found["joints"][0];
+        assert_eq!(of_joint["unit"], if unit.ends_with('m') { "m" } else { "rad" }, "{header}");
+        // The measurement is 0.1 s late at up to 0.26 a second.
+        let peak = of_joint["tracking_error"]["peak"].as_f64().unwrap();
+        assert!((peak - 0.026).abs() < 0.001, "{header}: {peak}");
+    }
+}
+
+#[test]
+fn a_plan_may_be_a_sum_and_a_map_keeps_how_a_file_was_read() {
+    let mut text = "t_s,boom_measured_rad,boom_error,raw\n".to_owned();
+    for k in 0..500 {
+        let t_s = f64::from(k) * 0.02;
+        let [planned, measured] = moves(t_s);
+        writeln!(text, "{t_s},{measured},{},{}", planned - measured, 1000.0 * planned + 12.0).unwrap();
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.csv"), &text).unwrap();
+    let peak = || report(folder.path(), "a.mcap")["joints"][0]["tracking_error"]["peak"].as_f64().unwrap();
+    let import = |args: &[&str]| {
+        let all = [&["import", "a.csv", "-o", "a.mcap", "--force"], args].concat();
+        said(&hydrotrace(folder.path(), &all))
+    };
+    for plan in
+        ["boom=measured+error", "boom=boom_measured_rad+#3", "boom=0.001*raw-0.012", "boom=raw/1000 - 0.012"]
+    {
+        let (code, _, error) = import(&["--planned", plan, "--radians", "--save-map", "arm.toml"]);
+        assert_eq!(code, 0, "{plan}: {error}");
+        let said = peak();
+        assert!((said - 0.026).abs() < 0.001, "{plan}: {said}");
+        let (code, _, error) = import(&["--map", "arm.toml"]);
+        assert_eq!((code, peak()), (0, said), "{plan}: {error}");
+    }
+    let (code, _, error) = import(&["--planned", "boom=measured+nothing"]);
+    assert!(code == 1 && error.contains("nothing"), "{code} {error}");
+    let (code, _, error) = import(&["--slides", "stick=mm"]);
+    assert!(code == 1 && error.contains("--slides names the joint \"stick\""), "{code} {error}");
+    let (code, _, error) =
+        import(&["--planned", "boom=measured+error", "--interface", "valve_command:BOOM=raw"]);
+    assert_eq!(code, 0, "{error}");
+}
+
+#[test]
+fn a_ragged_first_row_is_counted_and_the_header_kept() {
+    let text = trace("t_s,q_set_1,q_act_1", 1.0, ",", 1.0).replacen('\n', "\n0\n", 1);
+    let (code, out, error) = import(text, &["--radians"]);
+    assert_eq!(code, 3, "{error}");
+    assert!(out.contains("between the header and the first row"), "{out}");
+}
+
+#[test]
+fn a_table_is_reported_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.csv"), trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0)).unwrap();
+    let found = report(folder.path(), "a.csv");
+    assert_eq!((&found["joints"][0]["name"], &found["joints"][0]["unit"]), (&"boom".into(), &"m".into()));
+    assert_eq!(found["logs"][0]["name"], "a.csv");
+    let log = sample("gaps.mcap");
+    hydrotrace(folder.path(), &["export", &log, "--parquet", "-o", "a.parquet"]);
+    let (before, after) = (report(folder.path(), &log), report(folder.path(), "a.parquet"));
+    for part in ["joints", "transitions", "stops", "whole_run"] {
+        assert_eq!(before[part], after[part], "{part}");
+    }
+    fs::write(folder.path().join("b.csv"), "t,boom_act_rad\n0,1\n1,2\n2,2\n3,2\n").unwrap();
+    let (code, _, error) = said(&hydrotrace(folder.path(), &["report", "b.csv"]));
+    assert!(code == 1 && error.contains("JOINT=COLUMN,... of `hydrotrace import`"), "{code} {error}");
+}
