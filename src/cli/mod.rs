@@ -2,6 +2,7 @@
 //!
 //! A verb is a file with its arguments, `Run`, and two lines here: `mod` and a row of `verbs!`.
 
+mod columns;
 mod compare;
 mod completions;
 mod console;
@@ -14,13 +15,13 @@ mod fit;
 mod gates;
 mod import;
 mod info;
-#[cfg(unix)]
 mod interrupt;
 mod join;
 mod man;
 mod number;
 mod plan;
 mod read;
+mod record;
 mod recover;
 mod replan;
 mod report;
@@ -93,6 +94,7 @@ verbs! {
     Replan replan,
     Join join,
     Import import,
+    Record record,
     Export export,
     Info info,
     Recover recover,
@@ -138,7 +140,6 @@ pub fn main() -> ExitCode {
     if !args.force {
         atomic_file::keep(worth);
     }
-    #[cfg(unix)]
     interrupt::watch();
     // Not locked: the log writes to it during the run.
     let mut err = AutoStream::new(io::stderr(), choice);

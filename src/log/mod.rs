@@ -27,8 +27,8 @@ mod write;
 pub use bag::recording_files;
 pub use contents::{Contents, contents};
 pub use csv::{
-    AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, LengthUnit, Quantity, Separator, TimeRead,
-    Understood, read_csv_bytes,
+    AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, JsonLines, LengthUnit, Quantity, Separator,
+    TableStream, TimeRead, Understood, read_csv_bytes,
 };
 pub use error::LogError;
 pub use export::{ExportError, RunTable};

@@ -13,6 +13,7 @@ mod metric;
 pub(crate) mod next;
 pub mod plan;
 mod promise;
+pub(crate) mod record;
 pub(crate) mod recover;
 pub(crate) mod replan;
 pub(crate) mod report;

@@ -9,6 +9,7 @@ pub mod import;
 pub mod info;
 pub mod join;
 pub mod plan;
+pub mod record;
 pub mod recover;
 pub mod replan;
 pub mod report;

@@ -71,6 +71,12 @@ pub enum CsvError {
          --slides JOINT=mm of a joint that slides"
     )]
     AngleUnit { column: String, reach: f64 },
+    /// A recording cannot look at what is to come.
+    #[error(
+        "column {column:?} says no unit, and a recording cannot tell by what is to come; say --degrees, --radians, \
+         or --slides JOINT=mm of a joint that slides"
+    )]
+    NoUnit { column: String },
     /// A column in a unit of something else.
     #[error(
         "column {column:?} is in {unit}, which is no {expected}; map another column or correct its header"

@@ -16,11 +16,13 @@ mod label;
 mod layout;
 mod map;
 mod number;
+mod objects;
 mod options;
 mod read;
 mod rows;
 mod run;
 mod si;
+mod stream;
 mod text;
 mod time;
 mod understood;
@@ -28,9 +30,11 @@ mod unit;
 mod word;
 
 pub use error::CsvError;
+pub use objects::JsonLines;
 pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
 pub use run::CsvRun;
 pub(in crate::log) use run::ORIGIN;
+pub use stream::TableStream;
 pub use understood::{ColumnRead, TimeRead, Understood};
 
 use super::write::Role;
@@ -56,29 +60,67 @@ pub(in crate::log) fn joint_in(name: &str) -> String {
 ///
 /// [`CsvError`]
 pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<CsvRun, CsvError> {
-    options.check()?;
     let text = text::of_bytes(name, bytes)?;
-    let dialect = dialect::detect(name, &text, options)?;
     let mut remarks = Remarks::default();
-    let mut head = head::read_head(&text, dialect, &mut remarks);
-    let below = |column: usize| head.units.as_ref().and_then(|units| units.get(column)).map(String::as_str);
-    let names = head.names.iter().enumerate();
-    let mut labels: Vec<label::Label> =
-        names.map(|(column, name)| label::label(name, below(column))).collect();
-    label::settle(&mut labels);
-    let mut options = options.clone();
-    let derived = expression::derive(&mut head, &mut labels, &mut options)?;
-    let options = &options;
-    let time = clock::choose(&head, &labels, dialect, options, &mut remarks)?;
-    let layout = layout::lay_out(&head, &labels, &time.columns(), options, &mut remarks)?;
-    let wanted = layout.uses.iter().map(|one| one.column);
-    let wanted = wanted.chain(layout.interfaces.iter().map(|one| one.column));
-    let added: Vec<usize> = derived.iter().flat_map(|one| &one.terms).map(|(_, column)| *column).collect();
-    let in_file = wanted.filter(|column| derived.iter().all(|one| one.column != *column));
-    let in_file = in_file.chain(added.iter().copied());
-    let mut cells = read::read(&text, &head, dialect, &time, in_file, &mut remarks)?;
-    expression::compute(&derived, &mut cells);
-    let (units, kinds) = si::to_si(&head, &labels, &layout, options, &mut cells, &mut remarks)?;
-    let understood = Understood::new(name, dialect, &head, &time, (&layout, &added), &cells, &units);
-    Ok(CsvRun::new((layout, kinds), cells, understood, remarks))
+    Form::of(name, &text, options, &mut remarks)?.read(name, &text, remarks).map(|(run, _)| run)
+}
+
+/// How the rows of a table are read.
+#[derive(Debug)]
+struct Form {
+    dialect: dialect::Dialect,
+    head: head::Head,
+    labels: Vec<label::Label>,
+    derived: Vec<expression::Derived>,
+    time: time::TimeSource,
+    layout: layout::Layout,
+    options: CsvOptions,
+}
+
+impl Form {
+    /// By the first rows, and what the caller says.
+    fn of(name: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Result<Self, CsvError> {
+        options.check()?;
+        let dialect = dialect::detect(name, text, options)?;
+        let mut head = head::read_head(text, dialect, remarks);
+        let below =
+            |column: usize| head.units.as_ref().and_then(|units| units.get(column)).map(String::as_str);
+        let names = head.names.iter().enumerate();
+        let mut labels: Vec<label::Label> =
+            names.map(|(column, name)| label::label(name, below(column))).collect();
+        label::settle(&mut labels);
+        let mut options = options.clone();
+        let derived = expression::derive(&mut head, &mut labels, &mut options)?;
+        let time = clock::choose(&head, &labels, dialect, &options, remarks)?;
+        let layout = layout::lay_out(&head, &labels, &time.columns(), &options, remarks)?;
+        Ok(Self { dialect, head, labels, derived, time, layout, options })
+    }
+
+    /// Columns that sums are made of.
+    fn added(&self) -> Vec<usize> {
+        self.derived.iter().flat_map(|one| &one.terms).map(|(_, column)| *column).collect()
+    }
+
+    /// Columns of the file that hold numbers to read.
+    fn wanted(&self) -> impl Iterator<Item = usize> {
+        let uses = self.layout.uses.iter().map(|one| one.column);
+        let wanted = uses.chain(self.layout.interfaces.iter().map(|one| one.column));
+        wanted.filter(|column| self.derived.iter().all(|one| one.column != *column)).chain(self.added())
+    }
+
+    /// All rows, and the unit of each column in use.
+    fn read(
+        &self,
+        name: &str,
+        text: &[u8],
+        mut remarks: Remarks,
+    ) -> Result<(CsvRun, Vec<si::Settled>), CsvError> {
+        let Self { dialect, head, labels, derived, time, layout, options } = self;
+        let mut cells = read::read(text, head, *dialect, time, self.wanted(), &mut remarks)?;
+        expression::compute(derived, &mut cells);
+        let (units, kinds) = si::to_si(head, labels, layout, options, &mut cells, &mut remarks)?;
+        let layout_added = (layout, self.added());
+        let understood = Understood::new(name, *dialect, head, time, layout_added, &cells, &units);
+        Ok((CsvRun::new((layout.clone(), kinds), cells, understood, remarks), units))
+    }
 }

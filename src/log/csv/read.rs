@@ -210,7 +210,7 @@ impl Column {
         self.numbers -= u64::from(self.values.pop().is_some_and(f64::is_finite));
     }
 
-    fn push(&mut self, cell: &[u8], line: u64, decimal_comma: bool) {
+    pub(super) fn push(&mut self, cell: &[u8], line: u64, decimal_comma: bool) {
         let value = number(cell, decimal_comma).filter(|value| value.is_finite());
         if value.is_some() {
             self.numbers += 1;
@@ -219,6 +219,11 @@ impl Column {
             self.example.get_or_insert_with(|| (clip(&cell_text(cell)), line));
         }
         self.values.push(value.unwrap_or(f64::NAN));
+    }
+
+    /// Cells that hold something that is no number.
+    pub(super) fn bad(&self) -> u64 {
+        self.bad
     }
 
     /// The largest finite magnitude.

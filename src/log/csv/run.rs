@@ -46,8 +46,19 @@ impl CsvRun {
     /// [`WriteError`] if `output` takes no more, or for a name of joint or interface that no log
     /// can hold.
     pub fn write<W: Write>(&self, output: W) -> Result<W, WriteError> {
-        let Self { layout, cells, understood, .. } = self;
-        let mut log = LogWriter::new(output, &layout.joints, WriteOptions::default())?;
+        let mut log = self.begin(output, WriteOptions::default())?;
+        self.write_rows(&mut log)?;
+        log.finish()
+    }
+
+    /// The log with what it says of itself, before its rows.
+    pub(super) fn begin<W: Write>(
+        &self,
+        output: W,
+        options: WriteOptions,
+    ) -> Result<LogWriter<W>, WriteError> {
+        let Self { layout, understood, .. } = self;
+        let mut log = LogWriter::new(output, &layout.joints, options)?;
         let columns =
             understood.columns.iter().map(|c| (format!("{} of {}", c.becomes, c.joint), c.header.clone()));
         let time = format!("{} ({})", understood.time.columns.join(", "), understood.time.form);
@@ -58,6 +69,11 @@ impl CsvRun {
         if !kinds.is_empty() {
             log.metadata(joint_kind::METADATA, &kinds)?;
         }
+        Ok(log)
+    }
+
+    pub(super) fn write_rows<W: Write>(&self, log: &mut LogWriter<W>) -> Result<(), WriteError> {
+        let Self { layout, cells, .. } = self;
         let positions = |role| self.by_joint(role, Quantity::Position);
         let velocities = |role| self.by_joint(role, Quantity::Velocity);
         let sides: Vec<(Role, [ByJoint<'_>; 2])> = [Role::Planned, Role::Measured, Role::Command]
@@ -93,7 +109,12 @@ impl CsvRun {
                 log.interfaces(stamp_ns, &slices)?;
             }
         }
-        log.finish()
+        Ok(())
+    }
+
+    /// Other rows of the same columns in place of these.
+    pub(super) fn set_cells(&mut self, cells: Cells) {
+        self.cells = cells;
     }
 
     fn column(&self, column: usize) -> Option<&[f64]> {

@@ -199,7 +199,7 @@ fn fallback(
     stated.all(|unit| unit == first).then_some((first, "guess"))
 }
 
-fn scale(cells: &mut Cells, column: usize, factor: f64) {
+pub(super) fn scale(cells: &mut Cells, column: usize, factor: f64) {
     if let Some(column) = cells.columns.get_mut(&column).filter(|_| factor.to_bits() != 1.0_f64.to_bits()) {
         column.values.iter_mut().for_each(|value| *value *= factor);
     }

@@ -66,26 +66,34 @@ impl TimeSource {
     /// Makes stamps increase over midnight where there is no day, and count from a fixed instant
     /// where they count from none; whether they are absolute.
     pub(super) fn settle(&self, stamp_ns: &mut [i64]) -> bool {
-        const DAY_NS: i64 = 86_400_000_000_000;
-        if let Self::Date { form, .. } = self
-            && form.part() == Part::TimeOfDay
-        {
-            let (mut days_ns, mut before) = (0_i64, i64::MIN);
-            for ns in &mut *stamp_ns {
-                if before.saturating_sub(*ns) > DAY_NS / 2 {
-                    days_ns = days_ns.saturating_add(DAY_NS);
-                }
-                before = *ns;
-                *ns = ns.saturating_add(days_ns);
+        let (mut days_ns, mut before_ns) = (0_i64, i64::MIN);
+        for ns in &mut *stamp_ns {
+            if self.next_day(before_ns, *ns) {
+                days_ns = days_ns.saturating_add(Self::DAY_NS);
             }
+            before_ns = *ns;
+            *ns = ns.saturating_add(days_ns);
         }
         let absolute = stamp_ns.first().is_some_and(|first| *first >= FIRST_ABSOLUTE_NS);
-        if !absolute {
-            for ns in &mut *stamp_ns {
-                *ns = ns.saturating_add(START_NS);
-            }
-        }
+        self.count_from(absolute, stamp_ns);
         absolute
+    }
+
+    pub(super) const DAY_NS: i64 = 86_400_000_000_000;
+
+    /// Whether a time of a day that follows another is on the next day.
+    pub(super) fn next_day(&self, before_ns: i64, ns: i64) -> bool {
+        matches!(self, Self::Date { form, .. } if form.part() == Part::TimeOfDay)
+            && before_ns.saturating_sub(ns) > Self::DAY_NS / 2
+    }
+
+    /// Lets stamps that say no date count from a fixed instant.
+    #[expect(clippy::unused_self, reason = "the rule of this clock")]
+    pub(super) fn count_from(&self, absolute: bool, stamp_ns: &mut [i64]) {
+        let start_ns = if absolute { 0 } else { START_NS };
+        for ns in stamp_ns {
+            *ns = ns.saturating_add(start_ns);
+        }
     }
 }
 

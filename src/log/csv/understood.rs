@@ -89,7 +89,7 @@ impl Understood {
         dialect: Dialect,
         head: &Head,
         time: &TimeSource,
-        (layout, added): (&Layout, &[usize]),
+        (layout, added): (&Layout, Vec<usize>),
         cells: &Cells,
         units: &[Settled],
     ) -> Self {

@@ -11,6 +11,7 @@ mod join;
 #[cfg(unix)]
 mod output;
 mod plan;
+mod record;
 mod report;
 mod simulate;
 #[cfg(unix)]

@@ -40,6 +40,7 @@ pages! {
     join: "docs/guide/join.md"
     library: "docs/guide/library.md"
     plan: "docs/guide/plan.md"
+    record: "docs/guide/record.md"
     recover: "docs/guide/recover.md"
     replan: "docs/guide/replan.md"
     report: "docs/guide/report.md"

@@ -1,0 +1,251 @@
+//! Rows that come one by one, as from a controller that runs.
+
+use std::io::Write;
+
+use ::csv::ByteRecord;
+
+use super::{
+    CsvError, CsvOptions, CsvRun, Form, Quantity, Understood, expression,
+    read::{Cells, Column},
+    rows::Rows,
+    si::{self, Settled},
+    text,
+    time::TimeSource,
+};
+use crate::{
+    log::{LogWriter, WriteError, WriteOptions},
+    remark::{Code, Remarks},
+};
+
+/// So many rows in turn that are behind the latest say that the clock was set back.
+const SET_BACK: u32 = 8;
+
+/// A table whose rows are yet to come. What its columns are is settled by the first rows, as [`read_csv_bytes`] does;
+/// a unit is not guessed.
+///
+/// [`read_csv_bytes`]: super::read_csv_bytes
+#[derive(Debug)]
+pub struct TableStream {
+    form: Form,
+    units: Vec<Settled>,
+    run: CsvRun,
+    rows: u64,
+    /// Line of the first row in what is written first; 0 afterwards.
+    first_line: u64,
+    /// Latest instant of receipt, what the clock was set back by, the last step, ns; rows behind in turn.
+    latest_ns: i64,
+    shift_ns: i64,
+    step_ns: i64,
+    behind: u32,
+    day_ns: i64,
+    before_ns: i64,
+    counts: Counts,
+}
+
+/// Rows that are not as they should be.
+#[derive(Debug, Clone, Copy, Default)]
+struct Counts {
+    ragged: u64,
+    unstamped: u64,
+    bad_cells: u64,
+    late: u64,
+    set_back: u64,
+}
+
+impl TableStream {
+    /// Settles how rows are read by the first ones, header included.
+    ///
+    /// # Errors
+    ///
+    /// [`CsvError`] if that cannot be told, or a unit is neither in the header nor among the options.
+    pub fn begin(name: &str, first: &[u8], options: &CsvOptions) -> Result<Self, CsvError> {
+        let text = text::of_bytes(name, first)?;
+        let mut remarks = Remarks::default();
+        let form = Form::of(name, &text, options, &mut remarks)?;
+        let (run, units) = form.read(name, &text, remarks)?;
+        let guessed =
+            |column: &usize| units.iter().any(|unit| unit.column == *column && unit.from == "guess");
+        let positions = form.layout.uses.iter().filter(|one| one.quantity == Quantity::Position);
+        if let Some(column) = positions.map(|one| one.column).find(guessed) {
+            return Err(CsvError::NoUnit { column: form.head.names[column].clone() });
+        }
+        Ok(Self {
+            first_line: form.head.first_line,
+            form,
+            units,
+            run,
+            rows: 0,
+            latest_ns: i64::MIN,
+            shift_ns: 0,
+            step_ns: 0,
+            behind: 0,
+            day_ns: 0,
+            before_ns: i64::MIN,
+            counts: Counts::default(),
+        })
+    }
+
+    /// How rows are read; its counts are those of the first rows.
+    pub fn understood(&self) -> &Understood {
+        &self.run.understood
+    }
+
+    /// Rows so far that became samples.
+    pub fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// Starts a log of the rows that come.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`] if `output` takes nothing, or for a name that no log can hold.
+    pub fn log<W: Write>(&self, output: W) -> Result<LogWriter<W>, WriteError> {
+        self.run.begin(output, WriteOptions::live())
+    }
+
+    /// Writes whole lines, at first those that it began with: rows become samples, what is no row is counted.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`] if the log takes no more.
+    pub fn write<W: Write>(&mut self, lines: &[u8], log: &mut LogWriter<W>) -> Result<(), WriteError> {
+        let cells = self.cells(lines);
+        self.rows += cells.stamp_ns.len() as u64;
+        self.run.set_cells(cells);
+        self.run.write_rows(log)
+    }
+
+    fn cells(&mut self, lines: &[u8]) -> Cells {
+        let mut rows = Rows::new(lines, self.form.dialect.separator);
+        let mut record = ByteRecord::new();
+        let mut cells = Cells::default();
+        cells.columns.extend(self.form.wanted().map(|column| (column, Column::default())));
+        let first_line = std::mem::take(&mut self.first_line);
+        while let Some(line) = rows.next(&mut record) {
+            if line >= first_line {
+                self.row(&record, line, &mut cells);
+            }
+        }
+        self.counts.bad_cells += cells.columns.values().map(Column::bad).sum::<u64>();
+        expression::compute(&self.form.derived, &mut cells);
+        for Settled { column, unit, .. } in &self.units {
+            si::scale(&mut cells, *column, unit.map_or(1.0, |unit| unit.factor));
+        }
+        cells
+    }
+
+    fn row(&mut self, record: &ByteRecord, line: u64, cells: &mut Cells) {
+        let dialect = self.form.dialect;
+        let beyond = record.iter().skip(dialect.width).any(|cell| !cell.trim_ascii().is_empty());
+        if record.len() < dialect.width || beyond {
+            self.counts.ragged += 1;
+            return;
+        }
+        let cell = |column: usize| record.get(column).unwrap_or_default();
+        let Some(ns) =
+            self.form.time.ns(self.rows + cells.stamp_ns.len() as u64, cell, dialect.decimal_comma)
+        else {
+            self.counts.unstamped += 1;
+            return;
+        };
+        let ns = self.settled(ns);
+        cells.stamp_ns.push(ns);
+        cells.received_ns.push(self.received(ns));
+        for (&at, column) in &mut cells.columns {
+            column.push(cell(at), line, dialect.decimal_comma);
+        }
+    }
+
+    /// The stamp on the clock of the log: times of a day go on after midnight, others count from a fixed instant.
+    fn settled(&mut self, ns: i64) -> i64 {
+        self.day_ns += TimeSource::DAY_NS * i64::from(self.form.time.next_day(self.before_ns, ns));
+        self.before_ns = ns;
+        let mut one = [ns.saturating_add(self.day_ns)];
+        self.form.time.count_from(self.run.understood.time.absolute, &mut one);
+        one[0]
+    }
+
+    /// When the row counts as received: never before the row before it, and on where the clock was set back.
+    fn received(&mut self, ns: i64) -> i64 {
+        let at_ns = ns.saturating_add(self.shift_ns);
+        if at_ns >= self.latest_ns {
+            if self.latest_ns > i64::MIN {
+                self.step_ns = at_ns - self.latest_ns;
+            }
+            (self.behind, self.latest_ns) = (0, at_ns);
+        } else {
+            self.behind += 1;
+            self.counts.late += 1;
+            if self.behind == SET_BACK {
+                self.shift_ns = self.latest_ns.saturating_sub(ns).saturating_add(self.step_ns);
+                self.counts.late -= u64::from(SET_BACK);
+                self.counts.set_back += 1;
+                self.behind = 0;
+            }
+        }
+        self.latest_ns
+    }
+
+    /// Doubts so far.
+    pub fn remarks(&self) -> Remarks {
+        let mut remarks = self.run.remarks.clone().without(Code::Guessed);
+        let Counts { ragged, unstamped, bad_cells, late, set_back } = self.counts;
+        let width = self.form.dialect.width;
+        remarks.add(Code::LengthMismatch, ragged, format!("lines that have not {width} cells; left out"));
+        remarks.add(Code::NotFinite, unstamped, "lines without a time, such as a header again; left out");
+        remarks.add(Code::NotFinite, bad_cells, "cells that are no number; left empty");
+        remarks.add(Code::Reordered, late, "rows earlier than the row before");
+        remarks.add(
+            Code::ClockJump,
+            set_back,
+            "places where the clock goes back; a report splits the run there",
+        );
+        remarks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::csv::read_csv_bytes;
+
+    fn table(rows: std::ops::Range<i32>) -> String {
+        let row = |k: i32| format!("{:.3},{},{}\n", 0.01 * f64::from(k), k, k - 1);
+        rows.map(row).collect()
+    }
+
+    #[test]
+    fn rows_that_come_one_by_one_give_the_log_of_the_whole_table() {
+        const HEAD: &str = "t_s,boom_set_mm,boom_act_mm\n";
+        let whole = format!("{HEAD}{}", table(0..300));
+        let imported = read_csv_bytes("a.csv", whole.as_bytes(), &CsvOptions::default()).unwrap();
+        let first = format!("{HEAD}{}", table(0..9));
+        let mut stream = TableStream::begin("a.csv", first.as_bytes(), &CsvOptions::default()).unwrap();
+        let mut log = imported.begin(Vec::new(), WriteOptions::default()).unwrap();
+        stream.write(first.as_bytes(), &mut log).unwrap();
+        for k in 9..300 {
+            stream.write(table(k..k + 1).as_bytes(), &mut log).unwrap();
+        }
+        assert_eq!(stream.rows(), 300);
+        assert!(log.finish().unwrap() == imported.write(Vec::new()).unwrap());
+        assert!(stream.remarks().is_empty(), "{:?}", stream.remarks());
+    }
+
+    #[test]
+    fn a_unit_is_not_guessed_and_broken_lines_are_counted() {
+        let first = "t_s,J1_set,J1_act\n0,0,0\n0.1,0,0\n0.2,0,0\n0.3,0,0\n";
+        let begun = TableStream::begin("a.csv", first.as_bytes(), &CsvOptions::default());
+        assert!(matches!(begun, Err(CsvError::NoUnit { .. })));
+        let first = first.replace("set", "set_deg").replace("act", "act_deg");
+        let mut stream = TableStream::begin("a.csv", first.as_bytes(), &CsvOptions::default()).unwrap();
+        let mut log = stream.log(Vec::new()).unwrap();
+        let after: String = (0..20).map(|k| format!("0.0{k:02},0,0\n")).collect();
+        stream.write(format!("{first}0.4,0\nx,0,0\n0.5,a,0\n{after}").as_bytes(), &mut log).unwrap();
+        let said: Vec<(Code, u64)> =
+            stream.remarks().as_slice().iter().map(|remark| (remark.code, remark.count)).collect();
+        let expected =
+            [(Code::LengthMismatch, 1), (Code::NotFinite, 1), (Code::NotFinite, 1), (Code::ClockJump, 1)];
+        assert_eq!(said, expected);
+    }
+}

@@ -1,0 +1,258 @@
+//! `record`: lines that a controller sends become a log as they come.
+
+mod document;
+mod output;
+
+use std::{
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+
+use thiserror::Error;
+
+pub use document::Recorded;
+
+use crate::{
+    log::{CsvError, CsvOptions, JsonLines, LogWriter, TableStream, WriteError},
+    remark::{Code, Remarks},
+};
+use output::Synced;
+
+/// Lines after which the columns are settled, and after which it is given up to settle them.
+const FIRST_LINES: usize = 10;
+const MOST_LINES: usize = 200;
+
+/// Where the log goes, and what the caller says of the lines.
+#[derive(Debug, Clone, Default)]
+pub struct Inputs {
+    /// The log; the next parts are named NAME-2, NAME-3 and on.
+    pub output: PathBuf,
+    /// What the caller says of the columns.
+    pub options: CsvOptions,
+    /// Where a part ends; `None`: nowhere.
+    pub part: Option<Part>,
+    /// Whether a file that is there is replaced.
+    pub replace: bool,
+}
+
+/// Where a part ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Part {
+    /// After so many bytes.
+    Bytes(u64),
+    /// After so much time by the rows' stamps, s.
+    Seconds(f64),
+}
+
+/// How far a recording is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Rows that became samples.
+    pub rows: u64,
+    /// Lines that came.
+    pub lines: u64,
+    /// Bytes of the part that were handed to the system.
+    pub bytes: u64,
+    /// Joints; 0 until the columns are settled.
+    pub joints: usize,
+}
+
+/// Why a recording ended, or never began.
+#[derive(Debug, Error)]
+pub enum RecordError {
+    /// The lines are not understood.
+    #[error(transparent)]
+    Csv(#[from] CsvError),
+    /// The log cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// There is a file already.
+    #[error("{} is there already; a recording replaces it with --force only", path.display())]
+    Exists {
+        /// Which.
+        path: PathBuf,
+    },
+    /// The file cannot be made.
+    #[error("cannot create {}", path.display())]
+    Create {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Nothing came.
+    #[error("no line came: send a header and rows (CSV), or an object a line (JSON)")]
+    Nothing,
+}
+
+/// Writes the lines that come, each without its end; `None` is a moment without one. Ends with them.
+///
+/// # Errors
+///
+/// [`RecordError`]; what was written before stays readable.
+pub fn run(
+    inputs: &Inputs,
+    lines: impl Iterator<Item = Option<Vec<u8>>>,
+    mut told: impl FnMut(&Progress),
+) -> Result<Recorded, RecordError> {
+    let mut recording = Recording::new(inputs);
+    for line in lines {
+        match line {
+            Some(line) => recording.line(&line)?,
+            None => recording.settle(false)?,
+        }
+        told(&recording.progress);
+    }
+    recording.end()
+}
+
+struct Recording<'a> {
+    inputs: &'a Inputs,
+    objects: Option<JsonLines>,
+    /// Lines until the columns are settled.
+    first: Vec<u8>,
+    first_lines: usize,
+    open: Option<(TableStream, LogWriter<Synced>)>,
+    parts: Vec<PathBuf>,
+    /// Bytes of the part that is being written.
+    counter: Arc<AtomicU64>,
+    part_from: Progress,
+    unread: u64,
+    progress: Progress,
+}
+
+impl<'a> Recording<'a> {
+    fn new(inputs: &'a Inputs) -> Self {
+        let progress = Progress { rows: 0, lines: 0, bytes: 0, joints: 0 };
+        Self {
+            inputs,
+            objects: None,
+            first: Vec::new(),
+            first_lines: 0,
+            open: None,
+            parts: Vec::new(),
+            counter: Arc::default(),
+            part_from: progress,
+            unread: 0,
+            progress,
+        }
+    }
+
+    fn line(&mut self, line: &[u8]) -> Result<(), RecordError> {
+        self.progress.lines += 1;
+        if self.progress.lines == 1 && JsonLines::is_object(line) {
+            self.objects = Some(JsonLines::default());
+        }
+        let text = match &mut self.objects {
+            Some(objects) => {
+                let Some(text) = objects.row(line) else {
+                    self.unread += 1;
+                    return Ok(());
+                };
+                text.into_bytes()
+            }
+            None => [line, b"\n"].concat(),
+        };
+        if self.open.is_none() {
+            self.first.extend(text);
+            self.first_lines += 1;
+            return if self.first_lines >= FIRST_LINES { self.settle(false) } else { Ok(()) };
+        }
+        self.write(&text)
+    }
+
+    /// Tells the columns by the lines so far, at the latest at the end; until then more of them may help.
+    fn settle(&mut self, last: bool) -> Result<(), RecordError> {
+        if self.open.is_some() || self.first_lines < 3 && !last {
+            return Ok(());
+        }
+        let name = self.inputs.output.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        match TableStream::begin(&name, &self.first, &self.inputs.options) {
+            Ok(stream) => {
+                self.progress.joints = stream.understood().joints.len();
+                let log = stream.log(self.next_part()?)?;
+                self.open = Some((stream, log));
+                let first = std::mem::take(&mut self.first);
+                self.write(&first)
+            }
+            // Rows that are yet to come may settle it; an option that is missing will be missing then.
+            Err(CsvError::NoTable { .. } | CsvError::NoTime { .. } | CsvError::TimeUnit { .. })
+                if !last && self.first_lines < MOST_LINES =>
+            {
+                Ok(())
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn write(&mut self, text: &[u8]) -> Result<(), RecordError> {
+        let Some((stream, log)) = &mut self.open else { return Ok(()) };
+        stream.write(text, log)?;
+        self.progress.rows = stream.rows();
+        self.progress.bytes = self.counter.load(Ordering::Relaxed);
+        let begun = self.part_from;
+        let ends = match self.inputs.part {
+            None => false,
+            Some(Part::Bytes(most)) => self.progress.bytes >= most,
+            Some(Part::Seconds(most_s)) => {
+                let rate_hz = stream.understood().time.rate_hz.max(f64::MIN_POSITIVE);
+                (self.progress.rows - begun.rows) as f64 >= most_s * rate_hz
+            }
+        };
+        if ends && let Some((stream, log)) = self.open.take() {
+            log.finish()?;
+            self.part_from = self.progress;
+            let log = stream.log(self.next_part()?)?;
+            self.open = Some((stream, log));
+        }
+        Ok(())
+    }
+
+    fn next_part(&mut self) -> Result<Synced, RecordError> {
+        let path = part_name(&self.inputs.output, self.parts.len() + 1);
+        let file = Synced::create(&path, self.inputs.replace).map_err(|source| match source.kind() {
+            std::io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.clone() },
+            _ => RecordError::Create { path: path.clone(), source },
+        })?;
+        self.parts.push(path);
+        self.counter = file.counter();
+        Ok(file)
+    }
+
+    fn end(mut self) -> Result<Recorded, RecordError> {
+        if self.progress.lines == 0 {
+            return Err(RecordError::Nothing);
+        }
+        self.settle(true)?;
+        let Some((stream, log)) = self.open else { return Err(RecordError::Nothing) };
+        log.finish()?;
+        let mut remarks: Remarks = stream.remarks();
+        remarks.add(Code::UndecodableMessage, self.unread, "lines that are no JSON object; left out");
+        Ok(Recorded::new(&self.parts, &self.progress, stream.understood(), remarks))
+    }
+}
+
+/// `run.mcap`, `run-2.mcap`, `run-3.mcap`.
+fn part_name(output: &Path, number: usize) -> PathBuf {
+    if number == 1 {
+        return output.to_owned();
+    }
+    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
+    let ending =
+        output.extension().map(|ending| format!(".{}", ending.to_string_lossy())).unwrap_or_default();
+    output.with_file_name(format!("{stem}-{number}{ending}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_numbered_from_the_second_on() {
+        let name = |number| part_name(Path::new("a/run.mcap"), number);
+        assert_eq!([name(1), name(2)], [Path::new("a/run.mcap"), Path::new("a/run-2.mcap")]);
+    }
+}

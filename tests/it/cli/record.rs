@@ -1,0 +1,154 @@
+//! `record`: lines as they come, at the built binary.
+
+use std::{
+    fs,
+    io::Write,
+    net::UdpSocket,
+    path::Path,
+    process::{Child, Command, Stdio},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+use serde_json::Value;
+
+use super::csv::{moves, report, trace};
+use crate::support::{command, run_args as hydrotrace, said};
+
+fn start(folder: &Path, args: &[&str]) -> Child {
+    let mut recorder = command(folder);
+    recorder.args([&["record", "-o", "run.mcap"], args].concat());
+    recorder.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Feeds a text and ends its input.
+fn recorded(folder: &Path, text: &str, args: &[&str]) -> (i32, String, String) {
+    let mut recorder = start(folder, args);
+    // A recorder that refuses its first lines hears no more.
+    let _ = recorder.stdin.take().unwrap().write_all(text.as_bytes());
+    said(&recorder.wait_with_output().unwrap())
+}
+
+/// Until a condition holds, 20 s at most.
+fn until(what: &str, holds: impl Fn() -> bool) {
+    let from = Instant::now();
+    while !holds() {
+        assert!(from.elapsed() < Duration::from_secs(20), "no {what} after 20 s");
+        sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+fn what_is_recorded_reports_as_the_same_table_imported() {
+    let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
+    let objects: String = text.lines().skip(1).fold(String::new(), |all, row| {
+        let cells: Vec<&str> = row.split(',').collect();
+        all + &format!(
+            "{{\"t_s\": {}, \"boom\": {{\"set_mm\": {}, \"act_mm\": {}}}}}\n",
+            cells[0], cells[1], cells[2]
+        )
+    });
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.csv"), &text).unwrap();
+    let imported = report(folder.path(), "a.csv");
+    for (form, lines) in [("CSV", &text), ("JSON", &objects)] {
+        let (code, out, error) = recorded(folder.path(), lines, &["--force"]);
+        assert_eq!((code, error.as_str()), (0, ""), "{form}: {out}");
+        assert!(out.starts_with("500 rows of 50"), "{form}: {out}");
+        let live = report(folder.path(), "run.mcap");
+        for part in ["joints", "transitions", "stops", "whole_run", "alignment"] {
+            assert_eq!(live[part], imported[part], "{part} of {form}");
+        }
+    }
+    let (code, out, _) = recorded(folder.path(), &text, &["--force", "--report"]);
+    assert!(code == 0 && out.contains("TRANSITIONS, WORST FIRST"), "{code}: {out}");
+}
+
+#[test]
+fn a_recording_is_not_written_over_and_a_unit_not_guessed() {
+    let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(recorded(folder.path(), &text, &[]).0, 0);
+    let before = fs::read(folder.path().join("run.mcap")).unwrap();
+    let (code, _, error) = recorded(folder.path(), &text, &[]);
+    assert!(code == 1 && error.contains("--force"), "{code}: {error}");
+    assert!(fs::read(folder.path().join("run.mcap")).unwrap() == before);
+    let folder = tempfile::tempdir().unwrap();
+    let (code, _, error) = recorded(folder.path(), &trace("t_s,J1_set,J1_act", 1.0, ",", 1.0), &[]);
+    assert!(code == 1 && error.contains("--degrees"), "{code}: {error}");
+    assert!(!folder.path().join("run.mcap").exists());
+    let (code, _, error) = recorded(folder.path(), "", &[]);
+    assert!(code == 1 && error.contains("no line came"), "{code}: {error}");
+}
+
+#[test]
+fn a_recording_comes_in_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = "t_s,boom_set_mm,boom_act_mm\n".to_owned();
+    for k in 0..4500 {
+        let t_s = f64::from(k) * 0.02;
+        let [planned, measured] = moves(t_s % 30.0).map(|q| q * 1000.0);
+        text += &format!("{t_s},{planned},{measured}\n");
+    }
+    let (code, out, _) = recorded(folder.path(), &text, &["--part-minutes", "1", "--json"]);
+    let written: Value = serde_json::from_str(&out).unwrap();
+    crate::support::hold_to_schema(&written, "record.v1");
+    assert_eq!((code, &written["logs"]), (0, &serde_json::json!(["run.mcap", "run-2.mcap"])));
+    let both = said(&hydrotrace(folder.path(), &["report", "run.mcap", "run-2.mcap", "--json"])).1;
+    let both: Value = serde_json::from_str(&both).unwrap();
+    assert!((both["source"]["duration_s"].as_f64().unwrap() - 4499.0 * 0.02).abs() < 1e-6);
+}
+
+#[test]
+#[cfg(unix)]
+fn packets_are_recorded_until_an_interrupt_ends_the_log() {
+    let folder = tempfile::tempdir().unwrap();
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let address = format!("127.0.0.1:{port}");
+    let recorder = start(folder.path(), &["--udp", &address]);
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    socket.connect(&address).unwrap();
+    let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
+    let log = folder.path().join("run.mcap");
+    // The header is sent until it is heard; a second one is a line without a time.
+    let lines: Vec<&str> = text.lines().collect();
+    until("recorder", || {
+        let sent = socket.send(lines[0].as_bytes()).is_ok();
+        sleep(Duration::from_millis(100));
+        sent && socket.send(b"").is_ok()
+    });
+    for rows in lines[1..].chunks(5) {
+        socket.send(rows.join("\n").as_bytes()).unwrap();
+        sleep(Duration::from_millis(1));
+    }
+    until("log", || fs::metadata(&log).is_ok_and(|found| found.len() > 2000));
+    let kill = Command::new("kill").args(["-INT", &recorder.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    let (code, out, error) = said(&recorder.wait_with_output().unwrap());
+    assert!(code == 0 || code == 3, "{code} {out} {error}");
+    let found = report(folder.path(), "run.mcap");
+    assert_eq!(found["remarks"], Value::Array(Vec::new()), "closed properly");
+    assert!(found["source"]["messages"].as_u64().unwrap() >= 490, "{}", found["source"]);
+}
+
+#[test]
+fn a_kill_takes_a_second_at_most() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut recorder = start(folder.path(), &[]);
+    let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
+    let mut input = recorder.stdin.take().unwrap();
+    input.write_all(text.as_bytes()).unwrap();
+    input.flush().unwrap();
+    let log = folder.path().join("run.mcap");
+    // Ten seconds of rows: nine of them are on the disk before its input ends.
+    until("log", || {
+        let read = || said(&hydrotrace(folder.path(), &["report", "run.mcap", "--json"])).1;
+        let found: Option<Value> = log.exists().then(|| serde_json::from_str(&read()).ok()).flatten();
+        found.is_some_and(|found| found["source"]["duration_s"].as_f64().unwrap() >= 8.9)
+    });
+    recorder.kill().unwrap();
+    recorder.wait().unwrap();
+    drop(input);
+    let found = report(folder.path(), "run.mcap");
+    assert!(found["source"]["duration_s"].as_f64().unwrap() >= 8.9);
+}
