@@ -4,6 +4,7 @@
 
 mod block;
 mod compression;
+mod held;
 mod record;
 mod scan;
 mod source;
@@ -11,6 +12,7 @@ mod span;
 mod walk;
 
 pub(super) use block::{Block, Blocks, Loss, records};
+pub(super) use held::Held;
 pub(super) use record::{ChannelRecord, MessageRecord, Opcode, SchemaRecord};
 pub(super) use scan::{Layout, scan};
 pub(super) use source::Source;

@@ -228,11 +228,26 @@ pub(super) fn data_crc(body: &[u8]) -> Option<u32> {
     Fields(body).u32()
 }
 
-/// Channel count of a statistics record.
-pub(super) fn channel_count(body: &[u8]) -> Option<u32> {
-    let mut f = Fields(body);
-    f.bytes(10)?; // message count, schema count
-    f.u32()
+/// What a statistics record says of a file.
+#[derive(Debug, Default)]
+pub(super) struct Statistics {
+    pub(super) channels: u32,
+    pub(super) chunks: u32,
+    /// By channel.
+    pub(super) messages: BTreeMap<u16, u64>,
+}
+
+impl Statistics {
+    pub(super) fn parse(body: &[u8]) -> Option<Self> {
+        let mut f = Fields(body);
+        f.bytes(10)?; // message count, schema count
+        let channels = f.u32()?;
+        f.bytes(8)?; // counts of attachments and metadata
+        let chunks = f.u32()?;
+        f.bytes(20)?; // first and last time, length of the list
+        let messages = std::iter::from_fn(|| Some((f.u16()?, f.u64()?))).collect();
+        Some(Self { channels, chunks, messages })
+    }
 }
 
 #[cfg(test)]

@@ -2,9 +2,10 @@
 
 use super::{
     block::{Block, Kind},
+    held::{Held, HeldByBlock},
     record::{
         AttachmentRecord, ChannelRecord, ChunkRecord, MessageRecord, MetadataRecord, Opcode, SchemaRecord,
-        channel_count, data_crc, profile, summary_start_and_crc,
+        Statistics, data_crc, profile, summary_start_and_crc,
     },
     source::Source,
     span::Span,
@@ -24,6 +25,8 @@ const ATTACHMENT_HEAD: u64 = 1 << 16;
 pub(in crate::log) struct Layout {
     /// Runs of messages in file order.
     pub(in crate::log) blocks: Vec<Block>,
+    /// The channels of each block, where its index and the statistics of a sound file agree on them.
+    pub(in crate::log) held: Option<Vec<Vec<Held>>>,
     /// Schemas outside chunks, those of the summary included; ids may repeat.
     pub(in crate::log) schemas: Vec<SchemaRecord>,
     /// Channels outside chunks, those of the summary included; ids may repeat.
@@ -56,7 +59,8 @@ pub(in crate::log) struct Damage {
 
 /// Walks a file; `None` if nothing in it looks like MCAP.
 pub(in crate::log) fn scan(source: &Source) -> Option<Layout> {
-    let mut scan = Scan { walk: Walk::of(source), layout: Layout::default(), loose: None };
+    let mut scan =
+        Scan { walk: Walk::of(source), layout: Layout::default(), loose: None, held: HeldByBlock::default() };
     scan.run().then(|| Layout { fault: scan.walk.into_fault().map(|fault| fault.to_string()), ..scan.layout })
 }
 
@@ -65,6 +69,7 @@ struct Scan<'a> {
     layout: Layout,
     /// Where a run of messages outside chunks began, and its first time.
     loose: Option<(u64, u64)>,
+    held: HeldByBlock,
 }
 
 impl Scan<'_> {
@@ -74,7 +79,7 @@ impl Scan<'_> {
         let magic = MAGIC.len() as u64;
         let length = self.walk.length();
         let mut at = if has_magic { magic } else { 0 };
-        let mut channels_promised = None;
+        let mut statistics: Option<Statistics> = None;
         let mut footer = false;
         let mut before_summary = None;
         self.layout.damage.not_closed = true;
@@ -114,7 +119,12 @@ impl Scan<'_> {
             }
             match record.opcode {
                 Opcode::CHUNK => self.chunk(record.body, false),
-                Opcode::STATISTICS => channels_promised = channel_count(self.walk.look(record.body)),
+                Opcode::STATISTICS => statistics = Statistics::parse(&self.walk.body(record.body)),
+                Opcode::MESSAGE_INDEX => {
+                    if let Some(block) = self.layout.blocks.len().checked_sub(1) {
+                        self.held.add(block, &mut self.walk, record.body);
+                    }
+                }
                 Opcode::DATA_END => {
                     before_summary = Some((self.layout.schemas.len(), self.layout.channels.len()));
                     let loose = self.layout.blocks.iter().any(|block| block.kind == Kind::Loose);
@@ -128,7 +138,7 @@ impl Scan<'_> {
                         self.layout.damage.broken_summary = true;
                         self.layout.schemas.truncate(schemas);
                         self.layout.channels.truncate(channels);
-                        channels_promised = None;
+                        statistics = None;
                     }
                 }
                 _ => self.small(record),
@@ -140,7 +150,11 @@ impl Scan<'_> {
         let mut ids: Vec<u16> = layout.channels.iter().map(|c| c.id).collect();
         ids.sort_unstable();
         ids.dedup();
-        layout.channels_complete = channels_promised.is_some_and(|count| count as usize == ids.len());
+        layout.channels_complete =
+            statistics.as_ref().is_some_and(|said| said.channels as usize == ids.len());
+        if let Some(said) = statistics.filter(|_| layout.damage == Damage::default()) {
+            layout.held = std::mem::take(&mut self.held).agreed(&layout.blocks, &said);
+        }
         has_magic || !layout.blocks.is_empty() || !layout.channels.is_empty()
     }
 

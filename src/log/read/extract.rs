@@ -13,6 +13,7 @@ use crate::{
     log::{
         channel::{Channel, Definitions},
         csv::joint_in,
+        file::Held,
         files::{ScannedFile, ScannedLog, count},
         options::{ReadOptions, Selector},
         source::{Role, Spec, Versioned},
@@ -75,9 +76,37 @@ fn read_files(
         let channels =
             Definitions::gather(&file.layout, file.source, look_inside).plan(selectors, &speeds, &alone);
         let routes = Arc::new(routes(channels, &options.joints, &mut known, out));
-        work.extend(file.layout.blocks.iter().map(|block| (*block, file.source, routes.clone(), index)));
+        for (number, block) in file.layout.blocks.iter().enumerate() {
+            let held = file.layout.held.as_ref().map_or(&[][..], |held| &held[number]);
+            if !counted(held, &routes, out) {
+                work.push((*block, file.source, routes.clone(), index));
+            }
+        }
     }
     read_blocks(&work, &known.specs, &options.joints, out)
+}
+
+/// Counts the messages of a chunk by its index, if nothing in it is to be read; whether that was so.
+fn counted(held: &[Held], routes: &BTreeMap<u16, Route>, out: &mut Extracted) -> bool {
+    let is_passed =
+        |held: &Held| routes.get(&held.channel).is_some_and(|route| route.read.is_none() && !route.describes);
+    if held.is_empty() || !held.iter().all(is_passed) {
+        return false;
+    }
+    for one in held {
+        let Some(route) = routes.get(&one.channel) else { continue };
+        let [first_log_ns, last_log_ns] = one.log_ns;
+        let unread = if route.unreadable { one.messages } else { 0 };
+        let messages = one.messages;
+        out.topics[route.topic].add(&TopicCount {
+            messages,
+            unread,
+            first_log_ns,
+            last_log_ns,
+            ..TopicCount::default()
+        });
+    }
+    true
 }
 
 /// The joint of a topic that is one of several of a side: the one named in the same place, else as the topic is called.

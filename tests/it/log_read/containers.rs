@@ -128,3 +128,30 @@ fn attachments_and_metadata_are_handed_on() {
     assert_eq!(recording.attachments[0].data, b"{}");
     assert_eq!(recording.metadata["site"], metadata);
 }
+
+#[test]
+fn a_chunk_in_which_nothing_is_wanted_is_counted_and_not_read() {
+    let mut log = plain_log();
+    let usual = read(&log);
+    let camera =
+        log.channel(Channel::cdr("/camera", "mine/msg/Image").with_schema("ros2msg", "uint8[] data\n"));
+    let joints = log.messages.clone();
+    // A chunk of pictures between two of joints.
+    let picture = [0xAB; 3000];
+    log.messages.truncate(60);
+    (20..30).for_each(|k| log.send(camera, stamp(k), picture.to_vec()));
+    log.messages.extend_from_slice(&joints[60..]);
+    let options = mcap::WriteOptions::new().chunk_size(Some(12_000)).compression(None);
+    let mut bytes = log.bytes(options);
+    let at = bytes.windows(40).position(|window| window == [0xAB; 40]).unwrap();
+    // A broken picture breaks the checksum of its chunk; a report never looks.
+    let chunk = bytes[at + 9000];
+    assert_eq!(chunk, 0xAB);
+    bytes[at + 9000] = 0;
+    let survey = survey_bytes(&bytes);
+    let camera = survey.topics.iter().find(|topic| topic.topic == "/camera").unwrap();
+    assert_eq!(camera.messages, 10);
+    assert!((camera.rate_hz - 50.0).abs() < 10.0, "{}", camera.rate_hz);
+    let found = read_bytes(&bytes, &ReadOptions::default()).unwrap();
+    assert_eq!((&found.planned, &found.measured), (&usual.planned, &usual.measured));
+}
