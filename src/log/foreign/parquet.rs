@@ -1,9 +1,13 @@
 //! Parquet tables as text, to be read as any other table.
 
-use std::io::Write;
+use std::{
+    io::Write,
+    panic::{self, UnwindSafe},
+    sync::{Mutex, PoisonError},
+};
 
 use ::parquet::{
-    errors::Result,
+    errors::{ParquetError, Result},
     file::reader::{FileReader, SerializedFileReader},
     record::Field,
 };
@@ -13,7 +17,36 @@ use crate::log::file::Source;
 
 /// The rows below the names of their columns; a cell that is no number, text or instant is empty.
 pub(super) fn table(source: &Source) -> Result<Vec<u8>> {
-    let reader = SerializedFileReader::new(Bytes::from(source.whole()?))?;
+    let bytes = source.whole()?;
+    guarded(move || rows(bytes))
+        .unwrap_or_else(|| Err(ParquetError::General("the file is broken".to_owned())))
+}
+
+/// The library panics on some broken files; `None` then. What other threads have to say of a panic of theirs is
+/// lost meanwhile.
+fn guarded<T>(read: impl FnOnce() -> T + UnwindSafe) -> Option<T> {
+    static ONE: Mutex<()> = Mutex::new(());
+    let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let usual = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let done = panic::catch_unwind(read);
+    panic::set_hook(usual);
+    done.ok()
+}
+
+/// More rows or bytes than this for each byte of the file are no table of a run.
+const MOST_TIMES: i64 = 1000;
+
+fn rows(bytes: Vec<u8>) -> Result<Vec<u8>> {
+    let most = i64::try_from(bytes.len()).unwrap_or(i64::MAX).saturating_mul(MOST_TIMES);
+    let reader = SerializedFileReader::new(Bytes::from(bytes))?;
+    let groups = reader.metadata().row_groups().iter();
+    let said = groups.map(|group| group.total_byte_size().max(group.num_rows()).max(0));
+    if said.fold(0_i64, i64::saturating_add) > most {
+        return Err(ParquetError::General(format!(
+            "it says that it holds more than {MOST_TIMES} times its bytes"
+        )));
+    }
     let mut writer = ::csv::Writer::from_writer(Vec::new());
     let fields = reader.metadata().file_metadata().schema().get_fields();
     writer.write_record(fields.iter().map(|field| field.name())).map_err(other)?;
@@ -49,6 +82,6 @@ fn put(field: &Field, cell: &mut Vec<u8>) -> std::io::Result<()> {
     }
 }
 
-fn other<E: std::error::Error + Send + Sync + 'static>(error: E) -> ::parquet::errors::ParquetError {
-    ::parquet::errors::ParquetError::External(Box::new(error))
+fn other<E: std::error::Error + Send + Sync + 'static>(error: E) -> ParquetError {
+    ParquetError::External(Box::new(error))
 }

@@ -100,9 +100,9 @@ fn counted(held: &[Held], routes: &BTreeMap<u16, Route>, out: &mut Extracted) ->
         let messages = one.messages;
         out.topics[route.topic].add(&TopicCount {
             messages,
-            unread,
             first_log_ns,
             last_log_ns,
+            unread,
             ..TopicCount::default()
         });
     }

@@ -271,3 +271,21 @@ fn joints_that_slide_are_named_by_option_or_by_an_imported_table() {
     assert_eq!(units(&found.measured), ["m", "rad"]);
     assert!((found.planned.tracks[0].position()[3] - 0.03).abs() < 1e-12);
 }
+
+#[test]
+fn a_broken_parquet_table_is_an_error_wherever_it_is_broken() {
+    use hydrotrace::log::{AngleUnit, RunTable};
+    let mut whole = Vec::new();
+    RunTable::new(&read(&plain_log()), AngleUnit::Radians).write_parquet(&mut whole).unwrap();
+    let found = read_file("a.parquet", &whole, &ReadOptions::default()).unwrap();
+    assert_values(&found.planned, plan);
+    // The library panics on some of these, which its caller must not.
+    let metadata = whole.len() - whole.len() / 3;
+    for at in (metadata..whole.len()).step_by(3) {
+        for broken in [0x00, 0x7F, 0xFF] {
+            let mut bytes = whole.clone();
+            bytes[at] = broken;
+            let _ = read_file("a.parquet", &bytes, &ReadOptions::default());
+        }
+    }
+}
