@@ -29,6 +29,7 @@
 mod archive;
 pub mod benchmark;
 pub mod compare;
+mod crowding;
 mod direction;
 mod error;
 mod evaluate;

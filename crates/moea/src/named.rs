@@ -18,8 +18,13 @@ const fn focused(focus: Focus, adaptive_rates: bool) -> Algorithm {
 }
 
 /// Every algorithm that has a name.
-pub const ALGORITHMS: [NamedAlgorithm; 9] = [
+pub const ALGORITHMS: [NamedAlgorithm; 10] = [
     NamedAlgorithm { name: "nsga3-fo", title: "NSGA-III-FO", algorithm: Algorithm::NSGA3_FO },
+    NamedAlgorithm {
+        name: "nsga3-fo-local",
+        title: "NSGA-III-FO, local focus",
+        algorithm: focused(Focus::Local, false),
+    },
     NamedAlgorithm {
         name: "nsga3-fo-literal",
         title: "NSGA-III-FO, literal focus",

@@ -222,7 +222,12 @@ fn method(checked: &Checked, settings: &Settings) -> Box<dyn Method> {
         Algorithm::Nsga3 => Box::new(Genetic::new(Box::<Uniform>::default(), niching(), breeding)),
         Algorithm::Nsga3Fo { focus, adaptive_rates } => {
             let mating = Focused::new(focus, adaptive_rates, directions, m);
-            Box::new(Genetic::new(Box::new(mating), niching(), breeding))
+            let survival = if focus.fills_by_crowding() {
+                Box::new(Niching::filled_by_crowding(directions, m))
+            } else {
+                niching()
+            };
+            Box::new(Genetic::new(Box::new(mating), survival, breeding))
         }
         Algorithm::Nsga2 => {
             Box::new(Genetic::new(Box::<Tournament>::default(), Box::<Crowding>::default(), breeding))

@@ -32,8 +32,9 @@ pub enum Algorithm {
 }
 
 impl Algorithm {
-    /// NSGA-III-FO as recommended: local focus, fixed rates.
-    pub const NSGA3_FO: Self = Self::Nsga3Fo { focus: Focus::Local, adaptive_rates: false };
+    /// NSGA-III-FO as recommended: local focus, ends and crowding on fronts that meet few directions;
+    /// fixed rates.
+    pub const NSGA3_FO: Self = Self::Nsga3Fo { focus: Focus::Spread, adaptive_rates: false };
 }
 
 /// When a run ends, if no observer ends it before.

@@ -16,9 +16,10 @@ use moea::{
 };
 use serde_json::Value;
 
-const ALGORITHMS: [Algorithm; 8] = [
+const ALGORITHMS: [Algorithm; 9] = [
     Algorithm::Nsga3,
     Algorithm::NSGA3_FO,
+    Algorithm::Nsga3Fo { focus: Focus::Local, adaptive_rates: false },
     Algorithm::Nsga3Fo { focus: Focus::Literal, adaptive_rates: true },
     Algorithm::Nsga3Fo { focus: Focus::Signed, adaptive_rates: false },
     Algorithm::Nsga2,
