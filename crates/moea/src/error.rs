@@ -50,6 +50,26 @@ pub enum MoeaError {
         /// The limit.
         most: usize,
     },
+    /// A reference direction has the wrong length, a value below 0 or that is no number, or no length.
+    #[error(
+        "reference direction {index} has {sound} values not below 0, {wanted} are needed, finite and not all 0"
+    )]
+    Direction {
+        /// Index of the direction.
+        index: usize,
+        /// Number of values that are not below 0.
+        sound: usize,
+        /// Number of objectives.
+        wanted: usize,
+    },
+    /// No reference direction, or more than anyone can mean.
+    #[error("{given} reference directions; there must be 1 to {most}")]
+    DirectionCount {
+        /// Directions given.
+        given: usize,
+        /// The limit.
+        most: usize,
+    },
     /// A larger population than anyone can mean.
     #[error("a population of {wanted} is more than {most}")]
     TooManyMembers {

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use super::{
     Algorithm, Budget, MoeaError, Population, Problem, Settings,
     archive::Archive,
-    evaluate::evaluate,
+    evaluate::Evaluation,
     focus::Focused,
     genetic::{Breeding, Genetic, Method, Streams},
     mating::{Mating, Uniform},
@@ -105,9 +105,9 @@ fn run<P: Problem>(
         Budget::Evaluations(most) => most,
         Budget::Generations(_) | Budget::Observer => u64::MAX,
     };
-    let mut workspaces = Vec::new();
+    let mut evaluation = Evaluation::new(problem);
     let mut population = start(checked, settings, most);
-    evaluate(problem, &mut population, 0, &mut workspaces);
+    evaluation.evaluate(problem, &mut population);
     let mut archive = (settings.archive > 0).then(|| Archive::new(d, m, settings.archive));
     if let Some(archive) = &mut archive {
         archive.extend(&population);
@@ -135,7 +135,7 @@ fn run<P: Problem>(
             if children.is_empty() {
                 break;
             }
-            evaluate(problem, &mut children, 0, &mut workspaces);
+            evaluation.evaluate(problem, &mut children);
             run.evaluations += children.len() as u64;
             if let Some(archive) = &mut archive {
                 archive.extend(&children);
