@@ -70,6 +70,28 @@ pub enum MoeaError {
         /// The limit.
         most: usize,
     },
+    /// Values told are not as many as the members asked for need.
+    #[error(
+        "told {objectives} objectives and {violations} violations; {members} members need {wanted} and {members}"
+    )]
+    Told {
+        /// Number of values of objectives told.
+        objectives: usize,
+        /// Number of violations told.
+        violations: usize,
+        /// Members asked for.
+        members: usize,
+        /// Values of objectives that they have.
+        wanted: usize,
+    },
+    /// A record is of another run.
+    #[error(
+        "after {evaluation} evaluations the record is of a run with other settings, or of another version"
+    )]
+    Record {
+        /// Evaluations that agree.
+        evaluation: u64,
+    },
     /// A larger population than anyone can mean.
     #[error("a population of {wanted} is more than {most}")]
     TooManyMembers {

@@ -80,7 +80,7 @@ impl<P: Problem> Evaluation<P> {
 
 /// The violation, infinite if anything is not a number of reasonable size. Zeros lose their
 /// sign, so that the order of objectives is the order of their bits.
-fn checked(violation: f64, f: &mut [f64]) -> f64 {
+pub(super) fn checked(violation: f64, f: &mut [f64]) -> f64 {
     let mut sound = violation.abs() <= LARGEST;
     for value in f {
         *value += 0.0;

@@ -1,12 +1,6 @@
 //! What a run is asked to do.
 
-use super::{
-    direction::Directions,
-    error::MoeaError,
-    focus::Focus,
-    problem::{Bounds, Problem},
-    variation::Operators,
-};
+use super::{direction::Directions, error::MoeaError, focus::Focus, problem::Bounds, variation::Operators};
 
 /// Which algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,8 +93,11 @@ pub(super) struct Checked {
     pub(super) mutation_rate: f64,
 }
 
-pub(super) fn check<P: Problem>(problem: &P, settings: &Settings) -> Result<Checked, MoeaError> {
-    let (bounds, objectives) = (problem.bounds(), problem.objectives());
+pub(super) fn check(
+    bounds: Vec<Bounds>,
+    objectives: usize,
+    settings: &Settings,
+) -> Result<Checked, MoeaError> {
     if bounds.is_empty() {
         return Err(MoeaError::NoVariables);
     }
