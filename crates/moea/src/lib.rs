@@ -53,6 +53,8 @@ mod settings;
 mod sorting;
 mod state;
 mod survival;
+mod tolerance;
+mod unsga3;
 mod variation;
 
 pub use archive::Archive;
@@ -72,4 +74,6 @@ pub use run::Run;
 pub use settings::{Algorithm, Budget, Settings};
 pub use sorting::{Sorting, dominates};
 pub use survival::{Ranking, Survival};
+pub use tolerance::Tolerance;
+pub use unsga3::NicheTournament;
 pub use variation::Operators;

@@ -236,6 +236,7 @@ impl Survival for Niching {
         }
         ranking.rank.extend(chosen.iter().map(|&place| self.rank[place]));
         ranking.direction.extend(chosen.iter().map(|&place| self.direction[place]));
+        ranking.aside.extend(chosen.iter().map(|&place| self.distance[place]));
         ranking.plane.extend(chosen.iter().map(|&place| self.plane[place]));
         for place in chosen.iter_mut() {
             *place = self.candidates[*place];
@@ -254,6 +255,7 @@ impl Survival for Niching {
         ranking.rank.resize(chosen.len(), u32::MAX);
         ranking.crowding.resize(if self.crowding.is_some() { chosen.len() } else { 0 }, 0.0);
         ranking.direction.resize(chosen.len(), usize::MAX);
+        ranking.aside.resize(chosen.len(), f64::INFINITY);
         ranking.plane.resize(chosen.len(), f64::INFINITY);
     }
 }

@@ -16,6 +16,7 @@ use super::{
     settings::{Checked, check},
     state::State,
     survival::Survival,
+    unsga3::NicheTournament,
 };
 
 /// What an observer sees after the first population and after every generation.
@@ -123,6 +124,7 @@ pub(super) fn method(checked: &Checked, settings: &Settings) -> Box<dyn Method> 
     let niching = || Box::new(Niching::new(directions, m));
     match settings.algorithm {
         Algorithm::Nsga3 => Box::new(Genetic::new(Box::<Uniform>::default(), niching(), breeding)),
+        Algorithm::UNsga3 => Box::new(Genetic::new(Box::<NicheTournament>::default(), niching(), breeding)),
         Algorithm::Nsga3Fo { focus, adaptive_rates } => {
             let mating = Focused::new(focus, adaptive_rates, directions, m);
             let survival = if focus.fills_by_crowding() {

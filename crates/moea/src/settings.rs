@@ -7,6 +7,9 @@ use super::{direction::Directions, error::MoeaError, focus::Focus, problem::Boun
 pub enum Algorithm {
     /// Deb and Jain 2014.
     Nsga3,
+    /// NSGA-III with tournaments among members of a niche (Seada and Deb 2016), for one objective and
+    /// for many.
+    UNsga3,
     /// NSGA-III with the paper's focus operator.
     Nsga3Fo {
         /// Reading of the focus operator.
