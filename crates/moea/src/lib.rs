@@ -13,9 +13,16 @@
 //! # Departures from the paper
 //!
 //! * `DIFFERENCE(step 2)`: the focus operator compares signed distances to the reference plane
-//!   among neighbouring directions, and acts on mating only ([`Focus::Local`]). The printed
-//!   reading ([`Focus::Literal`]) does not help: distance to the plane confounds convergence
-//!   with the shape of the front. Nobody is ever barred from survival; that destroys diversity.
+//!   among neighbouring directions, and acts on mating ([`Focus::Local`]). The printed reading
+//!   ([`Focus::Literal`]) does not help: distance to the plane confounds convergence with the shape
+//!   of the front. Nobody is ever barred from survival; that destroys diversity.
+//! * `DIFFERENCE(step 2)`: where the front meets few of the reference directions, as a curve does
+//!   among three objectives, the local focus alone loses: members at the ends are rarely in focus,
+//!   and most places are refilled at random within niches. The default ([`Focus::Spread`]) leaves it
+//!   with probability w = (1 - a)², a being the share of directions with a member: parents win
+//!   tournaments by violation, front and crowding, and half of w takes the second parent from the
+//!   ends of the front. Survival fills surplus places by crowding
+//!   ([`Niching::filled_by_crowding`]). Where a is 1 nothing of this is drawn.
 //! * `DIFFERENCE(step 3)`: the focus fades over the budget, with the square of the share used;
 //!   without a budget it stays at one half.
 //! * `DIFFERENCE(eq. 8, 9)`: the printed condition can hold only when all fitness values are
