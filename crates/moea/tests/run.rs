@@ -58,9 +58,10 @@ fn a_run_that_asks_finds_what_optimise_finds_and_is_taken_up_from_its_record() {
                 tell(&problem, &mut run);
             }
             let written = serde_json::to_string(run.record()).unwrap();
-            drop(run);
+            let made = run.progress().evaluations;
             let read: Record = serde_json::from_str(&written).unwrap();
             let mut run = Run::resume(&problem.bounds(), 3, &settings, &read).unwrap();
+            assert_eq!(run.progress().evaluations, made);
             while !run.is_over() {
                 tell(&problem, &mut run);
             }
