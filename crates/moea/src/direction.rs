@@ -18,6 +18,10 @@ pub enum Directions {
     /// An outer layer of the first number of divisions and an inner one, shrunk by a half
     /// towards the centre, of the second.
     Layers(usize, usize),
+    /// Directions of the caller's, `[objectives]` each: no value below 0, not all of them 0, in
+    /// normalised objectives, of any length. Where only part of the front matters, or some of it more
+    /// than the rest.
+    Own(Vec<Vec<f64>>),
 }
 
 /// Number of directions of `divisions` for `objectives`: C(m + p - 1, p), eq. 7; `None` when
@@ -79,9 +83,11 @@ impl Directions {
     ///
     /// # Errors
     ///
-    /// [`MoeaError::TooManyDirections`] beyond [`MOST_DIRECTIONS`].
+    /// [`MoeaError::TooManyDirections`] beyond [`MOST_DIRECTIONS`]; [`MoeaError::Direction`] and
+    /// [`MoeaError::DirectionCount`] for directions of the caller's that are none.
     pub fn points(&self, objectives: usize, wanted: usize) -> Result<Vec<f64>, MoeaError> {
         match *self {
+            Self::Own(ref given) => own(objectives, given),
             Self::Divisions(divisions) => das_dennis(objectives, divisions),
             Self::Layers(outer, inner) => layers(objectives, outer, inner),
             Self::FromPopulation => fitting(objectives, wanted),
@@ -104,6 +110,25 @@ fn layers(objectives: usize, outer: usize, inner: usize) -> Result<Vec<f64>, Moe
     let mut flat = das_dennis(objectives, outer)?;
     let centre = 0.5 / objectives as f64;
     flat.extend(das_dennis(objectives, inner)?.into_iter().map(|z| 0.5 * z + centre));
+    Ok(flat)
+}
+
+/// Directions of the caller's, each divided by its sum.
+fn own(objectives: usize, given: &[Vec<f64>]) -> Result<Vec<f64>, MoeaError> {
+    if given.is_empty() || given.len() > MOST_DIRECTIONS {
+        return Err(MoeaError::DirectionCount { given: given.len(), most: MOST_DIRECTIONS });
+    }
+    let mut flat = Vec::with_capacity(given.len() * objectives);
+    for (index, direction) in given.iter().enumerate() {
+        let sound = direction.iter().filter(|z| **z >= 0.0).count();
+        let largest = direction.iter().copied().fold(0.0, f64::max);
+        if direction.len() != objectives || sound != objectives || !(largest > 0.0 && largest.is_finite()) {
+            return Err(MoeaError::Direction { index, sound, wanted: objectives });
+        }
+        // By the largest first, so that no sum is infinite and no quotient loses its digits.
+        let sum: f64 = direction.iter().map(|z| z / largest).sum();
+        flat.extend(direction.iter().map(|z| z / largest / sum));
+    }
     Ok(flat)
 }
 
@@ -183,6 +208,24 @@ mod tests {
             }
         }
         assert_eq!(Directions::FromPopulation.points(3, 92).unwrap().len(), 3 * 91);
+    }
+
+    #[test]
+    fn own_directions_are_put_on_the_simplex_or_refused_with_their_numbers() {
+        let points =
+            |given: &[&[f64]]| Directions::Own(given.iter().map(|z| z.to_vec()).collect()).points(2, 0);
+        assert_eq!(
+            points(&[&[3.0, 1.0], &[0.0, 1e308], &[1e308, 1e308]]),
+            Ok(vec![0.75, 0.25, 0.0, 1.0, 0.5, 0.5])
+        );
+        for (wrong, sound) in
+            [(&[1.0][..], 1), (&[1.0, -1.0], 1), (&[0.0, 0.0], 2), (&[f64::NAN, 1.0], 1), (&[1.0; 3], 3)]
+        {
+            let refused = MoeaError::Direction { index: 1, sound, wanted: 2 };
+            assert_eq!(points(&[&[1.0, 1.0], wrong]), Err(refused), "{wrong:?}");
+        }
+        assert!(points(&[&[f64::INFINITY, 1.0]]).is_err());
+        assert_eq!(points(&[]), Err(MoeaError::DirectionCount { given: 0, most: MOST_DIRECTIONS }));
     }
 
     #[test]

@@ -50,6 +50,48 @@ pub enum MoeaError {
         /// The limit.
         most: usize,
     },
+    /// A reference direction has the wrong length, a value below 0 or that is no number, or no length.
+    #[error(
+        "reference direction {index} has {sound} values not below 0, {wanted} are needed, finite and not all 0"
+    )]
+    Direction {
+        /// Index of the direction.
+        index: usize,
+        /// Number of values that are not below 0.
+        sound: usize,
+        /// Number of objectives.
+        wanted: usize,
+    },
+    /// No reference direction, or more than anyone can mean.
+    #[error("{given} reference directions; there must be 1 to {most}")]
+    DirectionCount {
+        /// Directions given.
+        given: usize,
+        /// The limit.
+        most: usize,
+    },
+    /// Values told are not as many as the members asked for need.
+    #[error(
+        "told {objectives} objectives and {violations} violations; {members} members need {wanted} and {members}"
+    )]
+    Told {
+        /// Number of values of objectives told.
+        objectives: usize,
+        /// Number of violations told.
+        violations: usize,
+        /// Members asked for.
+        members: usize,
+        /// Values of objectives that they have.
+        wanted: usize,
+    },
+    /// A record is of another run.
+    #[error(
+        "after {evaluation} evaluations the record is of a run with other settings, or of another version"
+    )]
+    Record {
+        /// Evaluations that agree.
+        evaluation: u64,
+    },
     /// A larger population than anyone can mean.
     #[error("a population of {wanted} is more than {most}")]
     TooManyMembers {

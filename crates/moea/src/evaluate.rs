@@ -8,43 +8,79 @@ use super::{Population, Problem};
 /// objectives stay finite.
 const LARGEST: f64 = 1e100;
 
-/// Evaluates members from `first` on; draws nothing at random, and writes by index.
-pub(super) fn evaluate<P: Problem>(
-    problem: &P,
-    population: &mut Population,
-    first: usize,
-    workspaces: &mut Vec<P::Workspace>,
-) {
-    let (d, m) = (population.variables().max(1), population.objectives().max(1));
-    let (x, f, violation) = population.evaluation_parts();
-    let (x, f, violation) = (&x[first * d..], &mut f[first * m..], &mut violation[first..]);
-    let n = violation.len();
-    let pieces = if problem.is_cheap() { 1 } else { (4 * rayon::current_num_threads()).clamp(1, n.max(1)) };
-    while workspaces.len() < pieces {
-        workspaces.push(P::Workspace::default());
+/// What is kept from one evaluation of members to the next.
+pub(super) struct Evaluation<P: Problem> {
+    workspaces: Vec<P::Workspace>,
+    /// Violations of the members evaluated last, `[n][constraints]`.
+    each: Vec<f64>,
+    /// What a violation of each constraint is divided by; 0 until somebody violated it.
+    scale: Vec<f64>,
+}
+
+impl<P: Problem> Evaluation<P> {
+    pub(super) fn new(problem: &P) -> Self {
+        Self { workspaces: Vec::new(), each: Vec::new(), scale: vec![0.0; problem.constraints()] }
     }
-    let run = |x: &[f64], f: &mut [f64], violation: &mut [f64], workspace: &mut P::Workspace| {
-        for ((x, f), violation) in x.chunks_exact(d).zip(f.chunks_exact_mut(m)).zip(violation) {
-            *violation = checked(problem.evaluate(x, f, workspace), f);
+
+    /// Evaluates all members; draws nothing at random, and writes by index.
+    pub(super) fn evaluate(&mut self, problem: &P, population: &mut Population) {
+        let (d, m, n) = (population.variables().max(1), population.objectives().max(1), population.len());
+        let (c, width) = (self.scale.len(), self.scale.len().max(1));
+        let (x, f, violation) = population.evaluation_parts();
+        self.each.clear();
+        self.each.resize(n * width, 0.0);
+        let pieces =
+            if problem.is_cheap() { 1 } else { (4 * rayon::current_num_threads()).clamp(1, n.max(1)) };
+        self.workspaces.resize_with(pieces.max(self.workspaces.len()), P::Workspace::default);
+        let run = |x: &[f64], f: &mut [f64], v: &mut [f64], each: &mut [f64], memory: &mut P::Workspace| {
+            let members =
+                x.chunks_exact(d).zip(f.chunks_exact_mut(m)).zip(v).zip(each.chunks_exact_mut(width));
+            for (((x, f), violation), each) in members {
+                *violation = problem.evaluate(x, f, memory);
+                if c > 0 {
+                    problem.violations(x, f, each, memory);
+                }
+                *violation = checked(*violation, f);
+            }
+        };
+        if pieces == 1 {
+            if let Some(memory) = self.workspaces.first_mut() {
+                run(x, f, violation, &mut self.each, memory);
+            }
+        } else {
+            let piece = n.div_ceil(pieces).max(1);
+            x.par_chunks(piece * d)
+                .zip(f.par_chunks_mut(piece * m))
+                .zip(violation.par_chunks_mut(piece))
+                .zip(self.each.par_chunks_mut(piece * width))
+                .zip(self.workspaces.par_iter_mut())
+                .for_each(|((((x, f), violation), each), memory)| run(x, f, violation, each, memory));
         }
-    };
-    if pieces == 1 {
-        if let Some(workspace) = workspaces.first_mut() {
-            run(x, f, violation, workspace);
+        if c > 0 {
+            self.add_each(violation);
         }
-        return;
     }
-    let piece = n.div_ceil(pieces);
-    x.par_chunks(piece * d)
-        .zip(f.par_chunks_mut(piece * m))
-        .zip(violation.par_chunks_mut(piece))
-        .zip(workspaces.par_iter_mut())
-        .for_each(|(((x, f), violation), workspace)| run(x, f, violation, workspace));
+
+    /// Adds the violations of single constraints to the totals, each by its scale.
+    fn add_each(&mut self, total: &mut [f64]) {
+        let c = self.scale.len();
+        for (j, scale) in self.scale.iter_mut().enumerate().filter(|(_, scale)| **scale <= 0.0) {
+            let sound = self.each.iter().skip(j).step_by(c).filter(|v| **v <= LARGEST);
+            *scale = sound.fold(0.0, |largest, &v| v.max(largest));
+        }
+        for (total, each) in total.iter_mut().zip(self.each.chunks_exact(c)) {
+            // A constraint without a scale has been violated by nobody.
+            let shares = each.iter().zip(&self.scale).filter(|(v, _)| **v > 0.0);
+            let sum = shares.map(|(v, scale)| v / scale).sum::<f64>().min(LARGEST);
+            let sound = each.iter().all(|v| v.abs() <= LARGEST);
+            *total = if sound { *total + sum } else { f64::INFINITY };
+        }
+    }
 }
 
 /// The violation, infinite if anything is not a number of reasonable size. Zeros lose their
 /// sign, so that the order of objectives is the order of their bits.
-fn checked(violation: f64, f: &mut [f64]) -> f64 {
+pub(super) fn checked(violation: f64, f: &mut [f64]) -> f64 {
     let mut sound = violation.abs() <= LARGEST;
     for value in f {
         *value += 0.0;

@@ -13,9 +13,16 @@
 //! # Departures from the paper
 //!
 //! * `DIFFERENCE(step 2)`: the focus operator compares signed distances to the reference plane
-//!   among neighbouring directions, and acts on mating only ([`Focus::Local`]). The printed
-//!   reading ([`Focus::Literal`]) does not help: distance to the plane confounds convergence
-//!   with the shape of the front. Nobody is ever barred from survival; that destroys diversity.
+//!   among neighbouring directions, and acts on mating ([`Focus::Local`]). The printed reading
+//!   ([`Focus::Literal`]) does not help: distance to the plane confounds convergence with the shape
+//!   of the front. Nobody is ever barred from survival; that destroys diversity.
+//! * `DIFFERENCE(step 2)`: where the front meets few of the reference directions, as a curve does
+//!   among three objectives, the local focus alone loses: members at the ends are rarely in focus,
+//!   and most places are refilled at random within niches. The default ([`Focus::Spread`]) leaves it
+//!   with probability w = (1 - a)², a being the share of directions with a member: parents win
+//!   tournaments by violation, front and crowding, and half of w takes the second parent from the
+//!   ends of the front. Survival fills surplus places by crowding
+//!   ([`Niching::filled_by_crowding`]). Where a is 1 nothing of this is drawn.
 //! * `DIFFERENCE(step 3)`: the focus fades over the budget, with the square of the share used;
 //!   without a budget it stays at one half.
 //! * `DIFFERENCE(eq. 8, 9)`: the printed condition can hold only when all fitness values are
@@ -29,6 +36,7 @@
 mod archive;
 pub mod benchmark;
 pub mod compare;
+mod crowding;
 mod direction;
 mod error;
 mod evaluate;
@@ -43,12 +51,18 @@ mod normalize;
 mod nsga2;
 mod nsga3;
 mod optimise;
+mod outcome;
 mod population;
 mod problem;
 mod random;
+mod record;
+mod run;
 mod settings;
 mod sorting;
+mod state;
 mod survival;
+mod tolerance;
+mod unsga3;
 mod variation;
 
 pub use archive::Archive;
@@ -59,11 +73,16 @@ pub use mating::{Mating, MatingContext, Pair, Uniform};
 pub use named::{ALGORITHMS, NamedAlgorithm};
 pub use nsga2::{Crowding, Tournament};
 pub use nsga3::Niching;
-pub use optimise::{Outcome, Progress, optimise, optimise_with, silent};
+pub use optimise::{optimise, optimise_with, silent};
+pub use outcome::{Outcome, Progress};
 pub use population::Population;
 pub use problem::{Bounds, Problem};
 pub use random::Random;
+pub use record::Record;
+pub use run::Run;
 pub use settings::{Algorithm, Budget, Settings};
 pub use sorting::{Sorting, dominates};
 pub use survival::{Ranking, Survival};
+pub use tolerance::Tolerance;
+pub use unsga3::NicheTournament;
 pub use variation::Operators;

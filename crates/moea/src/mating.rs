@@ -1,5 +1,7 @@
 //! Who mates with whom.
 
+use std::cmp::Ordering;
+
 use super::{Population, random::Random, survival::Ranking};
 
 /// The state of a run when parents are chosen.
@@ -82,6 +84,19 @@ pub(super) fn fitter(population: &Population, i: usize, rng: &mut Random) -> usi
     }
     let other = rng.below(population.len());
     if population.violation(other) < population.violation(i) { other } else { i }
+}
+
+/// The winner of two by violation, then front, then crowding distance; `a` if they are level, as they are
+/// without findings of a survival.
+pub(super) fn winner(context: &MatingContext<'_>, a: usize, b: usize) -> usize {
+    let MatingContext { population, ranking, .. } = context;
+    let crowding = |i: usize| ranking.crowding.get(i).copied().unwrap_or(0.0);
+    let order = population
+        .violation(a)
+        .total_cmp(&population.violation(b))
+        .then(ranking.rank.get(a).cmp(&ranking.rank.get(b)))
+        .then(crowding(b).total_cmp(&crowding(a)));
+    if order == Ordering::Greater { b } else { a }
 }
 
 /// Mating of NSGA-III: members are drawn alike; of two infeasible ones the one that violates less.

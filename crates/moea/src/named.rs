@@ -18,8 +18,13 @@ const fn focused(focus: Focus, adaptive_rates: bool) -> Algorithm {
 }
 
 /// Every algorithm that has a name.
-pub const ALGORITHMS: [NamedAlgorithm; 9] = [
+pub const ALGORITHMS: [NamedAlgorithm; 11] = [
     NamedAlgorithm { name: "nsga3-fo", title: "NSGA-III-FO", algorithm: Algorithm::NSGA3_FO },
+    NamedAlgorithm {
+        name: "nsga3-fo-local",
+        title: "NSGA-III-FO, local focus",
+        algorithm: focused(Focus::Local, false),
+    },
     NamedAlgorithm {
         name: "nsga3-fo-literal",
         title: "NSGA-III-FO, literal focus",
@@ -36,6 +41,7 @@ pub const ALGORITHMS: [NamedAlgorithm; 9] = [
         algorithm: focused(Focus::Local, true),
     },
     NamedAlgorithm { name: "nsga3", title: "NSGA-III", algorithm: Algorithm::Nsga3 },
+    NamedAlgorithm { name: "unsga3", title: "U-NSGA-III", algorithm: Algorithm::UNsga3 },
     NamedAlgorithm { name: "nsga2", title: "NSGA-II", algorithm: Algorithm::Nsga2 },
     NamedAlgorithm { name: "moead", title: "MOEA/D", algorithm: Algorithm::Moead { normalized: false } },
     NamedAlgorithm {

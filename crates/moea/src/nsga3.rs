@@ -7,6 +7,7 @@
 
 use super::{
     Population,
+    crowding::CrowdingDistance,
     normalize::Normalizer,
     random::Random,
     sorting::Sorting,
@@ -76,9 +77,14 @@ pub struct Niching {
     plane: Vec<f64>,
     crowd: Vec<usize>,
     tied: Vec<usize>,
-    /// Members of the overflowing front by direction, nearest last.
+    /// Members of the overflowing front by direction.
     waiting: Vec<Vec<usize>>,
+    /// Distances for [`Self::filled_by_crowding`].
+    crowding: Option<CrowdingDistance>,
 }
+
+/// Share of the places above which surplus ones are filled by crowding.
+const SURPLUS: f64 = 0.1;
 
 impl Niching {
     /// For reference directions, `[count][m]` in one slice, of a problem with `m` objectives.
@@ -100,7 +106,15 @@ impl Niching {
             crowd: vec![0; count],
             tied: Vec::with_capacity(count),
             waiting: vec![Vec::new(); count],
+            crowding: None,
         }
+    }
+
+    /// As [`Self::new`], but once every direction that has candidates has a member, and more than a
+    /// tenth of the places is still open, the least crowded of the overflowing front get them, not
+    /// random ones. Where a front meets few of the directions, most places are of this kind.
+    pub fn filled_by_crowding(directions: &[f64], m: usize) -> Self {
+        Self { crowding: Some(CrowdingDistance::default()), ..Self::new(directions, m) }
     }
 
     /// Directions, distances to them and to the reference plane of all candidates.
@@ -119,7 +133,13 @@ impl Niching {
     }
 
     /// Fills `chosen` (places among the candidates) from those at `sure..`, one niche at a time.
-    fn fill(&mut self, sure: usize, keep: usize, rng: &mut Random, chosen: &mut Vec<usize>) {
+    fn fill(
+        &mut self,
+        merged: &Population,
+        (sure, keep): (usize, usize),
+        rng: &mut Random,
+        chosen: &mut Vec<usize>,
+    ) {
         self.crowd.fill(0);
         for &direction in &self.direction[..sure] {
             self.crowd[direction] += 1;
@@ -138,6 +158,17 @@ impl Niching {
                 .map(|j| self.crowd[j])
                 .min()
                 .unwrap_or(0);
+            if least > 0
+                && (keep - chosen.len()) as f64 > SURPLUS * keep as f64
+                && let Some(crowding) = &mut self.crowding
+            {
+                crowding.measure(merged, &self.candidates[sure..]);
+                self.tied.clear();
+                self.tied.extend(self.waiting.iter().flatten());
+                crowding.sort(&mut self.tied, |place| self.candidates[place]);
+                chosen.extend(self.tied.iter().take(keep - chosen.len()));
+                return;
+            }
             self.tied.clear();
             self.tied.extend(
                 (0..self.crowd.len()).filter(|&j| self.crowd[j] == least && !self.waiting[j].is_empty()),
@@ -195,21 +226,80 @@ impl Survival for Niching {
             rank += 1;
         }
         self.associate(merged);
+        if let Some(crowding) = &mut self.crowding {
+            crowding.reset(merged.len());
+        }
         if self.candidates.len() <= keep {
             chosen.extend(0..self.candidates.len());
         } else {
-            self.fill(sure, keep, rng, chosen);
+            self.fill(merged, (sure, keep), rng, chosen);
         }
         ranking.rank.extend(chosen.iter().map(|&place| self.rank[place]));
         ranking.direction.extend(chosen.iter().map(|&place| self.direction[place]));
+        ranking.aside.extend(chosen.iter().map(|&place| self.distance[place]));
         ranking.plane.extend(chosen.iter().map(|&place| self.plane[place]));
         for place in chosen.iter_mut() {
             *place = self.candidates[*place];
         }
+        if let Some(crowding) = &mut self.crowding {
+            // Fronts stand one after the other.
+            let mut start = 0;
+            for front in ranking.rank.chunk_by(|a, b| a == b) {
+                crowding.measure(merged, &chosen[start..start + front.len()]);
+                start += front.len();
+            }
+            ranking.crowding.extend(chosen.iter().map(|&i| crowding.of(i)));
+        }
         let missing = keep.saturating_sub(chosen.len());
         chosen.extend(self.feasibility.infeasible.iter().take(missing));
         ranking.rank.resize(chosen.len(), u32::MAX);
+        ranking.crowding.resize(if self.crowding.is_some() { chosen.len() } else { 0 }, 0.0);
         ranking.direction.resize(chosen.len(), usize::MAX);
+        ranking.aside.resize(chosen.len(), f64::INFINITY);
         ranking.plane.resize(chosen.len(), f64::INFINITY);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{das_dennis, random::Stream};
+
+    /// Survivors by growing first objective, and the next random number.
+    fn survivors(mut niching: Niching, f: &[f64], keep: usize) -> (Vec<f64>, f64) {
+        let (mut chosen, mut ranking) = (Vec::new(), Ranking::default());
+        let mut rng = Random::new(3, Stream::Survival);
+        niching.select(&Population::from_objectives(f, 3), keep, &mut rng, &mut chosen, &mut ranking);
+        assert_eq!((chosen.len(), ranking.rank.len()), (keep, keep));
+        let mut first: Vec<f64> = chosen.iter().map(|&i| f[3 * i]).collect();
+        first.sort_unstable_by(f64::total_cmp);
+        (first, rng.unit())
+    }
+
+    #[test]
+    fn surplus_places_go_to_the_least_crowded_and_to_the_ends() {
+        // A line from (0, 0, 1) to (1, 1, 0), three quarters of it in its first tenth; few directions.
+        let crowded = (0..60).map(|i| f64::from(i) / 600.0);
+        let at = crowded.chain((1..=20).map(|i| 0.1 + 0.045 * f64::from(i)));
+        let line: Vec<f64> = at.flat_map(|t| [t, t, 1.0 - t]).collect();
+        let directions = das_dennis(3, 2).unwrap();
+        let (random, _) = survivors(Niching::new(&directions, 3), &line, 40);
+        let (spread, _) = survivors(Niching::filled_by_crowding(&directions, 3), &line, 40);
+        let sparse = |kept: &[f64]| kept.iter().filter(|&&t| t > 0.1).count();
+        assert_eq!(sparse(&spread), 20);
+        assert!(sparse(&random) < 20, "{random:?}");
+        assert!(spread[0] < 1e-12 && spread[39] > 1.0 - 1e-12, "{spread:?}");
+    }
+
+    #[test]
+    fn a_tenth_of_the_places_or_less_is_filled_at_random() {
+        let directions = das_dennis(3, 12).unwrap();
+        let front = [directions.clone(), das_dennis(3, 23).unwrap()].concat();
+        // 91 niches have a member each; 10 places of 101 are a tenth, 11 of 102 are more.
+        for (keep, equal) in [(101, true), (102, false)] {
+            let random = survivors(Niching::new(&directions, 3), &front, keep);
+            let spread = survivors(Niching::filled_by_crowding(&directions, 3), &front, keep);
+            assert_eq!(spread == random, equal, "{keep}");
+        }
     }
 }

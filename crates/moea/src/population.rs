@@ -135,6 +135,13 @@ impl Population {
         self.fingerprint.iter().enumerate().any(|(i, &print)| print == wanted && self.x(i) == x)
     }
 
+    /// A number that other members almost never share.
+    pub(super) fn print(&self) -> u64 {
+        self.fingerprint
+            .iter()
+            .fold(0, |hash: u64, &print| (hash ^ print).wrapping_mul(0xff51_afd7_ed55_8ccd))
+    }
+
     /// Variables of all members beside objectives and violations, for an evaluation.
     pub(super) fn evaluation_parts(&mut self) -> (&[f64], &mut [f64], &mut [f64]) {
         (&self.x, &mut self.f, &mut self.violation)

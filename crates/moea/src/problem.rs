@@ -6,7 +6,8 @@ pub type Bounds = (f64, f64);
 /// Several objectives, all minimised, over a box of real variables.
 ///
 /// An evaluation must be a function of `x` alone: the workspace is for scratch memory, handed
-/// out to whichever thread comes next, and may not carry anything from call to call.
+/// out to whichever thread comes next, and may carry something from [`Problem::evaluate`] to the
+/// [`Problem::violations`] after it, but from no member to the next.
 pub trait Problem: Sync {
     /// Scratch memory of one thread; `()` if none is needed.
     type Workspace: Default + Send;
@@ -24,6 +25,56 @@ pub trait Problem: Sync {
     /// An objective or a violation that is NaN, infinite or beyond 1e100 makes `x` the worst
     /// there is.
     fn evaluate(&self, x: &[f64], objectives: &mut [f64], workspace: &mut Self::Workspace) -> f64;
+
+    /// Number of constraints whose violations are told one by one; 0 if `evaluate` returns all of
+    /// their total.
+    fn constraints(&self) -> usize {
+        0
+    }
+
+    /// Writes by how much `x` violates each constraint into `violations` (`[constraints]`, 0 at
+    /// first), each in a unit of its own; what is not above 0 is kept. Called after every `evaluate`
+    /// with its `x`, `objectives` and workspace if there are [`Problem::constraints`].
+    ///
+    /// Each violation is divided by the largest of its constraint in the first generation that
+    /// violates it, and added to what `evaluate` returned: the unit does not matter, and a member's
+    /// total does not change in a run. One that is NaN, infinite or beyond 1e100 makes `x` the worst
+    /// there is.
+    ///
+    /// ```
+    /// use moea::{Bounds, Problem, Settings, optimise, silent};
+    ///
+    /// /// The nearest points of a triangle to two others; by axis a length in m and one in mm.
+    /// struct Nearest;
+    ///
+    /// impl Problem for Nearest {
+    ///     type Workspace = ();
+    ///     fn bounds(&self) -> Vec<Bounds> { vec![(0.0, 2.0), (0.0, 2000.0)] }
+    ///     fn objectives(&self) -> usize { 2 }
+    ///     fn evaluate(&self, x: &[f64], f: &mut [f64], _: &mut ()) -> f64 {
+    ///         (f[0], f[1]) = (x[0].hypot(x[1] / 1e3), (x[0] - 2.0).hypot(x[1] / 1e3));
+    ///         0.0
+    ///     }
+    ///     fn constraints(&self) -> usize { 2 }
+    ///     fn violations(&self, x: &[f64], _: &[f64], violations: &mut [f64], _: &mut ()) {
+    ///         violations[0] = 1.0 - x[0] - x[1] / 1e3; // m
+    ///         violations[1] = 300.0 - x[1]; // mm
+    ///     }
+    /// }
+    ///
+    /// let found = optimise(&Nearest, &Settings::default(), silent)?.population;
+    /// assert!(found.front().iter().all(|&i| found.x(i)[1] >= 300.0));
+    /// # Ok::<(), moea::MoeaError>(())
+    /// ```
+    fn violations(
+        &self,
+        x: &[f64],
+        objectives: &[f64],
+        violations: &mut [f64],
+        workspace: &mut Self::Workspace,
+    ) {
+        let _ = (x, objectives, violations, workspace);
+    }
 
     /// Whether an evaluation takes less than a few microseconds, so that threads cost more
     /// than they bring. The result does not depend on it.
@@ -46,6 +97,20 @@ impl<P: Problem> Problem for &P {
 
     fn evaluate(&self, x: &[f64], objectives: &mut [f64], workspace: &mut Self::Workspace) -> f64 {
         (*self).evaluate(x, objectives, workspace)
+    }
+
+    fn constraints(&self) -> usize {
+        (*self).constraints()
+    }
+
+    fn violations(
+        &self,
+        x: &[f64],
+        objectives: &[f64],
+        violations: &mut [f64],
+        workspace: &mut Self::Workspace,
+    ) {
+        (*self).violations(x, objectives, violations, workspace);
     }
 
     fn is_cheap(&self) -> bool {

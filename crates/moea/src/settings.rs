@@ -1,18 +1,15 @@
 //! What a run is asked to do.
 
-use super::{
-    direction::Directions,
-    error::MoeaError,
-    focus::Focus,
-    problem::{Bounds, Problem},
-    variation::Operators,
-};
+use super::{direction::Directions, error::MoeaError, focus::Focus, problem::Bounds, variation::Operators};
 
 /// Which algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Algorithm {
     /// Deb and Jain 2014.
     Nsga3,
+    /// NSGA-III with tournaments among members of a niche (Seada and Deb 2016), for one objective and
+    /// for many.
+    UNsga3,
     /// NSGA-III with the paper's focus operator.
     Nsga3Fo {
         /// Reading of the focus operator.
@@ -32,8 +29,9 @@ pub enum Algorithm {
 }
 
 impl Algorithm {
-    /// NSGA-III-FO as recommended: local focus, fixed rates.
-    pub const NSGA3_FO: Self = Self::Nsga3Fo { focus: Focus::Local, adaptive_rates: false };
+    /// NSGA-III-FO as recommended: local focus, ends and crowding on fronts that meet few directions;
+    /// fixed rates.
+    pub const NSGA3_FO: Self = Self::Nsga3Fo { focus: Focus::Spread, adaptive_rates: false };
 }
 
 /// When a run ends, if no observer ends it before.
@@ -98,8 +96,11 @@ pub(super) struct Checked {
     pub(super) mutation_rate: f64,
 }
 
-pub(super) fn check<P: Problem>(problem: &P, settings: &Settings) -> Result<Checked, MoeaError> {
-    let (bounds, objectives) = (problem.bounds(), problem.objectives());
+pub(super) fn check(
+    bounds: Vec<Bounds>,
+    objectives: usize,
+    settings: &Settings,
+) -> Result<Checked, MoeaError> {
     if bounds.is_empty() {
         return Err(MoeaError::NoVariables);
     }

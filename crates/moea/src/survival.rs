@@ -12,6 +12,8 @@ pub struct Ranking {
     pub crowding: Vec<f64>,
     /// Reference direction the member is associated with.
     pub direction: Vec<usize>,
+    /// Distance to that direction in normalised objectives.
+    pub aside: Vec<f64>,
     /// Signed distance to the reference plane in normalised objectives.
     pub plane: Vec<f64>,
 }
@@ -22,6 +24,7 @@ impl Ranking {
         self.rank.clear();
         self.crowding.clear();
         self.direction.clear();
+        self.aside.clear();
         self.plane.clear();
     }
 }

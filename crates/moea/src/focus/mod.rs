@@ -1,10 +1,11 @@
-//! Mating of NSGA-III-FO: who is ahead mates more often.
+//! Mating of NSGA-III-FO: members that are ahead mate more often.
+
+mod rates;
 
 use super::{
     direction::neighbours,
-    mating::{Mating, MatingContext, Pair, Permutation, fitter},
+    mating::{Mating, MatingContext, Pair, Permutation, fitter, winner},
     random::Random,
-    survival::Ranking,
 };
 
 /// How the focus operator reads "distance to the reference plane".
@@ -16,18 +17,29 @@ pub enum Focus {
     /// Signed distance, the whole population against itself.
     Signed,
     /// DIFFERENCE(step 2): signed distance, each member against those of neighbouring directions.
-    #[default]
     Local,
+    /// DIFFERENCE(step 2): as [`Focus::Local`]; where the front meets few of the reference directions,
+    /// also tournaments, mates from the ends of the front, and survival by crowding.
+    #[default]
+    Spread,
+}
+
+impl Focus {
+    /// Whether survival fills surplus places by crowding.
+    pub(super) fn fills_by_crowding(self) -> bool {
+        self == Self::Spread
+    }
 }
 
 /// Share of the population that is in focus.
 const SHARE: f64 = 0.20;
 /// Exponent with which the focus fades over the budget.
 const FADE: i32 = 2;
-
-/// Least rates of eq. 8 and 9 as a share of the largest.
-const LEAST_CROSSOVER: f64 = 0.6;
-const LEAST_MUTATION: f64 = 0.1;
+/// Exponent of the share of reference directions without a member: how often [`Focus::Spread`] leaves
+/// the local focus.
+const IDLE: i32 = 2;
+/// Share of that in which the second parent is an end of the front.
+const ENDS: f64 = 0.5;
 
 /// Mating with a focus.
 #[derive(Debug, Clone)]
@@ -42,6 +54,7 @@ pub(super) struct Focused {
     least: Vec<f64>,
     lag: Vec<f64>,
     order: Vec<usize>,
+    ends: Vec<usize>,
 }
 
 impl Focused {
@@ -58,6 +71,7 @@ impl Focused {
             least: vec![f64::INFINITY; count],
             lag: Vec::new(),
             order: Vec::new(),
+            ends: Vec::new(),
         }
     }
 
@@ -68,7 +82,7 @@ impl Focused {
         match self.focus {
             Focus::Literal => self.lag.extend(ranking.plane.iter().map(|s| s.abs())),
             Focus::Signed => self.lag.extend(&ranking.plane),
-            Focus::Local => {
+            Focus::Local | Focus::Spread => {
                 self.least.fill(f64::INFINITY);
                 for (&j, &s) in ranking.direction.iter().zip(&ranking.plane) {
                     if let Some(least) = self.least.get_mut(j) {
@@ -105,7 +119,7 @@ impl Mating for Focused {
         pairs.clear();
         self.choose(context, children, rng, pairs);
         if self.adaptive_rates {
-            adapt(context.ranking, pairs);
+            rates::adapt(context.ranking, pairs);
         }
     }
 
@@ -140,34 +154,97 @@ impl Focused {
         let in_focus = ((SHARE * n as f64).ceil() as usize).clamp(1, n.max(1));
         // DIFFERENCE(step 3): the focus fades over the budget.
         let pull = context.progress.map_or(0.5, |progress| 1.0 - progress.clamp(0.0, 1.0).powi(FADE));
+        let idle = self.find_ends(context);
         self.permutation.draw(population, children.div_ceil(2), rng, &mut self.first);
-        for &first in &self.first {
-            let second = if rng.unit() < pull {
+        for &drawn in &self.first {
+            let first = if happens(idle, rng) { winner(context, drawn, rng.below(n)) } else { drawn };
+            let second = if !self.ends.is_empty() && happens(ENDS * idle, rng) {
+                self.ends[rng.below(self.ends.len())]
+            } else if rng.unit() < pull {
                 self.order[rng.below(in_focus)]
+            } else if happens(idle, rng) {
+                winner(context, rng.below(n), rng.below(n))
             } else {
                 fitter(population, rng.below(n), rng)
             };
             pairs.push(Pair::of(first, second));
         }
     }
+
+    /// Finds the feasible members with the least of each objective. Returns the probability of leaving
+    /// the local focus: 0 if every direction has a member, and for every other form of the focus.
+    fn find_ends(&mut self, context: &MatingContext<'_>) -> f64 {
+        self.ends.clear();
+        if self.focus != Focus::Spread {
+            return 0.0;
+        }
+        let taken = self.least.iter().filter(|least| least.is_finite()).count();
+        let idle = 1.0 - taken as f64 / self.least.len().max(1) as f64;
+        let population = context.population;
+        for k in 0..population.objectives() {
+            let feasible = (0..population.len()).filter(|&i| population.is_feasible(i));
+            let end = feasible.min_by(|&a, &b| population.f(a)[k].total_cmp(&population.f(b)[k]));
+            if let Some(end) = end.filter(|end| !self.ends.contains(end)) {
+                self.ends.push(end);
+            }
+        }
+        idle.powi(IDLE)
+    }
 }
 
-/// Rates of eq. 8 and 9 with the signed distance to the reference plane for a fitness, the
-/// better of the pair against the mean.
-///
-/// DIFFERENCE(eq. 8, 9): as printed, with the largest fitness of the population against the
-/// mean, the first case never holds and rates stay at their maximum.
-fn adapt(ranking: &Ranking, pairs: &mut [Pair]) {
-    let finite = || ranking.plane.iter().copied().filter(|s| s.is_finite());
-    let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
-    let least = finite().fold(f64::INFINITY, f64::min);
-    for pair in pairs {
-        let better = ranking.plane[pair.first].min(ranking.plane[pair.second]);
-        if better > mean || mean <= least {
-            continue;
+/// Draws nothing for an event that cannot happen.
+fn happens(probability: f64, rng: &mut Random) -> bool {
+    probability > 0.0 && rng.unit() < probability
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Niching, Population, Ranking, Survival, das_dennis, random::Stream};
+
+    /// Pairs of a focus, and the next random number, for members on three objectives' directions.
+    fn pairs(focus: Focus, population: &Population) -> (Vec<Pair>, f64) {
+        let directions = das_dennis(3, 12).unwrap();
+        let (mut chosen, mut ranking) = (Vec::new(), Ranking::default());
+        let mut rng = Random::new(1, Stream::Survival);
+        let n = population.len();
+        Niching::filled_by_crowding(&directions, 3).select(
+            population,
+            n,
+            &mut rng,
+            &mut chosen,
+            &mut ranking,
+        );
+        let mut kept = Population::with_capacity(0, 3, n);
+        for &i in &chosen {
+            kept.push_from(population, i);
         }
-        let share = ((mean - better) / (mean - least) * std::f64::consts::PI).cos().exp();
-        pair.crossover = 1.0 - (1.0 - LEAST_CROSSOVER) / (1.0 + share);
-        pair.mutation = 1.0 - (1.0 - LEAST_MUTATION) / (1.0 + share);
+        let context = MatingContext { population: &kept, ranking: &ranking, progress: Some(0.5) };
+        let mut rng = Random::new(2, Stream::Variation);
+        let mut pairs = Vec::new();
+        Focused::new(focus, false, &directions, 3).pair(&context, 1000, &mut rng, &mut pairs);
+        (pairs, rng.unit())
+    }
+
+    #[test]
+    fn on_a_front_that_meets_every_direction_the_focus_is_the_local_one() {
+        let mut front = das_dennis(3, 12).unwrap();
+        let full = Population::from_objectives(&front, 3);
+        assert_eq!(pairs(Focus::Spread, &full), pairs(Focus::Local, &full));
+        front.truncate(3 * 60);
+        let part = Population::from_objectives(&front, 3);
+        assert_ne!(pairs(Focus::Spread, &part), pairs(Focus::Local, &part));
+    }
+
+    #[test]
+    fn on_a_front_that_meets_few_directions_half_of_the_second_parents_are_ends() {
+        // A line from (0, 0, 1) to (1, 1, 0): its ends are the first and the last.
+        let line: Vec<f64> = (0..92).flat_map(|i| [f64::from(i), f64::from(i), f64::from(91 - i)]).collect();
+        let (pairs, _) = pairs(Focus::Spread, &Population::from_objectives(&line, 3));
+        let second = |end: usize| pairs.iter().filter(|pair| pair.second == end).count();
+        let most = (0..92).map(second).max().unwrap();
+        let ends: usize = (0..92).map(second).filter(|&count| count > 60).sum();
+        assert_eq!(pairs.len(), 500);
+        assert!(most > 60 && (160..=260).contains(&ends), "{most} {ends}");
     }
 }

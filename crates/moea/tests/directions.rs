@@ -1,0 +1,38 @@
+//! Reference directions of the caller's.
+
+#![allow(clippy::unwrap_used)]
+
+use moea::{ALGORITHMS, Budget, Directions, Settings, benchmark::Benchmark, optimise, silent};
+
+#[test]
+fn members_gather_where_own_directions_point() {
+    // A corner of DTLZ2's sphere.
+    let corner: Vec<Vec<f64>> = (0..5)
+        .flat_map(|i| (0..5).map(move |j| vec![1.0, 0.05 * f64::from(i), 0.05 * f64::from(j)]))
+        .collect();
+    let problem = Benchmark::named("DTLZ2", 3).unwrap();
+    let share = |directions: Directions| {
+        let budget = Budget::Evaluations(8000);
+        let settings = Settings { directions, budget, population: Some(28), ..Settings::default() };
+        let found = optimise(&problem, &settings, silent).unwrap().population;
+        let near = (0..found.len()).filter(|&i| found.f(i)[0] > 0.9).count();
+        near as f64 / found.len() as f64
+    };
+    let (own, usual) = (share(Directions::Own(corner)), share(Directions::Usual));
+    assert!(own > 0.8 && usual < 0.3, "{own} {usual}");
+}
+
+#[test]
+fn every_algorithm_runs_with_a_single_direction_given_twice() {
+    let problem = Benchmark::named("WFG4", 3).unwrap();
+    for named in ALGORITHMS {
+        let directions = Directions::Own(vec![vec![1.0, 0.0, 2.0]; 2]);
+        let settings = Settings {
+            algorithm: named.algorithm,
+            directions,
+            budget: Budget::Evaluations(300),
+            ..Settings::default()
+        };
+        assert_eq!(optimise(&problem, &settings, silent).unwrap().evaluations, 300, "{}", named.name);
+    }
+}

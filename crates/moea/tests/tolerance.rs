@@ -1,0 +1,70 @@
+//! Runs that end by tolerance: not before they are good, and not without a feasible member.
+
+#![allow(clippy::unwrap_used)]
+
+use moea::{
+    Bounds, Budget, Problem, Settings, Tolerance, benchmark::Benchmark, compare::Reference, optimise, silent,
+};
+
+#[test]
+fn a_run_ends_early_with_nearly_the_quality_of_a_long_one() {
+    for name in ["DTLZ2", "WFG4"] {
+        let problem = Benchmark::named(name, 3).unwrap();
+        let reference = Reference::of(&problem, 500);
+        let settings = Settings { budget: Budget::Evaluations(60_000), ..Settings::default() };
+        let mut tolerance = Tolerance::new(2e-4, 40);
+        let ended = optimise(&problem, &settings, |progress| tolerance.watch(progress)).unwrap();
+        let long = optimise(&problem, &settings, silent).unwrap();
+        let [short, long] = [&ended, &long].map(|run| reference.measure(&run.population).hypervolume);
+        assert!(ended.evaluations < 50_000, "{name}: {}", ended.evaluations);
+        assert!(short > 0.97 * long, "{name}: {short} {long}");
+    }
+}
+
+/// Nothing is feasible.
+struct Never;
+
+impl Problem for Never {
+    type Workspace = ();
+
+    fn bounds(&self) -> Vec<Bounds> {
+        vec![(0.0, 1.0)]
+    }
+
+    fn objectives(&self) -> usize {
+        2
+    }
+
+    fn evaluate(&self, _: &[f64], f: &mut [f64], (): &mut ()) -> f64 {
+        f.fill(1.0);
+        1.0
+    }
+}
+
+#[test]
+fn without_a_feasible_member_nothing_ends_and_a_flat_front_ends_at_once() {
+    struct Flat;
+    impl Problem for Flat {
+        type Workspace = ();
+
+        fn bounds(&self) -> Vec<Bounds> {
+            vec![(0.0, 1.0)]
+        }
+
+        fn objectives(&self) -> usize {
+            2
+        }
+
+        fn evaluate(&self, _: &[f64], f: &mut [f64], (): &mut ()) -> f64 {
+            f.fill(0.0);
+            0.0
+        }
+    }
+    let settings = Settings { budget: Budget::Generations(30), ..Settings::default() };
+    let mut tolerance = Tolerance::new(1e-3, 0);
+    let run = optimise(&Never, &settings, |progress| tolerance.watch(progress)).unwrap();
+    assert_eq!(run.generations, 30);
+    let mut tolerance = Tolerance::new(1e-3, 5);
+    let run = optimise(&Flat, &settings, |progress| tolerance.watch(progress)).unwrap();
+    assert_eq!(run.generations, 10);
+}
