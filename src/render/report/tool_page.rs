@@ -6,7 +6,7 @@ use super::tool::{ID, main_cause, section};
 use crate::{
     render::{
         kit::{
-            Column, Table, deg, mm,
+            Column, Table, clean, deg, mm,
             page::{
                 Plots, blocks, card,
                 chart::{Chart, Panel, Role, Series, Size, at, rounded, times},
@@ -31,12 +31,12 @@ const ROWS: usize = 24;
 pub(super) fn tool_card(tool: &Tool) -> Markup {
     let Some(found) = tool.found() else {
         let why = tool.why_not();
-        return html! { @if let Some(why) = why { (card("", "At the tool", "Not known", &html! { p { (why) } })) } };
+        return html! { @if let Some(why) = why { (card("", "At the tool", "Not known", &html! { p { (clean(&why)) } })) } };
     };
     let worst = &found.worst;
     let body = html! {
         @if let Some(end) = found.end() { p { (format!("{} mm when it came to rest at the end", mm(end.deviation.error_m))) } }
-        @if let Some(cause) = main_cause(&worst.deviation) { p { (format!("{cause} of the worst")) } }
+        @if let Some(cause) = main_cause(&worst.deviation) { p { (clean(&cause)) " of the worst" } }
         p { (format!("RMS {} mm, orientation {} deg at worst", mm(found.rms_m), deg(found.worst_orientation_rad))) }
         p { a href={ "#" (ID.0) } { "How, and by which joint" } }
     };

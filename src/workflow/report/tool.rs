@@ -69,6 +69,10 @@ pub(super) fn arm(
         .description
         .as_deref()
         .map(|text| Kinematics::from_urdf(text, given.as_deref().unwrap_or(IN_LOG), tool, &known));
+    if let Some(tool) = tool.filter(|_| described.is_none()) {
+        let (file, element, found) = ("the log".to_owned(), format!("link {tool:?}"), "no URDF".to_owned());
+        return Some(Err(ArmError::Unexpected { file, element, found, expected: "one".to_owned() }));
+    }
     if given.is_some() || tool.is_some() {
         return described;
     }
