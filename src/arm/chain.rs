@@ -35,6 +35,9 @@ pub struct Joint {
 pub(super) struct Step {
     pub(super) rotation: Matrix3<f64>,
     pub(super) offset_m: Vector3<f64>,
+    /// Whether the joint slides along its axis instead of turning about it; only those of
+    /// [`Kinematics`](super::Kinematics) may.
+    pub(super) slides: bool,
 }
 
 /// A link of the file and where it rides.
@@ -143,13 +146,18 @@ impl Builder {
         self.name_link(link);
     }
 
-    /// Goes on by a turning joint.
-    pub(super) fn turning(&mut self, joint: Joint, origin: &Pose, axis: &Unit<Vector3<f64>>, link: &str) {
+    /// Goes on by a joint that turns, or slides.
+    pub(super) fn moving(
+        &mut self,
+        (joint, slides): (Joint, bool),
+        origin: &Pose,
+        axis: &Unit<Vector3<f64>>,
+        link: &str,
+    ) {
         let align = onto_axis(axis);
         let place = self.here * origin * align;
-        self.chain
-            .steps
-            .push(Step { rotation: *place.rotation.matrix(), offset_m: place.translation.vector });
+        let (rotation, offset_m) = (*place.rotation.matrix(), place.translation.vector);
+        self.chain.steps.push(Step { rotation, offset_m, slides });
         self.chain.joints.push(joint);
         self.chain.bodies.push(Inertia::default());
         self.here = align.inverse();

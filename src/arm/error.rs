@@ -50,6 +50,16 @@ pub enum ArmError {
         /// Links without children.
         tools: Vec<String>,
     },
+    /// Joints between base and tool whose positions are not known.
+    #[error("{file}: the link {tool} cannot be placed without the positions of {}", joints.join(", "))]
+    JointsMissing {
+        /// File, or what stands for it.
+        file: String,
+        /// The link that is the tool.
+        tool: String,
+        /// Joints on the way to it.
+        joints: Vec<String>,
+    },
     /// No posture within the limits has the tool there; what the nearest attempt leaves.
     #[error("the tool pose is out of reach by {distance_m:.4} m and {}", Degrees(*angle_rad))]
     Unreachable {

@@ -24,8 +24,13 @@ impl Chain {
         let frames = self.frames(position_rad);
         let tool_m = frames.last().map_or(self.tool, |last| last * self.tool).translation.vector;
         let mut jacobian = Matrix6xX::zeros(self.joint_count());
-        for (mut column, frame) in jacobian.column_iter_mut().zip(frames.iter().skip(1)) {
+        let steps = frames.iter().skip(1).zip(&self.steps);
+        for (mut column, (frame, step)) in jacobian.column_iter_mut().zip(steps) {
             let axis = frame.rotation * Vector3::z();
+            if step.slides {
+                column.fixed_rows_mut::<3>(0).copy_from(&axis);
+                continue;
+            }
             column.fixed_rows_mut::<3>(0).copy_from(&axis.cross(&(tool_m - frame.translation.vector)));
             column.fixed_rows_mut::<3>(3).copy_from(&axis);
         }
@@ -52,9 +57,14 @@ impl Chain {
         frames.push(frame);
         for (i, step) in self.steps.iter().enumerate() {
             let q = position_rad.get(i).copied().unwrap_or(0.0);
-            let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), q);
-            let rotation = Rotation3::from_matrix_unchecked(step.rotation) * turn;
-            frame *= Pose::from_parts(Translation3::from(step.offset_m), rotation);
+            let rotation = Rotation3::from_matrix_unchecked(step.rotation);
+            frame *= if step.slides {
+                let offset_m = step.offset_m + rotation * Vector3::new(0.0, 0.0, q);
+                Pose::from_parts(Translation3::from(offset_m), rotation)
+            } else {
+                let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), q);
+                Pose::from_parts(Translation3::from(step.offset_m), rotation * turn)
+            };
             frames.push(frame);
         }
         frames

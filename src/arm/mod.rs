@@ -4,6 +4,7 @@
 //! ([`Chain::tool_pose`]), the tool's speed, inverse dynamics ([`Chain::inverse_dynamics`], in lanes
 //! of several instants) and inverse kinematics ([`Chain::reach`]). [`Hydraulics`] holds the
 //! cylinders, which turn joint motion and torque into rod speed, flow and force. [`Arm`] is both.
+//! [`Kinematics`] holds the geometry alone, of joints that turn or slide.
 
 mod chain;
 mod cylinder;
@@ -16,6 +17,7 @@ mod kinematics;
 mod part;
 mod reach;
 mod robot;
+mod serial;
 mod shape;
 mod urdf;
 
@@ -26,6 +28,7 @@ pub use error::ArmError;
 pub use hydraulics::{Arm, Hydraulics};
 pub use inertia::Inertia;
 pub use inverse_dynamics::{LANES, Motion, Workspace, inverse_dynamics};
+pub use serial::Kinematics;
 pub use shape::{Mesh, Shape, Solid, quaternion_xyzw};
 pub use urdf::sliding_joints;
 

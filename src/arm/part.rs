@@ -37,17 +37,7 @@ fn hold_others(robot: &mut Robot, names: &[&str]) -> (String, Vec<String>) {
         let kind = matches!(joint.kind, JointKind::Revolute | JointKind::Continuous);
         kind && joint.mimic.is_none() && names.contains(&joint.name.as_str())
     };
-    let above: BTreeMap<&str, usize> =
-        robot.joints.iter().enumerate().map(|(i, joint)| (joint.child.link.as_str(), i)).collect();
-    // Joints from one to the root, itself included; one in a loop is reported later.
-    let way = |last: usize| {
-        let next = |&i: &usize| above.get(robot.joints.get(i)?.parent.link.as_str()).copied();
-        std::iter::successors(Some(last), next).take(robot.joints.len()).collect::<Vec<usize>>()
-    };
-    let ways = (0..robot.joints.len()).filter(|i| turns(&robot.joints[*i])).map(way);
-    let count = |way: &Vec<usize>| way.iter().filter(|i| turns(&robot.joints[**i])).count();
-    // The first of the longest, for the sake of one answer.
-    let arm = ways.rev().max_by_key(count).unwrap_or_default();
+    let arm = longest_way(robot, &turns);
     let moving: BTreeSet<usize> = arm.iter().copied().filter(|i| turns(&robot.joints[*i])).collect();
     let last = arm.first().and_then(|i| robot.joints.get(*i)).map(|joint| joint.child.link.clone());
     let mut still = Vec::new();
@@ -61,4 +51,19 @@ fn hold_others(robot: &mut Robot, names: &[&str]) -> (String, Vec<String>) {
         }
     }
     (last.unwrap_or_default(), still)
+}
+
+/// Of all ways from the root the one with most of the joints wanted, its last joint first, which is one of them.
+pub(super) fn longest_way(robot: &Robot, wanted: &dyn Fn(&Joint) -> bool) -> Vec<usize> {
+    let above: BTreeMap<&str, usize> =
+        robot.joints.iter().enumerate().map(|(i, joint)| (joint.child.link.as_str(), i)).collect();
+    // Joints from one to the root, itself included; one in a loop is reported later.
+    let way = |last: usize| {
+        let next = |&i: &usize| above.get(robot.joints.get(i)?.parent.link.as_str()).copied();
+        std::iter::successors(Some(last), next).take(robot.joints.len()).collect::<Vec<usize>>()
+    };
+    let ways = (0..robot.joints.len()).filter(|i| wanted(&robot.joints[*i])).map(way);
+    let count = |way: &Vec<usize>| way.iter().filter(|i| wanted(&robot.joints[**i])).count();
+    // The first of the longest, for the sake of one answer.
+    ways.rev().max_by_key(count).unwrap_or_default()
 }

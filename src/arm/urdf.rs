@@ -76,14 +76,14 @@ fn nesting(text: &str, at: &Witness<'_>) -> Result<usize, ArmError> {
 }
 
 pub(super) struct Tree<'a> {
-    at: Witness<'a>,
+    pub(super) at: Witness<'a>,
     robot: &'a Arc<Robot>,
     links: BTreeMap<&'a str, &'a robot::Link>,
     /// The joint that leads to each link but the root.
     above: BTreeMap<&'a str, &'a robot::Joint>,
     /// The joints that leave each link.
     below: BTreeMap<&'a str, Vec<&'a robot::Joint>>,
-    root: &'a str,
+    pub(super) root: &'a str,
 }
 
 impl<'a> Tree<'a> {
@@ -131,7 +131,7 @@ impl<'a> Tree<'a> {
     }
 
     /// The link asked for, or the only leaf of the tree.
-    fn tool(&self, wanted: Option<&str>) -> Result<&'a str, ArmError> {
+    pub(super) fn tool(&self, wanted: Option<&str>) -> Result<&'a str, ArmError> {
         if let Some(wanted) = wanted {
             return self.links.get_key_value(wanted).map(|(name, _)| *name).ok_or_else(|| {
                 let names: Vec<&str> = self.links.keys().copied().collect();
@@ -160,7 +160,8 @@ impl<'a> Tree<'a> {
         end
     }
 
-    pub(super) fn chain(&self, tool: &'a str) -> Result<Chain, ArmError> {
+    /// Joints on the way to a link, the last one first.
+    pub(super) fn path(&self, tool: &'a str) -> Result<Vec<&'a robot::Joint>, ArmError> {
         let mut path = Vec::new();
         let mut link = tool;
         while let Some(&joint) = self.above.get(link) {
@@ -170,6 +171,11 @@ impl<'a> Tree<'a> {
                 return Err(self.at.unexpected(format!("<link {tool:?}>"), "a loop of joints", "a tree"));
             }
         }
+        Ok(path)
+    }
+
+    pub(super) fn chain(&self, tool: &'a str) -> Result<Chain, ArmError> {
+        let mut path = self.path(tool)?;
         let mut builder = Builder::new(Arc::clone(self.robot), self.root);
         while let Some(joint) = path.pop() {
             let element = format!("<joint {:?}>", joint.name);
@@ -178,7 +184,8 @@ impl<'a> Tree<'a> {
             if joint.kind == JointKind::Fixed {
                 builder.fixed(&origin, child);
             } else {
-                builder.turning(self.joint(joint, &element)?, &origin, &self.axis(joint, &element)?, child);
+                let turning = (self.joint(joint, &element)?, false);
+                builder.moving(turning, &origin, &self.axis(joint, &element)?, child);
             }
             self.bodies(child, path.last().map(|next| next.name.as_str()), &mut builder)?;
         }
@@ -224,7 +231,7 @@ impl<'a> Tree<'a> {
         Ok((body, self.pose(&given.origin, &element)?))
     }
 
-    fn pose(&self, origin: &Origin, element: &str) -> Result<Pose, ArmError> {
+    pub(super) fn pose(&self, origin: &Origin, element: &str) -> Result<Pose, ArmError> {
         let ([x, y, z], [roll, pitch, yaw]) = (origin.xyz, origin.rpy);
         // Beyond this, sums and products of lengths would overflow.
         let sane = |v: &f64| v.abs() < 1e9;
@@ -236,7 +243,7 @@ impl<'a> Tree<'a> {
         Ok(Pose::from_parts(Translation3::new(x, y, z), rotation))
     }
 
-    fn axis(&self, joint: &robot::Joint, element: &str) -> Result<Unit<Vector3<f64>>, ArmError> {
+    pub(super) fn axis(&self, joint: &robot::Joint, element: &str) -> Result<Unit<Vector3<f64>>, ArmError> {
         let axis = Vector3::from(joint.axis.xyz);
         Unit::try_new(axis, 1e-9).filter(|unit| unit.iter().all(|v| v.is_finite())).ok_or_else(|| {
             self.at.unexpected(format!("{element} <axis>"), format!("{:?}", joint.axis.xyz), "a direction")

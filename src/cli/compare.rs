@@ -112,6 +112,14 @@ struct GateArgs {
     /// Largest peak error over the run and all joints, after divided by before
     #[arg(long, value_name = "RATIO", value_parser = ratio, allow_negative_numbers = true)]
     max_peak_ratio: Option<f64>,
+
+    /// Largest distance of the tool from its plan after; needs the arm in every log
+    #[arg(long, value_name = "MM", value_parser = millimetres, allow_negative_numbers = true)]
+    max_tool_error_mm: Option<f64>,
+
+    /// Largest distance of the tool from its plan after, where it rests when the run ends
+    #[arg(long, value_name = "MM", value_parser = millimetres, allow_negative_numbers = true)]
+    max_end_error_mm: Option<f64>,
 }
 
 impl Args {
@@ -127,6 +135,8 @@ impl Args {
                 .with("transition-growth-sliding", self.gates.max_transition_growth_mm)
                 .with("rms-ratio", self.gates.max_rms_ratio)
                 .with("peak-ratio", self.gates.max_peak_ratio)
+                .with("tool-error", self.gates.max_tool_error_mm)
+                .with("end-error", self.gates.max_end_error_mm)
                 .with_empty_kept(self.gates.allow_empty),
             ..Inputs::default()
         }

@@ -35,6 +35,9 @@ impl clap::Args for GateArgs {
                 (Dimension::Position, JointKind::Turns) => {
                     option.help(limit.help).value_name("DEG").value_parser(degrees)
                 }
+                (Dimension::Distance, _) => {
+                    option.help(limit.help).value_name("MM").value_parser(millimetres)
+                }
                 (Dimension::Position, JointKind::Slides) => option
                     .help(format!("{}, of joints that slide", limit.help))
                     .value_name("MM")

@@ -24,6 +24,7 @@ Examples:
   hydrotrace report run.mcap --json -o report.json
   hydrotrace report run.mcap --html -o run.html
   hydrotrace report run.mcap --max-transition-peak-deg 0.5
+  hydrotrace report run.mcap --urdf robot.urdf --max-tool-error-mm 20
   hydrotrace report run.mcap --planned /arm/controller_state:output.positions
   hydrotrace report measured.mcap plan.mcap    (two files of one run, one zero of time)";
 
@@ -56,6 +57,14 @@ pub(super) struct Args {
     #[arg(long)]
     all: bool,
 
+    /// The robot's URDF, in place of what the log holds of it: says what the errors are at the tool
+    #[arg(long, value_name = "FILE")]
+    urdf: Option<PathBuf>,
+
+    /// The link of the URDF that is the tool [default: where the arm ends]
+    #[arg(long, value_name = "LINK")]
+    tool: Option<String>,
+
     #[command(flatten)]
     read: ReadArgs,
 
@@ -86,15 +95,22 @@ struct FormatArgs {
 
 impl Args {
     fn request(&self) -> Inputs {
-        let gates = self.gates.gates.clone();
-        Inputs { logs: self.logs.clone(), read: self.read.options(), gates, ..Inputs::default() }
+        Inputs {
+            logs: self.logs.clone(),
+            read: self.read.options(),
+            urdf: self.urdf.clone(),
+            tool: self.tool.clone(),
+            gates: self.gates.gates.clone(),
+            ..Inputs::default()
+        }
     }
 }
 
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let file = self.output.as_deref();
-        spare_inputs(file, &self.logs)?;
+        let inputs: Vec<PathBuf> = self.logs.iter().chain(&self.urdf).cloned().collect();
+        spare_inputs(file, &inputs)?;
         let FormatArgs { json, csv, markdown, html } = self.format;
         let forms = [(json, Form::Json), (csv, Form::Csv), (markdown, Form::Markdown), (html, Form::Html)];
         let target = Target::new(Form::of(&forms, file), file)?;

@@ -30,6 +30,8 @@ pub struct ReadOptions {
     pub slides: Vec<String>,
     /// Joints without end stops, whose angle may wrap by a full turn.
     pub continuous: Vec<String>,
+    /// Text of the robot's URDF, in place of what the log holds of it.
+    pub description: Option<String>,
 }
 
 /// Which of plan and measurement are read; the others are empty.

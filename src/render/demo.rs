@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::compare::at_the_tool;
 use super::kit::{Document, Id, NONE, Section, Sentence, Table, counted, deg, optional, probability};
 use crate::{
     replay::PEAK_ERROR,
@@ -89,7 +90,9 @@ pub(crate) fn document(story: &Story<'_>) -> Document {
     let lines = steps
         .into_iter()
         .flat_map(|(command, found)| [format!("$ hydrotrace {command}"), format!("    {found}")]);
-    let lines = lines.chain(luck(comparison).map(|luck| format!("    {luck}"))).map(Sentence::Finding);
+    let tool = at_the_tool(comparison).map(|changes| format!("at the tool {changes}"));
+    let said = tool.into_iter().chain(luck(comparison));
+    let lines = lines.chain(said.map(|said| format!("    {said}"))).map(Sentence::Finding);
     let last = format!(
         "Plan {:.2} s before, {:.2} s after. Run any of these commands in {} to see its full output.",
         before.duration_s,

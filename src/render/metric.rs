@@ -10,8 +10,10 @@ use crate::{
 /// The number alone.
 pub(super) fn number(dimension: Dimension, kind: JointKind, value: f64) -> String {
     match (dimension, kind) {
-        (Dimension::Position | Dimension::Area, Turns) => deg(value),
-        (Dimension::Position | Dimension::Area, Slides) => format!("{:.2}", 1e3 * value),
+        (Dimension::Position | Dimension::Area, Turns) | (Dimension::Angle, _) => deg(value),
+        (Dimension::Position | Dimension::Area, Slides) | (Dimension::Distance, _) => {
+            format!("{:.2}", 1e3 * value)
+        }
         (Dimension::Speed | Dimension::Acceleration, _) => format!("{:.1}", on_paper(kind, value)),
         (Dimension::Instant, _) => format!("{value:.2}"),
         (Dimension::Duration, _) => ms(value),
@@ -25,8 +27,8 @@ pub(super) fn number(dimension: Dimension, kind: JointKind, value: f64) -> Strin
 /// Its unit; empty if it has none.
 pub(super) fn unit(dimension: Dimension, kind: JointKind) -> &'static str {
     match (dimension, kind) {
-        (Dimension::Position, Turns) => "deg",
-        (Dimension::Position, Slides) => "mm",
+        (Dimension::Position, Turns) | (Dimension::Angle, _) => "deg",
+        (Dimension::Position, Slides) | (Dimension::Distance, _) => "mm",
         (Dimension::Speed, Turns) => "deg/s",
         (Dimension::Speed, Slides) => "mm/s",
         (Dimension::Acceleration, Turns) => "deg/s2",

@@ -2,10 +2,12 @@
 //!
 //! A static-to-dynamic transition is the plan leaving rest. [`replay`] finds the transitions
 //! of every joint in plan and measurement, measures the answer to each, and says whether the
-//! error lives there. It knows angles over time and nothing of files, controllers or pressure.
+//! error lives there. [`tool_replay`] says what that makes at the
+//! tool. It knows angles over time and nothing of files, controllers or pressure.
 
 mod answer;
 mod concentration;
+mod cursor;
 mod delay;
 mod joint;
 mod keyed;
@@ -20,6 +22,7 @@ mod peak_motion;
 mod profile;
 mod rules;
 mod signals;
+mod tool;
 mod tracking;
 mod transition;
 pub(crate) mod unit;
@@ -29,7 +32,8 @@ use rayon::prelude::*;
 pub use delay::{measured_starts, measured_stops};
 pub use keyed::{Keyed, Row};
 pub use metric::{
-    Dimension, JOINT, Judged, Limit, Metric, PEAK_ERROR, Read, ReadInterval, TRANSITION, Together, limits,
+    Dimension, JOINT, Judged, Limit, Metric, PEAK_ERROR, Read, ReadInterval, TOOL, TRANSITION, Together,
+    limits,
 };
 pub use outcome::{
     Answer, Concentration, ConcentrationTest, JointReplay, Kind, LagShare, OnsetMethod, PathError, Replay,
@@ -39,6 +43,7 @@ pub use peak_motion::peak_motion;
 pub use profile::{Profiles, STRETCHES};
 pub use rules::{Rules, Sizes};
 pub use signals::planned_starts;
+pub use tool::{ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst, tool_replay};
 
 use crate::series::Pair;
 use concentration::{JointError, concentration};

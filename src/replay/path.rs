@@ -1,6 +1,6 @@
 //! Path error: how far the arm was from where it was to pass, whenever it passed.
 
-use super::{PathError, Rules};
+use super::{PathError, Rules, cursor::Cursor};
 use crate::series::Pair;
 
 /// Joint vectors at common instants, `[n, joints]` row-major; those that no window needs any more are forgotten.
@@ -147,40 +147,6 @@ impl Path {
         let r = self.planned_rad[at * self.joints + j];
         let piece = if share > 0.0 { self.planned_rad[(at + 1) * self.joints + j] - r } else { 0.0 };
         r + share * piece - self.measured_rad[i * self.joints + j]
-    }
-}
-
-/// A place in one pair that only moves forward.
-#[derive(Clone, Default)]
-struct Cursor {
-    sample: usize,
-    segment: usize,
-}
-
-impl Cursor {
-    /// Planned and measured angle at a time inside a segment, linear between samples, rad.
-    fn at(&mut self, pair: &Pair, t_s: f64) -> Option<(f64, f64)> {
-        let t = &pair.t_s;
-        while self.sample + 1 < t.len() && t[self.sample + 1] <= t_s {
-            self.sample += 1;
-        }
-        while pair.segments.get(self.segment).is_some_and(|s| s.end <= self.sample) {
-            self.segment += 1;
-        }
-        let segment = pair.segments.get(self.segment)?;
-        let i = self.sample;
-        if t[i] > t_s || !segment.contains(&i) {
-            return None;
-        }
-        if t[i] >= t_s {
-            return Some((pair.planned[i], pair.measured[i]));
-        }
-        if i + 1 >= segment.end {
-            return None;
-        }
-        let share = (t_s - t[i]) / (t[i + 1] - t[i]);
-        let between = |x: &[f64]| x[i] + share * (x[i + 1] - x[i]);
-        Some((between(&pair.planned), between(&pair.measured)))
     }
 }
 

@@ -111,6 +111,10 @@ pub struct Rules {
     pub path_rate_hz: f64,
     /// The nearest planned point is looked for within this time, either way, s.
     pub path_window_s: f64,
+    /// Rate at which the tool is placed, at most, Hz.
+    pub tool_rate_hz: f64,
+    /// Where the tool comes to rest is the mean over the last of a rest, so long at most and half of it at most, s.
+    pub tool_rest_s: f64,
     /// Starts closer together than this, over all joints, are one event of the test, s.
     pub same_event_s: f64,
     /// Stretches shorter than this are left out of the test, s.
@@ -154,6 +158,8 @@ impl Default for Rules {
             mostly_lag_share: 0.75,
             path_rate_hz: 50.0,
             path_window_s: 2.0,
+            tool_rate_hz: 100.0,
+            tool_rest_s: 0.5,
             same_event_s: 1.0,
             min_stretch_s: 0.1,
             significance: 0.05,

@@ -48,6 +48,7 @@ async function look(browser, path, width, scheme) {
   check(await page.locator('h2').count() > 1, where, 'it has no sections');
   await page.screenshot({ path: join(folder, `${name}-${width}-${scheme}.png`), fullPage: true });
   await use(page, where);
+  await turn(page, where);
   await context.close();
   return ms;
 }
@@ -81,6 +82,27 @@ async function use(page, where) {
     await tile.click();
     check(await range() !== whole, where, 'a click on a transition does not show it');
   }
+}
+
+// Turns the path of the tool by pointer and keys, and back.
+async function turn(page, where) {
+  const box = page.locator('.scene'), canvas = box.locator('canvas');
+  if (await box.count() === 0) return;
+  await box.scrollIntoViewIfNeeded();
+  const view = async () => { await page.waitForTimeout(100); return canvas.evaluate(c => c.dataset.view); };
+  const first = await view(), at = await canvas.boundingBox();
+  await page.mouse.move(at.x + 50, at.y + 50);
+  await page.mouse.down();
+  await page.mouse.move(at.x + 120, at.y + 80, { steps: 4 });
+  await page.mouse.up();
+  const dragged = await view();
+  check(dragged !== first, where, 'dragging does not turn the path');
+  await box.focus();
+  await page.keyboard.press('ArrowLeft');
+  check(await view() !== dragged, where, 'an arrow key does not turn the path');
+  await page.keyboard.press('Home');
+  check(await view() === first, where, 'Home does not show the first view');
+  check((await box.getAttribute('aria-label')).includes('arrow keys'), where, 'the path has no label');
 }
 
 async function main() {

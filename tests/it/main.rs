@@ -37,3 +37,4 @@ mod replay;
 mod sample_logs;
 mod spline;
 mod support;
+mod tool;

@@ -36,7 +36,7 @@ pub(super) fn assemble(
     let (base, base_why) = time_base(&extracted, choice, options.time_base, &mut remarks)?;
     overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?;
     let plan_is_command = remark_choice(choice, options, &mut remarks);
-    let description = description::take(&mut extracted);
+    let description = options.description.clone().or(description::take(&mut extracted));
     let mut sliding = description.as_deref().map(sliding_joints).unwrap_or_default();
     sliding.extend(joint_kind::sliding(&extracted.metadata));
     sliding.extend(options.slides.iter().cloned());

@@ -7,7 +7,7 @@ mod tables;
 
 pub(crate) use figures::figures;
 pub(crate) use page::page;
-pub(crate) use short::verdicts;
+pub(crate) use short::{at_the_tool, verdicts};
 pub(crate) use tables::document;
 
 use super::{kit::NONE, metric::Units};

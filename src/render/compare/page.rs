@@ -6,7 +6,7 @@ use super::{kind, scope, short::verdicts, tables::document};
 use crate::{
     render::{
         kit::{
-            self, Id, Sentence, clean,
+            self, Id, Sentence, clean, mm,
             page::{
                 Chapter, Plots, card,
                 chart::{Chart, Panel, Role, Series, Size, at, rounded, span, times},
@@ -56,6 +56,7 @@ fn summary(comparison: &Comparison) -> Markup {
             (change(comparison))
             (verdict(&kept, &lines, "--min-peak-reduction-percent 20"))
             (whole_run(comparison))
+            (at_the_tool(comparison))
         }
         h3 { "Mean change of the peak error, with its 95 % interval" }
         (intervals(&change_rows(comparison)))
@@ -99,6 +100,21 @@ fn whole_run(comparison: &Comparison) -> Markup {
         p { "rms at standstill " (arrow("standstill_rms")) }
     };
     card("", "Rms error, whole run", &arrow("rms"), &body)
+}
+
+fn at_the_tool(comparison: &Comparison) -> Markup {
+    let Some(tool) = &comparison.tool else { return html! {} };
+    let arrow = |key: &str| {
+        let change = tool.get(key);
+        let both = change.before.zip(change.after);
+        both.map(|(before, after)| format!("{} -> {} mm", mm(before), mm(after)))
+    };
+    let body = html! {
+        @for (name, key) in [("rms", "rms_m"), ("at rest at the end", "end_m"), ("at dwells", "dwell_m")] {
+            @if let Some(arrow) = arrow(key) { p { (name) " " (arrow) } }
+        }
+    };
+    card("", "At the tool, at worst", &arrow("worst_m").unwrap_or_default(), &body)
 }
 
 /// Mean changes of the peak error, degrees or millimetres: of all pairs, of starts from rest, of each joint.

@@ -3,7 +3,7 @@
 use super::kind;
 use crate::{
     render::{
-        kit::{Sentence, counted, optional, percent, probability, signed},
+        kit::{Sentence, counted, mm, optional, percent, probability, signed},
         metric::{position, with_unit},
         promise,
     },
@@ -19,6 +19,7 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
         Some(peak) if peak.pairs > 0 => lines.push(verdict(peak, kind(comparison, &Scope::All))),
         _ => lines.push("No transition is found in every run: there is none to compare.".to_owned()),
     }
+    lines.extend(at_the_tool(comparison).map(|changes| format!("At the tool: {changes}.")));
     lines.extend(whole_run(comparison));
     lines.push(plans(comparison));
     lines.extend(comparison.after.iter().filter_map(|run| {
@@ -81,6 +82,17 @@ fn whole_run(comparison: &Comparison) -> Option<String> {
     (!figures.is_empty()).then(|| format!("Whole run, all joints: {}.", figures.join(", ")))
 }
 
+/// How far the tool was off, before and after.
+pub(crate) fn at_the_tool(comparison: &Comparison) -> Option<String> {
+    let tool = comparison.tool.as_ref()?;
+    let arrow = |(name, key): (&str, &str)| {
+        let change = tool.get(key);
+        Some(format!("{} -> {} mm {name}", mm(change.before?), mm(change.after?)))
+    };
+    let shown = [("at worst", "worst_m"), ("rms", "rms_m"), ("at rest at the end", "end_m")];
+    Some(shown.into_iter().filter_map(arrow).collect::<Vec<_>>().join(", "))
+}
+
 fn plans(comparison: &Comparison) -> String {
     let duration = |runs: &[crate::workflow::compare::Run]| runs.first().and_then(|run| run.plan_duration_s);
     let most = comparison.after.iter().map(|run| run.plan_difference).reduce(|a, b| Some(a?.max(b?)));
@@ -110,6 +122,7 @@ fn gate(result: &GateResult) -> Sentence {
         Form::Reduction => format!("{:.1} %", 100.0 * value),
         Form::Probability => probability(value),
         Form::Growth(kind) => position(kind, value),
+        Form::Distance => position(JointKind::Slides, value),
         Form::Ratio => format!("{value:.3}"),
     };
     let side = if result.gate.form == Form::Reduction { "at least" } else { "at most" };

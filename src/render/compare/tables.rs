@@ -7,10 +7,11 @@ use crate::{
             Block, Column, Document, Fact, Id, NONE, Section, Sentence, Table, counted, fact, optional,
             percent, probability, signed,
         },
-        metric::{Units, number, position},
+        metric::{Units, number, position, unit},
     },
-    replay::{Answer, Dimension, Keyed, Metric, PEAK_ERROR, Transition},
-    workflow::compare::{Comparison, Figures, Form, Gate, Run, Side, Summary, TransitionPair},
+    replay::{Answer, Dimension, Keyed, Metric, PEAK_ERROR, ToolReplay, Transition},
+    series::JointKind,
+    workflow::compare::{Change, Comparison, Figures, Form, Gate, Run, Side, Summary, TransitionPair},
 };
 
 /// Everything a person reads of a comparison; `most` is how many pairs to list.
@@ -24,6 +25,7 @@ pub(crate) fn document(comparison: &Comparison, most: usize) -> Document {
     document.sections.extend(metrics.into_iter().filter_map(|metric| summary(comparison, metric)));
     let whole_run = [figures_table(&comparison.whole_run)];
     document.sections.push(Section::new(Id::OTHER, "Whole run, before -> after", whole_run));
+    document.sections.extend(tool(comparison));
     document.sections.extend(unpaired(comparison));
     document.remarked(&comparison.remarks).with(Section::new(
         Id::METHOD,
@@ -157,6 +159,18 @@ fn figures_table(figures: &[Figures]) -> Table {
         std::iter::once(Column::words("joint")).chain(metrics).collect::<Vec<_>>(),
         rows.collect::<Vec<Vec<String>>>(),
     )
+}
+
+fn tool(comparison: &Comparison) -> Option<Section> {
+    let kind = JointKind::Slides;
+    let units = Units::of(std::iter::once(kind));
+    let row = |(metric, change): (&Metric<ToolReplay>, &Change)| {
+        let name = format!("{} {}", metric.name, unit(metric.dimension, kind));
+        let show = |value| units.optional(metric.dimension, kind, value);
+        vec![name, show(change.before), show(change.after)]
+    };
+    let rows: Vec<Vec<String>> = comparison.tool.as_ref()?.iter().map(row).collect();
+    Some(Section::new(Id::OTHER, "At the tool", [Table::new(&[""], &["before", "after"], rows)]))
 }
 
 /// Whether the ratio of a metric has a column: a limit can be set on it.

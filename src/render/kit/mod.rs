@@ -21,7 +21,9 @@ mod terminal_style;
 
 pub use document::{Block, Document, Fact, Id, Section, Sentence, fact};
 pub use markdown::markdown;
-pub use number::{NONE, counted, deg, ms, optional, percent, probability, share, short, signed, significant};
+pub use number::{
+    NONE, counted, deg, mm, ms, optional, percent, probability, share, short, signed, significant,
+};
 pub use table::{Align, Column, Table};
 pub use terminal::text;
 

@@ -16,6 +16,11 @@ pub fn deg(rad: f64) -> String {
     unsigned_zero(format!("{:.3}", degrees_from_radians(rad)))
 }
 
+/// Millimetres with one decimal.
+pub fn mm(m: f64) -> String {
+    unsigned_zero(format!("{:.1}", 1e3 * m))
+}
+
 /// Whole milliseconds.
 pub fn ms(s: f64) -> String {
     unsigned_zero(format!("{:.0}", s * 1e3))
@@ -23,7 +28,7 @@ pub fn ms(s: f64) -> String {
 
 /// A share as whole percent.
 pub fn share(share: f64) -> String {
-    format!("{:.0} %", 100.0 * share)
+    unsigned_zero(format!("{:.0}", 100.0 * share)) + " %"
 }
 
 /// A share as whole percent with its sign, without the unit.

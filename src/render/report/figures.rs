@@ -3,12 +3,13 @@
 use super::{
     joints::{joint_charts, lag_rows},
     tiles::tiles,
+    tool_page::error_chart,
 };
 use crate::{
     render::{
         kit::{
             Failure, Figure,
-            figure::numbered,
+            figure::{figure, numbered},
             page::{
                 chart::Chart,
                 paper::{Paper, grid, rows},
@@ -16,7 +17,7 @@ use crate::{
         },
         plan::front_figures,
     },
-    workflow::report::Report,
+    workflow::report::{Report, Tool},
 };
 
 /// The plots of a report.
@@ -29,6 +30,9 @@ pub(crate) fn figures(report: &Report) -> Result<Vec<Figure>, Failure> {
     /// What a page of paper holds.
     const ON_A_PAGE: usize = 5 * COLUMNS;
     let mut figures = numbered("joint", &joint_charts(report))?;
+    if let Tool::Placed(found, path) = &report.tool {
+        figures.push(figure("tool", &error_chart(found, path))?);
+    }
     let tiles: Vec<Chart> = tiles(report).into_iter().map(|(_, chart)| chart).collect();
     for (page, tiles) in tiles.chunks(ON_A_PAGE).enumerate() {
         let svg = grid(tiles, COLUMNS, Paper::FIGURE)?;

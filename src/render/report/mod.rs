@@ -10,6 +10,8 @@ mod tables;
 #[cfg(test)]
 mod tests;
 mod tiles;
+mod tool;
+mod tool_page;
 
 pub(crate) use csv::csv;
 pub(crate) use figures::figures;

@@ -7,6 +7,8 @@ use super::{
     summary::{concentration_bars, summary},
     tables::document,
     tiles::transitions,
+    tool,
+    tool_page::tool_chapter,
 };
 use crate::{
     fit::Fit,
@@ -27,13 +29,15 @@ use crate::{
 pub(crate) fn page(name: &str, report: &Report, fit: Option<&Fit>, most: usize) -> String {
     let document = document(name, report, most);
     let mut plots = Plots::default();
-    let mut chapters = vec![
-        Chapter { id: "summary", heading: "In short", body: summary(report) },
+    let mut chapters = vec![Chapter { id: "summary", heading: "In short", body: summary(report) }];
+    let tool = tool_chapter(report, &mut plots, most);
+    chapters.extend(tool.map(|body| Chapter { id: tool::ID.0, heading: "At the tool", body }));
+    chapters.extend([
         Chapter { id: "joints", heading: "Joints", body: joints(report, &mut plots) },
         Chapter { id: "transitions", heading: "Transitions", body: transitions(report, &mut plots) },
         Chapter { id: "numbers", heading: "Numbers", body: numbers(&document, report) },
         Chapter { id: "lag", heading: "Lag", body: lags(report) },
-    ];
+    ]);
     if let Some(fit) = fit {
         chapters.push(Chapter { id: "fit", heading: "Fitted machine", body: fitted(fit) });
     }

@@ -2,7 +2,10 @@
 
 use maud::{Markup, html};
 
-use super::tables::{by_peak, lag_words, mostly_lag, verdicts, worst_sentence};
+use super::{
+    tables::{by_peak, lag_words, mostly_lag, verdicts, worst_sentence},
+    tool_page::tool_card,
+};
 use crate::{
     render::{
         kit::{
@@ -30,6 +33,7 @@ pub(super) fn summary(report: &Report) -> Markup {
     html! {
         div class="cards" {
             (verdict(&kept, &lines, "--max-transition-peak-deg 0.5"))
+            (tool_card(&report.tool))
             (worst(report))
             (place_of_error(report))
             (whole_run(report))

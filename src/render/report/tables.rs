@@ -1,6 +1,6 @@
 //! The report as headings, sentences and tables, worst first.
 
-use super::method::method;
+use super::{method::method, tool};
 use crate::{
     math::range,
     render::{
@@ -22,6 +22,7 @@ pub(crate) fn document(name: &str, report: &Report, most: usize) -> Document {
         "In short",
         in_short(report),
     ));
+    document.sections.extend(tool::section(report, most));
     document.sections.extend(transitions(&report.replay, most));
     let mut document = document.with(joints(&report.replay, &report.profiles)).remarked(&report.remarks);
     document.sections.extend(method(report));
@@ -58,7 +59,8 @@ fn source_facts(report: &Report) -> Vec<Fact> {
 }
 
 fn in_short(report: &Report) -> Vec<Sentence> {
-    let mut lines: Vec<Sentence> = findings(report).into_iter().map(Sentence::Finding).collect();
+    let tool = tool::sentence(&report.tool);
+    let mut lines: Vec<Sentence> = tool.into_iter().chain(findings(report)).map(Sentence::Finding).collect();
     lines.extend(verdicts(report));
     lines
 }

@@ -1,16 +1,19 @@
-//! The metrics, one row each: of a transition, and of a joint over the whole run.
+//! The metrics, one row each: of a transition, of a joint over the whole run, and of the tool.
 //!
 //! A row gives a column of the tables on terminal and page, the column of the CSV, the key in the document, what
 //! `compare` compares, the limit with its option, and the explanation of all of them. A new metric is a row here, a
 //! field beside it, and the line that computes it.
 
 mod joint;
+mod tool;
 mod transition;
 
 pub use joint::JOINT;
+pub use tool::TOOL;
 pub use transition::{PEAK_ERROR, TRANSITION};
 
-use super::{JointReplay, TrackingError, Transition, WholeRun, keyed::Keyed};
+use super::{JointReplay, ToolReplay, TrackingError, Transition, WholeRun, keyed::Keyed};
+use crate::series::JointKind;
 
 /// What a number is, and so its unit: that of a position is the joint's, rad or m.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,6 +26,10 @@ pub enum Dimension {
     Acceleration,
     /// In the joint's unit times seconds.
     Area,
+    /// Between two places, m.
+    Distance,
+    /// Between two orientations, rad.
+    Angle,
     /// Time since the first sample of the run, s.
     Instant,
     /// Time between two instants, s.
@@ -43,6 +50,16 @@ impl Dimension {
     /// Whether its unit depends on whether the joint turns or slides.
     pub const fn is_of_joint(self) -> bool {
         matches!(self, Self::Position | Self::Speed | Self::Acceleration | Self::Area)
+    }
+
+    /// Its SI unit in documents, where positions are those of joints of a kind.
+    pub const fn unit(self, kind: JointKind) -> &'static str {
+        match self {
+            Self::Distance => JointKind::Slides.unit(),
+            Self::Angle => JointKind::Turns.unit(),
+            _ if self.is_of_joint() => kind.unit(),
+            _ => "s",
+        }
     }
 }
 
@@ -107,7 +124,7 @@ pub struct Metric<T: 'static> {
 pub struct Limit {
     /// As in documents.
     pub key: &'static str,
-    /// Of the command line, in degrees or milliseconds.
+    /// Of the command line, in degrees, milliseconds or, at the tool, millimetres.
     pub option: &'static str,
     /// The same in millimetres, for joints that slide.
     pub sliding_option: Option<&'static str>,
@@ -210,10 +227,11 @@ impl<T> Judged<T> {
     }
 }
 
-/// Every limit, of transitions, then of joints.
+/// Every limit, of transitions, of joints, then of the tool.
 pub fn limits() -> impl Iterator<Item = &'static Limit> {
     let transitions = TRANSITION.iter().filter_map(|metric| Some(&metric.limit.as_ref()?.limit));
-    transitions.chain(JOINT.iter().filter_map(|metric| Some(&metric.limit.as_ref()?.limit)))
+    let joints = JOINT.iter().filter_map(|metric| Some(&metric.limit.as_ref()?.limit));
+    transitions.chain(joints).chain(TOOL.iter().filter_map(|metric| Some(&metric.limit.as_ref()?.limit)))
 }
 
 impl Keyed for Limit {
@@ -243,5 +261,15 @@ impl Keyed for Metric<JointReplay> {
 
     fn rows() -> Vec<&'static Self> {
         JOINT.iter().filter(|metric| metric.compared).collect()
+    }
+}
+
+impl Keyed for Metric<ToolReplay> {
+    fn key(&self) -> &'static str {
+        self.key
+    }
+
+    fn rows() -> Vec<&'static Self> {
+        TOOL.iter().filter(|metric| metric.compared).collect()
     }
 }

@@ -165,6 +165,11 @@ impl Carried {
         Some(self.task_files()?.arm(&Task::parse(&self.task()?).ok()?))
     }
 
+    /// The arm of the task, or of the one of which only the arm counts; `None` too if that is broken.
+    pub fn task_arm(&self) -> Option<Arm> {
+        self.task_files()?.arm(&self.task_or_arm()?.ok()?).ok()
+    }
+
     /// Says which files are not those that were written.
     pub fn remark_altered(&self, remarks: &mut Remarks) {
         for name in &self.altered {

@@ -2,8 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Figures, GateResult, Run, Summary, TransitionPair, Unpaired, Verdict, summary::overall};
-use crate::{remark::Remarks, replay::Rules, series::Pair};
+use super::{
+    Changes, Figures, GateResult, Run, Summary, TransitionPair, Unpaired, Verdict, summary::overall,
+};
+use crate::{
+    remark::Remarks,
+    replay::{Metric, Rules, ToolReplay},
+    series::Pair,
+};
 
 /// What the format is called.
 pub(super) const FORMAT: &str = "hydrotrace.compare.v2";
@@ -36,6 +42,9 @@ pub struct Comparison {
     pub unpaired: Vec<Unpaired>,
     /// Whole-run figures of all joints together, then of each.
     pub whole_run: Vec<Figures>,
+    /// The figures at the tool, each by its key; null unless every run has the same tool.
+    #[serde(default)]
+    pub tool: Option<Changes<Metric<ToolReplay>>>,
     /// The limits that were set, each with what was found against it.
     pub gates: Vec<GateResult>,
     /// Whether every limit is kept; if not, the exit code is 4.
@@ -82,6 +91,8 @@ mod tests {
             "transition-growth-sliding",
             "rms-ratio",
             "peak-ratio",
+            "tool-error",
+            "end-error",
         ];
         let inputs = Inputs {
             before: logs("panel-install.mcap"),

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::change::{Change, Changes};
 use crate::{
-    replay::{JointReplay, Metric, Rules, Together, TrackingError, peak_motion},
+    replay::{JointReplay, Metric, Rules, Together, ToolReplay, TrackingError, peak_motion},
     series::JointKind,
     workflow::report::Report,
 };
@@ -62,6 +62,20 @@ pub(super) fn figures(before: &[Report], after: &[Report], joints: &[String], ru
         changes: Changes::of(|metric| change(&|report, joints| together(metric, report, joints))),
     };
     std::iter::once(together).chain(each).collect()
+}
+
+/// The figures at the tool, where every run has the same one.
+pub(super) fn tool(before: &[Report], after: &[Report]) -> Option<Changes<Metric<ToolReplay>>> {
+    let found = |reports: &[Report]| -> Option<Vec<ToolReplay>> {
+        reports.iter().map(|report| report.tool.found().cloned()).collect()
+    };
+    let (before, after) = (found(before)?, found(after)?);
+    let first = before.first()?;
+    let alike = before.iter().chain(&after).all(|other| other.tool == first.tool);
+    let values = |side: &[ToolReplay], metric: &Metric<ToolReplay>| -> Vec<Option<f64>> {
+        side.iter().map(|tool| metric.number(tool)).collect()
+    };
+    alike.then(|| Changes::of(|metric| Change::of_runs(&values(&before, metric), &values(&after, metric))))
 }
 
 fn joint_of<'a>(report: &'a Report, name: &str) -> Option<&'a JointReplay> {

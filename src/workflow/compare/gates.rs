@@ -3,12 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
+    change::Changes,
     figures::Figures,
     pair::TransitionPair,
     summary::{Summary, overall},
 };
 use crate::{
-    replay::{Keyed, PEAK_ERROR, Row},
+    replay::{Keyed, Metric, PEAK_ERROR, Row, ToolReplay},
     series::JointKind,
 };
 
@@ -35,6 +36,8 @@ pub enum Form {
     Growth(JointKind),
     /// After over before, at most.
     Ratio,
+    /// A distance after, at most.
+    Distance,
 }
 
 /// What is judged.
@@ -42,6 +45,7 @@ struct Found<'a> {
     peak: Option<&'a Summary>,
     pairs: &'a [TransitionPair],
     figures: Option<&'a Figures>,
+    tool: Option<&'a Changes<Metric<ToolReplay>>>,
 }
 
 /// The number found; where, for a transition; and whether it is of no reduction.
@@ -103,6 +107,18 @@ static GATES: &[Gate] = &[
         form: Form::Ratio,
         find: |found| ratio(found, "peak"),
     },
+    Gate {
+        key: "tool-error",
+        name: "worst error of the tool after",
+        form: Form::Distance,
+        find: |found| after(found, "worst_m"),
+    },
+    Gate {
+        key: "end-error",
+        name: "error of the tool at rest at the end after",
+        form: Form::Distance,
+        find: |found| after(found, "end_m"),
+    },
 ];
 
 fn growth(found: &Found<'_>, kind: JointKind) -> Option<Worst> {
@@ -115,6 +131,10 @@ fn growth(found: &Found<'_>, kind: JointKind) -> Option<Worst> {
 
 fn ratio(found: &Found<'_>, key: &str) -> Option<Worst> {
     Some(Worst { value: found.figures?.changes.get(key).ratio?, ..Worst::default() })
+}
+
+fn after(found: &Found<'_>, key: &str) -> Option<Worst> {
+    Some(Worst { value: found.tool?.get(key).after?, ..Worst::default() })
 }
 
 impl Keyed for Gate {
@@ -172,15 +192,15 @@ impl Gates {
         &self,
         pairs: &[TransitionPair],
         summaries: &[Summary],
-        figures: &[Figures],
+        (figures, tool): (&[Figures], Option<&Changes<Metric<ToolReplay>>>),
     ) -> Vec<GateResult> {
         let peak = overall(summaries, PEAK_ERROR);
-        let found = Found { peak, pairs, figures: figures.first() };
+        let found = Found { peak, pairs, figures: figures.first(), tool };
         let judge = |&(gate, limit): &(Row<Gate>, f64)| {
             let worst = (gate.find)(&found);
             let kept = worst.as_ref().map_or(self.empty_is_kept, |worst| match gate.form {
                 Form::Reduction => worst.value >= limit,
-                Form::Probability | Form::Growth(_) | Form::Ratio => {
+                Form::Probability | Form::Growth(_) | Form::Ratio | Form::Distance => {
                     worst.value <= limit && !worst.no_reduction
                 }
             });

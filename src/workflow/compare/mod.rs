@@ -23,15 +23,15 @@ pub use pair::{Run, Side, TransitionPair, Unpaired};
 pub use pairing::PairedBy;
 pub use summary::{Scope, Summary, Verdict};
 
-use super::report::{self, Report};
+use super::report::{self, Report, ReportFailure};
 use crate::{
     document::PROGRAM,
-    log::{LogError, ReadOptions},
+    log::ReadOptions,
     remark::{Code, Remarks},
     replay::{PEAK_ERROR, Rules},
 };
 use document::FORMAT;
-use figures::figures;
+use figures::{figures, tool};
 use member::{Member, pairs};
 use pairing::matched;
 use same::is_same;
@@ -62,7 +62,7 @@ pub enum CompareFailure {
         /// Its log.
         path: PathBuf,
         /// Why.
-        source: LogError,
+        source: ReportFailure,
     },
     /// A side without a run.
     #[error("found no run {0} the change, expected at least one")]
@@ -131,7 +131,8 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     }
     let summaries = summaries(&pairs, &joints, &inputs.rules);
     let whole_run = figures(&before, &after, &joints, &inputs.rules);
-    let gates = inputs.gates.judge(&pairs, &summaries, &whole_run);
+    let tool = tool(&before, &after);
+    let gates = inputs.gates.judge(&pairs, &summaries, (&whole_run, tool.as_ref()));
     let runs = |side: Side| all.iter().filter(|m| m.side == side).map(|m| m.run(&joints)).collect();
     let (runs_before, runs_after): (Vec<Run>, Vec<Run>) = (runs(Side::Before), runs(Side::After));
     let samples = |reports: &mut [Report]| {
@@ -149,6 +150,7 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
         pairs,
         unpaired,
         whole_run,
+        tool,
         gates_kept: gates.iter().all(|gate| gate.kept),
         gates,
         rules: inputs.rules.clone(),
@@ -163,7 +165,7 @@ fn analysed(inputs: &Inputs, logs: &[PathBuf]) -> Result<Vec<Report>, CompareFai
             logs: vec![path.clone()],
             read: inputs.read.clone(),
             rules: inputs.rules.clone(),
-            gates: report::Gates::default(),
+            ..report::Inputs::default()
         };
         report::run(&inputs).map_err(|source| CompareFailure::Run { path: path.clone(), source })
     };

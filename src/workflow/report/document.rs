@@ -7,7 +7,7 @@ use crate::{
     document::PROGRAM,
     log::SourceInfo,
     remark::Remark,
-    replay::{JointReplay, Rules, Stop, Transition, WholeRun},
+    replay::{JointReplay, Rules, Stop, ToolReplay, Transition, WholeRun},
     workflow::carried::Held,
 };
 
@@ -43,6 +43,12 @@ pub struct Document {
     pub stops: Vec<Stop>,
     /// All joints together, in their unit.
     pub whole_run: WholeRun,
+    /// The tool against its plan; null where the log holds no arm, or the tool cannot be placed.
+    #[serde(default)]
+    pub tool: Option<ToolReplay>,
+    /// Why nothing is said of the tool although there is an arm; else null.
+    #[serde(default)]
+    pub no_tool: Option<String>,
     /// The limits that were set, each with the worst value found against it.
     pub gates: Vec<GateResult>,
     /// Whether every limit is kept; if not, the exit code is 4.
@@ -69,6 +75,8 @@ impl Document {
             transitions: report.replay.transitions.clone(),
             stops: report.replay.stops.clone(),
             whole_run: report.replay.whole_run.clone(),
+            tool: report.tool.found().cloned(),
+            no_tool: report.tool.why_not(),
             gates: report.gates.clone(),
             gates_kept: report.gates_kept(),
             rules: report.replay.rules.clone(),

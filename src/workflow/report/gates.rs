@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    replay::{JOINT, JointReplay, Judged, Limit, Metric, Replay, Row, TRANSITION, Transition},
+    replay::{
+        JOINT, JointReplay, Judged, Limit, Metric, Replay, Row, TOOL, TRANSITION, ToolReplay, Transition,
+    },
     series::JointKind,
 };
 
@@ -29,13 +31,13 @@ struct Gate {
 pub struct GateResult {
     /// Which limit.
     pub gate: Row<Limit>,
-    /// Its unit: that of the joints judged, "rad" or "m", if it is a position, else "s".
+    /// Its unit: that of the joints judged, "rad" or "m", if it is a position, "m" at the tool, else "s".
     pub unit: String,
     /// The limit, in its unit.
     pub limit: f64,
     /// The worst value; `None` if there was nothing to judge, or a start was not answered.
     pub worst: Option<f64>,
-    /// The joint it was found at; `None` if there was nothing to judge.
+    /// The joint it was found at, or the tool's link; `None` if there was nothing to judge.
     pub joint: Option<String>,
     /// When, s; for a mean over the run when the error peaked.
     pub time_s: Option<f64>,
@@ -67,8 +69,8 @@ impl Gates {
         Self { empty_is_kept, ..self }
     }
 
-    /// Judges every limit.
-    pub(super) fn judge(&self, replay: &Replay) -> Vec<GateResult> {
+    /// Judges every limit; without a tool there is none to judge.
+    pub(super) fn judge(&self, replay: &Replay, tool: Option<&ToolReplay>) -> Vec<GateResult> {
         let one = |gate: &Gate| {
             let transitions = of(TRANSITION, gate).map(|metric| {
                 let all = replay.transitions.iter().map(|t: &Transition| (t, t.joint.as_str(), t.joint_kind));
@@ -78,7 +80,12 @@ impl Gates {
                 let all = replay.joints.iter().map(|j: &JointReplay| (j, j.name.as_str(), j.kind));
                 of(JOINT, gate).map(|metric| found(metric, gate, all))
             };
-            worst(gate, transitions.or_else(joints).unwrap_or_default(), self.empty_is_kept)
+            let tools = || {
+                let all = tool.into_iter().map(|tool| (tool, tool.tool.as_str(), JointKind::Slides));
+                of(TOOL, gate).map(|metric| found(metric, gate, all))
+            };
+            let all = transitions.or_else(joints).or_else(tools).unwrap_or_default();
+            worst(gate, all, self.empty_is_kept)
         };
         self.gates.iter().map(one).collect()
     }
@@ -109,7 +116,7 @@ fn worst(gate: &Gate, found: Vec<Found<'_>>, empty_is_kept: bool) -> GateResult 
     let worst = found.into_iter().max_by(|a, b| of(a.0).total_cmp(&of(b.0)));
     GateResult {
         gate: gate.limit,
-        unit: if gate.limit.dimension.is_of_joint() { gate.kind.unit() } else { "s" }.to_owned(),
+        unit: gate.limit.dimension.unit(gate.kind).to_owned(),
         limit: gate.value,
         worst: worst.and_then(|(value, _, _)| value),
         joint: worst.map(|(_, joint, _)| joint.to_owned()),
@@ -161,7 +168,7 @@ mod tests {
     #[test]
     fn a_limit_with_nothing_to_judge_is_not_kept_unless_that_is_allowed() {
         let limits = Gates { gates: vec![gate("onset-delay", 0.3)], empty_is_kept: false };
-        let judged = |limits: &Gates, follows: bool| limits.judge(&replayed(follows)).remove(0);
+        let judged = |limits: &Gates, follows: bool| limits.judge(&replayed(follows), None).remove(0);
         // A joint that crept before has no dead time.
         let crept = judged(&limits, true);
         assert_eq!((crept.kept, crept.worst, crept.joint), (false, None, None));
@@ -180,7 +187,7 @@ mod tests {
     fn a_limit_in_metres_judges_no_joint_that_turns() {
         let in_metres = Gate { kind: JointKind::Slides, ..gate("rms", 0.0) };
         let limits = Gates { gates: vec![in_metres], empty_is_kept: true };
-        let judged = limits.judge(&replayed(false)).remove(0);
+        let judged = limits.judge(&replayed(false), None).remove(0);
         assert_eq!((judged.unit.as_str(), judged.kept, judged.joint), ("m", true, None));
     }
 }

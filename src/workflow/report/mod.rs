@@ -3,24 +3,30 @@
 pub mod advice;
 mod analysis;
 mod document;
+mod failure;
 mod gates;
 mod identity;
 mod outcome;
+mod tool;
 
 use std::path::PathBuf;
 
 pub use analysis::{Analysis, analyse};
 use analysis::{aligned, taken};
 pub use document::Document;
+pub use failure::ReportFailure;
 pub use gates::{GateResult, Gates};
 pub use identity::{LogFile, log_files};
 pub use outcome::{Alignment, Report};
+pub use tool::Tool;
 
 use super::{
     carried::{Carried, PLAN, Schedule},
     plan::PlanDocument,
 };
 use crate::{
+    arm::ArmError,
+    input_file,
     log::{LogError, ReadOptions, Recording, read_recording},
     remark::{Code, Remarks},
     replay::{Profiles, Rules},
@@ -33,6 +39,10 @@ pub struct Inputs {
     pub logs: Vec<PathBuf>,
     /// What to read, where the log alone does not tell.
     pub read: ReadOptions,
+    /// The URDF of the arm, in place of what the log holds of it.
+    pub urdf: Option<PathBuf>,
+    /// The link of the URDF that is the tool; `None`: where the arm ends.
+    pub tool: Option<String>,
     /// Thresholds and windows.
     pub rules: Rules,
     /// Limits that the caller sets.
@@ -43,7 +53,8 @@ pub struct Inputs {
 ///
 /// # Errors
 ///
-/// [`LogError`] if the log cannot be read or holds no planned and measured joints.
+/// [`ReportFailure`] if the log cannot be read or holds no planned and measured joints, or if the URDF that was given
+/// is of no arm.
 ///
 /// ```
 /// use hydrotrace::workflow::report::{Inputs, run};
@@ -51,18 +62,23 @@ pub struct Inputs {
 /// let logs = vec!["sample-logs/panel-install.mcap".into()];
 /// let report = run(&Inputs { logs, ..Inputs::default() })?;
 /// assert!(report.replay.transitions.len() > 10 && report.gates_kept());
-/// # Ok::<(), hydrotrace::log::LogError>(())
+/// # Ok::<(), hydrotrace::workflow::report::ReportFailure>(())
 /// ```
-pub fn run(inputs: &Inputs) -> Result<Report, LogError> {
-    report(read_recording(&inputs.logs, &inputs.read)?, inputs)
+pub fn run(inputs: &Inputs) -> Result<Report, ReportFailure> {
+    let given = inputs.urdf.as_ref().map(|path| {
+        input_file::read_to_string(path).map_err(|source| ReportFailure::Read { path: path.clone(), source })
+    });
+    let mut read = inputs.read.clone();
+    read.description = given.transpose()?.or(read.description);
+    report(read_recording(&inputs.logs, &read)?, inputs)
 }
 
 /// Analyses the recording that was read of the logs.
 ///
 /// # Errors
 ///
-/// [`LogError`] if plan and measurement never overlap.
-pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, LogError> {
+/// [`ReportFailure`] if plan and measurement never overlap, or if the arm that was given is none.
+pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, ReportFailure> {
     let carried = Carried::of(&recording);
     let mut remarks = recording.remarks.clone();
     carried.remark_altered(&mut remarks);
@@ -70,10 +86,21 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, LogEr
     let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
     let (alignment, pairs) = aligned(taken(&mut recording), &inputs.rules, &mut remarks);
     if pairs.is_empty() {
-        return Err(LogError::NoOverlap { planned_s, measured_s });
+        return Err(LogError::NoOverlap { planned_s, measured_s }.into());
     }
     let Analysis { alignment, pairs, replay } = Analysis::of(alignment, pairs, &inputs.rules);
-    let gates = inputs.gates.judge(&replay);
+    let arm = match tool::arm(&recording, &carried, inputs, &pairs) {
+        // A joint that the log lacks is no fault of what was given.
+        Some(Err(why))
+            if (inputs.urdf.is_some() || inputs.tool.is_some())
+                && !matches!(why, ArmError::JointsMissing { .. }) =>
+        {
+            return Err(ReportFailure::Arm(Box::new(why)));
+        }
+        arm => arm,
+    };
+    let tool = Tool::of(arm, &pairs, &inputs.rules);
+    let gates = inputs.gates.judge(&replay, tool.found());
     let front = front(&carried, &mut remarks);
     let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let named = |key: &str| recording.metadata.values().find_map(|entries| entries.get(key).cloned());
@@ -90,6 +117,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, LogEr
         source: recording.source,
         alignment,
         replay,
+        tool,
         gates,
         remarks,
         profiles: Profiles::of(&pairs),

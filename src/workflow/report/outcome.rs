@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::gates::GateResult;
+use super::{gates::GateResult, tool::Tool};
 use crate::{
     log::SourceInfo,
     remark::Remarks,
@@ -51,6 +51,8 @@ pub struct Report {
     pub alignment: Vec<Alignment>,
     /// What was found.
     pub replay: Replay,
+    /// What that makes at the tool.
+    pub tool: Tool,
     /// The limits that were set, each with its outcome.
     pub gates: Vec<GateResult>,
     /// What was doubtful.

@@ -55,7 +55,7 @@ fn every_verb_writes_the_plots_of_its_page() {
     let report = figures(&["report", RUN]);
     let expected: Vec<String> = (1..=6).map(|k| format!("joint-{k:02}-J{k}.svg")).collect();
     let mut expected: Vec<&str> = expected.iter().map(String::as_str).collect();
-    expected.extend(["lag.svg", "transitions-01.svg", "transitions-02.svg"]);
+    expected.extend(["lag.svg", "tool.svg", "transitions-01.svg", "transitions-02.svg"]);
     // The log carries the plans that its own was chosen from.
     expected.splice(0..0, ["front-jerk-power.svg", "front-time-jerk.svg", "front-time-power.svg"]);
     assert_eq!(names(&report), expected);

@@ -18,6 +18,7 @@ mod simulate;
 mod spared;
 mod tables;
 mod terminal;
+mod tool;
 mod trajectory;
 mod view;
 mod whole_loop;

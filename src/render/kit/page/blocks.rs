@@ -36,7 +36,7 @@ fn list(facts: &[Fact]) -> Markup {
 }
 
 /// A table that scrolls by itself where the screen is narrow.
-fn table(table: &Table) -> Markup {
+pub(in crate::render) fn table(table: &Table) -> Markup {
     let class = |k: usize| match table.columns.get(k).map(|column| column.align) {
         Some(Align::Left) => "word",
         _ => "number",

@@ -9,8 +9,9 @@ pub(in crate::render) mod chart;
 pub(in crate::render) mod envelope;
 mod frame;
 pub(in crate::render) mod paper;
+pub(in crate::render) mod scene;
 pub(in crate::render) mod strip;
 
-pub(in crate::render) use blocks::{blocks, headed};
+pub(in crate::render) use blocks::{blocks, headed, table};
 pub(in crate::render) use card::{card, next_steps, verdict};
 pub(in crate::render) use frame::{Chapter, Plots, page};

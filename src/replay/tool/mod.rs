@@ -1,0 +1,147 @@
+//! The tool of a run: how far it was from its plan, along and across the way, when it came to rest, and by which joint.
+
+mod deviation;
+mod instants;
+mod outcome;
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+pub use outcome::{ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst};
+
+use super::Rules;
+use crate::{arm::Kinematics, series::Pair};
+use deviation::{angle_rad, deviation};
+use instants::Instants;
+
+/// The tool of an arm over a run, and its way; `None` where a joint of the arm is not among the pairs, or all of them
+/// share no instant. O(n) in instants.
+pub fn tool_replay(arm: &Kinematics, pairs: &[Pair], rules: &Rules) -> Option<(ToolReplay, ToolPath)> {
+    let of = |(name, kind)| pairs.iter().find(|pair| pair.name == name && pair.kind == kind);
+    let own: Vec<&Pair> = arm.joints().map(of).collect::<Option<_>>()?;
+    let instants = Instants::of(&own, rules);
+    let path = path(arm, &instants, rules);
+    let rests = rests(arm, &instants, &path, rules);
+    let worst = (0..path.t_s.len()).max_by(|a, b| path.error_m[*a].total_cmp(&path.error_m[*b]))?;
+    let turned = (0..path.t_s.len())
+        .max_by(|a, b| path.orientation_rad[*a].total_cmp(&path.orientation_rad[*b]))
+        .unwrap_or(worst);
+    let [planned, measured] = instants.at(worst);
+    let along_m = Some(path.along_m[worst]).filter(|along_m| along_m.is_finite());
+    let window_s = [path.t_s[0], path.t_s[path.t_s.len() - 1]];
+    let found = ToolReplay {
+        tool: arm.tool_name().to_owned(),
+        samples: path.t_s.len(),
+        sample_interval_s: (window_s[1] - window_s[0]) / (path.t_s.len() - 1).max(1) as f64,
+        window_s,
+        rms_m: rms(path.error_m.iter().copied()),
+        rms_orientation_rad: rms(path.orientation_rad.iter().copied()),
+        worst_orientation_rad: path.orientation_rad[turned],
+        worst_orientation_s: path.t_s[turned],
+        worst: ToolWorst {
+            time_s: path.t_s[worst],
+            along_m,
+            across_m: along_m.map(|along_m| across_m(path.error_m[worst], along_m)),
+            deviation: deviation(arm, planned, measured),
+        },
+        split: split(&path),
+        rests,
+    };
+    Some((found, path))
+}
+
+/// One instant: planned and measured position, m, and the angle between the orientations, rad.
+type Row = ([Vector3<f64>; 2], f64);
+
+fn path(arm: &Kinematics, instants: &Instants, rules: &Rules) -> ToolPath {
+    let row = |i: usize| -> Row {
+        let poses = instants.at(i).map(|position| arm.tool_pose(position));
+        (poses.each_ref().map(|pose| pose.translation.vector), angle_rad(&poses))
+    };
+    let rows: Vec<Row> = (0..instants.t_s.len()).into_par_iter().map(row).collect();
+    let mut along_m = vec![f64::NAN; rows.len()];
+    for segment in &instants.segments {
+        for i in segment.clone() {
+            let [low, high] = instants.around(segment, i, 0.5 * rules.planned_window_s);
+            let step_m = rows[high].0[0] - rows[low].0[0];
+            let slow_m = rules.sliding.stop_speed * (instants.t_s[high] - instants.t_s[low]);
+            if let Some(direction) = step_m.try_normalize(slow_m.max(1e-12)) {
+                along_m[i] = (rows[i].0[0] - rows[i].0[1]).dot(&direction);
+            }
+        }
+    }
+    ToolPath {
+        t_s: instants.t_s.clone(),
+        planned_m: rows.iter().map(|row| row.0[0].into()).collect(),
+        measured_m: rows.iter().map(|row| row.0[1].into()).collect(),
+        error_m: rows.iter().map(|row| (row.0[0] - row.0[1]).norm()).collect(),
+        along_m,
+        orientation_rad: rows.iter().map(|row| row.1).collect(),
+        segments: instants.segments.clone(),
+    }
+}
+
+fn across_m(error_m: f64, along_m: f64) -> f64 {
+    (error_m * error_m - along_m * along_m).max(0.0).sqrt()
+}
+
+fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (count, squares) = values.fold((0_usize, 0.0), |(n, sum), value| (n + 1, sum + value * value));
+    (squares / count.max(1) as f64).sqrt()
+}
+
+fn split(path: &ToolPath) -> Option<ToolSplit> {
+    let moving = || path.error_m.iter().zip(&path.along_m).filter(|(_, along_m)| along_m.is_finite());
+    let (along, across) = (
+        || moving().map(|(_, along_m)| *along_m),
+        || moving().map(|(error_m, along_m)| across_m(*error_m, *along_m)),
+    );
+    let samples = moving().count();
+    (samples > 0).then(|| ToolSplit {
+        rms_along_m: rms(along()),
+        rms_across_m: rms(across()),
+        worst_along_m: along().map(f64::abs).fold(0.0, f64::max),
+        worst_across_m: across().fold(0.0, f64::max),
+        samples,
+    })
+}
+
+/// Rests of the plan after a motion.
+fn rests(arm: &Kinematics, instants: &Instants, path: &ToolPath, rules: &Rules) -> Vec<ToolRest> {
+    let speeds: Vec<f64> = arm.joints().map(|(_, kind)| rules.sizes(kind).stop_speed).collect();
+    let t_s = &instants.t_s;
+    let is_still = |segment: &Range<usize>, i: usize| {
+        let [low, high] = instants.around(segment, i, rules.window_min_s);
+        let time_s = t_s[high] - t_s[low];
+        let ([from, _], [to, _]) = (instants.at(low), instants.at(high));
+        time_s > 0.0
+            && from.iter().zip(to).zip(&speeds).all(|((a, b), speed)| (b - a).abs() <= speed * time_s)
+    };
+    let mut found = Vec::new();
+    for segment in &instants.segments {
+        let still: Vec<bool> = segment.clone().map(|i| is_still(segment, i)).collect();
+        let mut start = segment.start;
+        for stretch in still.chunk_by(|a, b| a == b) {
+            let own = start..start + stretch.len();
+            start = own.end;
+            let [from_s, to_s] = [t_s[own.start], t_s[own.end - 1]];
+            if !stretch[0] || own.start == segment.start || to_s - from_s < rules.min_rest_s {
+                continue;
+            }
+            let settled_s = to_s - rules.tool_rest_s.min(0.5 * (to_s - from_s));
+            let settled = own.start + t_s[own.clone()].partition_point(|t| *t < settled_s)..own.end;
+            let [planned, measured] = instants.mean(settled.clone());
+            found.push(ToolRest {
+                from_s,
+                to_s,
+                at_end: own.end == t_s.len(),
+                arrival_m: path.error_m[own.start],
+                samples: settled.len(),
+                deviation: deviation(arm, &planned, &measured),
+            });
+        }
+    }
+    found
+}

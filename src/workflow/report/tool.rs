@@ -1,0 +1,86 @@
+//! The arm of a run, and what it makes of the joints' errors at the tool.
+
+use super::Inputs;
+use crate::{
+    arm::{ArmError, Kinematics},
+    log::Recording,
+    replay::{Rules, ToolPath, ToolReplay, tool_replay},
+    series::{JointKind, Pair},
+    workflow::carried::Carried,
+};
+
+/// What is known of the tool.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub enum Tool {
+    /// The log holds no arm, and none was given.
+    #[default]
+    NoArm,
+    /// There is an arm, whose tool cannot be placed.
+    Unplaced(ArmError),
+    /// The arm's joints are never known at one instant.
+    Apart,
+    /// The tool against its plan, and its way for plots.
+    Placed(Box<ToolReplay>, ToolPath),
+}
+
+impl Tool {
+    /// What was found at the tool.
+    pub fn found(&self) -> Option<&ToolReplay> {
+        match self {
+            Self::Placed(found, _) => Some(found),
+            _ => None,
+        }
+    }
+
+    /// Why nothing is said of it although there is an arm.
+    pub fn why_not(&self) -> Option<String> {
+        match self {
+            Self::Unplaced(why) => Some(why.to_string()),
+            Self::Apart => Some("the joints of the arm share no instant".to_owned()),
+            Self::NoArm | Self::Placed(..) => None,
+        }
+    }
+
+    /// The tool of a run whose joints are these pairs.
+    pub(super) fn of(arm: Option<Result<Kinematics, ArmError>>, pairs: &[Pair], rules: &Rules) -> Self {
+        match arm {
+            None => Self::NoArm,
+            Some(Err(why)) => Self::Unplaced(why),
+            Some(Ok(arm)) => tool_replay(&arm, pairs, rules)
+                .map_or(Self::Apart, |(found, path)| Self::Placed(Box::new(found), path)),
+        }
+    }
+}
+
+/// What stands for the URDF of a log in errors.
+const IN_LOG: &str = "the URDF in the log";
+
+/// The arm that was given, else that of the log's task, else that of its URDF; `None` without any.
+pub(super) fn arm(
+    recording: &Recording,
+    carried: &Carried,
+    inputs: &Inputs,
+    pairs: &[Pair],
+) -> Option<Result<Kinematics, ArmError>> {
+    let known: Vec<(&str, JointKind)> = pairs.iter().map(|pair| (pair.name.as_str(), pair.kind)).collect();
+    let tool = inputs.tool.as_deref();
+    let given = inputs.urdf.as_ref().map(|path| path.display().to_string());
+    let described = recording
+        .description
+        .as_deref()
+        .map(|text| Kinematics::from_urdf(text, given.as_deref().unwrap_or(IN_LOG), tool, &known));
+    if let Some(tool) = tool.filter(|_| described.is_none()) {
+        let (file, element, found) = ("the log".to_owned(), format!("link {tool:?}"), "no URDF".to_owned());
+        return Some(Err(ArmError::Unexpected { file, element, found, expected: "one".to_owned() }));
+    }
+    if given.is_some() || tool.is_some() {
+        return described;
+    }
+    // A task names its tool, which a URDF does not.
+    let of_task =
+        carried.task_arm().map(|arm| Kinematics::of(arm.chain, "the arm of the task in the log", &known));
+    match of_task {
+        Some(Ok(arm)) => Some(Ok(arm)),
+        of_task => described.or(of_task),
+    }
+}
