@@ -42,7 +42,9 @@ pub(crate) fn write(folder: &Path, bytes: usize) -> Written {
 /// Angle, velocity and acceleration of a motion there and back: each way 4 s, then a rest.
 fn plan(t_s: f64, joint: usize) -> [f64; 3] {
     let period_s = 4.5 + 0.17 * joint as f64;
-    let (way, since_s) = ((t_s / period_s).floor(), t_s.rem_euclid(period_s));
+    // From the way itself: a remainder that rounds to the other side of a period's end would jump.
+    let way = (t_s / period_s).floor();
+    let since_s = (t_s - way * period_s).max(0.0);
     let u = (since_s / 4.0).min(1.0);
     let (sign, from) = if way % 2.0 == 0.0 { (1.0, 0.0) } else { (-1.0, 1.0) };
     let range_rad = 0.9 - 0.1 * joint as f64;

@@ -65,6 +65,7 @@ fn read_only(path: &Path) {
 /// Reads planned and measured series.
 fn recording(path: &Path) {
     let recording = read_recording(&[path.to_owned()], &ReadOptions::default()).unwrap();
+    assert!(recording.remarks.is_empty(), "the log of the benchmark is not sound: {:?}", recording.remarks);
     assert!(!recording.planned.tracks.is_empty());
 }
 
