@@ -20,6 +20,8 @@ impl<'a> Rows<'a> {
                         .flexible(true)
                         .delimiter(byte)
                         .comment(Some(b'#'))
+                        // A row at a time needs no more than itself.
+                        .buffer_capacity(text.len().clamp(64, 1 << 16))
                         .from_reader(text),
                 ),
                 text,
