@@ -20,7 +20,9 @@ use super::{
 use crate::remark::Remarks;
 
 /// First bytes of forms.
+#[cfg(feature = "sqlite")]
 const SQLITE: &[u8] = b"SQLite format 3\0";
+#[cfg(feature = "parquet")]
 const PARQUET: &[u8] = b"PAR1";
 
 /// Opens a file as a log, whatever its form; what is no form known here is left as it is.

@@ -23,6 +23,7 @@ use mcap::{
     write::{NoSeek, Writer},
 };
 
+#[cfg(feature = "sqlite")]
 pub(in crate::log) use definition::ros2msg;
 pub use error::WriteError;
 pub use message::{ControllerState, Point};
