@@ -18,7 +18,7 @@ const IN_A_ROW: usize = 4;
 /// colour-blind readers too if four are shown.
 const COLOURS: [&str; 10] = [
     "#D1495B", "#8C5A3C", "#E682B4", "#783C8C", "#2563A8", "#5A5A5A", "#E8A020", "#968214", "#148C6E",
-    "#148C6E",
+    "#4BB4D2",
 ];
 
 /// The colour of an algorithm, by its name.
