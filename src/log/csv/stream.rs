@@ -240,7 +240,8 @@ mod tests {
         let first = first.replace("set", "set_deg").replace("act", "act_deg");
         let mut stream = TableStream::begin("a.csv", first.as_bytes(), &CsvOptions::default()).unwrap();
         let mut log = stream.log(Vec::new()).unwrap();
-        let after: String = (0..20).map(|k| format!("{:.3},0,0\n", 0.001 * f64::from(k))).collect();
+        let row = |k: u32| format!("0.{k:03},0,0\n");
+        let after: String = (0..20).map(row).collect();
         stream.write(format!("{first}0.4,0\nx,0,0\n0.5,a,0\n{after}").as_bytes(), &mut log).unwrap();
         let said: Vec<(Code, u64)> =
             stream.remarks().as_slice().iter().map(|remark| (remark.code, remark.count)).collect();
