@@ -71,6 +71,12 @@ pub(crate) fn was_read(path: &Path) -> bool {
     identity(path, &found).is_some_and(|file| read().contains(&file))
 }
 
+/// Whether a name leads to this very file.
+pub(crate) fn is_at(file: &File, path: &Path) -> bool {
+    let (Ok(opened), Ok(named)) = (file.metadata(), path.metadata()) else { return false };
+    opened.len() == named.len() && identity(path, &opened) == identity(path, &named)
+}
+
 fn note(path: &Path, found: &Metadata) {
     if REMEMBERED.load(Ordering::Relaxed) && found.is_file() {
         read().extend(identity(path, found));

@@ -53,6 +53,9 @@ pub enum LogError {
     /// The log holds no plan, or no measurement.
     #[error("found no {missing} joint angles; the log has {present}; name them with {fix}")]
     Missing { missing: &'static str, present: String, fix: String },
+    /// What is not found may lie in what could not be read.
+    #[error("{error}; not all of the log could be read: {damage}")]
+    Damaged { error: Box<Self>, damage: String },
     /// Planned and measured joints have no name in common.
     #[error(
         "planned joints ({planned}) and measured joints ({measured}) have no name in common; \

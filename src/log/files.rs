@@ -9,7 +9,7 @@ use super::{
     bag,
     error::LogError,
     file::{Layout, Source, scan},
-    foreign,
+    input::Input,
     looks::LOOKED_AT,
 };
 use crate::remark::{Code, Remarks};
@@ -72,16 +72,31 @@ impl LogFiles {
     ///
     /// [`LogError`] if a file cannot be opened, or a directory is no bag.
     pub fn open(paths: &[PathBuf]) -> Result<Self, LogError> {
-        let mut remarks = Remarks::default();
-        let ordered = paths.iter().any(|path| path.is_dir());
-        let mut doubts = Remarks::default();
-        let open = |path: PathBuf| {
-            count(|passes| passes.opened += 1);
-            let source = foreign::open_log(&path, &mut doubts)?;
-            Ok((path, source))
-        };
-        let files =
-            bag::recording_files(paths, &mut remarks)?.into_iter().map(open).collect::<Result<_, _>>()?;
+        Self::of(paths.iter().cloned().map(Input::Path).collect())
+    }
+
+    /// Opens what one run lies in, files or not.
+    ///
+    /// # Errors
+    ///
+    /// As [`LogFiles::open`].
+    pub fn of(inputs: Vec<Input>) -> Result<Self, LogError> {
+        let (mut remarks, mut doubts) = (Remarks::default(), Remarks::default());
+        let (mut files, mut ordered) = (Vec::new(), false);
+        for input in inputs {
+            let parts = match input {
+                Input::Path(path) => {
+                    ordered |= path.is_dir();
+                    let parts = bag::recording_files(&[path], &mut remarks)?;
+                    parts.into_iter().map(Input::Path).collect()
+                }
+                other => vec![other],
+            };
+            for part in parts {
+                count(|passes| passes.opened += 1);
+                files.push(part.open(&mut doubts)?);
+            }
+        }
         remarks.extend(doubts);
         Ok(Self { files, ordered, remarks })
     }

@@ -15,6 +15,7 @@ mod export;
 mod file;
 mod files;
 mod foreign;
+mod input;
 mod joint_kind;
 mod looks;
 mod options;
@@ -32,10 +33,12 @@ pub use csv::{
 };
 pub use error::LogError;
 pub use export::{ExportError, RunTable};
+pub use file::ReadAt;
 pub use files::{LogFiles, ScannedLog};
 #[doc(hidden)]
 pub use files::{Passes, passes};
 pub use foreign::read_csv;
+pub use input::Input;
 pub use options::{ReadOptions, Selector, Sides, SignalRole, TimeBase, WantedSignal};
 pub use read::{
     read_plan, read_recording,

@@ -15,5 +15,6 @@ pub(super) use block::{Block, Blocks, Loss, records};
 pub(super) use held::Held;
 pub(super) use record::{ChannelRecord, MessageRecord, Opcode, SchemaRecord};
 pub(super) use scan::{Layout, scan};
+pub use source::ReadAt;
 pub(super) use source::Source;
 pub(super) use span::Span;

@@ -2,6 +2,7 @@
 //! memory that is a file would end the process where a file is cut.
 
 use std::{
+    fmt::Debug,
     fs::File,
     io::{self, Read},
     path::Path,
@@ -9,6 +10,23 @@ use std::{
 
 use super::span::Span;
 use crate::input_file;
+
+/// Bytes that can be read at any place: an object of a store, a device, a file that a program holds.
+pub trait ReadAt: Debug + Send + Sync {
+    /// Bytes that there are. Asked once, when the log is opened.
+    ///
+    /// # Errors
+    ///
+    /// What keeps it from being known.
+    fn length(&self) -> io::Result<u64>;
+
+    /// Reads bytes from the place `at` on; how many came. None is the end.
+    ///
+    /// # Errors
+    ///
+    /// What keeps them from being read; [`io::ErrorKind::Interrupted`] is tried again.
+    fn read_at(&self, into: &mut [u8], at: u64) -> io::Result<usize>;
+}
 
 /// A file that is open, of the length that it had then.
 #[derive(Debug)]
@@ -21,6 +39,7 @@ pub(in crate::log) struct Source {
 enum Inner {
     File(File),
     Memory(Vec<u8>),
+    Reader(Box<dyn ReadAt>),
 }
 
 impl Source {
@@ -38,6 +57,17 @@ impl Source {
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes)?;
         Ok(bytes.into())
+    }
+
+    /// Bytes elsewhere.
+    pub(in crate::log) fn of_reader(reader: Box<dyn ReadAt>) -> io::Result<Self> {
+        Ok(Self { length: reader.length()?, inner: Inner::Reader(reader) })
+    }
+
+    /// Whether its bytes are those of the file of this name: not unpacked, nor given by a program.
+    #[cfg_attr(not(feature = "sqlite"), expect(dead_code, reason = "for databases that are opened by name"))]
+    pub(in crate::log) fn lies_at(&self, path: &Path) -> bool {
+        matches!(&self.inner, Inner::File(file) if input_file::is_at(file, path))
     }
 
     pub(in crate::log) fn length(&self) -> u64 {
@@ -80,25 +110,36 @@ impl Source {
                 let start = usize::try_from(span.start).unwrap_or(usize::MAX);
                 into.extend(bytes.iter().skip(start).take(length));
             }
-            Inner::File(file) => {
-                into.resize(length, 0);
-                let mut filled = 0;
-                while filled < length {
-                    match read_at(file, &mut into[filled..], span.start + filled as u64) {
-                        Ok(0) => break,
-                        Ok(count) => filled += count,
-                        Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                        Err(error) => {
-                            into.clear();
-                            return Err(error);
-                        }
-                    }
-                }
-                into.truncate(filled);
-            }
+            Inner::File(file) => fill(into, length, span.start, |into, at| read_at(file, into, at))?,
+            Inner::Reader(reader) => fill(into, length, span.start, |into, at| reader.read_at(into, at))?,
         }
         Ok(())
     }
+}
+
+/// Fills `into` with `length` bytes from `start` on, or with what there is; nothing where reading fails.
+fn fill(
+    into: &mut Vec<u8>,
+    length: usize,
+    start: u64,
+    read: impl Fn(&mut [u8], u64) -> io::Result<usize>,
+) -> io::Result<()> {
+    into.resize(length, 0);
+    let mut filled = 0;
+    while filled < length {
+        match read(&mut into[filled..], start + filled as u64) {
+            Ok(0) => break,
+            // What says that it read more than it was given room for is not believed.
+            Ok(count) => filled = (filled + count).min(length),
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => {
+                into.clear();
+                return Err(error);
+            }
+        }
+    }
+    into.truncate(filled);
+    Ok(())
 }
 
 impl From<Vec<u8>> for Source {

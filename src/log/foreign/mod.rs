@@ -25,9 +25,9 @@ const SQLITE: &[u8] = b"SQLite format 3\0";
 #[cfg(feature = "parquet")]
 const PARQUET: &[u8] = b"PAR1";
 
-/// Opens a file as a log, whatever its form; what is no form known here is left as it is.
-pub(super) fn open_log(path: &Path, remarks: &mut Remarks) -> Result<Source, LogError> {
-    let source = open(path).map_err(LogError::file("open", path))?;
+/// What is open as a log, whatever its form; what is no form known here is left as it is.
+pub(super) fn log_of(path: &Path, source: Source, remarks: &mut Remarks) -> Result<Source, LogError> {
+    let source = packed::unpacked(source).map_err(LogError::file("open", path))?;
     let mut start = Vec::new();
     source.read(LOOKED_AT, &mut start).map_err(LogError::file("read", path))?;
     match start.as_slice() {
@@ -60,7 +60,8 @@ pub fn read_csv(path: &Path, options: &CsvOptions) -> Result<CsvRun, CsvError> {
 
 /// The text of a table, packed or not, in text or in Parquet.
 fn table_text(path: &Path) -> io::Result<Vec<u8>> {
-    let source = open(path)?;
+    // A table may be packed whole.
+    let source = packed::unpacked(Source::open(path)?)?;
     let mut start = Vec::new();
     source.read(LOOKED_AT, &mut start)?;
     #[cfg(feature = "parquet")]
@@ -68,13 +69,4 @@ fn table_text(path: &Path) -> io::Result<Vec<u8>> {
         return parquet::table(&source).map_err(io::Error::other);
     }
     source.whole()
-}
-
-/// Opens a file; one that is packed whole, unpacked.
-///
-/// # Errors
-///
-/// As the file system says, or where what is packed is broken.
-fn open(path: &Path) -> io::Result<Source> {
-    packed::unpacked(Source::open(path)?)
 }

@@ -71,9 +71,7 @@ impl Place {
     fn of(path: &Path, source: &Source) -> io::Result<Self> {
         let journal = with_ending(path, "-wal");
         let journal = fs::metadata(&journal).is_ok_and(|found| found.len() > 0).then_some(journal);
-        let packed =
-            fs::metadata(path).map_or(true, |found| found.len() != source.length() || !found.is_file());
-        if journal.is_none() && !packed {
+        if journal.is_none() && source.lies_at(path) {
             return Ok(Self::There(path.to_owned()));
         }
         let (file, mut into) = Temporary::new()?;

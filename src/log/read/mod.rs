@@ -21,7 +21,7 @@ use super::{
     files::{LogFiles, ScannedFile, ScannedLog},
     options::{ReadOptions, Sides},
 };
-use crate::remark::Remarks;
+use crate::remark::{Code, Remarks};
 use {
     assemble::assemble,
     content::Extracted,
@@ -104,6 +104,27 @@ impl ScannedLog<'_> {
 }
 
 fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
+    let damage: Vec<String> = extracted
+        .remarks
+        .as_slice()
+        .iter()
+        .filter(|remark| {
+            matches!(
+                remark.code,
+                Code::DamagedBytes | Code::DamagedChunk | Code::PartialChunk | Code::NotClosed
+            )
+        })
+        .map(|remark| remark.message.clone())
+        .collect();
+    undamaged(extracted, options).map_err(|error| {
+        if damage.is_empty() {
+            return error;
+        }
+        LogError::Damaged { error: Box::new(error), damage: damage.join("; ") }
+    })
+}
+
+fn undamaged(extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
     let choice = choose(&extracted, options)?;
     for topic in topic_infos(&extracted) {
         ::log::debug!(

@@ -13,7 +13,7 @@ use crate::{
         error::LogError,
         file::{Blocks, Loss, MessageRecord, Opcode, records},
         files::ScannedFile,
-        foreign,
+        input::Input,
     },
     remark::{Code, Remarks},
 };
@@ -44,7 +44,7 @@ pub struct Recovered {
 /// [`LogError`] if `log` is no log at all, or `output` cannot be written.
 pub fn recover(log: &Path, output: &Path) -> Result<Recovered, LogError> {
     let mut doubts = Remarks::default();
-    let source = foreign::open_log(log, &mut doubts)?;
+    let (_, source) = Input::Path(log.to_owned()).open(&mut doubts)?;
     let file = ScannedFile::of(log, &source)?;
     let layout = &file.layout;
     let mut remarks = doubts;

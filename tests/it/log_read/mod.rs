@@ -10,6 +10,7 @@ mod definitions;
 mod determinism;
 mod doubts;
 mod encode;
+mod failing;
 mod file;
 mod forms;
 mod json;

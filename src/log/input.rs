@@ -1,0 +1,57 @@
+//! What a log is read from: a file, bytes, or anything that gives bytes at a place.
+
+use std::path::PathBuf;
+
+use super::{
+    error::LogError,
+    file::{ReadAt, Source},
+    foreign,
+};
+use crate::remark::Remarks;
+
+/// One file of a run, wherever its bytes are.
+#[derive(Debug)]
+pub enum Input {
+    /// A file, or the directory of a bag, which stands for its files.
+    Path(PathBuf),
+    /// Bytes in memory.
+    Bytes {
+        /// What remarks and errors call them.
+        name: String,
+        /// All of the log.
+        data: Vec<u8>,
+    },
+    /// Bytes that are read where they are wanted.
+    Reader {
+        /// What remarks and errors call them.
+        name: String,
+        /// Gives them.
+        reader: Box<dyn ReadAt>,
+    },
+}
+
+impl From<PathBuf> for Input {
+    fn from(path: PathBuf) -> Self {
+        Self::Path(path)
+    }
+}
+
+impl Input {
+    /// Opens it as a log, whatever its form.
+    pub(super) fn open(self, remarks: &mut Remarks) -> Result<(PathBuf, Source), LogError> {
+        let (name, source) = match self {
+            Self::Path(path) => {
+                let source = Source::open(&path).map_err(LogError::file("open", &path))?;
+                (path, source)
+            }
+            Self::Bytes { name, data } => (name.into(), data.into()),
+            Self::Reader { name, reader } => {
+                let name = PathBuf::from(name);
+                let source = Source::of_reader(reader).map_err(LogError::file("open", &name))?;
+                (name, source)
+            }
+        };
+        let source = foreign::log_of(&name, source, remarks)?;
+        Ok((name, source))
+    }
+}
