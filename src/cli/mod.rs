@@ -2,6 +2,7 @@
 //!
 //! A verb is a file with its arguments, `Run`, and two lines here: `mod` and a row of `verbs!`.
 
+mod answer;
 mod columns;
 mod compare;
 mod completions;
@@ -85,6 +86,7 @@ macro_rules! verbs {
 
 verbs! {
     Demo demo,
+    Answer answer,
     Report report,
     Compare compare,
     Plan plan,
@@ -112,6 +114,7 @@ verbs! {
     name = "hydrotrace",
     version,
     max_term_width = 100,
+    override_usage = "hydrotrace [OPTIONS] <COMMAND>\n       hydrotrace [OPTIONS] LOG...    (the answer in eight lines)",
     after_help = "Exit codes: 0 finished, 1 failed, 2 bad usage, 3 finished with remarks on the data, \
                   4 finished but a limit (--max-..., --min-...) was not kept."
 )]
@@ -133,7 +136,9 @@ struct Args {
 /// the data, and 4 if it finished but a limit was not kept. A reader of standard output that closes it early
 /// is no failure.
 pub fn main() -> ExitCode {
-    let matches = Args::command().color(terminal::early_choice(env::args_os())).get_matches();
+    let matches = Args::command()
+        .color(terminal::early_choice(env::args_os()))
+        .get_matches_from(answer::with_verb(env::args_os().collect()));
     let args = Args::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let choice = terminal::set_up(args.terminal);
     input_file::remember();

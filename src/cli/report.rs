@@ -1,6 +1,6 @@
 //! `report`
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::{
     CliError, Outcome, Run,
@@ -14,7 +14,7 @@ use crate::{
     render::report as words,
     workflow::{
         fit::LimitsFile,
-        report::{Document, Inputs, Report, run},
+        report::{Document, Inputs, Machine, run},
     },
 };
 
@@ -23,6 +23,7 @@ Examples:
   hydrotrace report run.mcap
   hydrotrace report run.mcap --json -o report.json
   hydrotrace report run.mcap --html -o run.html
+  hydrotrace report run.mcap --why
   hydrotrace report run.mcap --max-transition-peak-deg 0.5
   hydrotrace report run.mcap --urdf robot.urdf --max-tool-error-mm 20
   hydrotrace report run.mcap --planned /arm/controller_state:output.positions
@@ -49,8 +50,12 @@ pub(super) struct Args {
     #[command(flatten)]
     figures: FigureArgs,
 
-    /// Show on the page the machine of FILE, which `fit` wrote
-    #[arg(long, value_name = "FILE", requires = "html")]
+    /// Say why each start is late: dead band, lag, limits; by a model fitted to this run
+    #[arg(long)]
+    why: bool,
+
+    /// The same by the machine of FILE, which `fit` wrote; a page shows that machine too
+    #[arg(long, value_name = "FILE")]
     limits: Option<PathBuf>,
 
     /// List every transition instead of the worst
@@ -94,8 +99,14 @@ struct FormatArgs {
 }
 
 impl Args {
-    fn request(&self) -> Inputs {
+    fn request(&self, limits: Option<&LimitsFile>) -> Inputs {
+        let machine = match limits {
+            Some(file) => Machine::Known(Box::new(file.fit.clone())),
+            None if self.why => Machine::OfThisRun,
+            None => Machine::None,
+        };
         Inputs {
+            machine,
             logs: self.logs.clone(),
             read: self.read.options(),
             urdf: self.urdf.clone(),
@@ -115,27 +126,27 @@ impl Run for Args {
         let forms = [(json, Form::Json), (csv, Form::Csv), (markdown, Form::Markdown), (html, Form::Html)];
         let target = Target::new(Form::of(&forms, file), file)?;
         self.figures.check()?;
-        let report = run(&self.request())?;
+        let limits = self
+            .limits
+            .as_deref()
+            .map(|path| Ok::<_, CliError>((path, LimitsFile::read(path)?)))
+            .transpose()?;
+        let limits = limits.as_ref().map(|(path, file)| (*path, file));
+        let report = run(&self.request(limits.map(|(_, file)| file)))?;
+        if let Some((path, file)) = limits {
+            // Its joints must be those of the run.
+            file.check_joints(path, report.pairs.iter().map(|pair| pair.name.as_str()))?;
+        }
         let names = self.logs.iter().filter_map(|p| p.file_name()).map(|n| n.to_string_lossy());
         let name = names.collect::<Vec<_>>().join(", ");
         let most = MOST.map(|most| if self.all { usize::MAX } else { most });
         let result = match target.form {
             Form::Json => pretty(&Document::of(&report)),
             Form::Csv => words::csv(&report),
-            Form::Html => {
-                let limits = self.limits.as_deref().map(|path| limits(path, &report)).transpose()?;
-                words::page(&name, &report, limits.as_ref().map(|file| &file.fit), most[1])
-            }
+            Form::Html => words::page(&name, &report, limits.map(|(_, file)| &file.fit), most[1]),
             Form::Text | Form::Markdown => target.text(&words::document(&name, &report, most[0])),
         };
         self.figures.write(console, &target, || words::figures(&report))?;
         console.finish(&target, &result, &report.remarks, &words::verdicts(&report))
     }
-}
-
-/// The machine for the page; its joints must be those of the run.
-fn limits(path: &Path, report: &Report) -> Result<LimitsFile, CliError> {
-    let file = LimitsFile::read(path)?;
-    file.check_joints(path, report.pairs.iter().map(|pair| pair.name.as_str()))?;
-    Ok(file)
 }

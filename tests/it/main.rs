@@ -38,3 +38,4 @@ mod sample_logs;
 mod spline;
 mod support;
 mod tool;
+mod why;

@@ -1,5 +1,6 @@
 //! The words of a report.
 
+mod answer;
 mod csv;
 mod figures;
 mod joints;
@@ -12,7 +13,9 @@ mod tests;
 mod tiles;
 mod tool;
 mod tool_page;
+mod why;
 
+pub(crate) use answer::answer;
 pub(crate) use csv::csv;
 pub(crate) use figures::figures;
 pub(crate) use page::page;

@@ -9,6 +9,7 @@ use super::{
     tiles::transitions,
     tool,
     tool_page::tool_chapter,
+    why,
 };
 use crate::{
     fit::Fit,
@@ -38,6 +39,7 @@ pub(crate) fn page(name: &str, report: &Report, fit: Option<&Fit>, most: usize) 
         Chapter { id: "numbers", heading: "Numbers", body: numbers(&document, report) },
         Chapter { id: "lag", heading: "Lag", body: lags(report) },
     ]);
+    chapters.extend(Chapter::of(document.section(why::ID), "Why late"));
     if let Some(fit) = fit {
         chapters.push(Chapter { id: "fit", heading: "Fitted machine", body: fitted(fit) });
     }

@@ -1,6 +1,6 @@
 //! The report as headings, sentences and tables, worst first.
 
-use super::{method::method, tool};
+use super::{method::method, tool, why};
 use crate::{
     math::range,
     render::{
@@ -24,6 +24,7 @@ pub(crate) fn document(name: &str, report: &Report, most: usize) -> Document {
     ));
     document.sections.extend(tool::section(report, most));
     document.sections.extend(transitions(&report.replay, most));
+    document.sections.extend(why::section(report, most));
     let mut document = document.with(joints(&report.replay, &report.profiles)).remarked(&report.remarks);
     document.sections.extend(method(report));
     document

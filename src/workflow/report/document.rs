@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Alignment, GateResult, LogFile, Report, log_files};
+use super::{Alignment, GateResult, LogFile, Report, Why, log_files};
 use crate::{
     document::PROGRAM,
     log::SourceInfo,
@@ -49,6 +49,9 @@ pub struct Document {
     /// Why nothing is said of the tool although there is an arm; else null.
     #[serde(default)]
     pub no_tool: Option<String>,
+    /// Why starts come late, by the model of a fit; null where that was not asked for, or cannot be told.
+    #[serde(default)]
+    pub why: Option<Why>,
     /// The limits that were set, each with the worst value found against it.
     pub gates: Vec<GateResult>,
     /// Whether every limit is kept; if not, the exit code is 4.
@@ -77,6 +80,7 @@ impl Document {
             whole_run: report.replay.whole_run.clone(),
             tool: report.tool.found().cloned(),
             no_tool: report.tool.why_not(),
+            why: report.why.as_ref().and_then(|why| why.as_ref().ok()).cloned(),
             gates: report.gates.clone(),
             gates_kept: report.gates_kept(),
             rules: report.replay.rules.clone(),

@@ -8,6 +8,7 @@ mod gates;
 mod identity;
 mod outcome;
 mod tool;
+mod why;
 
 use std::path::PathBuf;
 
@@ -19,6 +20,8 @@ pub use gates::{GateResult, Gates};
 pub use identity::{LogFile, log_files};
 pub use outcome::{Alignment, Report};
 pub use tool::Tool;
+use why::Ready;
+pub use why::{LateStart, Machine, Part, Why};
 
 use super::{
     carried::{Carried, PLAN, Schedule},
@@ -27,7 +30,7 @@ use super::{
 use crate::{
     arm::ArmError,
     input_file,
-    log::{LogError, ReadOptions, Recording, read_recording},
+    log::{LogError, ReadOptions, Recording, SignalRole, WantedSignal, read_recording},
     remark::{Code, Remarks},
     replay::{Profiles, Rules},
 };
@@ -47,6 +50,8 @@ pub struct Inputs {
     pub rules: Rules,
     /// Limits that the caller sets.
     pub gates: Gates,
+    /// The machine that says why starts come late.
+    pub machine: Machine,
 }
 
 /// Analyses one run.
@@ -70,6 +75,12 @@ pub fn run(inputs: &Inputs) -> Result<Report, ReportFailure> {
     });
     let mut read = inputs.read.clone();
     read.description = given.transpose()?.or(read.description);
+    if inputs.machine.is_asked_for() {
+        let named: Vec<SignalRole> = read.signals.iter().map(|signal| signal.role).collect();
+        let others =
+            [SignalRole::Command, SignalRole::Valve].into_iter().filter(|role| !named.contains(role));
+        read.signals.extend(others.map(WantedSignal::usual));
+    }
     report(read_recording(&inputs.logs, &read)?, inputs)
 }
 
@@ -82,6 +93,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     let carried = Carried::of(&recording);
     let mut remarks = recording.remarks.clone();
     carried.remark_altered(&mut remarks);
+    let machine = inputs.machine.ready(&recording);
     let sides = [&recording.planned, &recording.measured];
     let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
     let (alignment, pairs) = aligned(taken(&mut recording), &inputs.rules, &mut remarks);
@@ -100,6 +112,8 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         arm => arm,
     };
     let tool = Tool::of(arm, &pairs, &inputs.rules);
+    let explained = |ready: Ready| ready.why(&pairs, &replay).map_err(|error| error.to_string());
+    let why = machine.map(|machine| machine.and_then(explained));
     let gates = inputs.gates.judge(&replay, tool.found());
     let front = front(&carried, &mut remarks);
     let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -118,6 +132,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         alignment,
         replay,
         tool,
+        why,
         gates,
         remarks,
         profiles: Profiles::of(&pairs),

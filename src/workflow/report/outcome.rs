@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{gates::GateResult, tool::Tool};
+use super::{gates::GateResult, tool::Tool, why::Why};
 use crate::{
     log::SourceInfo,
     remark::Remarks,
@@ -53,6 +53,8 @@ pub struct Report {
     pub replay: Replay,
     /// What that makes at the tool.
     pub tool: Tool,
+    /// Why starts come late, if that was asked for; or why it cannot be told.
+    pub why: Option<Result<Why, String>>,
     /// The limits that were set, each with its outcome.
     pub gates: Vec<GateResult>,
     /// What was doubtful.

@@ -1,5 +1,6 @@
 //! The built binary, as an operator and a script meet it.
 
+mod answer;
 mod carried;
 mod columns;
 mod compare;

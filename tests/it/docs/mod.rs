@@ -30,6 +30,7 @@ macro_rules! pages {
 pages! {
     readme: "README.md"
     guide: "docs/guide/README.md"
+    answer: "docs/guide/answer.md"
     compare: "docs/guide/compare.md"
     demo: "docs/guide/demo.md"
     excite: "docs/guide/excite.md"

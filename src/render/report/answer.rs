@@ -1,0 +1,153 @@
+//! A run in eight lines: where, how far off, how late, and what to type next.
+
+use std::path::PathBuf;
+
+use super::{
+    method::method,
+    tables::{by_peak, mostly_lag, verdicts},
+    tool, why,
+};
+use crate::{
+    math::median,
+    render::{
+        kit::{Block, Document, Fact, Id, Section, Sentence, argument, command, counted, fact, mm, ms},
+        metric::position,
+    },
+    replay::{Replay, Transition},
+    workflow::report::{
+        Report,
+        advice::{Advice, advice},
+    },
+};
+
+/// What a reader wants to know first; how the numbers are made too, if that is to be explained. `logs` are the files as they were given, for the next command.
+pub(crate) fn answer(name: &str, report: &Report, logs: &[PathBuf], explain: bool) -> Document {
+    let replay = &report.replay;
+    let interval_s = replay.joints.iter().map(|joint| joint.sample_interval_s).fold(0.0, f64::max);
+    let rate = if interval_s > 0.0 { format!(" at {:.0} Hz", 1.0 / interval_s) } else { String::new() };
+    let run =
+        format!("{:.1} s, {}{rate}", report.source.duration_s, counted(report.alignment.len(), "joint"));
+    let mut facts = vec![fact("run", run)];
+    facts.extend(at_tool(report));
+    facts.push(worst(replay));
+    facts.extend(late(report));
+    facts.extend(starts(replay));
+    facts.extend(whole(replay));
+    facts.extend(verdicts(report).iter().map(|verdict| fact("limit", verdict.to_string())));
+    facts.extend(doubts(report));
+    let (aim, line) = next(report, logs);
+    let next = Section::plain(Id::NEXT, [Block::from(Sentence::advice(aim)), Block::Command(line)]);
+    let mut document = Document { facts, ..Document::titled(name) }.with(next);
+    document.sections.extend(method(report).filter(|_| explain));
+    document
+}
+
+fn at_tool(report: &Report) -> Option<Fact> {
+    let Some(found) = report.tool.found() else {
+        let why = report.tool.why_not()?;
+        return Some(fact("tool", format!("not known: {why}")));
+    };
+    let worst = &found.worst;
+    let end = found
+        .end()
+        .map_or(String::new(), |end| format!(", {} mm at rest at the end", mm(end.deviation.error_m)));
+    let cause = tool::main_cause(&worst.deviation).map_or(String::new(), |cause| format!("; {cause}"));
+    Some(fact("tool", format!("{} mm off at {:.1} s{end}{cause}", mm(worst.deviation.error_m), worst.time_s)))
+}
+
+fn worst(replay: &Replay) -> Fact {
+    let found = by_peak(replay);
+    let Some(worst) = found.first() else { return fact("starts", "no planned start from rest") };
+    let late = match worst.onset_delay_s {
+        Some(delay_s) if delay_s >= 0.0 => format!("leaves {} ms late", ms(delay_s)),
+        Some(delay_s) => format!("leaves {} ms early", ms(-delay_s)),
+        None => "has no start that can be timed".to_owned(),
+    };
+    let off = position(worst.joint_kind, worst.peak_error);
+    fact(
+        "worst",
+        format!("{} {late} at {:.1} s; its error peaks at {off}", worst.joint, worst.planned_onset_s),
+    )
+}
+
+/// What makes the worst start late.
+fn late(report: &Report) -> Option<Fact> {
+    if let Err(reason) = report.why.as_ref()? {
+        return Some(fact("why", format!("not told: {reason}")));
+    }
+    let start = why::of(report, &by_peak(&report.replay).first()?.id)?;
+    Some(fact("why", why::phrase(start)))
+}
+
+fn starts(replay: &Replay) -> Option<Fact> {
+    let delays: Vec<f64> = replay.transitions.iter().filter_map(|t: &Transition| t.onset_delay_s).collect();
+    let all = replay.transitions.len();
+    if all == 0 {
+        return None;
+    }
+    let never: usize = replay.joints.iter().map(|joint| joint.unanswered_starts).sum();
+    let never = if never == 0 { String::new() } else { format!("; {never} never answered") };
+    let late = match delays.as_slice() {
+        [] => String::new(),
+        _ => format!(", half of them more than {} ms late", ms(median(delays.clone()))),
+    };
+    Some(fact("starts", format!("{} of {all} timed{late}{never}", delays.len())))
+}
+
+fn whole(replay: &Replay) -> Option<Fact> {
+    let error = replay.whole_run.tracking_error?;
+    let kind = replay.kind();
+    let lag = if mostly_lag(replay).is_some() { "; mostly lag" } else { "" };
+    Some(fact(
+        "error",
+        format!(
+            "{} RMS over the run, {} at most{lag}",
+            position(kind, error.rms),
+            position(kind, error.peak)
+        ),
+    ))
+}
+
+/// How many doubts about the data there are, and the first.
+fn doubts(report: &Report) -> Option<Fact> {
+    let remarks = report.remarks.as_slice();
+    let first = remarks.first()?;
+    let more = match remarks.len() - 1 {
+        0 => String::new(),
+        more => format!(" (and {more} more: `report` lists them)"),
+    };
+    Some(fact("doubt", format!("{} x{}: {}{more}", first.code.name(), first.count, first.message)))
+}
+
+/// The most urgent step as a command, and what it is for.
+fn next(report: &Report, logs: &[PathBuf]) -> (String, String) {
+    let names: Vec<String> = logs.iter().map(argument).collect();
+    let joined = names.join(" ");
+    let steps = advice(report);
+    let urgent = steps.iter().find(|step| !matches!(step, Advice::SetLimits | Advice::Compare));
+    match urgent {
+        Some(Advice::ClearDoubts(_)) => {
+            ("To see the doubts about the data, which come first:".to_owned(), command(&["report", &joined]))
+        }
+        Some(Advice::FreeJoint { joint, unanswered, starts }) => (
+            format!(
+                "{joint} leaves {unanswered} of {} unanswered. To see which:",
+                counted(*starts, "planned start")
+            ),
+            command(&["report", &joined]),
+        ),
+        Some(Advice::EaseStarts { .. } | Advice::ShiftCommand { .. }) if report.holds_task => (
+            "To make a command that compensates what this run shows, at half strength first:".to_owned(),
+            command(&["replan", &joined, "--keep-plan", "--gain", "0.5", "-o", "next.mcap"]),
+        ),
+        Some(Advice::EaseStarts { .. } | Advice::ShiftCommand { .. }) => (
+            "To learn lag, dead band and limits of the machine from it:".to_owned(),
+            command(&["fit", &joined, "-o", "limits.toml"]),
+        ),
+        Some(Advice::RecordStarts) => (
+            "To see what the log holds:".to_owned(),
+            command(&["info", names.first().map_or("", String::as_str)]),
+        ),
+        _ => ("To see every start and joint:".to_owned(), command(&["report", &joined])),
+    }
+}

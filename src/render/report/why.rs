@@ -1,0 +1,145 @@
+//! Why starts come late, in words, a table and bars.
+
+use crate::{
+    render::kit::{Block, Column, Id, Section, Sentence, Table, counted, ms},
+    workflow::report::{LateStart, Part, Report, Why},
+};
+
+/// The section of it.
+pub(super) const ID: Id = Id("why");
+
+/// Characters of a bar.
+const WIDE: f64 = 24.0;
+
+/// Beyond this share of a delay that is unexplained, the rest explains nothing.
+const MOSTLY: f64 = 0.5;
+
+/// The parts: what fills the bar, heading, explanation, value.
+type Row = (char, &'static str, &'static str, fn(&LateStart) -> Part);
+
+const PARTS: [Row; 4] = [
+    (
+        '█',
+        "dead band ms",
+        "While what is sent stays below the dead band and static friction holds: gone without both.",
+        |s| s.dead_band,
+    ),
+    (
+        '▒',
+        "lag ms",
+        "Dead time, time constants and what the loop takes to follow: what the model is late without dead band and limits.",
+        |s| s.lag,
+    ),
+    ('░', "limit ms", "Because a limit of speed or acceleration is reached: gone without it.", |s| s.limit),
+    ('?', "unexplained ms", "What would be left without limits and dead band, and is not lag.", |s| {
+        s.unexplained
+    }),
+];
+
+/// The parts of one delay in a phrase, those of note first.
+pub(super) fn phrase(start: &LateStart) -> String {
+    let unexplained_s = start.unexplained.delay_s;
+    if unexplained_s.abs() > MOSTLY * start.onset_delay_s.abs() {
+        return format!(
+            "the model fitted to this run does not explain it ({} ms of {})",
+            ms(unexplained_s),
+            ms(start.onset_delay_s)
+        );
+    }
+    let names = ["dead band", "lag", "limits", "unexplained"];
+    let mut parts: Vec<(f64, &str)> =
+        PARTS.iter().zip(names).map(|(part, name)| (part.3(start).delay_s, name)).collect();
+    parts.retain(|(delay_s, _)| delay_s.abs() >= 0.0005);
+    parts.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    let words: Vec<String> =
+        parts.iter().map(|(delay_s, name)| format!("{} ms {name}", ms(*delay_s))).collect();
+    words.join(", ")
+}
+
+/// What explains a start, if something does.
+pub(super) fn of<'a>(report: &'a Report, id: &str) -> Option<&'a LateStart> {
+    report.why.as_ref()?.as_ref().ok()?.starts.iter().find(|start| start.id == id)
+}
+
+/// A row a start, the latest first; `most` is how many to list.
+pub(super) fn section(report: &Report, most: usize) -> Option<Section> {
+    let blocks = match report.why.as_ref()? {
+        Err(reason) => {
+            vec![Sentence::finding(format!("Why the starts come late cannot be told: {reason}.")).into()]
+        }
+        Ok(why) => explained(why, most),
+    };
+    Some(Section::new(ID, "Why late", blocks))
+}
+
+fn explained(why: &Why, most: usize) -> Vec<Block> {
+    let mut starts: Vec<&LateStart> = why.starts.iter().collect();
+    starts.sort_by(|a, b| b.onset_delay_s.total_cmp(&a.onset_delay_s));
+    let longest_s = starts.iter().map(|start| start.onset_delay_s).fold(1e-3, f64::max);
+    let mut columns = vec![
+        Column::words("joint"),
+        Column::numbers("at s").meaning("When the plan starts."),
+        Column::numbers("delay ms").meaning("Time between plan and joint passing the same speed."),
+        Column::words("of it").meaning("The parts that make a start late, on one scale."),
+    ];
+    for (_, heading, meaning, _) in PARTS {
+        columns.push(Column::numbers(heading).meaning(meaning));
+    }
+    let row = |start: &&LateStart| {
+        let mut cells = vec![
+            start.joint.clone(),
+            format!("{:.2}", start.planned_onset_s),
+            ms(start.onset_delay_s),
+            bar(start, longest_s),
+        ];
+        cells.extend(PARTS.iter().map(|(.., part)| with_interval(&part(start))));
+        cells
+    };
+    let mut blocks: Vec<Block> = Vec::new();
+    if starts.is_empty() {
+        blocks.push(Sentence::finding("No start has a time that a model explains.").into());
+    } else {
+        blocks.push(Table::of(columns, starts.iter().take(most).map(row).collect::<Vec<_>>()).into());
+    }
+    blocks.extend((starts.len() > most).then(|| {
+        Sentence::note(format!("and {} more that are less late (--all lists them)", starts.len() - most))
+            .into()
+    }));
+    if why.untimed > 0 {
+        let count = counted(why.untimed, "more start");
+        blocks.push(
+            Sentence::note(format!("{count} with a time whose parts have none: not explained.")).into(),
+        );
+    }
+    blocks.extend(
+        why.untold
+            .iter()
+            .map(|joint| Sentence::note(format!("{joint}; its delays are not explained.")).into()),
+    );
+    blocks.push(Sentence::note(
+        "█ dead band, ▒ lag, ░ limits, ? unexplained. The measured run is changed by what the fitted model says would differ without its \
+         limits, then without its dead band too; what the delay loses is that part. Lag is the delay of the model that has neither; \
+         the rest is unexplained. In brackets 95 % intervals, from those of the fit.",
+    ).into());
+    blocks
+}
+
+fn with_interval(part: &Part) -> String {
+    let interval =
+        part.interval_s.map_or(String::new(), |[low, high]| format!(" ({}..{})", ms(low), ms(high)));
+    ms(part.delay_s) + &interval
+}
+
+/// The parts that make it late, side by side.
+fn bar(start: &LateStart, longest_s: f64) -> String {
+    let mut sum_s = 0.0;
+    let mut bar = String::new();
+    for (fill, .., part) in PARTS {
+        sum_s += part(start).delay_s.max(0.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few characters")]
+        let end = (WIDE * (sum_s / longest_s).min(1.5)).round() as usize;
+        let more = end.saturating_sub(bar.chars().count());
+        bar.extend(std::iter::repeat_n(fill, more));
+    }
+    bar
+}

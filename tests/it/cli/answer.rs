@@ -1,0 +1,48 @@
+//! A log without a verb.
+
+use crate::support::{json, root, run_args, run_at_root, run_line, said, sample, scratch, stdout};
+
+#[test]
+fn a_log_without_a_verb_is_answered_in_ten_lines_whose_last_runs() {
+    let folder = scratch();
+    for name in ["task-1-run", "pressures-run", "identification-run", "gaps", "still-joint", "power-loss"] {
+        let file = format!("{name}.mcap");
+        std::fs::copy(sample(&file), folder.path().join(&file)).unwrap();
+        let (code, text, error) = said(&run_line(folder.path(), &file));
+        assert!(code == 0 || code == 3, "{name}: {code} {error}");
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines.len() <= 10 && lines[0] == file, "{name}:\n{text}");
+        let next = lines.last().unwrap().trim().strip_prefix("hydrotrace ").unwrap();
+        let (code, _, error) = said(&run_line(folder.path(), next));
+        assert!(code == 0 || code == 3, "{next}: {code} {error}");
+    }
+}
+
+#[test]
+fn the_answer_in_json_is_the_report_with_why() {
+    let answered = json(root(), "sample-logs/task-1-run.mcap");
+    let reported = json(root(), "report sample-logs/task-1-run.mcap --why");
+    assert_eq!(answered, reported);
+    let starts = answered["why"]["starts"].as_array().unwrap();
+    assert!(starts.len() > 10);
+    for start in starts {
+        let parts =
+            ["dead_band", "lag", "limit", "unexplained"].map(|part| start[part]["delay_s"].as_f64().unwrap());
+        let delay_s = start["onset_delay_s"].as_f64().unwrap();
+        assert!((parts.iter().sum::<f64>() - delay_s).abs() < 1e-9, "{start}");
+    }
+}
+
+#[test]
+fn what_is_neither_a_verb_nor_a_file_is_told_so() {
+    let (code, _, error) = said(&run_at_root(&["reprot", "run.mcap"]));
+    assert!(code == 2 && error.contains("'report'"), "{error}");
+    let (code, _, error) = said(&run_at_root(&["nowhere.mcap"]));
+    assert!(code == 1 && error.contains("nowhere.mcap"), "{error}");
+}
+
+#[test]
+fn how_the_numbers_are_made_is_said_on_request() {
+    let run = run_args(root(), &["sample-logs/task-1-run.mcap", "--explain"]);
+    assert!(stdout(&run).contains("\nHOW\n"));
+}
