@@ -12,6 +12,7 @@ mod excite;
 mod export;
 mod figures;
 mod fit;
+mod fleet;
 mod gates;
 mod import;
 mod info;
@@ -90,6 +91,7 @@ verbs! {
     Plan plan,
     Simulate simulate,
     Fit fit,
+    Fleet fleet,
     Excite excite,
     Replan replan,
     Join join,

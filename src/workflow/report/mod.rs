@@ -19,6 +19,8 @@ pub use document::Document;
 pub use failure::ReportFailure;
 pub use findings::{Findings, analysis_id, findings};
 pub use gates::{GateResult, Gates};
+#[cfg(feature = "parquet")]
+pub(crate) use identity::hash;
 pub use identity::{LogFile, log_files};
 pub use outcome::{Alignment, Report};
 pub use tool::Tool;
