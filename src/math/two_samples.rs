@@ -46,14 +46,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_the_test_of_r_and_scipy() {
-        // scipy.stats.ttest_ind(after, before, equal_var=False) of these: t = 2.4495, df = 6, by hand: equal sizes and variances.
-        let before = [1.0, 2.0, 3.0, 4.0];
-        let after = [3.0, 4.0, 5.0, 6.0];
-        let found = difference(&before, &after, (0.0, 0.0, 0.0)).unwrap();
-        // se = sqrt(2 * (5/3) / 4), t = 2 / se = 2.1909 with 6 degrees of freedom: p = 0.0710.
-        assert!((found.value - 2.0).abs() < 1e-12 && (found.p - 0.0710).abs() < 5e-4, "{found:?}");
-        assert!(found.interval[0] < 0.0 && found.interval[1] > 4.0);
+    fn it_is_the_test_of_scipy() {
+        // scipy.stats.ttest_ind(after, before, equal_var=False), its p value and confidence interval.
+        let found = difference(&[1.0, 2.0, 3.3, 4.0], &[3.0, 4.5, 5.0, 6.0, 8.0], (0.0, 0.0, 0.0)).unwrap();
+        assert!((found.p - 0.037_975_036_373_697_51).abs() < 1e-9, "{found:?}");
+        assert!((found.interval[0] - 0.200_673_133_965_830_53).abs() < 1e-9, "{found:?}");
+        assert!((found.interval[1] - 5.249_326_866_034_169).abs() < 1e-9, "{found:?}");
     }
 
     #[test]

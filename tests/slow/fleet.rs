@@ -111,7 +111,7 @@ fn write(folder: &Path, seed: u64) {
                     if k >= MACHINES * DAYS as u64 {
                         return;
                     }
-                    let (machine, day) = (k % MACHINES, (k / MACHINES) as i64);
+                    let (machine, day) = (k % MACHINES, (k / MACHINES).cast_signed());
                     let mut parameters = healthy(machine);
                     if machine == DELAYED.0 {
                         parameters.joints[DELAYED.1].valve.dead_time_s += DRIFT_S * day as f64;

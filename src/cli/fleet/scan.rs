@@ -20,8 +20,8 @@ Examples:
   hydrotrace fleet scan '/data/*/2026-03-*/run.mcap' --into fleet --machine-from path:2
   hydrotrace fleet scan logs.txt --into fleet --machine-from machines.csv
 
-Only logs that are new or have changed are analysed. A scan that was ended, even by a power cut, is taken up by the
-next one; every log has its rows once. A log that cannot be analysed is a row with its error.";
+Only logs that are new or have changed are analysed. A scan that was killed is taken up by the next one; every log has
+its rows once. A log that cannot be analysed is a row with its error.";
 
 /// Analyse the logs that the dataset does not hold yet
 #[derive(Debug, clap::Args)]
