@@ -69,6 +69,8 @@ pub mod rng;
 mod schema;
 mod suggest;
 mod text;
+#[doc(hidden)]
+pub mod threads;
 pub mod units;
 
 // nouns

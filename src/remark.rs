@@ -82,6 +82,10 @@ pub enum Code {
     SentOtherwise,
     /// A model that predicts too badly to make commands from.
     PoorFit,
+    /// Logs among many that cannot be analysed.
+    UnreadableLog,
+    /// Runs among many that name no machine.
+    UnknownMachine,
     /// Something that a command does beyond what the plan does.
     BeyondLimit,
 }

@@ -6,6 +6,9 @@
 /// Nanoseconds in a second.
 pub const NS_PER_S: f64 = 1e9;
 
+/// Seconds in a day.
+pub const SECONDS_PER_DAY: f64 = 86_400.0;
+
 /// One degree, rad. Thresholds that the literature states in degrees are written as multiples.
 pub const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
 

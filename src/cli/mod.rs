@@ -13,6 +13,7 @@ mod excite;
 mod export;
 mod figures;
 mod fit;
+mod fleet;
 mod gates;
 mod import;
 mod info;
@@ -92,6 +93,7 @@ verbs! {
     Plan plan,
     Simulate simulate,
     Fit fit,
+    Fleet fleet,
     Excite excite,
     Replan replan,
     Join join,

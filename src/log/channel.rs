@@ -2,8 +2,6 @@
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use rayon::prelude::*;
-
 use super::{
     decode::{Program, Tree},
     file::{Block, Blocks, ChannelRecord, Layout, Opcode, SchemaRecord, Source, records},
@@ -11,6 +9,7 @@ use super::{
     schema::Definition,
     source::{Role, Spec, spec_for},
 };
+use crate::threads::mapped;
 
 /// How the messages of one channel are read.
 #[derive(Debug, Clone)]
@@ -57,11 +56,8 @@ impl Definitions {
         {
             return all;
         }
-        let inside: Vec<Self> = layout
-            .blocks
-            .par_iter()
-            .map_init(Blocks::new, |blocks, block| Self::inside(blocks, *block, source))
-            .collect();
+        let inside =
+            mapped(&layout.blocks, Blocks::new, |blocks, block| Self::inside(blocks, *block, source));
         for one in inside {
             one.schemas.into_iter().for_each(|(id, schema)| {
                 all.schemas.entry(id).or_insert(schema);

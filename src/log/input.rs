@@ -1,6 +1,6 @@
 //! What a log is read from: a file, bytes, or anything that gives bytes at a place.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{
     error::LogError,
@@ -37,6 +37,14 @@ impl From<PathBuf> for Input {
 }
 
 impl Input {
+    /// Its path, or what its bytes are called.
+    pub fn name(&self) -> &Path {
+        match self {
+            Self::Path(path) => path,
+            Self::Bytes { name, .. } | Self::Reader { name, .. } => Path::new(name),
+        }
+    }
+
     /// Opens it as a log, whatever its form.
     pub(super) fn open(self, remarks: &mut Remarks) -> Result<(PathBuf, Source), LogError> {
         let (name, source) = match self {

@@ -9,6 +9,8 @@ mod bag;
 mod channel;
 mod contents;
 mod csv;
+#[cfg(feature = "parquet")]
+pub mod dataset;
 mod decode;
 mod error;
 mod export;

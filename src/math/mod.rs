@@ -5,9 +5,13 @@ mod lowpass;
 mod paired;
 mod sin_cos;
 mod statistic;
+mod trend;
+mod two_samples;
 
 pub use hermite::{State, cubic, linear, quintic};
 pub use lowpass::lowpass;
 pub use paired::{SignedRank, half_interval, signed_rank};
 pub use sin_cos::sin_cos;
 pub use statistic::{SIGMA_PER_MAD, mad, median, quantile, quantile_sorted, range};
+pub use trend::{Trend, begins, column_levels, false_discovery, theil_sen, trend};
+pub use two_samples::{Difference, difference};

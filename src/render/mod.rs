@@ -5,6 +5,7 @@ pub(crate) mod compare;
 pub(crate) mod demo;
 pub(crate) mod excite;
 pub(crate) mod fit;
+pub(crate) mod fleet;
 pub(crate) mod import;
 pub(crate) mod info;
 pub(crate) mod join;

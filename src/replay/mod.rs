@@ -27,8 +27,6 @@ mod tracking;
 mod transition;
 pub(crate) mod unit;
 
-use rayon::prelude::*;
-
 pub use delay::{measured_starts, measured_stops};
 pub use keyed::{Keyed, Row};
 pub use metric::{
@@ -45,7 +43,7 @@ pub use rules::{Rules, Sizes};
 pub use signals::planned_starts;
 pub use tool::{ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst, tool_replay};
 
-use crate::series::Pair;
+use crate::{series::Pair, threads};
 use concentration::{JointError, concentration};
 use joint::{Joint, joint};
 use tracking::{samples, tracking_error};
@@ -54,7 +52,7 @@ use tracking::{samples, tracking_error};
 const LONG: usize = 200_000;
 
 fn joints<'a>(pairs: &'a [Pair], rules: &Rules) -> Vec<Joint<'a>> {
-    pairs.par_iter().filter_map(|pair| joint(pair, rules)).collect()
+    threads::mapped(pairs, || (), |(), pair| joint(pair, rules)).into_iter().flatten().collect()
 }
 
 /// Analyses one run, a pair a joint. O(n log n) in samples.
@@ -81,7 +79,7 @@ pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
     // Of a long run one joint is at work at a time: each needs a fourth of what all of them hold.
     let long = pairs.iter().any(|pair| pair.t_s.len() > LONG);
     let at_once = if long { 1 } else { pairs.len().max(1) };
-    let (mut joints, path): (Vec<Joint>, _) = rayon::join(
+    let (mut joints, path): (Vec<Joint>, _) = threads::both(
         || pairs.chunks(at_once).flat_map(|some| joints(some, rules)).collect(),
         || if alike { path::path_error(pairs, rules) } else { None },
     );

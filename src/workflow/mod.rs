@@ -5,6 +5,8 @@ pub mod compare;
 pub mod excite;
 pub mod export;
 pub mod fit;
+#[cfg(feature = "parquet")]
+pub mod fleet;
 pub mod import;
 pub mod info;
 pub mod join;

@@ -12,6 +12,7 @@
 
 mod compensation;
 mod detection;
+mod fleet;
 #[cfg(target_os = "linux")]
 mod memory;
 mod real_log;

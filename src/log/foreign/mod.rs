@@ -11,6 +11,9 @@ mod undescribed;
 
 use std::{io, path::Path};
 
+#[cfg(feature = "parquet")]
+pub(super) use parquet::guarded;
+
 use super::{
     csv::{CsvError, CsvOptions, CsvRun, read_csv_bytes},
     error::LogError,

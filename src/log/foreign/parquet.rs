@@ -24,7 +24,7 @@ pub(super) fn table(source: &Source) -> Result<Vec<u8>> {
 
 /// The library panics on some broken files; `None` then. What other threads have to say of a panic of theirs is
 /// lost meanwhile.
-fn guarded<T>(read: impl FnOnce() -> T + UnwindSafe) -> Option<T> {
+pub(in crate::log) fn guarded<T>(read: impl FnOnce() -> T + UnwindSafe) -> Option<T> {
     static ONE: Mutex<()> = Mutex::new(());
     let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
     let usual = panic::take_hook();

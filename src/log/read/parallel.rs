@@ -19,6 +19,7 @@ use crate::{
         source::Spec,
     },
     remark::Code,
+    threads,
 };
 
 /// A block, the file that it is in, the channels of that, and its index.
@@ -66,12 +67,12 @@ pub(super) fn read_blocks(work: &[Work<'_>], specs: &[Spec], joints: &[String], 
         has_tail: false,
         messages: 0,
     };
-    let threads = rayon::current_num_threads();
+    let threads = threads::count();
     let counter = AtomicUsize::new(0);
     let progress =
         Mutex::new(Progress { work, next: 0, waiting: BTreeMap::new(), spare: Vec::new(), unknown: 0, out });
     let moved = Condvar::new();
-    rayon::broadcast(|_| {
+    threads::everywhere(|| {
         let mut blocks = Blocks::new();
         let _release = ReleaseOnPanic { progress: &progress, moved: &moved };
         loop {

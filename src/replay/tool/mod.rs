@@ -7,12 +7,11 @@ mod outcome;
 use std::ops::Range;
 
 use nalgebra::Vector3;
-use rayon::prelude::*;
 
 pub use outcome::{ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst};
 
 use super::Rules;
-use crate::{arm::Kinematics, series::Pair};
+use crate::{arm::Kinematics, series::Pair, threads::numbered};
 use deviation::{angle_rad, deviation};
 use instants::Instants;
 
@@ -60,7 +59,7 @@ fn path(arm: &Kinematics, instants: &Instants, rules: &Rules) -> ToolPath {
         let poses = instants.at(i).map(|position| arm.tool_pose(position));
         (poses.each_ref().map(|pose| pose.translation.vector), angle_rad(&poses))
     };
-    let rows: Vec<Row> = (0..instants.t_s.len()).into_par_iter().map(row).collect();
+    let rows: Vec<Row> = numbered(instants.t_s.len(), row);
     let mut along_m = vec![f64::NAN; rows.len()];
     for segment in &instants.segments {
         for i in segment.clone() {

@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// What the format is called.
-const FORMAT: &str = "hydrotrace.report.v2";
+pub(super) const FORMAT: &str = "hydrotrace.report.v2";
 
 /// A tracking-error report of one run. Times are seconds since the first sample of the run; positions, errors and
 /// speeds of a joint are in its unit, rad or m; errors are planned minus measured.
@@ -65,10 +65,15 @@ pub struct Document {
 impl Document {
     /// The document of a report; reads the logs again, for their digests.
     pub fn of(report: &Report) -> Self {
+        Self::with_logs(report, log_files(&report.paths))
+    }
+
+    /// The same, where the logs are known already.
+    pub(super) fn with_logs(report: &Report, logs: Vec<LogFile>) -> Self {
         Self {
             format: FORMAT.to_owned(),
             program: PROGRAM.to_owned(),
-            logs: log_files(&report.paths),
+            logs,
             machine: report.machine.clone(),
             run: report.run.clone(),
             promised: report.promised,

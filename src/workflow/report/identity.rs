@@ -8,7 +8,11 @@ use std::{
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::{input_file, log::recording_files, remark::Remarks};
+use crate::{
+    input_file,
+    log::{Input, ReadAt, recording_files},
+    remark::Remarks,
+};
 
 /// A file of the run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,8 +34,43 @@ pub fn log_files(paths: &[PathBuf]) -> Vec<LogFile> {
     files
 }
 
+/// The same, of files or not.
+pub(super) fn input_files(inputs: &[Input]) -> Vec<LogFile> {
+    let mut files: Vec<LogFile> = Vec::new();
+    for input in inputs {
+        let found = match input {
+            Input::Path(path) => {
+                files.extend(log_files(std::slice::from_ref(path)));
+                continue;
+            }
+            Input::Bytes { data, .. } => digest(&mut data.as_slice()),
+            Input::Reader { reader, .. } => digest(&mut Stream { reader: reader.as_ref(), at: 0 }),
+        };
+        files.push(named(input.name(), found.ok()));
+    }
+    files.sort_by(|a, b| a.name.cmp(&b.name));
+    files
+}
+
+/// A reader from its start to its end.
+struct Stream<'a> {
+    reader: &'a dyn ReadAt,
+    at: u64,
+}
+
+impl Read for Stream<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let count = self.reader.read_at(into, self.at)?;
+        self.at += count as u64;
+        Ok(count)
+    }
+}
+
 fn log_file(path: &Path) -> LogFile {
-    let digest = digest(path).ok();
+    named(path, input_file::open(path).and_then(|mut file| digest(&mut file)).ok())
+}
+
+fn named(path: &Path, digest: Option<(u64, String)>) -> LogFile {
     LogFile {
         name: path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
         bytes: digest.as_ref().map_or(0, |(bytes, _)| *bytes),
@@ -39,13 +78,27 @@ fn log_file(path: &Path) -> LogFile {
     }
 }
 
-fn digest(path: &Path) -> io::Result<(u64, String)> {
-    let mut file = input_file::open(path)?;
+/// Sixteen hexadecimal digits of the SHA-256 of some texts.
+pub(crate) fn hash(texts: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    let mut hash = Sha256::new();
+    for text in texts {
+        let text = text.as_ref();
+        hash.update((text.len() as u64).to_le_bytes());
+        hash.update(text);
+    }
+    let mut digits = format!("{:x}", hash.finalize());
+    digits.truncate(16);
+    digits
+}
+
+fn digest(file: &mut impl Read) -> io::Result<(u64, String)> {
     let (mut hash, mut length, mut buffer) = (Sha256::new(), 0, vec![0; 1 << 16]);
     loop {
-        match file.read(&mut buffer)? {
-            0 => return Ok((length, format!("{:x}", hash.finalize()))),
-            count => {
+        match file.read(&mut buffer) {
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+            Ok(0) => return Ok((length, format!("{:x}", hash.finalize()))),
+            Ok(count) => {
                 hash.update(&buffer[..count]);
                 length += count as u64;
             }

@@ -4,9 +4,11 @@ pub mod advice;
 mod analysis;
 mod document;
 mod failure;
+mod findings;
 mod gates;
 mod identity;
 mod outcome;
+mod plan_id;
 mod tool;
 mod why;
 
@@ -16,7 +18,10 @@ pub use analysis::{Analysis, analyse};
 use analysis::{aligned, taken};
 pub use document::Document;
 pub use failure::ReportFailure;
+pub use findings::{Findings, analysis_id, findings};
 pub use gates::{GateResult, Gates};
+#[cfg(feature = "parquet")]
+pub(crate) use identity::hash;
 pub use identity::{LogFile, log_files};
 pub use outcome::{Alignment, Report};
 pub use tool::Tool;

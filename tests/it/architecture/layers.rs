@@ -4,7 +4,19 @@ use std::path::Path;
 
 /// Modules by layer; a module may use its own layer's ground rules and everything below.
 const LAYERS: [&[&str]; 5] = [
-    &["units", "rng", "remark", "math", "atomic_file", "input_file", "text", "suggest", "schema", "document"],
+    &[
+        "units",
+        "rng",
+        "remark",
+        "math",
+        "atomic_file",
+        "input_file",
+        "text",
+        "threads",
+        "suggest",
+        "schema",
+        "document",
+    ],
     &["arm", "task", "series", "spline"],
     &["log", "replay", "fit", "plan", "plant"],
     &["workflow"],

@@ -6,6 +6,7 @@ mod columns;
 mod compare;
 mod csv;
 mod figures;
+mod fleet;
 #[cfg(unix)]
 mod hostile;
 mod join;

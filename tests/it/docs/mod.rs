@@ -36,6 +36,7 @@ pages! {
     excite: "docs/guide/excite.md"
     export: "docs/guide/export.md"
     fit: "docs/guide/fit.md"
+    fleet: "docs/guide/fleet.md"
     import: "docs/guide/import.md"
     info: "docs/guide/info.md"
     join: "docs/guide/join.md"

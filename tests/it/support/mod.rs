@@ -2,6 +2,7 @@
 
 pub(crate) mod compensation;
 pub(crate) mod detection;
+pub(crate) mod fleet;
 pub(crate) mod machine;
 pub(crate) mod recovery;
 

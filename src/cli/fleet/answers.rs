@@ -1,0 +1,275 @@
+//! `fleet worst`, `fleet drift`, `fleet effect` and `fleet gate`
+
+use std::path::PathBuf;
+
+use chrono::{DateTime, NaiveDate};
+use clap::ValueEnum;
+
+use super::{
+    CliError, Outcome, Run,
+    console::{Console, Form, Target, spare_inputs},
+    number::{degrees, millimetres, milliseconds},
+};
+use crate::{
+    document::pretty,
+    remark::Remarks,
+    render::{fleet as words, kit},
+    workflow::fleet::{By, Filter, Gate, drift, effect, gate, worst},
+};
+
+/// Rows that are shown without `--all`.
+const MOST: usize = 15;
+
+/// The dataset, and what of it is asked for.
+#[derive(Debug, clap::Args)]
+struct AskArgs {
+    /// The folder of the dataset, as `fleet scan` wrote it
+    #[arg(value_name = "DIR")]
+    dataset: PathBuf,
+
+    /// One joint only
+    #[arg(long, value_name = "JOINT")]
+    joint: Option<String>,
+
+    /// Runs from this day on only: 2026-03-01 or 2026-03-01T12:00:00Z
+    #[arg(long, value_name = "DATE", value_parser = date)]
+    since: Option<i64>,
+}
+
+/// The form of an answer.
+#[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "options of which at most one form is given")]
+struct FormArgs {
+    /// One JSON document
+    #[arg(long, conflicts_with_all = ["csv", "markdown"])]
+    json: bool,
+
+    /// Comma-separated values, in SI units
+    #[arg(long, conflicts_with = "markdown")]
+    csv: bool,
+
+    /// Markdown
+    #[arg(long)]
+    markdown: bool,
+
+    /// Write to FILE instead of standard output; .json, .csv and .md set the form
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+
+    /// List every row instead of the first
+    #[arg(long)]
+    all: bool,
+}
+
+/// What joints are judged by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Metric {
+    /// Largest tracking error after a start
+    Peak,
+    /// Dead time of a start
+    Delay,
+    /// Lag over a run
+    Lag,
+}
+
+impl Metric {
+    fn by(self) -> By {
+        match self {
+            Self::Peak => By::Peak,
+            Self::Delay => By::Delay,
+            Self::Lag => By::Lag,
+        }
+    }
+}
+
+/// A day or an instant, as microseconds since 1970; UTC unless it says otherwise.
+fn date(text: &str) -> Result<i64, String> {
+    let day = NaiveDate::parse_from_str(text, "%Y-%m-%d").ok().and_then(|day| day.and_hms_opt(0, 0, 0));
+    let instant = || DateTime::parse_from_rfc3339(text).ok().map(|at| at.timestamp_micros());
+    day.map(|day| day.and_utc().timestamp_micros()).or_else(instant).ok_or_else(|| {
+        format!("{text:?} is neither a day as 2026-03-01 nor an instant as 2026-03-01T12:00:00Z")
+    })
+}
+
+impl AskArgs {
+    fn filter(&self, machine: Option<&String>) -> Filter {
+        Filter { machine: machine.cloned(), joint: self.joint.clone(), since_us: self.since }
+    }
+}
+
+impl FormArgs {
+    fn target(&self) -> Result<Target<'_>, CliError> {
+        let file = self.output.as_deref();
+        spare_inputs(file, &[])?;
+        let forms = [(self.json, Form::Json), (self.markdown, Form::Markdown), (self.csv, Form::Csv)];
+        Target::new(Form::of(&forms, file), file)
+    }
+
+    fn most(&self) -> usize {
+        if self.all { usize::MAX } else { MOST }
+    }
+
+    /// Writes an answer in the form that was asked for.
+    fn write(
+        &self,
+        console: &mut Console<'_>,
+        [json, csv]: [&dyn Fn() -> String; 2],
+        text: &dyn Fn() -> kit::Document,
+        (remarks, verdicts): (&Remarks, &[kit::Sentence]),
+    ) -> Result<Outcome, CliError> {
+        let target = self.target()?;
+        let result = match target.form {
+            Form::Json => json(),
+            Form::Csv => csv(),
+            _ => target.text(&text()),
+        };
+        console.finish(&target, &result, remarks, verdicts)
+    }
+}
+
+/// The joints with the largest errors, dead times or lags
+#[derive(Debug, clap::Args)]
+pub(super) struct WorstArgs {
+    #[command(flatten)]
+    ask: AskArgs,
+
+    /// One machine only
+    #[arg(long, value_name = "MACHINE")]
+    machine: Option<String>,
+
+    /// What joints are ranked by
+    #[arg(long, value_enum, default_value_t = Metric::Peak)]
+    by: Metric,
+
+    #[command(flatten)]
+    form: FormArgs,
+}
+
+impl Run for WorstArgs {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let found = worst(&self.ask.dataset, &self.ask.filter(self.machine.as_ref()), self.by.by())?;
+        let forms: [&dyn Fn() -> String; 2] = [&|| pretty(&found), &|| words::worst_csv(&found)];
+        self.form.write(console, forms, &|| words::worst(&found, self.form.most()), (&found.remarks, &[]))
+    }
+}
+
+/// The joints that change over the days: how fast, how sure, since when
+#[derive(Debug, clap::Args)]
+pub(super) struct DriftArgs {
+    #[command(flatten)]
+    ask: AskArgs,
+
+    /// One machine only
+    #[arg(long, value_name = "MACHINE")]
+    machine: Option<String>,
+
+    /// One metric only; fewer trends are corrected for
+    #[arg(long, value_enum)]
+    by: Option<Metric>,
+
+    #[command(flatten)]
+    form: FormArgs,
+}
+
+impl Run for DriftArgs {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by.by()]);
+        let found = drift(&self.ask.dataset, &self.ask.filter(self.machine.as_ref()), &by)?;
+        let forms: [&dyn Fn() -> String; 2] = [&|| pretty(&found), &|| words::drift_csv(&found)];
+        self.form.write(console, forms, &|| words::drift(&found, self.form.most()), (&found.remarks, &[]))
+    }
+}
+
+/// What a repair did: before and after at the same starts, against the rest of the fleet
+#[derive(Debug, clap::Args)]
+pub(super) struct EffectArgs {
+    #[command(flatten)]
+    ask: AskArgs,
+
+    /// The machine
+    #[arg(long, value_name = "MACHINE")]
+    machine: String,
+
+    /// When it was changed; runs that begin then are after it
+    #[arg(long, value_name = "DATE", value_parser = date)]
+    at: i64,
+
+    /// One metric only; fewer effects are corrected for
+    #[arg(long, value_enum)]
+    by: Option<Metric>,
+
+    #[command(flatten)]
+    form: FormArgs,
+}
+
+impl Run for EffectArgs {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by.by()]);
+        let found = effect(&self.ask.dataset, &self.machine, self.at, &self.ask.filter(None), &by)?;
+        let forms: [&dyn Fn() -> String; 2] = [&|| pretty(&found), &|| words::effect_csv(&found)];
+        self.form.write(console, forms, &|| words::effect(&found, self.form.most()), (&found.remarks, &[]))
+    }
+}
+
+/// Limits on what joints may drift by; exit code 4 if one is not kept
+#[derive(Debug, clap::Args)]
+pub(super) struct GateArgs {
+    #[command(flatten)]
+    ask: AskArgs,
+
+    /// One machine only
+    #[arg(long, value_name = "MACHINE")]
+    machine: Option<String>,
+
+    /// Growth of the dead time a day, at most
+    #[arg(long, value_name = "MS", value_parser = milliseconds)]
+    max_drift_delay_ms: Option<f64>,
+
+    /// Growth of the lag a day, at most
+    #[arg(long, value_name = "MS", value_parser = milliseconds)]
+    max_drift_lag_ms: Option<f64>,
+
+    /// Growth of the peak error a day, at most
+    #[arg(long, value_name = "DEG", value_parser = degrees)]
+    max_drift_peak_deg: Option<f64>,
+
+    /// Growth of the peak error a day, at most, of joints that slide
+    #[arg(long, value_name = "MM", value_parser = millimetres)]
+    max_drift_peak_mm: Option<f64>,
+
+    /// Limits with nothing to judge are kept: without it they are not
+    #[arg(long)]
+    allow_empty: bool,
+
+    /// One JSON document
+    #[arg(long, conflicts_with = "markdown")]
+    json: bool,
+
+    /// Markdown
+    #[arg(long)]
+    markdown: bool,
+}
+
+impl Run for GateArgs {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let limits = [
+            (By::Delay, "s", self.max_drift_delay_ms),
+            (By::Lag, "s", self.max_drift_lag_ms),
+            (By::Peak, "rad", self.max_drift_peak_deg),
+            (By::Peak, "m", self.max_drift_peak_mm),
+        ];
+        let gates = limits.into_iter().filter_map(|(metric, unit, limit)| {
+            Some(Gate { metric, unit: unit.to_owned(), most_per_day: limit? })
+        });
+        let gates: Vec<Gate> = gates.collect();
+        if gates.is_empty() {
+            return Err(CliError::Usage("no limit is given; --max-drift-delay-ms 5 is one".to_owned()));
+        }
+        let filter = self.ask.filter(self.machine.as_ref());
+        let found = gate(&self.ask.dataset, &filter, &gates, self.allow_empty)?;
+        let form = Form::of(&[(self.json, Form::Json), (self.markdown, Form::Markdown)], None);
+        let target = Target::new(form, None)?;
+        let result = if self.json { pretty(&found) } else { target.text(&words::gate(&found)) };
+        console.finish(&target, &result, &found.remarks, &words::gate_verdicts(&found))
+    }
+}

@@ -1,0 +1,46 @@
+//! `fleet` and what it does.
+
+mod answers;
+mod scan;
+
+use clap::Subcommand;
+
+use super::{CliError, Outcome, Run, console, number, read};
+use console::Console;
+
+const EXAMPLES: &str = "\
+Examples:
+  hydrotrace fleet scan /data/logs --into fleet --machine-from path:2
+  hydrotrace fleet worst fleet --by peak
+  hydrotrace fleet drift fleet
+  hydrotrace fleet effect fleet --machine M07 --at 2026-03-06
+  hydrotrace fleet gate fleet --max-drift-delay-ms 5";
+
+/// Many logs of many machines: which one drifts, since when, did a repair help
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    Scan(scan::Args),
+    Worst(answers::WorstArgs),
+    Drift(answers::DriftArgs),
+    Effect(answers::EffectArgs),
+    Gate(answers::GateArgs),
+}
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        match &self.what {
+            What::Scan(args) => args.run(console),
+            What::Worst(args) => args.run(console),
+            What::Drift(args) => args.run(console),
+            What::Effect(args) => args.run(console),
+            What::Gate(args) => args.run(console),
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! `fleet scan`
+
+use std::{num::NonZeroUsize, path::PathBuf, thread::available_parallelism, time::Duration};
+
+use super::{
+    CliError, Outcome, Run,
+    console::{Console, Target, progress},
+    read::ReadArgs,
+};
+use crate::{
+    document::pretty,
+    render::fleet as words,
+    replay::Rules,
+    workflow::fleet::{Inputs, MachineFrom, scan},
+};
+
+const EXAMPLES: &str = "\
+Examples:
+  hydrotrace fleet scan /data/logs --into fleet
+  hydrotrace fleet scan '/data/*/2026-03-*/run.mcap' --into fleet --machine-from path:2
+  hydrotrace fleet scan logs.txt --into fleet --machine-from machines.csv
+
+Only logs that are new or have changed are analysed. A scan that was killed is taken up by the next one; every log has
+its rows once. A log that cannot be analysed is a row with its error.";
+
+/// Analyse the logs that the dataset does not hold yet
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    /// Folders with logs, patterns ('/data/**/run.mcap'), lists of logs (.txt, a path a line), logs
+    #[arg(required = true, value_name = "SOURCE")]
+    sources: Vec<String>,
+
+    /// The folder of the dataset, which is made if it is not there
+    #[arg(long, value_name = "DIR")]
+    into: PathBuf,
+
+    /// Where the machine's name stands: `log` (metadata entry "machine"), `path:KEY` (a folder KEY=NAME),
+    /// `path:N` (N folders above the log), `topic` (first part of the measured topic), a CSV file with the columns
+    /// path and machine
+    #[arg(long, value_name = "WHERE", default_value = "log")]
+    machine_from: String,
+
+    /// Logs that are analysed at once [default: one a core]
+    #[arg(long, value_name = "N")]
+    workers: Option<NonZeroUsize>,
+
+    /// Print what was done as one JSON document
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let cores = || available_parallelism().map_or(1, NonZeroUsize::get);
+        let inputs = Inputs {
+            sources: self.sources.clone(),
+            into: self.into.clone(),
+            machine: MachineFrom::parse(&self.machine_from)?,
+            workers: self.workers.map_or_else(cores, NonZeroUsize::get),
+            read: self.read.options(),
+            rules: Rules::default(),
+        };
+        let bar = progress(Some(0), "{spinner} {elapsed}  {msg}, {eta} left");
+        bar.enable_steady_tick(Duration::from_millis(200));
+        let done = scan(&inputs, &|now| {
+            bar.set_length(now.of as u64);
+            bar.set_position(now.done as u64);
+            bar.set_message(words::progress(&now));
+        });
+        bar.finish_and_clear();
+        let done = done?;
+        let target = Target::stdout(self.json);
+        let result = if self.json { pretty(&done) } else { target.text(&words::scanned(&done)) };
+        console.finish(&target, &result, &done.remarks, &[])
+    }
+}

@@ -1,0 +1,208 @@
+//! The answers of a fleet in sentences and tables.
+
+use super::{day, name, shown, shown_change, shown_unit};
+use crate::{
+    render::kit::{Document, Id, NONE, Section, Sentence, Table, counted, percent, probability},
+    workflow::fleet::{Drift, Effect, GateResult, Gated, JointEffect, JointTrend, Worst},
+};
+
+fn interval(unit: &str, [low, high]: [f64; 2]) -> String {
+    format!("{} to {}", shown_change(unit, low), shown_change(unit, high))
+}
+
+/// The joints of a fleet, the worst first; `most`: rows that are shown.
+pub(crate) fn worst(worst: &Worst, most: usize) -> Document {
+    let of = format!(
+        "{} of {}: the {} by joint, the worst first.",
+        counted(worst.runs, "run"),
+        counted(worst.machines, "machine"),
+        name(worst.by)
+    );
+    let rows = worst.joints.iter().take(most).map(|joint| {
+        let value = |value: f64| shown(&joint.unit, value);
+        vec![
+            joint.machine.clone(),
+            joint.joint.clone(),
+            shown_unit(&joint.unit).to_owned(),
+            value(joint.median),
+            value(joint.p95),
+            value(joint.largest),
+            joint.above_fleet.map_or(NONE.to_owned(), percent),
+            joint.runs.to_string(),
+            joint.at.as_deref().map_or(NONE, day).to_owned(),
+        ]
+    });
+    let numbers = ["median", "95 % below", "largest", "against fleet %", "runs", "largest on"];
+    let table = Table::new(&["machine", "joint", "unit"], &numbers, rows);
+    let section = Section::plain(Id::SUMMARY, [Sentence::finding(of)]).with(table);
+    let section = section.with_all(more(worst.joints.len(), most));
+    let note =
+        "Against fleet: by how much starts are worse than the same starts of the same plan on all machines.";
+    Document::default().with(section.with(Sentence::note(note))).remarked(&worst.remarks)
+}
+
+/// That rows were left out.
+fn more(all: usize, most: usize) -> Option<Sentence> {
+    (all > most).then(|| Sentence::note(format!("{} more; --all shows them.", all - most)))
+}
+
+fn said(trend: &JointTrend) -> String {
+    let grows = if trend.slope_per_day > 0.0 { "grows" } else { "falls" };
+    let unit = shown_unit(&trend.unit);
+    let since = trend.since.as_deref().map_or(String::new(), |since| format!(", since {}", day(since)));
+    format!(
+        "{} {}: the {} {grows} by {} {unit} a day ({} {unit}, 95 %){since}; q = {}.",
+        trend.machine,
+        trend.joint,
+        name(trend.metric),
+        shown_change(&trend.unit, trend.slope_per_day.abs()).trim_start_matches('+'),
+        interval(&trend.unit, trend.interval_95),
+        probability(trend.q_value),
+    )
+}
+
+/// The trends of a fleet; `most`: rows that are shown.
+pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
+    let found: Vec<&JointTrend> = drift.trends.iter().filter(|trend| trend.found).collect();
+    let of = format!("{} of {}", counted(drift.runs, "run"), counted(drift.machines, "machine"));
+    let first = match (found.len(), drift.trends.len()) {
+        (_, 0) => format!("{of}: no joint has five runs of one plan, which a trend takes."),
+        (0, all) => format!("{of}: no drift found among {}.", counted(all, "trend")),
+        (some, all) => format!("{of}: {some} of {} found.", counted(all, "trend")),
+    };
+    let mut section = Section::plain(Id::SUMMARY, [Sentence::finding(first)]);
+    section = section.with_all(found.iter().take(most).map(|trend| Sentence::finding(said(trend))));
+    if !drift.trends.is_empty() {
+        section = section.with(trends(drift.trends.iter().take(most)));
+    }
+    section = section.with_all(more(drift.trends.len(), most));
+    let note = "Each start is compared with the same start of the same plan. q: share of false discoveries if this trend \
+                and all surer ones count as found; found: q below 5 %.";
+    section = section.with(Sentence::note(note));
+    if drift.too_few > 0 {
+        let few =
+            format!("{} with fewer than five runs of one plan, not judged.", counted(drift.too_few, "trend"));
+        section = section.with(Sentence::note(few));
+    }
+    Document::default().with(section).remarked(&drift.remarks)
+}
+
+fn trends<'a>(trends: impl Iterator<Item = &'a JointTrend>) -> Table {
+    let rows = trends.map(|trend| {
+        vec![
+            trend.machine.clone(),
+            trend.joint.clone(),
+            name(trend.metric).to_owned(),
+            shown_unit(&trend.unit).to_owned(),
+            shown_change(&trend.unit, trend.slope_per_day),
+            interval(&trend.unit, trend.interval_95),
+            probability(trend.q_value),
+            if trend.found { "yes" } else { "no" }.to_owned(),
+            trend.since.as_deref().filter(|_| trend.found).map_or(NONE, day).to_owned(),
+            shown(&trend.unit, trend.level),
+            trend.starts.to_string(),
+            trend.runs.to_string(),
+        ]
+    });
+    let numbers = ["a day", "95 %", "q", "found", "since", "at first", "starts", "runs"];
+    Table::new(&["machine", "joint", "metric", "unit"], &numbers, rows)
+}
+
+/// What a change did.
+pub(crate) fn effect(effect: &Effect, most: usize) -> Document {
+    let first = format!(
+        "{}: {} before {}, {} after.",
+        effect.machine,
+        counted(effect.runs_before, "run"),
+        day(&effect.at),
+        effect.runs_after
+    );
+    let mut section = Section::plain(Id::SUMMARY, [Sentence::finding(first)]);
+    let found: Vec<&JointEffect> = effect.effects.iter().filter(|effect| effect.found).collect();
+    if found.is_empty() {
+        let none = if effect.effects.is_empty() {
+            "Nothing to judge: no joint has three runs of one plan before and after."
+        } else {
+            "No effect found."
+        };
+        section = section.with(Sentence::finding(none));
+    }
+    section = section.with_all(found.into_iter().take(most).map(|one| {
+        let became = if one.change > 0.0 { "larger" } else { "smaller" };
+        let unit = shown_unit(&one.unit);
+        Sentence::finding(format!(
+            "{}: the {} became {became} by {} {unit} ({} {unit}, 95 %), from {} {unit}; change {} of {} machines; q = {}.",
+            one.joint,
+            name(one.metric),
+            shown_change(&one.unit, one.change.abs()).trim_start_matches('+'),
+            interval(&one.unit, one.interval_95),
+            shown(&one.unit, one.before),
+            one.rank,
+            one.of,
+            probability(one.q_value),
+        ))
+    }));
+    if !effect.effects.is_empty() {
+        section = section.with(effects(effect.effects.iter().take(most)));
+    }
+    section = section.with_all(more(effect.effects.len(), most));
+    let note = "Change: after minus before at the same starts of the same plan, less what the other machines changed by in \
+                the same time (usual).";
+    Document::default().with(section.with(Sentence::note(note))).remarked(&effect.remarks)
+}
+
+fn effects<'a>(effects: impl Iterator<Item = &'a JointEffect>) -> Table {
+    let rows = effects.map(|one| {
+        vec![
+            one.joint.clone(),
+            name(one.metric).to_owned(),
+            shown_unit(&one.unit).to_owned(),
+            shown(&one.unit, one.before),
+            shown_change(&one.unit, one.change),
+            interval(&one.unit, one.interval_95),
+            one.usual_change.map_or(NONE.to_owned(), |usual| shown_change(&one.unit, usual)),
+            format!("{} of {}", one.rank, one.of),
+            probability(one.q_value),
+            if one.found { "yes" } else { "no" }.to_owned(),
+            one.starts.to_string(),
+        ]
+    });
+    let numbers = ["before", "change", "95 %", "usual", "rank", "q", "found", "starts"];
+    Table::new(&["joint", "metric", "unit"], &numbers, rows)
+}
+
+/// The limits, each with what was found.
+pub(crate) fn gate(gated: &Gated) -> Document {
+    Document::default().with(Section::plain(Id::SUMMARY, gate_verdicts(gated))).remarked(&gated.remarks)
+}
+
+/// The limits as verdicts.
+pub(crate) fn gate_verdicts(gated: &Gated) -> Vec<Sentence> {
+    gated.gates.iter().map(verdict).collect()
+}
+
+fn verdict(gate: &GateResult) -> Sentence {
+    let unit = shown_unit(&gate.unit);
+    let most = shown_change(&gate.unit, gate.most_per_day);
+    let limit =
+        format!("{} growth of {} {unit} a day at most", name(gate.metric), most.trim_start_matches('+'));
+    let found = match &gate.worst {
+        None => "nothing to judge: no joint has five runs of one plan".to_owned(),
+        Some(worst) => {
+            let sure = if worst.found { "found" } else { "not proven" };
+            let trend = format!(
+                "{} {unit} a day at {} {} ({sure}, q = {})",
+                shown_change(&worst.unit, worst.slope_per_day),
+                worst.machine,
+                worst.joint,
+                probability(worst.q_value)
+            );
+            if gate.broken_by > 1 {
+                format!("{trend}, and at {} more", counted(gate.broken_by - 1, "joint"))
+            } else {
+                trend
+            }
+        }
+    };
+    Sentence::Verdict { limit, kept: gate.kept, found }
+}

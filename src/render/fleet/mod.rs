@@ -1,0 +1,94 @@
+//! The words of `fleet`.
+
+mod answers;
+mod csv;
+
+pub(crate) use answers::{drift, effect, gate, gate_verdicts, worst};
+pub(crate) use csv::{drift_csv, effect_csv, worst_csv};
+
+use super::kit::{Block, Document, Id, Section, Sentence, argument, command, counted, deg, fact, mm, ms};
+use crate::{
+    series::JointKind,
+    workflow::fleet::{By, Progress, Scanned},
+};
+
+/// How far a scan is, in a line.
+pub(crate) fn progress(now: &Progress) -> String {
+    let Progress { done, of, failed } = *now;
+    let failed = if failed > 0 { format!(", {failed} failed") } else { String::new() };
+    format!("{done} of {}{failed}", counted(of, "log"))
+}
+
+/// Failed logs that are listed.
+const MOST_FAILED: usize = 10;
+
+/// What a scan did.
+pub(crate) fn scanned(scanned: &Scanned) -> Document {
+    let Scanned { logs, unchanged, analysed, replaced, joints, transitions, failures, .. } = scanned;
+    let again = if *replaced > 0 { format!(", {replaced} of them again") } else { String::new() };
+    let found =
+        format!("{}: {analysed} analysed now{again}, {unchanged} known already.", counted(*logs, "log"));
+    let mut section = Section::plain(Id::SUMMARY, [Sentence::finding(found)]);
+    if *analysed > failures.len() {
+        let written = format!(
+            "Written to {}: {} of {}, {}.",
+            scanned.into.display(),
+            counted(*transitions, "start"),
+            counted(*joints, "joint"),
+            counted(scanned.machines.len(), "machine")
+        );
+        section = section.with(Sentence::finding(written));
+    }
+    let lines = failures.iter().take(MOST_FAILED).map(|failure| {
+        let name = failure.log.rsplit('/').next().unwrap_or_default();
+        fact(name.to_owned(), failure.error.clone())
+    });
+    let lines: Vec<_> = lines.collect();
+    if !lines.is_empty() {
+        let shown = format!("{} could not be analysed:", counted(failures.len(), "log"));
+        section = section.with(Sentence::note(shown)).with(Block::Facts(lines));
+    }
+    let into = argument(&scanned.into);
+    let next = section
+        .with(Sentence::advice("To see which joints change over the days:"))
+        .with(Block::Command(command(&["fleet", "drift", &into])));
+    Document::default().with(next).remarked(&scanned.remarks)
+}
+
+/// What a metric is called.
+fn name(by: By) -> &'static str {
+    match by {
+        By::Peak => "peak error",
+        By::Delay => "dead time",
+        By::Lag => "lag",
+    }
+}
+
+/// The unit that people read, for a unit of a document.
+fn shown_unit(unit: &str) -> &'static str {
+    match unit {
+        "s" => "ms",
+        unit if unit == JointKind::Slides.unit() => "mm",
+        _ => "deg",
+    }
+}
+
+/// A value in the unit that people read, without it.
+fn shown(unit: &str, value: f64) -> String {
+    match shown_unit(unit) {
+        "ms" => ms(value),
+        "mm" => mm(value),
+        _ => deg(value),
+    }
+}
+
+/// The same of a difference, with a decimal more for times.
+fn shown_change(unit: &str, value: f64) -> String {
+    let text = if shown_unit(unit) == "ms" { format!("{:.1}", 1e3 * value) } else { shown(unit, value) };
+    super::kit::signed(value, |_| text.clone())
+}
+
+/// The day of an instant.
+fn day(at: &str) -> &str {
+    at.split('T').next().unwrap_or(at)
+}

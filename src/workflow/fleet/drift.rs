@@ -1,0 +1,271 @@
+//! `fleet drift`: which joint of which machine changes over the days, how fast, and since when.
+//!
+//! A start is compared with the same start of the same plan only. Runs are what varies on its own, so the test and the
+//! interval are of one level a run: that which is left when each start's own level is taken off. The slope is the median
+//! over the starts of each start's Theil-Sen slope.
+
+use std::{collections::BTreeMap, path::Path};
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    failure::FleetFailure,
+    history::{By, Filter, History, Run, Values},
+};
+use crate::{
+    document::PROGRAM,
+    math::{SIGMA_PER_MAD, begins, column_levels, false_discovery, mad, median, theil_sen, trend},
+    remark::Remarks,
+    units::SECONDS_PER_DAY,
+};
+
+/// What the format is called.
+const FORMAT: &str = "hydrotrace.fleet-drift.v1";
+/// Runs of one plan, at least: fewer cannot prove a trend.
+pub(super) const FEWEST_RUNS: usize = 5;
+/// False discoveries among what is found, at most.
+pub(super) const MOST_FALSE: f64 = 0.05;
+
+/// The trends of all joints of a fleet.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Drift {
+    /// Always "hydrotrace.fleet-drift.v1".
+    pub format: String,
+    /// Name and version of the program that wrote it.
+    pub program: String,
+    /// Runs that were looked at.
+    pub runs: usize,
+    /// Machines that they are of.
+    pub machines: usize,
+    /// Share of false discoveries among the trends that are found, at most.
+    pub false_discovery_rate: f64,
+    /// The trends, one a machine, joint and metric: first those that are found, by how far they stand out from the fleet.
+    pub trends: Vec<JointTrend>,
+    /// Machines, joints and metrics with too few runs of one plan to tell a trend.
+    pub too_few: usize,
+    /// Doubts about the data.
+    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
+    pub remarks: Remarks,
+}
+
+/// The trend of one metric of one joint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct JointTrend {
+    /// The machine.
+    pub machine: String,
+    /// The joint.
+    pub joint: String,
+    /// What was measured.
+    pub metric: By,
+    /// Its unit: "s" of delays and lags, else that of the joint, "rad" or "m".
+    pub unit: String,
+    /// Change a day, median over the starts of each start's Theil-Sen slope.
+    pub slope_per_day: f64,
+    /// Its 95 % interval, by Kendall's test on the levels of the runs.
+    pub interval_95: [f64; 2],
+    /// Two-sided probability of such an order of runs by chance.
+    pub p_value: f64,
+    /// The same, corrected for the number of machines, joints and metrics (false-discovery rate).
+    pub q_value: f64,
+    /// Whether the trend is found: q below the false-discovery rate.
+    pub found: bool,
+    /// The slope in robust standard deviations of the slopes of this metric in all joints; null where these are equal.
+    pub stands_out: Option<f64>,
+    /// When the level begins to change, UTC; the first run if it changes all the time.
+    pub since: Option<String>,
+    /// Starts that were followed from run to run.
+    pub starts: usize,
+    /// Runs with such starts.
+    pub runs: usize,
+    /// From the first run to the last, days.
+    pub days: f64,
+    /// Median over the starts at the level of the first three runs.
+    pub level: f64,
+}
+
+/// Days since 1970.
+pub(super) fn days(run: &Run) -> f64 {
+    run.started_us as f64 / 1e6 / SECONDS_PER_DAY
+}
+
+/// An instant as people and machines read it.
+pub(super) fn date(days: f64) -> Option<String> {
+    #[expect(clippy::cast_possible_truncation, reason = "days of runs are few")]
+    let us = (days * SECONDS_PER_DAY).round() as i64;
+    chrono::DateTime::from_timestamp(us, 0).map(|at| at.format("%Y-%m-%dT%H:%M:%SZ").to_string())
+}
+
+/// The starts that enough runs have, as rows by run; and those runs.
+pub(super) fn matrix(values: &Values, fewest: usize) -> (Vec<usize>, Vec<Vec<f64>>) {
+    let often = || values.values().filter(|of_runs| of_runs.len() >= fewest);
+    let mut runs: Vec<usize> = often().flat_map(|of_runs| of_runs.keys().copied()).collect();
+    runs.sort_unstable();
+    runs.dedup();
+    let row = |of_runs: &BTreeMap<usize, f64>| {
+        runs.iter().map(|run| of_runs.get(run).copied().unwrap_or(f64::NAN)).collect()
+    };
+    let rows = often().map(row).collect();
+    (runs, rows)
+}
+
+/// The trends of what the filter lets through; `by`: of one metric only.
+///
+/// # Errors
+///
+/// [`FleetFailure`] if there is no dataset, or no such machine in it.
+pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFailure> {
+    let history = History::read(root, filter, false)?;
+    let mut trends = Vec::new();
+    let mut too_few = 0;
+    for ((axis, metric), values) in &history.values {
+        if !by.contains(metric) {
+            continue;
+        }
+        match joint_trend(&history.runs, values) {
+            None => too_few += 1,
+            Some(found) => trends.push(JointTrend {
+                machine: axis.machine.clone(),
+                joint: axis.joint.clone(),
+                metric: *metric,
+                unit: if *metric == By::Peak { axis.unit.clone() } else { "s".to_owned() },
+                ..found
+            }),
+        }
+    }
+    let p: Vec<f64> = trends.iter().map(|trend| trend.p_value).collect();
+    for (trend, q) in trends.iter_mut().zip(false_discovery(&p)) {
+        trend.q_value = q;
+        trend.found = q < MOST_FALSE;
+    }
+    stand_out(&mut trends);
+    trends.sort_by(|a, b| {
+        let out = |trend: &JointTrend| trend.stands_out.unwrap_or(0.0);
+        let by_size = out(b).total_cmp(&out(a));
+        b.found.cmp(&a.found).then(if a.found { by_size } else { a.p_value.total_cmp(&b.p_value) })
+    });
+    Ok(Drift {
+        format: FORMAT.to_owned(),
+        program: PROGRAM.to_owned(),
+        runs: history.runs.len(),
+        machines: history.machines().len(),
+        false_discovery_rate: MOST_FALSE,
+        trends,
+        too_few,
+        remarks: history.remarks,
+    })
+}
+
+/// Says by how much each slope differs from what is usual for its metric.
+fn stand_out(trends: &mut [JointTrend]) {
+    let key = |trend: &JointTrend| (trend.metric, trend.unit.clone());
+    let mut slopes: BTreeMap<_, Vec<f64>> = BTreeMap::new();
+    for trend in trends.iter() {
+        slopes.entry(key(trend)).or_default().push(trend.slope_per_day);
+    }
+    let spreads: BTreeMap<_, (f64, f64)> =
+        slopes.into_iter().map(|(key, own)| (key, (SIGMA_PER_MAD * mad(&own), median(own)))).collect();
+    for trend in trends {
+        let Some((spread, usual)) = spreads.get(&key(trend)) else { continue };
+        trend.stands_out = (*spread > 0.0).then(|| (trend.slope_per_day - usual).abs() / spread);
+    }
+}
+
+/// The trend without its names; `None` for too few runs.
+fn joint_trend(runs: &[Run], values: &Values) -> Option<JointTrend> {
+    let (own, rows) = matrix(values, FEWEST_RUNS);
+    let at: Vec<f64> = own.iter().filter_map(|run| runs.get(*run)).map(days).collect();
+    let points = |row: &[f64]| -> Vec<(f64, f64)> {
+        at.iter().copied().zip(row.iter().copied()).filter(|(_, value)| value.is_finite()).collect()
+    };
+    let slopes: Vec<f64> =
+        rows.iter().map(|row| theil_sen(&points(row))).filter(|slope| slope.is_finite()).collect();
+    let levels = points(&column_levels(&rows, own.len()));
+    let found = trend(&levels).filter(|_| levels.len() >= FEWEST_RUNS && !slopes.is_empty())?;
+    let slope = median(slopes);
+    let [low, high] = found.interval;
+    let early = rows.iter().flat_map(|row| points(row).into_iter().take(3)).map(|(_, value)| value);
+    Some(JointTrend {
+        machine: String::new(),
+        joint: String::new(),
+        metric: By::Peak,
+        unit: String::new(),
+        slope_per_day: slope,
+        interval_95: [low.min(slope), high.max(slope)],
+        p_value: found.p,
+        q_value: 1.0,
+        found: false,
+        stands_out: None,
+        since: begins(&levels).and_then(date),
+        starts: rows.len(),
+        runs: levels.len(),
+        days: levels.last()?.0 - levels.first()?.0,
+        level: median(early.collect()),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{schema::is_written_and_read, workflow::fleet::history::Event};
+
+    /// Ten runs a day apart, eight starts of their own level; a start grows by 2 a day from day four on and is lost late.
+    fn values(slope: f64) -> (Vec<Run>, Values) {
+        let run = |k: i64| Run {
+            id: k.to_string(),
+            machine: "M".into(),
+            log: k.to_string(),
+            started_us: k * 86_400_000_000,
+        };
+        let mut values = Values::new();
+        for index in 0..8 {
+            for k in 0..10_usize {
+                let noise = 0.1 * ((k * 7 + index * 3) % 5) as f64;
+                let lost = index == 7 && k > 6;
+                let value = 10.0 * index as f64 + slope * k as f64 + noise;
+                if !lost {
+                    let event = Event { plan_id: "p".into(), index: i64::try_from(index).unwrap() };
+                    values.entry(event).or_default().insert(k, value);
+                }
+            }
+        }
+        ((0..10).map(run).collect(), values)
+    }
+
+    #[test]
+    fn a_slope_is_found_at_matched_starts_though_the_largest_is_lost_late() {
+        let (runs, values) = values(2.0);
+        let found = joint_trend(&runs, &values).unwrap();
+        assert!((found.slope_per_day - 2.0).abs() < 0.05 && found.p_value < 1e-5, "{found:?}");
+        assert!(found.interval_95[0] > 1.8 && found.interval_95[1] < 2.2, "{found:?}");
+        assert_eq!((found.starts, found.runs, found.since.as_deref()), (8, 10, Some("1970-01-01T00:00:00Z")));
+    }
+
+    #[test]
+    fn noise_is_no_trend_and_four_runs_prove_nothing() {
+        let (runs, values) = values(0.0);
+        assert!(joint_trend(&runs, &values).unwrap().p_value > 0.05);
+        let few = values.into_iter().map(|(event, mut of)| {
+            of.retain(|run, _| *run < 4);
+            (event, of)
+        });
+        assert_eq!(joint_trend(&runs, &few.collect()), None);
+    }
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
+        let (runs, values) = values(1.0);
+        let document = Drift {
+            format: FORMAT.into(),
+            program: PROGRAM.into(),
+            runs: 10,
+            machines: 1,
+            false_discovery_rate: MOST_FALSE,
+            trends: vec![joint_trend(&runs, &values).unwrap()],
+            too_few: 0,
+            remarks: Remarks::default(),
+        };
+        is_written_and_read(&document, "fleet-drift.v1.schema.json", "hydrotrace fleet drift, version 1");
+    }
+}

@@ -1,0 +1,284 @@
+//! `fleet effect`: what a repair or a change did to a machine, at matched starts, against the rest of the fleet.
+//!
+//! The level of each run is what is left when each start's own level is taken off. The effect is the mean level after
+//! the change minus the mean before it, less what the other machines changed by in the same time (their median). It is
+//! known no better than the machine's own runs scatter, nor than the other machines change without any reason.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    drift::{MOST_FALSE, date, days, matrix},
+    failure::FleetFailure,
+    history::{Axis, By, Filter, History, Values},
+};
+use crate::{
+    document::PROGRAM,
+    math::{SIGMA_PER_MAD, column_levels, difference, false_discovery, mad, median},
+    remark::Remarks,
+    units::SECONDS_PER_DAY,
+};
+
+/// What the format is called.
+const FORMAT: &str = "hydrotrace.fleet-effect.v1";
+/// Machines beside the one that changed, at least: fewer tell nothing of what is usual.
+const FEWEST_OTHERS: usize = 3;
+
+/// What a change did.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Effect {
+    /// Always "hydrotrace.fleet-effect.v1".
+    pub format: String,
+    /// Name and version of the program that wrote it.
+    pub program: String,
+    /// The machine.
+    pub machine: String,
+    /// When it was changed, UTC.
+    pub at: String,
+    /// Runs of the machine before.
+    pub runs_before: usize,
+    /// Runs of the machine after.
+    pub runs_after: usize,
+    /// Share of false discoveries among the effects that are found, at most.
+    pub false_discovery_rate: f64,
+    /// By joint and metric, those that are found first.
+    pub effects: Vec<JointEffect>,
+    /// Joints and metrics with fewer than three runs of one plan before or after.
+    pub too_few: usize,
+    /// Doubts about the data.
+    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
+    pub remarks: Remarks,
+}
+
+/// What a change did to one metric of one joint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct JointEffect {
+    /// The joint.
+    pub joint: String,
+    /// What was measured.
+    pub metric: By,
+    /// Its unit: "s" of delays and lags, else that of the joint, "rad" or "m".
+    pub unit: String,
+    /// Median over the starts before.
+    pub before: f64,
+    /// After minus before at matched starts, less what is usual in the rest of the fleet.
+    pub change: f64,
+    /// Its 95 % interval.
+    pub interval_95: [f64; 2],
+    /// What the rest of the fleet changed by in the same time, median over machines; null for too few machines.
+    pub usual_change: Option<f64>,
+    /// Among all machines with this joint, how many changed as much or more, this one included.
+    pub rank: usize,
+    /// How many machines that are.
+    pub of: usize,
+    /// Two-sided probability of such a change by chance.
+    pub p_value: f64,
+    /// The same, corrected for the number of joints and metrics (false-discovery rate).
+    pub q_value: f64,
+    /// Whether the effect is found: q below the false-discovery rate.
+    pub found: bool,
+    /// Starts that were followed.
+    pub starts: usize,
+}
+
+/// Levels of the runs of one machine before and after, and the median value before.
+struct Sides {
+    before: Vec<f64>,
+    after: Vec<f64>,
+    level: f64,
+    starts: usize,
+}
+
+impl Sides {
+    fn of(history: &History, values: &Values, at_days: f64) -> Self {
+        let is_after = |run: &usize| history.runs.get(*run).is_some_and(|run| days(run) >= at_days);
+        // A start that one side lacks tells nothing of the change.
+        let both = |of: &std::collections::BTreeMap<usize, f64>| {
+            let after = of.keys().filter(|run| is_after(run)).count();
+            after > 0 && after < of.len()
+        };
+        let values: Values =
+            values.iter().filter(|(_, of)| both(of)).map(|(e, of)| (e.clone(), of.clone())).collect();
+        let (runs, rows) = matrix(&values, 2);
+        let levels = column_levels(&rows, runs.len());
+        let side = |after: bool| {
+            let levels =
+                runs.iter().zip(&levels).filter(|(run, level)| is_after(run) == after && level.is_finite());
+            levels.map(|(_, level)| *level).collect::<Vec<f64>>()
+        };
+        let early = values.values().flat_map(|of| of.iter().filter(|(run, _)| !is_after(run)));
+        let level = median(early.map(|(_, value)| *value).collect());
+        Self { before: side(false), after: side(true), level, starts: rows.len() }
+    }
+
+    fn change(&self) -> Option<f64> {
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        (self.before.len() >= 2 && self.after.len() >= 2).then(|| mean(&self.after) - mean(&self.before))
+    }
+}
+
+/// The effect of a change of a machine at an instant, microseconds since 1970; a run that begins then is after it.
+///
+/// # Errors
+///
+/// [`FleetFailure`] if there is no dataset, or no such machine in it.
+pub fn effect(
+    root: &Path,
+    machine: &str,
+    at_us: i64,
+    filter: &Filter,
+    by: &[By],
+) -> Result<Effect, FleetFailure> {
+    let filter = Filter { machine: Some(machine.to_owned()), ..filter.clone() };
+    let history = History::read(root, &filter, true)?;
+    let at_days = at_us as f64 / 1e6 / SECONDS_PER_DAY;
+    let own =
+        history.values.iter().filter(|((axis, metric), _)| axis.machine == machine && by.contains(metric));
+    let mut effects = Vec::new();
+    let mut too_few = 0;
+    for ((axis, metric), values) in own {
+        match joint_effect(&history, axis, *metric, values, at_days) {
+            Some(found) => effects.push(found),
+            None => too_few += 1,
+        }
+    }
+    let p: Vec<f64> = effects.iter().map(|effect| effect.p_value).collect();
+    for (effect, q) in effects.iter_mut().zip(false_discovery(&p)) {
+        effect.q_value = q;
+        effect.found = q < MOST_FALSE;
+    }
+    effects.sort_by(|a, b| {
+        let share = |effect: &JointEffect| (effect.change / effect.before).abs();
+        let by_share = share(b).total_cmp(&share(a));
+        b.found.cmp(&a.found).then(if a.found { by_share } else { a.p_value.total_cmp(&b.p_value) })
+    });
+    let runs = |after: bool| {
+        let own = history.runs.iter().filter(|run| run.machine == machine);
+        own.filter(|run| (run.started_us >= at_us) == after).count()
+    };
+    Ok(Effect {
+        format: FORMAT.to_owned(),
+        program: PROGRAM.to_owned(),
+        machine: machine.to_owned(),
+        at: date(at_days).unwrap_or_default(),
+        runs_before: runs(false),
+        runs_after: runs(true),
+        false_discovery_rate: MOST_FALSE,
+        effects,
+        too_few,
+        remarks: history.remarks,
+    })
+}
+
+fn joint_effect(
+    history: &History,
+    axis: &Axis,
+    metric: By,
+    values: &Values,
+    at_days: f64,
+) -> Option<JointEffect> {
+    let sides = Sides::of(history, values, at_days);
+    let own = sides.change()?;
+    let alike = |(other, by): &&(Axis, By)| {
+        *by == metric
+            && other.machine != axis.machine
+            && (&other.joint, &other.unit) == (&axis.joint, &axis.unit)
+    };
+    let others = history.values.iter().filter(|(key, _)| alike(key));
+    let others: Vec<f64> =
+        others.filter_map(|(_, values)| Sides::of(history, values, at_days).change()).collect();
+    let usual =
+        (others.len() >= FEWEST_OTHERS).then(|| (median(others.clone()), SIGMA_PER_MAD * mad(&others)));
+    let (usual_change, spread) = usual.unwrap_or((0.0, 0.0));
+    let error = 1.2533 * spread / (others.len().max(1) as f64).sqrt();
+    let found = difference(&sides.before, &sides.after, (usual_change, error, spread))?;
+    let as_much =
+        others.iter().filter(|other| (*other - usual_change).abs() >= (own - usual_change).abs()).count();
+    Some(JointEffect {
+        joint: axis.joint.clone(),
+        metric,
+        unit: if metric == By::Peak { axis.unit.clone() } else { "s".to_owned() },
+        before: sides.level,
+        change: found.value,
+        interval_95: found.interval,
+        usual_change: usual.map(|(change, _)| change),
+        rank: 1 + as_much,
+        of: 1 + others.len(),
+        p_value: found.p,
+        q_value: 1.0,
+        found: false,
+        starts: sides.starts,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        schema::is_written_and_read,
+        workflow::fleet::history::{Event, Run},
+    };
+
+    /// Six machines over ten days; all get better by 1 on day five, the first one by 4.
+    fn history() -> History {
+        let mut history = History::default();
+        for k in 0..60_i64 {
+            let machine = format!("M{}", k % 6);
+            let run =
+                Run { id: k.to_string(), log: k.to_string(), started_us: k / 6 * 86_400_000_000, machine };
+            for (joint, share) in [("boom", 1.0), ("stick", 0.0)] {
+                let unit = "rad".to_owned();
+                let axis = Axis { machine: run.machine.clone(), joint: joint.to_owned(), unit };
+                let values = history.values.entry((axis, By::Peak)).or_default();
+                for index in 0..5 {
+                    let better = if k % 6 == 0 { 1.0 + 3.0 * share } else { 1.0 };
+                    let change = if k / 6 >= 5 { -better } else { 0.0 };
+                    let noise = 0.01 * (((k * 13 + index * 7) % 11) as f64 - 5.0);
+                    let event = Event { plan_id: "p".into(), index };
+                    let value = 20.0 + 3.0 * index as f64 + change + noise;
+                    values.entry(event).or_default().insert(usize::try_from(k).unwrap(), value);
+                }
+            }
+            history.runs.push(run);
+        }
+        history
+    }
+
+    #[test]
+    fn what_the_whole_fleet_does_is_no_effect_of_the_repair() {
+        let history = history();
+        let of = |joint: &str| {
+            let found =
+                history.values.iter().find(|((axis, _), _)| axis.machine == "M0" && axis.joint == joint);
+            let ((axis, metric), values) = found.unwrap();
+            joint_effect(&history, axis, *metric, values, 5.0).unwrap()
+        };
+        let boom = of("boom");
+        assert!((boom.change + 3.0).abs() < 0.2 && boom.p_value < 1e-4, "{boom:?}");
+        assert!((boom.usual_change.unwrap() + 1.0).abs() < 0.2 && (boom.rank, boom.of) == (1, 6), "{boom:?}");
+        let stick = of("stick");
+        assert!(stick.change.abs() < 0.2 && stick.p_value > 0.05, "{stick:?}");
+    }
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
+        let history = history();
+        let ((axis, metric), values) = history.values.iter().next().unwrap();
+        let document = Effect {
+            format: FORMAT.into(),
+            program: PROGRAM.into(),
+            machine: "M0".into(),
+            at: date(5.0).unwrap(),
+            runs_before: 5,
+            runs_after: 5,
+            false_discovery_rate: MOST_FALSE,
+            effects: joint_effect(&history, axis, *metric, values, 5.0).into_iter().collect(),
+            too_few: 0,
+            remarks: Remarks::default(),
+        };
+        is_written_and_read(&document, "fleet-effect.v1.schema.json", "hydrotrace fleet effect, version 1");
+    }
+}

@@ -1,0 +1,81 @@
+//! Why there is nothing to say of a fleet.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::{atomic_file::AtomicError, log::dataset::DatasetError};
+
+/// Why a scan or an answer failed. A log that cannot be read is no failure: it is a row with its error.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum FleetFailure {
+    /// A table of the dataset.
+    #[error(transparent)]
+    Dataset(#[from] DatasetError),
+    /// A file that is written whole or not at all.
+    #[error(transparent)]
+    Atomic(#[from] AtomicError),
+    /// The file system said no.
+    #[error("cannot {action} {}", path.display())]
+    File {
+        /// What was to be done.
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Another scan writes to the dataset.
+    #[error("another scan is writing to {}; wait for its end", path.display())]
+    Locked {
+        /// The dataset.
+        path: PathBuf,
+    },
+    /// No dataset.
+    #[error("{} holds no dataset; `hydrotrace fleet scan LOGS --into {}` makes one", path.display(), path.display())]
+    NoDataset {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A source that leads to no log.
+    #[error(
+        "found no log in {text:?}, expected a log, a folder with .mcap or .db3 files, a pattern or a list of logs (.txt)"
+    )]
+    NoLogs {
+        /// The source as given.
+        text: String,
+    },
+    /// A source in an object store.
+    #[error("{text:?} is no file: logs in object stores are not read; mount the store, or copy the logs")]
+    Remote {
+        /// The source as given.
+        text: String,
+    },
+    /// A table of machines.
+    #[error("{} is no table of machines: {reason}; expected the header `path,machine` and a row for each", path.display())]
+    Machines {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A machine that the dataset does not hold.
+    #[error("no machine {machine:?}{}; the dataset has {present}", crate::suggest::suggestion(nearest.as_deref()))]
+    NoMachine {
+        /// The machine as given.
+        machine: String,
+        /// The machine that it may be.
+        nearest: Option<String>,
+        /// Those that there are.
+        present: String,
+    },
+}
+
+impl FleetFailure {
+    /// Wraps an I/O failure; use with `map_err`.
+    pub(super) fn file(action: &'static str, path: &std::path::Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::File { action, path, source }
+    }
+}

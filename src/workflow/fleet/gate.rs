@@ -1,0 +1,171 @@
+//! `fleet gate`: limits on what joints may drift by.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    drift::{Drift, JointTrend, drift},
+    failure::FleetFailure,
+    history::{By, Filter},
+};
+use crate::{document::PROGRAM, remark::Remarks};
+
+/// What the format is called.
+const FORMAT: &str = "hydrotrace.fleet-gate.v1";
+
+/// A limit on the growth of a metric.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gate {
+    /// The metric.
+    pub metric: By,
+    /// The unit of the joints that it judges, and so that of the limit: "s", "rad" or "m".
+    pub unit: String,
+    /// Growth a day, at most, in that unit.
+    pub most_per_day: f64,
+}
+
+/// What the limits were held against.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Gated {
+    /// Always "hydrotrace.fleet-gate.v1".
+    pub format: String,
+    /// Name and version of the program that wrote it.
+    pub program: String,
+    /// The limits, each with the worst trend found against it.
+    pub gates: Vec<GateResult>,
+    /// Whether every limit is kept; if not, the exit code is 4.
+    pub gates_kept: bool,
+    /// Doubts about the data.
+    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
+    pub remarks: Remarks,
+}
+
+/// A limit and what was found against it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct GateResult {
+    /// The metric.
+    pub metric: By,
+    /// Its unit.
+    pub unit: String,
+    /// Growth a day, at most.
+    pub most_per_day: f64,
+    /// Joints whose trend was judged.
+    pub judged: usize,
+    /// Joints that break the limit: they grow faster, and their trend is found (q below the false-discovery rate).
+    pub broken_by: usize,
+    /// The fastest growth among the joints that break the limit, else among all; null if there was nothing to judge.
+    pub worst: Option<JointTrend>,
+    /// Whether the limit is kept; not if there was nothing to judge, unless that was allowed.
+    pub kept: bool,
+}
+
+/// Judges the limits.
+///
+/// # Errors
+///
+/// [`FleetFailure`] if there is no dataset, or no such machine in it.
+pub fn gate(
+    root: &Path,
+    filter: &Filter,
+    gates: &[Gate],
+    empty_is_kept: bool,
+) -> Result<Gated, FleetFailure> {
+    let found = drift(root, filter, &By::ALL)?;
+    let gates: Vec<GateResult> = gates.iter().map(|gate| judged(gate, &found, empty_is_kept)).collect();
+    Ok(Gated {
+        format: FORMAT.to_owned(),
+        program: PROGRAM.to_owned(),
+        gates_kept: gates.iter().all(|gate| gate.kept),
+        gates,
+        remarks: found.remarks,
+    })
+}
+
+fn judged(gate: &Gate, found: &Drift, empty_is_kept: bool) -> GateResult {
+    let own = || found.trends.iter().filter(|trend| trend.metric == gate.metric && trend.unit == gate.unit);
+    let breaks = |trend: &&JointTrend| trend.found && trend.slope_per_day > gate.most_per_day;
+    let fastest = |a: &&JointTrend, b: &&JointTrend| a.slope_per_day.total_cmp(&b.slope_per_day);
+    let (judged, broken_by) = (own().count(), own().filter(breaks).count());
+    let worst = own().filter(breaks).max_by(fastest).or_else(|| own().max_by(fastest));
+    GateResult {
+        metric: gate.metric,
+        unit: gate.unit.clone(),
+        most_per_day: gate.most_per_day,
+        judged,
+        broken_by,
+        worst: worst.cloned(),
+        kept: broken_by == 0 && (judged > 0 || empty_is_kept),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::is_written_and_read;
+
+    fn found(slopes: &[(f64, bool)]) -> Drift {
+        let trend = |(slope, found): &(f64, bool)| JointTrend {
+            machine: "M".into(),
+            joint: format!("j{slope}"),
+            metric: By::Delay,
+            unit: "s".into(),
+            slope_per_day: *slope,
+            interval_95: [0.0, 1.0],
+            p_value: 0.01,
+            q_value: 0.01,
+            found: *found,
+            stands_out: None,
+            since: None,
+            starts: 3,
+            runs: 10,
+            days: 9.0,
+            level: 0.1,
+        };
+        Drift {
+            format: String::new(),
+            program: String::new(),
+            runs: 10,
+            machines: 1,
+            false_discovery_rate: 0.05,
+            trends: slopes.iter().map(trend).collect(),
+            too_few: 0,
+            remarks: Remarks::default(),
+        }
+    }
+
+    fn limit() -> Gate {
+        Gate { metric: By::Delay, unit: "s".into(), most_per_day: 0.01 }
+    }
+
+    #[test]
+    fn only_a_trend_that_is_found_breaks_a_limit() {
+        let of = |slopes: &[(f64, bool)]| judged(&limit(), &found(slopes), false);
+        let unsure = of(&[(0.03, false), (0.002, true)]);
+        assert!(unsure.kept && unsure.judged == 2);
+        let broken = of(&[(0.03, false), (0.02, true), (-0.5, true)]);
+        assert_eq!((broken.kept, broken.broken_by), (false, 1));
+        assert_eq!(broken.worst.unwrap().joint, "j0.02");
+        assert!(of(&[(0.01, true)]).kept);
+    }
+
+    #[test]
+    fn a_limit_with_nothing_to_judge_is_not_kept_unless_that_is_allowed() {
+        assert!(!judged(&limit(), &found(&[]), false).kept);
+        assert!(judged(&limit(), &found(&[]), true).kept);
+    }
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
+        let document = Gated {
+            format: FORMAT.into(),
+            program: PROGRAM.into(),
+            gates: vec![judged(&limit(), &found(&[(0.02, true)]), false)],
+            gates_kept: false,
+            remarks: Remarks::default(),
+        };
+        is_written_and_read(&document, "fleet-gate.v1.schema.json", "hydrotrace fleet gate, version 1");
+    }
+}

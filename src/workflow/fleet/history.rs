@@ -1,0 +1,246 @@
+//! What the dataset tells of machines over time: each metric of a joint by start and run.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    failure::FleetFailure,
+    store::{is_unfinished, parts},
+    tables::{self, Name},
+};
+use crate::{
+    log::dataset::{Cell, read_table},
+    math::median,
+    remark::{Code, Remarks},
+    suggest::nearest,
+};
+
+/// A metric that machines are judged by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum By {
+    /// Largest tracking error after a start, in the joint's unit.
+    Peak,
+    /// Dead time of a start, s.
+    Delay,
+    /// Lag of a joint over a run, s.
+    Lag,
+}
+
+impl By {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Peak, Self::Delay, Self::Lag];
+}
+
+/// One run.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Run {
+    pub(super) id: String,
+    pub(super) machine: String,
+    pub(super) log: String,
+    /// Microseconds since 1970.
+    pub(super) started_us: i64,
+}
+
+/// A joint of a machine.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Axis {
+    pub(super) machine: String,
+    pub(super) joint: String,
+    pub(super) unit: String,
+}
+
+/// A start of a plan: what the same start is in another run.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Event {
+    pub(super) plan_id: String,
+    /// Among the planned starts of the joint, from 1; 0 stands for the whole run.
+    pub(super) index: i64,
+}
+
+/// Values of one metric of one joint: by start, then by run.
+pub(super) type Values = BTreeMap<Event, BTreeMap<usize, f64>>;
+
+/// All runs, in order of time, and what was measured in them.
+#[derive(Debug, Clone, Default)]
+pub(super) struct History {
+    pub(super) runs: Vec<Run>,
+    pub(super) values: BTreeMap<(Axis, By), Values>,
+    pub(super) remarks: Remarks,
+}
+
+/// Which part of the dataset is asked for.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Filter {
+    /// One machine only.
+    pub machine: Option<String>,
+    /// One joint only.
+    pub joint: Option<String>,
+    /// Runs that began then or later only, microseconds since 1970.
+    pub since_us: Option<i64>,
+}
+
+/// A planned start that lies farther than this from where it lies in most runs, counted from the first start of its
+/// run, is another start, s.
+const SAME_START_S: f64 = 0.3;
+
+impl History {
+    /// Reads what the filter lets through; machines other than the one asked for are read if `others` says so.
+    pub(super) fn read(root: &Path, filter: &Filter, others: bool) -> Result<Self, FleetFailure> {
+        let found = parts(root, Name::Runs)?;
+        if found.is_empty() {
+            return Err(FleetFailure::NoDataset { path: root.to_owned() });
+        }
+        let mut history = Self::default();
+        let message = "a scan was ended before its last step; `hydrotrace fleet scan` finishes it";
+        history.remarks.add(Code::NotClosed, u64::from(is_unfinished(root)), message);
+        let mut rows = Vec::new();
+        for part in &found {
+            rows.extend(read(root, &part.path(Name::Runs), Name::Runs, &RUN)?);
+        }
+        history.take_runs(rows);
+        if let Some(machine) = &filter.machine {
+            history.check(machine)?;
+        }
+        let wanted =
+            |run: &Run| others || filter.machine.as_ref().is_none_or(|machine| *machine == run.machine);
+        history
+            .runs
+            .retain(|run| wanted(run) && filter.since_us.is_none_or(|since_us| run.started_us >= since_us));
+        let index: BTreeMap<String, usize> =
+            history.runs.iter().enumerate().map(|(k, run)| (run.id.clone(), k)).collect();
+        let (mut starts, mut lags) = (Vec::new(), Vec::new());
+        for part in &found {
+            for (name, columns, rows) in
+                [(Name::Transitions, &START[..], &mut starts), (Name::Joints, &LAG[..], &mut lags)]
+            {
+                let path = part.path(name);
+                if root.join(&path).exists() {
+                    rows.extend(read(root, &path, name, columns)?);
+                }
+            }
+        }
+        let joint =
+            |row: &Vec<Cell>| filter.joint.as_ref().is_none_or(|joint| row[2].as_text() == Some(joint));
+        starts.retain(joint);
+        lags.retain(joint);
+        history.take_starts(&starts, &index);
+        history.take_lags(&lags, &index);
+        Ok(history)
+    }
+
+    fn take_runs(&mut self, rows: Vec<Vec<Cell>>) {
+        let mut runs: Vec<(Run, String)> = Vec::new();
+        let (mut failed, mut unnamed) = (0, 0);
+        for row in rows {
+            let text = |k: usize| row.get(k).and_then(Cell::as_text).map(str::to_owned);
+            match (text(5).is_some(), text(1), row.get(2).and_then(Cell::as_whole)) {
+                (true, ..) => failed += 1,
+                (false, Some(machine), Some(started_us)) => {
+                    let log = text(3).unwrap_or_default();
+                    let run = Run { id: text(0).unwrap_or_default(), machine, log, started_us };
+                    runs.push((run, text(4).unwrap_or_default()));
+                }
+                _ => unnamed += 1,
+            }
+        }
+        runs.sort_by(|(a, _), (b, _)| (a.started_us, &a.log).cmp(&(b.started_us, &b.log)));
+        // The same content under two names is one run.
+        let all = runs.len();
+        let mut seen = BTreeSet::new();
+        runs.retain(|(_, content)| content.is_empty() || seen.insert(content.clone()));
+        self.runs = runs.into_iter().map(|(run, _)| run).collect();
+        let repeated = (all - self.runs.len()) as u64;
+        self.remarks.add(Code::SameRun, repeated, "logs with the content of another one; left out");
+        self.remarks.add(Code::UnreadableLog, failed, "logs that could not be analysed; left out");
+        self.remarks.add(Code::UnknownMachine, unnamed, "runs that name no machine; left out");
+    }
+
+    fn check(&self, machine: &str) -> Result<(), FleetFailure> {
+        let machines: BTreeSet<&str> = self.runs.iter().map(|run| run.machine.as_str()).collect();
+        if machines.contains(machine) {
+            return Ok(());
+        }
+        let nearest = nearest(machine, machines.iter().copied());
+        let present = machines.into_iter().collect::<Vec<_>>().join(", ");
+        Err(FleetFailure::NoMachine { machine: machine.to_owned(), nearest, present })
+    }
+
+    fn take_starts(&mut self, rows: &[Vec<Cell>], index: &BTreeMap<String, usize>) {
+        let run = |row: &Vec<Cell>| index.get(row[0].as_text()?).copied();
+        let mut first_s: BTreeMap<usize, f64> = BTreeMap::new();
+        for row in rows {
+            if let (Some(run), Some(at_s)) = (run(row), row[5].as_real()) {
+                first_s.entry(run).and_modify(|first_s| *first_s = first_s.min(at_s)).or_insert(at_s);
+            }
+        }
+        // When each start lies behind the first one of its run, over all runs of the plan.
+        let mut behind: BTreeMap<(String, Event), Vec<f64>> = BTreeMap::new();
+        let known = |row: &Vec<Cell>| {
+            let (run, event) =
+                (run(row)?, Event { plan_id: row[1].as_text()?.to_owned(), index: row[4].as_whole()? });
+            Some((run, event, row[2].as_text()?.to_owned(), row[5].as_real()? - first_s.get(&run)?))
+        };
+        for (_, event, joint, at_s) in rows.iter().filter_map(known) {
+            behind.entry((joint, event)).or_default().push(at_s);
+        }
+        let usual: BTreeMap<(String, Event), f64> =
+            behind.into_iter().map(|(key, values)| (key, median(values))).collect();
+        for row in rows {
+            let Some((run, event, joint, at_s)) = known(row) else { continue };
+            let key = (joint, event);
+            if usual.get(&key).is_none_or(|usual_s| (usual_s - at_s).abs() > SAME_START_S) {
+                let message = "starts at another time than in most runs of their plan; left out";
+                self.remarks.add(Code::Unmatched, 1, message);
+                continue;
+            }
+            let (joint, event) = key;
+            let unit = row[3].as_text().unwrap_or("rad").to_owned();
+            let axis = Axis { machine: self.runs[run].machine.clone(), joint, unit };
+            for (by, value) in [(By::Peak, row[6].as_real()), (By::Delay, row[7].as_real())] {
+                let Some(value) = value else { continue };
+                self.values
+                    .entry((axis.clone(), by))
+                    .or_default()
+                    .entry(event.clone())
+                    .or_default()
+                    .insert(run, value);
+            }
+        }
+    }
+
+    fn take_lags(&mut self, rows: &[Vec<Cell>], index: &BTreeMap<String, usize>) {
+        for row in rows {
+            let text = |k: usize| row[k].as_text();
+            let run = text(0).and_then(|run_id| index.get(run_id)).copied();
+            let (Some(run), Some(plan), Some(joint), Some(lag_s)) = (run, text(1), text(2), row[4].as_real())
+            else {
+                continue;
+            };
+            let unit = text(3).unwrap_or("rad").to_owned();
+            let axis = Axis { machine: self.runs[run].machine.clone(), joint: joint.to_owned(), unit };
+            let event = Event { plan_id: plan.to_owned(), index: 0 };
+            self.values.entry((axis, By::Lag)).or_default().entry(event).or_default().insert(run, lag_s);
+        }
+    }
+
+    /// Names of all machines.
+    pub(super) fn machines(&self) -> BTreeSet<&str> {
+        self.runs.iter().map(|run| run.machine.as_str()).collect()
+    }
+}
+
+const RUN: [&str; 6] = ["run_id", "machine", "started_at", "log_uri", "log_sha256", "error"];
+const START: [&str; 8] =
+    ["run_id", "plan_id", "joint", "unit", "event_index", "planned_onset_s", "peak_error", "onset_delay_s"];
+const LAG: [&str; 5] = ["run_id", "plan_id", "joint", "unit", "lag_s"];
+
+fn read(root: &Path, path: &str, name: Name, columns: &[&str]) -> Result<Vec<Vec<Cell>>, FleetFailure> {
+    let columns: Vec<_> = columns.iter().map(|column| tables::column(name, column)).collect();
+    Ok(read_table(&root.join(path), &columns)?.rows)
+}

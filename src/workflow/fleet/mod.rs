@@ -1,0 +1,29 @@
+//! `fleet`: many logs of many machines become one dataset, and the dataset answers which machine drifts, since when,
+//! and whether a repair helped.
+//!
+//! The dataset is a folder of Parquet tables that any engine reads: `runs`, one row a log; `joints`, one row a run and
+//! joint; `transitions`, one row a start or reversal; `remarks`. Its files say nothing of when they were made: equal logs
+//! give equal bytes.
+
+mod document;
+mod drift;
+mod effect;
+mod failure;
+mod gate;
+mod history;
+mod machine;
+mod scan;
+mod sources;
+mod store;
+mod tables;
+mod worst;
+
+pub use document::{Failure, Scanned};
+pub use drift::{Drift, JointTrend, drift};
+pub use effect::{Effect, JointEffect, effect};
+pub use failure::FleetFailure;
+pub use gate::{Gate, GateResult, Gated, gate};
+pub use history::{By, Filter};
+pub use machine::MachineFrom;
+pub use scan::{Inputs, Progress, scan};
+pub use worst::{Worst, WorstJoint, worst};

@@ -1,0 +1,323 @@
+//! `fleet scan`: analyses the logs that the dataset does not hold yet, one log a thread, and writes their rows.
+//!
+//! Logs are taken in the order of their paths, a batch at a time; what a batch writes depends on nothing else, so the
+//! number of threads changes no byte of the dataset.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::{Path, PathBuf},
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
+};
+
+use chrono::DateTime;
+
+use super::{
+    document::{Failure, Scanned},
+    failure::FleetFailure,
+    machine::MachineFrom,
+    sources::{Source, sources},
+    store::{Part, Place, Store, parts},
+    tables::{self, Log, Name, Rows},
+};
+use crate::{
+    log::{
+        Input, LogError, ReadOptions,
+        dataset::{Cell, Table, read_table},
+    },
+    replay::Rules,
+    workflow::report::{self, ReportFailure, analysis_id, hash},
+};
+
+/// Logs of a batch: what a kill loses at most, and what is held in memory.
+const BATCH: usize = 512;
+/// How often a log is tried at once whose file cannot be read.
+const TRIES: u64 = 3;
+/// Buckets of machines.
+const BUCKETS: u64 = 16;
+
+/// What to scan, and how.
+#[derive(Debug, Clone, Default)]
+pub struct Inputs {
+    /// Folders, patterns, lists of logs, and logs.
+    pub sources: Vec<String>,
+    /// The folder of the dataset.
+    pub into: PathBuf,
+    /// Where the name of a log's machine stands.
+    pub machine: MachineFrom,
+    /// Logs that are analysed at once; 0 counts as 1.
+    pub workers: usize,
+    /// What to read, where a log alone does not tell.
+    pub read: ReadOptions,
+    /// Thresholds and windows.
+    pub rules: Rules,
+}
+
+/// How far a scan is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress {
+    /// Logs that were analysed.
+    pub done: usize,
+    /// Logs to analyse.
+    pub of: usize,
+    /// Logs among those done that could not be analysed.
+    pub failed: usize,
+}
+
+/// A log as the dataset holds it.
+#[derive(Debug, Clone)]
+struct Known {
+    etag: String,
+    analysis_id: String,
+    run_id: String,
+    /// Whether it failed for a reason that may pass.
+    again: bool,
+    tries: u64,
+    part: Part,
+}
+
+/// A log to analyse.
+#[derive(Debug)]
+struct Pending {
+    source: Source,
+    /// How often it was tried as it is.
+    tries: u64,
+    /// Whether the dataset holds rows of it, which give way.
+    is_held: bool,
+}
+
+/// Scans; `seen` is told of each log, by any thread.
+///
+/// # Errors
+///
+/// [`FleetFailure`] if a source leads nowhere or the dataset cannot be written; a log that cannot be analysed is a row
+/// with its error.
+pub fn scan(inputs: &Inputs, seen: &(dyn Fn(Progress) + Sync)) -> Result<Scanned, FleetFailure> {
+    let found = sources(&inputs.sources)?;
+    let store = Store::open(&inputs.into)?;
+    let mut held = known(store.root())?;
+    let analysis_id = own_analysis_id(inputs);
+    let mut scanned = Scanned::new(&inputs.into, found.len());
+    let mut pending: Vec<Pending> = Vec::new();
+    for source in found {
+        let known = held.get(source.path.to_string_lossy().as_ref());
+        let same = known.filter(|known| known.etag == source.etag && known.analysis_id == analysis_id);
+        if same.is_some_and(|known| !known.again) {
+            scanned.unchanged += 1;
+        } else {
+            scanned.replaced += usize::from(known.is_some());
+            // Other content or another analysis begins anew.
+            let tries = same.map_or(0, |known| known.tries);
+            pending.push(Pending { source, tries, is_held: known.is_some() });
+        }
+    }
+    let (done, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    for batch in pending.chunks(BATCH) {
+        let rows = at_once(batch.len(), inputs.workers, |k| {
+            let (rows, failure) = analysed(&batch[k], &analysis_id, inputs);
+            let failed = failed.fetch_add(usize::from(failure.is_some()), Ordering::Relaxed);
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            seen(Progress { done, of: pending.len(), failed: failed + usize::from(failure.is_some()) });
+            (rows, failure)
+        });
+        let (rows, failures): (Vec<Rows>, Vec<Option<Failure>>) = rows.into_iter().unzip();
+        scanned.add(&rows, failures);
+        let old = batch.iter().filter(|log| log.is_held);
+        let old: Vec<&Known> =
+            old.filter_map(|log| held.get(log.source.path.to_string_lossy().as_ref())).collect();
+        let moved = !old.is_empty();
+        write(&store, rows, &old)?;
+        if moved {
+            // Rows that stayed lie in other parts now.
+            held = known(store.root())?;
+        }
+    }
+    Ok(scanned)
+}
+
+/// The analysis, with all that rows depend on beside the log.
+fn own_analysis_id(inputs: &Inputs) -> String {
+    let Inputs { machine, read, rules, .. } = inputs;
+    hash([analysis_id(rules), format!("{read:?}"), format!("{machine:?}")])
+}
+
+/// What the dataset holds, by log.
+fn known(root: &Path) -> Result<BTreeMap<String, Known>, FleetFailure> {
+    let columns = ["log_uri", "log_etag", "analysis_id", "run_id", "may_pass", "tries"]
+        .map(|name| tables::column(Name::Runs, name));
+    let mut known = BTreeMap::new();
+    for part in parts(root, Name::Runs)? {
+        for row in read_table(&root.join(part.path(Name::Runs)), &columns)?.rows {
+            let text = |k: usize| row.get(k).and_then(Cell::as_text).unwrap_or_default().to_owned();
+            let tries = row.get(5).and_then(Cell::as_whole).and_then(|tries| u64::try_from(tries).ok());
+            let one = Known {
+                etag: text(1),
+                analysis_id: text(2),
+                run_id: text(3),
+                again: row.get(4).is_some_and(Cell::is_set),
+                tries: tries.unwrap_or(0),
+                part: part.clone(),
+            };
+            known.insert(text(0), one);
+        }
+    }
+    Ok(known)
+}
+
+/// What `of` makes of the numbers below `count`, in order, on so many threads of their own.
+fn at_once<T: Send>(count: usize, workers: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let next = AtomicUsize::new(0);
+    let made = Mutex::new(Vec::with_capacity(count));
+    std::thread::scope(|scope| {
+        for _ in 0..workers.clamp(1, count.max(1)) {
+            scope.spawn(|| {
+                loop {
+                    let k = next.fetch_add(1, Ordering::Relaxed);
+                    if k >= count {
+                        return;
+                    }
+                    let one = of(k);
+                    made.lock().unwrap_or_else(PoisonError::into_inner).push((k, one));
+                }
+            });
+        }
+    });
+    let mut made = made.into_inner().unwrap_or_else(PoisonError::into_inner);
+    made.sort_unstable_by_key(|(k, _)| *k);
+    made.into_iter().map(|(_, one)| one).collect()
+}
+
+/// The rows of a log, and why it has one row only.
+fn analysed(pending: &Pending, analysis_id: &str, inputs: &Inputs) -> (Rows, Option<Failure>) {
+    let Pending { source, tries, .. } = pending;
+    let request = report::Inputs {
+        read: inputs.read.clone(),
+        rules: inputs.rules.clone(),
+        ..report::Inputs::default()
+    };
+    let mut log = Log {
+        uri: source.path.to_string_lossy().into_owned(),
+        etag: source.etag.clone(),
+        bytes: source.bytes,
+        machine: None,
+        analysis_id: analysis_id.to_owned(),
+        tries: *tries,
+    };
+    let (mut error, mut may_pass) = (String::new(), true);
+    for _ in 0..TRIES {
+        log.tries += 1;
+        let input = vec![Input::Path(source.path.clone())];
+        match catch_unwind(AssertUnwindSafe(|| report::findings(input, &request))) {
+            Ok(Ok(found)) => {
+                log.machine = inputs.machine.of(&source.path, Some(&found));
+                return (tables::analysed(&log, &found), None);
+            }
+            Ok(Err(failure)) => {
+                may_pass = matches!(failure, ReportFailure::Log(LogError::File { .. }));
+                error = explained(&failure);
+            }
+            Err(_) => (error, may_pass) = ("the program failed on this log".to_owned(), false),
+        }
+        if !may_pass {
+            break;
+        }
+    }
+    log.machine = inputs.machine.of(&source.path, None);
+    let run_id = hash([log.uri.as_str(), log.etag.as_str()]);
+    let failure = Failure { log: log.uri.clone(), error: error.clone() };
+    (tables::failed(&log, &run_id, &error, may_pass), Some(failure))
+}
+
+/// An error with its reasons, on one line.
+fn explained(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(inner) = cause {
+        text = format!("{text}: {inner}");
+        cause = inner.source();
+    }
+    text
+}
+
+/// Rows of one place, by table.
+type Gathered = BTreeMap<Name, Vec<Vec<Cell>>>;
+
+/// Writes the rows of a batch; rows of its logs that the dataset holds give way, the others of their parts stay.
+fn write(store: &Store, batch: Vec<Rows>, old: &[&Known]) -> Result<(), FleetFailure> {
+    let mut places: BTreeMap<Place, Gathered> = BTreeMap::new();
+    for rows in batch {
+        let Some((_, run)) = rows.iter().find(|(name, _)| *name == Name::Runs) else { continue };
+        let gathered = places.entry(place(run)).or_default();
+        for (name, row) in rows {
+            gathered.entry(name).or_default().push(row);
+        }
+    }
+    let parts: BTreeSet<&Part> = old.iter().map(|known| &known.part).collect();
+    let gone: BTreeSet<&str> = old.iter().map(|known| known.run_id.as_str()).collect();
+    let mut remove = Vec::new();
+    for part in parts {
+        for name in Name::ALL {
+            let path = store.root().join(part.path(name));
+            if !path.exists() {
+                continue;
+            }
+            remove.push(part.path(name));
+            let rows = read_table(&path, name.columns())?.rows;
+            let kept =
+                rows.into_iter().filter(|row| !row[0].as_text().is_some_and(|run_id| gone.contains(run_id)));
+            places.entry(part.place.clone()).or_default().entry(name).or_default().extend(kept);
+        }
+    }
+    let mut put = Vec::new();
+    for (place, gathered) in places {
+        let Some(runs) = gathered.get(&Name::Runs).filter(|runs| !runs.is_empty()) else { continue };
+        let part = Part { place, hash: inputs_hash(runs) };
+        for (name, mut rows) in gathered {
+            if rows.is_empty() {
+                continue;
+            }
+            sort(name, &mut rows);
+            let table = Table { columns: name.columns().to_vec(), rows };
+            put.push((part.path(name), table.encode(name.text())?));
+        }
+    }
+    store.change(&put, &remove)
+}
+
+fn at(name: Name, column: &str) -> usize {
+    name.columns().iter().position(|known| known.name == column).unwrap_or(0)
+}
+
+/// The place of a run's rows.
+fn place(run: &[Cell]) -> Place {
+    let of = |column: &str| run.get(at(Name::Runs, column));
+    let started = of("started_at").and_then(Cell::as_whole).and_then(DateTime::from_timestamp_micros);
+    let machine = of("machine").and_then(Cell::as_text).unwrap_or_default();
+    let digits = u64::from_str_radix(&hash([machine]), 16).unwrap_or(0);
+    let bucket = u8::try_from(digits % BUCKETS).unwrap_or(0);
+    Place { date: started.map(|at| at.format("%Y-%m").to_string()), bucket }
+}
+
+/// The hash of the logs of a part: their names, states and analyses.
+fn inputs_hash(runs: &[Vec<Cell>]) -> String {
+    let places = ["log_uri", "log_etag", "analysis_id"].map(|column| at(Name::Runs, column));
+    let key =
+        |run: &Vec<Cell>| places.map(|k| run.get(k).and_then(Cell::as_text).unwrap_or_default().to_owned());
+    let mut keys: Vec<[String; 3]> = runs.iter().map(key).collect();
+    keys.sort_unstable();
+    hash(keys.iter().flatten())
+}
+
+/// Sorts rows by machine, joint and place among the starts, then by run.
+fn sort(name: Name, rows: &mut [Vec<Cell>]) {
+    let texts = ["machine", "joint"].map(|column| at(name, column));
+    let index = at(name, "event_index");
+    rows.sort_by_cached_key(|row| {
+        let text = |k: usize| row.get(k).and_then(Cell::as_text).unwrap_or_default().to_owned();
+        let number = row.get(index).and_then(Cell::as_whole).unwrap_or(0);
+        (texts.map(text), number, text(0))
+    });
+}

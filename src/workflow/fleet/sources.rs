@@ -1,0 +1,230 @@
+//! The logs of folders, patterns and lists, each with what tells whether it changed.
+
+use std::{
+    collections::BTreeMap,
+    fs::{self, Metadata},
+    path::{Path, PathBuf},
+    time::UNIX_EPOCH,
+};
+
+use super::failure::FleetFailure;
+use crate::{input_file, remark::Remarks};
+
+/// Endings of logs that are looked for in folders; a file that is named counts whatever its ending.
+const ENDINGS: [&str; 6] = [".mcap", ".db3", ".mcap.zst", ".mcap.zstd", ".mcap.gz", ".db3.zstd"];
+/// Endings of lists of logs.
+const LISTS: [&str; 3] = ["txt", "list", "manifest"];
+/// The description that makes a folder a bag.
+const BAG: &str = "metadata.yaml";
+
+/// A log to analyse.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Source {
+    /// Its absolute path.
+    pub(super) path: PathBuf,
+    pub(super) bytes: u64,
+    /// Size and time of change: another one is another log.
+    pub(super) etag: String,
+}
+
+/// The logs of all sources, each once, in the order of their paths.
+pub(super) fn sources(texts: &[String]) -> Result<Vec<Source>, FleetFailure> {
+    let mut found = BTreeMap::new();
+    for text in texts {
+        let before = found.len();
+        add(text, Path::new(""), &mut found)?;
+        if found.len() == before && !Path::new(text).exists() {
+            return Err(FleetFailure::NoLogs { text: text.clone() });
+        }
+    }
+    let first = texts.first().cloned().unwrap_or_default();
+    if found.is_empty() {
+        Err(FleetFailure::NoLogs { text: first })
+    } else {
+        Ok(found.into_values().collect())
+    }
+}
+
+/// Adds the logs of one source; a relative path counts from `base`.
+fn add(text: &str, base: &Path, found: &mut BTreeMap<PathBuf, Source>) -> Result<(), FleetFailure> {
+    let path = base.join(text);
+    if text.contains("://") && !path.exists() {
+        return Err(FleetFailure::Remote { text: text.to_owned() });
+    }
+    let within = path.components().any(|part| part == std::path::Component::ParentDir);
+    let path = if within { fs::canonicalize(&path) } else { std::path::absolute(&path) }
+        .or_else(|_| std::path::absolute(&path))
+        .map_err(FleetFailure::file("find", &path))?;
+    match fs::metadata(&path) {
+        Ok(is) if is.is_dir() => walk(&path, &mut |_| true, found),
+        Ok(_) if LISTS.iter().any(|ending| path.extension().is_some_and(|own| own == *ending)) => {
+            let lines = input_file::read_to_string(&path).map_err(FleetFailure::file("read", &path))?;
+            let folder = path.parent().unwrap_or(base).to_owned();
+            let lines =
+                lines.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+            lines.map(str::to_owned).try_for_each(|line| add(&line, &folder, found))
+        }
+        Ok(is) => {
+            put(path, &is, found);
+            Ok(())
+        }
+        Err(_) if text.contains(['*', '?']) => {
+            let pattern = path.to_string_lossy().into_owned();
+            // The folders before the first sign that stands for others.
+            let plain: PathBuf = path
+                .components()
+                .take_while(|part| !part.as_os_str().to_string_lossy().contains(['*', '?']))
+                .collect();
+            walk(&plain, &mut |path| matches(&pattern, &path.to_string_lossy()), found)
+        }
+        Err(error) => Err(FleetFailure::file("find", &path)(error)),
+    }
+}
+
+fn walk(
+    folder: &Path,
+    wanted: &mut dyn FnMut(&Path) -> bool,
+    found: &mut BTreeMap<PathBuf, Source>,
+) -> Result<(), FleetFailure> {
+    if folder.join(BAG).is_file() {
+        if let (true, Ok(is)) = (wanted(folder), fs::metadata(folder)) {
+            put(folder.to_owned(), &is, found);
+        }
+        return Ok(());
+    }
+    for entry in fs::read_dir(folder).map_err(FleetFailure::file("list", folder))? {
+        let entry = entry.map_err(FleetFailure::file("list", folder))?;
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with('.') {
+            continue;
+        }
+        let path = entry.path();
+        // What a link leads to counts; one that leads nowhere is none.
+        let Ok(is) = fs::metadata(&path) else { continue };
+        if is.is_dir() {
+            // A link to a folder may lead in a circle.
+            if !entry.file_type().is_ok_and(|kind| kind.is_symlink()) {
+                walk(&path, wanted, found)?;
+            }
+        } else if ENDINGS.iter().any(|ending| name.ends_with(ending)) && wanted(&path) {
+            put(path, &is, found);
+        }
+    }
+    Ok(())
+}
+
+fn put(path: PathBuf, is: &Metadata, found: &mut BTreeMap<PathBuf, Source>) {
+    let (mut bytes, mut etag) = tag(is);
+    if is.is_dir() {
+        // Of a bag all files count.
+        let files = crate::log::recording_files(std::slice::from_ref(&path), &mut Remarks::default());
+        bytes = 0;
+        for (size, own) in
+            files.unwrap_or_default().iter().filter_map(|file| fs::metadata(file).ok()).map(|is| tag(&is))
+        {
+            bytes += size;
+            etag = format!("{etag}+{own}");
+        }
+    }
+    found.insert(path.clone(), Source { path, bytes, etag });
+}
+
+fn tag(is: &Metadata) -> (u64, String) {
+    let changed = is.modified().ok().and_then(|at| at.duration_since(UNIX_EPOCH).ok());
+    (is.len(), format!("{:x}-{:x}", is.len(), changed.map_or(0, |since| since.as_nanos())))
+}
+
+/// Whether a path fits a pattern: `*` stands for any signs of a name, `?` for one, `**` for any folders or none.
+fn matches(pattern: &str, path: &str) -> bool {
+    fn all(patterns: &[&str], names: &[&str]) -> bool {
+        match patterns.split_first() {
+            None => names.is_empty(),
+            Some((&"**", rest)) => (0..=names.len()).any(|k| all(rest, &names[k..])),
+            Some((one, rest)) => {
+                names.split_first().is_some_and(|(name, after)| fits(one, name) && all(rest, after))
+            }
+        }
+    }
+    let [patterns, names] = [pattern, path].map(|text| text.split('/').collect::<Vec<&str>>());
+    all(&patterns, &names)
+}
+
+/// Whether a name fits a pattern of `*` and `?`.
+fn fits(pattern: &str, name: &str) -> bool {
+    let name: Vec<char> = name.chars().collect();
+    // `so_far[k]`: whether the pattern so far fits the first `k` signs.
+    let mut so_far = vec![false; name.len() + 1];
+    so_far[0] = true;
+    for sign in pattern.chars() {
+        if sign == '*' {
+            (0..name.len()).for_each(|k| so_far[k + 1] |= so_far[k]);
+        } else {
+            (0..name.len()).rev().for_each(|k| so_far[k + 1] = so_far[k] && (sign == '?' || sign == name[k]));
+            so_far[0] = false;
+        }
+    }
+    so_far[name.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_stand_for_names_within_a_folder_or_for_folders() {
+        for (pattern, path, fits) in [
+            ("/a/*.mcap", "/a/run.mcap", true),
+            ("/a/*.mcap", "/a/b/run.mcap", false),
+            ("/a/**/run.mcap", "/a/b/c/run.mcap", true),
+            ("/a/**/run.mcap", "/a/run.mcap", true),
+            ("/a/**/run.mcap", "/a/other-run.mcap", false),
+            ("/a/*/run-?.mcap", "/a/m1/run-7.mcap", true),
+            ("/a/*/run-?.mcap", "/a/m1/run-17.mcap", false),
+            ("/a/m*/*", "/a/m1/x", true),
+        ] {
+            assert_eq!(matches(pattern, path), fits, "{pattern} {path}");
+        }
+    }
+
+    #[test]
+    fn folders_patterns_and_lists_lead_to_each_log_once() {
+        let temporary = tempfile::tempdir().unwrap();
+        let folder = fs::canonicalize(temporary.path()).unwrap();
+        let at = |name: &str| folder.join(name);
+        for name in
+            ["m1/a.mcap", "m1/b.txt", "m2/a.mcap", "m2/.hidden.mcap", "bag/metadata.yaml", "bag/bag_0.mcap"]
+        {
+            fs::create_dir_all(at(name).parent().unwrap()).unwrap();
+            fs::write(at(name), "x").unwrap();
+        }
+        fs::write(at("m1/b.txt"), "# mine\na.mcap\n\n../m2/a.mcap\n").unwrap();
+        let names = |texts: &[&str]| -> Vec<String> {
+            let texts: Vec<String> =
+                texts.iter().map(|text| at(text).to_string_lossy().into_owned()).collect();
+            let found = sources(&texts).unwrap();
+            found
+                .iter()
+                .map(|s| s.path.strip_prefix(&folder).unwrap().to_string_lossy().into_owned())
+                .collect()
+        };
+        assert_eq!(names(&[""]), ["bag", "m1/a.mcap", "m2/a.mcap"]);
+        assert_eq!(names(&["m1", "m1/a.mcap"]), ["m1/a.mcap"]);
+        assert_eq!(names(&["*/a.mcap"]), ["m1/a.mcap", "m2/a.mcap"]);
+        assert_eq!(names(&["m1/b.txt"]), ["m1/a.mcap", "m2/a.mcap"]);
+        assert!(matches!(sources(&["s3://bucket/logs".into()]), Err(FleetFailure::Remote { .. })));
+        let nothing = at("nothing*").to_string_lossy().into_owned();
+        assert!(matches!(sources(&[nothing]), Err(FleetFailure::NoLogs { .. })));
+    }
+
+    #[test]
+    fn a_log_that_changed_has_another_tag() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.mcap");
+        let tag = |text: &str| {
+            fs::write(&path, text).unwrap();
+            sources(&[path.to_string_lossy().into_owned()]).unwrap()[0].etag.clone()
+        };
+        assert_ne!(tag("one"), tag("three"));
+    }
+}

@@ -1,0 +1,159 @@
+//! `fleet worst`: the joints of all machines by what their starts are usually like, the worst first.
+
+use std::{collections::BTreeMap, path::Path};
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    drift::{date, days},
+    failure::FleetFailure,
+    history::{By, Filter, History},
+};
+use crate::{
+    document::PROGRAM,
+    math::{median, quantile},
+    remark::Remarks,
+};
+
+/// What the format is called.
+const FORMAT: &str = "hydrotrace.fleet-worst.v1";
+
+/// The joints of a fleet, the worst first.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Worst {
+    /// Always "hydrotrace.fleet-worst.v1".
+    pub format: String,
+    /// Name and version of the program that wrote it.
+    pub program: String,
+    /// What joints are ranked by.
+    pub by: By,
+    /// Runs that were looked at.
+    pub runs: usize,
+    /// Machines that they are of.
+    pub machines: usize,
+    /// Joints that turn and joints that slide are ranked apart, the former first; then by the median.
+    pub joints: Vec<WorstJoint>,
+    /// Doubts about the data.
+    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
+    pub remarks: Remarks,
+}
+
+/// A joint of a machine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct WorstJoint {
+    /// The machine.
+    pub machine: String,
+    /// The joint.
+    pub joint: String,
+    /// Unit of the values: "s", "rad" or "m".
+    pub unit: String,
+    /// Median over all starts (by lag: over all runs).
+    pub median: f64,
+    /// 95 % of the starts stay below.
+    pub p95: f64,
+    /// The largest.
+    pub largest: f64,
+    /// The log of the largest.
+    pub log: String,
+    /// When the run of the largest began, UTC.
+    pub at: Option<String>,
+    /// Against the median of all machines at the same starts: larger by this share; null where none is shared.
+    pub above_fleet: Option<f64>,
+    /// Starts.
+    pub starts: usize,
+    /// Runs.
+    pub runs: usize,
+}
+
+/// Ranks what the filter lets through.
+///
+/// # Errors
+///
+/// [`FleetFailure`] if there is no dataset, or no such machine in it.
+pub fn worst(root: &Path, filter: &Filter, by: By) -> Result<Worst, FleetFailure> {
+    let history = History::read(root, filter, true)?;
+    let mut usual: BTreeMap<(&str, &super::history::Event), Vec<f64>> = BTreeMap::new();
+    for ((axis, _), values) in history.values.iter().filter(|((_, metric), _)| *metric == by) {
+        for (event, of) in values {
+            usual.entry((axis.joint.as_str(), event)).or_default().extend(of.values());
+        }
+    }
+    let usual: BTreeMap<_, f64> = usual.into_iter().map(|(key, values)| (key, median(values))).collect();
+    let mut joints = Vec::new();
+    let wanted = |machine: &str| filter.machine.as_ref().is_none_or(|wanted| wanted == machine);
+    for ((axis, metric), values) in &history.values {
+        if *metric != by || !wanted(&axis.machine) {
+            continue;
+        }
+        let all: Vec<f64> = values.values().flat_map(|of| of.values().copied()).collect();
+        let each = values.values().flat_map(|of| of.iter());
+        let Some((run, largest)) = each.clone().max_by(|a, b| a.1.total_cmp(b.1)) else { continue };
+        let mut runs: Vec<usize> = each.map(|(run, _)| *run).collect();
+        runs.sort_unstable();
+        runs.dedup();
+        let shares = values.iter().flat_map(|(event, of)| {
+            let usual = usual.get(&(axis.joint.as_str(), event)).copied().filter(|usual| *usual > 0.0);
+            of.values().filter_map(move |value| Some(value / usual? - 1.0))
+        });
+        let shares: Vec<f64> = shares.collect();
+        let run = history.runs.get(*run);
+        joints.push(WorstJoint {
+            machine: axis.machine.clone(),
+            joint: axis.joint.clone(),
+            unit: if by == By::Peak { axis.unit.clone() } else { "s".to_owned() },
+            median: median(all.clone()),
+            p95: quantile(all.clone(), 0.95),
+            largest: *largest,
+            log: run.map(|run| run.log.clone()).unwrap_or_default(),
+            at: run.and_then(|run| date(days(run))),
+            above_fleet: (!shares.is_empty()).then(|| median(shares)),
+            starts: all.len(),
+            runs: runs.len(),
+        });
+    }
+    joints.sort_by(|a, b| b.unit.cmp(&a.unit).then(b.median.total_cmp(&a.median)));
+    Ok(Worst {
+        format: FORMAT.to_owned(),
+        program: PROGRAM.to_owned(),
+        by,
+        runs: history.runs.len(),
+        machines: history.machines().len(),
+        joints,
+        remarks: history.remarks,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::is_written_and_read;
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
+        let joint = WorstJoint {
+            machine: "M0".into(),
+            joint: "boom".into(),
+            unit: "rad".into(),
+            median: 0.1,
+            p95: 0.2,
+            largest: 0.3,
+            log: "/logs/a.mcap".into(),
+            at: date(20_000.0),
+            above_fleet: Some(0.5),
+            starts: 10,
+            runs: 2,
+        };
+        let document = Worst {
+            format: FORMAT.into(),
+            program: PROGRAM.into(),
+            by: By::Peak,
+            runs: 2,
+            machines: 1,
+            joints: vec![joint],
+            remarks: Remarks::default(),
+        };
+        is_written_and_read(&document, "fleet-worst.v1.schema.json", "hydrotrace fleet worst, version 1");
+    }
+}

@@ -1,0 +1,225 @@
+//! `fleet` at the built binary: what a scan writes, what it leaves, and what the dataset answers.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+
+use hydrotrace::log::dataset::{Column, read_table};
+use serde_json::Value;
+
+use crate::support::{
+    clean,
+    fleet::{small_fleet, small_log},
+    hold_to_schema, json, run_line, said,
+};
+
+fn fleet(machines: u64, days: i64) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    small_fleet(&folder.path().join("logs"), machines, days);
+    folder
+}
+
+/// Files of the dataset with their bytes.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(at) = open.pop() {
+        for entry in fs::read_dir(at).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "parquet") {
+                found.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+/// Cells of a column over all parts of a table.
+fn cells(folder: &Path, table: &str, column: &'static str) -> Vec<String> {
+    let parts = files(folder).into_keys().filter(|path| path.starts_with(table));
+    let text = |path: PathBuf| read_table(&folder.join(path), &[Column::text(column)]).unwrap().rows;
+    parts.flat_map(text).map(|row| row[0].as_text().unwrap_or_default().to_owned()).collect()
+}
+
+/// That the dataset holds each log once, with as many rows of joints and starts as a run has.
+pub(crate) fn is_whole(folder: &Path, logs: usize) {
+    let uris = cells(folder, "runs", "log_uri");
+    let distinct: BTreeSet<&String> = uris.iter().collect();
+    assert_eq!((uris.len(), distinct.len()), (logs, logs));
+    let runs: BTreeSet<String> = cells(folder, "runs", "run_id").into_iter().collect();
+    for (table, each) in [("joints", 2), ("transitions", 4)] {
+        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+        cells(folder, table, "run_id").into_iter().for_each(|run| *counts.entry(run).or_default() += 1);
+        assert!(counts.values().all(|count| *count == each), "{table}: {counts:?}");
+        assert_eq!(counts.into_keys().collect::<BTreeSet<_>>(), runs, "{table}");
+    }
+}
+
+#[test]
+fn a_scan_writes_each_log_once_and_the_next_one_does_nothing() {
+    let folder = fleet(3, 6);
+    let first = json(folder.path(), "fleet scan logs --into data");
+    hold_to_schema(&first, "fleet-scan.v1");
+    assert_eq!(
+        (&first["logs"], &first["analysed"], &first["unchanged"]),
+        (&18.into(), &18.into(), &0.into())
+    );
+    assert_eq!(first["machines"], serde_json::json!(["M00", "M01", "M02"]));
+    let data = folder.path().join("data");
+    is_whole(&data, 18);
+    let before = files(&data);
+    assert!(before.keys().all(|path| path.to_string_lossy().contains("/schema=1/date=2026-03/bucket=")));
+    let next = json(folder.path(), "fleet scan logs --into data");
+    assert_eq!((&next["analysed"], &next["unchanged"]), (&0.into(), &18.into()));
+    assert_eq!(files(&data), before);
+    // The number of threads changes nothing.
+    json(folder.path(), "fleet scan logs --into other --workers 3");
+    assert_eq!(files(&folder.path().join("other")), before);
+}
+
+#[test]
+fn new_changed_and_broken_logs_are_taken_up_and_old_rows_give_way() {
+    let folder = fleet(2, 5);
+    let (logs, data) = (folder.path().join("logs"), folder.path().join("data"));
+    json(folder.path(), "fleet scan logs --into data");
+    fs::write(logs.join("M01/02.mcap"), small_log("M01", 2, 99, [0.3, 0.3])).unwrap();
+    fs::write(logs.join("M01/05.mcap"), small_log("M01", 5, 98, [0.2, 0.2])).unwrap();
+    fs::write(logs.join("M00/broken.mcap"), "no log").unwrap();
+    let run = run_line(folder.path(), "fleet scan logs --into data");
+    let (code, out, _) = said(&run);
+    assert_eq!(code, 3, "{out}");
+    assert!(out.contains("12 logs: 3 analysed now, 1 of them again, 9 known already."), "{out}");
+    assert!(out.contains("broken.mcap") && out.contains("is not an MCAP file"), "{out}");
+    assert_eq!(cells(&data, "runs", "log_uri").len(), 12);
+    let errors = cells(&data, "runs", "error");
+    assert_eq!(errors.iter().filter(|error| !error.is_empty()).count(), 1);
+    fs::remove_file(logs.join("M00/broken.mcap")).unwrap();
+    // A log that is gone keeps its rows; a broken one is not tried again.
+    let next = json(folder.path(), "fleet scan logs --into data");
+    assert_eq!((&next["analysed"], &next["unchanged"]), (&0.into(), &11.into()));
+    // All of it again under another analysis: nothing is there twice.
+    let again = json(folder.path(), "fleet scan logs --into data --machine-from path:1");
+    assert_eq!((&again["analysed"], &again["replaced"]), (&11.into(), &11.into()));
+    let uris = cells(&data, "runs", "log_uri");
+    assert_eq!((uris.len(), uris.iter().collect::<BTreeSet<_>>().len()), (12, 12));
+    assert_eq!(cells(&data, "transitions", "run_id").len(), 11 * 4);
+}
+
+#[test]
+fn the_dataset_tells_which_machine_drifts_and_whether_that_breaks_a_limit() {
+    let folder = fleet(6, 10);
+    clean(folder.path(), "fleet scan logs --into data");
+    let drift = json(folder.path(), "fleet drift data --by delay");
+    hold_to_schema(&drift, "fleet-drift.v1");
+    let trends = drift["trends"].as_array().unwrap();
+    assert_eq!(trends.len(), 12);
+    let found: Vec<&Value> = trends.iter().filter(|trend| trend["found"] == true).collect();
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert_eq!((&found[0]["machine"], &found[0]["joint"]), (&"M00".into(), &"boom".into()));
+    let slope = found[0]["slope_per_day"].as_f64().unwrap();
+    assert!((slope - 0.02).abs() < 0.002, "{slope}");
+    let text = clean(folder.path(), "fleet drift data");
+    assert!(
+        text.contains("M00 boom: the dead time grows by ") && text.contains("since 2026-03-01"),
+        "{text}"
+    );
+    let csv = clean(folder.path(), "fleet drift data --csv");
+    assert!(csv.starts_with("machine,joint,metric,unit,slope_per_day,"), "{csv}");
+    let worst = json(folder.path(), "fleet worst data --by delay");
+    hold_to_schema(&worst, "fleet-worst.v1");
+    assert_eq!(
+        (&worst["joints"][0]["machine"], &worst["joints"][0]["joint"]),
+        (&"M00".into(), &"boom".into())
+    );
+
+    let kept = run_line(folder.path(), "fleet gate data --max-drift-delay-ms 30");
+    assert_eq!(said(&kept).0, 0);
+    let broken = json_of(&run_line(folder.path(), "fleet gate data --max-drift-delay-ms 5 --json"), 4);
+    hold_to_schema(&broken, "fleet-gate.v1");
+    assert_eq!(
+        (&broken["gates"][0]["broken_by"], &broken["gates"][0]["worst"]["machine"]),
+        (&1.into(), &"M00".into())
+    );
+    let nothing = run_line(folder.path(), "fleet gate data --max-drift-peak-mm 5");
+    assert_eq!(said(&nothing).0, 4);
+    let allowed = run_line(folder.path(), "fleet gate data --max-drift-peak-mm 5 --allow-empty");
+    assert_eq!(said(&allowed).0, 0);
+}
+
+fn json_of(run: &std::process::Output, code: i32) -> Value {
+    let (found, out, error) = said(run);
+    assert_eq!(found, code, "{error}");
+    serde_json::from_str(&out).unwrap()
+}
+
+#[test]
+fn a_repair_is_told_from_what_the_rest_of_the_fleet_does() {
+    let folder = fleet(6, 10);
+    // The stick of M05 was slow until the sixth of March.
+    for day in 0..5 {
+        let bytes = small_log("M05", day, 5000 + day as u64, [0.15, 0.32]);
+        fs::write(folder.path().join(format!("logs/M05/{day:02}.mcap")), bytes).unwrap();
+    }
+    clean(folder.path(), "fleet scan logs --into data");
+    let effect = json(folder.path(), "fleet effect data --machine M05 --at 2026-03-06 --by delay");
+    hold_to_schema(&effect, "fleet-effect.v1");
+    assert_eq!((&effect["runs_before"], &effect["runs_after"]), (&5.into(), &5.into()));
+    let [stick, boom] = [0, 1].map(|k| &effect["effects"][k]);
+    assert_eq!(
+        (&stick["joint"], &stick["found"], &boom["found"]),
+        (&"stick".into(), &true.into(), &false.into())
+    );
+    assert!((stick["change"].as_f64().unwrap() + 0.12).abs() < 0.02, "{stick}");
+    assert_eq!((&stick["rank"], &stick["of"]), (&1.into(), &6.into()));
+    let healthy = json(folder.path(), "fleet effect data --machine M03 --at 2026-03-06");
+    assert!(
+        healthy["effects"].as_array().unwrap().iter().all(|effect| effect["found"] == false),
+        "{healthy:#}"
+    );
+}
+
+#[test]
+fn what_is_wrong_with_a_question_is_said() {
+    let folder = fleet(1, 1);
+    for (line, code, words) in [
+        (
+            "fleet drift nothing",
+            1,
+            "nothing holds no dataset; `hydrotrace fleet scan LOGS --into nothing` makes one",
+        ),
+        ("fleet scan s3://bucket/logs --into data", 1, "logs in object stores are not read"),
+        ("fleet scan none*.mcap --into data", 1, "found no log in \"none*.mcap\""),
+        ("fleet scan logs --into data --machine-from nowhere.csv", 1, "nowhere.csv"),
+        ("fleet effect data --machine M00 --at yesterday", 2, "neither a day as 2026-03-01"),
+        ("fleet gate data", 2, "no limit is given"),
+    ] {
+        let (found, _, error) = said(&run_line(folder.path(), line));
+        assert!(found == code && error.contains(words), "{line}: {found} {error}");
+    }
+    clean(folder.path(), "fleet scan logs --into data");
+    let (code, _, error) = said(&run_line(folder.path(), "fleet drift data --machine M01"));
+    assert!(code == 1 && error.contains("did you mean \"M00\"?"), "{error}");
+    let (code, out, _) = said(&run_line(folder.path(), "fleet drift data"));
+    assert!(code == 0 && out.contains("no joint has five runs of one plan"), "{out}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_scan_that_is_killed_and_repeated_holds_every_row_once() {
+    let folder = fleet(4, 10);
+    for round in 0_u64..6 {
+        let into = format!("data-{round}");
+        let mut scan = crate::support::command(folder.path());
+        scan.args(["fleet", "scan", "logs", "--into", &into, "--quiet"]).stdout(std::process::Stdio::null());
+        let mut scan = scan.spawn().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(15 + 40 * round));
+        scan.kill().unwrap();
+        scan.wait().unwrap();
+        json(folder.path(), &format!("fleet scan logs --into {into}"));
+        is_whole(&folder.path().join(&into), 40);
+    }
+}
