@@ -81,6 +81,15 @@ pub struct Choice {
     pub of: usize,
     /// Evaluations of the last descent.
     pub evaluations: u64,
+    /// What the rule lessens.
+    merit: Merit,
+}
+
+impl Choice {
+    /// What the rule lessens, of a plan.
+    pub(super) fn worth(&self, objectives: &Objectives) -> f64 {
+        self.merit.of(objectives)
+    }
 }
 
 /// Why no plan can be chosen.
@@ -169,7 +178,7 @@ pub fn choose(
         timing.violation <= 0.0 && excess(timing) <= 1.0 && worth(merit, timing) < worth(merit, picked)
     });
     let timing = better.unwrap_or_else(|| picked.clone());
-    Ok(Choice { timing, rule, weights, within: count, of: front.len(), evaluations: used })
+    Ok(Choice { timing, rule, weights, within: count, of: front.len(), evaluations: used, merit })
 }
 
 fn worth(merit: Merit, timing: &Timing) -> f64 {

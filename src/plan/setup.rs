@@ -33,6 +33,8 @@ pub struct Setup {
     pub(super) tool_speed_m_s: f64,
     /// A motion with the task's key points, dwells and ends; its times are arbitrary.
     pub(super) template: Motion,
+    /// Motion at the start and the end.
+    pub(super) ends: Ends,
     /// Dwell that precedes each interval, s, `[points - 1]`; zero for none.
     pub(super) dwell_before_s: Vec<f64>,
     /// Load at the last joint in each segment.
@@ -42,7 +44,7 @@ pub struct Setup {
     /// Per limit: safety factor for peaks between evaluation nodes; 1 until one was found.
     pub(super) slack: Vec<f64>,
     /// Payload by segment, kg.
-    payload_kg: Vec<f64>,
+    pub(super) payload_kg: Vec<f64>,
 }
 
 impl Setup {
@@ -94,6 +96,7 @@ impl Setup {
             limits,
             tool_speed_m_s: task.tool_speed_m_s,
             template,
+            ends,
             dwell_before_s,
             loads,
             interval_s: task.interval_s,
