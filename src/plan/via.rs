@@ -45,7 +45,9 @@ impl Setup {
             }
             t_s.push(arrive_s);
             position_rad.extend_from_slice(points.of(point));
-            let Some((next_s, dwell_s)) = times_s.get(point + 1).zip(self.dwell_before_s.get(point)) else { break };
+            let Some((next_s, dwell_s)) = times_s.get(point + 1).zip(self.dwell_before_s.get(point)) else {
+                break;
+            };
             dwell_before_s.push(*dwell_s);
             while let Some((_, via)) = rest.next_if(|(_, via)| {
                 via.t_s > arrive_s + dwell_s && via.t_s < *next_s && via.position_rad.len() == joints
@@ -56,7 +58,12 @@ impl Setup {
             }
         }
         if let Some((index, via)) = rest.next() {
-            return Err(PlanError::Via { point: index + 1, t_s: via.t_s, angles: via.position_rad.len(), joints });
+            return Err(PlanError::Via {
+                point: index + 1,
+                t_s: via.t_s,
+                angles: via.position_rad.len(),
+                joints,
+            });
         }
         let degree = self.template.degree();
         let template = Motion::new(degree, KeyPoints::new(joints, position_rad)?, &self.ends, &dwells, &t_s)?;
