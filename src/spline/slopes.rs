@@ -56,7 +56,13 @@ impl Spline {
     /// # Panics
     ///
     /// If there is no such joint or piece.
-    pub fn stationary(&self, joint: usize, quantity: Quantity, piece: usize, mut found: impl FnMut(f64, f64)) {
+    pub fn stationary(
+        &self,
+        joint: usize,
+        quantity: Quantity,
+        piece: usize,
+        mut found: impl FnMut(f64, f64),
+    ) {
         let breaks = self.knots.breaks();
         let polynomial = self.bernstein(joint, quantity, piece, (breaks[piece], breaks[piece + 1]));
         polynomial.stationary(|share| found(share, polynomial.at(share).0));
@@ -244,9 +250,13 @@ mod tests {
                 let sample = here.at(t_s);
                 for quantity in Quantity::ALL {
                     let control = &here.control(0, Quantity::Position)[found.first_control..];
-                    let sum: f64 = control.iter().zip(found.value[quantity.order()]).map(|(c, w)| c * w).sum();
+                    let sum: f64 =
+                        control.iter().zip(found.value[quantity.order()]).map(|(c, w)| c * w).sum();
                     let want = sample.of(quantity, 0)[0];
-                    assert!((sum - want).abs() < 1e-9 * want.abs().max(1.0), "{degree:?} {place:?} {sum} {want}");
+                    assert!(
+                        (sum - want).abs() < 1e-9 * want.abs().max(1.0),
+                        "{degree:?} {place:?} {sum} {want}"
+                    );
                 }
                 for k in 0..interval_s.len() {
                     let beside = |step: f64| {
@@ -261,7 +271,10 @@ mod tests {
                             let within = k.checked_sub(found.first_interval).filter(|i| *i < WINDOW);
                             let slope = within.map_or(0.0, |i| found.slope[order][c][i]);
                             let scale = quotient.abs().max(10.0);
-                            assert!((slope - quotient).abs() < 1e-6 * scale, "{degree:?} {place:?} {k} {order} {c}: {slope} {quotient}");
+                            assert!(
+                                (slope - quotient).abs() < 1e-6 * scale,
+                                "{degree:?} {place:?} {k} {order} {c}: {slope} {quotient}"
+                            );
                         }
                     }
                 }

@@ -84,7 +84,9 @@ impl Frame {
             let own = &mut interval_s[ends[0]..ends[1]];
             let whole: f64 = own.iter().sum();
             let by = whole.clamp(low, high) / whole;
-            own.iter_mut().for_each(|s| *s *= by);
+            for s in own {
+                *s *= by;
+            }
         }
     }
 
@@ -117,7 +119,9 @@ impl Frame {
     pub(super) fn refined(&self, curve: &Curve, pieces: usize) -> Result<(Self, Curve), SplineError> {
         let motion = self.motion(curve)?;
         let mut frame = self.clone();
-        frame.key.iter_mut().for_each(|point| *point *= pieces);
+        for point in &mut frame.key {
+            *point *= pieces;
+        }
         frame.dwells.iter_mut().for_each(|dwell| dwell.point *= pieces);
         let part = |s: &f64| std::iter::repeat_n(s / pieces as f64, pieces);
         let interval_s: Vec<f64> = curve.interval_s.iter().flat_map(part).collect();

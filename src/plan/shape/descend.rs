@@ -45,7 +45,7 @@ pub(super) fn descend(
         let step = Step::of(frame, (&here, aim, trust), &model, &multipliers);
         let taken = step.solve();
         let expected = here.broken() - taken.worth;
-        if !(expected >= enough) {
+        if expected.is_nan() || expected < enough {
             break;
         }
         let found = best_part(frame, (&here, aim, expected), (&step, &taken), &mut tried);

@@ -77,7 +77,9 @@ impl Bordered {
             let most = (0..n).fold(0.0, |most: f64, i| most.max(block[i * n + i]));
             (0..n).for_each(|i| block[i * n + i] += own * (most + 1.0));
         }
-        (0..self.border).for_each(|i| self.corner[i * self.border + i] += border);
+        for i in 0..self.border {
+            self.corner[i * self.border + i] += border;
+        }
     }
 
     /// Adds a multiple of a row's square; the border's last unknown has that coefficient in it.
@@ -174,7 +176,9 @@ impl Bordered {
                     }
                 }
                 let reciprocal = 1.0 / own[row * n + row];
-                current.iter_mut().for_each(|value| *value *= reciprocal);
+                for value in &mut *current {
+                    *value *= reciprocal;
+                }
                 for i in 0..b {
                     let factor = current[i];
                     if factor != 0.0 {
@@ -256,27 +260,43 @@ mod tests {
         let n = system.unknowns();
         // A full matrix of that form, diagonally dominant.
         let mut full = vec![0.0; n * n];
-        let block_of = |i: usize| if i < 3 { 0 } else if i < 5 { 2 } else { 9 };
+        let block_of = |i: usize| {
+            if i < 3 {
+                0
+            } else if i < 5 {
+                2
+            } else {
+                9
+            }
+        };
         for i in 0..n {
             for j in 0..=i {
                 let joined = block_of(i) == block_of(j) || block_of(i) == 9;
-                let value = if i == j { 5.0 + i as f64 } else if joined { ((i * 7 + j * 3) % 5) as f64 * 0.3 - 0.5 } else { 0.0 };
+                let value = if i == j {
+                    5.0 + i as f64
+                } else if joined {
+                    ((i * 7 + j * 3) % 5) as f64 * 0.3 - 0.5
+                } else {
+                    0.0
+                };
                 (full[i * n + j], full[j * n + i]) = (value, value);
                 match (block_of(i), block_of(j)) {
-                    (9, 9) => system.corner[(i - 5) * 2 + j - 5] = value,
+                    (9, 9) => system.corner[(i - 5) * border + j - 5] = value,
                     (9, block) => {
                         let start = system.start(block);
                         system.couple[block][(j - start) * 2 + i - 5] = value;
                     }
-                    (block, _) => {
+                    (block, other) if block == other => {
                         let start = system.start(block);
                         system.own[block][(i - start) * sizes[block] + j - start] = value;
                     }
+                    _ => {}
                 }
             }
         }
         let want: Vec<f64> = (0..n).map(|i| i as f64 - 2.5).collect();
-        let mut x: Vec<f64> = full.chunks_exact(n).map(|row| row.iter().zip(&want).map(|(a, x)| a * x).sum()).collect();
+        let mut x: Vec<f64> =
+            full.chunks_exact(n).map(|row| row.iter().zip(&want).map(|(a, x)| a * x).sum()).collect();
         system.factor();
         system.solve(&mut x);
         assert!(x.iter().zip(&want).all(|(x, want)| (x - want).abs() < 1e-12), "{x:?}");

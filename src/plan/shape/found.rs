@@ -38,7 +38,7 @@ pub enum NoShape {
 }
 
 /// Pieces of an interval at most.
-pub const MOST_PIECES: usize = 8;
+pub const MOST_PIECES: u32 = 8;
 /// Pieces that a motion is split into by default, and how many that is of an interval at least and most.
 const PIECES: usize = 25;
 const FEWEST: usize = 2;
@@ -71,7 +71,9 @@ pub fn shape(
     pieces: Option<usize>,
 ) -> Result<Shape, NoShape> {
     let intervals = setup.interval_count();
-    let pieces = pieces.unwrap_or((PIECES / intervals.max(1)).clamp(FEWEST, DEFAULT_MOST)).clamp(1, MOST_PIECES);
+    let pieces = pieces
+        .unwrap_or((PIECES / intervals.max(1)).clamp(FEWEST, DEFAULT_MOST))
+        .clamp(1, MOST_PIECES as usize);
     if intervals * pieces > MOST {
         return Err(NoShape::TooManyIntervals { found: intervals, most: MOST / pieces });
     }
@@ -135,7 +137,9 @@ fn kept(setup: &Setup, frame: &Frame, curve: &Curve) -> Result<PlanEvaluation, N
         if worst.limit == Limit::Position || slower > SLOWEST {
             return Err(NoShape::Broken(worst));
         }
-        interval_s.iter_mut().for_each(|s| *s *= by);
+        for s in &mut interval_s {
+            *s *= by;
+        }
         frame.clamp(&mut interval_s);
     }
     Err(NoShape::NoGain)

@@ -10,6 +10,8 @@ pub(super) const PRICE: f64 = 20.0;
 const PROXIMAL: f64 = 1e-8;
 const ITERATIONS: usize = 60;
 const ENOUGH: f64 = 1e-9;
+/// Steps shorter than this are not worth a correction.
+const STUCK: f64 = 0.1;
 /// Share of the way to the nearest bound that a step goes.
 const WAY: f64 = 0.995;
 
@@ -42,16 +44,17 @@ impl Programme<'_> {
         let worst = self.limits.iter().fold(0.0, |most: f64, (row, sign)| most.max(sign * row.value - 1.0));
         state.x[n - 1] = worst + 0.1;
         let broken = self.broken(&state.x);
-        for ((s, z), broken) in state.s.iter_mut().zip(&mut state.z).zip(&broken) {
-            *s = (-broken).max(1e-2);
-            *z = 1e-2 / *s;
-        }
+        state.s.iter_mut().zip(&broken).for_each(|(s, broken)| *s = (-broken).max(1e-2));
+        // Equal products, and multipliers that together are the price: t neither runs away nor is held.
+        let product = PRICE / state.s.iter().map(|s| 1.0 / s).sum::<f64>();
+        state.z.iter_mut().zip(&state.s).for_each(|(z, s)| *z = product / s);
         let mut system = self.hessian.clone();
         for _ in 0..ITERATIONS {
             let residual = self.residual(&state);
             let gap = state.gap();
             let dual = residual.dual.iter().fold(0.0, |most: f64, r| most.max(r.abs()));
-            let primal = residual.bound.iter().chain(&residual.pass).fold(0.0, |most: f64, r| most.max(r.abs()));
+            let primal =
+                residual.bound.iter().chain(&residual.pass).fold(0.0, |most: f64, r| most.max(r.abs()));
             if gap < ENOUGH && dual < 1e-6 && primal < 1e-9 {
                 break;
             }
@@ -64,17 +67,21 @@ impl Programme<'_> {
             let predicted = self.direction(&system, &state, &residual, &centre);
             let reach = predicted.reach(&state, 1.0);
             let after: f64 = (state.s.iter().zip(&state.z).zip(predicted.s.iter().zip(&predicted.z)))
-                .map(|((s, z), (ds, dz))| (s + reach[0] * ds) * (z + reach[1] * dz))
+                .map(|((s, z), (ds, dz))| (s + reach * ds) * (z + reach * dz))
                 .sum::<f64>()
                 / m as f64;
             let sigma = (after / gap).clamp(0.0, 1.0).powi(3);
             let corrected: Vec<f64> = (centre.iter().zip(predicted.s.iter().zip(&predicted.z)))
                 .map(|(centre, (ds, dz))| centre + ds * dz - sigma * gap)
                 .collect();
-            let step = self.direction(&system, &state, &residual, &corrected);
-            let [primal, dual] = step.reach(&state, WAY);
-            let both = primal.min(dual);
-            state.add(&step, both, both);
+            let mut step = self.direction(&system, &state, &residual, &corrected);
+            if step.reach(&state, WAY) < STUCK {
+                // A correction far from the path may lead about in circles; back to the path first.
+                let central: Vec<f64> = centre.iter().map(|centre| centre - 0.5 * gap).collect();
+                step = self.direction(&system, &state, &residual, &central);
+            }
+            let reach = step.reach(&state, WAY);
+            state.add(&step, reach);
         }
         state.z.truncate(self.limits.len());
         (state.x, state.z)
@@ -85,9 +92,10 @@ impl Programme<'_> {
         let t = x[x.len() - 1];
         let border = self.hessian.border_start();
         let limits = self.limits.iter().map(|(row, sign)| sign * (row.value + self.dot(row, x)) - 1.0 - t);
-        let edges = self.edges.iter().map(|edge| {
-            edge.entries.iter().map(|(i, a)| a * x[border + i]).sum::<f64>() - edge.most
-        });
+        let edges = self
+            .edges
+            .iter()
+            .map(|edge| edge.entries.iter().map(|(i, a)| a * x[border + i]).sum::<f64>() - edge.most);
         limits.chain(edges).chain([-t]).collect()
     }
 
@@ -152,15 +160,25 @@ impl Programme<'_> {
         for (row, pass) in self.passes.iter().zip(&residual.pass) {
             self.hessian.add(row, pass / PROXIMAL, &mut x);
         }
-        x.iter_mut().for_each(|x| *x = -*x);
+        for x in &mut x {
+            *x = -*x;
+        }
         system.solve(&mut x);
         let t = x[x.len() - 1];
         let border = self.hessian.border_start();
         let limits = self.limits.iter().map(|(row, sign)| sign * self.dot(row, &x) - t);
-        let edges = self.edges.iter().map(|edge| edge.entries.iter().map(|(i, a)| a * x[border + i]).sum::<f64>());
-        let s: Vec<f64> = (limits.chain(edges).chain([-t]).zip(&residual.bound)).map(|(moved, bound)| -bound - moved).collect();
-        let z = (s.iter().zip(less)).zip(state.z.iter().zip(&state.s)).map(|((ds, less), (z, s))| -(less + z * ds) / s).collect();
-        let nu = (self.passes.iter().zip(&residual.pass)).map(|(row, pass)| (self.dot(row, &x) + pass) / PROXIMAL).collect();
+        let edges =
+            self.edges.iter().map(|edge| edge.entries.iter().map(|(i, a)| a * x[border + i]).sum::<f64>());
+        let s: Vec<f64> = (limits.chain(edges).chain([-t]).zip(&residual.bound))
+            .map(|(moved, bound)| -bound - moved)
+            .collect();
+        let z = (s.iter().zip(less))
+            .zip(state.z.iter().zip(&state.s))
+            .map(|((ds, less), (z, s))| -(less + z * ds) / s)
+            .collect();
+        let nu = (self.passes.iter().zip(&residual.pass))
+            .map(|(row, pass)| (self.dot(row, &x) + pass) / PROXIMAL)
+            .collect();
         State { x, s, z, nu }
     }
 }
@@ -185,20 +203,70 @@ impl State {
         self.s.iter().zip(&self.z).map(|(s, z)| s * z).sum::<f64>() / self.s.len() as f64
     }
 
-    /// Longest steps that keep slacks and multipliers positive, as direction; at most 1.
-    fn reach(&self, from: &Self, way: f64) -> [f64; 2] {
+    /// The longest step that keeps slacks and multipliers positive, as direction; at most 1.
+    fn reach(&self, from: &Self, way: f64) -> f64 {
         let longest = |values: &[f64], steps: &[f64]| {
             let limits = values.iter().zip(steps).filter(|(_, step)| **step < 0.0);
             limits.fold(1.0, |most: f64, (value, step)| most.min(-way * value / step))
         };
-        [longest(&from.s, &self.s), longest(&from.z, &self.z)]
+        longest(&from.s, &self.s).min(longest(&from.z, &self.z))
     }
 
-    fn add(&mut self, step: &Self, primal: f64, dual: f64) {
-        let add = |to: &mut [f64], from: &[f64], by: f64| to.iter_mut().zip(from).for_each(|(to, from)| *to += by * from);
-        add(&mut self.x, &step.x, primal);
-        add(&mut self.s, &step.s, primal);
-        add(&mut self.z, &step.z, dual);
-        add(&mut self.nu, &step.nu, dual);
+    fn add(&mut self, step: &Self, by: f64) {
+        let add = |to: &mut [f64], from: &[f64]| {
+            to.iter_mut().zip(from).for_each(|(to, from)| *to += by * from);
+        };
+        add(&mut self.x, &step.x);
+        add(&mut self.s, &step.s);
+        add(&mut self.z, &step.z);
+        add(&mut self.nu, &step.nu);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spline::WINDOW;
+
+    fn row(control: f64, interval: f64, value: f64) -> Row {
+        let mut row =
+            Row { block: 0, first: 0, control: [0.0; 8], first_interval: 0, interval: [0.0; WINDOW], value };
+        (row.control[0], row.interval[0]) = (control, interval);
+        row
+    }
+
+    /// Least of 1/2 |x - (2, 1)|².
+    fn towards(limits: &[(&Row, f64)], passes: &[Row], edges: &[Edge]) -> (Vec<f64>, Vec<f64>) {
+        let mut hessian = Bordered::new(&[1], 2);
+        hessian.add_square(&row(1.0, 0.0, 0.0), 1.0, 0.0);
+        hessian.add_square(&row(0.0, 1.0, 0.0), 1.0, 0.0);
+        hessian.lift(0.0, 1e-9);
+        Programme { hessian: &hessian, gradient: &[-2.0, -1.0, 0.0], limits, passes, edges }.solve()
+    }
+
+    fn near(found: &[f64], want: [f64; 2]) {
+        assert!(
+            found.iter().zip(want).all(|(found, want)| (found - want).abs() < 1e-5),
+            "{found:?} {want:?}"
+        );
+    }
+
+    #[test]
+    fn a_programme_stops_at_limits_edges_and_passes() {
+        near(&towards(&[], &[], &[]).0, [2.0, 1.0]);
+        let (x, multipliers) = towards(&[(&row(1.0, 0.0, 0.0), 1.0)], &[], &[]);
+        near(&x, [1.0, 1.0]);
+        assert!((multipliers[0] - 1.0).abs() < 1e-4, "{multipliers:?}");
+        near(&towards(&[(&row(-1.0, 0.0, -0.5), -1.0)], &[], &[]).0, [0.5, 1.0]);
+        near(&towards(&[], &[], &[Edge { entries: vec![(0, 1.0)], most: 0.25 }]).0, [2.0, 0.25]);
+        near(&towards(&[], &[row(1.0, 1.0, -1.0)], &[]).0, [1.0, 0.0]);
+    }
+
+    #[test]
+    fn limits_that_contradict_each_other_are_broken_as_little_as_possible() {
+        // x <= -1 and x >= 1.
+        let (x, _) = towards(&[(&row(1.0, 0.0, 2.0), 1.0), (&row(1.0, 0.0, -2.0), -1.0)], &[], &[]);
+        near(&x, [0.0, 1.0]);
+        assert!((x[2] - 1.0).abs() < 1e-4, "{x:?}");
     }
 }

@@ -44,15 +44,16 @@ fn de_boor(knots: &[f64], control: &[f64], degree: usize, t_s: f64) -> f64 {
 /// Control points and knots of the derivative.
 fn derived(knots: &[f64], control: &[f64], degree: usize) -> (Vec<f64>, Vec<f64>) {
     let differences = control.windows(2).enumerate();
-    let derivative =
-        differences.map(|(i, pair)| degree as f64 * (pair[1] - pair[0]) / (knots[i + degree + 1] - knots[i + 1]));
+    let derivative = differences
+        .map(|(i, pair)| degree as f64 * (pair[1] - pair[0]) / (knots[i + degree + 1] - knots[i + 1]));
     (knots[1..knots.len() - 1].to_vec(), derivative.collect())
 }
 
 /// Largest magnitudes of speed, acceleration and jerk of a joint among so many instants.
 fn dense(segment: &Segment, joint: usize, instants: usize) -> [f64; 3] {
     let spline = &segment.spline;
-    let (mut knots, mut control) = (spline.knots_s().to_vec(), spline.control(joint, Quantity::Position).to_vec());
+    let (mut knots, mut control) =
+        (spline.knots_s().to_vec(), spline.control(joint, Quantity::Position).to_vec());
     let mut degree = spline.degree().order();
     let mut found = [0.0; 3];
     for found in &mut found {
@@ -84,7 +85,10 @@ fn check(setup: &Setup, found: &Shape, motion: &Motion) {
         let at = motion.at(*t_s);
         for joint in 0..setup.joint_count() {
             let want = setup.template().points().of(point)[joint];
-            assert!((at.of(Quantity::Position, joint)[0] - want).abs() < 1e-12, "point {point}, joint {joint}");
+            assert!(
+                (at.of(Quantity::Position, joint)[0] - want).abs() < 1e-12,
+                "point {point}, joint {joint}"
+            );
         }
     }
     for segment in motion.segments() {
@@ -102,7 +106,9 @@ fn motion(setup: &Setup, found: &Shape) -> Motion {
 
 #[test]
 fn the_fastest_shape_is_far_faster_than_any_timing_and_keeps_every_limit_between_all_instants() {
-    for ((name, text), (timing_s, most_s)) in TASKS.into_iter().zip([(6.727, 6.28), (12.421, 11.3), (18.918, 14.8)]) {
+    for ((name, text), (timing_s, most_s)) in
+        TASKS.into_iter().zip([(6.727, 6.28), (12.421, 11.3), (18.918, 14.8)])
+    {
         let setup = setup(text);
         let choice = chosen(&setup, Rule::Best(Objective::Duration), &Ceilings::NONE);
         let start_s = choice.timing.objectives[Objective::Duration];
@@ -126,7 +132,8 @@ fn the_smoothest_shape_of_a_duration_beats_the_smoothest_timing_of_it() {
         let ceilings = Ceilings::NONE.with(Objective::Duration, within_s);
         let choice = chosen(&setup, Rule::Best(Objective::RmsJerk), &ceilings);
         let found = shape(&setup, &choice, &ceilings, None).unwrap();
-        let ratio = found.evaluation.objectives[Objective::RmsJerk] / choice.timing.objectives[Objective::RmsJerk];
+        let ratio =
+            found.evaluation.objectives[Objective::RmsJerk] / choice.timing.objectives[Objective::RmsJerk];
         println!("{name} at {by}: {:.2} % less jerk, {} steps", 100.0 * (1.0 - ratio), found.steps);
         assert!(ratio < 1.0 - gain, "{name} at {by}: {ratio}");
         check(&setup, &found, &motion(&setup, &found));
@@ -159,5 +166,5 @@ fn one_piece_and_too_many_intervals_leave_the_timing_as_it_is() {
             assert!((duration_s - choice.timing.objectives[Objective::Duration]).abs() < 1e-5);
         }
     }
-    assert!(shape(&setup, &choice, &Ceilings::NONE, Some(MOST_PIECES)).is_ok());
+    assert!(shape(&setup, &choice, &Ceilings::NONE, Some(MOST_PIECES as usize)).is_ok());
 }

@@ -7,6 +7,9 @@ use super::{
 };
 use crate::spline::Motion;
 
+/// The factor of time of a segment that nothing bounds.
+const LEAST_FACTOR: f64 = 1e-3;
+
 /// A curve with its values.
 pub(super) struct Point {
     pub(super) curve: Curve,
@@ -29,11 +32,16 @@ impl Point {
         if aim.within_s.is_finite() {
             let moving_s: f64 = curve.interval_s.iter().sum();
             let by = (aim.within_s - frame.resting_s()) / moving_s;
-            curve.interval_s.iter_mut().for_each(|s| *s *= by);
+            for s in &mut curve.interval_s {
+                *s *= by;
+            }
         } else {
             for (segment, [_, by]) in motion.segments().iter().zip(frame.stretch(&motion)) {
                 let (first, last) = segment.ends();
-                curve.interval_s[first..last].iter_mut().for_each(|s| *s *= by);
+                // Nothing bounds what does not move.
+                for s in &mut curve.interval_s[first..last] {
+                    *s *= by.max(LEAST_FACTOR);
+                }
             }
         }
         frame.clamp(&mut curve.interval_s);
