@@ -74,6 +74,8 @@ pub enum Code {
     Guessed,
     /// Links without a mass, whose joints so need no torque.
     NoMass,
+    /// Two key points in a row that are one, where the arm stops.
+    EqualKeyPoints,
     /// A ceiling so high that it binds nothing.
     InactiveBound,
     /// Both sides of a comparison are one run.

@@ -81,6 +81,15 @@ pub struct Choice {
     pub of: usize,
     /// Evaluations of the last descent.
     pub evaluations: u64,
+    /// What the rule lessens.
+    merit: Merit,
+}
+
+impl Choice {
+    /// What the rule lessens, of a plan.
+    pub(super) fn worth(&self, objectives: &Objectives) -> f64 {
+        self.merit.of(objectives)
+    }
 }
 
 /// Why no plan can be chosen.
@@ -97,6 +106,8 @@ pub enum NoChoice {
 
 /// Evaluations of the last descent at most.
 const LAST: u64 = 600;
+/// Distance that descents keep from ceilings, as a share of them.
+const ROUNDING: f64 = 1e-6;
 /// Divisions of the weights that knees are judged by.
 const WEIGHTS: usize = 12;
 
@@ -128,7 +139,7 @@ pub fn choose(
         nearest.map(|nearest| {
             let goal = Goal {
                 merit: Merit::even(),
-                ceilings: ceilings.map_plan(|k| ceilings[k] * (1.0 - 1e-6)),
+                ceilings: within_reach(ceilings),
                 evaluations: LAST,
                 trust: NEARLY,
                 enough: COARSE,
@@ -159,7 +170,7 @@ pub fn choose(
     };
     let picked = picked.ok_or(NoChoice::Empty)?;
     // A knee is a knee of this front; from it one may only descend to what is better in everything.
-    let own = if rule == Rule::Knee { picked.objectives } else { *ceilings };
+    let own = if rule == Rule::Knee { picked.objectives } else { within_reach(ceilings) };
     let goal = Goal { merit, ceilings: own, evaluations: LAST, trust: NEARLY, enough: FINE };
     let end = descend(setup, &mut evaluator, &picked.interval_s, &goal);
     used += end.evaluations;
@@ -169,7 +180,12 @@ pub fn choose(
         timing.violation <= 0.0 && excess(timing) <= 1.0 && worth(merit, timing) < worth(merit, picked)
     });
     let timing = better.unwrap_or_else(|| picked.clone());
-    Ok(Choice { timing, rule, weights, within: count, of: front.len(), evaluations: used })
+    Ok(Choice { timing, rule, weights, within: count, of: front.len(), evaluations: used, merit })
+}
+
+/// Ceilings as a descent takes them, which ends at one to within rounding, on either side of it.
+fn within_reach(ceilings: &Ceilings) -> Ceilings {
+    ceilings.map_plan(|k| ceilings[k] * (1.0 - ROUNDING))
 }
 
 fn worth(merit: Merit, timing: &Timing) -> f64 {
@@ -225,4 +241,41 @@ fn knee<'a>(plans: &[&'a Timing], scale: &Scale) -> Option<&'a Timing> {
     }
     let most = (0..plans.len()).max_by(|&a, &b| loss[a].total_cmp(&loss[b]).then(b.cmp(&a)))?;
     Some(plans[most])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::{super::Search, *};
+    use crate::{arm::Arm, moea::Budget, task::Task};
+
+    /// Where neither limits nor the longest intervals bind, the best shape is one and only its time changes: with rests of
+    /// d the mean of squared jerk falls with T (T - d)^5.
+    #[test]
+    fn the_smoothest_plan_under_a_ceiling_on_time_is_that_of_the_closed_form() {
+        let tasks = [
+            (include_str!("../../sample-logs/tasks/task-1.toml"), [20.0_f64, 55.0]),
+            (include_str!("../../sample-logs/tasks/task-2.toml"), [22.0, 60.0]),
+        ];
+        for (text, [from_s, to_s]) in tasks {
+            let setup = Setup::new(&Task::parse(text).unwrap(), Arm::sample().unwrap()).unwrap();
+            let search = Search { budget: Budget::Evaluations(2000), ..Search::default() };
+            let front = super::super::search(&setup, &search, |_| ControlFlow::Continue(())).unwrap().front;
+            let rest_s = setup.resting_s();
+            let scaled: Vec<f64> = (0..20)
+                .map(|i| {
+                    let within_s = from_s * (to_s / from_s).powf(f64::from(i) / 19.0);
+                    let ceilings = Ceilings::NONE.with(Objective::Duration, within_s);
+                    let rule = Rule::Best(Objective::RmsJerk);
+                    let found = choose(&setup, &front, &ceilings, (rule, None)).unwrap().timing.objectives;
+                    assert!(found[Objective::Duration] <= within_s);
+                    found[Objective::RmsJerk] * (within_s * (within_s - rest_s).powi(5)).sqrt()
+                })
+                .collect();
+            let least = scaled.iter().copied().fold(f64::INFINITY, f64::min);
+            let worst = scaled.iter().fold(0.0, |most: f64, value| most.max(value / least - 1.0));
+            assert!(worst < 1e-3, "{:.2} % above the optimum", 100.0 * worst);
+        }
+    }
 }

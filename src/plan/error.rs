@@ -72,6 +72,20 @@ pub enum PlanError {
         /// Key points.
         expected: usize,
     },
+    /// A free point that the motion cannot pass.
+    #[error(
+        "free point {point}, of {angles} angles for {joints} joints at {t_s} s, is not on the way between two key points"
+    )]
+    Via {
+        /// Number of the free point, from 1.
+        point: usize,
+        /// When it should be passed, s.
+        t_s: f64,
+        /// Angles given.
+        angles: usize,
+        /// Joints of the arm.
+        joints: usize,
+    },
     /// Settings of the search.
     #[error("the search cannot be run so")]
     Search(#[from] MoeaError),

@@ -1,6 +1,6 @@
 //! One plan, evaluated: its objectives and how near it comes to every limit.
 
-use super::{Evaluator, Margin, PlanError, Setup, excess};
+use super::{Evaluator, Margin, PlanError, Setup, Via, excess, via::Through};
 use crate::task::Objectives;
 
 /// A plan with its objectives, its costs by joint and its margins.
@@ -10,6 +10,8 @@ pub struct PlanEvaluation {
     pub times_s: Vec<f64>,
     /// Time of movement from each key point to the next, s.
     pub interval_s: Vec<f64>,
+    /// Free points that it passes between the key points; none of a timing alone.
+    pub via: Vec<Via>,
     /// What it costs.
     pub objectives: Objectives,
     /// Sum of what it exceeds its limits by, as shares of them; 0 if all hold.
@@ -31,14 +33,24 @@ impl PlanEvaluation {
     ///
     /// [`PlanError`] if they are no times for this task.
     pub fn of(setup: &Setup, times_s: &[f64]) -> Result<Self, PlanError> {
-        let motion = setup.motion(times_s)?;
-        let mut evaluator = Evaluator::new(setup);
+        Self::through(setup, times_s, &[])
+    }
+
+    /// Judges arrivals at the key points, s, and free points between them.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError`] if they are no plan for this task.
+    pub fn through(setup: &Setup, times_s: &[f64], via: &[Via]) -> Result<Self, PlanError> {
         let interval_s = setup.intervals_s(times_s)?;
-        // The motion above is of the same times, so there is one.
-        let objectives = evaluator.evaluate(setup, &interval_s).unwrap_or(Objectives::NONE);
+        let Through { setup, interval_s: own_s } = setup.through(times_s, via)?;
+        let (setup, motion) = (&setup, &setup.template);
+        let mut evaluator = Evaluator::new(setup);
+        // The motion is of the same times, so there is one.
+        let objectives = evaluator.evaluate(setup, &own_s).unwrap_or(Objectives::NONE);
         let rms_jerk_rad_s3 = evaluator.rms_jerk_rad_s3().to_vec();
         let (rms_power_w, energy_j) = (evaluator.rms_power_w(), evaluator.energy_j());
-        let margins = setup.margins(&motion, &mut evaluator);
+        let margins = setup.margins(motion, &mut evaluator);
         let broken = margins.iter().filter(|margin| margin.broken());
         // A sum of nothing would be minus zero.
         let violation = broken.fold(0.0, |sum, margin| sum + excess(margin.share));
@@ -46,6 +58,7 @@ impl PlanEvaluation {
         Ok(Self {
             times_s,
             interval_s,
+            via: via.to_vec(),
             objectives,
             violation,
             rms_jerk_rad_s3,

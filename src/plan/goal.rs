@@ -3,7 +3,7 @@
 use crate::task::{ByObjective, Ceilings, Objective, Objectives, Weights};
 
 /// What a descent lessens.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Merit {
     /// Sum of the objectives' logarithms by weights that sum to one.
     Logarithms(Weights),

@@ -23,8 +23,10 @@ mod sampled_motion;
 mod search;
 mod seed;
 mod setup;
+mod shape;
 mod speed_room;
 mod tangent;
+mod via;
 
 pub use choose::{Choice, NoChoice, Rule, choose, ends};
 pub use command_margin::Interpolation;
@@ -37,4 +39,6 @@ pub use reference::{BEYOND, Reference};
 pub use sampled_motion::SampledMotion;
 pub use search::{Found, Phase, Progress, Search, search};
 pub use setup::Setup;
+pub use shape::{MOST_PIECES, NoShape, Shape, shape};
 pub use speed_room::SpeedRoom;
+pub use via::Via;

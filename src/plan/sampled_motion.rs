@@ -26,7 +26,7 @@ impl SampledMotion {
     ///
     /// [`PlanError`] if the times are not those of the task.
     pub fn of(setup: &Setup, evaluation: &PlanEvaluation) -> Result<Self, PlanError> {
-        let motion = setup.motion(&evaluation.times_s)?;
+        let motion = setup.motion_through(&evaluation.times_s, &evaluation.via)?;
         let t_s: Vec<f64> =
             (0..=STEPS).map(|i| motion.duration_s() * f64::from(i) / f64::from(STEPS)).collect();
         let mut samples = Samples::default();

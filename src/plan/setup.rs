@@ -33,6 +33,8 @@ pub struct Setup {
     pub(super) tool_speed_m_s: f64,
     /// A motion with the task's key points, dwells and ends; its times are arbitrary.
     pub(super) template: Motion,
+    /// Motion at the start and the end.
+    pub(super) ends: Ends,
     /// Dwell that precedes each interval, s, `[points - 1]`; zero for none.
     pub(super) dwell_before_s: Vec<f64>,
     /// Load at the last joint in each segment.
@@ -41,8 +43,10 @@ pub struct Setup {
     pub(super) interval_s: [f64; 2],
     /// Per limit: safety factor for peaks between evaluation nodes; 1 until one was found.
     pub(super) slack: Vec<f64>,
+    /// Key points where the arm stops because the next or the last one is the same.
+    pub(super) stops: Vec<usize>,
     /// Payload by segment, kg.
-    payload_kg: Vec<f64>,
+    pub(super) payload_kg: Vec<f64>,
 }
 
 impl Setup {
@@ -66,11 +70,15 @@ impl Setup {
         let points = key_points(task, &arm, &order, &limits)?;
         let ends = ends(task, &order);
         check_ends(&ends, &limits, &names)?;
-        let dwells: Vec<Dwell> = task
-            .points
+        let given: Vec<Option<f64>> = task.points.iter().map(|key| key.dwell_s).collect();
+        let stops = stops(&points, &ends, &given);
+        let dwells: Vec<Dwell> = given
             .iter()
             .enumerate()
-            .filter_map(|(point, key)| Some(Dwell { point, length_s: key.dwell_s? }))
+            .filter_map(|(point, given_s)| {
+                let stopped_s = stops.contains(&point).then_some(0.0);
+                Some(Dwell { point, length_s: given_s.or(stopped_s)? })
+            })
             .collect();
         let mut dwell_before_s = vec![0.0; task.points.len() - 1];
         for dwell in &dwells {
@@ -94,10 +102,12 @@ impl Setup {
             limits,
             tool_speed_m_s: task.tool_speed_m_s,
             template,
+            ends,
             dwell_before_s,
             loads,
             interval_s: task.interval_s,
             slack: vec![1.0; Limit::rows(joints)],
+            stops,
             payload_kg,
         })
     }
@@ -177,10 +187,25 @@ impl Setup {
         Ok(motion)
     }
 
+    /// Indices of key points without a dwell at which the arm stops all the same: a spline through two equal key points
+    /// would drift between them.
+    pub fn stops(&self) -> &[usize] {
+        &self.stops
+    }
+
     /// Payload from the start of each segment of the motion on, kg.
     pub fn payload_kg(&self) -> &[f64] {
         &self.payload_kg
     }
+}
+
+/// Key points without a dwell that equal a neighbour; those at an end that moves are left as they are.
+fn stops(points: &KeyPoints, ends: &Ends, dwell_s: &[Option<f64>]) -> Vec<usize> {
+    let last = points.len() - 1;
+    let resting = Ends::at_rest(points.joints());
+    let free = |point: usize| dwell_s[point].is_none() && (point > 0 && point < last || *ends == resting);
+    let same = |point: usize| point < last && points.of(point) == points.of(point + 1);
+    (0..=last).filter(|&point| free(point) && (same(point) || point > 0 && same(point - 1))).collect()
 }
 
 fn arrivals(interval_s: &[f64], dwell_before_s: &[f64]) -> Vec<f64> {
@@ -307,4 +332,31 @@ fn load(task: &Task, arm: &Arm, payload_kg: f64) -> Result<Load, PlanError> {
     let payload = Inertia::new(payload_kg, centre_m, Matrix3::from_diagonal(&tensor))
         .ok_or(PlanError::Payload { payload_kg })?;
     Ok(arm.chain.load((payload_kg > 0.0).then_some(&payload)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spline::Quantity;
+
+    #[test]
+    fn between_equal_key_points_without_a_dwell_the_arm_stops() {
+        let text = include_str!("../../sample-logs/tasks/task-1.toml").replace("dwell_s = 2.0\n", "");
+        let from = text.find("[[point]]\nname = \"key point 4\"").unwrap();
+        let to = from + 1 + text[from + 1..].find("[[point]]").unwrap();
+        let twice = format!("{}{}{}", &text[..to], &text[from..to], &text[to..]);
+        let once = Setup::new(&Task::parse(&text).unwrap(), Arm::sample().unwrap()).unwrap();
+        assert!(once.stops().is_empty());
+        let setup = Setup::new(&Task::parse(&twice).unwrap(), Arm::sample().unwrap()).unwrap();
+        assert_eq!(setup.stops(), [3, 4]);
+        let motion = setup.motion(&[0.0, 4.0, 8.0, 12.0, 14.0, 18.0, 22.0]).unwrap();
+        for t_s in [12.0, 12.7, 13.9] {
+            let at = motion.at(t_s);
+            for joint in 0..setup.joint_count() {
+                assert!(at.of(Quantity::Velocity, joint)[0].abs() < 1e-12);
+                let key = setup.template().points().of(3)[joint];
+                assert!((at.of(Quantity::Position, joint)[0] - key).abs() < 1e-12);
+            }
+        }
+    }
 }

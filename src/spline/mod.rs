@@ -31,6 +31,7 @@ mod points;
 mod quadrature;
 mod quantity;
 mod sample;
+mod slopes;
 mod solve;
 #[expect(clippy::module_inception, reason = "the type the module is named for")]
 mod spline;
@@ -43,4 +44,5 @@ pub use points::{Ends, KeyPoints};
 pub use quadrature::Gauss;
 pub use quantity::Quantity;
 pub use sample::Samples;
+pub use slopes::{Place, WINDOW, Weights};
 pub use spline::Spline;

@@ -134,6 +134,11 @@ impl Motion {
         Ok(())
     }
 
+    /// The degree.
+    pub fn degree(&self) -> Degree {
+        self.segments.first().map_or_else(Degree::default, |segment| segment.spline.degree())
+    }
+
     /// Number of joints.
     pub fn joints(&self) -> usize {
         self.points.joints()

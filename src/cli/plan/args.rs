@@ -17,9 +17,9 @@ use crate::{
         number::{any_seconds, rate_hz, within},
     },
     moea::{ALGORITHMS, Budget, NamedAlgorithm},
-    plan::{Rule, Search},
+    plan::{MOST_PIECES, Rule, Search},
     task::{Objective, Weights},
-    workflow::plan::Options,
+    workflow::plan::{Options, Shaping},
 };
 
 const EXAMPLES: &str = "\
@@ -66,6 +66,31 @@ pub(in crate::cli) struct Args {
 
     #[command(flatten)]
     pub(super) choice: ChoiceArgs,
+
+    #[command(flatten)]
+    pub(super) shape: ShapeArgs,
+}
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Shape")]
+pub(super) struct ShapeArgs {
+    /// What the chosen plan is free in beside the times at the key points
+    #[arg(long, value_name = "WHAT", default_value = "timing")]
+    pub(super) shape: Free,
+
+    /// Pieces that an interval between key points is split into, with --shape free [default: as many as make 25
+    /// altogether, 2 to 5]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=i64::from(MOST_PIECES)))]
+    pub(super) pieces: Option<u32>,
+}
+
+/// What a plan is free in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Free {
+    /// Times at the key points alone, as in the paper
+    Timing,
+    /// Times and the curve between the key points: faster, or smoother in the same time
+    Free,
 }
 
 #[derive(Debug, clap::Args)]
@@ -185,6 +210,10 @@ impl Args {
             },
             rule,
             weights: self.choice.weights,
+            shape: match self.shape.shape {
+                Free::Timing => Shaping::Timing,
+                Free::Free => Shaping::Free(self.shape.pieces.map(|n| n as usize)),
+            },
         }
     }
 }

@@ -156,7 +156,8 @@ impl Args {
         provenance: BTreeMap<String, String>,
     ) -> Result<(), CliError> {
         let Some(path) = self.log() else { return Ok(()) };
-        let motion = request.setup.motion(&document.chosen.entry.times_s).map_err(PlanFailure::from)?;
+        let entry = &document.chosen.entry;
+        let motion = request.setup.motion_through(&entry.times_s, &entry.via).map_err(PlanFailure::from)?;
         let log = PlanLog {
             plan: Steps::Motion(&motion, &document.joints),
             command: None,

@@ -2,11 +2,11 @@
 
 use super::{name, shown};
 use crate::{
-    plan::{BEYOND, Limit, Margin, PlanEvaluation, Rule},
+    plan::{BEYOND, Limit, Margin, NoShape, PlanEvaluation, Rule},
     render::kit::{Column, Document, Id, NONE, Section, Sentence, Table},
     task::{Ceilings, Objective, Weights},
     units::degrees_from_radians,
-    workflow::plan::{Options, Planned},
+    workflow::plan::{Options, Planned, Shaped},
 };
 
 /// A limit or an interval used more than this binds.
@@ -38,6 +38,9 @@ pub(crate) fn document(
     let mut rows: Vec<Vec<String>> = best
         .map(|(k, evaluation)| row(&format!("{}  {}", k.letter(), k.row().best), evaluation, &planned.joints))
         .collect();
+    if let Some(shaped) = &planned.shaped {
+        rows.push(row("by times alone", &shaped.timing, &planned.joints));
+    }
     rows.push(row("chosen", &planned.chosen, &planned.joints));
     let longer = (planned.fastest_converged == Some(false)).then(|| {
         Sentence::advice(
@@ -53,7 +56,10 @@ pub(crate) fn document(
         .with(Section::new(
             Id::OTHER,
             "The chosen plan",
-            [Sentence::finding(reason(ceilings, planned)), Sentence::advice(another)],
+            [Sentence::finding(reason(ceilings, planned))]
+                .into_iter()
+                .chain(shape(planned).map(Sentence::finding))
+                .chain([Sentence::advice(another)]),
         ));
     document.sections.extend(margins(&planned.chosen, &planned.joints));
     document.remarked(&planned.remarks)
@@ -128,6 +134,32 @@ fn subject(margin: &Margin, joints: &[String]) -> String {
         Some(joint) => format!("{joint} {}", name(margin.limit)),
         None => name(margin.limit).to_owned(),
     }
+}
+
+/// What a free shape gained, where one was sought.
+fn shape(planned: &Planned) -> Option<String> {
+    let Some(Shaped { timing, pieces }) = &planned.shaped else {
+        return planned.no_shape.map(|why| match why {
+            NoShape::TooManyIntervals { found, most } => format!(
+                "Its shape is that of its times: {found} intervals are more than the {most} that a free shape takes \
+                 in so many pieces."
+            ),
+            NoShape::Broken(margin) => format!(
+                "Its shape is that of its times: the free shape breaks {}, which slowing down does not mend.",
+                subject(&margin, &planned.joints)
+            ),
+            NoShape::NoGain => "Its shape is that of its times: a free shape gains nothing.".to_owned(),
+        });
+    };
+    let change = |k: &Objective| {
+        let (was, is) = (timing.objectives[*k], planned.chosen.objectives[*k]);
+        format!("{} {:+.1} %", k.row().short, 100.0 * (is / was - 1.0))
+    };
+    let changes: Vec<String> = Objective::OF_PLAN.iter().map(change).collect();
+    Some(format!(
+        "Its shape is free, {pieces} pieces an interval; against the best times alone: {}.",
+        changes.join(", ")
+    ))
 }
 
 /// Why a plan was chosen.

@@ -19,7 +19,7 @@ pub use schedule::Schedule;
 use sha2::{Digest, Sha256};
 pub use worth::worth;
 
-use super::plan::{PlanDocument, PlanFailure, TaskFiles};
+use super::plan::{PlanDocument, PlanEntry, PlanFailure, TaskFiles};
 use crate::{
     arm::Arm,
     input_file,
@@ -218,7 +218,12 @@ impl Carried {
 
     /// Arrivals of the chosen plan at the key points, s.
     pub fn times_s(&self) -> Option<Vec<f64>> {
-        Some(self.plan()?.ok()?.chosen.entry.times_s).filter(|times_s| !times_s.is_empty())
+        Some(self.chosen()?.times_s)
+    }
+
+    /// The chosen plan, if its times are known.
+    pub fn chosen(&self) -> Option<PlanEntry> {
+        Some(self.plan()?.ok()?.chosen.entry).filter(|entry| !entry.times_s.is_empty())
     }
 
     /// When the times of the plan count from, s since the start of the log.

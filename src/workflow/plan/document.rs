@@ -5,7 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::{Options, Planned, Step};
 use crate::{
     document::{PROGRAM, pretty, unbounded},
-    plan::{Limit, Margin, PlanEvaluation, Rule},
+    plan::{Limit, Margin, PlanEvaluation, Rule, Via},
     remark::Remark,
     task::{Objective, Objectives},
 };
@@ -69,6 +69,10 @@ pub struct PlanEntry {
     /// Arrival at each key point, s, dwells counted.
     #[serde(default)]
     pub times_s: Vec<f64>,
+    /// Free points that it passes between the key points and that give it its shape; left out of a timing alone. Key
+    /// points and these are the points of the spline, whose knots and control points follow from them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub via: Vec<Via>,
     /// Its objectives.
     #[serde(flatten)]
     pub objectives: Objectives,
@@ -91,6 +95,9 @@ pub struct ChosenPlan {
     pub weights: Option<Vec<f64>>,
     /// Plans of the front that keep to the ceilings.
     pub within_ceilings: Option<usize>,
+    /// The plan of the same rule by times alone; left out where the shape is not free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub timing_alone: Option<PlanEntry>,
     /// Root mean square jerk by joint, rad/s³.
     #[serde(default)]
     pub joint_rms_jerk_rad_s3: Vec<f64>,
@@ -142,14 +149,21 @@ impl MarginEntry {
     }
 }
 
+impl PlanEntry {
+    fn of(evaluation: &PlanEvaluation) -> Self {
+        Self {
+            times_s: evaluation.times_s.clone(),
+            via: evaluation.via.clone(),
+            objectives: evaluation.objectives,
+            violation: evaluation.violation,
+        }
+    }
+}
+
 impl PlanDocument {
     /// Of one plan that was given, or of the nearest to one of an infeasible task.
     pub fn evaluated(title: &str, joints: &[String], evaluation: &PlanEvaluation, feasible: bool) -> Self {
-        let entry = PlanEntry {
-            times_s: evaluation.times_s.clone(),
-            objectives: evaluation.objectives,
-            violation: evaluation.violation,
-        };
+        let entry = PlanEntry::of(evaluation);
         Self {
             format: FORMAT.to_owned(),
             program: PROGRAM.to_owned(),
@@ -171,6 +185,7 @@ impl PlanDocument {
                 rule: None,
                 weights: None,
                 within_ceilings: None,
+                timing_alone: None,
                 joint_rms_jerk_rad_s3: evaluation.rms_jerk_rad_s3.clone(),
                 joint_rms_power_w: evaluation.rms_power_w.clone(),
                 energy_j: evaluation.energy_j,
@@ -187,6 +202,7 @@ impl PlanDocument {
         let plans = planned.front.iter().zip(&planned.times_s);
         let entry = |(plan, times_s): (&crate::plan::Timing, &Vec<f64>)| PlanEntry {
             times_s: times_s.clone(),
+            via: Vec::new(),
             objectives: plan.objectives,
             violation: plan.violation,
         };
@@ -205,6 +221,7 @@ impl PlanDocument {
                 rule: Some(choice.rule),
                 weights: choice.weights.map(|weights| weights.plan().to_vec()),
                 within_ceilings: Some(choice.within),
+                timing_alone: planned.shaped.as_ref().map(|shaped| PlanEntry::of(&shaped.timing)),
                 ..alone.chosen
             },
             remarks: planned.remarks.as_slice().to_vec(),

@@ -9,8 +9,8 @@ mod request;
 
 use crate::{
     plan::{
-        Choice, NoChoice, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Timing, choose, ends,
-        search,
+        Choice, NoChoice, NoShape, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Shape,
+        Timing, choose, ends, search, shape,
     },
     remark::{Code, Remarks},
     task::{Objectives, Weights},
@@ -30,6 +30,27 @@ pub struct Options {
     pub rule: Option<Rule>,
     /// Weights in place of the task's.
     pub weights: Option<Weights>,
+    /// What is sought beside the times.
+    pub shape: Shaping,
+}
+
+/// Whether the chosen plan keeps the shape that its times give it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Shaping {
+    /// It does.
+    #[default]
+    Timing,
+    /// Free points between the key points give it another; that many pieces an interval, by default as the task asks.
+    Free(Option<usize>),
+}
+
+/// What a free shape gained.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shaped {
+    /// The plan of the same rule by times alone.
+    pub timing: PlanEvaluation,
+    /// Pieces that every interval between key points was split into.
+    pub pieces: usize,
 }
 
 /// Findings of `plan`.
@@ -49,6 +70,10 @@ pub struct Planned {
     pub chosen: PlanEvaluation,
     /// Why it.
     pub choice: Choice,
+    /// What its free shape gained, if one was sought and found.
+    pub shaped: Option<Shaped>,
+    /// Why it has none, where one was sought.
+    pub no_shape: Option<NoShape>,
     /// Evaluations made, those of the choice too.
     pub evaluations: u64,
     /// Generations of the evolution.
@@ -124,18 +149,35 @@ pub fn run(
         );
         remarks.add(Code::NoMass, weightless.len() as u64, message);
     }
+    if let [first, ..] = setup.stops() {
+        let message = format!(
+            "key point {} and the one beside it are the same: the arm stops there; dwell_s says for how long",
+            first + 1
+        );
+        remarks.add(Code::EqualKeyPoints, setup.stops().len() as u64, message);
+    }
     let objectives = || found.front.iter().map(|timing| timing.objectives.plan());
     let largest = |k| found.front.iter().map(|timing| timing.objectives[k]).fold(0.0, f64::max);
     task.ceilings.remark_inactive(&Objectives::ZERO.map_plan(largest), &mut remarks);
     let reference = Reference::of(objectives());
     let hypervolume = reference.measure(objectives());
     let best = ends.iter().map(|&end| evaluation(&found.front[end])).collect::<Result<_, _>>()?;
+    let timing = evaluation(&choice.timing)?;
+    let (chosen, shaped, no_shape) = match options.shape {
+        Shaping::Timing => (timing, None, None),
+        Shaping::Free(pieces) => match shape(setup, &choice, &task.ceilings, pieces) {
+            Ok(Shape { evaluation, pieces, .. }) => (evaluation, Some(Shaped { timing, pieces }), None),
+            Err(why) => (timing, None, Some(why)),
+        },
+    };
     Ok(Planned {
         joints: setup.joint_names(),
         times_s: found.front.iter().map(|timing| setup.times_s(&timing.interval_s)).collect(),
         ends,
         best,
-        chosen: evaluation(&choice.timing)?,
+        chosen,
+        shaped,
+        no_shape,
         evaluations: found.evaluations + choice.evaluations,
         generations: found.generations,
         fastest_converged: found.fastest_converged,

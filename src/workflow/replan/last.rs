@@ -8,6 +8,7 @@ use super::{
 };
 use crate::{
     log::Recording,
+    plan::{PlanError, PlanEvaluation, Setup, Via},
     series::{Series, Track},
     spline::Motion,
     units::DEGREE_RAD,
@@ -16,7 +17,7 @@ use crate::{
             Carried,
             rest::{COMMAND_TAIL_S, PLAN_LEAD_S},
         },
-        plan::PlanRequest,
+        plan::{PlanEntry, PlanRequest},
     },
 };
 
@@ -38,6 +39,8 @@ pub(super) struct Last {
     pub(super) request: Option<PlanRequest>,
     /// Arrivals at its key points, s, if they are known and of this task.
     pub(super) times_s: Option<Vec<f64>>,
+    /// Free points that it passes between them.
+    pub(super) via: Vec<Via>,
     /// Where the controller takes trajectories.
     pub(super) trajectory: Option<String>,
     /// What the log carries of the plan.
@@ -58,13 +61,16 @@ impl Last {
         if let Some(request) = &request {
             check_joints(path, request, planned)?;
         }
-        let times_s = carried
-            .times_s()
-            .filter(|times_s| request.as_ref().is_some_and(|request| request.setup.motion(times_s).is_ok()));
+        let through = |request: &PlanRequest, entry: &PlanEntry| {
+            request.setup.motion_through(&entry.times_s, &entry.via)
+        };
+        let entry = carried
+            .chosen()
+            .filter(|entry| request.as_ref().is_some_and(|request| through(request, entry).is_ok()));
         let near_s = from_s - PLAN_LEAD_S;
-        let motion = request.as_ref().zip(times_s.as_ref());
+        let motion = request.as_ref().zip(entry.as_ref());
         // Samples of a log are a little late or early each, which no derivative of them forgives: the motion is exact.
-        let exact = match motion.map(|(request, times_s)| (&request.setup, request.setup.motion(times_s))) {
+        let exact = match motion.map(|(request, entry)| (&request.setup, through(request, entry))) {
             Some((setup, Ok(motion))) => {
                 let plan = sampled(setup, &motion)?;
                 found_at_s(&plan, planned, near_s)?.map(|_| plan)
@@ -75,12 +81,14 @@ impl Last {
             Some(_) => Some(PLAN_LEAD_S),
             None => carried.starts_s().map(|s| s - near_s),
         };
+        let (times_s, via) = entry.map(|entry| (entry.times_s, entry.via)).unzip();
         Ok(Self {
             plan: exact.map_or_else(|| cut(planned, near_s, to_s + COMMAND_TAIL_S), Ok)?,
             starts_s,
             duration_s: to_s - from_s,
             request,
             times_s,
+            via: via.unwrap_or_default(),
             trajectory: trajectory_topic(&recording.source.planned_topic),
             carried,
         })
@@ -88,7 +96,13 @@ impl Last {
 
     /// The motion of the task, if it is known.
     pub(super) fn motion(&self) -> Option<Motion> {
-        self.request.as_ref()?.setup.motion(self.times_s.as_ref()?).ok()
+        self.request.as_ref()?.setup.motion_through(self.times_s.as_ref()?, &self.via).ok()
+    }
+
+    /// The plan under the limits of a setup, if its times are known.
+    pub(super) fn evaluation(&self, setup: &Setup) -> Result<Option<PlanEvaluation>, PlanError> {
+        let of = |times_s: &Vec<f64>| PlanEvaluation::through(setup, times_s, &self.via);
+        self.times_s.as_ref().map(of).transpose()
     }
 }
 

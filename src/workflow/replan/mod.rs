@@ -30,7 +30,7 @@ use super::fit::{self, LimitsFile};
 use crate::{
     fit::{Fit, JointFit, Learning, Trial},
     log::{ReadOptions, Recording},
-    plan::{PlanEvaluation, Setup},
+    plan::Setup,
     remark::{Code, Remarks},
     replay::Rules,
     series::{Series, Track},
@@ -189,7 +189,7 @@ fn searched(
     // The arm is that of the order; its files need not be read again.
     let setup = Setup::new(&task, request.setup.arm().clone())?;
     let start = last.times_s.as_ref().map(|times_s| setup.intervals_s(times_s)).transpose()?;
-    let evaluation = last.times_s.as_ref().map(|times_s| PlanEvaluation::of(&setup, times_s)).transpose()?;
+    let evaluation = last.evaluation(&setup)?;
     let time = (1.0 + inputs.time_growth) * (1.0 + 1e-9);
     let growth = |objective| if objective == Objective::Duration { time } else { 1.0 + inputs.cost_growth };
     let unknown = Objectives::NONE.with(Objective::Duration, last.duration_s);

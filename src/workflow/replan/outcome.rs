@@ -151,16 +151,14 @@ pub(super) fn replanned(
         (Some(setup), Some(interval_s)) => Some(setup.times_s(interval_s)),
         _ => last.times_s.clone(),
     };
-    let evaluation = match (setup, &times_s) {
-        (Some(setup), Some(times_s)) => Some(PlanEvaluation::of(setup, times_s)?),
-        _ => None,
-    };
-    let objectives_before = match (setup, &last.times_s) {
-        (Some(setup), Some(times_s)) => Some(PlanEvaluation::of(setup, times_s)?.objectives),
-        _ => None,
-    };
     let retimed =
         interval_s.is_some() && interval_s != search.as_ref().and_then(|search| search.start.clone());
+    let last_evaluation = setup.map(|setup| last.evaluation(setup)).transpose()?.flatten();
+    let objectives_before = last_evaluation.as_ref().map(|evaluation| evaluation.objectives);
+    let evaluation = match (setup, &times_s) {
+        (Some(setup), Some(times_s)) if retimed => Some(PlanEvaluation::of(setup, times_s)?),
+        _ => last_evaluation,
+    };
     if search.as_ref().is_some_and(|search| search.front.is_empty() && !search.keeps()) {
         let message = "no timing keeps the fitted limits within the time, jerk and power that are allowed: the plan \
                        stays; --max-time-growth-percent gives it more";

@@ -1,0 +1,169 @@
+//! The shape of a chosen plan.
+
+use super::{
+    aim::Aim,
+    curve::{Bounds, Curve, Frame},
+    descend::descend,
+};
+use crate::{
+    plan::{Choice, Limit, Margin, PlanEvaluation, Setup, Via},
+    task::{Ceilings, Objective},
+};
+
+/// A plan whose shape is free.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shape {
+    /// The plan, evaluated exactly; all limits and ceilings hold.
+    pub evaluation: PlanEvaluation,
+    /// Pieces that every interval between key points was split into.
+    pub pieces: usize,
+    /// Quadratic programmes solved.
+    pub steps: usize,
+}
+
+/// Why a plan keeps the shape that its times give it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NoShape {
+    /// More intervals than a descent of the shape takes.
+    TooManyIntervals {
+        /// Number of intervals.
+        found: usize,
+        /// As many as it takes.
+        most: usize,
+    },
+    /// The plan found is broken by a limit that slowing down does not mend.
+    Broken(Margin),
+    /// What was found is no better by the rule that chose, or beyond a ceiling.
+    NoGain,
+}
+
+/// Pieces of an interval at most.
+pub const MOST_PIECES: u32 = 8;
+/// Pieces that a motion is split into by default, and how many that is of an interval at least and most.
+const PIECES: usize = 25;
+const FEWEST: usize = 2;
+const DEFAULT_MOST: usize = 5;
+/// Pieces of a motion at most: the time of a step grows with their cube.
+const MOST: usize = 96;
+/// Quadratic programmes of a descent, and the gain of merit that is worth one.
+const STEPS: usize = 60;
+const ENOUGH: f64 = 1e-5;
+/// Descents of the smoothest shape of a duration, each a little faster where limits made the last one slower.
+const TRIES: usize = 3;
+/// Slowings down, and the distance that they keep from a limit, as a share of it.
+const SLOWINGS: usize = 8;
+const CLEAR: f64 = 1e-10;
+/// A plan slower than this many times what its descent ended with has met a limit that time does not mend.
+const SLOWEST: f64 = 1.5;
+
+/// The shape for a choice: from its times, faster if its rule asks for the fastest plan, else smoother in its time.
+///
+/// Descents keep the limits of angles, speeds, accelerations and jerks; where another breaks, the plan is slowed
+/// down until it holds. `pieces`: of each interval, by default as many as make 25 altogether, two to five.
+///
+/// # Errors
+///
+/// [`NoShape`] if the timing alone is better or all that there is.
+pub fn shape(
+    setup: &Setup,
+    choice: &Choice,
+    ceilings: &Ceilings,
+    pieces: Option<usize>,
+) -> Result<Shape, NoShape> {
+    let intervals = setup.interval_count();
+    let pieces = pieces
+        .unwrap_or((PIECES / intervals.max(1)).clamp(FEWEST, DEFAULT_MOST))
+        .clamp(1, MOST_PIECES as usize);
+    if intervals * pieces > MOST {
+        return Err(NoShape::TooManyIntervals { found: intervals, most: MOST / pieces });
+    }
+    let chosen = &choice.timing.objectives;
+    let mut aim = Aim::of(choice.rule, chosen);
+    let (frame, mut curve) = start(setup, &choice.timing.interval_s, pieces).ok_or(NoShape::NoGain)?;
+    let mut steps = 0;
+    let mut found = None;
+    for _ in 0..TRIES {
+        let end = descend(&frame, curve, &aim, (STEPS, ENOUGH)).ok_or(NoShape::NoGain)?;
+        steps += end.steps;
+        curve = end.curve;
+        let evaluation = kept(setup, &frame, &curve)?;
+        let slower = evaluation.objectives[Objective::Duration] / chosen[Objective::Duration];
+        found = Some(evaluation);
+        if !(aim.within_s.is_finite() && slower > 1.0) {
+            break;
+        }
+        aim.within_s *= (1.0 - 1e-6) / slower;
+    }
+    let evaluation = found.ok_or(NoShape::NoGain)?;
+    let within = Objective::OF_PLAN.iter().all(|&k| evaluation.objectives[k] <= ceilings[k]);
+    if within && choice.worth(&evaluation.objectives) < choice.worth(chosen) {
+        Ok(Shape { evaluation, pieces, steps })
+    } else {
+        Err(NoShape::NoGain)
+    }
+}
+
+/// The curve of a timing with free points.
+fn start(setup: &Setup, interval_s: &[f64], pieces: usize) -> Option<(Frame, Curve)> {
+    let template = setup.template();
+    let points = template.points();
+    let limits = setup.limits.iter();
+    let frame = Frame {
+        degree: template.degree(),
+        ends: setup.ends.clone(),
+        dwells: setup.dwells(),
+        key: (0..points.len()).collect(),
+        bounds: limits
+            .map(|limits| Bounds {
+                range_rad: limits.range_rad,
+                most: [limits.speed_rad_s, limits.acceleration_rad_s2, limits.jerk_rad_s3],
+            })
+            .collect(),
+        interval_s: setup.interval_s,
+    };
+    let point_rad = (0..points.len()).flat_map(|point| points.of(point).iter().copied()).collect();
+    frame.refined(&Curve { interval_s: interval_s.to_vec(), point_rad }, pieces).ok()
+}
+
+/// The plan of a curve, slowed down until all limits hold exactly.
+fn kept(setup: &Setup, frame: &Frame, curve: &Curve) -> Result<PlanEvaluation, NoShape> {
+    let (mut interval_s, mut slower) = (curve.interval_s.clone(), 1.0);
+    for _ in 0..SLOWINGS {
+        let (times_s, via) = listed(frame, &interval_s, &curve.point_rad);
+        let evaluation = PlanEvaluation::through(setup, &times_s, &via).map_err(|_| NoShape::NoGain)?;
+        let Some(worst) = evaluation.broken().first().map(|margin| **margin) else { return Ok(evaluation) };
+        let by = evaluation.broken().into_iter().map(factor).fold(1.0, f64::max) * (1.0 + CLEAR);
+        slower *= by;
+        if worst.limit == Limit::Position || slower > SLOWEST {
+            return Err(NoShape::Broken(worst));
+        }
+        for s in &mut interval_s {
+            *s *= by;
+        }
+        frame.clamp(&mut interval_s);
+    }
+    Err(NoShape::NoGain)
+}
+
+/// How much slower a plan is at the limit that it breaks: enough for rates, of torques and forces only a beginning.
+fn factor(margin: &Margin) -> f64 {
+    match margin.limit {
+        Limit::Acceleration => margin.share.sqrt(),
+        Limit::Jerk => margin.share.cbrt(),
+        _ => margin.share,
+    }
+}
+
+/// Arrivals at the key points, s, and the free points between them.
+fn listed(frame: &Frame, interval_s: &[f64], point_rad: &[f64]) -> (Vec<f64>, Vec<Via>) {
+    let (mut times_s, mut via) = (Vec::new(), Vec::new());
+    let points = frame.times_s(interval_s).into_iter().zip(point_rad.chunks_exact(frame.joints()));
+    for (point, (t_s, position_rad)) in points.enumerate() {
+        if frame.key.binary_search(&point).is_ok() {
+            times_s.push(t_s);
+        } else {
+            via.push(Via { t_s, position_rad: position_rad.to_vec() });
+        }
+    }
+    (times_s, via)
+}

@@ -1,0 +1,170 @@
+//! What a free shape reaches on the sample tasks, judged by a dense look that shares no code with the descent.
+
+use super::{MOST_PIECES, NoShape, Shape, shape};
+use crate::{
+    arm::Arm,
+    moea::Budget,
+    plan::{Choice, Evaluator, PlanEvaluation, Rule, Search, Setup, choose, search},
+    spline::{Motion, Quantity, Segment},
+    task::{Ceilings, Objective, Task},
+};
+use std::ops::ControlFlow;
+
+const TASKS: [(&str, &str); 3] = [
+    ("simulation", include_str!("../../../sample-logs/tasks/simulation.toml")),
+    ("task 1", include_str!("../../../sample-logs/tasks/task-1.toml")),
+    ("task 2", include_str!("../../../sample-logs/tasks/task-2.toml")),
+];
+
+fn setup(text: &str) -> Setup {
+    Setup::new(&Task::parse(text).unwrap(), Arm::sample().unwrap()).unwrap()
+}
+
+fn chosen(setup: &Setup, rule: Rule, ceilings: &Ceilings) -> Choice {
+    let settings = Search { budget: Budget::Evaluations(2000), ..Search::default() };
+    let found = search(setup, &settings, |_| ControlFlow::Continue(())).unwrap();
+    choose(setup, &found.front, ceilings, (rule, None)).unwrap()
+}
+
+/// De Boor's algorithm, term by term from its definition.
+fn de_boor(knots: &[f64], control: &[f64], degree: usize, t_s: f64) -> f64 {
+    let last = control.len() - 1;
+    let span = (degree..=last).rev().find(|&k| knots[k] <= t_s && knots[k] < knots[k + 1]).unwrap_or(degree);
+    let mut d: Vec<f64> = (0..=degree).map(|j| control[span - degree + j]).collect();
+    for r in 1..=degree {
+        for j in (r..=degree).rev() {
+            let i = span - degree + j;
+            let share = (t_s - knots[i]) / (knots[i + degree + 1 - r] - knots[i]);
+            d[j] = (1.0 - share) * d[j - 1] + share * d[j];
+        }
+    }
+    d[degree]
+}
+
+/// Control points and knots of the derivative.
+fn derived(knots: &[f64], control: &[f64], degree: usize) -> (Vec<f64>, Vec<f64>) {
+    let differences = control.windows(2).enumerate();
+    let derivative = differences
+        .map(|(i, pair)| degree as f64 * (pair[1] - pair[0]) / (knots[i + degree + 1] - knots[i + 1]));
+    (knots[1..knots.len() - 1].to_vec(), derivative.collect())
+}
+
+/// Largest magnitudes of speed, acceleration and jerk of a joint among so many instants.
+fn dense(segment: &Segment, joint: usize, instants: usize) -> [f64; 3] {
+    let spline = &segment.spline;
+    let (mut knots, mut control) =
+        (spline.knots_s().to_vec(), spline.control(joint, Quantity::Position).to_vec());
+    let mut degree = spline.degree().order();
+    let mut found = [0.0; 3];
+    for found in &mut found {
+        (knots, control) = derived(&knots, &control, degree);
+        degree -= 1;
+        for i in 0..=instants {
+            let t_s = spline.duration_s() * i as f64 / instants as f64;
+            *found = f64::max(*found, de_boor(&knots, &control, degree, t_s).abs());
+        }
+    }
+    found
+}
+
+fn check(setup: &Setup, found: &Shape, motion: &Motion) {
+    let mut highest: f64 = 0.0;
+    for segment in motion.segments() {
+        for (joint, limits) in setup.limits.iter().enumerate() {
+            let most = [limits.speed_rad_s, limits.acceleration_rad_s2, limits.jerk_rad_s3];
+            for (value, most) in dense(segment, joint, 4000).into_iter().zip(most) {
+                highest = highest.max(value / most);
+            }
+        }
+    }
+    assert!(highest <= 1.0 + 1e-9, "{highest}");
+    for margin in setup.margins(motion, &mut Evaluator::new(setup)) {
+        assert!(!margin.broken(), "{margin:?}");
+    }
+    for (point, t_s) in found.evaluation.times_s.iter().enumerate() {
+        let at = motion.at(*t_s);
+        for joint in 0..setup.joint_count() {
+            let want = setup.template().points().of(point)[joint];
+            assert!(
+                (at.of(Quantity::Position, joint)[0] - want).abs() < 1e-12,
+                "point {point}, joint {joint}"
+            );
+        }
+    }
+    for segment in motion.segments() {
+        for t_s in [segment.spline.span_s().0, segment.spline.span_s().1] {
+            let at = segment.spline.at(t_s);
+            let rates = Quantity::ALL[1..].iter().flat_map(|quantity| at.all(*quantity));
+            assert!(rates.clone().all(|rate| rate.abs() < 1e-9), "{:?}", rates.collect::<Vec<_>>());
+        }
+    }
+}
+
+fn motion(setup: &Setup, found: &Shape) -> Motion {
+    setup.motion_through(&found.evaluation.times_s, &found.evaluation.via).unwrap()
+}
+
+#[test]
+fn the_fastest_shape_is_far_faster_than_any_timing_and_keeps_every_limit_between_all_instants() {
+    for ((name, text), (timing_s, most_s)) in
+        TASKS.into_iter().zip([(6.727, 6.28), (12.421, 11.3), (18.918, 14.8)])
+    {
+        let setup = setup(text);
+        let choice = chosen(&setup, Rule::Best(Objective::Duration), &Ceilings::NONE);
+        let start_s = choice.timing.objectives[Objective::Duration];
+        assert!((start_s - timing_s).abs() < 1e-3, "{name}: {start_s}");
+        let found = shape(&setup, &choice, &Ceilings::NONE, None).unwrap();
+        let duration_s = found.evaluation.objectives[Objective::Duration];
+        println!("{name}: {duration_s:.4} s, {} pieces, {} steps", found.pieces, found.steps);
+        assert!(duration_s <= most_s, "{name}: {duration_s}");
+        check(&setup, &found, &motion(&setup, &found));
+    }
+}
+
+#[test]
+fn the_smoothest_shape_of_a_duration_beats_the_smoothest_timing_of_it() {
+    for ((name, text), (by, gain)) in
+        TASKS.into_iter().flat_map(|task| [(task, (1.1, 0.09)), (task, (2.0, 0.08))])
+    {
+        let setup = setup(text);
+        let fastest = chosen(&setup, Rule::Best(Objective::Duration), &Ceilings::NONE);
+        let within_s = by * fastest.timing.objectives[Objective::Duration];
+        let ceilings = Ceilings::NONE.with(Objective::Duration, within_s);
+        let choice = chosen(&setup, Rule::Best(Objective::RmsJerk), &ceilings);
+        let found = shape(&setup, &choice, &ceilings, None).unwrap();
+        let ratio =
+            found.evaluation.objectives[Objective::RmsJerk] / choice.timing.objectives[Objective::RmsJerk];
+        println!("{name} at {by}: {:.2} % less jerk, {} steps", 100.0 * (1.0 - ratio), found.steps);
+        assert!(ratio < 1.0 - gain, "{name} at {by}: {ratio}");
+        check(&setup, &found, &motion(&setup, &found));
+    }
+}
+
+#[test]
+fn a_shape_is_the_same_again_from_what_is_written_of_it() {
+    let setup = setup(TASKS[0].1);
+    let choice = chosen(&setup, Rule::Best(Objective::Duration), &Ceilings::NONE);
+    let found = shape(&setup, &choice, &Ceilings::NONE, Some(2)).unwrap().evaluation;
+    assert_eq!(PlanEvaluation::through(&setup, &found.times_s, &found.via).unwrap(), found);
+    assert_eq!(shape(&setup, &choice, &Ceilings::NONE, Some(2)).unwrap().evaluation, found);
+    let mut late = found.via.clone();
+    late[1].t_s = found.times_s[3];
+    assert!(setup.motion_through(&found.times_s, &late).is_err());
+    let mut short = found.via.clone();
+    short[0].position_rad.pop();
+    assert!(setup.motion_through(&found.times_s, &short).is_err());
+}
+
+#[test]
+fn one_piece_and_too_many_intervals_leave_the_timing_as_it_is() {
+    let setup = setup(TASKS[1].1);
+    let choice = chosen(&setup, Rule::Best(Objective::Duration), &Ceilings::NONE);
+    match shape(&setup, &choice, &Ceilings::NONE, Some(1)) {
+        Err(NoShape::NoGain) => {}
+        other => {
+            let duration_s = other.unwrap().evaluation.objectives[Objective::Duration];
+            assert!((duration_s - choice.timing.objectives[Objective::Duration]).abs() < 1e-5);
+        }
+    }
+    assert!(shape(&setup, &choice, &Ceilings::NONE, Some(MOST_PIECES as usize)).is_ok());
+}

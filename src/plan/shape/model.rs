@@ -1,0 +1,220 @@
+//! A curve's limits, key points and jerk, linearised in its control points and the logarithms of its intervals.
+
+use super::curve::{Curve, Frame};
+use crate::spline::{Degree, Motion, Place, Quantity, Segment, WINDOW, Weights};
+
+/// Places on every piece at which limits are kept.
+pub(super) const PLACES: usize = 7;
+
+/// Peaks below this share of a limit are left to the places.
+const NEAR: f64 = 0.7;
+
+/// Nodes and weights on (0, 1) of Gauss's rule, exact for the square of cubic jerk.
+const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+/// A value at a place and its slopes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Row {
+    /// The control points of one joint in one segment.
+    pub(super) block: usize,
+    /// The first of the block's free control points that has weight.
+    pub(super) first: usize,
+    pub(super) control: [f64; 8],
+    /// The first interval with a slope.
+    pub(super) first_interval: usize,
+    /// By the logarithm of the interval.
+    pub(super) interval: [f64; WINDOW],
+    pub(super) value: f64,
+}
+
+/// All that a step is made from.
+pub(super) struct Model {
+    /// Free control points of each block, `[segment][joint]`.
+    pub(super) blocks: Vec<usize>,
+    pub(super) intervals: usize,
+    /// Shares of limits, signed, each with the number of its limit and piece.
+    pub(super) shares: Vec<(usize, Row)>,
+    /// Angles at key points less what they must be, rad.
+    pub(super) passes: Vec<Row>,
+    /// Joints and their jerk at Gauss nodes, so weighted that the squares sum to the integral, rad/s^2.5.
+    pub(super) jerk: Vec<(usize, Row)>,
+}
+
+impl Model {
+    /// With rows at peaks beside those at the places of every piece.
+    pub(super) fn of(frame: &Frame, curve: &Curve, motion: &Motion, peaks: &[Peak]) -> Self {
+        let joints = frame.joints();
+        let mut model = Self {
+            blocks: Vec::new(),
+            intervals: curve.interval_s.len(),
+            shares: Vec::new(),
+            passes: Vec::new(),
+            jerk: Vec::new(),
+        };
+        for (index, segment) in motion.segments().iter().enumerate() {
+            let base = model.blocks.len();
+            let free = segment.spline.t_s().len() - 2;
+            model.blocks.extend(std::iter::repeat_n(free, joints));
+            let part = Part { segment, base, interval_s: &curve.interval_s };
+            for piece in 0..segment.spline.pieces() {
+                for k in 0..PLACES {
+                    let share = k as f64 / (PLACES - 1) as f64;
+                    if k + 1 == PLACES && piece + 1 < segment.spline.pieces() {
+                        continue;
+                    }
+                    model.limits(frame, &part, Place::Piece(piece, share));
+                }
+                model.squared_jerk(joints, &part, piece);
+            }
+            for peak in peaks.iter().filter(|peak| peak.segment == index) {
+                let weights = segment.spline.weights(Place::Piece(peak.piece, peak.share));
+                model.limit(frame, &part, &weights, (peak.joint, peak.order));
+            }
+            let (first, last) = segment.ends();
+            for &key in frame.key.iter().filter(|key| (first + 1..last).contains(key)) {
+                let weights = segment.spline.weights(Place::Point(key - first));
+                for joint in 0..joints {
+                    let mut row = part.row(&weights, 0, joint);
+                    row.value -= curve.point_rad[key * joints + joint];
+                    model.passes.push(row);
+                }
+            }
+        }
+        model
+    }
+
+    fn limits(&mut self, frame: &Frame, part: &Part<'_>, place: Place) {
+        let weights = part.segment.spline.weights(place);
+        for joint in 0..frame.joints() {
+            for order in 0..4 {
+                self.limit(frame, part, &weights, (joint, order));
+            }
+        }
+    }
+
+    /// The share of a limit, if there is one.
+    fn limit(&mut self, frame: &Frame, part: &Part<'_>, weights: &Weights, (joint, order): (usize, usize)) {
+        let Some((middle, half)) = frame.bounds[joint].of(order) else { return };
+        let mut row = part.row(weights, order, joint);
+        row.value -= middle;
+        let piece = part.segment.first_point + weights.first_control;
+        let number = ((piece * 2 + 1) * frame.joints() + joint) * 4 + order;
+        self.shares.push((number, row.scaled(1.0 / half)));
+    }
+
+    fn squared_jerk(&mut self, joints: usize, part: &Part<'_>, piece: usize) {
+        let spline = &part.segment.spline;
+        let degree = spline.degree().order();
+        let knots_s = &spline.knots_s()[degree..];
+        let length_s = knots_s[piece + 1] - knots_s[piece];
+        for (share, weight) in GAUSS {
+            let weights = spline.weights(Place::Piece(piece, share));
+            for joint in 0..joints {
+                let mut row = part.row(&weights, 3, joint);
+                // The weight grows with the piece.
+                for (interval, by) in part.lengths(piece) {
+                    let slope = 0.5 * by * part.interval_s[interval] / length_s * row.value;
+                    row.interval[interval - row.first_interval] += slope;
+                }
+                self.jerk.push((joint, row.scaled((weight * length_s).sqrt())));
+            }
+        }
+    }
+}
+
+/// Where a curve comes nearest to a limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Peak {
+    segment: usize,
+    piece: usize,
+    joint: usize,
+    order: usize,
+    /// Share of the piece.
+    share: f64,
+}
+
+/// Peaks between the places, where they come near a limit.
+pub(super) fn peaks(frame: &Frame, motion: &Motion) -> Vec<Peak> {
+    let mut peaks = Vec::new();
+    for (segment, part) in motion.segments().iter().enumerate() {
+        let spline = &part.spline;
+        for (joint, bounds) in frame.bounds.iter().enumerate() {
+            for (order, quantity) in Quantity::ALL.into_iter().enumerate() {
+                let Some((middle, half)) = bounds.of(order) else { continue };
+                for piece in 0..spline.pieces() {
+                    spline.stationary(joint, quantity, piece, |share, value| {
+                        if (value - middle).abs() > NEAR * half {
+                            peaks.push(Peak { segment, piece, joint, order, share });
+                        }
+                    });
+                }
+            }
+        }
+    }
+    peaks
+}
+
+/// One segment and where it stands in the whole.
+struct Part<'a> {
+    segment: &'a Segment,
+    base: usize,
+    interval_s: &'a [f64],
+}
+
+impl Part<'_> {
+    /// Intervals that a piece takes part of, and how much.
+    fn lengths(&self, piece: usize) -> impl Iterator<Item = (usize, f64)> {
+        let (first, count) = (self.segment.first_point, self.segment.spline.t_s().len() - 1);
+        let parts = match self.segment.spline.degree() {
+            Degree::Sextic => [(piece.wrapping_sub(1), 0.5), (piece, 0.5)],
+            Degree::Quintic | Degree::Septic => [(piece, 1.0), (usize::MAX, 0.0)],
+        };
+        parts.into_iter().filter(move |(interval, _)| *interval < count).map(move |(i, by)| (first + i, by))
+    }
+
+    fn row(&self, weights: &Weights, order: usize, joint: usize) -> Row {
+        let spline = &self.segment.spline;
+        let controls = spline.control(joint, Quantity::Position);
+        let (fixed, count) = (spline.fixed_controls(), spline.degree().order() + 1);
+        let free = controls.len() - 2 * fixed;
+        let first = weights.first_control.saturating_sub(fixed).min(free);
+        let mut row = Row {
+            block: self.base + joint,
+            first,
+            control: [0.0; 8],
+            first_interval: self.segment.first_point + weights.first_interval,
+            interval: [0.0; WINDOW],
+            value: 0.0,
+        };
+        for (k, control) in controls[weights.first_control..][..count].iter().enumerate() {
+            let weight = weights.value[order][k];
+            row.value += control * weight;
+            for (sum, slope) in row.interval.iter_mut().zip(weights.slope[order][k]) {
+                *sum += control * slope;
+            }
+            let own = weights.first_control + k;
+            if (fixed..fixed + free).contains(&own) {
+                row.control[own - fixed - first] = weight;
+            }
+        }
+        let last = self.segment.first_point + spline.t_s().len() - 1;
+        for (k, slope) in row.interval.iter_mut().enumerate() {
+            let interval = row.first_interval + k;
+            *slope *= if interval < last { self.interval_s[interval] } else { 0.0 };
+        }
+        row
+    }
+}
+
+impl Row {
+    fn scaled(mut self, by: f64) -> Self {
+        self.value *= by;
+        self.control.iter_mut().chain(&mut self.interval).for_each(|slope| *slope *= by);
+        self
+    }
+}
