@@ -16,7 +16,7 @@ Examples:
   hydrotrace fleet effect fleet --machine M07 --at 2026-03-06
   hydrotrace fleet gate fleet --max-drift-delay-ms 5";
 
-/// Logs of many machines: which one drifts, since when, did a repair help
+/// Many logs of many machines: what drifts, since when, what helped
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
