@@ -123,7 +123,7 @@ mod tests {
             "hydrotrace",
             "hydrotrace --help",
             "hydrotrace report run.mcap",
-            "hydrotrace reprot run.mcap",
+            "hydrotrace reports run.mcap",
             "hydrotrace help report",
             "hydrotrace --color never demo",
         ] {

@@ -47,7 +47,7 @@ mod tests {
 
     #[test]
     fn it_is_the_test_of_scipy() {
-        // scipy.stats.ttest_ind(after, before, equal_var=False), its p value and confidence interval.
+        // SciPy's Welch test (equal_var=False) of after and before, its p value and confidence interval.
         let found = difference(&[1.0, 2.0, 3.3, 4.0], &[3.0, 4.5, 5.0, 6.0, 8.0], (0.0, 0.0, 0.0)).unwrap();
         assert!((found.p - 0.037_975_036_373_697_51).abs() < 1e-9, "{found:?}");
         assert!((found.interval[0] - 0.200_673_133_965_830_53).abs() < 1e-9, "{found:?}");

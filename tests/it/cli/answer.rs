@@ -35,7 +35,7 @@ fn the_answer_in_json_is_the_report_with_why() {
 
 #[test]
 fn what_is_neither_a_verb_nor_a_file_is_told_so() {
-    let (code, _, error) = said(&run_at_root(&["reprot", "run.mcap"]));
+    let (code, _, error) = said(&run_at_root(&["reports", "run.mcap"]));
     assert!(code == 2 && error.contains("'report'"), "{error}");
     let (code, _, error) = said(&run_at_root(&["nowhere.mcap"]));
     assert!(code == 1 && error.contains("nowhere.mcap"), "{error}");
