@@ -94,6 +94,19 @@ pub enum LogError {
 }
 
 impl LogError {
+    /// Whether something is not there that may be where nothing could be read.
+    pub(super) fn is_of_something_not_found(&self) -> bool {
+        matches!(
+            self,
+            Self::Missing { .. }
+                | Self::NoTopic { .. }
+                | Self::NoField { .. }
+                | Self::NoJoint { .. }
+                | Self::NoCommonJoint { .. }
+                | Self::NoOverlap { .. }
+        )
+    }
+
     /// Wraps an I/O failure; use with `map_err`.
     pub(super) fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();

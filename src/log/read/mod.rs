@@ -117,7 +117,7 @@ fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, L
         .map(|remark| remark.message.clone())
         .collect();
     undamaged(extracted, options).map_err(|error| {
-        if damage.is_empty() {
+        if damage.is_empty() || !error.is_of_something_not_found() {
             return error;
         }
         LogError::Damaged { error: Box::new(error), damage: damage.join("; ") }

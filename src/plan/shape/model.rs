@@ -76,7 +76,7 @@ impl Model {
                 model.limit(frame, &part, &weights, (peak.joint, peak.order));
             }
             let (first, last) = segment.ends();
-            for &key in frame.key.iter().filter(|key| (first + 1..last).contains(key)) {
+            for &key in frame.key.iter().filter(|key| (first + 1..last).contains(*key)) {
                 let weights = segment.spline.weights(Place::Point(key - first));
                 for joint in 0..joints {
                     let mut row = part.row(&weights, 0, joint);

@@ -43,7 +43,8 @@ pub(crate) fn page(name: &str, report: &Report, fit: Option<&Fit>, most: usize) 
     if let Some(fit) = fit {
         chapters.push(Chapter { id: "fit", heading: "Fitted machine", body: fitted(fit) });
     }
-    if let Some(found) = &report.front {
+    // One plan is no choice.
+    if let Some(found) = report.front.as_ref().filter(|found| found.front.len() > 1) {
         chapters.push(Chapter {
             id: "front",
             heading: "Plans to choose from",
