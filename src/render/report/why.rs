@@ -108,7 +108,8 @@ fn explained(why: &Why, most: usize) -> Vec<Block> {
     if why.untimed > 0 {
         let count = counted(why.untimed, "more start");
         blocks.push(
-            Sentence::note(format!("{count} cannot be timed without dead band and limits: not explained.")).into(),
+            Sentence::note(format!("{count} cannot be timed without dead band and limits: not explained."))
+                .into(),
         );
     }
     blocks.extend(
