@@ -15,7 +15,7 @@ use super::{
 use crate::{
     document::pretty,
     render::report as words,
-    workflow::report::{Document, Inputs, Machine, run},
+    workflow::report::{DelayModel, Document, Inputs, run},
 };
 
 const EXAMPLES: &str = "\
@@ -49,7 +49,7 @@ impl Run for Args {
         let inputs = Inputs {
             logs: self.logs.clone(),
             read: self.read.options(),
-            machine: Machine::OfThisRunIfShort,
+            delay_model: DelayModel::OfThisRunIfShort,
             ..Inputs::default()
         };
         let report = run(&inputs)?;
@@ -57,10 +57,7 @@ impl Run for Args {
         let result = if self.json {
             pretty(&Document::of(&report))
         } else {
-            let names =
-                self.logs.iter().filter_map(|path| path.file_name()).map(|name| name.to_string_lossy());
-            let name = names.collect::<Vec<_>>().join(", ");
-            target.text(&words::answer(&name, &report, &self.logs, self.explain))
+            target.text(&words::answer(&report, self.explain))
         };
         console.finish(&target, &result, &report.remarks, &words::verdicts(&report))
     }

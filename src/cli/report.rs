@@ -14,7 +14,7 @@ use crate::{
     render::report as words,
     workflow::{
         fit::LimitsFile,
-        report::{Document, Inputs, Machine, run},
+        report::{DelayModel, Document, Inputs, run},
     },
 };
 
@@ -100,13 +100,13 @@ struct FormatArgs {
 
 impl Args {
     fn request(&self, limits: Option<&LimitsFile>) -> Inputs {
-        let machine = match limits {
-            Some(file) => Machine::Known(Box::new(file.fit.clone())),
-            None if self.why => Machine::OfThisRun,
-            None => Machine::None,
+        let delay_model = match limits {
+            Some(file) => DelayModel::Known(Box::new(file.fit.clone())),
+            None if self.why => DelayModel::OfThisRun,
+            None => DelayModel::None,
         };
         Inputs {
-            machine,
+            delay_model,
             logs: self.logs.clone(),
             read: self.read.options(),
             urdf: self.urdf.clone(),

@@ -29,8 +29,6 @@ mod start_error;
 mod telling;
 mod valve;
 
-use rayon::prelude::*;
-
 pub use error::FitError;
 pub use estimated::Estimated;
 pub use excite::{Excitation, JointRoom, Ramp, excite};
@@ -41,7 +39,7 @@ pub use predict::predict;
 pub use run::Observation;
 pub use start_error::{PredictedStart, StartErrorPredictor};
 
-use crate::units::DEGREE_RAD;
+use crate::{threads, units::DEGREE_RAD};
 use run::{Run, runs};
 
 /// A joint that is sent less far than this cannot be fitted, rad.
@@ -67,9 +65,10 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
         let of_log = |log: &Observation| Some(runs(log.sent.track(name)?, log.measured.track(name)?));
         logs.iter().filter_map(of_log).flatten().collect()
     };
-    let fitted: Vec<_> = names
-        .par_iter()
-        .map(|name| {
+    let fitted = threads::mapped(
+        &names,
+        || (),
+        |(), name| {
             let runs = of(name);
             let travel_rad: f64 = runs.iter().map(Run::travel_rad).sum();
             let moves = travel_rad >= LEAST_TRAVEL_RAD;
@@ -87,8 +86,8 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
                     (joint, starts)
                 })
                 .ok_or(left_out)
-        })
-        .collect();
+        },
+    );
     let (mut joints, mut starts, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
     for found in fitted {
         match found {

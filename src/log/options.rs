@@ -104,6 +104,19 @@ impl SignalRole {
     }
 }
 
+impl ReadOptions {
+    /// With signals that are read if they are where our own logs have them; one that the caller named stays.
+    #[must_use]
+    pub fn wanting(mut self, roles: &[SignalRole]) -> Self {
+        for &role in roles {
+            if self.signals.iter().all(|wanted| wanted.role != role) {
+                self.signals.push(WantedSignal::usual(role));
+            }
+        }
+        self
+    }
+}
+
 impl WantedSignal {
     /// A signal that is read if it is where our own logs have it.
     pub const fn usual(role: SignalRole) -> Self {

@@ -16,7 +16,7 @@ use hydrotrace::{
 };
 
 use super::support::{
-    fleet::{log, random, small_fleet, smooth},
+    fleet::{is_whole, log, random, small_fleet, smooth},
     machine::{HOME_DEG, command},
 };
 
@@ -258,35 +258,8 @@ fn fifty_kills_at_random_instants_leave_every_row_once() {
         let _ = scan.kill();
         scan.wait().unwrap();
         run(folder.path(), &into, "2");
-        whole_dataset(&folder.path().join(&into), 1200);
+        is_whole(&folder.path().join(&into), 1200);
         fs::remove_dir_all(folder.path().join(&into)).unwrap();
     }
     println!("a whole scan takes {whole:?}; {ended} scans had ended before their kill");
-}
-
-/// That a dataset holds each log once, with its two joints and four starts.
-fn whole_dataset(folder: &Path, logs: usize) {
-    use hydrotrace::log::dataset::{Column, read_table};
-    let mut open = vec![folder.to_owned()];
-    let mut counts = std::collections::BTreeMap::<(String, String), usize>::new();
-    while let Some(at) = open.pop() {
-        for entry in fs::read_dir(at).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "parquet") {
-                let table =
-                    path.strip_prefix(folder).unwrap().iter().next().unwrap().to_string_lossy().into_owned();
-                for row in read_table(&path, &[Column::text("run_id")]).unwrap().rows {
-                    *counts.entry((table.clone(), row[0].as_text().unwrap().to_owned())).or_default() += 1;
-                }
-            }
-        }
-    }
-    for (table, each) in [("runs", 1), ("joints", 2), ("transitions", 4)] {
-        let own: Vec<usize> =
-            counts.iter().filter(|((name, _), _)| name == table).map(|(_, count)| *count).collect();
-        assert_eq!(own.len(), logs, "{table}");
-        assert!(own.iter().all(|count| *count == each), "{table}: {own:?}");
-    }
 }

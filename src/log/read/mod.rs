@@ -116,7 +116,7 @@ fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, L
         })
         .map(|remark| remark.message.clone())
         .collect();
-    undamaged(extracted, options).map_err(|error| {
+    assembled(extracted, options).map_err(|error| {
         if damage.is_empty() || !error.is_of_something_not_found() {
             return error;
         }
@@ -124,7 +124,7 @@ fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, L
     })
 }
 
-fn undamaged(extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
+fn assembled(extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
     let choice = choose(&extracted, options)?;
     for topic in topic_infos(&extracted) {
         ::log::debug!(

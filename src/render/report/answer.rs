@@ -1,7 +1,5 @@
 //! A run in eight lines: where, how far off, how late, and what to type next.
 
-use std::path::PathBuf;
-
 use super::{
     method::method,
     tables::{by_peak, mostly_lag, verdicts},
@@ -20,8 +18,8 @@ use crate::{
     },
 };
 
-/// What a reader wants to know first; how the numbers are made too, if that is to be explained. `logs` are the files as they were given, for the next command.
-pub(crate) fn answer(name: &str, report: &Report, logs: &[PathBuf], explain: bool) -> Document {
+/// What a reader wants to know first; how the numbers are made too, if that is to be explained.
+pub(crate) fn answer(report: &Report, explain: bool) -> Document {
     let replay = &report.replay;
     let interval_s = replay.joints.iter().map(|joint| joint.sample_interval_s).fold(0.0, f64::max);
     let rate = if interval_s > 0.0 { format!(" at {:.0} Hz", 1.0 / interval_s) } else { String::new() };
@@ -35,9 +33,9 @@ pub(crate) fn answer(name: &str, report: &Report, logs: &[PathBuf], explain: boo
     facts.extend(whole(replay));
     facts.extend(verdicts(report).iter().map(|verdict| fact("limit", verdict.to_string())));
     facts.extend(doubts(report));
-    let (aim, line) = next(report, logs);
+    let (aim, line) = next(report);
     let next = Section::plain(Id::NEXT, [Block::from(Sentence::advice(aim)), Block::Command(line)]);
-    let mut document = Document { facts, ..Document::titled(name) }.with(next);
+    let mut document = Document { facts, ..Document::titled(report.logs.join(", ")) }.with(next);
     document.sections.extend(method(report).filter(|_| explain));
     document
 }
@@ -120,8 +118,8 @@ fn doubts(report: &Report) -> Option<Fact> {
 }
 
 /// The most urgent step as a command, and what it is for.
-fn next(report: &Report, logs: &[PathBuf]) -> (String, String) {
-    let names: Vec<String> = logs.iter().map(argument).collect();
+fn next(report: &Report) -> (String, String) {
+    let names: Vec<String> = report.paths.iter().map(argument).collect();
     let joined = names.join(" ");
     let steps = advice(report);
     let urgent = steps.iter().find(|step| !matches!(step, Advice::SetLimits | Advice::Compare));

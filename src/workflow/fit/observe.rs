@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::{
     fit::Observation,
-    log::{LogError, ReadOptions, Recording, SignalRole, WantedSignal, read_recording},
+    log::{LogError, ReadOptions, Recording, SignalRole, read_recording},
     remark::Code,
     series::JointKind,
 };
@@ -38,11 +38,7 @@ const SIGNALS: [SignalRole; 5] = [
 /// [`ObserveFailure`] if there are no planned and measured joints, or a topic that the caller named is
 /// not there.
 pub fn observe(path: &Path, read: &ReadOptions) -> Result<Recording, ObserveFailure> {
-    let mut read = read.clone();
-    let named: Vec<SignalRole> = read.signals.iter().map(|signal| signal.role).collect();
-    let others = SIGNALS.into_iter().filter(|role| !named.contains(role));
-    read.signals.extend(others.map(WantedSignal::usual));
-    let mut recording = read_recording(&[path.to_owned()], &read)
+    let mut recording = read_recording(&[path.to_owned()], &read.clone().wanting(&SIGNALS))
         .map_err(|source| ObserveFailure { path: path.to_owned(), source })?;
     leave_out_sliding(&mut recording);
     Ok(recording)

@@ -12,7 +12,6 @@ use super::{
 };
 use crate::{
     document::PROGRAM,
-    input_file,
     log::{Input, LogFiles},
     replay::Rules,
     threads,
@@ -57,12 +56,7 @@ pub fn findings(logs: Vec<Input>, inputs: &Inputs) -> Result<Findings, ReportFai
     threads::alone(|| {
         let names: Vec<PathBuf> = logs.iter().map(|log| log.name().to_owned()).collect();
         let files = input_files(&logs);
-        let mut read = inputs.read.clone();
-        if let Some(path) = &inputs.urdf {
-            let failed = |source| ReportFailure::Read { path: path.clone(), source };
-            read.description = Some(input_file::read_to_string(path).map_err(failed)?);
-        }
-        let recording = LogFiles::of(logs)?.scan()?.read(&read)?;
+        let recording = LogFiles::of(logs)?.scan()?.read(&inputs.read_options()?)?;
         let found = report(recording, &Inputs { logs: names, ..inputs.clone() })?;
         Ok(Findings::of(&found, files))
     })

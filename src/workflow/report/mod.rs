@@ -26,7 +26,7 @@ pub use identity::{LogFile, log_files};
 pub use outcome::{Alignment, Report};
 pub use tool::Tool;
 use why::Ready;
-pub use why::{LateStart, Machine, Part, Why};
+pub use why::{DelayModel, LateStart, Part, Why};
 
 use super::{
     carried::{Carried, PLAN, Schedule},
@@ -35,7 +35,7 @@ use super::{
 use crate::{
     arm::ArmError,
     input_file,
-    log::{LogError, ReadOptions, Recording, SignalRole, WantedSignal, read_recording},
+    log::{LogError, ReadOptions, Recording, read_recording},
     remark::{Code, Remarks},
     replay::{Profiles, Rules},
 };
@@ -55,8 +55,8 @@ pub struct Inputs {
     pub rules: Rules,
     /// Limits that the caller sets.
     pub gates: Gates,
-    /// The machine that says why starts come late.
-    pub machine: Machine,
+    /// By what it is said why starts come late.
+    pub delay_model: DelayModel,
 }
 
 /// Analyses one run.
@@ -75,18 +75,19 @@ pub struct Inputs {
 /// # Ok::<(), hydrotrace::workflow::report::ReportFailure>(())
 /// ```
 pub fn run(inputs: &Inputs) -> Result<Report, ReportFailure> {
-    let given = inputs.urdf.as_ref().map(|path| {
-        input_file::read_to_string(path).map_err(|source| ReportFailure::Read { path: path.clone(), source })
-    });
-    let mut read = inputs.read.clone();
-    read.description = given.transpose()?.or(read.description);
-    if inputs.machine.is_asked_for() {
-        let named: Vec<SignalRole> = read.signals.iter().map(|signal| signal.role).collect();
-        let others =
-            [SignalRole::Command, SignalRole::Valve].into_iter().filter(|role| !named.contains(role));
-        read.signals.extend(others.map(WantedSignal::usual));
+    report(read_recording(&inputs.logs, &inputs.read_options()?)?, inputs)
+}
+
+impl Inputs {
+    /// What is to be read of a log for this report.
+    fn read_options(&self) -> Result<ReadOptions, ReportFailure> {
+        let mut read = self.read.clone();
+        if let Some(path) = &self.urdf {
+            let failed = |source| ReportFailure::Read { path: path.clone(), source };
+            read.description = Some(input_file::read_to_string(path).map_err(failed)?);
+        }
+        Ok(read.wanting(self.delay_model.signals()))
     }
-    report(read_recording(&inputs.logs, &read)?, inputs)
 }
 
 /// Analyses the recording that was read of the logs.
@@ -98,7 +99,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     let carried = Carried::of(&recording);
     let mut remarks = recording.remarks.clone();
     carried.remark_altered(&mut remarks);
-    let machine = inputs.machine.ready(&recording);
+    let model = inputs.delay_model.ready(&recording);
     let sides = [&recording.planned, &recording.measured];
     let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
     let (alignment, pairs) = aligned(taken(&mut recording), &inputs.rules, &mut remarks);
@@ -118,7 +119,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     };
     let tool = Tool::of(arm, &pairs, &inputs.rules);
     let explained = |ready: Ready| ready.why(&pairs, &replay).map_err(|error| error.to_string());
-    let why = machine.map(|machine| machine.and_then(explained));
+    let why = model.map(|model| model.and_then(explained));
     let gates = inputs.gates.judge(&replay, tool.found());
     let front = front(&carried, &mut remarks);
     let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());

@@ -3,8 +3,8 @@
 //! Samples of one plan differ from run to run by where they fall in time, so the curves themselves have no common
 //! hash. What stays: the joints, their starts and reversals in order, where each joint rests before a start and at
 //! the end, and how long it all takes. Places are told apart by [`PLACE`], durations by [`DURATION`]. A value near
-//! the border of two steps may fall into either: such a run then counts as one of another plan and is matched with
-//! none; two plans are not taken for one.
+//! the border of two steps may fall into either: such a run then counts as one of another plan. Two plans that differ
+//! by less than the steps everywhere count as one.
 
 use super::identity::hash;
 use crate::{

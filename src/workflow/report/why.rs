@@ -10,9 +10,9 @@ use crate::{
     series::{JointKind, Pair, Series, Track, align},
 };
 
-/// The machine by which a delay is explained.
+/// The model by which a delay is explained.
 #[derive(Debug, Clone, Default)]
-pub enum Machine {
+pub enum DelayModel {
     /// None: no delay is.
     #[default]
     None,
@@ -82,10 +82,13 @@ const SHORT_S: f64 = 4000.0;
 /// A start under other circumstances is that of the run whose plan starts within this of the same instant, s.
 const SAME_START_S: f64 = 0.5;
 
-impl Machine {
-    /// Whether a delay is to be explained.
-    pub fn is_asked_for(&self) -> bool {
-        !matches!(self, Self::None)
+impl DelayModel {
+    /// What it takes of a log beside plan and measurement.
+    pub(super) fn signals(&self) -> &'static [SignalRole] {
+        match self {
+            Self::None => &[],
+            _ => &[SignalRole::Command, SignalRole::Valve],
+        }
     }
 
     /// The machine for a run, before its tracks are given away.
@@ -113,19 +116,14 @@ impl Machine {
     }
 }
 
-/// Which of what holds a start back a model keeps.
-#[derive(Clone, Copy)]
-enum Kept {
-    NoLimit,
-    OnlyLag,
+/// A machine whose speed and acceleration have no limit.
+fn without_limits(model: &Model) -> Model {
+    Model { speed_limit_rad_s: [None; 2], acceleration_limit_rad_s2: [None; 2], ..*model }
 }
 
-fn with(model: &Model, kept: Kept) -> Model {
-    let mut model = Model { speed_limit_rad_s: [None; 2], acceleration_limit_rad_s2: [None; 2], ..*model };
-    if matches!(kept, Kept::OnlyLag) {
-        (model.dead_band_rad_s, model.dead_band_centre_rad_s, model.stiction_rad_s) = (0.0, 0.0, 0.0);
-    }
-    model
+/// A machine that leaves rest at the least that is wanted.
+fn without_dead_band(model: &Model) -> Model {
+    Model { dead_band_rad_s: 0.0, dead_band_centre_rad_s: 0.0, stiction_rad_s: 0.0, ..*model }
 }
 
 impl Ready {
@@ -217,14 +215,15 @@ impl WhatIf<'_> {
         as_measured: &Rules,
         why: &mut Why,
     ) -> Result<(), FitError> {
-        let [no_limit, only_lag] = [Kept::NoLimit, Kept::OnlyLag].map(|kept| with(&joint.model, kept));
+        let no_limit = without_limits(&joint.model);
+        let only_lag = without_dead_band(&no_limit);
         let lag_alone = self.timed(&predict(&only_lag, self.sent)?, as_measured);
         let limitless = self.changed(&joint.model, &no_limit)?;
         let free = self.changed(&joint.model, &only_lag)?;
         // The same from either end of the dead band's interval.
         let band = joint.dead_band_rad_s;
         let from = |end: f64| {
-            let share = end / joint.dead_band_rad_s.value.unwrap_or(end).max(1e-9);
+            let share = end / band.value.unwrap_or(end).max(1e-9);
             let model = Model { dead_band_rad_s: share * no_limit.dead_band_rad_s, ..no_limit };
             self.changed(&model, &only_lag)
         };

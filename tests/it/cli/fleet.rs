@@ -1,17 +1,12 @@
 //! `fleet` at the built binary: what a scan writes, what it leaves, and what the dataset answers.
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{collections::BTreeSet, fs};
 
-use hydrotrace::log::dataset::{Column, read_table};
 use serde_json::Value;
 
 use crate::support::{
     clean,
-    fleet::{small_fleet, small_log},
+    fleet::{cells, files, is_whole, small_fleet, small_log},
     hold_to_schema, json, run_line, said,
 };
 
@@ -19,44 +14,6 @@ fn fleet(machines: u64, days: i64) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     small_fleet(&folder.path().join("logs"), machines, days);
     folder
-}
-
-/// Files of the dataset with their bytes.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(at) = open.pop() {
-        for entry in fs::read_dir(at).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "parquet") {
-                found.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
-            }
-        }
-    }
-    found
-}
-
-/// Cells of a column over all parts of a table.
-fn cells(folder: &Path, table: &str, column: &'static str) -> Vec<String> {
-    let parts = files(folder).into_keys().filter(|path| path.starts_with(table));
-    let text = |path: PathBuf| read_table(&folder.join(path), &[Column::text(column)]).unwrap().rows;
-    parts.flat_map(text).map(|row| row[0].as_text().unwrap_or_default().to_owned()).collect()
-}
-
-/// That the dataset holds each log once, with as many rows of joints and starts as a run has.
-pub(crate) fn is_whole(folder: &Path, logs: usize) {
-    let uris = cells(folder, "runs", "log_uri");
-    let distinct: BTreeSet<&String> = uris.iter().collect();
-    assert_eq!((uris.len(), distinct.len()), (logs, logs));
-    let runs: BTreeSet<String> = cells(folder, "runs", "run_id").into_iter().collect();
-    for (table, each) in [("joints", 2), ("transitions", 4)] {
-        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-        cells(folder, table, "run_id").into_iter().for_each(|run| *counts.entry(run).or_default() += 1);
-        assert!(counts.values().all(|count| *count == each), "{table}: {counts:?}");
-        assert_eq!(counts.into_keys().collect::<BTreeSet<_>>(), runs, "{table}");
-    }
 }
 
 #[test]

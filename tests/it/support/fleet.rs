@@ -1,8 +1,15 @@
 //! Logs of many machines over many days, made in memory within a millisecond.
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
 
-use hydrotrace::log::{LogWriter, Role, WriteOptions};
+use hydrotrace::log::{
+    LogWriter, Role, WriteOptions,
+    dataset::{Column, read_table},
+};
 
 /// The first day, ns since 1970: 2026-03-01 at eight.
 const FIRST_NS: i64 = 1_772_352_000_000_000_000;
@@ -71,5 +78,45 @@ pub(crate) fn small_fleet(folder: &Path, machines: u64, days: i64) {
             let bytes = small_log(&name, day, machine * 1000 + day as u64, [0.15 + drift_s, 0.2]);
             fs::write(folder.join(format!("{name}/{day:02}.mcap")), bytes).unwrap();
         }
+    }
+}
+
+/// Files of a dataset with their bytes.
+pub(crate) fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(at) = open.pop() {
+        for entry in fs::read_dir(at).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "parquet") {
+                found.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+/// Cells of a column over all parts of a table.
+pub(crate) fn cells(folder: &Path, table: &str, column: &'static str) -> Vec<String> {
+    let parts = files(folder).into_keys().filter(|path| path.starts_with(table));
+    let text = |path: PathBuf| read_table(&folder.join(path), &[Column::text(column)]).unwrap().rows;
+    parts.flat_map(text).map(|row| row[0].as_text().unwrap_or_default().to_owned()).collect()
+}
+
+/// That the dataset holds each log once, with as many rows of joints and starts as a run of [`small_log`] has.
+pub(crate) fn is_whole(folder: &Path, logs: usize) {
+    let uris = cells(folder, "runs", "log_uri");
+    let distinct: BTreeSet<&String> = uris.iter().collect();
+    assert_eq!((uris.len(), distinct.len()), (logs, logs));
+    let runs: BTreeSet<String> = cells(folder, "runs", "run_id").into_iter().collect();
+    for (table, each) in [("joints", 2), ("transitions", 4)] {
+        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+        for run in cells(folder, table, "run_id") {
+            *counts.entry(run).or_default() += 1;
+        }
+        assert!(counts.values().all(|count| *count == each), "{table}: {counts:?}");
+        assert_eq!(counts.into_keys().collect::<BTreeSet<_>>(), runs, "{table}");
     }
 }
