@@ -29,6 +29,13 @@ pub(super) fn milliseconds(text: &str) -> Result<f64, String> {
     not_negative(text, "time in milliseconds").map(|ms| ms / 1e3)
 }
 
+/// Milliseconds of a delay, as nanoseconds.
+#[expect(clippy::cast_possible_truncation, reason = "bounded")]
+pub(super) fn delay_ns(text: &str) -> Result<i64, String> {
+    let ms = within(text, [-1e4, 1e4], "a delay from -10000 to 10000 ms")?;
+    Ok((ms * 1e6).round() as i64)
+}
+
 /// Percent, as a share; a negative reduction allows some growth.
 pub(super) fn reduction_percent(text: &str) -> Result<f64, String> {
     within(text, [f64::MIN, 100.0], "a percentage of at most 100").map(|percent| percent / 100.0)

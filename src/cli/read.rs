@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 
+use super::number;
 use crate::log::{ReadOptions, Selector, SignalRole, TimeBase, WantedSignal};
 
 /// Which topics, joints and clock to read.
@@ -31,6 +32,10 @@ pub(super) struct ReadArgs {
     /// The measurement is in degrees
     #[arg(long)]
     measured_degrees: bool,
+
+    /// The measurement is stamped so much later than it was taken (a slow recorder or bus): it is taken off
+    #[arg(long = "measured-delay-ms", value_name = "MS", value_parser = number::delay_ns, allow_negative_numbers = true)]
+    measured_delay_ns: Option<i64>,
 
     /// Joints that slide: their positions are lengths in m
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
@@ -65,6 +70,7 @@ impl ReadArgs {
             }),
             planned_in_degrees: self.planned_degrees,
             measured_in_degrees: self.measured_degrees,
+            measured_delay_ns: self.measured_delay_ns.unwrap_or_default(),
             slides: self.slides.clone(),
             continuous: self.continuous.clone(),
             ..ReadOptions::default()

@@ -11,8 +11,8 @@ use super::{
 };
 use crate::units::DEGREE_RAD;
 
-/// Step of the central differences, prior deviations.
-const DIFFERENCE: f64 = 2e-3;
+/// Step of the differences, prior deviations.
+const DIFFERENCE: f64 = 1e-3;
 
 /// Residuals are never told apart more finely, rad: resolution of an encoder of 16 bits.
 const FINEST_RAD: f64 = 0.002 * DEGREE_RAD;
@@ -196,12 +196,13 @@ impl Problem<'_> {
         (0..SHARED).filter(|&i| !fixed(i)).collect()
     }
 
-    /// Slopes of a run's residuals in scales, a column a parameter: those of `free`, then its integral.
+    /// Slopes of a run's residuals in scales, a column a parameter: those of `free`, then its integral. `residuals_rad` are those at `x`.
     fn slopes(
         &self,
         x: &[f64],
         free: &[usize],
         r: usize,
+        residuals_rad: &[f64],
         scale_rad: f64,
         workspace: &mut Workspace,
     ) -> DMatrix<f64> {
@@ -212,12 +213,11 @@ impl Problem<'_> {
         let moving = free.iter().copied().enumerate().filter(|(_, i)| *i != STICTION);
         let columns: Vec<(usize, usize)> = moving.chain([(free.len(), SHARED)]).collect();
         let own: [f64; SHARED + 1] = std::array::from_fn(|i| x[if i < SHARED { i } else { SHARED + r }]);
-        let share = 1.0 / (2.0 * DIFFERENCE * scale_rad);
-        for group in columns.chunks(LANES / 2) {
+        let share = 1.0 / (DIFFERENCE * scale_rad);
+        for group in columns.chunks(LANES) {
             let lane = |lane: usize| {
                 let mut x = own;
-                x[group[(lane / 2).min(group.len() - 1)].1] +=
-                    if lane.is_multiple_of(2) { DIFFERENCE } else { -DIFFERENCE };
+                x[group[lane.min(group.len() - 1)].1] += DIFFERENCE;
                 let integral_rad_s = Priors::integral_rad_s(x[SHARED]);
                 (self.model(&x), Start { integral_rad_s, ..run.start })
             };
@@ -226,14 +226,14 @@ impl Problem<'_> {
             let (models, starts) =
                 (lanes.each_ref().map(|lane| &lane.0), lanes.each_ref().map(|lane| lane.1));
             simulate_lanes(models, &run.sent, starts, wanted, angle_rad);
-            for (row, sample) in counted().enumerate() {
+            for ((row, sample), residual_rad) in counted().enumerate().zip(residuals_rad) {
                 let Some(at) = angle_rad.get(LANES * sample.step..LANES * (sample.step + 2)) else {
                     continue;
                 };
+                let before_rad = sample.measured_rad - residual_rad;
                 for (place, (column, _)) in group.iter().enumerate() {
-                    let change = |k: usize| at[k + 2 * place + 1] - at[k + 2 * place];
-                    let (here, next) = (change(0), change(LANES));
-                    slopes[(row, *column)] = (here + sample.part * (next - here)) * share;
+                    let (here, next) = (at[place], at[LANES + place]);
+                    slopes[(row, *column)] = (before_rad - here - sample.part * (next - here)) * share;
                 }
             }
         }
@@ -245,7 +245,7 @@ impl Problem<'_> {
         let free = self.free();
         let (mut residuals, mut trial) = (Vec::new(), Vec::new());
         self.residuals(&x, workspace, &mut residuals);
-        let mut damping = 1e-2;
+        let mut damping = if self.part == Part::All { 1e-2 } else { 1e-4 };
         let mut still = 0;
         for _ in 0..rounds {
             let scale_rad = scale(residuals.iter().copied(), FINEST_RAD);
@@ -303,7 +303,7 @@ impl Problem<'_> {
             Normal { shared: DMatrix::zeros(own, own), slope: DVector::zeros(own), runs: Vec::new() };
         let mut first = 0;
         for r in 0..self.runs.len() {
-            let mut slopes = self.slopes(x, free, r, scale_rad, workspace);
+            let mut slopes = self.slopes(x, free, r, &residuals_rad[first..], scale_rad, workspace);
             let residuals = DVector::from_column_slice(&residuals_rad[first..first + slopes.nrows()]);
             first += slopes.nrows();
             let roots = residuals.map(|r| weight(r / scale_rad).sqrt());

@@ -35,7 +35,7 @@ const SLOWEST_INTEGRAL_S: f64 = 20.0;
 const ROUNDS: usize = 4;
 
 /// Rounds of the fits that leave a part out.
-const FOLD_ROUNDS: usize = 5;
+const FOLD_ROUNDS: usize = 3;
 
 /// Statistical inefficiency until it is measured: correlated residuals per effective sample.
 const INEFFICIENCY: f64 = 50.0;

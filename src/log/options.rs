@@ -24,6 +24,8 @@ pub struct ReadOptions {
     pub planned_in_degrees: bool,
     /// The measurement is in degrees.
     pub measured_in_degrees: bool,
+    /// How much later than its instants the measurement is stamped, ns: taken off.
+    pub measured_delay_ns: i64,
     /// Whether to read the speeds that come with measured positions, too.
     pub measured_velocities: bool,
     /// Joints that slide, whose positions are in m; those that the log's URDF calls prismatic do anyway.

@@ -176,6 +176,12 @@ impl Signal {
         self.quantity
     }
 
+    /// Other stamps, as many and as ordered.
+    pub(super) fn restamp(&mut self, t_s: Arc<[f64]>) {
+        debug_assert_eq!(t_s.len(), self.t_s.len());
+        self.t_s = t_s;
+    }
+
     /// The stamps, for another signal at the same times.
     pub(super) fn shared_t_s(&self) -> Arc<[f64]> {
         self.t_s.clone()

@@ -22,6 +22,20 @@ impl Series {
     pub fn span_s(&self) -> Option<[f64; 2]> {
         span_s(&self.tracks)
     }
+
+    /// Makes every sample so much earlier, s; joints that shared their stamps still do.
+    pub fn earlier(&mut self, by_s: f64) {
+        let mut last: Option<[Arc<[f64]>; 2]> = None;
+        for track in &mut self.tracks {
+            let old = track.signal.shared_t_s();
+            let [_, new] = match last.take() {
+                Some(last) if Arc::ptr_eq(&last[0], &old) => last,
+                _ => [old.clone(), old.iter().map(|t_s| t_s - by_s).collect()],
+            };
+            track.signal.restamp(new.clone());
+            last = Some([old, new]);
+        }
+    }
 }
 
 /// The position of one joint, a [`Signal`] in rad or m, and its velocity where the source gives one.

@@ -91,7 +91,12 @@ pub(super) fn assemble(
         quality::unwrap_turns(series, &options.continuous, &mut remarks);
     }
     quality::of_pairs(&planned, &measured, options, &mut remarks);
-    let source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
+    let mut source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
+    if options.measured_delay_ns != 0 {
+        let delay_s = seconds_since(0, options.measured_delay_ns);
+        measured.earlier(delay_s);
+        source.measured_delay_s = Some(delay_s);
+    }
     let Extracted { attachments, metadata, .. } = assembly.extracted;
     let remarks = alone.unwrap_or(remarks);
     Ok(Recording {
@@ -314,6 +319,7 @@ impl Assembly {
             duration_s: ends.copied().fold(0.0, f64::max),
             recorder_delay_s: delays_ns
                 .map(|[_, middle, most]| [middle, most].map(|ns| seconds_since(0, ns))),
+            measured_delay_s: None,
         }
     }
 }

@@ -44,6 +44,9 @@ fn source_facts(report: &Report) -> Vec<Fact> {
     let delay = delay.map_or(String::new(), |[median_s, most_s]| {
         format!("; the recorder was {} ms behind it, at most {} ms", ms(median_s), ms(most_s))
     });
+    let taken_off = source.measured_delay_s.map_or(String::new(), |delay_s| {
+        format!("; {} ms taken off those of the measurement, as given", ms(delay_s))
+    });
     vec![
         fact(
             "run",
@@ -55,7 +58,7 @@ fn source_facts(report: &Report) -> Vec<Fact> {
         ),
         fact("planned", format!("{}  {}", source.planned_topic, source.planned_field)),
         fact("measured", format!("{}  {}", source.measured_topic, source.measured_field)),
-        fact("clock", format!("{} stamps{delay}", source.time_base.name())),
+        fact("clock", format!("{} stamps{delay}{taken_off}", source.time_base.name())),
     ]
 }
 

@@ -16,6 +16,26 @@ fn exit_code_0_and_a_quiet_standard_error_for_a_sound_log() {
 }
 
 #[test]
+fn a_known_delay_of_the_measurement_is_taken_off_and_said() {
+    let median_delay_s = |options: &[&str]| {
+        let run = hydrotrace(&[&["report", CLEAN, "--json"], options].concat());
+        let document: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+        let source = document["source"]["measured_delay_s"].as_f64();
+        let starts = document["transitions"].as_array().unwrap().iter();
+        let mut delays_s: Vec<f64> = starts.filter_map(|start| start["onset_delay_s"].as_f64()).collect();
+        delays_s.sort_by(f64::total_cmp);
+        (delays_s[delays_s.len() / 2], source)
+    };
+    let ((as_stamped_s, none), (as_taken_s, given)) =
+        (median_delay_s(&[]), median_delay_s(&["--measured-delay-ms", "80"]));
+    assert!((as_stamped_s - as_taken_s - 0.08).abs() < 0.005, "{as_stamped_s} {as_taken_s}");
+    assert_eq!((none, given), (None, Some(0.08)));
+    let said = stdout(&hydrotrace(&["report", CLEAN, "--measured-delay-ms", "-20"]));
+    assert!(said.contains("-20 ms taken off those of the measurement, as given"), "{said}");
+    assert_eq!(hydrotrace(&["report", CLEAN, "--measured-delay-ms", "1e9"]).status.code(), Some(2));
+}
+
+#[test]
 fn exit_code_1_when_the_log_is_missing_and_stdout_stays_empty() {
     let run = hydrotrace(&["report", "no-such.mcap"]);
     assert_eq!(run.status.code(), Some(1));
