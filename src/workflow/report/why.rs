@@ -93,6 +93,10 @@ impl DelayModel {
 
     /// The machine for a run, before its tracks are given away.
     pub(super) fn ready(&self, recording: &Recording) -> Option<Result<Ready, String>> {
+        // A long run's tracks are not copied for nothing.
+        if matches!(self, Self::None) {
+            return None;
+        }
         let span_s = recording.measured.span_s().map_or(0.0, |[from, to]| to - from);
         if matches!(self, Self::OfThisRunIfShort) && span_s * recording.measured.tracks.len() as f64 > SHORT_S
         {
@@ -105,9 +109,8 @@ impl DelayModel {
         let (plan, sent, measured) =
             (turning(&recording.planned), turning(sent), turning(&recording.measured));
         let fit = match self {
-            Self::None => return None,
             Self::Known(fit) => Ok(Fit::clone(fit)),
-            Self::OfThisRun | Self::OfThisRunIfShort => {
+            _ => {
                 let valve = recording.signals.get(&SignalRole::Valve).map_or(&[][..], Vec::as_slice);
                 fit(&[Observation { sent: &sent, measured: &measured, valve }])
             }
