@@ -3,6 +3,7 @@
 
 use std::{
     fs,
+    ops::ControlFlow,
     path::Path,
     process::{Command, Stdio},
     time::{Duration, Instant},
@@ -139,8 +140,10 @@ fn three_injected_faults_are_found_first_and_nothing_else() {
         let (logs, data) = (temporary.path().join("logs"), temporary.path().join("data"));
         write(&logs, seed);
         let sources = vec![logs.to_string_lossy().into_owned()];
-        let done =
-            scan(&Inputs { sources, into: data.clone(), workers: 2, ..Inputs::default() }, &|_| {}).unwrap();
+        let done = scan(&Inputs { sources, into: data.clone(), workers: 2, ..Inputs::default() }, &|_| {
+            ControlFlow::Continue(())
+        })
+        .unwrap();
         assert!(done.failures.is_empty() && done.analysed == 200, "{done:?}");
         if let Ok(keep) = std::env::var("KEEP") {
             let _ = Command::new("cp").args(["-r", &temporary.path().to_string_lossy(), &keep]).status();

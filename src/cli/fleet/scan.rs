@@ -1,6 +1,8 @@
 //! `fleet scan`
 
-use std::{num::NonZeroUsize, path::PathBuf, thread::available_parallelism, time::Duration};
+use std::{
+    num::NonZeroUsize, ops::ControlFlow, path::PathBuf, thread::available_parallelism, time::Duration,
+};
 
 use super::{
     CliError, Outcome, Run,
@@ -70,6 +72,7 @@ impl Run for Args {
             bar.set_length(now.of as u64);
             bar.set_position(now.done as u64);
             bar.set_message(words::progress(&now));
+            ControlFlow::Continue(())
         });
         bar.finish_and_clear();
         let done = done?;

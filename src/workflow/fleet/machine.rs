@@ -41,7 +41,7 @@ impl MachineFrom {
     }
 
     /// The machine of a log; `None` where nothing names it.
-    pub(super) fn of(&self, path: &Path, found: Option<&Findings>) -> Option<String> {
+    pub fn of(&self, path: &Path, found: Option<&Findings>) -> Option<String> {
         let text = path.to_string_lossy();
         let named = match self {
             Self::Log => found?.report.machine.clone(),

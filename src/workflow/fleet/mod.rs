@@ -25,5 +25,6 @@ pub use failure::FleetFailure;
 pub use gate::{Gate, GateResult, Gated, gate};
 pub use history::{By, Filter};
 pub use machine::MachineFrom;
-pub use scan::{Inputs, Progress, scan};
+pub use scan::{Inputs, Progress, own_analysis_id, scan};
+pub use tables::{Log, Name as TableName, Rows, analysed as rows, failed as failed_rows};
 pub use worst::{Worst, WorstJoint, worst};

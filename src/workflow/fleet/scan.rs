@@ -5,11 +5,12 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
+    ops::ControlFlow,
     panic::{AssertUnwindSafe, catch_unwind},
     path::{Path, PathBuf},
     sync::{
         Mutex, PoisonError,
-        atomic::{AtomicUsize, Ordering},
+        atomic::{AtomicBool, AtomicUsize, Ordering},
     },
 };
 
@@ -89,13 +90,16 @@ struct Pending {
     is_held: bool,
 }
 
-/// Scans; `seen` is told of each log, by any thread.
+/// Scans; `seen` is told of each log, by any thread, and may end the scan: what was analysed until then is written.
 ///
 /// # Errors
 ///
 /// [`FleetFailure`] if a source leads nowhere or the dataset cannot be written; a log that cannot be analysed is a row
 /// with its error.
-pub fn scan(inputs: &Inputs, seen: &(dyn Fn(Progress) + Sync)) -> Result<Scanned, FleetFailure> {
+pub fn scan(
+    inputs: &Inputs,
+    seen: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+) -> Result<Scanned, FleetFailure> {
     let found = sources(&inputs.sources)?;
     let store = Store::open(&inputs.into)?;
     let mut held = known(store.root())?;
@@ -114,32 +118,37 @@ pub fn scan(inputs: &Inputs, seen: &(dyn Fn(Progress) + Sync)) -> Result<Scanned
             pending.push(Pending { source, tries, is_held: known.is_some() });
         }
     }
-    let (done, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let (done, failed, ended) = (AtomicUsize::new(0), AtomicUsize::new(0), AtomicBool::new(false));
     for batch in pending.chunks(BATCH) {
-        let rows = at_once(batch.len(), inputs.workers, |k| {
+        let rows = at_once(batch.len(), inputs.workers, &ended, |k| {
             let (rows, failure) = analysed(&batch[k], &analysis_id, inputs);
             let failed = failed.fetch_add(usize::from(failure.is_some()), Ordering::Relaxed);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            seen(Progress { done, of: pending.len(), failed: failed + usize::from(failure.is_some()) });
-            (rows, failure)
+            let now = Progress { done, of: pending.len(), failed: failed + usize::from(failure.is_some()) };
+            ended.fetch_or(seen(now).is_break(), Ordering::Relaxed);
+            (&batch[k], rows, failure)
         });
-        let (rows, failures): (Vec<Rows>, Vec<Option<Failure>>) = rows.into_iter().unzip();
+        let old: Vec<&Pending> = rows.iter().map(|(log, ..)| *log).filter(|log| log.is_held).collect();
+        let (rows, failures): (Vec<Rows>, Vec<Option<Failure>>) =
+            rows.into_iter().map(|(_, rows, failure)| (rows, failure)).unzip();
         scanned.add(&rows, failures);
-        let old = batch.iter().filter(|log| log.is_held);
         let old: Vec<&Known> =
-            old.filter_map(|log| held.get(log.source.path.to_string_lossy().as_ref())).collect();
+            old.iter().filter_map(|log| held.get(log.source.path.to_string_lossy().as_ref())).collect();
         let moved = !old.is_empty();
         write(&store, rows, &old)?;
         if moved {
             // Rows that stayed lie in other parts now.
             held = known(store.root())?;
         }
+        if ended.load(Ordering::Relaxed) {
+            break;
+        }
     }
     Ok(scanned)
 }
 
 /// The analysis, with all that rows depend on beside the log.
-fn own_analysis_id(inputs: &Inputs) -> String {
+pub fn own_analysis_id(inputs: &Inputs) -> String {
     let Inputs { machine, read, rules, .. } = inputs;
     hash([analysis_id(rules), format!("{read:?}"), format!("{machine:?}")])
 }
@@ -167,8 +176,14 @@ fn known(root: &Path) -> Result<BTreeMap<String, Known>, FleetFailure> {
     Ok(known)
 }
 
-/// What `of` makes of the numbers below `count`, in order, on so many threads of their own.
-fn at_once<T: Send>(count: usize, workers: usize, of: impl Fn(usize) -> T + Sync) -> Vec<T> {
+/// What `of` makes of the numbers below `count`, in order, on so many threads of their own; of those that were begun
+/// before the end.
+fn at_once<T: Send>(
+    count: usize,
+    workers: usize,
+    ended: &AtomicBool,
+    of: impl Fn(usize) -> T + Sync,
+) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let made = Mutex::new(Vec::with_capacity(count));
     std::thread::scope(|scope| {
@@ -176,7 +191,7 @@ fn at_once<T: Send>(count: usize, workers: usize, of: impl Fn(usize) -> T + Sync
             scope.spawn(|| {
                 loop {
                     let k = next.fetch_add(1, Ordering::Relaxed);
-                    if k >= count {
+                    if k >= count || ended.load(Ordering::Relaxed) {
                         return;
                     }
                     let one = of(k);
@@ -226,9 +241,8 @@ fn analysed(pending: &Pending, analysis_id: &str, inputs: &Inputs) -> (Rows, Opt
         }
     }
     log.machine = inputs.machine.of(&source.path, None);
-    let run_id = hash([log.uri.as_str(), log.etag.as_str()]);
     let failure = Failure { log: log.uri.clone(), error: error.clone() };
-    (tables::failed(&log, &run_id, &error, may_pass), Some(failure))
+    (tables::failed(&log, &error, may_pass), Some(failure))
 }
 
 /// An error with its reasons, on one line.

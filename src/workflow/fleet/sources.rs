@@ -7,7 +7,7 @@ use std::{
     time::UNIX_EPOCH,
 };
 
-use super::failure::FleetFailure;
+use super::{failure::FleetFailure, tables::Log};
 use crate::{input_file, remark::Remarks};
 
 /// Endings of logs that are looked for in folders; a file that is named counts whatever its ending.
@@ -112,6 +112,19 @@ fn walk(
         }
     }
     Ok(())
+}
+
+impl Log {
+    /// A file or the folder of a bag as it is now; of what is not there only the place is known.
+    pub fn at(path: &Path, analysis_id: String) -> Self {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let mut found = BTreeMap::new();
+        if let Ok(is) = fs::metadata(&path) {
+            put(path.clone(), &is, &mut found);
+        }
+        let (bytes, etag) = found.remove(&path).map(|one| (one.bytes, one.etag)).unwrap_or_default();
+        Self { uri: path.to_string_lossy().into_owned(), etag, bytes, machine: None, analysis_id, tries: 1 }
+    }
 }
 
 fn put(path: PathBuf, is: &Metadata, found: &mut BTreeMap<PathBuf, Source>) {

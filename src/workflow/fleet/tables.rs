@@ -5,15 +5,19 @@ use crate::{
     log::dataset::{Cell, Column},
     remark::Code,
     replay::{JointReplay, Transition},
-    workflow::report::Findings,
+    workflow::report::{Findings, hash},
 };
 
 /// A table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Name {
+pub enum Name {
+    /// A row for each run and joint.
     Joints,
+    /// A row for each doubt about a log.
     Remarks,
+    /// A row for each log.
     Runs,
+    /// A row for each planned start or reversal.
     Transitions,
 }
 
@@ -29,7 +33,8 @@ impl Name {
         }
     }
 
-    pub(super) fn columns(self) -> &'static [Column] {
+    /// Its columns; every row has a cell for each.
+    pub fn columns(self) -> &'static [Column] {
         match self {
             Self::Joints => JOINTS,
             Self::Remarks => REMARKS,
@@ -140,18 +145,23 @@ const REMARKS: &[Column] = &[
 
 /// What is known of a log before it is opened.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Log {
-    pub(super) uri: String,
-    pub(super) etag: String,
-    pub(super) bytes: u64,
-    pub(super) machine: Option<String>,
-    pub(super) analysis_id: String,
+pub struct Log {
+    /// Where it is.
+    pub uri: String,
+    /// Another one is another state of the log.
+    pub etag: String,
+    /// Its size.
+    pub bytes: u64,
+    /// The machine that it is of.
+    pub machine: Option<String>,
+    /// What the numbers depend on beside the log.
+    pub analysis_id: String,
     /// How often it was analysed, this time included.
-    pub(super) tries: u64,
+    pub tries: u64,
 }
 
 /// Rows of one log by table.
-pub(super) type Rows = Vec<(Name, Vec<Cell>)>;
+pub type Rows = Vec<(Name, Vec<Cell>)>;
 
 fn pair(interval: Option<[f64; 2]>) -> [Cell; 2] {
     [Cell::from(interval.map(|i| i[0])), Cell::from(interval.map(|i| i[1]))]
@@ -162,7 +172,7 @@ fn micros(ns: i64) -> Cell {
 }
 
 /// The rows of a log that was analysed.
-pub(super) fn analysed(log: &Log, found: &Findings) -> Rows {
+pub fn analysed(log: &Log, found: &Findings) -> Rows {
     let report = &found.report;
     let whole = &report.whole_run;
     let kinds = report.joints.windows(2).all(|two| two[0].kind == two[1].kind);
@@ -228,14 +238,15 @@ fn content(found: &Findings) -> Option<String> {
 }
 
 /// The row of a log that could not be analysed; `may_pass`: whether a later try may be able to.
-pub(super) fn failed(log: &Log, run_id: &str, error: &str, may_pass: bool) -> Rows {
+pub fn failed(log: &Log, error: &str, may_pass: bool) -> Rows {
+    let run_id = hash([log.uri.as_str(), log.etag.as_str()]);
     let mut row = vec![Cell::None; RUNS.len()];
     let mut put = |name: &str, cell: Cell| {
         if let Some(place) = RUNS.iter().position(|column| column.name == name) {
             row[place] = cell;
         }
     };
-    put("run_id", Cell::from(run_id));
+    put("run_id", Cell::from(run_id.as_str()));
     put("machine", Cell::from(log.machine.as_deref()));
     put("log_uri", Cell::from(log.uri.as_str()));
     put("log_etag", Cell::from(log.etag.as_str()));
@@ -345,6 +356,6 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), name.columns().len());
         }
-        assert_eq!(failed(&log(), "c", "broken", true)[0].1.len(), RUNS.len());
+        assert_eq!(failed(&log(), "broken", true)[0].1.len(), RUNS.len());
     }
 }

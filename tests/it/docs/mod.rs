@@ -42,6 +42,7 @@ pages! {
     join: "docs/guide/join.md"
     library: "docs/guide/library.md"
     plan: "docs/guide/plan.md"
+    python: "docs/guide/python.md"
     record: "docs/guide/record.md"
     recover: "docs/guide/recover.md"
     replan: "docs/guide/replan.md"
