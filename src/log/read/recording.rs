@@ -146,6 +146,8 @@ pub struct Survey {
     pub topics: Vec<TopicInfo>,
     /// Names of the files stored in it.
     pub attachments: Vec<String>,
+    /// From the first message to the last, by the recorder's clock, s.
+    pub duration_s: f64,
     /// The recording that a report would use, or why no report can be made.
     pub recording: Result<Recording, LogError>,
     /// Doubts about the files.
@@ -153,6 +155,11 @@ pub struct Survey {
 }
 
 impl Survey {
+    /// Whether the messages were read, not the index alone.
+    pub fn is_checked(&self) -> bool {
+        !matches!(self.recording, Err(LogError::NotLookedAt))
+    }
+
     /// The joints that a report would cover.
     pub fn joints(&self) -> impl Iterator<Item = &str> {
         let both = |recording: &'_ Recording, name: &str| recording.measured.track(name).is_some();
