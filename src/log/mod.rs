@@ -46,7 +46,7 @@ pub use options::{ReadOptions, Selector, Sides, SignalRole, TimeBase, WantedSign
 pub use range::TimeRange;
 pub use read::{
     read_plan, read_recording,
-    recording::{Attachment, Command, FileInfo, Recording, SourceInfo, Survey, TopicInfo},
+    recording::{Attachment, Command, FileInfo, Recording, SourceInfo, Survey, ToolPoses, TopicInfo},
     survey, survey_bytes,
 };
 pub use repair::{Addition, PlanSample, Recovered, recover};

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
     content::{Content, Extracted},
-    description, overlap, quality,
+    description, overlap, poses, quality,
     recording::{Command, Recording, SourceInfo},
     samples::{Axis, Reading, Samples, samples},
     select_topics::{Candidate, Choice, named},
@@ -19,7 +19,7 @@ use crate::{
         joint_kind,
         options::{ReadOptions, SignalRole, TimeBase, WantedSignal},
         range::TimeRange,
-        source::{Role, Stamps},
+        source::{AXES, Role, Stamps},
     },
     remark::{Code, Remarks},
     series::{Clock, JointKind, Series, Signal, Track, continuous_clock},
@@ -42,6 +42,9 @@ pub(super) fn assemble(
     let mut sliding = description.as_deref().map(sliding_joints).unwrap_or_default();
     sliding.extend(joint_kind::sliding(&extracted.metadata));
     sliding.extend(options.slides.iter().cloned());
+    sliding.extend(
+        choice.of_poses(&extracted).then(|| AXES[..3].iter().map(ToString::to_string)).into_iter().flatten(),
+    );
     // Those that are not there, where none was named, are no fault.
     let beside = options.signals.iter().map(|wanted| match candidate(&extracted, wanted, base) {
         Err(error) if wanted.topic.is_some() => Err(error),
@@ -94,6 +97,7 @@ pub(super) fn assemble(
             return Err(nothing_in(options.range, &assembly.extracted, chosen));
         }
     }
+    let poses = poses::take(&mut planned, &mut measured);
     for series in [&mut planned, &mut measured] {
         keep_joints(series, &options.joints)?;
         quality::unwrap_turns(series, &options.continuous, &mut remarks);
@@ -105,6 +109,7 @@ pub(super) fn assemble(
     Ok(Recording {
         planned,
         measured,
+        poses,
         plan_is_command,
         command,
         signals,

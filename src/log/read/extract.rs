@@ -267,5 +267,23 @@ fn finish(out: &mut Extracted) {
             sources.push(Source { topic: half.topic, content, parts: Vec::new() });
         }
     }
+    poses_as_tables(&mut sources, out);
     out.sources = sources;
+}
+
+/// Turns poses into tables; what has none is left out.
+fn poses_as_tables(sources: &mut Vec<Source>, out: &mut Extracted) {
+    sources.retain_mut(|source| {
+        let Content::Poses(poses) = &source.content else { return true };
+        let topic = &out.topics[source.topic];
+        let message = format!(
+            "paths of {} whose poses have no times that increase, left out: a report compares by time",
+            topic.topic
+        );
+        out.remarks.add(Code::UnusableStamp, poses.untimed, message);
+        let Some(table) = poses.to_table(topic.type_name.ends_with("Path")) else { return false };
+        // Where the parts of several files meet is not kept.
+        *source = Source { topic: source.topic, content: Content::Table(Box::new(table)), parts: Vec::new() };
+        true
+    });
 }

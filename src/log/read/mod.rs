@@ -7,6 +7,7 @@ mod extract;
 mod indexed;
 mod overlap;
 mod parallel;
+mod poses;
 mod quality;
 pub(super) mod recording;
 mod samples;

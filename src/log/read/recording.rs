@@ -93,6 +93,8 @@ pub struct Recording {
     pub planned: Series,
     /// The measurement.
     pub measured: Series,
+    /// The tool, where the log holds its planned and measured poses.
+    pub poses: Option<ToolPoses>,
     /// Whether the plan is the command, because the log holds no other plan.
     pub plan_is_command: bool,
     /// The command, if it was wanted and is there.
@@ -109,6 +111,15 @@ pub struct Recording {
     pub metadata: BTreeMap<String, BTreeMap<String, String>>,
     /// The robot's URDF, as a message or a file of the log.
     pub description: Option<String>,
+}
+
+/// Planned and measured poses of a tool, on the clock of plan and measurement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToolPoses {
+    /// The plan.
+    pub planned: Signal,
+    /// The measurement.
+    pub measured: Signal,
 }
 
 /// The positions that were sent to the controller.

@@ -18,6 +18,7 @@ mod json;
 mod limits;
 mod matrix;
 mod mutations;
+mod poses;
 mod protobuf;
 mod range;
 mod schema;
