@@ -24,13 +24,17 @@ pub(super) struct Args {
     #[arg(long)]
     json: bool,
 
+    /// Read every message of a large log, too, for damage and for what a report would use
+    #[arg(long)]
+    check: bool,
+
     #[command(flatten)]
     read: ReadArgs,
 }
 
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
-        let survey = run(&Inputs { logs: self.logs.clone(), read: self.read.options() })?;
+        let survey = run(&Inputs { logs: self.logs.clone(), read: self.read.options(), check: self.check })?;
         let target = Target::stdout(self.json);
         let result = if self.json {
             pretty(&InfoDocument::of(&survey))

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 
 use super::number;
-use crate::log::{ReadOptions, Selector, SignalRole, TimeBase, WantedSignal};
+use crate::log::{ReadOptions, Selector, SignalRole, TimeBase, TimeRange, WantedSignal};
 
 /// Which topics, joints and clock to read.
 #[derive(Debug, clap::Args)]
@@ -24,6 +24,14 @@ pub(super) struct ReadArgs {
     /// Clock of the samples [default: header stamps, if they advance]
     #[arg(long, value_enum, value_name = "CLOCK")]
     time: Option<Time>,
+
+    /// Leave out what lies before this time, in seconds from the first sample of the run
+    #[arg(long, value_name = "SECONDS", value_parser = number::seconds)]
+    from: Option<f64>,
+
+    /// Leave out what lies after this time, in seconds from the first sample of the run
+    #[arg(long, value_name = "SECONDS", value_parser = number::seconds)]
+    to: Option<f64>,
 
     /// The plan is in degrees
     #[arg(long)]
@@ -68,6 +76,7 @@ impl ReadArgs {
                 Time::Publish => TimeBase::Publish,
                 Time::Log => TimeBase::Log,
             }),
+            range: TimeRange::of_seconds(self.from, self.to),
             planned_in_degrees: self.planned_degrees,
             measured_in_degrees: self.measured_degrees,
             measured_delay_ns: self.measured_delay_ns.unwrap_or_default(),

@@ -44,12 +44,21 @@ pub(super) struct OwnedSchema {
 }
 
 impl Definitions {
+    pub(super) fn of(schemas: &[SchemaRecord], channels: &[ChannelRecord]) -> Self {
+        let mut all = Self { schemas: BTreeMap::new(), channels: BTreeMap::new() };
+        for schema in schemas {
+            all.add_schema(schema);
+        }
+        for channel in channels {
+            all.add_channel(channel.clone());
+        }
+        all
+    }
+
     /// Gathers definitions outside chunks, and those inside if the former may be incomplete or
     /// the caller says so.
     pub(super) fn gather(layout: &Layout, source: &Source, look_inside: bool) -> Self {
-        let mut all = Self { schemas: BTreeMap::new(), channels: BTreeMap::new() };
-        layout.schemas.iter().for_each(|schema| all.add_schema(schema));
-        layout.channels.iter().for_each(|channel| all.add_channel(channel.clone()));
+        let mut all = Self::of(&layout.schemas, &layout.channels);
         if !look_inside
             && layout.channels_complete
             && all.channels.values().all(|c| c.schema_id == 0 || all.schemas.contains_key(&c.schema_id))

@@ -69,6 +69,15 @@ pub enum LogError {
         planned_s[0], planned_s[1], measured_s[0], measured_s[1]
     )]
     NoOverlap { planned_s: [f64; 2], measured_s: [f64; 2] },
+    /// The range that the caller asked for holds nothing.
+    #[error(
+        "nothing of {topic} lies {range}: it spans {spans_s:.2} s; --from and --to count in seconds from the first \
+         sample of the run, as the times of a report do"
+    )]
+    NothingInRange { topic: String, range: String, spans_s: f64 },
+    /// Only the summaries of the files were read.
+    #[error("only the index was read, not the messages; `hydrotrace info --check` reads all of them")]
+    NotLookedAt,
     /// Two files of a run that are no parts of it.
     #[error(
         "{} and {} both have {topic} for the same {shared_s:.2} s and are no parts of one run; give the one that \

@@ -46,10 +46,12 @@ pub struct Passes {
     pub opened: u64,
     pub scanned: u64,
     pub decoded: u64,
+    /// Chunks that were read for their messages.
+    pub blocks: u64,
 }
 
 thread_local! {
-    static PASSES: Cell<Passes> = const { Cell::new(Passes { opened: 0, scanned: 0, decoded: 0 }) };
+    static PASSES: Cell<Passes> = const { Cell::new(Passes { opened: 0, scanned: 0, decoded: 0, blocks: 0 }) };
 }
 
 /// The counts so far, for tests.
@@ -101,6 +103,15 @@ impl LogFiles {
         Ok(Self { files, ordered, remarks })
     }
 
+    pub(super) fn sources(&self) -> impl Iterator<Item = (&Path, &Source)> {
+        self.files.iter().map(|(path, source)| (path.as_path(), source))
+    }
+
+    /// Doubts that came up when they were opened.
+    pub(super) fn remarks(&self) -> &Remarks {
+        &self.remarks
+    }
+
     /// Finds the records of all files.
     ///
     /// # Errors
@@ -126,7 +137,7 @@ impl<'a> ScannedFile<'a> {
 
     /// Its name without the path.
     pub(super) fn name(&self) -> String {
-        self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+        file_name(self.path)
     }
 
     /// Remarks on the outer structure of a file.
@@ -164,6 +175,11 @@ impl<'a> ScannedFile<'a> {
             format!("data of {name} with a wrong checksum and no chunks to tell where; numbers may be wrong"),
         );
     }
+}
+
+/// The name of a file without its path.
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {

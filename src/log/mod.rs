@@ -21,6 +21,7 @@ mod input;
 mod joint_kind;
 mod looks;
 mod options;
+mod range;
 mod read;
 mod repair;
 mod schema;
@@ -42,9 +43,10 @@ pub use files::{Passes, passes};
 pub use foreign::read_csv;
 pub use input::Input;
 pub use options::{ReadOptions, Selector, Sides, SignalRole, TimeBase, WantedSignal};
+pub use range::TimeRange;
 pub use read::{
     read_plan, read_recording,
-    recording::{Attachment, Command, FileInfo, Recording, SourceInfo, Survey, TopicInfo},
+    recording::{Attachment, Command, FileInfo, Recording, SourceInfo, Survey, ToolPoses, TopicInfo},
     survey, survey_bytes,
 };
 pub use repair::{Addition, PlanSample, Recovered, recover};

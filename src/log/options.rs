@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::write::Topics;
+use super::{range::TimeRange, write::Topics};
 use crate::series::{JointKind, Quantity};
 
 /// Topics, joints, clock and units, where the log alone does not determine them.
@@ -32,6 +32,8 @@ pub struct ReadOptions {
     pub slides: Vec<String>,
     /// Joints without end stops, whose angle may wrap by a full turn.
     pub continuous: Vec<String>,
+    /// The stretch of the run to read.
+    pub range: TimeRange,
     /// Text of the robot's URDF, in place of what the log holds of it.
     pub description: Option<String>,
 }

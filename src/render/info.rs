@@ -7,10 +7,10 @@ use crate::log::Survey;
 pub(crate) fn document(survey: &Survey) -> Document {
     let files = survey.files.iter().map(|f| {
         let state = if f.closed { "closed properly" } else { "NOT CLOSED" };
-        let bytes = if f.bytes < 10_000 {
-            format!("{} B", f.bytes)
-        } else {
-            format!("{:.1} kB", f.bytes as f64 / 1e3)
+        let bytes = match f.bytes {
+            0..10_000 => format!("{} B", f.bytes),
+            10_000..10_000_000 => format!("{:.1} kB", f.bytes as f64 / 1e3),
+            _ => format!("{:.1} MB", f.bytes as f64 / 1e6),
         };
         vec![f.name.clone(), state.to_owned(), bytes, f.blocks.to_string()]
     });
@@ -49,6 +49,13 @@ fn used(survey: &Survey) -> Block {
                 fact("clock", format!("{} ({})", source.time_base.name(), source.time_base_why)),
                 fact("joints", survey.joints().collect::<Vec<_>>().join(", ")),
             ])
+        }
+        Err(why) if !survey.is_checked() => {
+            let text = format!(
+                "Not looked at, nor damage: {why}. The log spans {:.1} s by the recorder's clock.",
+                survey.duration_s
+            );
+            Sentence::finding(text).into()
         }
         Err(error) => Sentence::finding(format!("nothing: {error}")).into(),
     }

@@ -41,7 +41,9 @@ pub use peak_motion::peak_motion;
 pub use profile::{Profiles, STRETCHES};
 pub use rules::{Rules, Sizes};
 pub use signals::planned_starts;
-pub use tool::{ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst, tool_replay};
+pub use tool::{
+    ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst, pose_replay, tool_replay,
+};
 
 use crate::{series::Pair, threads};
 use concentration::{JointError, concentration};

@@ -27,6 +27,18 @@ pub struct Clock {
     pub longest_jump_ns: i64,
 }
 
+impl Clock {
+    /// Keeps what lies between two places in time; both conditions change once, the first to true, the second to false.
+    pub fn keep(&mut self, is_after_start: impl Fn(i64) -> bool, is_before_end: impl Fn(i64) -> bool) {
+        let start = self.t_ns.partition_point(|&at_ns| !is_after_start(at_ns));
+        let end = start + self.t_ns[start..].partition_point(|&at_ns| is_before_end(at_ns));
+        self.t_ns = self.t_ns[start..end].to_vec();
+        self.rows = self.rows[start..end].to_vec();
+        self.cuts.retain(|cut| (start + 1..end).contains(cut));
+        self.cuts.iter_mut().for_each(|cut| *cut -= start);
+    }
+}
+
 /// A stamp this far ahead of its predecessor, while the recorder's clock says otherwise, is wrong
 /// or follows a jump.
 const LEAP_NS: i64 = 1_000_000_000;

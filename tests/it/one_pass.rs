@@ -30,12 +30,13 @@ fn counted<T>(verb: impl FnOnce() -> T) -> (Passes, T) {
         opened: after.opened - before.opened,
         scanned: after.scanned - before.scanned,
         decoded: after.decoded - before.decoded,
+        blocks: 0,
     };
     (passes, made)
 }
 
 fn each(times: u64) -> Passes {
-    Passes { opened: times, scanned: times, decoded: times }
+    Passes { opened: times, scanned: times, decoded: times, blocks: 0 }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::{
     Quantity, Role,
-    unit::{Measure, Unit, parse_unit, split_suffix},
+    unit::{Measure, UNITLESS, Unit, parse_unit, split_suffix},
     word::{Meaning, Word, words},
 };
 
@@ -31,6 +31,11 @@ pub(super) struct Label {
 /// Endings that `export` writes; the joint's name before them is taken as it is.
 const OWN: [(&str, Role); 3] =
     [("_planned", Role::Planned), ("_measured", Role::Measured), ("_command", Role::Command)];
+
+/// Components of the position of a tool.
+const PLACE: [&str; 3] = ["x", "y", "z"];
+/// Components of its orientation.
+const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 
 /// Reads a header; `below` is the cell of a row of units.
 pub(super) fn label(header: &str, below: Option<&str>) -> Label {
@@ -87,11 +92,19 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let long = matches!(measure, Some(Measure::Length | Measure::LinearSpeed));
     let fits = long || matches!(measure, None | Some(Measure::Angle | Measure::AngularSpeed));
     let strong = quantity.is_some() && !long || means(Meaning::Joint);
-    let is_joint = !timely && fits && !means(Meaning::Foreign) && (strong || role.is_some() || long);
     let joint = joint_name(&words);
+    // Of a tool, not of a joint; such a position is told like that of a joint that slides.
+    let place =
+        role.is_some() && measure == Some(Measure::Length) && PLACE.contains(&joint.to_lowercase().as_str());
+    let foreign = means(Meaning::Foreign) && !place;
+    let is_joint = !timely && fits && !foreign && (strong || role.is_some() || long);
     let desired = role.is_none().then(|| without_d(&words)).flatten();
     let desired = desired.map(|words| joint_name(&words)).map(|joint| (joint.to_lowercase(), joint));
     let key = joint.to_lowercase();
+    // A quaternion has no unit; that it is meant shows where plan and measurement have it.
+    let turns = unit.is_none() && QUATERNION.contains(&key.as_str());
+    let unit = if turns { Some(UNITLESS) } else { unit };
+    let strong = strong && !turns;
     let stated = stated.or(unit);
     let words = words.iter().map(|word| word.text.to_lowercase()).collect();
     Label { role, quantity, unit, stated, words, key, joint, is_time, is_joint, is_weak: !strong, desired }

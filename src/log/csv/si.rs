@@ -6,7 +6,7 @@ use super::{
     label::Label,
     layout::{Layout, Use},
     read::Cells,
-    unit::{DEGREE, Measure, RADIAN, Unit, parse_unit},
+    unit::{DEGREE, Measure, RADIAN, UNITLESS, Unit, parse_unit},
 };
 use crate::{
     remark::{Code, Remarks},
@@ -36,7 +36,10 @@ pub(super) fn to_si(
 ) -> Result<(Vec<Settled>, Vec<JointKind>), CsvError> {
     let stated = |column: usize| labels.get(column).and_then(|label| label.unit);
     let lengths = lengths(layout, options, &stated)?;
-    let turns = |one: &&Use| one.quantity == Quantity::Position && lengths[one.joint].is_none();
+    let turns = |one: &&Use| {
+        let is_angle = lengths[one.joint].is_none() && stated(one.column) != Some(UNITLESS);
+        one.quantity == Quantity::Position && is_angle
+    };
     let fallback = fallback(head, options, layout.uses.iter().filter(turns).map(|one| stated(one.column)));
     let mut settled = Vec::new();
     let mut guessed: Vec<&str> = Vec::new();

@@ -33,6 +33,8 @@ const fn unit(name: &'static str, measure: Measure, factor: f64) -> Unit {
 }
 
 pub(super) const RADIAN: Unit = unit("rad", Measure::Angle, 1.0);
+/// Of components of an orientation, which are read as angles are.
+pub(super) const UNITLESS: Unit = unit("1", Measure::Angle, 1.0);
 pub(super) const DEGREE: Unit = unit("deg", Measure::Angle, DEGREE_RAD);
 const MILLIMETRE: Unit = unit("mm", Measure::Length, 1e-3);
 const CENTIMETRE: Unit = unit("cm", Measure::Length, 1e-2);

@@ -9,6 +9,7 @@ mod record;
 mod scan;
 mod source;
 mod span;
+mod summary;
 mod walk;
 
 pub(super) use block::{Block, Blocks, Loss, records};
@@ -18,3 +19,4 @@ pub(super) use scan::{Layout, scan};
 pub use source::ReadAt;
 pub(super) use source::Source;
 pub(super) use span::Span;
+pub(super) use summary::{Summary, summary};

@@ -15,7 +15,9 @@ impl Opcode {
     pub(in crate::log) const MESSAGE: u8 = 0x05;
     pub(in crate::log) const CHUNK: u8 = 0x06;
     pub(super) const MESSAGE_INDEX: u8 = 0x07;
+    pub(super) const CHUNK_INDEX: u8 = 0x08;
     pub(in crate::log) const ATTACHMENT: u8 = 0x09;
+    pub(super) const ATTACHMENT_INDEX: u8 = 0x0A;
     pub(in crate::log) const STATISTICS: u8 = 0x0B;
     pub(in crate::log) const METADATA: u8 = 0x0C;
     pub(in crate::log) const DATA_END: u8 = 0x0F;
@@ -232,7 +234,10 @@ pub(super) fn data_crc(body: &[u8]) -> Option<u32> {
 #[derive(Debug, Default)]
 pub(super) struct Statistics {
     pub(super) channels: u32,
+    pub(super) attachments: u32,
     pub(super) chunks: u32,
+    /// When the first and the last message were received, ns.
+    pub(super) log_ns: [u64; 2],
     /// By channel.
     pub(super) messages: BTreeMap<u16, u64>,
 }
@@ -242,12 +247,41 @@ impl Statistics {
         let mut f = Fields(body);
         f.bytes(10)?; // message count, schema count
         let channels = f.u32()?;
-        f.bytes(8)?; // counts of attachments and metadata
+        let attachments = f.u32()?;
+        f.bytes(4)?; // count of metadata
         let chunks = f.u32()?;
-        f.bytes(20)?; // first and last time, length of the list
+        let log_ns = [f.u64()?, f.u64()?];
+        f.bytes(4)?; // length of the list
         let messages = std::iter::from_fn(|| Some((f.u16()?, f.u64()?))).collect();
-        Some(Self { channels, chunks, messages })
+        Some(Self { channels, attachments, chunks, log_ns, messages })
     }
+}
+
+/// Where a chunk is, by the summary of a file.
+#[derive(Debug)]
+pub(super) struct ChunkIndexRecord {
+    /// When its first and its last message were received, ns.
+    pub(super) log_ns: [u64; 2],
+    /// Where the index of a channel's messages in it starts.
+    pub(super) message_indexes: BTreeMap<u16, u64>,
+}
+
+impl ChunkIndexRecord {
+    pub(super) fn parse(body: &[u8]) -> Option<Self> {
+        let mut f = Fields(body);
+        let log_ns = [f.u64()?, f.u64()?];
+        f.bytes(16)?; // place and length of the chunk
+        let mut list = Fields(f.block()?);
+        let message_indexes = std::iter::from_fn(|| Some((list.u16()?, list.u64()?))).collect();
+        Some(Self { log_ns, message_indexes })
+    }
+}
+
+/// The name in the index of an attachment.
+pub(super) fn indexed_attachment(body: &[u8]) -> Option<String> {
+    let mut f = Fields(body);
+    f.bytes(40)?; // place, length, times, length of the data
+    f.text()
 }
 
 #[cfg(test)]

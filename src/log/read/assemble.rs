@@ -4,12 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
     content::{Content, Extracted},
-    description, overlap, quality,
+    description, overlap, poses, quality,
     recording::{Command, Recording, SourceInfo},
     samples::{Axis, Reading, Samples, samples},
     select_topics::{Candidate, Choice, named},
     time_base::time_base,
     trajectories,
+    window::nothing_in,
 };
 use crate::{
     arm::sliding_joints,
@@ -17,7 +18,8 @@ use crate::{
         error::LogError,
         joint_kind,
         options::{ReadOptions, SignalRole, TimeBase, WantedSignal},
-        source::{Role, Stamps},
+        range::TimeRange,
+        source::{AXES, Role, Stamps},
     },
     remark::{Code, Remarks},
     series::{Clock, JointKind, Series, Signal, Track, continuous_clock},
@@ -40,6 +42,9 @@ pub(super) fn assemble(
     let mut sliding = description.as_deref().map(sliding_joints).unwrap_or_default();
     sliding.extend(joint_kind::sliding(&extracted.metadata));
     sliding.extend(options.slides.iter().cloned());
+    sliding.extend(
+        choice.of_poses(&extracted).then(|| AXES[..3].iter().map(ToString::to_string)).into_iter().flatten(),
+    );
     // Those that are not there, where none was named, are no fault.
     let beside = options.signals.iter().map(|wanted| match candidate(&extracted, wanted, base) {
         Err(error) if wanted.topic.is_some() => Err(error),
@@ -54,7 +59,8 @@ pub(super) fn assemble(
     let laid = |c: &&Candidate| matches!(extracted.sources[c.source].content, Content::Plans(_));
     let laid_onto = choice.planned.iter().find(laid).and(choice.measured.first()).map(|c| c.source);
     let chosen = choice.measured.iter().chain(&choice.planned);
-    let mut assembly = Assembly::new(extracted, base, (sliding, laid_onto), chosen, &mut remarks);
+    let mut assembly =
+        Assembly::new(extracted, (base, options.range), (sliding, laid_onto), chosen, &mut remarks);
     let mut pending: Vec<&Candidate> = choice.planned.iter().chain(beside.iter().map(|(_, c)| c)).collect();
     let degrees = options.measured_in_degrees;
     let mut measured = assembly.series(&choice.measured, &pending, degrees, None, &mut remarks);
@@ -86,6 +92,12 @@ pub(super) fn assemble(
             signals.insert(wanted.role, found.into_iter().filter(kept).collect());
         }
     }
+    for (series, chosen) in [(&planned, &choice.planned), (&measured, &choice.measured)] {
+        if series.tracks.is_empty() && options.range.cuts() && !chosen.is_empty() {
+            return Err(nothing_in(options.range, &assembly.extracted, chosen));
+        }
+    }
+    let poses = poses::take(&mut planned, &mut measured);
     for series in [&mut planned, &mut measured] {
         keep_joints(series, &options.joints)?;
         quality::unwrap_turns(series, &options.continuous, &mut remarks);
@@ -102,6 +114,7 @@ pub(super) fn assemble(
     Ok(Recording {
         planned,
         measured,
+        poses,
         plan_is_command,
         command,
         signals,
@@ -150,6 +163,7 @@ fn candidate(extracted: &Extracted, wanted: &WantedSignal, base: TimeBase) -> Re
 struct Assembly {
     extracted: Extracted,
     base: TimeBase,
+    range: TimeRange,
     epoch_ns: i64,
     axes: BTreeMap<usize, Axis>,
     jumps_ns: Vec<i64>,
@@ -162,47 +176,69 @@ impl Assembly {
     /// The epoch is the first stamp of all `chosen`.
     fn new<'a>(
         extracted: Extracted,
-        base: TimeBase,
+        (base, range): (TimeBase, TimeRange),
         (sliding, laid_onto): (BTreeSet<String>, Option<usize>),
         chosen: impl Iterator<Item = &'a Candidate>,
         remarks: &mut Remarks,
     ) -> Self {
         let (axes, jumps_ns) = (BTreeMap::new(), Vec::new());
-        let mut new = Self { extracted, base, epoch_ns: 0, axes, jumps_ns, sliding, laid_onto };
+        let mut new = Self { extracted, base, range, epoch_ns: 0, axes, jumps_ns, sliding, laid_onto };
         let mut clocks = BTreeMap::new();
         for candidate in chosen {
             if !clocks.contains_key(&candidate.source)
-                && let Some(clock) = new.clock(candidate, remarks)
+                && let Some(clock) = new.clock(candidate)
             {
-                clocks.insert(candidate.source, clock);
+                clocks.insert(candidate.source, (clock, candidate));
             }
         }
-        new.epoch_ns = clocks.values().filter_map(|clock| clock.t_ns.first()).min().copied().unwrap_or(0);
-        new.axes =
-            clocks.into_iter().map(|(source, clock)| (source, Axis::new(clock, new.epoch_ns))).collect();
+        new.epoch_ns =
+            clocks.values().filter_map(|(clock, _)| clock.t_ns.first()).min().copied().unwrap_or(0);
+        for (source, (clock, candidate)) in clocks {
+            let axis = new.axis(candidate, clock, remarks);
+            new.axes.insert(source, axis);
+        }
         new
     }
 
     fn add_axis(&mut self, candidate: &Candidate, remarks: &mut Remarks) {
         if !self.axes.contains_key(&candidate.source)
-            && let Some(clock) = self.clock(candidate, remarks)
+            && let Some(clock) = self.clock(candidate)
         {
-            self.axes.insert(candidate.source, Axis::new(clock, self.epoch_ns));
+            let axis = self.axis(candidate, clock, remarks);
+            self.axes.insert(candidate.source, axis);
         }
     }
 
-    fn clock(&mut self, candidate: &Candidate, remarks: &mut Remarks) -> Option<Clock> {
+    fn clock(&mut self, candidate: &Candidate) -> Option<Clock> {
         let Content::Table(table) = &self.extracted.sources[candidate.source].content else { return None };
         let clock = continuous_clock(table.stamps.of(self.base), &table.stamps.log_ns, &self.jumps_ns);
         self.jumps_ns.extend(&clock.offsets_ns);
-        quality::of_clock(self.topic(candidate), self.base, &clock, remarks);
-        quality::of_table(self.topic(candidate), table, remarks);
+        Some(clock)
+    }
+
+    /// The axis of a table on its clock, as far as the range goes. What is doubtful elsewhere is not remarked.
+    fn axis(&mut self, candidate: &Candidate, mut clock: Clock, remarks: &mut Remarks) -> Axis {
+        let topic = self.topic(candidate);
+        if let Content::Table(table) = &self.extracted.sources[candidate.source].content {
+            if self.range.cuts() {
+                let (range, epoch_ns) = (self.range, self.epoch_ns);
+                clock.keep(|at_ns| range.begins_by(epoch_ns, at_ns), |at_ns| range.holds(epoch_ns, at_ns));
+                let rows = clock.rows.iter().min().zip(clock.rows.iter().max());
+                let own = rows.map_or(0..0, |(first, last)| *first..last + 1);
+                let (stamp_ns, log_ns) = (table.stamps.of(self.base), &table.stamps.log_ns);
+                let here = continuous_clock(&stamp_ns[own.clone()], &log_ns[own], &[]);
+                quality::of_clock(topic, self.base, &here, remarks);
+            } else {
+                quality::of_clock(topic, self.base, &clock, remarks);
+            }
+            quality::of_table(topic, table, remarks);
+        }
         if self.laid_onto != Some(candidate.source)
             && let Content::Table(table) = &mut self.extracted.sources[candidate.source].content
         {
             table.stamps = Stamps::default();
         }
-        Some(clock)
+        Axis::new(clock, self.epoch_ns)
     }
 
     fn topic(&self, candidate: &Candidate) -> &str {
@@ -305,7 +341,14 @@ impl Assembly {
             (Content::Table(table), Some(field)) => table.fields[field].path.clone(),
             _ => "points.positions".to_owned(),
         };
-        let ends = planned.tracks.iter().chain(&measured.tracks).filter_map(|t| t.t_s().last());
+        let tracks = || planned.tracks.iter().chain(&measured.tracks);
+        let last_s = tracks().filter_map(|t| t.t_s().last()).copied().fold(0.0, f64::max);
+        let first_s = tracks().filter_map(|t| t.t_s().first()).copied().fold(f64::INFINITY, f64::min);
+        let cut = self.range.cuts();
+        let messages = |c: &Candidate| match self.axes.get(&c.source) {
+            Some(axis) if cut => axis.len() as u64,
+            _ => self.extracted.topic_of(c.source).messages,
+        };
         SourceInfo {
             planned_topic: join(&choice.planned, &name),
             planned_field: join(&choice.planned, &field),
@@ -314,9 +357,9 @@ impl Assembly {
             why: choice.why.clone(),
             time_base: self.base,
             time_base_why,
-            messages: choice.measured.iter().map(|c| self.extracted.topic_of(c.source).messages).sum(),
+            messages: choice.measured.iter().map(messages).sum(),
             epoch_ns: self.epoch_ns,
-            duration_s: ends.copied().fold(0.0, f64::max),
+            duration_s: if cut { last_s - first_s.min(last_s) } else { last_s },
             recorder_delay_s: delays_ns
                 .map(|[_, middle, most]| [middle, most].map(|ns| seconds_since(0, ns))),
             measured_delay_s: None,

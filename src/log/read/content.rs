@@ -8,7 +8,7 @@ use crate::{
         channel::Decoder,
         decode::LayoutCache,
         file::MessageRecord,
-        source::{Form, Plans, Spec, Table, Versioned},
+        source::{Form, Plans, Poses, Spec, Table, Versioned},
     },
     remark::Remarks,
 };
@@ -35,6 +35,7 @@ pub(super) enum Content {
     Table(Box<Table>),
     Plans(Plans),
     Versioned(Versioned),
+    Poses(Poses),
 }
 
 impl Content {
@@ -42,6 +43,7 @@ impl Content {
         match spec.form {
             Form::Plans => Self::Plans(Plans::default()),
             Form::Versioned | Form::VersionedNames => Self::Versioned(Versioned::default()),
+            Form::Poses => Self::Poses(Poses::new(&spec.fields)),
             form => Self::Table(Box::new(Table::new(form, &spec.fields, joints, spec.alone.as_deref()))),
         }
     }
@@ -71,6 +73,7 @@ impl Content {
             }
             Self::Plans(plans) => read!(plans),
             Self::Versioned(versioned) => read!(versioned),
+            Self::Poses(poses) => read!(poses),
         }
         Ok(())
     }
@@ -85,6 +88,7 @@ impl Content {
             (Self::Table(mine), Self::Table(theirs)) => mine.append(theirs),
             (Self::Plans(mine), Self::Plans(theirs)) => mine.append(theirs),
             (Self::Versioned(mine), Self::Versioned(theirs)) => mine.append(theirs),
+            (Self::Poses(mine), Self::Poses(theirs)) => mine.append(theirs),
             _ => {}
         }
     }

@@ -8,6 +8,7 @@ use super::{
     parallel::read_blocks,
     recording::{Attachment, FileInfo},
     select_topics::is_measured,
+    window::{Window, may_be_of_run},
 };
 use crate::{
     log::{
@@ -69,27 +70,49 @@ fn read_files(
     out: &mut Extracted,
 ) -> u64 {
     let mut known = Known::default();
-    let mut work = Vec::new();
+    let mut by_file = Vec::new();
     let speeds = |topic: &str| options.measured_velocities || !is_measured(topic);
-    for (index, file) in files.iter().enumerate() {
+    for file in files {
         let alone = |topic: &str| alone(topic, options);
         let channels =
             Definitions::gather(&file.layout, file.source, look_inside).plan(selectors, &speeds, &alone);
-        let routes = Arc::new(routes(channels, &options.joints, &mut known, out));
-        for (number, block) in file.layout.blocks.iter().enumerate() {
-            let held = file.layout.held.as_ref().map_or(&[][..], |held| &held[number]);
-            if !counted(held, &routes, out) {
-                work.push((*block, file.source, routes.clone(), index));
-            }
+        by_file.push(Arc::new(routes(channels, &options.joints, &mut known, out)));
+    }
+    let chunks = || {
+        files.iter().zip(&by_file).enumerate().flat_map(|(index, (file, routes))| {
+            let held = move |number: usize| file.layout.held.as_ref().map_or(&[][..], |held| &held[number]);
+            (0..file.layout.blocks.len()).map(move |number| ((index, number), held(number), routes))
+        })
+    };
+    let named: Vec<&str> =
+        options.planned.iter().chain(&options.measured).map(|selector| selector.topic.as_str()).collect();
+    let named = (!options.planned.is_empty() && !options.measured.is_empty()).then_some(named.as_slice());
+    let of_run = |route: &Route| may_be_of_run(out, named, route);
+    let all = chunks().map(|(place, held, routes)| (place, held, &**routes));
+    let window = Window::of(options.range, all, &known.specs, &of_run);
+    let mut work = Vec::new();
+    for (place, held, routes) in chunks() {
+        let wants = |one: &Held, route: &Route| {
+            (route.read.is_some() || route.describes)
+                && window.as_ref().is_none_or(|window| window.takes(place, one, route, &known.specs))
+        };
+        if !counted(held, routes, &wants, out) {
+            let file = files[place.0];
+            work.push((file.layout.blocks[place.1], file.source, routes.clone(), place.0));
         }
     }
+    count(|passes| passes.blocks += work.len() as u64);
     read_blocks(&work, &known.specs, &options.joints, out)
 }
 
 /// Counts the messages of a chunk by its index, if nothing in it is to be read; whether that was so.
-fn counted(held: &[Held], routes: &BTreeMap<u16, Route>, out: &mut Extracted) -> bool {
-    let is_passed =
-        |held: &Held| routes.get(&held.channel).is_some_and(|route| route.read.is_none() && !route.describes);
+fn counted(
+    held: &[Held],
+    routes: &BTreeMap<u16, Route>,
+    wants: &impl Fn(&Held, &Route) -> bool,
+    out: &mut Extracted,
+) -> bool {
+    let is_passed = |held: &Held| routes.get(&held.channel).is_some_and(|route| !wants(held, route));
     if held.is_empty() || !held.iter().all(is_passed) {
         return false;
     }
@@ -244,5 +267,23 @@ fn finish(out: &mut Extracted) {
             sources.push(Source { topic: half.topic, content, parts: Vec::new() });
         }
     }
+    poses_as_tables(&mut sources, out);
     out.sources = sources;
+}
+
+/// Turns poses into tables; what has none is left out.
+fn poses_as_tables(sources: &mut Vec<Source>, out: &mut Extracted) {
+    sources.retain_mut(|source| {
+        let Content::Poses(poses) = &source.content else { return true };
+        let topic = &out.topics[source.topic];
+        let message = format!(
+            "paths of {} whose poses have no times that increase, left out: a report compares by time",
+            topic.topic
+        );
+        out.remarks.add(Code::UnusableStamp, poses.untimed, message);
+        let Some(table) = poses.to_table(topic.type_name.ends_with("Path")) else { return false };
+        // Where the parts of several files meet is not kept.
+        *source = Source { topic: source.topic, content: Content::Table(Box::new(table)), parts: Vec::new() };
+        true
+    });
 }

@@ -4,8 +4,10 @@ mod assemble;
 mod content;
 mod description;
 mod extract;
+mod indexed;
 mod overlap;
 mod parallel;
+mod poses;
 mod quality;
 pub(super) mod recording;
 mod samples;
@@ -13,6 +15,7 @@ mod select_topics;
 mod time_base;
 mod topics;
 mod trajectories;
+mod window;
 
 use std::path::{Path, PathBuf};
 
@@ -21,7 +24,10 @@ use super::{
     files::{LogFiles, ScannedFile, ScannedLog},
     options::{ReadOptions, Sides},
 };
-use crate::remark::{Code, Remarks};
+use crate::{
+    remark::{Code, Remarks},
+    units::NS_PER_S,
+};
 use {
     assemble::assemble,
     content::Extracted,
@@ -65,7 +71,7 @@ pub fn read_plan(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, 
 ///
 /// [`LogError`] if a file cannot be opened or is no log.
 pub fn survey(paths: &[PathBuf], options: &ReadOptions) -> Result<Survey, LogError> {
-    Ok(LogFiles::open(paths)?.scan()?.survey(options))
+    LogFiles::open(paths)?.survey(options)
 }
 
 /// As [`survey`] of one file in memory, for fuzzing.
@@ -79,6 +85,17 @@ pub fn survey_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Survey, LogEr
     let file = ScannedFile::of(Path::new("memory.mcap"), &source)?;
     let log = ScannedLog { files: vec![file], ordered: true, remarks: Remarks::default() };
     Ok(log.survey(options))
+}
+
+impl LogFiles {
+    /// Lists what is in the files and what a report would use; reads all of it.
+    ///
+    /// # Errors
+    ///
+    /// [`LogError::NotMcap`].
+    pub fn survey(&self, options: &ReadOptions) -> Result<Survey, LogError> {
+        Ok(self.scan()?.survey(options))
+    }
 }
 
 impl ScannedLog<'_> {
@@ -97,9 +114,13 @@ impl ScannedLog<'_> {
         let files = extracted.files.clone();
         let attachments = extracted.attachments.iter().map(|a| a.name.clone()).collect();
         let remarks = extracted.remarks.clone();
+        let times = || extracted.topics.iter().filter(|topic| topic.messages > 0);
+        let begins_ns = times().map(|topic| topic.first_log_ns).min().unwrap_or(0);
+        let ends_ns = times().map(|topic| topic.last_log_ns).max().unwrap_or(0);
+        let duration_s = ends_ns.saturating_sub(begins_ns) as f64 / NS_PER_S;
         let recording = recording(extracted, options);
         let remarks = recording.as_ref().map_or(remarks, |r| r.remarks.clone());
-        Survey { files, topics, attachments, recording, remarks }
+        Survey { files, topics, attachments, duration_s, recording, remarks }
     }
 }
 

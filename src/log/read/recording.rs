@@ -96,6 +96,8 @@ pub struct Recording {
     pub planned: Series,
     /// The measurement.
     pub measured: Series,
+    /// The tool, where the log holds its planned and measured poses.
+    pub poses: Option<ToolPoses>,
     /// Whether the plan is the command, because the log holds no other plan.
     pub plan_is_command: bool,
     /// The command, if it was wanted and is there.
@@ -112,6 +114,15 @@ pub struct Recording {
     pub metadata: BTreeMap<String, BTreeMap<String, String>>,
     /// The robot's URDF, as a message or a file of the log.
     pub description: Option<String>,
+}
+
+/// Planned and measured poses of a tool, on the clock of plan and measurement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToolPoses {
+    /// The plan.
+    pub planned: Signal,
+    /// The measurement.
+    pub measured: Signal,
 }
 
 /// The positions that were sent to the controller.
@@ -149,6 +160,8 @@ pub struct Survey {
     pub topics: Vec<TopicInfo>,
     /// Names of the files stored in it.
     pub attachments: Vec<String>,
+    /// From the first message to the last, by the recorder's clock, s.
+    pub duration_s: f64,
     /// The recording that a report would use, or why no report can be made.
     pub recording: Result<Recording, LogError>,
     /// Doubts about the files.
@@ -156,6 +169,11 @@ pub struct Survey {
 }
 
 impl Survey {
+    /// Whether the messages were read, not the index alone.
+    pub fn is_checked(&self) -> bool {
+        !matches!(self.recording, Err(LogError::NotLookedAt))
+    }
+
     /// The joints that a report would cover.
     pub fn joints(&self) -> impl Iterator<Item = &str> {
         let both = |recording: &'_ Recording, name: &str| recording.measured.track(name).is_some();

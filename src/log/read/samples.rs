@@ -36,6 +36,11 @@ impl Axis {
         Self { cuts: cuts(&t_s, &jumps), t_s, rows, jumps, as_read }
     }
 
+    /// Number of samples.
+    pub(super) fn len(&self) -> usize {
+        self.t_s.len()
+    }
+
     /// The row of the table at time `i`.
     fn row(&self, i: usize) -> usize {
         self.rows.get(i).copied().unwrap_or(i)

@@ -41,6 +41,13 @@ pub(super) struct Choice {
 }
 
 impl Choice {
+    /// Whether poses of a tool are among it.
+    pub(super) fn of_poses(&self, extracted: &Extracted) -> bool {
+        let all = self.planned.iter().chain(&self.measured);
+        let mut tables = all.map(|c| &extracted.sources[c.source].content);
+        tables.any(|content| matches!(content, Content::Table(table) if table.form == Form::Poses))
+    }
+
     /// Topics of commands that serve as the plan because the log has no other.
     pub(super) fn commanded(&self) -> impl Iterator<Item = &str> {
         let sent = |c: &&Candidate| c.rank == COMMAND;
@@ -51,7 +58,9 @@ impl Choice {
 /// Rank of a plan by a name that says command.
 const COMMAND: u32 = 8;
 /// Rank of fields that are used only if the caller names them.
-const ONLY_IF_NAMED: u32 = 9;
+const ONLY_IF_NAMED: u32 = 99;
+/// Rank of poses of a tool, which count where there are no joints.
+const POSE: u32 = 10;
 
 const PLAN_WORDS: [&str; 8] =
     ["planned", "plan", "desired", "reference", "ref", "target", "setpoint", "goal"];
@@ -299,7 +308,7 @@ fn of_source(extracted: &Extracted, source: usize, role: Role, field: Option<&st
         topic: topic.topic.clone(),
     };
     match &extracted.sources[source].content {
-        Content::Versioned(_) => Vec::new(),
+        Content::Versioned(_) | Content::Poses(_) => Vec::new(),
         Content::Plans(plans) => {
             let joints: BTreeSet<&String> = plans.trajectories.iter().flat_map(|t| &t.joints).collect();
             let joints: Vec<String> = joints.into_iter().cloned().collect();
@@ -330,6 +339,14 @@ fn rank(topic: &TopicCount, form: Form, field: Role, role: Role) -> u32 {
     let feedback = topic.type_name.contains("Feedback");
     let array = topic.type_name.ends_with("Float64MultiArray");
     let (plan, command) = (has_word(&topic.topic, &PLAN_WORDS), has_word(&topic.topic, &COMMAND_WORDS));
+    if form == Form::Poses {
+        return match (role, field) {
+            (Role::Planned, Role::Either) if plan => POSE,
+            (Role::Planned, Role::Planned) => POSE + 1,
+            (Role::Measured, Role::Either) if is_measured(&topic.topic) => POSE,
+            _ => ONLY_IF_NAMED,
+        };
+    }
     match (role, field) {
         (Role::Planned, Role::Planned) => match form {
             _ if feedback => 4,

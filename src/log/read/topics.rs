@@ -91,7 +91,7 @@ fn topic_info<'a>(
                 info.joints.extend(joints.into_iter().cloned());
                 info.joint_fields.push("points.positions".to_owned());
             }
-            Content::Versioned(_) => {}
+            Content::Versioned(_) | Content::Poses(_) => {}
         }
     }
     info

@@ -46,6 +46,8 @@ pub(in crate::log) enum Form {
     VersionedNames,
     /// Whole trajectories.
     Plans,
+    /// Poses of a frame.
+    Poses,
 }
 
 /// How to read one type of message.
@@ -99,6 +101,13 @@ pub(in crate::log) fn spec_for(
             builder.want("interface_values.values", slot::VALUES);
             builder.stamp_near("interface_values");
             builder.interface("position", speeds.then_some("velocity"), Role::Measured);
+        }
+        "geometry_msgs/PoseStamped" => builder.poses("", ["pose.position", "pose.orientation"], Role::Either),
+        "nav_msgs/Odometry" => {
+            builder.poses("", ["pose.pose.position", "pose.pose.orientation"], Role::Either);
+        }
+        "nav_msgs/Path" => {
+            builder.poses("poses", ["poses.pose.position", "poses.pose.orientation"], Role::Planned);
         }
         "pal_statistics_msgs/StatisticsNames" => {
             builder.spec.form = Form::VersionedNames;
@@ -172,6 +181,21 @@ impl Builder<'_> {
         for leaf in NANOSECONDS {
             self.want(&format!("{since}.{leaf}"), slot::POINT_NANOSECOND);
         }
+    }
+
+    /// Wants poses, a list of them where `group` names one.
+    fn poses(&mut self, group: &str, [position, orientation]: [&str; 2], role: Role) {
+        self.spec.form = Form::Poses;
+        self.interface("pose", None, role);
+        if !group.is_empty() {
+            self.want(group, slot::GROUP);
+        }
+        let components = ["x", "y", "z"].map(|axis| format!("{position}.{axis}")).into_iter();
+        let turns = ["x", "y", "z", "w"].map(|axis| format!("{orientation}.{axis}"));
+        for (path, place) in components.chain(turns).zip(slot::FIELD..) {
+            self.want(&path, place);
+        }
+        self.stamp_near(position);
     }
 
     fn interface(&mut self, position: &str, velocity: Option<&str>, role: Role) {

@@ -2,11 +2,13 @@
 
 mod kind;
 mod plans;
+mod poses;
 mod table;
 mod versioned;
 
 pub(super) use kind::{Field, Form, Role, Spec, spec_for};
 pub(super) use plans::{Plans, RawTrajectory};
+pub(super) use poses::{AXES, Poses};
 pub(super) use table::{MAX_JOINTS, Stamps, Table};
 pub(super) use versioned::Versioned;
 

@@ -41,7 +41,9 @@ pub(super) fn section(report: &Report, most: usize) -> Option<Section> {
     let tool = report.tool.found()?;
     let units = Units::of(std::iter::once(JointKind::Slides));
     let mut blocks: Vec<Block> = vec![units.table(TOOL, std::iter::once((tool, JointKind::Slides))).into()];
-    blocks.push(causes(tool).into());
+    if !tool.worst.deviation.causes.is_empty() {
+        blocks.push(causes(tool).into());
+    }
     if !tool.rests.is_empty() {
         blocks.push(rests(&tool.rests, most).into());
     }
@@ -51,10 +53,16 @@ pub(super) fn section(report: &Report, most: usize) -> Option<Section> {
 
 fn how(tool: &ToolReplay) -> String {
     let moving = tool.split.map_or(0, |split| split.samples);
+    let causes = match tool.worst.deviation.causes.as_slice() {
+        [] => "",
+        _ => {
+            " A joint makes of the distance its error times the Jacobian's column; what is not linear in the errors is left \
+             over."
+        }
+    };
     format!(
         "Distance between the planned and the measured {} at {} instants from {:.2} s to {:.2} s; along and across the planned \
-         direction at the {moving} instants at which the plan moves it. A joint makes of the distance its error times the \
-         Jacobian's column; what is not linear in the errors is left over.",
+         direction at the {moving} instants at which the plan moves it.{causes}",
         tool.tool, tool.samples, tool.window_s[0], tool.window_s[1],
     )
 }

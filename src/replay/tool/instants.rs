@@ -68,12 +68,11 @@ impl Instants {
             (0..self.joints).map(|j| sum(j) / count).collect()
         })
     }
+}
 
-    /// The instants of a segment within a time of one of them, and its neighbours in any case.
-    pub(super) fn around(&self, segment: &Range<usize>, i: usize, window_s: f64) -> [usize; 2] {
-        let t_s = &self.t_s;
-        let low = segment.start + t_s[segment.start..i].partition_point(|t| *t < t_s[i] - window_s);
-        let high = i + t_s[i..segment.end].partition_point(|t| *t <= t_s[i] + window_s);
-        [low.min(i.saturating_sub(1)).max(segment.start), (high - 1).max(i + 1).min(segment.end - 1)]
-    }
+/// The instants of a segment within a time of one of them, and its neighbours in any case.
+pub(super) fn around(t_s: &[f64], segment: &Range<usize>, i: usize, window_s: f64) -> [usize; 2] {
+    let low = segment.start + t_s[segment.start..i].partition_point(|t| *t < t_s[i] - window_s);
+    let high = i + t_s[i..segment.end].partition_point(|t| *t <= t_s[i] + window_s);
+    [low.min(i.saturating_sub(1)).max(segment.start), (high - 1).max(i + 1).min(segment.end - 1)]
 }

@@ -3,6 +3,7 @@
 mod deviation;
 mod instants;
 mod outcome;
+mod source;
 
 use std::ops::Range;
 
@@ -11,27 +12,39 @@ use nalgebra::Vector3;
 pub use outcome::{ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst};
 
 use super::Rules;
-use crate::{arm::Kinematics, series::Pair, threads::numbered};
-use deviation::{angle_rad, deviation};
-use instants::Instants;
+use crate::{
+    arm::Kinematics,
+    series::{Pair, PosePair},
+    threads::numbered,
+};
+use deviation::angle_rad;
+use instants::{Instants, around};
+use source::{Joints, Source};
 
 /// The tool of an arm over a run, and its way; `None` where a joint of the arm is not among the pairs, or all of them
 /// share no instant. O(n) in instants.
 pub fn tool_replay(arm: &Kinematics, pairs: &[Pair], rules: &Rules) -> Option<(ToolReplay, ToolPath)> {
     let of = |(name, kind)| pairs.iter().find(|pair| pair.name == name && pair.kind == kind);
     let own: Vec<&Pair> = arm.joints().map(of).collect::<Option<_>>()?;
-    let instants = Instants::of(&own, rules);
-    let path = path(arm, &instants, rules);
-    let rests = rests(arm, &instants, &path, rules);
+    found(&Joints { arm, instants: Instants::of(&own, rules) }, arm.tool_name(), rules)
+}
+
+/// The same of poses that the log holds; no joint is known to cause anything.
+pub fn pose_replay(poses: &PosePair, rules: &Rules) -> Option<(ToolReplay, ToolPath)> {
+    found(poses, &poses.name, rules)
+}
+
+fn found(source: &impl Source, tool: &str, rules: &Rules) -> Option<(ToolReplay, ToolPath)> {
+    let path = path(source, rules);
+    let rests = rests(source, &path, rules);
     let worst = (0..path.t_s.len()).max_by(|a, b| path.error_m[*a].total_cmp(&path.error_m[*b]))?;
     let turned = (0..path.t_s.len())
         .max_by(|a, b| path.orientation_rad[*a].total_cmp(&path.orientation_rad[*b]))
         .unwrap_or(worst);
-    let [planned, measured] = instants.at(worst);
     let along_m = Some(path.along_m[worst]).filter(|along_m| along_m.is_finite());
     let window_s = [path.t_s[0], path.t_s[path.t_s.len() - 1]];
     let found = ToolReplay {
-        tool: arm.tool_name().to_owned(),
+        tool: tool.to_owned(),
         samples: path.t_s.len(),
         sample_interval_s: (window_s[1] - window_s[0]) / (path.t_s.len() - 1).max(1) as f64,
         window_s,
@@ -43,7 +56,7 @@ pub fn tool_replay(arm: &Kinematics, pairs: &[Pair], rules: &Rules) -> Option<(T
             time_s: path.t_s[worst],
             along_m,
             across_m: along_m.map(|along_m| across_m(path.error_m[worst], along_m)),
-            deviation: deviation(arm, planned, measured),
+            deviation: source.deviation(worst..worst + 1),
         },
         split: split(&path),
         rests,
@@ -54,31 +67,32 @@ pub fn tool_replay(arm: &Kinematics, pairs: &[Pair], rules: &Rules) -> Option<(T
 /// One instant: planned and measured position, m, and the angle between the orientations, rad.
 type Row = ([Vector3<f64>; 2], f64);
 
-fn path(arm: &Kinematics, instants: &Instants, rules: &Rules) -> ToolPath {
+fn path(source: &impl Source, rules: &Rules) -> ToolPath {
+    let t_s = source.t_s();
     let row = |i: usize| -> Row {
-        let poses = instants.at(i).map(|position| arm.tool_pose(position));
+        let poses = source.poses(i);
         (poses.each_ref().map(|pose| pose.translation.vector), angle_rad(&poses))
     };
-    let rows: Vec<Row> = numbered(instants.t_s.len(), row);
+    let rows: Vec<Row> = numbered(t_s.len(), row);
     let mut along_m = vec![f64::NAN; rows.len()];
-    for segment in &instants.segments {
+    for segment in source.segments() {
         for i in segment.clone() {
-            let [low, high] = instants.around(segment, i, 0.5 * rules.planned_window_s);
+            let [low, high] = around(t_s, segment, i, 0.5 * rules.planned_window_s);
             let step_m = rows[high].0[0] - rows[low].0[0];
-            let slow_m = rules.sliding.stop_speed * (instants.t_s[high] - instants.t_s[low]);
+            let slow_m = rules.sliding.stop_speed * (t_s[high] - t_s[low]);
             if let Some(direction) = step_m.try_normalize(slow_m.max(1e-12)) {
                 along_m[i] = (rows[i].0[0] - rows[i].0[1]).dot(&direction);
             }
         }
     }
     ToolPath {
-        t_s: instants.t_s.clone(),
+        t_s: t_s.to_vec(),
         planned_m: rows.iter().map(|row| row.0[0].into()).collect(),
         measured_m: rows.iter().map(|row| row.0[1].into()).collect(),
         error_m: rows.iter().map(|row| (row.0[0] - row.0[1]).norm()).collect(),
         along_m,
         orientation_rad: rows.iter().map(|row| row.1).collect(),
-        segments: instants.segments.clone(),
+        segments: source.segments().to_vec(),
     }
 }
 
@@ -108,18 +122,14 @@ fn split(path: &ToolPath) -> Option<ToolSplit> {
 }
 
 /// Rests of the plan after a motion.
-fn rests(arm: &Kinematics, instants: &Instants, path: &ToolPath, rules: &Rules) -> Vec<ToolRest> {
-    let speeds: Vec<f64> = arm.joints().map(|(_, kind)| rules.sizes(kind).stop_speed).collect();
-    let t_s = &instants.t_s;
+fn rests(source: &impl Source, path: &ToolPath, rules: &Rules) -> Vec<ToolRest> {
+    let t_s = source.t_s();
     let is_still = |segment: &Range<usize>, i: usize| {
-        let [low, high] = instants.around(segment, i, rules.window_min_s);
-        let time_s = t_s[high] - t_s[low];
-        let ([from, _], [to, _]) = (instants.at(low), instants.at(high));
-        time_s > 0.0
-            && from.iter().zip(to).zip(&speeds).all(|((a, b), speed)| (b - a).abs() <= speed * time_s)
+        let [low, high] = around(t_s, segment, i, rules.window_min_s);
+        t_s[high] > t_s[low] && source.rests([low, high], rules)
     };
     let mut found = Vec::new();
-    for segment in &instants.segments {
+    for segment in source.segments() {
         let still: Vec<bool> = segment.clone().map(|i| is_still(segment, i)).collect();
         let mut start = segment.start;
         for stretch in still.chunk_by(|a, b| a == b) {
@@ -131,14 +141,13 @@ fn rests(arm: &Kinematics, instants: &Instants, path: &ToolPath, rules: &Rules) 
             }
             let settled_s = to_s - rules.tool_rest_s.min(0.5 * (to_s - from_s));
             let settled = own.start + t_s[own.clone()].partition_point(|t| *t < settled_s)..own.end;
-            let [planned, measured] = instants.mean(settled.clone());
             found.push(ToolRest {
                 from_s,
                 to_s,
                 at_end: own.end == t_s.len(),
                 arrival_m: path.error_m[own.start],
                 samples: settled.len(),
-                deviation: deviation(arm, &planned, &measured),
+                deviation: source.deviation(settled),
             });
         }
     }

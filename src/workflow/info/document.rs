@@ -20,6 +20,12 @@ pub struct InfoDocument {
     pub files: Vec<FileInfo>,
     /// All topics, by name.
     pub topics: Vec<TopicInfo>,
+    /// From the first message to the last, by the recorder's clock, s.
+    #[serde(default)]
+    pub duration_s: f64,
+    /// Whether every message was read; else only the index was, and damage, joints and what a report would use are not known.
+    #[serde(default)]
+    pub checked: bool,
     /// Names of the files stored in the log.
     pub attachments: Vec<String>,
     /// Where a report would take its data from; null if no report can be made.
@@ -35,12 +41,14 @@ pub struct InfoDocument {
 impl InfoDocument {
     /// The document of a survey.
     pub fn of(survey: &Survey) -> Self {
-        let Survey { files, topics, attachments, recording, remarks } = survey;
+        let Survey { files, topics, attachments, duration_s, recording, remarks } = survey;
         Self {
             format: "hydrotrace.info.v1".to_owned(),
             program: PROGRAM.to_owned(),
             files: files.clone(),
             topics: topics.clone(),
+            duration_s: *duration_s,
+            checked: survey.is_checked(),
             attachments: attachments.clone(),
             source: recording.as_ref().ok().map(|r| r.source.clone()),
             no_report_because: recording.as_ref().err().map(ToString::to_string),

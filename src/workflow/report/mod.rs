@@ -38,6 +38,7 @@ use crate::{
     log::{LogError, ReadOptions, Recording, read_recording},
     remark::{Code, Remarks},
     replay::{Profiles, Rules},
+    series::PosePair,
 };
 
 /// What to analyse, how, and what must hold.
@@ -117,7 +118,11 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         }
         arm => arm,
     };
-    let tool = Tool::of(arm, &pairs, &inputs.rules);
+    let poses = recording.poses.take().and_then(|poses| PosePair::of(&poses.planned, &poses.measured));
+    let tool = match poses {
+        Some(poses) => Tool::of_poses(&poses, &inputs.rules),
+        None => Tool::of(arm, &pairs, &inputs.rules),
+    };
     let explained = |ready: Ready| ready.why(&pairs, &replay).map_err(|error| error.to_string());
     let why = model.map(|model| model.and_then(explained));
     let gates = inputs.gates.judge(&replay, tool.found());

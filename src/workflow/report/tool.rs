@@ -4,8 +4,8 @@ use super::Inputs;
 use crate::{
     arm::{ArmError, Kinematics},
     log::Recording,
-    replay::{Rules, ToolPath, ToolReplay, tool_replay},
-    series::{JointKind, Pair},
+    replay::{Rules, ToolPath, ToolReplay, pose_replay, tool_replay},
+    series::{JointKind, Pair, PosePair},
     workflow::carried::Carried,
 };
 
@@ -39,6 +39,11 @@ impl Tool {
             Self::Apart => Some("the joints of the arm share no instant".to_owned()),
             Self::NoArm | Self::Placed(..) => None,
         }
+    }
+
+    /// The tool of a run whose log holds its poses.
+    pub(super) fn of_poses(poses: &PosePair, rules: &Rules) -> Self {
+        pose_replay(poses, rules).map_or(Self::Apart, |(found, path)| Self::Placed(Box::new(found), path))
     }
 
     /// The tool of a run whose joints are these pairs.

@@ -108,12 +108,11 @@ impl DelayModel {
         };
         let (plan, sent, measured) =
             (turning(&recording.planned), turning(sent), turning(&recording.measured));
-        let fit = match self {
-            Self::Known(fit) => Ok(Fit::clone(fit)),
-            _ => {
-                let valve = recording.signals.get(&SignalRole::Valve).map_or(&[][..], Vec::as_slice);
-                fit(&[Observation { sent: &sent, measured: &measured, valve }])
-            }
+        let fit = if let Self::Known(fit) = self {
+            Ok(Fit::clone(fit))
+        } else {
+            let valve = recording.signals.get(&SignalRole::Valve).map_or(&[][..], Vec::as_slice);
+            fit(&[Observation { sent: &sent, measured: &measured, valve }])
         };
         Some(fit.map(|fit| Ready { fit, plan, sent }).map_err(|error| error.to_string()))
     }

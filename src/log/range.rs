@@ -1,0 +1,62 @@
+//! A stretch of a run, by the time that its reports show.
+
+use crate::units::NS_PER_S;
+
+/// A stretch of a run, counted from the run's first sample; both ends belong to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TimeRange {
+    from_ns: i64,
+    to_ns: i64,
+}
+
+/// All of it.
+impl Default for TimeRange {
+    fn default() -> Self {
+        Self { from_ns: i64::MIN, to_ns: i64::MAX }
+    }
+}
+
+impl TimeRange {
+    /// From one second to another; where one is `None`, without that end.
+    #[expect(clippy::cast_possible_truncation, reason = "saturates, far beyond any run")]
+    pub fn of_seconds(from_s: Option<f64>, to_s: Option<f64>) -> Self {
+        let whole = Self::default();
+        let ns = |end_s: f64| (end_s * NS_PER_S).round() as i64;
+        Self { from_ns: from_s.map_or(whole.from_ns, ns), to_ns: to_s.map_or(whole.to_ns, ns) }
+    }
+
+    /// Whether it has an end.
+    pub(super) fn cuts(self) -> bool {
+        self != Self::default()
+    }
+
+    /// Whether an instant belongs to it.
+    pub(super) fn holds(self, epoch_ns: i64, at_ns: i64) -> bool {
+        self.begins_by(epoch_ns, at_ns) && at_ns.saturating_sub(epoch_ns) <= self.to_ns
+    }
+
+    /// Whether it begins at an instant or before.
+    pub(super) fn begins_by(self, epoch_ns: i64, at_ns: i64) -> bool {
+        at_ns.saturating_sub(epoch_ns) >= self.from_ns
+    }
+
+    /// The first and the last instant that samples of it may have on a clock that is off by `margin_ns` at most,
+    /// for a run that begins between two instants of that clock.
+    pub(super) fn around(self, begins_ns: [i64; 2], margin_ns: i64) -> [i64; 2] {
+        [
+            begins_ns[0].saturating_add(self.from_ns).saturating_sub(margin_ns),
+            begins_ns[1].saturating_add(self.to_ns).saturating_add(margin_ns),
+        ]
+    }
+
+    /// In words.
+    pub(super) fn words(self) -> String {
+        let seconds = |ns: i64| ns as f64 / NS_PER_S;
+        let Self { from_ns, to_ns } = self;
+        match (from_ns == i64::MIN, to_ns == i64::MAX) {
+            (_, true) => format!("from {:.2} s on", seconds(from_ns)),
+            (true, false) => format!("up to {:.2} s", seconds(to_ns)),
+            (false, false) => format!("from {:.2} to {:.2} s", seconds(from_ns), seconds(to_ns)),
+        }
+    }
+}
