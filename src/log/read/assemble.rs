@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
     content::{Content, Extracted},
-    description, overlap, poses, quality,
+    description,
+    joints::{add_new, keep_joints},
+    overlap, poses, quality,
     recording::{Command, Recording, SourceInfo},
     samples::{Axis, Reading, Samples, samples},
     select_topics::{Candidate, Choice, named},
@@ -23,7 +25,6 @@ use crate::{
     },
     remark::{Code, Remarks},
     series::{Clock, JointKind, Series, Signal, Track, continuous_clock},
-    suggest::nearest,
     units::seconds_since,
 };
 
@@ -372,30 +373,4 @@ fn measured_stamps<'a>(extracted: &'a Extracted, choice: &Choice) -> Option<&'a 
         Content::Table(table) => Some(&table.stamps),
         _ => None,
     }
-}
-
-fn add_new(series: &mut Series, tracks: Vec<Track>) {
-    for track in tracks {
-        if series.track(track.name()).is_none() {
-            series.tracks.push(track);
-        }
-    }
-}
-
-/// Keeps the joints that the caller named, in the caller's order.
-fn keep_joints(series: &mut Series, wanted: &[String]) -> Result<(), LogError> {
-    if wanted.is_empty() {
-        return Ok(());
-    }
-    let mut kept = Vec::with_capacity(wanted.len());
-    for name in wanted {
-        let track = series.track(name).ok_or_else(|| LogError::NoJoint {
-            joint: name.clone(),
-            nearest: nearest(name, series.tracks.iter().map(Track::name)),
-            present: series.tracks.iter().map(Track::name).collect::<Vec<_>>().join(", "),
-        })?;
-        kept.push(track.clone());
-    }
-    series.tracks = kept;
-    Ok(())
 }

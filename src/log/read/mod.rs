@@ -5,6 +5,7 @@ mod content;
 mod description;
 mod extract;
 mod indexed;
+mod joints;
 mod overlap;
 mod parallel;
 mod poses;

@@ -26,6 +26,10 @@ fn sources(folder: &str) -> Vec<(String, String)> {
 fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
+        if path.ends_with("target") {
+            // What a build of the fuzz targets made.
+            continue;
+        }
         if path.is_dir() {
             walk(&path, found);
         } else if path.extension().is_some_and(|extension| extension == "rs") {
