@@ -10,8 +10,8 @@ use crate::units::Degrees;
 pub enum FitError {
     /// No joint has enough motion.
     #[error(
-        "no joint can be fitted: {logs} logs have {shared} joints both sent and measured, of which none is \
-         sent through {} or more; give a log of a run in which the joints move",
+        "no joint can be fitted: of joints that turn, {shared} are both sent and measured ({logs} log(s)), of which none \
+         is sent through {} or more; give a log of a run in which such joints move",
         Degrees(*least_travel_rad)
     )]
     NothingMoves {

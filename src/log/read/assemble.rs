@@ -24,7 +24,7 @@ use crate::{
         source::{AXES, Role, Stamps},
     },
     remark::{Code, Remarks},
-    series::{Clock, JointKind, Series, Signal, Track, continuous_clock},
+    series::{Clock, JointKind, Series, Signal, continuous_clock},
     units::seconds_since,
 };
 

@@ -134,11 +134,15 @@ fn next(report: &Report) -> (String, String) {
             ),
             command(&["report", &joined]),
         ),
-        Some(Advice::EaseStarts { .. } | Advice::ShiftCommand { .. }) if report.holds_task => (
-            "To make a command that compensates what this run shows, at half strength first:".to_owned(),
-            command(&["replan", &joined, "--keep-plan", "--gain", "0.5", "-o", "next.mcap"]),
-        ),
-        Some(Advice::EaseStarts { .. } | Advice::ShiftCommand { .. }) => (
+        Some(Advice::EaseStarts { fits: true, .. } | Advice::ShiftCommand { fits: true, .. })
+            if report.holds_task =>
+        {
+            (
+                "To make a command that compensates what this run shows, at half strength first:".to_owned(),
+                command(&["replan", &joined, "--keep-plan", "--gain", "0.5", "-o", "next.mcap"]),
+            )
+        }
+        Some(Advice::EaseStarts { fits: true, .. } | Advice::ShiftCommand { fits: true, .. }) => (
             "To learn lag, dead band and limits of the machine from it:".to_owned(),
             command(&["fit", &joined, "-o", "limits.toml"]),
         ),

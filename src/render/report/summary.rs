@@ -136,6 +136,10 @@ fn replan(log: Option<&str>) -> String {
     command(&["replan", &log, "--keep-plan", "-o", "NEXT"])
 }
 
+fn half_late(delay_s: Option<f64>) -> String {
+    delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {} ms late)", ms(s)))
+}
+
 fn words(step: &Advice) -> String {
     match step {
         Advice::ClearDoubts(kinds) => format!(
@@ -147,16 +151,23 @@ fn words(step: &Advice) -> String {
              the command, a sensor that stands still.",
             counted(*starts, "planned start")
         ),
-        Advice::ShiftCommand { joint, lag_s, log } => format!(
+        Advice::ShiftCommand { joint, lag_s, log, fits } => format!(
             "The error is mostly lag, {joint} first ({} ms): speed feed-forward, or sending the command that much earlier, does \
-             most, and work on starts little. {} makes such a command from this log.",
+             most, and work on starts little.{}",
             ms(*lag_s),
-            replan(log.as_deref()),
+            if *fits {
+                format!(" {} makes such a command from this log.", replan(log.as_deref()))
+            } else {
+                String::new()
+            }
         ),
-        Advice::EaseStarts { joint, delay_s, log, gentler } => format!(
+        Advice::EaseStarts { joint, delay_s, fits: false, .. } => {
+            format!("Work on starts from rest, {joint} first{}.", half_late(*delay_s))
+        }
+        Advice::EaseStarts { joint, delay_s, log, gentler, .. } => format!(
             "Work on starts from rest, {joint} first{}: {} makes a command from this log \
              that compensates dead band and lag{}",
-            delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {} ms late)", ms(s))),
+            half_late(*delay_s),
             replan(log.as_deref()),
             if *gentler {
                 "; without --keep-plan, a gentler plan too."

@@ -1,7 +1,10 @@
 //! What to do about what a report found.
 
 use super::outcome::Report;
-use crate::replay::{JointReplay, Transition, Verdict};
+use crate::{
+    replay::{JointReplay, Transition, Verdict},
+    series::JointKind,
+};
 
 /// A next step, the most urgent first.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +28,8 @@ pub enum Advice {
         lag_s: f64,
         /// The log, if it is one file.
         log: Option<String>,
+        /// Whether a command can be made from it: of joints that turn.
+        fits: bool,
     },
     /// The error lives in the transitions, most in those of a joint.
     EaseStarts {
@@ -34,6 +39,8 @@ pub enum Advice {
         delay_s: Option<f64>,
         /// The log, if it is one file.
         log: Option<String>,
+        /// Whether a command can be made from it: of joints that turn.
+        fits: bool,
         /// Whether a gentler plan can be made from it.
         gentler: bool,
     },
@@ -85,8 +92,9 @@ pub fn advice(report: &Report) -> Vec<Advice> {
         [log] => Some(log.clone()),
         _ => None,
     };
+    let fits = replay.joints.iter().any(|joint| joint.kind == JointKind::Turns);
     if let Some((joint, lag_s)) = mostly_lag(report) {
-        advice.push(Advice::ShiftCommand { joint, lag_s, log });
+        advice.push(Advice::ShiftCommand { joint, lag_s, log, fits });
     } else if verdict == Some(Verdict::Elsewhere) {
         advice.extend(outside(report));
     } else {
@@ -94,6 +102,7 @@ pub fn advice(report: &Report) -> Vec<Advice> {
             joint: worst.joint.clone(),
             delay_s: median_delay_s(&replay.transitions),
             log,
+            fits,
             gentler: report.holds_task,
         });
     }

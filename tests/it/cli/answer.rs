@@ -18,6 +18,29 @@ fn a_log_without_a_verb_is_answered_in_ten_lines_whose_last_runs() {
     }
 }
 
+/// No fit is of joints that slide, or of a tool: a line that would fail is not suggested.
+#[test]
+fn a_log_of_the_tool_alone_suggests_what_can_be_done_with_it() {
+    let folder = scratch();
+    let path_mm = |t_s: f64| {
+        let t = ((t_s - 2.0) / 4.0).clamp(0.0, 1.0);
+        500.0 * t * t * t * (10.0 + t * (6.0 * t - 15.0))
+    };
+    let mut table =
+        "time_s,planned_x_mm,planned_y_mm,planned_z_mm,measured_x_mm,measured_y_mm,measured_z_mm\n"
+            .to_owned();
+    for t_s in (0..500).map(|k| 0.02 * f64::from(k)) {
+        table += &format!("{t_s:.2},{:.4},0,800,{:.4},3,800\n", path_mm(t_s), path_mm(t_s - 0.2));
+    }
+    std::fs::write(folder.path().join("tool.csv"), table).unwrap();
+    let (code, text, error) = said(&run_line(folder.path(), "tool.csv"));
+    assert!(code == 0 || code == 3, "{code} {error}");
+    let next = text.lines().last().unwrap().trim().strip_prefix("hydrotrace ").unwrap();
+    assert!(!next.starts_with("fit"), "{text}");
+    let (code, text, error) = said(&run_line(folder.path(), next));
+    assert!((code == 0 || code == 3) && !text.contains("hydrotrace replan"), "{next}: {code} {error} {text}");
+}
+
 #[test]
 fn the_answer_in_json_is_the_report_with_why() {
     let answered = json(root(), "sample-logs/task-1-run.mcap");
