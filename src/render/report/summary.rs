@@ -20,6 +20,7 @@ use crate::{
         metric::{on_paper, position},
     },
     replay::Verdict,
+    series::JointKind,
     workflow::report::{
         Report,
         advice::{Advice, advice},
@@ -29,10 +30,15 @@ use crate::{
 pub(super) fn summary(report: &Report) -> Markup {
     let kept: Vec<bool> = report.gates.iter().map(|gate| gate.kept).collect();
     let lines: Vec<String> = verdicts(report).iter().map(Sentence::to_string).collect();
-    let steps: Vec<Sentence> = advice(report).iter().map(words).map(Sentence::Advice).collect();
+    let (limit, enough) = match report.replay.kind() {
+        JointKind::Turns => ("--max-transition-peak-deg", "0.5"),
+        JointKind::Slides => ("--max-transition-peak-mm", "5"),
+    };
+    let steps: Vec<Sentence> =
+        advice(report).iter().map(|step| words(step, limit)).map(Sentence::Advice).collect();
     html! {
         div class="cards" {
-            (verdict(&kept, &lines, "--max-transition-peak-deg 0.5"))
+            (verdict(&kept, &lines, &format!("{limit} {enough}")))
             (tool_card(&report.tool))
             (worst(report))
             (place_of_error(report))
@@ -140,7 +146,8 @@ fn half_late(delay_s: Option<f64>) -> String {
     delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {} ms late)", ms(s)))
 }
 
-fn words(step: &Advice) -> String {
+/// `limit`: an option that sets one for the kind of the joints.
+fn words(step: &Advice, limit: &str) -> String {
     match step {
         Advice::ClearDoubts(kinds) => format!(
             "Clear the doubts about the data first: {} below.",
@@ -187,8 +194,7 @@ fn words(step: &Advice) -> String {
                 .to_owned()
         }
         Advice::SetLimits => {
-            "Say what is good enough: limits (--max-transition-peak-deg and others) make the verdict and the exit code."
-                .to_owned()
+            format!("Say what is good enough: limits ({limit} and others) make the verdict and the exit code.")
         }
         Advice::Compare => {
             "After any change, run the same task again: hydrotrace compare BEFORE AFTER tells whether it helped.".to_owned()

@@ -39,6 +39,9 @@ fn a_log_of_the_tool_alone_suggests_what_can_be_done_with_it() {
     assert!(!next.starts_with("fit"), "{text}");
     let (code, text, error) = said(&run_line(folder.path(), next));
     assert!((code == 0 || code == 3) && !text.contains("hydrotrace replan"), "{next}: {code} {error} {text}");
+    let (code, page, error) = said(&run_line(folder.path(), "report tool.csv --html"));
+    assert!(code == 0 || code == 3, "{code} {error}");
+    assert!(page.contains("--max-transition-peak-mm 5") && !page.contains("--max-transition-peak-deg"));
 }
 
 #[test]
