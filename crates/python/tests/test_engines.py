@@ -83,7 +83,7 @@ def test_ray(many, killing, tmp_path, monkeypatch):
     ray = pytest.importorskip("ray")
     pytest.importorskip("ray.data")
     folder, killed = killing
-    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False, object_store_memory=10**8)
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
     trace = Trace(folder)
     try:
         began = time.monotonic()
