@@ -14,7 +14,7 @@ import pytest
 
 import hydrotrace_logs as ht
 
-COPIES = 60
+COPIES = 20
 
 
 @pytest.fixture(scope="module")
@@ -45,11 +45,11 @@ class Trace:
 
 
 def kill_one(folder, killed):
-    """Kills a worker that has begun three batches, once two are at work."""
+    """Kills a worker that has begun two batches, once two are at work."""
     until = time.monotonic() + 300
     while time.monotonic() < until:
         done = {int(path.name): len(path.read_text().split()) for path in folder.iterdir()}
-        if len(done) >= 2 and max(done.values()) >= 3:
+        if len(done) >= 2 and max(done.values()) >= 2:
             pid = max(done, key=done.get)
             os.kill(pid, signal.SIGKILL)
             killed.append(pid)
@@ -83,11 +83,11 @@ def test_ray(many, killing, tmp_path, monkeypatch):
     ray = pytest.importorskip("ray")
     pytest.importorskip("ray.data")
     folder, killed = killing
-    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False, object_store_memory=10**8)
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
     trace = Trace(folder)
     try:
         began = time.monotonic()
-        found = ray.data.from_items(many, override_num_blocks=60).map_batches(lambda batch: trace(batch), batch_size=16)
+        found = ray.data.from_items(many, override_num_blocks=20).map_batches(lambda batch: trace(batch), batch_size=16)
         found.write_parquet(str(tmp_path / "rows"))
         seconds = time.monotonic() - began
     finally:
@@ -108,7 +108,7 @@ def test_dask(many, killing):
         with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
             with distributed.Client(cluster):
                 began = time.monotonic()
-                logs = dataframe.from_pandas(pandas.DataFrame({"path": many}), npartitions=60)
+                logs = dataframe.from_pandas(pandas.DataFrame({"path": many}), npartitions=20)
                 meta = pyarrow.table(ht.transitions_of([])).to_pandas()
                 found = logs.map_partitions(Trace(folder), meta=meta).compute()
                 seconds = time.monotonic() - began

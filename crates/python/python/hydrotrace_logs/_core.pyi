@@ -4,7 +4,7 @@ import datetime
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import TracebackType
-from typing import Any, Literal, Protocol, Union
+from typing import Any, Literal, Protocol, Union, final
 
 from typing_extensions import Self, TypedDict, Unpack
 
@@ -19,7 +19,7 @@ _Instant = Union[str, datetime.date, datetime.datetime]
 _Metric = Literal["peak", "delay", "lag"]
 _Texts = Union[str, Sequence[str]]
 
-class ReadOptions(TypedDict, total=False):
+class _ReadOptions(TypedDict, total=False):
     """Which topics, joints and clock to read; what is not given is found."""
 
     planned: _Texts
@@ -52,17 +52,19 @@ class PlanError(HydrotraceError): ...
 class FleetError(HydrotraceError): ...
 class WriteError(HydrotraceError): ...
 
+@final
 class Table:
     """Columns with units in their names. Takers of Arrow's PyCapsule interface share its memory."""
 
     @property
     def columns(self) -> list[str]: ...
     def to_dicts(self) -> list[dict[str, Any]]: ...
-    def __getitem__(self, column: str) -> list[Any]: ...
+    def __getitem__(self, column: str, /) -> list[Any]: ...
     def __len__(self) -> int: ...
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
     def __arrow_c_schema__(self) -> object: ...
 
+@final
 class Report:
     """The tracking error of one run."""
 
@@ -98,22 +100,25 @@ class Answer:
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
     def __arrow_c_schema__(self) -> object: ...
 
+@final
 class Fit(Answer):
     """A fitted machine."""
 
     @property
     def toml(self) -> str: ...
 
+@final
 class Plan(Answer):
     """A plan, and after replan a command for it."""
 
     @property
     def mcap(self) -> bytes: ...
 
+@final
 class LogWriter:
     """Writes samples of one set of joints into an MCAP log, as they come. Stamps are ns since 1970."""
 
-    def __init__(self, path: _Path, joints: Sequence[str]) -> None: ...
+    def __new__(cls, path: _Path, joints: Sequence[str]) -> Self: ...
     def joint_sample(
         self,
         role: Literal["planned", "measured", "command"],
@@ -139,17 +144,17 @@ def report(
     machine_from: str = "log",
     urdf: _Path | None = None,
     tool: str | None = None,
-    **options: Unpack[ReadOptions],
+    **options: Unpack[_ReadOptions],
 ) -> Report: ...
 def read(
     log: _Logs | None = None,
     *,
     data: _Log | None = None,
     name: str | None = None,
-    **options: Unpack[ReadOptions],
+    **options: Unpack[_ReadOptions],
 ) -> Answer: ...
-def compare(before: _Logs, after: _Logs, **options: Unpack[ReadOptions]) -> Answer: ...
-def fit(logs: _Logs, *, threads: int = 0, **options: Unpack[ReadOptions]) -> Fit: ...
+def compare(before: _Logs, after: _Logs, **options: Unpack[_ReadOptions]) -> Answer: ...
+def fit(logs: _Logs, *, threads: int = 0, **options: Unpack[_ReadOptions]) -> Fit: ...
 def plan(
     task: _Path,
     *,
@@ -176,7 +181,7 @@ def replan(
     seed: int = 1,
     rate_hz: float = 100.0,
     threads: int = 0,
-    **options: Unpack[ReadOptions],
+    **options: Unpack[_ReadOptions],
 ) -> Plan: ...
 def scan(
     sources: _Path | Sequence[_Path],
@@ -185,7 +190,7 @@ def scan(
     machine_from: str = "log",
     workers: int | None = None,
     progress: Callable[[int, int, int], object] | None = None,
-    **options: Unpack[ReadOptions],
+    **options: Unpack[_ReadOptions],
 ) -> Answer: ...
 def worst(
     dataset: _Path,
@@ -218,7 +223,7 @@ def rows_of(
     names: Sequence[str] | None = None,
     *,
     machine_from: str = "log",
-    **options: Unpack[ReadOptions],
+    **options: Unpack[_ReadOptions],
 ) -> Table: ...
 
 __VERSION__: str
