@@ -98,6 +98,10 @@ pub(super) fn assemble(
             return Err(nothing_in(options.range, &assembly.extracted, chosen));
         }
     }
+    let delay_s = seconds_since(0, options.measured_delay_ns);
+    if delay_s != 0.0 {
+        measured.earlier(delay_s);
+    }
     let poses = poses::take(&mut planned, &mut measured);
     for series in [&mut planned, &mut measured] {
         keep_joints(series, &options.joints)?;
@@ -105,11 +109,7 @@ pub(super) fn assemble(
     }
     quality::of_pairs(&planned, &measured, options, &mut remarks);
     let mut source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
-    if options.measured_delay_ns != 0 {
-        let delay_s = seconds_since(0, options.measured_delay_ns);
-        measured.earlier(delay_s);
-        source.measured_delay_s = Some(delay_s);
-    }
+    source.measured_delay_s = Some(delay_s).filter(|delay_s| *delay_s != 0.0);
     let Extracted { attachments, metadata, .. } = assembly.extracted;
     let remarks = alone.unwrap_or(remarks);
     Ok(Recording {

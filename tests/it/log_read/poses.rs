@@ -141,6 +141,21 @@ fn stamped_poses_are_found_by_their_names() {
     assert_truth(&reported(&log, ReadOptions::default()).unwrap());
 }
 
+/// The delay is of all that was measured, orientations included.
+#[test]
+fn a_known_delay_is_taken_off_a_pose_too() {
+    const LATE_NS: i64 = 40_000_000;
+    let mut log = Log::default();
+    let [plan, came] = ["/planned/tool_pose", "/tool_pose"].map(|topic| log.channel(stamped(topic)));
+    for k in 0..INSTANTS {
+        log.send(plan, stamp(k), pose_stamped(stamp(k), planned(k)));
+        log.send(came, stamp(k) + LATE_NS, pose_stamped(stamp(k) + LATE_NS, measured(k)));
+    }
+    assert_truth(
+        &reported(&log, ReadOptions { measured_delay_ns: LATE_NS, ..ReadOptions::default() }).unwrap(),
+    );
+}
+
 #[test]
 fn a_path_is_a_plan_and_odometry_a_measurement() {
     let mut log = Log::default();
