@@ -1,4 +1,4 @@
-//! What every JSON document has in common: the program that wrote it, and its layout.
+//! What all documents and tables have in common: the program that wrote them, their layout, how they name an error.
 
 use serde::Serialize;
 
@@ -10,6 +10,17 @@ pub fn pretty(document: &impl Serialize) -> String {
     let mut text =
         serde_json::to_string_pretty(document).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"));
     text.push('\n');
+    text
+}
+
+/// An error with its reasons, on one line.
+pub fn explained(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(inner) = cause {
+        text = format!("{text}: {inner}");
+        cause = inner.source();
+    }
     text
 }
 

@@ -3,6 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use hydrotrace::{
+    document::explained,
     log::{
         Input,
         dataset::{Cell, Column},
@@ -12,7 +13,6 @@ use hydrotrace::{
 use pyo3::{exceptions::PyValueError, prelude::*, types::PyDict};
 
 use crate::{
-    error::explained,
     given::{each, input},
     report::Request,
     table::Table,

@@ -2,6 +2,7 @@
 
 use std::{error::Error, io};
 
+use hydrotrace::document::explained;
 use pyo3::{PyTypeInfo, create_exception, exceptions::PyException, prelude::*};
 
 create_exception!(hydrotrace_logs, HydrotraceError, PyException, "What hydrotrace could not do, and why.");
@@ -15,17 +16,6 @@ create_exception!(hydrotrace_logs, FitError, HydrotraceError, "Logs from which n
 create_exception!(hydrotrace_logs, PlanError, HydrotraceError, "A task that cannot be planned.");
 create_exception!(hydrotrace_logs, FleetError, HydrotraceError, "A dataset that cannot be written or read.");
 create_exception!(hydrotrace_logs, WriteError, HydrotraceError, "A log that cannot be written.");
-
-/// An error with its reasons, on one line.
-pub(crate) fn explained(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(inner) = cause {
-        text = format!("{text}: {inner}");
-        cause = inner.source();
-    }
-    text
-}
 
 /// The exception for an error. Where the file system said no, `__cause__` is Python's own exception for that.
 pub(crate) fn raised<X: PyTypeInfo>(py: Python<'_>, error: &(dyn Error + 'static)) -> PyErr {

@@ -25,6 +25,7 @@ use super::{
     tables::{self, Log, Name, Rows},
 };
 use crate::{
+    document::explained,
     log::{
         Input, LogError, ReadOptions,
         dataset::{Cell, Table, read_table},
@@ -243,17 +244,6 @@ fn analysed(pending: &Pending, analysis_id: &str, inputs: &Inputs) -> (Rows, Opt
     log.machine = inputs.machine.of(&source.path, None);
     let failure = Failure { log: log.uri.clone(), error: error.clone() };
     (tables::failed(&log, &error, may_pass), Some(failure))
-}
-
-/// An error with its reasons, on one line.
-fn explained(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(inner) = cause {
-        text = format!("{text}: {inner}");
-        cause = inner.source();
-    }
-    text
 }
 
 /// Rows of one place, by table.
