@@ -41,18 +41,22 @@ struct AskArgs {
 #[expect(clippy::struct_excessive_bools, reason = "options of which at most one form is given")]
 struct FormArgs {
     /// One JSON document
-    #[arg(long, conflicts_with_all = ["csv", "markdown"])]
+    #[arg(long, conflicts_with_all = ["csv", "markdown", "html"])]
     json: bool,
 
     /// Comma-separated values, in SI units
-    #[arg(long, conflicts_with = "markdown")]
+    #[arg(long, conflicts_with_all = ["markdown", "html"])]
     csv: bool,
 
     /// Markdown
-    #[arg(long)]
+    #[arg(long, conflicts_with = "html")]
     markdown: bool,
 
-    /// Write to FILE instead of standard output; .json, .csv and .md set the form
+    /// One page for a browser, which fetches nothing
+    #[arg(long)]
+    html: bool,
+
+    /// Write to FILE instead of standard output; .html, .json, .csv and .md set the form
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 
@@ -101,7 +105,12 @@ impl FormArgs {
     fn target(&self) -> Result<Target<'_>, CliError> {
         let file = self.output.as_deref();
         spare_inputs(file, &[])?;
-        let forms = [(self.json, Form::Json), (self.markdown, Form::Markdown), (self.csv, Form::Csv)];
+        let forms = [
+            (self.json, Form::Json),
+            (self.markdown, Form::Markdown),
+            (self.csv, Form::Csv),
+            (self.html, Form::Html),
+        ];
         Target::new(Form::of(&forms, file), file)
     }
 
@@ -113,7 +122,7 @@ impl FormArgs {
     fn write(
         &self,
         console: &mut Console<'_>,
-        [json, csv]: [&dyn Fn() -> String; 2],
+        [json, csv, html]: [&dyn Fn() -> String; 3],
         text: &dyn Fn() -> kit::Document,
         (remarks, verdicts): (&Remarks, &[kit::Sentence]),
     ) -> Result<Outcome, CliError> {
@@ -121,6 +130,7 @@ impl FormArgs {
         let result = match target.form {
             Form::Json => json(),
             Form::Csv => csv(),
+            Form::Html => html(),
             _ => target.text(&text()),
         };
         console.finish(&target, &result, remarks, verdicts)
@@ -148,7 +158,8 @@ pub(super) struct WorstArgs {
 impl Run for WorstArgs {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let found = worst(&self.ask.dataset, &self.ask.filter(self.machine.as_ref()), self.by.by())?;
-        let forms: [&dyn Fn() -> String; 2] = [&|| pretty(&found), &|| words::worst_csv(&found)];
+        let forms: [&dyn Fn() -> String; 3] =
+            [&|| pretty(&found), &|| words::worst_csv(&found), &|| words::worst_page(&found)];
         self.form.write(console, forms, &|| words::worst(&found, self.form.most()), (&found.remarks, &[]))
     }
 }
@@ -175,7 +186,8 @@ impl Run for DriftArgs {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by.by()]);
         let found = drift(&self.ask.dataset, &self.ask.filter(self.machine.as_ref()), &by)?;
-        let forms: [&dyn Fn() -> String; 2] = [&|| pretty(&found), &|| words::drift_csv(&found)];
+        let forms: [&dyn Fn() -> String; 3] =
+            [&|| pretty(&found), &|| words::drift_csv(&found), &|| words::drift_page(&found)];
         self.form.write(console, forms, &|| words::drift(&found, self.form.most()), (&found.remarks, &[]))
     }
 }
@@ -206,7 +218,8 @@ impl Run for EffectArgs {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by.by()]);
         let found = effect(&self.ask.dataset, &self.machine, self.at, &self.ask.filter(None), &by)?;
-        let forms: [&dyn Fn() -> String; 2] = [&|| pretty(&found), &|| words::effect_csv(&found)];
+        let forms: [&dyn Fn() -> String; 3] =
+            [&|| pretty(&found), &|| words::effect_csv(&found), &|| words::effect_page(&found)];
         self.form.write(console, forms, &|| words::effect(&found, self.form.most()), (&found.remarks, &[]))
     }
 }

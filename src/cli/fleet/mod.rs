@@ -12,7 +12,7 @@ const EXAMPLES: &str = "\
 Examples:
   hydrotrace fleet scan /data/logs --into fleet --machine-from path:2
   hydrotrace fleet worst fleet --by peak
-  hydrotrace fleet drift fleet
+  hydrotrace fleet drift fleet --html -o fleet.html
   hydrotrace fleet effect fleet --machine M07 --at 2026-03-06
   hydrotrace fleet gate fleet --max-drift-delay-ms 5";
 
@@ -31,6 +31,7 @@ enum What {
     Drift(answers::DriftArgs),
     Effect(answers::EffectArgs),
     Gate(answers::GateArgs),
+    Compact(scan::CompactArgs),
 }
 
 impl Run for Args {
@@ -41,6 +42,7 @@ impl Run for Args {
             What::Drift(args) => args.run(console),
             What::Effect(args) => args.run(console),
             What::Gate(args) => args.run(console),
+            What::Compact(args) => args.run(console),
         }
     }
 }

@@ -11,9 +11,10 @@ use super::{
 };
 use crate::{
     document::pretty,
+    remark::Remarks,
     render::fleet as words,
     replay::Rules,
-    workflow::fleet::{Inputs, MachineFrom, scan},
+    workflow::fleet::{Inputs, MachineFrom, compact, scan},
 };
 
 const EXAMPLES: &str = "\
@@ -79,5 +80,26 @@ impl Run for Args {
         let target = Target::stdout(self.json);
         let result = if self.json { pretty(&done) } else { target.text(&words::scanned(&done)) };
         console.finish(&target, &result, &done.remarks, &[])
+    }
+}
+
+/// Join the small files that many scans leave; every row stays
+#[derive(Debug, clap::Args)]
+pub(super) struct CompactArgs {
+    /// The folder of the dataset, as `fleet scan` wrote it
+    #[arg(value_name = "DIR")]
+    dataset: PathBuf,
+
+    /// Print what was done as one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+impl Run for CompactArgs {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let done = compact(&self.dataset)?;
+        let target = Target::stdout(self.json);
+        let result = if self.json { pretty(&done) } else { target.text(&words::compacted(&done)) };
+        console.finish(&target, &result, &Remarks::default(), &[])
     }
 }

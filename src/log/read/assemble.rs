@@ -210,10 +210,18 @@ impl Assembly {
         }
     }
 
+    /// The clock of a table, in place of its stamps unless these are still needed: both at once are the most that a
+    /// report ever holds.
     fn clock(&mut self, candidate: &Candidate) -> Option<Clock> {
-        let Content::Table(table) = &self.extracted.sources[candidate.source].content else { return None };
+        let needed = self.range.cuts() || self.laid_onto == Some(candidate.source);
+        let Content::Table(table) = &mut self.extracted.sources[candidate.source].content else {
+            return None;
+        };
         let clock = continuous_clock(table.stamps.of(self.base), &table.stamps.log_ns, &self.jumps_ns);
         self.jumps_ns.extend(&clock.offsets_ns);
+        if !needed {
+            table.stamps = Stamps::default();
+        }
         Some(clock)
     }
 

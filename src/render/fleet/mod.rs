@@ -2,14 +2,16 @@
 
 mod answers;
 mod csv;
+mod page;
 
 pub(crate) use answers::{drift, effect, gate, gate_verdicts, worst};
 pub(crate) use csv::{drift_csv, effect_csv, worst_csv};
+pub(crate) use page::{drift_page, effect_page, worst_page};
 
 use super::kit::{Block, Document, Id, Section, Sentence, argument, command, counted, deg, fact, mm, ms};
 use crate::{
     series::JointKind,
-    workflow::fleet::{By, Progress, Scanned},
+    workflow::fleet::{By, Compacted, Progress, Scanned},
 };
 
 /// How far a scan is, in a line.
@@ -53,6 +55,20 @@ pub(crate) fn scanned(scanned: &Scanned) -> Document {
         .with(Sentence::advice("To see which joints change over the days:"))
         .with(Block::Command(command(&["fleet", "drift", &into])));
     Document::default().with(next).remarked(&scanned.remarks)
+}
+
+/// What was joined.
+pub(crate) fn compacted(done: &Compacted) -> Document {
+    let Compacted { runs, files_before, files_after, .. } = *done;
+    let found = match files_before - files_after.min(files_before) {
+        0 => format!("{} in {}: nothing to join.", counted(runs, "run"), counted(files_after, "file")),
+        _ => format!(
+            "{} in {} now, {files_before} before.",
+            counted(runs, "run"),
+            counted(files_after, "file")
+        ),
+    };
+    Document::default().with(Section::plain(Id::SUMMARY, [Sentence::finding(found)]))
 }
 
 /// What a metric is called.

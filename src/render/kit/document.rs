@@ -103,6 +103,12 @@ impl Document {
         Self { title: Some(title.into()), ..Self::default() }
     }
 
+    /// The same under a title.
+    #[must_use]
+    pub fn titled_as(self, title: &str) -> Self {
+        Self { title: Some(title.to_owned()), ..self }
+    }
+
     /// With one section more at its end.
     #[must_use]
     pub fn with(mut self, section: Section) -> Self {

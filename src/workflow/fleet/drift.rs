@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     failure::FleetFailure,
-    history::{By, Filter, History, Run, Values},
+    history::{By, Filter, History, Run, Values, date, days},
+    map::{Map, maps},
 };
 use crate::{
     document::PROGRAM,
     math::{SIGMA_PER_MAD, begins, column_levels, false_discovery, mad, median, theil_sen, trend},
     remark::Remarks,
-    units::SECONDS_PER_DAY,
 };
 
 /// What the format is called.
@@ -42,6 +42,8 @@ pub struct Drift {
     pub false_discovery_rate: f64,
     /// The trends, one a machine, joint and metric: first those that are found, by how far they stand out from the fleet.
     pub trends: Vec<JointTrend>,
+    /// How the machines did over the days, by metric.
+    pub maps: Vec<Map>,
     /// Machines, joints and metrics with too few runs of one plan to tell a trend.
     pub too_few: usize,
     /// Doubts about the data.
@@ -83,18 +85,22 @@ pub struct JointTrend {
     pub days: f64,
     /// Median over the starts at the level of the first three runs.
     pub level: f64,
+    /// The level of each run, in the order of time; only of trends that are found.
+    pub levels: Vec<Level>,
 }
 
-/// Days since 1970.
-pub(super) fn days(run: &Run) -> f64 {
-    run.started_us as f64 / 1e6 / SECONDS_PER_DAY
-}
-
-/// An instant as people and machines read it.
-pub(super) fn date(days: f64) -> Option<String> {
-    #[expect(clippy::cast_possible_truncation, reason = "days of runs are few")]
-    let us = (days * SECONDS_PER_DAY).round() as i64;
-    chrono::DateTime::from_timestamp(us, 0).map(|at| at.format("%Y-%m-%dT%H:%M:%SZ").to_string())
+/// What the starts of a joint were like in one run, each start's own level taken off and their median put back.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Level {
+    /// When the run began, days since 1970.
+    pub at_days: f64,
+    /// In the unit of the trend.
+    pub value: f64,
+    /// The log of the run.
+    pub log: String,
+    /// The page that lies beside the log under its name, where there is one: `run.html` beside `run.mcap`.
+    pub page: Option<String>,
 }
 
 /// The starts that enough runs have, as rows by run; and those runs.
@@ -138,6 +144,11 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
     for (trend, q) in trends.iter_mut().zip(false_discovery(&p)) {
         trend.q_value = q;
         trend.found = q < MOST_FALSE;
+        if trend.found {
+            trend.levels.iter_mut().for_each(|level| level.page = page_beside(&level.log));
+        } else {
+            trend.levels.clear();
+        }
     }
     stand_out(&mut trends);
     trends.sort_by(|a, b| {
@@ -152,9 +163,15 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
         machines: history.machines().len(),
         false_discovery_rate: MOST_FALSE,
         trends,
+        maps: maps(&history, by),
         too_few,
         remarks: history.remarks,
     })
+}
+
+fn page_beside(log: &str) -> Option<String> {
+    let page = Path::new(log).with_extension("html").canonicalize().ok()?;
+    page.is_file().then(|| page.to_str().map(str::to_owned))?
 }
 
 /// Says by how much each slope differs from what is usual for its metric.
@@ -185,6 +202,12 @@ fn joint_trend(runs: &[Run], values: &Values) -> Option<JointTrend> {
     let found = trend(&levels).filter(|_| levels.len() >= FEWEST_RUNS && !slopes.is_empty())?;
     let slope = median(slopes);
     let [low, high] = found.interval;
+    let usual = median(rows.iter().flatten().copied().filter(|value| value.is_finite()).collect());
+    let level = |(at_days, level): &(f64, f64)| {
+        let run = own.iter().filter_map(|run| runs.get(*run)).find(|run| (days(run) - at_days).abs() <= 0.0);
+        let log = run.map(|run| run.log.clone()).unwrap_or_default();
+        Level { at_days: *at_days, value: level + usual, log, page: None }
+    };
     let early = rows.iter().flat_map(|row| points(row).into_iter().take(3)).map(|(_, value)| value);
     Some(JointTrend {
         machine: String::new(),
@@ -202,6 +225,7 @@ fn joint_trend(runs: &[Run], values: &Values) -> Option<JointTrend> {
         runs: levels.len(),
         days: levels.last()?.0 - levels.first()?.0,
         level: median(early.collect()),
+        levels: levels.iter().map(level).collect(),
     })
 }
 
@@ -263,6 +287,7 @@ mod tests {
             machines: 1,
             false_discovery_rate: MOST_FALSE,
             trends: vec![joint_trend(&runs, &values).unwrap()],
+            maps: Vec::new(),
             too_few: 0,
             remarks: Remarks::default(),
         };

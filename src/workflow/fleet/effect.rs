@@ -9,9 +9,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    drift::{MOST_FALSE, date, days, matrix},
+    drift::{MOST_FALSE, matrix},
     failure::FleetFailure,
-    history::{Axis, By, Filter, History, Values},
+    history::{Axis, By, Filter, History, Values, date, days},
 };
 use crate::{
     document::PROGRAM,

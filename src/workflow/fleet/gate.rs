@@ -123,6 +123,7 @@ mod tests {
             runs: 10,
             days: 9.0,
             level: 0.1,
+            levels: Vec::new(),
         };
         Drift {
             format: String::new(),
@@ -131,6 +132,7 @@ mod tests {
             machines: 1,
             false_discovery_rate: 0.05,
             trends: slopes.iter().map(trend).collect(),
+            maps: Vec::new(),
             too_few: 0,
             remarks: Remarks::default(),
         }

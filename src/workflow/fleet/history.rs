@@ -17,6 +17,7 @@ use crate::{
     math::median,
     remark::{Code, Remarks},
     suggest::nearest,
+    units::SECONDS_PER_DAY,
 };
 
 /// A metric that machines are judged by.
@@ -45,6 +46,18 @@ pub(super) struct Run {
     pub(super) log: String,
     /// Microseconds since 1970.
     pub(super) started_us: i64,
+}
+
+/// Days since 1970.
+pub(super) fn days(run: &Run) -> f64 {
+    run.started_us as f64 / 1e6 / SECONDS_PER_DAY
+}
+
+/// An instant as people and machines read it.
+pub(super) fn date(days: f64) -> Option<String> {
+    #[expect(clippy::cast_possible_truncation, reason = "days of runs are few")]
+    let us = (days * SECONDS_PER_DAY).round() as i64;
+    chrono::DateTime::from_timestamp(us, 0).map(|at| at.format("%Y-%m-%dT%H:%M:%SZ").to_string())
 }
 
 /// A joint of a machine.
@@ -227,6 +240,17 @@ impl History {
             let event = Event { plan_id: plan.to_owned(), index: 0 };
             self.values.entry((axis, By::Lag)).or_default().entry(event).or_default().insert(run, lag_s);
         }
+    }
+
+    /// The median of all machines at each start of each joint.
+    pub(super) fn usual(&self, metric: By) -> BTreeMap<(&str, &Event), f64> {
+        let mut usual: BTreeMap<(&str, &Event), Vec<f64>> = BTreeMap::new();
+        for ((axis, _), values) in self.values.iter().filter(|((_, by), _)| *by == metric) {
+            for (event, of) in values {
+                usual.entry((axis.joint.as_str(), event)).or_default().extend(of.values());
+            }
+        }
+        usual.into_iter().map(|(key, values)| (key, median(values))).collect()
     }
 
     /// Names of all machines.

@@ -5,6 +5,8 @@
 //! joint; `transitions`, one row a start or reversal; `remarks`. Its files say nothing of when they were made: equal logs
 //! give equal bytes.
 
+mod arrange;
+mod compact;
 mod document;
 mod drift;
 mod effect;
@@ -12,19 +14,22 @@ mod failure;
 mod gate;
 mod history;
 mod machine;
+mod map;
 mod scan;
 mod sources;
 mod store;
 mod tables;
 mod worst;
 
+pub use compact::{Compacted, compact};
 pub use document::{Failure, Scanned};
-pub use drift::{Drift, JointTrend, drift};
+pub use drift::{Drift, JointTrend, Level, drift};
 pub use effect::{Effect, JointEffect, effect};
 pub use failure::FleetFailure;
 pub use gate::{Gate, GateResult, Gated, gate};
 pub use history::{By, Filter};
 pub use machine::MachineFrom;
+pub use map::{Cell as MapCell, Map, MapRow};
 pub use scan::{Inputs, Progress, own_analysis_id, scan};
 pub use tables::{Log, Name as TableName, Rows, analysed as rows, failed as failed_rows};
 pub use worst::{Worst, WorstJoint, worst};

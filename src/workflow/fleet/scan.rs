@@ -14,9 +14,8 @@ use std::{
     },
 };
 
-use chrono::DateTime;
-
 use super::{
+    arrange::{Gathered, files, gather, place},
     document::{Failure, Scanned},
     failure::FleetFailure,
     machine::MachineFrom,
@@ -28,7 +27,7 @@ use crate::{
     document::explained,
     log::{
         Input, LogError, ReadOptions,
-        dataset::{Cell, Table, read_table},
+        dataset::{Cell, read_table},
     },
     replay::Rules,
     workflow::report::{self, ReportFailure, analysis_id, hash},
@@ -38,8 +37,6 @@ use crate::{
 const BATCH: usize = 512;
 /// How often a log is tried at once whose file cannot be read.
 const TRIES: u64 = 3;
-/// Buckets of machines.
-const BUCKETS: u64 = 16;
 
 /// What to scan, and how.
 #[derive(Debug, Clone, Default)]
@@ -246,9 +243,6 @@ fn analysed(pending: &Pending, analysis_id: &str, inputs: &Inputs) -> (Rows, Opt
     (tables::failed(&log, &error, may_pass), Some(failure))
 }
 
-/// Rows of one place, by table.
-type Gathered = BTreeMap<Name, Vec<Vec<Cell>>>;
-
 /// Writes the rows of a batch; rows of its logs that the dataset holds give way, the others of their parts stay.
 fn write(store: &Store, batch: Vec<Rows>, old: &[&Known]) -> Result<(), FleetFailure> {
     let mut places: BTreeMap<Place, Gathered> = BTreeMap::new();
@@ -261,67 +255,14 @@ fn write(store: &Store, batch: Vec<Rows>, old: &[&Known]) -> Result<(), FleetFai
     }
     let parts: BTreeSet<&Part> = old.iter().map(|known| &known.part).collect();
     let gone: BTreeSet<&str> = old.iter().map(|known| known.run_id.as_str()).collect();
+    let stays = |row: &Vec<Cell>| !row[0].as_text().is_some_and(|run_id| gone.contains(run_id));
     let mut remove = Vec::new();
     for part in parts {
-        for name in Name::ALL {
-            let path = store.root().join(part.path(name));
-            if !path.exists() {
-                continue;
-            }
-            remove.push(part.path(name));
-            let rows = read_table(&path, name.columns())?.rows;
-            let kept =
-                rows.into_iter().filter(|row| !row[0].as_text().is_some_and(|run_id| gone.contains(run_id)));
-            places.entry(part.place.clone()).or_default().entry(name).or_default().extend(kept);
-        }
+        remove.extend(gather(store.root(), part, &stays, places.entry(part.place.clone()).or_default())?);
     }
     let mut put = Vec::new();
     for (place, gathered) in places {
-        let Some(runs) = gathered.get(&Name::Runs).filter(|runs| !runs.is_empty()) else { continue };
-        let part = Part { place, hash: inputs_hash(runs) };
-        for (name, mut rows) in gathered {
-            if rows.is_empty() {
-                continue;
-            }
-            sort(name, &mut rows);
-            let table = Table { columns: name.columns().to_vec(), rows };
-            put.push((part.path(name), table.encode(name.text())?));
-        }
+        put.extend(files(place, gathered)?);
     }
     store.change(&put, &remove)
-}
-
-fn at(name: Name, column: &str) -> usize {
-    name.columns().iter().position(|known| known.name == column).unwrap_or(0)
-}
-
-/// The place of a run's rows.
-fn place(run: &[Cell]) -> Place {
-    let of = |column: &str| run.get(at(Name::Runs, column));
-    let started = of("started_at").and_then(Cell::as_whole).and_then(DateTime::from_timestamp_micros);
-    let machine = of("machine").and_then(Cell::as_text).unwrap_or_default();
-    let digits = u64::from_str_radix(&hash([machine]), 16).unwrap_or(0);
-    let bucket = u8::try_from(digits % BUCKETS).unwrap_or(0);
-    Place { date: started.map(|at| at.format("%Y-%m").to_string()), bucket }
-}
-
-/// The hash of the logs of a part: their names, states and analyses.
-fn inputs_hash(runs: &[Vec<Cell>]) -> String {
-    let places = ["log_uri", "log_etag", "analysis_id"].map(|column| at(Name::Runs, column));
-    let key =
-        |run: &Vec<Cell>| places.map(|k| run.get(k).and_then(Cell::as_text).unwrap_or_default().to_owned());
-    let mut keys: Vec<[String; 3]> = runs.iter().map(key).collect();
-    keys.sort_unstable();
-    hash(keys.iter().flatten())
-}
-
-/// Sorts rows by machine, joint and place among the starts, then by run.
-fn sort(name: Name, rows: &mut [Vec<Cell>]) {
-    let texts = ["machine", "joint"].map(|column| at(name, column));
-    let index = at(name, "event_index");
-    rows.sort_by_cached_key(|row| {
-        let text = |k: usize| row.get(k).and_then(Cell::as_text).unwrap_or_default().to_owned();
-        let number = row.get(index).and_then(Cell::as_whole).unwrap_or(0);
-        (texts.map(text), number, text(0))
-    });
 }

@@ -1,13 +1,13 @@
 //! `fleet worst`: the joints of all machines by what their starts are usually like, the worst first.
 
-use std::{collections::BTreeMap, path::Path};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::{
-    drift::{date, days},
     failure::FleetFailure,
-    history::{By, Filter, History},
+    history::{By, Filter, History, date, days},
+    map::{Map, maps},
 };
 use crate::{
     document::PROGRAM,
@@ -34,6 +34,8 @@ pub struct Worst {
     pub machines: usize,
     /// Joints that turn and joints that slide are ranked apart, the former first; then by the median.
     pub joints: Vec<WorstJoint>,
+    /// How the machines did over the days.
+    pub map: Option<Map>,
     /// Doubts about the data.
     #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
@@ -74,13 +76,7 @@ pub struct WorstJoint {
 /// [`FleetFailure`] if there is no dataset, or no such machine in it.
 pub fn worst(root: &Path, filter: &Filter, by: By) -> Result<Worst, FleetFailure> {
     let history = History::read(root, filter, true)?;
-    let mut usual: BTreeMap<(&str, &super::history::Event), Vec<f64>> = BTreeMap::new();
-    for ((axis, _), values) in history.values.iter().filter(|((_, metric), _)| *metric == by) {
-        for (event, of) in values {
-            usual.entry((axis.joint.as_str(), event)).or_default().extend(of.values());
-        }
-    }
-    let usual: BTreeMap<_, f64> = usual.into_iter().map(|(key, values)| (key, median(values))).collect();
+    let usual = history.usual(by);
     let mut joints = Vec::new();
     let wanted = |machine: &str| filter.machine.as_ref().is_none_or(|wanted| wanted == machine);
     for ((axis, metric), values) in &history.values {
@@ -120,6 +116,7 @@ pub fn worst(root: &Path, filter: &Filter, by: By) -> Result<Worst, FleetFailure
         by,
         runs: history.runs.len(),
         machines: history.machines().len(),
+        map: maps(&history, &[by]).pop(),
         joints,
         remarks: history.remarks,
     })
@@ -151,6 +148,7 @@ mod tests {
             by: By::Peak,
             runs: 2,
             machines: 1,
+            map: None,
             joints: vec![joint],
             remarks: Remarks::default(),
         };

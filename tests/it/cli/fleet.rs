@@ -67,6 +67,78 @@ fn new_changed_and_broken_logs_are_taken_up_and_old_rows_give_way() {
 }
 
 #[test]
+fn parts_of_many_scans_are_joined_and_every_row_stays() {
+    let folder = fleet(3, 1);
+    let (logs, data) = (folder.path().join("logs"), folder.path().join("data"));
+    for day in 0..4 {
+        for machine in 0..3 {
+            let log = small_log(&format!("M0{machine}"), day, 10 * machine + 1, [0.2, 0.2]);
+            fs::write(logs.join(format!("M0{machine}/{day:02}.mcap")), log).unwrap();
+        }
+        json(folder.path(), "fleet scan logs --into data");
+    }
+    let rows = |name: &str, column: &'static str| {
+        let mut all = cells(&data, name, column);
+        all.sort();
+        all
+    };
+    let tables =
+        [("runs", "log_uri"), ("joints", "run_id"), ("transitions", "event_id"), ("transitions", "run_id")];
+    let before = tables.map(|(name, column)| rows(name, column));
+    let worst = json(folder.path(), "fleet worst data");
+    let done = json(folder.path(), "fleet compact data");
+    hold_to_schema(&done, "fleet-compact.v1");
+    assert!(done["files_before"].as_u64() > done["files_after"].as_u64(), "{done:#}");
+    assert_eq!(done["runs"], 12);
+    assert_eq!(tables.map(|(name, column)| rows(name, column)), before);
+    assert_eq!(json(folder.path(), "fleet worst data"), worst);
+    is_whole(&data, 12);
+    // The same again does nothing, and the next scan knows all logs.
+    let files_of = files(&data);
+    let (code, out, _) = said(&run_line(folder.path(), "fleet compact data"));
+    assert!(code == 0 && out.contains("nothing to join"), "{out}");
+    assert_eq!(json(folder.path(), "fleet scan logs --into data")["analysed"], 0);
+    assert_eq!(files(&data), files_of);
+    // One scan of all logs gives the same files.
+    json(folder.path(), "fleet scan logs --into once");
+    assert_eq!(files(&folder.path().join("once")), files_of);
+    let (code, _, err) = said(&run_line(folder.path(), "fleet compact none"));
+    assert!(code == 1 && err.contains("holds no dataset") && !folder.path().join("none").exists(), "{err}");
+}
+
+#[test]
+fn pages_show_machines_by_day_and_link_the_pages_of_runs() {
+    let folder = fleet(4, 8);
+    clean(folder.path(), "fleet scan logs --into data");
+    fs::write(folder.path().join("logs/M00/03.html"), "a page").unwrap();
+    clean(folder.path(), "fleet drift data -o drift.html");
+    let page = fs::read_to_string(folder.path().join("drift.html")).unwrap();
+    for text in [
+        "2 drifts found",
+        "Machines by day",
+        "M00 boom: dead time",
+        "class=\"heat3\"",
+        "M00/03.html\">03.mcap",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+    let map = &json(folder.path(), "fleet drift data --by delay")["maps"][0];
+    assert_eq!(
+        (map["columns"].as_array().unwrap().len(), &map["machines"][0]["machine"]),
+        (8, &"M00".into())
+    );
+    for line in [
+        "fleet worst data --html -o worst.html",
+        "fleet effect data --machine M00 --at 2026-03-05 -o effect.html",
+    ] {
+        clean(folder.path(), line);
+    }
+    let worst = fs::read_to_string(folder.path().join("worst.html")).unwrap();
+    assert!(worst.contains("Machines by day") && !worst.contains("http://"), "{worst}");
+    assert!(fs::read_to_string(folder.path().join("effect.html")).unwrap().contains("Change by joint"));
+}
+
+#[test]
 fn the_dataset_tells_which_machine_drifts_and_whether_that_breaks_a_limit() {
     let folder = fleet(6, 10);
     clean(folder.path(), "fleet scan logs --into data");

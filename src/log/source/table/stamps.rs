@@ -35,9 +35,10 @@ impl Stamps {
     #[expect(clippy::cast_possible_truncation, reason = "delays of a recording")]
     pub(in crate::log) fn delays_ns(&self) -> Option<[i64; 3]> {
         let both = self.log_ns.iter().zip(&self.header_ns).filter(|(_, header)| **header != 0);
-        let delays: Vec<i64> = both.map(|(log, header)| log.saturating_sub(*header)).collect();
-        let middle = median(delays.iter().map(|&ns| ns as f64).collect()) as i64;
-        Some([*delays.iter().min()?, middle, *delays.iter().max()?])
+        let delays = both.map(|(log, header)| log.saturating_sub(*header));
+        let ends = [delays.clone().min()?, delays.clone().max()?];
+        let middle = median(delays.map(|ns| ns as f64).collect()) as i64;
+        Some([ends[0], middle, ends[1]])
     }
 
     pub(in crate::log) fn len(&self) -> usize {
