@@ -74,8 +74,8 @@ fn memory_of_a_report_is_bounded_by_the_numbers_that_it_reads() {
     for minutes in minutes.split(',').map(|minutes| minutes.parse::<i64>().unwrap()) {
         let path = folder.path().join("long.mcap");
         write(&path, minutes);
-        // Plan and measurement: a stamp and a position a joint. Speeds, though read of the plan, are not counted.
-        let numbers = (2 * 8 * minutes * 60 * RATE_HZ) as f64 * (1 + JOINTS) as f64;
+        // A stamp and a position a joint of plan and measurement, and the speeds of the plan.
+        let numbers = (8 * minutes * 60 * RATE_HZ) as f64 * (2 + 3 * JOINTS) as f64;
         let (peak, allowed) = (peak(&path), BY_NUMBER * numbers + BESIDE);
         println!(
             "{minutes} min: {:.1} MB of {:.1} MB allowed, numbers {:.1} MB",

@@ -78,6 +78,13 @@ impl Content {
         Ok(())
     }
 
+    /// Rows that are to come, as the index of the log counts them: columns need not grow.
+    pub(super) fn expect(&mut self, rows: usize) {
+        if let Self::Table(table) = self {
+            table.expected = rows;
+        }
+    }
+
     /// Rows of a table.
     pub(super) fn rows(&self) -> usize {
         if let Self::Table(table) = self { table.len() } else { 0 }

@@ -91,6 +91,7 @@ fn read_files(
     let all = chunks().map(|(place, held, routes)| (place, held, &**routes));
     let window = Window::of(options.range, all, &known.specs, &of_run);
     let mut work = Vec::new();
+    let mut rows = vec![0_usize; known.specs.len()];
     for (place, held, routes) in chunks() {
         let wants = |one: &Held, route: &Route| {
             (route.read.is_some() || route.describes)
@@ -99,7 +100,15 @@ fn read_files(
         if !counted(held, routes, &wants, out) {
             let file = files[place.0];
             work.push((file.layout.blocks[place.1], file.source, routes.clone(), place.0));
+            for one in held {
+                let read = routes.get(&one.channel).and_then(|route| route.read.as_ref());
+                let Some((source, _)) = read else { continue };
+                rows[*source] = rows[*source].saturating_add(usize::try_from(one.messages).unwrap_or(0));
+            }
         }
+    }
+    for (source, rows) in out.sources.iter_mut().zip(rows) {
+        source.content.expect(rows);
     }
     count(|passes| passes.blocks += work.len() as u64);
     read_blocks(&work, &known.specs, &options.joints, out)

@@ -49,7 +49,7 @@ impl Versioned {
 
     pub(in crate::log) fn append(&mut self, other: &mut Self) {
         self.names.append(&mut other.names);
-        self.stamps.append(&other.stamps);
+        self.stamps.append(&other.stamps, 0);
         other.stamps.clear();
         self.versions.append(&mut other.versions);
         self.values.append(&mut other.values);

@@ -32,6 +32,8 @@ pub(in crate::log) struct Table {
     pub(in crate::log) layout_changes: u64,
     /// Messages and columns left out because there are too many joints.
     pub(in crate::log) too_many: u64,
+    /// Rows that are to come, where that is known: room for them is made once.
+    pub(in crate::log) expected: usize,
     message: Message,
     layout: Layout,
     /// The names of the first message that had some.
@@ -62,6 +64,13 @@ struct Layout {
     too_many: bool,
 }
 
+/// Makes room for the rows of a column at its beginning; where there is none, the column grows as it comes.
+pub(super) fn make_room<T>(column: &mut Vec<T>, rows: usize) {
+    if column.capacity() == 0 {
+        let _ = column.try_reserve_exact(rows);
+    }
+}
+
 impl Table {
     /// `joints` are the names to use where messages carry none, `alone` that for a single number.
     pub(in crate::log) fn new(form: Form, fields: &[Field], joints: &[String], alone: Option<&str>) -> Self {
@@ -76,6 +85,7 @@ impl Table {
             length_mismatch: vec![0; fields.len()],
             layout_changes: 0,
             too_many: 0,
+            expected: 0,
             message: Message {
                 values: vec![Vec::new(); fields.len()],
                 absent: vec![0; fields.len()],
@@ -161,12 +171,13 @@ impl Table {
 
     /// Appends the samples of another table of the same fields, and empties it for reuse.
     pub(in crate::log) fn append(&mut self, other: &mut Self) {
-        let rows = self.len();
+        let (rows, expected) = (self.len(), self.expected);
         let joints: Vec<Option<usize>> = other.joints.iter().map(|name| self.joint(name)).collect();
         for (mine, theirs) in self.columns.iter_mut().zip(&mut other.columns) {
             for (joint, column) in joints.iter().zip(theirs).filter(|(_, column)| !column.is_empty()) {
                 match *joint {
                     Some(joint) => {
+                        make_room(&mut mine[joint], expected);
                         mine[joint].resize(rows, f64::NAN);
                         mine[joint].extend_from_slice(column);
                     }
@@ -178,7 +189,7 @@ impl Table {
             self.speed_scaling.resize(rows, f64::NAN);
             self.speed_scaling.append(&mut other.speed_scaling);
         }
-        self.stamps.append(&other.stamps);
+        self.stamps.append(&other.stamps, expected);
         for (mine, theirs) in self.not_finite.iter_mut().zip(&other.not_finite) {
             *mine += theirs;
         }

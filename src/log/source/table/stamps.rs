@@ -1,5 +1,6 @@
 //! When messages were sampled, published and received.
 
+use super::make_room;
 use crate::{log::options::TimeBase, math::median};
 
 /// The three clocks of every message of a topic, in the order of the file.
@@ -59,7 +60,9 @@ impl Stamps {
         self.push_ns(header_ns, fit(publish_ns), fit(log_ns));
     }
 
-    pub(in crate::log::source) fn append(&mut self, other: &Self) {
+    pub(in crate::log::source) fn append(&mut self, other: &Self, expected: usize) {
+        make_room(&mut self.header_ns, expected);
+        make_room(&mut self.log_ns, expected);
         self.header_ns.extend_from_slice(&other.header_ns);
         if !(self.publish_ns.is_empty() && other.publish_ns.is_empty()) {
             self.tell_apart();
