@@ -3,12 +3,14 @@
 UPDATE_DOCS=1 writes what is printed into the page.
 """
 
+import json
 import os
 import pathlib
 import re
 import runpy
 import shutil
 import sys
+from datetime import datetime
 
 import pytest
 
@@ -61,3 +63,20 @@ def test_the_notebook_runs_and_draws(here, monkeypatch):
     runpy.run_path(str(ROOT / "docs" / "python" / "drift.py"), run_name="__main__")
     assert pathlib.Path("drift.png").stat().st_size > 10_000
     assert os.path.isdir("fleet")
+
+
+def test_starts_become_events_of_foxglove(here, monkeypatch, capsys):
+    import hydrotrace_logs as ht
+
+    ht.scan("logs", "fleet")
+    capsys.readouterr()
+    monkeypatch.setattr(sys, "argv", ["foxglove_events.py", "fleet", "0.5"])
+    runpy.run_path(str(ROOT / "docs" / "python" / "foxglove_events.py"), run_name="__main__")
+    events = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert events and {event["deviceName"] for event in events} == {"M0", "M1"}
+    for event in events:
+        begins, ends = (datetime.fromisoformat(event[key]) for key in ("start", "end"))
+        assert begins.tzinfo and begins <= ends and begins.year >= 2026
+        assert all(isinstance(value, str) for value in event["metadata"].values())
+        assert float(event["metadata"]["peak_error_deg"]) >= 0.5
+    assert len({event["metadata"]["event_id"] for event in events}) == len(events)
