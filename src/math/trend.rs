@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use super::{median, quantile_sorted};
+use super::{mad, median, quantile_sorted};
 
 /// Most points for which every order is counted.
 const MOST_EXACT: usize = 40;
@@ -108,9 +108,48 @@ pub fn begins(points: &[(f64, f64)]) -> Option<f64> {
         .map(|point| point.0)
 }
 
-/// Values by row and column as the sum of a row's and a column's own level, both medians (Tukey's median polish);
-/// gives the levels of the columns, whose median is zero. NaN: no value. A column without values has none.
-pub fn column_levels(rows: &[Vec<f64>], columns: usize) -> Vec<f64> {
+/// A row quieter than this share of the usual noise says no more than one just so quiet.
+const LEAST_NOISE: f64 = 0.2;
+
+/// How much each row says: one over the square of its noise, which is the robust scatter of its steps, so that neither a
+/// trend nor a jump counts as noise. NaN: no value. Rows too short to tell are taken to be as noisy as is usual.
+pub fn row_weights(rows: &[Vec<f64>]) -> Vec<f64> {
+    let noise = |row: &Vec<f64>| {
+        let known: Vec<f64> = row.iter().copied().filter(|value| value.is_finite()).collect();
+        let steps: Vec<f64> = known.windows(2).map(|two| two[1] - two[0]).collect();
+        (steps.len() >= 3).then(|| mad(&steps))
+    };
+    let noises: Vec<Option<f64>> = rows.iter().map(noise).collect();
+    let usual = median(noises.iter().flatten().copied().collect());
+    if !(usual > 0.0) {
+        return vec![1.0; rows.len()];
+    }
+    noises.iter().map(|noise| noise.unwrap_or(usual).max(LEAST_NOISE * usual).powi(-2)).collect()
+}
+
+/// The value that half of the weight lies below; with equal weights the median. NaN for no values.
+pub fn weighted_median(mut values: Vec<(f64, f64)>) -> f64 {
+    values.retain(|(value, weight)| value.is_finite() && *weight > 0.0);
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let total: f64 = values.iter().map(|(_, weight)| weight).sum();
+    let mut below = 0.0;
+    for (k, (value, weight)) in values.iter().enumerate() {
+        below += weight;
+        let beyond = below - 0.5 * total;
+        if beyond.abs() <= 1e-9 * total {
+            return values.get(k + 1).map_or(*value, |(next, _)| 0.5 * (value + next));
+        }
+        if beyond > 0.0 {
+            return *value;
+        }
+    }
+    f64::NAN
+}
+
+/// Values by row and column as the sum of a row's and a column's own level, both medians (Tukey's median polish), that of
+/// a column weighted by what each row says; gives the levels of the columns, whose median is zero. NaN: no value. A
+/// column without values has none.
+pub fn column_levels(rows: &[Vec<f64>], weights: &[f64], columns: usize) -> Vec<f64> {
     const SWEEPS: usize = 20;
     let known = |values: Vec<f64>| values.into_iter().filter(|value| value.is_finite()).collect::<Vec<f64>>();
     let mut levels = vec![0.0; columns];
@@ -120,8 +159,10 @@ pub fn column_levels(rows: &[Vec<f64>], columns: usize) -> Vec<f64> {
             .map(|row| median(known(row.iter().zip(&levels).map(|(value, level)| value - level).collect())))
             .collect();
         let next = |column: usize| {
-            let rest = rows.iter().zip(&of_rows).filter_map(|(row, own)| Some(row.get(column)? - own));
-            median(known(rest.collect()))
+            let rest = rows.iter().zip(&of_rows).zip(weights);
+            weighted_median(
+                rest.filter_map(|((row, own), weight)| Some((row.get(column)? - own, *weight))).collect(),
+            )
         };
         levels = (0..columns).map(next).collect();
         let centre = median(known(levels.clone()));
@@ -215,9 +256,26 @@ mod tests {
         some[5][3] = f64::NAN;
         some[5][4] = f64::NAN;
         for table in [rows, some] {
-            assert_eq!(column_levels(&table, 5), [-2.0, -1.0, 0.0, 1.0, 2.0]);
+            assert_eq!(column_levels(&table, &row_weights(&table), 5), [-2.0, -1.0, 0.0, 1.0, 2.0]);
         }
-        assert!(column_levels(&[vec![1.0, f64::NAN]], 2)[1].is_nan());
+        assert!(column_levels(&[vec![1.0, f64::NAN]], &[1.0], 2)[1].is_nan());
+    }
+
+    #[test]
+    fn a_quiet_row_says_more_than_noisy_ones() {
+        let noise = [0.4, -0.9, 1.0, -0.2, -1.1, 0.8, 0.1, -0.7];
+        let row = |scale: f64, shift: usize| -> Vec<f64> {
+            (0..8).map(|k| 0.1 * k as f64 + scale * noise[(k + shift) % 8]).collect()
+        };
+        let rows = [row(0.01, 0), row(1.0, 1), row(1.0, 3), row(1.0, 6)];
+        let levels = column_levels(&rows, &row_weights(&rows), 8);
+        for (k, level) in levels.iter().enumerate() {
+            assert!((level - (0.1 * k as f64 - 0.35)).abs() < 0.1, "{levels:?}");
+        }
+        close(weighted_median(vec![(3.0, 1.0), (1.0, 1.0), (2.0, 1.0), (4.0, 1.0)]), 2.5);
+        close(weighted_median(vec![(1.0, 1.0), (2.0, 5.0), (f64::NAN, 9.0), (9.0, 1.0)]), 2.0);
+        assert!(weighted_median(Vec::new()).is_nan());
+        assert_eq!(row_weights(&[vec![1.0; 6], vec![2.0; 6]]), [1.0, 1.0]);
     }
 
     #[test]

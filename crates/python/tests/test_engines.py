@@ -6,6 +6,7 @@ An engine that is not installed is skipped: `pip install ray "dask[dataframe,dis
 import os
 import pathlib
 import signal
+import sys
 import threading
 import time
 
@@ -115,8 +116,10 @@ def test_dask(many, killing):
     check("Dask", polars.from_pandas(found), many, seconds, killed)
 
 
-def test_spark(many):
+def test_spark(many, monkeypatch):
     pytest.importorskip("pyspark")
+    # Its workers start a python3 of their own choice otherwise.
+    monkeypatch.setenv("PYSPARK_PYTHON", sys.executable)
     import pyarrow
     from pyspark.sql import SparkSession
     from pyspark.sql.pandas.types import from_arrow_schema

@@ -77,7 +77,8 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
     }
     section = section.with_all(more(drift.trends.len(), most));
     let note = "Each start is compared with the same start of the same plan. q: share of false discoveries if this trend \
-                and all surer ones count as found; found: q below 5 %.";
+                and all surer ones count as found; found: q below 5 %, and three robust deviations from what is \
+                usual where ten joints or more tell that.";
     section = section.with(Sentence::note(note));
     if drift.too_few > 0 {
         let few =

@@ -2,7 +2,8 @@
 //!
 //! A start is compared with the same start of the same plan only. Runs are what varies on its own, so the test and the
 //! interval are of one level a run: that which is left when each start's own level is taken off. The slope is the median
-//! over the starts of each start's Theil-Sen slope.
+//! over the starts of each start's Theil-Sen slope. A start that scatters from run to run, because the joint had not come to
+//! rest before it, say, weighs less.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -15,7 +16,10 @@ use super::{
 };
 use crate::{
     document::PROGRAM,
-    math::{SIGMA_PER_MAD, begins, column_levels, false_discovery, mad, median, theil_sen, trend},
+    math::{
+        SIGMA_PER_MAD, begins, column_levels, false_discovery, mad, median, row_weights, theil_sen, trend,
+        weighted_median,
+    },
     remark::Remarks,
 };
 
@@ -25,6 +29,12 @@ const FORMAT: &str = "hydrotrace.fleet-drift.v1";
 pub(super) const FEWEST_RUNS: usize = 5;
 /// False discoveries among what is found, at most.
 pub(super) const MOST_FALSE: f64 = 0.05;
+
+/// Robust standard deviations of the fleet's slopes that a slope must stand out by to be found: less than that many
+/// healthy joints change by, in a season or with other work.
+const STANDS_OUT: f64 = 3.0;
+/// Joints that tell what is usual, at least.
+const FEWEST_JOINTS: usize = 10;
 
 /// The trends of all joints of a fleet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -63,7 +73,7 @@ pub struct JointTrend {
     pub metric: By,
     /// Its unit: "s" of delays and lags, else that of the joint, "rad" or "m".
     pub unit: String,
-    /// Change a day, median over the starts of each start's Theil-Sen slope.
+    /// Change a day, median over the starts of each start's Theil-Sen slope, weighted by one over the square of its scatter.
     pub slope_per_day: f64,
     /// Its 95 % interval, by Kendall's test on the levels of the runs.
     pub interval_95: [f64; 2],
@@ -71,7 +81,8 @@ pub struct JointTrend {
     pub p_value: f64,
     /// The same, corrected for the number of machines, joints and metrics (false-discovery rate).
     pub q_value: f64,
-    /// Whether the trend is found: q below the false-discovery rate.
+    /// Whether the trend is found: q below the false-discovery rate, and three robust standard deviations or more from what
+    /// is usual where ten joints or more tell that.
     pub found: bool,
     /// The slope in robust standard deviations of the slopes of this metric in all joints; null where these are equal.
     pub stands_out: Option<f64>,
@@ -141,16 +152,17 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
         }
     }
     let p: Vec<f64> = trends.iter().map(|trend| trend.p_value).collect();
-    for (trend, q) in trends.iter_mut().zip(false_discovery(&p)) {
+    let tell = stand_out(&mut trends);
+    for ((trend, q), tells) in trends.iter_mut().zip(false_discovery(&p)).zip(tell) {
         trend.q_value = q;
-        trend.found = q < MOST_FALSE;
+        let usual = tells && trend.stands_out.is_some_and(|out| out < STANDS_OUT);
+        trend.found = q < MOST_FALSE && !usual;
         if trend.found {
             trend.levels.iter_mut().for_each(|level| level.page = page_beside(&level.log));
         } else {
             trend.levels.clear();
         }
     }
-    stand_out(&mut trends);
     trends.sort_by(|a, b| {
         let out = |trend: &JointTrend| trend.stands_out.unwrap_or(0.0);
         let by_size = out(b).total_cmp(&out(a));
@@ -174,19 +186,22 @@ fn page_beside(log: &str) -> Option<String> {
     page.is_file().then(|| page.to_str().map(str::to_owned))?
 }
 
-/// Says by how much each slope differs from what is usual for its metric.
-fn stand_out(trends: &mut [JointTrend]) {
+/// Says by how much each slope differs from what is usual for its metric; gives whether enough joints tell that.
+fn stand_out(trends: &mut [JointTrend]) -> Vec<bool> {
     let key = |trend: &JointTrend| (trend.metric, trend.unit.clone());
     let mut slopes: BTreeMap<_, Vec<f64>> = BTreeMap::new();
     for trend in trends.iter() {
         slopes.entry(key(trend)).or_default().push(trend.slope_per_day);
     }
-    let spreads: BTreeMap<_, (f64, f64)> =
-        slopes.into_iter().map(|(key, own)| (key, (SIGMA_PER_MAD * mad(&own), median(own)))).collect();
-    for trend in trends {
-        let Some((spread, usual)) = spreads.get(&key(trend)) else { continue };
-        trend.stands_out = (*spread > 0.0).then(|| (trend.slope_per_day - usual).abs() / spread);
-    }
+    let usual = |own: Vec<f64>| (own.len() >= FEWEST_JOINTS, SIGMA_PER_MAD * mad(&own), median(own));
+    let usual: BTreeMap<_, (bool, f64, f64)> =
+        slopes.into_iter().map(|(key, own)| (key, usual(own))).collect();
+    let judge = |trend: &mut JointTrend| {
+        let (tells, spread, middle) = usual.get(&key(trend)).copied().unwrap_or_default();
+        trend.stands_out = (spread > 0.0).then(|| (trend.slope_per_day - middle).abs() / spread);
+        tells
+    };
+    trends.iter_mut().map(judge).collect()
 }
 
 /// The trend without its names; `None` for too few runs.
@@ -196,11 +211,11 @@ fn joint_trend(runs: &[Run], values: &Values) -> Option<JointTrend> {
     let points = |row: &[f64]| -> Vec<(f64, f64)> {
         at.iter().copied().zip(row.iter().copied()).filter(|(_, value)| value.is_finite()).collect()
     };
-    let slopes: Vec<f64> =
-        rows.iter().map(|row| theil_sen(&points(row))).filter(|slope| slope.is_finite()).collect();
-    let levels = points(&column_levels(&rows, own.len()));
-    let found = trend(&levels).filter(|_| levels.len() >= FEWEST_RUNS && !slopes.is_empty())?;
-    let slope = median(slopes);
+    let weights = row_weights(&rows);
+    let slopes = rows.iter().map(|row| theil_sen(&points(row))).zip(weights.iter().copied());
+    let slope = weighted_median(slopes.collect());
+    let levels = points(&column_levels(&rows, &weights, own.len()));
+    let found = trend(&levels).filter(|_| levels.len() >= FEWEST_RUNS && slope.is_finite())?;
     let [low, high] = found.interval;
     let usual = median(rows.iter().flatten().copied().filter(|value| value.is_finite()).collect());
     let level = |(at_days, level): &(f64, f64)| {

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     document::PROGRAM,
-    math::{SIGMA_PER_MAD, column_levels, difference, false_discovery, mad, median},
+    math::{SIGMA_PER_MAD, column_levels, difference, false_discovery, mad, median, row_weights},
     remark::Remarks,
     units::SECONDS_PER_DAY,
 };
@@ -103,7 +103,7 @@ impl Sides {
         let values: Values =
             values.iter().filter(|(_, of)| both(of)).map(|(e, of)| (e.clone(), of.clone())).collect();
         let (runs, rows) = matrix(&values, 2);
-        let levels = column_levels(&rows, runs.len());
+        let levels = column_levels(&rows, &row_weights(&rows), runs.len());
         let side = |after: bool| {
             let levels =
                 runs.iter().zip(&levels).filter(|(run, level)| is_after(run) == after && level.is_finite());
