@@ -32,6 +32,8 @@ const DRIFT_S: f64 = 0.02;
 /// Friction grows by this share of the first day's a day: by half as much, which changes the peak by 0.06 deg in ten days, one
 /// of two seeds missed it (q = 0.057).
 const RUB: f64 = 0.6;
+/// A valve that is slower by this is replaced, s.
+const STUCK_S: f64 = 0.06;
 /// The day of the repair.
 const REPAIR: i64 = 5;
 
@@ -122,7 +124,7 @@ fn write(folder: &Path, seed: u64) {
                     } else if machine == RUBBING.0 {
                         rub(&mut parameters, RUBBING.1, 1.0 + RUB * day as f64);
                     } else if machine == REPAIRED.0 && day < REPAIR {
-                        rub(&mut parameters, REPAIRED.1, 3.0);
+                        parameters.joints[REPAIRED.1].valve.dead_time_s += STUCK_S;
                     }
                     let name = name(machine);
                     let bytes = simulated_log(&name, day, parameters, &sent, seed * 1_000_003 + k);
@@ -170,7 +172,7 @@ fn three_injected_faults_are_found_first_and_nothing_else() {
                 );
             }
             // A dead time that grows makes the peak grow, too: what is found above a fault is another fault.
-            let others = [DELAYED, RUBBING].map(|other| (name(other.0), joint(other.1)));
+            let others = [DELAYED, RUBBING, REPAIRED].map(|other| (name(other.0), joint(other.1)));
             let own = (name(fault.0), joint(fault.1));
             let other = |trend: &&JointTrend| {
                 let named = (trend.machine.clone(), trend.joint.clone());
@@ -187,7 +189,8 @@ fn three_injected_faults_are_found_first_and_nothing_else() {
             false_ones += found.trends.iter().filter(|t| t.found && !altered.contains(&t.machine)).count();
         }
         let at_us = 1_772_352_000_000_000 + REPAIR * 86_400_000_000;
-        let repair = effect(&data, &name(REPAIRED.0), at_us, &Filter::default(), &[By::Peak]).unwrap();
+        let repair =
+            effect(&data, &name(REPAIRED.0), at_us, &Filter::default(), &[By::Peak, By::Delay]).unwrap();
         let first = &repair.effects[0];
         println!(
             "seed {seed} repair: {} {:+.5} ({:+.5} to {:+.5}) q {:.1e} found {} rank {} of {}",
