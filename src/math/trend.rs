@@ -121,7 +121,7 @@ pub fn row_weights(rows: &[Vec<f64>]) -> Vec<f64> {
     };
     let noises: Vec<Option<f64>> = rows.iter().map(noise).collect();
     let usual = median(noises.iter().flatten().copied().collect());
-    if !(usual > 0.0) {
+    if usual.is_nan() || usual <= 0.0 {
         return vec![1.0; rows.len()];
     }
     noises.iter().map(|noise| noise.unwrap_or(usual).max(LEAST_NOISE * usual).powi(-2)).collect()
