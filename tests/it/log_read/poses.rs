@@ -12,7 +12,7 @@ use super::{
 
 const BESIDE_M: f64 = 0.005;
 const TURNED_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
-const INSTANTS: i64 = 600;
+pub(super) const INSTANTS: i64 = 600;
 
 const HEADER: &str = "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
 const POSE: &str =
@@ -21,7 +21,7 @@ const POINT: &str = "MSG: geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n
 const QUATERNION: &str = "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n";
 
 /// A channel of a type by its root and what that needs.
-fn channel(topic: &str, type_name: &str, root: &str, parts: &[&str]) -> Channel {
+pub(super) fn channel(topic: &str, type_name: &str, root: &str, parts: &[&str]) -> Channel {
     let rule = format!("{}\n", "=".repeat(80));
     let parts = [&[HEADER], parts, &[QUATERNION]].concat();
     let text: String = std::iter::once(root).chain(parts).collect::<Vec<_>>().join(&rule);
@@ -34,13 +34,13 @@ fn channel(topic: &str, type_name: &str, root: &str, parts: &[&str]) -> Channel 
     }
 }
 
-fn stamped(topic: &str) -> Channel {
+pub(super) fn stamped(topic: &str) -> Channel {
     let root = "std_msgs/Header header\ngeometry_msgs/Pose pose\n";
     channel(topic, "geometry_msgs/msg/PoseStamped", root, &[POSE, POINT])
 }
 
 /// Position and quaternion of the plan: on along x in 4 s of every 6, turning about z.
-fn planned(k: i64) -> [f64; 7] {
+pub(super) fn planned(k: i64) -> [f64; 7] {
     let (cycle, rest_s) = ((k / 300) as f64, (k % 300) as f64 * 0.02);
     let part = ((rest_s - 1.0) / 4.0).clamp(0.0, 1.0);
     let way = cycle + part * part * part * (10.0 - 15.0 * part + 6.0 * part * part);
@@ -49,18 +49,18 @@ fn planned(k: i64) -> [f64; 7] {
 }
 
 /// What came of it; with the other sign of the quaternion at times, as some estimators have it.
-fn measured(k: i64) -> [f64; 7] {
+pub(super) fn measured(k: i64) -> [f64; 7] {
     let [x, y, z, .., sine, cosine] = planned(k);
     let half_rad = sine.atan2(cosine) + 0.5 * TURNED_RAD;
     let sign = if k % 100 < 50 { 1.0 } else { -1.0 };
     [x, y + BESIDE_M, z, 0.0, 0.0, sign * half_rad.sin(), sign * half_rad.cos()]
 }
 
-fn numbers(cdr: &mut Cdr, values: &[f64]) {
+pub(super) fn numbers(cdr: &mut Cdr, values: &[f64]) {
     values.iter().for_each(|value| cdr.f64(*value));
 }
 
-fn pose_stamped(ns: i64, pose: [f64; 7]) -> Vec<u8> {
+pub(super) fn pose_stamped(ns: i64, pose: [f64; 7]) -> Vec<u8> {
     Cdr::message(Kind::LittleEndian, |cdr| {
         cdr.header(ns);
         numbers(cdr, &pose);
@@ -99,13 +99,13 @@ fn path(topic: &str) -> Channel {
     channel(topic, "nav_msgs/msg/Path", root, &[part, POSE, POINT])
 }
 
-fn reported(log: &Log, read: ReadOptions) -> Result<Report, String> {
+pub(super) fn reported(log: &Log, read: ReadOptions) -> Result<Report, String> {
     let stored = store(&[("run.mcap", &log.bytes(WriteOptions::new()))]);
     run(&Inputs { logs: stored.paths.clone(), read, ..Inputs::default() }).map_err(|error| error.to_string())
 }
 
 #[track_caller]
-fn assert_truth(report: &Report) {
+pub(super) fn assert_truth(report: &Report) {
     assert_eq!(report.remarks.as_slice(), &[]);
     let tool = report.tool.found().unwrap();
     for (found, truth) in [
