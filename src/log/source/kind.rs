@@ -105,6 +105,10 @@ pub(in crate::log) fn spec_for(
             builder.interface("position", speeds.then_some("velocity"), Role::Measured);
         }
         "geometry_msgs/PoseStamped" => builder.poses("", ["pose.position", "pose.orientation"], Role::Either),
+        "geometry_msgs/TransformStamped" => {
+            builder.poses("", ["transform.translation", "transform.rotation"], Role::Either);
+        }
+        "geometry_msgs/PointStamped" => builder.poses("", ["point", "orientation"], Role::Either),
         "nav_msgs/Odometry" => {
             builder.poses("", ["pose.pose.position", "pose.pose.orientation"], Role::Either);
         }

@@ -8,7 +8,7 @@ mod versioned;
 
 pub(super) use kind::{Field, Form, Role, Spec, spec_for};
 pub(super) use plans::{Plans, RawTrajectory};
-pub(super) use poses::{AXES, IN, Poses, is_field};
+pub(super) use poses::{AXES, IN, Poses, is_field, unit};
 pub(super) use table::{MAX_JOINTS, Stamps, Table};
 pub(super) use versioned::Versioned;
 

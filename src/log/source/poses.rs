@@ -115,7 +115,8 @@ impl Poses {
             let mut before = [0.0; 4];
             for row in rows {
                 let [x, y, z, orientation @ ..] = row.values;
-                let orientation = unit(orientation, &mut before);
+                let orientation = unit(orientation, &before);
+                before = orientation.unwrap_or(before);
                 let cells = [x, y, z].into_iter().chain(orientation.into_iter().flatten());
                 let cells = AXES.iter().zip(cells).map(|(axis, value)| (*axis, 0, value));
                 table.push_row(row.header_ns, row.publish_ns, row.log_ns, cells);
@@ -150,16 +151,14 @@ impl Poses {
 }
 
 /// A unit quaternion of the same sign as the one before, as both signs are one orientation; `None` for none.
-fn unit(q: [f64; 4], before: &mut [f64; 4]) -> Option<[f64; 4]> {
+pub(in crate::log) fn unit(q: [f64; 4], before: &[f64; 4]) -> Option<[f64; 4]> {
     let norm = q.iter().map(|v| v * v).sum::<f64>().sqrt();
     // Messages that give no orientation hold zeros.
     if !(norm.is_finite() && norm > 0.1) {
         return None;
     }
-    let along: f64 = q.iter().zip(&*before).map(|(a, b)| a * b).sum();
-    let scale = if along < 0.0 { -norm } else { norm };
-    *before = q.map(|v| v / scale);
-    Some(*before)
+    let along: f64 = q.iter().zip(before).map(|(a, b)| a * b).sum();
+    Some(q.map(|v| if along < 0.0 { -v / norm } else { v / norm }))
 }
 
 impl Sink for Poses {
