@@ -50,6 +50,20 @@ pub enum LogError {
         nearest: Option<Box<str>>,
         present: String,
     },
+    /// A frame that the caller asked for.
+    #[error(
+        "topic {topic:?} gives {found}{}; it has {present}; name one of these as {topic}:CHILD@PARENT, as transforms \
+         are not put together from others",
+        suggestion(nearest.as_deref())
+    )]
+    NoTransform { topic: String, found: String, nearest: Option<Box<str>>, present: Box<str> },
+    /// Transforms of plan and measurement have different parents.
+    #[error(
+        "the plan is {planned}, the measurement {measured}: poses are compared in one frame, that behind the @, and \
+         transforms are not put together from others; name two of one frame with --planned and --measured; the log has \
+         {present}"
+    )]
+    FramesApart { planned: Box<str>, measured: Box<str>, present: Box<str> },
     /// The log holds no plan, or no measurement.
     #[error("found no {missing} joint angles; the log has {present}; name them with {fix}")]
     Missing { missing: &'static str, present: String, fix: String },
@@ -110,6 +124,7 @@ impl LogError {
             Self::Missing { .. }
                 | Self::NoTopic { .. }
                 | Self::NoField { .. }
+                | Self::NoTransform { .. }
                 | Self::NoJoint { .. }
                 | Self::NoCommonJoint { .. }
                 | Self::NoOverlap { .. }

@@ -7,7 +7,7 @@ use super::{
     signal::{Place, Quantity},
 };
 
-/// Position x, y, z, m, and unit quaternion x, y, z, w.
+/// Position x, y, z, m, and unit quaternion x, y, z, w; zeros in its place where the orientation is not known.
 pub type PoseSample = [f64; 7];
 
 /// Planned and measured poses of one frame. All arrays are `[n]`, n >= 1; times strictly increase; `segments` cover
@@ -58,6 +58,11 @@ impl PosePair {
             }
         }
         (!pair.t_s.is_empty()).then_some(pair)
+    }
+
+    /// Whether the orientation is known on both sides, which it is of all instants or of none.
+    pub fn is_oriented(&self) -> bool {
+        [&self.planned, &self.measured].iter().all(|side| side.first().is_some_and(|q| q[3..] != [0.0; 4]))
     }
 }
 

@@ -24,7 +24,7 @@ pub enum Quantity {
     Torque,
     /// Effort of a joint that slides, N.
     Force,
-    /// Position x, y, z, m, and unit quaternion x, y, z, w of a frame.
+    /// Position x, y, z, m, and unit quaternion x, y, z, w of a frame; zeros where its orientation is not known.
     Pose,
 }
 

@@ -41,6 +41,8 @@ pub(super) fn assemble(
     let plan_is_command = remark_choice(choice, options, &mut remarks);
     let description = options.description.clone().or(description::take(&mut extracted));
     let mut sliding = description.as_deref().map(sliding_joints).unwrap_or_default();
+    // Where they are the arm's, joints called x, y and z are no pose.
+    let axes_slide = sliding.contains(AXES[0]);
     sliding.extend(joint_kind::sliding(&extracted.metadata));
     sliding.extend(options.slides.iter().cloned());
     sliding.extend(
@@ -102,7 +104,7 @@ pub(super) fn assemble(
     if delay_s != 0.0 {
         measured.earlier(delay_s);
     }
-    let poses = poses::take(&mut planned, &mut measured);
+    let poses = if axes_slide { None } else { poses::take(&mut planned, &mut measured) };
     for series in [&mut planned, &mut measured] {
         keep_joints(series, &options.joints)?;
         quality::unwrap_turns(series, &options.continuous, &mut remarks);

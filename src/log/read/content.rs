@@ -43,7 +43,9 @@ impl Content {
         match spec.form {
             Form::Plans => Self::Plans(Plans::default()),
             Form::Versioned | Form::VersionedNames => Self::Versioned(Versioned::default()),
-            Form::Poses => Self::Poses(Poses::new(&spec.fields)),
+            Form::Poses | Form::Transforms => {
+                Self::Poses(Poses::new(&spec.fields, spec.form == Form::Transforms))
+            }
             form => Self::Table(Box::new(Table::new(form, &spec.fields, joints, spec.alone.as_deref()))),
         }
     }

@@ -276,23 +276,23 @@ fn finish(out: &mut Extracted) {
             sources.push(Source { topic: half.topic, content, parts: Vec::new() });
         }
     }
-    poses_as_tables(&mut sources, out);
-    out.sources = sources;
+    out.sources = poses_as_tables(sources, out);
 }
 
 /// Turns poses into tables; what has none is left out.
-fn poses_as_tables(sources: &mut Vec<Source>, out: &mut Extracted) {
-    sources.retain_mut(|source| {
-        let Content::Poses(poses) = &source.content else { return true };
+fn poses_as_tables(sources: Vec<Source>, out: &mut Extracted) -> Vec<Source> {
+    let tables = |source: Source| {
+        let Content::Poses(poses) = &source.content else { return vec![source] };
         let topic = &out.topics[source.topic];
         let message = format!(
             "paths of {} whose poses have no times that increase, left out: a report compares by time",
             topic.topic
         );
         out.remarks.add(Code::UnusableStamp, poses.untimed, message);
-        let Some(table) = poses.to_table(topic.type_name.ends_with("Path")) else { return false };
+        let tables = poses.to_tables(topic.type_name.ends_with("Path")).into_iter();
+        let content = tables.map(|table| Content::Table(Box::new(table)));
         // Where the parts of several files meet is not kept.
-        *source = Source { topic: source.topic, content: Content::Table(Box::new(table)), parts: Vec::new() };
-        true
-    });
+        content.map(|content| Source { topic: source.topic, content, parts: Vec::new() }).collect()
+    };
+    sources.into_iter().flat_map(tables).collect()
 }

@@ -4,6 +4,7 @@ mod assemble;
 mod content;
 mod description;
 mod extract;
+mod frames;
 mod indexed;
 mod joints;
 mod overlap;

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::{
     content::{Content, Extracted, TopicCount},
+    frames,
     topics::{fields_of, lacks_positions, present},
 };
 use crate::{
@@ -11,7 +12,7 @@ use crate::{
         csv::ORIGIN,
         error::LogError,
         options::{ReadOptions, Selector, Sides},
-        source::{Form, Role},
+        source::{Form, Role, is_field},
     },
     suggest::nearest,
 };
@@ -147,6 +148,8 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
     {
         return Err(LogError::SameField { field: p.topic.clone() });
     }
+    let source = |c: &Candidate| c.source;
+    frames::check_sides(extracted, planned.iter().map(source), measured.iter().map(source))?;
     let why = why(extracted, options, &planned, &measured);
     let rivals = rivals(&all_measured, &measured, &wanted);
     Ok(Choice { planned, measured, why, rivals })
@@ -274,6 +277,7 @@ pub(super) fn named(extracted: &Extracted, selector: &Selector, role: Role) -> R
             nearest: nearest(&selector.topic, extracted.topics.iter().map(|t| t.topic.as_str())),
             present: present(extracted),
         })?;
+    frames::check_selector(extracted, topic, selector)?;
     let sources = (0..extracted.sources.len()).filter(|&s| extracted.sources[s].topic == topic);
     let fitting = sources.flat_map(|s| of_source(extracted, s, role, selector.field.as_deref()));
     fitting.min_by_key(|c| (c.rank, c.field)).ok_or_else(|| {
@@ -321,7 +325,7 @@ fn of_source(extracted: &Extracted, source: usize, role: Role, field: Option<&st
         Content::Table(table) => {
             let positions = table.fields.iter().enumerate().filter(|(_, f)| !f.is_velocity);
             positions
-                .filter(|(_, f)| field.is_none_or(|path| f.path == path))
+                .filter(|(_, f)| field.is_none_or(|path| is_field(&f.path, path)))
                 .filter_map(|(k, f)| {
                     let filled = |j: &usize| table.column(k, *j).iter().any(|v| v.is_finite());
                     let joints: Vec<String> =

@@ -6,7 +6,10 @@ use super::{
     content::{Content, Extracted, Source},
     recording::TopicInfo,
 };
-use crate::{log::source::Table, units::NS_PER_S};
+use crate::{
+    log::source::{Form, Table},
+    units::NS_PER_S,
+};
 
 /// Topics with joints, for messages; all topics if there is none.
 pub(super) fn present(extracted: &Extracted) -> String {
@@ -81,7 +84,9 @@ fn topic_info<'a>(
             Content::Table(table) => {
                 info.joints.extend(table.joints.iter().cloned());
                 for (k, field) in table.fields.iter().enumerate() {
-                    if !field.is_velocity && (0..table.joints.len()).any(|j| !table.column(k, j).is_empty()) {
+                    let filled = || (0..table.joints.len()).any(|j| !table.column(k, j).is_empty());
+                    // That a frame is there is known of those that nobody named, too.
+                    if !field.is_velocity && (table.form == Form::Poses || filled()) {
                         info.joint_fields.push(field.path.clone());
                     }
                 }

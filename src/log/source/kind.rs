@@ -48,6 +48,8 @@ pub(in crate::log) enum Form {
     Plans,
     /// Poses of a frame.
     Poses,
+    /// Poses that say of which frame they are, and in which.
+    Transforms,
 }
 
 /// How to read one type of message.
@@ -103,11 +105,23 @@ pub(in crate::log) fn spec_for(
             builder.interface("position", speeds.then_some("velocity"), Role::Measured);
         }
         "geometry_msgs/PoseStamped" => builder.poses("", ["pose.position", "pose.orientation"], Role::Either),
+        "geometry_msgs/TransformStamped" => {
+            builder.poses("", ["transform.translation", "transform.rotation"], Role::Either);
+        }
+        "geometry_msgs/PointStamped" => builder.poses("", ["point", "orientation"], Role::Either),
         "nav_msgs/Odometry" => {
             builder.poses("", ["pose.pose.position", "pose.pose.orientation"], Role::Either);
         }
         "nav_msgs/Path" => {
             builder.poses("poses", ["poses.pose.position", "poses.pose.orientation"], Role::Planned);
+        }
+        "tf2_msgs/TFMessage" | "tf/tfMessage" if !selectors.is_empty() => {
+            let names = ["transforms.child_frame_id", "transforms.header.frame_id"];
+            builder.transforms("transforms", names, "transforms.transform");
+        }
+        "foxglove/FrameTransforms" if !selectors.is_empty() => {
+            let names = ["transforms.child_frame_id", "transforms.parent_frame_id"];
+            builder.transforms("transforms", names, "transforms");
         }
         "pal_statistics_msgs/StatisticsNames" => {
             builder.spec.form = Form::VersionedNames;
@@ -183,10 +197,21 @@ impl Builder<'_> {
         }
     }
 
+    /// Wants transforms, of the frames that the caller names: those of a robot are many.
+    fn transforms(&mut self, group: &str, names: [&str; 2], at: &str) {
+        self.pose(group, [&format!("{at}.translation"), &format!("{at}.rotation")]);
+        self.spec.form = Form::Transforms;
+        names.iter().zip([slot::CHILD, slot::PARENT]).for_each(|(path, slot)| self.want(path, slot));
+    }
+
     /// Wants poses, a list of them where `group` names one.
-    fn poses(&mut self, group: &str, [position, orientation]: [&str; 2], role: Role) {
+    fn poses(&mut self, group: &str, paths: [&str; 2], role: Role) {
         self.spec.form = Form::Poses;
         self.interface("pose", None, role);
+        self.pose(group, paths);
+    }
+
+    fn pose(&mut self, group: &str, [position, orientation]: [&str; 2]) {
         if !group.is_empty() {
             self.want(group, slot::GROUP);
         }
@@ -281,7 +306,7 @@ impl Builder<'_> {
         if self.spec.fields.iter().any(|field| &field.path == path) {
             return;
         }
-        if self.spec.form == Form::Interfaces {
+        if matches!(self.spec.form, Form::Interfaces | Form::Transforms) {
             self.interface(path, None, role);
         } else if matches!(self.spec.form, Form::Table | Form::Groups) {
             let velocity = match path.rsplit_once('.') {

@@ -8,7 +8,7 @@ mod versioned;
 
 pub(super) use kind::{Field, Form, Role, Spec, spec_for};
 pub(super) use plans::{Plans, RawTrajectory};
-pub(super) use poses::{AXES, Poses};
+pub(super) use poses::{AXES, IN, Poses, is_field, unit};
 pub(super) use table::{MAX_JOINTS, Stamps, Table};
 pub(super) use versioned::Versioned;
 
@@ -33,6 +33,10 @@ pub(super) mod slot {
     pub(in crate::log) const VELOCITIES: Slot = 11;
     pub(in crate::log) const ACCELERATIONS: Slot = 12;
     pub(in crate::log) const VERSION: Slot = 13;
+    /// The frame that a pose is of.
+    pub(in crate::log) const CHILD: Slot = 14;
+    /// The frame that it is told in.
+    pub(in crate::log) const PARENT: Slot = 15;
     /// The first of a table's own fields.
     pub(in crate::log) const FIELD: Slot = 32;
 }

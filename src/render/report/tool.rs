@@ -2,7 +2,7 @@
 
 use crate::{
     render::{
-        kit::{Block, Column, Id, Section, Sentence, Table, deg, mm, share},
+        kit::{Block, Column, Id, Section, Sentence, Table, deg, mm, optional, share},
         metric::{Units, position},
     },
     replay::{TOOL, ToolCause, ToolDeviation, ToolReplay, ToolRest},
@@ -112,7 +112,7 @@ fn rests(rests: &[ToolRest], most: usize) -> Table {
             format!("{:.2}", rest.to_s),
             mm(rest.arrival_m),
             mm(rest.deviation.error_m),
-            deg(rest.deviation.orientation_rad),
+            optional(rest.deviation.orientation_rad, deg),
         ]
     };
     let columns = [

@@ -37,7 +37,7 @@ pub(super) fn tool_card(tool: &Tool) -> Markup {
     let body = html! {
         @if let Some(end) = found.end() { p { (format!("{} mm when it came to rest at the end", mm(end.deviation.error_m))) } }
         @if let Some(cause) = main_cause(&worst.deviation) { p { (clean(&cause)) " of the worst" } }
-        p { (format!("RMS {} mm, orientation {} deg at worst", mm(found.rms_m), deg(found.worst_orientation_rad))) }
+        p { "RMS " (mm(found.rms_m)) " mm" @if let Some(rad) = found.worst_orientation_rad { ", orientation " (deg(rad)) " deg at worst" } }
         p { a href={ "#" (ID.0) } { "How, and by which joint" } }
     };
     let headline = format!("{} mm off at {:.1} s", mm(worst.deviation.error_m), worst.time_s);
@@ -66,26 +66,29 @@ pub(super) fn error_chart(found: &ToolReplay, path: &ToolPath) -> Chart {
         |values: &[f64], kind| at(values, &places).map(|value| rounded(on_paper(kind, value))).collect();
     let series = |name: &str, role, y| Series { name: name.to_owned(), role, x: 0, y, names: Vec::new() };
     let panel = |label: &str, share, series| Panel { label: label.to_owned(), series, share, range: None };
+    let angle = || {
+        panel(
+            "Angle (deg)",
+            0.35,
+            vec![series("orientation", Role::Before, shown(&path.orientation_rad, Turns))],
+        )
+    };
     Chart {
         title: format!("Error at the tool (link {})", found.tool),
         note: format!("worst {} mm, rms {} mm", mm(found.worst.deviation.error_m), mm(found.rms_m)),
         x_label: "Time (s)".into(),
         xs: vec![times(&path.t_s, &places)],
-        panels: vec![
-            panel(
-                "Error (mm)",
-                0.65,
-                vec![
-                    series("distance", Role::Error, shown(&path.error_m, Slides)),
-                    series("behind along the path", Role::Measured, shown(&path.along_m, Slides)),
-                ],
-            ),
-            panel(
-                "Angle (deg)",
-                0.35,
-                vec![series("orientation", Role::Before, shown(&path.orientation_rad, Turns))],
-            ),
-        ],
+        panels: [panel(
+            "Error (mm)",
+            if found.rms_orientation_rad.is_some() { 0.65 } else { 1.0 },
+            vec![
+                series("distance", Role::Error, shown(&path.error_m, Slides)),
+                series("behind along the path", Role::Measured, shown(&path.along_m, Slides)),
+            ],
+        )]
+        .into_iter()
+        .chain(found.rms_orientation_rad.map(|_| angle()))
+        .collect(),
         group: Some("run"),
         height: 270,
         size: Size::Wide,

@@ -19,7 +19,7 @@ pub(super) fn deviation(arm: &Kinematics, planned: &[f64], measured: &[f64]) -> 
     let distance_m = error_m.norm();
     let mut found = ToolDeviation {
         error_m: distance_m,
-        orientation_rad: angle_rad(&poses),
+        orientation_rad: Some(angle_rad(&poses)),
         causes: Vec::new(),
         nonlinear_share: 0.0,
     };

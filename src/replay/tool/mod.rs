@@ -5,16 +5,16 @@ mod instants;
 mod outcome;
 mod source;
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
 use nalgebra::Vector3;
 
 pub use outcome::{ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst};
 
-use super::Rules;
+use super::{PathError, Rules, path::path_error};
 use crate::{
     arm::Kinematics,
-    series::{Pair, PosePair},
+    series::{JointKind, Pair, PosePair},
     threads::numbered,
 };
 use deviation::angle_rad;
@@ -38,9 +38,8 @@ fn found(source: &impl Source, tool: &str, rules: &Rules) -> Option<(ToolReplay,
     let path = path(source, rules);
     let rests = rests(source, &path, rules);
     let worst = (0..path.t_s.len()).max_by(|a, b| path.error_m[*a].total_cmp(&path.error_m[*b]))?;
-    let turned = (0..path.t_s.len())
-        .max_by(|a, b| path.orientation_rad[*a].total_cmp(&path.orientation_rad[*b]))
-        .unwrap_or(worst);
+    let angle_rad = &path.orientation_rad;
+    let turned = (0..angle_rad.len()).max_by(|a, b| angle_rad[*a].total_cmp(&angle_rad[*b]));
     let along_m = Some(path.along_m[worst]).filter(|along_m| along_m.is_finite());
     let window_s = [path.t_s[0], path.t_s[path.t_s.len() - 1]];
     let found = ToolReplay {
@@ -49,9 +48,12 @@ fn found(source: &impl Source, tool: &str, rules: &Rules) -> Option<(ToolReplay,
         sample_interval_s: (window_s[1] - window_s[0]) / (path.t_s.len() - 1).max(1) as f64,
         window_s,
         rms_m: rms(path.error_m.iter().copied()),
-        rms_orientation_rad: rms(path.orientation_rad.iter().copied()),
-        worst_orientation_rad: path.orientation_rad[turned],
-        worst_orientation_s: path.t_s[turned],
+        mean_m: mean(&path.error_m),
+        path_error: off_path(&path, rules),
+        rms_orientation_rad: turned.map(|_| rms(angle_rad.iter().copied())),
+        mean_orientation_rad: turned.map(|_| mean(angle_rad)),
+        worst_orientation_rad: turned.map(|i| angle_rad[i]),
+        worst_orientation_s: turned.map(|i| path.t_s[i]),
         worst: ToolWorst {
             time_s: path.t_s[worst],
             along_m,
@@ -91,7 +93,7 @@ fn path(source: &impl Source, rules: &Rules) -> ToolPath {
         measured_m: rows.iter().map(|row| row.0[1].into()).collect(),
         error_m: rows.iter().map(|row| (row.0[0] - row.0[1]).norm()).collect(),
         along_m,
-        orientation_rad: rows.iter().map(|row| row.1).collect(),
+        orientation_rad: rows.iter().filter(|_| source.is_oriented()).map(|row| row.1).collect(),
         segments: source.segments().to_vec(),
     }
 }
@@ -103,6 +105,28 @@ fn across_m(error_m: f64, along_m: f64) -> f64 {
 fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (count, squares) = values.fold((0_usize, 0.0), |(n, sum), value| (n + 1, sum + value * value));
     (squares / count.max(1) as f64).sqrt()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// Distance to the planned path, whatever the time: that of three joints which slide along the axes.
+fn off_path(path: &ToolPath, rules: &Rules) -> Option<PathError> {
+    let t_s: Arc<[f64]> = path.t_s.as_slice().into();
+    let pairs = [0, 1, 2].map(|k| Pair {
+        name: String::new(),
+        kind: JointKind::Slides,
+        t_s: t_s.clone(),
+        planned: path.planned_m.iter().map(|at| at[k]).collect(),
+        planned_velocity: None,
+        measured: path.measured_m.iter().map(|at| at[k]).collect(),
+        segments: path.segments.clone(),
+        planned_interval_s: 0.0,
+        matched: path.t_s.len(),
+        unmatched: 0,
+    });
+    Some(path_error(&pairs, rules)?.1)
 }
 
 fn split(path: &ToolPath) -> Option<ToolSplit> {

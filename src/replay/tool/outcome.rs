@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::series::JointKind;
+use crate::{replay::PathError, series::JointKind};
 
 /// The tool against its plan, over the instants at which every joint of the arm is known. Distances are between the
 /// planned and the measured origin of the tool's frame at the same instant.
@@ -21,12 +21,18 @@ pub struct ToolReplay {
     pub window_s: [f64; 2],
     /// Root mean square distance, m.
     pub rms_m: f64,
-    /// Root mean square angle between planned and measured orientation, rad.
-    pub rms_orientation_rad: f64,
+    /// Mean distance, m.
+    pub mean_m: f64,
+    /// Distance to the planned path, whatever the time, m.
+    pub path_error: Option<PathError>,
+    /// Root mean square angle between planned and measured orientation, rad; `None` where the log holds only positions.
+    pub rms_orientation_rad: Option<f64>,
+    /// Mean of that angle, rad.
+    pub mean_orientation_rad: Option<f64>,
     /// Largest such angle, rad.
-    pub worst_orientation_rad: f64,
+    pub worst_orientation_rad: Option<f64>,
     /// When that was, s.
-    pub worst_orientation_s: f64,
+    pub worst_orientation_s: Option<f64>,
     /// The largest distance.
     pub worst: ToolWorst,
     /// The distance along and across the planned path; `None` if the plan never moves the tool.
@@ -91,8 +97,8 @@ pub struct ToolRest {
 pub struct ToolDeviation {
     /// Distance, m.
     pub error_m: f64,
-    /// Angle between planned and measured orientation, rad.
-    pub orientation_rad: f64,
+    /// Angle between planned and measured orientation, rad; `None` where the log holds only positions.
+    pub orientation_rad: Option<f64>,
     /// What each joint's error makes of the distance, from base to tool; empty without a distance.
     pub causes: Vec<ToolCause>,
     /// Share of the distance that the shares of the joints leave: what is not linear in their errors.
@@ -130,7 +136,7 @@ pub struct ToolPath {
     pub error_m: Vec<f64>,
     /// Part of it along the planned direction, m, positive if the tool is behind; not-a-number at rest.
     pub along_m: Vec<f64>,
-    /// Angle between the orientations, rad.
+    /// Angle between the orientations, rad; empty where it is not known.
     pub orientation_rad: Vec<f64>,
     /// Continuous stretches.
     pub segments: Vec<Range<usize>>,

@@ -25,6 +25,11 @@ pub(super) trait Source: Sync {
     /// Planned and measured.
     fn poses(&self, i: usize) -> [Pose; 2];
 
+    /// Whether the orientation is known.
+    fn is_oriented(&self) -> bool {
+        true
+    }
+
     /// Whether the plan moves slower than rest allows between two instants.
     fn rests(&self, from_to: [usize; 2], rules: &Rules) -> bool;
 
@@ -77,6 +82,10 @@ impl Source for PosePair {
         [&self.planned[i], &self.measured[i]].map(pose)
     }
 
+    fn is_oriented(&self) -> bool {
+        self.is_oriented()
+    }
+
     fn rests(&self, [low, high]: [usize; 2], rules: &Rules) -> bool {
         let time_s = self.t_s[high] - self.t_s[low];
         let ends = [low, high].map(|i| pose(&self.planned[i]));
@@ -88,7 +97,7 @@ impl Source for PosePair {
         let sides = [&self.planned, &self.measured].map(|side| pose(&mean(&side[some.clone()])));
         ToolDeviation {
             error_m: (sides[0].translation.vector - sides[1].translation.vector).norm(),
-            orientation_rad: angle_rad(&sides),
+            orientation_rad: self.is_oriented().then(|| angle_rad(&sides)),
             causes: Vec::new(),
             nonlinear_share: 0.0,
         }
@@ -102,6 +111,6 @@ fn mean(some: &[PoseSample]) -> PoseSample {
 }
 
 fn pose(&[x, y, z, qx, qy, qz, qw]: &PoseSample) -> Pose {
-    let turn = UnitQuaternion::from_quaternion(Quaternion::new(qw, qx, qy, qz));
+    let turn = UnitQuaternion::try_new(Quaternion::new(qw, qx, qy, qz), 0.0).unwrap_or_default();
     Pose::from_parts(Vector3::new(x, y, z).into(), turn.to_rotation_matrix())
 }

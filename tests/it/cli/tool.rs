@@ -134,3 +134,62 @@ fn every_form_tells_the_tool() {
     let plain = said(&run_line(samples(), &format!("report {PLAIN} --html"))).1;
     assert!(!plain.contains("id=\"tool\"") && !plain.contains("data-scene=\""));
 }
+
+/// 4 mm and 2 deg off in one half of the run, 2 mm and 1 deg in the other: largest, mean and root mean square differ.
+#[test]
+fn a_tool_measured_as_a_pose_has_its_figures_in_text_document_and_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..1000)
+        .map(|k| {
+            let t_s = 0.01 * f64::from(k);
+            let x_mm = 100.0 * (t_s - 2.0).clamp(0.0, 4.0);
+            let half = if k < 500 { 2.0 } else { 1.0 };
+            format!("{t_s:.2},{x_mm},0,0,0,0,0,{x_mm},{},0,0,0,{half}\n", -2.0 * half)
+        })
+        .collect();
+    let columns = |side: &str| {
+        ["x_mm", "y_mm", "z_mm", "roll_deg", "pitch_deg", "yaw_deg"].map(|name| format!("{side}_{name}"))
+    };
+    let header = [columns("planned"), columns("measured")].concat().join(",");
+    fs::write(folder.path().join("a.csv"), format!("time_s,{header}\n{rows}")).unwrap();
+    let document = json(folder.path(), "report a.csv");
+    hold_to_schema(&document, "report.v2");
+    let tool = &document["tool"];
+    let near = |found: &serde_json::Value, truth: f64| {
+        assert!((found.as_f64().unwrap() - truth).abs() < 2e-3 * truth, "{found} in place of {truth}");
+    };
+    let rms = 2.5_f64.sqrt();
+    for (found, truth) in [
+        (&tool["worst"]["error_m"], 0.004),
+        (&tool["mean_m"], 0.003),
+        (&tool["rms_m"], 0.002 * rms),
+        (&tool["path_error"]["rms"], 0.002 * rms),
+        (&tool["path_error"]["peak"], 0.004),
+        (&tool["worst_orientation_rad"], 2_f64.to_radians()),
+        (&tool["mean_orientation_rad"], 1.5_f64.to_radians()),
+        (&tool["rms_orientation_rad"], rms.to_radians()),
+    ] {
+        near(found, truth);
+    }
+    // By axis.
+    let y = &document["joints"][1];
+    assert_eq!((&y["name"], &y["unit"]), (&"y".into(), &"m".into()));
+    near(&y["tracking_error"]["rms"], 0.002 * rms);
+    near(&y["tracking_error"]["mean_abs"], 0.003);
+    near(&y["tracking_error"]["peak"], 0.004);
+    let form = |more: &str| said(&run_line(folder.path(), &format!("report a.csv {more}"))).1;
+    let text = form("");
+    let line = text.lines().skip_while(|line| *line != "AT THE TOOL").nth(2).unwrap();
+    let cells: Vec<&str> = line.split_whitespace().collect();
+    for shown in ["4.00", "3.00", "3.16", "2.000", "1.500", "1.581"] {
+        assert!(cells.contains(&shown), "{shown}: {line}");
+    }
+    let csv = form("--csv");
+    let figure = |key: &str| {
+        let line = csv.lines().find_map(|line| line.strip_prefix(&format!("# tool {key} ")));
+        line.unwrap_or_else(|| panic!("{key}: {csv}")).parse::<f64>().unwrap()
+    };
+    assert!((figure("mean_m") - 0.003).abs() < 1e-5 && (figure("path_worst_m") - 0.004).abs() < 1e-5);
+    assert!((figure("mean_orientation_rad") - 1.5_f64.to_radians()).abs() < 1e-4);
+    assert!(csv.lines().next().unwrap().starts_with("run,"));
+}

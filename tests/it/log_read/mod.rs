@@ -24,6 +24,7 @@ mod range;
 mod schema;
 mod topics;
 mod trajectories;
+mod transforms;
 
 use std::path::PathBuf;
 

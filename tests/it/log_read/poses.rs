@@ -12,7 +12,7 @@ use super::{
 
 const BESIDE_M: f64 = 0.005;
 const TURNED_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
-const INSTANTS: i64 = 600;
+pub(super) const INSTANTS: i64 = 600;
 
 const HEADER: &str = "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
 const POSE: &str =
@@ -21,7 +21,7 @@ const POINT: &str = "MSG: geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n
 const QUATERNION: &str = "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n";
 
 /// A channel of a type by its root and what that needs.
-fn channel(topic: &str, type_name: &str, root: &str, parts: &[&str]) -> Channel {
+pub(super) fn channel(topic: &str, type_name: &str, root: &str, parts: &[&str]) -> Channel {
     let rule = format!("{}\n", "=".repeat(80));
     let parts = [&[HEADER], parts, &[QUATERNION]].concat();
     let text: String = std::iter::once(root).chain(parts).collect::<Vec<_>>().join(&rule);
@@ -34,13 +34,13 @@ fn channel(topic: &str, type_name: &str, root: &str, parts: &[&str]) -> Channel 
     }
 }
 
-fn stamped(topic: &str) -> Channel {
+pub(super) fn stamped(topic: &str) -> Channel {
     let root = "std_msgs/Header header\ngeometry_msgs/Pose pose\n";
     channel(topic, "geometry_msgs/msg/PoseStamped", root, &[POSE, POINT])
 }
 
 /// Position and quaternion of the plan: on along x in 4 s of every 6, turning about z.
-fn planned(k: i64) -> [f64; 7] {
+pub(super) fn planned(k: i64) -> [f64; 7] {
     let (cycle, rest_s) = ((k / 300) as f64, (k % 300) as f64 * 0.02);
     let part = ((rest_s - 1.0) / 4.0).clamp(0.0, 1.0);
     let way = cycle + part * part * part * (10.0 - 15.0 * part + 6.0 * part * part);
@@ -49,18 +49,18 @@ fn planned(k: i64) -> [f64; 7] {
 }
 
 /// What came of it; with the other sign of the quaternion at times, as some estimators have it.
-fn measured(k: i64) -> [f64; 7] {
+pub(super) fn measured(k: i64) -> [f64; 7] {
     let [x, y, z, .., sine, cosine] = planned(k);
     let half_rad = sine.atan2(cosine) + 0.5 * TURNED_RAD;
     let sign = if k % 100 < 50 { 1.0 } else { -1.0 };
     [x, y + BESIDE_M, z, 0.0, 0.0, sign * half_rad.sin(), sign * half_rad.cos()]
 }
 
-fn numbers(cdr: &mut Cdr, values: &[f64]) {
+pub(super) fn numbers(cdr: &mut Cdr, values: &[f64]) {
     values.iter().for_each(|value| cdr.f64(*value));
 }
 
-fn pose_stamped(ns: i64, pose: [f64; 7]) -> Vec<u8> {
+pub(super) fn pose_stamped(ns: i64, pose: [f64; 7]) -> Vec<u8> {
     Cdr::message(Kind::LittleEndian, |cdr| {
         cdr.header(ns);
         numbers(cdr, &pose);
@@ -99,20 +99,32 @@ fn path(topic: &str) -> Channel {
     channel(topic, "nav_msgs/msg/Path", root, &[part, POSE, POINT])
 }
 
-fn reported(log: &Log, read: ReadOptions) -> Result<Report, String> {
+pub(super) fn reported(log: &Log, read: ReadOptions) -> Result<Report, String> {
     let stored = store(&[("run.mcap", &log.bytes(WriteOptions::new()))]);
     run(&Inputs { logs: stored.paths.clone(), read, ..Inputs::default() }).map_err(|error| error.to_string())
 }
 
 #[track_caller]
-fn assert_truth(report: &Report) {
+pub(super) fn assert_truth(report: &Report) {
+    let tool = report.tool.found().unwrap();
+    let angles = [tool.worst_orientation_rad, tool.mean_orientation_rad, tool.rms_orientation_rad];
+    for found in angles {
+        assert!((found.unwrap() - TURNED_RAD).abs() < 1e-6, "{angles:?}");
+    }
+    assert_place(report);
+}
+
+/// The position alone.
+#[track_caller]
+fn assert_place(report: &Report) {
     assert_eq!(report.remarks.as_slice(), &[]);
     let tool = report.tool.found().unwrap();
     for (found, truth) in [
         (tool.worst.deviation.error_m, BESIDE_M),
         (tool.rms_m, BESIDE_M),
-        (tool.worst_orientation_rad, TURNED_RAD),
-        (tool.rms_orientation_rad, TURNED_RAD),
+        (tool.mean_m, BESIDE_M),
+        (tool.path_error.unwrap().rms, BESIDE_M),
+        (tool.path_error.unwrap().peak, BESIDE_M),
         (tool.split.unwrap().rms_across_m, BESIDE_M),
         (tool.end().unwrap().deviation.error_m, BESIDE_M),
     ] {
@@ -202,19 +214,73 @@ fn where_there_are_joints_poses_count_only_if_named() {
     assert!(both.poses.is_some());
 }
 
-#[test]
-fn columns_of_a_table_are_poses_by_their_names() {
-    let names = ["x_mm", "y_mm", "z_mm", "qx", "qy", "qz", "qw"];
-    let of = |side: &str| names.map(|name| format!("{side}_{name}")).join(",");
+/// A table of both sides: position in mm, then what tells the orientation.
+fn table(turns: &[&str], orientation: impl Fn([f64; 4]) -> Vec<f64>) -> Report {
+    let names = [&["x_mm", "y_mm", "z_mm"], turns].concat();
+    let of = |side: &str| names.iter().map(|name| format!("{side}_{name}")).collect::<Vec<_>>().join(",");
     let mut text = format!("time_s,{},{}\n", of("planned"), of("measured"));
     for k in 0..INSTANTS {
         let cells = [planned(k), measured(k)].map(|[x, y, z, turn @ ..]| {
-            let all = [1e3 * x, 1e3 * y, 1e3 * z].into_iter().chain(turn);
+            let all = [1e3 * x, 1e3 * y, 1e3 * z].into_iter().chain(orientation(turn));
             all.map(|value| format!("{value:.12}")).collect::<Vec<_>>().join(",")
         });
         text += &format!("{:.2},{}\n", k as f64 * 0.02, cells.join(","));
     }
     let stored = store(&[("run.csv", text.as_bytes())]);
-    let report = run(&Inputs { logs: stored.paths.clone(), ..Inputs::default() }).unwrap();
-    assert_truth(&report);
+    run(&Inputs { logs: stored.paths.clone(), ..Inputs::default() }).unwrap()
+}
+
+#[test]
+fn columns_of_a_table_are_poses_by_their_names() {
+    assert_truth(&table(&["qx", "qy", "qz", "qw"], |turn| turn.to_vec()));
+}
+
+/// The yaw leaves 180 degrees on its way, which is no jump.
+#[test]
+fn columns_of_roll_pitch_and_yaw_are_an_orientation() {
+    let yaw_deg = |[.., sine, cosine]: [f64; 4]| {
+        let deg = (2.0 * sine.atan2(cosine)).to_degrees() + 165.0;
+        vec![180.0, 0.0, (deg + 180.0).rem_euclid(360.0) - 180.0]
+    };
+    assert_truth(&table(&["roll_deg", "pitch_deg", "yaw_deg"], yaw_deg));
+}
+
+#[test]
+fn columns_of_a_position_alone_have_no_angle() {
+    let report = table(&[], |_| Vec::new());
+    assert_place(&report);
+    let tool = report.tool.found().unwrap();
+    let angles =
+        [tool.worst_orientation_rad, tool.mean_orientation_rad, tool.worst.deviation.orientation_rad];
+    assert_eq!(angles, [None; 3]);
+}
+
+#[test]
+fn stamped_transforms_have_an_angle_and_stamped_points_none() {
+    let vector = "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n";
+    let part = "MSG: geometry_msgs/Transform\ngeometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n";
+    let root = "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n";
+    let transform = |topic| channel(topic, "geometry_msgs/msg/TransformStamped", root, &[part, vector]);
+    let root = "std_msgs/Header header\ngeometry_msgs/Point point\n";
+    let point = |topic| channel(topic, "geometry_msgs/msg/PointStamped", root, &[POINT]);
+    let topics = ["/planned/tool", "/tool"];
+    let log_of = |channels: [Channel; 2], frame: Option<&str>, most: usize| {
+        let mut log = Log::default();
+        let ids = channels.map(|channel| log.channel(channel));
+        for k in 0..INSTANTS {
+            for (id, pose) in ids.into_iter().zip([planned(k), measured(k)]) {
+                let message = Cdr::message(Kind::LittleEndian, |cdr| {
+                    cdr.header(stamp(k));
+                    frame.into_iter().for_each(|frame| cdr.text(frame));
+                    numbers(cdr, &pose[..most]);
+                });
+                log.send(id, stamp(k), message);
+            }
+        }
+        reported(&log, ReadOptions::default()).unwrap()
+    };
+    assert_truth(&log_of(topics.map(transform), Some("tool"), 7));
+    let report = log_of(topics.map(point), None, 3);
+    assert_place(&report);
+    assert_eq!(report.tool.found().unwrap().rms_orientation_rad, None);
 }
