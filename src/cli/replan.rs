@@ -1,6 +1,6 @@
 //! `replan`
 
-use std::{collections::BTreeMap, ops::ControlFlow, path::PathBuf};
+use std::{collections::BTreeMap, ffi::OsString, ops::ControlFlow, path::PathBuf};
 
 use super::{
     CliError, Outcome, Run,
@@ -9,8 +9,9 @@ use super::{
     read::SentArgs,
 };
 use crate::{
+    atomic_file::may_write,
     fit::Learning,
-    render::{next, replan as words},
+    render::{kit::argument, next, replan as words},
     workflow::replan::{Commanded, Inputs, ReplanDocument, Replanned, run},
 };
 
@@ -48,6 +49,10 @@ pub(super) struct Args {
     /// One JSON document (schemas/replan.v3.schema.json in the repository)
     #[arg(long)]
     json: bool,
+
+    /// Write one page for a browser to FILE: verdict, checklist, plots with limits; needs no network
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
 
     #[command(flatten)]
     change: ChangeArgs,
@@ -123,6 +128,7 @@ impl Args {
         let request = self.request();
         let read: Vec<PathBuf> = self.logs.iter().chain(&self.limits).chain(&self.task).cloned().collect();
         spare_for_log(self.output.as_deref(), &read)?;
+        self.html.as_deref().map_or(Ok(()), may_write)?;
         let bar = progress(Some(request.evaluations), "{bar:30} {pos} evaluations");
         let replanned = run(&request, |evaluations| {
             bar.set_position(evaluations);
@@ -149,6 +155,13 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let replanned = self.replanned()?;
         let target = Target::stdout(self.json);
+        if let Some(file) = &self.html {
+            let again = again(std::env::args_os().skip(1));
+            let whole =
+                replanned.command.as_ref().is_some_and(Commanded::applied) && !replanned.past.careful();
+            let sending = next::to_send(self.output.as_deref(), &self.logs, &again, whole);
+            write_file(file, words::page(&replanned, &sending).as_bytes())?;
+        }
         let result = match &self.output {
             _ if self.json => ReplanDocument::of(&replanned).json(),
             Some(path) => {
@@ -158,5 +171,56 @@ impl Run for Args {
             None => target.text(&words::document(&replanned)),
         };
         console.finish(&target, &result, &replanned.remarks, &[])
+    }
+}
+
+/// Options that say how much is sent and where it goes, and whether a value follows.
+const OWN: [(&str, bool); 9] = [
+    ("--gain", true),
+    ("--output", true),
+    ("-o", true),
+    ("--html", true),
+    ("--json", false),
+    ("--quiet", false),
+    ("-q", false),
+    ("--verbose", false),
+    ("-v", false),
+];
+
+/// The command line without them, its words as a shell needs them.
+fn again(words: impl Iterator<Item = OsString>) -> Vec<String> {
+    let mut kept = Vec::new();
+    let mut words = words.map(|word| word.to_string_lossy().into_owned());
+    while let Some(word) = words.next() {
+        match OWN.iter().find(|(own, _)| word == *own || word.starts_with(&format!("{own}="))) {
+            Some((own, true)) if word == *own => drop(words.next()),
+            Some(_) => {}
+            // An option stays one; any other word that begins with a dash is the value of one.
+            None if word.starts_with('-') => kept.push(argument(word).replacen("./", "", 1)),
+            None => kept.push(argument(word)),
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_careful_step_keeps_every_option_but_size_and_files() {
+        let line = [
+            "replan",
+            "my run.mcap",
+            "--gain",
+            "1",
+            "-o",
+            "a.mcap",
+            "--html=b.html",
+            "--joints=a b",
+            "--keep-plan",
+        ];
+        let kept = again(line.into_iter().map(OsString::from));
+        assert_eq!(kept, ["replan", "'my run.mcap'", "'--joints=a b'", "--keep-plan"]);
     }
 }

@@ -30,9 +30,32 @@ pub(crate) fn limits_written(limits: &Path, log: Option<&PathBuf>) -> Section {
 /// After `replan` of these logs.
 pub(crate) fn next_written(next: &Path, logs: &[PathBuf]) -> Section {
     let next = argument(next);
+    after_run(written(&next), &next, logs)
+}
+
+/// What to type before and after a run; `again` are words of `replan` that make the same command anew, and `whole` says that more
+/// than half of the correction was asked for.
+pub(crate) fn to_send(next: Option<&Path>, logs: &[PathBuf], again: &[String], whole: bool) -> Section {
+    let with = |section, aim, more: [&str; 4]| {
+        let words: Vec<&str> =
+            again.iter().map(String::as_str).chain(more).filter(|word| !word.is_empty()).collect();
+        step(section, aim, &words)
+    };
+    let section = Section::new(Id::NEXT, "Commands", std::iter::empty::<Block>());
+    let careful = "To send half of the correction first, the careful step:";
+    let section =
+        if whole { with(section, careful, ["--gain", "0.5", "-o", "careful.mcap"]) } else { section };
+    let Some(next) = next else {
+        let section = with(section, "To write plan and command to a file:", ["", "", "-o", "next.mcap"]);
+        return after_run(section, "next.mcap", logs);
+    };
+    after_run(section, &argument(next), logs)
+}
+
+fn after_run(section: Section, next: &str, logs: &[PathBuf]) -> Section {
     let last = logs.last().map_or("RUN.mcap".to_owned(), argument);
     let aim = "After the run, to put the plan into the recorder's log:";
-    let joined = step(written(&next), aim, &["join", "RUN.mcap", "--plan", &next, "-o", "after.mcap"]);
+    let joined = step(section, aim, &["join", "RUN.mcap", "--plan", next, "-o", "after.mcap"]);
     let compared =
         step(joined, "To see whether the error became smaller:", &["compare", &last, "after.mcap"]);
     let mut words: Vec<String> = vec!["replan".to_owned()];

@@ -49,6 +49,7 @@ async function look(browser, path, width, scheme) {
   await page.screenshot({ path: join(folder, `${name}-${width}-${scheme}.png`), fullPage: true });
   await use(page, where);
   await turn(page, where);
+  await copy(page, where, context);
   await context.close();
   return ms;
 }
@@ -103,6 +104,23 @@ async function turn(page, where) {
   await page.keyboard.press('Home');
   check(await view() === first, where, 'Home does not show the first view');
   check((await box.getAttribute('aria-label')).includes('arrow keys'), where, 'the path has no label');
+}
+
+// Reads the checks by their words and copies the first command.
+async function copy(page, where, context) {
+  const marks = await page.locator('.checks .mark').allTextContents();
+  if (marks.length) {
+    check(marks.length >= 6 && marks.every(word => ['ok', 'CARE', 'STOP'].includes(word)), where, `the checks read ${marks}`);
+    const answer = await page.locator('.card .headline').first().boundingBox();
+    check(answer.y + answer.height < 900, where, 'the verdict is not on the first screen');
+  }
+  const block = page.locator('pre').first();
+  if (await block.count() === 0) return;
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await block.locator('.copy').click();
+  await page.waitForTimeout(100);
+  const copied = await page.evaluate(() => navigator.clipboard.readText());
+  check(copied !== '' && copied === await block.locator('code').textContent(), where, `the button copied ${JSON.stringify(copied)}`);
 }
 
 async function main() {

@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, fmt};
 
-use super::Table;
+use super::{Check, Table};
 use crate::remark::Remarks;
 
 /// A name and what it stands for.
@@ -71,6 +71,8 @@ pub enum Block {
     Facts(Vec<Fact>),
     /// Doubts: their code and count, and what they say.
     Remarks(Vec<Fact>),
+    /// What was checked before something is done.
+    Checks(Vec<Check>),
     /// A table.
     Table(Table),
     /// What to type, on a line of its own so that it can be pasted.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Align, Block, Document, Fact, Table, clean, layout::filled};
+use super::{Align, Block, Check, Document, Fact, Table, clean, layout::filled};
 
 /// For a wiki or a pull request.
 pub fn markdown(document: &Document) -> String {
@@ -21,6 +21,7 @@ pub fn markdown(document: &Document) -> String {
                     let _ = writeln!(out, "{}\n", escaped(&sentence.to_string()));
                 }
                 Block::Facts(list) | Block::Remarks(list) => facts(&mut out, list),
+                Block::Checks(list) => checks(&mut out, list),
                 Block::Table(whole) => table(&mut out, whole),
                 Block::Command(line) => {
                     let _ = writeln!(out, "    {}\n", clean(line));
@@ -38,6 +39,13 @@ fn facts(out: &mut String, facts: &[Fact]) {
         let _ = writeln!(out, "- **{}**: {}", escaped(name), escaped(value));
     }
     out.push_str(if facts.is_empty() { "" } else { "\n" });
+}
+
+fn checks(out: &mut String, checks: &[Check]) {
+    for Check { mark, name, found } in checks {
+        let _ = writeln!(out, "- {} **{name}**: {}", mark.word(), escaped(found));
+    }
+    out.push('\n');
 }
 
 fn table(out: &mut String, table: &Table) {

@@ -3,6 +3,7 @@
 //! It knows nothing of any verb; the words of a verb lie beside it, in a file or folder of its own.
 
 mod axis;
+mod check;
 mod clean;
 mod command;
 mod csv;
@@ -19,6 +20,7 @@ mod table;
 mod terminal;
 mod terminal_style;
 
+pub use check::{Check, Mark};
 pub use document::{Block, Document, Fact, Id, Section, Sentence, fact};
 pub use markdown::markdown;
 pub use number::{

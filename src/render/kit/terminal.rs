@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{
-    Block, Document, Fact, Sentence, Table, TerminalStyle, clean,
+    Block, Check, Document, Fact, Sentence, Table, TerminalStyle, clean,
     layout::{GAP, filled},
 };
 
@@ -31,6 +31,7 @@ pub(crate) fn shown(document: &Document, style: TerminalStyle) -> String {
                 }
                 Block::Facts(list) => facts(&mut out, list, style, false),
                 Block::Remarks(list) => facts(&mut out, list, style, true),
+                Block::Checks(list) => checks(&mut out, list, style),
                 Block::Table(whole) => table(&mut out, whole, style),
                 // Never folded: a line break would end the command.
                 Block::Command(line) => {
@@ -57,6 +58,14 @@ fn facts(out: &mut String, facts: &[Fact], style: TerminalStyle, doubtful: bool)
         let name = format!("{:width$}", clean(name));
         let name = if doubtful { style.doubt(&name) } else { name };
         let _ = writeln!(out, "{}", style.folded(&format!("{name}{GAP}"), &clean(value), width + GAP.len()));
+    }
+}
+
+fn checks(out: &mut String, checks: &[Check], style: TerminalStyle) {
+    let width = checks.iter().map(|check| check.name.chars().count()).max().unwrap_or(0);
+    for Check { mark, name, found } in checks {
+        let head = format!("{}{GAP}{name:width$}{GAP}", style.mark(*mark));
+        let _ = writeln!(out, "{}", style.folded(&head, &clean(found), 4 + width + 2 * GAP.len()));
     }
 }
 

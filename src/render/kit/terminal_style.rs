@@ -6,7 +6,7 @@ use anstyle::{AnsiColor, Style};
 use textwrap::{Options, WordSeparator, WordSplitter};
 
 use super::{
-    Align, Sentence, Table,
+    Align, Mark, Sentence, Table,
     layout::{GAP, widths},
 };
 
@@ -45,6 +45,16 @@ impl TerminalStyle {
     /// Whether a limit is kept.
     pub(super) fn verdict(self, kept: bool) -> String {
         self.paint(Sentence::verdict(kept), if kept { GOOD } else { BAD })
+    }
+
+    /// How a check came out, four characters wide.
+    pub(super) fn mark(self, mark: Mark) -> String {
+        let style = match mark {
+            Mark::Good => GOOD,
+            Mark::Caution => DOUBT,
+            Mark::Bad => BAD,
+        };
+        self.paint(&format!("{:4}", mark.word()), style)
     }
 
     /// A sentence after its name, over several lines if it must be.

@@ -1,19 +1,22 @@
 //! A plan for the next run as tables.
 
-use super::learning;
+use super::{checks, learning};
 use crate::{
     log::Topics,
     render::kit::{Block, Document, Fact, Id, NONE, Section, Sentence, Table, counted, deg, fact, optional},
     task::Objective,
     units::degrees_from_radians,
-    workflow::replan::{Commanded, HeldTo, Origin, Predicted, Replanned},
+    workflow::replan::{Checks, Commanded, HeldTo, Origin, Predicted, Replanned},
 };
+
+/// The section of what is expected.
+pub(super) const EXPECTED: Id = Id("expected");
 
 /// A plan for the next run, for people.
 pub(crate) fn document(replanned: &Replanned) -> Document {
     let title = replanned.request.as_ref().map_or("the logged plan", |request| request.task.title.as_str());
     let learnt = format!("The machine was fitted to {}.", replanned.fitted_to.join(", "));
-    let verdict = learning::verdict(replanned).map(Sentence::Advice);
+    let verdict = learning::kept(replanned).map(Sentence::Advice);
     let margin = format!(
         "Expected peaks include the error that the model left unexplained after held-out starts. 90 % of starts stay below \
          the predicted peak times {:.2}, or below the error that 90 % of held-out starts left unexplained.",
@@ -21,7 +24,8 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
     );
     let mut document = Document::titled(format!("Next run of {title}"))
         .with(Section::plain(Id::SUMMARY, verdict.into_iter().chain([Sentence::finding(learnt)])))
-        .with(Section::new(Id::OTHER, "Expected", [expected(replanned)]).with(Sentence::note(margin)))
+        .with(checks::section(&Checks::of(replanned)))
+        .with(Section::new(EXPECTED, "Expected", [expected(replanned)]).with(Sentence::note(margin)))
         .with(Section::new(Id::OTHER, "What changes", [Block::Facts(levers(replanned))]));
     document.sections.extend(learning::runs(replanned));
     document.sections.extend(learning::command(replanned));
@@ -75,7 +79,7 @@ fn expected(replanned: &Replanned) -> Table {
     Table::new(&[""], &["last run", "model of it", "next run", "change"], rows)
 }
 
-fn levers(replanned: &Replanned) -> Vec<Fact> {
+pub(super) fn levers(replanned: &Replanned) -> Vec<Fact> {
     let plan = match (&replanned.search, replanned.retimed, &replanned.evaluation) {
         (None, ..) => "unchanged".to_owned(),
         (Some(search), false, _) => format!(

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Before, Decision, HeldTo, JointCommand, PastRun, Predicted, Replanned};
+use super::{Before, Checks, Decision, HeldTo, JointCommand, PastRun, Predicted, Replanned};
 use crate::{
     document::{PROGRAM, pretty},
     remark::Remark,
@@ -22,6 +22,8 @@ pub struct ReplanDocument {
     pub program: String,
     /// Logs that the machine was fitted to.
     pub fitted_to: Vec<String>,
+    /// Whether it is safe to send, and why.
+    pub checks: Checks,
     /// The last run.
     pub before: Before,
     /// Runs of this plan so far.
@@ -64,6 +66,7 @@ impl ReplanDocument {
             format: FORMAT.to_owned(),
             program: PROGRAM.to_owned(),
             fitted_to: replanned.fitted_to.clone(),
+            checks: Checks::of(replanned),
             before: replanned.before.clone(),
             runs: replanned.past.runs.clone(),
             decision: replanned.past.decision.clone(),

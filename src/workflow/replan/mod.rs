@@ -1,8 +1,10 @@
 //! `replan`: from the logs of runs to a plan and a command for the next one.
 
+mod checks;
 mod command;
 #[cfg(test)]
 mod command_laws;
+mod course;
 mod document;
 mod failure;
 mod history;
@@ -18,13 +20,15 @@ use std::{ops::ControlFlow, path::PathBuf};
 
 use rayon::prelude::*;
 
+pub use checks::{Check, Checks, Finding, JointTrust, Level, Reason, Verdict};
 pub use command::{Commanded, JointCommand};
+pub use course::{Drawn, JointCourse, courses};
 pub use document::ReplanDocument;
 pub use failure::ReplanFailure;
 pub use history::{Decision, PastRun};
 pub use limits::{HeldTo, Origin};
 pub use outcome::{Before, Replanned, Search};
-pub use predicted::{Predicted, PredictedTransition, predicted, promised};
+pub use predicted::{Predicted, PredictedTransition, Response, predicted, promised};
 
 use super::fit::{self, LimitsFile};
 use crate::{
@@ -160,7 +164,8 @@ pub fn run(
         .map(|(interval_s, plan)| maker.candidate(interval_s, plan))
         .collect::<Result<_, _>>()?;
     let chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
-    let past = outcome::Past { trust: history.trust(), runs: history.runs, decision };
+    let past =
+        outcome::Past { gain: inputs.learning.gain, trust: history.trust(), runs: history.runs, decision };
     outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)
 }
 
@@ -236,6 +241,7 @@ pub(super) struct Candidate {
     pub(super) plan: Series,
     pub(super) command: Option<Commanded>,
     pub(super) predicted: Predicted,
+    pub(super) responses: Vec<Response>,
 }
 
 /// Makes candidates.
@@ -282,8 +288,8 @@ impl Maker<'_> {
         let base = trials.get(newest).map(|trial| (trial.sent, trial.measured));
         let spread_rad =
             |name: &str| command.as_ref()?.joints.iter().find(|joint| joint.name == name)?.spread_rad;
-        let predicted = promised(fit, &plan, sent, base, spread_rad, &inputs.rules)?;
-        Ok(Candidate { interval_s, plan, command, predicted })
+        let (predicted, responses) = promised(fit, &plan, sent, base, spread_rad, &inputs.rules)?;
+        Ok(Candidate { interval_s, plan, command, predicted, responses })
     }
 
     /// What the newest run tells of another timing.

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Candidate, Commanded, Decision, HeldTo, PastRun, Predicted, ReplanFailure, last::Last};
+use super::{
+    Candidate, Commanded, Decision, HeldTo, PastRun, Predicted, ReplanFailure, Response, last::Last,
+};
 use crate::{
     fit::Fit,
     log::{Recording, WriteError},
@@ -98,6 +100,8 @@ pub struct Replanned {
     pub before: Before,
     /// Prediction for the next run.
     pub after: Predicted,
+    /// How each joint that the fit knows will answer.
+    pub responses: Vec<Response>,
     /// Of the new plan, s; from the first to the last motion where its times are not known.
     pub duration_s: f64,
     /// Whether the key points got other times.
@@ -132,8 +136,20 @@ pub struct Past {
     pub runs: Vec<PastRun>,
     /// Whether to go on.
     pub decision: Decision,
+    /// Share of the correction that was asked for.
+    pub gain: f64,
     /// Share of the usual gain that the newest command's promise leaves.
     pub trust: f64,
+}
+
+/// Share of a correction that is careful.
+const CAREFUL: f64 = 0.5;
+
+impl Past {
+    /// Whether no more of a correction was asked for than of a first one is wise.
+    pub fn careful(&self) -> bool {
+        self.gain <= CAREFUL
+    }
 }
 
 pub(super) fn replanned(
@@ -145,7 +161,7 @@ pub(super) fn replanned(
     chosen: Candidate,
     mut remarks: Remarks,
 ) -> Result<Replanned, ReplanFailure> {
-    let Candidate { interval_s, plan, command, predicted } = chosen;
+    let Candidate { interval_s, plan, command, predicted, responses } = chosen;
     let setup = last.request.as_ref().map(|request| &request.setup);
     let times_s = match (setup, &interval_s) {
         (Some(setup), Some(interval_s)) => Some(setup.times_s(interval_s)),
@@ -182,6 +198,7 @@ pub(super) fn replanned(
         fitted_to,
         before,
         after: predicted,
+        responses,
         duration_s,
         retimed,
         search,

@@ -52,7 +52,16 @@ pub struct PredictedTransition {
 ///
 /// [`FitError`] for a plan longer than an hour.
 pub fn predicted(fit: &Fit, plan: &Series, sent: &Series, rules: &Rules) -> Result<Predicted, FitError> {
-    promised(fit, plan, sent, None, |_| None, rules)
+    Ok(promised(fit, plan, sent, None, |_| None, rules)?.0)
+}
+
+/// How a joint is expected to answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Response {
+    /// Its angles.
+    pub angle: Track,
+    /// Distance from them that 90 % of starts stay within, rad.
+    pub band_rad: f64,
 }
 
 /// Peak of what differs from run to run by its root mean square, in the mean and nine times of ten.
@@ -62,7 +71,8 @@ const PEAKS_OF_SPREAD: [f64; 2] = [2.0, 3.0];
 /// one and corrected. From the study of docs/replan.md; the bound keeps the whole.
 const NOT_REPEATED: f64 = 0.6;
 
-/// The same from what was sent and what came in a run of this plan, if one is known: the model then tells only what changes.
+/// The same with the responses behind it, from what was sent and what came in a run of this plan, if one is known: the model then
+/// tells only what changes.
 ///
 /// # Errors
 ///
@@ -74,8 +84,10 @@ pub fn promised(
     run: Option<(&Series, &Series)>,
     spread_rad: impl Fn(&str) -> Option<f64>,
     rules: &Rules,
-) -> Result<Predicted, FitError> {
-    let mut pairs = Vec::new();
+) -> Result<(Predicted, Vec<Response>), FitError> {
+    let repeats = if run.is_some() { NOT_REPEATED } else { 1.0 };
+    let left_rad = |name: &str| left_rad(fit, name, repeats, spread_rad(name));
+    let (mut pairs, mut responses) = (Vec::new(), Vec::new());
     for track in &plan.tracks {
         let (Some(joint), Some(sent)) = (fit.joint(track.name()), sent.track(track.name())) else { continue };
         let response = predict(&joint.model, sent)?;
@@ -86,10 +98,9 @@ pub fn promised(
             None => response,
         };
         pairs.extend(align(track, &response));
+        responses.push(Response { angle: response, band_rad: left_rad(track.name())[1] });
     }
-    let repeats = if run.is_some() { NOT_REPEATED } else { 1.0 };
-    let left_rad = |name: &str| left_rad(fit, name, repeats, spread_rad(name));
-    Ok(summary(&left_rad, fit.peak_margin, &pairs, rules))
+    Ok((summary(&left_rad, fit.peak_margin, &pairs, rules), responses))
 }
 
 /// What came before, and what the model says that changes.

@@ -6,7 +6,8 @@ use super::sources;
 const LONGEST: usize = 400;
 const MEDIAN: usize = 125;
 const LIBRARY: usize = 66_450;
-const ALL: usize = 96_500;
+const LIBRARY: usize = 67_500;
+const ALL: usize = 97_500;
 
 const FOLDERS: [&str; 6] = ["src", "crates", "tests", "benches", "examples", "fuzz"];
 

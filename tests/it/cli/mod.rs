@@ -14,6 +14,7 @@ mod join;
 mod output;
 mod plan;
 mod record;
+mod replan;
 mod report;
 mod simulate;
 #[cfg(unix)]

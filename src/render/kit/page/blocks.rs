@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::render::kit::{Align, Block, Fact, Section, Table, clean};
+use crate::render::kit::{Align, Block, Check, Fact, Section, Table, clean};
 
 /// A section within a chapter.
 pub(in crate::render) fn headed(section: &Section) -> Markup {
@@ -20,8 +20,23 @@ pub(in crate::render) fn blocks(blocks: &[Block]) -> Markup {
                 Block::Sentence(sentence) => { p { (clean(&sentence.to_string())) } }
                 Block::Facts(facts) => { (list(facts)) }
                 Block::Remarks(facts) => { div class="remarks" { (list(facts)) } }
+                Block::Checks(checks) => { (checked(checks)) }
                 Block::Table(whole) => { (table(whole)) }
                 Block::Command(line) => { pre { code { (clean(line)) } } }
+            }
+        }
+    }
+}
+
+fn checked(checks: &[Check]) -> Markup {
+    html! {
+        ul class="checks" {
+            @for Check { mark, name, found } in checks {
+                li class=(mark.class()) {
+                    span class="mark" { (mark.word()) }
+                    b { (name) }
+                    span { (clean(found)) }
+                }
             }
         }
     }

@@ -91,6 +91,8 @@ pub(in crate::render) enum Role {
     Named,
     /// A line that only helps to compare.
     Guide,
+    /// An edge of a shaded area, which lies between two of them in one panel.
+    Band,
 }
 
 impl Role {
@@ -108,6 +110,7 @@ impl Role {
             Self::Error | Self::Named => RGBColor(196, 78, 0),
             Self::Before => RGBColor(140, 146, 154),
             Self::Guide => RGBColor(160, 165, 171),
+            Self::Band => RGBColor(197, 219, 236),
         }
     }
 
@@ -119,6 +122,7 @@ impl Role {
             Self::Before => 0.4,
             Self::Point => 0.45,
             Self::Guide => 0.2,
+            Self::Band => 2.0,
             Self::Measured | Self::Error => 0.25,
         }
     }

@@ -84,6 +84,7 @@ fn class(role: Role) -> &'static str {
         Role::Point => "point",
         Role::Named => "named",
         Role::Guide => "guide",
+        Role::Band => "band",
     }
 }
 

@@ -102,7 +102,9 @@
       }
       c.save();
       c.beginPath(); c.rect(left, top - 2, width, height + 4); c.clip();
-      for (const s of panel.series) this.series(c, s, y, inside(spec.xs[s.x]));
+      const edges = panel.series.filter(s => s.role === 'band');
+      if (edges.length === 2) this.area(c, edges, y, inside(spec.xs[edges[0].x]));
+      for (const s of panel.series) if (s.role !== 'band') this.series(c, s, y, inside(spec.xs[s.x]));
       c.restore();
       if (this.tile) return;
       c.save();
@@ -110,6 +112,15 @@
       c.fillStyle = colour('soft'); c.textAlign = 'center'; c.textBaseline = 'middle';
       c.fillText(panel.label, 0, 0);
       c.restore();
+    }
+    // What lies between two edges.
+    area(c, [low, high], y, [from, to]) {
+      const xs = this.spec.xs[low.x], end = Math.min(to, xs.length);
+      c.fillStyle = colour('band');
+      c.beginPath();
+      for (let i = from; i < end; i++) c.lineTo(this.pixel(xs[i]), y(low.y[i]));
+      for (let i = end - 1; i >= from; i--) c.lineTo(this.pixel(xs[i]), y(high.y[i]));
+      c.fill();
     }
     series(c, s, y, [from, to]) {
       const xs = this.spec.xs[s.x];
@@ -140,7 +151,7 @@
       this.hair.style.left = this.pixel(x) + 'px';
       const words = [];
       for (const panel of this.spec.panels) for (const s of panel.series) {
-        if (s.role === 'named' || s.role === 'guide') continue;
+        if (['named', 'guide', 'band'].includes(s.role)) continue;
         const xs = this.spec.xs[s.x];
         let i = this.dots ? this.nearest(s, x, py) : place(xs, x);
         if (!this.dots && i > 0 && (i >= xs.length || x - xs[i - 1] < xs[i] - x)) i--;
@@ -208,6 +219,16 @@
     for (const plot of plots) if (plot.spec.group === 'run') plot.show([Math.max(ends[0], plot.full[0]), Math.min(ends[1], plot.full[1])]);
     const joint = Array.from(document.querySelectorAll('.joint')).find(el => el.dataset.name === target.dataset.joint);
     if (joint) joint.scrollIntoView({ behavior: 'smooth', block: 'center' });
+  }
+  // Commands are copied by a button; without the right to write to the clipboard they are selected.
+  for (const block of document.querySelectorAll('pre')) {
+    const button = Object.assign(document.createElement('button'), { type: 'button', className: 'copy', textContent: 'Copy' });
+    const code = block.querySelector('code');
+    button.addEventListener('click', async () => {
+      try { await navigator.clipboard.writeText(code.textContent); button.textContent = 'Copied'; }
+      catch { getSelection().selectAllChildren(code); button.textContent = 'Selected'; }
+    });
+    block.appendChild(button);
   }
   document.addEventListener('click', go);
   document.addEventListener('keydown', go);

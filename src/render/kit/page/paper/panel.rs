@@ -1,7 +1,7 @@
 //! The panels of a chart above one another, with their axes.
 
 use plotters::{
-    prelude::{ChartBuilder, Circle, Color, EmptyElement, LineSeries, PathElement, Rectangle, Text},
+    prelude::{ChartBuilder, Circle, Color, EmptyElement, LineSeries, PathElement, Polygon, Rectangle, Text},
     style::text_anchor::{HPos, Pos, VPos},
 };
 
@@ -119,7 +119,9 @@ impl Frame<'_> {
             let zero = INK.mix(0.5).stroke_width(paper.size(0.1));
             frame.draw_series([PathElement::new([(from, 0.0), (to, 0.0)], zero)])?;
         }
-        for series in &panel.series {
+        frame
+            .draw_series(shaded(chart, panel).map(|area| Polygon::new(area, Role::Band.colour().filled())))?;
+        for series in panel.series.iter().filter(|series| series.role != Role::Band) {
             let (colour, size) = (series.role.colour(), paper.size(series.role.width_mm()));
             if series.role.dots() {
                 for (size, fill) in dot(series.role, paper) {
@@ -185,6 +187,14 @@ fn named(chart: &Chart, series: &Series) -> Vec<((f64, f64), String)> {
         }
     }
     named
+}
+
+/// The outline of the shaded area, if the panel has one.
+fn shaded(chart: &Chart, panel: &Panel) -> Option<Vec<(f64, f64)>> {
+    let mut edges = panel.series.iter().filter(|series| series.role == Role::Band);
+    let (low, high) = (edges.next()?, edges.next()?);
+    let back: Vec<(f64, f64)> = drawn(chart, high).collect();
+    Some(drawn(chart, low).chain(back.into_iter().rev()).collect())
 }
 
 /// Continuous stretches of a line.

@@ -1,0 +1,222 @@
+//! "Safe to send?" in words.
+
+use crate::{
+    fit::{Character, LEAST_SKILL},
+    plan::Limit,
+    render::{
+        kit::{Block, Check, Id, Mark, Section, Sentence, counted, deg, mm, optional, share},
+        plan,
+    },
+    workflow::{
+        plan::MarginEntry,
+        replan::{self, Checks, Finding, JointTrust, Level, Reason, Verdict},
+    },
+};
+
+/// The section of a document.
+pub(super) const ID: Id = Id("checks");
+
+/// The verdict and every check.
+pub(super) fn section(checks: &Checks) -> Section {
+    Section::new(ID, "Safe to send?", [Block::from(Sentence::finding(verdict(checks))), list(checks)])
+}
+
+pub(super) fn list(checks: &Checks) -> Block {
+    let one = |check: &replan::Check| Check {
+        mark: mark(check.level),
+        name: name(&check.finding),
+        found: words(check.level, &check.finding),
+    };
+    Block::Checks(checks.list.iter().map(one).collect())
+}
+
+/// One sentence that answers the question.
+pub(super) fn verdict(checks: &Checks) -> String {
+    let why = |level: Level| {
+        checks.at(level).map(|check| short(level, &check.finding)).collect::<Vec<_>>().join("; ")
+    };
+    match checks.verdict {
+        Verdict::Send => format!("Yes, send it: all {} checks are good.", checks.list.len()),
+        Verdict::HalfFirst => format!("Send half of the correction first: {}.", why(Level::Caution)),
+        Verdict::CheckFirst => format!("Look first: {}.", why(Level::Caution)),
+        Verdict::DoNotSend => format!("Do not send it: {}.", why(Level::Stop)),
+    }
+}
+
+/// What speaks against sending, in a few words.
+fn short(level: Level, finding: &Finding) -> String {
+    match finding {
+        Finding::Ends { .. } => "it does not begin and end where the plan does".to_owned(),
+        Finding::Rest { .. } => "it does not end at rest".to_owned(),
+        Finding::Limits { broken, .. } if level == Level::Stop => {
+            format!("{} broken", counted(*broken, "limit"))
+        }
+        Finding::Limits { .. } => "the limits are unknown".to_owned(),
+        Finding::Trust { joints } => {
+            let doubtful =
+                joints.iter().filter(|joint| joint.level == level).map(|joint| joint.joint.as_str());
+            let what = if level == Level::Stop { "oscillating by themselves" } else { "not known well" };
+            format!("joints {what} ({})", doubtful.collect::<Vec<_>>().join(", "))
+        }
+        Finding::Promise { .. } => "more error came than was promised".to_owned(),
+        Finding::Outlook { .. } => "no smaller error is expected".to_owned(),
+        Finding::Leave { .. } => "it leaves the plan far".to_owned(),
+        Finding::Gain { reasons, .. } => because(reasons),
+    }
+}
+
+pub(super) fn mark(level: Level) -> Mark {
+    match level {
+        Level::Good => Mark::Good,
+        Level::Caution => Mark::Caution,
+        Level::Stop => Mark::Bad,
+    }
+}
+
+fn name(finding: &Finding) -> &'static str {
+    match finding {
+        Finding::Ends { .. } => "Both ends",
+        Finding::Rest { .. } => "Rest at end",
+        Finding::Limits { .. } => "Limits",
+        Finding::Trust { .. } => "Model",
+        Finding::Promise { .. } => "Last promise",
+        Finding::Outlook { .. } => "Next error",
+        Finding::Leave { .. } => "Off the plan",
+        Finding::Gain { .. } => "Size of step",
+    }
+}
+
+fn words(level: Level, finding: &Finding) -> String {
+    let good = level == Level::Good;
+    match finding {
+        Finding::Ends { .. } if good => "It begins and ends where the plan does.".to_owned(),
+        Finding::Ends { start_rad, end_rad } => format!(
+            "It begins {} deg and ends {} deg away from the plan: the controller would jump.",
+            deg(*start_rad),
+            deg(*end_rad)
+        ),
+        Finding::Rest { speed_rad_s, acceleration_rad_s2 } => {
+            let start = if good { "It ends at rest" } else { "It does not end at rest" };
+            let acceleration =
+                acceleration_rad_s2.map_or(String::new(), |a| format!(", acceleration {} deg/s2", deg(a)));
+            format!("{start}: speed {} deg/s{acceleration}.", deg(*speed_rad_s))
+        }
+        Finding::Limits { broken, nearest, unlimited } => {
+            let none: Vec<&str> = unlimited.iter().map(|limit| plan::name(*limit)).collect();
+            let none =
+                if none.is_empty() { String::new() } else { format!(" No limit: {}.", none.join(", ")) };
+            limits(*broken, nearest) + &none
+        }
+        Finding::Trust { joints } => trust(joints),
+        Finding::Promise { log, promised, measured_mean_peak_rad } => format!(
+            "{log} promised a mean peak error of {} deg, in nine runs of ten below {}; {} deg came{}.",
+            deg(promised.mean_peak_rad),
+            deg(promised.mean_peak_margin_rad),
+            deg(*measured_mean_peak_rad),
+            match level {
+                Level::Good => "",
+                Level::Caution => ", so the next step is smaller",
+                Level::Stop => ": find out what changed on the machine",
+            }
+        ),
+        Finding::Outlook { last_mean_peak_rad, expected } => format!(
+            "Mean peak error of starts: {} deg last, {} deg expected, in nine runs of ten below {}.",
+            optional(*last_mean_peak_rad, deg),
+            deg(expected.mean_peak_rad),
+            deg(expected.mean_peak_margin_rad)
+        ),
+        Finding::Leave { joint, distance_rad, t_s, tool_m } => {
+            let tool = tool_m.map_or(String::new(), |m| format!(", up to {} mm at the tool", mm(m)));
+            format!(
+                "It leaves the plan by up to {} deg ({joint} at {t_s:.1} s){tool}: keep that room free.",
+                deg(*distance_rad)
+            )
+        }
+        Finding::Gain { gain, reasons } => {
+            let sent = share(*gain);
+            match (level, reasons.is_empty()) {
+                (Level::Good, true) => {
+                    format!("{sent} of the correction is sent, after corrections that kept their promise.")
+                }
+                (Level::Good, false) => format!("{sent} of the correction is sent: the careful step."),
+                _ => format!(
+                    "{sent} of the correction is sent, but {}: half of it (--gain 0.5) is wiser.",
+                    because(reasons)
+                ),
+            }
+        }
+    }
+}
+
+fn because(reasons: &[Reason]) -> String {
+    let one = |reason: &Reason| match reason {
+        Reason::FirstCommand => "no correction of this plan was sent before",
+        Reason::BrokenPromise => "the last correction did not keep its promise",
+    };
+    reasons.iter().map(one).collect::<Vec<_>>().join(", and ")
+}
+
+fn limits(broken: usize, nearest: &[MarginEntry]) -> String {
+    let Some(worst) = nearest.first() else {
+        return "Without a task the limits of the arm are unknown: check the command against yours."
+            .to_owned();
+    };
+    let joint = worst.joint.as_ref().map_or(String::new(), |name| format!("{name} "));
+    let worst = format!(
+        "{joint}{}: {} used, {} of {} at {:.1} s",
+        plan::name(worst.limit),
+        share(worst.share),
+        plan::shown(worst.limit, worst.value.abs()),
+        plan::shown(worst.limit, worst.allowed.abs()),
+        worst.t_s
+    );
+    let mut kinds: Vec<Limit> = nearest.iter().map(|margin| margin.limit).collect();
+    kinds.sort_unstable();
+    let kinds: Vec<&str> = kinds.into_iter().map(plan::name).collect();
+    match broken {
+        0 => format!("All kept ({}). The nearest is {worst}.", kinds.join(", ")),
+        broken => format!("NOT kept: {}. The worst is {worst}.", counted(broken, "limit")),
+    }
+}
+
+fn trust(joints: &[JointTrust]) -> String {
+    let of = |character: Character| -> Vec<String> {
+        let own = joints.iter().filter(|joint| joint.character == Some(character));
+        own.map(|joint| {
+            format!("{} ({} Hz)", joint.joint, optional(joint.frequency_hz, |hz| format!("{hz:.2}")))
+        })
+        .collect()
+    };
+    let (hunting, ringing) = (of(Character::Hunts).join(", "), of(Character::Rings).join(", "));
+    let mut found = Vec::new();
+    if !hunting.is_empty() {
+        found.push(format!(
+            "Oscillating by themselves: {hunting}; mend their controllers, less gain or less integral action."
+        ));
+    }
+    if !ringing.is_empty() {
+        found.push(format!("Ringing: {ringing}; their corrections are slow and mild."));
+    }
+    let calm = joints.iter().filter(|joint| matches!(joint.character, None | Some(Character::Calm)));
+    found.extend(calm.filter(|joint| joint.level != Level::Good).map(doubt));
+    if !hunting.is_empty() && joints.iter().all(|joint| !joint.corrected) {
+        found.push(
+            "Nothing is corrected: a correction may throw such a loop into a larger oscillation.".to_owned(),
+        );
+    }
+    let skill = |joint: &JointTrust| Some(format!("{} {:.2}", joint.joint, joint.held_out_r2?));
+    let skills: Vec<String> = joints.iter().filter_map(skill).collect();
+    found.push(format!("Held-out R2: {} ({LEAST_SKILL} is needed).", skills.join(", ")));
+    found.join(" ")
+}
+
+/// Of a joint that neither rings nor hunts.
+fn doubt(joint: &JointTrust) -> String {
+    let name = &joint.joint;
+    let sent = if joint.corrected { "" } else { ", so it is not corrected" };
+    match joint.held_out_r2 {
+        None => format!("{name} was not fitted{sent}."),
+        Some(r2) if r2 < LEAST_SKILL => format!("{name} is predicted badly{sent}."),
+        Some(_) => format!("The model does not hold for {name}{sent}."),
+    }
+}

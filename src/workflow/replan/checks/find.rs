@@ -1,0 +1,198 @@
+//! The checks one by one.
+
+use super::{Check, Finding, JointTrust, Level, Reason, Replanned};
+use crate::{
+    fit::{Character, LEAST_SKILL, Step},
+    plan::{Limit, Margin},
+    series::{Series, Track},
+    units::DEGREE_RAD,
+    workflow::{
+        plan::MarginEntry,
+        replan::{Commanded, JointCommand, command::SOLVED},
+    },
+};
+
+/// A command begins and ends where its plan does up to this, rad.
+const SAME_RAD: f64 = 1e-3 * DEGREE_RAD;
+
+/// Speed, rad/s, and acceleration, rad/s², that are rest.
+const REST: [f64; 2] = [1e-2 * DEGREE_RAD, 0.1 * DEGREE_RAD];
+
+/// A command that leaves its plan by more, rad, or takes the tool off it by more, m, needs room that people may not leave.
+const WIDE: (f64, f64) = (3.0 * DEGREE_RAD, 0.1);
+
+/// More than this times what nine runs of ten stay below is another machine than the fitted one.
+const OTHER_MACHINE: f64 = 2.0;
+
+pub(super) fn all(replanned: &Replanned) -> impl Iterator<Item = Check> {
+    let command = replanned.command.as_ref().filter(|command| command.applied());
+    let plan = &replanned.plan;
+    let sent = command.map_or(plan, |command| &command.series);
+    let always = [ends(plan, sent), rest(sent, command), limits(replanned, command), trust(replanned)];
+    let others =
+        [promise(replanned), Some(outlook(replanned)), leave(replanned, command), gain(replanned, command)];
+    always.into_iter().chain(others.into_iter().flatten())
+}
+
+/// Bad if a number is above its bound, or none.
+fn within(value: f64, most: f64) -> Level {
+    if value <= most { Level::Good } else { Level::Stop }
+}
+
+fn caution(if_so: bool) -> Level {
+    if if_so { Level::Caution } else { Level::Good }
+}
+
+/// The largest over all tracks; what is not a number stays.
+fn most(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |most, value| if most.is_nan() || value.abs() <= most { most } else { value.abs() })
+}
+
+fn ends(plan: &Series, sent: &Series) -> Check {
+    let apart = |at: fn(&[f64]) -> Option<&f64>| {
+        most(plan.tracks.iter().map(|track| {
+            let of = |track: &Track| at(track.position()).copied();
+            let both = of(track).zip(sent.track(track.name()).and_then(of));
+            both.map_or(f64::NAN, |(planned, sent)| sent - planned)
+        }))
+    };
+    let (start_rad, end_rad) = (apart(<[f64]>::first), apart(<[f64]>::last));
+    let level = within(start_rad, SAME_RAD).max(within(end_rad, SAME_RAD));
+    Check { level, finding: Finding::Ends { start_rad, end_rad } }
+}
+
+fn rest(sent: &Series, command: Option<&Commanded>) -> Check {
+    let speed = |track: &Track| match (track.velocity(), track.t_s(), track.position()) {
+        (Some(speed), ..) => speed.last().copied().unwrap_or(f64::NAN),
+        (None, [.., t0, t1], [.., p0, p1]) => (p1 - p0) / (t1 - t0),
+        _ => f64::NAN,
+    };
+    let speed_rad_s = most(sent.tracks.iter().map(speed));
+    let last = |values: &Vec<f64>| values.last().copied().unwrap_or(f64::NAN);
+    let acceleration_rad_s2 = command.map(|command| most(command.acceleration_rad_s2.iter().map(last)));
+    let level = within(speed_rad_s, REST[0]).max(within(acceleration_rad_s2.unwrap_or(0.0), REST[1]));
+    Check { level, finding: Finding::Rest { speed_rad_s, acceleration_rad_s2 } }
+}
+
+/// Torques and forces of rods are those of the plan: a command has none.
+fn limits(replanned: &Replanned, command: Option<&Commanded>) -> Check {
+    let of_plan = replanned.evaluation.iter().flat_map(|evaluation| &evaluation.margins);
+    let of_command = command.map_or(&[][..], |command| &command.margins);
+    let loads = [Limit::Torque, Limit::RodForce];
+    let mut all: Vec<Margin> = of_command.to_vec();
+    all.extend(of_plan.filter(|margin| of_command.is_empty() || loads.contains(&margin.limit)));
+    all.sort_by(|a, b| b.share.total_cmp(&a.share));
+    let broken = all.iter().filter(|margin| margin.share > 1.0 + SOLVED || margin.share.is_nan()).count();
+    let mut kinds: Vec<Margin> = Vec::new();
+    for margin in &all {
+        if kinds.iter().all(|other| other.limit != margin.limit) {
+            kinds.push(*margin);
+        }
+    }
+    let known = |limit: &Limit| kinds.iter().any(|margin| margin.limit == *limit);
+    let unlimited = Limit::OF_JOINT.into_iter().chain(Limit::OF_ARM).filter(|limit| !known(limit)).collect();
+    let names = replanned.request.as_ref().map_or_else(Vec::new, |request| request.setup.joint_names());
+    let level = match (broken, all.is_empty()) {
+        (0, true) => Level::Caution,
+        (0, false) => Level::Good,
+        _ => Level::Stop,
+    };
+    Check { level, finding: Finding::Limits { broken, nearest: MarginEntry::all(&kinds, &names), unlimited } }
+}
+
+fn trust(replanned: &Replanned) -> Check {
+    let made = |name: &str| replanned.command.iter().flat_map(|c| &c.joints).find(|made| made.name == name);
+    let one = |track: &Track| {
+        let (fit, made) = (replanned.fit.joint(track.name()), made(track.name()));
+        let found = made.and_then(|made| made.oscillation);
+        let character = found.map(|found| found.character);
+        let known = fit.is_some_and(|fit| fit.model_holds && fit.held_out_r2 >= LEAST_SKILL);
+        let level = match character {
+            Some(Character::Hunts) => Level::Stop,
+            Some(Character::Rings) => Level::Caution,
+            _ => caution(!known),
+        };
+        JointTrust {
+            joint: track.name().to_owned(),
+            level,
+            corrected: made.is_some_and(JointCommand::applied),
+            held_out_r2: fit.map(|fit| fit.held_out_r2),
+            model_holds: fit.is_some_and(|fit| fit.model_holds),
+            character,
+            frequency_hz: found.filter(|f| f.character != Character::Calm).map(|f| f.frequency_hz),
+        }
+    };
+    let joints: Vec<JointTrust> = replanned.plan.tracks.iter().map(one).collect();
+    let level = joints.iter().map(|joint| joint.level).max().unwrap_or(Level::Stop);
+    Check { level, finding: Finding::Trust { joints } }
+}
+
+/// `None` if the last log carries no promise, or nothing was measured.
+fn promise(replanned: &Replanned) -> Option<Check> {
+    let run = replanned.past.runs.last().filter(|run| run.corrected)?;
+    let (promised, measured_mean_peak_rad) = (run.promised?, run.mean_peak_rad?);
+    let bound_rad = promised.mean_peak_margin_rad;
+    let level = match measured_mean_peak_rad {
+        came if came <= bound_rad => Level::Good,
+        came if came <= OTHER_MACHINE * bound_rad => Level::Caution,
+        _ => Level::Stop,
+    };
+    let finding = Finding::Promise { log: run.log.clone(), promised, measured_mean_peak_rad };
+    Some(Check { level, finding })
+}
+
+fn outlook(replanned: &Replanned) -> Check {
+    let (expected, last_mean_peak_rad) = (replanned.promise(), replanned.before.measured_mean_peak_rad);
+    let worse = last_mean_peak_rad.is_some_and(|last_rad| expected.mean_peak_rad > last_rad);
+    Check { level: caution(worse), finding: Finding::Outlook { last_mean_peak_rad, expected } }
+}
+
+/// `None` where the command is the plan.
+fn leave(replanned: &Replanned, command: Option<&Commanded>) -> Option<Check> {
+    let (plan, sent) = (&replanned.plan, &command?.series);
+    let mut farthest: Option<(f64, &Track, f64)> = None;
+    for track in &plan.tracks {
+        let Some(sent) = sent.track(track.name()) else { continue };
+        for (t_s, position) in sent.t_s().iter().zip(sent.position()) {
+            let distance_rad = (position - track.held_at(*t_s).position).abs();
+            if farthest.is_none_or(|(most_rad, ..)| distance_rad > most_rad) {
+                farthest = Some((distance_rad, track, *t_s));
+            }
+        }
+    }
+    let (distance_rad, track, t_s) = farthest?;
+    let tool_m = tool_m(replanned, sent);
+    let wide = distance_rad > WIDE.0 || tool_m.is_some_and(|tool_m| tool_m > WIDE.1);
+    let finding = Finding::Leave { joint: track.name().to_owned(), distance_rad, t_s, tool_m };
+    Some(Check { level: caution(wide), finding })
+}
+
+/// Largest distance of the tool from where the plan has it, m.
+fn tool_m(replanned: &Replanned, sent: &Series) -> Option<f64> {
+    let setup = &replanned.request.as_ref()?.setup;
+    let of = |series: &Series| -> Option<Vec<Track>> {
+        setup.joint_names().iter().map(|name| series.track(name).cloned()).collect()
+    };
+    let sides = [of(&replanned.plan)?, of(sent)?];
+    let t_s = sides[1].first()?.t_s();
+    let place = |side: &[Track], t_s: f64| {
+        let angle_rad: Vec<f64> = side.iter().map(|track| track.held_at(t_s).position).collect();
+        setup.arm().chain.tool_pose(&angle_rad).translation.vector
+    };
+    Some(most(t_s.iter().map(|t_s| (place(&sides[0], *t_s) - place(&sides[1], *t_s)).norm())))
+}
+
+/// `None` where nothing is corrected.
+fn gain(replanned: &Replanned, command: Option<&Commanded>) -> Option<Check> {
+    let past = &replanned.past;
+    let first = |step: &Step| matches!(step, Step::Model | Step::First { .. });
+    let reason = |reason, holds: bool| holds.then_some(reason);
+    let is_first = command?.joints.iter().filter(|joint| joint.applied()).any(|joint| first(&joint.step));
+    let reasons: Vec<Reason> =
+        [reason(Reason::FirstCommand, is_first), reason(Reason::BrokenPromise, past.trust < 1.0)]
+            .into_iter()
+            .flatten()
+            .collect();
+    let level = caution(!past.careful() && !reasons.is_empty());
+    Some(Check { level, finding: Finding::Gain { gain: past.gain, reasons } })
+}

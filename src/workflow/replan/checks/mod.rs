@@ -1,0 +1,188 @@
+//! "Safe to send?": what a careful person looks at before a command goes out, each finding with its level, and one verdict.
+
+mod find;
+
+use serde::{Deserialize, Serialize};
+
+use super::Replanned;
+use crate::{
+    fit::Character,
+    plan::Limit,
+    workflow::{carried::Promise, plan::MarginEntry},
+};
+
+/// How a check came out; the worst comes last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Level {
+    /// Nothing speaks against sending.
+    Good,
+    /// Look at it before sending.
+    Caution,
+    /// Do not send.
+    Stop,
+}
+
+/// What follows from all checks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// All checks are good.
+    Send,
+    /// Half of the correction is wiser; nothing else is in doubt.
+    HalfFirst,
+    /// Something is to be looked at first.
+    CheckFirst,
+    /// Something is wrong.
+    DoNotSend,
+}
+
+/// All checks in the order in which they are read, and what follows from them. Obstacles are not checked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Checks {
+    /// What follows.
+    pub verdict: Verdict,
+    /// Each check.
+    pub list: Vec<Check>,
+}
+
+/// One check.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Check {
+    /// How it came out.
+    pub level: Level,
+    /// What was found.
+    #[serde(flatten)]
+    pub finding: Finding,
+}
+
+/// What a check found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(tag = "what", rename_all = "snake_case")]
+pub enum Finding {
+    /// How far what is sent begins and ends from its plan, largest of all joints, rad.
+    Ends {
+        /// At the first sample.
+        start_rad: f64,
+        /// At the last sample.
+        end_rad: f64,
+    },
+    /// Motion at the last sample, largest of all joints.
+    Rest {
+        /// Speed, rad/s.
+        speed_rad_s: f64,
+        /// Acceleration, rad/s²; null where nothing is corrected.
+        acceleration_rad_s2: Option<f64>,
+    },
+    /// The limits of task and arm.
+    Limits {
+        /// Limits that are broken.
+        broken: usize,
+        /// Of each kind of limit the nearest, most used first; empty without a task.
+        nearest: Vec<MarginEntry>,
+        /// Kinds that have no limit.
+        unlimited: Vec<Limit>,
+    },
+    /// How well each joint is predicted.
+    Trust {
+        /// By joint of the plan.
+        joints: Vec<JointTrust>,
+    },
+    /// What the last command promised, and what came.
+    Promise {
+        /// The log of its run.
+        log: String,
+        /// What was promised.
+        promised: Promise,
+        /// What came, rad.
+        measured_mean_peak_rad: f64,
+    },
+    /// Mean peak error of starts and reversals.
+    Outlook {
+        /// Of the last run, rad; null if it has no start.
+        last_mean_peak_rad: Option<f64>,
+        /// Expected of the next one.
+        expected: Promise,
+    },
+    /// Where the command leaves its plan most.
+    Leave {
+        /// The joint.
+        joint: String,
+        /// By how much, rad.
+        distance_rad: f64,
+        /// When, s.
+        t_s: f64,
+        /// Largest distance of the tool from its plan, m; null without a task.
+        tool_m: Option<f64>,
+    },
+    /// Whether the size of the correction is wise.
+    Gain {
+        /// Share of the correction that was asked for.
+        gain: f64,
+        /// Why half of it is wiser; empty if nothing says so.
+        reasons: Vec<Reason>,
+    },
+}
+
+/// How well one joint is predicted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct JointTrust {
+    /// The joint.
+    pub joint: String,
+    /// What that means.
+    pub level: Level,
+    /// Whether its command differs from the plan.
+    pub corrected: bool,
+    /// Share of the squared error that is predicted where it was not fitted; null if the joint was not fitted.
+    pub held_out_r2: Option<f64>,
+    /// Whether the machine answers as the model does.
+    pub model_holds: bool,
+    /// Whether it rings or hunts; null without a run of this plan.
+    pub character: Option<Character>,
+    /// At which frequency, Hz.
+    pub frequency_hz: Option<f64>,
+}
+
+/// Why half of a correction is wiser.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Reason {
+    /// No correction of this plan was sent before.
+    FirstCommand,
+    /// More error came than the last command promised.
+    BrokenPromise,
+}
+
+impl Checks {
+    /// Of a plan and command for the next run.
+    pub fn of(replanned: &Replanned) -> Self {
+        let list: Vec<Check> = find::all(replanned).collect();
+        Self { verdict: verdict(&list), list }
+    }
+
+    /// Checks that came out so.
+    pub fn at(&self, level: Level) -> impl Iterator<Item = &Check> {
+        self.list.iter().filter(move |check| check.level == level)
+    }
+}
+
+fn verdict(list: &[Check]) -> Verdict {
+    let half = |check: &&Check| matches!(check.finding, Finding::Gain { .. });
+    let doubts = || list.iter().filter(|check| check.level == Level::Caution);
+    if list.iter().any(|check| check.level == Level::Stop) {
+        Verdict::DoNotSend
+    } else if doubts().any(|check| !half(&check)) {
+        Verdict::CheckFirst
+    } else if doubts().count() > 0 {
+        Verdict::HalfFirst
+    } else {
+        Verdict::Send
+    }
+}

@@ -1,0 +1,143 @@
+//! "Safe to send?": the checks of `replan`, in its document and on its page.
+
+use std::{fs, path::Path};
+
+use serde_json::Value;
+
+use crate::support::{clean, hold_to_schema, json, run_line, sample, scratch, stderr, stdout};
+
+/// A folder with the sample run of task 1.
+fn with_run() -> tempfile::TempDir {
+    let folder = scratch();
+    fs::copy(sample("task-1-run.mcap"), folder.path().join("run.mcap")).unwrap();
+    folder
+}
+
+/// The check of this name.
+fn check<'a>(document: &'a Value, what: &str) -> &'a Value {
+    let list = document["checks"]["list"].as_array().unwrap();
+    list.iter().find(|check| check["what"] == what).unwrap_or_else(|| panic!("no {what}: {list:?}"))
+}
+
+fn page(folder: &Path, line: &str) -> String {
+    let run = run_line(folder, &format!("{line} --html page.html"));
+    assert!(matches!(run.status.code(), Some(0 | 3)), "{line}: {}", stderr(&run));
+    fs::read_to_string(folder.join("page.html")).unwrap()
+}
+
+#[test]
+fn a_first_correction_is_advised_by_half_and_half_of_it_is_safe_to_send() {
+    let folder = with_run();
+    let folder = folder.path();
+    let whole = json(folder, "replan run.mcap --keep-plan");
+    hold_to_schema(&whole, "replan.v3");
+    assert_eq!(whole["checks"]["verdict"], "half_first");
+    assert_eq!(check(&whole, "gain")["reasons"], serde_json::json!(["first_command"]));
+    let half = json(folder, "replan run.mcap --keep-plan --gain 0.5");
+    assert_eq!(half["checks"]["verdict"], "send");
+    for what in ["ends", "rest", "limits", "trust", "outlook", "leave", "gain"] {
+        assert_eq!(check(&half, what)["level"], "good", "{what}");
+    }
+    let distance = |document: &Value| check(document, "leave")["distance_rad"].as_f64().unwrap();
+    let largest = |document: &Value| {
+        let joints = document["command"].as_array().unwrap();
+        joints.iter().map(|joint| joint["peak_correction_rad"].as_f64().unwrap()).fold(0.0, f64::max)
+    };
+    assert!((distance(&whole) - largest(&whole)).abs() < 1e-3 * distance(&whole));
+    assert!(distance(&half) < 0.6 * distance(&whole));
+    let nearest = &check(&whole, "limits")["nearest"][0];
+    let most = |key: &str| {
+        let margins = whole[key].as_array().unwrap().iter();
+        margins.map(|margin| margin["share"].as_f64().unwrap()).fold(0.0, f64::max)
+    };
+    assert_eq!(nearest["share"].as_f64().unwrap(), most("command_margins"), "{nearest}");
+    assert_eq!(check(&whole, "trust")["joints"].as_array().unwrap().len(), 6);
+}
+
+#[test]
+fn the_page_answers_with_verdict_checks_commands_and_every_joint_and_fetches_nothing() {
+    let folder = with_run();
+    let folder = folder.path();
+    let whole = page(folder, "replan run.mcap --keep-plan -o next.mcap");
+    assert!(whole.contains("Send half of the correction first: no correction of this plan was sent before."));
+    for words in [
+        "<code>hydrotrace replan run.mcap --keep-plan --gain 0.5 -o careful.mcap</code>",
+        "<code>hydrotrace join RUN.mcap --plan next.mcap -o after.mcap</code>",
+        "<code>hydrotrace compare run.mcap after.mcap</code>",
+        "default-src 'none'; script-src 'sha256-",
+        "<li class=\"care\"><span class=\"mark\">CARE</span><b>Size of step</b>",
+        "90 % of starts",
+    ] {
+        assert!(whole.contains(words), "{words}");
+    }
+    assert!(!whole.contains("src=\"http") && !whole.contains("href=\"http"));
+    let data = whole.split("<script id=\"data\" type=\"application/json\">").nth(1).unwrap();
+    let charts: Vec<Value> = serde_json::from_str(data.split("</script>").next().unwrap()).unwrap();
+    let names: Vec<&str> = charts.iter().map(|chart| chart["title"].as_str().unwrap()).collect();
+    assert_eq!(names, ["J1", "J2", "J3", "J4", "J5", "J6"]);
+    for chart in &charts {
+        let roles = |panel: usize| -> Vec<&str> {
+            let series = chart["panels"][panel]["series"].as_array().unwrap();
+            series.iter().map(|series| series["role"].as_str().unwrap()).collect()
+        };
+        assert!(
+            roles(0).starts_with(&["planned", "error", "measured"]) && roles(2).starts_with(&["planned"])
+        );
+        assert_eq!(roles(1), ["band", "band", "error", "measured"]);
+    }
+    let guides = charts.iter().filter(|chart| chart["panels"].to_string().contains("\"guide\""));
+    assert_eq!(guides.count(), 6, "no limit is drawn");
+    let half = page(folder, "replan run.mcap --keep-plan --gain 0.5");
+    assert!(half.contains("Yes, send it: all 7 checks are good.") && !half.contains("careful.mcap"));
+    assert!(half.contains("-o next.mcap</code>"), "nothing says how to write it");
+    let kept = run_line(folder, "replan run.mcap --keep-plan --html run.mcap");
+    assert!(kept.status.code() == Some(1) && stderr(&kept).contains("is an input"), "{}", stderr(&kept));
+}
+
+#[test]
+fn a_limit_that_is_broken_and_a_loop_that_hunts_stop_it() {
+    let folder = with_run();
+    let folder = folder.path();
+    let task = fs::read_to_string(folder.join("task-1.toml")).unwrap();
+    let tight = task.replace("speed_deg_s = { J1 = 15,", "speed_deg_s = { J1 = 2,");
+    fs::write(folder.join("tight.toml"), tight).unwrap();
+    let broken = json(folder, "replan run.mcap --keep-plan --task tight.toml");
+    assert_eq!(
+        (&broken["checks"]["verdict"], &check(&broken, "limits")["level"]),
+        (&"do_not_send".into(), &"stop".into())
+    );
+    assert!(check(&broken, "limits")["broken"].as_u64().unwrap() > 0);
+    clean(folder, "plan task-1.toml --times 0,7.744,15.307,22.863,30.976,38.72 -o plan.mcap");
+    clean(folder, "simulate plan.mcap --plant cascade -o hunts.mcap");
+    let run = run_line(folder, "replan hunts.mcap --keep-plan");
+    assert!(
+        stdout(&run).contains("Do not send it: joints oscillating by themselves ("),
+        "{}{}",
+        stdout(&run),
+        stderr(&run)
+    );
+    assert!(stdout(&run).contains("Oscillating by themselves: "), "{}", stdout(&run));
+}
+
+#[test]
+fn a_log_without_a_task_asks_for_a_look_at_the_limits_and_a_promise_is_held_to_what_came() {
+    let folder = with_run();
+    let folder = folder.path();
+    clean(folder, "export run.mcap --csv -o run.csv");
+    let run = run_line(folder, "import run.csv -o field.mcap");
+    assert!(matches!(run.status.code(), Some(0 | 3)), "{}", stderr(&run));
+    let field = json(folder, "replan field.mcap --keep-plan --gain 0.5");
+    assert_eq!(field["checks"]["verdict"], "check_first");
+    assert_eq!(check(&field, "limits")["nearest"], serde_json::json!([]));
+    assert_eq!(check(&field, "rest")["level"], "good", "{}", check(&field, "rest"));
+    clean(folder, "replan run.mcap --keep-plan -o next.mcap");
+    clean(folder, "simulate next.mcap -o run-2.mcap --seed 7");
+    let second = json(folder, "replan run.mcap run-2.mcap");
+    let promise = check(&second, "promise");
+    assert_eq!((&promise["level"], &promise["log"]), (&"good".into(), &"run-2.mcap".into()), "{promise}");
+    assert!(
+        promise["measured_mean_peak_rad"].as_f64() <= promise["promised"]["mean_peak_margin_rad"].as_f64()
+    );
+    assert_ne!(second["checks"]["verdict"], "half_first", "{}", second["checks"]);
+    assert_eq!(check(&second, "gain")["reasons"], serde_json::json!([]));
+}
