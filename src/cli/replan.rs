@@ -12,7 +12,7 @@ use crate::{
     atomic_file::may_write,
     fit::Learning,
     render::{kit::argument, next, replan as words},
-    workflow::replan::{Commanded, Inputs, ReplanDocument, Replanned, run},
+    workflow::replan::{Checks, Commanded, Inputs, ReplanDocument, Replanned, Verdict, run},
 };
 
 const EXAMPLES: &str = "\
@@ -157,8 +157,10 @@ impl Run for Args {
         let target = Target::stdout(self.json);
         if let Some(file) = &self.html {
             let again = again(std::env::args_os().skip(1));
-            let whole =
-                replanned.command.as_ref().is_some_and(Commanded::applied) && !replanned.past.careful();
+            // Half of what is not to be sent is not to be sent.
+            let whole = replanned.command.as_ref().is_some_and(Commanded::applied)
+                && !replanned.past.careful()
+                && Checks::of(&replanned).verdict != Verdict::DoNotSend;
             let sending = next::to_send(self.output.as_deref(), &self.logs, &again, whole);
             write_file(file, words::page(&replanned, &sending).as_bytes())?;
         }
@@ -175,11 +177,12 @@ impl Run for Args {
 }
 
 /// Options that say how much is sent and where it goes, and whether a value follows.
-const OWN: [(&str, bool); 9] = [
+const OWN: [(&str, bool); 10] = [
     ("--gain", true),
     ("--output", true),
     ("-o", true),
     ("--html", true),
+    ("--force", false),
     ("--json", false),
     ("--quiet", false),
     ("-q", false),
@@ -219,6 +222,7 @@ mod tests {
             "--html=b.html",
             "--joints=a b",
             "--keep-plan",
+            "--force",
         ];
         let kept = again(line.into_iter().map(OsString::from));
         assert_eq!(kept, ["replan", "'my run.mcap'", "'--joints=a b'", "--keep-plan"]);

@@ -14,6 +14,7 @@ pub use paired::{SignedRank, half_interval, signed_rank};
 pub use sin_cos::sin_cos;
 pub use statistic::{SIGMA_PER_MAD, mad, median, quantile, quantile_sorted, range};
 pub use trend::{
-    Trend, begins, column_levels, false_discovery, row_weights, theil_sen, trend, weighted_median,
+    Trend, begins, column_levels, false_discovery, row_weights, step_scatter, theil_sen, trend,
+    weighted_median,
 };
 pub use two_samples::{Difference, difference};

@@ -108,23 +108,24 @@ pub fn begins(points: &[(f64, f64)]) -> Option<f64> {
         .map(|point| point.0)
 }
 
-/// A row quieter than this share of the usual noise says no more than one just so quiet.
-const LEAST_NOISE: f64 = 0.2;
+/// The robust scatter of a row's steps, to which neither a trend nor a jump adds; NaN: no value. `None` for fewer than
+/// three steps.
+pub fn step_scatter(row: impl Iterator<Item = f64>) -> Option<f64> {
+    let known: Vec<f64> = row.filter(|value| value.is_finite()).collect();
+    let steps: Vec<f64> = known.windows(2).map(|two| two[1] - two[0]).collect();
+    (steps.len() >= 3).then(|| mad(&steps))
+}
 
-/// How much each row says: one over the square of its noise, which is the robust scatter of its steps, so that neither a
-/// trend nor a jump counts as noise. NaN: no value. Rows too short to tell are taken to be as noisy as is usual.
-pub fn row_weights(rows: &[Vec<f64>]) -> Vec<f64> {
-    let noise = |row: &Vec<f64>| {
-        let known: Vec<f64> = row.iter().copied().filter(|value| value.is_finite()).collect();
-        let steps: Vec<f64> = known.windows(2).map(|two| two[1] - two[0]).collect();
-        (steps.len() >= 3).then(|| mad(&steps))
-    };
-    let noises: Vec<Option<f64>> = rows.iter().map(noise).collect();
-    let usual = median(noises.iter().flatten().copied().collect());
+/// A row quieter than this share of the usual scatter says no more than one just so quiet.
+const LEAST_SCATTER: f64 = 0.2;
+
+/// How much each row says: one over the square of its scatter. Those of unknown scatter are taken to be as is usual.
+pub fn row_weights(scatters: &[Option<f64>]) -> Vec<f64> {
+    let usual = median(scatters.iter().flatten().copied().collect());
     if usual.is_nan() || usual <= 0.0 {
-        return vec![1.0; rows.len()];
+        return vec![1.0; scatters.len()];
     }
-    noises.iter().map(|noise| noise.unwrap_or(usual).max(LEAST_NOISE * usual).powi(-2)).collect()
+    scatters.iter().map(|scatter| scatter.unwrap_or(usual).max(LEAST_SCATTER * usual).powi(-2)).collect()
 }
 
 /// The value that half of the weight lies below; with equal weights the median. NaN for no values.
@@ -256,9 +257,14 @@ mod tests {
         some[5][3] = f64::NAN;
         some[5][4] = f64::NAN;
         for table in [rows, some] {
-            assert_eq!(column_levels(&table, &row_weights(&table), 5), [-2.0, -1.0, 0.0, 1.0, 2.0]);
+            assert_eq!(column_levels(&table, &weights(&table), 5), [-2.0, -1.0, 0.0, 1.0, 2.0]);
         }
         assert!(column_levels(&[vec![1.0, f64::NAN]], &[1.0], 2)[1].is_nan());
+    }
+
+    fn weights(rows: &[Vec<f64>]) -> Vec<f64> {
+        let scatters: Vec<Option<f64>> = rows.iter().map(|row| step_scatter(row.iter().copied())).collect();
+        row_weights(&scatters)
     }
 
     #[test]
@@ -268,14 +274,21 @@ mod tests {
             (0..8).map(|k| 0.1 * k as f64 + scale * noise[(k + shift) % 8]).collect()
         };
         let rows = [row(0.01, 0), row(1.0, 1), row(1.0, 3), row(1.0, 6)];
-        let levels = column_levels(&rows, &row_weights(&rows), 8);
+        let levels = column_levels(&rows, &weights(&rows), 8);
         for (k, level) in levels.iter().enumerate() {
             assert!((level - (0.1 * k as f64 - 0.35)).abs() < 0.1, "{levels:?}");
         }
         close(weighted_median(vec![(3.0, 1.0), (1.0, 1.0), (2.0, 1.0), (4.0, 1.0)]), 2.5);
         close(weighted_median(vec![(1.0, 1.0), (2.0, 5.0), (f64::NAN, 9.0), (9.0, 1.0)]), 2.0);
         assert!(weighted_median(Vec::new()).is_nan());
-        assert_eq!(row_weights(&[vec![1.0; 6], vec![2.0; 6]]), [1.0, 1.0]);
+        assert_eq!(weights(&[vec![1.0; 6], vec![2.0; 6]]), [1.0, 1.0]);
+        let unknown = row_weights(&[Some(1.0), None, Some(1.0), Some(0.01)]);
+        assert!(
+            unknown
+                .iter()
+                .zip([1.0, 1.0, 1.0, 25.0])
+                .all(|(found, expected)| (found - expected).abs() < 1e-9)
+        );
     }
 
     #[test]

@@ -11,14 +11,14 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     failure::FleetFailure,
-    history::{By, Filter, History, Run, Values, date, days},
+    history::{By, Event, Filter, History, Run, Scatters, Values, date, days},
     map::{Map, maps},
 };
 use crate::{
     document::PROGRAM,
     math::{
-        SIGMA_PER_MAD, begins, column_levels, false_discovery, mad, median, row_weights, theil_sen, trend,
-        weighted_median,
+        SIGMA_PER_MAD, begins, column_levels, false_discovery, mad, median, row_weights, step_scatter,
+        theil_sen, trend, weighted_median,
     },
     remark::Remarks,
 };
@@ -114,8 +114,13 @@ pub struct Level {
     pub page: Option<String>,
 }
 
-/// The starts that enough runs have, as rows by run; and those runs.
-pub(super) fn matrix(values: &Values, fewest: usize) -> (Vec<usize>, Vec<Vec<f64>>) {
+/// The starts that enough runs have, as rows by run, with what each row says; and those runs. A start that scatters on
+/// all machines says little, however quiet it was on this one.
+pub(super) fn matrix(
+    values: &Values,
+    fewest: usize,
+    (joint, scatters): (&str, &Scatters),
+) -> (Vec<usize>, Vec<Vec<f64>>, Vec<f64>) {
     let often = || values.values().filter(|of_runs| of_runs.len() >= fewest);
     let mut runs: Vec<usize> = often().flat_map(|of_runs| of_runs.keys().copied()).collect();
     runs.sort_unstable();
@@ -124,7 +129,14 @@ pub(super) fn matrix(values: &Values, fewest: usize) -> (Vec<usize>, Vec<Vec<f64
         runs.iter().map(|run| of_runs.get(run).copied().unwrap_or(f64::NAN)).collect()
     };
     let rows = often().map(row).collect();
-    (runs, rows)
+    let events = values.iter().filter(|(_, of_runs)| of_runs.len() >= fewest);
+    let scatter = |(event, of_runs): (&Event, &BTreeMap<usize, f64>)| {
+        let own = step_scatter(of_runs.values().copied());
+        let usual = scatters.get(&(joint.to_owned(), event.clone())).copied();
+        own.into_iter().chain(usual).reduce(f64::max)
+    };
+    let scatters: Vec<Option<f64>> = events.map(scatter).collect();
+    (runs, rows, row_weights(&scatters))
 }
 
 /// The trends of what the filter lets through; `by`: of one metric only.
@@ -134,13 +146,16 @@ pub(super) fn matrix(values: &Values, fewest: usize) -> (Vec<usize>, Vec<Vec<f64
 /// [`FleetFailure`] if there is no dataset, or no such machine in it.
 pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFailure> {
     let history = History::read(root, filter, false)?;
+    let scatters: BTreeMap<By, Scatters> = by.iter().map(|by| (*by, history.scatters(*by))).collect();
+    let none = Scatters::new();
     let mut trends = Vec::new();
     let mut too_few = 0;
     for ((axis, metric), values) in &history.values {
         if !by.contains(metric) {
             continue;
         }
-        match joint_trend(&history.runs, values) {
+        let scatters = (axis.joint.as_str(), scatters.get(metric).unwrap_or(&none));
+        match joint_trend(&history.runs, values, scatters) {
             None => too_few += 1,
             Some(found) => trends.push(JointTrend {
                 machine: axis.machine.clone(),
@@ -205,13 +220,12 @@ fn stand_out(trends: &mut [JointTrend]) -> Vec<bool> {
 }
 
 /// The trend without its names; `None` for too few runs.
-fn joint_trend(runs: &[Run], values: &Values) -> Option<JointTrend> {
-    let (own, rows) = matrix(values, FEWEST_RUNS);
+fn joint_trend(runs: &[Run], values: &Values, scatters: (&str, &Scatters)) -> Option<JointTrend> {
+    let (own, rows, weights) = matrix(values, FEWEST_RUNS, scatters);
     let at: Vec<f64> = own.iter().filter_map(|run| runs.get(*run)).map(days).collect();
     let points = |row: &[f64]| -> Vec<(f64, f64)> {
         at.iter().copied().zip(row.iter().copied()).filter(|(_, value)| value.is_finite()).collect()
     };
-    let weights = row_weights(&rows);
     let slopes = rows.iter().map(|row| theil_sen(&points(row))).zip(weights.iter().copied());
     let slope = weighted_median(slopes.collect());
     let levels = points(&column_levels(&rows, &weights, own.len()));
@@ -247,7 +261,7 @@ fn joint_trend(runs: &[Run], values: &Values) -> Option<JointTrend> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{schema::is_written_and_read, workflow::fleet::history::Event};
+    use crate::schema::is_written_and_read;
 
     /// Ten runs a day apart, eight starts of their own level; a start grows by 2 a day from day four on and is lost late.
     fn values(slope: f64) -> (Vec<Run>, Values) {
@@ -275,7 +289,7 @@ mod tests {
     #[test]
     fn a_slope_is_found_at_matched_starts_though_the_largest_is_lost_late() {
         let (runs, values) = values(2.0);
-        let found = joint_trend(&runs, &values).unwrap();
+        let found = joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap();
         assert!((found.slope_per_day - 2.0).abs() < 0.05 && found.p_value < 1e-5, "{found:?}");
         assert!(found.interval_95[0] > 1.8 && found.interval_95[1] < 2.2, "{found:?}");
         assert_eq!((found.starts, found.runs, found.since.as_deref()), (8, 10, Some("1970-01-01T00:00:00Z")));
@@ -284,12 +298,12 @@ mod tests {
     #[test]
     fn noise_is_no_trend_and_four_runs_prove_nothing() {
         let (runs, values) = values(0.0);
-        assert!(joint_trend(&runs, &values).unwrap().p_value > 0.05);
+        assert!(joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap().p_value > 0.05);
         let few = values.into_iter().map(|(event, mut of)| {
             of.retain(|run, _| *run < 4);
             (event, of)
         });
-        assert_eq!(joint_trend(&runs, &few.collect()), None);
+        assert_eq!(joint_trend(&runs, &few.collect(), ("boom", &Scatters::new())), None);
     }
 
     #[test]
@@ -301,7 +315,7 @@ mod tests {
             runs: 10,
             machines: 1,
             false_discovery_rate: MOST_FALSE,
-            trends: vec![joint_trend(&runs, &values).unwrap()],
+            trends: vec![joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap()],
             maps: Vec::new(),
             too_few: 0,
             remarks: Remarks::default(),

@@ -11,11 +11,11 @@ use serde::{Deserialize, Serialize};
 use super::{
     drift::{MOST_FALSE, matrix},
     failure::FleetFailure,
-    history::{Axis, By, Filter, History, Values, date, days},
+    history::{Axis, By, Filter, History, Scatters, Values, date, days},
 };
 use crate::{
     document::PROGRAM,
-    math::{SIGMA_PER_MAD, column_levels, difference, false_discovery, mad, median, row_weights},
+    math::{SIGMA_PER_MAD, column_levels, difference, false_discovery, mad, median},
     remark::Remarks,
     units::SECONDS_PER_DAY,
 };
@@ -93,7 +93,7 @@ struct Sides {
 }
 
 impl Sides {
-    fn of(history: &History, values: &Values, at_days: f64) -> Self {
+    fn of(history: &History, scatters: (&str, &Scatters), values: &Values, at_days: f64) -> Self {
         let is_after = |run: &usize| history.runs.get(*run).is_some_and(|run| days(run) >= at_days);
         // A start that one side lacks tells nothing of the change.
         let both = |of: &std::collections::BTreeMap<usize, f64>| {
@@ -102,8 +102,8 @@ impl Sides {
         };
         let values: Values =
             values.iter().filter(|(_, of)| both(of)).map(|(e, of)| (e.clone(), of.clone())).collect();
-        let (runs, rows) = matrix(&values, 2);
-        let levels = column_levels(&rows, &row_weights(&rows), runs.len());
+        let (runs, rows, weights) = matrix(&values, 2, scatters);
+        let levels = column_levels(&rows, &weights, runs.len());
         let side = |after: bool| {
             let levels =
                 runs.iter().zip(&levels).filter(|(run, level)| is_after(run) == after && level.is_finite());
@@ -180,7 +180,9 @@ fn joint_effect(
     values: &Values,
     at_days: f64,
 ) -> Option<JointEffect> {
-    let sides = Sides::of(history, values, at_days);
+    let scatters = history.scatters(metric);
+    let scatters = (axis.joint.as_str(), &scatters);
+    let sides = Sides::of(history, scatters, values, at_days);
     let own = sides.change()?;
     let alike = |(other, by): &&(Axis, By)| {
         *by == metric
@@ -189,7 +191,7 @@ fn joint_effect(
     };
     let others = history.values.iter().filter(|(key, _)| alike(key));
     let others: Vec<f64> =
-        others.filter_map(|(_, values)| Sides::of(history, values, at_days).change()).collect();
+        others.filter_map(|(_, values)| Sides::of(history, scatters, values, at_days).change()).collect();
     let usual =
         (others.len() >= FEWEST_OTHERS).then(|| (median(others.clone()), SIGMA_PER_MAD * mad(&others)));
     let (usual_change, spread) = usual.unwrap_or((0.0, 0.0));

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     log::dataset::{Cell, read_table},
-    math::median,
+    math::{median, step_scatter},
     remark::{Code, Remarks},
     suggest::nearest,
     units::SECONDS_PER_DAY,
@@ -78,6 +78,9 @@ pub(super) struct Event {
 
 /// Values of one metric of one joint: by start, then by run.
 pub(super) type Values = BTreeMap<Event, BTreeMap<usize, f64>>;
+
+/// By joint and start.
+pub(super) type Scatters = BTreeMap<(String, Event), f64>;
 
 /// All runs, in order of time, and what was measured in them.
 #[derive(Debug, Clone, Default)]
@@ -251,6 +254,19 @@ impl History {
             }
         }
         usual.into_iter().map(|(key, values)| (key, median(values))).collect()
+    }
+
+    /// How much each start of each joint scatters from run to run: the median over the machines.
+    pub(super) fn scatters(&self, metric: By) -> Scatters {
+        let mut found: BTreeMap<(String, Event), Vec<f64>> = BTreeMap::new();
+        for ((axis, _), values) in self.values.iter().filter(|((_, by), _)| *by == metric) {
+            for (event, of) in values {
+                let key = (axis.joint.clone(), event.clone());
+                found.entry(key).or_default().extend(step_scatter(of.values().copied()));
+            }
+        }
+        found.retain(|_, own| !own.is_empty());
+        found.into_iter().map(|(key, own)| (key, median(own))).collect()
     }
 
     /// Names of all machines.
