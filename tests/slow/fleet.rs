@@ -139,7 +139,8 @@ fn write(folder: &Path, seed: u64) {
 #[test]
 #[ignore = "minutes: two thousand simulated runs"]
 fn three_injected_faults_are_found_first_and_nothing_else() {
-    let (mut slopes, mut false_ones) = (Vec::new(), 0);
+    let (mut slopes, mut found_ones, mut false_ones) = (Vec::new(), 0, 0);
+    let (mut questions, mut false_effects) = (0, 0);
     for seed in 1..=count("SEEDS", 10) {
         let temporary = tempfile::tempdir().unwrap();
         let (logs, data) = (temporary.path().join("logs"), temporary.path().join("data"));
@@ -185,8 +186,9 @@ fn three_injected_faults_are_found_first_and_nothing_else() {
             if by == By::Delay {
                 slopes.push(first.slope_per_day);
             }
-            let altered = [DELAYED, RUBBING, REPAIRED].map(|fault| name(fault.0));
-            false_ones += found.trends.iter().filter(|t| t.found && !altered.contains(&t.machine)).count();
+            let all = found.trends.iter().filter(|trend| trend.found);
+            found_ones += all.clone().count();
+            false_ones += all.filter(|t| !others.contains(&(t.machine.clone(), t.joint.clone()))).count();
         }
         let at_us = 1_772_352_000_000_000 + REPAIR * 86_400_000_000;
         let repair =
@@ -206,12 +208,17 @@ fn three_injected_faults_are_found_first_and_nothing_else() {
         assert!(first.found && first.joint == joint(REPAIRED.1) && first.rank <= 2, "seed {seed}: {first:?}");
         for machine in (0..MACHINES).filter(|m| ![DELAYED.0, RUBBING.0, REPAIRED.0].contains(m)) {
             let none = effect(&data, &name(machine), at_us, &Filter::default(), &[By::Peak]).unwrap();
-            false_ones += none.effects.iter().filter(|effect| effect.found).count();
+            questions += 1;
+            false_effects += usize::from(none.effects.iter().any(|effect| effect.found));
         }
     }
-    println!("slopes of the dead time, s a day: {slopes:?}; found without a fault: {false_ones}");
+    println!(
+        "slopes of the dead time, s a day: {slopes:?}; {found_ones} drifts found, {false_ones} of joints without a fault; \
+         {questions} machines without a repair asked for its effect, {false_effects} show one"
+    );
     assert!(slopes.iter().all(|slope| (slope - DRIFT_S).abs() < 0.2 * DRIFT_S), "{slopes:?}");
-    assert_eq!(false_ones, 0);
+    // What is found is false in one of twenty at most, by the promise of the method.
+    assert!(20 * false_ones <= found_ones.max(20) && 20 * false_effects <= questions);
 }
 
 fn run(folder: &Path, into: &str, workers: &str) -> Duration {
