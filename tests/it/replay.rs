@@ -53,6 +53,18 @@ fn joints_that_turn_and_that_slide_are_found_by_thresholds_of_their_own() {
     assert_eq!(found(&Rules { sliding: sizes(default.sliding), ..default }), [1, 0]);
 }
 
+#[test]
+fn a_degree_is_worse_than_eighteen_millimetres_though_its_number_is_smaller() {
+    let t_s: Vec<f64> = (0..600).map(|k| f64::from(k) * 0.01).collect();
+    let along = |at_s: f64, size: f64| t_s.iter().map(|t| size * ramp(*t, at_s)).collect();
+    let whole = || vec![Range { start: 0, end: 600 }];
+    let of = |size| recorded(t_s.clone(), along(1.0, size), along(1.25, size), whole());
+    let slides = Pair { kind: JointKind::Slides, name: "b".into(), ..of(1.03) };
+    let found = replay(&[slides, of(1.0)], &Rules::default());
+    let worst: Vec<_> = found.worst_first().iter().map(|t| (t.joint.as_str(), t.peak_error)).collect();
+    assert!(matches!(worst[..], [("a", a), ("b", b)] if a < b), "{worst:?}");
+}
+
 fn onsets(replay: &Replay) -> Vec<(i8, f64, Option<f64>)> {
     replay.transitions.iter().map(|t| (t.direction, t.planned_onset_s, t.measured_onset_s)).collect()
 }

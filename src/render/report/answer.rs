@@ -2,7 +2,7 @@
 
 use super::{
     method::method,
-    tables::{by_peak, mostly_lag, verdicts},
+    tables::{mostly_lag, verdicts},
     tool, why,
 };
 use crate::{
@@ -54,7 +54,7 @@ fn at_tool(report: &Report) -> Option<Fact> {
 }
 
 fn worst(replay: &Replay) -> Fact {
-    let found = by_peak(replay);
+    let found = replay.worst_first();
     let Some(worst) = found.first() else { return fact("starts", "no planned start from rest") };
     let late = match worst.onset_delay_s {
         Some(delay_s) if delay_s >= 0.0 => format!("leaves {} ms late", ms(delay_s)),
@@ -73,7 +73,7 @@ fn late(report: &Report) -> Option<Fact> {
     if let Err(reason) = report.why.as_ref()? {
         return Some(fact("why", format!("not told: {reason}")));
     }
-    let start = why::of(report, &by_peak(&report.replay).first()?.id)?;
+    let start = why::of(report, &report.replay.worst_first().first()?.id)?;
     Some(fact("why", why::phrase(start)))
 }
 

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::{
-    tables::{by_peak, lag_words, mostly_lag, verdicts, worst_sentence},
+    tables::{lag_words, mostly_lag, verdicts, worst_sentence},
     tool_page::tool_card,
 };
 use crate::{
@@ -49,7 +49,7 @@ pub(super) fn summary(report: &Report) -> Markup {
 }
 
 fn worst(report: &Report) -> Markup {
-    let Some(worst) = by_peak(&report.replay).into_iter().next() else {
+    let Some(worst) = report.replay.worst_first().into_iter().next() else {
         let body = html! { p { "No planned start from rest was found." } };
         return card("", "Worst transition", "None", &body);
     };

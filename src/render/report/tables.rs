@@ -12,6 +12,7 @@ use crate::{
         promise,
     },
     replay::{Answer, JOINT, JointReplay, Profiles, Replay, TRANSITION, Transition, Verdict},
+    series::JointKind,
     workflow::report::{GateResult, Report},
 };
 
@@ -73,7 +74,7 @@ fn findings(report: &Report) -> Vec<String> {
     let replay = &report.replay;
     let of_all = replay.kind();
     let mut lines = Vec::new();
-    match by_peak(replay).first() {
+    match replay.worst_first().first() {
         Some(worst) => lines.push(format!("Worst {}: {}", worst.kind.name(), worst_sentence(worst))),
         None if replay.joints.iter().all(|j| !j.plan_moves) => {
             lines.push("No joint has a plan that moves: there is no transition to judge.".to_owned());
@@ -192,21 +193,21 @@ pub(super) fn worst_sentence(worst: &Transition) -> String {
     )
 }
 
-pub(super) fn by_peak(replay: &Replay) -> Vec<&Transition> {
-    let mut worst: Vec<&Transition> = replay.transitions.iter().collect();
-    worst.sort_by(|a, b| b.peak_error.total_cmp(&a.peak_error));
-    worst
-}
-
 fn transitions(replay: &Replay, most: usize) -> Option<Section> {
-    let all = by_peak(replay);
+    let all = replay.worst_first();
     let units = Units::of(replay.joints.iter().map(|joint| joint.kind));
     let table = units.table(TRANSITION, all.iter().take(most).map(|t| (*t, t.joint_kind)));
     let more = (all.len() > most).then(|| {
         Sentence::note(format!("and {} more with smaller peaks (--all lists them)", all.len() - most))
     });
-    (!all.is_empty())
-        .then(|| Section::new(Id::TRANSITIONS, "Transitions, worst first", [table]).with_all(more))
+    let kinds = [JointKind::Turns, JointKind::Slides];
+    let mixed = kinds.iter().all(|kind| replay.joints.iter().any(|joint| joint.kind == *kind)).then(|| {
+        let [turns, slides] = kinds.map(|kind| position(kind, replay.rules.sizes(kind).settle_band));
+        Sentence::note(format!("To tell the worst, {turns} counts as much as {slides}."))
+    });
+    (!all.is_empty()).then(|| {
+        Section::new(Id::TRANSITIONS, "Transitions, worst first", [table]).with_all(more).with_all(mixed)
+    })
 }
 
 fn joints(replay: &Replay, profiles: &Profiles) -> Section {

@@ -2,7 +2,6 @@
 
 use maud::{Markup, html};
 
-use super::tables::by_peak;
 use crate::{
     render::{
         kit::{
@@ -55,7 +54,7 @@ pub(super) fn transitions(report: &Report, plots: &mut Plots) -> Markup {
 
 /// Transitions with their plots, worst first.
 pub(super) fn tiles(report: &Report) -> Vec<(&Transition, Chart)> {
-    let worst = by_peak(&report.replay).into_iter().take(MOST);
+    let worst = report.replay.worst_first().into_iter().take(MOST);
     let mut tiles: Vec<(&Transition, Chart)> = worst
         .filter_map(|transition| {
             let pair = report.pairs.iter().find(|pair| pair.name == transition.joint)?;

@@ -82,7 +82,7 @@ pub fn advice(report: &Report) -> Vec<Advice> {
         unanswered: joint.unanswered_starts,
         starts: joint.starts,
     }));
-    let worst = replay.transitions.iter().max_by(|a, b| a.peak_error.total_cmp(&b.peak_error));
+    let worst = replay.worst_first().into_iter().next();
     let Some(worst) = worst else {
         advice.push(Advice::RecordStarts);
         return advice;
