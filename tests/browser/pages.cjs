@@ -65,6 +65,8 @@ async function use(page, where) {
   const first = await read.textContent();
   await page.mouse.move(...at(0.9, 0.1));
   const second = await read.textContent();
+  const after = await plot.boundingBox();
+  check(after.y === box.y && after.height === box.height, where, `the read-out moves the plot by ${after.y - box.y} px`);
   check(first !== '' && second !== '' && first !== second, where, `the read-out stays ${JSON.stringify(first)}`);
   const range = () => plot.evaluate(canvas => canvas.dataset.range);
   const whole = await range();
