@@ -111,6 +111,9 @@ pub enum LogError {
     /// A log that is to get a plan has one.
     #[error("{} has a plan in {topic} already: `hydrotrace report` it as it is, or give the log as the recorder left it", path.display())]
     Planned { path: PathBuf, topic: String },
+    /// A log in an object store.
+    #[error(transparent)]
+    Remote(#[from] super::remote::RemoteError),
     /// The writer of a log that copies another failed.
     #[error("cannot write the log {}", path.display())]
     Copy { path: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },

@@ -11,6 +11,7 @@ use super::{
     file::{Layout, Source, scan},
     input::Input,
     looks::LOOKED_AT,
+    remote,
 };
 use crate::remark::{Code, Remarks};
 
@@ -86,7 +87,7 @@ impl LogFiles {
         let (mut remarks, mut doubts) = (Remarks::default(), Remarks::default());
         let (mut files, mut ordered) = (Vec::new(), false);
         for input in inputs {
-            let parts = match input {
+            let parts = match remote::resolved(input)? {
                 Input::Path(path) => {
                     ordered |= path.is_dir();
                     let parts = bag::recording_files(&[path], &mut remarks)?;

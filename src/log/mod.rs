@@ -23,6 +23,7 @@ mod looks;
 mod options;
 mod range;
 mod read;
+pub mod remote;
 mod repair;
 mod schema;
 mod source;

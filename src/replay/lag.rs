@@ -1,5 +1,8 @@
 //! Velocity lag: the time shift at which planned and measured speed agree best.
 
+use std::ops::Range;
+
+use multiversion::multiversion;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{Rules, motion::Motion};
@@ -73,17 +76,7 @@ impl Correlation {
         let grid = |values: &[f64]| resample(t, &values[motion.segment.clone()], start_s, step_s, n);
         let (p, m) = (grid(speeds.planned_rad_s), grid(speeds.measured_rad_s));
         let plan = place(motion.start_s - reach_s)..(place(motion.end_s + reach_s) + 1).min(n);
-        for (k, shift) in (0..=2 * shifts).enumerate() {
-            // The measured sample `shift - shifts` after the planned one.
-            let first = plan.start.max(shifts.saturating_sub(shift));
-            let end = plan.end.min((n + shifts).saturating_sub(shift));
-            for i in first..end {
-                let (p, m) = (p[i], m[i + shift - shifts]);
-                sums.product[k] += p * m;
-                sums.planned_energy[k] += p * p;
-                sums.measured_energy[k] += m * m;
-            }
-        }
+        correlate(&p, &m, &plan, &mut sums);
         sums
     }
 
@@ -119,6 +112,50 @@ impl Correlation {
     }
 }
 
+/// Adds the products of the plan's samples with the measured ones at every shift. Shifts are taken side by side, each in
+/// the order of its samples: the sums are those of one shift after the other.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "x86_64+sse4.1"))]
+fn correlate(p: &[f64], m: &[f64], plan: &Range<usize>, sums: &mut Correlation) {
+    const LANES: usize = 8;
+    let (shifts, n) = (sums.product.len() / 2, m.len());
+    // The planned samples that have a measured one `k - shifts` after them.
+    let inside =
+        |k: usize| plan.start.max(shifts.saturating_sub(k))..plan.end.min((n + shifts).saturating_sub(k));
+    let add = |sums: &mut Correlation, k: usize, range: Range<usize>| {
+        for i in range {
+            let (p, m) = (p[i], m[i + k - shifts]);
+            sums.product[k] += p * m;
+            sums.planned_energy[k] += p * p;
+            sums.measured_energy[k] += m * m;
+        }
+    };
+    for from in (0..sums.product.len()).step_by(LANES) {
+        let lanes = from..(from + LANES).min(sums.product.len());
+        // Where all of these shifts have a sample.
+        let (first, end) = (inside(from).start, inside(lanes.end - 1).end);
+        if lanes.len() < LANES || first >= end {
+            lanes.for_each(|k| add(sums, k, inside(k)));
+            continue;
+        }
+        lanes.clone().for_each(|k| add(sums, k, inside(k).start..first));
+        let held = |sums: &[f64]| std::array::from_fn::<f64, LANES, _>(|l| sums[from + l]);
+        let mut product = held(&sums.product);
+        let mut planned = held(&sums.planned_energy);
+        let mut measured = held(&sums.measured_energy);
+        for (p, m) in p[first..end].iter().zip(m[first + from - shifts..].windows(LANES)) {
+            for l in 0..LANES {
+                product[l] += p * m[l];
+                planned[l] += p * p;
+                measured[l] += m[l] * m[l];
+            }
+        }
+        sums.product[lanes.clone()].copy_from_slice(&product);
+        sums.planned_energy[lanes.clone()].copy_from_slice(&planned);
+        sums.measured_energy[lanes.clone()].copy_from_slice(&measured);
+        lanes.for_each(|k| add(sums, k, end..inside(k).end));
+    }
+}
+
 /// Values at `start_s + k step_s` for `n` instants, linear between samples.
 fn resample(t: &[f64], x: &[f64], start_s: f64, step_s: f64, n: usize) -> Vec<f64> {
     let last = t.len() - 1;
@@ -147,8 +184,6 @@ fn standard_error(values: &[f64]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use std::ops::Range;
-
     use super::*;
 
     fn hump(at_s: f64, t_s: f64) -> f64 {
@@ -180,6 +215,33 @@ mod tests {
         assert!((found.shift_s.unwrap() - 0.133).abs() < 0.002, "{found:?}");
         assert!(found.correlation.unwrap() > 0.999);
         assert_eq!(found.interval_s, None);
+    }
+
+    #[test]
+    fn sums_side_by_side_are_those_one_after_the_other() {
+        let values = |seed: u32, n: u32| -> Vec<f64> {
+            (0..n).map(|k| f64::from((k * 7919 + seed) % 101) * 0.37 - 11.0).collect()
+        };
+        for (n, shifts, plan) in
+            [(60, 9, 20..40), (60, 9, 0..60), (30, 12, 3..29), (5, 20, 1..4), (40, 0, 10..30)]
+        {
+            let (p, m) = (values(3, n), values(17, n));
+            let mut sums = Correlation::zero(shifts);
+            correlate(&p, &m, &plan, &mut sums);
+            for k in 0..=2 * shifts {
+                let inside = plan.clone().filter(|i| (shifts..m.len() + shifts).contains(&(i + k)));
+                let mut alone = [0.0; 3];
+                for i in inside {
+                    let (p, m) = (p[i], m[i + k - shifts]);
+                    alone = [alone[0] + p * m, alone[1] + p * p, alone[2] + m * m];
+                }
+                assert_eq!(
+                    [sums.product[k], sums.planned_energy[k], sums.measured_energy[k]],
+                    alone,
+                    "{n} {k}"
+                );
+            }
+        }
     }
 
     #[test]

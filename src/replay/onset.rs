@@ -8,6 +8,8 @@
 
 use std::ops::Range;
 
+use multiversion::multiversion;
+
 use super::Rules;
 
 /// An onset with its interval.
@@ -39,6 +41,9 @@ impl Rise {
         match self {
             Rise::Ramp(ramp_s) if since_s >= ramp_s => since_s - 0.5 * ramp_s,
             Rise::Ramp(ramp_s) => 0.5 * since_s * since_s / ramp_s,
+            Rise::Power(2) => since_s * since_s,
+            Rise::Power(3) => since_s * (since_s * since_s),
+            Rise::Power(4) => (since_s * since_s) * (since_s * since_s),
             Rise::Power(power) => since_s.powi(power),
         }
     }
@@ -96,14 +101,14 @@ pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &
     let (back, on) = (steps(before_s), steps(on_s));
     #[expect(clippy::cast_possible_truncation, reason = "clamped above")]
     let grid = (-(back as i64)..=on as i64).map(|k| k as f64 * rules.onset_step_s);
-    let fits: Vec<Fit> = grid
-        .flat_map(|t0| RISES.map(|rise| Fit::new(&t, &x, t0, rise)))
+    let all: Vec<Fit> = grid
+        .flat_map(|t0| fits(&t, &x, t0))
         .filter(|fit| fit.onset_s(search.stop_speed).is_some_and(|s| s <= times[end - 1] - crossing_s))
         .collect();
-    let best = fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares))?;
+    let best = all.iter().min_by(|a, b| a.squares.total_cmp(&b.squares))?;
     let freedom = ((t.len() as f64 - 4.0).max(1.0) / best.redundancy(&t, &x)).max(1.0);
     let variance = (best.squares / freedom).max(f64::MIN_POSITIVE);
-    let mut onsets: Vec<(f64, f64)> = fits
+    let mut onsets: Vec<(f64, f64)> = all
         .iter()
         .filter_map(|fit| {
             let at_s = fit.onset_s(search.stop_speed)?;
@@ -139,26 +144,44 @@ struct Fit {
     squares: f64,
 }
 
-impl Fit {
-    /// Fits values of zero mean.
-    fn new(t: &[f64], x: &[f64], t0: f64, rise: Rise) -> Self {
-        let n = t.len() as f64;
-        let from = t.partition_point(|&t| t <= t0);
-        let (mut f1, mut f2, mut fx) = (0.0, 0.0, 0.0);
-        for (t, x) in t[from..].iter().zip(&x[from..]) {
-            let f = rise.travel(t - t0);
-            f1 += f;
-            f2 += f * f;
-            fx += f * x;
+/// Fits all rises from `t0` on to values of zero mean, side by side.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "x86_64+sse4.1"))]
+fn fits(t: &[f64], x: &[f64], t0: f64) -> [Fit; RISES.len()] {
+    let n = t.len() as f64;
+    let from = t.partition_point(|&t| t <= t0);
+    let zeros = [0.0; RISES.len()];
+    let (mut f1, mut f2, mut fx) = (zeros, zeros, zeros);
+    for (t, x) in t[from..].iter().zip(&x[from..]) {
+        let f = RISES.map(|rise| rise.travel(t - t0));
+        for k in 0..RISES.len() {
+            f1[k] += f[k];
+            f2[k] += f[k] * f[k];
+            fx[k] += f[k] * x;
         }
-        let spread = f2 - f1 * f1 / n;
-        // The values have zero mean, so the covariance needs no correction.
-        let scale = if spread > 0.0 { (fx / spread).max(0.0) } else { 0.0 };
-        let mut fit = Self { t0, rise, level: -scale * f1 / n, scale, squares: 0.0 };
-        fit.squares = t.iter().zip(x).map(|(&t, &x)| fit.residual(t, x).powi(2)).sum();
-        fit
     }
+    let (mut level, mut scale, mut squares) = (zeros, zeros, zeros);
+    for k in 0..RISES.len() {
+        let spread = f2[k] - f1[k] * f1[k] / n;
+        // The values have zero mean, so the covariance needs no correction.
+        scale[k] = if spread > 0.0 { (fx[k] / spread).max(0.0) } else { 0.0 };
+        level[k] = -scale[k] * f1[k] / n;
+    }
+    for x in &x[..from] {
+        for k in 0..RISES.len() {
+            squares[k] += (x - level[k]) * (x - level[k]);
+        }
+    }
+    for (t, x) in t[from..].iter().zip(&x[from..]) {
+        let f = RISES.map(|rise| rise.travel(t - t0));
+        for k in 0..RISES.len() {
+            let off = x - level[k] - scale[k] * f[k];
+            squares[k] += off * off;
+        }
+    }
+    std::array::from_fn(|k| Fit { t0, rise: RISES[k], level: level[k], scale: scale[k], squares: squares[k] })
+}
 
+impl Fit {
     /// When its speed passes the threshold; `None` if it never does.
     fn onset_s(&self, speed_rad_s: f64) -> Option<f64> {
         if self.scale <= 0.0 {

@@ -1,15 +1,15 @@
 //! Path error: how far the arm was from where it was to pass, whenever it passed.
 
+use multiversion::multiversion;
+
 use super::{PathError, Rules, cursor::Cursor};
 use crate::series::Pair;
 
-/// Joint vectors at common instants, `[n, joints]` row-major; those that no window needs any more are forgotten.
-#[derive(Default)]
+/// Joint vectors at common instants, `[joints][n]`; those that no window needs any more are forgotten.
 struct Path {
-    joints: usize,
     t_s: Vec<f64>,
-    planned_rad: Vec<f64>,
-    measured_rad: Vec<f64>,
+    planned_rad: Vec<Vec<f64>>,
+    measured_rad: Vec<Vec<f64>>,
     /// Whether the plan runs on from the instant before.
     connected: Vec<bool>,
 }
@@ -32,7 +32,8 @@ struct Sums {
 /// data; `None` where there is none. O(n window).
 pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError>, PathError)> {
     let lead = pairs.first()?;
-    let mut path = Path { joints: pairs.len(), ..Path::default() };
+    let none = || vec![Vec::new(); pairs.len()];
+    let mut path = Path { t_s: Vec::new(), planned_rad: none(), measured_rad: none(), connected: Vec::new() };
     let zeros = || vec![0.0; pairs.len() + 1];
     let mut sums = Sums { squares: zeros(), peaks: zeros(), timed: zeros() };
     // Less than the step, so that jitter around it loses no stamps.
@@ -57,9 +58,9 @@ pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError
             path.t_s.push(t_s);
             path.connected.push(places == last_places);
             last_places = places;
-            for (planned, measured) in found {
-                path.planned_rad.push(planned);
-                path.measured_rad.push(measured);
+            for (j, (planned, measured)) in found.into_iter().enumerate() {
+                path.planned_rad[j].push(planned);
+                path.measured_rad[j].push(measured);
             }
         }
         while judged < path.t_s.len() && t_s - path.t_s[judged] > rules.path_window_s {
@@ -69,7 +70,7 @@ pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError
             while end < path.t_s.len() && path.t_s[end] - path.t_s[judged] <= rules.path_window_s {
                 end += 1;
             }
-            sums.add(&path, judged, path.nearest(judged, first, end));
+            sums.add(&path, judged, nearest(&path, judged, first, end));
             judged += 1;
         }
         if first >= FORGOTTEN {
@@ -93,8 +94,8 @@ pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError
 impl Sums {
     /// Takes in instant `i`, whose nearest point of the plan is a share of the piece from `at` on.
     fn add(&mut self, path: &Path, i: usize, (at, share): (usize, f64)) {
-        let (norm, mut square) = (path.joints, 0.0);
-        for j in 0..path.joints {
+        let (norm, mut square) = (path.planned_rad.len(), 0.0);
+        for j in 0..norm {
             let off = path.offset(i, j, at, share);
             square += off * off;
             self.squares[j] += off * off;
@@ -112,42 +113,56 @@ impl Path {
     fn forget(&mut self, instants: usize) {
         self.t_s.drain(..instants);
         self.connected.drain(..instants);
-        self.planned_rad.drain(..instants * self.joints);
-        self.measured_rad.drain(..instants * self.joints);
+        self.planned_rad.iter_mut().chain(&mut self.measured_rad).for_each(|joint| {
+            joint.drain(..instants);
+        });
     }
 
-    /// The piece of plan from sample `at` on that passes nearest to measured vector `i`, and
-    /// the share of the piece up to the nearest point.
-    fn nearest(&self, i: usize, first: usize, end: usize) -> (usize, f64) {
-        let (mut best, mut place) = (f64::INFINITY, (i, 0.0));
-        for at in first..end {
-            let whole = at + 1 < end && self.connected[at + 1];
-            let (mut along, mut length) = (0.0, 0.0);
-            let mut from_start = 0.0;
-            for j in 0..self.joints {
-                let r = self.planned_rad[at * self.joints + j];
-                let off = self.measured_rad[i * self.joints + j] - r;
-                from_start += off * off;
-                if whole {
-                    let piece = self.planned_rad[(at + 1) * self.joints + j] - r;
-                    along += off * piece;
-                    length += piece * piece;
+    fn offset(&self, i: usize, j: usize, at: usize, share: f64) -> f64 {
+        let planned = &self.planned_rad[j];
+        let piece = if share > 0.0 { planned[at + 1] - planned[at] } else { 0.0 };
+        planned[at] + share * piece - self.measured_rad[j][i]
+    }
+}
+
+/// The piece of plan from sample `at` on that passes nearest to measured vector `i`, and
+/// the share of the piece up to the nearest point. Pieces are judged side by side.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "x86_64+sse4.1"))]
+fn nearest(path: &Path, i: usize, first: usize, end: usize) -> (usize, f64) {
+    const LANES: usize = 8;
+    let (mut best, mut place) = (f64::INFINITY, (i, 0.0));
+    for from in (first..end).step_by(LANES) {
+        let count = LANES.min(end - from);
+        let [mut from_start, mut along, mut length] = [[0.0; LANES]; 3];
+        for (planned, measured) in path.planned_rad.iter().zip(&path.measured_rad) {
+            let measured = measured[i];
+            let mut add = |l: usize, r: f64, next: f64| {
+                let (off, piece) = (measured - r, next - r);
+                from_start[l] += off * off;
+                along[l] += off * piece;
+                length[l] += piece * piece;
+            };
+            if let Some(planned) = planned.get(from..=from + LANES) {
+                for l in 0..LANES {
+                    add(l, planned[l], planned[l + 1]);
+                }
+            } else {
+                for l in 0..count {
+                    add(l, planned[from + l], planned[(from + l + 1).min(planned.len() - 1)]);
                 }
             }
-            let share = if length > 0.0 { (along / length).clamp(0.0, 1.0) } else { 0.0 };
-            let square = from_start + share * (share * length - 2.0 * along);
+        }
+        for l in 0..count {
+            let at = from + l;
+            let whole = at + 1 < end && path.connected[at + 1] && length[l] > 0.0;
+            let share = if whole { (along[l] / length[l]).clamp(0.0, 1.0) } else { 0.0 };
+            let square = from_start[l] + share * (share * length[l] - 2.0 * along[l]);
             if square < best {
                 (best, place) = (square, (at, share));
             }
         }
-        place
     }
-
-    fn offset(&self, i: usize, j: usize, at: usize, share: f64) -> f64 {
-        let r = self.planned_rad[at * self.joints + j];
-        let piece = if share > 0.0 { self.planned_rad[(at + 1) * self.joints + j] - r } else { 0.0 };
-        r + share * piece - self.measured_rad[i * self.joints + j]
-    }
+    place
 }
 
 #[cfg(test)]

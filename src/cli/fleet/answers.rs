@@ -14,7 +14,7 @@ use crate::{
     document::pretty,
     remark::Remarks,
     render::{fleet as words, kit},
-    workflow::fleet::{By, Filter, Gate, drift, effect, gate, worst},
+    workflow::fleet::{By, Filter, Gate, drift, effect, gate, last_note, worst},
 };
 
 /// Rows that are shown without `--all`.
@@ -87,7 +87,7 @@ impl Metric {
 }
 
 /// A day or an instant, as microseconds since 1970; UTC unless it says otherwise.
-fn date(text: &str) -> Result<i64, String> {
+pub(super) fn date(text: &str) -> Result<i64, String> {
     let day = NaiveDate::parse_from_str(text, "%Y-%m-%d").ok().and_then(|day| day.and_hms_opt(0, 0, 0));
     let instant = || DateTime::parse_from_rfc3339(text).ok().map(|at| at.timestamp_micros());
     day.map(|day| day.and_utc().timestamp_micros()).or_else(instant).ok_or_else(|| {
@@ -198,13 +198,14 @@ pub(super) struct EffectArgs {
     #[command(flatten)]
     ask: AskArgs,
 
-    /// The machine
+    /// The machine [default: the one that was noted last]
     #[arg(long, value_name = "MACHINE")]
-    machine: String,
+    machine: Option<String>,
 
-    /// When it was changed; runs that begin then are after it
-    #[arg(long, value_name = "DATE", value_parser = date)]
-    at: i64,
+    /// When it was changed; runs that begin then are after it [default: when the last thing was done that `fleet note`
+    /// noted of it]
+    #[arg(long, value_name = "DATE", value_parser = date, requires = "machine")]
+    at: Option<i64>,
 
     /// One metric only; fewer effects are corrected for
     #[arg(long, value_enum)]
@@ -217,7 +218,16 @@ pub(super) struct EffectArgs {
 impl Run for EffectArgs {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by.by()]);
-        let found = effect(&self.ask.dataset, &self.machine, self.at, &self.ask.filter(None), &by)?;
+        let dataset = &self.ask.dataset;
+        let (machine, at_us, what) = match (&self.machine, self.at) {
+            (Some(machine), Some(at_us)) => (machine.clone(), at_us, None),
+            _ => {
+                let note = last_note(dataset, self.machine.as_deref())?;
+                (note.machine, note.at_us, Some(note.what))
+            }
+        };
+        let mut found = effect(dataset, &machine, at_us, &self.ask.filter(None), &by)?;
+        found.what = what;
         let forms: [&dyn Fn() -> String; 3] =
             [&|| pretty(&found), &|| words::effect_csv(&found), &|| words::effect_page(&found)];
         self.form.write(console, forms, &|| words::effect(&found, self.form.most()), (&found.remarks, &[]))

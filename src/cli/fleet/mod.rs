@@ -1,6 +1,7 @@
 //! `fleet` and what it does.
 
 mod answers;
+mod note;
 mod scan;
 
 use clap::Subcommand;
@@ -13,7 +14,8 @@ Examples:
   hydrotrace fleet scan /data/logs --into fleet --machine-from path:2
   hydrotrace fleet worst fleet --by peak
   hydrotrace fleet drift fleet --html -o fleet.html
-  hydrotrace fleet effect fleet --machine M07 --at 2026-03-06
+  hydrotrace fleet note fleet --machine M07 --at 2026-03-06 'valve replaced'
+  hydrotrace fleet effect fleet --machine M07
   hydrotrace fleet gate fleet --max-drift-delay-ms 5";
 
 /// Many logs of many machines: what drifts, since when, what helped
@@ -29,6 +31,7 @@ enum What {
     Scan(scan::Args),
     Worst(answers::WorstArgs),
     Drift(answers::DriftArgs),
+    Note(note::Args),
     Effect(answers::EffectArgs),
     Gate(answers::GateArgs),
     Compact(scan::CompactArgs),
@@ -40,6 +43,7 @@ impl Run for Args {
             What::Scan(args) => args.run(console),
             What::Worst(args) => args.run(console),
             What::Drift(args) => args.run(console),
+            What::Note(args) => args.run(console),
             What::Effect(args) => args.run(console),
             What::Gate(args) => args.run(console),
             What::Compact(args) => args.run(console),

@@ -1,8 +1,6 @@
 //! `fleet scan`
 
-use std::{
-    num::NonZeroUsize, ops::ControlFlow, path::PathBuf, thread::available_parallelism, time::Duration,
-};
+use std::{num::NonZeroUsize, ops::ControlFlow, path::PathBuf, time::Duration};
 
 use super::{
     CliError, Outcome, Run,
@@ -30,7 +28,8 @@ its rows once. A log that cannot be analysed is a row with its error.";
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Folders with logs, patterns ('/data/**/run.mcap'), lists of logs (.txt, a path a line), logs
+    /// Folders with logs, patterns ('/data/**/run.mcap'), lists of logs (.txt, a path a line), logs; or the same in a
+    /// store: s3://, gs://, az://, https://
     #[arg(required = true, value_name = "SOURCE")]
     sources: Vec<String>,
 
@@ -44,9 +43,13 @@ pub(super) struct Args {
     #[arg(long, value_name = "WHERE", default_value = "log")]
     machine_from: String,
 
-    /// Logs that are analysed at once [default: one a core]
+    /// Logs that are analysed at once [default: one a core; four a core in stores]
     #[arg(long, value_name = "N")]
     workers: Option<NonZeroUsize>,
+
+    /// Fit each run too, for the table of limits; it takes ten times as long
+    #[arg(long)]
+    fit: bool,
 
     /// Print what was done as one JSON document
     #[arg(long)]
@@ -58,12 +61,12 @@ pub(super) struct Args {
 
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
-        let cores = || available_parallelism().map_or(1, NonZeroUsize::get);
         let inputs = Inputs {
             sources: self.sources.clone(),
             into: self.into.clone(),
             machine: MachineFrom::parse(&self.machine_from)?,
-            workers: self.workers.map_or_else(cores, NonZeroUsize::get),
+            workers: self.workers.map_or(0, NonZeroUsize::get),
+            fit: self.fit,
             read: self.read.options(),
             rules: Rules::default(),
         };

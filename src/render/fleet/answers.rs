@@ -111,8 +111,9 @@ fn trends<'a>(trends: impl Iterator<Item = &'a JointTrend>) -> Table {
 
 /// What a change did.
 pub(crate) fn effect(effect: &Effect, most: usize) -> Document {
+    let what = effect.what.as_ref().map(|what| format!(", {what}")).unwrap_or_default();
     let first = format!(
-        "{}: {} before {}, {} after.",
+        "{}{what}: {} before {}, {} after.",
         effect.machine,
         counted(effect.runs_before, "run"),
         day(&effect.at),

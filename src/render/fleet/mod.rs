@@ -8,10 +8,14 @@ pub(crate) use answers::{drift, effect, gate, gate_verdicts, worst};
 pub(crate) use csv::{drift_csv, effect_csv, worst_csv};
 pub(crate) use page::{drift_page, effect_page, worst_page};
 
-use super::kit::{Block, Document, Id, Section, Sentence, argument, command, counted, deg, fact, mm, ms};
+use std::path::Path;
+
+use super::kit::{
+    Block, Document, Id, NONE, Section, Sentence, Table, argument, command, counted, deg, fact, mm, ms,
+};
 use crate::{
     series::JointKind,
-    workflow::fleet::{By, Compacted, Progress, Scanned},
+    workflow::fleet::{By, Compacted, Notes, Progress, Scanned},
 };
 
 /// How far a scan is, in a line.
@@ -55,6 +59,24 @@ pub(crate) fn scanned(scanned: &Scanned) -> Document {
         .with(Sentence::advice("To see which joints change over the days:"))
         .with(Block::Command(command(&["fleet", "drift", &into])));
     Document::default().with(next).remarked(&scanned.remarks)
+}
+
+/// What was done to machines, and the question that follows.
+pub(crate) fn notes(notes: &Notes, dataset: &Path) -> Document {
+    let Some(last) = notes.interventions.last() else {
+        let none = Sentence::finding("Nothing is noted.");
+        return Document::default().with(Section::plain(Id::SUMMARY, [none]));
+    };
+    let rows = notes.interventions.iter().map(|one| {
+        let day = day(&one.at).to_owned();
+        vec![day, one.machine.clone(), one.joint.clone().unwrap_or_else(|| NONE.to_owned()), one.what.clone()]
+    });
+    let table = Table::new(&["at", "machine", "joint", "what"], &[], rows);
+    let next = ["fleet", "effect", &argument(dataset), "--machine", &argument(Path::new(&last.machine))];
+    let section = Section::plain(Id::SUMMARY, [table])
+        .with(Sentence::advice("To see what it did:"))
+        .with(Block::Command(command(&next)));
+    Document::default().with(section)
 }
 
 /// What was joined.

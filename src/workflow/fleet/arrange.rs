@@ -27,11 +27,16 @@ fn at(name: Name, column: &str) -> usize {
 /// The place of a run's rows.
 pub(super) fn place(run: &[Cell]) -> Place {
     let of = |column: &str| run.get(at(Name::Runs, column));
-    let started = of("started_at").and_then(Cell::as_whole).and_then(DateTime::from_timestamp_micros);
     let machine = of("machine").and_then(Cell::as_text).unwrap_or_default();
+    place_of(of("started_at").and_then(Cell::as_whole), machine)
+}
+
+/// The place of rows of a machine at an instant, microseconds since 1970.
+pub(super) fn place_of(at_us: Option<i64>, machine: &str) -> Place {
+    let at = at_us.and_then(DateTime::from_timestamp_micros);
     let digits = u64::from_str_radix(&hash([machine]), 16).unwrap_or(0);
     let bucket = u8::try_from(digits % BUCKETS).unwrap_or(0);
-    Place { date: started.map(|at| at.format("%Y-%m").to_string()), bucket }
+    Place { date: at.map(|at| at.format("%Y-%m").to_string()), bucket }
 }
 
 /// Adds the rows of a part that are to stay; returns its files, below the root.

@@ -37,6 +37,9 @@ pub struct Effect {
     pub machine: String,
     /// When it was changed, UTC.
     pub at: String,
+    /// What was done, as it is noted; null where the caller named the instant.
+    #[serde(default)]
+    pub what: Option<String>,
     /// Runs of the machine before.
     pub runs_before: usize,
     /// Runs of the machine after.
@@ -164,6 +167,7 @@ pub fn effect(
         program: PROGRAM.to_owned(),
         machine: machine.to_owned(),
         at: date(at_days).unwrap_or_default(),
+        what: None,
         runs_before: runs(false),
         runs_after: runs(true),
         false_discovery_rate: MOST_FALSE,
@@ -274,6 +278,7 @@ mod tests {
             program: PROGRAM.into(),
             machine: "M0".into(),
             at: date(5.0).unwrap(),
+            what: Some("valve replaced".into()),
             runs_before: 5,
             runs_after: 5,
             false_discovery_rate: MOST_FALSE,

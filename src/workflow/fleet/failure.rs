@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::{atomic_file::AtomicError, log::dataset::DatasetError};
+use crate::{
+    atomic_file::AtomicError,
+    log::{dataset::DatasetError, remote::RemoteError},
+};
 
 /// Why a scan or an answer failed. A log that cannot be read is no failure: it is a row with its error.
 #[derive(Debug, Error)]
@@ -47,11 +50,8 @@ pub enum FleetFailure {
         text: String,
     },
     /// A source in an object store.
-    #[error("{text:?} is no file: logs in object stores are not read; mount the store, or copy the logs")]
-    Remote {
-        /// The source as given.
-        text: String,
-    },
+    #[error(transparent)]
+    Remote(#[from] RemoteError),
     /// A table of machines.
     #[error("{} is no table of machines: {reason}; expected the header `path,machine` and a row for each", path.display())]
     Machines {
@@ -59,6 +59,18 @@ pub enum FleetFailure {
         path: PathBuf,
         /// What is wrong with it.
         reason: String,
+    },
+    /// Nothing is known of what was done.
+    #[error(
+        "{} holds no note{of}; give --machine and --at, or note what was done: `hydrotrace fleet note {} --machine M07 \
+         --at 2026-03-06 'valve replaced'`",
+        dataset.display(), dataset.display()
+    )]
+    NoNote {
+        /// Of which machine, with a blank before; empty for all.
+        of: String,
+        /// The dataset.
+        dataset: PathBuf,
     },
     /// A machine that the dataset does not hold.
     #[error("no machine {machine:?}{}; the dataset has {present}", crate::suggest::suggestion(nearest.as_deref()))]

@@ -2,7 +2,7 @@
 //! and whether a repair helped.
 //!
 //! The dataset is a folder of Parquet tables that any engine reads: `runs`, one row a log; `joints`, one row a run and
-//! joint; `transitions`, one row a start or reversal; `remarks`. Its files say nothing of when they were made: equal logs
+//! joint; `transitions`, one row a start or reversal; `remarks`; `limits`, what a fit finds in each run; `interventions`. Its files say nothing of when they were made: equal logs
 //! give equal bytes.
 
 mod arrange;
@@ -13,8 +13,10 @@ mod effect;
 mod failure;
 mod gate;
 mod history;
+mod limits;
 mod machine;
 mod map;
+mod note;
 mod scan;
 mod sources;
 mod store;
@@ -30,6 +32,7 @@ pub use gate::{Gate, GateResult, Gated, gate};
 pub use history::{By, Filter};
 pub use machine::MachineFrom;
 pub use map::{Cell as MapCell, Map, MapRow};
+pub use note::{Intervention, Note, Notes, last_note, note, notes};
 pub use scan::{Inputs, Progress, own_analysis_id, scan};
 pub use tables::{Log, Name as TableName, Rows, analysed as rows, failed as failed_rows};
 pub use worst::{Worst, WorstJoint, worst};

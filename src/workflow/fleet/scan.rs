@@ -5,6 +5,7 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
+    num::NonZeroUsize,
     ops::ControlFlow,
     panic::{AssertUnwindSafe, catch_unwind},
     path::{Path, PathBuf},
@@ -12,12 +13,14 @@ use std::{
         Mutex, PoisonError,
         atomic::{AtomicBool, AtomicUsize, Ordering},
     },
+    thread::available_parallelism,
 };
 
 use super::{
     arrange::{Gathered, files, gather, place},
     document::{Failure, Scanned},
     failure::FleetFailure,
+    limits,
     machine::MachineFrom,
     sources::{Source, sources},
     store::{Part, Place, Store, parts},
@@ -26,7 +29,7 @@ use super::{
 use crate::{
     document::explained,
     log::{
-        Input, LogError, ReadOptions,
+        LogError, ReadOptions,
         dataset::{Cell, read_table},
     },
     replay::Rules,
@@ -47,8 +50,10 @@ pub struct Inputs {
     pub into: PathBuf,
     /// Where the name of a log's machine stands.
     pub machine: MachineFrom,
-    /// Logs that are analysed at once; 0 counts as 1.
+    /// Logs that are analysed at once; 0 stands for one a core, and for four a core where logs lie in stores.
     pub workers: usize,
+    /// Whether each run is fitted too, for the table of limits; it takes ten times as long.
+    pub fit: bool,
     /// What to read, where a log alone does not tell.
     pub read: ReadOptions,
     /// Thresholds and windows.
@@ -117,8 +122,14 @@ pub fn scan(
         }
     }
     let (done, failed, ended) = (AtomicUsize::new(0), AtomicUsize::new(0), AtomicBool::new(false));
+    let cores = available_parallelism().map_or(1, NonZeroUsize::get);
+    let workers = match inputs.workers {
+        // Waiting for a store takes no core.
+        0 => cores * if pending.iter().any(|log| log.source.is_remote()) { 4 } else { 1 },
+        workers => workers,
+    };
     for batch in pending.chunks(BATCH) {
-        let rows = at_once(batch.len(), inputs.workers, &ended, |k| {
+        let rows = at_once(batch.len(), workers, &ended, |k| {
             let (rows, failure) = analysed(&batch[k], &analysis_id, inputs);
             let failed = failed.fetch_add(usize::from(failure.is_some()), Ordering::Relaxed);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
@@ -147,8 +158,9 @@ pub fn scan(
 
 /// The analysis, with all that rows depend on beside the log.
 pub fn own_analysis_id(inputs: &Inputs) -> String {
-    let Inputs { machine, read, rules, .. } = inputs;
-    hash([analysis_id(rules), format!("{read:?}"), format!("{machine:?}")])
+    let Inputs { machine, read, rules, fit, .. } = inputs;
+    let fitted = fit.then(|| "fit".to_owned());
+    hash([analysis_id(rules), format!("{read:?}"), format!("{machine:?}")].into_iter().chain(fitted))
 }
 
 /// What the dataset holds, by log.
@@ -222,14 +234,17 @@ fn analysed(pending: &Pending, analysis_id: &str, inputs: &Inputs) -> (Rows, Opt
     let (mut error, mut may_pass) = (String::new(), true);
     for _ in 0..TRIES {
         log.tries += 1;
-        let input = vec![Input::Path(source.path.clone())];
-        match catch_unwind(AssertUnwindSafe(|| report::findings(input, &request))) {
+        match catch_unwind(AssertUnwindSafe(|| report::findings(source.inputs(), &request))) {
             Ok(Ok(found)) => {
                 log.machine = inputs.machine.of(&source.path, Some(&found));
-                return (tables::analysed(&log, &found), None);
+                let mut rows = tables::analysed(&log, &found);
+                if inputs.fit {
+                    rows.extend(limits::rows(&log, &source.path, &found.run_id, &inputs.read));
+                }
+                return (rows, None);
             }
             Ok(Err(failure)) => {
-                may_pass = matches!(failure, ReportFailure::Log(LogError::File { .. }));
+                may_pass = matches!(failure, ReportFailure::Log(LogError::File { .. } | LogError::Remote(_)));
                 error = explained(&failure);
             }
             Err(_) => (error, may_pass) = ("the program failed on this log".to_owned(), false),

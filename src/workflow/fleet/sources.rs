@@ -1,14 +1,18 @@
 //! The logs of folders, patterns and lists, each with what tells whether it changed.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fs::{self, Metadata},
     path::{Path, PathBuf},
     time::UNIX_EPOCH,
 };
 
 use super::{failure::FleetFailure, tables::Log};
-use crate::{input_file, remark::Remarks};
+use crate::{
+    input_file,
+    log::{Input, remote},
+    remark::Remarks,
+};
 
 /// Endings of logs that are looked for in folders; a file that is named counts whatever its ending.
 const ENDINGS: [&str; 6] = [".mcap", ".db3", ".mcap.zst", ".mcap.zstd", ".mcap.gz", ".db3.zstd"];
@@ -18,13 +22,30 @@ const LISTS: [&str; 3] = ["txt", "list", "manifest"];
 const BAG: &str = "metadata.yaml";
 
 /// A log to analyse.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub(super) struct Source {
-    /// Its absolute path.
+    /// Its absolute path, or its address.
     pub(super) path: PathBuf,
     pub(super) bytes: u64,
-    /// Size and time of change: another one is another log.
+    /// Size and time of change, or the store's tag: another one is another log.
     pub(super) etag: String,
+    /// Where it lies in a store, its files there.
+    objects: Vec<remote::Object>,
+}
+
+impl Source {
+    pub(super) fn is_remote(&self) -> bool {
+        !self.objects.is_empty()
+    }
+
+    /// What it is read from.
+    pub(super) fn inputs(&self) -> Vec<Input> {
+        if self.objects.is_empty() {
+            vec![Input::Path(self.path.clone())]
+        } else {
+            self.objects.iter().map(remote::Object::open).collect()
+        }
+    }
 }
 
 /// The logs of all sources, each once, in the order of their paths.
@@ -48,8 +69,8 @@ pub(super) fn sources(texts: &[String]) -> Result<Vec<Source>, FleetFailure> {
 /// Adds the logs of one source; a relative path counts from `base`.
 fn add(text: &str, base: &Path, found: &mut BTreeMap<PathBuf, Source>) -> Result<(), FleetFailure> {
     let path = base.join(text);
-    if text.contains("://") && !path.exists() {
-        return Err(FleetFailure::Remote { text: text.to_owned() });
+    if remote::is_address(Path::new(text)) && !path.exists() {
+        return stored(text, found);
     }
     let within = path.components().any(|part| part == std::path::Component::ParentDir);
     let path = if within { fs::canonicalize(&path) } else { std::path::absolute(&path) }
@@ -79,6 +100,33 @@ fn add(text: &str, base: &Path, found: &mut BTreeMap<PathBuf, Source>) -> Result
         }
         Err(error) => Err(FleetFailure::file("find", &path)(error)),
     }
+}
+
+/// Adds the logs of a store: what ends as logs do, or is named; the files of a bag are one log.
+fn stored(address: &str, found: &mut BTreeMap<PathBuf, Source>) -> Result<(), FleetFailure> {
+    let objects = remote::objects(address)?;
+    let folder = |address: &str| address.rsplit_once('/').unwrap_or_default().0.to_owned();
+    let bags: BTreeSet<String> =
+        objects.iter().filter(|one| one.address.ends_with(BAG)).map(|one| folder(&one.address)).collect();
+    for object in objects {
+        let within = folder(&object.address);
+        let path = if bags.contains(&within) { within } else { object.address.clone() };
+        let is_log = ENDINGS.iter().any(|ending| object.address.ends_with(ending));
+        let fits = path == address || !address.contains('*') || matches(address, &path);
+        if (is_log || object.address == address) && fits {
+            let new =
+                || Source { path: path.clone().into(), bytes: 0, etag: String::new(), objects: Vec::new() };
+            let source = found.entry(PathBuf::from(&path)).or_insert_with(new);
+            // A folder and a file in it may both be named.
+            if !source.objects.iter().any(|own| own.address == object.address) {
+                source.bytes += object.bytes;
+                let parts = [source.etag.as_str(), object.etag.as_str()];
+                source.etag = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("+");
+                source.objects.push(object);
+            }
+        }
+    }
+    Ok(())
 }
 
 fn walk(
@@ -140,7 +188,7 @@ fn put(path: PathBuf, is: &Metadata, found: &mut BTreeMap<PathBuf, Source>) {
             etag = format!("{etag}+{own}");
         }
     }
-    found.insert(path.clone(), Source { path, bytes, etag });
+    found.insert(path.clone(), Source { path, bytes, etag, objects: Vec::new() });
 }
 
 fn tag(is: &Metadata) -> (u64, String) {
@@ -225,7 +273,7 @@ mod tests {
         assert_eq!(names(&["m1", "m1/a.mcap"]), ["m1/a.mcap"]);
         assert_eq!(names(&["*/a.mcap"]), ["m1/a.mcap", "m2/a.mcap"]);
         assert_eq!(names(&["m1/b.txt"]), ["m1/a.mcap", "m2/a.mcap"]);
-        assert!(matches!(sources(&["s3://bucket/logs".into()]), Err(FleetFailure::Remote { .. })));
+        assert!(matches!(sources(&["ftp://bucket/logs".into()]), Err(FleetFailure::Remote { .. })));
         let nothing = at("nothing*").to_string_lossy().into_owned();
         assert!(matches!(sources(&[nothing]), Err(FleetFailure::NoLogs { .. })));
     }

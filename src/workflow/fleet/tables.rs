@@ -11,8 +11,12 @@ use crate::{
 /// A table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Name {
+    /// A row for each thing that was done to a machine.
+    Interventions,
     /// A row for each run and joint.
     Joints,
+    /// A row for each run, joint and fitted number.
+    Limits,
     /// A row for each doubt about a log.
     Remarks,
     /// A row for each log.
@@ -22,11 +26,14 @@ pub enum Name {
 }
 
 impl Name {
-    pub(super) const ALL: [Self; 4] = [Self::Joints, Self::Remarks, Self::Runs, Self::Transitions];
+    pub(super) const ALL: [Self; 6] =
+        [Self::Interventions, Self::Joints, Self::Limits, Self::Remarks, Self::Runs, Self::Transitions];
 
     pub(super) fn text(self) -> &'static str {
         match self {
+            Self::Interventions => "interventions",
             Self::Joints => "joints",
+            Self::Limits => "limits",
             Self::Remarks => "remarks",
             Self::Runs => "runs",
             Self::Transitions => "transitions",
@@ -36,7 +43,9 @@ impl Name {
     /// Its columns; every row has a cell for each.
     pub fn columns(self) -> &'static [Column] {
         match self {
+            Self::Interventions => INTERVENTIONS,
             Self::Joints => JOINTS,
+            Self::Limits => LIMITS,
             Self::Remarks => REMARKS,
             Self::Runs => RUNS,
             Self::Transitions => TRANSITIONS,
@@ -134,6 +143,26 @@ const TRANSITIONS: &[Column] = &[
     Column::whole("samples"),
     Column::real("time_resolution_s"),
 ];
+
+/// Numbers of a joint as a fit finds them; `value` is in the unit of the quantity's name.
+const LIMITS: &[Column] = &[
+    Column::text("run_id"),
+    Column::text("machine"),
+    Column::text("joint"),
+    Column::text("quantity"),
+    Column::real("value"),
+    Column::real("low"),
+    Column::real("high"),
+    Column::real("not_below"),
+    Column::real("not_above"),
+    Column::flag("identified"),
+    Column::flag("model_holds"),
+    Column::real("held_out_r2"),
+    Column::whole("samples"),
+];
+
+const INTERVENTIONS: &[Column] =
+    &[Column::text("machine"), Column::instant("at"), Column::text("joint"), Column::text("what")];
 
 const REMARKS: &[Column] = &[
     Column::text("run_id"),
@@ -347,7 +376,7 @@ mod tests {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs/gaps.mcap");
         let found = findings(vec![Input::Path(path)], &Inputs::default()).unwrap();
         let rows = analysed(&log(), &found);
-        for name in Name::ALL {
+        for name in [Name::Joints, Name::Remarks, Name::Runs, Name::Transitions] {
             let own: Vec<_> = rows.iter().filter(|(table, _)| *table == name).collect();
             assert!(!own.is_empty(), "{name:?}");
             assert!(own.iter().all(|(_, row)| row.len() == name.columns().len()), "{name:?}");

@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 
 use crate::{
     input_file,
-    log::{Input, ReadAt, recording_files},
+    log::{Input, ReadAt, recording_files, remote},
     remark::Remarks,
 };
 
@@ -67,6 +67,11 @@ impl Read for Stream<'_> {
 }
 
 fn log_file(path: &Path) -> LogFile {
+    if remote::is_address(path) && !path.exists() {
+        let inputs = remote::object(&path.to_string_lossy()).map(|found| vec![found.open()]);
+        let found = inputs.map(|inputs| input_files(&inputs)).unwrap_or_default().pop();
+        return found.unwrap_or_else(|| named(path, None));
+    }
     named(path, input_file::open(path).and_then(|mut file| digest(&mut file)).ok())
 }
 

@@ -220,7 +220,6 @@ fn what_is_wrong_with_a_question_is_said() {
             1,
             "nothing holds no dataset; `hydrotrace fleet scan LOGS --into nothing` makes one",
         ),
-        ("fleet scan s3://bucket/logs --into data", 1, "logs in object stores are not read"),
         ("fleet scan none*.mcap --into data", 1, "found no log in \"none*.mcap\""),
         ("fleet scan logs --into data --machine-from nowhere.csv", 1, "nowhere.csv"),
         ("fleet effect data --machine M00 --at yesterday", 2, "neither a day as 2026-03-01"),
@@ -228,6 +227,10 @@ fn what_is_wrong_with_a_question_is_said() {
     ] {
         let (found, _, error) = said(&run_line(folder.path(), line));
         assert!(found == code && error.contains(words), "{line}: {found} {error}");
+    }
+    if !cfg!(feature = "cloud") {
+        let (code, _, error) = said(&run_line(folder.path(), "fleet scan s3://bucket/logs --into data"));
+        assert!(code == 1 && error.contains("build it with `--features cloud`"), "{error}");
     }
     clean(folder.path(), "fleet scan logs --into data");
     let (code, _, error) = said(&run_line(folder.path(), "fleet drift data --machine M01"));
@@ -251,4 +254,71 @@ fn a_scan_that_is_killed_and_repeated_holds_every_row_once() {
         json(folder.path(), &format!("fleet scan logs --into {into}"));
         is_whole(&folder.path().join(&into), 40);
     }
+}
+
+#[test]
+fn what_is_noted_is_asked_for_by_its_effect_and_stays() {
+    let folder = fleet(4, 8);
+    let data = folder.path().join("data");
+    json(folder.path(), "fleet scan logs --into data");
+    let (code, out, err) = said(&run_line(folder.path(), "fleet effect data --machine M01"));
+    assert!(code == 1 && out.is_empty() && err.contains("holds no note of M01"), "{err}");
+    assert!(clean(folder.path(), "fleet note data").contains("Nothing is noted."));
+    let noted = clean(folder.path(), "fleet note data --machine M01 --at 2026-03-05 --joint boom repair");
+    assert!(
+        noted.contains("2026-03-05") && noted.contains("hydrotrace fleet effect data --machine M01"),
+        "{noted}"
+    );
+    let before = files(&data);
+    // The same twice is one note; another machine has another.
+    clean(folder.path(), "fleet note data --machine M01 --at 2026-03-05 --joint boom repair");
+    assert_eq!(files(&data), before);
+    clean(folder.path(), "fleet note data --machine M02 --at 2026-03-03 oil");
+    let notes = json(folder.path(), "fleet note data");
+    hold_to_schema(&notes, "fleet-notes.v1");
+    let what =
+        |k: usize| (notes["interventions"][k]["machine"].clone(), notes["interventions"][k]["what"].clone());
+    assert_eq!([what(0), what(1)], [("M02".into(), "oil".into()), ("M01".into(), "repair".into())]);
+    let effect = json(folder.path(), "fleet effect data --machine M01");
+    hold_to_schema(&effect, "fleet-effect.v1");
+    assert_eq!((&effect["what"], &effect["at"]), (&"repair".into(), &"2026-03-05T00:00:00Z".into()));
+    assert_eq!(json(folder.path(), "fleet effect data")["machine"], "M01");
+    let asked = json(folder.path(), "fleet effect data --machine M01 --at 2026-03-05");
+    assert_eq!(asked["effects"], effect["effects"]);
+    // Joining the other parts, and logs that come later, leave the notes.
+    json(folder.path(), "fleet compact data");
+    fs::write(folder.path().join("logs/M01/09.mcap"), small_log("M01", 9, 7, [0.2, 0.2])).unwrap();
+    json(folder.path(), "fleet scan logs --into data");
+    assert_eq!(json(folder.path(), "fleet note data"), notes);
+    for (line, expected) in [
+        ("fleet note data --machine M11 --at 2026-03-05 repair", "no machine \"M11\""),
+        ("fleet note none --machine M01 --at 2026-03-05 repair", "holds no dataset"),
+    ] {
+        let (code, _, err) = said(&run_line(folder.path(), line));
+        assert!(code == 1 && err.contains(expected), "{line}: {err}");
+    }
+    assert!(!folder.path().join("none").exists());
+}
+
+#[test]
+fn fitted_numbers_of_each_run_are_rows_if_they_are_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let logs = folder.path().join("logs");
+    fs::create_dir(&logs).unwrap();
+    for name in ["task-1-run.mcap", "trajectory-only.mcap"] {
+        fs::copy(crate::support::sample(name), logs.join(name)).unwrap();
+    }
+    let data = folder.path().join("data");
+    json(folder.path(), "fleet scan logs --into data");
+    assert!(!data.join("limits").exists());
+    // Another question of the same logs analyses them again.
+    assert_eq!(json(folder.path(), "fleet scan logs --into data --fit")["analysed"], 2);
+    let quantities: BTreeSet<String> = cells(&data, "limits", "quantity").into_iter().collect();
+    assert!(
+        quantities.contains("lag_s") && quantities.contains("speed_limit_growing_rad_s"),
+        "{quantities:?}"
+    );
+    let runs: BTreeSet<String> = cells(&data, "limits", "run_id").into_iter().collect();
+    assert!(runs.is_subset(&cells(&data, "runs", "run_id").into_iter().collect()) && !runs.is_empty());
+    assert_eq!(json(folder.path(), "fleet scan logs --into data --fit")["unchanged"], 2);
 }

@@ -14,6 +14,8 @@ mod join;
 mod output;
 mod plan;
 mod record;
+#[cfg(feature = "cloud")]
+mod remote;
 mod replan;
 mod report;
 mod simulate;

@@ -5,6 +5,8 @@ pub(crate) mod detection;
 pub(crate) mod fleet;
 pub(crate) mod machine;
 pub(crate) mod recovery;
+#[cfg(feature = "cloud")]
+pub(crate) mod store;
 
 use std::{
     path::{Path, PathBuf},

@@ -1,0 +1,57 @@
+//! `fleet note`
+
+use std::path::PathBuf;
+
+use super::{
+    CliError, Outcome, Run,
+    answers::date,
+    console::{Console, Target},
+};
+use crate::{
+    document::pretty,
+    remark::Remarks,
+    render::fleet as words,
+    workflow::fleet::{Note, Notes, note, notes},
+};
+
+/// What was done to a machine, and when; without WHAT, all that is noted
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// The folder of the dataset, as `fleet scan` wrote it
+    #[arg(value_name = "DIR")]
+    dataset: PathBuf,
+
+    /// What was done
+    #[arg(value_name = "WHAT", requires_all = ["machine", "at"])]
+    what: Option<String>,
+
+    /// The machine
+    #[arg(long, value_name = "MACHINE")]
+    machine: Option<String>,
+
+    /// When; runs that begin then are after it
+    #[arg(long, value_name = "DATE", value_parser = date, requires = "what")]
+    at: Option<i64>,
+
+    /// The joint, where it was one
+    #[arg(long, value_name = "JOINT", requires = "what")]
+    joint: Option<String>,
+
+    /// Print what is noted as one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+impl Run for Args {
+    fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        if let (Some(what), Some(machine), Some(at_us)) = (&self.what, &self.machine, self.at) {
+            let (machine, what) = (machine.clone(), what.trim().to_owned());
+            note(&self.dataset, &Note { at_us, machine, joint: self.joint.clone(), what })?;
+        }
+        let found = Notes::of(&notes(&self.dataset, self.machine.as_deref())?);
+        let target = Target::stdout(self.json);
+        let result =
+            if self.json { pretty(&found) } else { target.text(&words::notes(&found, &self.dataset)) };
+        console.finish(&target, &result, &Remarks::default(), &[])
+    }
+}

@@ -1,0 +1,96 @@
+//! What each run tells of its machine: the numbers that a fit finds in it, as rows.
+
+use std::path::Path;
+
+use super::tables::{Log, Name, Rows};
+use crate::{
+    document::explained,
+    fit::{Estimated, JointFit},
+    log::{ReadOptions, dataset::Cell},
+    remark::Code,
+    threads,
+    workflow::fit,
+};
+
+/// A number of a joint: its name with its unit, and where a fit has it.
+type Quantity = (&'static str, fn(&JointFit) -> &Estimated);
+
+const QUANTITIES: [Quantity; 7] = [
+    ("lag_s", |joint| &joint.lag_s),
+    ("dead_band_rad_s", |joint| &joint.dead_band_rad_s),
+    ("dead_band_error_rad", |joint| &joint.dead_band_error_rad),
+    ("position_gain_1_s", |joint| &joint.position_gain_1_s),
+    ("gain_ratio", |joint| &joint.gain_ratio),
+    ("speed_limit_growing_rad_s", |joint| &joint.speed_limit_growing_rad_s),
+    ("speed_limit_shrinking_rad_s", |joint| &joint.speed_limit_shrinking_rad_s),
+];
+
+/// The rows of a run; where it cannot be fitted, a remark that says why.
+pub(super) fn rows(log: &Log, path: &Path, run_id: &str, read: &ReadOptions) -> Rows {
+    let logs = [path.to_owned()];
+    let fitted = threads::alone(|| {
+        let observed = fit::observed(&logs, read).map_err(|failure| explained(&failure))?;
+        fit::of(&logs, &observed).map_err(|failure| explained(&failure))
+    });
+    match fitted {
+        Ok(fitted) => {
+            let of = |joint| QUANTITIES.iter().map(move |quantity| row(log, run_id, joint, quantity));
+            fitted.fit.joints.iter().flat_map(of).map(|row| (Name::Limits, row)).collect()
+        }
+        Err(error) => {
+            let message = format!("the run tells nothing of the machine's limits: {error}");
+            let row = vec![
+                Cell::from(run_id),
+                Cell::from(log.machine.as_deref()),
+                Cell::from(Code::PoorFit.name().as_str()),
+                Cell::from(1_u64),
+                Cell::from(message.as_str()),
+            ];
+            vec![(Name::Remarks, row)]
+        }
+    }
+}
+
+fn row(log: &Log, run_id: &str, joint: &JointFit, (name, of): &Quantity) -> Vec<Cell> {
+    let found = of(joint);
+    let [low, high] = found.interval.map_or([None; 2], |interval| interval.map(Some));
+    vec![
+        Cell::from(run_id),
+        Cell::from(log.machine.as_deref()),
+        Cell::from(joint.name.as_str()),
+        Cell::from(*name),
+        Cell::from(found.value),
+        Cell::from(low),
+        Cell::from(high),
+        Cell::from(found.lower_bound),
+        Cell::from(found.upper_bound),
+        Cell::from(found.identified),
+        Cell::from(joint.model_holds),
+        Cell::from(joint.held_out_r2),
+        Cell::from(joint.samples),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(name: &str) -> Rows {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name);
+        let log = Log::at(&path, "a".into());
+        rows(&log, &path, "run", &ReadOptions::default())
+    }
+
+    #[test]
+    fn a_run_gives_each_quantity_of_each_joint_and_one_that_is_no_run_a_remark() {
+        let found = of("task-1-run.mcap");
+        assert_eq!(found.len(), 6 * QUANTITIES.len());
+        assert!(
+            found
+                .iter()
+                .all(|(table, row)| { *table == Name::Limits && row.len() == Name::Limits.columns().len() })
+        );
+        let none = of("nothing.mcap");
+        assert!(matches!(&none[..], [(Name::Remarks, row)] if row.len() == Name::Remarks.columns().len()));
+    }
+}
