@@ -2,20 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// The triangle: two mounts at fixed distances from the joint, the cylinder opposite the joint.
-///
-/// The angle at the joint is `offset_rad + sense * q`; the length follows from the law of cosines.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Linkage {
-    /// From the joint to the mount on the link before it, m.
-    pub inner_m: f64,
-    /// From the joint to the mount on the link after it, m.
-    pub outer_m: f64,
-    /// Angle between the mounts, seen from the joint, at joint angle zero, rad.
-    pub offset_rad: f64,
-    /// 1 where the angle between the mounts grows with the joint's angle, -1 where it shrinks.
-    pub sense: f64,
-}
+use super::Linkage;
 
 /// One or several like cylinders side by side, with the pressures they work between.
 #[derive(Debug, Clone, Copy, PartialEq)]

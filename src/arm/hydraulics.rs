@@ -1,10 +1,10 @@
 //! The cylinders of a chain's joints and the pump they share, from a file.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, f64::consts::PI};
 
 use serde::Deserialize;
 
-use super::{Actuation, ArmError, Chain, Cylinder, cylinder::Linkage, error::Witness};
+use super::{Actuation, ArmError, Chain, Cylinder, Linkage, error::Witness};
 
 /// More than any file of cylinders.
 const LARGEST_TEXT: usize = 1 << 20;
@@ -13,7 +13,7 @@ const LARGEST_TEXT: usize = 1 << 20;
 #[derive(Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-struct Document {
+pub(super) struct Document {
     /// Where the numbers come from.
     #[expect(dead_code, reason = "for people")]
     #[serde(default)]
@@ -27,14 +27,14 @@ struct Document {
     /// Largest flow of the pump, m³/s.
     pump_flow_m3_s: f64,
     /// Cylinders by the name of their joint.
-    joint: BTreeMap<String, Entry>,
+    pub(super) joint: BTreeMap<String, Entry>,
 }
 
 /// Cylinders of one joint.
 #[derive(Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-struct Entry {
+pub(super) struct Entry {
     /// Inner diameter, m.
     bore_m: f64,
     /// Diameter of the rod, m.
@@ -50,10 +50,67 @@ struct Entry {
     /// How many like cylinders work side by side.
     #[serde(default = "one")]
     cylinders: u32,
+    /// Length from mount to mount where a log has zero, m: 0 if logs have this length, that of the retracted cylinder if
+    /// they have strokes.
+    #[serde(default)]
+    pub(super) sensor_zero_m: f64,
 }
 
 fn one() -> u32 {
     1
+}
+
+impl Document {
+    /// Reads the text and checks what all joints share.
+    pub(super) fn read(text: &str, at: &Witness<'_>) -> Result<Self, ArmError> {
+        at.at_most("bytes", text.len(), LARGEST_TEXT)?;
+        let document: Self = toml::from_str(text).map_err(|error| at.syntax(&error))?;
+        let Self { supply_pressure_pa: supply, return_pressure_pa: back, .. } = document;
+        if !(back >= 0.0 && supply > back && supply < 1e9) {
+            let found = format!("supply {supply} Pa and return {back} Pa");
+            return Err(at.unexpected(
+                "supply_pressure_pa",
+                found,
+                "a supply above the return, which is not negative",
+            ));
+        }
+        let efficiency = document.mechanical_efficiency;
+        if !(efficiency > 0.0 && efficiency <= 1.0) {
+            return Err(at.unexpected("mechanical_efficiency", efficiency, "above 0, at most 1"));
+        }
+        let pump_flow_m3_s = document.pump_flow_m3_s;
+        if !(pump_flow_m3_s > 0.0 && pump_flow_m3_s.is_finite()) {
+            return Err(at.unexpected("pump_flow_m3_s", pump_flow_m3_s, "a flow above 0"));
+        }
+        Ok(document)
+    }
+
+    /// The cylinder of a joint that has such a range, rad; without one, its triangle is taken to reach it.
+    pub(super) fn cylinder(
+        &self,
+        joint: &str,
+        entry: &Entry,
+        range_rad: Option<(f64, f64)>,
+        at: &Witness<'_>,
+    ) -> Result<Cylinder, ArmError> {
+        let linkage = Linkage {
+            inner_m: entry.a_m,
+            outer_m: entry.b_m,
+            offset_rad: entry.delta_rad,
+            sense: f64::from(entry.angle_sign),
+        };
+        let size = (entry.bore_m, entry.rod_m, entry.cylinders);
+        let pressures = (self.supply_pressure_pa, self.return_pressure_pa, self.mechanical_efficiency);
+        let middle_rad = linkage.sense * (0.5 * PI - linkage.offset_rad);
+        let range_rad = range_rad.unwrap_or((middle_rad, middle_rad));
+        let unexpected =
+            |key, found, expected| at.unexpected(format!("[joint.{joint}] {key}"), found, expected);
+        if !(-1e3..1e3).contains(&entry.sensor_zero_m) {
+            return Err(unexpected("sensor_zero_m", entry.sensor_zero_m.to_string(), "a length, m"));
+        }
+        Cylinder::new(linkage, size, pressures, range_rad)
+            .map_err(|(key, found, expected)| unexpected(key, found, expected))
+    }
 }
 
 /// Cylinders of a chain, one or none a joint, and their pump.
@@ -78,51 +135,23 @@ impl Hydraulics {
     /// passes its dead centre within the joint's range.
     pub fn from_toml(text: &str, file: &str, chain: &Chain) -> Result<Self, ArmError> {
         let at = Witness(file);
-        at.at_most("bytes", text.len(), LARGEST_TEXT)?;
-        let document: Document = toml::from_str(text).map_err(|error| at.syntax(&error))?;
-        let Document { supply_pressure_pa: supply, return_pressure_pa: back, .. } = document;
-        if !(back >= 0.0 && supply > back && supply < 1e9) {
-            let found = format!("supply {supply} Pa and return {back} Pa");
-            return Err(at.unexpected(
-                "supply_pressure_pa",
-                found,
-                "a supply above the return, which is not negative",
-            ));
-        }
-        let efficiency = document.mechanical_efficiency;
-        if !(efficiency > 0.0 && efficiency <= 1.0) {
-            return Err(at.unexpected("mechanical_efficiency", efficiency, "above 0, at most 1"));
-        }
-        let pump_flow_m3_s = document.pump_flow_m3_s;
-        if !(pump_flow_m3_s > 0.0 && pump_flow_m3_s.is_finite()) {
-            return Err(at.unexpected("pump_flow_m3_s", pump_flow_m3_s, "a flow above 0"));
-        }
-        let mut entries = document.joint;
+        let mut document = Document::read(text, &at)?;
+        let mut entries = std::mem::take(&mut document.joint);
         let mut cylinders = Vec::with_capacity(chain.joint_count());
         for joint in chain.joints() {
             let Some(entry) = entries.remove(&joint.name) else {
                 cylinders.push(None);
                 continue;
             };
-            let linkage = Linkage {
-                inner_m: entry.a_m,
-                outer_m: entry.b_m,
-                offset_rad: entry.delta_rad,
-                sense: f64::from(entry.angle_sign),
-            };
-            let size = (entry.bore_m, entry.rod_m, entry.cylinders);
-            let range = (joint.limit.lower_rad, joint.limit.upper_rad);
-            let cylinder = Cylinder::new(linkage, size, (supply, back, efficiency), range);
-            cylinders.push(Some(cylinder.map_err(|(key, found, expected)| {
-                at.unexpected(format!("[joint.{}] {key}", joint.name), found, expected)
-            })?));
+            let range_rad = (joint.limit.lower_rad, joint.limit.upper_rad);
+            cylinders.push(Some(document.cylinder(&joint.name, &entry, Some(range_rad), &at)?));
         }
         if let Some(name) = entries.keys().next() {
             let names: Vec<&str> = chain.joints().iter().map(|joint| joint.name.as_str()).collect();
             let expected = format!("a joint of the chain ({})", names.join(", "));
             return Err(at.unexpected("[joint]", name, expected));
         }
-        Ok(Self { cylinders, pump_flow_m3_s })
+        Ok(Self { cylinders, pump_flow_m3_s: document.pump_flow_m3_s })
     }
 
     /// The cylinders by joint.

@@ -4,7 +4,7 @@
 //! ([`Chain::tool_pose`]), the tool's speed, inverse dynamics ([`Chain::inverse_dynamics`], in lanes
 //! of several instants) and inverse kinematics ([`Chain::reach`]). [`Hydraulics`] holds the
 //! cylinders, which turn joint motion and torque into rod speed, flow and force. [`Arm`] is both.
-//! [`Kinematics`] holds the geometry alone, of joints that turn or slide.
+//! [`Rods`] turns lengths of cylinders into angles of joints and back. [`Kinematics`] holds the geometry alone, of joints that turn or slide.
 
 mod chain;
 mod cylinder;
@@ -14,20 +14,24 @@ mod hydraulics;
 mod inertia;
 mod inverse_dynamics;
 mod kinematics;
+mod linkage;
 mod part;
 mod reach;
 mod robot;
+mod rods;
 mod serial;
 mod shape;
 mod urdf;
 
 pub use chain::{Chain, Joint, JointLimit, Load};
-pub use cylinder::{Actuation, Cylinder, Linkage};
+pub use cylinder::{Actuation, Cylinder};
 pub use description::{GHOST, GHOST_RGBA};
 pub use error::ArmError;
 pub use hydraulics::{Arm, Hydraulics};
 pub use inertia::Inertia;
 pub use inverse_dynamics::{LANES, Motion, Workspace, inverse_dynamics};
+pub use linkage::Linkage;
+pub use rods::{Rod, Rods, names_a_cylinder};
 pub use serial::Kinematics;
 pub use shape::{Mesh, Shape, Solid, quaternion_xyzw};
 pub use urdf::sliding_joints;

@@ -50,6 +50,17 @@ pub fn sliding_joints(text: &str) -> BTreeSet<String> {
     joints.into_iter().filter(slides).map(|joint| joint.name).collect()
 }
 
+/// Limits, rad, of the joints of a URDF that turn between stops; none if the text is no URDF.
+pub(super) fn turning_ranges(text: &str) -> BTreeMap<String, (f64, f64)> {
+    let joints = parsed(text, &Witness("URDF")).map(|robot| robot.joints).unwrap_or_default();
+    let turns = |joint: &robot::Joint| joint.kind == JointKind::Revolute;
+    joints
+        .into_iter()
+        .filter(turns)
+        .map(|joint| (joint.name, (joint.limit.lower, joint.limit.upper)))
+        .collect()
+}
+
 pub(super) fn parsed(text: &str, at: &Witness<'_>) -> Result<Robot, ArmError> {
     at.at_most("bytes", text.len(), LARGEST_TEXT)?;
     at.at_most("nested elements", nesting(text, at)?, DEEPEST)?;

@@ -1,9 +1,14 @@
 //! Options on what to read, shared by the verbs that read logs.
 
+use std::path::PathBuf;
+
 use clap::ValueEnum;
 
 use super::number;
-use crate::log::{ReadOptions, Selector, SignalRole, TimeBase, TimeRange, WantedSignal};
+use crate::{
+    log::{Cylinders, ReadOptions, Selector, SignalRole, TimeBase, TimeRange, WantedSignal},
+    series::JointKind,
+};
 
 /// Which topics, joints and clock to read.
 #[derive(Debug, clap::Args)]
@@ -52,6 +57,23 @@ pub(super) struct ReadArgs {
     /// Joints without end stops, whose angles wrap at full turns
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     continuous: Vec<String>,
+
+    /// Cylinders of the arm (TOML): joints that are logged as lengths of their cylinders become angles
+    #[arg(long, value_name = "FILE")]
+    hydraulics: Option<PathBuf>,
+
+    /// What joints with a cylinder become [default: angles]
+    #[arg(long = "as", value_enum, value_name = "WHAT", requires = "hydraulics")]
+    joints_as: Option<JointsAs>,
+}
+
+/// What joints with a cylinder become.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum JointsAs {
+    /// Angles of the joints
+    Angles,
+    /// Lengths of the cylinders
+    Cylinders,
 }
 
 /// Clocks of a message.
@@ -82,6 +104,13 @@ impl ReadArgs {
             measured_delay_ns: self.measured_delay_ns.unwrap_or_default(),
             slides: self.slides.clone(),
             continuous: self.continuous.clone(),
+            cylinders: self.hydraulics.clone().map(|file| Cylinders {
+                file,
+                into: match self.joints_as {
+                    Some(JointsAs::Cylinders) => JointKind::Slides,
+                    _ => JointKind::Turns,
+                },
+            }),
             ..ReadOptions::default()
         }
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::csv::CsvError;
-use crate::{suggest::suggestion, text::shell_argument};
+use crate::{arm::ArmError, suggest::suggestion, text::shell_argument};
 
 /// Why a log cannot be read or written; doubts about parts of it are remarks.
 #[derive(Debug, Error)]
@@ -114,6 +114,30 @@ pub enum LogError {
     /// A log in an object store.
     #[error(transparent)]
     Remote(#[from] super::remote::RemoteError),
+    /// The file of cylinders, or the URDF that it goes with.
+    #[error(transparent)]
+    Cylinders(#[from] Box<ArmError>),
+    /// The file of cylinders is of other joints.
+    #[error(
+        "found no joint of {file} ({joints}) in the log, which has {present}; expected a joint by its name there, or its \
+         cylinder, such as boom_cylinder for boom: call it so in the file, or name the topics with --planned and \
+         --measured"
+    )]
+    NoCylinder { file: String, joints: String, present: String },
+    /// A joint no sample of which fits its cylinder.
+    #[error(
+        "{side} positions of {joint} run {:.4} to {:.4} {unit}, expected {:.4} to {:.4} {unit} by the triangle of its \
+         cylinder: none is left; {hint}",
+        found[0], found[1], expected[0], expected[1]
+    )]
+    NoTriangle {
+        joint: Box<str>,
+        side: &'static str,
+        found: Box<[f64; 2]>,
+        expected: Box<[f64; 2]>,
+        unit: &'static str,
+        hint: Box<str>,
+    },
     /// The writer of a log that copies another failed.
     #[error("cannot write the log {}", path.display())]
     Copy { path: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },

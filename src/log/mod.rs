@@ -43,7 +43,7 @@ pub use files::{LogFiles, ScannedLog};
 pub use files::{Passes, passes};
 pub use foreign::read_csv;
 pub use input::Input;
-pub use options::{ReadOptions, Selector, Sides, SignalRole, TimeBase, WantedSignal};
+pub use options::{Cylinders, ReadOptions, Selector, Sides, SignalRole, TimeBase, WantedSignal};
 pub use range::TimeRange;
 pub use read::{
     read_plan, read_recording,

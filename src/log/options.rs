@@ -1,5 +1,7 @@
 //! Options of reading a log.
 
+use std::path::PathBuf;
+
 use serde::{Deserialize, Serialize};
 
 use super::{range::TimeRange, write::Topics};
@@ -32,10 +34,21 @@ pub struct ReadOptions {
     pub slides: Vec<String>,
     /// Joints without end stops, whose angle may wrap by a full turn.
     pub continuous: Vec<String>,
+    /// What becomes of joints that cylinders turn.
+    pub cylinders: Option<Cylinders>,
     /// The stretch of the run to read.
     pub range: TimeRange,
     /// Text of the robot's URDF, in place of what the log holds of it.
     pub description: Option<String>,
+}
+
+/// Cylinders of the arm, by which lengths of cylinders and angles of joints follow from one another.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Cylinders {
+    /// The file that describes them.
+    pub file: PathBuf,
+    /// What joints with a cylinder become: angles, or lengths of the cylinder as the log has them.
+    pub into: JointKind,
 }
 
 /// Which of plan and measurement are read; the others are empty.

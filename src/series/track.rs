@@ -172,6 +172,31 @@ impl Track {
         })
     }
 
+    /// The joint in another kind, by a map from a position to that of the other kind and its slope. Samples without one
+    /// are left out; `None` if none is left.
+    pub fn mapped(&self, kind: JointKind, map: impl Fn(f64) -> Option<(f64, f64)>) -> Option<Self> {
+        let images: Vec<Option<(f64, f64)>> = self.position().iter().map(|&position| map(position)).collect();
+        let kept: Vec<usize> = (0..images.len()).filter(|&i| images[i].is_some()).collect();
+        let mut cuts: Vec<usize> =
+            self.segments().iter().map(|s| kept.partition_point(|&i| i < s.start)).collect();
+        let t_s: Arc<[f64]> = if kept.len() == self.len() {
+            self.signal.shared_t_s()
+        } else {
+            let t_s: Arc<[f64]> = kept.iter().map(|&i| self.t_s()[i]).collect();
+            cuts.extend(split_at_gaps(&t_s));
+            t_s
+        };
+        cuts.retain(|cut| (1..t_s.len()).contains(cut));
+        cuts.sort_unstable();
+        cuts.dedup();
+        let (position, slope): (Vec<f64>, Vec<f64>) = images.into_iter().flatten().unzip();
+        let track = Self::of(kind, self.name(), t_s, position, &cuts).ok()?;
+        let Some(velocity) = &self.velocity else { return Some(track) };
+        // A sum with zero has no sign where it is zero.
+        let velocity = kept.iter().zip(slope).map(|(&i, slope)| slope * velocity[i] + 0.0).collect();
+        track.clone().with_velocity(velocity).ok().or(Some(track))
+    }
+
     /// Which segment sample `i` lies in.
     pub(super) fn segment_of(&self, i: usize) -> usize {
         self.segments().partition_point(|s| s.start <= i)

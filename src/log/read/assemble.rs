@@ -1,10 +1,10 @@
 //! From samples of topics to plan, measurement and other signals on one clock.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::{
     content::{Content, Extracted},
-    description,
+    cylinders::Kinds,
     joints::{add_new, keep_joints},
     overlap, poses, quality,
     recording::{Command, Recording, SourceInfo},
@@ -32,6 +32,7 @@ pub(super) fn assemble(
     mut extracted: Extracted,
     choice: &Choice,
     options: &ReadOptions,
+    mut kinds: Kinds,
 ) -> Result<Recording, LogError> {
     let mut remarks = std::mem::take(&mut extracted.remarks);
     // A side that was not asked for, or need not be there, is no doubt.
@@ -39,8 +40,8 @@ pub(super) fn assemble(
     let (base, base_why) = time_base(&extracted, choice, options.time_base, &mut remarks)?;
     overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?;
     let plan_is_command = remark_choice(choice, options, &mut remarks);
-    let description = options.description.clone().or(description::take(&mut extracted));
-    let mut sliding = description.as_deref().map(sliding_joints).unwrap_or_default();
+    let sliding = &mut kinds.sliding;
+    sliding.extend(options.description.as_deref().map(sliding_joints).unwrap_or_default());
     // Where they are the arm's, joints called x, y and z are no pose.
     let axes_slide = sliding.contains(AXES[0]);
     sliding.extend(joint_kind::sliding(&extracted.metadata));
@@ -63,7 +64,7 @@ pub(super) fn assemble(
     let laid_onto = choice.planned.iter().find(laid).and(choice.measured.first()).map(|c| c.source);
     let chosen = choice.measured.iter().chain(&choice.planned);
     let mut assembly =
-        Assembly::new(extracted, (base, options.range), (sliding, laid_onto), chosen, &mut remarks);
+        Assembly::new(extracted, (base, options.range), (kinds, laid_onto), chosen, &mut remarks);
     let mut pending: Vec<&Candidate> = choice.planned.iter().chain(beside.iter().map(|(_, c)| c)).collect();
     let degrees = options.measured_in_degrees;
     let mut measured = assembly.series(&choice.measured, &pending, degrees, None, &mut remarks);
@@ -84,8 +85,12 @@ pub(super) fn assemble(
             match keep_joints(&mut series, &options.joints) {
                 Err(error) if wanted.topic.is_some() => return Err(error),
                 Err(_) => continue,
-                Ok(()) => quality::unwrap_turns(&mut series, &options.continuous, &mut doubts),
+                Ok(()) => {}
             }
+            let sides = &mut [("commanded", &mut series)];
+            assembly.kinds.convert(JointKind::Turns, sides, &mut doubts)?;
+            quality::unwrap_turns(sides[0].1, &options.continuous, &mut doubts);
+            assembly.kinds.convert(JointKind::Slides, sides, &mut doubts)?;
             command = Some(Command { topic: assembly.topic(candidate).to_owned(), series });
         } else {
             let found = assembly.signals(candidate, wanted.role, &pending, &mut doubts);
@@ -105,11 +110,16 @@ pub(super) fn assemble(
         measured.earlier(delay_s);
     }
     let poses = if axes_slide { None } else { poses::take(&mut planned, &mut measured) };
-    for series in [&mut planned, &mut measured] {
-        keep_joints(series, &options.joints)?;
+    keep_joints(&mut planned, &options.joints)?;
+    keep_joints(&mut measured, &options.joints)?;
+    assembly.kinds.check([&planned, &measured], &mut remarks)?;
+    let sides = &mut [("planned", &mut planned), ("measured", &mut measured)];
+    assembly.kinds.convert(JointKind::Turns, sides, &mut remarks)?;
+    for (_, series) in &mut *sides {
         quality::unwrap_turns(series, &options.continuous, &mut remarks);
     }
-    quality::of_pairs(&planned, &measured, options, &mut remarks);
+    quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);
+    assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     let mut source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
     source.measured_delay_s = Some(delay_s).filter(|delay_s| *delay_s != 0.0);
     let Extracted { attachments, metadata, .. } = assembly.extracted;
@@ -125,7 +135,7 @@ pub(super) fn assemble(
         remarks,
         attachments,
         metadata,
-        description,
+        description: options.description.clone(),
     })
 }
 
@@ -170,7 +180,7 @@ struct Assembly {
     epoch_ns: i64,
     axes: BTreeMap<usize, Axis>,
     jumps_ns: Vec<i64>,
-    sliding: BTreeSet<String>,
+    kinds: Kinds,
     /// The source whose stamps are still needed once it has an axis.
     laid_onto: Option<usize>,
 }
@@ -180,12 +190,12 @@ impl Assembly {
     fn new<'a>(
         extracted: Extracted,
         (base, range): (TimeBase, TimeRange),
-        (sliding, laid_onto): (BTreeSet<String>, Option<usize>),
+        (kinds, laid_onto): (Kinds, Option<usize>),
         chosen: impl Iterator<Item = &'a Candidate>,
         remarks: &mut Remarks,
     ) -> Self {
         let (axes, jumps_ns) = (BTreeMap::new(), Vec::new());
-        let mut new = Self { extracted, base, range, epoch_ns: 0, axes, jumps_ns, sliding, laid_onto };
+        let mut new = Self { extracted, base, range, epoch_ns: 0, axes, jumps_ns, kinds, laid_onto };
         let mut clocks = BTreeMap::new();
         for candidate in chosen {
             if !clocks.contains_key(&candidate.source)
@@ -256,10 +266,6 @@ impl Assembly {
         &self.extracted.topic_of(candidate.source).topic
     }
 
-    fn kind(&self, joint: &str) -> JointKind {
-        if self.sliding.contains(joint) { JointKind::Slides } else { JointKind::Turns }
-    }
-
     /// The samples of a field; moved out of the table unless it is `pending`.
     fn samples(
         &mut self,
@@ -296,7 +302,7 @@ impl Assembly {
                 chosen[place + 1..].iter().chain(pending.iter().copied()).collect();
             let found = self.samples(candidate, true, &pending, remarks);
             let tracks = found.into_iter().filter_map(|one| {
-                let kind = self.kind(&one.name);
+                let kind = self.kinds.of(candidate.source, &one.name);
                 one.into_track(kind, degrees)
             });
             add_new(&mut series, tracks.collect());
@@ -314,7 +320,9 @@ impl Assembly {
                 degrees,
                 topic: self.topic(candidate),
             };
-            let tracks = trajectories::planned(plans, &reading, |joint| self.kind(joint), measured, remarks);
+            let kind = |joint: &str| self.kinds.of(candidate.source, joint);
+            let measured = self.kinds.alike(measured, kind);
+            let tracks = trajectories::planned(plans, &reading, kind, &measured, remarks);
             add_new(&mut series, tracks);
         }
         series
@@ -329,7 +337,7 @@ impl Assembly {
     ) -> Vec<Signal> {
         let found = self.samples(candidate, false, pending, remarks);
         let signal = |one: Samples| {
-            let quantity = role.quantity(self.kind(&one.name));
+            let quantity = role.quantity(self.kinds.of(candidate.source, &one.name));
             one.into_signal(quantity)
         };
         found.into_iter().filter_map(signal).collect()

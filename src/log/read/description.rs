@@ -13,9 +13,9 @@ pub(super) fn is_topic(topic: &str) -> bool {
     topic.rsplit('/').next() == Some(TOPIC)
 }
 
-/// Takes the description of a log out of its content: that of a message, else that of a file.
-pub(super) fn take(extracted: &mut Extracted) -> Option<String> {
-    let message = extracted.description.take().map(|(_, text)| text);
+/// The description that a log holds: that of a message, else that of a file.
+pub(super) fn of(extracted: &Extracted) -> Option<String> {
+    let message = extracted.description.as_ref().map(|(_, text)| text.clone());
     message.or_else(|| {
         let file = extracted.attachments.iter().find(|file| file.name.ends_with(FILE))?;
         Some(String::from_utf8_lossy(&file.data).into_owned())

@@ -2,6 +2,7 @@
 
 mod assemble;
 mod content;
+mod cylinders;
 mod description;
 mod extract;
 mod frames;
@@ -33,6 +34,7 @@ use crate::{
 use {
     assemble::assemble,
     content::Extracted,
+    cylinders::Kinds,
     extract::extract,
     recording::{Recording, Survey},
     select_topics::choose,
@@ -147,7 +149,11 @@ fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, L
     })
 }
 
-fn assembled(extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
+fn assembled(mut extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
+    let mut options = options.clone();
+    options.description = options.description.or_else(|| description::of(&extracted));
+    let kinds = Kinds::of_names(&mut extracted, &mut options)?;
+    let options = &options;
     let choice = choose(&extracted, options)?;
     for topic in topic_infos(&extracted) {
         ::log::debug!(
@@ -158,7 +164,7 @@ fn assembled(extracted: Extracted, options: &ReadOptions) -> Result<Recording, L
             topic.joint_fields
         );
     }
-    let recording = assemble(extracted, &choice, options)?;
+    let recording = assemble(extracted, &choice, options, kinds)?;
     let source = &recording.source;
     ::log::info!("planned {}:{}", source.planned_topic, source.planned_field);
     ::log::info!("measured {}:{}", source.measured_topic, source.measured_field);

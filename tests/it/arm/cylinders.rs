@@ -1,7 +1,9 @@
 //! Cylinders: the derived values of the sample arm, virtual work, directions.
 
+use std::f64::consts::PI;
+
 use hydrotrace::{
-    arm::{Actuation, ArmError, Cylinder, Hydraulics},
+    arm::{Actuation, ArmError, Cylinder, Hydraulics, Linkage, Rod, Rods},
     units::DEGREE_RAD,
 };
 use proptest::prelude::*;
@@ -166,4 +168,56 @@ fn a_joint_without_entry_has_no_cylinder_and_takes_no_flow() {
 fn text_that_is_no_toml_is_refused_with_its_line() {
     let error = Hydraulics::from_toml("a = [", "h.toml", &sample().chain).unwrap_err();
     assert!(matches!(error, ArmError::Syntax { .. }) && error.to_string().contains("line 1"), "{error}");
+}
+
+proptest! {
+    #[test]
+    fn lengths_of_any_triangle_give_back_the_angles_and_the_slopes_are_each_others_inverse(
+        sides in [0.05_f64..3.0, 0.05_f64..3.0], offset_rad in -4.0_f64..4.0, sense in prop::sample::select(vec![-1.0, 1.0]),
+        between_rad in 2e-3_f64..PI - 2e-3, zero_m in -1.0_f64..1.0,
+    ) {
+        let linkage = Linkage { inner_m: sides[0], outer_m: sides[1], offset_rad, sense };
+        let rod = Rod { linkage, zero_m, range_rad: None };
+        let angle_rad = sense * (between_rad - offset_rad);
+        let (logged_m, by_angle) = rod.logged_at(angle_rad).unwrap();
+        let (again_rad, by_length) = rod.angle_at(logged_m).unwrap();
+        prop_assert!((again_rad - angle_rad).abs() < 1e-9, "{angle_rad} {again_rad}");
+        prop_assert!((by_angle * by_length - 1.0).abs() < 1e-6, "{by_angle} {by_length}");
+        let [least, most] = rod.logged_range_m();
+        prop_assert!(logged_m > least && logged_m < most);
+        for none in [least - 1e-6, most + 1e-6, f64::NAN, f64::INFINITY, -10.0] {
+            prop_assert_eq!(rod.angle_at(none), None, "{}", none);
+        }
+        for none in [-1e-6, PI + 1e-6, f64::NAN] {
+            prop_assert_eq!(rod.logged_at(sense * (none - offset_rad)), None, "{}", none);
+        }
+    }
+
+    #[test]
+    fn lengths_are_those_that_a_plan_has(joint in 0_usize..6, share in 0.0_f64..1.0) {
+        let urdf = include_str!("../../../sample-logs/arm/arm.urdf");
+        let rods = Rods::from_toml(TOML, "h.toml", Some(urdf)).unwrap();
+        let rod = rods.of(&format!("J{}", joint + 1)).unwrap();
+        let (lower, upper) = rod.range_rad.unwrap();
+        let q = lower + share * (upper - lower);
+        let (length_m, lever_m) = cylinder(joint).length_and_lever(q.sin(), q.cos());
+        let found = rod.logged_at(q).unwrap();
+        prop_assert!((found.0 - length_m).abs() < 1e-14 && (found.1 - lever_m).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_cylinder_with_two_angles_of_one_length_within_the_limits_is_refused_by_name() {
+    let urdf = include_str!("../../../sample-logs/arm/arm.urdf");
+    let text = TOML.replacen("delta_rad = 2.96", "delta_rad = 3.96", 1);
+    let error = Rods::from_toml(&text, "h.toml", Some(urdf)).unwrap_err().to_string();
+    assert!(
+        error.starts_with("h.toml: [joint.J1] delta_rad: found") && error.contains("no dead centre"),
+        "{error}"
+    );
+    // Without limits nobody can tell.
+    assert!(Rods::from_toml(&text, "h.toml", None).is_ok());
+    let text = TOML.replacen("angle_sign = -1", "angle_sign = -1\nsensor_zero_m = inf", 1);
+    let error = Rods::from_toml(&text, "h.toml", None).unwrap_err().to_string();
+    assert_eq!(error, "h.toml: [joint.J1] sensor_zero_m: found inf, expected a length, m");
 }

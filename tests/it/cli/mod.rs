@@ -5,6 +5,7 @@ mod carried;
 mod columns;
 mod compare;
 mod csv;
+mod cylinders;
 mod figures;
 mod fleet;
 #[cfg(unix)]

@@ -1,0 +1,218 @@
+//! Lengths of cylinders become the angles of their joints, or angles lengths, by a file of the arm's cylinders.
+
+use std::{
+    borrow::Cow,
+    collections::{BTreeMap, BTreeSet},
+};
+
+use super::content::{Content, Extracted};
+use crate::{
+    arm::{Rod, Rods, names_a_cylinder},
+    input_file,
+    log::{error::LogError, options::ReadOptions},
+    remark::{Code, Remarks},
+    series::{JointKind, Series, Track},
+    units::{DEGREE_RAD, Degrees},
+};
+
+/// A cylinder has to hold its rod when it is drawn in: it extends to less than twice its length, with a margin for its ends.
+const MOST_EXTENDED: f64 = 2.1;
+/// Sensors and limits differ by this much, rad.
+const PAST_LIMIT_RAD: f64 = 5.0 * DEGREE_RAD;
+
+/// How joints move, and what becomes of those with a cylinder.
+#[derive(Default)]
+pub(super) struct Kinds {
+    /// Names of joints that slide.
+    pub(super) sliding: BTreeSet<String>,
+    /// Names in the log of joints that have others here, by source and name.
+    renamed: BTreeMap<(usize, String), String>,
+    conversion: Option<Conversion>,
+}
+
+struct Conversion {
+    rods: Rods,
+    into: JointKind,
+    file: String,
+}
+
+impl Kinds {
+    /// Calls joints as the file of cylinders does, if there is one, in the log and as the caller names them. A source that
+    /// has a joint and its cylinder keeps both names.
+    pub(super) fn of_names(extracted: &mut Extracted, options: &mut ReadOptions) -> Result<Self, LogError> {
+        let Some(wanted) = &options.cylinders else { return Ok(Self::default()) };
+        let text = input_file::read_to_string(&wanted.file).map_err(LogError::file("read", &wanted.file))?;
+        let file = wanted.file.display().to_string();
+        let rods = Rods::from_toml(&text, &file, options.description.as_deref()).map_err(Box::new)?;
+        let (mut renamed, mut kept) = (BTreeMap::new(), BTreeSet::new());
+        for (source, of) in extracted.sources.iter_mut().enumerate() {
+            let lists: Vec<&mut Vec<String>> = match &mut of.content {
+                Content::Table(table) => vec![&mut table.joints],
+                Content::Plans(plans) => plans.trajectories.iter_mut().map(|one| &mut one.joints).collect(),
+                _ => continue,
+            };
+            for names in lists {
+                for at in 0..names.len() {
+                    let joint = rods.meant(&names[at]).map(str::to_owned);
+                    if let Some(joint) = joint.filter(|joint| !names.contains(joint)) {
+                        let name = std::mem::replace(&mut names[at], joint.clone());
+                        renamed.insert((source, joint), name);
+                    } else {
+                        kept.insert(names[at].clone());
+                    }
+                }
+            }
+        }
+        for name in options.joints.iter_mut().filter(|name| !kept.contains(*name)) {
+            *name = rods.meant(name).unwrap_or(name).to_owned();
+        }
+        let conversion = Some(Conversion { rods, into: wanted.into, file });
+        Ok(Self { sliding: BTreeSet::new(), renamed, conversion })
+    }
+
+    /// How a joint of a source moves.
+    pub(super) fn of(&self, source: usize, joint: &str) -> JointKind {
+        let named = self.renamed.get(&(source, joint.to_owned()));
+        let slides = named.is_some_and(|name| names_a_cylinder(name) || self.sliding.contains(name));
+        if slides || self.sliding.contains(joint) { JointKind::Slides } else { JointKind::Turns }
+    }
+
+    /// Says of a run what stays as it is although it was to be converted.
+    pub(super) fn check(&self, sides: [&Series; 2], remarks: &mut Remarks) -> Result<(), LogError> {
+        let Some(Conversion { rods, into, file }) = &self.conversion else { return Ok(()) };
+        let tracks = || sides.into_iter().flat_map(|side| &side.tracks);
+        let mut found = tracks().filter_map(|track| Some((track, rods.of(track.name())?))).peekable();
+        if found.peek().is_none() {
+            let present: BTreeSet<&str> = tracks().map(Track::name).collect();
+            let present = present.into_iter().collect::<Vec<_>>().join(", ");
+            let joints = rods.joints().collect::<Vec<_>>().join(", ");
+            return Err(LogError::NoCylinder { file: file.clone(), joints, present });
+        }
+        // Of a URDF it is known that they turn.
+        let known =
+            |(track, rod): (&Track, &Rod)| track.kind() == JointKind::Slides || rod.range_rad.is_some();
+        if *into == JointKind::Turns && !found.any(known) {
+            let message = "no joint with a cylinder is logged as a length, all are taken as angles; --slides NAME says of \
+                           a joint that it is a length";
+            remarks.add(Code::Guessed, 1, message);
+        }
+        Ok(())
+    }
+
+    /// Converts the joints of some sides that have a cylinder, if they are to become of this kind.
+    pub(super) fn convert(
+        &self,
+        into: JointKind,
+        sides: &mut [(&'static str, &mut Series)],
+        remarks: &mut Remarks,
+    ) -> Result<(), LogError> {
+        let Some(Conversion { rods, .. }) = self.conversion.as_ref().filter(|own| own.into == into) else {
+            return Ok(());
+        };
+        for (side, series) in sides {
+            for track in series.tracks.iter_mut().filter(|track| track.kind() != into) {
+                let Some(rod) = rods.of(track.name()) else { continue };
+                let (found, expected) = (span(track.position()), possible(into, rod));
+                let hint = hint(track.name(), into, found, expected);
+                let Some(after) = converted(track, rod) else {
+                    let (joint, unit, hint) = (track.name().into(), track.kind().unit(), hint.into());
+                    let (found, expected) = (Box::new(found), Box::new(expected));
+                    return Err(LogError::NoTriangle { joint, side, found, expected, unit, hint });
+                };
+                doubt((side, track, &after), rod, (found, expected, &hint), remarks);
+                *track = after;
+            }
+        }
+        Ok(())
+    }
+
+    /// Tracks in the kinds that another source has of their joints.
+    pub(super) fn alike<'a>(&self, series: &'a Series, kind: impl Fn(&str) -> JointKind) -> Cow<'a, Series> {
+        let Some(Conversion { rods, .. }) = &self.conversion else { return Cow::Borrowed(series) };
+        let alike = |track: &Track| match rods.of(track.name()) {
+            Some(rod) if kind(track.name()) != track.kind() => converted(track, rod),
+            _ => Some(track.clone()),
+        };
+        Cow::Owned(Series { tracks: series.tracks.iter().filter_map(alike).collect() })
+    }
+}
+
+/// A joint in the other kind; `None` if no sample fits the triangle.
+fn converted(track: &Track, rod: &Rod) -> Option<Track> {
+    match track.kind() {
+        JointKind::Slides => track.mapped(JointKind::Turns, |logged_m| rod.angle_at(logged_m)),
+        JointKind::Turns => track.mapped(JointKind::Slides, |angle_rad| rod.logged_at(angle_rad)),
+    }
+}
+
+/// What can be converted into a kind: the triangle's lengths, m, or angles, rad.
+fn possible(into: JointKind, rod: &Rod) -> [f64; 2] {
+    if into == JointKind::Turns {
+        return rod.logged_range_m();
+    }
+    let ends = [0.0, std::f64::consts::PI].map(|rad| rod.linkage.sense * (rad - rod.linkage.offset_rad));
+    [ends[0].min(ends[1]), ends[0].max(ends[1])]
+}
+
+fn span(values: &[f64]) -> [f64; 2] {
+    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)])
+}
+
+/// What is most likely wrong with values that do not fit.
+fn hint(joint: &str, into: JointKind, found: [f64; 2], expected: [f64; 2]) -> String {
+    let within = |[least, most]: [f64; 2]| least > expected[0] && most < expected[1];
+    if into == JointKind::Slides {
+        return "are they degrees? then say --planned-degrees and --measured-degrees".to_owned();
+    }
+    if within(found.map(|mm| 1e-3 * mm)) {
+        return "they fit as mm: write them in m, or --slides NAME=mm of `hydrotrace import`".to_owned();
+    }
+    let fits = found[1] - found[0] < expected[1] - expected[0];
+    if fits && (found[0] < expected[0] || found[1] > MOST_EXTENDED * found[0]) {
+        return format!(
+            "if they are strokes from the retracted cylinder, give its length from mount to mount as sensor_zero_m of \
+             [joint.{joint}]"
+        );
+    }
+    format!(
+        "check that the lengths are in m and from mount to mount (of strokes give sensor_zero_m), and a_m, b_m and \
+         delta_rad of [joint.{joint}]"
+    )
+}
+
+/// Remarks on what was left out, and on lengths and angles that this machine can hardly have.
+fn doubt(
+    (side, before, after): (&str, &Track, &Track),
+    rod: &Rod,
+    ([least, most], [from, to], hint): ([f64; 2], [f64; 2], &str),
+    remarks: &mut Remarks,
+) {
+    let (joint, unit) = (before.name(), before.kind().unit());
+    let dropped = (before.len() - after.len()) as u64;
+    let message = format!(
+        "{side} samples of {joint} that its cylinder cannot have, dropped: they run {least:.4} to {most:.4} {unit}, the \
+         triangle has {from:.4} to {to:.4}; {hint}"
+    );
+    remarks.add(Code::Implausible, dropped, message);
+    if after.kind() == JointKind::Slides {
+        return;
+    }
+    if dropped == 0 && most + rod.zero_m > MOST_EXTENDED * (least + rod.zero_m) {
+        let message = format!(
+            "{side} lengths of {joint} run {least:.4} to {most:.4} m, taken as from mount to mount: no cylinder extends \
+             to more than twice its length; {hint}"
+        );
+        remarks.add(Code::Guessed, 1, message);
+    }
+    let (lower, upper) = rod.range_rad.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    let past = |angle: &&f64| **angle < lower - PAST_LIMIT_RAD || **angle > upper + PAST_LIMIT_RAD;
+    let outside = after.position().iter().filter(past).count();
+    if 2 * outside > after.len() {
+        let [[a, b], [lower, upper]] = [span(after.position()), [lower, upper]].map(|ends| ends.map(Degrees));
+        let message = format!(
+            "{side} samples of {joint} outside its limits in the URDF, {lower} to {upper}: by its cylinder it runs {a} \
+             to {b}; {hint}"
+        );
+        remarks.add(Code::Guessed, outside as u64, message);
+    }
+}
