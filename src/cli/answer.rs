@@ -57,7 +57,7 @@ impl Run for Args {
         let result = if self.json {
             pretty(&Document::of(&report))
         } else {
-            target.text(&words::answer(&report, self.explain))
+            target.text(&words::answer(&report, self.explain).reading(&self.read.words()))
         };
         console.finish(&target, &result, &report.remarks, &words::verdicts(&report))
     }

@@ -66,7 +66,7 @@ impl Run for Args {
             _ if target.form == Form::Json => FitDocument::of(&fitted).json(),
             Some(path) => {
                 let log = fitted.with_task.map_or(self.logs.last(), |place| self.logs.get(place));
-                let next = next::limits_written(path, log);
+                let next = next::limits_written(path, log).reading(&self.sent.words());
                 target.text(&words::document(&fitted).with_above_remarks(next))
             }
             None => target.text(&words::document(&fitted)),

@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use super::number;
 use crate::{
     log::{Cylinders, ReadOptions, Selector, SignalRole, TimeBase, TimeRange, WantedSignal},
+    render::kit::argument,
     series::JointKind,
 };
 
@@ -116,6 +117,42 @@ impl ReadArgs {
     }
 }
 
+impl ReadArgs {
+    /// The options as they are typed, words of a shell: what a command that reads the same logs needs.
+    pub(super) fn words(&self) -> Vec<String> {
+        let topic =
+            |one: &Selector| one.field.as_ref().map_or(one.topic.clone(), |f| format!("{}:{f}", one.topic));
+        let value =
+            |clap: Option<clap::builder::PossibleValue>| clap.map(|value| value.get_name().to_owned());
+        let names = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
+        let flag = |set: bool| set.then(String::new);
+        let mut words = Vec::new();
+        let mut add = |option: &str, value: Option<String>| {
+            if let Some(value) = value {
+                words.push(option.to_owned());
+                words.extend(Some(argument(value)).filter(|value| value != "''"));
+            }
+        };
+        self.planned.iter().for_each(|one| add("--planned", Some(topic(one))));
+        self.measured.iter().for_each(|one| add("--measured", Some(topic(one))));
+        add("--joints", names(&self.joints));
+        add("--time", value(self.time.and_then(|time| time.to_possible_value())));
+        add("--from", self.from.map(|s| s.to_string()));
+        add("--to", self.to.map(|s| s.to_string()));
+        add("--planned-degrees", flag(self.planned_degrees));
+        add("--measured-degrees", flag(self.measured_degrees));
+        // A number below zero after a blank would be an option.
+        if let Some(ns) = self.measured_delay_ns {
+            add(&format!("--measured-delay-ms={}", ns as f64 / 1e6), Some(String::new()));
+        }
+        add("--slides", names(&self.slides));
+        add("--continuous", names(&self.continuous));
+        add("--hydraulics", self.hydraulics.as_ref().map(|file| file.to_string_lossy().into_owned()));
+        add("--as", value(self.joints_as.and_then(|what| what.to_possible_value())));
+        words
+    }
+}
+
 /// What to read of a run that is to be fitted.
 #[derive(Debug, clap::Args)]
 pub(super) struct SentArgs {
@@ -132,6 +169,11 @@ pub(super) struct SentArgs {
 }
 
 impl SentArgs {
+    /// The options as they are typed; a command that is named may not be in the next log.
+    pub(super) fn words(&self) -> Vec<String> {
+        self.read.words()
+    }
+
     pub(super) fn options(&self) -> ReadOptions {
         let signals = [(SignalRole::Command, &self.command), (SignalRole::Valve, &self.valve)]
             .map(|(role, topic)| WantedSignal { role, topic: topic.clone() });

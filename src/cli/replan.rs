@@ -161,13 +161,14 @@ impl Run for Args {
             let whole = replanned.command.as_ref().is_some_and(Commanded::applied)
                 && !replanned.past.careful()
                 && Checks::of(&replanned).verdict != Verdict::DoNotSend;
-            let sending = next::to_send(self.output.as_deref(), &self.logs, &again, whole);
+            let sending =
+                next::to_send(self.output.as_deref(), &self.logs, (&again, &self.sent.words()), whole);
             write_file(file, words::page(&replanned, &sending).as_bytes())?;
         }
         let result = match &self.output {
             _ if self.json => ReplanDocument::of(&replanned).json(),
             Some(path) => {
-                let next = next::next_written(path, &self.logs);
+                let next = next::next_written(path, &self.logs, &self.sent.words());
                 target.text(&words::document(&replanned).with_above_remarks(next))
             }
             None => target.text(&words::document(&replanned)),

@@ -87,7 +87,7 @@ impl LogFiles {
         let (mut remarks, mut doubts) = (Remarks::default(), Remarks::default());
         let (mut files, mut ordered) = (Vec::new(), false);
         for input in inputs {
-            let parts = match remote::resolved(input)? {
+            let parts = match resolved(input)? {
                 Input::Path(path) => {
                     ordered |= path.is_dir();
                     let parts = bag::recording_files(&[path], &mut remarks)?;
@@ -175,6 +175,18 @@ impl<'a> ScannedFile<'a> {
             u64::from(damage.broken_data),
             format!("data of {name} with a wrong checksum and no chunks to tell where; numbers may be wrong"),
         );
+    }
+}
+
+/// What a path names: a file, or the bytes of an address.
+fn resolved(input: Input) -> Result<Input, LogError> {
+    match input {
+        Input::Path(path) if remote::is_address(&path) && !path.exists() => {
+            let name = path.to_string_lossy().into_owned();
+            let reader = remote::object(&name)?.open();
+            Ok(Input::Reader { name, reader })
+        }
+        other => Ok(other),
     }
 }
 

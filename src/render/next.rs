@@ -28,28 +28,35 @@ pub(crate) fn limits_written(limits: &Path, log: Option<&PathBuf>) -> Section {
 }
 
 /// After `replan` of these logs.
-pub(crate) fn next_written(next: &Path, logs: &[PathBuf]) -> Section {
+pub(crate) fn next_written(next: &Path, logs: &[PathBuf], reading: &[String]) -> Section {
     let next = argument(next);
-    after_run(written(&next), &next, logs)
+    after_run(written(&next), &next, logs).reading(reading)
 }
 
 /// What to type before and after a run; `again` are words of `replan` that make the same command anew, and `whole` says that more
-/// than half of the correction was asked for.
-pub(crate) fn to_send(next: Option<&Path>, logs: &[PathBuf], again: &[String], whole: bool) -> Section {
+/// than half of the correction was asked for. `reading` are options by which the logs were read.
+pub(crate) fn to_send(
+    next: Option<&Path>,
+    logs: &[PathBuf],
+    (again, reading): (&[String], &[String]),
+    whole: bool,
+) -> Section {
     let with = |section, aim, more: [&str; 4]| {
         let words: Vec<&str> =
             again.iter().map(String::as_str).chain(more).filter(|word| !word.is_empty()).collect();
         step(section, aim, &words)
     };
-    let section = Section::new(Id::NEXT, "Commands", std::iter::empty::<Block>());
+    let none = || Section::new(Id::NEXT, "Commands", std::iter::empty::<Block>());
+    let after = |next: &str| after_run(none(), next, logs).reading(reading).blocks;
+    let section = none();
     let careful = "To send half of the correction first, the careful step:";
     let section =
         if whole { with(section, careful, ["--gain", "0.5", "-o", "careful.mcap"]) } else { section };
     let Some(next) = next else {
         let section = with(section, "To write plan and command to a file:", ["", "", "-o", "next.mcap"]);
-        return after_run(section, "next.mcap", logs);
+        return section.with_all(after("next.mcap"));
     };
-    after_run(section, &argument(next), logs)
+    section.with_all(after(&argument(next)))
 }
 
 fn after_run(section: Section, next: &str, logs: &[PathBuf]) -> Section {

@@ -152,13 +152,17 @@ fn nearest(path: &Path, i: usize, first: usize, end: usize) -> (usize, f64) {
                 }
             }
         }
+        let ends =
+            std::array::from_fn::<bool, LANES, _>(|l| from + l + 1 >= end || !path.connected[from + l + 1]);
+        let [mut share, mut square] = [[0.0; LANES]; 2];
+        for l in 0..LANES {
+            let on = (along[l] / length[l]).clamp(0.0, 1.0);
+            share[l] = if ends[l] || length[l] <= 0.0 { 0.0 } else { on };
+            square[l] = from_start[l] + share[l] * (share[l] * length[l] - 2.0 * along[l]);
+        }
         for l in 0..count {
-            let at = from + l;
-            let whole = at + 1 < end && path.connected[at + 1] && length[l] > 0.0;
-            let share = if whole { (along[l] / length[l]).clamp(0.0, 1.0) } else { 0.0 };
-            let square = from_start[l] + share * (share * length[l] - 2.0 * along[l]);
-            if square < best {
-                (best, place) = (square, (at, share));
+            if square[l] < best {
+                (best, place) = (square[l], (from + l, share[l]));
             }
         }
     }

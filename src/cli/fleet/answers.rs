@@ -219,12 +219,11 @@ impl Run for EffectArgs {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by.by()]);
         let dataset = &self.ask.dataset;
-        let (machine, at_us, what) = match (&self.machine, self.at) {
-            (Some(machine), Some(at_us)) => (machine.clone(), at_us, None),
-            _ => {
-                let note = last_note(dataset, self.machine.as_deref())?;
-                (note.machine, note.at_us, Some(note.what))
-            }
+        let (machine, at_us, what) = if let (Some(machine), Some(at_us)) = (&self.machine, self.at) {
+            (machine.clone(), at_us, None)
+        } else {
+            let note = last_note(dataset, self.machine.as_deref())?;
+            (note.machine, note.at_us, Some(note.what))
         };
         let mut found = effect(dataset, &machine, at_us, &self.ask.filter(None), &by)?;
         found.what = what;

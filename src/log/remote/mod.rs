@@ -11,7 +11,7 @@ use std::{path::Path, sync::Arc};
 
 use thiserror::Error;
 
-use super::{error::LogError, file::ReadAt, input::Input};
+use super::file::ReadAt;
 
 /// Why an address leads to no log.
 #[derive(Debug, Error)]
@@ -68,8 +68,8 @@ trait Opener: std::fmt::Debug + Send + Sync {
 
 impl Object {
     /// Its bytes, fetched where they are wanted.
-    pub fn open(&self) -> Input {
-        Input::Reader { name: self.address.clone(), reader: self.opener.open() }
+    pub fn open(&self) -> Box<dyn ReadAt> {
+        self.opener.open()
     }
 }
 
@@ -84,7 +84,6 @@ pub fn is_address(name: &Path) -> bool {
 /// # Errors
 ///
 /// [`RemoteError`] if the address is none, or the store does not answer.
-#[cfg_attr(not(feature = "cloud"), expect(clippy::missing_const_for_fn, reason = "it asks a store"))]
 pub fn objects(address: &str) -> Result<Vec<Object>, RemoteError> {
     #[cfg(feature = "cloud")]
     return store::objects(address);
@@ -102,14 +101,4 @@ pub fn object(address: &str) -> Result<Object, RemoteError> {
     return store::object(address);
     #[cfg(not(feature = "cloud"))]
     Err(RemoteError::NotBuilt { address: address.to_owned() })
-}
-
-/// What a path names: a file, or the bytes of an address.
-pub(super) fn resolved(input: Input) -> Result<Input, LogError> {
-    match &input {
-        Input::Path(path) if is_address(path) && !path.exists() => {
-            Ok(object(&path.to_string_lossy()).map(|found| found.open())?)
-        }
-        _ => Ok(input),
-    }
 }

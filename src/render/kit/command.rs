@@ -6,3 +6,12 @@ pub(crate) use crate::text::shell_argument as argument;
 pub(crate) fn command(words: &[&str]) -> String {
     format!("hydrotrace {}", words.join(" "))
 }
+
+/// Verbs that take the options on what to read of a log.
+const READERS: [&str; 8] = ["answer", "compare", "export", "fit", "info", "replan", "report", "view"];
+
+/// A command with the options on what to read, where its verb takes them.
+pub(super) fn reading(line: &str, options: &[String]) -> String {
+    let reads = line.split(' ').nth(1).is_some_and(|verb| READERS.contains(&verb));
+    if options.is_empty() || !reads { line.to_owned() } else { format!("{line} {}", options.join(" ")) }
+}

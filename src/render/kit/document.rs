@@ -100,6 +100,13 @@ pub enum Sentence {
 }
 
 impl Document {
+    /// Its commands with the options by which the logs were read.
+    #[must_use]
+    pub fn reading(mut self, options: &[String]) -> Self {
+        self.sections = self.sections.into_iter().map(|section| section.reading(options)).collect();
+        self
+    }
+
     /// Under a title.
     pub fn titled(title: impl Into<String>) -> Self {
         Self { title: Some(title.into()), ..Self::default() }
@@ -145,6 +152,17 @@ impl Document {
 }
 
 impl Section {
+    /// Its commands with the options by which the logs were read, each from [`argument`](super::argument).
+    #[must_use]
+    pub fn reading(mut self, options: &[String]) -> Self {
+        for block in &mut self.blocks {
+            if let Block::Command(line) = block {
+                *line = super::command::reading(line, options);
+            }
+        }
+        self
+    }
+
     /// Blocks under a heading.
     pub fn new(
         id: Id,

@@ -43,7 +43,9 @@ impl Source {
         if self.objects.is_empty() {
             vec![Input::Path(self.path.clone())]
         } else {
-            self.objects.iter().map(remote::Object::open).collect()
+            let input =
+                |one: &remote::Object| Input::Reader { name: one.address.clone(), reader: one.open() };
+            self.objects.iter().map(input).collect()
         }
     }
 }

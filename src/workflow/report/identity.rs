@@ -68,9 +68,10 @@ impl Read for Stream<'_> {
 
 fn log_file(path: &Path) -> LogFile {
     if remote::is_address(path) && !path.exists() {
-        let inputs = remote::object(&path.to_string_lossy()).map(|found| vec![found.open()]);
-        let found = inputs.map(|inputs| input_files(&inputs)).unwrap_or_default().pop();
-        return found.unwrap_or_else(|| named(path, None));
+        let digest = remote::object(&path.to_string_lossy())
+            .ok()
+            .and_then(|found| digest(&mut Stream { reader: found.open().as_ref(), at: 0 }).ok());
+        return named(path, digest);
     }
     named(path, input_file::open(path).and_then(|mut file| digest(&mut file)).ok())
 }

@@ -18,6 +18,33 @@ fn a_log_without_a_verb_is_answered_in_ten_lines_whose_last_runs() {
     }
 }
 
+/// What the answer was read by is what the next command is read by.
+#[test]
+fn a_pasted_line_reads_the_log_as_the_one_before_it_did() {
+    let folder = scratch();
+    std::fs::copy(sample("task-1-run.mcap"), folder.path().join("my run.mcap")).unwrap();
+    let shell = |line: &str| {
+        let folder_of = std::path::Path::new(env!("CARGO_BIN_EXE_hydrotrace")).parent().unwrap();
+        let path = format!("{}:{}", folder_of.display(), std::env::var("PATH").unwrap());
+        let mut run = std::process::Command::new("sh");
+        said(&run.args(["-c", line]).env("PATH", path).current_dir(folder.path()).output().unwrap())
+    };
+    let options = "--joints J1,J3 --from 1.5 --measured-delay-ms=-2";
+    let (code, text, error) = shell(&format!("hydrotrace 'my run.mcap' {options}"));
+    assert!(code == 0 || code == 3, "{code} {error}");
+    let next = text.lines().last().unwrap().trim();
+    assert!(
+        next.ends_with("--joints J1,J3 --from 1.5 --measured-delay-ms=-2") && next.contains("'my run.mcap'"),
+        "{next}"
+    );
+    let (code, _, error) = shell(next);
+    assert!(code == 0 || code == 3, "{next}: {code} {error}");
+    let (code, text, error) = shell(&format!("hydrotrace fit 'my run.mcap' {options} -o limits.toml"));
+    assert!(code == 0 || code == 3, "{code} {error}");
+    let next = text.lines().find(|line| line.contains("hydrotrace replan")).unwrap().trim();
+    assert!(next.ends_with(options), "{next}");
+}
+
 /// No fit is of joints that slide, or of a tool: a line that would fail is not suggested.
 #[test]
 fn a_log_of_the_tool_alone_suggests_what_can_be_done_with_it() {

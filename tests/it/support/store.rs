@@ -1,4 +1,4 @@
-//! A store of objects on this machine: a web server that knows ranges, conditions and lists, as WebDAV and as S3 do.
+//! A store of objects on this machine: a web server that knows ranges, conditions and both kinds of lists.
 
 use std::{
     collections::BTreeMap,
