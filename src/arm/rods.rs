@@ -89,6 +89,11 @@ pub fn names_a_cylinder(name: &str) -> bool {
     words(name).split(' ').any(|word| CYLINDER.contains(&word))
 }
 
+/// Whether a name says of a length that it counts from the cylinder that is drawn in.
+pub fn names_a_stroke(name: &str) -> bool {
+    words(name).split(' ').any(|word| ["stroke", "extension"].contains(&word))
+}
+
 /// What is left of a name without the words for joints and cylinders.
 fn key(name: &str) -> String {
     let words = words(name);

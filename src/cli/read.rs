@@ -120,6 +120,10 @@ impl ReadArgs {
 impl ReadArgs {
     /// The options as they are typed, words of a shell: what a command that reads the same logs needs.
     pub(super) fn words(&self) -> Vec<String> {
+        self.words_of(true)
+    }
+
+    fn words_of(&self, ranged: bool) -> Vec<String> {
         let topic =
             |one: &Selector| one.field.as_ref().map_or(one.topic.clone(), |f| format!("{}:{f}", one.topic));
         let value =
@@ -137,8 +141,8 @@ impl ReadArgs {
         self.measured.iter().for_each(|one| add("--measured", Some(topic(one))));
         add("--joints", names(&self.joints));
         add("--time", value(self.time.and_then(|time| time.to_possible_value())));
-        add("--from", self.from.map(|s| s.to_string()));
-        add("--to", self.to.map(|s| s.to_string()));
+        add("--from", self.from.filter(|_| ranged).map(|s| s.to_string()));
+        add("--to", self.to.filter(|_| ranged).map(|s| s.to_string()));
         add("--planned-degrees", flag(self.planned_degrees));
         add("--measured-degrees", flag(self.measured_degrees));
         // A number below zero after a blank would be an option.
@@ -169,9 +173,17 @@ pub(super) struct SentArgs {
 }
 
 impl SentArgs {
-    /// The options as they are typed; a command that is named may not be in the next log.
+    /// The options as they are typed, for the same logs.
     pub(super) fn words(&self) -> Vec<String> {
-        self.read.words()
+        let named = [("--command", &self.command), ("--valve", &self.valve)];
+        let named =
+            named.into_iter().filter_map(|(option, one)| Some([option.to_owned(), typed(one.as_ref()?)]));
+        self.read.words().into_iter().chain(named.flatten()).collect()
+    }
+
+    /// The same for a log of the next run: what is cut from the last one is its own.
+    pub(super) fn words_of_next(&self) -> Vec<String> {
+        self.read.words_of(false)
     }
 
     pub(super) fn options(&self) -> ReadOptions {
@@ -179,6 +191,11 @@ impl SentArgs {
             .map(|(role, topic)| WantedSignal { role, topic: topic.clone() });
         ReadOptions { signals: signals.into(), ..self.read.options() }
     }
+}
+
+/// A topic and field as a word of a shell.
+fn typed(one: &Selector) -> String {
+    argument(one.field.as_ref().map_or(one.topic.clone(), |field| format!("{}:{field}", one.topic)))
 }
 
 #[expect(clippy::unnecessary_wraps, reason = "the form of a clap parser")]

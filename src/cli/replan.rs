@@ -128,6 +128,12 @@ impl Args {
         let request = self.request();
         let read: Vec<PathBuf> = self.logs.iter().chain(&self.limits).chain(&self.task).cloned().collect();
         spare_for_log(self.output.as_deref(), &read)?;
+        spare_for_log(self.html.as_deref(), &read)?;
+        if self.html.is_some() && self.html == self.output {
+            return Err(CliError::Usage(
+                "--output and --html name the same file; give each its own".to_owned(),
+            ));
+        }
         self.html.as_deref().map_or(Ok(()), may_write)?;
         let bar = progress(Some(request.evaluations), "{bar:30} {pos} evaluations");
         let replanned = run(&request, |evaluations| {
@@ -161,14 +167,18 @@ impl Run for Args {
             let whole = replanned.command.as_ref().is_some_and(Commanded::applied)
                 && !replanned.past.careful()
                 && Checks::of(&replanned).verdict != Verdict::DoNotSend;
-            let sending =
-                next::to_send(self.output.as_deref(), &self.logs, (&again, &self.sent.words()), whole);
+            let sending = next::to_send(
+                self.output.as_deref(),
+                &self.logs,
+                (&again, &self.sent.words_of_next()),
+                whole,
+            );
             write_file(file, words::page(&replanned, &sending).as_bytes())?;
         }
         let result = match &self.output {
             _ if self.json => ReplanDocument::of(&replanned).json(),
             Some(path) => {
-                let next = next::next_written(path, &self.logs, &self.sent.words());
+                let next = next::next_written(path, &self.logs, &self.sent.words_of_next());
                 target.text(&words::document(&replanned).with_above_remarks(next))
             }
             None => target.text(&words::document(&replanned)),

@@ -5,16 +5,20 @@ use std::ops::Range;
 use super::{Answer, Rules, signals::Signals};
 use crate::series::Pair;
 
+/// Where the log ends before the window does, an answer may still have come: this many times as much has to be seen.
+const CUT_BY: f64 = 2.0;
+
 /// What became of a planned start that no measured start answers, by what plan and joint travel in its
 /// window of samples.
 ///
 /// A share of the planned travel that the measurement could not show proves nothing, nor does a window
-/// shorter than the time that every answer is given.
+/// shorter than the time that every answer is given, or twice as long where the data end with it (`cut`).
 pub(super) fn untimed(
     pair: &Pair,
     signals: &Signals,
     direction: i8,
     window: Range<usize>,
+    cut: bool,
     rules: &Rules,
 ) -> Answer {
     let needed_rad = rules.follow_share * rise_rad(&pair.planned[window.clone()], direction);
@@ -22,11 +26,8 @@ pub(super) fn untimed(
         return Answer::Creeps;
     }
     let lasts_s = pair.t_s[window.end - 1] - pair.t_s[window.start];
-    if needed_rad < signals.min_travel || lasts_s < rules.match_after_s {
-        Answer::Unclear
-    } else {
-        Answer::Never
-    }
+    let enough_s = if cut { CUT_BY * rules.match_after_s } else { rules.match_after_s };
+    if needed_rad < signals.min_travel || lasts_s < enough_s { Answer::Unclear } else { Answer::Never }
 }
 
 /// Largest travel in a direction from any angle to a later one, rad: a joint that comes out of the

@@ -53,7 +53,8 @@ pub(super) fn transition(
         answer: if measured_s.is_some() {
             Answer::Timed
         } else {
-            untimed(pair, signals, planned.direction, window, rules)
+            let cut = window.end == planned.segment.end && end_s < planned_s + rules.transition_window_s;
+            untimed(pair, signals, planned.direction, window, cut, rules)
         },
         measured_onset_s: measured_s,
         onset_method: method,

@@ -219,13 +219,16 @@ impl Run for EffectArgs {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by.by()]);
         let dataset = &self.ask.dataset;
+        let mut filter = self.ask.filter(None);
         let (machine, at_us, what) = if let (Some(machine), Some(at_us)) = (&self.machine, self.at) {
             (machine.clone(), at_us, None)
         } else {
             let note = last_note(dataset, self.machine.as_deref())?;
+            // What was done to one joint is asked of it.
+            filter.joint = filter.joint.or(note.joint);
             (note.machine, note.at_us, Some(note.what))
         };
-        let mut found = effect(dataset, &machine, at_us, &self.ask.filter(None), &by)?;
+        let mut found = effect(dataset, &machine, at_us, &filter, &by)?;
         found.what = what;
         let forms: [&dyn Fn() -> String; 3] =
             [&|| pretty(&found), &|| words::effect_csv(&found), &|| words::effect_page(&found)];

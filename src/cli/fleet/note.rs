@@ -44,14 +44,25 @@ pub(super) struct Args {
 
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
+        let mut made = None;
         if let (Some(what), Some(machine), Some(at_us)) = (&self.what, &self.machine, self.at) {
-            let (machine, what) = (machine.clone(), what.trim().to_owned());
-            note(&self.dataset, &Note { at_us, machine, joint: self.joint.clone(), what })?;
+            let what = what.split_whitespace().collect::<Vec<_>>().join(" ");
+            if what.is_empty() {
+                return Err(CliError::Usage(
+                    "nothing is said of what was done: 'valve replaced', say".to_owned(),
+                ));
+            }
+            let one = Note { at_us, machine: machine.clone(), joint: self.joint.clone(), what };
+            note(&self.dataset, &one)?;
+            made = Notes::of(&[one]).interventions.pop();
         }
         let found = Notes::of(&notes(&self.dataset, self.machine.as_deref())?);
         let target = Target::stdout(self.json);
-        let result =
-            if self.json { pretty(&found) } else { target.text(&words::notes(&found, &self.dataset)) };
+        let result = if self.json {
+            pretty(&found)
+        } else {
+            target.text(&words::notes(&found, made.as_ref(), &self.dataset))
+        };
         console.finish(&target, &result, &Remarks::default(), &[])
     }
 }

@@ -4,29 +4,131 @@ use super::{
     super::{model::STEP_S, run::sampled},
     Trial,
 };
-use crate::series::Track;
+/// Where nothing was measured while the plan moves, an error fades within this, s: what nobody saw teaches nothing.
+const FADES_S: f64 = 0.3;
+
+/// A plan that stays this close to where it was last measured rests, rad.
+const RESTS_RAD: f64 = 1e-3;
+
+/// Planned speed that is motion, rad/s.
+const MOVES_RAD_S: f64 = 1e-3;
 
 /// What was sent to one joint and what came of it, every [`STEP_S`].
 pub(super) struct Answer {
     pub(super) sent: Vec<(f64, f64)>,
+    /// Made up where nothing was measured.
     pub(super) measured_rad: Vec<f64>,
+    /// Whether anything was.
+    seen: Vec<bool>,
 }
 
 impl Answer {
-    pub(super) fn of(trial: &Trial, name: &str, from_s: f64, steps: usize) -> Option<Self> {
-        let at = |track: &Track, k: usize| track.held_at(from_s + k as f64 * STEP_S);
+    /// What came of a run of a plan.
+    pub(super) fn of(trial: &Trial, name: &str, from_s: f64, planned: &[(f64, f64)]) -> Option<Self> {
+        let at_s = |k: usize| from_s + k as f64 * STEP_S;
         let (sent, measured) = (trial.sent.track(name)?, trial.measured.track(name)?);
-        Some(Self {
+        let steps = planned.len();
+        let mut made = Self {
             sent: sampled(sent, from_s, steps),
-            measured_rad: (0..steps).map(|k| at(measured, k).position).collect(),
-        })
+            measured_rad: (0..steps).map(|k| measured.held_at(at_s(k)).position).collect(),
+            seen: (0..steps).map(|k| measured.at(at_s(k)).is_some()).collect(),
+        };
+        made.fill(planned);
+        Some(made)
     }
 
     pub(super) fn error_rad(&self, planned: &[(f64, f64)]) -> Vec<f64> {
         planned.iter().zip(&self.measured_rad).map(|(planned, measured)| planned.0 - measured).collect()
     }
 
+    /// Where nothing was measured, the error is that before and after it: as long as the plan rests, and fading from where
+    /// it moves.
+    fn fill(&mut self, planned: &[(f64, f64)]) {
+        let error_rad = self.error_rad(planned);
+        let n = error_rad.len();
+        let mut from = 0;
+        while let Some(first) = (from..n).find(|&k| !self.seen[k]) {
+            let end = (first..n).find(|&k| self.seen[k]).unwrap_or(n);
+            let mut sums = vec![[0.0; 2]; end - first];
+            let mut add = |from: usize, order: &mut dyn Iterator<Item = usize>| {
+                for (k, share) in shares(planned, from, order) {
+                    sums[k - first][0] += share;
+                    sums[k - first][1] += share * error_rad[from];
+                }
+            };
+            if let Some(before) = first.checked_sub(1) {
+                add(before, &mut (first..end));
+            }
+            if end < n {
+                add(end, &mut (first..end).rev());
+            }
+            for (k, [share, sum_rad]) in (first..end).zip(sums) {
+                self.measured_rad[k] = planned[k].0 - sum_rad / f64::max(share, 1.0);
+            }
+            from = end;
+        }
+    }
+
+    /// For how long the plan moves and nothing was measured, s.
+    pub(super) fn unseen_s(&self, planned: &[(f64, f64)]) -> f64 {
+        let moves = |two: &[(f64, f64)]| (two[1].0 - two[0].0).abs() > MOVES_RAD_S * STEP_S;
+        let unseen = planned.windows(2).zip(&self.seen).filter(|(two, seen)| !**seen && moves(two));
+        unseen.count() as f64 * STEP_S
+    }
+
     pub(super) fn correction_rad(&self, planned: &[(f64, f64)]) -> Vec<f64> {
         planned.iter().zip(&self.sent).map(|(planned, sent)| sent.0 - planned.0).collect()
+    }
+}
+
+/// What of the error at instant `from` is left at others, in their order away from it.
+fn shares<'a>(
+    planned: &'a [(f64, f64)],
+    from: usize,
+    order: &'a mut dyn Iterator<Item = usize>,
+) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let mut share = 1.0_f64;
+    order.map(move |k| {
+        let rests = (planned[k].0 - planned[from].0).abs() < RESTS_RAD && share >= 1.0;
+        share = if rests { 1.0 } else { (share - STEP_S / FADES_S).max(0.0) };
+        (k, share)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plan that rests, moves and rests; 0.1 rad of error wherever it was measured.
+    #[test]
+    fn what_was_not_measured_is_no_error_but_at_rest() {
+        let n = 2000;
+        let plan = |k: usize| ((k as f64 * STEP_S - 1.0) / 2.0).clamp(0.0, 1.0);
+        let planned: Vec<(f64, f64)> = (0..n).map(|k| (plan(k), 0.0)).collect();
+        let at = |s: f64| (0..n).find(|&k| k as f64 * STEP_S >= s).unwrap_or(n - 1);
+        let errors = |seen: &dyn Fn(usize) -> bool| {
+            let mut last = 0.0;
+            let measured_rad = (0..n).map(|k| {
+                last = if seen(k) { plan(k) - 0.1 } else { last };
+                last
+            });
+            let measured_rad = measured_rad.collect();
+            let mut answer = Answer { sent: Vec::new(), measured_rad, seen: (0..n).map(seen).collect() };
+            answer.fill(&planned);
+            (answer.error_rad(&planned), answer.unseen_s(&planned))
+        };
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+        let (whole, unseen_s) = errors(&|_| true);
+        assert!(whole.iter().all(|e| near(*e, 0.1)) && unseen_s == 0.0);
+        // A hole of a second within the motion: half a second of nothing, no step larger than the fading.
+        let (hole, unseen_s) = errors(&|k| !(at(1.5)..at(2.5)).contains(&k));
+        assert!(near(hole[at(2.0)], 0.0) && near(hole[at(1.4)], 0.1) && (unseen_s - 1.0).abs() < 0.05);
+        assert!(hole.iter().all(|e| (-1e-12..0.1 + 1e-12).contains(e)));
+        assert!(hole.windows(2).all(|two| (two[1] - two[0]).abs() < 0.11 * STEP_S / FADES_S + 1e-9));
+        // A log that ends in the motion, and one that ends at rest.
+        let (cut, _) = errors(&|k| k < at(2.0));
+        assert!(near(cut[at(2.4)], 0.0) && near(cut[n - 1], 0.0));
+        let (rest, unseen_s) = errors(&|k| k < at(3.5));
+        assert!(rest.iter().all(|e| near(*e, 0.1)) && unseen_s == 0.0);
     }
 }

@@ -56,7 +56,7 @@ impl<'a> Joint<'a> {
         let mut planned = super::super::predict::grid(track)?;
         planned.pop();
         let from_s = track.t_s().first().copied().unwrap_or_default();
-        let answer = |trial: &Trial| Answer::of(trial, track.name(), from_s, planned.len());
+        let answer = |trial: &Trial| Answer::of(trial, track.name(), from_s, &planned);
         let answers: Vec<Answer> = runs.iter().filter_map(answer).collect();
         let mut workspace = Workspace::default();
         let newest = fit.zip(answers.last());
@@ -86,6 +86,7 @@ impl<'a> Joint<'a> {
             spread_rad: None,
             most_rad,
             cut_off_hz: 0.0,
+            unseen_s: self.answers.last().map_or(0.0, |run| run.unseen_s(&self.planned)),
             correction: nothing,
         };
         let Some(fit) = self.fit.filter(|_| !untouched && !free.is_empty() && settings.gain > 0.0) else {

@@ -105,6 +105,8 @@ pub struct JointStep {
     pub most_rad: f64,
     /// Frequency above which nothing is learnt, Hz.
     pub cut_off_hz: f64,
+    /// For how long the plan moves and the newest run was not measured, s: nothing is learnt there.
+    pub unseen_s: f64,
     /// Correction, rad, its speed, rad/s, and acceleration, rad/s², every [`STEP_S`] from the plan's first sample.
     pub correction: Vec<[f64; 3]>,
 }

@@ -7,7 +7,7 @@ use std::{
 
 use super::content::{Content, Extracted};
 use crate::{
-    arm::{Rod, Rods, names_a_cylinder},
+    arm::{Rod, Rods, names_a_cylinder, names_a_stroke},
     input_file,
     log::{error::LogError, options::ReadOptions},
     remark::{Code, Remarks},
@@ -120,6 +120,16 @@ impl Kinds {
                     return Err(LogError::NoTriangle { joint, side, found, expected, unit, hint });
                 };
                 doubt((side, track, &after), rod, (found, expected, &hint), remarks);
+                let named = self.renamed.iter().find(|((_, joint), _)| joint == track.name());
+                let named = named.map(|(_, name)| name).filter(|name| names_a_stroke(name));
+                if let (Some(name), true) = (named, into == JointKind::Turns && rod.zero_m == 0.0) {
+                    let joint = track.name();
+                    let message = format!(
+                        "{name} is called a stroke and was taken as the length from mount to mount: if it counts from the \
+                         cylinder drawn in, give that one's length as sensor_zero_m of [joint.{joint}]"
+                    );
+                    remarks.add(Code::Guessed, 1, message);
+                }
                 *track = after;
             }
         }

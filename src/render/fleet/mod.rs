@@ -15,7 +15,7 @@ use super::kit::{
 };
 use crate::{
     series::JointKind,
-    workflow::fleet::{By, Compacted, Notes, Progress, Scanned},
+    workflow::fleet::{By, Compacted, Intervention, Notes, Progress, Scanned},
 };
 
 /// How far a scan is, in a line.
@@ -62,17 +62,27 @@ pub(crate) fn scanned(scanned: &Scanned) -> Document {
 }
 
 /// What was done to machines, and the question that follows.
-pub(crate) fn notes(notes: &Notes, dataset: &Path) -> Document {
-    let Some(last) = notes.interventions.last() else {
+pub(crate) fn notes(notes: &Notes, made: Option<&Intervention>, dataset: &Path) -> Document {
+    let Some(asked) = made.or(notes.interventions.last()) else {
         let none = Sentence::finding("Nothing is noted.");
         return Document::default().with(Section::plain(Id::SUMMARY, [none]));
     };
     let rows = notes.interventions.iter().map(|one| {
-        let day = day(&one.at).to_owned();
-        vec![day, one.machine.clone(), one.joint.clone().unwrap_or_else(|| NONE.to_owned()), one.what.clone()]
+        let at = one.at.strip_suffix("T00:00:00Z").unwrap_or(&one.at).to_owned();
+        vec![at, one.machine.clone(), one.joint.clone().unwrap_or_else(|| NONE.to_owned()), one.what.clone()]
     });
     let table = Table::new(&["at", "machine", "joint", "what"], &[], rows);
-    let next = ["fleet", "effect", &argument(dataset), "--machine", &argument(Path::new(&last.machine))];
+    let value = |option: &str, text: &str| {
+        let text = argument(Path::new(text));
+        // What begins with a dash is no path here.
+        format!("{option}={}", text.replacen("./-", "-", 1))
+    };
+    let at = asked.at.strip_suffix("T00:00:00Z").unwrap_or(&asked.at);
+    let (machine, at) = (value("--machine", &asked.machine), format!("--at={at}"));
+    let joint = asked.joint.as_ref().map(|joint| value("--joint", joint));
+    let dataset = argument(dataset);
+    let next: Vec<&str> =
+        ["fleet", "effect", &dataset, &machine, &at].into_iter().chain(joint.as_deref()).collect();
     let section = Section::plain(Id::SUMMARY, [table])
         .with(Sentence::advice("To see what it did:"))
         .with(Block::Command(command(&next)));

@@ -29,6 +29,7 @@ use crate::{
     log::ReadOptions,
     remark::{Code, Remarks},
     replay::{PEAK_ERROR, Rules},
+    series::JointKind,
 };
 use document::FORMAT;
 use figures::{figures, tool};
@@ -67,6 +68,20 @@ pub enum CompareFailure {
     /// A side without a run.
     #[error("found no run {0} the change, expected at least one")]
     NoRun(Side),
+    /// A joint that turns here and slides there.
+    #[error(
+        "{joint} is logged in {} in {} and in {} in {}: angles and lengths are not compared; --hydraulics turns lengths of \
+         cylinders into angles, --slides names joints that slide",
+        kinds[0].unit(), logs[0].display(), kinds[1].unit(), logs[1].display()
+    )]
+    MixedKinds {
+        /// The joint.
+        joint: String,
+        /// How it moves by the first log, and by another.
+        kinds: [JointKind; 2],
+        /// The logs.
+        logs: Box<[PathBuf; 2]>,
+    },
     /// The runs are of different arms, or name their joints differently.
     #[error(
         "the runs have no joint in common: {before} before, {after} after; --joints names joints of topics that name none"
@@ -77,6 +92,23 @@ pub enum CompareFailure {
         /// Joints of the first run after.
         after: String,
     },
+}
+
+/// A joint must move in the same way in all runs.
+fn check_kinds(joints: &[String], reports: &[&Report]) -> Result<(), CompareFailure> {
+    for name in joints {
+        let of = |report: &&Report| {
+            let joint = report.replay.joints.iter().find(|joint| joint.name == *name)?;
+            Some((joint.kind, report.paths.first().cloned().unwrap_or_default()))
+        };
+        let mut found = reports.iter().filter_map(of);
+        let Some((kind, log)) = found.next() else { continue };
+        if let Some((other, there)) = found.find(|(other, _)| *other != kind) {
+            let (kinds, logs) = ([kind, other], Box::new([log, there]));
+            return Err(CompareFailure::MixedKinds { joint: name.clone(), kinds, logs });
+        }
+    }
+    Ok(())
 }
 
 /// Compares runs of a task before and after a change; values of several runs of a side are averaged before
@@ -105,6 +137,7 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
         return Err(CompareFailure::NoCommonJoint { before: names(first), after: names(first_after) });
     }
 
+    check_kinds(&joints, &before.iter().chain(&after).collect::<Vec<_>>())?;
     let mut all: Vec<Member> = Vec::new();
     for (side, reports, paths) in
         [(Side::Before, &before, &inputs.before), (Side::After, &after, &inputs.after)]

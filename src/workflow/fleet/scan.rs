@@ -107,11 +107,14 @@ pub fn scan(
     let store = Store::open(&inputs.into)?;
     let mut held = known(store.root())?;
     let analysis_id = own_analysis_id(inputs);
+    // A run that was fitted, too, tells all that one tells that was not.
+    let fitted_id = own_analysis_id(&Inputs { fit: true, ..inputs.clone() });
     let mut scanned = Scanned::new(&inputs.into, found.len());
     let mut pending: Vec<Pending> = Vec::new();
     for source in found {
         let known = held.get(source.path.to_string_lossy().as_ref());
-        let same = known.filter(|known| known.etag == source.etag && known.analysis_id == analysis_id);
+        let ids = [&analysis_id, &fitted_id];
+        let same = known.filter(|known| known.etag == source.etag && ids.contains(&&known.analysis_id));
         if same.is_some_and(|known| !known.again) {
             scanned.unchanged += 1;
         } else {

@@ -67,6 +67,12 @@ pub enum JoinFailure {
         plan.display(), 100.0 * share
     )]
     SentOtherwise { plan: PathBuf, topic: String, at_s: f64, share: f64 },
+    /// Lengths and angles under one name.
+    #[error(
+        "a log is joined as it was recorded, in lengths of cylinders, and the plan beside it would be in angles: leave out \
+         --hydraulics and give a plan in lengths; `hydrotrace export PLAN --hydraulics FILE --as cylinders` makes one"
+    )]
+    Cylinders,
     /// A plan that no run is.
     #[error("the plan in {} lasts {duration_s:.0} s, {LONGEST_S} s are the most", plan.display())]
     TooLong { plan: PathBuf, duration_s: f64 },
@@ -89,6 +95,9 @@ const RATE_HZ: f64 = 100.0;
 ///
 /// [`JoinFailure`], naming what is missing; nothing is written then.
 pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
+    if inputs.read.cylinders.is_some() {
+        return Err(JoinFailure::Cylinders);
+    }
     let plan = Plan::read(&inputs.plan)?;
     let files = LogFiles::open(&inputs.logs)?;
     let log = files.scan()?;

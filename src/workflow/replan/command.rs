@@ -45,6 +45,9 @@ pub struct JointCommand {
     pub rms_error_rad: Vec<f64>,
     /// The part of it that comes differently each time, rad; null with fewer than two runs.
     pub spread_rad: Option<f64>,
+    /// For how long the plan moves and the newest run was not measured, s: nothing is learnt there.
+    #[serde(default)]
+    pub unseen_s: f64,
     /// Predicted root mean square error of the plan sent as it is, rad; null if the fit does not know the joint.
     pub plain_rms_rad: Option<f64>,
     /// The same of the command, rad.
@@ -329,6 +332,7 @@ fn joints(
             cut_off_hz: made.cut_off_hz,
             rms_error_rad: made.rms_error_rad.clone(),
             spread_rad: made.spread_rad,
+            unseen_s: made.unseen_s,
             plain_rms_rad: rms_rad(track)?,
             compensated_rms_rad: rms_rad(sent)?,
             peak_correction_rad: share * most(&mut made.correction.iter().map(|made| made[0])),

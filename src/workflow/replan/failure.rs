@@ -8,6 +8,7 @@ use crate::{
     fit::FitError,
     plan::PlanError,
     series::SignalError,
+    units::Degrees,
     workflow::{fit::FitFailure, plan::PlanFailure},
 };
 
@@ -41,6 +42,23 @@ pub enum ReplanFailure {
     AtRest {
         /// The log.
         path: PathBuf,
+    },
+    /// The plan was cut.
+    #[error(
+        "the plan in {} ends at {at_s:.2} s while {joint} moves at {} per second: the log was cut, and no arm stops at \
+         once; give the whole log, or name the task with --task",
+        path.display(),
+        Degrees(*speed_rad_s)
+    )]
+    EndsInMotion {
+        /// The log.
+        path: PathBuf,
+        /// The joint.
+        joint: String,
+        /// Its planned speed there.
+        speed_rad_s: f64,
+        /// The last planned instant.
+        at_s: f64,
     },
     /// No task to plan.
     #[error(

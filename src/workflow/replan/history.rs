@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     ReplanFailure,
     last::moving_s,
-    samples::{cut, found_at_s, within},
+    samples::{cut, cut_measured, found_at_s, within},
 };
 use crate::{
     fit::Trial,
@@ -79,9 +79,11 @@ impl History {
             let Some(starts_s) = found_at_s(plan, &recording.planned, from_s - PLAN_LEAD_S)? else {
                 continue;
             };
-            let on_clock = |series: &Series| cut(series, starts_s, starts_s + end_s);
             let sent = recording.command.as_ref().map_or(&recording.planned, |command| &command.series);
-            let (sent, measured) = (on_clock(sent)?, on_clock(&recording.measured)?);
+            let (sent, measured) = (
+                cut(sent, starts_s, starts_s + end_s)?,
+                cut_measured(&recording.measured, starts_s, starts_s + end_s)?,
+            );
             let pairs: Vec<_> = (recording.measured.tracks.iter())
                 .filter_map(|track| align(recording.planned.track(track.name())?, track))
                 .collect();

@@ -24,6 +24,10 @@ use crate::{
 /// Planned speed that is motion, rad/s.
 const MOVES_RAD_S: f64 = 0.05 * DEGREE_RAD;
 
+/// Planned speed at which a plan does not end, rad/s, and how close to its end that is looked for, s.
+const CUT_RAD_S: f64 = DEGREE_RAD;
+const CUT_S: f64 = 0.05;
+
 /// The longest time without a plan within one motion, s.
 const LONGEST_HOLE_S: f64 = 60.0;
 
@@ -81,6 +85,9 @@ impl Last {
             Some(_) => Some(PLAN_LEAD_S),
             None => carried.starts_s().map(|s| s - near_s),
         };
+        if exact.is_none() {
+            check_end(path, planned, to_s)?;
+        }
         let (times_s, via) = entry.map(|entry| (entry.times_s, entry.via)).unzip();
         Ok(Self {
             plan: exact.map_or_else(|| cut(planned, near_s, to_s + COMMAND_TAIL_S), Ok)?,
@@ -104,6 +111,25 @@ impl Last {
         let of = |times_s: &Vec<f64>| PlanEvaluation::through(setup, times_s, &self.via);
         self.times_s.as_ref().map(of).transpose()
     }
+}
+
+/// A plan that was cut in its motion would be one with a stop that no arm can make.
+fn check_end(path: &Path, planned: &Series, to_s: f64) -> Result<(), ReplanFailure> {
+    for track in &planned.tracks {
+        let t_s = track.t_s();
+        let end = t_s.partition_point(|t| *t <= to_s + CUT_S);
+        let ends = track.segments().iter().any(|part| part.end == end) && end >= 2;
+        if !ends || to_s - t_s[end - 1] > CUT_S {
+            continue;
+        }
+        let step = (track.position()[end - 1] - track.position()[end - 2]) / (t_s[end - 1] - t_s[end - 2]);
+        let speed_rad_s = track.velocity().map_or(step, |speed| speed[end - 1]);
+        if speed_rad_s.abs() > CUT_RAD_S {
+            let (path, joint) = (path.to_owned(), track.name().to_owned());
+            return Err(ReplanFailure::EndsInMotion { path, joint, speed_rad_s, at_s: t_s[end - 1] });
+        }
+    }
+    Ok(())
 }
 
 /// The task's joints must be in the log, or its timing would be judged on joints that nobody measured.

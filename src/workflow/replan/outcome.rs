@@ -28,6 +28,9 @@ use crate::{
 /// Less of a correction than this is worth a remark.
 const LEAST_SHARE: f64 = 0.85;
 
+/// Motion that was not measured is named from here on, s: lost samples are shorter.
+const LEAST_UNSEEN_S: f64 = 0.2;
+
 /// The last run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -181,6 +184,14 @@ pub(super) fn replanned(
         remarks.add(Code::BeyondLimit, 1, message);
     }
     if let Some(command) = &command {
+        for joint in command.joints.iter().filter(|joint| joint.unseen_s > LEAST_UNSEEN_S) {
+            let message = format!(
+                "nothing was measured of {} for {:.2} s in which its plan moves: nothing is learnt there, and its correction \
+                 fades to none",
+                joint.name, joint.unseen_s
+            );
+            remarks.add(Code::Gap, 1, message);
+        }
         for joint in command.joints.iter().filter(|joint| joint.share < LEAST_SHARE) {
             let message = format!(
                 "{:.0} % of the correction of {} is applied: more of it would break a limit",

@@ -68,6 +68,24 @@ pub(super) fn cut(series: &Series, from_s: f64, to_s: f64) -> Result<Series, Sig
     Ok(Series { tracks: series.tracks.iter().map(one).collect::<Result<_, _>>()? })
 }
 
+/// The same where there are samples: what was not measured stays so. Joints of which nothing is left are left out.
+pub(super) fn cut_measured(series: &Series, from_s: f64, to_s: f64) -> Result<Series, SignalError> {
+    let t_s = grid(to_s - from_s);
+    let one = |track: &Track| {
+        let (mut kept_s, mut position, mut cuts) = (Vec::new(), Vec::new(), Vec::new());
+        for t in &t_s {
+            let Some(state) = track.at(t + from_s) else { continue };
+            if kept_s.last().is_some_and(|last| t - last > 1.5 * crate::fit::STEP_S) {
+                cuts.push(kept_s.len());
+            }
+            kept_s.push(*t);
+            position.push(state.position);
+        }
+        (!kept_s.is_empty()).then(|| Track::new(track.name(), kept_s, position, &cuts))
+    };
+    Ok(Series { tracks: series.tracks.iter().filter_map(one).collect::<Result<_, _>>()? })
+}
+
 fn grid(duration_s: f64) -> Vec<f64> {
     let mut t_s = vec![0.0];
     while let Some(last) = t_s.last().filter(|last| **last < duration_s) {

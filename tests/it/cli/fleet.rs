@@ -266,7 +266,8 @@ fn what_is_noted_is_asked_for_by_its_effect_and_stays() {
     assert!(clean(folder.path(), "fleet note data").contains("Nothing is noted."));
     let noted = clean(folder.path(), "fleet note data --machine M01 --at 2026-03-05 --joint boom repair");
     assert!(
-        noted.contains("2026-03-05") && noted.contains("hydrotrace fleet effect data --machine M01"),
+        noted.contains("2026-03-05")
+            && noted.contains("hydrotrace fleet effect data --machine=M01 --at=2026-03-05 --joint=boom"),
         "{noted}"
     );
     let before = files(&data);
@@ -284,7 +285,9 @@ fn what_is_noted_is_asked_for_by_its_effect_and_stays() {
     assert_eq!((&effect["what"], &effect["at"]), (&"repair".into(), &"2026-03-05T00:00:00Z".into()));
     assert_eq!(json(folder.path(), "fleet effect data")["machine"], "M01");
     let asked = json(folder.path(), "fleet effect data --machine M01 --at 2026-03-05");
-    assert_eq!(asked["effects"], effect["effects"]);
+    let of_boom = json(folder.path(), "fleet effect data --machine=M01 --at=2026-03-05 --joint=boom");
+    assert_eq!(of_boom["effects"], effect["effects"]);
+    assert_ne!(asked["effects"], effect["effects"]);
     // Joining the other parts, and logs that come later, leave the notes.
     json(folder.path(), "fleet compact data");
     fs::write(folder.path().join("logs/M01/09.mcap"), small_log("M01", 9, 7, [0.2, 0.2])).unwrap();
@@ -321,4 +324,7 @@ fn fitted_numbers_of_each_run_are_rows_if_they_are_asked_for() {
     let runs: BTreeSet<String> = cells(&data, "limits", "run_id").into_iter().collect();
     assert!(runs.is_subset(&cells(&data, "runs", "run_id").into_iter().collect()) && !runs.is_empty());
     assert_eq!(json(folder.path(), "fleet scan logs --into data --fit")["unchanged"], 2);
+    // A later scan without them keeps them.
+    assert_eq!(json(folder.path(), "fleet scan logs --into data")["unchanged"], 2);
+    assert!(!cells(&data, "limits", "quantity").is_empty());
 }

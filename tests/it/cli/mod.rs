@@ -5,6 +5,7 @@ mod carried;
 mod columns;
 mod compare;
 mod csv;
+mod cut;
 mod cylinders;
 mod figures;
 mod fleet;

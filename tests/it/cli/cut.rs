@@ -1,0 +1,89 @@
+//! What was cut, and what is not alike: nothing is learnt from what nobody measured, and no number is of two units.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::support::{clean, json, run_line, said, sample, scratch};
+
+fn with(names: &[&str]) -> tempfile::TempDir {
+    let folder = scratch();
+    for name in names {
+        fs::copy(sample(name), folder.path().join(name)).unwrap();
+    }
+    folder
+}
+
+#[test]
+fn a_plan_that_was_cut_in_its_motion_is_not_planned_again() {
+    let folder = with(&["panel-install.mcap", "task-1-run.mcap"]);
+    let whole = fs::read(folder.path().join("task-1-run.mcap")).unwrap();
+    fs::write(folder.path().join("torn.mcap"), &whole[..100_000]).unwrap();
+    for line in [
+        "replan panel-install.mcap --keep-plan --to 21 -o next.mcap",
+        "replan torn.mcap --keep-plan -o next.mcap",
+    ] {
+        let (code, _, error) = said(&run_line(folder.path(), line));
+        assert!(
+            code == 1 && error.contains("the log was cut, and no arm stops at once"),
+            "{line}: {code} {error}"
+        );
+        assert!(!folder.path().join("next.mcap").exists());
+    }
+}
+
+#[test]
+fn a_gap_in_the_measurement_teaches_nothing() {
+    let folder = with(&["gaps.mcap"]);
+    let planned = json(folder.path(), "replan gaps.mcap --keep-plan");
+    let joints = planned["command"].as_array().unwrap();
+    let of = |joint: &Value, key: &str| joint[key].as_f64().unwrap();
+    let reported = json(folder.path(), "report gaps.mcap");
+    for joint in joints {
+        let own =
+            reported["joints"].as_array().unwrap().iter().find(|one| one["name"] == joint["name"]).unwrap();
+        let peak = own["tracking_error"]["peak"].as_f64().unwrap();
+        assert!(of(joint, "peak_correction_rad") < 1.3 * peak, "{joint:#} {peak}");
+    }
+    let unseen = joints.iter().map(|joint| of(joint, "unseen_s")).fold(0.0, f64::max);
+    assert!(unseen > 1.0, "{unseen}");
+    assert!(planned["remarks"].to_string().contains("nothing is learnt there"), "{}", planned["remarks"]);
+}
+
+#[test]
+fn a_start_at_the_cut_end_of_a_log_is_not_unanswered() {
+    let folder = with(&["task-1-run.mcap"]);
+    let cut = json(folder.path(), "report task-1-run.mcap --to 4.05");
+    let starts = cut["transitions"].as_array().unwrap();
+    assert!(!starts.is_empty() && starts.iter().all(|start| start["answer"] != "never"), "{starts:#?}");
+}
+
+#[test]
+fn lengths_and_angles_of_one_joint_are_not_compared_and_not_joined() {
+    let folder = with(&["task-1-run.mcap"]);
+    let hydraulics = sample("arm/hydraulics.toml").display().to_string();
+    let line = format!("export task-1-run.mcap --hydraulics {hydraulics} --as cylinders -o lengths.csv");
+    let (code, _, error) = said(&run_line(folder.path(), &line));
+    assert!(code == 0 || code == 3, "{error}");
+    let (code, _, error) = said(&run_line(folder.path(), "compare task-1-run.mcap lengths.csv"));
+    assert!(code == 1 && error.contains("angles and lengths are not compared"), "{code} {error}");
+    let line = format!("join lengths.csv --plan task-1-run.mcap --hydraulics {hydraulics} -o joined.mcap");
+    let (code, _, error) = said(&run_line(folder.path(), &line));
+    assert!(code == 1 && error.contains("give a plan in lengths"), "{code} {error}");
+    assert!(!folder.path().join("joined.mcap").exists());
+}
+
+#[test]
+fn a_page_does_not_replace_the_plan_nor_a_file_that_was_read() {
+    let folder = with(&["task-1-run.mcap"]);
+    clean(folder.path(), "fit task-1-run.mcap -o limits.toml");
+    let limits = fs::read(folder.path().join("limits.toml")).unwrap();
+    for page in ["next.mcap", "limits.toml", "task-1-run.mcap", "-"] {
+        let line =
+            format!("replan task-1-run.mcap --limits limits.toml --keep-plan -o next.mcap --html {page}");
+        let (code, _, error) = said(&run_line(folder.path(), &line));
+        assert!(code == 1 || code == 2, "{page}: {code} {error}");
+        assert!(!folder.path().join("next.mcap").exists() && !folder.path().join("-").exists(), "{page}");
+        assert_eq!(fs::read(folder.path().join("limits.toml")).unwrap(), limits);
+    }
+}
