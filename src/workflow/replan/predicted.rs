@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::warp::unexplained;
 use crate::{
     fit::{Fit, FitError, predict},
     replay::{Kind, Rules, replay},
@@ -106,7 +107,7 @@ pub fn promised(
 /// What came before, and what the model says that changes.
 fn changed(came: &Track, modelled_before: &Track, modelled: Track) -> Track {
     let position = (modelled.t_s().iter().zip(modelled.position()))
-        .map(|(t_s, now)| came.held_at(*t_s).position + now - modelled_before.held_at(*t_s).position)
+        .map(|(t_s, now)| now + unexplained(came, modelled_before, *t_s))
         .collect();
     Track::new(modelled.name(), modelled.t_s(), position, &[]).unwrap_or(modelled)
 }

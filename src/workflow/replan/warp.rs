@@ -36,14 +36,32 @@ impl Warp {
             let (sent, measured) = (sent.track(name)?, measured.track(name)?);
             let modelled = predict(model, sent).ok()?;
             let response = predict(model, track).ok()?;
-            let answer = response.t_s().iter().zip(response.position()).map(|(t_s, response)| {
-                let old_s = self.old_s(*t_s);
-                response + measured.held_at(old_s).position - modelled.held_at(old_s).position
-            });
+            let answer = response
+                .t_s()
+                .iter()
+                .zip(response.position())
+                .map(|(t_s, response)| response + unexplained(measured, &modelled, self.old_s(*t_s)));
             Track::new(name, response.t_s(), answer.collect(), &[]).ok()
         };
         let tracks: Vec<Track> = plan.tracks.iter().filter_map(one).collect();
         (!tracks.is_empty()).then_some(Series { tracks })
+    }
+}
+
+/// What the model did not explain at an instant of the old run, in the joint's unit. Where nothing was measured, what it was
+/// before and after, from the one to the other.
+pub(super) fn unexplained(measured: &Track, modelled: &Track, at_s: f64) -> f64 {
+    let left = |t_s: f64, position: f64| position - modelled.held_at(t_s).position;
+    if let Some(state) = measured.at(at_s) {
+        return left(at_s, state.position);
+    }
+    let (t_s, position) = (measured.t_s(), measured.position());
+    let after = t_s.partition_point(|own_s| *own_s <= at_s);
+    let of = |k: usize| Some((*t_s.get(k)?, left(*t_s.get(k)?, *position.get(k)?)));
+    match (after.checked_sub(1).and_then(of), of(after)) {
+        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (at_s - a.0) / (b.0 - a.0),
+        (Some(end), None) | (None, Some(end)) => end.1,
+        (None, None) => 0.0,
     }
 }
 

@@ -45,6 +45,10 @@ fn a_gap_in_the_measurement_teaches_nothing() {
         let peak = own["tracking_error"]["peak"].as_f64().unwrap();
         assert!(of(joint, "peak_correction_rad") < 1.3 * peak, "{joint:#} {peak}");
     }
+    // Nor is it expected of the next run.
+    let (before, after) =
+        (of(&planned["before"], "measured_worst_peak_rad"), of(&planned["after"], "worst_peak_rad"));
+    assert!(after < 1.5 * before, "{before} {after}");
     let unseen = joints.iter().map(|joint| of(joint, "unseen_s")).fold(0.0, f64::max);
     assert!(unseen > 1.0, "{unseen}");
     assert!(planned["remarks"].to_string().contains("nothing is learnt there"), "{}", planned["remarks"]);
