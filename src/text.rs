@@ -24,10 +24,14 @@ pub(crate) fn spreadsheet_cell(text: &str) -> Cow<'_, str> {
 /// dash would be taken for an option.
 pub(crate) fn shell_argument(path: impl AsRef<Path>) -> String {
     let text = path.as_ref().to_string_lossy();
-    let word = if text.starts_with('-') { format!("./{text}") } else { text.into_owned() };
+    if text.starts_with('-') { shell_word(&format!("./{text}")) } else { shell_word(&text) }
+}
+
+/// A text as one word of a POSIX shell: an option, or the value of one.
+pub(crate) fn shell_word(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-/+:@%=,".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
-        return word;
+        return word.to_owned();
     }
     format!("'{}'", word.replace('\'', "'\\''"))
 }

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
+use clap::{ValueEnum, builder::PossibleValue};
 
 use super::number;
 use crate::{
     log::{Cylinders, ReadOptions, Selector, SignalRole, TimeBase, TimeRange, WantedSignal},
-    render::kit::argument,
+    render::kit::word,
     series::JointKind,
 };
 
@@ -124,37 +124,34 @@ impl ReadArgs {
     }
 
     fn words_of(&self, ranged: bool) -> Vec<String> {
-        let topic =
-            |one: &Selector| one.field.as_ref().map_or(one.topic.clone(), |f| format!("{}:{f}", one.topic));
-        let value =
-            |clap: Option<clap::builder::PossibleValue>| clap.map(|value| value.get_name().to_owned());
-        let names = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
-        let flag = |set: bool| set.then(String::new);
-        let mut words = Vec::new();
-        let mut add = |option: &str, value: Option<String>| {
-            if let Some(value) = value {
-                words.push(option.to_owned());
-                words.extend(Some(argument(value)).filter(|value| value != "''"));
-            }
-        };
-        self.planned.iter().for_each(|one| add("--planned", Some(topic(one))));
-        self.measured.iter().for_each(|one| add("--measured", Some(topic(one))));
-        add("--joints", names(&self.joints));
-        add("--time", value(self.time.and_then(|time| time.to_possible_value())));
-        add("--from", self.from.filter(|_| ranged).map(|s| s.to_string()));
-        add("--to", self.to.filter(|_| ranged).map(|s| s.to_string()));
-        add("--planned-degrees", flag(self.planned_degrees));
-        add("--measured-degrees", flag(self.measured_degrees));
-        // A number below zero after a blank would be an option.
-        if let Some(ns) = self.measured_delay_ns {
-            add(&format!("--measured-delay-ms={}", ns as f64 / 1e6), Some(String::new()));
-        }
-        add("--slides", names(&self.slides));
-        add("--continuous", names(&self.continuous));
-        add("--hydraulics", self.hydraulics.as_ref().map(|file| file.to_string_lossy().into_owned()));
-        add("--as", value(self.joints_as.and_then(|what| what.to_possible_value())));
-        words
+        let all = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
+        let named = |value: Option<PossibleValue>| value.map(|value| value.get_name().to_owned());
+        let end = |end_s: Option<f64>| end_s.filter(|_| ranged).map(|s| s.to_string());
+        let topics = self.planned.iter().map(|one| ("--planned", one));
+        let topics = topics.chain(self.measured.iter().map(|one| ("--measured", one)));
+        let valued = [
+            ("--joints", all(&self.joints)),
+            ("--time", named(self.time.and_then(|time| time.to_possible_value()))),
+            ("--from", end(self.from)),
+            ("--to", end(self.to)),
+            ("--measured-delay-ms", self.measured_delay_ns.map(|ns| (ns as f64 / 1e6).to_string())),
+            ("--slides", all(&self.slides)),
+            ("--continuous", all(&self.continuous)),
+            ("--hydraulics", self.hydraulics.as_ref().map(|file| file.to_string_lossy().into_owned())),
+            ("--as", named(self.joints_as.and_then(|what| what.to_possible_value()))),
+        ];
+        let flags =
+            [("--planned-degrees", self.planned_degrees), ("--measured-degrees", self.measured_degrees)];
+        let flags = flags.into_iter().filter(|(_, set)| *set).map(|(option, _)| option.to_owned());
+        let valued = valued.into_iter().filter_map(|(option, value)| Some(typed(option, &value?)));
+        topics.map(|(option, one)| typed(option, &one.to_string())).chain(valued).chain(flags).collect()
     }
+}
+
+/// An option with its value, as words of a shell; a value that begins with a dash would be an option of its own.
+fn typed(option: &str, value: &str) -> String {
+    let between = if value.starts_with('-') { '=' } else { ' ' };
+    format!("{option}{between}{}", word(value))
 }
 
 /// What to read of a run that is to be fitted.
@@ -177,8 +174,8 @@ impl SentArgs {
     pub(super) fn words(&self) -> Vec<String> {
         let named = [("--command", &self.command), ("--valve", &self.valve)];
         let named =
-            named.into_iter().filter_map(|(option, one)| Some([option.to_owned(), typed(one.as_ref()?)]));
-        self.read.words().into_iter().chain(named.flatten()).collect()
+            named.into_iter().filter_map(|(option, one)| Some(typed(option, &one.as_ref()?.to_string())));
+        self.read.words().into_iter().chain(named).collect()
     }
 
     /// The same for a log of the next run: what is cut from the last one is its own.
@@ -193,11 +190,6 @@ impl SentArgs {
     }
 }
 
-/// A topic and field as a word of a shell.
-fn typed(one: &Selector) -> String {
-    argument(one.field.as_ref().map_or(one.topic.clone(), |field| format!("{}:{field}", one.topic)))
-}
-
 #[expect(clippy::unnecessary_wraps, reason = "the form of a clap parser")]
 pub(super) fn selector(text: &str) -> Result<Selector, String> {
     Ok(Selector::parse(text))
@@ -206,6 +198,42 @@ pub(super) fn selector(text: &str) -> Result<Selector, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::kit::READERS;
+
+    #[derive(Debug, clap::Parser)]
+    struct Line {
+        #[command(flatten)]
+        sent: SentArgs,
+    }
+
+    const EVERY: &str = "--planned /a:b --measured /c --joints x,y --time publish --from 1.5 --to 9 \
+                         --measured-delay-ms=-2 --slides y --continuous x --hydraulics h.toml --as cylinders \
+                         --planned-degrees --measured-degrees --command /d --valve /e";
+
+    /// An option that is added and not typed again would be lost from the next command.
+    #[test]
+    fn every_option_is_typed_again() {
+        use clap::{CommandFactory as _, Parser as _};
+        let read = Line::parse_from(std::iter::once("hydrotrace").chain(EVERY.split_whitespace()));
+        assert_eq!(read.sent.words().join(" "), EVERY.split_whitespace().collect::<Vec<_>>().join(" "));
+        for option in Line::command().get_arguments().filter_map(|arg| arg.get_long()) {
+            assert!(EVERY.contains(&format!("--{option}")), "--{option}");
+        }
+        assert_eq!(read.sent.words_of_next().len() + 4, read.sent.words().len(), "neither ends nor signals");
+    }
+
+    #[test]
+    fn the_verbs_whose_commands_get_them_are_those_that_take_them() {
+        use clap::CommandFactory as _;
+        let command = crate::cli::Args::command();
+        let takes = |verb: &clap::Command| verb.get_arguments().any(|arg| arg.get_long() == Some("measured"));
+        // The others read what a recorder wrote, by options of their own.
+        let reads = |verb: &str| !["join", "import", "record"].contains(&verb);
+        let verbs = command.get_subcommands().filter(|verb| takes(verb) && reads(verb.get_name()));
+        let mut verbs: Vec<&str> = verbs.map(clap::Command::get_name).collect();
+        verbs.sort_unstable();
+        assert_eq!(verbs, READERS);
+    }
 
     #[test]
     fn a_topic_is_split_from_its_field_at_the_colon() {

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     atomic_file::may_write,
     fit::Learning,
-    render::{kit::argument, next, replan as words},
+    render::{kit, next, replan as words},
     workflow::replan::{Checks, Commanded, Inputs, ReplanDocument, Replanned, Verdict, run},
 };
 
@@ -206,12 +206,16 @@ fn again(words: impl Iterator<Item = OsString>) -> Vec<String> {
     let mut kept = Vec::new();
     let mut words = words.map(|word| word.to_string_lossy().into_owned());
     while let Some(word) = words.next() {
-        match OWN.iter().find(|(own, _)| word == *own || word.starts_with(&format!("{own}="))) {
+        // A short option may have its value or other ones behind it.
+        let is = |own: &str| {
+            let glued = if own.starts_with("--") { format!("{own}=") } else { own.to_owned() };
+            word == own || word.starts_with(&glued)
+        };
+        match OWN.iter().find(|(own, _)| is(own)) {
             Some((own, true)) if word == *own => drop(words.next()),
             Some(_) => {}
-            // An option stays one; any other word that begins with a dash is the value of one.
-            None if word.starts_with('-') => kept.push(argument(word).replacen("./", "", 1)),
-            None => kept.push(argument(word)),
+            // What begins with a dash is an option or the value of one.
+            None => kept.push(kit::word(&word)),
         }
     }
     kept
@@ -231,6 +235,8 @@ mod tests {
             "-o",
             "a.mcap",
             "--html=b.html",
+            "-oother.mcap",
+            "-vv",
             "--joints=a b",
             "--keep-plan",
             "--force",

@@ -179,6 +179,16 @@ pub struct Selector {
     pub field: Option<String>,
 }
 
+/// As [`Selector::parse`] reads it.
+impl std::fmt::Display for Selector {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.field {
+            Some(field) => write!(f, "{}:{field}", self.topic),
+            None => write!(f, "{}", self.topic),
+        }
+    }
+}
+
 impl Selector {
     /// Splits at the last colon; topic names have none.
     pub fn parse(text: &str) -> Self {

@@ -182,7 +182,8 @@ fn a_joint_that_slides_is_a_track_in_metres() {
 #[test]
 fn a_fit_leaves_out_what_slides_and_says_so() {
     let folder = tempfile::tempdir().unwrap();
-    let run = fit::observe::observe(&lift(folder.path(), false), &ReadOptions::default()).unwrap();
+    let run =
+        fit::observe::observe(vec![lift(folder.path(), false).into()], &ReadOptions::default()).unwrap();
     assert!(run.measured.track("lift").is_none() && run.planned.track("turn").is_some());
     let remark = &run.remarks.as_slice()[0];
     assert_eq!(remark.code, Code::NotSupported);

@@ -14,7 +14,7 @@ use crate::{
     document::pretty,
     remark::Remarks,
     render::{fleet as words, kit},
-    workflow::fleet::{By, Filter, Gate, drift, effect, gate, last_note, worst},
+    workflow::fleet::{By, Filter, Gate, drift, effect, effect_of_last_note, gate, worst},
 };
 
 /// Rows that are shown without `--all`.
@@ -219,17 +219,11 @@ impl Run for EffectArgs {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by.by()]);
         let dataset = &self.ask.dataset;
-        let mut filter = self.ask.filter(None);
-        let (machine, at_us, what) = if let (Some(machine), Some(at_us)) = (&self.machine, self.at) {
-            (machine.clone(), at_us, None)
-        } else {
-            let note = last_note(dataset, self.machine.as_deref())?;
-            // What was done to one joint is asked of it.
-            filter.joint = filter.joint.or(note.joint);
-            (note.machine, note.at_us, Some(note.what))
-        };
-        let mut found = effect(dataset, &machine, at_us, &filter, &by)?;
-        found.what = what;
+        let filter = self.ask.filter(None);
+        let found = match (&self.machine, self.at) {
+            (Some(machine), Some(at_us)) => effect(dataset, machine, at_us, &filter, &by),
+            (machine, _) => effect_of_last_note(dataset, machine.as_deref(), &filter, &by),
+        }?;
         let forms: [&dyn Fn() -> String; 3] =
             [&|| pretty(&found), &|| words::effect_csv(&found), &|| words::effect_page(&found)];
         self.form.write(console, forms, &|| words::effect(&found, self.form.most()), (&found.remarks, &[]))

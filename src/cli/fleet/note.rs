@@ -53,8 +53,7 @@ impl Run for Args {
                 ));
             }
             let one = Note { at_us, machine: machine.clone(), joint: self.joint.clone(), what };
-            note(&self.dataset, &one)?;
-            made = Notes::of(&[one]).interventions.pop();
+            made = Some(note(&self.dataset, &one)?);
         }
         let found = Notes::of(&notes(&self.dataset, self.machine.as_deref())?);
         let target = Target::stdout(self.json);

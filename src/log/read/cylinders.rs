@@ -120,20 +120,26 @@ impl Kinds {
                     return Err(LogError::NoTriangle { joint, side, found, expected, unit, hint });
                 };
                 doubt((side, track, &after), rod, (found, expected, &hint), remarks);
-                let named = self.renamed.iter().find(|((_, joint), _)| joint == track.name());
-                let named = named.map(|(_, name)| name).filter(|name| names_a_stroke(name));
-                if let (Some(name), true) = (named, into == JointKind::Turns && rod.zero_m == 0.0) {
-                    let joint = track.name();
-                    let message = format!(
-                        "{name} is called a stroke and was taken as the length from mount to mount: if it counts from the \
-                         cylinder drawn in, give that one's length as sensor_zero_m of [joint.{joint}]"
-                    );
-                    remarks.add(Code::Guessed, 1, message);
+                if into == JointKind::Turns && rod.zero_m == 0.0 {
+                    self.doubt_stroke(track.name(), remarks);
                 }
                 *track = after;
             }
         }
         Ok(())
+    }
+
+    /// A remark on a joint whose lengths were taken from mount to mount although their name says that they count from the
+    /// cylinder drawn in.
+    fn doubt_stroke(&self, joint: &str, remarks: &mut Remarks) {
+        let mut named = self.renamed.iter().filter(|((_, own), _)| own == joint).map(|(_, name)| name);
+        if let Some(name) = named.find(|name| names_a_stroke(name)) {
+            let message = format!(
+                "{name} is called a stroke and was taken as the length from mount to mount: if it counts from the \
+                 cylinder drawn in, give that one's length as sensor_zero_m of [joint.{joint}]"
+            );
+            remarks.add(Code::Guessed, 1, message);
+        }
     }
 
     /// Tracks in the kinds that another source has of their joints.

@@ -11,7 +11,7 @@ pub(crate) use page::{drift_page, effect_page, worst_page};
 use std::path::Path;
 
 use super::kit::{
-    Block, Document, Id, NONE, Section, Sentence, Table, argument, command, counted, deg, fact, mm, ms,
+    Block, Document, Id, NONE, Section, Sentence, Table, argument, command, counted, deg, fact, mm, ms, word,
 };
 use crate::{
     series::JointKind,
@@ -67,19 +67,18 @@ pub(crate) fn notes(notes: &Notes, made: Option<&Intervention>, dataset: &Path) 
         let none = Sentence::finding("Nothing is noted.");
         return Document::default().with(Section::plain(Id::SUMMARY, [none]));
     };
+    let at = |one: &Intervention| one.at.strip_suffix("T00:00:00Z").unwrap_or(&one.at).to_owned();
     let rows = notes.interventions.iter().map(|one| {
-        let at = one.at.strip_suffix("T00:00:00Z").unwrap_or(&one.at).to_owned();
-        vec![at, one.machine.clone(), one.joint.clone().unwrap_or_else(|| NONE.to_owned()), one.what.clone()]
+        vec![
+            at(one),
+            one.machine.clone(),
+            one.joint.clone().unwrap_or_else(|| NONE.to_owned()),
+            one.what.clone(),
+        ]
     });
     let table = Table::new(&["at", "machine", "joint", "what"], &[], rows);
-    let value = |option: &str, text: &str| {
-        let text = argument(Path::new(text));
-        // What begins with a dash is no path here.
-        format!("{option}={}", text.replacen("./-", "-", 1))
-    };
-    let at = asked.at.strip_suffix("T00:00:00Z").unwrap_or(&asked.at);
-    let (machine, at) = (value("--machine", &asked.machine), format!("--at={at}"));
-    let joint = asked.joint.as_ref().map(|joint| value("--joint", joint));
+    let (machine, at) = (format!("--machine={}", word(&asked.machine)), format!("--at={}", at(asked)));
+    let joint = asked.joint.as_ref().map(|joint| format!("--joint={}", word(joint)));
     let dataset = argument(dataset);
     let next: Vec<&str> =
         ["fleet", "effect", &dataset, &machine, &at].into_iter().chain(joint.as_deref()).collect();

@@ -1,6 +1,6 @@
 //! Commands that a reader can paste into a shell.
 
-pub(crate) use crate::text::shell_argument as argument;
+pub(crate) use crate::text::{shell_argument as argument, shell_word as word};
 
 /// `hydrotrace` with these words; each is an option or from [`argument`].
 pub(crate) fn command(words: &[&str]) -> String {
@@ -8,7 +8,8 @@ pub(crate) fn command(words: &[&str]) -> String {
 }
 
 /// Verbs that take the options on what to read of a log.
-const READERS: [&str; 8] = ["answer", "compare", "export", "fit", "info", "replan", "report", "view"];
+pub(crate) const READERS: [&str; 8] =
+    ["answer", "compare", "export", "fit", "info", "replan", "report", "view"];
 
 /// A command with the options on what to read, where its verb takes them.
 pub(super) fn reading(line: &str, options: &[String]) -> String {

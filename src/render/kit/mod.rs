@@ -29,7 +29,9 @@ pub use number::{
 pub use table::{Align, Column, Table};
 pub use terminal::text;
 
-pub(crate) use command::{argument, command};
+#[cfg(test)]
+pub(crate) use command::READERS;
+pub(crate) use command::{argument, command, word};
 pub(crate) use csv::csv;
 pub(crate) use figure::Figure;
 pub(crate) use page::paper::Failure;

@@ -19,7 +19,7 @@ use crate::{
     workflow::carried::Carried,
 };
 use {
-    observe::{ObserveFailure, observation, observe},
+    observe::{ObserveFailure, observation},
     torque::{JointTorque, torques},
 };
 
@@ -89,7 +89,7 @@ pub fn run(inputs: &Inputs) -> Result<Fitted, FitFailure> {
 ///
 /// [`ObserveFailure`] naming the log.
 pub fn observed(logs: &[PathBuf], read: &ReadOptions) -> Result<Vec<Recording>, ObserveFailure> {
-    logs.iter().map(|path| observe(path, read)).collect()
+    logs.iter().map(|path| observe::observe(vec![path.clone().into()], read)).collect()
 }
 
 /// Fits runs that were read from these logs.

@@ -1,13 +1,13 @@
 //! The log of a run as a fit needs it: what was sent, what was measured, and the valves and pressures
 //! where they were logged.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use thiserror::Error;
 
 use crate::{
     fit::Observation,
-    log::{LogError, ReadOptions, Recording, SignalRole, read_recording},
+    log::{Input, LogError, LogFiles, ReadOptions, Recording, SignalRole},
     remark::Code,
     series::JointKind,
 };
@@ -31,15 +31,17 @@ const SIGNALS: [SignalRole; 5] = [
     SignalRole::SupplyPressure,
 ];
 
-/// Reads one run, a file or a bag directory, in one pass.
+/// Reads one run, wherever its files are, in one pass.
 ///
 /// # Errors
 ///
 /// [`ObserveFailure`] if there are no planned and measured joints, or a topic that the caller named is
 /// not there.
-pub fn observe(path: &Path, read: &ReadOptions) -> Result<Recording, ObserveFailure> {
-    let mut recording = read_recording(&[path.to_owned()], &read.clone().wanting(&SIGNALS))
-        .map_err(|source| ObserveFailure { path: path.to_owned(), source })?;
+pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, ObserveFailure> {
+    let path = inputs.first().map(|input| input.name().to_owned()).unwrap_or_default();
+    let read = read.clone().wanting(&SIGNALS);
+    let recording = LogFiles::of(inputs).and_then(|files| files.scan()?.read(&read));
+    let mut recording = recording.map_err(|source| ObserveFailure { path, source })?;
     leave_out_sliding(&mut recording);
     Ok(recording)
 }

@@ -1,13 +1,13 @@
 //! What each run tells of its machine: the numbers that a fit finds in it, as rows.
 
-use std::path::Path;
+use std::path::PathBuf;
 
-use super::tables::{Log, Name, Rows};
+use super::tables::{Log, Name, Rows, remark_row};
 use crate::{
     document::explained,
     fit::{Estimated, JointFit},
-    log::{ReadOptions, dataset::Cell},
-    remark::Code,
+    log::{Input, ReadOptions, dataset::Cell},
+    remark::{Code, Remark},
     threads,
     workflow::fit,
 };
@@ -26,11 +26,10 @@ const QUANTITIES: [Quantity; 7] = [
 ];
 
 /// The rows of a run; where it cannot be fitted, a remark that says why.
-pub(super) fn rows(log: &Log, path: &Path, run_id: &str, read: &ReadOptions) -> Rows {
-    let logs = [path.to_owned()];
+pub(super) fn rows(log: &Log, inputs: Vec<Input>, run_id: &str, read: &ReadOptions) -> Rows {
     let fitted = threads::alone(|| {
-        let observed = fit::observed(&logs, read).map_err(|failure| explained(&failure))?;
-        fit::of(&logs, &observed).map_err(|failure| explained(&failure))
+        let observed = fit::observe::observe(inputs, read).map_err(|failure| explained(&failure))?;
+        fit::of(&[PathBuf::from(&log.uri)], &[observed]).map_err(|failure| explained(&failure))
     });
     match fitted {
         Ok(fitted) => {
@@ -39,14 +38,8 @@ pub(super) fn rows(log: &Log, path: &Path, run_id: &str, read: &ReadOptions) -> 
         }
         Err(error) => {
             let message = format!("the run tells nothing of the machine's limits: {error}");
-            let row = vec![
-                Cell::from(run_id),
-                Cell::from(log.machine.as_deref()),
-                Cell::from(Code::PoorFit.name().as_str()),
-                Cell::from(1_u64),
-                Cell::from(message.as_str()),
-            ];
-            vec![(Name::Remarks, row)]
+            let remark = Remark { code: Code::PoorFit, count: 1, message };
+            vec![(Name::Remarks, remark_row(log, run_id, &remark))]
         }
     }
 }
@@ -76,9 +69,9 @@ mod tests {
     use super::*;
 
     fn of(name: &str) -> Rows {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name);
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name);
         let log = Log::at(&path, "a".into());
-        rows(&log, &path, "run", &ReadOptions::default())
+        rows(&log, vec![Input::Path(path)], "run", &ReadOptions::default())
     }
 
     #[test]

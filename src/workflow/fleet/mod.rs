@@ -32,7 +32,7 @@ pub use gate::{Gate, GateResult, Gated, gate};
 pub use history::{By, Filter};
 pub use machine::MachineFrom;
 pub use map::{Cell as MapCell, Map, MapRow};
-pub use note::{Intervention, Note, Notes, last_note, note, notes};
+pub use note::{Intervention, Note, Notes, effect_of_last_note, note, notes};
 pub use scan::{Inputs, Progress, own_analysis_id, scan};
 pub use tables::{Log, Name as TableName, Rows, analysed as rows, failed as failed_rows};
 pub use worst::{Worst, WorstJoint, worst};

@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     arrange::place_of,
+    effect::{Effect, effect},
     failure::FleetFailure,
-    history::{Filter, History, date},
+    history::{By, Filter, History, date},
     store::{Part, Store, parts},
     tables::Name,
 };
@@ -60,12 +61,12 @@ pub struct Intervention {
     pub what: String,
 }
 
-/// Notes what was done to a machine of the dataset; the same twice is one note.
+/// Notes what was done to a machine of the dataset, and gives it as documents have it; the same twice is one note.
 ///
 /// # Errors
 ///
 /// [`FleetFailure`] if there is no dataset or no such machine in it, or it cannot be written.
-pub fn note(root: &Path, note: &Note) -> Result<(), FleetFailure> {
+pub fn note(root: &Path, note: &Note) -> Result<Intervention, FleetFailure> {
     let filter = Filter { machine: Some(note.machine.clone()), ..Filter::default() };
     History::read(root, &filter, false)?;
     let row = vec![
@@ -79,7 +80,8 @@ pub fn note(root: &Path, note: &Note) -> Result<(), FleetFailure> {
     let part = Part { place: place_of(Some(note.at_us), &note.machine), hash };
     let table = Table { columns: Name::Interventions.columns().to_vec(), rows: vec![row] };
     let file = (part.path(Name::Interventions), table.encode(Name::Interventions.text())?);
-    Store::open(root)?.change(&[file], &[])
+    Store::open(root)?.change(&[file], &[])?;
+    Ok(note.into())
 }
 
 /// All that is noted, or of one machine only, in the order of time.
@@ -104,32 +106,42 @@ pub fn notes(root: &Path, machine: Option<&str>) -> Result<Vec<Note>, FleetFailu
     Ok(found)
 }
 
-/// What was done last.
+/// The effect of what was done last, of the machine or of any; where it was done to one joint, of that one unless the
+/// filter names another.
 ///
 /// # Errors
 ///
-/// [`FleetFailure::NoNote`] if nothing is noted; otherwise as [`notes`].
-pub fn last_note(root: &Path, machine: Option<&str>) -> Result<Note, FleetFailure> {
-    notes(root, machine)?.pop().ok_or_else(|| FleetFailure::NoNote {
+/// [`FleetFailure::NoNote`] if nothing is noted; otherwise as [`effect`].
+pub fn effect_of_last_note(
+    root: &Path,
+    machine: Option<&str>,
+    filter: &Filter,
+    by: &[By],
+) -> Result<Effect, FleetFailure> {
+    let last = notes(root, machine)?.pop().ok_or_else(|| FleetFailure::NoNote {
         of: machine.map(|machine| format!(" of {machine}")).unwrap_or_default(),
         dataset: root.to_owned(),
-    })
+    })?;
+    let filter = Filter { joint: filter.joint.clone().or(last.joint), ..filter.clone() };
+    Ok(Effect { what: Some(last.what), ..effect(root, &last.machine, last.at_us, &filter, by)? })
+}
+
+impl From<&Note> for Intervention {
+    fn from(note: &Note) -> Self {
+        Self {
+            at: date(note.at_us as f64 / 1e6 / SECONDS_PER_DAY).unwrap_or_default(),
+            machine: note.machine.clone(),
+            joint: note.joint.clone(),
+            what: note.what.clone(),
+        }
+    }
 }
 
 impl Notes {
     /// The document of notes.
     pub fn of(notes: &[Note]) -> Self {
-        let interventions = notes.iter().map(|note| Intervention {
-            at: date(note.at_us as f64 / 1e6 / SECONDS_PER_DAY).unwrap_or_default(),
-            machine: note.machine.clone(),
-            joint: note.joint.clone(),
-            what: note.what.clone(),
-        });
-        Self {
-            format: FORMAT.to_owned(),
-            program: PROGRAM.to_owned(),
-            interventions: interventions.collect(),
-        }
+        let interventions = notes.iter().map(Intervention::from).collect();
+        Self { format: FORMAT.to_owned(), program: PROGRAM.to_owned(), interventions }
     }
 }
 

@@ -242,7 +242,7 @@ fn analysed(pending: &Pending, analysis_id: &str, inputs: &Inputs) -> (Rows, Opt
                 log.machine = inputs.machine.of(&source.path, Some(&found));
                 let mut rows = tables::analysed(&log, &found);
                 if inputs.fit {
-                    rows.extend(limits::rows(&log, &source.path, &found.run_id, &inputs.read));
+                    rows.extend(limits::rows(&log, source.inputs(), &found.run_id, &inputs.read));
                 }
                 return (rows, None);
             }

@@ -3,7 +3,7 @@
 use crate::{
     document::PROGRAM,
     log::dataset::{Cell, Column},
-    remark::Code,
+    remark::{Code, Remark},
     replay::{JointReplay, Transition},
     workflow::report::{Findings, hash},
 };
@@ -247,17 +247,19 @@ pub fn analysed(log: &Log, found: &Findings) -> Rows {
     rows.extend(
         report.transitions.iter().map(|start| (Name::Transitions, transition_row(log, found, start))),
     );
-    rows.extend(report.remarks.iter().map(|remark| {
-        let row = vec![
-            Cell::from(found.run_id.as_str()),
-            Cell::from(log.machine.as_deref()),
-            Cell::from(remark.code.name().as_str()),
-            Cell::from(remark.count),
-            Cell::from(remark.message.as_str()),
-        ];
-        (Name::Remarks, row)
-    }));
+    rows.extend(report.remarks.iter().map(|remark| (Name::Remarks, remark_row(log, &found.run_id, remark))));
     rows
+}
+
+/// The row of a doubt about a run.
+pub(super) fn remark_row(log: &Log, run_id: &str, remark: &Remark) -> Vec<Cell> {
+    vec![
+        Cell::from(run_id),
+        Cell::from(log.machine.as_deref()),
+        Cell::from(remark.code.name().as_str()),
+        Cell::from(remark.count),
+        Cell::from(remark.message.as_str()),
+    ]
 }
 
 /// The hash of the content of all files of a run.

@@ -118,6 +118,22 @@ fn lengths_of_cylinders_report_the_errors_of_the_angles() {
     assert!(text.contains("J1_cylinder ") && text.contains(" 5.13 mm "), "{text}");
 }
 
+/// A stroke counts from the cylinder drawn in; lengths alone do not tell.
+#[test]
+fn a_length_called_a_stroke_is_doubted() {
+    let folder = folder();
+    let table = fs::read_to_string(folder.path().join("lengths.csv")).unwrap();
+    fs::write(folder.path().join("strokes.csv"), table.replace("J2_cylinder", "J2_stroke")).unwrap();
+    let remarks =
+        |log: &str| json(folder.path(), &format!("report {log} --hydraulics h.toml"))["remarks"].to_string();
+    let said = remarks("strokes.csv");
+    assert!(
+        said.contains("J2_stroke is called a stroke") && said.contains("sensor_zero_m of [joint.J2]"),
+        "{said}"
+    );
+    assert!(!remarks("lengths.csv").contains("stroke"));
+}
+
 #[test]
 fn a_run_in_angles_is_reported_at_the_cylinder_and_its_table_reads_back() {
     let folder = folder();

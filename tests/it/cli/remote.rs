@@ -108,6 +108,12 @@ fn a_bag_in_a_store_is_one_log_and_a_large_one_is_read_in_parts() {
         store.requests.lock().unwrap().iter().filter(|r| r.starts_with("GET bucket/day/bag")).count(),
         1
     );
+    // A fit reads it from the same place.
+    store.put("bucket/short/bag/metadata.yaml", b"rosbag2_bagfile_information: {}\n".to_vec());
+    store.put("bucket/short/bag/bag_0.mcap", small_log("M00", 0, 1, [0.2, 0.3]));
+    let (_, out, err) = said(&run(&store, folder.path(), "fleet scan s3://bucket/short --into fitted --fit"));
+    let remarks = cells(&folder.path().join("fitted"), "remarks", "message").join("\n");
+    assert!(!remarks.contains("cannot") && out.contains("1 analysed now"), "{remarks}{out}{err}");
     // 40 MB that are no joints, at the end: an attachment.
     let mut big = bag[..bag.len() - 8].to_vec();
     big.extend(std::iter::repeat_n(0_u8, 40 << 20));
