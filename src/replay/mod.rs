@@ -13,6 +13,7 @@ mod joint;
 mod keyed;
 mod lag;
 mod lag_share;
+mod lane;
 mod metric;
 mod motion;
 mod onset;
@@ -29,6 +30,7 @@ pub(crate) mod unit;
 
 pub use delay::{measured_starts, measured_stops};
 pub use keyed::{Keyed, Row};
+pub use lane::{Phase, Stretch, lane};
 pub use metric::{
     Dimension, JOINT, Judged, Limit, Metric, PEAK_ERROR, Read, ReadInterval, TOOL, TRANSITION, Together,
     limits,

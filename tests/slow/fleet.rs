@@ -1,5 +1,5 @@
 //! The fleet's answers on a simulated fleet whose faults are known; kills at random instants; logs a second.
-//! `SEEDS=2` repeats the experiment so often only.
+//! `SEEDS=2 FIRST_SEED=11` repeats the experiment so often only.
 
 use std::{
     fs,
@@ -141,7 +141,8 @@ fn write(folder: &Path, seed: u64) {
 fn three_injected_faults_are_found_first_and_nothing_else() {
     let (mut slopes, mut found_ones, mut false_ones) = (Vec::new(), 0, 0);
     let (mut questions, mut false_effects) = (0, 0);
-    for seed in 1..=count("SEEDS", 10) {
+    let first = count("FIRST_SEED", 1);
+    for seed in first..first + count("SEEDS", 10) {
         let temporary = tempfile::tempdir().unwrap();
         let (logs, data) = (temporary.path().join("logs"), temporary.path().join("data"));
         write(&logs, seed);
@@ -217,8 +218,8 @@ fn three_injected_faults_are_found_first_and_nothing_else() {
          {questions} machines without a repair asked for its effect, {false_effects} show one"
     );
     assert!(slopes.iter().all(|slope| (slope - DRIFT_S).abs() < 0.2 * DRIFT_S), "{slopes:?}");
-    // What is found is false in one of twenty at most, by the promise of the method.
-    assert!(20 * false_ones <= found_ones.max(20) && 20 * false_effects <= questions);
+    // What is found is false in one of a hundred at most, of effects in one of twenty, by the promise of the method.
+    assert!(100 * false_ones <= found_ones.max(100) && 20 * false_effects <= questions);
 }
 
 fn run(folder: &Path, into: &str, workers: &str) -> Duration {

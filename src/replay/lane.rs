@@ -1,0 +1,125 @@
+//! What each joint does over a run, for one glance: it waits, follows or settles.
+
+use super::{Answer, Replay, Stop, Transition};
+
+/// What a joint does in a stretch of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// The plan has left rest, the joint has not.
+    Waits,
+    /// Plan and joint move.
+    Follows,
+    /// The plan is at rest again, the joint is not.
+    Settles,
+}
+
+/// A stretch of a run in one phase, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// What the joint does.
+    pub phase: Phase,
+    /// Where it begins.
+    pub from_s: f64,
+    /// Where it ends, not before.
+    pub to_s: f64,
+}
+
+/// The stretches of a joint, in the order of time and apart from each other; between them plan and joint rest.
+///
+/// A motion whose beginning the log does not show has none. Where the instant of an answer is not known, the joint
+/// follows from the plan's start on.
+pub fn lane(found: &Replay, joint: &str) -> Vec<Stretch> {
+    let of = |transition: &&Transition| transition.joint == joint;
+    let starts: Vec<&Transition> = found.transitions.iter().filter(of).collect();
+    let stops: Vec<&Stop> = found.stops.iter().filter(|stop| stop.joint == joint).collect();
+    let mut lane = Vec::with_capacity(3 * starts.len());
+    for (k, start) in starts.iter().enumerate() {
+        let from_s = start.planned_onset_s;
+        let next_s = starts.get(k + 1).map_or(f64::INFINITY, |next| next.planned_onset_s);
+        let stop = stops.iter().find(|stop| stop.planned_s.is_some_and(|s| s > from_s && s <= next_s));
+        let rests_s = stop.and_then(|stop| stop.planned_s);
+        // A motion that the log cuts has no stop.
+        let moves_to_s = rests_s.unwrap_or(start.window_s[1].max(from_s)).min(next_s);
+        let answers_s = match (start.answer, start.measured_onset_s) {
+            (Answer::Never, _) => moves_to_s,
+            (_, onset_s) => onset_s.unwrap_or(from_s).clamp(from_s, next_s),
+        };
+        let settled_s = stop.and_then(|stop| stop.measured_s).filter(|_| start.answer != Answer::Never);
+        let ends = [
+            (Phase::Waits, from_s, answers_s),
+            (Phase::Follows, answers_s, moves_to_s),
+            (Phase::Settles, moves_to_s.max(answers_s), settled_s.unwrap_or(moves_to_s).min(next_s)),
+        ];
+        let stretches = ends.into_iter().filter(|(_, from_s, to_s)| to_s > from_s);
+        lane.extend(stretches.map(|(phase, from_s, to_s)| Stretch { phase, from_s, to_s }));
+    }
+    lane
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        replay::{Rules, replay},
+        series::{Track, align},
+    };
+
+    /// Strokes of 2 s that begin at these instants, planned and measured, back and forth.
+    fn run(planned_s: &[f64], measured_s: &[f64], to_s: f64) -> Replay {
+        let t_s: Vec<f64> = (0..).map(|k| 0.01 * f64::from(k)).take_while(|t| *t < to_s).collect();
+        let track = |starts_s: &[f64]| {
+            let at = |t: &f64| {
+                let stroke = |(k, from): (usize, &f64)| {
+                    let sign = if k % 2 == 0 { 0.1 } else { -0.1 };
+                    sign * (t - from).clamp(0.0, 2.0)
+                };
+                starts_s.iter().enumerate().map(stroke).sum()
+            };
+            Track::new("boom", t_s.clone(), t_s.iter().map(at).collect::<Vec<f64>>(), &[]).unwrap()
+        };
+        let pairs: Vec<_> = align(&track(planned_s), &track(measured_s)).into_iter().collect();
+        replay(&pairs, &Rules::default())
+    }
+
+    /// Speeds are of windows: ends are known to a tenth of a second.
+    fn is(lane: &[Stretch], expected: &[(Phase, f64, f64)]) -> bool {
+        let alike = |(one, (phase, from_s, to_s)): (&Stretch, &(Phase, f64, f64))| {
+            one.phase == *phase && (one.from_s - from_s).abs() < 0.1 && (one.to_s - to_s).abs() < 0.1
+        };
+        lane.len() == expected.len() && lane.iter().zip(expected).all(alike)
+    }
+
+    #[test]
+    fn a_late_joint_waits_follows_and_settles() {
+        let found = run(&[1.0, 6.0], &[1.5, 6.3], 10.0);
+        let expected = [
+            (Phase::Waits, 1.0, 1.5),
+            (Phase::Follows, 1.5, 3.0),
+            (Phase::Settles, 3.0, 3.5),
+            (Phase::Waits, 6.0, 6.3),
+            (Phase::Follows, 6.3, 8.0),
+            (Phase::Settles, 8.0, 8.3),
+        ];
+        assert!(is(&lane(&found, "boom"), &expected), "{:?}", lane(&found, "boom"));
+        assert!(lane(&found, "stick").is_empty());
+    }
+
+    #[test]
+    fn a_joint_that_never_answers_waits_as_long_as_its_plan_moves() {
+        let found = run(&[1.0], &[], 8.0);
+        assert!(is(&lane(&found, "boom"), &[(Phase::Waits, 1.0, 3.0)]), "{:?}", lane(&found, "boom"));
+    }
+
+    #[test]
+    fn stretches_ascend_and_stay_apart_where_the_log_ends_in_motion() {
+        for to_s in [1.2, 1.9, 2.6, 4.0, 6.4, 7.0] {
+            let found = run(&[1.0, 6.0], &[1.6, 6.6], to_s);
+            let lane = lane(&found, "boom");
+            assert!(
+                lane.iter().all(|one| one.from_s < one.to_s && one.to_s < to_s + 1e-9),
+                "{to_s}: {lane:?}"
+            );
+            assert!(lane.windows(2).all(|two| two[0].to_s <= two[1].from_s), "{to_s}: {lane:?}");
+        }
+    }
+}
