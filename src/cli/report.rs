@@ -99,14 +99,16 @@ struct FormatArgs {
 }
 
 impl Args {
-    fn request(&self, limits: Option<&LimitsFile>) -> Inputs {
+    fn request(&self, limits: Option<&LimitsFile>, with_signals: bool) -> Inputs {
         let delay_model = match limits {
             Some(file) => DelayModel::Known(Box::new(file.fit.clone())),
             None if self.why => DelayModel::OfThisRun,
+            None if with_signals => DelayModel::OfThisRunIfShort,
             None => DelayModel::None,
         };
         Inputs {
             delay_model,
+            with_signals,
             logs: self.logs.clone(),
             read: self.read.options(),
             urdf: self.urdf.clone(),
@@ -132,7 +134,7 @@ impl Run for Args {
             .map(|path| Ok::<_, CliError>((path, LimitsFile::read(path)?)))
             .transpose()?;
         let limits = limits.as_ref().map(|(path, file)| (*path, file));
-        let report = run(&self.request(limits.map(|(_, file)| file)))?;
+        let report = run(&self.request(limits.map(|(_, file)| file), target.form == Form::Html))?;
         if let Some((path, file)) = limits {
             // Its joints must be those of the run.
             file.check_joints(path, report.pairs.iter().map(|pair| pair.name.as_str()))?;
@@ -143,7 +145,9 @@ impl Run for Args {
         let result = match target.form {
             Form::Json => pretty(&Document::of(&report)),
             Form::Csv => words::csv(&report),
-            Form::Html => words::page(&name, &report, limits.map(|(_, file)| &file.fit), most[1]),
+            Form::Html => {
+                words::page(&name, &report, limits.map(|(_, file)| &file.fit), most[1], &self.read.words())
+            }
             Form::Text | Form::Markdown => target.text(&words::document(&name, &report, most[0])),
         };
         self.figures.write(console, &target, || words::figures(&report))?;

@@ -1,6 +1,6 @@
 //! What each joint does over a run, for one glance: it waits, follows or settles.
 
-use super::{Answer, Replay, Stop, Transition};
+use super::{Answer, Kind, Replay, Stop, Transition};
 
 /// What a joint does in a stretch of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,19 +27,21 @@ pub struct Stretch {
 /// The stretches of a joint, in the order of time and apart from each other; between them plan and joint rest.
 ///
 /// A motion whose beginning the log does not show has none. Where the instant of an answer is not known, the joint
-/// follows from the plan's start on.
-pub fn lane(found: &Replay, joint: &str) -> Vec<Stretch> {
+/// follows from the plan's start on; a motion without an end goes on to that of the run, `end_s`.
+pub fn lane(found: &Replay, joint: &str, end_s: f64) -> Vec<Stretch> {
     let of = |transition: &&Transition| transition.joint == joint;
     let starts: Vec<&Transition> = found.transitions.iter().filter(of).collect();
     let stops: Vec<&Stop> = found.stops.iter().filter(|stop| stop.joint == joint).collect();
     let mut lane = Vec::with_capacity(3 * starts.len());
     for (k, start) in starts.iter().enumerate() {
         let from_s = start.planned_onset_s;
-        let next_s = starts.get(k + 1).map_or(f64::INFINITY, |next| next.planned_onset_s);
+        let next = starts.get(k + 1);
+        let next_s = next.map_or(end_s, |next| next.planned_onset_s);
         let stop = stops.iter().find(|stop| stop.planned_s.is_some_and(|s| s > from_s && s <= next_s));
         let rests_s = stop.and_then(|stop| stop.planned_s);
-        // A motion that the log cuts has no stop.
-        let moves_to_s = rests_s.unwrap_or(start.window_s[1].max(from_s)).min(next_s);
+        // Without a stop the plan turns, or moves to where the log ends; a start after it stands behind a gap.
+        let beyond_gap = next.is_some_and(|next| next.kind == Kind::Start);
+        let moves_to_s = rests_s.unwrap_or(if beyond_gap { start.window_s[1] } else { next_s }).min(next_s);
         let answers_s = match (start.answer, start.measured_onset_s) {
             (Answer::Never, _) => moves_to_s,
             (_, onset_s) => onset_s.unwrap_or(from_s).clamp(from_s, next_s),
@@ -66,7 +68,7 @@ mod tests {
 
     /// Strokes of 2 s that begin at these instants, planned and measured, back and forth.
     fn run(planned_s: &[f64], measured_s: &[f64], to_s: f64) -> Replay {
-        let t_s: Vec<f64> = (0..).map(|k| 0.01 * f64::from(k)).take_while(|t| *t < to_s).collect();
+        let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).take_while(|t| *t < to_s).collect();
         let track = |starts_s: &[f64]| {
             let at = |t: &f64| {
                 let stroke = |(k, from): (usize, &f64)| {
@@ -81,10 +83,10 @@ mod tests {
         replay(&pairs, &Rules::default())
     }
 
-    /// Speeds are of windows: ends are known to a tenth of a second.
+    /// Speeds are of windows: where a joint comes to rest is known to less than two tenths of a second.
     fn is(lane: &[Stretch], expected: &[(Phase, f64, f64)]) -> bool {
         let alike = |(one, (phase, from_s, to_s)): (&Stretch, &(Phase, f64, f64))| {
-            one.phase == *phase && (one.from_s - from_s).abs() < 0.1 && (one.to_s - to_s).abs() < 0.1
+            one.phase == *phase && (one.from_s - from_s).abs() < 0.2 && (one.to_s - to_s).abs() < 0.2
         };
         lane.len() == expected.len() && lane.iter().zip(expected).all(alike)
     }
@@ -100,21 +102,36 @@ mod tests {
             (Phase::Follows, 6.3, 8.0),
             (Phase::Settles, 8.0, 8.3),
         ];
-        assert!(is(&lane(&found, "boom"), &expected), "{:?}", lane(&found, "boom"));
-        assert!(lane(&found, "stick").is_empty());
+        assert!(is(&lane(&found, "boom", 10.0), &expected), "{:?}", lane(&found, "boom", 10.0));
+        assert!(lane(&found, "stick", 10.0).is_empty());
+    }
+
+    /// Its own stop is none, and its window ends before the plan turns.
+    #[test]
+    fn a_long_motion_that_turns_is_followed_to_where_it_turns() {
+        let found = run(&[1.0, 3.0], &[1.2, 3.2], 8.0);
+        let lane = lane(&found, "boom", 8.0);
+        assert!(
+            lane.iter().any(|one| one.phase == Phase::Follows && (one.to_s - 3.0).abs() < 0.1),
+            "{lane:?}"
+        );
     }
 
     #[test]
     fn a_joint_that_never_answers_waits_as_long_as_its_plan_moves() {
         let found = run(&[1.0], &[], 8.0);
-        assert!(is(&lane(&found, "boom"), &[(Phase::Waits, 1.0, 3.0)]), "{:?}", lane(&found, "boom"));
+        assert!(
+            is(&lane(&found, "boom", 10.0), &[(Phase::Waits, 1.0, 3.0)]),
+            "{:?}",
+            lane(&found, "boom", 10.0)
+        );
     }
 
     #[test]
     fn stretches_ascend_and_stay_apart_where_the_log_ends_in_motion() {
         for to_s in [1.2, 1.9, 2.6, 4.0, 6.4, 7.0] {
             let found = run(&[1.0, 6.0], &[1.6, 6.6], to_s);
-            let lane = lane(&found, "boom");
+            let lane = lane(&found, "boom", to_s);
             assert!(
                 lane.iter().all(|one| one.from_s < one.to_s && one.to_s < to_s + 1e-9),
                 "{to_s}: {lane:?}"

@@ -122,6 +122,17 @@ pub fn planned_starts(planned: &Track, rules: &Rules) -> Vec<f64> {
     speed.motions(rules).iter().filter(|m| m.starts()).map(|m| m.start_s).collect()
 }
 
+/// Planned and measured speed at the instants of a pair, fitted within half a window, s, of each: what
+/// [`JointReplay::thresholds`](super::JointReplay) says of the joint.
+pub fn speeds(pair: &Pair, window_s: f64, rules: &Rules) -> [Vec<f64>; 2] {
+    let mut measured = vec![0.0; pair.t_s.len()];
+    let window = (window_s, rules.window_points);
+    each_local_quadratic(&pair.t_s, &pair.measured, &pair.segments, window, |_, i, fit| {
+        measured[i] = fit.velocity;
+    });
+    [slopes(&pair.t_s, &pair.planned, &pair.segments, rules), measured]
+}
+
 /// Speeds of a plan that gives none.
 fn slopes(t_s: &[f64], angle_rad: &[f64], segments: &[Range<usize>], rules: &Rules) -> Vec<f64> {
     let mut velocity_rad_s = vec![0.0; t_s.len()];

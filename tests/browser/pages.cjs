@@ -3,11 +3,12 @@
 //
 //   node pages.cjs FOLDER PAGE.html...     screenshots go to FOLDER; CHROMIUM names the browser
 'use strict';
-const { mkdtempSync, mkdirSync, rmSync } = require('node:fs');
+const { mkdtempSync, mkdirSync, readFileSync, rmSync } = require('node:fs');
 const { tmpdir } = require('node:os');
 const { basename, join, resolve } = require('node:path');
 const { pathToFileURL } = require('node:url');
 const { chromium } = require('playwright-core');
+const AXE = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
 const FLAGS = [
   '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
@@ -47,19 +48,30 @@ async function look(browser, path, width, scheme) {
   check(blank === 0, where, `${blank} plots are blank`);
   check(await page.locator('h2').count() > 1, where, 'it has no sections');
   await page.screenshot({ path: join(folder, `${name}-${width}-${scheme}.png`), fullPage: true });
+  await accessible(page, where);
   await use(page, where);
+  await tools(page, where);
+  await first(page, where, width);
   await turn(page, where);
   await copy(page, where, context);
   await context.close();
   return ms;
 }
 
+// What axe-core finds wrong for people who see or point otherwise.
+async function accessible(page, where) {
+  await page.evaluate(AXE);
+  const { violations } = await page.evaluate(() => axe.run(document));
+  for (const { id, nodes } of violations) check(false, where, `${id}: ${nodes[0].html.slice(0, 120)}`);
+}
+
 // Points at the first plot, zooms it, resets it.
 async function use(page, where) {
-  const plot = page.locator('figure.chart:not(.tile) canvas').first();
-  if (await plot.count() === 0) return;
+  const run = page.locator('.joint figure.chart'), any = page.locator('figure.chart:not(.tile)');
+  const figure = (await run.count() ? run : any).first(), plot = figure.locator('canvas');
+  if (await figure.count() === 0) return;
   await plot.scrollIntoViewIfNeeded();
-  const box = await plot.boundingBox(), read = page.locator('figure.chart:not(.tile) .read').first();
+  const box = await plot.boundingBox(), read = figure.locator('.read');
   const at = (x, y) => [box.x + box.width * x, box.y + box.height * y];
   await page.mouse.move(...at(0.15, 0.85));
   const first = await read.textContent();
@@ -84,6 +96,97 @@ async function use(page, where) {
   if (await tile.count() > 0) {
     await tile.click();
     check(await range() !== whole, where, 'a click on a transition does not show it');
+  }
+}
+
+// Wheel, keys, second cursor, legend, tables, address.
+async function tools(page, where) {
+  const run = page.locator('.joint figure.chart'), any = page.locator('figure.chart:not(.tile)');
+  const figure = (await run.count() ? run : any).first();
+  if (await figure.count() === 0) return;
+  const canvas = figure.locator('canvas'), box = figure.locator('.live');
+  await canvas.scrollIntoViewIfNeeded();
+  await page.mouse.move(0, 0);
+  const range = () => canvas.evaluate(c => c.dataset.range);
+  const span = text => { const [a, b] = text.split(' ').map(Number); return b - a; };
+  await box.focus();
+  await page.keyboard.press('Home');
+  const whole = await range();
+  await page.keyboard.press('+');
+  const zoomed = await range();
+  check(span(zoomed) < 0.9 * span(whole), where, 'plus does not zoom');
+  await page.keyboard.press('Shift+ArrowRight');
+  check(await range() !== zoomed, where, 'shift and an arrow do not move the range');
+  await page.keyboard.press('Home');
+  check(await range() === whole, where, 'Home does not show the whole range');
+  const place = await canvas.boundingBox(), read = figure.locator('.read');
+  if (!where.includes('360')) {
+    await page.mouse.move(place.x + 0.5 * place.width, place.y + 40);
+    const scrolled = await page.evaluate(() => scrollY);
+    await page.keyboard.down('Control');
+    await page.mouse.wheel(0, -100);
+    await page.keyboard.up('Control');
+    await page.waitForTimeout(50);
+    check(span(await range()) < 0.9 * span(whole) && await page.evaluate(() => scrollY) === scrolled, where, 'ctrl and wheel do not zoom');
+    await page.mouse.dblclick(place.x + 0.5 * place.width, place.y + 40);
+    await page.keyboard.press('Escape');
+    await page.mouse.click(place.x + 0.3 * place.width, place.y + 40);
+    await page.mouse.move(place.x + 0.6 * place.width, place.y + 40);
+    const text = await read.textContent();
+    const dots = await figure.locator('.legend .point').count();
+    check(dots > 0 || text.includes('\u0394'), where, `no difference from the second cursor: ${JSON.stringify(text)}`);
+    await page.keyboard.press('Escape');
+  }
+  const entry = figure.locator('.legend [role=button]').first();
+  if (await entry.count() > 0) {
+    const shown = () => canvas.evaluate(c => c.toDataURL());
+    const before = await shown();
+    await entry.focus();
+    await page.keyboard.press('Enter');
+    check(await entry.getAttribute('aria-pressed') === 'false' && await shown() !== before, where, 'a legend does not hide its line');
+    await page.keyboard.press('Enter');
+    check(await shown() === before, where, 'a legend does not bring its line back');
+  }
+  const head = page.locator('.scroll thead th.number[tabindex]:visible').first();
+  if (await head.count() > 0) {
+    const cells = () => head.evaluate(h => Array.from(h.closest('table').tBodies[0].rows, row => parseFloat(row.cells[h.cellIndex].textContent)).filter(v => !Number.isNaN(v)));
+    await head.focus();
+    await page.keyboard.press('Enter');
+    const down = await cells();
+    check(down.every((v, i) => i === 0 || down[i - 1] >= v), where, `a heading does not sort: ${down}`);
+    await page.keyboard.press('Enter');
+    const up = await cells();
+    check(up.every((v, i) => i === 0 || up[i - 1] <= v), where, `a heading does not sort the other way: ${up}`);
+  }
+}
+
+// A report answers on its first screen: lanes by joint, the line to type; a lane and a row show their place, which the address keeps.
+async function first(page, where, width) {
+  const lanes = page.locator('.lanes rect');
+  if (await lanes.count() === 0) return;
+  if (width > 1000) {
+    const last = await page.locator('.lanes tbody tr').last().boundingBox();
+    await page.evaluate(() => scrollTo(0, 0));
+    const top = await page.locator('.lanes').boundingBox();
+    check(top.y + last.height < 900, where, `the lanes begin at ${top.y} px`);
+  }
+  const plot = page.locator('.joint canvas').first();
+  const range = () => plot.evaluate(c => c.dataset.range);
+  const whole = await range();
+  await lanes.first().scrollIntoViewIfNeeded();
+  await lanes.first().click({ force: true });
+  const shown = await range();
+  check(shown !== whole, where, 'a lane does not show its stretch');
+  await page.waitForTimeout(50);
+  const hash = await page.evaluate(() => location.hash);
+  check(hash.startsWith('#t='), where, `the address is ${hash}`);
+  await page.reload();
+  check(await range() === hash.slice(3).split(',').map(Number).join(' '), where, `the address shows ${await range()}, not ${hash}`);
+  const row = page.locator('tr[data-from]').first();
+  if (await row.count() > 0) {
+    await row.focus();
+    await page.keyboard.press('Enter');
+    check(await range() !== shown, where, 'a row does not show its start');
   }
 }
 

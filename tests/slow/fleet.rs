@@ -2,6 +2,7 @@
 //! `SEEDS=2 FIRST_SEED=11` repeats the experiment so often only.
 
 use std::{
+    collections::BTreeMap,
     fs,
     ops::ControlFlow,
     path::Path,
@@ -11,9 +12,13 @@ use std::{
 
 use hydrotrace::{
     arm::Arm,
+    log::Input,
     plant::{Parameters, Plant, Record, simulate},
     series::Series,
-    workflow::fleet::{By, Filter, Inputs, JointTrend, drift, effect, scan},
+    workflow::{
+        fleet::{By, Filter, Inputs, JointTrend, drift, effect, scan},
+        report::{self, findings},
+    },
 };
 
 use super::support::{
@@ -136,6 +141,33 @@ fn write(folder: &Path, seed: u64) {
     });
 }
 
+/// By how much the delay of that start of a joint changes which changes most when the dead time of the delayed one grows by ten
+/// days, s: median over twins of runs that differ in nothing else. Joints load each other.
+fn moved_by_the_delayed(joint: &str) -> f64 {
+    let sent = daily(30.0);
+    let delays = |later_s: f64, seed: u64| {
+        let mut parameters = healthy(DELAYED.0);
+        parameters.joints[DELAYED.1].valve.dead_time_s += later_s;
+        let data = simulated_log("twin", 0, parameters, &sent, seed);
+        let log = Input::Bytes { name: "twin.mcap".to_owned(), data };
+        let found = findings(vec![log], &report::Inputs::default()).unwrap().report.transitions;
+        let own = found.into_iter().filter(|start| start.joint == joint);
+        own.filter_map(|start| Some((start.index, start.onset_delay_s?))).collect::<BTreeMap<usize, f64>>()
+    };
+    let mut changes: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    for seed in 1..=9 {
+        let (late, before) = (delays(9.0 * DRIFT_S, seed), delays(0.0, seed));
+        for (start, delay_s) in before {
+            changes.entry(start).or_default().extend(late.get(&start).map(|late_s| late_s - delay_s));
+        }
+    }
+    let median = |mut of: Vec<f64>| {
+        of.sort_by(f64::total_cmp);
+        of.get(of.len() / 2).copied().unwrap_or(0.0)
+    };
+    changes.into_values().map(|of| median(of).abs()).fold(0.0, f64::max)
+}
+
 #[test]
 #[ignore = "minutes: two thousand simulated runs"]
 fn three_injected_faults_are_found_first_and_nothing_else() {
@@ -189,7 +221,16 @@ fn three_injected_faults_are_found_first_and_nothing_else() {
             }
             let all = found.trends.iter().filter(|trend| trend.found);
             found_ones += all.clone().count();
-            false_ones += all.filter(|t| !others.contains(&(t.machine.clone(), t.joint.clone()))).count();
+            for trend in all.filter(|t| !others.contains(&(t.machine.clone(), t.joint.clone()))) {
+                let moves_s =
+                    if trend.machine == name(DELAYED.0) { moved_by_the_delayed(&trend.joint) } else { 0.0 };
+                println!(
+                    "seed {seed}: {} {} has no fault of its own; twins say that the fault beside it moves a start by {moves_s:.3} s",
+                    trend.machine, trend.joint
+                );
+                let grows_s = 9.0 * trend.slope_per_day.abs();
+                false_ones += usize::from(by != By::Delay || (grows_s - moves_s).abs() > 0.5 * grows_s);
+            }
         }
         let at_us = 1_772_352_000_000_000 + REPAIR * 86_400_000_000;
         let repair =
@@ -218,8 +259,8 @@ fn three_injected_faults_are_found_first_and_nothing_else() {
          {questions} machines without a repair asked for its effect, {false_effects} show one"
     );
     assert!(slopes.iter().all(|slope| (slope - DRIFT_S).abs() < 0.2 * DRIFT_S), "{slopes:?}");
-    // What is found is false in one of a hundred at most, of effects in one of twenty, by the promise of the method.
-    assert!(100 * false_ones <= found_ones.max(100) && 20 * false_effects <= questions);
+    // Of effects one of twenty may be false, by the promise of the method.
+    assert!(false_ones == 0 && 20 * false_effects <= questions);
 }
 
 fn run(folder: &Path, into: &str, workers: &str) -> Duration {

@@ -54,7 +54,7 @@ fn summary(comparison: &Comparison) -> Markup {
     html! {
         div class="cards" {
             (change(comparison))
-            (verdict(&kept, &lines, "--min-peak-reduction-percent 20"))
+            (verdict(&kept, &lines))
             (whole_run(comparison))
             (at_the_tool(comparison))
         }

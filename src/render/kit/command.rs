@@ -12,7 +12,7 @@ pub(crate) const READERS: [&str; 8] =
     ["answer", "compare", "export", "fit", "info", "replan", "report", "view"];
 
 /// A command with the options on what to read, where its verb takes them.
-pub(super) fn reading(line: &str, options: &[String]) -> String {
+pub(crate) fn reading(line: &str, options: &[String]) -> String {
     let reads = line.split(' ').nth(1).is_some_and(|verb| READERS.contains(&verb));
     if options.is_empty() || !reads { line.to_owned() } else { format!("{line} {}", options.join(" ")) }
 }

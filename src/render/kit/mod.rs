@@ -31,7 +31,7 @@ pub use terminal::text;
 
 #[cfg(test)]
 pub(crate) use command::READERS;
-pub(crate) use command::{argument, command, word};
+pub(crate) use command::{argument, command, reading, word};
 pub(crate) use csv::csv;
 pub(crate) use figure::Figure;
 pub(crate) use page::paper::Failure;

@@ -145,7 +145,7 @@ fn joint_motion(joint: &str, t_s: &[f64], angle_rad: &[f64], speed_rad_s: &[f64]
 fn limits(evaluation: &PlanEvaluation, joints: &[String]) -> Markup {
     let kept: Vec<bool> = evaluation.margins.iter().map(|margin| !margin.broken()).collect();
     let line = format!("Nearest: {}", limit_cell(evaluation, joints));
-    verdict(&kept, &[line], "")
+    verdict(&kept, &[line])
 }
 
 fn cost(label: &str, evaluation: &PlanEvaluation) -> Markup {
@@ -155,7 +155,7 @@ fn cost(label: &str, evaluation: &PlanEvaluation) -> Markup {
     card("", label, &text(*first), &body)
 }
 
-fn next(planned: &Planned) -> Vec<Sentence> {
+fn next(planned: &Planned) -> Vec<(Sentence, Option<String>)> {
     let doubts = (!planned.remarks.is_empty()).then(|| {
         let doubts = counted(planned.remarks.as_slice().len(), "remark");
         format!("Check the task first: {doubts} below.")
@@ -167,5 +167,5 @@ fn next(planned: &Planned) -> Vec<Sentence> {
         "Try the chosen plan on a simulated arm: hydrotrace simulate PLAN -o RUN, then hydrotrace report RUN.",
     ];
     let steps = doubts.into_iter().chain(longer).chain(always.map(str::to_owned));
-    steps.map(Sentence::Advice).collect()
+    steps.map(|step| (Sentence::Advice(step), None)).collect()
 }

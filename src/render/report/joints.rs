@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use maud::{Markup, html};
 
-use super::tables::lag;
+use super::{signals, tables::lag};
 use crate::{
     render::{
         kit::{
@@ -24,15 +24,20 @@ use crate::{
 };
 
 /// Places of a series at most, nearly.
-const MOST: usize = 4000;
+const MOST: usize = 3000;
 
 /// A plot for each joint.
 pub(super) fn joints(report: &Report, plots: &mut Plots) -> Markup {
-    let charts = joint_charts(report);
+    let mut charts = joint_charts(report);
+    for ((_, chart), pair) in charts.iter_mut().zip(&report.pairs) {
+        signals::add(chart, report, pair);
+    }
     html! {
         p class="hint" {
-            "Drag to zoom, double-click for the whole run; all joints zoom together. Error is planned minus measured."
+            "Drag to zoom, double-click for the whole run; all joints zoom together. Ctrl and wheel zoom, shift and wheel move; a \
+             click sets a second cursor, from which differences count; a legend hides its line. Error is planned minus measured."
         }
+        p class="same-scale" { label { input type="checkbox"; " One scale for all joints" } }
         @for (joint, chart) in charts { div class="joint" data-name=(clean(&joint)) { (plots.place(chart)) } }
     }
 }

@@ -3,9 +3,12 @@
 mod answer;
 mod csv;
 mod figures;
+mod first;
 mod joints;
 mod method;
 mod page;
+mod signals;
+mod steps;
 mod summary;
 mod tables;
 #[cfg(test)]

@@ -17,20 +17,26 @@ use crate::{
         fit::fitted,
         kit::{
             self, Document, Id,
-            page::{Chapter, Plots, blocks, headed},
+            page::{Chapter, Plots, Stretch, blocks, blocks_of, headed},
         },
         plan::front,
     },
-    workflow::report::Report,
+    replay::Transition,
+    workflow::report::{LateStart, Report},
 };
 
-/// One page that answers the questions by itself; `most` is how many transitions its table lists.
+/// Shown beside a stretch that a row is about, s.
+const BESIDE_S: f64 = 0.5;
+
+/// One page that answers the questions by itself; `most` is how many transitions its table lists, `read` the options with
+/// which the log was read.
 ///
 /// Whatever comes from the log is shown as text, whatever it looks like.
-pub(crate) fn page(name: &str, report: &Report, fit: Option<&Fit>, most: usize) -> String {
+pub(crate) fn page(name: &str, report: &Report, fit: Option<&Fit>, most: usize, read: &[String]) -> String {
     let document = document(name, report, most);
     let mut plots = Plots::default();
-    let mut chapters = vec![Chapter { id: "summary", heading: "In short", body: summary(report) }];
+    let mut chapters =
+        vec![Chapter { id: "summary", heading: "In short", body: summary(report, read, &mut plots) }];
     let tool = tool_chapter(report, &mut plots, most);
     chapters.extend(tool.map(|body| Chapter { id: tool::ID.0, heading: "At the tool", body }));
     chapters.extend([
@@ -39,7 +45,8 @@ pub(crate) fn page(name: &str, report: &Report, fit: Option<&Fit>, most: usize) 
         Chapter { id: "numbers", heading: "Numbers", body: numbers(&document, report) },
         Chapter { id: "lag", heading: "Lag", body: lags(report) },
     ]);
-    chapters.extend(Chapter::of(document.section(why::ID), "Why late"));
+    let late = document.section(why::ID).map(|section| blocks_of(&section.blocks, &late_starts(report)));
+    chapters.extend(late.map(|body| Chapter { id: why::ID.0, heading: "Why late", body }));
     if let Some(fit) = fit {
         chapters.push(Chapter { id: "fit", heading: "Fitted machine", body: fitted(fit) });
     }
@@ -63,8 +70,28 @@ fn numbers(document: &Document, report: &Report) -> Markup {
             h3 { "Rms error inside and outside the transitions" }
             (concentration_bars(report))
         }
-        @for section in [Id::JOINTS, Id::TRANSITIONS].iter().filter_map(|id| document.section(*id)) {
-            (headed(section))
+        @if let Some(section) = document.section(Id::JOINTS) { (headed(section)) }
+        @if let Some(section) = document.section(Id::TRANSITIONS) {
+            @if let Some(heading) = &section.heading { h3 { (heading) } }
+            p class="hint" { "A row shows its start in the run; a heading sorts." }
+            (blocks_of(&section.blocks, &transitions_shown(report)))
         }
     }
+}
+
+/// Where the rows of transitions are in the run.
+fn transitions_shown(report: &Report) -> Vec<Stretch> {
+    let of = |transition: &Transition| stretch(&transition.joint, transition.window_s);
+    report.replay.worst_first().into_iter().map(of).collect()
+}
+
+/// Where the rows of late starts are.
+fn late_starts(report: &Report) -> Vec<Stretch> {
+    let Some(Ok(why)) = &report.why else { return Vec::new() };
+    let window = |start: &LateStart| [start.planned_onset_s, start.planned_onset_s + start.onset_delay_s];
+    why::latest_first(why).into_iter().map(|start| stretch(&start.joint, window(start))).collect()
+}
+
+fn stretch(joint: &str, [from_s, to_s]: [f64; 2]) -> Stretch {
+    Stretch { joint: joint.to_owned(), from_s: from_s - BESIDE_S, to_s: to_s + BESIDE_S }
 }

@@ -3,15 +3,18 @@
 use maud::{Markup, html};
 
 use super::{
+    first::{lanes, worst_start},
+    steps::steps,
     tables::{lag_words, mostly_lag, verdicts, worst_sentence},
     tool_page::tool_card,
+    why,
 };
 use crate::{
     render::{
         kit::{
-            Sentence, argument, clean, command, counted, ms,
+            Sentence, clean, counted,
             page::{
-                card, next_steps,
+                Plots, card, next_steps,
                 strip::{Row, bars},
                 verdict,
             },
@@ -20,31 +23,25 @@ use crate::{
         metric::{on_paper, position},
     },
     replay::Verdict,
-    series::JointKind,
-    workflow::report::{
-        Report,
-        advice::{Advice, advice},
-    },
+    workflow::report::Report,
 };
 
-pub(super) fn summary(report: &Report) -> Markup {
+pub(super) fn summary(report: &Report, read: &[String], plots: &mut Plots) -> Markup {
     let kept: Vec<bool> = report.gates.iter().map(|gate| gate.kept).collect();
     let lines: Vec<String> = verdicts(report).iter().map(Sentence::to_string).collect();
-    let (limit, enough) = match report.replay.kind() {
-        JointKind::Turns => ("--max-transition-peak-deg", "0.5"),
-        JointKind::Slides => ("--max-transition-peak-mm", "5"),
-    };
-    let steps: Vec<Sentence> =
-        advice(report).iter().map(|step| words(step, limit)).map(Sentence::Advice).collect();
     html! {
         div class="cards" {
-            (verdict(&kept, &lines, &format!("{limit} {enough}")))
+            (verdict(&kept, &lines))
             (tool_card(&report.tool))
             (worst(report))
             (place_of_error(report))
             (whole_run(report))
         }
-        (next_steps(&steps))
+        (lanes(report))
+        div class="side" {
+            @if let Some(chart) = worst_start(report) { (plots.place(chart)) }
+            div { (next_steps(&steps(report, read))) }
+        }
     }
 }
 
@@ -56,6 +53,7 @@ fn worst(report: &Report) -> Markup {
     let [from, to] = [worst.planned_onset_s - 0.5, worst.window_s[1] + 0.5];
     let body = html! {
         p { (clean(&worst_sentence(worst))) }
+        @if let Some(why) = why::of(report, &worst.id).map(why::phrase) { p { "Why: " (clean(&why)) } }
         button type="button" data-from=(format!("{from:.3}")) data-to=(format!("{to:.3}")) data-joint=(clean(&worst.joint)) {
             "Show it"
         }
@@ -134,70 +132,4 @@ fn whole_run(report: &Report) -> Markup {
         }
     };
     card("", "Whole run, all joints", &headline, &body)
-}
-
-/// `replan` of this log with its plan kept.
-fn replan(log: Option<&str>) -> String {
-    let log = log.filter(|log| !log.is_empty()).map_or("LOG".to_owned(), argument);
-    command(&["replan", &log, "--keep-plan", "-o", "NEXT"])
-}
-
-fn half_late(delay_s: Option<f64>) -> String {
-    delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {} ms late)", ms(s)))
-}
-
-/// `limit`: an option that sets one for the kind of the joints.
-fn words(step: &Advice, limit: &str) -> String {
-    match step {
-        Advice::ClearDoubts(kinds) => format!(
-            "Clear the doubts about the data first: {} below.",
-            counted(*kinds, "remark")
-        ),
-        Advice::FreeJoint { joint, unanswered, starts } => format!(
-            "Find out why {joint} leaves {unanswered} of {} unanswered: enable signals, brakes, a dead band wider than \
-             the command, a sensor that stands still.",
-            counted(*starts, "planned start")
-        ),
-        Advice::ShiftCommand { joint, lag_s, log, fits } => format!(
-            "The error is mostly lag, {joint} first ({} ms): speed feed-forward, or sending the command that much earlier, does \
-             most, and work on starts little.{}",
-            ms(*lag_s),
-            if *fits {
-                format!(" {} makes such a command from this log.", replan(log.as_deref()))
-            } else {
-                String::new()
-            }
-        ),
-        Advice::EaseStarts { joint, delay_s, fits: false, .. } => {
-            format!("Work on starts from rest, {joint} first{}.", half_late(*delay_s))
-        }
-        Advice::EaseStarts { joint, delay_s, log, gentler, .. } => format!(
-            "Work on starts from rest, {joint} first{}: {} makes a command from this log \
-             that compensates dead band and lag{}",
-            half_late(*delay_s),
-            replan(log.as_deref()),
-            if *gentler {
-                "; without --keep-plan, a gentler plan too."
-            } else {
-                ". The log does not hold the task of its plan: a gentler plan needs that too (--task)."
-            },
-        ),
-        Advice::ShortenLag { joint, lag_s } => format!(
-            "Shorten the lag: {joint} follows {} ms behind throughout; speed feed-forward or a higher gain does most.",
-            ms(*lag_s)
-        ),
-        Advice::LookOutside { joint, time_s } => format!(
-            "Look at {joint} at {time_s:.2} s: the error is largest there, outside the transitions, and no lag explains it."
-        ),
-        Advice::RecordStarts => {
-            "Record a run in which joints leave rest by plan, with the plan in the log: there is no transition to judge."
-                .to_owned()
-        }
-        Advice::SetLimits => {
-            format!("Say what is good enough: limits ({limit} and others) make the verdict and the exit code.")
-        }
-        Advice::Compare => {
-            "After any change, run the same task again: hydrotrace compare BEFORE AFTER tells whether it helped.".to_owned()
-        }
-    }
 }

@@ -50,7 +50,7 @@ fn tags(page: &str, name: &str) -> usize {
 
 #[test]
 fn nothing_from_a_log_is_markup() {
-    let page = report_page(HOSTILE, &hostile(), None, 60);
+    let page = report_page(HOSTILE, &hostile(), None, 60, &[]);
     assert_eq!((tags(&page, "script"), page.matches("</script").count()), (2, 2));
     assert_eq!(tags(&page, "img"), 0);
     assert!(page.contains("&lt;/script&gt;&lt;script&gt;alert(1)"), "the name is still shown");
@@ -62,7 +62,7 @@ fn nothing_from_a_log_is_markup() {
 
 #[test]
 fn a_page_fetches_nothing_and_the_policy_lets_only_its_own_script_run() {
-    let page = report_page("a", &report("gaps.mcap"), None, 60);
+    let page = report_page("a", &report("gaps.mcap"), None, 60, &[]);
     for word in ["http://", "https://", "src=", "@import", "url(", " style=\"", "javascript:"] {
         assert!(!page.contains(word), "{word}");
     }
@@ -74,8 +74,8 @@ fn a_page_fetches_nothing_and_the_policy_lets_only_its_own_script_run() {
 #[test]
 fn equal_runs_give_equal_pages_of_a_modest_size() {
     let report = report("panel-install.mcap");
-    let page = report_page("a", &report, None, 60);
-    assert_eq!(page, report_page("a", &report, None, 60));
+    let page = report_page("a", &report, None, 60, &[]);
+    assert_eq!(page, report_page("a", &report, None, 60, &[]));
     assert!(page.len() < 4_000_000, "{} bytes for 40 s of six joints", page.len());
 }
 
@@ -92,7 +92,7 @@ fn a_spike_of_one_sample_stays_in_the_plot_of_its_joint() {
     pair.t_s = (0..repeat * n).map(|i| i as f64 * 1e-2).collect();
     pair.segments = std::iter::once(0..repeat * n).collect();
     pair.measured[100_003] = SPIKE_RAD;
-    let page = report_page("a", &report, None, 60);
+    let page = report_page("a", &report, None, 60, &[]);
     let spike = chart::rounded(crate::units::degrees_from_radians(SPIKE_RAD));
     assert!(page.contains(&format!("{spike}")), "{spike}");
     assert!(page.len() < 6_000_000, "{}", page.len());
@@ -167,7 +167,7 @@ fn a_fit_shows_its_numbers_intervals_and_what_was_never_reached() {
         model,
     };
     let fit = Fit { joints: vec![joint], left_out: vec![], peak_margin: 1.25, margin_starts: 12 };
-    let page = report_page("a", &report("gaps.mcap"), Some(&fit), 60);
+    let page = report_page("a", &report("gaps.mcap"), Some(&fit), 60, &[]);
     for text in ["Fitted machine", "200 (180..220)", "&gt;= 14.3", "0.88"] {
         assert!(page.contains(text), "{text}");
     }
@@ -175,22 +175,23 @@ fn a_fit_shows_its_numbers_intervals_and_what_was_never_reached() {
 
 /// What a page says is to be done next, as text.
 fn next(report: &Report) -> String {
-    let page = report_page("a", report, None, 60);
+    let page = report_page("a", report, None, 60, &[]);
     page.split("class=\"next\">").nth(1).unwrap().split("</ol>").next().unwrap().to_owned()
 }
 
 #[test]
 fn advice_names_the_log_and_a_gentler_plan_only_where_the_log_holds_its_task() {
     let without = next(&report("panel-install.mcap"));
-    assert!(without.contains("hydrotrace replan panel-install.mcap --keep-plan -o NEXT"), "{without}");
+    assert!(
+        without.contains("panel-install.mcap --keep-plan --gain 0.5 --task TASK -o next.mcap"),
+        "{without}"
+    );
     assert!(!without.contains("gentler plan too"), "{without}");
     let with = next(&report("task-1-run.mcap"));
     assert!(with.contains("task-1-run.mcap") && with.contains("gentler plan too"), "{with}");
     let mut spaced = report("task-1-run.mcap");
-    spaced.logs = vec!["it's 1.mcap".to_owned()];
-    assert!(next(&spaced).contains("replan 'it'\\''s 1.mcap' --keep-plan"), "{}", next(&spaced));
-    spaced.logs.push("2.mcap".to_owned());
-    assert!(next(&spaced).contains("replan LOG --keep-plan"), "{}", next(&spaced));
+    spaced.paths = vec!["it's 1.mcap".into(), "2.mcap".into()];
+    assert!(next(&spaced).contains("replan 'it'\\''s 1.mcap' 2.mcap --keep-plan"), "{}", next(&spaced));
 }
 
 #[test]
@@ -201,7 +202,7 @@ fn where_a_lag_explains_most_of_the_error_that_is_said_and_advised() {
     let share = report.replay.whole_run.lag_share.as_mut().unwrap();
     assert!(!share.mostly && share.share < 0.75, "{share:?}");
     (share.share, share.mostly) = (0.9, true);
-    let page = report_page("a", &report, None, 60);
+    let page = report_page("a", &report, None, 60, &[]);
     assert!(page.contains("Mostly lag") && page.contains("The error is mostly lag"));
     let lag = next(&report);
     assert!(lag.contains("feed-forward") && !lag.contains("Work on starts"), "{lag}");

@@ -58,7 +58,7 @@ pub(super) fn tiles(report: &Report) -> Vec<(&Transition, Chart)> {
     let mut tiles: Vec<(&Transition, Chart)> = worst
         .filter_map(|transition| {
             let pair = report.pairs.iter().find(|pair| pair.name == transition.joint)?;
-            Some((transition, tile(transition, pair)))
+            Some((transition, tile(transition, pair, [BEFORE_S, AFTER_S])))
         })
         .collect();
     let errors = tiles.iter().filter_map(|(_, chart)| chart.panels.last());
@@ -75,11 +75,12 @@ pub(super) fn tiles(report: &Report) -> Vec<(&Transition, Chart)> {
     tiles
 }
 
-fn tile(transition: &Transition, pair: &Pair) -> Chart {
+/// A start from its planned instant, so long before and after it at most, s.
+pub(super) fn tile(transition: &Transition, pair: &Pair, [before_s, after_s]: [f64; 2]) -> Chart {
     let onset_s = transition.planned_onset_s;
     let sign = f64::from(transition.direction);
-    let from = pair.t_s.partition_point(|t_s| *t_s < onset_s - BEFORE_S);
-    let to = pair.t_s.partition_point(|t_s| *t_s <= transition.window_s[1].min(onset_s + AFTER_S));
+    let from = pair.t_s.partition_point(|t_s| *t_s < onset_s - before_s);
+    let to = pair.t_s.partition_point(|t_s| *t_s <= transition.window_s[1].min(onset_s + after_s));
     let within = |values: &[f64]| values.get(from..to.max(from)).unwrap_or_default().to_vec();
     let (planned, measured) = (within(&pair.planned), within(&pair.measured));
     let t_s: Vec<f64> = within(&pair.t_s).iter().map(|t_s| t_s - onset_s).collect();

@@ -61,6 +61,13 @@ pub(super) fn of<'a>(report: &'a Report, id: &str) -> Option<&'a LateStart> {
     report.why.as_ref()?.as_ref().ok()?.starts.iter().find(|start| start.id == id)
 }
 
+/// Starts in the order of their rows.
+pub(super) fn latest_first(why: &Why) -> Vec<&LateStart> {
+    let mut starts: Vec<&LateStart> = why.starts.iter().collect();
+    starts.sort_by(|a, b| b.onset_delay_s.total_cmp(&a.onset_delay_s));
+    starts
+}
+
 /// A row a start, the latest first; `most` is how many to list.
 pub(super) fn section(report: &Report, most: usize) -> Option<Section> {
     let blocks = match report.why.as_ref()? {
@@ -73,8 +80,7 @@ pub(super) fn section(report: &Report, most: usize) -> Option<Section> {
 }
 
 fn explained(why: &Why, most: usize) -> Vec<Block> {
-    let mut starts: Vec<&LateStart> = why.starts.iter().collect();
-    starts.sort_by(|a, b| b.onset_delay_s.total_cmp(&a.onset_delay_s));
+    let starts = latest_first(why);
     let longest_s = starts.iter().map(|start| start.onset_delay_s).fold(1e-3, f64::max);
     let mut columns = vec![
         Column::words("joint"),

@@ -27,9 +27,8 @@ use crate::{
 const FORMAT: &str = "hydrotrace.fleet-drift.v1";
 /// Runs of one plan, at least: fewer cannot prove a trend.
 pub(super) const FEWEST_RUNS: usize = 5;
-/// False discoveries among what is found, at most. A fleet is asked every week: at one in twenty, somebody looks for a
-/// fault that is none every other month.
-const MOST_FALSE: f64 = 0.01;
+/// False discoveries among what is found, at most.
+pub(super) const MOST_FALSE: f64 = 0.05;
 
 /// Robust standard deviations of the fleet's slopes that a slope must stand out by to be found: less than that many
 /// healthy joints change by, in a season or with other work.

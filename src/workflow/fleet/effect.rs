@@ -9,7 +9,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    drift::matrix,
+    drift::{MOST_FALSE, matrix},
     failure::FleetFailure,
     history::{Axis, By, Filter, History, Scatters, Values, date, days},
 };
@@ -24,8 +24,6 @@ use crate::{
 const FORMAT: &str = "hydrotrace.fleet-effect.v1";
 /// Machines beside the one that changed, at least: fewer tell nothing of what is usual.
 const FEWEST_OTHERS: usize = 3;
-/// False discoveries among what is found, at most: one change is asked about, and its instant is known.
-const MOST_FALSE: f64 = 0.05;
 
 /// What a change did.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -26,8 +26,6 @@ pub enum Advice {
         joint: String,
         /// Its lag, s.
         lag_s: f64,
-        /// The log, if it is one file.
-        log: Option<String>,
         /// Whether a command can be made from it: of joints that turn.
         fits: bool,
     },
@@ -37,8 +35,6 @@ pub enum Advice {
         joint: String,
         /// Median delay of timed starts over all joints, s.
         delay_s: Option<f64>,
-        /// The log, if it is one file.
-        log: Option<String>,
         /// Whether a command can be made from it: of joints that turn.
         fits: bool,
         /// Whether a gentler plan can be made from it.
@@ -88,20 +84,15 @@ pub fn advice(report: &Report) -> Vec<Advice> {
         return advice;
     };
     let verdict = replay.whole_run.concentration.as_ref().map(|c| c.verdict);
-    let log = match report.logs.as_slice() {
-        [log] => Some(log.clone()),
-        _ => None,
-    };
     let fits = replay.joints.iter().any(|joint| joint.kind == JointKind::Turns);
     if let Some((joint, lag_s)) = mostly_lag(report) {
-        advice.push(Advice::ShiftCommand { joint, lag_s, log, fits });
+        advice.push(Advice::ShiftCommand { joint, lag_s, fits });
     } else if verdict == Some(Verdict::Elsewhere) {
         advice.extend(outside(report));
     } else {
         advice.push(Advice::EaseStarts {
             joint: worst.joint.clone(),
             delay_s: median_delay_s(&replay.transitions),
-            log,
             fits,
             gentler: report.holds_task,
         });

@@ -12,7 +12,7 @@ mod plan_id;
 mod tool;
 mod why;
 
-use std::path::PathBuf;
+use std::{collections::BTreeMap, path::PathBuf};
 
 pub use analysis::{Analysis, analyse};
 use analysis::{aligned, taken};
@@ -35,7 +35,7 @@ use super::{
 use crate::{
     arm::ArmError,
     input_file,
-    log::{LogError, ReadOptions, Recording, read_recording},
+    log::{LogError, ReadOptions, Recording, SignalRole, read_recording},
     remark::{Code, Remarks},
     replay::{Profiles, Rules},
     series::PosePair,
@@ -58,7 +58,18 @@ pub struct Inputs {
     pub gates: Gates,
     /// By what it is said why starts come late.
     pub delay_model: DelayModel,
+    /// Whether command, valves and pressures are wanted too, for plots.
+    pub with_signals: bool,
 }
+
+/// Beside plan and measurement, what plots show.
+const PLOTTED: [SignalRole; 5] = [
+    SignalRole::Command,
+    SignalRole::Valve,
+    SignalRole::CapPressure,
+    SignalRole::RodPressure,
+    SignalRole::SupplyPressure,
+];
 
 /// Analyses one run.
 ///
@@ -87,7 +98,8 @@ impl Inputs {
             let failed = |source| ReportFailure::Read { path: path.clone(), source };
             read.description = Some(input_file::read_to_string(path).map_err(failed)?);
         }
-        Ok(read.wanting(self.delay_model.signals()))
+        let plotted: &[SignalRole] = if self.with_signals { &PLOTTED } else { &[] };
+        Ok(read.wanting(self.delay_model.signals()).wanting(plotted))
     }
 }
 
@@ -147,6 +159,8 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         gates,
         remarks,
         profiles: Profiles::of(&pairs),
+        command: recording.command.filter(|_| inputs.with_signals),
+        signals: if inputs.with_signals { recording.signals } else { BTreeMap::new() },
         pairs,
         front,
     })

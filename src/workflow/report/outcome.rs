@@ -1,15 +1,15 @@
 //! What a report found.
 
-use std::path::PathBuf;
+use std::{collections::BTreeMap, path::PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::{gates::GateResult, tool::Tool, why::Why};
 use crate::{
-    log::SourceInfo,
+    log::{Command, SignalRole, SourceInfo},
     remark::Remarks,
     replay::{Profiles, Replay},
-    series::Pair,
+    series::{Pair, Signal},
     workflow::{
         carried::{Held, Schedule},
         plan::PlanDocument,
@@ -63,6 +63,10 @@ pub struct Report {
     pub profiles: Profiles,
     /// The aligned samples, for plots.
     pub pairs: Vec<Pair>,
+    /// What was sent, for plots, if that was asked for and is in the log.
+    pub command: Option<Command>,
+    /// Valves and pressures likewise, by joint.
+    pub signals: BTreeMap<SignalRole, Vec<Signal>>,
     /// When the key points of the task are passed, where the log tells.
     pub schedule: Option<Schedule>,
     /// The plans that the run's own was chosen from, where its log carries them.

@@ -252,7 +252,10 @@ fn a_page_goes_to_a_file_or_a_pipe_and_tells_limits_apart() {
     let run = hydrotrace(&["report", CLEAN, "--html", "-o", page.to_str().unwrap()]);
     assert_eq!((run.status.code(), stdout(&run).as_str()), (Some(0), ""));
     let text = fs::read_to_string(page).unwrap();
-    assert!(text.starts_with("<!DOCTYPE html>") && text.contains("No limits set"), "{}", &text[..200]);
+    assert!(text.starts_with("<!DOCTYPE html>") && !text.contains(">Verdict<"), "{}", &text[..200]);
+    for told in ["class=\"lanes\"", "The worst start: ", "Why: ", "<pre><code>hydrotrace replan "] {
+        assert!(text.contains(told), "{told}");
+    }
     assert_eq!(text, stdout(&hydrotrace(&["report", CLEAN, "--html"])));
     let broken = hydrotrace(&["report", CLEAN, "--html", "--max-rms-deg", "0.2", "--max-peak-deg", "2"]);
     assert_eq!(broken.status.code(), Some(4));

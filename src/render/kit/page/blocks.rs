@@ -14,6 +14,11 @@ pub(in crate::render) fn headed(section: &Section) -> Markup {
 
 /// Sentences, facts and tables.
 pub(in crate::render) fn blocks(blocks: &[Block]) -> Markup {
+    blocks_of(blocks, &[])
+}
+
+/// The same; rows of tables show their stretches in the plots of the run.
+pub(in crate::render) fn blocks_of(blocks: &[Block], stretches: &[Stretch]) -> Markup {
     html! {
         @for block in blocks {
             @match block {
@@ -21,7 +26,7 @@ pub(in crate::render) fn blocks(blocks: &[Block]) -> Markup {
                 Block::Facts(facts) => { (list(facts)) }
                 Block::Remarks(facts) => { div class="remarks" { (list(facts)) } }
                 Block::Checks(checks) => { (checked(checks)) }
-                Block::Table(whole) => { (table(whole)) }
+                Block::Table(whole) => { (table_of(whole, stretches)) }
                 Block::Command(line) => { pre { code { (clean(line)) } } }
             }
         }
@@ -50,8 +55,20 @@ fn list(facts: &[Fact]) -> Markup {
     }
 }
 
+/// A stretch of the run that a row is about.
+#[derive(Debug, Clone)]
+pub(in crate::render) struct Stretch {
+    pub(in crate::render) joint: String,
+    pub(in crate::render) from_s: f64,
+    pub(in crate::render) to_s: f64,
+}
+
 /// A table that scrolls by itself where the screen is narrow.
 pub(in crate::render) fn table(table: &Table) -> Markup {
+    table_of(table, &[])
+}
+
+fn table_of(table: &Table, stretches: &[Stretch]) -> Markup {
     let class = |k: usize| match table.columns.get(k).map(|column| column.align) {
         Some(Align::Left) => "word",
         _ => "number",
@@ -61,14 +78,20 @@ pub(in crate::render) fn table(table: &Table) -> Markup {
             table {
                 thead { tr {
                     @for (k, column) in table.columns.iter().enumerate() {
-                        th class=(class(k)) title=[(!column.meaning.is_empty()).then_some(column.meaning)] {
-                            (clean(&column.heading))
+                        @if column.heading.is_empty() { td {} } @else {
+                            th class=(class(k)) title=[(!column.meaning.is_empty()).then_some(column.meaning)] {
+                                (clean(&column.heading))
+                            }
                         }
                     }
                 } }
                 tbody {
-                    @for row in &table.rows {
-                        tr { @for (k, cell) in row.iter().enumerate() { td class=(class(k)) { (clean(cell)) } } }
+                    @for (n, row) in table.rows.iter().enumerate() {
+                        @let of = stretches.get(n);
+                        tr tabindex=[of.map(|_| 0)] data-from=[of.map(|of| format!("{:.3}", of.from_s))]
+                            data-to=[of.map(|of| format!("{:.3}", of.to_s))] data-joint=[of.map(|of| clean(&of.joint))] {
+                            @for (k, cell) in row.iter().enumerate() { td class=(class(k)) { (clean(cell)) } }
+                        }
                     }
                 }
             }

@@ -15,29 +15,31 @@ pub(in crate::render) fn card(class: &str, label: &str, headline: &str, body: &M
     }
 }
 
-/// Whether limits are kept, each with a line; `option` sets one where there is none.
-pub(in crate::render) fn verdict(kept: &[bool], lines: &[String], option: &str) -> Markup {
+/// Whether limits are kept, each with a line; nothing where there are none.
+pub(in crate::render) fn verdict(kept: &[bool], lines: &[String]) -> Markup {
+    if kept.is_empty() {
+        return html! {};
+    }
     let broken = kept.iter().filter(|kept| !**kept).count();
     let (class, headline) = match (kept.len(), broken) {
-        (0, _) => ("open", "No limits set".to_owned()),
         (1, 0) => ("good", "The limit is kept".to_owned()),
         (all, 0) => ("good", format!("All {all} limits kept")),
         (all, broken) => ("bad", format!("{broken} of {all} limits NOT kept")),
     };
     let body = html! {
-        @if kept.is_empty() {
-            p { "Nothing says whether this is good enough; a limit such as " code { (option) } " would." }
-        } @else {
-            ul { @for line in lines { li { (clean(line)) } } }
-        }
+        ul { @for line in lines { li { (clean(line)) } } }
     };
     card(class, "Verdict", &headline, &body)
 }
 
-/// What to do, in order.
-pub(in crate::render) fn next_steps(steps: &[Sentence]) -> Markup {
+/// What to do, in order, each with the line to type if there is one.
+pub(in crate::render) fn next_steps(steps: &[(Sentence, Option<String>)]) -> Markup {
     html! {
         h3 { "What to do next" }
-        ol class="next" { @for step in steps { li { (clean(&step.to_string())) } } }
+        ol class="next" {
+            @for (step, line) in steps {
+                li { (clean(&step.to_string())) @if let Some(line) = line { pre { code { (clean(line)) } } } }
+            }
+        }
     }
 }

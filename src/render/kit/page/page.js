@@ -1,7 +1,7 @@
 'use strict';
 // Draws the plots of a page from its data block. Drag zooms, double click resets, pointing reads values;
 // plots of one group share range and pointer.
-(() => {
+const plotted = (() => {
   const root = document.documentElement;
   root.classList.add('js');
   const specs = JSON.parse(document.getElementById('data').textContent);
@@ -33,6 +33,7 @@
       this.full = this.range;
       this.canvas = box.appendChild(document.createElement('canvas'));
       this.hair = box.appendChild(Object.assign(document.createElement('div'), { className: 'hair', hidden: true }));
+      this.pin = box.appendChild(Object.assign(document.createElement('div'), { className: 'hair pin', hidden: true }));
       this.sel = box.appendChild(Object.assign(document.createElement('div'), { className: 'sel', hidden: true }));
       this.read = box.parentElement.querySelector('.read');
       this.dots = spec.panels.some(p => p.series.some(s => s.role === 'point'));
@@ -50,6 +51,7 @@
       this.canvas.dataset.range = range.join(' ');
       this.box.classList.toggle('zoomed', range !== this.full);
       this.draw();
+      this.put(this.mark);
     }
     draw() {
       const { canvas, spec, box } = this, scale = window.devicePixelRatio || 1, width = box.clientWidth;
@@ -72,7 +74,8 @@
     panel(c, panel, top, height, last) {
       const { spec } = this, left = this.left(), width = this.width(), bottom = top + height;
       const inside = xs => [Math.max(place(xs, this.range[0]) - 1, 0), place(xs, this.range[1]) + 1];
-      const [low, high] = panel.range || padded(extent(panel.series.flatMap(s => {
+      const shown = panel.series.filter(s => !s.hidden);
+      const [low, high] = panel.common || panel.range || padded(extent(shown.flatMap(s => {
         const xs = spec.xs[s.x];
         return this.dots ? s.y : s.y.slice(...inside(xs));
       })));
@@ -104,7 +107,7 @@
       c.beginPath(); c.rect(left, top - 2, width, height + 4); c.clip();
       const edges = panel.series.filter(s => s.role === 'band');
       if (edges.length === 2) this.area(c, edges, y, inside(spec.xs[edges[0].x]));
-      for (const s of panel.series) if (s.role !== 'band') this.series(c, s, y, inside(spec.xs[s.x]));
+      for (const s of shown) if (s.role !== 'band') this.series(c, s, y, inside(spec.xs[s.x]));
       c.restore();
       if (this.tile) return;
       c.save();
@@ -146,20 +149,33 @@
     }
     // The values nearest to a coordinate, in words; null hides them. Points are nearest on the screen.
     point(x, py) {
+      this.at = x;
       this.hair.hidden = x === null || x < this.range[0] || x > this.range[1];
       if (this.hair.hidden) { this.read.textContent = ''; return; }
       this.hair.style.left = this.pixel(x) + 'px';
-      const words = [];
+      const words = [], marked = this.mark !== undefined;
       for (const panel of this.spec.panels) for (const s of panel.series) {
-        if (['named', 'guide', 'band'].includes(s.role)) continue;
-        const xs = this.spec.xs[s.x];
-        let i = this.dots ? this.nearest(s, x, py) : place(xs, x);
-        if (!this.dots && i > 0 && (i >= xs.length || x - xs[i - 1] < xs[i] - x)) i--;
-        if (i < 0 || i >= xs.length || s.y[i] === null) continue;
-        if (!words.length) words.push(this.spec.x_label + ' ' + number(xs[i]));
-        words.push((s.names ? s.names[i] : s.name) + ' ' + number(s.y[i]));
+        if (s.hidden || ['named', 'guide', 'band'].includes(s.role)) continue;
+        const xs = this.spec.xs[s.x], i = this.index(s, x, py);
+        if (i < 0) continue;
+        const from = marked && !this.dots ? this.index(s, this.mark, py) : -1;
+        if (!words.length) words.push(this.spec.x_label + ' ' + number(xs[i]) + (from < 0 ? '' : ` (\u0394 ${number(xs[i] - xs[from])})`));
+        words.push((s.names ? s.names[i] : s.name) + ' ' + number(s.y[i]) + (from < 0 ? '' : ` (\u0394 ${number(s.y[i] - s.y[from])})`));
       }
       this.read.textContent = words.join('  ·  ');
+    }
+    // The sample nearest to a coordinate; -1 where there is none.
+    index(s, x, py) {
+      const xs = this.spec.xs[s.x];
+      let i = this.dots ? this.nearest(s, x, py) : place(xs, x);
+      if (!this.dots && i > 0 && (i >= xs.length || x - xs[i - 1] < xs[i] - x)) i--;
+      return i >= 0 && i < xs.length && s.y[i] !== null ? i : -1;
+    }
+    // The second cursor, from which the read-out counts; undefined takes it away.
+    put(mark) {
+      this.mark = mark;
+      this.pin.hidden = mark === undefined || mark < this.range[0] || mark > this.range[1];
+      if (!this.pin.hidden) this.pin.style.left = this.pixel(mark) + 'px';
     }
     nearest(s, x, py) {
       let best = -1, least = Infinity;
@@ -185,6 +201,9 @@
         if (start !== null && Math.abs(at(e) - start) > 6) {
           const ends = [this.value(Math.min(start, at(e))), this.value(Math.max(start, at(e)))];
           for (const plot of group(this)) plot.show(ends);
+        } else if (start !== null) {
+          const mark = this.mark === undefined ? this.value(at(e)) : undefined;
+          for (const plot of group(this)) { plot.put(mark); plot.point(this.value(at(e)), e.offsetY); }
         }
         drop();
       });
@@ -232,4 +251,5 @@
   }
   document.addEventListener('click', go);
   document.addEventListener('keydown', go);
+  return { plots, group, number, extent, padded };
 })();

@@ -1,0 +1,183 @@
+//! The first screen: the run as a lane a joint, the worst start large.
+
+use std::fmt::Write as _;
+
+use maud::{Markup, html};
+
+use crate::{
+    render::{
+        kit::{
+            clean, ms,
+            page::{
+                chart::{Chart, Panel, Role, Series, Size, at, rounded, times},
+                envelope::envelope,
+            },
+        },
+        metric::{on_paper, position, unit},
+    },
+    replay::{Dimension, JointReplay, Phase, Stretch, Transition, lane, speeds},
+    series::Pair,
+    workflow::report::Report,
+};
+
+use super::tiles::tile;
+
+/// Thousandths of the run, and the height of a lane: the drawing is stretched, so it holds no text.
+const WIDTH: f64 = 1000.0;
+const HEIGHT: f64 = 30.0;
+/// Places of an error at most, nearly.
+const PLACES: usize = 260;
+/// Shown beside the stretch that was pointed at, s.
+const BESIDE_S: f64 = 0.5;
+/// Shown of the worst start before it, and after it at least and at most, s.
+const BEFORE_S: f64 = 0.2;
+const AFTER_S: [f64; 2] = [1.0, 4.0];
+
+/// A lane for each joint, the worst first.
+pub(super) fn lanes(report: &Report) -> Markup {
+    let ends = report.pairs.iter().flat_map(|pair| [pair.t_s.first(), pair.t_s.last()]).flatten().copied();
+    let [from_s, to_s] = crate::math::range(ends);
+    if from_s >= to_s {
+        return html! {};
+    }
+    let joints = worst_first(report);
+    html! {
+        table class="lanes" {
+            thead { tr {
+                th { "Joint" }
+                th class="legend" {
+                    span { i class="waits" {} "waits" }
+                    span { i class="follows" {} "follows" }
+                    span { i class="settles" {} "settles" }
+                    span { i class="error" {} "error, each joint by its own largest" }
+                }
+                th class="number" { "largest error" }
+                th class="number" { "latest start" }
+            } }
+            tbody {
+                @for (joint, pair) in joints {
+                    tr {
+                        th { (clean(&joint.name)) }
+                        td class="lane" { (drawn(&lane(&report.replay, &joint.name, to_s), joint, pair, [from_s, to_s])) }
+                        td class="number" { (position(joint.kind, joint.tracking_error.peak)) }
+                        td class="number" { (latest(report, &joint.name)) }
+                    }
+                }
+            }
+            tfoot { tr {
+                td {}
+                td class="ends" { span { (format!("{from_s:.1} s")) } span { (format!("{to_s:.1} s")) } }
+                td {} td {}
+            } }
+        }
+    }
+}
+
+/// Joints with their samples; those that turn and those that slide are compared by their settle bands.
+fn worst_first<'a>(report: &'a Report) -> Vec<(&'a JointReplay, &'a Pair)> {
+    let bands =
+        |joint: &JointReplay| joint.tracking_error.peak / report.replay.rules.sizes(joint.kind).settle_band;
+    let with_pair = |joint: &'a JointReplay| {
+        let own = |pair: &&Pair| pair.name == joint.name;
+        Some((joint, report.pairs.iter().find(own)?))
+    };
+    let mut joints: Vec<_> = report.replay.joints.iter().filter_map(with_pair).collect();
+    joints.sort_by(|(a, _), (b, _)| bands(b).total_cmp(&bands(a)));
+    joints
+}
+
+/// The delay of the joint's latest start, or that it left one out.
+fn latest(report: &Report, joint: &str) -> String {
+    let of = report.replay.joints.iter().find(|found| found.name == joint);
+    if let Some(never) = of.map(|found| found.unanswered_starts).filter(|n| *n > 0) {
+        return format!("{never} never");
+    }
+    let own = report.replay.transitions.iter().filter(|t| t.joint == joint);
+    let latest_s = own.filter_map(|t| t.onset_delay_s).reduce(f64::max);
+    latest_s.map_or(String::new(), |s| format!("{} ms", ms(s)))
+}
+
+/// Stretches, and over them the error's magnitude.
+fn drawn(stretches: &[Stretch], joint: &JointReplay, pair: &Pair, [from_s, to_s]: [f64; 2]) -> Markup {
+    let place = |s: f64| ((s - from_s) / (to_s - from_s) * WIDTH).clamp(0.0, WIDTH);
+    let fixed = |value: f64| format!("{value:.1}");
+    html! {
+        svg viewBox="0 0 1000 30" preserveAspectRatio="none" aria-hidden="true" {
+            @for one in stretches {
+                rect class=(class(one.phase)) x=(fixed(place(one.from_s))) y="0" height="30"
+                    width=(fixed((place(one.to_s) - place(one.from_s)).max(1.0)))
+                    data-from=(format!("{:.3}", one.from_s - BESIDE_S)) data-to=(format!("{:.3}", one.to_s + BESIDE_S))
+                    data-joint=(clean(&pair.name)) {
+                    title { (class(one.phase)) (format!(" {:.2} to {:.2} s", one.from_s, one.to_s)) }
+                }
+            }
+            path class="error" d=(outline(pair, joint.tracking_error.peak, place)) {}
+        }
+    }
+}
+
+/// The error's magnitude as a line over the lane; gaps lift the pen.
+fn outline(pair: &Pair, most: f64, place: impl Fn(f64) -> f64) -> String {
+    let error: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| (p - m).abs()).collect();
+    let (mut path, mut pen) = (String::new(), 'M');
+    for at in envelope(&pair.segments, &[&error], PLACES) {
+        let Some((t_s, error)) = at.and_then(|i| Some((pair.t_s.get(i)?, error.get(i)?))) else {
+            pen = 'M';
+            continue;
+        };
+        let share = if most > 0.0 { error / most } else { 0.0 };
+        let y = 0.97 * HEIGHT * (1.0 - share) + 0.5;
+        let _ = write!(path, "{pen}{:.1} {y:.1}", place(*t_s));
+        pen = 'L';
+    }
+    path
+}
+
+/// What a phase is called, in words and in the sheet of styles.
+fn class(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Waits => "waits",
+        Phase::Follows => "follows",
+        Phase::Settles => "settles",
+    }
+}
+
+/// The worst start from its planned instant: position from there, speed, how far behind.
+pub(super) fn worst_start(report: &Report) -> Option<Chart> {
+    let worst: &Transition = report.replay.worst_first().into_iter().next()?;
+    let pair = report.pairs.iter().find(|pair| pair.name == worst.joint)?;
+    let joint = report.replay.joints.iter().find(|joint| joint.name == worst.joint)?;
+    let latest_s = worst.onset_delay_s.unwrap_or(0.0).max(worst.time_to_peak_s);
+    let after_s = (latest_s + 0.4).clamp(AFTER_S[0], AFTER_S[1]);
+    let mut chart = tile(worst, pair, [BEFORE_S, after_s]);
+    let onset_s = worst.planned_onset_s;
+    let [planned, measured] = speeds(pair, joint.thresholds.window_s, &report.replay.rules);
+    let from = pair.t_s.partition_point(|t_s| *t_s < onset_s - BEFORE_S);
+    let to = pair.t_s.partition_point(|t_s| *t_s <= onset_s + after_s).max(from);
+    let within = |range: &std::ops::Range<usize>| range.start.max(from)..range.end.min(to);
+    let segments: Vec<_> = pair.segments.iter().map(within).filter(|range| !range.is_empty()).collect();
+    let places = envelope(&segments, &[&planned, &measured], 2 * PLACES);
+    let t_s: Vec<f64> = pair.t_s.iter().map(|t_s| t_s - onset_s).collect();
+    chart.xs.push(times(&t_s, &places));
+    let sign = f64::from(worst.direction);
+    let series = |name: &str, role, values: &[f64]| Series {
+        name: name.to_owned(),
+        role,
+        x: 1,
+        y: at(values, &places).map(|value| rounded(on_paper(pair.kind, sign * value))).collect(),
+        names: Vec::new(),
+    };
+    let speed = Panel {
+        label: format!("Speed ({})", unit(Dimension::Speed, pair.kind)),
+        series: vec![
+            series("planned speed", Role::Planned, &planned),
+            series("measured speed", Role::Measured, &measured),
+        ],
+        share: 0.4,
+        range: None,
+    };
+    chart.panels.insert(1, speed);
+    chart.title = format!("The worst start: {}", chart.title);
+    (chart.size, chart.height, chart.x_range) = (Size::Half, 330, Some([-BEFORE_S, after_s]));
+    Some(chart)
+}

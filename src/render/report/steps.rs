@@ -1,0 +1,90 @@
+//! What to do next: a sentence for each step, and the line to type.
+
+use crate::{
+    render::kit::{Sentence, argument, command, counted, ms, reading},
+    series::JointKind,
+    workflow::report::{
+        Report,
+        advice::{Advice, advice},
+    },
+};
+
+/// The steps, the most urgent first; lines name the log as the caller did and read it with the same options.
+pub(super) fn steps(report: &Report, read: &[String]) -> Vec<(Sentence, Option<String>)> {
+    let limit = match report.replay.kind() {
+        JointKind::Turns => ["--max-transition-peak-deg", "0.5"],
+        JointKind::Slides => ["--max-transition-peak-mm", "5"],
+    };
+    let logs = report.paths.iter().map(argument).collect::<Vec<_>>().join(" ");
+    let line = |step: &Advice| Some(reading(&line(step, &logs, limit)?, read));
+    advice(report).iter().map(|step| (Sentence::Advice(words(step, limit[0])), line(step))).collect()
+}
+
+/// What to type for a step, if that does it.
+fn line(step: &Advice, logs: &str, limit: [&str; 2]) -> Option<String> {
+    Some(match step {
+        Advice::ShiftCommand { fits: true, .. } | Advice::EaseStarts { fits: true, gentler: true, .. } => {
+            command(&["replan", logs, "--keep-plan", "--gain", "0.5", "-o", "next.mcap"])
+        }
+        Advice::EaseStarts { fits: true, gentler: false, .. } => {
+            command(&["replan", logs, "--keep-plan", "--gain", "0.5", "--task", "TASK", "-o", "next.mcap"])
+        }
+        Advice::SetLimits => command(&["report", logs, limit[0], limit[1]]),
+        Advice::Compare => command(&["compare", logs, "NEXT_RUN"]),
+        _ => return None,
+    })
+}
+
+fn half_late(delay_s: Option<f64>) -> String {
+    delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {} ms late)", ms(s)))
+}
+
+/// `limit`: an option that sets one for the kind of the joints.
+fn words(step: &Advice, limit: &str) -> String {
+    match step {
+        Advice::ClearDoubts(kinds) => format!(
+            "Clear the doubts about the data first: {} below.",
+            counted(*kinds, "remark")
+        ),
+        Advice::FreeJoint { joint, unanswered, starts } => format!(
+            "Find out why {joint} leaves {unanswered} of {} unanswered: enable signals, brakes, a dead band wider than \
+             the command, a sensor that stands still.",
+            counted(*starts, "planned start")
+        ),
+        Advice::ShiftCommand { joint, lag_s, fits } => format!(
+            "The error is mostly lag, {joint} first ({} ms): speed feed-forward, or sending the command that much earlier, does \
+             most, and work on starts little.{}",
+            ms(*lag_s),
+            if *fits { " Such a command is made from this log by:" } else { "" }
+        ),
+        Advice::EaseStarts { joint, delay_s, fits: false, .. } => {
+            format!("Work on starts from rest, {joint} first{}.", half_late(*delay_s))
+        }
+        Advice::EaseStarts { joint, delay_s, gentler, .. } => format!(
+            "Work on starts from rest, {joint} first{}. A command that compensates dead band and lag, at half strength first, {}:",
+            half_late(*delay_s),
+            if *gentler {
+                "is made from this log by this line; without --keep-plan, a gentler plan too"
+            } else {
+                "is made from this log and the task of its plan, which it does not hold, by"
+            },
+        ),
+        Advice::ShortenLag { joint, lag_s } => format!(
+            "Shorten the lag: {joint} follows {} ms behind throughout; speed feed-forward or a higher gain does most.",
+            ms(*lag_s)
+        ),
+        Advice::LookOutside { joint, time_s } => format!(
+            "Look at {joint} at {time_s:.2} s: the error is largest there, outside the transitions, and no lag explains it."
+        ),
+        Advice::RecordStarts => {
+            "Record a run in which joints leave rest by plan, with the plan in the log: there is no transition to judge."
+                .to_owned()
+        }
+        Advice::SetLimits => {
+            format!("Say what is good enough: limits ({limit} and others) make the verdict and the exit code:")
+        }
+        Advice::Compare => {
+            "After any change, run the same task again and ask whether it helped:".to_owned()
+        }
+    }
+}
