@@ -8,6 +8,7 @@ use super::{
     read::SentArgs,
 };
 use crate::{
+    atomic_file::may_write,
     render::{fit as words, next},
     workflow::fit::{FitDocument, Fitted, Inputs, LimitsFile, run},
 };
@@ -16,6 +17,7 @@ const EXAMPLES: &str = "\
 Examples:
   hydrotrace fit run.mcap -o limits.toml
   hydrotrace fit run-1.mcap run-2.mcap identification.mcap -o limits.toml
+  hydrotrace fit run.mcap --html fit.html
   hydrotrace fit run.mcap --command /arm/command:position --json";
 
 /// Lag, dead band and limits of the machine, from logs of runs
@@ -34,6 +36,10 @@ pub(super) struct Args {
     #[arg(long)]
     json: bool,
 
+    /// Also write a page: measured beside predicted where the model was not fitted to it, and every number
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+
     #[command(flatten)]
     sent: SentArgs,
 }
@@ -47,6 +53,13 @@ impl Args {
     /// Fits the runs and writes the limits.
     pub(super) fn fitted(&self) -> Result<Fitted, CliError> {
         spare_for_log(self.output.as_deref(), &self.logs)?;
+        spare_for_log(self.html.as_deref(), &self.logs)?;
+        if self.html.is_some() && self.html == self.output {
+            return Err(CliError::Usage(
+                "--output and --html name the same file; give each its own".to_owned(),
+            ));
+        }
+        self.html.as_deref().map_or(Ok(()), may_write)?;
         let fitted = run(&Inputs { logs: self.logs.clone(), read: self.sent.options() })?;
         if let Some(path) = self.output.as_deref().filter(|_| self.document().is_none()) {
             let limits = LimitsFile::of(&fitted).toml();
@@ -62,13 +75,16 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let fitted = self.fitted()?;
         let target = Target::new(Form::of(&[(self.json, Form::Json)], self.document()), self.document())?;
-        let result = match &self.output {
+        let next = self.output.as_deref().filter(|_| self.document().is_none()).map(|path| {
+            let log = fitted.with_task.map_or(self.logs.last(), |place| self.logs.get(place));
+            next::limits_written(path, log).reading(&self.sent.words())
+        });
+        if let Some(file) = &self.html {
+            write_file(file, words::page(&fitted, next.as_ref()).as_bytes())?;
+        }
+        let result = match next {
             _ if target.form == Form::Json => FitDocument::of(&fitted).json(),
-            Some(path) => {
-                let log = fitted.with_task.map_or(self.logs.last(), |place| self.logs.get(place));
-                let next = next::limits_written(path, log).reading(&self.sent.words());
-                target.text(&words::document(&fitted).with_above_remarks(next))
-            }
+            Some(next) => target.text(&words::document(&fitted).with_above_remarks(next)),
             None => target.text(&words::document(&fitted)),
         };
         console.finish(&target, &result, &fitted.remarks, &[])

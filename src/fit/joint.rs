@@ -1,7 +1,7 @@
 //! One joint from its runs to what is known of it.
 
 use super::{
-    Character, Estimated, Oscillation,
+    Character, Estimated, HeldOut, Oscillation,
     censor::{ASKED, seen},
     estimate::{Estimate, Part, Problem, Workspace},
     interval::{Knowledge, discrepancy},
@@ -40,8 +40,8 @@ const FOLD_ROUNDS: usize = 3;
 /// Statistical inefficiency until it is measured: correlated residuals per effective sample.
 const INEFFICIENCY: f64 = 50.0;
 
-/// Fits one joint, whose runs are not empty; with its held-out starts.
-pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
+/// Fits one joint, whose runs are not empty; with the ratios of peaks at held-out starts, and what was held out.
+pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOut>) {
     let reached = [0, 1, 2, 3].map(|i| runs.iter().map(|run| run.reached[i]).fold(0.0, f64::max));
     let limits = [0, 1, 2, 3].map(|i| (ABOVE[i] * reached[i]).max(LOWEST[i]));
     let pose_rad = range(runs.iter().flat_map(|run| run.sent.iter().map(|sent| sent.0)));
@@ -86,7 +86,10 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<HeldOutStart>) {
     let left = Oscillation::of(&problem.longest_left_rad(&found.x, &mut workspace));
     knowledge.holds = left.character == Character::Calm && skill.held_out_r2 >= 0.0;
     let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
-    (joint, skill.starts)
+    let ratios = skill.starts.iter().flatten().filter_map(HeldOutStart::ratio).collect();
+    let runs = held_out.iter().zip(&skill.errors).zip(&skill.starts);
+    let stretches = runs.map(|((run, errors), starts)| HeldOut::of(name, run, errors, starts)).collect();
+    (joint, ratios, stretches)
 }
 
 /// Limits that were asked for far enough to show; looking for others costs time.

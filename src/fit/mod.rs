@@ -14,6 +14,7 @@ mod error;
 mod estimate;
 mod estimated;
 mod excite;
+mod held_out;
 mod interval;
 mod joint;
 mod learn;
@@ -32,6 +33,7 @@ mod valve;
 pub use error::FitError;
 pub use estimated::Estimated;
 pub use excite::{Excitation, JointRoom, Ramp, excite};
+pub use held_out::HeldOut;
 pub use learn::{Character, JointStep, Learning, Learnt, Oscillation, Room, Step, Trial, learn};
 pub use model::{Model, STEP_S};
 pub use outcome::{Fit, JointFit, LEAST_SKILL, LeftOut};
@@ -53,6 +55,15 @@ const LEAST_TRAVEL_RAD: f64 = 0.5 * DEGREE_RAD;
 ///
 /// [`FitError::NothingMoves`] if no joint can be fitted.
 pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
+    fit_and_held_out(logs).map(|(fit, _)| fit)
+}
+
+/// The same, with prediction beside measurement where it was held out of the fit: 450 s of each joint's motion at most.
+///
+/// # Errors
+///
+/// As [`fit`].
+pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), FitError> {
     let mut names: Vec<&str> = Vec::new();
     for log in logs {
         for track in &log.sent.tracks {
@@ -62,8 +73,11 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
         }
     }
     let of = |name: &&str| -> Vec<Run> {
-        let of_log = |log: &Observation| Some(runs(log.sent.track(name)?, log.measured.track(name)?));
-        logs.iter().filter_map(of_log).flatten().collect()
+        let of_log = |(log, seen): (usize, &Observation)| {
+            let runs = runs(seen.sent.track(name)?, seen.measured.track(name)?);
+            Some(runs.into_iter().map(move |run| Run { log, ..run }))
+        };
+        logs.iter().enumerate().filter_map(of_log).flatten().collect()
     };
     let fitted = threads::mapped(
         &names,
@@ -76,24 +90,26 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
                 LeftOut { name: (*name).to_owned(), travel_rad, least_travel_rad: LEAST_TRAVEL_RAD };
             moves
                 .then(|| {
-                    let (mut joint, starts) = joint::joint(name, &runs);
+                    let (mut joint, ratios, held_out) = joint::joint(name, &runs);
                     joint.valve_dead_band = logs.iter().find_map(|log| {
                         valve::dead_band(
                             log.valve.iter().find(|s| s.name() == *name)?,
                             log.measured.track(name)?,
                         )
                     });
-                    (joint, starts)
+                    (joint, ratios, held_out)
                 })
                 .ok_or(left_out)
         },
     );
-    let (mut joints, mut starts, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut joints, mut ratios, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+    let mut held_out = Vec::new();
     for found in fitted {
         match found {
-            Ok((joint, of_joint)) => {
+            Ok((joint, of_joint, stretches)) => {
                 joints.push(joint);
-                starts.push(of_joint);
+                ratios.extend(of_joint);
+                held_out.extend(stretches);
             }
             Err(joint) => left_out.push(joint),
         }
@@ -102,6 +118,6 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
         let least_travel_rad = LEAST_TRAVEL_RAD;
         return Err(FitError::NothingMoves { logs: logs.len(), shared: names.len(), least_travel_rad });
     }
-    let ratios: Vec<f64> = starts.iter().flatten().filter_map(skill::HeldOutStart::ratio).collect();
-    Ok(Fit { joints, left_out, margin_starts: ratios.len(), peak_margin: skill::margin(ratios) })
+    let fit = Fit { joints, left_out, margin_starts: ratios.len(), peak_margin: skill::margin(ratios) };
+    Ok((fit, held_out))
 }

@@ -75,6 +75,10 @@ pub(super) struct Sample {
 /// A stretch of one log without gaps or long rests.
 #[derive(Debug, Clone)]
 pub(super) struct Run {
+    /// Which of the logs, from 0.
+    pub(super) log: usize,
+    /// The first grid point, s since the start of the log.
+    pub(super) from_s: f64,
     /// Angle, rad, and speed, rad/s, every [`STEP_S`].
     pub(super) sent: Vec<(f64, f64)>,
     /// State at the start; the integral is unknown.
@@ -174,6 +178,8 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
             let sharpest = [1.0, -1.0].map(|way| extreme(&|i| way * rise(i)));
             let sent = whole[steps.clone()].to_vec();
             runs.push(Run {
+                log: 0,
+                from_s: start_s,
                 asked: asked(&sent),
                 starts: starts(&sent),
                 sent,

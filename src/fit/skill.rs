@@ -17,8 +17,10 @@ const STARTS: usize = 10;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Skill {
     pub(super) held_out_r2: f64,
-    /// Each start.
-    pub(super) starts: Vec<HeldOutStart>,
+    /// Measured and predicted tracking error of every sample, by run, rad.
+    pub(super) errors: Vec<Vec<(f64, f64)>>,
+    /// Each start, by run.
+    pub(super) starts: Vec<Vec<HeldOutStart>>,
 }
 
 /// Peak errors after a start that was not fitted to.
@@ -32,6 +34,11 @@ pub(super) struct HeldOutStart {
 }
 
 impl HeldOutStart {
+    /// Measured and predicted peak.
+    pub(super) fn peaks_rad(&self) -> [f64; 2] {
+        [self.measured_rad, self.predicted_rad]
+    }
+
     /// Measured by predicted peak.
     pub(super) fn ratio(&self) -> Option<f64> {
         (self.predicted_rad > 0.0 && self.measured_rad > 0.0).then(|| self.measured_rad / self.predicted_rad)
@@ -65,7 +72,8 @@ pub(super) fn skill(problem: &Problem, x: &[f64], rounds: usize, workspace: &mut
     let left: f64 = all().map(|error| (error.0 - error.1).powi(2)).sum();
     let held_out_r2 = 1.0 - left / total;
     let held_out_r2 = if held_out_r2.is_finite() { held_out_r2 } else { -1.0 };
-    Skill { held_out_r2, starts: starts(problem.runs, &errors) }
+    let starts = problem.runs.iter().zip(&errors).map(|(run, errors)| starts(run, errors)).collect();
+    Skill { held_out_r2, errors, starts }
 }
 
 /// Sent angle at a sample, rad.
@@ -77,30 +85,25 @@ fn sent_rad(run: &Run, sample: &Sample) -> f64 {
 }
 
 /// Peak errors after each start.
-fn starts(runs: &[Run], errors: &[Vec<(f64, f64)>]) -> Vec<HeldOutStart> {
-    let mut found = Vec::new();
-    for (run, errors) in runs.iter().zip(errors) {
-        for (k, &start) in run.starts.iter().enumerate() {
-            let end = run.window_end(k);
-            let until = |step: usize| run.samples.partition_point(|sample| sample.step < step);
-            let within = &errors[until(start)..until(end).max(until(start))];
-            let peak = |of: fn(&(f64, f64)) -> f64| within.iter().map(|e| of(e).abs()).fold(0.0, f64::max);
-            if !within.is_empty() {
-                found.push(HeldOutStart {
-                    measured_rad: peak(|e| e.0),
-                    predicted_rad: peak(|e| e.1),
-                    unexplained_rad: peak(|e| e.0 - e.1),
-                });
-            }
-        }
-    }
-    found
+fn starts(run: &Run, errors: &[(f64, f64)]) -> Vec<HeldOutStart> {
+    let found = |(k, &start): (usize, &usize)| {
+        let end = run.window_end(k);
+        let until = |step: usize| run.samples.partition_point(|sample| sample.step < step);
+        let within = &errors[until(start)..until(end).max(until(start))];
+        let peak = |of: fn(&(f64, f64)) -> f64| within.iter().map(|e| of(e).abs()).fold(0.0, f64::max);
+        (!within.is_empty()).then(|| HeldOutStart {
+            measured_rad: peak(|e| e.0),
+            predicted_rad: peak(|e| e.1),
+            unexplained_rad: peak(|e| e.0 - e.1),
+        })
+    };
+    run.starts.iter().enumerate().filter_map(found).collect()
 }
 
 /// Mean and 0.9 quantile of the peak errors that the model leaves unexplained, rad; `None` without
 /// starts.
-pub(super) fn unexplained_rad(starts: &[HeldOutStart]) -> Option<[f64; 2]> {
-    let peaks: Vec<f64> = starts.iter().map(|start| start.unexplained_rad).collect();
+pub(super) fn unexplained_rad(starts: &[Vec<HeldOutStart>]) -> Option<[f64; 2]> {
+    let peaks: Vec<f64> = starts.iter().flatten().map(|start| start.unexplained_rad).collect();
     let mean = peaks.iter().sum::<f64>() / peaks.len() as f64;
     (!peaks.is_empty()).then(|| [mean, quantile(peaks, 0.9)])
 }

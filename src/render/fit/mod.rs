@@ -4,6 +4,7 @@ mod page;
 mod tables;
 
 pub(super) use page::fitted;
+pub(crate) use page::page;
 pub(crate) use tables::document;
 
 use crate::fit::{Estimated, JointFit};

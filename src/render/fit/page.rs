@@ -1,12 +1,28 @@
-//! What a fit says of the machine: its numbers with their intervals.
+//! What a fit says of the machine: its numbers with their intervals, and how well it foretells what it was not fitted to.
 
 use maud::{Markup, html};
 
-use super::tables::{left_out_line, machine};
+use super::tables::{document, left_out_line, machine};
 use crate::{
-    fit::Fit,
-    render::kit::{clean, page::headed},
+    fit::{Fit, HeldOut, JointFit},
+    render::{
+        kit::{
+            self, Id, Section, clean, counted,
+            page::{
+                Chapter, Plots, blocks, card,
+                chart::{Chart, Panel, Role, Series, Size, at, rounded, span, times},
+                envelope::envelope,
+                headed,
+            },
+        },
+        metric::on_paper,
+    },
+    series::JointKind::Turns,
+    workflow::fit::Fitted,
 };
+
+/// Places of a series at most, nearly.
+const MOST: usize = 3000;
 
 pub(in crate::render) fn fitted(fit: &Fit) -> Markup {
     html! {
@@ -15,4 +31,158 @@ pub(in crate::render) fn fitted(fit: &Fit) -> Markup {
         p { (format!("90 % of held-out peaks stay below {:.2} times the predicted ones.", fit.peak_margin)) }
         @if let Some(line) = left_out_line(fit) { p { (clean(&line)) } }
     }
+}
+
+/// One page for the person who has to trust the fit; `next` holds the commands that come next.
+pub(crate) fn page(fitted: &Fitted, next: Option<&Section>) -> String {
+    let document = document(fitted);
+    let mut plots = Plots::default();
+    let numbers = document.sections.iter().filter(|section| section.id == Id::OTHER);
+    let mut chapters = vec![
+        Chapter { id: "summary", heading: "Is the model good enough?", body: summary(fitted, next) },
+        Chapter { id: "joints", heading: "Measured beside predicted", body: drawn(fitted, &mut plots) },
+        Chapter {
+            id: Id::OTHER.0,
+            heading: "The machine",
+            body: html! { @for section in numbers { (headed(section)) } },
+        },
+    ];
+    chapters.extend(Chapter::of(document.section(Id::REMARKS), "Remarks on the data"));
+    kit::page::page("fit", &document, &chapters, &plots)
+}
+
+fn summary(fitted: &Fitted, next: Option<&Section>) -> Markup {
+    let joints = &fitted.fit.joints;
+    let good = joints.iter().filter(|joint| joint.trusted()).count();
+    let (class, headline) = match (good, joints.len()) {
+        (good, all) if good == all => ("good", "For every joint".to_owned()),
+        (0, _) => ("bad", "For no joint".to_owned()),
+        (good, all) => ("care", format!("For {good} of {all} joints")),
+    };
+    let rest = joints.iter().filter(|joint| !joint.trusted() || !joint.model_holds);
+    let why = html! {
+        p { "Enough to make a command from: a held-out R2 of " (crate::fit::LEAST_SKILL) " or more." }
+        @for joint in rest { p { (clean(&doubt(joint))) } }
+    };
+    let worst = joints.iter().min_by(|a, b| a.held_out_r2.total_cmp(&b.held_out_r2));
+    let starts = html! {
+        p { "In 90 % of " (counted(fitted.fit.margin_starts, "start")) " that were held out, the measured peak stays below that." }
+    };
+    html! {
+        div class="cards" {
+            (card(class, "Good enough", &headline, &why))
+            @if let Some(worst) = worst {
+                (card("", "Joint that is predicted least", &clean(&format!("{}: {:.1} %", worst.name, 100.0 * worst.held_out_r2.max(0.0))),
+                    &html! { p { "Share of the squared error that is predicted where the model was not fitted to it, R2." } }))
+            }
+            (card("", "Peaks after a start", &format!("{:.2} x predicted", fitted.fit.peak_margin), &starts))
+        }
+        @if let Some(next) = next { (blocks(&next.blocks)) }
+    }
+}
+
+fn doubt(joint: &JointFit) -> String {
+    let JointFit { name, held_out_r2, .. } = joint;
+    if joint.trusted() {
+        format!("The model does not hold for {name}: what it leaves rings. Its numbers have no intervals.")
+    } else {
+        format!("{name} is predicted with an R2 of {held_out_r2:.2} only: no command is made for it.")
+    }
+}
+
+/// The peaks of starts against each other, and each joint's error over time.
+fn drawn(fitted: &Fitted, plots: &mut Plots) -> Markup {
+    let courses = fitted.fit.joints.iter().filter_map(|joint| course(fitted, joint));
+    html! {
+        p class="hint" {
+            "Each part of the data is predicted by a fit to the rest. Error: sent minus measured, and sent minus predicted. Drag to zoom, \
+             double-click for all."
+        }
+        div class="side" {
+            @if let Some(chart) = peaks(&fitted.held_out) { (plots.place(chart)) }
+            @for chart in courses { (plots.place(chart)) }
+        }
+    }
+}
+
+/// Measured over predicted peaks of starts.
+fn peaks(held_out: &[HeldOut]) -> Option<Chart> {
+    let degrees = |rad: f64| rounded(on_paper(Turns, rad));
+    let starts: Vec<(String, f64, f64)> = held_out
+        .iter()
+        .flat_map(|stretch| {
+            stretch
+                .peaks_rad
+                .iter()
+                .map(|peaks| (stretch.joint.clone(), degrees(peaks[1]), degrees(peaks[0])))
+        })
+        .collect();
+    let [_, most] =
+        span(starts.iter().flat_map(|(_, predicted, measured)| [*predicted, *measured]).chain([0.0]));
+    let ends = [0.0, rounded(1.05 * most)];
+    let series = |name: &str, role, x, y, names| Series { name: name.to_owned(), role, x, y, names };
+    let measured = starts.iter().map(|start| start.2).collect();
+    let names = starts.iter().map(|start| start.0.clone()).collect();
+    (!starts.is_empty()).then(|| Chart {
+        title: "Peak error after each start".to_owned(),
+        note: "on the line: as predicted".to_owned(),
+        x_label: "Predicted (deg)".into(),
+        xs: vec![starts.iter().map(|start| start.1).collect(), ends.to_vec()],
+        x_range: Some(ends),
+        panels: vec![Panel {
+            label: "Measured (deg)".to_owned(),
+            series: vec![
+                series("as predicted", Role::Guide, 1, ends.to_vec(), Vec::new()),
+                series("start", Role::Point, 0, measured, names),
+            ],
+            share: 1.0,
+            range: Some(ends),
+        }],
+        height: 260,
+        size: Size::Half,
+        ..Chart::default()
+    })
+}
+
+/// The error of a joint in the log of which most was held out.
+fn course(fitted: &Fitted, joint: &JointFit) -> Option<Chart> {
+    let own = |log: usize| {
+        fitted.held_out.iter().filter(move |stretch| stretch.joint == joint.name && stretch.log == log)
+    };
+    let samples = |log: usize| own(log).map(|stretch| stretch.t_s.len()).sum::<usize>();
+    let log = (0..fitted.runs.len()).rev().max_by_key(|log| samples(*log)).filter(|log| samples(*log) > 0)?;
+    let (mut t_s, mut measured, mut predicted, mut segments) = (vec![], vec![], vec![], vec![]);
+    for stretch in own(log) {
+        segments.push(t_s.len()..t_s.len() + stretch.t_s.len());
+        t_s.extend_from_slice(&stretch.t_s);
+        measured.extend_from_slice(&stretch.measured_rad);
+        predicted.extend_from_slice(&stretch.predicted_rad);
+    }
+    let places = envelope(&segments, &[&measured, &predicted], MOST);
+    let series = |name: &str, role, values: &[f64]| Series {
+        name: name.to_owned(),
+        role,
+        x: 0,
+        y: at(values, &places).map(|rad| rounded(on_paper(Turns, rad))).collect(),
+        names: Vec::new(),
+    };
+    Some(Chart {
+        title: format!("{} in {}", joint.name, fitted.runs[log].log),
+        note: format!("R2 {:.2}", joint.held_out_r2),
+        x_label: "Time (s)".into(),
+        xs: vec![times(&t_s, &places)],
+        panels: vec![Panel {
+            label: "Error (deg)".to_owned(),
+            series: vec![
+                series("predicted", Role::Planned, &predicted),
+                series("measured", Role::Measured, &measured),
+            ],
+            share: 1.0,
+            range: None,
+        }],
+        group: Some("run"),
+        height: 260,
+        size: Size::Half,
+        ..Chart::default()
+    })
 }

@@ -12,7 +12,7 @@ pub use document::{FitDocument, LimitsFile};
 pub use failure::FitFailure;
 
 use crate::{
-    fit::{Fit, FitError, Observation, fit},
+    fit::{Fit, FitError, HeldOut, Observation, fit_and_held_out},
     log::{ReadOptions, Recording, SignalRole, SourceInfo},
     remark::{Code, Remarks},
     series::Track,
@@ -54,6 +54,8 @@ pub struct FittedRun {
 pub struct Fitted {
     /// The machine.
     pub fit: Fit,
+    /// Prediction beside measurement where it was held out of the fit.
+    pub held_out: Vec<HeldOut>,
     /// Torques by joint, of the first run that has pressures and a task with cylinders.
     pub torques: Vec<JointTorque>,
     /// The runs.
@@ -100,7 +102,7 @@ pub fn observed(logs: &[PathBuf], read: &ReadOptions) -> Result<Vec<Recording>, 
 pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> {
     of_one_arm(logs, observed)?;
     let observations: Vec<Observation<'_>> = observed.iter().map(observation).collect();
-    let fit = fit(&observations)?;
+    let (fit, held_out) = fit_and_held_out(&observations)?;
     for joint in &fit.joints {
         ::log::info!(
             "{} fitted to {} samples in {} runs; {:e} rad unexplained, held-out R2 {:.3}",
@@ -140,7 +142,7 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
     }
     let torques = observed.iter().map(torques).find(|torques| !torques.is_empty()).unwrap_or_default();
     let with_task = observed.iter().rposition(|observed| Carried::of(observed).task().is_some());
-    Ok(Fitted { fit, torques, runs, with_task, remarks })
+    Ok(Fitted { fit, held_out, torques, runs, with_task, remarks })
 }
 
 /// Every log must share a joint with those before it: a machine is fitted, not several.

@@ -124,7 +124,13 @@ fn half_the_gain_does_less_and_no_command_at_all_leaves_the_plan_alone_to_help()
 fn limits_come_back_from_their_file_and_a_run_of_excite_identifies_the_speeds() {
     let folder = with_run();
     let folder = folder.path();
-    let smooth = json(folder, "fit run.mcap -o limits.toml");
+    let smooth = json(folder, "fit run.mcap -o limits.toml --html fit.html");
+    let page = fs::read_to_string(folder.join("fit.html")).unwrap();
+    for told in
+        ["J6 in run.mcap", "Peak error after each start", "hydrotrace replan run.mcap", "dead band deg/s"]
+    {
+        assert!(page.contains(told), "{told}");
+    }
     for joint in smooth["joints"].as_array().unwrap() {
         for limit in ["speed_limit_growing_rad_s", "acceleration_limit_shrinking_rad_s2"] {
             assert_eq!(joint[limit]["identified"], false);
@@ -166,6 +172,7 @@ fn what_cannot_be_done_says_why_and_writes_nothing() {
         ("replan plan.mcap -o x.mcap", 1, "no measured"),
         ("fit run.mcap --command /nowhere -o x.mcap", 1, "/nowhere"),
         ("fit run.mcap -o run.mcap", 1, "is an input"),
+        ("fit run.mcap --html run.mcap", 1, "is an input"),
         ("excite -o x.mcap --joint a=1:2", 2, "NAME=HOME:LOW:HIGH"),
         ("excite -o x.mcap --joint a=1:0:2", 1, "do not fit"),
         ("demo --dir plan.mcap", 1, "cannot make the folder"),
