@@ -1,10 +1,11 @@
 //! Numbers as files write them, with a decimal point or a decimal comma.
 
+/// A number near zero without an exponent has some 345 characters, and `export` writes those.
+const LONGEST: usize = 400;
+
 /// The number in a cell; `None` if it is none. NaN and infinities, which some programs write as
-/// words, are numbers here.
+/// words, are numbers here. Points may set thousands apart where a comma is the decimal mark.
 pub(super) fn number(cell: &[u8], decimal_comma: bool) -> Option<f64> {
-    // A number near zero without an exponent has some 345 characters, and `export` writes those.
-    const LONGEST: usize = 400;
     let cell = cell.trim_ascii();
     if cell.is_empty() || cell.len() > LONGEST {
         return None;
@@ -17,13 +18,30 @@ pub(super) fn number(cell: &[u8], decimal_comma: bool) -> Option<f64> {
         return std::str::from_utf8(cell).ok()?.parse().ok();
     };
     let mut buffer = [0_u8; LONGEST];
-    let copy = buffer.get_mut(..cell.len())?;
-    copy.copy_from_slice(cell);
-    if memchr::memchr(b'.', cell).is_some() {
-        return None;
+    let (whole, part) = cell.split_at(comma);
+    let mut length = 0;
+    let mut put = |byte: u8| {
+        buffer[length] = byte;
+        length += 1;
+    };
+    match memchr::memchr(b'.', whole) {
+        None => whole.iter().for_each(|byte| put(*byte)),
+        Some(_) => ungrouped(whole)?.for_each(&mut put),
     }
-    *copy.get_mut(comma)? = b'.';
-    std::str::from_utf8(copy).ok()?.parse().ok()
+    put(b'.');
+    part.iter().skip(1).for_each(|byte| put(*byte));
+    std::str::from_utf8(buffer.get(..length)?).ok()?.parse().ok()
+}
+
+/// The digits of a whole number whose thousands are set apart by points, with its sign: `-1.234.567`; `None` if they are
+/// not groups of three.
+fn ungrouped(whole: &[u8]) -> Option<impl Iterator<Item = u8>> {
+    let digits = whole.strip_prefix(b"-").or_else(|| whole.strip_prefix(b"+")).unwrap_or(whole);
+    let grouped = digits.split(|byte| *byte == b'.').enumerate().all(|(k, group)| {
+        let long = if k == 0 { (1..=3).contains(&group.len()) } else { group.len() == 3 };
+        long && group.iter().all(u8::is_ascii_digit)
+    });
+    grouped.then(|| whole.iter().copied().filter(|byte| *byte != b'.'))
 }
 
 /// A plain decimal number times `unit_ns`, rounded to whole nanoseconds without a detour over
@@ -98,6 +116,19 @@ mod tests {
     use super::*;
 
     #[test]
+    fn points_set_thousands_apart_only_before_a_decimal_comma_and_only_in_threes() {
+        for (cell, value) in [("1.493,02", 1493.02), ("-1.234.567,5", -1_234_567.5), ("+12.000,0", 12_000.0)]
+        {
+            assert_eq!(number(cell.as_bytes(), true), Some(value), "{cell}");
+            assert_eq!(looks(cell.as_bytes()), Looks::Comma, "{cell}");
+        }
+        for cell in ["1.49,02", "1493.020,5", "1,493.02", ".493,0", "1..493,0", "1.493"] {
+            assert_eq!(number(cell.as_bytes(), true), None, "{cell}");
+        }
+        assert_eq!(nanoseconds(b"1.493,02", true, 1_000_000_000), Some(1_493_020_000_000));
+    }
+
+    #[test]
     fn a_stamp_of_nineteen_digits_keeps_them() {
         assert_eq!(nanoseconds(b"1750000000123456789", false, 1), Some(1_750_000_000_123_456_789));
         assert_eq!(
@@ -124,7 +155,7 @@ mod tests {
     fn a_point_is_no_number_where_the_comma_is_decimal() {
         assert_eq!(number(b" 1,5 ", true), Some(1.5));
         assert_eq!(number(b"1.5", true), None);
-        assert_eq!(number(b"1.234,5", true), None);
+        assert_eq!(number(b"1.23,5", true), None);
         assert_eq!(number(b"1,5", false), None);
         assert_eq!(number(b"-1e3", true), Some(-1000.0));
     }

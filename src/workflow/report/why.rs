@@ -108,6 +108,9 @@ impl DelayModel {
         };
         let (plan, sent, measured) =
             (turning(&recording.planned), turning(sent), turning(&recording.measured));
+        if measured.tracks.is_empty() {
+            return Some(Err("only machines of joints that turn are fitted, and here all slide".to_owned()));
+        }
         let fit = if let Self::Known(fit) = self {
             Ok(Fit::clone(fit))
         } else {
