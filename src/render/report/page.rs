@@ -24,6 +24,11 @@ use crate::{
     workflow::report::Report,
 };
 
+/// What a run is called: its files.
+pub(crate) fn name(report: &Report) -> String {
+    report.logs.join(", ")
+}
+
 /// One page that answers the questions by itself; `most` is how many transitions its table lists.
 ///
 /// Whatever comes from the log is shown as text, whatever it looks like.
