@@ -45,7 +45,7 @@ fn answer(root: &Path, port: u16, request: Request) -> std::io::Result<()> {
         Some((Ok(bytes), page)) => (200, bytes, page == Path::new("index.html")),
         _ => (if status == 200 { 404 } else { status }, b"There is no such page.\n".to_vec(), false),
     };
-    let mut response = Response::from_data(bytes).with_status_code(status);
+    let mut response = Response::from_data(bytes).with_status_code(status).with_chunked_threshold(usize::MAX);
     let kind = if status == 200 { "text/html; charset=utf-8" } else { "text/plain" };
     let refresh = Some(("Refresh", REFRESH_S)).filter(|_| is_index);
     let fields =

@@ -64,8 +64,6 @@ fn summary(index: &Index<'_>, done: &[&Run], failed: &[&Run]) -> Markup {
         (kept, 0) => ("good", format!("{} within limits", counted(kept, "run"))),
         (kept, broken) => ("bad", format!("{broken} of {} NOT within limits", counted(kept + broken, "run"))),
     };
-    let found = index.drift.iter().flat_map(|drift| &drift.trends).filter(|trend| trend.found);
-    let found: Vec<_> = found.collect();
     html! {
         div class="cards" {
             (card(class, "Verdict", &headline, &html! {
@@ -77,19 +75,27 @@ fn summary(index: &Index<'_>, done: &[&Run], failed: &[&Run]) -> Markup {
                 (card("", "Newest run", &newest.worst().map_or(NONE.to_owned(), |worst| format!("{}: {}", worst.joint, peak(worst))),
                     &html! { p { (link(newest)) ", " (began(newest)) ", " (verdict(newest.verdict)) } }))
             }
-            @if let Some(drift) = &index.drift {
-                (card(if found.is_empty() { "" } else { "bad" }, "Drift",
-                    &if found.is_empty() { "None found".to_owned() } else { format!("{} found", counted(found.len(), "drift")) },
-                    &html! {
-                        @if let Some(first) = found.first() { p { (clean(&said(first))) } }
-                        @else { p { "among " (counted(drift.trends.len(), "trend")) " that five runs or more of one plan tell" } }
-                    }))
-            }
+            @if let Some(drift) = &index.drift { (drift_card(drift)) }
             @if !failed.is_empty() {
                 (card("bad", "Without a report", &counted(failed.len(), "log"), &html! { p { a href="#failed" { "Why" } } }))
             }
         }
     }
+}
+
+fn drift_card(drift: &Drift) -> Markup {
+    let found: Vec<_> = drift.trends.iter().filter(|trend| trend.found).collect();
+    let (class, headline) = match (drift.trends.len(), found.len()) {
+        (0, _) => ("", "Too early to tell".to_owned()),
+        (_, 0) => ("good", "None found".to_owned()),
+        (_, some) => ("bad", format!("{} found", counted(some, "drift"))),
+    };
+    let why = match (drift.trends.len(), found.first()) {
+        (0, _) => "Five runs of one plan, of a machine that is named, are the least.".to_owned(),
+        (_, Some(first)) => said(first),
+        (all, None) => format!("among {}", counted(all, "trend")),
+    };
+    card(class, "Drift", &headline, &html! { p { (clean(&why)) } })
 }
 
 fn link(run: &Run) -> Markup {
@@ -176,7 +182,7 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
         }
         @for (machine, joints) in &machines {
             @if left > 0 {
-                @if machines.len() > 1 || *machine != NONE { h3 { (clean(machine)) } }
+                h3 { @if *machine == NONE { "No machine named" } @else { (clean(machine)) } }
                 @for line in drifts(drift, machine) { p { (clean(&line)) } }
                 div class="tiles" {
                     @for (name, points) in joints.iter().take(left) { (plots.place(chart(*name, points, range))) }
