@@ -32,7 +32,7 @@ pub fn remember() {
 }
 
 /// From now on it remembers none, and forgets those that it knows: a file that is gone leaves its inode to another.
-pub(crate) fn forget() {
+pub fn forget() {
     REMEMBERED.store(false, Ordering::Relaxed);
     read().clear();
 }

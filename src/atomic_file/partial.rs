@@ -105,11 +105,11 @@ fn remove_left(folder: &Path) {
     for entry in entries.flatten() {
         let name = entry.file_name();
         let ours = name.to_str().is_some_and(|name| name.starts_with(START) && name.ends_with(END));
-        // Another thread of this process may have made it and not locked it yet.
-        if written().iter().any(|path| path.file_name() == Some(&name)) {
+        if !ours || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
             continue;
         }
-        if !ours || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+        // Another thread of this process may have made it and not locked it yet.
+        if written().iter().any(|path| path.file_name() == Some(&name)) {
             continue;
         }
         // Held until it is removed, so that who makes one of this name waits and then sees that it is gone.

@@ -33,11 +33,12 @@ pub(crate) fn ending(path: &Path) -> io::Result<Ending> {
     if !MAGIC.starts_with(&first) {
         return Ok(Ending::Untold);
     }
-    if file.metadata()?.len() < 2 * size {
+    let length = file.metadata()?.len();
+    if length < 2 * size {
         return Ok(Ending::Open);
     }
     let mut last = Vec::new();
-    file.seek(SeekFrom::End(-(MAGIC.len() as i64)))?;
+    file.seek(SeekFrom::Start(length - size))?;
     file.take(size).read_to_end(&mut last)?;
     Ok(if last == MAGIC { Ending::Closed } else { Ending::Open })
 }

@@ -76,7 +76,7 @@ pub(in crate::workflow) struct Beside<'a> {
     /// Limits that its report judges.
     pub(in crate::workflow) gates: &'a Gates,
     /// Whether a log is analysed although the dataset holds its rows.
-    pub(in crate::workflow) again: &'a dyn Fn(&Source) -> bool,
+    pub(in crate::workflow) again: &'a (dyn Fn(&Source) -> bool + Sync),
     /// Told of each log that was analysed, by any thread, before its rows are written.
     pub(in crate::workflow) analysed: &'a (dyn Fn(&Log, Analysed<'_>) + Sync),
 }
@@ -156,7 +156,7 @@ pub(in crate::workflow) fn scan_these(
     };
     for batch in pending.chunks(BATCH) {
         let rows = at_once(batch.len(), workers, &ended, |k| {
-            let (rows, failure) = analysed(&batch[k], &analysis_id, inputs, (beside.gates, beside.analysed));
+            let (rows, failure) = analysed(&batch[k], &analysis_id, inputs, beside);
             let failed = failed.fetch_add(usize::from(failure.is_some()), Ordering::Relaxed);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             let now = Progress { done, of: pending.len(), failed: failed + usize::from(failure.is_some()) };
@@ -246,13 +246,13 @@ fn analysed(
     pending: &Pending,
     analysis_id: &str,
     inputs: &Inputs,
-    (gates, tell): (&Gates, &dyn Fn(&Log, Analysed<'_>)),
+    beside: &Beside<'_>,
 ) -> (Rows, Option<Failure>) {
     let Pending { source, tries, .. } = pending;
     let request = report::Inputs {
         read: inputs.read.clone(),
         rules: inputs.rules.clone(),
-        gates: gates.clone(),
+        gates: beside.gates.clone(),
         ..report::Inputs::default()
     };
     let mut log = Log {
@@ -269,7 +269,7 @@ fn analysed(
         let one = || {
             report::reported(source.inputs(), &request).map(|(report, found)| {
                 let machine = inputs.machine.of(&source.path, Some(&found));
-                tell(&Log { machine: machine.clone(), ..log.clone() }, Ok((&report, &found)));
+                (beside.analysed)(&Log { machine: machine.clone(), ..log.clone() }, Ok((&report, &found)));
                 (machine, found)
             })
         };
@@ -293,7 +293,7 @@ fn analysed(
         }
     }
     log.machine = inputs.machine.of(&source.path, None);
-    tell(&log, Err((&error, may_pass)));
+    (beside.analysed)(&log, Err((&error, may_pass)));
     let failure = Failure { log: log.uri.clone(), error: error.clone() };
     (tables::failed(&log, &error, may_pass), Some(failure))
 }
