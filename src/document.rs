@@ -13,6 +13,14 @@ pub fn pretty(document: &impl Serialize) -> String {
     text
 }
 
+/// JSON on one line, with its break.
+pub fn line(document: &impl Serialize) -> String {
+    let mut text =
+        serde_json::to_string(document).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"));
+    text.push('\n');
+    text
+}
+
 /// An error with its reasons, on one line.
 pub fn explained(error: &dyn std::error::Error) -> String {
     let mut text = error.to_string();

@@ -31,6 +31,12 @@ pub fn remember() {
     REMEMBERED.store(true, Ordering::Relaxed);
 }
 
+/// From now on it remembers none, and forgets those that it knows: a file that is gone leaves its inode to another.
+pub fn forget() {
+    REMEMBERED.store(false, Ordering::Relaxed);
+    read().clear();
+}
+
 /// Opens a file for reading.
 ///
 /// # Errors

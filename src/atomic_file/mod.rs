@@ -257,6 +257,21 @@ mod tests {
         assert!(matches!(into_nowhere, Err(AtomicError::NoFolder { .. })));
     }
 
+    #[test]
+    fn threads_that_write_into_one_folder_take_nothing_from_one_another() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = &|name: String| -> Result<(), AtomicError> {
+            let target = folder.path().join(name);
+            write_atomically(&target, |file| file.write_all(b"all").map_err(failed("write", &target)))
+        };
+        std::thread::scope(|scope| {
+            for thread in 0..4 {
+                scope.spawn(move || (0..50).for_each(|k| write(format!("{thread}-{k}")).unwrap()));
+            }
+        });
+        assert_eq!(names(folder.path()).len(), 200);
+    }
+
     #[cfg(unix)]
     #[test]
     fn a_symbolic_link_stays_and_its_file_is_replaced() {

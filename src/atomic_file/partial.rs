@@ -5,7 +5,10 @@ use std::{
     fs::{self, File, Metadata},
     io,
     path::{Path, PathBuf},
-    sync::{Mutex, MutexGuard, PoisonError},
+    sync::{
+        Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
 };
 
 /// Around the process and a count. Short, so that a target may have the longest name that a file system takes.
@@ -14,6 +17,8 @@ const END: &str = ".partial";
 /// More names than this that are taken are no chance.
 const MOST_NAMES: u32 = 10_000;
 
+/// No thread gets a name that another one had: who removes what is left may still know that.
+static COUNT: AtomicU64 = AtomicU64::new(0);
 /// The files that this process is writing.
 static WRITTEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
@@ -40,7 +45,8 @@ impl Partial {
     pub(super) fn beside(place: &Path) -> io::Result<(Self, File)> {
         let folder = folder_of(place);
         remove_left(folder);
-        for count in 0..MOST_NAMES {
+        for _ in 0..MOST_NAMES {
+            let count = COUNT.fetch_add(1, Ordering::Relaxed);
             let path = folder.join(format!("{START}{}-{count}{END}", std::process::id()));
             let (partial, file) = {
                 let mut files = written();
@@ -100,6 +106,10 @@ fn remove_left(folder: &Path) {
         let name = entry.file_name();
         let ours = name.to_str().is_some_and(|name| name.starts_with(START) && name.ends_with(END));
         if !ours || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            continue;
+        }
+        // Another thread of this process may have made it and not locked it yet.
+        if written().iter().any(|path| path.file_name() == Some(&name)) {
             continue;
         }
         // Held until it is removed, so that who makes one of this name waits and then sees that it is gone.

@@ -39,7 +39,6 @@ impl<'a> Console<'a> {
     }
 
     /// The same at once, before the verb ends.
-    #[cfg(feature = "viewer")]
     pub(super) fn announce(&mut self, text: &str) -> std::io::Result<()> {
         self.out.write_all(text.as_bytes())?;
         self.out.flush()

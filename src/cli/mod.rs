@@ -30,6 +30,7 @@ mod report;
 mod simulate;
 mod terminal;
 mod view;
+mod watch;
 
 use std::{env, io, process::ExitCode};
 
@@ -94,6 +95,7 @@ verbs! {
     Simulate simulate,
     Fit fit,
     Fleet fleet,
+    Watch watch,
     Excite excite,
     Replan replan,
     Join join,

@@ -139,8 +139,7 @@ impl Run for Args {
             // Its joints must be those of the run.
             file.check_joints(path, report.pairs.iter().map(|pair| pair.name.as_str()))?;
         }
-        let names = self.logs.iter().filter_map(|p| p.file_name()).map(|n| n.to_string_lossy());
-        let name = names.collect::<Vec<_>>().join(", ");
+        let name = words::name(&report);
         let most = MOST.map(|most| if self.all { usize::MAX } else { most });
         let result = match target.form {
             Form::Json => pretty(&Document::of(&report)),

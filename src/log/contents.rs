@@ -22,6 +22,8 @@ pub enum Contents {
     Recording(&'static str),
     /// Rows of cells, and the first line.
     Table(String),
+    /// A page for browsers, and its first bytes.
+    Page(String),
     /// Anything else.
     Other,
 }
@@ -53,9 +55,18 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
             metadata: layout.metadata.into_iter().map(|one| one.name).collect(),
         });
     }
+    let start = String::from_utf8_lossy(&bytes);
+    if ["<!doctype html", "<html"].iter().any(|tag| begins(&start, tag)) {
+        return Ok(Contents::Page(start.into_owned()));
+    }
     if is_table(path, &bytes) {
         let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         return Ok(Contents::Table(String::from_utf8_lossy(line).into_owned()));
     }
     Ok(Contents::Other)
+}
+
+/// Whether a text begins with a tag, in letters of any case.
+fn begins(text: &str, tag: &str) -> bool {
+    text.trim_start().get(..tag.len()).is_some_and(|start| start.eq_ignore_ascii_case(tag))
 }

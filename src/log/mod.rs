@@ -12,6 +12,8 @@ mod csv;
 #[cfg(feature = "parquet")]
 pub mod dataset;
 mod decode;
+#[cfg(feature = "parquet")]
+mod ending;
 mod error;
 mod export;
 mod file;
@@ -35,6 +37,8 @@ pub use csv::{
     AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, JsonLines, LengthUnit, Quantity, Separator,
     TableStream, TimeRead, Understood, read_csv_bytes,
 };
+#[cfg(feature = "parquet")]
+pub(crate) use ending::{Ending, ending};
 pub use error::LogError;
 pub use export::{ExportError, RunTable};
 pub use file::ReadAt;

@@ -19,3 +19,4 @@ pub(crate) mod recover;
 pub(crate) mod replan;
 pub(crate) mod report;
 pub(crate) mod simulate;
+pub(crate) mod watch;

@@ -18,3 +18,5 @@ pub mod report;
 pub mod simulate;
 #[doc(hidden)]
 pub mod view;
+#[cfg(feature = "parquet")]
+pub mod watch;

@@ -15,6 +15,8 @@ mod walk;
 pub(super) use block::{Block, Blocks, Loss, records};
 pub(super) use held::Held;
 pub(super) use record::{ChannelRecord, MessageRecord, Opcode, SchemaRecord};
+#[cfg(feature = "parquet")]
+pub(super) use scan::MAGIC;
 pub(super) use scan::{Layout, scan};
 pub use source::ReadAt;
 pub(super) use source::Source;

@@ -12,7 +12,7 @@ use super::{
     walk::{Found, HEAD, Walk},
 };
 
-pub(super) const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
+pub(in crate::log) const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
 
 /// Messages outside chunks are grouped into blocks of about this size, bytes.
 const LOOSE_BLOCK: u64 = 1 << 20;

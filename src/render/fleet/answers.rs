@@ -46,7 +46,7 @@ fn more(all: usize, most: usize) -> Option<Sentence> {
     (all > most).then(|| Sentence::note(format!("{} more; --all shows them.", all - most)))
 }
 
-pub(super) fn said(trend: &JointTrend) -> String {
+pub(in crate::render) fn said(trend: &JointTrend) -> String {
     let grows = if trend.slope_per_day > 0.0 { "grows" } else { "falls" };
     let unit = shown_unit(&trend.unit);
     let since = trend.since.as_deref().map_or(String::new(), |since| format!(", since {}", day(since)));

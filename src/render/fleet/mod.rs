@@ -4,8 +4,10 @@ mod answers;
 mod csv;
 mod page;
 
+pub(in crate::render) use answers::said;
 pub(crate) use answers::{drift, effect, gate, gate_verdicts, worst};
 pub(crate) use csv::{drift_csv, effect_csv, worst_csv};
+pub(in crate::render) use page::days;
 pub(crate) use page::{drift_page, effect_page, worst_page};
 
 use std::path::Path;
@@ -112,7 +114,7 @@ fn name(by: By) -> &'static str {
 }
 
 /// The unit that people read, for a unit of a document.
-fn shown_unit(unit: &str) -> &'static str {
+pub(in crate::render) fn shown_unit(unit: &str) -> &'static str {
     match unit {
         "s" => "ms",
         unit if unit == JointKind::Slides.unit() => "mm",
@@ -121,7 +123,7 @@ fn shown_unit(unit: &str) -> &'static str {
 }
 
 /// A value in the unit that people read, without it.
-fn shown(unit: &str, value: f64) -> String {
+pub(in crate::render) fn shown(unit: &str, value: f64) -> String {
     match shown_unit(unit) {
         "ms" => ms(value),
         "mm" => mm(value),

@@ -121,8 +121,8 @@ fn ends(kind: &str, document: &Document, mut chapters: Vec<Chapter>, plots: &Plo
     kit::page::page(&format!("fleet {kind}"), document, &chapters, plots)
 }
 
-/// Machines by day.
-fn days(maps: &[Map]) -> Option<Chapter> {
+/// Machines by day; nothing of no map.
+pub(in crate::render) fn days(maps: &[Map]) -> Option<Chapter> {
     let body = html! {
         p class="hint" {
             "Each cell is the worst joint of a machine in that time: by how many per cent its starts are above (+) or below (-) "

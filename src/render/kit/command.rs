@@ -8,8 +8,8 @@ pub(crate) fn command(words: &[&str]) -> String {
 }
 
 /// Verbs that take the options on what to read of a log.
-pub(crate) const READERS: [&str; 8] =
-    ["answer", "compare", "export", "fit", "info", "replan", "report", "view"];
+pub(crate) const READERS: [&str; 9] =
+    ["answer", "compare", "export", "fit", "info", "replan", "report", "view", "watch"];
 
 /// A command with the options on what to read, where its verb takes them.
 pub(crate) fn reading(line: &str, options: &[String]) -> String {

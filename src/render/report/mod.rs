@@ -21,5 +21,5 @@ mod why;
 pub(crate) use answer::answer;
 pub(crate) use csv::csv;
 pub(crate) use figures::figures;
-pub(crate) use page::page;
+pub(crate) use page::{name, page};
 pub(crate) use tables::{document, verdicts};

@@ -28,6 +28,11 @@ use crate::{
 /// Shown beside a stretch that a row is about, s.
 const BESIDE_S: f64 = 0.5;
 
+/// What a run is called: its files.
+pub(crate) fn name(report: &Report) -> String {
+    report.logs.join(", ")
+}
+
 /// One page that answers the questions by itself; `most` is how many transitions its table lists, `read` the options with
 /// which the log was read.
 ///

@@ -8,6 +8,8 @@ use crate::log::{Contents, Topics, contents};
 
 /// How the tables begin that the program writes; others are records.
 const OWN_TABLES: [&str; 2] = ["stamp_ns,time_s", "run,joint,"];
+/// What the head of a page holds that the program wrote.
+const OWN_PAGE: &str = "<meta name=\"generator\" content=\"hydrotrace ";
 
 /// What an existing file is, if it is to be kept.
 pub fn worth(path: &Path) -> Option<String> {
@@ -24,6 +26,8 @@ pub fn worth(path: &Path) -> Option<String> {
         Contents::Recording(what) => Some(what.to_owned()),
         Contents::Table(head) if OWN_TABLES.iter().any(|own| head.starts_with(own)) => None,
         Contents::Table(_) => Some("a table that this program did not write".to_owned()),
+        Contents::Page(head) if head.contains(OWN_PAGE) => None,
+        Contents::Page(_) => Some("a page that this program did not write".to_owned()),
         Contents::Other => None,
     }
 }

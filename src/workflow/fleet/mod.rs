@@ -33,6 +33,8 @@ pub use history::{By, Filter};
 pub use machine::MachineFrom;
 pub use map::{Cell as MapCell, Map, MapRow};
 pub use note::{Intervention, Note, Notes, effect_of_last_note, note, notes};
+pub(super) use scan::{Analysed, Beside, scan_these};
 pub use scan::{Inputs, Progress, own_analysis_id, scan};
+pub(super) use sources::{Source, sources_now};
 pub use tables::{Log, Name as TableName, Rows, analysed as rows, failed as failed_rows};
 pub use worst::{Worst, WorstJoint, worst};

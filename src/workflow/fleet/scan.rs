@@ -33,7 +33,7 @@ use crate::{
         dataset::{Cell, read_table},
     },
     replay::Rules,
-    workflow::report::{self, ReportFailure, analysis_id, hash},
+    workflow::report::{self, DelayModel, Findings, Gates, Report, ReportFailure, analysis_id, hash},
 };
 
 /// Logs of a batch: what a kill loses at most, and what is held in memory.
@@ -71,6 +71,21 @@ pub struct Progress {
     pub failed: usize,
 }
 
+/// What is done with each log beside its rows.
+pub(in crate::workflow) struct Beside<'a> {
+    /// Limits that its report judges.
+    pub(in crate::workflow) gates: &'a Gates,
+    /// Whether its report is drawn, with all signals and the reasons of delays.
+    pub(in crate::workflow) drawn: bool,
+    /// Whether a log is analysed although the dataset holds its rows.
+    pub(in crate::workflow) again: &'a (dyn Fn(&Source) -> bool + Sync),
+    /// Told of each log that was analysed, by any thread, before its rows are written.
+    pub(in crate::workflow) analysed: &'a (dyn Fn(&Log, Analysed<'_>) + Sync),
+}
+
+/// A report with its findings; or why there is none, and whether that may pass.
+pub(in crate::workflow) type Analysed<'a> = Result<(&'a Report, &'a Findings), (&'a str, bool)>;
+
 /// A log as the dataset holds it.
 #[derive(Debug, Clone)]
 struct Known {
@@ -103,7 +118,17 @@ pub fn scan(
     inputs: &Inputs,
     seen: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
 ) -> Result<Scanned, FleetFailure> {
-    let found = sources(&inputs.sources)?;
+    let beside = Beside { gates: &Gates::default(), drawn: false, again: &|_| false, analysed: &|_, _| () };
+    scan_these(sources(&inputs.sources)?, inputs, &beside, seen)
+}
+
+/// The same of these logs, whatever the sources; `beside` has its part of each.
+pub(in crate::workflow) fn scan_these(
+    found: Vec<Source>,
+    inputs: &Inputs,
+    beside: &Beside<'_>,
+    seen: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+) -> Result<Scanned, FleetFailure> {
     let store = Store::open(&inputs.into)?;
     let mut held = known(store.root())?;
     let analysis_id = own_analysis_id(inputs);
@@ -115,7 +140,7 @@ pub fn scan(
         let known = held.get(source.path.to_string_lossy().as_ref());
         let ids = [&analysis_id, &fitted_id];
         let same = known.filter(|known| known.etag == source.etag && ids.contains(&&known.analysis_id));
-        if same.is_some_and(|known| !known.again) {
+        if same.is_some_and(|known| !known.again) && !(beside.again)(&source) {
             scanned.unchanged += 1;
         } else {
             scanned.replaced += usize::from(known.is_some());
@@ -133,7 +158,7 @@ pub fn scan(
     };
     for batch in pending.chunks(BATCH) {
         let rows = at_once(batch.len(), workers, &ended, |k| {
-            let (rows, failure) = analysed(&batch[k], &analysis_id, inputs);
+            let (rows, failure) = analysed(&batch[k], &analysis_id, inputs, beside);
             let failed = failed.fetch_add(usize::from(failure.is_some()), Ordering::Relaxed);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             let now = Progress { done, of: pending.len(), failed: failed + usize::from(failure.is_some()) };
@@ -219,11 +244,19 @@ fn at_once<T: Send>(
 }
 
 /// The rows of a log, and why it has one row only.
-fn analysed(pending: &Pending, analysis_id: &str, inputs: &Inputs) -> (Rows, Option<Failure>) {
+fn analysed(
+    pending: &Pending,
+    analysis_id: &str,
+    inputs: &Inputs,
+    beside: &Beside<'_>,
+) -> (Rows, Option<Failure>) {
     let Pending { source, tries, .. } = pending;
     let request = report::Inputs {
         read: inputs.read.clone(),
         rules: inputs.rules.clone(),
+        gates: beside.gates.clone(),
+        with_signals: beside.drawn,
+        delay_model: if beside.drawn { DelayModel::OfThisRunIfShort } else { DelayModel::None },
         ..report::Inputs::default()
     };
     let mut log = Log {
@@ -237,9 +270,16 @@ fn analysed(pending: &Pending, analysis_id: &str, inputs: &Inputs) -> (Rows, Opt
     let (mut error, mut may_pass) = (String::new(), true);
     for _ in 0..TRIES {
         log.tries += 1;
-        match catch_unwind(AssertUnwindSafe(|| report::findings(source.inputs(), &request))) {
-            Ok(Ok(found)) => {
-                log.machine = inputs.machine.of(&source.path, Some(&found));
+        let one = || {
+            report::reported(source.inputs(), &request).map(|(report, found)| {
+                let machine = inputs.machine.of(&source.path, Some(&found));
+                (beside.analysed)(&Log { machine: machine.clone(), ..log.clone() }, Ok((&report, &found)));
+                (machine, found)
+            })
+        };
+        match catch_unwind(AssertUnwindSafe(one)) {
+            Ok(Ok((machine, found))) => {
+                log.machine = machine;
                 let mut rows = tables::analysed(&log, &found);
                 if inputs.fit {
                     rows.extend(limits::rows(&log, source.inputs(), &found.run_id, &inputs.read));
@@ -257,6 +297,7 @@ fn analysed(pending: &Pending, analysis_id: &str, inputs: &Inputs) -> (Rows, Opt
         }
     }
     log.machine = inputs.machine.of(&source.path, None);
+    (beside.analysed)(&log, Err((&error, may_pass)));
     let failure = Failure { log: log.uri.clone(), error: error.clone() };
     (tables::failed(&log, &error, may_pass), Some(failure))
 }

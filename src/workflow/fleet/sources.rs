@@ -16,6 +16,8 @@ use crate::{
 
 /// Endings of logs that are looked for in folders; a file that is named counts whatever its ending.
 const ENDINGS: [&str; 6] = [".mcap", ".db3", ".mcap.zst", ".mcap.zstd", ".mcap.gz", ".db3.zstd"];
+/// Endings of tables, which folders hold of anything; a verb asks for them.
+const TABLES: [&str; 2] = [".csv", ".csv.gz"];
 /// Endings of lists of logs.
 const LISTS: [&str; 3] = ["txt", "list", "manifest"];
 /// The description that makes a folder a bag.
@@ -23,18 +25,18 @@ const BAG: &str = "metadata.yaml";
 
 /// A log to analyse.
 #[derive(Debug, Clone)]
-pub(super) struct Source {
+pub(in crate::workflow) struct Source {
     /// Its absolute path, or its address.
-    pub(super) path: PathBuf,
+    pub(in crate::workflow) path: PathBuf,
     pub(super) bytes: u64,
     /// Size and time of change, or the store's tag: another one is another log.
-    pub(super) etag: String,
+    pub(in crate::workflow) etag: String,
     /// Where it lies in a store, its files there.
     objects: Vec<remote::Object>,
 }
 
 impl Source {
-    pub(super) fn is_remote(&self) -> bool {
+    pub(in crate::workflow) fn is_remote(&self) -> bool {
         !self.objects.is_empty()
     }
 
@@ -50,26 +52,47 @@ impl Source {
     }
 }
 
+/// Logs by path, and whether tables count.
+#[derive(Default)]
+struct Found {
+    logs: BTreeMap<PathBuf, Source>,
+    tables: bool,
+}
+
+impl Found {
+    fn is_log(&self, name: &str) -> bool {
+        let tables = TABLES.iter().filter(|_| self.tables);
+        ENDINGS.iter().chain(tables).any(|ending| name.ends_with(ending))
+    }
+}
+
 /// The logs of all sources, each once, in the order of their paths.
 pub(super) fn sources(texts: &[String]) -> Result<Vec<Source>, FleetFailure> {
-    let mut found = BTreeMap::new();
+    let mut found = Found::default();
     for text in texts {
-        let before = found.len();
+        let before = found.logs.len();
         add(text, Path::new(""), &mut found)?;
-        if found.len() == before && !Path::new(text).exists() {
+        if found.logs.len() == before && !Path::new(text).exists() {
             return Err(FleetFailure::NoLogs { text: text.clone() });
         }
     }
     let first = texts.first().cloned().unwrap_or_default();
-    if found.is_empty() {
+    if found.logs.is_empty() {
         Err(FleetFailure::NoLogs { text: first })
     } else {
-        Ok(found.into_values().collect())
+        Ok(found.logs.into_values().collect())
     }
 }
 
+/// The logs that are there now, tables among them; none is no fault.
+pub(in crate::workflow) fn sources_now(texts: &[String]) -> Result<Vec<Source>, FleetFailure> {
+    let mut found = Found { tables: true, ..Found::default() };
+    texts.iter().try_for_each(|text| add(text, Path::new(""), &mut found))?;
+    Ok(found.logs.into_values().collect())
+}
+
 /// Adds the logs of one source; a relative path counts from `base`.
-fn add(text: &str, base: &Path, found: &mut BTreeMap<PathBuf, Source>) -> Result<(), FleetFailure> {
+fn add(text: &str, base: &Path, found: &mut Found) -> Result<(), FleetFailure> {
     let path = base.join(text);
     if remote::is_address(Path::new(text)) && !path.exists() {
         return stored(text, found);
@@ -88,7 +111,7 @@ fn add(text: &str, base: &Path, found: &mut BTreeMap<PathBuf, Source>) -> Result
             lines.map(str::to_owned).try_for_each(|line| add(&line, &folder, found))
         }
         Ok(is) => {
-            put(path, &is, found);
+            put(path, &is, &mut found.logs);
             Ok(())
         }
         Err(_) if text.contains(['*', '?']) => {
@@ -105,7 +128,7 @@ fn add(text: &str, base: &Path, found: &mut BTreeMap<PathBuf, Source>) -> Result
 }
 
 /// Adds the logs of a store: what ends as logs do, or is named; the files of a bag are one log.
-fn stored(address: &str, found: &mut BTreeMap<PathBuf, Source>) -> Result<(), FleetFailure> {
+fn stored(address: &str, found: &mut Found) -> Result<(), FleetFailure> {
     let objects = remote::objects(address)?;
     let folder = |address: &str| address.rsplit_once('/').unwrap_or_default().0.to_owned();
     let bags: BTreeSet<String> =
@@ -113,12 +136,12 @@ fn stored(address: &str, found: &mut BTreeMap<PathBuf, Source>) -> Result<(), Fl
     for object in objects {
         let within = folder(&object.address);
         let path = if bags.contains(&within) { within } else { object.address.clone() };
-        let is_log = ENDINGS.iter().any(|ending| object.address.ends_with(ending));
+        let is_log = found.is_log(&object.address);
         let fits = path == address || !address.contains('*') || matches(address, &path);
         if (is_log || object.address == address) && fits {
             let new =
                 || Source { path: path.clone().into(), bytes: 0, etag: String::new(), objects: Vec::new() };
-            let source = found.entry(PathBuf::from(&path)).or_insert_with(new);
+            let source = found.logs.entry(PathBuf::from(&path)).or_insert_with(new);
             // A folder and a file in it may both be named.
             if !source.objects.iter().any(|own| own.address == object.address) {
                 source.bytes += object.bytes;
@@ -131,14 +154,10 @@ fn stored(address: &str, found: &mut BTreeMap<PathBuf, Source>) -> Result<(), Fl
     Ok(())
 }
 
-fn walk(
-    folder: &Path,
-    wanted: &mut dyn FnMut(&Path) -> bool,
-    found: &mut BTreeMap<PathBuf, Source>,
-) -> Result<(), FleetFailure> {
+fn walk(folder: &Path, wanted: &mut dyn FnMut(&Path) -> bool, found: &mut Found) -> Result<(), FleetFailure> {
     if folder.join(BAG).is_file() {
         if let (true, Ok(is)) = (wanted(folder), fs::metadata(folder)) {
-            put(folder.to_owned(), &is, found);
+            put(folder.to_owned(), &is, &mut found.logs);
         }
         return Ok(());
     }
@@ -157,8 +176,8 @@ fn walk(
             if !entry.file_type().is_ok_and(|kind| kind.is_symlink()) {
                 walk(&path, wanted, found)?;
             }
-        } else if ENDINGS.iter().any(|ending| name.ends_with(ending)) && wanted(&path) {
-            put(path, &is, found);
+        } else if found.is_log(&name) && wanted(&path) {
+            put(path, &is, &mut found.logs);
         }
     }
     Ok(())

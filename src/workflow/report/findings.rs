@@ -53,12 +53,21 @@ pub struct Findings {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn findings(logs: Vec<Input>, inputs: &Inputs) -> Result<Findings, ReportFailure> {
+    reported(logs, inputs).map(|(_, found)| found)
+}
+
+/// The same with its samples, which a page shows.
+pub(in crate::workflow) fn reported(
+    logs: Vec<Input>,
+    inputs: &Inputs,
+) -> Result<(Report, Findings), ReportFailure> {
     threads::alone(|| {
         let names: Vec<PathBuf> = logs.iter().map(|log| log.name().to_owned()).collect();
         let files = input_files(&logs);
         let recording = LogFiles::of(logs)?.scan()?.read(&inputs.read_options()?)?;
         let found = report(recording, &Inputs { logs: names, ..inputs.clone() })?;
-        Ok(Findings::of(&found, files))
+        let findings = Findings::of(&found, files);
+        Ok((found, findings))
     })
 }
 

@@ -18,6 +18,8 @@ pub use analysis::{Analysis, analyse};
 use analysis::{aligned, taken};
 pub use document::Document;
 pub use failure::ReportFailure;
+#[cfg(feature = "parquet")]
+pub(in crate::workflow) use findings::reported;
 pub use findings::{Findings, analysis_id, findings};
 pub use gates::{GateResult, Gates};
 #[cfg(feature = "parquet")]

@@ -28,4 +28,6 @@ mod terminal;
 mod tool;
 mod trajectory;
 mod view;
+#[cfg(unix)]
+mod watch;
 mod whole_loop;

@@ -50,6 +50,7 @@ pages! {
     shell: "docs/guide/shell.md"
     simulate: "docs/guide/simulate.md"
     view: "docs/guide/view.md"
+    watch: "docs/guide/watch.md"
 }
 
 #[test]

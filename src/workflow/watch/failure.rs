@@ -1,0 +1,43 @@
+//! Why a folder is not watched.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::{atomic_file::AtomicError, workflow::fleet::FleetFailure};
+
+/// Why watching ended. A log that cannot be analysed is no failure: it is a run with its error.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum WatchFailure {
+    /// The dataset, or a source that leads nowhere.
+    #[error(transparent)]
+    Fleet(#[from] FleetFailure),
+    /// A page or the index.
+    #[error(transparent)]
+    Atomic(#[from] AtomicError),
+    /// The file system said no.
+    #[error("cannot {action} {}", path.display())]
+    File {
+        /// What was to be done.
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Another process writes the pages.
+    #[error("another `hydrotrace watch` is writing to {}; give this one another folder with --into", path.display())]
+    Locked {
+        /// The folder of the dataset.
+        path: PathBuf,
+    },
+}
+
+impl WatchFailure {
+    /// Wraps an I/O failure; use with `map_err`.
+    pub(super) fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::File { action, path, source }
+    }
+}
