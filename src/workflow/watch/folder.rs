@@ -6,6 +6,8 @@ use std::{
     fs::{self, File},
     io::Write,
     path::{Path, PathBuf},
+    thread,
+    time::Duration,
 };
 
 use super::{
@@ -23,6 +25,9 @@ use crate::{
 const PAGES: &str = "pages";
 const INDEX: &str = "index.html";
 const LOCK: &str = ".lock";
+
+/// How long another process may take to replace parts of the dataset.
+const A_WHILE: Duration = Duration::from_millis(500);
 
 /// The folder, for this process alone.
 #[derive(Debug)]
@@ -74,7 +79,16 @@ impl Folder {
     pub(super) fn write_index(&self, words: &Words<'_>) -> Result<(), WatchFailure> {
         let mut runs: Vec<&Run> = self.runs.values().collect();
         runs.sort_by(|a, b| (&b.started_at, &a.log).cmp(&(&a.started_at, &b.log)));
-        let drift = match drift(&self.root, &Filter::default(), &[By::Peak, By::Delay]) {
+        let asked = || drift(&self.root, &Filter::default(), &[By::Peak, By::Delay]);
+        let again = |error| match error {
+            FleetFailure::NoDataset { .. } => Err(error),
+            // `fleet compact` replaces parts while they are read.
+            _ => {
+                thread::sleep(A_WHILE);
+                asked()
+            }
+        };
+        let drift = match asked().or_else(again) {
             Err(FleetFailure::NoDataset { .. }) => None,
             found => Some(found?),
         };
