@@ -23,7 +23,7 @@ Examples:
   hydrotrace compare old.mcap new.mcap --json -o compare.json";
 
 /// Pairs of transitions listed without `--all`: in text, on a page.
-const MOST: [usize; 2] = [15, 60];
+pub(super) const MOST: [usize; 2] = [15, 60];
 
 /// Effect of a change: the same task before and after it
 #[derive(Debug, clap::Args)]

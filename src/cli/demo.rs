@@ -11,7 +11,10 @@ use super::{
 };
 use crate::{
     input_file,
-    render::demo::{Story, document},
+    render::{
+        compare::page as compare_page,
+        demo::{Story, document},
+    },
     workflow::{
         compare::run as compare_runs,
         plan::{PlanRequest, SAMPLE_TASK},
@@ -25,6 +28,7 @@ const RUN: &str = "run-1.mcap";
 const LIMITS: &str = "limits.toml";
 const NEXT: &str = "next.mcap";
 const NEXT_RUN: &str = "run-2.mcap";
+const PAGE: &str = "compare.html";
 
 /// The whole loop on a simulated machine, from plan to comparison
 #[derive(Debug, clap::Args)]
@@ -71,6 +75,7 @@ impl Run for Args {
         let words = ["compare", RUN, NEXT_RUN];
         say(&words);
         let comparison = compare_runs(&made::<compare::Args>(dir, &words)?.request())?;
+        write_file(&dir.join(PAGE), compare_page(&comparison, compare::MOST[1]).as_bytes())?;
         bar.finish_and_clear();
 
         console.show(&document(&Story {

@@ -92,7 +92,12 @@ pub(crate) fn document(story: &Story<'_>) -> Document {
         .flat_map(|(command, found)| [format!("$ hydrotrace {command}"), format!("    {found}")]);
     let tool = at_the_tool(comparison).map(|changes| format!("at the tool {changes}"));
     let said = tool.into_iter().chain(luck(comparison));
-    let lines = lines.chain(said.map(|said| format!("    {said}"))).map(Sentence::Finding);
+    let page = [
+        "$ hydrotrace compare run-1.mcap run-2.mcap -o compare.html",
+        "    the same as a page: open it in a browser",
+    ];
+    let lines = lines.chain(said.map(|said| format!("    {said}"))).chain(page.map(str::to_owned));
+    let lines = lines.map(Sentence::Finding);
     let last = format!(
         "Plan {:.2} s before, {:.2} s after. Run any of these commands in {} to see its full output.",
         before.duration_s,

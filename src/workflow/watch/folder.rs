@@ -80,13 +80,13 @@ impl Folder {
         let mut runs: Vec<&Run> = self.runs.values().collect();
         runs.sort_by(|a, b| (&b.started_at, &a.log).cmp(&(&a.started_at, &b.log)));
         let asked = || drift(&self.root, &Filter::default(), &[By::Peak, By::Delay]);
-        let again = |error| match error {
-            FleetFailure::NoDataset { .. } => Err(error),
-            // `fleet compact` replaces parts while they are read.
-            _ => {
-                thread::sleep(A_WHILE);
-                asked()
+        let again = |error| {
+            if matches!(error, FleetFailure::NoDataset { .. }) {
+                return Err(error);
             }
+            // `fleet compact` replaces parts while they are read.
+            thread::sleep(A_WHILE);
+            asked()
         };
         let drift = match asked().or_else(again) {
             Err(FleetFailure::NoDataset { .. }) => None,
