@@ -24,24 +24,44 @@ pub struct Stretch {
     pub to_s: f64,
 }
 
+/// Shorter ones are no stretches, s.
+const LEAST_S: f64 = 0.02;
+
 /// The stretches of a joint, in the order of time and apart from each other; between them plan and joint rest.
 ///
 /// A motion whose beginning the log does not show has none. Where the instant of an answer is not known, the joint
-/// follows from the plan's start on; a motion without an end goes on to that of the run, `end_s`.
-pub fn lane(found: &Replay, joint: &str, end_s: f64) -> Vec<Stretch> {
-    let of = |transition: &&Transition| transition.joint == joint;
+/// follows from the plan's start on. `seen_s` are the joint's stretches without a gap: a motion that a gap cuts ends there,
+/// and one whose plan is under way where a stretch begins is followed from there.
+pub fn lane(found: &Replay, joint: &str, seen_s: &[[f64; 2]]) -> Vec<Stretch> {
+    seen_s.iter().flat_map(|seen_s| between(found, joint, *seen_s)).collect()
+}
+
+/// The stretches between two gaps.
+fn between(found: &Replay, joint: &str, [begin_s, end_s]: [f64; 2]) -> Vec<Stretch> {
+    let within = |s: f64| s >= begin_s && s <= end_s;
+    let of = |start: &&Transition| start.joint == joint && within(start.planned_onset_s);
     let starts: Vec<&Transition> = found.transitions.iter().filter(of).collect();
     let stops: Vec<&Stop> = found.stops.iter().filter(|stop| stop.joint == joint).collect();
-    let mut lane = Vec::with_capacity(3 * starts.len());
+    let mut lane = Vec::with_capacity(3 * starts.len() + 1);
+    // Under way where the stretch begins: its first stop, or turn, has no start before it.
+    let first_s = starts.first().map_or(end_s, |start| start.planned_onset_s);
+    let opens_to_s = match starts.first() {
+        Some(start) if start.kind == Kind::Reversal => Some(first_s),
+        _ => stops.iter().filter_map(|stop| stop.planned_s).find(|s| within(*s) && *s <= first_s),
+    };
+    lane.extend(opens_to_s.filter(|to_s| *to_s > begin_s).map(|to_s| Stretch {
+        phase: Phase::Follows,
+        from_s: begin_s,
+        to_s,
+    }));
     for (k, start) in starts.iter().enumerate() {
         let from_s = start.planned_onset_s;
         let next = starts.get(k + 1);
         let next_s = next.map_or(end_s, |next| next.planned_onset_s);
         let stop = stops.iter().find(|stop| stop.planned_s.is_some_and(|s| s > from_s && s <= next_s));
         let rests_s = stop.and_then(|stop| stop.planned_s);
-        // Without a stop the plan turns, or moves to where the log ends; a start after it stands behind a gap.
-        let beyond_gap = next.is_some_and(|next| next.kind == Kind::Start);
-        let moves_to_s = rests_s.unwrap_or(if beyond_gap { start.window_s[1] } else { next_s }).min(next_s);
+        // Without a stop the plan turns, or moves to where the stretch ends.
+        let moves_to_s = rests_s.unwrap_or(next_s).min(next_s);
         let answers_s = match (start.answer, start.measured_onset_s) {
             (Answer::Never, _) => moves_to_s,
             (_, onset_s) => onset_s.unwrap_or(from_s).clamp(from_s, next_s),
@@ -52,7 +72,7 @@ pub fn lane(found: &Replay, joint: &str, end_s: f64) -> Vec<Stretch> {
             (Phase::Follows, answers_s, moves_to_s),
             (Phase::Settles, moves_to_s.max(answers_s), settled_s.unwrap_or(moves_to_s).min(next_s)),
         ];
-        let stretches = ends.into_iter().filter(|(_, from_s, to_s)| to_s > from_s);
+        let stretches = ends.into_iter().filter(|(_, from_s, to_s)| to_s - from_s > LEAST_S);
         lane.extend(stretches.map(|(phase, from_s, to_s)| Stretch { phase, from_s, to_s }));
     }
     lane
@@ -102,15 +122,19 @@ mod tests {
             (Phase::Follows, 6.3, 8.0),
             (Phase::Settles, 8.0, 8.3),
         ];
-        assert!(is(&lane(&found, "boom", 10.0), &expected), "{:?}", lane(&found, "boom", 10.0));
-        assert!(lane(&found, "stick", 10.0).is_empty());
+        assert!(
+            is(&lane(&found, "boom", &[[0.0, 10.0]]), &expected),
+            "{:?}",
+            lane(&found, "boom", &[[0.0, 10.0]])
+        );
+        assert!(lane(&found, "stick", &[[0.0, 10.0]]).is_empty());
     }
 
     /// Its own stop is none, and its window ends before the plan turns.
     #[test]
     fn a_long_motion_that_turns_is_followed_to_where_it_turns() {
         let found = run(&[1.0, 3.0], &[1.2, 3.2], 8.0);
-        let lane = lane(&found, "boom", 8.0);
+        let lane = lane(&found, "boom", &[[0.0, 8.0]]);
         assert!(
             lane.iter().any(|one| one.phase == Phase::Follows && (one.to_s - 3.0).abs() < 0.1),
             "{lane:?}"
@@ -121,17 +145,31 @@ mod tests {
     fn a_joint_that_never_answers_waits_as_long_as_its_plan_moves() {
         let found = run(&[1.0], &[], 8.0);
         assert!(
-            is(&lane(&found, "boom", 10.0), &[(Phase::Waits, 1.0, 3.0)]),
+            is(&lane(&found, "boom", &[[0.0, 10.0]]), &[(Phase::Waits, 1.0, 3.0)]),
             "{:?}",
-            lane(&found, "boom", 10.0)
+            lane(&found, "boom", &[[0.0, 10.0]])
         );
+    }
+
+    #[test]
+    fn a_gap_ends_a_motion_and_one_under_way_begins_behind_it() {
+        let found = run(&[1.0, 6.0], &[1.5, 6.3], 10.0);
+        let lane = lane(&found, "boom", &[[0.0, 2.0], [2.5, 6.2], [7.0, 10.0]]);
+        let expected = [
+            (Phase::Waits, 1.0, 1.5),
+            (Phase::Follows, 1.5, 2.0),
+            (Phase::Follows, 2.5, 3.0),
+            (Phase::Waits, 6.0, 6.2),
+            (Phase::Follows, 7.0, 8.0),
+        ];
+        assert!(is(&lane, &expected), "{lane:?}");
     }
 
     #[test]
     fn stretches_ascend_and_stay_apart_where_the_log_ends_in_motion() {
         for to_s in [1.2, 1.9, 2.6, 4.0, 6.4, 7.0] {
             let found = run(&[1.0, 6.0], &[1.6, 6.6], to_s);
-            let lane = lane(&found, "boom", to_s);
+            let lane = lane(&found, "boom", &[[0.0, to_s]]);
             assert!(
                 lane.iter().all(|one| one.from_s < one.to_s && one.to_s < to_s + 1e-9),
                 "{to_s}: {lane:?}"

@@ -162,7 +162,7 @@ async function tools(page, where) {
 
 // A report answers on its first screen: lanes by joint, the line to type; a lane and a row show their place, which the address keeps.
 async function first(page, where, width) {
-  const lanes = page.locator('.lanes rect');
+  const lanes = page.locator('.lanes rect[data-from]');
   if (await lanes.count() === 0) return;
   if (width > 1000) {
     const last = await page.locator('.lanes tbody tr').last().boundingBox();

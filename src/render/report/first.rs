@@ -42,6 +42,10 @@ pub(super) fn lanes(report: &Report) -> Markup {
     }
     let joints = worst_first(report);
     html! {
+        p class="hint" {
+            "Waits: the plan has left rest, the joint has not. Follows: the plan moves, and the joint. Settles: the plan rests, the joint moves on. \
+             White: nothing was measured. A line that stays up while both rest is an error that stays."
+        }
         table class="lanes" {
             thead { tr {
                 th { "Joint" }
@@ -58,7 +62,7 @@ pub(super) fn lanes(report: &Report) -> Markup {
                 @for (joint, pair) in joints {
                     tr {
                         th { (clean(&joint.name)) }
-                        td class="lane" { (drawn(&lane(&report.replay, &joint.name, to_s), joint, pair, [from_s, to_s])) }
+                        td class="lane" { (drawn(&lane(&report.replay, &joint.name, &seen_s(pair)), joint, pair, [from_s, to_s])) }
                         td class="number" { (position(joint.kind, joint.tracking_error.peak)) }
                         td class="number" { (latest(report, &joint.name)) }
                     }
@@ -86,6 +90,14 @@ fn worst_first<'a>(report: &'a Report) -> Vec<(&'a JointReplay, &'a Pair)> {
     joints
 }
 
+/// The stretches in which the joint was measured and has a plan, s.
+fn seen_s(pair: &Pair) -> Vec<[f64; 2]> {
+    let ends = |part: &std::ops::Range<usize>| {
+        Some([*pair.t_s.get(part.start)?, *pair.t_s.get(part.end.checked_sub(1)?)?])
+    };
+    pair.segments.iter().filter_map(ends).collect()
+}
+
 /// The delay of the joint's latest start, or that it left one out.
 fn latest(report: &Report, joint: &str) -> String {
     let of = report.replay.joints.iter().find(|found| found.name == joint);
@@ -103,6 +115,11 @@ fn drawn(stretches: &[Stretch], joint: &JointReplay, pair: &Pair, [from_s, to_s]
     let fixed = |value: f64| format!("{value:.1}");
     html! {
         svg viewBox="0 0 1000 30" preserveAspectRatio="none" aria-hidden="true" {
+            @for gap in seen_s(pair).windows(2).map(|two| [two[0][1], two[1][0]]) {
+                rect class="gap" x=(fixed(place(gap[0]))) y="0" height="30" width=(fixed((place(gap[1]) - place(gap[0])).max(1.0))) {
+                    title { (format!("not measured {:.2} to {:.2} s", gap[0], gap[1])) }
+                }
+            }
             @for one in stretches {
                 rect class=(class(one.phase)) x=(fixed(place(one.from_s))) y="0" height="30"
                     width=(fixed((place(one.to_s) - place(one.from_s)).max(1.0)))

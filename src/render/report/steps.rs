@@ -23,11 +23,8 @@ pub(super) fn steps(report: &Report, read: &[String]) -> Vec<(Sentence, Option<S
 /// What to type for a step, if that does it.
 fn line(step: &Advice, logs: &str, limit: [&str; 2]) -> Option<String> {
     Some(match step {
-        Advice::ShiftCommand { fits: true, .. } | Advice::EaseStarts { fits: true, gentler: true, .. } => {
+        Advice::ShiftCommand { fits: true, .. } | Advice::EaseStarts { fits: true, .. } => {
             command(&["replan", logs, "--keep-plan", "--gain", "0.5", "-o", "next.mcap"])
-        }
-        Advice::EaseStarts { fits: true, gentler: false, .. } => {
-            command(&["replan", logs, "--keep-plan", "--gain", "0.5", "--task", "TASK", "-o", "next.mcap"])
         }
         Advice::SetLimits => command(&["report", logs, limit[0], limit[1]]),
         Advice::Compare => command(&["compare", logs, "NEXT_RUN"]),
@@ -66,7 +63,7 @@ fn words(step: &Advice, limit: &str) -> String {
             if *gentler {
                 "is made from this log by this line; without --keep-plan, a gentler plan too"
             } else {
-                "is made from this log and the task of its plan, which it does not hold, by"
+                "is made from this log by this line; a gentler plan needs the task too, which the log does not hold (--task)"
             },
         ),
         Advice::ShortenLag { joint, lag_s } => format!(

@@ -182,10 +182,7 @@ fn next(report: &Report) -> String {
 #[test]
 fn advice_names_the_log_and_a_gentler_plan_only_where_the_log_holds_its_task() {
     let without = next(&report("panel-install.mcap"));
-    assert!(
-        without.contains("panel-install.mcap --keep-plan --gain 0.5 --task TASK -o next.mcap"),
-        "{without}"
-    );
+    assert!(without.contains("panel-install.mcap --keep-plan --gain 0.5 -o next.mcap"), "{without}");
     assert!(!without.contains("gentler plan too"), "{without}");
     let with = next(&report("task-1-run.mcap"));
     assert!(with.contains("task-1-run.mcap") && with.contains("gentler plan too"), "{with}");

@@ -32,7 +32,10 @@ fn began(run: &Run) -> String {
 /// Where it was off, and how late.
 fn found(run: &Run) -> String {
     let Some(worst) = run.worst() else { return "no joint".to_owned() };
-    let late = run.largest_delay_s.map_or(String::new(), |delay_s| format!(", {} ms late", ms(delay_s)));
+    let late = run
+        .latest()
+        .and_then(|joint| Some(format!("; {} {} ms late", joint.joint, ms(joint.largest_delay_s?))));
+    let late = late.unwrap_or_default();
     let never = match run.unanswered_starts {
         0 => String::new(),
         some => format!(", {} never answered", counted(some, "start")),

@@ -130,7 +130,10 @@ fn table(runs: &[&Run]) -> Markup {
                             }
                             td { (clean(run.worst().map_or(NONE, |worst| &worst.joint))) }
                             td class="number" { (run.worst().map_or(NONE.to_owned(), peak)) }
-                            td class="number" { (delay(run.largest_delay_s)) }
+                            td class="number" {
+                                (delay(run.largest_delay_s))
+                                @if let Some(joint) = run.latest() { " (" (clean(&joint.joint)) ")" }
+                            }
                             td class="number" { (number(run.unanswered_starts)) }
                             td class="number" { (number(run.remarks)) }
                         }

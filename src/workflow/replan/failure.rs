@@ -43,6 +43,23 @@ pub enum ReplanFailure {
         /// The log.
         path: PathBuf,
     },
+    /// The plan was cut where it begins.
+    #[error(
+        "the plan in {} begins at {at_s:.2} s while {joint} moves at {} per second: the log was cut, and no arm starts at \
+         once; give the whole log, or name the task with --task",
+        path.display(),
+        Degrees(*speed_rad_s)
+    )]
+    BeginsInMotion {
+        /// The log.
+        path: PathBuf,
+        /// The joint.
+        joint: String,
+        /// Its planned speed there.
+        speed_rad_s: f64,
+        /// The first planned instant.
+        at_s: f64,
+    },
     /// The plan was cut.
     #[error(
         "the plan in {} ends at {at_s:.2} s while {joint} moves at {} per second: the log was cut, and no arm stops at \

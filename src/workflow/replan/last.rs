@@ -86,7 +86,7 @@ impl Last {
             None => carried.starts_s().map(|s| s - near_s),
         };
         if exact.is_none() {
-            check_end(path, planned, to_s)?;
+            check_ends(path, planned, [from_s, to_s])?;
         }
         let (times_s, via) = entry.map(|entry| (entry.times_s, entry.via)).unzip();
         Ok(Self {
@@ -113,20 +113,33 @@ impl Last {
     }
 }
 
-/// A plan that was cut in its motion would be one with a stop that no arm can make.
-fn check_end(path: &Path, planned: &Series, to_s: f64) -> Result<(), ReplanFailure> {
+/// A plan that was cut in its motion would be one with a start or a stop that no arm can make.
+fn check_ends(path: &Path, planned: &Series, [from_s, to_s]: [f64; 2]) -> Result<(), ReplanFailure> {
     for track in &planned.tracks {
-        let t_s = track.t_s();
+        let (t_s, position) = (track.t_s(), track.position());
+        // Of a sample, by its neighbour.
+        let speed = |at: usize, next: usize| {
+            let step = (position[at] - position[next]) / (t_s[at] - t_s[next]);
+            track.velocity().map_or(step, |speed| speed[at])
+        };
+        let joint = || track.name().to_owned();
+        let begin = t_s.partition_point(|t| *t < from_s - CUT_S);
+        let begins = track.segments().iter().any(|part| part.start == begin && part.len() >= 2);
+        if begins && t_s[begin] - from_s <= CUT_S {
+            let speed_rad_s = speed(begin, begin + 1);
+            if speed_rad_s.abs() > CUT_RAD_S {
+                let (path, at_s) = (path.to_owned(), t_s[begin]);
+                return Err(ReplanFailure::BeginsInMotion { path, joint: joint(), speed_rad_s, at_s });
+            }
+        }
         let end = t_s.partition_point(|t| *t <= to_s + CUT_S);
         let ends = track.segments().iter().any(|part| part.end == end) && end >= 2;
-        if !ends || to_s - t_s[end - 1] > CUT_S {
-            continue;
-        }
-        let step = (track.position()[end - 1] - track.position()[end - 2]) / (t_s[end - 1] - t_s[end - 2]);
-        let speed_rad_s = track.velocity().map_or(step, |speed| speed[end - 1]);
-        if speed_rad_s.abs() > CUT_RAD_S {
-            let (path, joint) = (path.to_owned(), track.name().to_owned());
-            return Err(ReplanFailure::EndsInMotion { path, joint, speed_rad_s, at_s: t_s[end - 1] });
+        if ends && to_s - t_s[end - 1] <= CUT_S {
+            let speed_rad_s = speed(end - 1, end - 2);
+            if speed_rad_s.abs() > CUT_RAD_S {
+                let (path, at_s) = (path.to_owned(), t_s[end - 1]);
+                return Err(ReplanFailure::EndsInMotion { path, joint: joint(), speed_rad_s, at_s });
+            }
         }
     }
     Ok(())

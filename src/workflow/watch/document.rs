@@ -165,6 +165,14 @@ impl Run {
         self.joints.iter().find(|joint| Some(&joint.joint) == self.worst_joint.as_ref())
     }
 
+    /// The joint whose start is latest.
+    pub fn latest(&self) -> Option<&RunJoint> {
+        let timed = self.joints.iter().filter(|joint| joint.largest_delay_s.is_some());
+        timed.max_by(|a, b| {
+            a.largest_delay_s.partial_cmp(&b.largest_delay_s).unwrap_or(std::cmp::Ordering::Equal)
+        })
+    }
+
     /// When it began, days since 1970.
     pub fn at_days(&self) -> Option<f64> {
         let at = DateTime::parse_from_rfc3339(self.started_at.as_deref()?).ok()?;

@@ -10,6 +10,16 @@ use crate::{atomic_file::AtomicError, workflow::fleet::FleetFailure};
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum WatchFailure {
+    /// The reports would lie among the logs.
+    #[error(
+        "{} holds the logs that are watched, and the reports would lie among them; give --into a folder of its own, inside it or \
+         elsewhere",
+        path.display()
+    )]
+    Itself {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The dataset, or a source that leads nowhere.
     #[error(transparent)]
     Fleet(#[from] FleetFailure),

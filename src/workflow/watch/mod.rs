@@ -119,6 +119,13 @@ pub fn run(
     ended: &(dyn Fn() -> bool + Sync),
     tell: &mut dyn FnMut(Event<'_>),
 ) -> Result<Watched, WatchFailure> {
+    let real = |path: &Path| path.canonicalize().ok();
+    let same = |source: &String| {
+        real(Path::new(source)).is_some_and(|source| real(&inputs.fleet.into) == Some(source))
+    };
+    if inputs.fleet.sources.iter().any(same) {
+        return Err(WatchFailure::Itself { path: inputs.fleet.into.clone() });
+    }
     let into = std::path::absolute(&inputs.fleet.into).unwrap_or_else(|_| inputs.fleet.into.clone());
     let found = |sources: &[String]| {
         let mut found = sources_now(sources)?;

@@ -30,6 +30,10 @@ fn a_plan_that_was_cut_in_its_motion_is_not_planned_again() {
         );
         assert!(!folder.path().join("next.mcap").exists());
     }
+    let begun = "replan panel-install.mcap --keep-plan --from 5 -o next.mcap";
+    let (code, _, error) = said(&run_line(folder.path(), begun));
+    assert!(code == 1 && error.contains("begins at") && error.contains("no arm starts at once"), "{error}");
+    assert!(!folder.path().join("next.mcap").exists());
 }
 
 #[test]

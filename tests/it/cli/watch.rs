@@ -66,6 +66,17 @@ fn pages(into: &Path) -> BTreeMap<PathBuf, String> {
 }
 
 #[test]
+fn reports_do_not_lie_among_the_logs_and_a_line_names_the_joint_of_each_number() {
+    let folder = empty();
+    fs::copy(sample("task-1-run.mcap"), folder.path().join("logs/task-1-run.mcap")).unwrap();
+    let (code, _, error) = said(&run_line(folder.path(), "watch logs --into logs --once --settle 0"));
+    assert!(code == 1 && error.contains("a folder of its own"), "{error}");
+    assert!(!folder.path().join("logs/index.html").exists());
+    let (_, out, _) = said(&run_line(folder.path(), ONCE));
+    assert!(out.contains("J1 0.920 deg off; J5 2812 ms late"), "{out}");
+}
+
+#[test]
 fn the_order_in_which_logs_appear_changes_no_byte_of_what_is_shown() {
     let folder = empty();
     let (logs, there) = (folder.path().join("logs"), folder.path().join("there"));
