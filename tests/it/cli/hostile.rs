@@ -76,7 +76,8 @@ fn clock_set(path: &Path, by_s: f64) {
     let mut log = LogWriter::create(path, &["a", "b"], WriteOptions::default()).unwrap();
     for k in 0..3000_i32 {
         let t_s = 0.02 * f64::from(k);
-        let set_s = if k < 1400 { 0.0 } else { by_s };
+        // Between two swings: a command that begins in mid motion would be refused.
+        let set_s = if k < 1480 { 0.0 } else { by_s };
         #[expect(clippy::cast_possible_truncation)]
         let stamp_ns = 1_760_000_000_000_000_000 + ((t_s + set_s) * 1e9) as i64;
         let swing = |t: f64| {
