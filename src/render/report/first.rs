@@ -61,7 +61,7 @@ pub(super) fn lanes(report: &Report) -> Markup {
             tbody {
                 @for (joint, pair) in joints {
                     tr {
-                        th { (clean(&joint.name)) }
+                        th title=(clean(&joint.name)) { (clean(&joint.name)) }
                         td class="lane" { (drawn(&lane(&report.replay, &joint.name, &seen_s(pair)), joint, pair, [from_s, to_s])) }
                         td class="number" { (position(joint.kind, joint.tracking_error.peak)) }
                         td class="number" { (latest(report, &joint.name)) }
