@@ -29,9 +29,9 @@ const LEAST_S: f64 = 0.02;
 
 /// The stretches of a joint, in the order of time and apart from each other; between them plan and joint rest.
 ///
-/// A motion whose beginning the log does not show has none. Where the instant of an answer is not known, the joint
-/// follows from the plan's start on. `seen_s` are the joint's stretches without a gap: a motion that a gap cuts ends there,
-/// and one whose plan is under way where a stretch begins is followed from there.
+/// Where the instant of an answer is not known, the joint follows from the plan's start on. `seen_s` are the joint's
+/// stretches without a gap: a motion that a gap cuts ends there, and one whose plan is under way where a stretch begins is
+/// followed from there.
 pub fn lane(found: &Replay, joint: &str, seen_s: &[[f64; 2]]) -> Vec<Stretch> {
     seen_s.iter().flat_map(|seen_s| between(found, joint, *seen_s)).collect()
 }
@@ -104,11 +104,11 @@ mod tests {
     }
 
     /// Speeds are of windows: where a joint comes to rest is known to less than two tenths of a second.
-    fn is(lane: &[Stretch], expected: &[(Phase, f64, f64)]) -> bool {
+    fn assert_is(lane: &[Stretch], expected: &[(Phase, f64, f64)]) {
         let alike = |(one, (phase, from_s, to_s)): (&Stretch, &(Phase, f64, f64))| {
             one.phase == *phase && (one.from_s - from_s).abs() < 0.2 && (one.to_s - to_s).abs() < 0.2
         };
-        lane.len() == expected.len() && lane.iter().zip(expected).all(alike)
+        assert!(lane.len() == expected.len() && lane.iter().zip(expected).all(alike), "{lane:?}");
     }
 
     #[test]
@@ -122,11 +122,7 @@ mod tests {
             (Phase::Follows, 6.3, 8.0),
             (Phase::Settles, 8.0, 8.3),
         ];
-        assert!(
-            is(&lane(&found, "boom", &[[0.0, 10.0]]), &expected),
-            "{:?}",
-            lane(&found, "boom", &[[0.0, 10.0]])
-        );
+        assert_is(&lane(&found, "boom", &[[0.0, 10.0]]), &expected);
         assert!(lane(&found, "stick", &[[0.0, 10.0]]).is_empty());
     }
 
@@ -144,17 +140,12 @@ mod tests {
     #[test]
     fn a_joint_that_never_answers_waits_as_long_as_its_plan_moves() {
         let found = run(&[1.0], &[], 8.0);
-        assert!(
-            is(&lane(&found, "boom", &[[0.0, 10.0]]), &[(Phase::Waits, 1.0, 3.0)]),
-            "{:?}",
-            lane(&found, "boom", &[[0.0, 10.0]])
-        );
+        assert_is(&lane(&found, "boom", &[[0.0, 10.0]]), &[(Phase::Waits, 1.0, 3.0)]);
     }
 
     #[test]
     fn a_gap_ends_a_motion_and_one_under_way_begins_behind_it() {
         let found = run(&[1.0, 6.0], &[1.5, 6.3], 10.0);
-        let lane = lane(&found, "boom", &[[0.0, 2.0], [2.5, 6.2], [7.0, 10.0]]);
         let expected = [
             (Phase::Waits, 1.0, 1.5),
             (Phase::Follows, 1.5, 2.0),
@@ -162,7 +153,7 @@ mod tests {
             (Phase::Waits, 6.0, 6.2),
             (Phase::Follows, 7.0, 8.0),
         ];
-        assert!(is(&lane, &expected), "{lane:?}");
+        assert_is(&lane(&found, "boom", &[[0.0, 2.0], [2.5, 6.2], [7.0, 10.0]]), &expected);
     }
 
     #[test]

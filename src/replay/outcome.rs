@@ -28,6 +28,21 @@ impl Replay {
         self.joints.first().map_or(JointKind::Turns, |joint| joint.kind)
     }
 
+    /// The joints, the one with the largest error first, compared as transitions are.
+    pub fn joints_worst_first(&self) -> Vec<&JointReplay> {
+        let bands =
+            |joint: &JointReplay| joint.tracking_error.peak / self.rules.sizes(joint.kind).settle_band;
+        let mut worst: Vec<&JointReplay> = self.joints.iter().collect();
+        worst.sort_by(|a, b| bands(b).total_cmp(&bands(a)));
+        worst
+    }
+
+    /// The longest dead time of the starts of a joint, s; `None` where none is timed.
+    pub fn longest_delay_s(&self, joint: &str) -> Option<f64> {
+        let own = self.transitions.iter().filter(|start| start.joint == joint);
+        own.filter_map(|start| start.onset_delay_s).reduce(f64::max)
+    }
+
     /// The transitions, the worst first. Joints that turn and joints that slide have no unit in common: peak errors are
     /// compared by the error band of settling, [`Sizes::settle_band`](super::Sizes::settle_band).
     pub fn worst_first(&self) -> Vec<&Transition> {

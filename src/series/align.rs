@@ -32,6 +32,16 @@ pub struct Pair {
     pub unmatched: usize,
 }
 
+impl Pair {
+    /// First and last instant of each continuous stretch, s.
+    pub fn spans_s(&self) -> impl Iterator<Item = [f64; 2]> {
+        let ends = |part: &Range<usize>| {
+            Some([*self.t_s.get(part.start)?, *self.t_s.get(part.end.checked_sub(1)?)?])
+        };
+        self.segments.iter().filter_map(ends)
+    }
+}
+
 /// Interpolates `planned` onto the stamps of `measured`; `None` if they never overlap in time, or if
 /// one turns and the other slides.
 pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {

@@ -8,6 +8,7 @@ use clap::Subcommand;
 
 use super::{CliError, Outcome, Run, console, number, read};
 use console::Console;
+pub(crate) use scan::SourceArgs;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -11,7 +11,6 @@ use crate::{
     document::pretty,
     remark::Remarks,
     render::fleet as words,
-    replay::Rules,
     workflow::fleet::{Inputs, MachineFrom, compact, scan},
 };
 
@@ -24,24 +23,44 @@ Examples:
 Only logs that are new or have changed are analysed. A scan that was killed is taken up by the next one; every log has
 its rows once. A log that cannot be analysed is a row with its error.";
 
-/// Analyse the logs that the dataset does not hold yet
+/// The logs of a dataset.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
-pub(super) struct Args {
+pub(crate) struct SourceArgs {
     /// Folders with logs, patterns ('/data/**/run.mcap'), lists of logs (.txt, a path a line), logs; or the same in a
     /// store: s3://, gs://, az://, https://
     #[arg(required = true, value_name = "SOURCE")]
     sources: Vec<String>,
 
-    /// The folder of the dataset, which is made if it is not there
+    /// The folder of the dataset, with an index and pages if it is watched; it is made if it is not there
     #[arg(long, value_name = "DIR")]
-    into: PathBuf,
+    pub(crate) into: PathBuf,
 
     /// Where the machine's name stands: `log` (metadata entry "machine"), `path:KEY` (a folder KEY=NAME),
     /// `path:N` (N folders above the log), `topic` (first part of the measured topic), a CSV file with the columns
     /// path and machine
     #[arg(long, value_name = "WHERE", default_value = "log")]
     machine_from: String,
+}
+
+impl SourceArgs {
+    /// These, read with the caller's options.
+    pub(crate) fn inputs(&self, read: &ReadArgs) -> Result<Inputs, CliError> {
+        Ok(Inputs {
+            sources: self.sources.clone(),
+            into: self.into.clone(),
+            machine: MachineFrom::parse(&self.machine_from)?,
+            read: read.options(),
+            ..Inputs::default()
+        })
+    }
+}
+
+/// Analyse the logs that the dataset does not hold yet
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct Args {
+    #[command(flatten)]
+    source: SourceArgs,
 
     /// Logs that are analysed at once [default: one a core; four a core in stores]
     #[arg(long, value_name = "N")]
@@ -62,13 +81,9 @@ pub(super) struct Args {
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let inputs = Inputs {
-            sources: self.sources.clone(),
-            into: self.into.clone(),
-            machine: MachineFrom::parse(&self.machine_from)?,
             workers: self.workers.map_or(0, NonZeroUsize::get),
             fit: self.fit,
-            read: self.read.options(),
-            rules: Rules::default(),
+            ..self.source.inputs(&self.read)?
         };
         let bar = progress(Some(0), "{spinner} {elapsed}  {msg}, {eta} left");
         bar.enable_steady_tick(Duration::from_millis(200));

@@ -4,7 +4,6 @@ mod serve;
 
 use std::{
     cell::RefCell,
-    path::PathBuf,
     sync::atomic::{AtomicBool, Ordering},
     time::Duration,
 };
@@ -12,6 +11,7 @@ use std::{
 use super::{
     CliError, Outcome, Run,
     console::{Console, Target, progress, spare_inputs},
+    fleet::SourceArgs,
     gates::GateArgs,
     interrupt,
     number::seconds,
@@ -22,10 +22,7 @@ use crate::{
     document::line,
     input_file,
     render::{report, watch as words},
-    workflow::{
-        fleet::{self, MachineFrom},
-        watch::{Event, Inputs, Words, run},
-    },
+    workflow::watch::{Event, Inputs, Words, run},
 };
 
 const EXAMPLES: &str = "\
@@ -45,17 +42,8 @@ const MOST: usize = 60;
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Folders with logs (MCAP, ROS 2 bags, CSV), patterns ('/data/**/run.mcap'), lists of logs (.txt), logs
-    #[arg(required = true, value_name = "SOURCE")]
-    sources: Vec<String>,
-
-    /// The folder of the index, its pages and the dataset, which is made if it is not there
-    #[arg(long, value_name = "DIR")]
-    into: PathBuf,
-
-    /// Where the machine's name stands, as of `fleet scan`: `log`, `path:KEY`, `path:N`, `topic`, a CSV file
-    #[arg(long, value_name = "WHERE", default_value = "log")]
-    machine_from: String,
+    #[command(flatten)]
+    source: SourceArgs,
 
     /// Look every SECONDS
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
@@ -89,13 +77,7 @@ impl Args {
         let [every, settle] = [self.every, self.settle].map(Duration::try_from_secs_f64);
         let longer = |_| CliError::Usage("no folder is watched that long; give fewer seconds".to_owned());
         Ok(Inputs {
-            fleet: fleet::Inputs {
-                sources: self.sources.clone(),
-                into: self.into.clone(),
-                machine: MachineFrom::parse(&self.machine_from)?,
-                read: self.read.options(),
-                ..fleet::Inputs::default()
-            },
+            fleet: self.source.inputs(&self.read)?,
             gates: self.gates.gates.clone(),
             every: every.map_err(longer)?,
             settle: settle.map_err(longer)?,
@@ -108,10 +90,10 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         // Logs come and go while this goes on.
         input_file::forget();
-        spare_inputs(Some(&self.into.join("index.html")), &[])?;
+        spare_inputs(Some(&self.source.into.join("index.html")), &[])?;
         let inputs = self.inputs()?;
         if let Some(port) = self.serve {
-            let address = serve::start(&self.into, port)?;
+            let address = serve::start(&self.source.into, port)?;
             console.say(words::served(&address));
         }
         interrupt::ask_only();

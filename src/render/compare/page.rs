@@ -254,7 +254,7 @@ fn over_time(joint: &str, before: &Pair, after: &Pair, offset_s: f64) -> Chart {
         let places = envelope(&pair.segments, &[&error], MOST);
         xs.push(times(&pair.t_s, &places).into_iter().map(|t_s| rounded(t_s - shift_s)).collect());
         let y = at(&error, &places).map(|value| rounded(on_paper(pair.kind, value))).collect();
-        Series { name: name.to_owned(), role, x: xs.len() - 1, y, names: Vec::new() }
+        Series::of(name, role, xs.len() - 1, y)
     };
     let series =
         vec![series("before", Role::Before, before, 0.0), series("after", Role::Measured, after, offset_s)];

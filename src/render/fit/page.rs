@@ -159,12 +159,8 @@ fn course(fitted: &Fitted, joint: &JointFit) -> Option<Chart> {
         predicted.extend_from_slice(&stretch.predicted_rad);
     }
     let places = envelope(&segments, &[&measured, &predicted], MOST);
-    let series = |name: &str, role, values: &[f64]| Series {
-        name: name.to_owned(),
-        role,
-        x: 0,
-        y: at(values, &places).map(|rad| rounded(on_paper(Turns, rad))).collect(),
-        names: Vec::new(),
+    let series = |name: &str, role, values: &[f64]| {
+        Series::of(name, role, 0, at(values, &places).map(|rad| rounded(on_paper(Turns, rad))).collect())
     };
     Some(Chart {
         title: format!("{} in {}", joint.name, fitted.runs[log].log),

@@ -123,7 +123,7 @@ fn joint_motion(joint: &str, t_s: &[f64], angle_rad: &[f64], speed_rad_s: &[f64]
         |values: &[f64]| values.iter().map(|v| rounded(degrees_from_radians(*v))).collect::<Vec<f64>>();
     let panel = |label: &str, name: &str, role, values: &[f64]| Panel {
         label: label.to_owned(),
-        series: vec![Series { name: name.to_owned(), role, x: 0, y: degrees(values), names: Vec::new() }],
+        series: vec![Series::of(name, role, 0, degrees(values))],
         share: 0.5,
         range: None,
     };

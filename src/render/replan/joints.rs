@@ -90,7 +90,7 @@ fn note(course: &JointCourse, moved_rad: &[f64]) -> String {
 impl Lines<'_> {
     fn line(&self, name: &str, role: Role, values: &[f64]) -> Series {
         let y = at(values, &self.places).map(|value| rounded(degrees_from_radians(value))).collect();
-        Series { name: name.to_owned(), role, x: 0, y, names: Vec::new() }
+        Series::of(name, role, 0, y)
     }
 
     /// Both edges of what 90 % of starts stay within.
@@ -112,8 +112,7 @@ fn limit(lines: &mut Vec<Series>, limits: &[f64; 2]) {
     let room = NEAR * (high - low);
     for limit in limits.map(degrees_from_radians) {
         if limit > low - room && limit < high + room {
-            let (name, y) = ("limit".to_owned(), vec![rounded(limit); 2]);
-            lines.push(Series { name, role: Role::Guide, x: 1, y, names: Vec::new() });
+            lines.push(Series::of("limit", Role::Guide, 1, vec![rounded(limit); 2]));
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{
     method::method,
+    steps::replanned,
     tables::{mostly_lag, verdicts},
     tool, why,
 };
@@ -139,7 +140,7 @@ fn next(report: &Report) -> (String, String) {
         {
             (
                 "To make a command that compensates what this run shows, at half strength first:".to_owned(),
-                command(&["replan", &joined, "--keep-plan", "--gain", "0.5", "-o", "next.mcap"]),
+                replanned(&joined),
             )
         }
         Some(Advice::EaseStarts { fits: true, .. } | Advice::ShiftCommand { fits: true, .. }) => (

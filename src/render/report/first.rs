@@ -9,26 +9,28 @@ use crate::{
         kit::{
             clean, ms,
             page::{
-                chart::{Chart, Panel, Role, Series, Size, at, rounded, times},
+                Shows,
+                chart::{Chart, Size},
                 envelope::envelope,
             },
         },
-        metric::{on_paper, position, unit},
+        metric::position,
     },
-    replay::{Dimension, JointReplay, Phase, Stretch, Transition, lane, speeds},
+    replay::{JointReplay, Phase, Transition, lane},
     series::Pair,
     workflow::report::Report,
 };
 
-use super::tiles::tile;
+use super::{
+    signals::{View, speed},
+    tiles::tile,
+};
 
 /// Thousandths of the run, and the height of a lane: the drawing is stretched, so it holds no text.
 const WIDTH: f64 = 1000.0;
 const HEIGHT: f64 = 30.0;
 /// Places of an error at most, nearly.
 const PLACES: usize = 260;
-/// Shown beside the stretch that was pointed at, s.
-const BESIDE_S: f64 = 0.5;
 /// Shown of the worst start before it, and after it at least and at most, s.
 const BEFORE_S: f64 = 0.2;
 const AFTER_S: [f64; 2] = [1.0, 4.0];
@@ -40,11 +42,13 @@ pub(super) fn lanes(report: &Report) -> Markup {
     if from_s >= to_s {
         return html! {};
     }
-    let joints = worst_first(report);
+    let own = |name: &str| report.pairs.iter().find(|pair| pair.name == name);
+    let worst_first = report.replay.joints_worst_first();
+    let joints = worst_first.into_iter().filter_map(|joint| Some((joint, own(&joint.name)?)));
     html! {
         p class="hint" {
             "Waits: the plan has left rest, the joint has not. Follows: the plan moves, and the joint. Settles: the plan rests, the joint moves on. \
-             White: nothing was measured. A line that stays up while both rest is an error that stays."
+             White: nothing was measured, or there is no plan. A line that stays up while both rest is an error that stays."
         }
         table class="lanes" {
             thead { tr {
@@ -62,7 +66,7 @@ pub(super) fn lanes(report: &Report) -> Markup {
                 @for (joint, pair) in joints {
                     tr {
                         th title=(clean(&joint.name)) { (clean(&joint.name)) }
-                        td class="lane" { (drawn(&lane(&report.replay, &joint.name, &seen_s(pair)), joint, pair, [from_s, to_s])) }
+                        td class="lane" { (drawn(report, joint, pair, [from_s, to_s])) }
                         td class="number" { (position(joint.kind, joint.tracking_error.peak)) }
                         td class="number" { (latest(report, &joint.name)) }
                     }
@@ -77,54 +81,32 @@ pub(super) fn lanes(report: &Report) -> Markup {
     }
 }
 
-/// Joints with their samples; those that turn and those that slide are compared by their settle bands.
-fn worst_first<'a>(report: &'a Report) -> Vec<(&'a JointReplay, &'a Pair)> {
-    let bands =
-        |joint: &JointReplay| joint.tracking_error.peak / report.replay.rules.sizes(joint.kind).settle_band;
-    let with_pair = |joint: &'a JointReplay| {
-        let own = |pair: &&Pair| pair.name == joint.name;
-        Some((joint, report.pairs.iter().find(own)?))
-    };
-    let mut joints: Vec<_> = report.replay.joints.iter().filter_map(with_pair).collect();
-    joints.sort_by(|(a, _), (b, _)| bands(b).total_cmp(&bands(a)));
-    joints
-}
-
-/// The stretches in which the joint was measured and has a plan, s.
-fn seen_s(pair: &Pair) -> Vec<[f64; 2]> {
-    let ends = |part: &std::ops::Range<usize>| {
-        Some([*pair.t_s.get(part.start)?, *pair.t_s.get(part.end.checked_sub(1)?)?])
-    };
-    pair.segments.iter().filter_map(ends).collect()
-}
-
 /// The delay of the joint's latest start, or that it left one out.
 fn latest(report: &Report, joint: &str) -> String {
     let of = report.replay.joints.iter().find(|found| found.name == joint);
     if let Some(never) = of.map(|found| found.unanswered_starts).filter(|n| *n > 0) {
         return format!("{never} never");
     }
-    let own = report.replay.transitions.iter().filter(|t| t.joint == joint);
-    let latest_s = own.filter_map(|t| t.onset_delay_s).reduce(f64::max);
-    latest_s.map_or(String::new(), |s| format!("{} ms", ms(s)))
+    report.replay.longest_delay_s(joint).map_or(String::new(), |s| format!("{} ms", ms(s)))
 }
 
 /// Stretches, and over them the error's magnitude.
-fn drawn(stretches: &[Stretch], joint: &JointReplay, pair: &Pair, [from_s, to_s]: [f64; 2]) -> Markup {
+fn drawn(report: &Report, joint: &JointReplay, pair: &Pair, [from_s, to_s]: [f64; 2]) -> Markup {
+    let seen_s: Vec<[f64; 2]> = pair.spans_s().collect();
     let place = |s: f64| ((s - from_s) / (to_s - from_s) * WIDTH).clamp(0.0, WIDTH);
     let fixed = |value: f64| format!("{value:.1}");
     html! {
         svg viewBox="0 0 1000 30" preserveAspectRatio="none" aria-hidden="true" {
-            @for gap in seen_s(pair).windows(2).map(|two| [two[0][1], two[1][0]]) {
+            @for gap in seen_s.windows(2).map(|two| [two[0][1], two[1][0]]) {
                 rect class="gap" x=(fixed(place(gap[0]))) y="0" height="30" width=(fixed((place(gap[1]) - place(gap[0])).max(1.0))) {
                     title { (format!("not measured {:.2} to {:.2} s", gap[0], gap[1])) }
                 }
             }
-            @for one in stretches {
+            @for one in lane(&report.replay, &joint.name, &seen_s) {
+                @let shows = Shows::around(&pair.name, [one.from_s, one.to_s]);
                 rect class=(class(one.phase)) x=(fixed(place(one.from_s))) y="0" height="30"
                     width=(fixed((place(one.to_s) - place(one.from_s)).max(1.0)))
-                    data-from=(format!("{:.3}", one.from_s - BESIDE_S)) data-to=(format!("{:.3}", one.to_s + BESIDE_S))
-                    data-joint=(clean(&pair.name)) {
+                    data-from=(shows.from) data-to=(shows.to) data-joint=(shows.joint) {
                     title { (class(one.phase)) (format!(" {:.2} to {:.2} s", one.from_s, one.to_s)) }
                 }
             }
@@ -163,36 +145,15 @@ fn class(phase: Phase) -> &'static str {
 pub(super) fn worst_start(report: &Report) -> Option<Chart> {
     let worst: &Transition = report.replay.worst_first().into_iter().next()?;
     let pair = report.pairs.iter().find(|pair| pair.name == worst.joint)?;
-    let joint = report.replay.joints.iter().find(|joint| joint.name == worst.joint)?;
     let latest_s = worst.onset_delay_s.unwrap_or(0.0).max(worst.time_to_peak_s);
     let after_s = (latest_s + 0.4).clamp(AFTER_S[0], AFTER_S[1]);
     let mut chart = tile(worst, pair, [BEFORE_S, after_s]);
-    let onset_s = worst.planned_onset_s;
-    let [planned, measured] = speeds(pair, joint.thresholds.window_s, &report.replay.rules);
-    let from = pair.t_s.partition_point(|t_s| *t_s < onset_s - BEFORE_S);
-    let to = pair.t_s.partition_point(|t_s| *t_s <= onset_s + after_s).max(from);
-    let within = |range: &std::ops::Range<usize>| range.start.max(from)..range.end.min(to);
-    let segments: Vec<_> = pair.segments.iter().map(within).filter(|range| !range.is_empty()).collect();
-    let places = envelope(&segments, &[&planned, &measured], 2 * PLACES);
-    let t_s: Vec<f64> = pair.t_s.iter().map(|t_s| t_s - onset_s).collect();
-    chart.xs.push(times(&t_s, &places));
-    let sign = f64::from(worst.direction);
-    let series = |name: &str, role, values: &[f64]| Series {
-        name: name.to_owned(),
-        role,
-        x: 1,
-        y: at(values, &places).map(|value| rounded(on_paper(pair.kind, sign * value))).collect(),
-        names: Vec::new(),
+    let seen = View {
+        zero_s: worst.planned_onset_s,
+        shown_s: [-BEFORE_S, after_s],
+        sign: f64::from(worst.direction),
     };
-    let speed = Panel {
-        label: format!("Speed ({})", unit(Dimension::Speed, pair.kind)),
-        series: vec![
-            series("planned speed", Role::Planned, &planned),
-            series("measured speed", Role::Measured, &measured),
-        ],
-        share: 0.4,
-        range: None,
-    };
+    let speed = speed(&mut chart, report, pair, seen, 0.4)?;
     chart.panels.insert(1, speed);
     chart.title = format!("The worst start: {}", chart.title);
     (chart.size, chart.height, chart.x_range) = (Size::Half, 330, Some([-BEFORE_S, after_s]));

@@ -63,7 +63,7 @@ fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Trans
     let shown =
         |values: &[f64]| at(values, &places).map(|value| rounded(on_paper(pair.kind, value))).collect();
     let unit = unit(Dimension::Position, pair.kind);
-    let series = |name: &str, role, y| Series { name: name.to_owned(), role, x: 0, y, names: Vec::new() };
+    let series = |name: &str, role, y| Series::of(name, role, 0, y);
     let note = numbers.map_or(String::new(), |joint| {
         let late = joint.lag_s.map_or(String::new(), |s| format!(", lag {} ms", ms(s)));
         let error = &joint.tracking_error;

@@ -17,16 +17,13 @@ use crate::{
         fit::fitted,
         kit::{
             self, Document, Id,
-            page::{Chapter, Plots, Stretch, blocks, blocks_of, headed},
+            page::{Chapter, Plots, Shows, blocks, blocks_of, headed},
         },
         plan::front,
     },
     replay::Transition,
     workflow::report::{LateStart, Report},
 };
-
-/// Shown beside a stretch that a row is about, s.
-const BESIDE_S: f64 = 0.5;
 
 /// What a run is called: its files.
 pub(crate) fn name(report: &Report) -> String {
@@ -84,19 +81,15 @@ fn numbers(document: &Document, report: &Report) -> Markup {
     }
 }
 
-/// Where the rows of transitions are in the run.
-fn transitions_shown(report: &Report) -> Vec<Stretch> {
-    let of = |transition: &Transition| stretch(&transition.joint, transition.window_s);
+/// What the rows of transitions show.
+fn transitions_shown(report: &Report) -> Vec<Shows> {
+    let of = |transition: &Transition| Shows::around(&transition.joint, transition.window_s);
     report.replay.worst_first().into_iter().map(of).collect()
 }
 
-/// Where the rows of late starts are.
-fn late_starts(report: &Report) -> Vec<Stretch> {
+/// What the rows of late starts show.
+fn late_starts(report: &Report) -> Vec<Shows> {
     let Some(Ok(why)) = &report.why else { return Vec::new() };
     let window = |start: &LateStart| [start.planned_onset_s, start.planned_onset_s + start.onset_delay_s];
-    why::latest_first(why).into_iter().map(|start| stretch(&start.joint, window(start))).collect()
-}
-
-fn stretch(joint: &str, [from_s, to_s]: [f64; 2]) -> Stretch {
-    Stretch { joint: joint.to_owned(), from_s: from_s - BESIDE_S, to_s: to_s + BESIDE_S }
+    why::latest_first(why).into_iter().map(|start| Shows::around(&start.joint, window(start))).collect()
 }

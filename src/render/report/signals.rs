@@ -28,7 +28,7 @@ pub(super) fn add(chart: &mut Chart, report: &Report, pair: &Pair) {
     if let Some(series) = command(chart, report, pair) {
         chart.panels[0].series.push(series);
     }
-    let speed = speed(chart, report, pair);
+    let speed = speed(chart, report, pair, View::ALL, SHARE);
     let valve = [(SignalRole::Valve, "valve", Role::Measured)];
     let pressures = [
         (SignalRole::CapPressure, "piston side", Role::Measured),
@@ -57,7 +57,7 @@ fn coordinates(chart: &mut Chart, t_s: &[f64], places: &[Option<usize>]) -> usiz
 }
 
 fn series(name: &str, role: Role, x: usize, y: impl Iterator<Item = f64>) -> Series {
-    Series { name: name.to_owned(), role, x, y: y.map(rounded).collect(), names: Vec::new() }
+    Series::of(name, role, x, y.map(rounded).collect())
 }
 
 /// Decimals that a plot of speeds, shares and pressures shows.
@@ -74,18 +74,46 @@ fn command(chart: &mut Chart, report: &Report, pair: &Pair) -> Option<Series> {
     Some(series("command", Role::Before, x, sent))
 }
 
-fn speed(chart: &mut Chart, report: &Report, pair: &Pair) -> Option<Panel> {
+/// What of a joint's samples is drawn: times from an instant on, in the direction of a motion.
+#[derive(Clone, Copy)]
+pub(super) struct View {
+    pub(super) zero_s: f64,
+    pub(super) shown_s: [f64; 2],
+    pub(super) sign: f64,
+}
+
+impl View {
+    const ALL: Self = Self { zero_s: 0.0, shown_s: [f64::NEG_INFINITY, f64::INFINITY], sign: 1.0 };
+}
+
+/// The planned and the measured speed of a joint.
+pub(super) fn speed(
+    chart: &mut Chart,
+    report: &Report,
+    pair: &Pair,
+    view: View,
+    share: f64,
+) -> Option<Panel> {
     let replay = &report.replay;
     let window_s = replay.joints.iter().find(|joint| joint.name == pair.name)?.thresholds.window_s;
     let [planned, measured] = speeds(pair, window_s, &replay.rules);
-    let places = envelope(&pair.segments, &[&planned, &measured], MOST);
-    let x = coordinates(chart, &pair.t_s, &places);
-    let shown = |values| at(values, &places).map(|value| hundredths(on_paper(pair.kind, value)));
-    let both = vec![
+    let t_s: Vec<f64> = pair.t_s.iter().map(|t_s| t_s - view.zero_s).collect();
+    let [from, to] = view.shown_s.map(|shown_s| t_s.partition_point(|t_s| *t_s < shown_s));
+    let within = |part: &std::ops::Range<usize>| part.start.max(from)..part.end.min(to);
+    let parts: Vec<_> = pair.segments.iter().map(within).filter(|part| !part.is_empty()).collect();
+    let places = envelope(&parts, &[&planned, &measured], MOST);
+    let x = coordinates(chart, &t_s, &places);
+    let shown = |values| at(values, &places).map(|value| hundredths(on_paper(pair.kind, view.sign * value)));
+    let series = vec![
         series("planned speed", Role::Planned, x, shown(&planned)),
         series("measured speed", Role::Measured, x, shown(&measured)),
     ];
-    panel(&format!("Speed ({})", unit(Dimension::Speed, pair.kind)), both)
+    Some(Panel {
+        label: format!("Speed ({})", unit(Dimension::Speed, pair.kind)),
+        series,
+        share,
+        range: None,
+    })
 }
 
 /// Those signals of a joint that the report holds, with what they are called and look like.

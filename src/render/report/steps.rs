@@ -23,13 +23,16 @@ pub(super) fn steps(report: &Report, read: &[String]) -> Vec<(Sentence, Option<S
 /// What to type for a step, if that does it.
 fn line(step: &Advice, logs: &str, limit: [&str; 2]) -> Option<String> {
     Some(match step {
-        Advice::ShiftCommand { fits: true, .. } | Advice::EaseStarts { fits: true, .. } => {
-            command(&["replan", logs, "--keep-plan", "--gain", "0.5", "-o", "next.mcap"])
-        }
+        Advice::ShiftCommand { fits: true, .. } | Advice::EaseStarts { fits: true, .. } => replanned(logs),
         Advice::SetLimits => command(&["report", logs, limit[0], limit[1]]),
         Advice::Compare => command(&["compare", logs, "NEXT_RUN"]),
         _ => return None,
     })
+}
+
+/// What makes a command that compensates what these logs show.
+pub(super) fn replanned(logs: &str) -> String {
+    command(&["replan", logs, "--keep-plan", "--gain", "0.5", "-o", "next.mcap"])
 }
 
 fn half_late(delay_s: Option<f64>) -> String {

@@ -14,7 +14,7 @@ use crate::{
         kit::{
             Sentence, clean, counted,
             page::{
-                Plots, card, next_steps,
+                Plots, Shows, card, next_steps,
                 strip::{Row, bars},
                 verdict,
             },
@@ -50,11 +50,11 @@ fn worst(report: &Report) -> Markup {
         let body = html! { p { "No planned start from rest was found." } };
         return card("", "Worst transition", "None", &body);
     };
-    let [from, to] = [worst.planned_onset_s - 0.5, worst.window_s[1] + 0.5];
+    let shows = Shows::around(&worst.joint, worst.window_s);
     let body = html! {
         p { (clean(&worst_sentence(worst))) }
         @if let Some(why) = why::of(report, &worst.id).map(why::phrase) { p { "Why: " (clean(&why)) } }
-        button type="button" data-from=(format!("{from:.3}")) data-to=(format!("{to:.3}")) data-joint=(clean(&worst.joint)) {
+        button type="button" data-from=(shows.from) data-to=(shows.to) data-joint=(shows.joint) {
             "Show it"
         }
     };

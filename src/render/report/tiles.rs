@@ -5,9 +5,9 @@ use maud::{Markup, html};
 use crate::{
     render::{
         kit::{
-            clean, counted, ms,
+            counted, ms,
             page::{
-                Plots,
+                Plots, Shows,
                 chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, span, times},
                 envelope::envelope,
             },
@@ -43,8 +43,8 @@ pub(super) fn transitions(report: &Report, plots: &mut Plots) -> Markup {
         }
         div class="tiles" {
             @for (transition, chart) in tiles {
-                div class="goto" role="button" tabindex="0" data-from=(format!("{:.3}", transition.planned_onset_s - 0.5))
-                    data-to=(format!("{:.3}", transition.window_s[1] + 0.5)) data-joint=(clean(&transition.joint)) {
+                @let shows = Shows::around(&transition.joint, transition.window_s);
+                div class="goto" role="button" tabindex="0" data-from=(shows.from) data-to=(shows.to) data-joint=(shows.joint) {
                     (plots.place(chart))
                 }
             }
@@ -100,7 +100,7 @@ pub(super) fn tile(transition: &Transition, pair: &Pair, [before_s, after_s]: [f
             .collect::<Vec<f64>>()
     };
     let unit = unit(Dimension::Position, pair.kind);
-    let series = |name: &str, role, y| Series { name: name.to_owned(), role, x: 0, y, names: Vec::new() };
+    let series = |name: &str, role, y| Series::of(name, role, 0, y);
     let late = transition.measured_onset_s.map(|s| s - onset_s).filter(|late_s| *late_s > 0.0);
     Chart {
         title: format!(

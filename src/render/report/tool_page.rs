@@ -64,7 +64,7 @@ pub(super) fn error_chart(found: &ToolReplay, path: &ToolPath) -> Chart {
     let places = envelope(&path.segments, &[&path.error_m, &path.along_m, &path.orientation_rad], MOST[0]);
     let shown =
         |values: &[f64], kind| at(values, &places).map(|value| rounded(on_paper(kind, value))).collect();
-    let series = |name: &str, role, y| Series { name: name.to_owned(), role, x: 0, y, names: Vec::new() };
+    let series = |name: &str, role, y| Series::of(name, role, 0, y);
     let panel = |label: &str, share, series| Panel { label: label.to_owned(), series, share, range: None };
     let angle = || {
         panel(

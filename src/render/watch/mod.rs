@@ -5,8 +5,8 @@ mod page;
 pub(crate) use page::index;
 
 use super::{
-    fleet::{shown, shown_unit},
     kit::{Document, Id, NONE, Section, Sentence, counted, ms, optional},
+    metric::position,
 };
 use crate::workflow::watch::{Run, RunJoint, Verdict, Watched};
 
@@ -44,7 +44,7 @@ fn found(run: &Run) -> String {
 }
 
 fn peak(joint: &RunJoint) -> String {
-    format!("{} {}", shown(&joint.unit, joint.peak), shown_unit(&joint.unit))
+    position(joint.kind, joint.peak)
 }
 
 fn delay(delay_s: Option<f64>) -> String {

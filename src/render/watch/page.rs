@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use super::{began, delay, peak, verdict};
 use crate::{
     render::{
-        fleet::{days, said, shown, shown_unit},
+        fleet::{days, said},
         kit::{
             self, Document, NONE, Section, clean, counted, fact,
             page::{
@@ -15,7 +15,10 @@ use crate::{
                 chart::{Chart, Panel, Role, Series, Size, rounded},
             },
         },
+        metric::{on_paper, unit},
     },
+    replay::Dimension,
+    series::JointKind,
     workflow::{
         fleet::Drift,
         watch::{Index, Run, RunJoint, Verdict},
@@ -159,9 +162,9 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
     let at_days = |run: &Run| run.at_days().unwrap_or_default();
     let first = done.last().map_or(0.0, |run| at_days(run));
     let span = done.first().map_or(0.0, |run| at_days(run)) - first;
-    let (unit, scale) = if span < 2.0 { ("hours", 24.0) } else { ("days", 1.0) };
+    let (time_unit, scale) = if span < 2.0 { ("hours", 24.0) } else { ("days", 1.0) };
     let range = [-0.04, 1.04].map(|share| share * (span * scale).max(0.1));
-    let mut machines: BTreeMap<&str, BTreeMap<(&str, &str), Vec<Point<'_>>>> = BTreeMap::new();
+    let mut machines: BTreeMap<&str, BTreeMap<(&str, JointKind), Vec<Point<'_>>>> = BTreeMap::new();
     for run in done.iter().rev() {
         for joint in &run.joints {
             let point =
@@ -169,7 +172,7 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
             machines
                 .entry(machine(run))
                 .or_default()
-                .entry((&joint.joint, &joint.unit))
+                .entry((&joint.joint, joint.kind))
                 .or_default()
                 .push(point);
         }
@@ -178,7 +181,7 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
     let mut left = MOST_DRAWN;
     html! {
         p class="hint" {
-            "Each run of each joint: above its peak error, below its longest dead time in ms, over " (unit) " since "
+            "Each run of each joint: above its peak error, below its longest dead time in ms, over " (time_unit) " since "
             (done.last().map_or(NONE.to_owned(), |run| began(run))) ". A line joins the runs of one plan; those of another differ \
              without any change of the machine. A drift is told by the same starts of the same plan, from five runs of a machine on."
             @if all > MOST_DRAWN { " " (counted(all - MOST_DRAWN, "joint")) " not drawn." }
@@ -209,10 +212,9 @@ struct Point<'a> {
     joint: &'a RunJoint,
 }
 
-fn chart((joint, unit): (&str, &str), points: &[Point<'_>], range: [f64; 2]) -> Chart {
+fn chart((joint, kind): (&str, JointKind), points: &[Point<'_>], range: [f64; 2]) -> Chart {
     let points = &points[points.len().saturating_sub(MOST_RUNS)..];
-    let peaks: &dyn Fn(&Point<'_>) -> f64 =
-        &|point| shown(unit, point.joint.peak).parse().unwrap_or(f64::NAN);
+    let peaks: &dyn Fn(&Point<'_>) -> f64 = &|point| rounded(on_paper(kind, point.joint.peak));
     let delays: &dyn Fn(&Point<'_>) -> f64 =
         &|point| point.joint.largest_delay_s.map_or(f64::NAN, |s| rounded(1e3 * s));
     // All points, then those of each plan, which a line joins.
@@ -222,13 +224,7 @@ fn chart((joint, unit): (&str, &str), points: &[Point<'_>], range: [f64; 2]) -> 
     let panel = |label: &str, of: &dyn Fn(&Point<'_>) -> f64| {
         let series = groups.iter().enumerate().map(|(x, group)| {
             let role = if x == 0 { Role::Point } else { Role::Guide };
-            Series {
-                name: String::new(),
-                role,
-                x,
-                y: group.iter().map(|p| of(p)).collect(),
-                names: Vec::new(),
-            }
+            Series::of("", role, x, group.iter().map(|p| of(p)).collect())
         });
         let most = points.iter().map(of).filter(|y| y.is_finite()).fold(1e-3, f64::max);
         Panel {
@@ -247,7 +243,10 @@ fn chart((joint, unit): (&str, &str), points: &[Point<'_>], range: [f64; 2]) -> 
         note: newest,
         xs: groups.iter().map(|group| group.iter().map(|point| point.x).collect()).collect(),
         x_range: Some(range),
-        panels: vec![panel(&format!("peak {}", shown_unit(unit)), peaks), panel("dead time ms", delays)],
+        panels: vec![
+            panel(&format!("peak {}", unit(Dimension::Position, kind)), peaks),
+            panel("dead time ms", delays),
+        ],
         height: 150,
         size: Size::Tile,
         ..Chart::default()

@@ -43,38 +43,25 @@ pub enum ReplanFailure {
         /// The log.
         path: PathBuf,
     },
-    /// The plan was cut where it begins.
-    #[error(
-        "the plan in {} begins at {at_s:.2} s while {joint} moves at {} per second: the log was cut, and no arm starts at \
-         once; give the whole log, or name the task with --task",
-        path.display(),
-        Degrees(*speed_rad_s)
-    )]
-    BeginsInMotion {
-        /// The log.
-        path: PathBuf,
-        /// The joint.
-        joint: String,
-        /// Its planned speed there.
-        speed_rad_s: f64,
-        /// The first planned instant.
-        at_s: f64,
-    },
     /// The plan was cut.
     #[error(
-        "the plan in {} ends at {at_s:.2} s while {joint} moves at {} per second: the log was cut, and no arm stops at \
+        "the plan in {} {} at {at_s:.2} s while {joint} moves at {} per second: the log was cut, and no arm {} at \
          once; give the whole log, or name the task with --task",
         path.display(),
-        Degrees(*speed_rad_s)
+        if *begins { "begins" } else { "ends" },
+        Degrees(*speed_rad_s),
+        if *begins { "starts" } else { "stops" }
     )]
-    EndsInMotion {
+    CutInMotion {
         /// The log.
         path: PathBuf,
+        /// Whether it is the beginning that is cut off, or the end.
+        begins: bool,
         /// The joint.
         joint: String,
         /// Its planned speed there.
         speed_rad_s: f64,
-        /// The last planned instant.
+        /// The first or last planned instant.
         at_s: f64,
     },
     /// No task to plan.

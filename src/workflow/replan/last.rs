@@ -117,28 +117,20 @@ impl Last {
 fn check_ends(path: &Path, planned: &Series, [from_s, to_s]: [f64; 2]) -> Result<(), ReplanFailure> {
     for track in &planned.tracks {
         let (t_s, position) = (track.t_s(), track.position());
-        // Of a sample, by its neighbour.
-        let speed = |at: usize, next: usize| {
+        let first = t_s.partition_point(|t| *t < from_s - CUT_S);
+        let last = t_s.partition_point(|t| *t <= to_s + CUT_S).saturating_sub(1);
+        let begins = track.segments().iter().any(|part| part.start == first && part.len() > 1);
+        let ends = track.segments().iter().any(|part| part.end == last + 1 && part.len() > 1);
+        // An end, its neighbour, and where the motion has its own.
+        let first = (first, first + 1, from_s, true);
+        let last = (last, last.wrapping_sub(1), to_s, false);
+        let ends = [first].into_iter().filter(|_| begins).chain([last].into_iter().filter(|_| ends));
+        for (at, next, _, begins) in ends.filter(|(at, _, end_s, _)| (t_s[*at] - end_s).abs() <= CUT_S) {
             let step = (position[at] - position[next]) / (t_s[at] - t_s[next]);
-            track.velocity().map_or(step, |speed| speed[at])
-        };
-        let joint = || track.name().to_owned();
-        let begin = t_s.partition_point(|t| *t < from_s - CUT_S);
-        let begins = track.segments().iter().any(|part| part.start == begin && part.len() >= 2);
-        if begins && t_s[begin] - from_s <= CUT_S {
-            let speed_rad_s = speed(begin, begin + 1);
+            let speed_rad_s = track.velocity().map_or(step, |speed| speed[at]);
             if speed_rad_s.abs() > CUT_RAD_S {
-                let (path, at_s) = (path.to_owned(), t_s[begin]);
-                return Err(ReplanFailure::BeginsInMotion { path, joint: joint(), speed_rad_s, at_s });
-            }
-        }
-        let end = t_s.partition_point(|t| *t <= to_s + CUT_S);
-        let ends = track.segments().iter().any(|part| part.end == end) && end >= 2;
-        if ends && to_s - t_s[end - 1] <= CUT_S {
-            let speed_rad_s = speed(end - 1, end - 2);
-            if speed_rad_s.abs() > CUT_RAD_S {
-                let (path, at_s) = (path.to_owned(), t_s[end - 1]);
-                return Err(ReplanFailure::EndsInMotion { path, joint: joint(), speed_rad_s, at_s });
+                let (path, joint) = (path.to_owned(), track.name().to_owned());
+                return Err(ReplanFailure::CutInMotion { path, begins, joint, speed_rad_s, at_s: t_s[at] });
             }
         }
     }

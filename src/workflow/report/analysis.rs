@@ -63,9 +63,7 @@ pub(super) fn aligned<T: Borrow<Track>>(
         if let Some(before) = pairs.last().filter(|before| before.t_s == pair.t_s) {
             pair.t_s = before.t_s.clone();
         }
-        let seen = |at_s: &f64| {
-            pair.segments.iter().any(|s| (pair.t_s[s.start]..=pair.t_s[s.end - 1]).contains(at_s))
-        };
+        let seen = |at_s: &f64| pair.spans_s().any(|[from_s, to_s]| (from_s..=to_s).contains(at_s));
         hidden.push(planned_starts(planned, rules).iter().filter(|at_s| !seen(at_s)).count());
         pairs.push(pair);
     }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     document::PROGRAM,
     replay::JointReplay,
+    series::JointKind,
     units::SECONDS_PER_DAY,
     workflow::{
         fleet::Log,
@@ -82,7 +83,9 @@ pub struct RunJoint {
     /// The joint.
     pub joint: String,
     /// The unit of its position: "rad" or "m".
-    pub unit: String,
+    #[serde(rename = "unit", with = "crate::replay::unit")]
+    #[cfg_attr(test, schemars(with = "String"))]
+    pub kind: JointKind,
     /// Largest tracking error, in its unit.
     pub peak: f64,
     /// Root mean square of the tracking error, in its unit.
@@ -123,21 +126,15 @@ impl Run {
         page: String,
         (report, found): (&Report, &Findings),
     ) -> Self {
-        let delays = |joint: Option<&str>| {
-            let own = report.replay.transitions.iter().filter(|start| joint.is_none_or(|j| j == start.joint));
-            own.filter_map(|start| start.onset_delay_s).reduce(f64::max)
-        };
+        let replay = &report.replay;
         let joint = |joint: &JointReplay| RunJoint {
             joint: joint.name.clone(),
-            unit: joint.kind.unit().to_owned(),
+            kind: joint.kind,
             peak: joint.tracking_error.peak,
             rms: joint.tracking_error.rms,
-            largest_delay_s: delays(Some(&joint.name)),
+            largest_delay_s: replay.longest_delay_s(&joint.name),
         };
-        let rules = &report.replay.rules;
-        // Radians and metres are compared by what each kind calls settled.
-        let bands = |joint: &&JointReplay| joint.tracking_error.peak / rules.sizes(joint.kind).settle_band;
-        let worst = report.replay.joints.iter().max_by(|a, b| bands(a).total_cmp(&bands(b)));
+        let joints: Vec<RunJoint> = replay.joints.iter().map(joint).collect();
         let started = DateTime::from_timestamp_nanos(report.source.epoch_ns);
         Self {
             page: Some(page),
@@ -150,10 +147,10 @@ impl Run {
                 (false, false) => Verdict::NotKept,
             },
             gates: report.gates.clone(),
-            worst_joint: worst.map(|joint| joint.name.clone()),
-            largest_delay_s: delays(None),
-            unanswered_starts: report.replay.joints.iter().map(|joint| joint.unanswered_starts).sum(),
-            joints: report.replay.joints.iter().map(joint).collect(),
+            worst_joint: replay.joints_worst_first().first().map(|joint| joint.name.clone()),
+            largest_delay_s: joints.iter().filter_map(|joint| joint.largest_delay_s).reduce(f64::max),
+            unanswered_starts: replay.joints.iter().map(|joint| joint.unanswered_starts).sum(),
+            joints,
             remarks: found.report.remarks.len(),
             error: None,
             ..Self::failed(log, request_id, "")

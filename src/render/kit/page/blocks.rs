@@ -18,7 +18,7 @@ pub(in crate::render) fn blocks(blocks: &[Block]) -> Markup {
 }
 
 /// The same; rows of tables show their stretches in the plots of the run.
-pub(in crate::render) fn blocks_of(blocks: &[Block], stretches: &[Stretch]) -> Markup {
+pub(in crate::render) fn blocks_of(blocks: &[Block], shows: &[Shows]) -> Markup {
     html! {
         @for block in blocks {
             @match block {
@@ -26,7 +26,7 @@ pub(in crate::render) fn blocks_of(blocks: &[Block], stretches: &[Stretch]) -> M
                 Block::Facts(facts) => { (list(facts)) }
                 Block::Remarks(facts) => { div class="remarks" { (list(facts)) } }
                 Block::Checks(checks) => { (checked(checks)) }
-                Block::Table(whole) => { (table_of(whole, stretches)) }
+                Block::Table(whole) => { (table_of(whole, shows)) }
                 Block::Command(line) => { pre { code { (clean(line)) } } }
             }
         }
@@ -55,12 +55,21 @@ fn list(facts: &[Fact]) -> Markup {
     }
 }
 
-/// A stretch of the run that a row is about.
+/// What a click shows in the plots of the run: the attributes of an element, `data-from`, `data-to` and `data-joint`.
 #[derive(Debug, Clone)]
-pub(in crate::render) struct Stretch {
+pub(in crate::render) struct Shows {
+    pub(in crate::render) from: String,
+    pub(in crate::render) to: String,
     pub(in crate::render) joint: String,
-    pub(in crate::render) from_s: f64,
-    pub(in crate::render) to_s: f64,
+}
+
+impl Shows {
+    /// A stretch of a joint, s, with a little of what lies beside it.
+    pub(in crate::render) fn around(joint: &str, [from_s, to_s]: [f64; 2]) -> Self {
+        const BESIDE_S: f64 = 0.5;
+        let fixed = |s: f64| format!("{s:.3}");
+        Self { from: fixed(from_s - BESIDE_S), to: fixed(to_s + BESIDE_S), joint: clean(joint) }
+    }
 }
 
 /// A table that scrolls by itself where the screen is narrow.
@@ -68,7 +77,7 @@ pub(in crate::render) fn table(table: &Table) -> Markup {
     table_of(table, &[])
 }
 
-fn table_of(table: &Table, stretches: &[Stretch]) -> Markup {
+fn table_of(table: &Table, shows: &[Shows]) -> Markup {
     let class = |k: usize| match table.columns.get(k).map(|column| column.align) {
         Some(Align::Left) => "word",
         _ => "number",
@@ -87,9 +96,9 @@ fn table_of(table: &Table, stretches: &[Stretch]) -> Markup {
                 } }
                 tbody {
                     @for (n, row) in table.rows.iter().enumerate() {
-                        @let of = stretches.get(n);
-                        tr tabindex=[of.map(|_| 0)] data-from=[of.map(|of| format!("{:.3}", of.from_s))]
-                            data-to=[of.map(|of| format!("{:.3}", of.to_s))] data-joint=[of.map(|of| clean(&of.joint))] {
+                        @let of = shows.get(n);
+                        tr tabindex=[of.map(|_| 0)] data-from=[of.map(|of| &of.from)] data-to=[of.map(|of| &of.to)]
+                            data-joint=[of.map(|of| &of.joint)] {
                             @for (k, cell) in row.iter().enumerate() { td class=(class(k)) { (clean(cell)) } }
                         }
                     }

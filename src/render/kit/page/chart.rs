@@ -66,6 +66,13 @@ pub(in crate::render) struct Series {
     pub(in crate::render) names: Vec<String>,
 }
 
+impl Series {
+    /// Values over one of the chart's horizontal coordinates, whose points have no names.
+    pub(in crate::render) fn of(name: impl Into<String>, role: Role, x: usize, y: Vec<f64>) -> Self {
+        Self { name: name.into(), role, x, y, names: Vec::new() }
+    }
+}
+
 /// A stretch of the horizontal axis.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(in crate::render) struct Band {

@@ -12,6 +12,6 @@ pub(in crate::render) mod paper;
 pub(in crate::render) mod scene;
 pub(in crate::render) mod strip;
 
-pub(in crate::render) use blocks::{Stretch, blocks, blocks_of, headed, table};
+pub(in crate::render) use blocks::{Shows, blocks, blocks_of, headed, table};
 pub(in crate::render) use card::{card, next_steps, verdict};
 pub(in crate::render) use frame::{Chapter, Plots, page};
