@@ -53,6 +53,7 @@ async function look(browser, path, width, scheme) {
   await tools(page, where);
   await first(page, where, width);
   await turn(page, where);
+  await choose(page, where);
   await copy(page, where, context);
   await context.close();
   return ms;
@@ -209,6 +210,33 @@ async function turn(page, where) {
   await page.keyboard.press('Home');
   check(await view() === first, where, 'Home does not show the first view');
   check((await box.getAttribute('aria-label')).includes('arrow keys'), where, 'the path has no label');
+}
+
+// Chooses plans of a front by slider and by point: line, numbers, motion and path follow.
+async function choose(page, where) {
+  const slider = page.locator('.choice input'), line = page.locator('.choice code');
+  if (await slider.count() === 0) return;
+  const shown = () => page.evaluate(() => [document.querySelector('.choice code').textContent, document.querySelector('.choice ul').textContent,
+    plotted.plots.filter(p => p.spec.group === 'run').map(p => p.range.join(' ')).join(), document.querySelector('.scene canvas').toDataURL()]);
+  const settled = async () => { await page.waitForTimeout(100); return shown(); };
+  const chosen = await settled();
+  await slider.focus();
+  await page.keyboard.press('ArrowRight');
+  const fastest = await settled();
+  check(fastest.every((part, k) => part !== chosen[k]), where, 'the slider does not show another plan');
+  check(/--times 0,[\d.,]+ -o/.test(fastest[0]), where, `the line is ${fastest[0]}`);
+  const at = await page.evaluate(() => {
+    const plot = plotted.plots.find(p => p.dots), s = plot.spec.panels[0].series[0], last = s.y.length - 1;
+    plot.canvas.scrollIntoView({ block: 'center' });
+    const box = plot.canvas.getBoundingClientRect();
+    return [box.x + plot.pixel(plot.spec.xs[s.x][last]), box.y + plot.y(s.y[last])];
+  });
+  await page.mouse.click(...at);
+  const slowest = await settled();
+  check(slowest[0] !== fastest[0] && slowest[2] !== fastest[2], where, 'a click on a point does not show its plan');
+  await slider.focus();
+  await page.keyboard.press('Home');
+  check((await settled())[0] === chosen[0] && await line.isVisible(), where, 'Home does not show the chosen plan');
 }
 
 // Reads the checks by their words and copies the first command.

@@ -11,19 +11,21 @@ use super::{
 };
 use crate::{
     moea::NamedAlgorithm,
-    plan::{PlanEvaluation, SampledMotion},
+    plan::PlanEvaluation,
     remark::Remarks,
     render::{
         kit::Document,
         next,
-        plan::{self as words, broken_lines, ceiling_lines, judged_document, judged_page, motion_figures},
+        plan::{
+            self as words, Courses, broken_lines, ceiling_lines, judged_document, judged_page, motion_figures,
+        },
     },
     workflow::{
         carried::{
             Carried,
             plan_log::{PlanLog, Planned as Steps},
         },
-        plan::{Options, PlanDocument, PlanFailure, PlanRequest, Planned, run},
+        plan::{Course, Options, PlanDocument, PlanFailure, PlanRequest, Planned, run},
     },
 };
 
@@ -64,10 +66,10 @@ impl Args {
         let joints = request.setup.joint_names();
         let document = PlanDocument::evaluated(title, &joints, &evaluation, true);
         self.write_log(request, &document, BTreeMap::new())?;
-        let course = course(request, &evaluation)?;
+        let course = Course::of(request, &evaluation)?;
         let result = match target.form {
             Form::Json => document.json(),
-            Form::Html => judged_page(title, &joints, &evaluation, &course),
+            Form::Html => judged_page(title, &joints, &course, request.setup.arm().chain.tool_name()),
             _ => target.text(&self.noted(judged_document(title, &joints, &evaluation))),
         };
         self.figures.write(console, target, || motion_figures(&joints, &course))?;
@@ -83,10 +85,15 @@ impl Args {
     ) -> Result<Outcome, CliError> {
         let Found { planned, document, algorithm, options } = self.found(request, console)?;
         let (title, ceilings) = (&request.task.title, &request.task.ceilings);
-        let course = course(request, &planned.chosen)?;
+        let course = Course::of(request, &planned.chosen)?;
         let result = match target.form {
             Form::Json => document.json(),
-            Form::Html => words::page(&document, &options, ceilings, &planned, &course),
+            Form::Html => {
+                let of_front = Course::of_front(request, &planned)?;
+                let tool = request.setup.arm().chain.tool_name();
+                let courses = Courses { chosen: &course, of_front: &of_front, tool, task: &self.task };
+                words::page(&document, &options, ceilings, &planned, &courses)
+            }
             _ => target.text(&self.noted(words::document(title, algorithm, &options, ceilings, &planned))),
         };
         self.figures.write(console, target, || words::figures(&document, &course))?;
@@ -168,8 +175,4 @@ impl Args {
         };
         write_file(path, &log.bytes()?)
     }
-}
-
-fn course(request: &PlanRequest, evaluation: &PlanEvaluation) -> Result<SampledMotion, CliError> {
-    Ok(SampledMotion::of(&request.setup, evaluation).map_err(PlanFailure::from)?)
 }

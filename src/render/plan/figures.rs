@@ -1,13 +1,12 @@
 //! The plots of a plan one by one.
 
-use super::{front::front_charts, page::motion_charts};
+use super::{front::front_charts, motion::motion_charts};
 use crate::{
-    plan::SampledMotion,
     render::kit::{
         Failure, Figure,
         figure::{figure, numbered},
     },
-    workflow::plan::PlanDocument,
+    workflow::plan::{Course, PlanDocument},
 };
 
 /// The plots of a search and of the motion it chose.
@@ -15,7 +14,7 @@ use crate::{
 /// # Errors
 ///
 /// What the drawing library says.
-pub(crate) fn figures(plan: &PlanDocument, course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
+pub(crate) fn figures(plan: &PlanDocument, course: &Course) -> Result<Vec<Figure>, Failure> {
     let mut figures = front_figures(plan)?;
     figures.extend(motion_figures(&plan.joints, course)?);
     Ok(figures)
@@ -26,7 +25,7 @@ pub(crate) fn figures(plan: &PlanDocument, course: &SampledMotion) -> Result<Vec
 /// # Errors
 ///
 /// What the drawing library says.
-pub(crate) fn motion_figures(joints: &[String], course: &SampledMotion) -> Result<Vec<Figure>, Failure> {
+pub(crate) fn motion_figures(joints: &[String], course: &Course) -> Result<Vec<Figure>, Failure> {
     numbered("motion", &motion_charts(joints, course))
 }
 

@@ -1,10 +1,13 @@
 //! What was planned.
 
+mod choices;
 mod figures;
 mod front;
+mod motion;
 mod page;
 mod tables;
 
+pub(crate) use choices::Courses;
 pub(super) use figures::front_figures;
 pub(crate) use figures::{figures, motion_figures};
 pub(super) use front::front;

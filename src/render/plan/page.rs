@@ -3,22 +3,19 @@
 use maud::{Markup, html};
 
 use super::{
+    choices::{Courses, choices},
     front::front,
+    motion::{motion_charts, path},
     tables::{document, judged_document, limit_cell},
 };
 use crate::{
-    plan::{PlanEvaluation, SampledMotion},
+    plan::PlanEvaluation,
     render::kit::{
         self, Document, Fact, Id, Sentence, counted, fact,
-        page::{
-            Chapter, Plots, card,
-            chart::{Chart, Panel, Role, Series, Size, rounded},
-            headed, next_steps, verdict,
-        },
+        page::{Chapter, Plots, card, choice::choice, headed, next_steps, scene::scene, verdict},
     },
     task::{Ceilings, Objective},
-    units::degrees_from_radians,
-    workflow::plan::{Options, PlanDocument, Planned},
+    workflow::plan::{Course, Options, PlanDocument, Planned},
 };
 
 /// What a search found, as one page.
@@ -27,7 +24,7 @@ pub(crate) fn page(
     options: &Options,
     ceilings: &Ceilings,
     planned: &Planned,
-    course: &SampledMotion,
+    courses: &Courses<'_>,
 ) -> String {
     let algorithm = plan.algorithm.as_deref().unwrap_or_default();
     let mut document = document(&plan.title, algorithm, options, ceilings, planned);
@@ -35,11 +32,11 @@ pub(crate) fn page(
     let mut plots = Plots::default();
     let mut chapters = vec![
         Chapter { id: "summary", heading: "In short", body: summary(planned) },
-        Chapter { id: "front", heading: "The front", body: front(plan, &mut plots) },
+        Chapter { id: "front", heading: "The front", body: the_front(plan, planned, courses, &mut plots) },
         Chapter {
             id: "motion",
-            heading: "The chosen motion",
-            body: motion(&planned.joints, course, &mut plots),
+            heading: "The motion that is shown",
+            body: motion(&planned.joints, courses.chosen, courses.tool, &mut plots),
         },
         numbers(&document),
     ];
@@ -48,12 +45,8 @@ pub(crate) fn page(
 }
 
 /// One plan that was given, as one page.
-pub(crate) fn judged_page(
-    title: &str,
-    joints: &[String],
-    evaluation: &PlanEvaluation,
-    course: &SampledMotion,
-) -> String {
+pub(crate) fn judged_page(title: &str, joints: &[String], course: &Course, tool: &str) -> String {
+    let evaluation = &course.evaluation;
     let mut document = judged_document(title, joints, evaluation);
     document.facts = vec![fact("joints", joints.join(", "))];
     let mut plots = Plots::default();
@@ -63,10 +56,19 @@ pub(crate) fn judged_page(
             heading: "In short",
             body: html! { div class="cards" { (limits(evaluation, joints)) (cost("The plan", evaluation)) } },
         },
-        Chapter { id: "motion", heading: "The motion", body: motion(joints, course, &mut plots) },
+        Chapter { id: "motion", heading: "The motion", body: motion(joints, course, tool, &mut plots) },
         numbers(&document),
     ];
     kit::page::page("plan", &document, &chapters, &plots)
+}
+
+/// The front, of which the reader chooses a plan.
+fn the_front(plan: &PlanDocument, planned: &Planned, courses: &Courses<'_>, plots: &mut Plots) -> Markup {
+    html! {
+        (front(plan, plots))
+        p class="hint" { "Click a point, or move the slider from the fastest plan on: its numbers, its motion and the line that makes it follow." }
+        (choice("Plan shown", &choices(plan, planned, courses)))
+    }
 }
 
 fn numbers(document: &Document) -> Chapter {
@@ -98,47 +100,16 @@ fn summary(planned: &Planned) -> Markup {
     }
 }
 
-/// Angle and speed of each joint over time.
-fn motion(joints: &[String], course: &SampledMotion, plots: &mut Plots) -> Markup {
-    let arrivals: Vec<String> = course.arrivals_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
+/// Angle and speed of each joint over time, and the way of the tool.
+fn motion(joints: &[String], course: &Course, tool: &str, plots: &mut Plots) -> Markup {
     html! {
-        p class="hint" { "Key points are reached at " (arrivals.join(", ")) " s. Drag to zoom, all joints together." }
+        p class="hint" {
+            "Numbered points are the key points, dashed lines limits that are near. Drag to zoom, all joints together."
+        }
         div class="side" {
             @for (_, chart) in motion_charts(joints, course) { (plots.place(chart)) }
         }
-    }
-}
-
-/// Joints with their angles and speeds.
-pub(super) fn motion_charts(joints: &[String], course: &SampledMotion) -> Vec<(String, Chart)> {
-    let motions = course.position_rad.iter().zip(&course.velocity_rad_s);
-    let chart = |(joint, (angle, speed)): (&String, (&Vec<f64>, &Vec<f64>))| {
-        (joint.clone(), joint_motion(joint, &course.t_s, angle, speed))
-    };
-    joints.iter().zip(motions).map(chart).collect()
-}
-
-fn joint_motion(joint: &str, t_s: &[f64], angle_rad: &[f64], speed_rad_s: &[f64]) -> Chart {
-    let degrees =
-        |values: &[f64]| values.iter().map(|v| rounded(degrees_from_radians(*v))).collect::<Vec<f64>>();
-    let panel = |label: &str, name: &str, role, values: &[f64]| Panel {
-        label: label.to_owned(),
-        series: vec![Series::of(name, role, 0, degrees(values))],
-        share: 0.5,
-        range: None,
-    };
-    Chart {
-        title: joint.to_owned(),
-        x_label: "Time (s)".into(),
-        xs: vec![t_s.iter().copied().map(rounded).collect()],
-        panels: vec![
-            panel("Angle (deg)", "angle", Role::Measured, angle_rad),
-            panel("Speed (deg/s)", "speed", Role::Error, speed_rad_s),
-        ],
-        group: Some("run"),
-        height: 230,
-        size: Size::Half,
-        ..Chart::default()
+        (scene(&path(&course.motion, &course.motion, tool)))
     }
 }
 

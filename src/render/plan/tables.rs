@@ -263,6 +263,21 @@ fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
     ]
 }
 
+/// The limits that a plan comes nearest to, a line each.
+pub(super) fn nearest_lines(evaluation: &PlanEvaluation, joints: &[String]) -> Vec<String> {
+    let line = |margin: &&Margin| {
+        let value = shown(margin.limit, margin.value);
+        format!(
+            "{} {value} at {:.2} s: {} % of {}",
+            subject(margin, joints),
+            margin.t_s,
+            percent(margin.share),
+            shown(margin.limit, margin.allowed)
+        )
+    };
+    nearest(evaluation).iter().take(3).map(line).collect()
+}
+
 /// What is allowed; of a range the end that is nearer, and on which side of it.
 fn allowed(margin: &Margin) -> String {
     let most = shown(margin.limit, margin.allowed);

@@ -4,7 +4,7 @@ use crate::{
     log::SignalRole,
     render::{
         kit::page::{
-            chart::{Chart, Panel, Role, Series, at, rounded, times},
+            chart::{Chart, Panel, Role, Series, at, hundredths, rounded, times},
             envelope::envelope,
         },
         metric::{on_paper, unit},
@@ -58,11 +58,6 @@ fn coordinates(chart: &mut Chart, t_s: &[f64], places: &[Option<usize>]) -> usiz
 
 fn series(name: &str, role: Role, x: usize, y: impl Iterator<Item = f64>) -> Series {
     Series::of(name, role, x, y.map(rounded).collect())
-}
-
-/// Decimals that a plot of speeds, shares and pressures shows.
-fn hundredths(value: f64) -> f64 {
-    (100.0 * value).round() / 100.0
 }
 
 /// What was sent, where it is not the plan itself.

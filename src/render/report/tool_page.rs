@@ -11,7 +11,7 @@ use crate::{
                 Plots, blocks, card,
                 chart::{Chart, Panel, Role, Series, Size, at, rounded, times},
                 envelope::envelope,
-                scene::{Scene, scene},
+                scene::{Scene, broadest_rad, scene},
                 table,
             },
         },
@@ -111,24 +111,14 @@ fn path_scene(found: &ToolReplay, path: &ToolPath) -> Scene {
     };
     Scene {
         title: format!("Path of the tool (link {})", found.tool),
+        names: ["planned", "measured, off by"],
         unit: "mm",
+        value_unit: "mm",
         planned: spot(&path.planned_m),
         measured: spot(&path.measured_m),
         value: at(&path.error_m, &places).map(tenths).collect(),
-        yaw: (yaw_rad(&path.planned_m) * 1e3).round() / 1e3,
+        yaw: broadest_rad(&path.planned_m),
     }
-}
-
-/// From where the path is seen broadest: from outside, across the way that it mostly goes.
-fn yaw_rad(path_m: &[[f64; 3]]) -> f64 {
-    let count = path_m.len().max(1) as f64;
-    let mean = [0, 1].map(|k| path_m.iter().map(|place| place[k]).sum::<f64>() / count);
-    let product =
-        |a: usize, b: usize| path_m.iter().map(|p| (p[a] - mean[a]) * (p[b] - mean[b])).sum::<f64>();
-    let way_rad = 0.5 * (2.0 * product(0, 1)).atan2(product(0, 0) - product(1, 1));
-    let across = way_rad + std::f64::consts::FRAC_PI_2;
-    let outside = mean[0] * across.cos() + mean[1] * across.sin() >= 0.0;
-    (if outside { across } else { across + std::f64::consts::PI }) + 0.3
 }
 
 /// The worst instant of each of some stretches of the run.

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 mod convergence;
+mod course;
 mod document;
 mod failure;
 mod request;
@@ -17,6 +18,7 @@ use crate::{
 };
 use convergence::Growth;
 pub use convergence::Step;
+pub use course::Course;
 pub use document::{ChosenPlan, MarginEntry, PlanDocument, PlanEntry};
 pub use failure::PlanFailure;
 pub use request::{PlanRequest, SAMPLE_TASK, TaskFiles};

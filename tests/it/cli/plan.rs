@@ -159,7 +159,7 @@ fn the_page_goes_where_the_output_ends_in_html_and_the_log_elsewhere() {
     let page = plan(&[&[TASK_1, "--html", "-o", &file("plan.html")], &budget[..]].concat(), "2");
     assert_eq!((page.status.code(), stdout(&page).as_str()), (Some(3), ""));
     let text = fs::read_to_string(file("plan.html")).unwrap();
-    for word in ["limits kept", "A, fastest", "How the front grew", "The chosen motion", "inactive-bound"] {
+    for word in ["limits kept", "A, fastest", "How the front grew", "The motion that is shown", "inactive-bound"] {
         assert!(text.contains(word), "{word}");
     }
     let both = plan(&[&[TASK_1, "--html", "-o", &file("plan.mcap")], &budget[..]].concat(), "1");
@@ -208,5 +208,28 @@ fn no_plan_that_is_offered_breaks_a_limit_between_the_instants_that_a_search_loo
         let limits = document["chosen"]["margins"].as_array().unwrap();
         let used = limits.iter().find(|limit| limit["limit"] == "pump_flow").unwrap();
         assert!(used["share"].as_f64().unwrap() >= flow, "{used}");
+    }
+}
+
+/// Not one of them is broken by rounding.
+#[test]
+fn the_lines_of_the_page_make_the_plans_that_it_shows() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = plan(&[TASK_1, "--html", "--evaluations", "1000"], "2");
+    let page = stdout(&page);
+    let data = page.split("<script id=\"choices\" type=\"application/json\">").nth(1).unwrap();
+    let choices: Value = serde_json::from_str(data.split("</script>").next().unwrap()).unwrap();
+    let choices = choices.as_array().unwrap();
+    assert!((20..=64).contains(&choices.len()) && choices[0]["name"] == "chosen");
+    let log = folder.path().join("plan.mcap").to_str().unwrap().to_owned();
+    for choice in [&choices[0], &choices[1], &choices[choices.len() - 1]] {
+        let line = choice["command"].as_str().unwrap();
+        let words: Vec<&str> =
+            line.split(' ').skip(2).map(|word| if word == "plan.mcap" { &log } else { word }).collect();
+        let made = plan(&[&words[..], &["--json"]].concat(), "1");
+        assert_eq!(made.status.code(), Some(0), "{line}: {}", stderr(&made));
+        let duration_s = json(&made)["chosen"]["duration_s"].as_f64().unwrap();
+        let said = choice["lines"][0].as_str().unwrap();
+        assert_eq!(said, format!("time {duration_s:.2} s"));
     }
 }

@@ -177,6 +177,11 @@ pub(in crate::render) fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
 
+/// Decimals that a plot of speeds, shares and pressures shows, and one of a plan.
+pub(in crate::render) fn hundredths(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0
+}
+
 /// Values at places; where the pen is lifted, not-a-number.
 pub(in crate::render) fn at<'a>(
     values: &'a [f64],

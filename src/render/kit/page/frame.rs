@@ -15,7 +15,12 @@ use crate::{
 };
 
 const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = concat!(include_str!("page.js"), include_str!("tools.js"), include_str!("scene.js"));
+const SCRIPT: &str = concat!(
+    include_str!("page.js"),
+    include_str!("tools.js"),
+    include_str!("scene.js"),
+    include_str!("choice.js")
+);
 
 /// A part of the page that can be jumped to.
 pub(in crate::render) struct Chapter {

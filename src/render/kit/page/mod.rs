@@ -6,6 +6,7 @@
 mod blocks;
 mod card;
 pub(in crate::render) mod chart;
+pub(in crate::render) mod choice;
 pub(in crate::render) mod envelope;
 mod frame;
 pub(in crate::render) mod paper;

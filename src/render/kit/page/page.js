@@ -53,6 +53,17 @@ const plotted = (() => {
       this.draw();
       this.put(this.mark);
     }
+    // Shows something else, with the lines hidden that were.
+    become(spec) {
+      const hidden = new Set(this.spec.panels.flatMap(p => p.series).filter(s => s.hidden).map(s => s.name));
+      for (const s of spec.panels.flatMap(p => p.series)) s.hidden = hidden.has(s.name);
+      const note = this.box.parentElement.querySelector('.note');
+      if (note) note.textContent = spec.note;
+      this.spec = spec;
+      this.full = spec.x_range || extent(spec.xs.flat());
+      this.put(undefined);
+      this.show(this.full);
+    }
     draw() {
       const { canvas, spec, box } = this, scale = window.devicePixelRatio || 1, width = box.clientWidth;
       if (!width) return;
@@ -132,6 +143,9 @@ const plotted = (() => {
         s.y.forEach((v, i) => {
           if (v === null) return;
           c.beginPath(); c.arc(this.pixel(xs[i]), y(v), s.role === 'named' ? 4.5 : 2.5, 0, 7); c.fill();
+          if (this.ring && s === this.spec.panels[0].series[this.ring[0]] && i === this.ring[1]) {
+            c.lineWidth = 2; c.beginPath(); c.arc(this.pixel(xs[i]), y(v), 8, 0, 7); c.stroke();
+          }
           if (s.role === 'named') { c.textAlign = 'left'; c.textBaseline = i % 2 ? 'top' : 'bottom'; c.fillText(s.names[i], this.pixel(xs[i]) + 7, y(v)); }
         });
         return;

@@ -63,6 +63,11 @@
       view = { yaw: view.yaw + yaw, pitch: Math.min(Math.max(view.pitch + pitch, -1.57), 1.57) };
       redraw();
     };
+    box.addEventListener('path', e => {
+      Object.assign(spec, { measured: e.detail.path });
+      spec.steps = e.detail.value.map(v => Math.min(Math.floor(5 * v / (spec.most || 1)), 4));
+      redraw();
+    });
     const home = () => { view = { ...first }; redraw(); };
     let from = null;
     canvas.addEventListener('pointerdown', e => { from = [e.clientX, e.clientY]; canvas.setPointerCapture(e.pointerId); });

@@ -11,8 +11,12 @@ use crate::render::kit::{axis::steps, clean};
 pub(in crate::render) struct Scene {
     /// For people, and for programs that read pages to them.
     pub(in crate::render) title: String,
-    /// Of the positions and of the value.
+    /// What the two paths are; that of the value goes before its numbers.
+    pub(in crate::render) names: [&'static str; 2],
+    /// Of the positions.
     pub(in crate::render) unit: &'static str,
+    /// Of the value.
+    pub(in crate::render) value_unit: &'static str,
     /// The broad pale path under the other.
     pub(in crate::render) planned: Vec<[f64; 3]>,
     pub(in crate::render) measured: Vec<[f64; 3]>,
@@ -45,6 +49,10 @@ impl Scene {
         let steps = (0..self.value.len()).map(|i| self.step(i)).collect();
         let data = Data { scene: self, steps, most: self.most(), pitch: PITCH };
         serde_json::to_string(&data).unwrap_or_default()
+    }
+
+    fn values(&self) -> String {
+        format!("{} 0 to {:.1} {}", self.names[1], self.most(), self.value_unit)
     }
 
     fn most(&self) -> f64 {
@@ -96,7 +104,7 @@ impl Scene {
                     @let from = SIZE[0] - 200.0 + 24.0 * step as f64;
                     line x1=(from) y1=(base) x2=(from + 24.0) y2=(base) stroke=(colour) stroke-width=(1.5 + 0.6 * step as f64) {}
                 }
-                text x=(SIZE[0] - 200.0) y=(base - 8.0) fill="#333" { (format!("off by 0 to {:.1} {}", self.most(), self.unit)) }
+                text x=(SIZE[0] - 200.0) y=(base - 8.0) fill="#333" { (self.values()) }
             }
         }
     }
@@ -132,12 +140,25 @@ pub(in crate::render) fn scene(scene: &Scene) -> Markup {
             figcaption {
                 span class="title" { (clean(&scene.title)) }
                 span class="legend" {
-                    span { i class="planned" {} "planned" }
-                    span { "measured, off by 0 " @for k in 0..STEPS { i class={ "step step" (k) } {} } (format!("{:.1} {}", scene.most(), scene.unit)) }
+                    span { i class="planned" {} (scene.names[0]) }
+                    span { (scene.names[1]) " 0 " @for k in 0..STEPS { i class={ "step step" (k) } {} } (format!("{:.1} {}", scene.most(), scene.value_unit)) }
                 }
             }
             div class="scene" tabindex="0" role="group" aria-label=(clean(&label)) data-scene=(scene.data()) {}
             div class="paper" aria-hidden="true" { (scene.picture()) }
         }
     }
+}
+
+/// From where a path is seen broadest, rad: from outside, across the way that it mostly goes.
+pub(in crate::render) fn broadest_rad(path_m: &[[f64; 3]]) -> f64 {
+    let count = path_m.len().max(1) as f64;
+    let mean = [0, 1].map(|k| path_m.iter().map(|place| place[k]).sum::<f64>() / count);
+    let product =
+        |a: usize, b: usize| path_m.iter().map(|p| (p[a] - mean[a]) * (p[b] - mean[b])).sum::<f64>();
+    let way_rad = 0.5 * (2.0 * product(0, 1)).atan2(product(0, 0) - product(1, 1));
+    let across = way_rad + std::f64::consts::FRAC_PI_2;
+    let outside = mean[0] * across.cos() + mean[1] * across.sin() >= 0.0;
+    let yaw_rad = (if outside { across } else { across + std::f64::consts::PI }) + 0.3;
+    (yaw_rad * 1e3).round() / 1e3
 }

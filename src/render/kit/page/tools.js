@@ -40,14 +40,14 @@
       e.preventDefault();
     });
     for (const entry of box.parentElement.querySelectorAll('.legend > span')) {
-      const own = plot.spec.panels.flatMap(panel => panel.series).filter(s => s.name === entry.textContent);
-      if (!own.length) continue;
+      const own = () => plot.spec.panels.flatMap(panel => panel.series).filter(s => s.name === entry.textContent);
+      if (!own().length) continue;
       Object.assign(entry, { tabIndex: 0 });
       entry.setAttribute('role', 'button');
       entry.setAttribute('aria-pressed', 'true');
       const toggle = () => {
-        const hidden = !own[0].hidden;
-        for (const s of own) s.hidden = hidden;
+        const hidden = entry.getAttribute('aria-pressed') === 'true';
+        for (const s of own()) s.hidden = hidden;
         entry.setAttribute('aria-pressed', String(!hidden));
         plot.draw();
       };
