@@ -23,6 +23,7 @@ mod peak_motion;
 mod profile;
 mod rules;
 mod signals;
+mod spectrum;
 mod tool;
 mod tracking;
 mod transition;
@@ -43,6 +44,7 @@ pub use peak_motion::peak_motion;
 pub use profile::{Profiles, STRETCHES};
 pub use rules::{Rules, Sizes};
 pub use signals::{planned_starts, speeds};
+pub use spectrum::{COHERENT, Response, Spectrum, spectrum};
 pub use tool::{
     ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst, pose_replay, tool_replay,
 };

@@ -4,6 +4,7 @@ mod answer;
 mod csv;
 mod figures;
 mod first;
+mod frequency;
 mod joints;
 mod method;
 mod page;

@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use super::{
+    frequency::frequency,
     joints::{joints, lags},
     summary::{concentration_bars, summary},
     tables::document,
@@ -46,6 +47,7 @@ pub(crate) fn page(name: &str, report: &Report, fit: Option<&Fit>, most: usize, 
         Chapter { id: "transitions", heading: "Transitions", body: transitions(report, &mut plots) },
         Chapter { id: "numbers", heading: "Numbers", body: numbers(&document, report) },
         Chapter { id: "lag", heading: "Lag", body: lags(report) },
+        Chapter { id: "frequency", heading: "By frequency and speed", body: frequency(report, &mut plots) },
     ]);
     let late = document.section(why::ID).map(|section| blocks_of(&section.blocks, &late_starts(report)));
     chapters.extend(late.map(|body| Chapter { id: why::ID.0, heading: "Why late", body }));

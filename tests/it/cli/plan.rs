@@ -159,7 +159,9 @@ fn the_page_goes_where_the_output_ends_in_html_and_the_log_elsewhere() {
     let page = plan(&[&[TASK_1, "--html", "-o", &file("plan.html")], &budget[..]].concat(), "2");
     assert_eq!((page.status.code(), stdout(&page).as_str()), (Some(3), ""));
     let text = fs::read_to_string(file("plan.html")).unwrap();
-    for word in ["limits kept", "A, fastest", "How the front grew", "The motion that is shown", "inactive-bound"] {
+    for word in
+        ["limits kept", "A, fastest", "How the front grew", "The motion that is shown", "inactive-bound"]
+    {
         assert!(text.contains(word), "{word}");
     }
     let both = plan(&[&[TASK_1, "--html", "-o", &file("plan.mcap")], &budget[..]].concat(), "1");

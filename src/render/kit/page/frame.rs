@@ -43,10 +43,19 @@ pub(in crate::render) struct Plots(Vec<Chart>);
 impl Plots {
     /// The place of a plot: the script draws on the screen, the picture is for paper.
     pub(in crate::render) fn place(&mut self, chart: Chart) -> Markup {
-        let number = self.0.len();
         // A plot that no picture can be drawn of is still drawn by the script.
         let picture = paper::svg(&chart, Paper::PAGE).unwrap_or_default();
         let picture = picture.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+        self.placed(chart, &picture)
+    }
+
+    /// The place of a plot that is folded at first: no paper shows it.
+    pub(in crate::render) fn folded(&mut self, chart: Chart) -> Markup {
+        self.placed(chart, "")
+    }
+
+    fn placed(&mut self, chart: Chart, picture: &str) -> Markup {
+        let number = self.0.len();
         let figure = html! {
             figure class=(if chart.is_tile() { "chart tile" } else { "chart" }) {
                 figcaption {
