@@ -88,6 +88,8 @@ pub enum Code {
     UnreadableLog,
     /// Runs among many that name no machine.
     UnknownMachine,
+    /// Runs among many that do not say when they were.
+    Undated,
     /// Something that a command does beyond what the plan does.
     BeyondLimit,
 }

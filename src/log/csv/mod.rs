@@ -35,6 +35,7 @@ pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
 pub use run::CsvRun;
 pub(in crate::log) use run::ORIGIN;
 pub use stream::TableStream;
+pub use time::{UNDATED_NS, is_dated};
 pub use understood::{ColumnRead, TimeRead, Understood};
 
 use super::write::Role;

@@ -9,7 +9,13 @@ use crate::units::NS_PER_S;
 
 /// The instant that times without a date count from, ns since 1970: 2025-10-09 08:53:20 UTC. No wall clock,
 /// so that equal files give equal logs and files with one zero of time fit together.
-const START_NS: i64 = 1_760_000_000_000_000_000;
+pub const UNDATED_NS: i64 = 1_760_000_000_000_000_000;
+
+/// Whether a log that begins at an instant, ns since 1970, says when it was recorded: stamps of the day after
+/// [`UNDATED_NS`] count from there.
+pub fn is_dated(epoch_ns: i64) -> bool {
+    !(UNDATED_NS..UNDATED_NS + TimeSource::DAY_NS).contains(&epoch_ns)
+}
 
 /// Stamps before this one, ns since 1970, count from something else.
 pub(super) const FIRST_ABSOLUTE_NS: i64 = 100_000_000_000_000_000;
@@ -90,7 +96,7 @@ impl TimeSource {
     /// Lets stamps that say no date count from a fixed instant.
     #[expect(clippy::unused_self, reason = "the rule of this clock")]
     pub(super) fn count_from(&self, absolute: bool, stamp_ns: &mut [i64]) {
-        let start_ns = if absolute { 0 } else { START_NS };
+        let start_ns = if absolute { 0 } else { UNDATED_NS };
         for ns in stamp_ns {
             *ns = ns.saturating_add(start_ns);
         }

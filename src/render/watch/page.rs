@@ -159,16 +159,15 @@ fn failures(runs: &[&Run]) -> Markup {
 
 /// Each joint of each machine over its runs.
 fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
-    let at_days = |run: &Run| run.at_days().unwrap_or_default();
-    let first = done.last().map_or(0.0, |run| at_days(run));
-    let span = done.first().map_or(0.0, |run| at_days(run)) - first;
+    let dated: Vec<(&Run, f64)> = done.iter().filter_map(|run| Some((*run, run.at_days()?))).collect();
+    let first = dated.last().map_or(0.0, |(_, at_days)| *at_days);
+    let span = dated.first().map_or(0.0, |(_, at_days)| *at_days) - first;
     let (time_unit, scale) = if span < 2.0 { ("hours", 24.0) } else { ("days", 1.0) };
     let range = [-0.04, 1.04].map(|share| share * (span * scale).max(0.1));
     let mut machines: BTreeMap<&str, BTreeMap<(&str, JointKind), Vec<Point<'_>>>> = BTreeMap::new();
-    for run in done.iter().rev() {
+    for (run, at_days) in dated.iter().rev() {
         for joint in &run.joints {
-            let point =
-                Point { x: rounded((at_days(run) - first) * scale), plan: run.plan_id.as_deref(), joint };
+            let point = Point { x: rounded((at_days - first) * scale), plan: run.plan_id.as_deref(), joint };
             machines
                 .entry(machine(run))
                 .or_default()
@@ -182,8 +181,11 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
     html! {
         p class="hint" {
             "Each run of each joint: above its peak error, below its longest dead time in ms, over " (time_unit) " since "
-            (done.last().map_or(NONE.to_owned(), |run| began(run))) ". A line joins the runs of one plan; those of another differ \
+            (dated.last().map_or(NONE.to_owned(), |(run, _)| began(run))) ". A line joins the runs of one plan; those of another differ \
              without any change of the machine. A drift is told by the same starts of the same plan, from five runs of a machine on."
+            @if dated.len() < done.len() {
+                " " (counted(done.len() - dated.len(), "run")) " without a date, in stamps or name, not drawn."
+            }
             @if all > MOST_DRAWN { " " (counted(all - MOST_DRAWN, "joint")) " not drawn." }
         }
         @for (machine, joints) in &machines {

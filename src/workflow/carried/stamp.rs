@@ -1,7 +1,7 @@
 //! Stamps of the logs that are made from plans.
 
 /// Stamp of the first sample, ns since 1970: no wall clock, so that equal plans give equal logs.
-pub const START_NS: i64 = 1_760_000_000_000_000_000;
+pub use crate::log::UNDATED_NS as START_NS;
 
 /// Points of a trajectory a second; controllers interpolate between states that have speeds.
 pub(super) const TRAJECTORY_HZ: f64 = 25.0;

@@ -43,7 +43,7 @@ pub enum FleetFailure {
     },
     /// A source that leads to no log.
     #[error(
-        "found no log in {text:?}, expected a log, a folder with .mcap or .db3 files, a pattern or a list of logs (.txt)"
+        "found no log in {text:?}, expected a log, a folder with .mcap or .db3 files, a pattern (with **/*.csv at its end for tables) or a list of logs (.txt)"
     )]
     NoLogs {
         /// The source as given.

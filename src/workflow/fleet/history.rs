@@ -13,7 +13,10 @@ use super::{
     tables::{self, Name},
 };
 use crate::{
-    log::dataset::{Cell, read_table},
+    log::{
+        dataset::{Cell, read_table},
+        is_dated,
+    },
     math::{median, step_scatter},
     remark::{Code, Remarks},
     suggest::nearest,
@@ -173,6 +176,10 @@ impl History {
         self.runs = runs.into_iter().map(|(run, _)| run).collect();
         let repeated = (all - self.runs.len()) as u64;
         self.remarks.add(Code::SameRun, repeated, "logs with the content of another one; left out");
+        let undated = self.runs.iter().filter(|run| !is_dated(run.started_us.saturating_mul(1000))).count();
+        let message = "runs that say no date, neither in their stamps nor in their names (2026-03-06): they count as of one \
+                       instant, and no drift is told of them";
+        self.remarks.add(Code::Undated, undated as u64, message);
         self.remarks.add(Code::UnreadableLog, failed, "logs that could not be analysed; left out");
         self.remarks.add(Code::UnknownMachine, unnamed, "runs that name no machine; left out");
     }

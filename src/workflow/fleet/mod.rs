@@ -7,6 +7,7 @@
 
 mod arrange;
 mod compact;
+mod dated;
 mod document;
 mod drift;
 mod effect;
@@ -24,6 +25,7 @@ mod tables;
 mod worst;
 
 pub use compact::{Compacted, compact};
+pub(in crate::workflow) use dated::began_ns;
 pub use document::{Failure, Scanned};
 pub use drift::{Drift, JointTrend, Level, drift};
 pub use effect::{Effect, JointEffect, effect};

@@ -16,7 +16,7 @@ use crate::{
 
 /// Endings of logs that are looked for in folders; a file that is named counts whatever its ending.
 const ENDINGS: [&str; 6] = [".mcap", ".db3", ".mcap.zst", ".mcap.zstd", ".mcap.gz", ".db3.zstd"];
-/// Endings of tables, which folders hold of anything; a verb asks for them.
+/// Endings of tables, which folders hold of anything; a verb, or a pattern with such an ending, asks for them.
 const TABLES: [&str; 2] = [".csv", ".csv.gz"];
 /// Endings of lists of logs.
 const LISTS: [&str; 3] = ["txt", "list", "manifest"];
@@ -93,6 +93,14 @@ pub(in crate::workflow) fn sources_now(texts: &[String]) -> Result<Vec<Source>, 
 
 /// Adds the logs of one source; a relative path counts from `base`.
 fn add(text: &str, base: &Path, found: &mut Found) -> Result<(), FleetFailure> {
+    let others = found.tables;
+    found.tables |= TABLES.iter().any(|ending| text.ends_with(ending));
+    let done = add_asked(text, base, found);
+    found.tables = others;
+    done
+}
+
+fn add_asked(text: &str, base: &Path, found: &mut Found) -> Result<(), FleetFailure> {
     let path = base.join(text);
     if remote::is_address(Path::new(text)) && !path.exists() {
         return stored(text, found);

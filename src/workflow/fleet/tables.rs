@@ -1,5 +1,6 @@
 //! The tables of the dataset: their columns, and the rows of one log. Positions are in the joint's unit, rad or m.
 
+use super::dated::began_ns;
 use crate::{
     document::PROGRAM,
     log::dataset::{Cell, Column},
@@ -212,7 +213,7 @@ pub fn analysed(log: &Log, found: &Findings) -> Rows {
     let run = vec![
         Cell::from(found.run_id.as_str()),
         Cell::from(log.machine.as_deref()),
-        micros(report.source.epoch_ns),
+        micros(began_ns(&log.uri, report.source.epoch_ns).unwrap_or(report.source.epoch_ns)),
         Cell::from(log.uri.as_str()),
         Cell::from(log.etag.as_str()),
         Cell::from(log.bytes),

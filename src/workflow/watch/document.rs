@@ -11,7 +11,7 @@ use crate::{
     series::JointKind,
     units::SECONDS_PER_DAY,
     workflow::{
-        fleet::Log,
+        fleet::{Log, began_ns},
         report::{Findings, GateResult, Report, hash},
     },
 };
@@ -37,7 +37,7 @@ pub struct Run {
     pub page: Option<String>,
     /// The machine, if anything names it.
     pub machine: Option<String>,
-    /// When the run began, UTC; null of a log that failed.
+    /// When the run began, UTC; null of a log that failed, or that says no date in stamps or name.
     pub started_at: Option<String>,
     /// How long it took, s.
     pub duration_s: Option<f64>,
@@ -135,10 +135,10 @@ impl Run {
             largest_delay_s: replay.longest_delay_s(&joint.name),
         };
         let joints: Vec<RunJoint> = replay.joints.iter().map(joint).collect();
-        let started = DateTime::from_timestamp_nanos(report.source.epoch_ns);
+        let started = began_ns(&log.uri, report.source.epoch_ns).map(DateTime::from_timestamp_nanos);
         Self {
             page: Some(page),
-            started_at: Some(started.format("%Y-%m-%dT%H:%M:%SZ").to_string()),
+            started_at: started.map(|at| at.format("%Y-%m-%dT%H:%M:%SZ").to_string()),
             duration_s: Some(report.source.duration_s),
             plan_id: found.plan_id.clone(),
             verdict: match (report.gates.is_empty(), report.gates_kept()) {

@@ -328,3 +328,43 @@ fn fitted_numbers_of_each_run_are_rows_if_they_are_asked_for() {
     assert_eq!(json(folder.path(), "fleet scan logs --into data")["unchanged"], 2);
     assert!(!cells(&data, "limits", "quantity").is_empty());
 }
+
+/// Of a PLC that counts from zero: the boom starts 15 ms later each day.
+fn table(day: u32) -> String {
+    let mut text = "t_s,boom_planned_rad,boom_measured_rad\n".to_owned();
+    for k in 0..600 {
+        let t_s = 0.02 * f64::from(k);
+        let at = |late_s: f64| {
+            let stroke = |from_s: f64| crate::support::fleet::smooth((t_s - from_s - late_s) / 2.0);
+            0.2 * stroke(2.0) - 0.2 * stroke(6.0)
+        };
+        text += &format!("{t_s:.2},{:.6},{:.6}\n", at(0.0), at(0.1 + 0.015 * f64::from(day)));
+    }
+    text
+}
+
+#[test]
+fn tables_that_count_from_zero_have_the_dates_of_their_names_and_those_without_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let logs = folder.path().join("logs/M07");
+    fs::create_dir_all(&logs).unwrap();
+    for day in 1..=9 {
+        fs::write(logs.join(format!("trace_2026-03-{day:02}_0600.csv")), table(day)).unwrap();
+    }
+    json(folder.path(), "fleet scan logs/*/*.csv --into data --machine-from path:1");
+    let drift = json(folder.path(), "fleet drift data --by delay");
+    let trends = drift["trends"].as_array().unwrap();
+    let late = trends.iter().find(|trend| trend["found"] == true && trend["metric"] == "delay").unwrap();
+    assert!((late["slope_per_day"].as_f64().unwrap() - 0.015).abs() < 0.003, "{late}");
+    assert_eq!(late["days"], 8.0);
+    fs::create_dir_all(folder.path().join("others/M08")).unwrap();
+    for day in 1..=3 {
+        fs::write(folder.path().join(format!("others/M08/trace{day}.csv")), table(day)).unwrap();
+    }
+    run_line(folder.path(), "fleet scan others/*/*.csv --into more --machine-from path:1");
+    let (code, out, _) = said(&run_line(folder.path(), "fleet drift more"));
+    assert!(
+        code == 3 && out.contains("undated") && out.contains("undated x3  runs that say no date"),
+        "{code}: {out}"
+    );
+}

@@ -1,0 +1,101 @@
+//! When a run began: as its stamps say, or its name, where they count from zero.
+
+use std::ops::RangeInclusive;
+
+use chrono::{NaiveDate, NaiveDateTime};
+
+use crate::log::is_dated;
+
+/// Names of the log and of so many folders above it are looked at.
+const NAMES: usize = 4;
+/// Years of a recording.
+const YEARS: RangeInclusive<i32> = 1990..=2099;
+
+/// When a run began, ns since 1970; `None` of one whose stamps count from zero and whose name holds no date.
+///
+/// A date is `2026-03-06` or `20260306`, with `-`, `_`, `.` or nothing between its parts; a time of day may follow as `08-15`,
+/// `0815` or `081530`. The log's own name counts before those of its folders.
+pub(in crate::workflow) fn began_ns(uri: &str, epoch_ns: i64) -> Option<i64> {
+    if is_dated(epoch_ns) {
+        return Some(epoch_ns);
+    }
+    let names = uri.trim_end_matches('/').rsplit('/').take(NAMES);
+    names.filter_map(date_in).next()?.and_utc().timestamp_nanos_opt()
+}
+
+fn date_in(name: &str) -> Option<NaiveDateTime> {
+    let bytes = name.as_bytes();
+    let begins = |at: &usize| *at == 0 || !bytes[*at - 1].is_ascii_digit();
+    (0..bytes.len()).filter(begins).find_map(|at| date_at(&bytes[at..]))
+}
+
+fn date_at(text: &[u8]) -> Option<NaiveDateTime> {
+    let (year, rest) = digits(text, 4)?;
+    let (between, rest) = separator(rest, b"-_.");
+    let (month, rest) = digits(rest, 2)?;
+    let (again, rest) = separator(rest, b"-_.");
+    let (day, rest) = digits(rest, 2)?;
+    let year = i32::try_from(year).ok().filter(|year| YEARS.contains(year) && between == again)?;
+    let date = NaiveDate::from_ymd_opt(year, month, day)?;
+    let timed = time_at(separator(rest, b"T-_ ").1).and_then(|[h, m, s]| date.and_hms_opt(h, m, s));
+    // More digits are no date: a serial number.
+    let ends = !rest.first().is_some_and(u8::is_ascii_digit);
+    timed.or_else(|| if ends { date.and_hms_opt(0, 0, 0) } else { None })
+}
+
+/// Hours, minutes and seconds.
+fn time_at(text: &[u8]) -> Option<[u32; 3]> {
+    let (hours, rest) = digits(text, 2)?;
+    let (between, rest) = separator(rest, b"-_:.h");
+    let (minutes, rest) = digits(rest, 2)?;
+    let (again, after) = separator(rest, b"-_:.m");
+    let seconds = digits(after, 2).filter(|_| (between == 0) == (again == 0));
+    let (seconds, rest) = seconds.unwrap_or((0, rest));
+    (!rest.first().is_some_and(u8::is_ascii_digit)).then_some([hours, minutes, seconds])
+}
+
+/// A number of so many digits, and what follows.
+fn digits(text: &[u8], count: usize) -> Option<(u32, &[u8])> {
+    let (number, rest) = text.split_at_checked(count)?;
+    let number = number
+        .iter()
+        .try_fold(0, |sum, digit| digit.is_ascii_digit().then(|| 10 * sum + u32::from(digit - b'0')));
+    Some((number?, rest))
+}
+
+/// One of some characters, 0 for none of them, and what follows.
+fn separator<'a>(text: &'a [u8], some: &[u8]) -> (u8, &'a [u8]) {
+    match text.split_first() {
+        Some((first, rest)) if some.contains(first) => (*first, rest),
+        _ => (0, text),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::UNDATED_NS;
+
+    #[test]
+    fn names_tell_the_date_that_stamps_do_not() {
+        for (uri, found) in [
+            ("/data/M07/run_2026-03-06_08-15-30.csv", "2026-03-06 08:15:30"),
+            ("/data/M07/2026-03-06/run-3.csv", "2026-03-06 00:00:00"),
+            ("trace20260306_0815.csv", "2026-03-06 08:15:00"),
+            ("20260306081530.csv", "2026-03-06 08:15:30"),
+            ("s3://logs/2025_01_02/2026.03.06.csv", "2026-03-06 00:00:00"),
+            ("2026-03-06T08:15.csv/", "2026-03-06 08:15:00"),
+            ("2026-03-06-run7.csv", "2026-03-06 00:00:00"),
+        ] {
+            let ns = began_ns(uri, UNDATED_NS + 5).unwrap();
+            let at = chrono::DateTime::from_timestamp_nanos(ns).format("%Y-%m-%d %H:%M:%S").to_string();
+            assert_eq!(at, found, "{uri}");
+        }
+        for uri in
+            ["run.csv", "2026-13-06.csv", "2026-0306.csv", "120260306.csv", "202603061.csv", "1234-05-06", ""]
+        {
+            assert_eq!(began_ns(uri, UNDATED_NS), None, "{uri}");
+        }
+        assert_eq!(began_ns("2026-03-06.csv", 1_700_000_000_000_000_000), Some(1_700_000_000_000_000_000));
+    }
+}
