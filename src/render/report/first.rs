@@ -22,13 +22,14 @@ use crate::{
 };
 
 use super::{
+    crowd::{CROWD, crowd},
     signals::{View, speed},
     tiles::tile,
 };
 
 /// Thousandths of the run, and the height of a lane: the drawing is stretched, so it holds no text.
-const WIDTH: f64 = 1000.0;
-const HEIGHT: f64 = 30.0;
+pub(super) const WIDTH: f64 = 1000.0;
+pub(super) const HEIGHT: f64 = 30.0;
 /// Places of an error at most, nearly.
 const PLACES: usize = 260;
 /// Shown of the worst start before it, and after it at least and at most, s.
@@ -48,7 +49,8 @@ pub(super) fn lanes(report: &Report) -> Markup {
     html! {
         p class="hint" {
             "Waits: the plan has left rest, the joint has not. Follows: the plan moves, and the joint. Settles: the plan rests, the joint moves on. \
-             White: nothing was measured, or there is no plan. A line that stays up while both rest is an error that stays."
+             White: nothing was measured, or there is no plan. A line that stays up while both rest is an error that stays. \
+             In lanes of long runs the height of a colour is its share of the time."
         }
         table class="lanes" {
             thead { tr {
@@ -93,6 +95,7 @@ fn latest(report: &Report, joint: &str) -> String {
 /// Stretches, and over them the error's magnitude.
 fn drawn(report: &Report, joint: &JointReplay, pair: &Pair, [from_s, to_s]: [f64; 2]) -> Markup {
     let seen_s: Vec<[f64; 2]> = pair.spans_s().collect();
+    let stretches = lane(&report.replay, &joint.name, &seen_s);
     let place = |s: f64| ((s - from_s) / (to_s - from_s) * WIDTH).clamp(0.0, WIDTH);
     let fixed = |value: f64| format!("{value:.1}");
     html! {
@@ -102,7 +105,10 @@ fn drawn(report: &Report, joint: &JointReplay, pair: &Pair, [from_s, to_s]: [f64
                     title { (format!("not measured {:.2} to {:.2} s", gap[0], gap[1])) }
                 }
             }
-            @for one in lane(&report.replay, &joint.name, &seen_s) {
+            @if stretches.len() > CROWD {
+                (crowd(&stretches, &pair.name, [from_s, to_s]))
+            }
+            @for one in stretches.iter().filter(|_| stretches.len() <= CROWD) {
                 @let shows = Shows::around(&pair.name, [one.from_s, one.to_s]);
                 rect class=(class(one.phase)) x=(fixed(place(one.from_s))) y="0" height="30"
                     width=(fixed((place(one.to_s) - place(one.from_s)).max(1.0)))
@@ -110,16 +116,27 @@ fn drawn(report: &Report, joint: &JointReplay, pair: &Pair, [from_s, to_s]: [f64
                     title { (class(one.phase)) (format!(" {:.2} to {:.2} s", one.from_s, one.to_s)) }
                 }
             }
-            path class="error" d=(outline(pair, joint.tracking_error.peak, place)) {}
+            path class="error" d=(outline(pair, joint.tracking_error.peak, stretches.len() > CROWD, place)) {}
         }
     }
 }
 
 /// The error's magnitude as a line over the lane; gaps lift the pen.
-fn outline(pair: &Pair, most: f64, place: impl Fn(f64) -> f64) -> String {
+fn outline(pair: &Pair, most: f64, crowded: bool, place: impl Fn(f64) -> f64) -> String {
     let error: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| (p - m).abs()).collect();
     let (mut path, mut pen) = (String::new(), 'M');
-    for at in envelope(&pair.segments, &[&error], PLACES) {
+    // Of more swings than places only the peaks are left: the way down between them would fill the lane.
+    let places = envelope(&pair.segments, &[&error], PLACES);
+    let rests =
+        |at: &Option<usize>, than: &Option<usize>| at.zip(*than).is_some_and(|(a, b)| error[a] < error[b]);
+    let valley = |k: usize| {
+        k > 0
+            && k + 1 < places.len()
+            && rests(&places[k], &places[k - 1])
+            && rests(&places[k], &places[k + 1])
+    };
+    let peaks = (0..places.len()).filter(|k| !(crowded && valley(*k))).map(|k| places[k]);
+    for at in peaks {
         let Some((t_s, error)) = at.and_then(|i| Some((pair.t_s.get(i)?, error.get(i)?))) else {
             pen = 'M';
             continue;
@@ -133,7 +150,7 @@ fn outline(pair: &Pair, most: f64, place: impl Fn(f64) -> f64) -> String {
 }
 
 /// What a phase is called, in words and in the sheet of styles.
-fn class(phase: Phase) -> &'static str {
+pub(super) fn class(phase: Phase) -> &'static str {
     match phase {
         Phase::Waits => "waits",
         Phase::Follows => "follows",

@@ -1,6 +1,7 @@
 //! The words of a report.
 
 mod answer;
+mod crowd;
 mod csv;
 mod figures;
 mod first;

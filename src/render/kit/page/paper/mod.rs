@@ -34,6 +34,8 @@ pub(in crate::render) struct Paper {
     wide_mm: f64,
     /// Of one of two beside each other.
     half_mm: f64,
+    /// Columns a millimetre of which a line shows the least and the most.
+    columns_mm: f64,
     /// Charts say what they are; figures of papers have captions for that.
     titled: bool,
 }
@@ -41,10 +43,10 @@ pub(in crate::render) struct Paper {
 impl Paper {
     /// A printed page of A4.
     pub(in crate::render) const PAGE: Self =
-        Self { pixels_mm: 10.0, wide_mm: 180.0, half_mm: 90.0, titled: true };
+        Self { pixels_mm: 10.0, wide_mm: 180.0, half_mm: 90.0, columns_mm: 3.0, titled: true };
     /// A figure in one column of a journal; many small ones take two.
     pub(in crate::render) const FIGURE: Self =
-        Self { pixels_mm: 40.0, wide_mm: 85.0, half_mm: 85.0, titled: false };
+        Self { pixels_mm: 40.0, wide_mm: 85.0, half_mm: 85.0, columns_mm: 12.0, titled: false };
 
     const TILE_MM: f64 = 60.0;
     /// A line of text with room.

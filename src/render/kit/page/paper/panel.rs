@@ -63,6 +63,9 @@ pub(super) fn draw(area: &Area, chart: &Chart, left_mm: f64, outer: [bool; 2], p
     Ok(())
 }
 
+/// More stretches are not told apart on paper, and none is shaded.
+const MOST_BANDS: usize = 400;
+
 struct Frame<'a> {
     chart: &'a Chart,
     panel: &'a Panel,
@@ -90,10 +93,12 @@ impl Frame<'_> {
                 Axis::new(from..to, steps(from, to, most(wide_mm, ACROSS_MM))),
                 Axis::new(low..high, steps(low, high, most(self.high_mm, UP_MM).min(7))),
             )?;
-        let bands = chart.bands.iter().filter(|band| band.to > from && band.from < to).map(|band| {
-            let fill = BAND.mix(strength(band.late)).filled();
-            Rectangle::new([(band.from.max(from), low), (band.to.min(to), high)], fill)
-        });
+        let told_apart = chart.bands.len() <= MOST_BANDS;
+        let bands =
+            chart.bands.iter().filter(|band| told_apart && band.to > from && band.from < to).map(|band| {
+                let fill = BAND.mix(strength(band.late)).filled();
+                Rectangle::new([(band.from.max(from), low), (band.to.min(to), high)], fill)
+            });
         frame.draw_series(bands)?;
         let points = if chart.is_tile() { Paper::SMALL } else { Paper::NAMES };
         let x_label = |x: &f64| if last { number(*x) } else { String::new() };
@@ -129,6 +134,7 @@ impl Frame<'_> {
                 }
             } else {
                 for stroke in strokes(chart, series) {
+                    let stroke = thinned(&stroke, wide_mm * paper.columns_mm / (to - from));
                     frame.draw_series(LineSeries::new(stroke, colour.stroke_width(size)))?;
                 }
             }
@@ -203,4 +209,42 @@ fn strokes(chart: &Chart, series: &Series) -> Vec<Vec<(f64, f64)>> {
     let all: Vec<(f64, f64)> = x.iter().copied().zip(series.y.iter().copied()).collect();
     let pieces = all.split(|(x, y)| !x.is_finite() || !y.is_finite());
     pieces.filter(|piece| piece.len() > 1).map(<[_]>::to_vec).collect()
+}
+
+/// A line with so many columns a unit of its axis: of more points than two a column, its least and its most are left.
+fn thinned(stroke: &[(f64, f64)], columns: f64) -> Vec<(f64, f64)> {
+    let [Some((first, _)), Some((last, _))] = [stroke.first(), stroke.last()] else { return Vec::new() };
+    if stroke.len() as f64 <= 2.0 * columns * (last - first) {
+        return stroke.to_vec();
+    }
+    let column = |(x, _): &(f64, f64)| ((x - first) * columns).floor();
+    let mut kept = vec![stroke[0]];
+    for own in stroke.chunk_by(|a, b| column(a) <= column(b) && column(a) >= column(b)) {
+        let by_height = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+        let ends = [own.iter().min_by(by_height), own.iter().max_by(by_height)];
+        let [Some(least), Some(most)] = ends else { continue };
+        kept.extend(if least.0 <= most.0 { [*least, *most] } else { [*most, *least] });
+    }
+    kept.extend(stroke.last());
+    kept.dedup();
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thinned_line_keeps_its_peaks_and_its_ends() {
+        let at =
+            |k: i32| (0.01 * f64::from(k), f64::from(u8::from(k == 1234)) - f64::from(u8::from(k == 4321)));
+        let line: Vec<(f64, f64)> = (0..6000).map(at).collect();
+        let thin = thinned(&line, 5.0);
+        assert!((300..=606).contains(&thin.len()), "{}", thin.len());
+        assert!(thin.contains(&line[1234]) && thin.contains(&line[4321]));
+        assert_eq!([thin[0], thin[thin.len() - 1]], [line[0], line[5999]]);
+        assert!(thin.windows(2).all(|two| two[0].0 <= two[1].0));
+        assert_eq!(thinned(&line[..50], 500.0), line[..50]);
+        assert!(thinned(&[], 5.0).is_empty());
+    }
 }
