@@ -86,7 +86,7 @@ fn selector(path: &[Step]) -> Option<String> {
                 text.push_str(name);
             }
             Step::Place(place) | Step::Named { place: Some(place), .. } => {
-                text.push_str(&format!("[{place}]"))
+                let _ = write!(text, "[{place}]");
             }
             Step::Field(_) | Step::Named { place: None, .. } => return None,
         }
