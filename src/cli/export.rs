@@ -6,6 +6,7 @@ use super::{
     CliError, Outcome, Run,
     console::{Console, Form, Target, ends, spare_for_log, spare_inputs},
     read::{ReadArgs, selector},
+    views::ViewArgs,
 };
 use crate::{
     atomic_file::write_atomically,
@@ -19,6 +20,8 @@ Examples:
   hydrotrace export run.mcap -o run.parquet
   hydrotrace export run.mcap --csv --degrees --joints joint_3
   hydrotrace export next.mcap --csv --degrees -o next.csv
+  hydrotrace export run.mcap --foxglove-layout run.json
+  hydrotrace export run.mcap --rerun-blueprint run.rbl
 
 One row per instant at which anything was sampled: stamp_ns (since 1970), time_s (since the start), and per
 joint J_planned_rad, J_planned_rad_s, J_measured_rad, J_command_rad and J_error_rad, if the log has them.
@@ -38,7 +41,7 @@ pub(super) struct Args {
     format: FormatArgs,
 
     /// Write to FILE; .csv and .parquet set the form. CSV without FILE goes to standard output
-    #[arg(short, long, value_name = "FILE", required_unless_present = "csv")]
+    #[arg(short, long, value_name = "FILE", required_unless_present_any = ["csv", "foxglove_layout", "rerun_blueprint"])]
     output: Option<PathBuf>,
 
     /// Angles in degrees; the names of the columns change with the unit
@@ -48,6 +51,9 @@ pub(super) struct Args {
     /// Topic of the command that was sent, and its field if the topic has several
     #[arg(long, value_name = "TOPIC[:FIELD]", value_parser = selector)]
     command: Option<Selector>,
+
+    #[command(flatten)]
+    views: ViewArgs,
 
     #[command(flatten)]
     read: ReadArgs,
@@ -84,17 +90,21 @@ impl Args {
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let file = self.output.as_deref();
+        let inputs = Inputs {
+            logs: self.logs.clone(),
+            read: self.read.options(),
+            command: self.command.clone(),
+            unit: if self.degrees { AngleUnit::Degrees } else { AngleUnit::Radians },
+        };
+        if self.views.are_asked() {
+            return self.views.write(&inputs, console);
+        }
         spare_inputs(file, &self.logs)?;
         let parquet = self.is_parquet()?;
         if parquet {
             spare_for_log(file, &self.logs)?;
         }
-        let exported = run(&Inputs {
-            logs: self.logs.clone(),
-            read: self.read.options(),
-            command: self.command.clone(),
-            unit: if self.degrees { AngleUnit::Degrees } else { AngleUnit::Radians },
-        })?;
+        let exported = run(&inputs)?;
         let table = &exported.table;
         let target = Target::new(Form::Csv, file)?;
         let said = if let Some(path) = target.file {

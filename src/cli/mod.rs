@@ -30,6 +30,7 @@ mod report;
 mod simulate;
 mod terminal;
 mod view;
+mod views;
 mod watch;
 
 use std::{env, io, process::ExitCode};

@@ -14,6 +14,16 @@ Examples:
 The viewer is installed by `pip install rerun-sdk==0.36.3`. Without this command it opens the logs of
 plan, simulate and replan too: `rerun run.mcap`.";
 
+/// What a build without Rerun says where it is needed.
+#[cfg(not(feature = "viewer"))]
+pub(super) const NO_VIEWER: &str = "this build has no viewer; add it from the project's folder (350 more crates, some minutes):\n  \
+    cargo install --path . --features viewer\n\
+    or from anywhere, with the address of the repository for URL:\n  \
+    cargo install --git URL --features viewer\n\
+    the viewer itself, and plain logs without this command (those of plan, simulate and replan show the arm):\n  \
+    pip install rerun-sdk==0.36.3\n  \
+    rerun run.mcap";
+
 /// Where a viewer on this machine listens.
 const LOCAL: &str = "rerun+http://127.0.0.1:9876/proxy";
 
@@ -63,15 +73,7 @@ struct TargetArgs {
 #[cfg(not(feature = "viewer"))]
 impl Run for Args {
     fn run(&self, _: &mut Console<'_>) -> Result<Outcome, CliError> {
-        Err(CliError::failed(
-            "this build has no viewer; add it from the project's folder (350 more crates, some minutes):\n  \
-             cargo install --path . --features viewer\n\
-             or from anywhere, with the address of the repository for URL:\n  \
-             cargo install --git URL --features viewer\n\
-             the viewer itself, and plain logs without this command (those of plan, simulate and replan show the arm):\n  \
-             pip install rerun-sdk==0.36.3\n  \
-             rerun run.mcap",
-        ))
+        Err(CliError::failed(NO_VIEWER))
     }
 }
 

@@ -92,6 +92,12 @@ pub enum LogError {
     /// Only the summaries of the files were read.
     #[error("only the index was read, not the messages; `hydrotrace info --check` reads all of them")]
     NotLookedAt,
+    /// Plan and measurement are in no messages that a program could draw as they are.
+    #[error(
+        "the messages of {topics} cannot be drawn as they are; `hydrotrace export LOG -o run.csv` and \
+         `hydrotrace import run.csv -o run.mcap` make a log of which they can"
+    )]
+    NothingToDraw { topics: String },
     /// Two files of a run that are no parts of it.
     #[error(
         "{} and {} both have {topic} for the same {shared_s:.2} s and are no parts of one run; give the one that \

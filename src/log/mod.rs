@@ -50,6 +50,7 @@ pub use input::Input;
 pub use options::{Cylinders, ReadOptions, Selector, Sides, SignalRole, TimeBase, WantedSignal};
 pub use range::TimeRange;
 pub use read::{
+    lines::{DrawnTopic, Line, LineRole, Lines, Step},
     read_plan, read_recording,
     recording::{Attachment, Command, FileInfo, Recording, SourceInfo, Survey, ToolPoses, TopicInfo},
     survey, survey_bytes,

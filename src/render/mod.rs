@@ -4,6 +4,7 @@
 pub(crate) mod compare;
 pub(crate) mod demo;
 pub(crate) mod excite;
+pub(crate) mod export;
 pub(crate) mod fit;
 pub(crate) mod fleet;
 pub(crate) mod import;

@@ -1,8 +1,9 @@
 //! A blueprint with the properties of views that the crate rerun 0.36 cannot set: legends, eyes, ranges, columns.
 
 use rerun::{
-    Archetype, AsComponents, RecordingStream, RecordingStreamBuilder,
+    ApplicationId, Archetype, AsComponents, RecordingStream, RecordingStreamBuilder,
     blueprint::{Blueprint, BlueprintActivation, ContainerLike},
+    external::{re_log_encoding::Encoder, re_log_types::BlueprintActivationCommand},
     log::LogMsg,
 };
 
@@ -12,6 +13,8 @@ use super::ViewError;
 pub(super) const APPLICATION: &str = "hydrotrace";
 
 type Batches = Vec<rerun::SerializedComponentBatch>;
+/// A blueprint, and what makes a viewer use it.
+type Activated = (Vec<LogMsg>, BlueprintActivationCommand);
 
 /// Properties of views, by the entity of the blueprint that holds them.
 #[derive(Default)]
@@ -43,20 +46,34 @@ impl Board {
 
     /// Sends it to where a recording goes.
     pub(super) fn send(&self, rec: &RecordingStream) -> Result<(), ViewError> {
-        let (layout, stored) = RecordingStreamBuilder::new(APPLICATION).memory()?;
+        if let Some((messages, activation)) = self.messages(&APPLICATION.into())? {
+            rec.send_blueprint(messages, activation);
+        }
+        Ok(())
+    }
+
+    /// The bytes of a file that a viewer opens beside the recordings of an application.
+    pub(super) fn bytes(&self, application: &ApplicationId) -> Result<Vec<u8>, ViewError> {
+        let Some((mut messages, activation)) = self.messages(application)? else { return Ok(Vec::new()) };
+        messages.push(LogMsg::BlueprintActivationCommand(activation));
+        Encoder::encode(messages.into_iter().map(Ok)).map_err(|error| ViewError::Blueprint(Box::new(error)))
+    }
+
+    fn messages(&self, application: &ApplicationId) -> Result<Option<Activated>, ViewError> {
+        let (layout, stored) = RecordingStreamBuilder::new(application.clone()).memory()?;
         self.blueprint.send(&layout, BlueprintActivation::default())?;
         let mut messages = stored.take();
         let activation = messages.iter().find_map(|message| match message {
             LogMsg::BlueprintActivationCommand(command) => Some(command.clone()),
             _ => None,
         });
-        let Some(activation) = activation else { return Ok(()) };
+        let Some(activation) = activation else { return Ok(None) };
         let own = |message: &LogMsg| {
             *message.store_id() == activation.blueprint_id
                 && !matches!(message, LogMsg::BlueprintActivationCommand(_))
         };
         messages.retain(own);
-        let (beside, stored) = RecordingStreamBuilder::new(APPLICATION)
+        let (beside, stored) = RecordingStreamBuilder::new(application.clone())
             .recording_id(activation.blueprint_id.recording_id().clone())
             .blueprint()
             .memory()?;
@@ -65,7 +82,6 @@ impl Board {
             beside.log_serialized_batches(path.as_str(), false, batches.iter().cloned())?;
         }
         messages.extend(stored.take().into_iter().filter(|message| matches!(message, LogMsg::ArrowMsg(..))));
-        rec.send_blueprint(messages, activation);
-        Ok(())
+        Ok(Some((messages, activation)))
     }
 }

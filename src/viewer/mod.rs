@@ -6,6 +6,7 @@ mod board;
 mod color;
 mod front;
 mod live;
+mod plain;
 mod process;
 mod scene;
 mod stream;
@@ -14,6 +15,8 @@ use std::{io, path::PathBuf, time::Duration};
 
 use rerun::{RecordingStream, RecordingStreamBuilder, RecordingStreamError, SerializationError};
 use thiserror::Error;
+
+pub(crate) use plain::write_blueprint;
 
 use crate::{
     atomic_file::{AtomicError, write_by_name},
@@ -43,6 +46,18 @@ pub(crate) enum ViewError {
     /// Rerun does not take the values.
     #[error("the viewer does not take the data")]
     Values(#[from] SerializationError),
+    /// Rerun does not encode its own blueprint.
+    #[error("the blueprint cannot be encoded")]
+    Blueprint(#[source] Box<dyn std::error::Error + Send + Sync>),
+    /// Rerun draws none of the messages.
+    #[error(
+        "Rerun draws no messages of the types in this log; `hydrotrace view` shows it, and `hydrotrace export LOG -o \
+         run.csv` with `hydrotrace import run.csv -o run.mcap` makes a log that Rerun draws"
+    )]
+    Undrawn,
+    /// The file takes no bytes.
+    #[error("cannot write the blueprint")]
+    Write(#[source] io::Error),
     /// The file cannot be written.
     #[error(transparent)]
     File(#[from] AtomicError),

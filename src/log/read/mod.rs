@@ -8,6 +8,7 @@ mod extract;
 mod frames;
 mod indexed;
 mod joints;
+pub(super) mod lines;
 mod overlap;
 mod parallel;
 mod poses;
@@ -36,6 +37,7 @@ use {
     content::Extracted,
     cylinders::Kinds,
     extract::extract,
+    lines::{Descriptions, Lines},
     recording::{Recording, Survey},
     select_topics::choose,
     topics::topic_infos,
@@ -99,6 +101,20 @@ impl LogFiles {
     /// [`LogError::NotMcap`].
     pub fn survey(&self, options: &ReadOptions) -> Result<Survey, LogError> {
         Ok(self.scan()?.survey(options))
+    }
+
+    /// Where the numbers of the joints lie in the messages, and what a report would use; reads all of it.
+    ///
+    /// # Errors
+    ///
+    /// [`LogError`] if a file is no log, or nothing in it can be drawn.
+    pub fn lines(&self, options: &ReadOptions) -> Result<Lines, LogError> {
+        let log = self.scan()?;
+        let known = Descriptions::of(&log);
+        let extracted = extract(&log, &lines::wanting_all(options, &known));
+        let mut lines = lines::of(&extracted, &known, options)?;
+        lines.recording = recording(extracted, options);
+        Ok(lines)
     }
 }
 

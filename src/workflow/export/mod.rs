@@ -1,6 +1,10 @@
-//! `export`: plan, command and measurement of a log as a table.
+//! `export`: plan, command and measurement of a log as a table, and charts of it for other programs.
+
+mod charts;
 
 use std::path::PathBuf;
+
+pub use charts::{Chart, Charts, ChartsFailure, For, Shown, Worst, charts};
 
 use crate::{
     log::{

@@ -12,6 +12,7 @@ mod fleet;
 #[cfg(unix)]
 mod hostile;
 mod join;
+mod layout;
 #[cfg(unix)]
 mod output;
 mod plan;

@@ -15,6 +15,7 @@ mod file;
 mod forms;
 mod index;
 mod json;
+mod layout;
 mod limits;
 mod matrix;
 mod mutations;

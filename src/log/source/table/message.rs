@@ -131,6 +131,7 @@ impl Sink for Table {
                     .iter()
                     .map(|field| names.iter().position(|name| *name == field.path))
                     .collect();
+                self.interfaces.see(self.message.groups.saturating_sub(1), &self.message.interface_places);
             }
             _ => {}
         }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 mod message;
+mod places;
 mod stamps;
 
 pub(in crate::log) use stamps::Stamps;
@@ -10,6 +11,7 @@ pub(super) use stamps::stamp_ns;
 
 use super::{Field, Form};
 use message::{Message, Names};
+use places::InterfacePlaces;
 
 /// Samples of one topic.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +44,7 @@ pub(in crate::log) struct Table {
     default_joints: Vec<String>,
     /// Name to use for one number without one.
     alone: Option<String>,
+    interfaces: InterfacePlaces,
     /// Joint to its index.
     index: BTreeMap<String, usize>,
     /// Emptied columns, kept for their memory.
@@ -95,6 +98,7 @@ impl Table {
             first_names: Vec::new(),
             default_joints: joints.to_vec(),
             alone: alone.map(str::to_owned),
+            interfaces: InterfacePlaces::default(),
             index: BTreeMap::new(),
             spare: Vec::new(),
         }
@@ -198,6 +202,7 @@ impl Table {
         }
         self.layout_changes += other.layout_changes;
         self.too_many += other.too_many;
+        self.interfaces.append(&mut other.interfaces);
         if !other.first_names.is_empty() {
             let changed = !self.layout.names.is_empty() && self.layout.names != other.first_names;
             self.layout_changes += u64::from(changed);
