@@ -69,8 +69,8 @@ pub fn spectrum(pair: &Pair) -> Option<Spectrum> {
     // Samples of no use above the highest frequency are left out.
     let sampled_s = median(steps_s);
     let most_hz = MOST_HZ.min(MOST_OF_RATE / sampled_s);
-    let count = (window_s / sampled_s.max(0.25 / most_hz)).round() as usize;
-    let frequencies = (most_hz * window_s).floor() as usize;
+    let count = whole(window_s / sampled_s.max(0.25 / most_hz) + 0.5);
+    let frequencies = whole(most_hz * window_s);
     if count < 8 || frequencies == 0 {
         return None;
     }
@@ -119,11 +119,20 @@ impl Sums {
 fn starts_s(pair: &Pair, window_s: f64) -> Vec<f64> {
     let mut starts_s = Vec::new();
     for [from_s, to_s] in pair.spans_s().filter(|[from, to]| to - from >= window_s) {
-        let more = ((to_s - from_s - window_s) / (0.5 * window_s)).floor() as usize;
+        let more = whole((to_s - from_s - window_s) / (0.5 * window_s));
         starts_s.extend((0..=more).map(|k| from_s + 0.5 * window_s * k as f64));
     }
     let every = starts_s.len().div_ceil(MOST_WINDOWS).max(1);
     starts_s.into_iter().step_by(every).collect()
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "counts of windows and samples; a cast saturates"
+)]
+fn whole(count: f64) -> usize {
+    count as usize
 }
 
 /// Planned and measured positions at instants that ascend within a stretch.
@@ -248,7 +257,7 @@ mod tests {
     fn nothing_is_told_of_a_joint_that_does_not_answer_or_of_a_short_run() {
         let mut rng = stream(1, Stream::SensorNoise);
         let noise: Vec<f64> = Uniform::new(-1e-3, 1e-3).unwrap().sample_iter(&mut rng).take(6000).collect();
-        let of = |t: f64| noise[(100.0 * t).round() as usize % noise.len()];
+        let of = |t: f64| noise[whole(100.0 * t + 0.5) % noise.len()];
         let asked = |t: f64| 0.1 * (0.7 * t).sin() + 0.05 * (2.9 * t).sin();
         assert!(spectrum(&run(asked, of, None)).unwrap().response.is_none());
         let t_s: Vec<f64> = (0..300).map(|k| 0.01 * f64::from(k)).collect();

@@ -1,20 +1,31 @@
-//! A lane of a run with more stretches than can be seen: the height of a colour is its share of the time.
+//! What lanes look like; one of a run with more stretches than can be seen: the height of a colour is its share of the time.
 
 use std::fmt::Write as _;
 
 use maud::{Markup, html};
 
-use super::first::{HEIGHT, WIDTH, class};
 use crate::{
     render::kit::page::Shows,
     replay::{Phase, Stretch},
 };
 
+/// Thousandths of the run, and the height of a lane: the drawing is stretched, so it holds no text.
+pub(super) const WIDTH: f64 = 1000.0;
+pub(super) const HEIGHT: f64 = 30.0;
 /// More stretches than this are a crowd.
 pub(super) const CROWD: usize = 250;
 /// Columns, and how many of them a click shows.
 const COLUMNS: usize = 240;
 const SHOWN: usize = 4;
+
+/// What a phase is called, in words and in the sheet of styles.
+pub(super) fn class(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Waits => "waits",
+        Phase::Follows => "follows",
+        Phase::Settles => "settles",
+    }
+}
 
 /// The stretches of a joint as shares of columns of equal time.
 pub(super) fn crowd(stretches: &[Stretch], joint: &str, [from_s, to_s]: [f64; 2]) -> Markup {
@@ -43,8 +54,9 @@ fn shares<'a>(stretches: impl Iterator<Item = &'a Stretch>, from_s: f64, each_s:
         let [first, last] =
             [one.from_s, one.to_s].map(|s| ((s - from_s) / each_s).clamp(0.0, COLUMNS as f64));
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a column")]
-        for k in first as usize..(last.ceil() as usize).min(COLUMNS) {
-            shares[k] += (last.min(k as f64 + 1.0) - first.max(k as f64)).max(0.0);
+        let own = shares.iter_mut().enumerate().take(last.ceil() as usize).skip(first as usize);
+        for (k, share) in own {
+            *share += (last.min(k as f64 + 1.0) - first.max(k as f64)).max(0.0);
         }
     }
     shares
@@ -75,6 +87,6 @@ mod tests {
         assert_eq!((found[238], found[239]), (0.0, 0.5));
         let mut below = [0.0; COLUMNS];
         assert!(path(&found, &mut below).starts_with("M0.0 30.0v-15.0h4.2v15.0zM"));
-        assert_eq!(below[2], 1.0);
+        assert!((below[2] - 1.0).abs() < 1e-12);
     }
 }

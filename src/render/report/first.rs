@@ -16,20 +16,17 @@ use crate::{
         },
         metric::position,
     },
-    replay::{JointReplay, Phase, Transition, lane},
+    replay::{JointReplay, Transition, lane},
     series::Pair,
     workflow::report::Report,
 };
 
 use super::{
-    crowd::{CROWD, crowd},
+    crowd::{CROWD, HEIGHT, WIDTH, class, crowd},
     signals::{View, speed},
     tiles::tile,
 };
 
-/// Thousandths of the run, and the height of a lane: the drawing is stretched, so it holds no text.
-pub(super) const WIDTH: f64 = 1000.0;
-pub(super) const HEIGHT: f64 = 30.0;
 /// Places of an error at most, nearly.
 const PLACES: usize = 260;
 /// Shown of the worst start before it, and after it at least and at most, s.
@@ -147,15 +144,6 @@ fn outline(pair: &Pair, most: f64, crowded: bool, place: impl Fn(f64) -> f64) ->
         pen = 'L';
     }
     path
-}
-
-/// What a phase is called, in words and in the sheet of styles.
-pub(super) fn class(phase: Phase) -> &'static str {
-    match phase {
-        Phase::Waits => "waits",
-        Phase::Follows => "follows",
-        Phase::Settles => "settles",
-    }
 }
 
 /// The worst start from its planned instant: position from there, speed, how far behind.

@@ -124,9 +124,8 @@ fn explained(why: &Why, most: usize) -> Vec<Block> {
             .map(|joint| Sentence::note(format!("{joint}; its delays are not explained.")).into()),
     );
     blocks.push(Sentence::note(
-        "█ dead band, ▒ lag, ░ limits, ? unexplained. The measured run is changed by what the fitted model says would differ without its \
-         limits, then without its dead band too; what the delay loses is that part. Lag is the delay of the model that has neither; \
-         the rest is unexplained. In brackets 95 % intervals, from those of the fit.",
+        "█ dead band, ▒ lag, ░ limits, ? unexplained. Lag is the delay of the fitted model without limits and dead band, timed with the noise of the run; limit is what the \
+         model loses without its limits; the rest is the dead band's, and what is later than any likely one explains is unexplained. In brackets 95 % intervals, from those of the fit.",
     ).into());
     blocks
 }

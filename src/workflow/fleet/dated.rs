@@ -19,8 +19,8 @@ pub(in crate::workflow) fn began_ns(uri: &str, epoch_ns: i64) -> Option<i64> {
     if is_dated(epoch_ns) {
         return Some(epoch_ns);
     }
-    let names = uri.trim_end_matches('/').rsplit('/').take(NAMES);
-    names.filter_map(date_in).next()?.and_utc().timestamp_nanos_opt()
+    let mut names = uri.trim_end_matches('/').rsplit('/').take(NAMES);
+    names.find_map(date_in)?.and_utc().timestamp_nanos_opt()
 }
 
 fn date_in(name: &str) -> Option<NaiveDateTime> {
