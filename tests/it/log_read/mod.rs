@@ -3,6 +3,7 @@
 mod cdr;
 mod choice;
 mod clocks;
+mod conformance;
 mod containers;
 mod controller;
 mod damage;
