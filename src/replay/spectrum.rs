@@ -28,6 +28,8 @@ pub struct Spectrum {
     pub frequency_hz: Vec<f64>,
     /// Amplitude of the sinusoid that the error holds at each, in the joint's unit.
     pub error: Vec<f64>,
+    /// Amplitude of the sinusoid that the plan holds at each.
+    pub planned: Vec<f64>,
     /// How measured answers planned, where the plan asks enough.
     pub response: Option<Response>,
     /// Length of a window, s.
@@ -92,11 +94,37 @@ pub fn spectrum(pair: &Pair) -> Option<Spectrum> {
     Some(Spectrum {
         frequency_hz: (1..=frequencies).map(|k| k as f64 / window_s).collect(),
         error: sums.iter().map(|sums| amplitude(sums.error)).collect(),
+        planned: sums.iter().map(|sums| amplitude(sums.planned)).collect(),
         response: response(&sums, windows),
         window_s,
         windows,
     })
 }
+
+/// An error is no answer to the plan where it is so many times what the plan holds, and a peak where it is so many times
+/// what it falls to towards slower frequencies.
+const OWN: f64 = 3.0;
+
+impl Spectrum {
+    /// Frequency, Hz, and amplitude of a swing that the plan does not ask for: the largest peak of the error that stands out.
+    pub fn swing(&self) -> Option<[f64; 2]> {
+        let mut valley = f64::INFINITY;
+        let mut found: Option<usize> = None;
+        for k in 1..self.error.len().saturating_sub(1) {
+            valley = valley.min(self.error[k]);
+            let peak = self.error[k] >= self.error[k - 1] && self.error[k] >= self.error[k + 1];
+            let own = self.error[k] > OWN * self.planned[k] && self.error[k] > OWN * valley;
+            if peak && own && found.is_none_or(|best| self.error[k] > self.error[best]) {
+                found = Some(k);
+            }
+        }
+        let of_note = |k: &usize| self.error[*k] > OF_NOTE * self.error.iter().copied().fold(0.0, f64::max);
+        found.filter(of_note).map(|k| [self.frequency_hz[k], self.error[k]])
+    }
+}
+
+/// Share of the largest amplitude from which a swing is told.
+const OF_NOTE: f64 = 0.1;
 
 impl Sums {
     fn add(&mut self, [planned, measured, error]: [[f64; 2]; 3]) {
@@ -218,6 +246,8 @@ mod tests {
                 (0..found.error.len()).max_by(|a, b| found.error[*a].total_cmp(&found.error[*b])).unwrap();
             assert!((found.frequency_hz[at] - hz).abs() < 1.0 / found.window_s, "{}", found.frequency_hz[at]);
             assert!((found.error[at] / amplitude - 1.0).abs() < 0.2, "{} of {amplitude}", found.error[at]);
+            let [swing_hz, swing] = found.swing().unwrap();
+            assert!((swing_hz - hz).abs() < 1.0 / found.window_s && (swing / amplitude - 1.0).abs() < 0.2);
             assert!(found.windows >= 10 && found.response.is_none(), "{found:?}");
         }
     }
@@ -241,6 +271,7 @@ mod tests {
         };
         for cut in [None, Some(2900)] {
             let found = spectrum(&run(planned, measured, cut)).unwrap();
+            assert_eq!(found.swing(), None);
             let told = found.response.unwrap();
             assert!(told.gain.len() as f64 / found.window_s > 1.3, "{} frequencies", told.gain.len());
             let asked = found.frequency_hz.iter().enumerate().take_while(|(_, hz)| **hz < 1.5);

@@ -91,7 +91,8 @@ impl Args {
             Form::Html => {
                 let of_front = Course::of_front(request, &planned)?;
                 let tool = request.setup.arm().chain.tool_name();
-                let courses = Courses { chosen: &course, of_front: &of_front, tool, task: &self.task };
+                let courses =
+                    Courses { chosen: &course, of_front: &of_front, tool, ceilings, task: &self.task };
                 words::page(&document, &options, ceilings, &planned, &courses)
             }
             _ => target.text(&self.noted(words::document(title, algorithm, &options, ceilings, &planned))),

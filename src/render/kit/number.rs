@@ -45,7 +45,13 @@ pub fn signed(value: f64, show: impl Fn(f64) -> String) -> String {
 
 /// A probability: three decimals, or two digits if it is small.
 pub fn probability(p: f64) -> String {
-    if p < 0.001 { format!("{p:.1e}") } else { format!("{p:.3}") }
+    if p < 1e-99 {
+        "below 1e-99".to_owned()
+    } else if p < 0.001 {
+        format!("{p:.1e}")
+    } else {
+        format!("{p:.3}")
+    }
 }
 
 /// A value, or [`NONE`].

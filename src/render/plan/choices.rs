@@ -4,11 +4,11 @@ use std::path::Path;
 
 use super::{
     motion::{motion_charts, path},
-    tables::nearest_lines,
+    tables::{nearest_lines, over_ceilings},
 };
 use crate::{
     render::kit::{argument, command, page::choice::Choice},
-    task::Objective,
+    task::{Ceilings, Objective},
     workflow::plan::{Course, PlanDocument, Planned},
 };
 
@@ -20,6 +20,8 @@ pub(crate) struct Courses<'a> {
     pub(crate) of_front: &'a [(usize, Course)],
     /// The tool's link.
     pub(crate) tool: &'a str,
+    /// The task's ceilings.
+    pub(crate) ceilings: &'a Ceilings,
     /// The task's file as the caller named it.
     pub(crate) task: &'a Path,
 }
@@ -50,7 +52,10 @@ fn one(name: String, point: [usize; 2], course: &Course, planned: &Planned, cour
         Objective::OF_PLAN.iter().map(|k| format!("{} {}", k.row().name, k.text(evaluation.objectives[*k])));
     let arrivals: Vec<String> = evaluation.times_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
     let arrivals = format!("arrives at {} s", arrivals.join(", "));
-    let lines = costs.chain([arrivals]).chain(nearest_lines(evaluation, &planned.joints));
+    let lines = costs
+        .chain([arrivals])
+        .chain(over_ceilings(courses.ceilings, evaluation))
+        .chain(nearest_lines(evaluation, &planned.joints));
     let scene = path(&course.motion, &courses.chosen.motion, courses.tool);
     Choice {
         name,

@@ -13,6 +13,9 @@ use crate::{
 /// Limits further from the motion than this many times what it spans are not drawn: they would flatten it.
 const NEAR: f64 = 0.6;
 
+/// Beside a motion, as a share of its duration: the last key point and its number.
+const ROOM: f64 = 0.03;
+
 /// Joints with their angles and speeds.
 pub(super) fn motion_charts(joints: &[String], course: &Course) -> Vec<(String, Chart)> {
     let chart = |(k, joint): (usize, &String)| (joint.clone(), joint_chart(joint, k, course));
@@ -36,7 +39,7 @@ fn joint_chart(joint: &str, k: usize, course: &Course) -> Chart {
         note: used(k, course),
         x_label: "Time (s)".into(),
         xs: vec![shown(&motion.t_s), shown(&motion.arrivals_s), shown(&ends)],
-        x_range: Some(ends),
+        x_range: Some([-ROOM * ends[1], (1.0 + ROOM) * ends[1]]),
         panels: vec![angle, speed],
         group: Some("run"),
         height: 270,

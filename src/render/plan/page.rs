@@ -66,7 +66,10 @@ pub(crate) fn judged_page(title: &str, joints: &[String], course: &Course, tool:
 fn the_front(plan: &PlanDocument, planned: &Planned, courses: &Courses<'_>, plots: &mut Plots) -> Markup {
     html! {
         (front(plan, plots))
-        p class="hint" { "Click a point, or move the slider from the fastest plan on: its numbers, its motion and the line that makes it follow." }
+        p class="hint" {
+            "Click a point, or move the slider: first the chosen plan, then from the fastest on " (courses.of_front.len()) " of "
+            (planned.front.len()) " plans. Numbers, motion and the line that makes the plan follow."
+        }
         (choice("Plan shown", &choices(plan, planned, courses)))
     }
 }

@@ -268,11 +268,11 @@ pub(super) fn nearest_lines(evaluation: &PlanEvaluation, joints: &[String]) -> V
     let line = |margin: &&Margin| {
         let value = shown(margin.limit, margin.value);
         format!(
-            "{} {value} at {:.2} s: {} % of {}",
+            "{} {value} at {:.2} s, limit {}: {} % used",
             subject(margin, joints),
             margin.t_s,
+            allowed(margin),
             percent(margin.share),
-            shown(margin.limit, margin.allowed)
         )
     };
     nearest(evaluation).iter().take(3).map(line).collect()
@@ -314,14 +314,7 @@ pub(crate) fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEval
 
 /// What the nearest plan exceeds its ceilings by, a line each, and what holds it there.
 pub(crate) fn ceiling_lines(ceilings: &Ceilings, joints: &[String], nearest: &PlanEvaluation) -> Vec<String> {
-    let over = |(k, ceiling): (Objective, f64)| {
-        let share = nearest.objectives[k] / ceiling;
-        let (name, found, asked) = (k.row().name, k.text(nearest.objectives[k]), k.text(ceiling));
-        (share > 1.0).then(|| {
-            format!("{name} {found}, the ceiling is {asked}: {:.1} % above it", 100.0 * (share - 1.0))
-        })
-    };
-    let mut lines: Vec<String> = ceilings.known().filter_map(over).collect();
+    let mut lines = over_ceilings(ceilings, nearest);
     let mut tight: Vec<&Margin> = nearest.margins.iter().filter(|margin| margin.share > TIGHT).collect();
     tight.sort_by(|a, b| b.share.total_cmp(&a.share));
     let tight: Vec<String> =
@@ -330,4 +323,16 @@ pub(crate) fn ceiling_lines(ceilings: &Ceilings, joints: &[String], nearest: &Pl
         lines.push(format!("limits that hold it there: {}", tight.join(", ")));
     }
     lines
+}
+
+/// What a plan exceeds ceilings by, a line each.
+pub(super) fn over_ceilings(ceilings: &Ceilings, nearest: &PlanEvaluation) -> Vec<String> {
+    let over = |(k, ceiling): (Objective, f64)| {
+        let share = nearest.objectives[k] / ceiling;
+        let (name, found, asked) = (k.row().name, k.text(nearest.objectives[k]), k.text(ceiling));
+        (share > 1.0).then(|| {
+            format!("{name} {found}, the ceiling is {asked}: {:.1} % above it", 100.0 * (share - 1.0))
+        })
+    };
+    ceilings.known().filter_map(over).collect()
 }

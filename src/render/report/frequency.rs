@@ -31,7 +31,7 @@ pub(super) fn frequency(report: &Report, plots: &mut Plots) -> Markup {
         .filter_map(|(joint, pair)| Some((joint, pair, spectrum(pair)?)))
         .collect();
     if joints.is_empty() {
-        return html! { p class="hint" { "The log has no stretch of 6 s without a gap: nothing is told by frequency." } };
+        return html! { p class="hint" { "Nothing is told by frequency: that takes a stretch of 6 s without a gap." } };
     }
     html! {
         p class="hint" {
@@ -58,6 +58,12 @@ fn charts(report: &Report, joint: &JointReplay, pair: &Pair, found: &Spectrum) -
 
 /// Where the error is largest, in words.
 fn peak(pair: &Pair, found: &Spectrum) -> String {
+    if let Some([hz, error]) = found.swing() {
+        return format!(
+            "swings at {hz:.2} Hz, which the plan does not ask for: {}",
+            position(pair.kind, error)
+        );
+    }
     let all = found.frequency_hz.iter().zip(&found.error);
     let largest = all.max_by(|a, b| a.1.total_cmp(b.1));
     largest.map_or(String::new(), |(hz, error)| {

@@ -206,7 +206,7 @@ mod tests {
         ] {
             assert!(has(&pressures, word), "{word}");
         }
-        assert!(!has(&pressures, "effort") && !has(&pressures, "3D"), "{pressures:?}");
+        assert!(!has(&pressures, "effort") && !has(&pressures, "\"3D\""), "{pressures:?}");
         assert!(!has(&seen("panel-install.mcap"), "+ /joint_states/velocity"));
     }
 }

@@ -13,8 +13,8 @@ const YEARS: RangeInclusive<i32> = 1990..=2099;
 
 /// When a run began, ns since 1970; `None` of one whose stamps count from zero and whose name holds no date.
 ///
-/// A date is `2026-03-06` or `20260306`, with `-`, `_`, `.` or nothing between its parts; a time of day may follow as `08-15`,
-/// `0815` or `081530`. The log's own name counts before those of its folders.
+/// A date is `2026-03-06` or `20260306`, with `-`, `_`, `.` or nothing between its parts, or `06.03.2026`; a time of day may
+/// follow as `08-15`, `0815` or `081530`. The log's own name counts before those of its folders.
 pub(in crate::workflow) fn began_ns(uri: &str, epoch_ns: i64) -> Option<i64> {
     if is_dated(epoch_ns) {
         return Some(epoch_ns);
@@ -30,17 +30,31 @@ fn date_in(name: &str) -> Option<NaiveDateTime> {
 }
 
 fn date_at(text: &[u8]) -> Option<NaiveDateTime> {
+    let (date, rest) = year_first(text).or_else(|| day_first(text))?;
+    let timed = time_at(separator(rest, b"T-_ ").1).and_then(|[h, m, s]| date.and_hms_opt(h, m, s));
+    // More digits are no date: a serial number.
+    let ends = !rest.first().is_some_and(u8::is_ascii_digit);
+    timed.or_else(|| if ends { date.and_hms_opt(0, 0, 0) } else { None })
+}
+
+/// Points alone stand between a day and its month; other signs do so between a month and its day elsewhere.
+fn day_first(text: &[u8]) -> Option<(NaiveDate, &[u8])> {
+    let short = |text| digits(text, 2).or_else(|| digits(text, 1));
+    let (day, rest) = short(text)?;
+    let (month, rest) = short(rest.strip_prefix(b".")?)?;
+    let (year, rest) = digits(rest.strip_prefix(b".")?, 4)?;
+    let year = i32::try_from(year).ok().filter(|year| YEARS.contains(year))?;
+    Some((NaiveDate::from_ymd_opt(year, month, day)?, rest))
+}
+
+fn year_first(text: &[u8]) -> Option<(NaiveDate, &[u8])> {
     let (year, rest) = digits(text, 4)?;
     let (between, rest) = separator(rest, b"-_.");
     let (month, rest) = digits(rest, 2)?;
     let (again, rest) = separator(rest, b"-_.");
     let (day, rest) = digits(rest, 2)?;
     let year = i32::try_from(year).ok().filter(|year| YEARS.contains(year) && between == again)?;
-    let date = NaiveDate::from_ymd_opt(year, month, day)?;
-    let timed = time_at(separator(rest, b"T-_ ").1).and_then(|[h, m, s]| date.and_hms_opt(h, m, s));
-    // More digits are no date: a serial number.
-    let ends = !rest.first().is_some_and(u8::is_ascii_digit);
-    timed.or_else(|| if ends { date.and_hms_opt(0, 0, 0) } else { None })
+    Some((NaiveDate::from_ymd_opt(year, month, day)?, rest))
 }
 
 /// Hours, minutes and seconds.
@@ -86,14 +100,26 @@ mod tests {
             ("s3://logs/2025_01_02/2026.03.06.csv", "2026-03-06 00:00:00"),
             ("2026-03-06T08:15.csv/", "2026-03-06 08:15:00"),
             ("2026-03-06-run7.csv", "2026-03-06 00:00:00"),
+            ("trace 6.3.2026 8-15.csv", "2026-03-06 00:00:00"),
+            ("M7/06.03.2026/run_08-15.csv", "2026-03-06 00:00:00"),
+            ("06.03.2026_0815.csv", "2026-03-06 08:15:00"),
         ] {
             let ns = began_ns(uri, UNDATED_NS + 5).unwrap();
             let at = chrono::DateTime::from_timestamp_nanos(ns).format("%Y-%m-%d %H:%M:%S").to_string();
             assert_eq!(at, found, "{uri}");
         }
-        for uri in
-            ["run.csv", "2026-13-06.csv", "2026-0306.csv", "120260306.csv", "202603061.csv", "1234-05-06", ""]
-        {
+        for uri in [
+            "run.csv",
+            "2026-13-06.csv",
+            "2026-0306.csv",
+            "120260306.csv",
+            "202603061.csv",
+            "06-03-2026.csv",
+            "1.2.3.4.csv",
+            "106.03.2026.csv",
+            "1234-05-06",
+            "",
+        ] {
             assert_eq!(began_ns(uri, UNDATED_NS), None, "{uri}");
         }
         assert_eq!(began_ns("2026-03-06.csv", 1_700_000_000_000_000_000), Some(1_700_000_000_000_000_000));

@@ -128,6 +128,7 @@ impl History {
         }
         let wanted =
             |run: &Run| others || filter.machine.as_ref().is_none_or(|machine| *machine == run.machine);
+        history.leave_out_undated();
         history
             .runs
             .retain(|run| wanted(run) && filter.since_us.is_none_or(|since_us| run.started_us >= since_us));
@@ -176,12 +177,22 @@ impl History {
         self.runs = runs.into_iter().map(|(run, _)| run).collect();
         let repeated = (all - self.runs.len()) as u64;
         self.remarks.add(Code::SameRun, repeated, "logs with the content of another one; left out");
-        let undated = self.runs.iter().filter(|run| !is_dated(run.started_us.saturating_mul(1000))).count();
-        let message = "runs that say no date, neither in their stamps nor in their names (2026-03-06): they count as of one \
-                       instant, and no drift is told of them";
-        self.remarks.add(Code::Undated, undated as u64, message);
         self.remarks.add(Code::UnreadableLog, failed, "logs that could not be analysed; left out");
         self.remarks.add(Code::UnknownMachine, unnamed, "runs that name no machine; left out");
+    }
+
+    /// A run that nobody knows the time of has no place in a history.
+    fn leave_out_undated(&mut self) {
+        let undated = |run: &Run| !is_dated(run.started_us.saturating_mul(1000));
+        let count = self.runs.iter().filter(|run| undated(run)).count() as u64;
+        if let Some(first) = self.runs.iter().find(|run| undated(run)) {
+            let message = format!(
+                "runs that say no date, neither in their stamps nor in their names (2026-03-06, 06.03.2026), as {}; left out",
+                first.log.rsplit('/').next().unwrap_or_default()
+            );
+            self.remarks.add(Code::Undated, count, message);
+        }
+        self.runs.retain(|run| !undated(run));
     }
 
     fn check(&self, machine: &str) -> Result<(), FleetFailure> {

@@ -38,8 +38,17 @@ pub(in crate::render) fn next_steps(steps: &[(Sentence, Option<String>)]) -> Mar
         h3 { "What to do next" }
         ol class="next" {
             @for (step, line) in steps {
-                li { (clean(&step.to_string())) @if let Some(line) = line { pre { code { (clean(line)) } } } }
+                li {
+                    (clean(&step.to_string()))
+                    @if let Some(line) = line { pre class=[is_form(line).then_some("form")] { code { (clean(line)) } } }
+                }
             }
         }
     }
+}
+
+/// Whether a line has a word that the reader is to replace, as `NEXT_RUN`: it is not to be copied as it is.
+fn is_form(line: &str) -> bool {
+    line.split(' ')
+        .any(|word| word.len() > 2 && word.bytes().all(|byte| byte.is_ascii_uppercase() || byte == b'_'))
 }

@@ -254,7 +254,7 @@ const plotted = (() => {
     if (joint) joint.scrollIntoView({ behavior: 'smooth', block: 'center' });
   }
   // Commands are copied by a button; without the right to write to the clipboard they are selected.
-  for (const block of document.querySelectorAll('pre')) {
+  for (const block of document.querySelectorAll('pre:not(.form)')) {
     const button = Object.assign(document.createElement('button'), { type: 'button', className: 'copy', textContent: 'Copy' });
     const code = block.querySelector('code');
     button.addEventListener('click', async () => {
