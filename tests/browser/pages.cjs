@@ -43,6 +43,8 @@ async function look(browser, path, width, scheme) {
   check(fetched.length === 1, where, `it fetched ${fetched.slice(1).join(', ')}`);
   const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
   check(overflow <= 0, where, `it is ${overflow} px wider than the screen`);
+  await near(page, where);
+  await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
   let blank = 0;
   for (const canvas of await page.$$('canvas')) if (await canvas.evaluate(colours) < 3) blank++;
   check(blank === 0, where, `${blank} plots are blank`);
@@ -57,6 +59,19 @@ async function look(browser, path, width, scheme) {
   await copy(page, where, context);
   await context.close();
   return ms;
+}
+
+// What is far below is not drawn until the reader comes near: its canvas has the size of an untouched one.
+const drawn = canvas => canvas.width !== 300 || canvas.height !== 150;
+async function near(page, where) {
+  const last = page.locator('.live:not(details:not([open]) .live) canvas').last();
+  if (await last.count() === 0) return;
+  const far = await last.evaluate(canvas => canvas.getBoundingClientRect().top > 2.5 * innerHeight);
+  check(!far || !await last.evaluate(drawn), where, 'a plot far below is drawn at once');
+  await last.scrollIntoViewIfNeeded();
+  await page.waitForTimeout(100);
+  check(await last.evaluate(drawn), where, 'a plot stays blank when the page is scrolled to it');
+  await page.evaluate(() => scrollTo(0, 0));
 }
 
 // What axe-core finds wrong for people who see or point otherwise.

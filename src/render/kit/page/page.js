@@ -5,7 +5,7 @@ const plotted = (() => {
   const root = document.documentElement;
   root.classList.add('js');
   const specs = JSON.parse(document.getElementById('data').textContent);
-  const colour = name => getComputedStyle(root).getPropertyValue('--' + name).trim();
+  const style = getComputedStyle(root), colour = name => style.getPropertyValue('--' + name).trim();
   const clamp = (v, a, b) => Math.min(Math.max(v, a), b);
   const LINE = { planned: 5, measured: 1.6, error: 1.6, before: 1.4, guide: 1 };
 
@@ -43,7 +43,8 @@ const plotted = (() => {
       if (!this.tile) this.listen();
     }
     left() { return this.tile ? 34 : 62; }
-    width() { return Math.max(this.box.clientWidth - this.left() - 10, 10); }
+    // Asking for a width lays the page out, so each drawing asks once.
+    width() { return this.wide ??= Math.max(this.box.clientWidth - this.left() - 10, 10); }
     pixel(x) { return this.left() + (x - this.range[0]) / (this.range[1] - this.range[0]) * this.width(); }
     value(px) { return this.range[0] + (px - this.left()) / this.width() * (this.range[1] - this.range[0]); }
     show(range) {
@@ -64,8 +65,16 @@ const plotted = (() => {
       this.put(undefined);
       this.show(this.full);
     }
+    // What is far from the screen, or folded, waits until it comes near.
     draw() {
+      this.wide = undefined;
+      this.stale = !this.near;
+      if (this.near) this.paint();
+    }
+    paint() {
       const { canvas, spec, box } = this, scale = window.devicePixelRatio || 1, width = box.clientWidth;
+      this.wide = undefined;
+      this.stale = !width;
       if (!width) return;
       canvas.width = Math.round(width * scale);
       canvas.height = Math.round(spec.height * scale);
@@ -193,7 +202,7 @@ const plotted = (() => {
     }
     nearest(s, x, py) {
       let best = -1, least = Infinity;
-      this.spec.xs[s.x].forEach((v, i) => {
+      if (this.y) this.spec.xs[s.x].forEach((v, i) => {
         const d = Math.hypot(this.pixel(v) - this.pixel(x), this.y(s.y[i]) - py);
         if (d < least) { least = d; best = i; }
       });
@@ -240,6 +249,14 @@ const plotted = (() => {
   const group = plot => plot.spec.group === null ? [plot] : plots.filter(p => p.spec.group === plot.spec.group);
   const all = () => { for (const plot of plots) plot.draw(); };
   for (const plot of plots) plot.show(plot.full);
+  const nearby = new IntersectionObserver(entries => {
+    for (const { target, isIntersecting } of entries) for (const plot of plots) if (plot.box === target) {
+      plot.near = isIntersecting;
+      if (plot.near && plot.stale) plot.paint();
+    }
+  }, { rootMargin: '100% 0px' });
+  for (const plot of plots) nearby.observe(plot.box);
+  window.addEventListener('beforeprint', () => { for (const plot of plots) if (plot.stale) plot.paint(); });
   let width = root.clientWidth;
   window.addEventListener('resize', () => { if (root.clientWidth !== width) { width = root.clientWidth; all(); } });
   window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', all);

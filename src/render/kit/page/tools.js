@@ -56,11 +56,6 @@
     }
   }
 
-  // What was folded has had no width.
-  for (const box of document.querySelectorAll('details')) box.addEventListener('toggle', () => {
-    for (const plot of plots) if (box.contains(plot.box)) plot.draw();
-  });
-
   // One vertical scale for panels of the same name.
   for (const box of document.querySelectorAll('.same-scale input')) {
     const run = large.filter(plot => plot.spec.group === 'run' && plot.box.closest('.joint'));
