@@ -13,7 +13,7 @@ use crate::{arm::ArmError, suggest::suggestion, text::shell_argument};
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum LogError {
     /// The file system said no.
-    #[error("cannot {action} {}", path.display())]
+    #[error("cannot {action} {}{}", path.display(), meant_as_output(path, source))]
     File { action: &'static str, path: PathBuf, source: std::io::Error },
     /// Neither magic bytes nor any record.
     #[error("{} is not an MCAP file: found {found}, expected the bytes 89 4D 43 41 50 30 0D 0A; {fix}", path.display())]
@@ -168,5 +168,16 @@ impl LogError {
     pub(super) fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::File { action, path, source }
+    }
+}
+
+/// What to do where a page or a text was named among the logs, as after an option that takes no file.
+fn meant_as_output(path: &Path, source: &std::io::Error) -> String {
+    let of_output = path.extension().is_some_and(|end| end == "html" || end == "md" || end == "svg");
+    let missing = source.kind() == std::io::ErrorKind::NotFound;
+    if missing && of_output {
+        format!("; to write it, say -o {}", shell_argument(path))
+    } else {
+        String::new()
     }
 }

@@ -73,7 +73,12 @@ impl Blocks {
         let Some(chunk) = ChunkRecord::parse(&self.body) else {
             return (&[], Loss::Dropped("its header is broken".into()));
         };
-        match self.decompressor.run(chunk.compression, chunk.records, chunk.uncompressed_size, cut) {
+        match self.decompressor.run(
+            chunk.compression,
+            chunk.records,
+            chunk.uncompressed_size,
+            (cut, chunk.crc != 0),
+        ) {
             Err(reason) => (&[], Loss::Dropped(reason)),
             Ok((bytes, _)) if cut => (bytes, Loss::Cut),
             Ok((bytes, Yield::Part)) => (bytes, Loss::Doubtful("its compressed data are broken".into())),

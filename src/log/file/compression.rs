@@ -2,10 +2,14 @@
 
 use std::io::Read;
 
+use super::lz4;
+
 /// Buffers and contexts of one thread, reused from chunk to chunk.
 pub(super) struct Decompressor {
     zstd: Option<zstd::bulk::Decompressor<'static>>,
     out: Vec<u8>,
+    /// As `out`, of a length that only grows, so that nothing is filled in vain.
+    frame: Vec<u8>,
 }
 
 /// How much of a chunk came out.
@@ -28,17 +32,18 @@ const NEVER_MORE: u64 = 1 << 28;
 
 impl Decompressor {
     pub(super) fn new() -> Self {
-        Self { zstd: None, out: Vec::new() }
+        Self { zstd: None, out: Vec::new(), frame: Vec::new() }
     }
 
     /// Decompresses up to the promised size. `Err` names a compression that is not understood
-    /// or a size that is not believed; that of a cut chunk is only lowered.
+    /// or a size that is not believed; that of a cut chunk is only lowered. Of chunks that are `checked` by a sum of
+    /// their own, sums within the compressed bytes are passed over.
     pub(super) fn run<'a>(
         &'a mut self,
         compression: &[u8],
         compressed: &'a [u8],
         promised: u64,
-        cut: bool,
+        (cut, checked): (bool, bool),
     ) -> Result<(&'a [u8], Yield), String> {
         if compression.is_empty() {
             let whole = if compressed.len() as u64 >= promised { Yield::Whole } else { Yield::Part };
@@ -54,6 +59,9 @@ impl Decompressor {
                 return Err(format!("it promises over {expansion} times its size or {NEVER_MORE} bytes"));
             }
         };
+        if compression == b"lz4" && checked && self.lz4(compressed, size) {
+            return Ok((&self.frame[..size], Yield::Whole));
+        }
         self.out.clear();
         match compression {
             b"zstd" => self.zstd(compressed, size),
@@ -62,6 +70,13 @@ impl Decompressor {
         }
         let whole = if self.out.len() == size { Yield::Whole } else { Yield::Part };
         Ok((&self.out, whole))
+    }
+
+    fn lz4(&mut self, compressed: &[u8], size: usize) -> bool {
+        if self.frame.len() < size {
+            self.frame.resize(size, 0);
+        }
+        lz4::unpack(compressed, &mut self.frame[..size]).is_some()
     }
 
     fn zstd(&mut self, compressed: &[u8], size: usize) {
@@ -103,12 +118,13 @@ mod tests {
         let plain = noise();
         let packed = zstd::bulk::compress(&plain, 3).unwrap();
         let mut decompressor = Decompressor::new();
-        let (out, amount) =
-            decompressor.run(b"zstd", &packed[..packed.len() * 2 / 3], plain.len() as u64, false).unwrap();
+        let (out, amount) = decompressor
+            .run(b"zstd", &packed[..packed.len() * 2 / 3], plain.len() as u64, (false, true))
+            .unwrap();
         assert_eq!(amount, Yield::Part);
         assert!(out.len() > plain.len() / 3, "only {} bytes", out.len());
         assert_eq!(out, &plain[..out.len()]);
-        let (out, amount) = decompressor.run(b"zstd", &packed, plain.len() as u64, false).unwrap();
+        let (out, amount) = decompressor.run(b"zstd", &packed, plain.len() as u64, (false, true)).unwrap();
         assert_eq!((out.len(), amount), (plain.len(), Yield::Whole));
     }
 
@@ -116,10 +132,10 @@ mod tests {
     fn a_bomb_costs_no_more_than_it_promises_and_promises_are_bounded() {
         let bomb = zstd::bulk::compress(&vec![0; 64 << 20], 19).unwrap();
         let mut decompressor = Decompressor::new();
-        let (out, _) = decompressor.run(b"zstd", &bomb, 1 << 20, false).unwrap();
+        let (out, _) = decompressor.run(b"zstd", &bomb, 1 << 20, (false, true)).unwrap();
         assert_eq!(out.len(), 1 << 20);
         assert!(decompressor.out.capacity() < 4 << 20);
-        assert!(decompressor.run(b"zstd", &bomb, 8 << 30, false).is_err());
+        assert!(decompressor.run(b"zstd", &bomb, 8 << 30, (false, true)).is_err());
     }
 
     #[test]
@@ -128,16 +144,16 @@ mod tests {
         std::io::Write::write_all(&mut encoder, &vec![0; 64 << 20]).unwrap();
         let bomb = encoder.finish().unwrap();
         let mut decompressor = Decompressor::new();
-        let (out, _) = decompressor.run(b"lz4", &bomb, 1 << 20, false).unwrap();
+        let (out, _) = decompressor.run(b"lz4", &bomb, 1 << 20, (false, true)).unwrap();
         assert_eq!(out.len(), 1 << 20);
         assert!(decompressor.out.capacity() < 2 << 20);
         let most = bomb.len() as u64 * MAX_EXPANSION_LZ4 + ALWAYS_ALLOWED;
-        assert!(decompressor.run(b"lz4", &bomb, most + 1, false).is_err());
-        assert!(decompressor.run(b"lz4", &vec![0; 4 << 20], 1 << 30, false).is_err());
+        assert!(decompressor.run(b"lz4", &bomb, most + 1, (false, true)).is_err());
+        assert!(decompressor.run(b"lz4", &vec![0; 4 << 20], 1 << 30, (false, true)).is_err());
     }
 
     #[test]
     fn an_unknown_compression_is_named() {
-        assert_eq!(Decompressor::new().run(b"xz", &[], 0, false).unwrap_err(), "compression \"xz\"");
+        assert_eq!(Decompressor::new().run(b"xz", &[], 0, (false, true)).unwrap_err(), "compression \"xz\"");
     }
 }

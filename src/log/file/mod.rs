@@ -5,6 +5,7 @@
 mod block;
 mod compression;
 mod held;
+mod lz4;
 mod record;
 mod scan;
 mod source;

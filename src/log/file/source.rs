@@ -103,12 +103,13 @@ impl Source {
         let end = span.end.min(self.length);
         let length = usize::try_from(end.saturating_sub(span.start))
             .map_err(|_| io::Error::from(io::ErrorKind::OutOfMemory))?;
-        into.clear();
-        into.try_reserve(length).map_err(|_| io::Error::from(io::ErrorKind::OutOfMemory))?;
+        let more = length.saturating_sub(into.len());
+        into.try_reserve(more).map_err(|_| io::Error::from(io::ErrorKind::OutOfMemory))?;
         match &self.inner {
             Inner::Memory(bytes) => {
                 let start = usize::try_from(span.start).unwrap_or(usize::MAX);
-                into.extend(bytes.iter().skip(start).take(length));
+                into.clear();
+                into.extend_from_slice(bytes.get(start..).unwrap_or(&[]).get(..length).unwrap_or(&[]));
             }
             Inner::File(file) => fill(into, length, span.start, |into, at| read_at(file, into, at))?,
             Inner::Reader(reader) => fill(into, length, span.start, |into, at| reader.read_at(into, at))?,
@@ -124,6 +125,7 @@ fn fill(
     start: u64,
     read: impl Fn(&mut [u8], u64) -> io::Result<usize>,
 ) -> io::Result<()> {
+    // What is there from before is written over: filling it first would cost as much as reading.
     into.resize(length, 0);
     let mut filled = 0;
     while filled < length {

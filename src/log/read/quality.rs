@@ -197,10 +197,9 @@ fn of_plan(track: &Track, remarks: &mut Remarks) {
     for part in track.segments() {
         let step = |k: usize| (position[k] - position[k - 1]).abs();
         for k in part.start + 1..part.end {
-            let beside = [k - 1, k + 1].into_iter().filter(|k| (part.start + 1..part.end).contains(k));
-            let most_beside = beside.map(step).fold(0.0, f64::max);
+            let beside = || [k - 1, k + 1].into_iter().filter(|k| (part.start + 1..part.end).contains(k));
             let far = step(k) > LEAST_STEP.max(STEP_SPEED * (t_s[k] - t_s[k - 1]));
-            if far && step(k) > STEP_ALONE * most_beside {
+            if far && step(k) > STEP_ALONE * beside().map(step).fold(0.0, f64::max) {
                 jumps += 1;
                 largest = if step(k) > largest.0 { (step(k), t_s[k]) } else { largest };
             }
@@ -271,9 +270,14 @@ fn of_units(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &
     }
 }
 
-/// Range without the outermost hundredth at either end, rad.
+/// So many samples tell a range.
+const ENOUGH: usize = 10_000;
+
+/// Range without the outermost hundredth at either end, rad; of a long log, of samples evenly spread over it.
 fn span_rad(angle_rad: &[f64]) -> f64 {
-    quantile(angle_rad.to_vec(), 0.99) - quantile(angle_rad.to_vec(), 0.01)
+    let step = (angle_rad.len() / ENOUGH).max(1);
+    let some: Vec<f64> = angle_rad.iter().copied().step_by(step).collect();
+    quantile(some.clone(), 0.99) - quantile(some, 0.01)
 }
 
 /// A plan that moves by this much while the sensor repeats one value is beyond any dead-band.

@@ -21,6 +21,8 @@ pub(super) struct Axis {
     cuts: Vec<usize>,
     /// Whether the rows are all there, as they lie in the table, and times increase.
     as_read: bool,
+    /// Least time between neighbours.
+    shortest_s: f64,
 }
 
 impl Axis {
@@ -32,8 +34,9 @@ impl Axis {
         }
         let t_s: Arc<[f64]> = t_ns.iter().map(|&ns| seconds_since(epoch_ns, ns)).collect();
         drop(t_ns);
-        let as_read = whole && t_s.windows(2).all(|w| w[0] < w[1]);
-        Self { cuts: cuts(&t_s, &jumps), t_s, rows, jumps, as_read }
+        let shortest_s = t_s.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+        let as_read = whole && shortest_s > 0.0;
+        Self { cuts: cuts(&t_s, &jumps), t_s, rows, jumps, as_read, shortest_s }
     }
 
     /// Number of samples.
@@ -113,11 +116,11 @@ pub(super) fn samples(
         let mut column =
             |field| if last { table.take_column(field, joint) } else { table.column(field, joint).to_vec() };
         let (values, speed) = (column(field), velocity_field.map(column).unwrap_or_default());
+        let spiked = || (0..values.len()).any(|k| is_spike(k, values.len(), |i| axis.t_s[i], |i| values[i]));
         let whole = axis.as_read
             && values.len() == axis.t_s.len()
             && values.iter().all(|q| q.is_finite())
-            && !(positions
-                && (0..values.len()).any(|k| is_spike(k, values.len(), |i| axis.t_s[i], |i| values[i])));
+            && !(positions && !calm(&values, axis.shortest_s) && spiked());
         let ((t_s, cuts, jumps), values, velocity) = if whole {
             ((axis.t_s.clone(), axis.cuts.clone(), axis.jumps.clone()), values, speed)
         } else {
@@ -180,6 +183,23 @@ fn is_spike(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usize) -
             && (k + 2 >= n || calm(step(k + 1)))
     };
     (faster(FASTEST) || least > FAR && faster(FAST) && alone()) && !turn()
+}
+
+/// Whether no value is a spike because none is large and no step is: a quick look that spares the closer one.
+fn calm(values: &[f64], shortest_s: f64) -> bool {
+    // Lanes, so that the compiler takes several values at once.
+    let mut largest = [0.0_f64; 8];
+    let mut step = [0.0_f64; 8];
+    let later = values.get(1..).unwrap_or_default();
+    for (here, next) in values.chunks(8).zip(later.chunks(8)) {
+        for (k, (&a, &b)) in here.iter().zip(next).enumerate() {
+            largest[k] = largest[k].max(a.abs());
+            step[k] = step[k].max((b - a).abs());
+        }
+    }
+    let most = |lanes: [f64; 8]| lanes.into_iter().fold(0.0, f64::max);
+    let last = values.last().map_or(0.0, |last| last.abs());
+    most(largest).max(last) <= LARGEST && most(step) <= FAR.min(FASTEST * shortest_s)
 }
 
 /// Drops samples that no joint can have; returns how many.

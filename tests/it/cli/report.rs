@@ -42,6 +42,11 @@ fn exit_code_1_when_the_log_is_missing_and_stdout_stays_empty() {
     assert!(run.stdout.is_empty());
     let said = stderr(&run);
     assert!(said.starts_with("error: cannot open no-such.mcap\n  because: "), "{said}");
+    let page = stderr(&hydrotrace(&["report", CLEAN, "--html", "my page.html"]));
+    assert!(
+        page.starts_with("error: cannot open my page.html; to write it, say -o 'my page.html'\n"),
+        "{page}"
+    );
 }
 
 #[test]
