@@ -14,8 +14,9 @@ use crate::{
     task::{ByObjective, Ceilings, Objective, Objectives, Weights},
 };
 
-/// How to choose among the plans that keep to the ceilings. Objectives are scaled by their range over
-/// those plans.
+/// How to choose among the plans that keep to the ceilings and, where none is set on time, take at most [`HORIZON`] times
+/// as long as the fastest of them. Objectives are scaled by their range over those plans: slower ones, down to a standstill,
+/// would make any range what the longest interval makes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rule {
     /// The least weighted sum.
@@ -75,8 +76,10 @@ pub struct Choice {
     pub rule: Rule,
     /// Weights, where the rule is by weights.
     pub weights: Option<Weights>,
-    /// Plans of the front that keep to the ceilings; 0 if only the last descent reached them.
+    /// Plans of the front that keep to the ceilings and the horizon; 0 if only the last descent reached them.
     pub within: usize,
+    /// The longest time that was considered, s, where neither rule nor ceilings say one.
+    pub horizon_s: Option<f64>,
     /// Plans of the front.
     pub of: usize,
     /// Evaluations of the last descent.
@@ -104,6 +107,8 @@ pub enum NoChoice {
     },
 }
 
+/// Times the fastest plan's duration: there jerk has fallen to 2 % or less, and what more time buys is little.
+pub const HORIZON: f64 = 2.0;
 /// Evaluations of the last descent at most.
 const LAST: u64 = 600;
 /// Distance that descents keep from ceilings, as a share of them.
@@ -161,6 +166,13 @@ pub fn choose(
         }
         reached => within.extend(reached),
     }
+    let mut own = within_reach(ceilings);
+    let horizon_s = horizon_s(&within, ceilings, rule);
+    if let Some(horizon_s) = horizon_s {
+        within.retain(|timing| timing.objectives[Objective::Duration] <= horizon_s);
+        own = own.with(Objective::Duration, horizon_s);
+    }
+    let count = count.min(within.len());
     let scale = Scale::of(&within);
     let weights = weights.filter(|_| rule == Rule::Weights);
     let merit = scale.merit(rule, weights);
@@ -170,7 +182,7 @@ pub fn choose(
     };
     let picked = picked.ok_or(NoChoice::Empty)?;
     // A knee is a knee of this front; from it one may only descend to what is better in everything.
-    let own = if rule == Rule::Knee { picked.objectives } else { within_reach(ceilings) };
+    let own = if rule == Rule::Knee { picked.objectives } else { own };
     let goal = Goal { merit, ceilings: own, evaluations: LAST, trust: NEARLY, enough: FINE };
     let end = descend(setup, &mut evaluator, &picked.interval_s, &goal);
     used += end.evaluations;
@@ -180,7 +192,16 @@ pub fn choose(
         timing.violation <= 0.0 && excess(timing) <= 1.0 && worth(merit, timing) < worth(merit, picked)
     });
     let timing = better.unwrap_or_else(|| picked.clone());
-    Ok(Choice { timing, rule, weights, within: count, of: front.len(), evaluations: used, merit })
+    Ok(Choice { timing, rule, weights, within: count, horizon_s, of: front.len(), evaluations: used, merit })
+}
+
+/// The longest time to consider, s; `None` where the rule compares nothing or a ceiling says it.
+fn horizon_s(within: &[&Timing], ceilings: &Ceilings, rule: Rule) -> Option<f64> {
+    let compares = !matches!(rule, Rule::Best(_)) && ceilings[Objective::Duration].is_infinite();
+    let times_s = within.iter().map(|timing| timing.objectives[Objective::Duration]);
+    compares
+        .then(|| HORIZON * times_s.fold(f64::INFINITY, f64::min))
+        .filter(|horizon_s| horizon_s.is_finite())
 }
 
 /// Ceilings as a descent takes them, which ends at one to within rounding, on either side of it.
@@ -249,6 +270,26 @@ mod tests {
 
     use super::{super::Search, *};
     use crate::{arm::Arm, moea::Budget, task::Task};
+
+    #[test]
+    fn the_longest_interval_of_a_task_does_not_decide_what_is_chosen() {
+        let chosen = |longest_s: f64| {
+            let text = include_str!("../../sample-logs/tasks/simulation.toml");
+            let text =
+                text.replace("interval_s = [0.3, 20.0]", &format!("interval_s = [0.3, {longest_s:?}]"));
+            let setup = Setup::new(&Task::parse(&text).unwrap(), Arm::sample().unwrap()).unwrap();
+            let search = Search { budget: Budget::Evaluations(3000), ..Search::default() };
+            let front = super::super::search(&setup, &search, |_| ControlFlow::Continue(())).unwrap().front;
+            let [ideal, sum] = [Rule::Ideal, Rule::Weights]
+                .map(|rule| choose(&setup, &front, &Ceilings::NONE, (rule, None)).unwrap());
+            assert!(ideal.within < front.len() && ideal.horizon_s == sum.horizon_s);
+            [ideal, sum].map(|choice| choice.timing.objectives[Objective::Duration])
+        };
+        let (short, long) = (chosen(10.0), chosen(120.0));
+        for (short_s, long_s) in short.into_iter().zip(long) {
+            assert!((long_s / short_s - 1.0).abs() < 0.05, "{short_s} s and {long_s} s");
+        }
+    }
 
     /// Where neither limits nor the longest intervals bind, the best shape is one and only its time changes: with rests of
     /// d the mean of squared jerk falls with T (T - d)^5.

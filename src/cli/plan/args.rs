@@ -145,6 +145,14 @@ pub(super) struct ChoiceArgs {
     #[arg(long, value_name = "W,...", help = weights_help(), value_parser = weights, conflicts_with = "choose")]
     /// Weights in place of the task's.
     pub(super) weights: Option<Weights>,
+
+    /// Also the smoothest plans within round times around S, each exact: the front between those of the search
+    #[arg(long, value_name = "S", value_parser = near_s, conflicts_with = "times", allow_negative_numbers = true)]
+    pub(super) near: Option<f64>,
+}
+
+fn near_s(text: &str) -> Result<f64, String> {
+    within(text, [0.01, 1e6], "a time of 0.01 to 1,000,000 s")
 }
 
 /// Every rule by its name, with what it does.
@@ -199,6 +207,7 @@ impl Args {
         };
         let rule = self.choice.weights.map(|_| Rule::Weights).or(self.choice.choose);
         Options {
+            near_s: self.choice.near,
             search: Search {
                 algorithm: NamedAlgorithm::find(&self.search.algorithm)
                     .map_or(default.algorithm, |c| c.algorithm),

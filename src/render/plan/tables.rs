@@ -2,7 +2,7 @@
 
 use super::{name, shown};
 use crate::{
-    plan::{BEYOND, Limit, Margin, NoShape, PlanEvaluation, Rule},
+    plan::{BEYOND, HORIZON, Limit, Margin, NoShape, PlanEvaluation, Rule},
     render::kit::{Column, Document, Id, NONE, Section, Sentence, Table},
     task::{Ceilings, Objective, Weights},
     units::degrees_from_radians,
@@ -58,9 +58,11 @@ pub(crate) fn document(
             "The chosen plan",
             [Sentence::finding(reason(ceilings, planned))]
                 .into_iter()
+                .chain(exchange(planned).map(Sentence::finding))
                 .chain(shape(planned).map(Sentence::finding))
                 .chain([Sentence::advice(another)]),
         ));
+    document.sections.extend(near(options.near_s, planned));
     document.sections.extend(margins(&planned.chosen, &planned.joints));
     document.remarked(&planned.remarks)
 }
@@ -182,12 +184,43 @@ fn reason(ceilings: &Ceilings, planned: &Planned) -> String {
     };
     let text = |(k, ceiling): (Objective, f64)| trimmed(&format!("{:.6} {}", k.shown(ceiling), k.row().unit));
     let ceilings: Vec<String> = ceilings.known().map(text).collect();
-    let among = if ceilings.is_empty() {
+    let among = if let Some(horizon_s) = choice.horizon_s {
+        let mut kept = vec![format!("{HORIZON} times the time of the fastest, {horizon_s:.2} s")];
+        kept.extend(ceilings);
+        format!("{} of {} within {}", choice.within, choice.of, kept.join(", "))
+    } else if ceilings.is_empty() {
         format!("all {}", choice.of)
     } else {
         format!("{} of {} within {}", choice.within, choice.of, ceilings.join(", "))
     };
     format!("{why}, chosen from {among}, then refined by this rule.")
+}
+
+/// What a little more time would buy.
+fn exchange(planned: &Planned) -> Option<String> {
+    let less =
+        |(k, share): &(Objective, f64)| format!("{:.1} % less {}", 100.0 * share.max(0.0), k.row().name);
+    let less: Vec<String> = planned.bought.iter().map(less).collect();
+    (!less.is_empty()).then(|| format!("1 % more time would buy {}.", less.join(" or ")))
+}
+
+/// The front where it was asked for.
+fn near(near_s: Option<f64>, planned: &Planned) -> Option<Section> {
+    let near_s = near_s?;
+    let fastest_s = planned.best.first().map_or(f64::NAN, |plan| plan.objectives[Objective::Duration]);
+    let title = format!("The smoothest plans near {near_s} s");
+    let one = |(within_s, plan): &(f64, PlanEvaluation)| {
+        row(&format!("within {within_s} s"), plan, &planned.joints)
+    };
+    Some(if planned.near.is_empty() {
+        let none = format!(
+            "No plan that keeps all limits and ceilings is so fast: the fastest takes {fastest_s:.2} s."
+        );
+        Section::new(Id::OTHER, title, [Sentence::finding(none)])
+    } else {
+        let advice = "Each was sought by itself, as far as descents go; --json has its exact arrivals.";
+        Section::new(Id::OTHER, title, [plans(planned.near.iter().map(one))]).with(Sentence::advice(advice))
+    })
 }
 
 /// Without the zeros that a fixed number of decimals leaves.

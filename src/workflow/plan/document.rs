@@ -1,5 +1,7 @@
 //! The document of a plan: what `plan` and `replan` say, what their logs carry, what pages and viewer show of a log.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{Options, Planned, Step};
@@ -55,6 +57,9 @@ pub struct PlanDocument {
     pub front: Vec<PlanEntry>,
     /// Indices into the front of the plan that is best in each objective: A, B, C.
     pub best: Option<Vec<usize>>,
+    /// The smoothest plans within round times, exact, where they were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub near: Vec<PlanEntry>,
     /// The plan to run; of an infeasible task the nearest to being one.
     pub chosen: ChosenPlan,
     /// Doubts about the task; any makes the exit code 3.
@@ -95,6 +100,12 @@ pub struct ChosenPlan {
     pub weights: Option<Vec<f64>>,
     /// Plans of the front that keep to the ceilings.
     pub within_ceilings: Option<usize>,
+    /// The longest time considered, s: twice the fastest plan's, where neither rule nor ceilings say one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub horizon_s: Option<f64>,
+    /// By what share 1 % more time would lessen each other objective, by times alone; empty where it was given.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub bought_by_1_percent_of_time: BTreeMap<String, f64>,
     /// The plan of the same rule by times alone; left out where the shape is not free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub timing_alone: Option<PlanEntry>,
@@ -180,11 +191,14 @@ impl PlanDocument {
             convergence: Vec::new(),
             front: if feasible { vec![entry.clone()] } else { Vec::new() },
             best: None,
+            near: Vec::new(),
             chosen: ChosenPlan {
                 entry,
                 rule: None,
                 weights: None,
                 within_ceilings: None,
+                horizon_s: None,
+                bought_by_1_percent_of_time: BTreeMap::new(),
                 timing_alone: None,
                 joint_rms_jerk_rad_s3: evaluation.rms_jerk_rad_s3.clone(),
                 joint_rms_power_w: evaluation.rms_power_w.clone(),
@@ -200,6 +214,7 @@ impl PlanDocument {
         let choice = &planned.choice;
         let alone = Self::evaluated(title, &planned.joints, &planned.chosen, true);
         let plans = planned.front.iter().zip(&planned.times_s);
+        let bought = planned.bought.iter().map(|(k, share)| (k.row().key.to_owned(), *share));
         let entry = |(plan, times_s): (&crate::plan::Timing, &Vec<f64>)| PlanEntry {
             times_s: times_s.clone(),
             via: Vec::new(),
@@ -217,10 +232,13 @@ impl PlanDocument {
             convergence: planned.convergence.clone(),
             front: plans.map(entry).collect(),
             best: Some(planned.ends.clone()),
+            near: planned.near.iter().map(|(_, plan)| PlanEntry::of(plan)).collect(),
             chosen: ChosenPlan {
                 rule: Some(choice.rule),
                 weights: choice.weights.map(|weights| weights.plan().to_vec()),
                 within_ceilings: Some(choice.within),
+                horizon_s: choice.horizon_s,
+                bought_by_1_percent_of_time: bought.collect(),
                 timing_alone: planned.shaped.as_ref().map(|shaped| PlanEntry::of(&shaped.timing)),
                 ..alone.chosen
             },

@@ -11,10 +11,10 @@ mod request;
 use crate::{
     plan::{
         Choice, NoChoice, NoShape, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Shape,
-        Timing, choose, ends, search, shape,
+        Timing, bought, choose, ends, near, search, shape,
     },
     remark::{Code, Remarks},
-    task::{Objectives, Weights},
+    task::{Objective, Objectives, Weights},
 };
 use convergence::Growth;
 pub use convergence::Step;
@@ -34,6 +34,8 @@ pub struct Options {
     pub weights: Option<Weights>,
     /// What is sought beside the times.
     pub shape: Shaping,
+    /// Where the front is to be exact too: around that time, s.
+    pub near_s: Option<f64>,
 }
 
 /// Whether the chosen plan keeps the shape that its times give it.
@@ -72,6 +74,10 @@ pub struct Planned {
     pub chosen: PlanEvaluation,
     /// Why it.
     pub choice: Choice,
+    /// By what share 1 % more time would lessen each other objective of it, by times alone.
+    pub bought: Vec<(Objective, f64)>,
+    /// The smoothest plans within round times around the one asked for, with these times, s.
+    pub near: Vec<(f64, PlanEvaluation)>,
     /// What its free shape gained, if one was sought and found.
     pub shaped: Option<Shaped>,
     /// Why it has none, where one was sought.
@@ -165,6 +171,10 @@ pub fn run(
     let hypervolume = reference.measure(objectives());
     let best = ends.iter().map(|&end| evaluation(&found.front[end])).collect::<Result<_, _>>()?;
     let timing = evaluation(&choice.timing)?;
+    let around = options.near_s.map(|near_s| near(setup, &found.front, &task.ceilings, near_s));
+    let around = around.unwrap_or_default().into_iter();
+    let near = around.map(|(within_s, plan)| Ok((within_s, evaluation(&plan)?)));
+    let near = near.collect::<Result<_, PlanError>>()?;
     let (chosen, shaped, no_shape) = match options.shape {
         Shaping::Timing => (timing, None, None),
         Shaping::Free(pieces) => match shape(setup, &choice, &task.ceilings, pieces) {
@@ -184,6 +194,8 @@ pub fn run(
         generations: found.generations,
         fastest_converged: found.fastest_converged,
         hypervolume,
+        bought: bought(setup, &choice.timing),
+        near,
         convergence: growth.steps(reference, found.evaluations, hypervolume),
         choice,
         front: found.front,
