@@ -33,6 +33,7 @@
 //! * `DIFFERENCE(fig. 3)`: the origin is no reference point for minimisation; hypervolumes are
 //!   those of [`compare::Quality::hypervolume`].
 
+mod agemoea2;
 mod archive;
 pub mod benchmark;
 pub mod compare;
@@ -42,6 +43,7 @@ mod error;
 mod evaluate;
 mod focus;
 mod genetic;
+mod geometry;
 pub mod indicator;
 mod mating;
 mod moead;
@@ -65,6 +67,7 @@ mod tolerance;
 mod unsga3;
 mod variation;
 
+pub use agemoea2::Geodesic;
 pub use archive::Archive;
 pub use direction::{Directions, MOST_DIRECTIONS, das_dennis, direction_count};
 pub use error::MoeaError;

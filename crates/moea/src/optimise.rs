@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use super::{
     Algorithm, Bounds, MoeaError, Outcome, Problem, Progress, Settings,
+    agemoea2::Geodesic,
     evaluate::Evaluation,
     focus::Focused,
     genetic::{Breeding, Genetic, Method},
@@ -111,6 +112,9 @@ pub(super) fn method(checked: &Checked, settings: &Settings) -> Box<dyn Method> 
         Algorithm::Moead { normalized } => Box::new(Decomposition::new(directions, m, normalized, breeding)),
         Algorithm::Msops2 => {
             Box::new(Genetic::new(Box::<NearMate>::default(), Box::<Targets>::default(), breeding))
+        }
+        Algorithm::AgeMoea2 => {
+            Box::new(Genetic::new(Box::<Tournament>::default(), Box::<Geodesic>::default(), breeding))
         }
     }
 }

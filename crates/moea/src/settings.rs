@@ -26,6 +26,8 @@ pub enum Algorithm {
     },
     /// Hughes 2007.
     Msops2,
+    /// Panichella 2022, with the tournament of NSGA-II.
+    AgeMoea2,
 }
 
 impl Algorithm {
