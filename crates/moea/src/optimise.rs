@@ -14,6 +14,7 @@ use super::{
     nsga2::{Crowding, Tournament},
     nsga3::Niching,
     settings::{Checked, check},
+    smsemoa::LeastContribution,
     state::State,
     survival::Survival,
     unsga3::NicheTournament,
@@ -112,6 +113,9 @@ pub(super) fn method(checked: &Checked, settings: &Settings) -> Box<dyn Method> 
         Algorithm::Moead { normalized } => Box::new(Decomposition::new(directions, m, normalized, breeding)),
         Algorithm::Msops2 => {
             Box::new(Genetic::new(Box::<NearMate>::default(), Box::<Targets>::default(), breeding))
+        }
+        Algorithm::SmsEmoa => {
+            Box::new(Genetic::new(Box::<Uniform>::default(), Box::<LeastContribution>::default(), breeding))
         }
         Algorithm::AgeMoea2 => {
             Box::new(Genetic::new(Box::<Tournament>::default(), Box::<Geodesic>::default(), breeding))

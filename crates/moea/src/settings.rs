@@ -28,6 +28,9 @@ pub enum Algorithm {
     Msops2,
     /// Panichella 2022, with the tournament of NSGA-II.
     AgeMoea2,
+    /// Beume, Naujoks and Emmerich 2007, with as many children a generation as members; costly beyond five
+    /// objectives.
+    SmsEmoa,
 }
 
 impl Algorithm {
