@@ -86,8 +86,10 @@ class OwnDistance(AGEMOEA2Survival):
 
 
 def front(n, m, exponent, noise):
-    """Points about a surface and its corners, none of them dominated."""
-    f = np.vstack([np.eye(m), random.dirichlet(np.ones(m), 20 * n)])
+    """Points about a surface, none of them dominated; its corners, too, unless far from it."""
+    f = random.dirichlet(np.ones(m), 20 * n)
+    if noise < 0.3:
+        f = np.vstack([np.eye(m), f])
     f = f / np.sum(f**exponent, axis=1, keepdims=True) ** (1 / exponent)
     f = f * (1 + noise * random.random((len(f), 1)))
     return f[NonDominatedSorting().do(f, only_non_dominated_front=True)[:n]]
