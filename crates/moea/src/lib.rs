@@ -66,6 +66,7 @@ mod state;
 mod survival;
 mod tolerance;
 mod unsga3;
+mod variables;
 mod variation;
 
 pub use agemoea2::Geodesic;
@@ -90,4 +91,5 @@ pub use sorting::{Sorting, dominates};
 pub use survival::{Ranking, Survival};
 pub use tolerance::Tolerance;
 pub use unsga3::NicheTournament;
+pub use variables::{Kind, Variables};
 pub use variation::Operators;
