@@ -4,7 +4,7 @@
 //!
 //! Panichella 2022, doi 10.1145/3512290.3528732.
 //!
-//! Differences to pymoo 0.6.2: the distances of a member are divided by its own distance to the ideal, as
+//! Differences to the paper: those of [`geometry`](super::geometry). To pymoo 0.6.2: the distances of a member are divided by its own distance to the ideal, as
 //! in the author's program, where pymoo divides by that of its neighbours; of later fronts those nearest
 //! to the ideal survive, as in the paper, where pymoo leaves the front that overflows without scores.
 

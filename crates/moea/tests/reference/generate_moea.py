@@ -8,7 +8,7 @@ import sys
 import moocore
 import numpy as np
 import pymoo
-from pymoo.algorithms.moo.age2 import AGEMOEA2Survival
+from pymoo.algorithms.moo.age2 import AGEMOEA2Survival, find_zero
 from pymoo.algorithms.moo.sms import LeastHypervolumeContributionSurvival
 from pymoo.core.population import Population
 from pymoo.core.problem import Problem
@@ -76,8 +76,16 @@ for m, p in [(2, 9), (3, 12), (5, 4)]:
 
 
 
-class OwnDistance(AGEMOEA2Survival):
-    """Scores as in the author's program: distances divided by the member's own norm, not by its neighbours'."""
+class Corrected(AGEMOEA2Survival):
+    """Scores as in the author's program: distances divided by the member's own norm, not by its neighbours'.
+    The exponent is that of the point whose largest objective is least, not of the one nearest to the ideal."""
+
+    @staticmethod
+    def compute_geometry(front, extreme, n):
+        largest = front.max(axis=1)
+        largest[extreme] = np.inf
+        p = find_zero(front[np.argmin(largest)], n, 0.001)
+        return 1.0 if np.isnan(p) or p <= 0.1 else min(p, 20.0)
 
     @staticmethod
     def pairwise_distances(front, p):
@@ -112,13 +120,13 @@ surfaces = [(2, 40, 0.5), (2, 40, 3.0), (3, 60, 0.5), (3, 60, 1.0), (3, 60, 2.0)
 for m, n, exponent in surfaces:
     for noise in (0.0, 0.02, 0.3):
         f = unit_range(front(n, m, exponent, noise))
-        # On the surface itself all norms are 1, and pymoo as it is keeps the same.
+        # On the surface itself all norms are 1, and pymoo as it is keeps nearly the same.
         out["survival"].append(
             {
                 "algorithm": "age-moea-2",
                 "f": f.tolist(),
                 "keep": len(f) // 2,
-                "kept": survivors(OwnDistance(), f.copy(), len(f) // 2),
+                "kept": survivors(Corrected(), f.copy(), len(f) // 2),
                 "pymoo": survivors(AGEMOEA2Survival(), f.copy(), len(f) // 2),
             }
         )
