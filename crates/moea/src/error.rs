@@ -22,6 +22,26 @@ pub enum MoeaError {
         /// Its upper bound.
         upper: f64,
     },
+    /// Not as many kinds as variables.
+    #[error("{given} kinds of variables, there are {wanted} variables")]
+    Kinds {
+        /// Kinds given.
+        given: usize,
+        /// Number of variables.
+        wanted: usize,
+    },
+    /// No whole number lies within the bounds of an integer, or they are too large.
+    #[error(
+        "variable {index} is an integer, of which none is between {lower} and {upper} or one exceeds 1e15"
+    )]
+    Integer {
+        /// Index of the variable.
+        index: usize,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
+    },
     /// An initial member has the wrong length or a value that is not finite.
     #[error("initial member {member} has {given} finite values, the problem has {wanted} variables")]
     Initial {

@@ -3,9 +3,9 @@
 use super::{
     Population,
     mating::{Mating, MatingContext, Pair},
-    problem::Bounds,
     random::Random,
     survival::{Ranking, Survival},
+    variables::Space,
     variation::{Operators, cross, mutate},
 };
 
@@ -37,12 +37,12 @@ pub(super) trait Method {
     fn advance(&mut self, population: &mut Population, children: &Population, streams: &mut Streams);
 }
 
-/// Rates and bounds, and how two parents become two children that nobody has been yet.
+/// Rates and values of variables, and how two parents become two children that nobody has been yet.
 #[derive(Debug, Clone)]
 pub(super) struct Breeding {
     pub(super) operators: Operators,
     pub(super) mutation_rate: f64,
-    pub(super) bounds: Vec<Bounds>,
+    pub(super) space: Space,
     pair: (Vec<f64>, Vec<f64>),
 }
 
@@ -50,9 +50,9 @@ pub(super) struct Breeding {
 const ATTEMPTS: usize = 8;
 
 impl Breeding {
-    pub(super) fn new(operators: Operators, mutation_rate: f64, bounds: Vec<Bounds>) -> Self {
-        let zeros = vec![0.0; bounds.len()];
-        Self { operators, mutation_rate, bounds, pair: (zeros.clone(), zeros) }
+    pub(super) fn new(operators: Operators, mutation_rate: f64, space: Space) -> Self {
+        let zeros = vec![0.0; space.len()];
+        Self { operators, mutation_rate, space, pair: (zeros.clone(), zeros) }
     }
 
     /// Appends one or two children of two members, at most up to `wanted` children.
@@ -68,17 +68,17 @@ impl Breeding {
         let parents = (population.x(pair.first), population.x(pair.second));
         let rate = self.operators.crossover_rate * pair.crossover;
         let mutation_rate = self.mutation_rate * pair.mutation;
-        cross(&self.operators, rate, &self.bounds, parents, (first, second), rng);
+        cross(&self.operators, rate, &self.space, parents, (first, second), rng);
         for child in [first, second] {
             if children.len() >= wanted {
                 return;
             }
-            mutate(self.operators.mutation_eta, mutation_rate, &self.bounds, child, rng);
+            mutate(self.operators.mutation_eta, mutation_rate, &self.space, child, rng);
             for _ in 0..ATTEMPTS {
                 if !(population.contains(child) || children.contains(child)) {
                     break;
                 }
-                mutate(self.operators.mutation_eta, self.mutation_rate, &self.bounds, child, rng);
+                mutate(self.operators.mutation_eta, self.mutation_rate, &self.space, child, rng);
             }
             children.push_x(child);
         }

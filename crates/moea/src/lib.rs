@@ -33,6 +33,7 @@
 //! * `DIFFERENCE(fig. 3)`: the origin is no reference point for minimisation; hypervolumes are
 //!   those of [`compare::Quality::hypervolume`].
 
+mod agemoea2;
 mod archive;
 pub mod benchmark;
 pub mod compare;
@@ -42,6 +43,7 @@ mod error;
 mod evaluate;
 mod focus;
 mod genetic;
+mod geometry;
 pub mod indicator;
 mod mating;
 mod moead;
@@ -58,13 +60,16 @@ mod random;
 mod record;
 mod run;
 mod settings;
+mod smsemoa;
 mod sorting;
 mod state;
 mod survival;
 mod tolerance;
 mod unsga3;
+mod variables;
 mod variation;
 
+pub use agemoea2::Geodesic;
 pub use archive::Archive;
 pub use direction::{Directions, MOST_DIRECTIONS, das_dennis, direction_count};
 pub use error::MoeaError;
@@ -81,8 +86,10 @@ pub use random::Random;
 pub use record::Record;
 pub use run::Run;
 pub use settings::{Algorithm, Budget, Settings};
+pub use smsemoa::LeastContribution;
 pub use sorting::{Sorting, dominates};
 pub use survival::{Ranking, Survival};
 pub use tolerance::Tolerance;
 pub use unsga3::NicheTournament;
+pub use variables::{Kind, Variables};
 pub use variation::Operators;

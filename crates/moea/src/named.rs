@@ -18,7 +18,7 @@ const fn focused(focus: Focus, adaptive_rates: bool) -> Algorithm {
 }
 
 /// Every algorithm that has a name.
-pub const ALGORITHMS: [NamedAlgorithm; 11] = [
+pub const ALGORITHMS: [NamedAlgorithm; 13] = [
     NamedAlgorithm { name: "nsga3-fo", title: "NSGA-III-FO", algorithm: Algorithm::NSGA3_FO },
     NamedAlgorithm {
         name: "nsga3-fo-local",
@@ -50,6 +50,8 @@ pub const ALGORITHMS: [NamedAlgorithm; 11] = [
         algorithm: Algorithm::Moead { normalized: true },
     },
     NamedAlgorithm { name: "msops2", title: "MSOPS-II", algorithm: Algorithm::Msops2 },
+    NamedAlgorithm { name: "age-moea-2", title: "AGE-MOEA-II", algorithm: Algorithm::AgeMoea2 },
+    NamedAlgorithm { name: "sms-emoa", title: "SMS-EMOA", algorithm: Algorithm::SmsEmoa },
 ];
 
 impl NamedAlgorithm {

@@ -103,12 +103,7 @@ impl Normalizer {
                 row[k] = (extreme[k] - self.ideal[k]) / self.range[k];
             }
         }
-        self.solution.fill(1.0);
-        if !solve(&mut self.matrix, &mut self.solution) {
-            return false;
-        }
-        // Negative ones and those that vanish beside the range are no intercepts.
-        if self.solution.iter().any(|&inverse| !(1e-12..1e6).contains(&inverse)) {
+        if !inverse_intercepts(&mut self.matrix, &mut self.solution) {
             return false;
         }
         for k in 0..m {
@@ -142,6 +137,14 @@ impl Normalizer {
             out[k] = (f[k] - self.ideal[k]) / self.span[k];
         }
     }
+}
+
+/// Writes one over the intercepts of the plane through `m` points, `[m][m]` in one slice, in units of the
+/// front's range, into `inverse`, `[m]`; false if there are none. Changes the points.
+pub(super) fn inverse_intercepts(points: &mut [f64], inverse: &mut [f64]) -> bool {
+    inverse.fill(1.0);
+    // Negative ones and those that vanish beside the range are no intercepts.
+    solve(points, inverse) && inverse.iter().all(|inverse| (1e-12..1e6).contains(inverse))
 }
 
 /// Solves `a x = b` in place by elimination with pivoting; false if `a` is singular.

@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 
 use super::{
-    Algorithm, Bounds, MoeaError, Outcome, Problem, Progress, Settings,
+    Algorithm, MoeaError, Outcome, Problem, Progress, Settings,
+    agemoea2::Geodesic,
     evaluate::Evaluation,
     focus::Focused,
     genetic::{Breeding, Genetic, Method},
@@ -13,9 +14,11 @@ use super::{
     nsga2::{Crowding, Tournament},
     nsga3::Niching,
     settings::{Checked, check},
+    smsemoa::LeastContribution,
     state::State,
     survival::Survival,
     unsga3::NicheTournament,
+    variables::Variables,
 };
 
 /// Observes nothing.
@@ -36,7 +39,7 @@ pub fn optimise<P: Problem>(
     settings: &Settings,
     observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, MoeaError> {
-    let checked = check(problem.bounds(), problem.objectives(), settings)?;
+    let checked = check(Variables::of(problem), problem.objectives(), settings)?;
     let method = method(&checked, settings);
     Ok(run(problem, State::new(&checked, settings, method), observer))
 }
@@ -54,7 +57,8 @@ pub fn optimise_with<P: Problem>(
     survival: impl Survival + 'static,
     observer: impl FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, MoeaError> {
-    let (checked, method) = method_of(problem.bounds(), problem.objectives(), settings, mating, survival)?;
+    let (checked, method) =
+        method_of(Variables::of(problem), problem.objectives(), settings, mating, survival)?;
     Ok(run(problem, State::new(&checked, settings, method), observer))
 }
 
@@ -75,15 +79,15 @@ fn run<P: Problem>(
 
 /// A mating and a survival of the caller's as a method.
 pub(super) fn method_of(
-    bounds: Vec<Bounds>,
+    variables: Variables,
     objectives: usize,
     settings: &Settings,
     mating: impl Mating + 'static,
     survival: impl Survival + 'static,
 ) -> Result<(Checked, Box<dyn Method>), MoeaError> {
     let settings = Settings { algorithm: Algorithm::Nsga3, ..settings.clone() };
-    let checked = check(bounds, objectives, &settings)?;
-    let breeding = Breeding::new(settings.operators, checked.mutation_rate, checked.bounds.clone());
+    let checked = check(variables, objectives, &settings)?;
+    let breeding = Breeding::new(settings.operators, checked.mutation_rate, checked.space.clone());
     let method = Genetic::new(Box::new(mating), Box::new(survival), breeding);
     Ok((checked, Box::new(method)))
 }
@@ -91,7 +95,7 @@ pub(super) fn method_of(
 /// The algorithm of the settings.
 pub(super) fn method(checked: &Checked, settings: &Settings) -> Box<dyn Method> {
     let (m, directions) = (checked.objectives, &checked.directions);
-    let breeding = Breeding::new(settings.operators, checked.mutation_rate, checked.bounds.clone());
+    let breeding = Breeding::new(settings.operators, checked.mutation_rate, checked.space.clone());
     let niching = || Box::new(Niching::new(directions, m));
     match settings.algorithm {
         Algorithm::Nsga3 => Box::new(Genetic::new(Box::<Uniform>::default(), niching(), breeding)),
@@ -111,6 +115,12 @@ pub(super) fn method(checked: &Checked, settings: &Settings) -> Box<dyn Method> 
         Algorithm::Moead { normalized } => Box::new(Decomposition::new(directions, m, normalized, breeding)),
         Algorithm::Msops2 => {
             Box::new(Genetic::new(Box::<NearMate>::default(), Box::<Targets>::default(), breeding))
+        }
+        Algorithm::SmsEmoa => {
+            Box::new(Genetic::new(Box::<Uniform>::default(), Box::<LeastContribution>::default(), breeding))
+        }
+        Algorithm::AgeMoea2 => {
+            Box::new(Genetic::new(Box::<Tournament>::default(), Box::<Geodesic>::default(), breeding))
         }
     }
 }

@@ -3,7 +3,9 @@
 /// Lower and upper bound of one variable; equal bounds fix it.
 pub type Bounds = (f64, f64);
 
-/// Several objectives, all minimised, over a box of real variables.
+use super::variables::Kind;
+
+/// Several objectives, all minimised, over a box of real variables and integers.
 ///
 /// An evaluation must be a function of `x` alone: the workspace is for scratch memory, handed
 /// out to whichever thread comes next, and may carry something from [`Problem::evaluate`] to the
@@ -14,6 +16,36 @@ pub trait Problem: Sync {
 
     /// Bounds of each variable, `[variables]`.
     fn bounds(&self) -> Vec<Bounds>;
+
+    /// Kind of each variable, `[variables]`; empty if all are real.
+    ///
+    /// An integer is a whole number within its bounds whenever `x` is evaluated. Mutation of an integer always
+    /// changes it, and any value of it may come of any other.
+    ///
+    /// ```
+    /// use moea::{Bounds, Kind, Problem, Settings, optimise, silent};
+    ///
+    /// /// Cost and loss of a bundle of 1 to 8 wires, each of some cross-section in mm².
+    /// struct Bundle;
+    ///
+    /// impl Problem for Bundle {
+    ///     type Workspace = ();
+    ///     fn bounds(&self) -> Vec<Bounds> { vec![(1.0, 8.0), (0.5, 4.0)] }
+    ///     fn kinds(&self) -> Vec<Kind> { vec![Kind::Integer, Kind::Real] }
+    ///     fn objectives(&self) -> usize { 2 }
+    ///     fn evaluate(&self, x: &[f64], f: &mut [f64], _: &mut ()) -> f64 {
+    ///         (f[0], f[1]) = (x[0] * (1.0 + x[1]), 1.0 / (x[0] * x[1]));
+    ///         0.0
+    ///     }
+    /// }
+    ///
+    /// let found = optimise(&Bundle, &Settings::default(), silent)?.population;
+    /// assert!((0..found.len()).all(|i| found.x(i)[0].fract() == 0.0));
+    /// # Ok::<(), moea::MoeaError>(())
+    /// ```
+    fn kinds(&self) -> Vec<Kind> {
+        Vec::new()
+    }
 
     /// Number of objectives.
     fn objectives(&self) -> usize;
@@ -89,6 +121,10 @@ impl<P: Problem> Problem for &P {
 
     fn bounds(&self) -> Vec<Bounds> {
         (*self).bounds()
+    }
+
+    fn kinds(&self) -> Vec<Kind> {
+        (*self).kinds()
     }
 
     fn objectives(&self) -> usize {

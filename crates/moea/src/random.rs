@@ -28,6 +28,11 @@ impl Random {
         Self(rng)
     }
 
+    /// The numbers that survival draws in a run with this seed: to call a [`Survival`](super::Survival) by hand.
+    pub fn of_survival(seed: u64) -> Self {
+        Self::new(seed, Stream::Survival)
+    }
+
     #[inline]
     pub(crate) fn bits(&mut self) -> u64 {
         self.0.next_u64()

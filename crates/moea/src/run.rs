@@ -1,7 +1,7 @@
 //! A run step by step: members are asked for and their values told.
 
 use super::{
-    Bounds, MoeaError, Outcome, Progress, Record, Settings, evaluate,
+    MoeaError, Outcome, Progress, Record, Settings, Variables, evaluate,
     mating::Mating,
     optimise::{method, method_of},
     settings::check,
@@ -42,13 +42,18 @@ pub struct Run {
 }
 
 impl Run {
-    /// A run of the algorithm of the settings on variables within `bounds`, `[variables]`.
+    /// A run of the algorithm of the settings on variables: bounds alone, `[variables]`, if all are real, else
+    /// [`Variables`].
     ///
     /// # Errors
     ///
     /// [`MoeaError`] when the settings do not fit.
-    pub fn new(bounds: &[Bounds], objectives: usize, settings: &Settings) -> Result<Self, MoeaError> {
-        let checked = check(bounds.to_vec(), objectives, settings)?;
+    pub fn new(
+        variables: impl Into<Variables>,
+        objectives: usize,
+        settings: &Settings,
+    ) -> Result<Self, MoeaError> {
+        let checked = check(variables.into(), objectives, settings)?;
         let method = method(&checked, settings);
         Ok(Self { state: State::new(&checked, settings, method), record: Record::default() })
     }
@@ -59,13 +64,13 @@ impl Run {
     ///
     /// [`MoeaError`] when the settings do not fit.
     pub fn with(
-        bounds: &[Bounds],
+        variables: impl Into<Variables>,
         objectives: usize,
         settings: &Settings,
         mating: impl Mating + 'static,
         survival: impl Survival + 'static,
     ) -> Result<Self, MoeaError> {
-        let (checked, method) = method_of(bounds.to_vec(), objectives, settings, mating, survival)?;
+        let (checked, method) = method_of(variables.into(), objectives, settings, mating, survival)?;
         Ok(Self { state: State::new(&checked, settings, method), record: Record::default() })
     }
 
@@ -76,12 +81,12 @@ impl Run {
     /// [`MoeaError`] when the settings do not fit, [`MoeaError::Record`] when the record is of a run
     /// with others.
     pub fn resume(
-        bounds: &[Bounds],
+        variables: impl Into<Variables>,
         objectives: usize,
         settings: &Settings,
         record: &Record,
     ) -> Result<Self, MoeaError> {
-        let mut run = Self::new(bounds, objectives, settings)?;
+        let mut run = Self::new(variables, objectives, settings)?;
         run.replay(record)?;
         Ok(run)
     }

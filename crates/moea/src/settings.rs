@@ -1,6 +1,12 @@
 //! What a run is asked to do.
 
-use super::{direction::Directions, error::MoeaError, focus::Focus, problem::Bounds, variation::Operators};
+use super::{
+    direction::Directions,
+    error::MoeaError,
+    focus::Focus,
+    variables::{Space, Variables},
+    variation::Operators,
+};
 
 /// Which algorithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +32,11 @@ pub enum Algorithm {
     },
     /// Hughes 2007.
     Msops2,
+    /// Panichella 2022, with the tournament of NSGA-II.
+    AgeMoea2,
+    /// Beume, Naujoks and Emmerich 2007, with as many children a generation as members; costly beyond five
+    /// objectives.
+    SmsEmoa,
 }
 
 impl Algorithm {
@@ -63,7 +74,8 @@ pub struct Settings {
     pub seed: u64,
     /// Members the archive of non-dominated solutions holds at most; 0 for no archive.
     pub archive: usize,
-    /// First members; the rest are drawn at random. Values outside the bounds are moved to them.
+    /// First members; the rest are drawn at random. Values outside the bounds are moved to them, those of
+    /// integers to the nearest.
     pub initial: Vec<Vec<f64>>,
 }
 
@@ -88,7 +100,7 @@ const MOST_MEMBERS: usize = 1_000_000;
 /// Settings that fit a problem.
 #[derive(Debug, Clone)]
 pub(super) struct Checked {
-    pub(super) bounds: Vec<Bounds>,
+    pub(super) space: Space,
     pub(super) objectives: usize,
     /// `[count][objectives]`.
     pub(super) directions: Vec<f64>,
@@ -97,29 +109,22 @@ pub(super) struct Checked {
 }
 
 pub(super) fn check(
-    bounds: Vec<Bounds>,
+    variables: Variables,
     objectives: usize,
     settings: &Settings,
 ) -> Result<Checked, MoeaError> {
-    if bounds.is_empty() {
-        return Err(MoeaError::NoVariables);
-    }
+    let space = Space::new(variables)?;
     if objectives == 0 {
         return Err(MoeaError::NoObjectives);
     }
-    for (index, &(lower, upper)) in bounds.iter().enumerate() {
-        if !(lower.is_finite() && upper.is_finite() && lower <= upper && (upper - lower).is_finite()) {
-            return Err(MoeaError::Bounds { index, lower, upper });
-        }
-    }
     for (member, x) in settings.initial.iter().enumerate() {
         let given = x.iter().filter(|v| v.is_finite()).count();
-        if given != bounds.len() || x.len() != bounds.len() {
-            return Err(MoeaError::Initial { member, given, wanted: bounds.len() });
+        if given != space.len() || x.len() != space.len() {
+            return Err(MoeaError::Initial { member, given, wanted: space.len() });
         }
     }
     let operators = &settings.operators;
-    let mutation_rate = operators.mutation_rate.unwrap_or(1.0 / bounds.len() as f64);
+    let mutation_rate = operators.mutation_rate.unwrap_or(1.0 / space.len() as f64);
     for (name, value, most) in [
         ("crossover rate", operators.crossover_rate, 1.0),
         ("mutation rate", mutation_rate, 1.0),
@@ -146,5 +151,5 @@ pub(super) fn check(
         Algorithm::Moead { .. } => count,
         _ => wanted.max(count).max(4).next_multiple_of(4),
     };
-    Ok(Checked { bounds, objectives, directions, members, mutation_rate })
+    Ok(Checked { space, objectives, directions, members, mutation_rate })
 }

@@ -27,7 +27,7 @@ pub(super) struct State {
 
 impl State {
     pub(super) fn new(checked: &Checked, settings: &Settings, method: Box<dyn Method>) -> Self {
-        let (d, m, n) = (checked.bounds.len(), checked.objectives, checked.members);
+        let (d, m, n) = (checked.space.len(), checked.objectives, checked.members);
         let most = match settings.budget {
             Budget::Evaluations(most) => most,
             Budget::Generations(_) | Budget::Observer => u64::MAX,
@@ -139,24 +139,17 @@ impl Counted {
 /// The first population: given members first, then uniform draws. Never more than the budget.
 fn start(checked: &Checked, settings: &Settings, most: u64) -> Population {
     let size = checked.members.min(usize::try_from(most).unwrap_or(usize::MAX)).max(1);
-    let mut population = Population::with_capacity(checked.bounds.len(), checked.objectives, size);
+    let mut population = Population::with_capacity(checked.space.len(), checked.objectives, size);
     let mut rng = Random::new(settings.seed, Stream::Start);
-    let mut x = vec![0.0; checked.bounds.len()];
+    let mut x = vec![0.0; checked.space.len()];
     for given in settings.initial.iter().take(size) {
-        for ((x, &given), &(lower, upper)) in x.iter_mut().zip(given).zip(&checked.bounds) {
-            *x = given.clamp(lower, upper);
-        }
+        x.copy_from_slice(given);
+        checked.space.settle(&mut x);
         population.push_x(&x);
     }
     while population.len() < size {
-        draw(&checked.bounds, &mut x, &mut rng);
+        checked.space.draw(&mut x, &mut rng);
         population.push_x(&x);
     }
     population
-}
-
-fn draw(bounds: &[(f64, f64)], x: &mut [f64], rng: &mut Random) {
-    for (x, &(lower, upper)) in x.iter_mut().zip(bounds) {
-        *x = (lower + rng.unit() * (upper - lower)).clamp(lower, upper);
-    }
 }

@@ -1,11 +1,11 @@
-//! Simulated binary crossover and polynomial mutation.
+//! Simulated binary crossover and polynomial mutation, of integers on the numbers about them.
 //!
 //! # References
 //!
 //! Deb and Agrawal 1995 (SBX, with the bounded spread of the authors' program); Deb and
 //! Goyal 1996 (mutation).
 
-use super::{problem::Bounds, random::Random};
+use super::{random::Random, variables::Space};
 
 /// Rates and distribution indices of crossover and mutation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,11 +36,11 @@ impl Operators {
 /// Crosses two parents into two children.
 ///
 /// Each variable is blended with probability one half, and the blended values go to either
-/// child with equal probability.
+/// child with equal probability. Integers are rounded.
 pub(super) fn cross(
     operators: &Operators,
     rate: f64,
-    bounds: &[Bounds],
+    space: &Space,
     parents: (&[f64], &[f64]),
     children: (&mut [f64], &mut [f64]),
     rng: &mut Random,
@@ -53,7 +53,7 @@ pub(super) fn cross(
     }
     let exponent = Exponent::new(operators.crossover_eta);
     let mut coins = 0u64;
-    for (k, (&(lower, upper), (a, b))) in bounds.iter().zip(first.iter_mut().zip(second)).enumerate() {
+    for (k, (&(lower, upper), (a, b))) in space.reach.iter().zip(first.iter_mut().zip(second)).enumerate() {
         if k % 32 == 0 {
             coins = rng.bits();
         }
@@ -67,7 +67,7 @@ pub(super) fn cross(
         let u = rng.unit();
         let low_child = 0.5 * (low + high - exponent.spread(u, (low - lower) / gap) * gap);
         let high_child = 0.5 * (low + high + exponent.spread(u, (upper - high) / gap) * gap);
-        let pair = (low_child.clamp(lower, upper), high_child.clamp(lower, upper));
+        let pair = (space.settled(k, low_child), space.settled(k, high_child));
         (*a, *b) = if swapped { (pair.1, pair.0) } else { pair };
     }
 }
@@ -103,11 +103,13 @@ impl Exponent {
     }
 }
 
-/// Mutates each variable with probability `rate`.
-pub(super) fn mutate(eta: f64, rate: f64, bounds: &[Bounds], x: &mut [f64], rng: &mut Random) {
+/// Mutates each variable with probability `rate`. An integer that rounds to itself becomes any other: few
+/// values are drawn alike, many by the polynomial, and none is out of reach.
+pub(super) fn mutate(eta: f64, rate: f64, space: &Space, x: &mut [f64], rng: &mut Random) {
     let exponent = Exponent::new(eta);
-    for (value, &(lower, upper)) in x.iter_mut().zip(bounds) {
-        if rng.unit() >= rate || upper <= lower {
+    for (k, value) in x.iter_mut().enumerate() {
+        let ((least, most), (lower, upper)) = (space.bounds[k], space.reach[k]);
+        if rng.unit() >= rate || most <= least {
             continue;
         }
         let u = rng.unit();
@@ -119,6 +121,42 @@ pub(super) fn mutate(eta: f64, rate: f64, bounds: &[Bounds], x: &mut [f64], rng:
             let rest = exponent.raise(1.0 - (upper - *value) / span);
             1.0 - exponent.root(2.0 * (1.0 - u) + (2.0 * u - 1.0) * rest)
         };
-        *value = (*value + step * span).clamp(lower, upper);
+        let before = std::mem::replace(value, space.settled(k, *value + step * span));
+        if space.whole[k] && *value >= before && *value <= before {
+            let other = least + (rng.unit() * (most - least)).floor().min(most - least - 1.0);
+            *value = if other < before { other } else { other + 1.0 };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Kind, Variables, random::Stream};
+
+    #[test]
+    fn a_mutated_integer_changes_and_any_may_become_any_other() {
+        for most in [1_u32, 2, 9, 60] {
+            let bounds = vec![(0.0, f64::from(most))];
+            let space = Space::new(Variables::new(bounds, vec![Kind::Integer])).unwrap();
+            let mut rng = Random::new(1, Stream::Variation);
+            for before in 0..=most {
+                let before = f64::from(before);
+                let mut seen = vec![0; most as usize + 1];
+                for _ in 0..12_000 {
+                    let mut x = [before];
+                    mutate(20.0, 1.0, &space, &mut x, &mut rng);
+                    let at = (0..=most).position(|value| f64::from(value).to_bits() == x[0].to_bits());
+                    seen[at.unwrap()] += 1;
+                }
+                for (value, times) in seen.into_iter().enumerate() {
+                    assert_eq!(
+                        times == 0,
+                        (value as f64 - before).abs() < 0.5,
+                        "{before} to {value} of {most}: {times}"
+                    );
+                }
+            }
+        }
     }
 }

@@ -16,7 +16,7 @@ use moea::{
 };
 use serde_json::Value;
 
-const ALGORITHMS: [Algorithm; 10] = [
+const ALGORITHMS: [Algorithm; 12] = [
     Algorithm::Nsga3,
     Algorithm::UNsga3,
     Algorithm::NSGA3_FO,
@@ -27,6 +27,8 @@ const ALGORITHMS: [Algorithm; 10] = [
     Algorithm::Moead { normalized: false },
     Algorithm::Moead { normalized: true },
     Algorithm::Msops2,
+    Algorithm::AgeMoea2,
+    Algorithm::SmsEmoa,
 ];
 
 fn reference(name: &str) -> Value {

@@ -18,7 +18,7 @@ const IN_A_ROW: usize = 4;
 /// colour-blind readers too if four are shown.
 const COLOURS: [&str; ALGORITHMS.len() + 1] = [
     "#D1495B", "#4BB4D2", "#8C5A3C", "#E682B4", "#783C8C", "#2563A8", "#8AA4E0", "#5A5A5A", "#E8A020",
-    "#968214", "#148C6E", "#148C6E",
+    "#968214", "#148C6E", "#B05A14", "#3C8C46", "#148C6E",
 ];
 
 /// The colour of an algorithm, by its name.

@@ -88,15 +88,18 @@ fn slices(points: &[f64], m: usize, reference: &[f64]) -> f64 {
     let below = &reference[..flat];
     let mut total = 0.0;
     for (k, p) in points.chunks_exact(m).enumerate() {
-        let own: f64 = p[..flat].iter().zip(below).map(|(p, r)| r - p).product();
-        let limited: Vec<f64> = points[..k * m]
-            .chunks_exact(m)
-            .flat_map(|q| q[..flat].iter().zip(p).map(|(q, p)| q.max(*p)))
-            .collect();
-        let shared = volume(&undominated(&limited, flat), flat, below);
-        total += (own - shared) * (reference[flat] - p[flat]);
+        let before = points[..k * m].chunks_exact(m).map(|q| &q[..flat]);
+        total += exclusive(&p[..flat], before, below) * (reference[flat] - p[flat]);
     }
     total
+}
+
+/// Volume of `p` that none of `others` covers; all are better than the reference in every objective.
+pub(super) fn exclusive<'a>(p: &[f64], others: impl Iterator<Item = &'a [f64]>, reference: &[f64]) -> f64 {
+    let m = reference.len();
+    let own: f64 = p.iter().zip(reference).map(|(p, r)| r - p).product();
+    let limited: Vec<f64> = others.flat_map(|q| q.iter().zip(p).map(|(q, p)| q.max(*p))).collect();
+    own - volume(&undominated(&limited, m), m, reference)
 }
 
 /// Points that no other point is at least as good as everywhere; one of each repeated point.
