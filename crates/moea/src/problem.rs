@@ -3,7 +3,15 @@
 /// Lower and upper bound of one variable; equal bounds fix it.
 pub type Bounds = (f64, f64);
 
-use super::variables::Kind;
+/// What values a variable takes within its bounds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Kind {
+    /// All.
+    #[default]
+    Real,
+    /// Whole numbers, each as likely as any other at the start.
+    Integer,
+}
 
 /// Several objectives, all minimised, over a box of real variables and integers.
 ///

@@ -1,16 +1,10 @@
-//! What the variables of a problem are, and the values they may take.
+//! The variables of a problem, and the values they may take.
 
-use super::{MoeaError, Problem, problem::Bounds, random::Random};
-
-/// What values a variable takes within its bounds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Kind {
-    /// All.
-    #[default]
-    Real,
-    /// Whole numbers, each as likely as any other at the start.
-    Integer,
-}
+use super::{
+    MoeaError, Problem,
+    problem::{Bounds, Kind},
+    random::Random,
+};
 
 /// Bounds and kinds of the variables of a problem. Bounds alone are of real variables.
 ///
