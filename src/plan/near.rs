@@ -28,7 +28,11 @@ pub fn near(setup: &Setup, front: &[Timing], ceilings: &Ceilings, around_s: f64)
         let best = choose(setup, front, &ceilings, (Rule::Best(Objective::RmsJerk), None)).ok()?;
         Some((within_s, best.timing))
     };
-    round_times_s(around_s).into_iter().filter_map(within).collect()
+    let mut plans: Vec<(f64, Timing)> = round_times_s(around_s).into_iter().filter_map(within).collect();
+    // Slower than the task or its ceilings allow, all are one.
+    let took_s = |plan: &(f64, Timing)| plan.1.objectives[Objective::Duration];
+    plans.dedup_by(|later, earlier| took_s(later) < took_s(earlier) * (1.0 + 1e-6));
+    plans
 }
 
 /// Seven times around one in steps of 1, 2 or 5 times a power of ten.
@@ -80,6 +84,7 @@ mod tests {
             .collect();
         let (least, most) = all.iter().fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)));
         assert!(most / least < 1.001, "{most} {least}");
+        assert_eq!(near(&setup, &front, &task.ceilings, 500.0).len(), 1, "the task ends at 40 s");
         let (within_s, plan) = &found[3];
         let less = bought(&setup, plan)[0];
         let due = 1.0 - scale(*within_s) / scale(within_s * (1.0 + MORE));

@@ -150,7 +150,7 @@ fn shape(planned: &Planned) -> Option<String> {
                 "Its shape is that of its times: the free shape breaks {}, which slowing down does not mend.",
                 subject(&margin, &planned.joints)
             ),
-            NoShape::NoGain => "Its shape is that of its times: a free shape gains nothing.".to_owned(),
+            NoShape::NoGain => "Its shape is that of its times: a free shape gains nothing by this rule.".to_owned(),
         });
     };
     let change = |k: &Objective| {
