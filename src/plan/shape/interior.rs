@@ -100,9 +100,7 @@ impl Programme<'_> {
     }
 
     fn dot(&self, row: &Row, x: &[f64]) -> f64 {
-        let (control, interval) = self.hessian.places(row);
-        let own = x[control].iter().zip(&row.control).map(|(x, a)| x * a).sum::<f64>();
-        own + x[interval].iter().zip(&row.interval).map(|(x, a)| x * a).sum::<f64>()
+        self.hessian.entries(row).map(|(i, a)| a * x[i]).sum()
     }
 
     fn residual(&self, state: &State) -> Residual {
@@ -225,19 +223,28 @@ impl State {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::factor::Unknowns, *};
     use crate::spline::WINDOW;
 
     fn row(control: f64, interval: f64, value: f64) -> Row {
-        let mut row =
-            Row { block: 0, first: 0, control: [0.0; 8], first_interval: 0, interval: [0.0; WINDOW], value };
+        let mut row = Row {
+            segment: 0,
+            first: 0,
+            joint: 0,
+            control: [0.0; 8],
+            others: Vec::new(),
+            first_interval: 0,
+            interval: [0.0; WINDOW],
+            value,
+        };
         (row.control[0], row.interval[0]) = (control, interval);
         row
     }
 
     /// Least of 1/2 |x - (2, 1)|².
     fn towards(limits: &[(&Row, f64)], passes: &[Row], edges: &[Edge]) -> (Vec<f64>, Vec<f64>) {
-        let mut hessian = Bordered::new(&[1], 2);
+        let mut hessian =
+            Bordered::new(&Unknowns { joints: 1, free: vec![1], window: 1, border: 2, joined: false });
         hessian.add_square(&row(1.0, 0.0, 0.0), 1.0, 0.0);
         hessian.add_square(&row(0.0, 1.0, 0.0), 1.0, 0.0);
         hessian.lift(0.0, 1e-9);

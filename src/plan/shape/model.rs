@@ -1,6 +1,9 @@
 //! A curve's limits, key points and jerk, linearised in its control points and the logarithms of its intervals.
 
-use super::curve::{Curve, Frame};
+use super::{
+    curve::{Curve, Frame},
+    factor::Unknowns,
+};
 use crate::spline::{Degree, Motion, Place, Quantity, Segment, WINDOW, Weights};
 
 /// Places on every piece at which limits are kept.
@@ -20,11 +23,14 @@ const GAUSS: [(f64, f64); 4] = [
 /// A value at a place and its slopes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Row {
-    /// The control points of one joint in one segment.
-    pub(super) block: usize,
-    /// The first of the block's free control points that has weight.
+    pub(super) segment: usize,
+    /// The first of the segment's free control points that has weight.
     pub(super) first: usize,
+    pub(super) joint: usize,
+    /// By the joint's free control points from the first on.
     pub(super) control: [f64; 8],
+    /// The same of other joints, where several make the value.
+    pub(super) others: Vec<(usize, [f64; 8])>,
     /// The first interval with a slope.
     pub(super) first_interval: usize,
     /// By the logarithm of the interval.
@@ -34,9 +40,7 @@ pub(super) struct Row {
 
 /// All that a step is made from.
 pub(super) struct Model {
-    /// Free control points of each block, `[segment][joint]`.
-    pub(super) blocks: Vec<usize>,
-    pub(super) intervals: usize,
+    pub(super) unknowns: Unknowns,
     /// Shares of limits, signed, each with the number of its limit and piece.
     pub(super) shares: Vec<(usize, Row)>,
     /// Angles at key points less what they must be, rad.
@@ -50,17 +54,19 @@ impl Model {
     pub(super) fn of(frame: &Frame, curve: &Curve, motion: &Motion, peaks: &[Peak]) -> Self {
         let joints = frame.joints();
         let mut model = Self {
-            blocks: Vec::new(),
-            intervals: curve.interval_s.len(),
+            unknowns: Unknowns {
+                joints,
+                free: motion.segments().iter().map(|segment| segment.spline.t_s().len() - 2).collect(),
+                window: frame.degree.order() + 1,
+                border: curve.interval_s.len() + 1,
+                joined: false,
+            },
             shares: Vec::new(),
             passes: Vec::new(),
             jerk: Vec::new(),
         };
         for (index, segment) in motion.segments().iter().enumerate() {
-            let base = model.blocks.len();
-            let free = segment.spline.t_s().len() - 2;
-            model.blocks.extend(std::iter::repeat_n(free, joints));
-            let part = Part { segment, base, interval_s: &curve.interval_s };
+            let part = Part { segment, index, interval_s: &curve.interval_s };
             for piece in 0..segment.spline.pieces() {
                 for k in 0..PLACES {
                     let share = k as f64 / (PLACES - 1) as f64;
@@ -162,7 +168,7 @@ pub(super) fn peaks(frame: &Frame, motion: &Motion) -> Vec<Peak> {
 /// One segment and where it stands in the whole.
 struct Part<'a> {
     segment: &'a Segment,
-    base: usize,
+    index: usize,
     interval_s: &'a [f64],
 }
 
@@ -184,9 +190,11 @@ impl Part<'_> {
         let free = controls.len() - 2 * fixed;
         let first = weights.first_control.saturating_sub(fixed).min(free);
         let mut row = Row {
-            block: self.base + joint,
+            segment: self.index,
             first,
+            joint,
             control: [0.0; 8],
+            others: Vec::new(),
             first_interval: self.segment.first_point + weights.first_interval,
             interval: [0.0; WINDOW],
             value: 0.0,
@@ -212,9 +220,15 @@ impl Part<'_> {
 }
 
 impl Row {
+    /// Joints and the slopes by their control points.
+    pub(super) fn parts(&self) -> impl Iterator<Item = (usize, &[f64; 8])> {
+        std::iter::once((self.joint, &self.control)).chain(self.others.iter().map(|(joint, c)| (*joint, c)))
+    }
+
     fn scaled(mut self, by: f64) -> Self {
         self.value *= by;
-        self.control.iter_mut().chain(&mut self.interval).for_each(|slope| *slope *= by);
+        let others = self.others.iter_mut().flat_map(|(_, control)| control);
+        self.control.iter_mut().chain(&mut self.interval).chain(others).for_each(|slope| *slope *= by);
         self
     }
 }

@@ -51,7 +51,7 @@ impl<'a> Step<'a> {
         model: &'a Model,
         multipliers: &Multipliers,
     ) -> Self {
-        let hessian = Bordered::new(&model.blocks, model.intervals + 1);
+        let hessian = Bordered::new(&model.unknowns);
         let gradient = vec![0.0; hessian.unknowns()];
         let edges = edges(frame, here, aim, trust);
         let border = hessian.border_start();
@@ -65,7 +65,7 @@ impl<'a> Step<'a> {
     /// Slopes of the merit, and its curvature by Gauss and Newton.
     fn merit(&mut self, here: &Point, aim: &Aim) {
         // The mean of squared jerk has the duration in it.
-        let (slope, width) = (aim.duration - 0.5 * aim.jerk, self.model.intervals + 1);
+        let (slope, width) = (aim.duration - 0.5 * aim.jerk, self.model.unknowns.border);
         for (i, s) in here.curve.interval_s.iter().enumerate() {
             self.gradient[self.border + i] += slope * s / here.duration_s;
             self.hessian.corner[i * width + i] += aim.duration.max(aim.jerk) * s / here.duration_s;
@@ -92,7 +92,7 @@ impl<'a> Step<'a> {
         }
         for (number, row) in largest.into_iter().filter(|(_, row)| row.value.abs() > CURVED) {
             if let Some(multiplier) = multipliers.get(&number) {
-                let still = Row { control: [0.0; 8], ..row.clone() };
+                let still = Row { control: [0.0; 8], others: Vec::new(), ..row.clone() };
                 self.hessian.add_square(&still, multiplier / row.value.abs(), 0.0);
             }
         }
@@ -140,12 +140,13 @@ impl<'a> Step<'a> {
             for point in (first + 1..last).filter(|point| frame.key.binary_search(point).is_err()) {
                 let weights = spline.weights(Place::Point(point - first));
                 for joint in 0..joints {
-                    let block = index * joints + joint;
-                    let (start, free) = (self.hessian.start(block), self.model.blocks[block]);
+                    let free = self.model.unknowns.free[index];
                     let ends = spline.control(joint, Quantity::Position);
                     let old = before.spline.control(joint, Quantity::Position);
                     let control = |i: usize| match i.checked_sub(fixed) {
-                        Some(own) if own < free => old[i] + part * taken.x[start + own],
+                        Some(own) if own < free => {
+                            old[i] + part * taken.x[self.hessian.index(index, joint, own)]
+                        }
                         _ => ends[i],
                     };
                     let terms = weights.value[0].iter().enumerate().take(count);
