@@ -85,14 +85,9 @@ pub struct Choice {
     /// Evaluations of the last descent.
     pub evaluations: u64,
     /// What the rule lessens.
-    merit: Merit,
-}
-
-impl Choice {
-    /// What the rule lessens, of a plan.
-    pub(super) fn worth(&self, objectives: &Objectives) -> f64 {
-        self.merit.of(objectives)
-    }
+    pub(super) merit: Merit,
+    /// What the last descent kept to.
+    pub(super) ceilings: Ceilings,
 }
 
 /// Why no plan can be chosen.
@@ -192,7 +187,17 @@ pub fn choose(
         timing.violation <= 0.0 && excess(timing) <= 1.0 && worth(merit, timing) < worth(merit, picked)
     });
     let timing = better.unwrap_or_else(|| picked.clone());
-    Ok(Choice { timing, rule, weights, within: count, horizon_s, of: front.len(), evaluations: used, merit })
+    Ok(Choice {
+        timing,
+        rule,
+        weights,
+        within: count,
+        horizon_s,
+        of: front.len(),
+        evaluations: used,
+        merit,
+        ceilings: own,
+    })
 }
 
 /// The longest time to consider, s; `None` where the rule compares nothing or a ceiling says it.

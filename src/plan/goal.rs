@@ -36,6 +36,34 @@ impl Merit {
     }
 }
 
+impl Merit {
+    /// Slopes by the logarithms of the objectives.
+    pub(super) fn slopes(&self, objectives: &Objectives) -> Weights {
+        match self {
+            Self::Logarithms(weights) => *weights,
+            Self::Sum(weights) => weights.map_plan(|k| weights[k] * objectives[k]),
+            Self::Distance { ideal, scale } => {
+                let distance = self.of(objectives).max(f64::MIN_POSITIVE);
+                let slope = |k| (objectives[k] - ideal[k]) / scale[k].powi(2) / distance * objectives[k];
+                Weights::ZERO.map_plan(slope)
+            }
+        }
+    }
+
+    /// The same, but for a distance the weighted sum that exchanges objectives at the rates that it has here: a plan
+    /// may be better than the point that the distance is to.
+    pub(super) fn at_prices_of(&self, objectives: &Objectives) -> Self {
+        match self {
+            Self::Distance { .. } => {
+                let slopes = self.slopes(objectives);
+                let prices = slopes.map_plan(|k| (slopes[k] / objectives[k]).max(0.0));
+                if prices.are_weights() { Self::Sum(prices) } else { Self::even() }
+            }
+            other => *other,
+        }
+    }
+}
+
 /// What a descent is to do.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Goal {

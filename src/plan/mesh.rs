@@ -21,11 +21,14 @@ pub(super) struct Mesh {
     pub(super) samples: Samples,
     /// Shares of limits, `[joint * LOADED + row][instant]`, then pump flow, then tool speed.
     pub(super) shares: Vec<f64>,
+    /// Power, `[joint][instant]`, W.
+    pub(super) power_w: Vec<f64>,
     /// Integral of squared power over time by joint, W² s.
     pub(super) squared_power: Vec<f64>,
     /// Integral of the magnitude of power over time, all joints together, J.
     pub(super) energy_j: f64,
-    weights_s: Vec<f64>,
+    /// Weights of the instants in integrals, s; zero where they are void.
+    pub(super) weights_s: Vec<f64>,
     lanes: Lanes,
 }
 
@@ -49,6 +52,7 @@ impl Mesh {
             segment: Vec::new(),
             samples: Samples::default(),
             shares: Vec::new(),
+            power_w: Vec::new(),
             squared_power: vec![0.0; joints],
             energy_j: 0.0,
             weights_s: Vec::new(),
@@ -122,10 +126,16 @@ impl Mesh {
     }
 
     fn fill(&mut self, setup: &Setup, motion: &Motion) {
-        let (joints, count) = (setup.joint_count(), self.t_s.len());
         // A rest is never asked for, but its bounds are: a share of a step inside the segment decides.
         motion.sample(&self.t_s, Quantity::Jerk, &mut self.samples);
+        self.load(setup);
+    }
+
+    /// What the state in the samples asks of the arm.
+    pub(super) fn load(&mut self, setup: &Setup) {
+        let (joints, count) = (setup.joint_count(), self.t_s.len());
         self.shares.resize((joints * LOADED + 2) * count, 0.0);
+        self.power_w.resize(joints * count, 0.0);
         self.lanes.squared_power.fill([0.0; LANES]);
         self.lanes.power.fill(0.0);
         for (range, load) in self.segment.iter().zip(&setup.loads) {
@@ -137,7 +147,8 @@ impl Mesh {
                 pump_flow_m3_s: setup.arm.hydraulics.pump_flow_m3_s(),
                 range: range.clone(),
             };
-            dispatched(&task, &self.samples, &self.weights_s, &mut self.lanes, &mut self.shares);
+            let to = Loads { shares: &mut self.shares, power_w: &mut self.power_w };
+            dispatched(&task, &self.samples, &self.weights_s, &mut self.lanes, to);
         }
         for (sum, lanes) in self.squared_power.iter_mut().zip(&self.lanes.squared_power) {
             *sum = lanes.iter().sum();
@@ -173,8 +184,15 @@ struct Task<'a> {
     range: std::ops::Range<usize>,
 }
 
+/// What is written of all instants.
+struct Loads<'a> {
+    shares: &'a mut [f64],
+    power_w: &'a mut [f64],
+}
+
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "x86_64+sse4.1"))]
-fn dispatched(task: &Task<'_>, samples: &Samples, weights_s: &[f64], lanes: &mut Lanes, shares: &mut [f64]) {
+fn dispatched(task: &Task<'_>, samples: &Samples, weights_s: &[f64], lanes: &mut Lanes, to: Loads<'_>) {
+    let Loads { shares, power_w } = to;
     let (joints, count) = (task.limits.len(), weights_s.len());
     let motion = [Quantity::Position, Quantity::Velocity, Quantity::Acceleration];
     let mut first = task.range.start;
@@ -193,8 +211,10 @@ fn dispatched(task: &Task<'_>, samples: &Samples, weights_s: &[f64], lanes: &mut
         for (j, (sin, cos)) in lanes.dynamics.sin_cos().enumerate().take(joints) {
             let (torque, speed, limit) = (&lanes.torque_n_m[j], &speed_rad_s[j], &task.limits[j]);
             let mut rows = [[0.0; LANES]; LOADED];
+            let own_w = &mut power_w[j * count + first..][..LANES];
             for l in 0..LANES {
                 let power = speed[l] * torque[l];
+                own_w[l] = power;
                 lanes.squared_power[j][l] += weights[l] * power * power;
                 lanes.power[l] += weights[l] * power.abs();
                 rows[0][l] = torque[l].abs() / limit.torque_n_m;

@@ -38,6 +38,11 @@ impl Samples {
         &self.all(quantity)[joint * self.instants..][..self.instants]
     }
 
+    /// One quantity of one joint to be changed, `[instant]`; as [`Samples::of`].
+    pub(crate) fn of_mut(&mut self, quantity: Quantity, joint: usize) -> &mut [f64] {
+        &mut self.values[quantity.order()][joint * self.instants..][..self.instants]
+    }
+
     /// Makes room for quantities up to `through`.
     pub(super) fn shape(&mut self, joints: usize, instants: usize, through: Quantity) {
         self.instants = instants;

@@ -1,35 +1,79 @@
-//! What a descent of the shape lessens.
+//! What a descent of the shape lessens, and within what.
 
 use crate::{
-    plan::Rule,
-    task::{Objective, Objectives},
+    plan::{Choice, Rule, goal::Merit},
+    task::{Ceilings, Objective, Objectives, Weights},
 };
 
-/// A weighted sum of logarithms to lessen.
+/// Weight of jerk in every merit, against a sum of one: it settles joints that bound nothing.
+const SETTLE: f64 = 1e-3;
+
+/// What decides the duration of a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Pace {
+    /// The limits: every segment is as fast as they allow.
+    Fastest,
+    /// It is given, s, dwells included.
+    Within(f64),
+    /// It is sought with the shape.
+    Sought,
+}
+
+/// A merit to lessen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Aim {
-    /// Weight of the duration; 0 if it is given.
-    pub(super) duration: f64,
-    /// Weight of the sum of the joints' root mean square jerks.
-    pub(super) jerk: f64,
-    /// The duration that the curve takes, dwells included, s; infinite if it is sought.
-    pub(super) within_s: f64,
+    merit: Merit,
+    /// Makes the weights of the logarithms sum to one where the descent starts.
+    scale: f64,
+    /// What the objectives must not exceed.
+    pub(super) ceilings: Ceilings,
+    pub(super) pace: Pace,
+    /// Loads are taken to be so many times what they are at the instants looked at, for the peaks between them.
+    pub(super) guard: f64,
 }
 
 impl Aim {
-    /// The fastest. The small weight of jerk settles joints that do not bound the duration.
-    pub(super) const FASTEST: Self = Self { duration: 1.0, jerk: 1e-3, within_s: f64::INFINITY };
-
-    /// The smoothest of a duration, s.
-    pub(super) const fn smoothest(within_s: f64) -> Self {
-        Self { duration: 0.0, jerk: 1.0, within_s }
+    /// Of a choice. One objective alone keeps what the choice found it by: the fastest plan its pace, the smoothest its
+    /// time. Any other rule keeps its prices, also where it weighs distances.
+    pub(super) fn of(choice: &Choice) -> Self {
+        let chosen = &choice.timing.objectives;
+        let merit = choice.merit.at_prices_of(chosen);
+        let free = |k: Objective| choice.ceilings[k].is_infinite();
+        let pace = match choice.rule {
+            Rule::Best(Objective::Duration) if free(Objective::RmsJerk) && free(Objective::RmsPower) => {
+                Pace::Fastest
+            }
+            Rule::Best(Objective::RmsJerk) if free(Objective::RmsPower) => {
+                Pace::Within(chosen[Objective::Duration])
+            }
+            _ => Pace::Sought,
+        };
+        let ceilings = if pace == Pace::Sought { choice.ceilings } else { Ceilings::NONE };
+        let prices = merit.slopes(chosen);
+        let sum: f64 = prices.plan().iter().sum();
+        Self { merit, scale: 1.0 / sum.max(f64::MIN_POSITIVE), ceilings, pace, guard: 1.0 }
     }
 
-    /// Of a rule: faster if it asks for the fastest plan, else smoother at the duration of the plan that it chose.
-    pub(super) fn of(rule: Rule, chosen: &Objectives) -> Self {
-        match rule {
-            Rule::Best(Objective::Duration) => Self::FASTEST,
-            _ => Self::smoothest(chosen[Objective::Duration]),
-        }
+    /// Of a plan; the less the better.
+    pub(super) fn merit(&self, objectives: &Objectives) -> f64 {
+        self.scale * self.merit.of(objectives) + SETTLE * objectives[Objective::RmsJerk].ln()
+    }
+
+    /// Slopes of the merit by the logarithms of the objectives.
+    pub(super) fn slopes(&self, objectives: &Objectives) -> Weights {
+        let own = self.merit.slopes(objectives);
+        let own = own.map_plan(|k| self.scale * own[k]);
+        own.with(Objective::RmsJerk, own[Objective::RmsJerk] + SETTLE)
+    }
+
+    /// Whether power counts.
+    pub(super) fn counts_power(&self, objectives: &Objectives) -> bool {
+        self.slopes(objectives)[Objective::RmsPower] > 0.0 || self.ceilings[Objective::RmsPower].is_finite()
+    }
+
+    /// Logarithms of objectives as shares of their ceilings, where there are any.
+    pub(super) fn beyond(&self, objectives: &Objectives) -> impl Iterator<Item = (Objective, f64)> {
+        let shares = objectives.map_plan(|k| (objectives[k] / self.ceilings[k]).ln());
+        Objective::OF_PLAN.iter().map(move |&k| (k, shares[k])).filter(|(_, beyond)| beyond.is_finite())
     }
 }

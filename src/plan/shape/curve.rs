@@ -1,6 +1,12 @@
 //! A curve of free shape, and what is given of it.
 
-use crate::spline::{Degree, Dwell, Ends, KeyPoints, Motion, Quantity, Segment, SplineError};
+use crate::{
+    plan::Setup,
+    spline::{Degree, Dwell, KeyPoints, Motion, Quantity, Segment, SplineError},
+};
+
+/// Share of a range that descents keep to: rounding beyond its end could not be mended by more time.
+const WITHIN: f64 = 1.0 - 1e-6;
 
 /// Limits of a joint that a descent keeps; infinite where there are none.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +22,7 @@ impl Bounds {
     pub(super) fn of(&self, order: usize) -> Option<(f64, f64)> {
         let [low, high] = self.range_rad;
         let (middle, half) = match order.checked_sub(1) {
-            None => (0.5 * (low + high), 0.5 * (high - low)),
+            None => (0.5 * (low + high), 0.5 * (high - low) * WITHIN),
             Some(k) => (0.0, *self.most.get(k)?),
         };
         (middle.is_finite() && half.is_finite()).then_some((middle, half))
@@ -25,17 +31,14 @@ impl Bounds {
 
 /// What is given of a curve. Its points are the key points and free points between them.
 #[derive(Debug, Clone)]
-pub(super) struct Frame {
-    pub(super) degree: Degree,
-    pub(super) ends: Ends,
+pub(super) struct Frame<'a> {
+    pub(super) setup: &'a Setup,
     /// By point, not by key point.
     pub(super) dwells: Vec<Dwell>,
     /// Points that are key points, ascending, first and last among them.
     pub(super) key: Vec<usize>,
     /// By joint.
     pub(super) bounds: Vec<Bounds>,
-    /// Shortest and longest time of movement between key points, s.
-    pub(super) interval_s: [f64; 2],
 }
 
 /// A curve in a frame.
@@ -47,9 +50,13 @@ pub(super) struct Curve {
     pub(super) point_rad: Vec<f64>,
 }
 
-impl Frame {
+impl Frame<'_> {
     pub(super) fn joints(&self) -> usize {
         self.bounds.len()
+    }
+
+    pub(super) fn degree(&self) -> Degree {
+        self.setup.template.degree()
     }
 
     /// Arrival at every point, s.
@@ -74,12 +81,12 @@ impl Frame {
     /// [`SplineError`] if the points and times make no motion.
     pub(super) fn motion(&self, curve: &Curve) -> Result<Motion, SplineError> {
         let points = KeyPoints::new(self.joints(), curve.point_rad.clone())?;
-        Motion::new(self.degree, points, &self.ends, &self.dwells, &self.times_s(&curve.interval_s))
+        Motion::new(self.degree(), points, &self.setup.ends, &self.dwells, &self.times_s(&curve.interval_s))
     }
 
     /// Brings the time of movement between every two key points within its bounds.
     pub(super) fn clamp(&self, interval_s: &mut [f64]) {
-        let [low, high] = self.interval_s;
+        let [low, high] = self.setup.interval_s;
         for ends in self.key.windows(2) {
             let own = &mut interval_s[ends[0]..ends[1]];
             let whole: f64 = own.iter().sum();

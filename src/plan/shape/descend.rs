@@ -29,19 +29,19 @@ pub(super) struct Descended {
 
 /// Descends by at most so many steps, until they gain less than `enough`; `None` if the start is no motion.
 pub(super) fn descend(
-    frame: &Frame,
+    frame: &Frame<'_>,
     start: Curve,
     aim: &Aim,
     (most, enough): (usize, f64),
 ) -> Option<Descended> {
     let mut here = Point::look(frame, start, aim)?;
-    let (mut trust, mut multipliers, mut tried) = (FIRST, Multipliers::new(), Vec::new());
+    let (mut trust, mut multipliers, mut tried) = (FIRST, Multipliers::default(), Vec::new());
     let (mut steps, mut small) = (0, 0);
     while steps < most && small < SMALL && trust > SHORT {
         steps += 1;
         let mut near = peaks(frame, &here.motion);
         near.append(&mut tried);
-        let model = Model::of(frame, &here.curve, &here.motion, &near);
+        let model = Model::of(frame, &here, aim, &near);
         let step = Step::of(frame, (&here, aim, trust), &model, &multipliers);
         let taken = step.solve();
         let expected = here.broken() - taken.worth;
@@ -73,7 +73,7 @@ struct Found {
 /// The better of a step and its half, or the first smaller part that gains enough. Peaks of the curves tried are
 /// noted: where all are refused, the next step has them as limits.
 fn best_part(
-    frame: &Frame,
+    frame: &Frame<'_>,
     (here, aim, expected): (&Point, &Aim, f64),
     (step, taken): (&Step<'_>, &Taken),
     tried: &mut Vec<Peak>,

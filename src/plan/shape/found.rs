@@ -1,12 +1,12 @@
 //! The shape of a chosen plan.
 
 use super::{
-    aim::Aim,
+    aim::{Aim, Pace},
     curve::{Bounds, Curve, Frame},
     descend::descend,
 };
 use crate::{
-    plan::{Choice, Limit, Margin, PlanEvaluation, Setup, Via},
+    plan::{Choice, KEPT_SHARE, Limit, Margin, PlanEvaluation, Setup, Via},
     task::{Ceilings, Objective},
 };
 
@@ -78,25 +78,37 @@ pub fn shape(
         return Err(NoShape::TooManyIntervals { found: intervals, most: MOST / pieces });
     }
     let chosen = &choice.timing.objectives;
-    let mut aim = Aim::of(choice.rule, chosen);
+    let mut aim = Aim::of(choice);
     let (frame, mut curve) = start(setup, &choice.timing.interval_s, pieces).ok_or(NoShape::NoGain)?;
     let mut steps = 0;
     let mut found = None;
-    for _ in 0..TRIES {
+    for tried in 1..=TRIES {
         let end = descend(&frame, curve, &aim, (STEPS, ENOUGH)).ok_or(NoShape::NoGain)?;
         steps += end.steps;
         curve = end.curve;
-        let evaluation = kept(setup, &frame, &curve)?;
-        let slower = evaluation.objectives[Objective::Duration] / chosen[Objective::Duration];
-        found = Some(evaluation);
-        if !(aim.within_s.is_finite() && slower > 1.0) {
+        let load = load(setup, &frame, &curve)?;
+        let again = load > KEPT_SHARE && tried < TRIES;
+        match kept(setup, &frame, &curve) {
+            Ok(evaluation) => found = Some(evaluation),
+            Err(error) if !again && found.is_none() => return Err(error),
+            Err(_) => {}
+        }
+        let slower = found
+            .as_ref()
+            .map_or(1.0, |found| found.objectives[Objective::Duration] / chosen[Objective::Duration]);
+        if again {
+            aim.guard *= load * (1.0 + 1e-6);
+        } else if slower > 1.0
+            && let Pace::Within(within_s) = &mut aim.pace
+        {
+            *within_s *= (1.0 - 1e-6) / slower;
+        } else {
             break;
         }
-        aim.within_s *= (1.0 - 1e-6) / slower;
     }
     let evaluation = found.ok_or(NoShape::NoGain)?;
     let within = Objective::OF_PLAN.iter().all(|&k| evaluation.objectives[k] <= ceilings[k]);
-    if within && choice.worth(&evaluation.objectives) < choice.worth(chosen) {
+    if within && aim.merit(&evaluation.objectives) < aim.merit(chosen) {
         Ok(Shape { evaluation, pieces, steps })
     } else {
         Err(NoShape::NoGain)
@@ -104,13 +116,12 @@ pub fn shape(
 }
 
 /// The curve of a timing with free points.
-fn start(setup: &Setup, interval_s: &[f64], pieces: usize) -> Option<(Frame, Curve)> {
+fn start<'a>(setup: &'a Setup, interval_s: &[f64], pieces: usize) -> Option<(Frame<'a>, Curve)> {
     let template = setup.template();
     let points = template.points();
     let limits = setup.limits.iter();
     let frame = Frame {
-        degree: template.degree(),
-        ends: setup.ends.clone(),
+        setup,
         dwells: setup.dwells(),
         key: (0..points.len()).collect(),
         bounds: limits
@@ -119,14 +130,22 @@ fn start(setup: &Setup, interval_s: &[f64], pieces: usize) -> Option<(Frame, Cur
                 most: [limits.speed_rad_s, limits.acceleration_rad_s2, limits.jerk_rad_s3],
             })
             .collect(),
-        interval_s: setup.interval_s,
     };
     let point_rad = (0..points.len()).flat_map(|point| points.of(point).iter().copied()).collect();
     frame.refined(&Curve { interval_s: interval_s.to_vec(), point_rad }, pieces).ok()
 }
 
+/// The largest share that a curve has of a load's limit: of those that a descent sees at single instants.
+fn load(setup: &Setup, frame: &Frame<'_>, curve: &Curve) -> Result<f64, NoShape> {
+    let (times_s, via) = listed(frame, &curve.interval_s, &curve.point_rad);
+    let evaluation = PlanEvaluation::through(setup, &times_s, &via).map_err(|_| NoShape::NoGain)?;
+    let spline = |limit| matches!(limit, Limit::Position | Limit::Speed | Limit::Acceleration | Limit::Jerk);
+    let loads = evaluation.margins.iter().filter(|margin| !spline(margin.limit));
+    Ok(loads.fold(0.0, |most, margin| most.max(margin.share)))
+}
+
 /// The plan of a curve, slowed down until all limits hold exactly.
-fn kept(setup: &Setup, frame: &Frame, curve: &Curve) -> Result<PlanEvaluation, NoShape> {
+fn kept(setup: &Setup, frame: &Frame<'_>, curve: &Curve) -> Result<PlanEvaluation, NoShape> {
     let (mut interval_s, mut slower) = (curve.interval_s.clone(), 1.0);
     for _ in 0..SLOWINGS {
         let (times_s, via) = listed(frame, &interval_s, &curve.point_rad);
@@ -155,7 +174,7 @@ fn factor(margin: &Margin) -> f64 {
 }
 
 /// Arrivals at the key points, s, and the free points between them.
-fn listed(frame: &Frame, interval_s: &[f64], point_rad: &[f64]) -> (Vec<f64>, Vec<Via>) {
+fn listed(frame: &Frame<'_>, interval_s: &[f64], point_rad: &[f64]) -> (Vec<f64>, Vec<Via>) {
     let (mut times_s, mut via) = (Vec::new(), Vec::new());
     let points = frame.times_s(interval_s).into_iter().zip(point_rad.chunks_exact(frame.joints()));
     for (point, (t_s, position_rad)) in points.enumerate() {

@@ -1,6 +1,8 @@
 //! The quadratic programme of one step, by a primal-dual interior-point method (Mehrotra 1992, doi:10.1137/0802028)
 //! on the bordered blocks of [`super::factor`].
 
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
 use super::{factor::Bordered, model::Row};
 
 /// Price of breaking the linearised limits, against weights of the merit that sum to one.
@@ -21,8 +23,22 @@ pub(super) struct Edge {
     pub(super) most: f64,
 }
 
+/// A value that depends on every unknown: it and its slopes times them are at most t.
+pub(super) struct Ceiling {
+    pub(super) slope: Vec<f64>,
+    pub(super) value: f64,
+}
+
+/// What solves a programme, and its multipliers.
+pub(super) struct Solved {
+    /// t last.
+    pub(super) x: Vec<f64>,
+    pub(super) limits: Vec<f64>,
+    pub(super) ceilings: Vec<f64>,
+}
+
 /// Lessens 1/2 x'Hx + g'x + PRICE t with `sign value + sign row x <= 1 + t` for limits, `row x = -value` for passes,
-/// edges, and t >= 0. The border is the intervals and, last, t.
+/// edges, ceilings, and t >= 0. The border is the intervals and, last, t.
 pub(super) struct Programme<'a> {
     /// H, without what bounds add to it.
     pub(super) hessian: &'a Bordered,
@@ -32,16 +48,18 @@ pub(super) struct Programme<'a> {
     pub(super) limits: &'a [(&'a Row, f64)],
     pub(super) passes: &'a [Row],
     pub(super) edges: &'a [Edge],
+    pub(super) ceilings: Vec<&'a Ceiling>,
 }
 
 impl Programme<'_> {
-    /// x, t last, and the multipliers of the limits; as near to the least as rounding lets it come.
-    pub(super) fn solve(&self) -> (Vec<f64>, Vec<f64>) {
+    /// As near to the least as rounding lets it come.
+    pub(super) fn solve(&self) -> Solved {
         let n = self.hessian.unknowns();
-        let (m, e) = (self.limits.len() + self.edges.len() + 1, self.passes.len());
+        let (m, e) = (self.limits.len() + self.edges.len() + self.ceilings.len() + 1, self.passes.len());
         let mut state = State { x: vec![0.0; n], s: vec![0.0; m], z: vec![0.0; m], nu: vec![0.0; e] };
         // t starts where every limit holds.
         let worst = self.limits.iter().fold(0.0, |most: f64, (row, sign)| most.max(sign * row.value - 1.0));
+        let worst = self.ceilings.iter().fold(worst, |most, ceiling| most.max(ceiling.value));
         state.x[n - 1] = worst + 0.1;
         let broken = self.broken(&state.x);
         state.s.iter_mut().zip(&broken).for_each(|(s, broken)| *s = (-broken).max(1e-2));
@@ -63,8 +81,9 @@ impl Programme<'_> {
             }
             self.assemble(&mut system, &state);
             system.factor();
+            let system = &Squared::of(&system, &self.ceilings, &state.z, &state.s);
             let centre: Vec<f64> = state.s.iter().zip(&state.z).map(|(s, z)| s * z).collect();
-            let predicted = self.direction(&system, &state, &residual, &centre);
+            let predicted = self.direction(system, &state, &residual, &centre);
             let reach = predicted.reach(&state, 1.0);
             let after: f64 = (state.s.iter().zip(&state.z).zip(predicted.s.iter().zip(&predicted.z)))
                 .map(|((s, z), (ds, dz))| (s + reach * ds) * (z + reach * dz))
@@ -74,17 +93,18 @@ impl Programme<'_> {
             let corrected: Vec<f64> = (centre.iter().zip(predicted.s.iter().zip(&predicted.z)))
                 .map(|(centre, (ds, dz))| centre + ds * dz - sigma * gap)
                 .collect();
-            let mut step = self.direction(&system, &state, &residual, &corrected);
+            let mut step = self.direction(system, &state, &residual, &corrected);
             if step.reach(&state, WAY) < STUCK {
                 // A correction far from the path may lead about in circles; back to the path first.
                 let central: Vec<f64> = centre.iter().map(|centre| centre - 0.5 * gap).collect();
-                step = self.direction(&system, &state, &residual, &central);
+                step = self.direction(system, &state, &residual, &central);
             }
             let reach = step.reach(&state, WAY);
             state.add(&step, reach);
         }
+        let ceilings = state.z[m - 1 - self.ceilings.len()..m - 1].to_vec();
         state.z.truncate(self.limits.len());
-        (state.x, state.z)
+        Solved { x: state.x, limits: state.z, ceilings }
     }
 
     /// Rows times x less their bounds.
@@ -96,7 +116,8 @@ impl Programme<'_> {
             .edges
             .iter()
             .map(|edge| edge.entries.iter().map(|(i, a)| a * x[border + i]).sum::<f64>() - edge.most);
-        limits.chain(edges).chain([-t]).collect()
+        let ceilings = self.ceilings.iter().map(|ceiling| ceiling.value + dot(&ceiling.slope, x) - t);
+        limits.chain(edges).chain(ceilings).chain([-t]).collect()
     }
 
     fn dot(&self, row: &Row, x: &[f64]) -> f64 {
@@ -120,7 +141,8 @@ impl Programme<'_> {
     /// Adds the transposed rows of the bounds times `z`.
     fn add_transposed(&self, z: &[f64], to: &mut [f64]) {
         let (border, last) = (self.hessian.border_start(), to.len() - 1);
-        let (limits, edges) = z.split_at(self.limits.len());
+        let (limits, rest) = z.split_at(self.limits.len());
+        let (edges, rest) = rest.split_at(self.edges.len());
         for ((row, sign), z) in self.limits.iter().zip(limits) {
             self.hessian.add(row, sign * z, to);
             to[last] -= z;
@@ -129,6 +151,10 @@ impl Programme<'_> {
             for (i, a) in &edge.entries {
                 to[border + i] += z * a;
             }
+        }
+        for (ceiling, z) in self.ceilings.iter().zip(rest) {
+            to.iter_mut().zip(&ceiling.slope).for_each(|(to, a)| *to += z * a);
+            to[last] -= z;
         }
         to[last] -= z[z.len() - 1];
     }
@@ -149,7 +175,7 @@ impl Programme<'_> {
     }
 
     /// Newton's direction towards products `s z` less by `less`.
-    fn direction(&self, system: &Bordered, state: &State, residual: &Residual, less: &[f64]) -> State {
+    fn direction(&self, system: &Squared<'_>, state: &State, residual: &Residual, less: &[f64]) -> State {
         let inner: Vec<f64> = (state.z.iter().zip(&residual.bound).zip(less.iter().zip(&state.s)))
             .map(|((z, bound), (less, s))| (z * bound - less) / s)
             .collect();
@@ -167,7 +193,8 @@ impl Programme<'_> {
         let limits = self.limits.iter().map(|(row, sign)| sign * self.dot(row, &x) - t);
         let edges =
             self.edges.iter().map(|edge| edge.entries.iter().map(|(i, a)| a * x[border + i]).sum::<f64>());
-        let s: Vec<f64> = (limits.chain(edges).chain([-t]).zip(&residual.bound))
+        let ceilings = self.ceilings.iter().map(|ceiling| dot(&ceiling.slope, &x) - t);
+        let s: Vec<f64> = (limits.chain(edges).chain(ceilings).chain([-t]).zip(&residual.bound))
             .map(|(moved, bound)| -bound - moved)
             .collect();
         let z = (s.iter().zip(less))
@@ -178,6 +205,49 @@ impl Programme<'_> {
             .map(|(row, pass)| (self.dot(row, &x) + pass) / PROXIMAL)
             .collect();
         State { x, s, z, nu }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// A factored system to which squares of a few dense rows are added (Woodbury).
+struct Squared<'a> {
+    system: &'a Bordered,
+    /// Rows, t's coefficient last, and the system's solutions for them.
+    rows: Vec<[Vec<f64>; 2]>,
+    small: Option<Cholesky<f64, Dyn>>,
+}
+
+impl<'a> Squared<'a> {
+    /// Rows of ceilings by the weights that their slacks and multipliers, before those of t, give them.
+    fn of(system: &'a Bordered, ceilings: &[&Ceiling], z: &[f64], s: &[f64]) -> Self {
+        let rows: Vec<[Vec<f64>; 2]> = ceilings
+            .iter()
+            .map(|ceiling| {
+                let mut row = ceiling.slope.clone();
+                let last = row.len() - 1;
+                row[last] -= 1.0;
+                let mut solved = row.clone();
+                system.solve(&mut solved);
+                [row, solved]
+            })
+            .collect();
+        let first = z.len() - 1 - rows.len();
+        let small = DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
+            dot(&rows[i][0], &rows[j][1]) + if i == j { s[first + i] / z[first + i] } else { 0.0 }
+        });
+        Self { system, rows, small: Cholesky::new(small) }
+    }
+
+    fn solve(&self, x: &mut [f64]) {
+        self.system.solve(x);
+        let along = DVector::from_iterator(self.rows.len(), self.rows.iter().map(|[row, _]| dot(row, x)));
+        let Some(by) = self.small.as_ref().map(|small| small.solve(&along)) else { return };
+        for ([_, solved], by) in self.rows.iter().zip(&by) {
+            x.iter_mut().zip(solved).for_each(|(x, a)| *x -= by * a);
+        }
     }
 }
 
@@ -242,13 +312,22 @@ mod tests {
     }
 
     /// Least of 1/2 |x - (2, 1)|².
-    fn towards(limits: &[(&Row, f64)], passes: &[Row], edges: &[Edge]) -> (Vec<f64>, Vec<f64>) {
+    fn towards(
+        limits: &[(&Row, f64)],
+        passes: &[Row],
+        edges: &[Edge],
+        ceilings: &[Ceiling],
+    ) -> (Vec<f64>, Vec<f64>) {
         let mut hessian =
             Bordered::new(&Unknowns { joints: 1, free: vec![1], window: 1, border: 2, joined: false });
         hessian.add_square(&row(1.0, 0.0, 0.0), 1.0, 0.0);
         hessian.add_square(&row(0.0, 1.0, 0.0), 1.0, 0.0);
         hessian.lift(0.0, 1e-9);
-        Programme { hessian: &hessian, gradient: &[-2.0, -1.0, 0.0], limits, passes, edges }.solve()
+        let ceilings = ceilings.iter().collect();
+        let solved =
+            Programme { hessian: &hessian, gradient: &[-2.0, -1.0, 0.0], limits, passes, edges, ceilings }
+                .solve();
+        (solved.x, solved.limits.into_iter().chain(solved.ceilings).collect())
     }
 
     fn near(found: &[f64], want: [f64; 2]) {
@@ -260,19 +339,28 @@ mod tests {
 
     #[test]
     fn a_programme_stops_at_limits_edges_and_passes() {
-        near(&towards(&[], &[], &[]).0, [2.0, 1.0]);
-        let (x, multipliers) = towards(&[(&row(1.0, 0.0, 0.0), 1.0)], &[], &[]);
+        near(&towards(&[], &[], &[], &[]).0, [2.0, 1.0]);
+        let (x, multipliers) = towards(&[(&row(1.0, 0.0, 0.0), 1.0)], &[], &[], &[]);
         near(&x, [1.0, 1.0]);
         assert!((multipliers[0] - 1.0).abs() < 1e-4, "{multipliers:?}");
-        near(&towards(&[(&row(-1.0, 0.0, -0.5), -1.0)], &[], &[]).0, [0.5, 1.0]);
-        near(&towards(&[], &[], &[Edge { entries: vec![(0, 1.0)], most: 0.25 }]).0, [2.0, 0.25]);
-        near(&towards(&[], &[row(1.0, 1.0, -1.0)], &[]).0, [1.0, 0.0]);
+        near(&towards(&[(&row(-1.0, 0.0, -0.5), -1.0)], &[], &[], &[]).0, [0.5, 1.0]);
+        near(&towards(&[], &[], &[Edge { entries: vec![(0, 1.0)], most: 0.25 }], &[]).0, [2.0, 0.25]);
+        near(&towards(&[], &[row(1.0, 1.0, -1.0)], &[], &[]).0, [1.0, 0.0]);
+        // x + y <= 1 and x - y <= 0.5.
+        let ceiling = |y: f64, value: f64| Ceiling { slope: vec![1.0, y, 0.0], value };
+        near(&towards(&[], &[], &[], &[ceiling(1.0, -1.0)]).0, [1.0, 0.0]);
+        let (x, multipliers) = towards(&[], &[], &[], &[ceiling(1.0, -1.0), ceiling(-1.0, -0.5)]);
+        near(&x, [0.75, 0.25]);
+        assert!(
+            (multipliers[0] - 1.0).abs() < 1e-4 && (multipliers[1] - 0.25).abs() < 1e-4,
+            "{multipliers:?}"
+        );
     }
 
     #[test]
     fn limits_that_contradict_each_other_are_broken_as_little_as_possible() {
         // x <= -1 and x >= 1.
-        let (x, _) = towards(&[(&row(1.0, 0.0, 2.0), 1.0), (&row(1.0, 0.0, -2.0), -1.0)], &[], &[]);
+        let (x, _) = towards(&[(&row(1.0, 0.0, 2.0), 1.0), (&row(1.0, 0.0, -2.0), -1.0)], &[], &[], &[]);
         near(&x, [0.0, 1.0]);
         assert!((x[2] - 1.0).abs() < 1e-4, "{x:?}");
     }

@@ -168,3 +168,83 @@ fn one_piece_and_too_many_intervals_leave_the_timing_as_it_is() {
     }
     assert!(shape(&setup, &choice, &Ceilings::NONE, Some(MOST_PIECES as usize)).is_ok());
 }
+
+/// Where loads bind, in place of rates of angles.
+fn loaded(text: &str, limits: &str) -> Setup {
+    let from = text.find("[limits]").unwrap();
+    let to = from + text[from..].find("[objectives]").unwrap_or(text.len() - from);
+    let text = format!("{}[limits]\n{limits}\n{}", &text[..from], &text[to..]);
+    setup(&text)
+}
+
+#[test]
+fn where_torques_rods_flow_or_the_tool_bind_the_shape_keeps_them_and_is_faster() {
+    let all = |key: &str, value: f64| {
+        let joints: Vec<String> = (1..=6).map(|joint| format!("J{joint} = {value:?}")).collect();
+        format!("{key} = {{ {} }}\n", joints.join(", "))
+    };
+    let rates = all("acceleration_deg_s2", 100.0) + &all("jerk_deg_s3", 600.0) + &all("speed_deg_s", 90.0);
+    for (name, text) in TASKS {
+        let limits =
+            [all("torque_n_m", 2600.0), all("rod_speed_m_s", 0.05), "tool_speed_m_s = 0.5".to_owned()];
+        for limit in limits {
+            let setup = loaded(text, &format!("{rates}{limit}"));
+            let limit = &limit[..10];
+            let choice = chosen(&setup, Rule::Best(Objective::Duration), &Ceilings::NONE);
+            let start_s = choice.timing.objectives[Objective::Duration];
+            let found = shape(&setup, &choice, &Ceilings::NONE, None);
+            let Ok(found) = found else {
+                println!("{name}, {limit}: {start_s} s, {found:?}");
+                continue;
+            };
+            let duration_s = found.evaluation.objectives[Objective::Duration];
+            let mut near: Vec<_> = found.evaluation.margins.iter().map(|m| (m.share, m.limit)).collect();
+            near.sort_by(|a, b| b.0.total_cmp(&a.0));
+            println!(
+                "{name}, {limit}: {start_s:.3} to {duration_s:.3} s, {} steps, {:?}",
+                found.steps,
+                &near[..4]
+            );
+            assert!(duration_s < 0.99 * start_s, "{name}, {limit}");
+            check(&setup, &found, &motion(&setup, &found));
+        }
+    }
+}
+
+#[test]
+fn a_shape_follows_the_rule_that_chose_under_all_its_ceilings() {
+    for (name, text) in TASKS {
+        let setup = setup(text);
+        let fastest = chosen(&setup, Rule::Best(Objective::Duration), &Ceilings::NONE).timing.objectives;
+        let ceilings = Ceilings::NONE.with(Objective::RmsJerk, 0.5 * fastest[Objective::RmsJerk]);
+        let slow = Ceilings::NONE.with(Objective::Duration, 2.0 * fastest[Objective::Duration]);
+        let powered = slow.with(Objective::RmsPower, 0.6 * fastest[Objective::RmsPower]);
+        let asked = [
+            (Rule::Weights, Ceilings::NONE),
+            (Rule::Ideal, Ceilings::NONE),
+            (Rule::Knee, Ceilings::NONE),
+            (Rule::Best(Objective::Duration), ceilings),
+            (Rule::Best(Objective::RmsPower), slow),
+            (Rule::Best(Objective::RmsJerk), powered),
+        ];
+        for (rule, ceilings) in asked {
+            let choice = chosen(&setup, rule, &ceilings);
+            let before = &choice.timing.objectives;
+            let found = shape(&setup, &choice, &ceilings, None);
+            let Ok(found) = found else {
+                println!("{name}, {rule:?}: {before:?} s, {found:?}");
+                continue;
+            };
+            let after = &found.evaluation.objectives;
+            let change: Vec<f64> = after
+                .plan()
+                .iter()
+                .zip(before.plan())
+                .map(|(a, b)| (100.0 * (a / b - 1.0) * 100.0).round() / 100.0)
+                .collect();
+            println!("{name}, {rule:?}: {change:?} %, {} steps", found.steps);
+            assert!(after.within(&ceilings));
+            check(&setup, &found, &motion(&setup, &found));
+        }
+    }
+}

@@ -7,8 +7,10 @@ mod descend;
 mod factor;
 mod found;
 mod interior;
+mod loads;
 mod model;
 mod point;
+mod response;
 mod step;
 
 #[cfg(test)]

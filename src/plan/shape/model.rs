@@ -1,9 +1,6 @@
 //! A curve's limits, key points and jerk, linearised in its control points and the logarithms of its intervals.
 
-use super::{
-    curve::{Curve, Frame},
-    factor::Unknowns,
-};
+use super::{aim::Aim, curve::Frame, factor::Unknowns, point::Point};
 use crate::spline::{Degree, Motion, Place, Quantity, Segment, WINDOW, Weights};
 
 /// Places on every piece at which limits are kept.
@@ -47,23 +44,26 @@ pub(super) struct Model {
     pub(super) passes: Vec<Row>,
     /// Joints and their jerk at Gauss nodes, so weighted that the squares sum to the integral, rad/s^2.5.
     pub(super) jerk: Vec<(usize, Row)>,
+    /// The same of power, W s^0.5; where it counts.
+    pub(super) power: Vec<(usize, Row)>,
 }
 
 impl Model {
     /// With rows at peaks beside those at the places of every piece.
-    pub(super) fn of(frame: &Frame, curve: &Curve, motion: &Motion, peaks: &[Peak]) -> Self {
-        let joints = frame.joints();
+    pub(super) fn of(frame: &Frame<'_>, here: &Point, aim: &Aim, peaks: &[Peak]) -> Self {
+        let (joints, curve, motion) = (frame.joints(), &here.curve, &here.motion);
         let mut model = Self {
             unknowns: Unknowns {
                 joints,
                 free: motion.segments().iter().map(|segment| segment.spline.t_s().len() - 2).collect(),
-                window: frame.degree.order() + 1,
+                window: frame.degree().order() + 1,
                 border: curve.interval_s.len() + 1,
                 joined: false,
             },
             shares: Vec::new(),
             passes: Vec::new(),
             jerk: Vec::new(),
+            power: Vec::new(),
         };
         for (index, segment) in motion.segments().iter().enumerate() {
             let part = Part { segment, index, interval_s: &curve.interval_s };
@@ -91,10 +91,11 @@ impl Model {
                 }
             }
         }
+        model.loads(frame, here, aim);
         model
     }
 
-    fn limits(&mut self, frame: &Frame, part: &Part<'_>, place: Place) {
+    fn limits(&mut self, frame: &Frame<'_>, part: &Part<'_>, place: Place) {
         let weights = part.segment.spline.weights(place);
         for joint in 0..frame.joints() {
             for order in 0..4 {
@@ -104,7 +105,13 @@ impl Model {
     }
 
     /// The share of a limit, if there is one.
-    fn limit(&mut self, frame: &Frame, part: &Part<'_>, weights: &Weights, (joint, order): (usize, usize)) {
+    fn limit(
+        &mut self,
+        frame: &Frame<'_>,
+        part: &Part<'_>,
+        weights: &Weights,
+        (joint, order): (usize, usize),
+    ) {
         let Some((middle, half)) = frame.bounds[joint].of(order) else { return };
         let mut row = part.row(weights, order, joint);
         row.value -= middle;
@@ -121,12 +128,7 @@ impl Model {
         for (share, weight) in GAUSS {
             let weights = spline.weights(Place::Piece(piece, share));
             for joint in 0..joints {
-                let mut row = part.row(&weights, 3, joint);
-                // The weight grows with the piece.
-                for (interval, by) in part.lengths(piece) {
-                    let slope = 0.5 * by * part.interval_s[interval] / length_s * row.value;
-                    row.interval[interval - row.first_interval] += slope;
-                }
+                let row = part.with_length(part.row(&weights, 3, joint), piece, length_s);
                 self.jerk.push((joint, row.scaled((weight * length_s).sqrt())));
             }
         }
@@ -145,7 +147,7 @@ pub(super) struct Peak {
 }
 
 /// Peaks between the places, where they come near a limit.
-pub(super) fn peaks(frame: &Frame, motion: &Motion) -> Vec<Peak> {
+pub(super) fn peaks(frame: &Frame<'_>, motion: &Motion) -> Vec<Peak> {
     let mut peaks = Vec::new();
     for (segment, part) in motion.segments().iter().enumerate() {
         let spline = &part.spline;
@@ -166,10 +168,10 @@ pub(super) fn peaks(frame: &Frame, motion: &Motion) -> Vec<Peak> {
 }
 
 /// One segment and where it stands in the whole.
-struct Part<'a> {
-    segment: &'a Segment,
-    index: usize,
-    interval_s: &'a [f64],
+pub(super) struct Part<'a> {
+    pub(super) segment: &'a Segment,
+    pub(super) index: usize,
+    pub(super) interval_s: &'a [f64],
 }
 
 impl Part<'_> {
@@ -183,7 +185,16 @@ impl Part<'_> {
         parts.into_iter().filter(move |(interval, _)| *interval < count).map(move |(i, by)| (first + i, by))
     }
 
-    fn row(&self, weights: &Weights, order: usize, joint: usize) -> Row {
+    /// A value whose weight in a sum of squares grows with the length of its piece, s.
+    pub(super) fn with_length(&self, mut row: Row, piece: usize, length_s: f64) -> Row {
+        for (interval, by) in self.lengths(piece) {
+            let slope = 0.5 * by * self.interval_s[interval] / length_s * row.value;
+            row.interval[interval - row.first_interval] += slope;
+        }
+        row
+    }
+
+    pub(super) fn row(&self, weights: &Weights, order: usize, joint: usize) -> Row {
         let spline = &self.segment.spline;
         let controls = spline.control(joint, Quantity::Position);
         let (fixed, count) = (spline.fixed_controls(), spline.degree().order() + 1);
@@ -225,7 +236,7 @@ impl Row {
         std::iter::once((self.joint, &self.control)).chain(self.others.iter().map(|(joint, c)| (*joint, c)))
     }
 
-    fn scaled(mut self, by: f64) -> Self {
+    pub(super) fn scaled(mut self, by: f64) -> Self {
         self.value *= by;
         let others = self.others.iter_mut().flat_map(|(_, control)| control);
         self.control.iter_mut().chain(&mut self.interval).chain(others).for_each(|slope| *slope *= by);

@@ -1,67 +1,125 @@
 //! A curve with its values.
 
 use super::{
-    aim::Aim,
+    aim::{Aim, Pace},
     curve::{Curve, Frame},
     interior::PRICE,
 };
-use crate::spline::Motion;
+use crate::{
+    plan::mesh::{LOADED, Mesh},
+    spline::Motion,
+    task::{Objective, Objectives},
+};
 
 /// The factor of time of a segment that nothing bounds.
 const LEAST_FACTOR: f64 = 1e-3;
+/// A segment whose torques or forces have come this near to a limit is not taken faster.
+const FORCED: f64 = 0.99;
 
 /// A curve with its values.
 pub(super) struct Point {
     pub(super) curve: Curve,
     pub(super) motion: Motion,
-    pub(super) duration_s: f64,
+    /// State and loads at the Gauss nodes of every piece.
+    pub(super) mesh: Mesh,
+    pub(super) objectives: Objectives,
     /// Root mean square jerk by joint, rad/s³.
     pub(super) joint_jerk: Vec<f64>,
-    /// Their sum, rad/s³.
-    pub(super) jerk_rad_s3: f64,
-    /// Of the limit that is nearest to being broken, between all instants.
+    /// Root mean square power by joint, W.
+    pub(super) joint_power: Vec<f64>,
+    /// Of the limit that is nearest to being broken: of angles and rates between all instants.
     share: f64,
+    /// Logarithm of the ceiling that is broken most.
+    beyond: f64,
     merit: f64,
 }
 
 impl Point {
-    /// Takes a curve at the duration that the aim gives, or each of its segments as fast as the limits allow; angles
-    /// stay as they are. `None` if that is no motion.
-    pub(super) fn look(frame: &Frame, mut curve: Curve, aim: &Aim) -> Option<Self> {
+    /// Takes a curve at the pace of the aim: at a duration that is given, or each of its segments as fast as the limits
+    /// allow, or no faster than that within the ceiling on time; angles stay as they are. `None` if that is no motion.
+    pub(super) fn look(frame: &Frame<'_>, mut curve: Curve, aim: &Aim) -> Option<Self> {
         let mut motion = frame.motion(&curve).ok()?;
-        if aim.within_s.is_finite() {
-            let moving_s: f64 = curve.interval_s.iter().sum();
-            let by = (aim.within_s - frame.resting_s()) / moving_s;
-            for s in &mut curve.interval_s {
-                *s *= by;
-            }
-        } else {
-            for (segment, [_, by]) in motion.segments().iter().zip(frame.stretch(&motion)) {
-                let (first, last) = segment.ends();
+        let mut mesh = Mesh::new(frame.setup);
+        if !matches!(aim.pace, Pace::Within(_)) {
+            mesh.integrate(frame.setup, &motion);
+            for (index, [_, rates]) in frame.stretch(&motion).into_iter().enumerate() {
+                let [forces, speeds] = loads(&mesh, index).map(|share| aim.guard * share);
+                let (first, last) = motion.segments()[index].ends();
                 // Nothing bounds what does not move.
+                let mut by = rates.max(speeds).max(LEAST_FACTOR);
+                if aim.pace == Pace::Sought || forces > FORCED {
+                    by = by.max(1.0);
+                }
                 for s in &mut curve.interval_s[first..last] {
-                    *s *= by.max(LEAST_FACTOR);
+                    *s *= by;
                 }
             }
         }
+        let most_s = match aim.pace {
+            Pace::Within(within_s) => within_s,
+            _ => aim.ceilings[Objective::Duration],
+        } - frame.resting_s();
+        let moving_s: f64 = curve.interval_s.iter().sum();
+        if moving_s > most_s || matches!(aim.pace, Pace::Within(_)) {
+            curve.interval_s.iter_mut().for_each(|s| *s *= most_s / moving_s);
+        }
         frame.clamp(&mut curve.interval_s);
         motion.retime(&frame.times_s(&curve.interval_s)).ok()?;
+        mesh.integrate(frame.setup, &motion);
         let mut joint_jerk = vec![0.0; frame.joints()];
         motion.rms_jerk(&mut joint_jerk);
-        let jerk_rad_s3: f64 = joint_jerk.iter().sum();
-        let share = frame.stretch(&motion).iter().flatten().fold(0.0, |most: f64, share| most.max(*share));
         let duration_s = motion.duration_s();
-        let merit = aim.duration * duration_s.ln() + aim.jerk * jerk_rad_s3.ln();
-        merit.is_finite().then_some(Self { curve, motion, duration_s, joint_jerk, jerk_rad_s3, share, merit })
+        let joint_power: Vec<f64> = mesh.squared_power.iter().map(|sum| (sum / duration_s).sqrt()).collect();
+        let objectives = Objectives::NONE
+            .with(Objective::Duration, duration_s)
+            .with(Objective::RmsJerk, joint_jerk.iter().sum())
+            .with(Objective::RmsPower, joint_power.iter().sum());
+        let mut share =
+            frame.stretch(&motion).iter().flatten().fold(0.0, |most: f64, share| most.max(*share));
+        for index in 0..motion.segments().len() {
+            share = loads(&mesh, index).into_iter().fold(share, |most, load| most.max(aim.guard * load));
+        }
+        let merit = aim.merit(&objectives);
+        let beyond = aim.beyond(&objectives).fold(0.0, |most: f64, (_, beyond)| most.max(beyond));
+        let known = merit.is_finite() && share.is_finite() && beyond.is_finite();
+        known.then_some(Self {
+            curve,
+            motion,
+            mesh,
+            objectives,
+            joint_jerk,
+            joint_power,
+            share,
+            beyond,
+            merit,
+        })
     }
 
-    /// The price of the most broken limit.
+    pub(super) fn duration_s(&self) -> f64 {
+        self.objectives[Objective::Duration]
+    }
+
+    /// The price of the most broken limit or ceiling.
     pub(super) fn broken(&self) -> f64 {
-        PRICE * (self.share - 1.0).max(0.0)
+        PRICE * (self.share - 1.0).max(self.beyond).max(0.0)
     }
 
     /// Merit and penalty.
     pub(super) fn worth(&self) -> f64 {
         self.merit + self.broken()
     }
+}
+
+/// Largest shares of limits in a segment: of torques and forces, and of what falls as time grows (rods, flow, tool).
+fn loads(mesh: &Mesh, segment: usize) -> [f64; 2] {
+    let (count, range) = (mesh.t_s.len(), mesh.segment[segment].clone());
+    let rows = mesh.shares.len() / count.max(1);
+    let mut most = [0.0_f64; 2];
+    for row in 0..rows {
+        let of_rate = row + 2 >= rows || row % LOADED == 1;
+        let own = &mesh.row(row)[range.clone()];
+        most[usize::from(of_rate)] =
+            own.iter().fold(most[usize::from(of_rate)], |most, share| most.max(*share));
+    }
+    most
 }

@@ -3,14 +3,18 @@
 use std::collections::BTreeMap;
 
 use super::{
-    aim::Aim,
+    aim::{Aim, Pace},
     curve::{Curve, Frame},
     factor::Bordered,
-    interior::{Edge, PRICE, Programme},
+    interior::{Ceiling, Edge, PRICE, Programme, Solved},
+    loads::LOADS,
     model::{Model, Row},
     point::Point,
 };
-use crate::spline::{Place, Quantity, WINDOW};
+use crate::{
+    spline::{Place, Quantity, WINDOW},
+    task::{Objective, Weights},
+};
 
 /// A share of a limit below this does not bound a step.
 const FAR: f64 = 0.3;
@@ -22,8 +26,20 @@ const SHAPE_PRICE: f64 = 1e-5;
 const LEAST: f64 = 1e-9;
 const LEAST_INTERVAL: f64 = 1e-6;
 
-/// Multipliers of limits, by limit and piece.
-pub(super) type Multipliers = BTreeMap<usize, f64>;
+/// Multipliers of a step.
+#[derive(Debug, Clone)]
+pub(super) struct Multipliers {
+    /// By limit and piece.
+    limits: BTreeMap<usize, f64>,
+    /// Of ceilings.
+    ceilings: Weights,
+}
+
+impl Default for Multipliers {
+    fn default() -> Self {
+        Self { limits: BTreeMap::new(), ceilings: Weights::ZERO }
+    }
+}
 
 pub(super) struct Step<'a> {
     model: &'a Model,
@@ -32,6 +48,7 @@ pub(super) struct Step<'a> {
     hessian: Bordered,
     gradient: Vec<f64>,
     edges: Vec<Edge>,
+    ceilings: Vec<(Objective, Ceiling)>,
 }
 
 /// A step and what its model promises.
@@ -46,7 +63,7 @@ pub(super) struct Taken {
 
 impl<'a> Step<'a> {
     pub(super) fn of(
-        frame: &Frame,
+        frame: &Frame<'_>,
         (here, aim, trust): (&Point, &Aim, f64),
         model: &'a Model,
         multipliers: &Multipliers,
@@ -55,36 +72,66 @@ impl<'a> Step<'a> {
         let gradient = vec![0.0; hessian.unknowns()];
         let edges = edges(frame, here, aim, trust);
         let border = hessian.border_start();
-        let mut step = Self { model, border, trust, hessian, gradient, edges };
-        step.merit(here, aim);
-        step.curve_limits(multipliers);
+        let mut step = Self { model, border, trust, hessian, gradient, edges, ceilings: Vec::new() };
+        step.merit(here, aim, &multipliers.ceilings);
+        step.curve_limits(&multipliers.limits);
         step.hessian.lift(LEAST, LEAST_INTERVAL);
         step
     }
 
-    /// Slopes of the merit, and its curvature by Gauss and Newton.
-    fn merit(&mut self, here: &Point, aim: &Aim) {
-        // The mean of squared jerk has the duration in it.
-        let (slope, width) = (aim.duration - 0.5 * aim.jerk, self.model.unknowns.border);
-        for (i, s) in here.curve.interval_s.iter().enumerate() {
-            self.gradient[self.border + i] += slope * s / here.duration_s;
-            self.hessian.corner[i * width + i] += aim.duration.max(aim.jerk) * s / here.duration_s;
+    /// Slopes of merit and ceilings, and the curvature of both by Gauss and Newton.
+    fn merit(&mut self, here: &Point, aim: &Aim, multipliers: &Weights) {
+        let slopes = aim.slopes(&here.objectives);
+        for &objective in Objective::OF_PLAN.iter().filter(|k| slopes[**k] > 0.0) {
+            let own = self.slope(here, objective);
+            self.gradient.iter_mut().zip(own).for_each(|(to, by)| *to += slopes[objective] * by);
         }
-        for (joint, row) in &self.model.jerk {
-            // A joint that hardly moves has no relative change to speak of.
-            let rms = here.joint_jerk[*joint].max(1e-9 * here.jerk_rad_s3);
-            let weight = 1.0 / (here.jerk_rad_s3 * rms * here.duration_s);
-            self.hessian.add_square(row, aim.jerk * weight, 0.0);
-            let still = Row { interval: [0.0; WINDOW], ..row.clone() };
-            self.hessian.add_square(&still, SHAPE_PRICE / self.trust * weight, 0.0);
-            self.hessian.add(row, aim.jerk * weight * row.value, &mut self.gradient);
+        self.ceilings = aim
+            .beyond(&here.objectives)
+            .map(|(objective, value)| (objective, Ceiling { slope: self.slope(here, objective), value }))
+            .collect();
+        let most = slopes.plan().iter().fold(0.0, |most: f64, slope| most.max(*slope));
+        let width = self.model.unknowns.border;
+        for (i, s) in here.curve.interval_s.iter().enumerate() {
+            self.hessian.corner[i * width + i] += most * s / here.duration_s();
+        }
+        for (objective, rows) in
+            [(Objective::RmsJerk, &self.model.jerk), (Objective::RmsPower, &self.model.power)]
+        {
+            let price = slopes[objective] + multipliers[objective];
+            for (joint, row) in rows {
+                let weight = weight(here, objective, *joint);
+                self.hessian.add_square(row, price * weight, 0.0);
+                if objective == Objective::RmsJerk {
+                    let still = Row { interval: [0.0; WINDOW], ..row.clone() };
+                    self.hessian.add_square(&still, SHAPE_PRICE / self.trust * weight, 0.0);
+                }
+            }
         }
     }
 
+    /// Slope of an objective's logarithm by all unknowns.
+    fn slope(&self, here: &Point, objective: Objective) -> Vec<f64> {
+        let mut slope = vec![0.0; self.gradient.len()];
+        // A mean has the duration in it.
+        let (rows, by): (&[_], _) = match objective {
+            Objective::RmsJerk => (&self.model.jerk, -0.5),
+            Objective::RmsPower => (&self.model.power, -0.5),
+            _ => (&[], 1.0),
+        };
+        for (i, s) in here.curve.interval_s.iter().enumerate() {
+            slope[self.border + i] += by * s / here.duration_s();
+        }
+        for (joint, row) in rows {
+            self.hessian.add(row, weight(here, objective, *joint) * row.value, &mut slope);
+        }
+        slope
+    }
+
     /// Rates are nearly exponential in the logarithms of the intervals: their curvature by the last multipliers.
-    fn curve_limits(&mut self, multipliers: &Multipliers) {
+    fn curve_limits(&mut self, multipliers: &BTreeMap<usize, f64>) {
         let mut largest: BTreeMap<usize, &Row> = BTreeMap::new();
-        for (number, row) in &self.model.shares {
+        for (number, row) in self.model.shares.iter().filter(|(number, _)| *number < LOADS) {
             let known = largest.entry(*number).or_insert(row);
             if row.value.abs() > known.value.abs() {
                 *known = row;
@@ -111,21 +158,25 @@ impl<'a> Step<'a> {
             limits: &limits,
             passes: &self.model.passes,
             edges: &self.edges,
+            ceilings: self.ceilings.iter().map(|(_, ceiling)| ceiling).collect(),
         };
-        let (x, found) = programme.solve();
+        let Solved { x, limits: found, ceilings } = programme.solve();
         let curved: f64 = self.hessian.times(&x).iter().zip(&x).map(|(a, b)| a * b).sum();
         let sloped: f64 = self.gradient.iter().zip(&x).map(|(a, b)| a * b).sum();
         let left = x[x.len() - 1];
-        let mut multipliers = Multipliers::new();
+        let mut multipliers = Multipliers::default();
         for (number, multiplier) in numbers.into_iter().zip(found) {
-            *multipliers.entry(number).or_default() += multiplier;
+            *multipliers.limits.entry(number).or_default() += multiplier;
+        }
+        for ((objective, _), multiplier) in self.ceilings.iter().zip(ceilings) {
+            multipliers.ceilings[*objective] = multiplier;
         }
         let length = x[self.border..x.len() - 1].iter().fold(0.0, |most: f64, d| most.max(d.abs()));
         Taken { worth: sloped + 0.5 * curved + PRICE * left, length, multipliers, x }
     }
 
     /// The curve a part of the way: free points from the moved control points, key points as they must be.
-    pub(super) fn moved(&self, frame: &Frame, here: &Point, taken: &Taken, part: f64) -> Option<Curve> {
+    pub(super) fn moved(&self, frame: &Frame<'_>, here: &Point, taken: &Taken, part: f64) -> Option<Curve> {
         let joints = frame.joints();
         let mut curve = here.curve.clone();
         for (s, change) in curve.interval_s.iter_mut().zip(&taken.x[self.border..]) {
@@ -159,10 +210,18 @@ impl<'a> Step<'a> {
     }
 }
 
+/// Weight of the squares of a joint in the logarithm of a mean that sums over joints.
+fn weight(here: &Point, objective: Objective, joint: usize) -> f64 {
+    let rms = if objective == Objective::RmsJerk { &here.joint_jerk } else { &here.joint_power };
+    let sum = here.objectives[objective];
+    // A joint that hardly moves has no relative change to speak of.
+    1.0 / (sum * rms[joint].max(1e-9 * sum) * here.duration_s())
+}
+
 /// Bounds of the logarithms of the intervals.
-fn edges(frame: &Frame, here: &Point, aim: &Aim, trust: f64) -> Vec<Edge> {
+fn edges(frame: &Frame<'_>, here: &Point, aim: &Aim, trust: f64) -> Vec<Edge> {
     let interval_s = &here.curve.interval_s;
-    let [low, high] = frame.interval_s;
+    let [low, high] = frame.setup.interval_s;
     let mut edges = Vec::new();
     for ends in frame.key.windows(2) {
         let whole: f64 = interval_s[ends[0]..ends[1]].iter().sum();
@@ -171,7 +230,7 @@ fn edges(frame: &Frame, here: &Point, aim: &Aim, trust: f64) -> Vec<Edge> {
         edges.push(Edge { entries: shares(1.0), most: (high / whole).ln().max(0.0) });
         edges.push(Edge { entries: shares(-1.0), most: (whole / low).ln().max(0.0) });
     }
-    if aim.within_s.is_finite() {
+    if matches!(aim.pace, Pace::Within(_)) {
         let moving_s: f64 = interval_s.iter().sum();
         let entries = interval_s.iter().enumerate().map(|(i, s)| (i, s / moving_s)).collect();
         edges.push(Edge { entries, most: 0.0 });
