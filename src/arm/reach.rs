@@ -17,6 +17,8 @@ const PATIENCE: usize = 25;
 const FAR: f64 = 1e-3;
 /// A pose counts as reached, m and rad.
 const REACHED: f64 = 1e-11;
+/// Steps of Newton's method to a pose nearby.
+const ONTO: usize = 8;
 /// Further than this the tool's motion is no longer nearly linear, m or rad.
 const LONGEST_ERROR: f64 = 0.3;
 /// Weight of the joints' motion in the least squares, by what is left to the pose.
@@ -61,6 +63,38 @@ impl Chain {
         }
         best.map(|found| found.iter().copied().collect())
             .ok_or(ArmError::Unreachable { distance_m: least.0, angle_rad: least.1 })
+    }
+
+    /// Directions in which the joints move the tool, each of length one, and how far a pose is along each, rad: postures
+    /// that keep the tool there differ from this one across them, to the first order.
+    pub fn held(&self, pose: &Pose, position_rad: &[f64]) -> Vec<(Vec<f64>, f64)> {
+        let left = self.left(pose, &DVector::from_column_slice(position_rad));
+        let svd = SVD::try_new(self.tool_jacobian(position_rad), true, true, f64::EPSILON, 1000);
+        let Some((u, v_t, values)) = svd.and_then(|svd| Some((svd.u?, svd.v_t?, svd.singular_values))) else {
+            return Vec::new();
+        };
+        let strongest = values.max();
+        let moved = values.iter().enumerate().filter(|(_, strength)| **strength > RIGID * strongest);
+        moved
+            .map(|(i, strength)| (v_t.row(i).iter().copied().collect(), u.column(i).dot(&left) / strength))
+            .collect()
+    }
+
+    /// The posture beside one that has the tool at a pose, whatever the joints' limits; `None` if none is near.
+    pub fn onto(&self, pose: &Pose, near_rad: &[f64]) -> Option<Vec<f64>> {
+        let mut position_rad = near_rad.to_vec();
+        for _ in 0..ONTO {
+            for (direction, left_rad) in self.held(pose, &position_rad) {
+                position_rad.iter_mut().zip(direction).for_each(|(q, by)| *q += left_rad * by);
+            }
+        }
+        self.is_at(pose, &position_rad, REACHED).then_some(position_rad)
+    }
+
+    /// Whether a posture has the tool at a pose, within so many m and rad.
+    pub fn is_at(&self, pose: &Pose, position_rad: &[f64], within: f64) -> bool {
+        position_rad.len() == self.joint_count()
+            && self.left(pose, &DVector::from_column_slice(position_rad)).norm() < within
     }
 
     /// Starts after the first follow the multiples of powers of the generalised golden ratio.

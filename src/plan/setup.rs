@@ -6,7 +6,7 @@ use super::{Limit, PlanError};
 use crate::{
     arm::{Arm, Inertia, Load, Pose},
     spline::{Degree, Dwell, Ends, KeyPoints, Motion},
-    task::{Boundary, Place, Task},
+    task::{Boundary, KeyPoint, Place, Task},
 };
 
 /// Slack of a key point at the end of a joint's range, rad; files round angles.
@@ -47,6 +47,8 @@ pub struct Setup {
     pub(super) stops: Vec<usize>,
     /// Payload by segment, kg.
     pub(super) payload_kg: Vec<f64>,
+    /// Where the tool is at key points whose joints may have any angles that bring it there.
+    pub(super) poses: Vec<Option<Pose>>,
 }
 
 impl Setup {
@@ -80,6 +82,7 @@ impl Setup {
                 Some(Dwell { point, length_s: given_s.or(stopped_s)? })
             })
             .collect();
+        let rests: Vec<usize> = dwells.iter().map(|dwell| dwell.point).collect();
         let mut dwell_before_s = vec![0.0; task.points.len() - 1];
         for dwell in &dwells {
             if let Some(before) = dwell_before_s.get_mut(dwell.point) {
@@ -109,6 +112,7 @@ impl Setup {
             slack: vec![1.0; Limit::rows(joints)],
             stops,
             payload_kg,
+            poses: poses(task, &rests),
         })
     }
 
@@ -253,13 +257,10 @@ fn key_points(
     for (point, key) in task.points.iter().enumerate() {
         near = match &key.place {
             Place::Joints(angles) => order.iter().map(|&own| angles[own]).collect(),
-            Place::Tool { x_m, z_m, pitch_rad } => {
-                let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), *pitch_rad);
-                let pose = Pose::from_parts(Translation3::new(*x_m, 0.0, *z_m), turn);
-                arm.chain
-                    .reach(&pose, &near)
-                    .map_err(|source| PlanError::Unreachable { point: point + 1, source })?
-            }
+            Place::Tool { x_m, z_m, pitch_rad, .. } => arm
+                .chain
+                .reach(&tool_pose([*x_m, *z_m], *pitch_rad), &near)
+                .map_err(|source| PlanError::Unreachable { point: point + 1, source })?,
         };
         for (j, (&found_rad, limit)) in near.iter().zip(limits).enumerate() {
             let [lowest_rad, highest_rad] = limit.range_rad;
@@ -277,6 +278,25 @@ fn key_points(
         position_rad.extend_from_slice(&near);
     }
     Ok(KeyPoints::new(order.len(), position_rad)?)
+}
+
+fn tool_pose([x_m, z_m]: [f64; 2], pitch_rad: f64) -> Pose {
+    let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), pitch_rad);
+    Pose::from_parts(Translation3::new(x_m, 0.0, z_m), turn)
+}
+
+/// Of key points where the arm passes and the task gives the tool alone.
+fn poses(task: &Task, rests: &[usize]) -> Vec<Option<Pose>> {
+    let last = task.points.len() - 1;
+    let of = |(point, key): (usize, &KeyPoint)| match key.place {
+        Place::Tool { x_m, z_m, pitch_rad, fixed_angles: false }
+            if point > 0 && point < last && !rests.contains(&point) =>
+        {
+            Some(tool_pose([x_m, z_m], pitch_rad))
+        }
+        _ => None,
+    };
+    task.points.iter().enumerate().map(of).collect()
 }
 
 fn ends(task: &Task, order: &[usize]) -> Ends {

@@ -5,7 +5,13 @@ use serde::{Deserialize, Serialize};
 use super::{PlanError, Setup};
 use crate::spline::{Dwell, KeyPoints, Motion};
 
-/// A point that a plan passes between two key points. Key points and these, with their times, determine the spline.
+/// A free point is a key point's own where its time is the key point's to within this, s.
+const SAME_S: f64 = 1e-9;
+/// Distance of the tool from where a key point has it, m and rad, that rounding in files may make.
+const SAME_POSE: f64 = 1e-6;
+
+/// A point that a plan passes between two key points; or, at the very time of a key point of which the task gives the
+/// tool alone, the angles that the joints have there. Key points and these, with their times, determine the spline.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Via {
@@ -24,7 +30,7 @@ pub(super) struct Through {
 }
 
 impl Setup {
-    /// The motion that arrives at the key points at these times, s, and passes free points between them.
+    /// The motion that arrives at the key points at these times, s, and passes free points.
     ///
     /// # Errors
     ///
@@ -44,7 +50,10 @@ impl Setup {
                 dwells.push(Dwell { point: t_s.len(), length_s });
             }
             t_s.push(arrive_s);
-            position_rad.extend_from_slice(points.of(point));
+            let own = rest.next_if(|(_, via)| {
+                (via.t_s - arrive_s).abs() < SAME_S && self.may_have(point, &via.position_rad)
+            });
+            position_rad.extend_from_slice(own.map_or(points.of(point), |(_, via)| &via.position_rad));
             let Some((next_s, dwell_s)) = times_s.get(point + 1).zip(self.dwell_before_s.get(point)) else {
                 break;
             };
@@ -70,6 +79,13 @@ impl Setup {
         let interval_s =
             t_s.windows(2).zip(&dwell_before_s).map(|(pair, dwell_s)| pair[1] - pair[0] - dwell_s).collect();
         Ok(Through { setup: Self { template, dwell_before_s, ..self.clone() }, interval_s })
+    }
+
+    /// Whether a key point may have these angles in place of its own: where the task gives the tool alone, and they
+    /// bring it there.
+    fn may_have(&self, point: usize, position_rad: &[f64]) -> bool {
+        let pose = self.poses.get(point).and_then(Option::as_ref);
+        pose.is_some_and(|pose| self.arm.chain.is_at(pose, position_rad, SAME_POSE))
     }
 
     /// Rests at key points.

@@ -94,6 +94,9 @@ pub(super) struct Tool {
     pub(super) z_m: f64,
     /// Pitch, positive from forward to down.
     pub(super) pitch_deg: f64,
+    /// Whether the joints keep the angles that inverse kinematics gives; a plan of free shape seeks better ones otherwise.
+    #[serde(default)]
+    pub(super) fixed_angles: bool,
 }
 
 /// State at one end of the plan; joints left out are at rest.

@@ -272,13 +272,13 @@ impl Reader<'_> {
         let place = match (&point.angles_deg, &point.tool) {
             (Some(angles), None) => Place::Joints(self.angles("angles_deg", angles, None)?),
             (None, Some(tool)) => {
-                let Tool { x_m, z_m, pitch_deg } = *tool;
+                let Tool { x_m, z_m, pitch_deg, fixed_angles } = *tool;
                 if ![x_m, z_m, pitch_deg].iter().all(|v| v.is_finite()) {
                     let found = format!("{x_m}, {z_m}, {pitch_deg}");
                     let expected = "finite numbers are expected";
                     return Err(TaskError::Value { line, key: "tool".into(), found, expected });
                 }
-                Place::Tool { x_m, z_m, pitch_rad: radians_from_degrees(pitch_deg) }
+                Place::Tool { x_m, z_m, pitch_rad: radians_from_degrees(pitch_deg), fixed_angles }
             }
             (Some(_), Some(_)) => return Err(TaskError::Place { line, found: "both" }),
             (None, None) => return Err(TaskError::Place { line, found: "neither" }),

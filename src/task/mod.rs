@@ -55,6 +55,8 @@ pub enum Place {
         z_m: f64,
         /// Pitch, rad; positive turns forward to down, as the joints do.
         pitch_rad: f64,
+        /// Whether a free shape leaves the angles of the joints as they are solved first.
+        fixed_angles: bool,
     },
 }
 

@@ -32,7 +32,7 @@ fn degrees_become_radians_and_joints_take_their_order() {
     assert_eq!(task.points[1].place, Place::Joints(vec![45.0 * DEGREE_RAD, 0.0]));
     assert_eq!((task.points[1].dwell_s, task.points[1].payload_kg), (Some(2.0), Some(10.0)));
     let pitch_rad = -90.0 * DEGREE_RAD;
-    assert_eq!(task.points[2].place, Place::Tool { x_m: 1.0, z_m: 2.0, pitch_rad });
+    assert_eq!(task.points[2].place, Place::Tool { x_m: 1.0, z_m: 2.0, pitch_rad, fixed_angles: false });
     assert!(task.limits[0].velocity_rad_s.is_infinite());
     assert!((task.limits[1].velocity_rad_s - 10.0 * DEGREE_RAD).abs() < 1e-15);
     assert!((task.ceilings[Objective::RmsJerk] - std::f64::consts::PI).abs() < 1e-15);

@@ -1,6 +1,7 @@
 //! A curve of free shape, and what is given of it.
 
 use crate::{
+    arm::Pose,
     plan::Setup,
     spline::{Degree, Dwell, KeyPoints, Motion, Quantity, Segment, SplineError},
 };
@@ -39,6 +40,8 @@ pub(super) struct Frame<'a> {
     pub(super) key: Vec<usize>,
     /// By joint.
     pub(super) bounds: Vec<Bounds>,
+    /// Points among the key points at which the tool is given and the joints are free.
+    pub(super) poses: Vec<(usize, Pose)>,
 }
 
 /// A curve in a frame.
@@ -53,6 +56,16 @@ pub(super) struct Curve {
 impl Frame<'_> {
     pub(super) fn joints(&self) -> usize {
         self.bounds.len()
+    }
+
+    /// Whether the angles at a point are given.
+    pub(super) fn is_given(&self, point: usize) -> bool {
+        self.key.binary_search(&point).is_ok() && self.pose(point).is_none()
+    }
+
+    /// Where the tool is at a point whose joints are free.
+    pub(super) fn pose(&self, point: usize) -> Option<&Pose> {
+        self.poses.iter().find(|(own, _)| *own == point).map(|(_, pose)| pose)
     }
 
     pub(super) fn degree(&self) -> Degree {
@@ -129,6 +142,7 @@ impl Frame<'_> {
         for point in &mut frame.key {
             *point *= pieces;
         }
+        frame.poses.iter_mut().for_each(|(point, _)| *point *= pieces);
         frame.dwells.iter_mut().for_each(|dwell| dwell.point *= pieces);
         let part = |s: &f64| std::iter::repeat_n(s / pieces as f64, pieces);
         let interval_s: Vec<f64> = curve.interval_s.iter().flat_map(part).collect();

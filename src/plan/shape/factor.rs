@@ -1,7 +1,7 @@
 //! Symmetric positive definite systems of independent bands that share a border: the control points of a segment are a
 //! band, of every joint its own where nothing joins them; the intervals are the border.
 
-use super::model::Row;
+use super::row::Row;
 
 /// Pivots below this share of their diagonal are raised to it.
 const LEAST_PIVOT: f64 = 1e-14;

@@ -122,6 +122,7 @@ fn start<'a>(setup: &'a Setup, interval_s: &[f64], pieces: usize) -> Option<(Fra
     let limits = setup.limits.iter();
     let frame = Frame {
         setup,
+        poses: setup.poses.iter().enumerate().filter_map(|(point, pose)| Some((point, (*pose)?))).collect(),
         dwells: setup.dwells(),
         key: (0..points.len()).collect(),
         bounds: limits
@@ -180,7 +181,8 @@ fn listed(frame: &Frame<'_>, interval_s: &[f64], point_rad: &[f64]) -> (Vec<f64>
     for (point, (t_s, position_rad)) in points.enumerate() {
         if frame.key.binary_search(&point).is_ok() {
             times_s.push(t_s);
-        } else {
+        }
+        if !frame.is_given(point) {
             via.push(Via { t_s, position_rad: position_rad.to_vec() });
         }
     }

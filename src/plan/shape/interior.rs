@@ -3,7 +3,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::{factor::Bordered, model::Row};
+use super::{factor::Bordered, row::Row};
 
 /// Price of breaking the linearised limits, against weights of the merit that sum to one.
 pub(super) const PRICE: f64 = 20.0;

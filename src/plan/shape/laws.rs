@@ -6,8 +6,9 @@ use crate::{
     moea::Budget,
     plan::{Choice, Evaluator, PlanEvaluation, Rule, Search, Setup, choose, search},
     spline::{Motion, Quantity, Segment},
-    task::{Ceilings, Objective, Task},
+    task::{Ceilings, Objective, Place, Task},
 };
+use nalgebra::Vector3;
 use std::ops::ControlFlow;
 
 const TASKS: [(&str, &str); 3] = [
@@ -84,6 +85,9 @@ fn check(setup: &Setup, found: &Shape, motion: &Motion) {
     for (point, t_s) in found.evaluation.times_s.iter().enumerate() {
         let at = motion.at(*t_s);
         for joint in 0..setup.joint_count() {
+            if setup.poses[point].is_some() {
+                continue;
+            }
             let want = setup.template().points().of(point)[joint];
             assert!(
                 (at.of(Quantity::Position, joint)[0] - want).abs() < 1e-12,
@@ -245,6 +249,51 @@ fn a_shape_follows_the_rule_that_chose_under_all_its_ceilings() {
             println!("{name}, {rule:?}: {change:?} %, {} steps", found.steps);
             assert!(after.within(&ceilings));
             check(&setup, &found, &motion(&setup, &found));
+        }
+    }
+}
+
+/// The same task with its key points between the first and the last given by the tool.
+fn by_tool(text: &str, fixed_angles: bool) -> Setup {
+    let (mut task, arm) = (Task::parse(text).unwrap(), Arm::sample().unwrap());
+    let last = task.points.len() - 1;
+    for key in &mut task.points[1..last] {
+        let Place::Joints(angles) = &key.place else { panic!("a task by angles") };
+        let pose = arm.chain.tool_pose(angles);
+        let [x, z] = [pose.rotation * Vector3::x(), pose.rotation * Vector3::z()];
+        let at = pose.translation.vector;
+        key.place = Place::Tool { x_m: at.x, z_m: at.z, pitch_rad: z.x.atan2(x.x), fixed_angles };
+    }
+    Setup::new(&task, arm).unwrap()
+}
+
+#[test]
+fn angles_that_the_tool_leaves_free_are_sought_with_the_shape_or_kept_on_request() {
+    for ((name, text), most_s) in TASKS.into_iter().zip([5.8, 11.0, 14.3]) {
+        for fixed in [true, false] {
+            let setup = by_tool(text, fixed);
+            let choice = chosen(&setup, Rule::Best(Objective::Duration), &Ceilings::NONE);
+            let found = shape(&setup, &choice, &Ceilings::NONE, None).unwrap();
+            let duration_s = found.evaluation.objectives[Objective::Duration];
+            println!(
+                "{name}, fixed {fixed}: {:.3} to {duration_s:.3} s, {most_s} asked, {} steps",
+                choice.timing.objectives[Objective::Duration],
+                found.steps
+            );
+            let motion = motion(&setup, &found);
+            check(&setup, &found, &motion);
+            let mut other: f64 = 0.0;
+            for (point, t_s) in found.evaluation.times_s.iter().enumerate() {
+                let angles = motion.at(*t_s).all(Quantity::Position).to_vec();
+                let solved = setup.template().points().of(point);
+                let pose = setup.arm.chain.tool_pose(solved);
+                assert!(setup.arm.chain.is_at(&pose, &angles, 1e-9), "{name}, point {point}");
+                other = angles.iter().zip(solved).fold(other, |most, (a, b)| most.max((a - b).abs()));
+            }
+            assert_eq!(other < 1e-9, fixed, "{name}");
+            let again =
+                PlanEvaluation::through(&setup, &found.evaluation.times_s, &found.evaluation.via).unwrap();
+            assert_eq!(again, found.evaluation);
         }
     }
 }

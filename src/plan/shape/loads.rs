@@ -3,9 +3,10 @@
 use super::{
     aim::Aim,
     curve::Frame,
-    model::{Model, Part, Row},
+    model::{Model, Part},
     point::Point,
     response::{Response, STATE},
+    row::Row,
 };
 use crate::spline::Place;
 
@@ -41,7 +42,7 @@ impl Model {
                 let of = |row: usize| {
                     let slope =
                         |at: usize| response.slope(row, instant, (at / STATE.len(), at % STATE.len()));
-                    joined(&state, slope, response.value(row, instant))
+                    Row::joined(&state, STATE.len(), slope, response.value(row, instant))
                 };
                 for row in 0..response.limits() {
                     if aim.guard * response.value(row, instant) > NEAR {
@@ -59,24 +60,4 @@ impl Model {
             }
         }
     }
-}
-
-/// A value of the state, from the rows of the state, `[joint][order]`, and its slopes by them.
-fn joined(state: &[Row], slope: impl Fn(usize) -> f64, value: f64) -> Row {
-    let mut row = Row { others: Vec::new(), control: [0.0; 8], value, ..state[0].clone() };
-    row.interval.fill(0.0);
-    for (joint, orders) in state.chunks_exact(STATE.len()).enumerate() {
-        let mut control = [0.0; 8];
-        for (order, own) in orders.iter().enumerate() {
-            let slope = slope(joint * STATE.len() + order);
-            control.iter_mut().zip(own.control).for_each(|(to, by)| *to += slope * by);
-            row.interval.iter_mut().zip(own.interval).for_each(|(to, by)| *to += slope * by);
-        }
-        if joint == 0 {
-            row.control = control;
-        } else {
-            row.others.push((joint, control));
-        }
-    }
-    row
 }

@@ -11,6 +11,7 @@ mod loads;
 mod model;
 mod point;
 mod response;
+mod row;
 mod step;
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A curve's limits, key points and jerk, linearised in its control points and the logarithms of its intervals.
 
-use super::{aim::Aim, curve::Frame, factor::Unknowns, point::Point};
+use super::{aim::Aim, curve::Frame, factor::Unknowns, point::Point, row::Row};
 use crate::spline::{Degree, Motion, Place, Quantity, Segment, WINDOW, Weights};
 
 /// Places on every piece at which limits are kept.
@@ -17,30 +17,12 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// A value at a place and its slopes.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Row {
-    pub(super) segment: usize,
-    /// The first of the segment's free control points that has weight.
-    pub(super) first: usize,
-    pub(super) joint: usize,
-    /// By the joint's free control points from the first on.
-    pub(super) control: [f64; 8],
-    /// The same of other joints, where several make the value.
-    pub(super) others: Vec<(usize, [f64; 8])>,
-    /// The first interval with a slope.
-    pub(super) first_interval: usize,
-    /// By the logarithm of the interval.
-    pub(super) interval: [f64; WINDOW],
-    pub(super) value: f64,
-}
-
 /// All that a step is made from.
 pub(super) struct Model {
     pub(super) unknowns: Unknowns,
     /// Shares of limits, signed, each with the number of its limit and piece.
     pub(super) shares: Vec<(usize, Row)>,
-    /// Angles at key points less what they must be, rad.
+    /// Angles at key points less what they must be, or less what brings the tool there, rad.
     pub(super) passes: Vec<Row>,
     /// Joints and their jerk at Gauss nodes, so weighted that the squares sum to the integral, rad/s^2.5.
     pub(super) jerk: Vec<(usize, Row)>,
@@ -84,9 +66,17 @@ impl Model {
             let (first, last) = segment.ends();
             for &key in frame.key.iter().filter(|key| (first + 1..last).contains(*key)) {
                 let weights = segment.spline.weights(Place::Point(key - first));
-                for joint in 0..joints {
-                    let mut row = part.row(&weights, 0, joint);
-                    row.value -= curve.point_rad[key * joints + joint];
+                let rows: Vec<Row> = (0..joints).map(|joint| part.row(&weights, 0, joint)).collect();
+                let angles = &curve.point_rad[key * joints..][..joints];
+                if let Some(pose) = frame.pose(key) {
+                    model.unknowns.joined = true;
+                    for (direction, left_rad) in frame.setup.arm.chain.held(pose, angles) {
+                        model.passes.push(Row::joined(&rows, 1, |joint| direction[joint], -left_rad));
+                    }
+                    continue;
+                }
+                for (mut row, angle) in rows.into_iter().zip(angles) {
+                    row.value -= angle;
                     model.passes.push(row);
                 }
             }
@@ -227,19 +217,5 @@ impl Part<'_> {
             *slope *= if interval < last { self.interval_s[interval] } else { 0.0 };
         }
         row
-    }
-}
-
-impl Row {
-    /// Joints and the slopes by their control points.
-    pub(super) fn parts(&self) -> impl Iterator<Item = (usize, &[f64; 8])> {
-        std::iter::once((self.joint, &self.control)).chain(self.others.iter().map(|(joint, c)| (*joint, c)))
-    }
-
-    pub(super) fn scaled(mut self, by: f64) -> Self {
-        self.value *= by;
-        let others = self.others.iter_mut().flat_map(|(_, control)| control);
-        self.control.iter_mut().chain(&mut self.interval).chain(others).for_each(|slope| *slope *= by);
-        self
     }
 }

@@ -8,8 +8,9 @@ use super::{
     factor::Bordered,
     interior::{Ceiling, Edge, PRICE, Programme, Solved},
     loads::LOADS,
-    model::{Model, Row},
+    model::Model,
     point::Point,
+    row::Row,
 };
 use crate::{
     spline::{Place, Quantity, WINDOW},
@@ -188,7 +189,7 @@ impl<'a> Step<'a> {
         for (index, (segment, before)) in segments {
             let (spline, (first, last)) = (&segment.spline, segment.ends());
             let (fixed, count) = (spline.fixed_controls(), spline.degree().order() + 1);
-            for point in (first + 1..last).filter(|point| frame.key.binary_search(point).is_err()) {
+            for point in (first + 1..last).filter(|point| !frame.is_given(*point)) {
                 let weights = spline.weights(Place::Point(point - first));
                 for joint in 0..joints {
                     let free = self.model.unknowns.free[index];
@@ -203,6 +204,10 @@ impl<'a> Step<'a> {
                     let terms = weights.value[0].iter().enumerate().take(count);
                     curve.point_rad[point * joints + joint] =
                         terms.map(|(k, weight)| weight * control(weights.first_control + k)).sum();
+                }
+                if let Some(pose) = frame.pose(point) {
+                    let angles = &mut curve.point_rad[point * joints..][..joints];
+                    angles.copy_from_slice(&frame.setup.arm.chain.onto(pose, angles)?);
                 }
             }
         }

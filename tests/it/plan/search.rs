@@ -158,7 +158,7 @@ fn key_points_given_by_the_tool_are_those_of_the_joints() {
         let forward = pose.rotation * nalgebra::Vector3::x();
         let pitch_rad = (-forward.z).atan2(forward.x);
         let at = pose.translation;
-        key.place = Place::Tool { x_m: at.x, z_m: at.z, pitch_rad };
+        key.place = Place::Tool { x_m: at.x, z_m: at.z, pitch_rad, fixed_angles: false };
     }
     let setup = Setup::new(&by_tool, arm.clone()).unwrap();
     let motion = setup.motion(&TASK_1).unwrap();
