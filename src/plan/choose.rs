@@ -90,6 +90,19 @@ pub struct Choice {
     pub(super) ceilings: Ceilings,
 }
 
+impl Choice {
+    /// By what share one plan is better than another by the rule, at the prices that it has at the chosen plan.
+    pub fn gain(&self, from: &Objectives, to: &Objectives) -> f64 {
+        let merit = self.merit.at_prices_of(&self.timing.objectives);
+        let (before, after) = (merit.of(from), merit.of(to));
+        if matches!(merit, Merit::Logarithms(_)) {
+            1.0 - (after - before).exp()
+        } else {
+            1.0 - after / before
+        }
+    }
+}
+
 /// Why no plan can be chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoChoice {

@@ -1,6 +1,6 @@
 //! The front where someone looks: exact plans of given times, and what a little more time buys.
 
-use super::{Rule, Setup, Timing, choose};
+use super::{Choice, Rule, Setup, Timing, choose};
 use crate::task::{Ceilings, Objective};
 
 /// A little more time, as a share.
@@ -22,15 +22,14 @@ pub fn bought(setup: &Setup, timing: &Timing) -> Vec<(Objective, f64)> {
 
 /// The smoothest plans within round times around one, s, each descended as far as it goes; none for times that no plan
 /// keeps.
-pub fn near(setup: &Setup, front: &[Timing], ceilings: &Ceilings, around_s: f64) -> Vec<(f64, Timing)> {
+pub fn near(setup: &Setup, front: &[Timing], ceilings: &Ceilings, around_s: f64) -> Vec<(f64, Choice)> {
     let within = |within_s: f64| {
         let ceilings = ceilings.with(Objective::Duration, within_s.min(ceilings[Objective::Duration]));
-        let best = choose(setup, front, &ceilings, (Rule::Best(Objective::RmsJerk), None)).ok()?;
-        Some((within_s, best.timing))
+        Some((within_s, choose(setup, front, &ceilings, (Rule::Best(Objective::RmsJerk), None)).ok()?))
     };
-    let mut plans: Vec<(f64, Timing)> = round_times_s(around_s).into_iter().filter_map(within).collect();
+    let mut plans: Vec<(f64, Choice)> = round_times_s(around_s).into_iter().filter_map(within).collect();
     // Slower than the task or its ceilings allow, all are one.
-    let took_s = |plan: &(f64, Timing)| plan.1.objectives[Objective::Duration];
+    let took_s = |plan: &(f64, Choice)| plan.1.timing.objectives[Objective::Duration];
     plans.dedup_by(|later, earlier| took_s(later) < took_s(earlier) * (1.0 + 1e-6));
     plans
 }
@@ -77,16 +76,16 @@ mod tests {
         let all: Vec<f64> = found
             .iter()
             .map(|(within_s, plan)| {
-                let took_s = plan.objectives[Objective::Duration];
+                let took_s = plan.timing.objectives[Objective::Duration];
                 assert!(took_s <= *within_s && took_s > within_s - 1e-3, "{took_s} within {within_s}");
-                plan.objectives[Objective::RmsJerk] * scale(took_s)
+                plan.timing.objectives[Objective::RmsJerk] * scale(took_s)
             })
             .collect();
         let (least, most) = all.iter().fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)));
         assert!(most / least < 1.001, "{most} {least}");
         assert_eq!(near(&setup, &front, &task.ceilings, 500.0).len(), 1, "the task ends at 40 s");
         let (within_s, plan) = &found[3];
-        let less = bought(&setup, plan)[0];
+        let less = bought(&setup, &plan.timing)[0];
         let due = 1.0 - scale(*within_s) / scale(within_s * (1.0 + MORE));
         assert!(less.0 == Objective::RmsJerk && (less.1 / due - 1.0).abs() < 0.02, "{less:?}, due {due}");
     }

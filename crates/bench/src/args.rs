@@ -146,6 +146,11 @@ pub(crate) struct Shared {
     )]
     algorithm: Vec<String>,
 
+    /// Algorithm that the others are compared with
+    #[arg(long, value_name = "NAME", default_value = "nsga3", ignore_case = true,
+        value_parser = PossibleValuesParser::new(ALGORITHMS.into_iter().map(|named| named.name)))]
+    baseline: String,
+
     /// Budgets, each a run of its own; by default 5000,20000,50000 (moea) or 1000,5000,20000 (plan)
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = value_parser!(u64).range(1..=1_000_000_000))]
     evaluations: Vec<u64>,
@@ -230,6 +235,7 @@ impl Shared {
             } else {
                 self.evaluations.clone()
             },
+            baseline: self.baseline.to_ascii_lowercase(),
             first_seed: self.seed,
             seeds: self.seeds,
             steps: if self.curves.is_some() { STEPS } else { 0 },

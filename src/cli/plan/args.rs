@@ -149,6 +149,10 @@ pub(super) struct ChoiceArgs {
     /// Also the smoothest plans within round times around S, each exact: the front between those of the search
     #[arg(long, value_name = "S", value_parser = near_s, conflicts_with = "times", allow_negative_numbers = true)]
     pub(super) near: Option<f64>,
+
+    /// Also by splines of the other degrees, 5, 6 and 7, searched and chosen alike; names one that is better
+    #[arg(long, conflicts_with = "times")]
+    pub(super) degrees: bool,
 }
 
 fn near_s(text: &str) -> Result<f64, String> {
@@ -208,6 +212,7 @@ impl Args {
         let rule = self.choice.weights.map(|_| Rule::Weights).or(self.choice.choose);
         Options {
             near_s: self.choice.near,
+            degrees: self.choice.degrees,
             search: Search {
                 algorithm: NamedAlgorithm::find(&self.search.algorithm)
                     .map_or(default.algorithm, |c| c.algorithm),

@@ -1,6 +1,7 @@
 //! What was planned.
 
 mod choices;
+mod degrees;
 mod figures;
 mod front;
 mod motion;

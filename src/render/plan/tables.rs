@@ -1,6 +1,6 @@
 //! Plans as tables.
 
-use super::{name, shown};
+use super::{degrees::degrees, name, shown};
 use crate::{
     plan::{BEYOND, HORIZON, Limit, Margin, NoShape, PlanEvaluation, Rule},
     render::kit::{Column, Document, Id, NONE, Section, Sentence, Table},
@@ -63,6 +63,7 @@ pub(crate) fn document(
                 .chain([Sentence::advice(another)]),
         ));
     document.sections.extend(near(options.near_s, planned));
+    document.sections.extend(degrees(options.degrees, planned));
     document.sections.extend(margins(&planned.chosen, &planned.joints));
     document.remarked(&planned.remarks)
 }
@@ -77,7 +78,7 @@ pub(crate) fn judged_document(title: &str, joints: &[String], evaluation: &PlanE
     document
 }
 
-fn plans(rows: impl IntoIterator<Item = Vec<String>>) -> Table {
+pub(super) fn plans(rows: impl IntoIterator<Item = Vec<String>>) -> Table {
     let costs = Objective::OF_PLAN.iter().map(|objective| {
         let row = objective.row();
         Column::numbers(row.heading).meaning(row.explanation)
@@ -93,7 +94,7 @@ fn kept(evaluation: &PlanEvaluation) -> String {
     }
 }
 
-fn row(name: &str, evaluation: &PlanEvaluation, joints: &[String]) -> Vec<String> {
+pub(super) fn row(name: &str, evaluation: &PlanEvaluation, joints: &[String]) -> Vec<String> {
     let arrivals: Vec<String> = evaluation.times_s.iter().map(|t_s| format!("{t_s:.2}")).collect();
     let mut row = vec![name.to_owned(), arrivals.join(" ")];
     row.extend(Objective::OF_PLAN.iter().map(|&k| k.number(evaluation.objectives[k])));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{Options, Planned, Step};
+use super::{OfDegree, Options, Planned, Step};
 use crate::{
     document::{PROGRAM, pretty, unbounded},
     plan::{Limit, Margin, PlanEvaluation, Rule, Via},
@@ -60,11 +60,27 @@ pub struct PlanDocument {
     /// The smoothest plans within round times, exact, where they were asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub near: Vec<PlanEntry>,
+    /// Plans by splines of other degrees, chosen by the same rule, where they were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub degrees: Vec<DegreeEntry>,
     /// The plan to run; of an infeasible task the nearest to being one.
     pub chosen: ChosenPlan,
     /// Doubts about the task; any makes the exit code 3.
     #[serde(default)]
     pub remarks: Vec<Remark>,
+}
+
+/// A plan by a spline of another degree than the task's.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct DegreeEntry {
+    /// Degree of the spline: 5, 6 or 7.
+    pub degree: u8,
+    /// By what share it is better than the chosen plan by the rule; negative if it is worse.
+    pub better_by_rule: f64,
+    /// The plan.
+    #[serde(flatten)]
+    pub plan: PlanEntry,
 }
 
 /// One plan.
@@ -171,6 +187,12 @@ impl PlanEntry {
     }
 }
 
+impl DegreeEntry {
+    fn of(found: &OfDegree) -> Self {
+        Self { degree: found.degree, better_by_rule: found.better, plan: PlanEntry::of(&found.chosen) }
+    }
+}
+
 impl PlanDocument {
     /// Of one plan that was given, or of the nearest to one of an infeasible task.
     pub fn evaluated(title: &str, joints: &[String], evaluation: &PlanEvaluation, feasible: bool) -> Self {
@@ -192,6 +214,7 @@ impl PlanDocument {
             front: if feasible { vec![entry.clone()] } else { Vec::new() },
             best: None,
             near: Vec::new(),
+            degrees: Vec::new(),
             chosen: ChosenPlan {
                 entry,
                 rule: None,
@@ -233,6 +256,7 @@ impl PlanDocument {
             front: plans.map(entry).collect(),
             best: Some(planned.ends.clone()),
             near: planned.near.iter().map(|(_, plan)| PlanEntry::of(plan)).collect(),
+            degrees: planned.degrees.iter().map(DegreeEntry::of).collect(),
             chosen: ChosenPlan {
                 rule: Some(choice.rule),
                 weights: choice.weights.map(|weights| weights.plan().to_vec()),

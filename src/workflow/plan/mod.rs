@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 mod convergence;
 mod course;
+mod degrees;
 mod document;
 mod failure;
 mod request;
@@ -19,6 +20,8 @@ use crate::{
 use convergence::Growth;
 pub use convergence::Step;
 pub use course::Course;
+pub use degrees::OfDegree;
+use degrees::{degrees, shaped};
 pub use document::{ChosenPlan, MarginEntry, PlanDocument, PlanEntry};
 pub use failure::PlanFailure;
 pub use request::{PlanRequest, SAMPLE_TASK, TaskFiles};
@@ -36,6 +39,8 @@ pub struct Options {
     pub shape: Shaping,
     /// Where the front is to be exact too: around that time, s.
     pub near_s: Option<f64>,
+    /// Whether splines of the other degrees are tried too.
+    pub degrees: bool,
 }
 
 /// Whether the chosen plan keeps the shape that its times give it.
@@ -78,6 +83,10 @@ pub struct Planned {
     pub bought: Vec<(Objective, f64)>,
     /// The smoothest plans within round times around the one asked for, with these times, s.
     pub near: Vec<(f64, PlanEvaluation)>,
+    /// Degree of the task's splines.
+    pub degree: u8,
+    /// Plans by splines of the other degrees, where they were asked for.
+    pub degrees: Vec<OfDegree>,
     /// What its free shape gained, if one was sought and found.
     pub shaped: Option<Shaped>,
     /// Why it has none, where one was sought.
@@ -173,22 +182,26 @@ pub fn run(
     let timing = evaluation(&choice.timing)?;
     let around = options.near_s.map(|near_s| near(setup, &found.front, &task.ceilings, near_s));
     let around = around.unwrap_or_default().into_iter();
-    let near = around.map(|(within_s, plan)| Ok((within_s, evaluation(&plan)?)));
-    let near = near.collect::<Result<_, PlanError>>()?;
-    let (chosen, shaped, no_shape) = match options.shape {
+    let near =
+        around.filter_map(|(within_s, plan)| Some((within_s, shaped(setup, task, &plan, options.shape)?)));
+    let near = near.collect();
+    let (chosen, gained, no_shape) = match options.shape {
         Shaping::Timing => (timing, None, None),
         Shaping::Free(pieces) => match shape(setup, &choice, &task.ceilings, pieces) {
             Ok(Shape { evaluation, pieces, .. }) => (evaluation, Some(Shaped { timing, pieces }), None),
             Err(why) => (timing, None, Some(why)),
         },
     };
+    let of_degrees = if options.degrees { degrees(request, options, (&choice, &chosen)) } else { Vec::new() };
     Ok(Planned {
+        degree: task.degree,
+        degrees: of_degrees,
         joints: setup.joint_names(),
         times_s: found.front.iter().map(|timing| setup.times_s(&timing.interval_s)).collect(),
         ends,
         best,
         chosen,
-        shaped,
+        shaped: gained,
         no_shape,
         evaluations: found.evaluations + choice.evaluations,
         generations: found.generations,

@@ -21,9 +21,6 @@ pub use sample::{Against, Sample, Verdict, quartiles};
 pub use tables::{decimals, document};
 pub use watch::Watch;
 
-/// Name of the algorithm that the others are compared with.
-pub const BASELINE: &str = "nsga3";
-
 /// Fewer seeds than this say little.
 pub const FEW_SEEDS: u64 = 10;
 
@@ -159,6 +156,8 @@ pub struct Inputs<S> {
     pub entrants: Vec<Entrant>,
     /// Budgets. Each is a run of its own, because the focus of NSGA-III-FO fades over the budget.
     pub evaluations: Vec<u64>,
+    /// Name of the algorithm that the others are compared with.
+    pub baseline: String,
     /// First seed.
     pub first_seed: u64,
     /// Number of seeds, which follow one another.
@@ -176,8 +175,19 @@ pub struct Inputs<S> {
 impl Inputs<()> {
     /// The same on subjects, with their settings and notes.
     pub fn of<S>(self, subjects: Vec<S>, settings: BTreeMap<String, f64>, notes: Vec<String>) -> Inputs<S> {
-        let Inputs { entrants, evaluations, first_seed, seeds, steps, fronts, .. } = self;
-        Inputs { subjects, entrants, evaluations, first_seed, seeds, steps, fronts, settings, notes }
+        let Inputs { entrants, evaluations, baseline, first_seed, seeds, steps, fronts, .. } = self;
+        Inputs {
+            subjects,
+            entrants,
+            evaluations,
+            baseline,
+            first_seed,
+            seeds,
+            steps,
+            fronts,
+            settings,
+            notes,
+        }
     }
 }
 

@@ -4,8 +4,7 @@ use hydrotrace::document::PROGRAM;
 use rayon::prelude::*;
 
 use super::{
-    BASELINE, Cell, Curve, Entrant, FEW_SEEDS, FORMAT, Front, Inputs, Run, Sample, Study, Subject, Tally,
-    Watch,
+    Cell, Curve, Entrant, FEW_SEEDS, FORMAT, Front, Inputs, Run, Sample, Study, Subject, Tally, Watch,
     sample::{quartiles, tallied},
 };
 
@@ -67,11 +66,11 @@ fn summary<S: Subject>(inputs: &Inputs<S>, batches: &[Batch<'_, S>]) -> Study {
         .iter()
         .map(|batch| {
             let rival = batches.iter().find(|other| {
-                other.entrant.name == BASELINE
+                other.entrant.name == inputs.baseline
                     && std::ptr::eq(other.subject, batch.subject)
                     && other.evaluations == batch.evaluations
             });
-            cell(batch, rival.filter(|_| batch.entrant.name != BASELINE))
+            cell(batch, rival.filter(|_| batch.entrant.name != inputs.baseline))
         })
         .collect();
     Study {
@@ -80,7 +79,7 @@ fn summary<S: Subject>(inputs: &Inputs<S>, batches: &[Batch<'_, S>]) -> Study {
         study: S::FORM.name.to_owned(),
         first_seed: inputs.first_seed,
         seeds: inputs.seeds,
-        baseline: BASELINE.to_owned(),
+        baseline: inputs.baseline.clone(),
         settings: inputs.settings.clone(),
         notes: notes(inputs),
         references: inputs.subjects.iter().map(|subject| subject.reference().clone()).collect(),
@@ -93,7 +92,7 @@ fn summary<S: Subject>(inputs: &Inputs<S>, batches: &[Batch<'_, S>]) -> Study {
 }
 
 fn notes<S>(inputs: &Inputs<S>) -> Vec<String> {
-    let Inputs { first_seed: first, seeds, .. } = inputs;
+    let Inputs { first_seed: first, seeds, baseline, .. } = inputs;
     let which = match seeds {
         1 => format!("One seed, {first}; a run of its own for each budget."),
         n => format!(
@@ -104,8 +103,8 @@ fn notes<S>(inputs: &Inputs<S>) -> Vec<String> {
     let mut notes = vec![which];
     notes.extend(inputs.notes.iter().cloned());
     notes.push(format!(
-        "Against {BASELINE}: win or loss if the two-sided rank-sum test gives p < 0.05, not corrected for the number \
-         of comparisons; A is the probability that a run is better than one of {BASELINE} (Vargha and Delaney), 0.5 \
+        "Against {baseline}: win or loss if the two-sided rank-sum test gives p < 0.05, not corrected for the number \
+         of comparisons; A is the probability that a run is better than one of {baseline} (Vargha and Delaney), 0.5 \
          for no difference."
     ));
     if *seeds < FEW_SEEDS {

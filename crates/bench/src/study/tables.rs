@@ -2,7 +2,7 @@
 
 use hydrotrace::render::kit::{Document, Id, NONE, Section, Sentence, Table};
 
-use super::{BASELINE, Cell, Column, Form, Measure, Sample, Study, Tally, Verdict};
+use super::{Cell, Column, Form, Measure, Sample, Study, Tally, Verdict};
 
 /// For a terminal, or as Markdown.
 pub fn document(form: &Form, study: &Study) -> Document {
@@ -26,7 +26,7 @@ pub fn document(form: &Form, study: &Study) -> Document {
         let columns: Vec<&str> = tallied.iter().map(|measure| measure.tally).collect();
         let rows = study.tallies.iter().map(|tally| tally_row(&tallied, tally));
         let tallies = Table::new(&["algorithm"], &columns, rows);
-        let heading = format!("Wins, ties and losses against {BASELINE}");
+        let heading = format!("Wins, ties and losses against {}", study.baseline);
         document.sections.push(Section::new(Id::OTHER, heading, [tallies]));
     }
     document.sections.extend((form.paper)(study));

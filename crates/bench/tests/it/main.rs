@@ -28,6 +28,7 @@ fn stderr(run: &Output) -> String {
 fn shared(algorithms: &[&str], evaluations: &[u64]) -> Inputs<()> {
     let find = |name: &&str| Entrant::from(::moea::NamedAlgorithm::find(name).unwrap());
     Inputs {
+        baseline: "nsga3".to_owned(),
         subjects: Vec::new(),
         entrants: algorithms.iter().map(find).collect(),
         evaluations: evaluations.to_vec(),
