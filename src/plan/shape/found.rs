@@ -46,7 +46,7 @@ const DEFAULT_MOST: usize = 5;
 /// Pieces of a motion at most: the time of a step grows with their cube.
 const MOST: usize = 96;
 /// Quadratic programmes of a descent, and the gain of merit that is worth one.
-const STEPS: usize = 60;
+const STEPS: usize = 80;
 const ENOUGH: f64 = 1e-5;
 /// Descents of the smoothest shape of a duration, each a little faster where limits made the last one slower.
 const TRIES: usize = 3;
@@ -56,10 +56,12 @@ const CLEAR: f64 = 1e-10;
 /// A plan slower than this many times what its descent ended with has met a limit that time does not mend.
 const SLOWEST: f64 = 1.5;
 
-/// The shape for a choice: from its times, faster if its rule asks for the fastest plan, else smoother in its time.
+/// The shape for a choice, from its times: better by the rule that chose, under every limit and the ceilings. Angles at
+/// key points where the tool alone is given are sought, too.
 ///
-/// Descents keep the limits of angles, speeds, accelerations and jerks; where another breaks, the plan is slowed
-/// down until it holds. `pieces`: of each interval, by default as many as make 25 altogether, two to five.
+/// `pieces`: of each interval, by default as many as make 25 altogether, two to five. Loads are looked at in the Gauss
+/// nodes of the pieces; where they break a limit between them, the descent goes on within a tighter one, and the last
+/// plan is slowed down until it holds.
 ///
 /// # Errors
 ///

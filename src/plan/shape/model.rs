@@ -24,6 +24,8 @@ pub(super) struct Model {
     pub(super) shares: Vec<(usize, Row)>,
     /// Angles at key points less what they must be, or less what brings the tool there, rad.
     pub(super) passes: Vec<Row>,
+    /// Angles at key points where the tool is given, rad.
+    pub(super) postures: Vec<Row>,
     /// Joints and their jerk at Gauss nodes, so weighted that the squares sum to the integral, rad/s^2.5.
     pub(super) jerk: Vec<(usize, Row)>,
     /// The same of power, W s^0.5; where it counts.
@@ -44,6 +46,7 @@ impl Model {
             },
             shares: Vec::new(),
             passes: Vec::new(),
+            postures: Vec::new(),
             jerk: Vec::new(),
             power: Vec::new(),
         };
@@ -70,6 +73,7 @@ impl Model {
                 let angles = &curve.point_rad[key * joints..][..joints];
                 if let Some(pose) = frame.pose(key) {
                     model.unknowns.joined = true;
+                    model.postures.extend(rows.iter().cloned());
                     for (direction, left_rad) in frame.setup.arm.chain.held(pose, angles) {
                         model.passes.push(Row::joined(&rows, 1, |joint| direction[joint], -left_rad));
                     }

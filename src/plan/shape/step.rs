@@ -23,6 +23,9 @@ const FAR: f64 = 0.3;
 const CURVED: f64 = 0.5;
 /// Price of changing the shape, times the longest change of a logarithm: steps shorten in angles as in times.
 const SHAPE_PRICE: f64 = 1e-5;
+/// Price of changing the angles at a key point, 1/rad², times the longest change of a logarithm: a tool stays where it is to the
+/// first order alone.
+const POSTURE_PRICE: f64 = 0.05;
 /// Curvature that keeps unknowns without any in place.
 const LEAST: f64 = 1e-9;
 const LEAST_INTERVAL: f64 = 1e-6;
@@ -76,6 +79,10 @@ impl<'a> Step<'a> {
         let mut step = Self { model, border, trust, hessian, gradient, edges, ceilings: Vec::new() };
         step.merit(here, aim, &multipliers.ceilings);
         step.curve_limits(&multipliers.limits);
+        for row in &model.postures {
+            let still = Row { interval: [0.0; WINDOW], ..row.clone() };
+            step.hessian.add_square(&still, POSTURE_PRICE / trust, 0.0);
+        }
         step.hessian.lift(LEAST, LEAST_INTERVAL);
         step
     }
