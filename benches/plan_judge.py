@@ -1,5 +1,5 @@
-"""Tasks of the sample arm, and one judge for every plan of them, whoever made it: NumPy, SciPy and Pinocchio, no code
-of hydrotrace. `plan_time_peers.py` uses it.
+"""Tasks of the sample arm, one judge for every plan of them, whoever made it, and first guesses: NumPy, SciPy and
+Pinocchio, no code of hydrotrace. `plan_time_peers.py` uses it.
 
 A plan is a list of movements from rest to rest. A movement is a `scipy.interpolate.PPoly` of joint angles over time,
 rad and s, and the times at which it is at its key points. Between movements the arm dwells.
@@ -11,11 +11,12 @@ from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
-from scipy.interpolate import PPoly
+from scipy.interpolate import PPoly, make_interp_spline
 from scipy.optimize import brentq
 
 ROOT = Path(__file__).resolve().parents[1]
 ARM = ROOT / "sample-logs/arm"
+JOINTS = 6
 SAMPLES = 4000  # of each interval between key points
 HELD = 1e-6  # a limit is kept up to this share beyond it
 JOINED = 1e-4  # a derivative is continuous, or zero at rest, up to this share of its largest value
@@ -186,6 +187,11 @@ def judge(task, plan):
         smooth=min(movement.smooth for movement in found), at_rest=min(movement.at_rest for movement in found))
 
 
+def from_spline(spline):
+    breaks = np.unique(spline.t)
+    return from_derivatives(breaks, [spline(breaks[:-1], order) for order in range(spline.k + 1)])
+
+
 def from_derivatives(breaks, values):
     """The curve with these derivatives at the start of every piece, `[order][piece][joint]`."""
     scaled = [value / factorial(order) for order, value in enumerate(values)]
@@ -199,3 +205,28 @@ def from_positions(breaks, position, degree):
     values = np.stack([position(breaks[:-1] + width * node) for node in nodes])
     flat = np.linalg.solve(np.vander(nodes), values.reshape(degree + 1, -1)).reshape(values.shape)
     return PPoly(flat / width[None, :, None] ** np.arange(degree, -1, -1)[:, None, None], breaks)
+
+
+def guess(task, leg):
+    """Times at key points, each interval as its slowest joint needs it, and a quintic spline that keeps its limits."""
+    travel = (np.abs(np.diff(leg.points, axis=0)) / task.speed).max(axis=1)
+    t = np.concatenate(([0.0], np.cumsum(2 * travel + 0.5)))
+    t *= slower(task, smooth(t, leg.points))
+    return t, smooth(t, leg.points)
+
+
+def smooth(t, positions):
+    rest = [(order, np.zeros(JOINTS)) for order in (1, 2)]
+    return make_interp_spline(t, positions, k=5, bc_type=(rest, rest))
+
+
+def slower(task, curve):
+    """Factor of time by which a spline keeps its limits of motion."""
+    t = np.linspace(curve.t[0], curve.t[-1], 4000)
+    limits = task.speed, task.acceleration, task.jerk
+    return max((np.abs(curve(t, order)) / limit).max()**(1 / order) for order, limit in enumerate(limits, 1))
+
+
+def split(t, pieces):
+    """Every interval in equal pieces."""
+    return np.append(np.concatenate([np.linspace(a, b, pieces, endpoint=False) for a, b in zip(t, t[1:])]), t[-1])

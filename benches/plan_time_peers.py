@@ -24,48 +24,16 @@ import importlib
 import json
 import resource
 import subprocess
-import time
 from importlib.metadata import version
 from math import factorial
-from pathlib import Path
 
 import numpy as np
-from plan_judge import ROOT, Task, from_derivatives, from_positions, judge
-from scipy.interpolate import BSpline, CubicSpline, make_interp_spline, make_lsq_spline
+from plan_judge import (JOINTS, ROOT, Task, from_derivatives, from_positions, from_spline, guess, judge, slower, smooth,
+                        split)
+from scipy.interpolate import BSpline, CubicSpline, make_lsq_spline
 from scipy.optimize import minimize
 
 DEGREE = 6
-JOINTS = 6
-
-
-def guess(task, leg):
-    """Times at key points, each interval as its slowest joint needs it, and a quintic spline that keeps its limits."""
-    travel = (np.abs(np.diff(leg.points, axis=0)) / task.speed).max(axis=1)
-    t = np.concatenate(([0.0], np.cumsum(2 * travel + 0.5)))
-    t *= slower(task, smooth(t, leg.points))
-    return t, smooth(t, leg.points)
-
-
-def smooth(t, positions):
-    rest = [(order, np.zeros(JOINTS)) for order in (1, 2)]
-    return make_interp_spline(t, positions, k=5, bc_type=(rest, rest))
-
-
-def slower(task, curve):
-    """Factor of time by which a spline keeps its limits of motion."""
-    t = np.linspace(curve.t[0], curve.t[-1], 4000)
-    limits = task.speed, task.acceleration, task.jerk
-    return max((np.abs(curve(t, order)) / limit).max()**(1 / order) for order, limit in enumerate(limits, 1))
-
-
-def split(t, pieces):
-    """Every interval in equal pieces."""
-    return np.append(np.concatenate([np.linspace(a, b, pieces, endpoint=False) for a, b in zip(t, t[1:])]), t[-1])
-
-
-def from_spline(spline):
-    breaks = np.unique(spline.t)
-    return from_derivatives(breaks, [spline(breaks[:-1], order) for order in range(spline.k + 1)])
 
 
 def hydrotrace(task, options, *more):
@@ -279,8 +247,8 @@ def shoot(task, leg, pieces, free, start):
     def after(part, k):
         return sum(taylor[e, :] * (h * part)**(e - k) / factorial(e - k) for e in range(k, DEGREE + 1))
     bounds = [1 / task.speed, 1 / task.acceleration, 1 / task.jerk]
-    # Between its nodes the jerk, a cubic, goes beyond its limit by less than 1 %; the others hardly do.
-    nodes = {1: 8, 2: 8, 3: 24}
+    # Between these nodes a limit is exceeded by some tenths of a percent.
+    nodes = {1: 12, 2: 16, 3: 24}
     shares = [after(i / of, k) * ca.DM(bounds[k - 1] * scale[k]).T for k, of in nodes.items() for i in range(of + 1)]
     ranges = [(after(i / 8, 0) - ca.DM((task.high + task.low) / 2).T) * ca.DM(2 / (task.high - task.low)).T
               for i in range(1, 8)]
