@@ -197,7 +197,8 @@ proptest! {
         pair.segments = vec![0..cut * n / 100, cut * n / 100..n];
         let whole = of(&pair).whole_run;
         let share = whole.lag_share.unwrap();
-        prop_assert!(share.share > 0.99 && share.mostly, "{share:?}");
+        // Where the log is cut, the time of the lag has nothing to be compared with.
+        prop_assert!(share.share > 0.97 && share.mostly, "{share:?}");
         if let Some([low, high]) = share.interval {
             prop_assert!(low <= share.share && share.share <= high);
         }

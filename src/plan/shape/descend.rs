@@ -18,6 +18,8 @@ const PARTS: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
 /// Shares of the gain expected: below the first a step is refused, above the second the next may be longer.
 const POOR: f64 = 0.1;
 const GOOD: f64 = 0.6;
+/// A step that gains less than this share of what was expected is corrected.
+const CORRECT: f64 = 0.1;
 /// So many gains in a row that are not worth going on for end a descent.
 const SMALL: usize = 3;
 
@@ -48,7 +50,18 @@ pub(super) fn descend(
         if expected.is_nan() || expected < enough {
             break;
         }
-        let found = best_part(frame, (&here, aim, expected), (&step, &taken), &mut tried);
+        let mut found = best_part(frame, (&here, aim, expected), (&step, &taken), &mut tried);
+        if found.as_ref().is_none_or(|found| found.gain < CORRECT * expected)
+            && let Some(there) = step.moved(frame, &here, &taken, 1.0)
+            && let Some(there) = Point::as_it_is(frame, there, aim)
+        {
+            let again = step.corrected(&taken, &Model::of(frame, &there, aim, &near));
+            let corrected = best_part(frame, (&here, aim, expected), (&step, &again), &mut tried);
+            let gain = |found: &Option<Found>| found.as_ref().map_or(f64::NEG_INFINITY, |found| found.gain);
+            if gain(&corrected) > gain(&found) {
+                found = corrected;
+            }
+        }
         if found.as_ref().is_none_or(|found| found.part < 0.3) {
             trust = taken.length.min(0.5 * trust);
         } else if found.as_ref().is_some_and(|found| found.gain > GOOD * expected) {

@@ -38,21 +38,25 @@ pub enum NoShape {
 }
 
 /// Pieces of an interval at most.
-pub const MOST_PIECES: u32 = 8;
+pub const MOST_PIECES: u32 = 20;
 /// Pieces that a motion is split into by default, and how many that is of an interval at least and most.
 const PIECES: usize = 25;
 const FEWEST: usize = 2;
 const DEFAULT_MOST: usize = 5;
 /// Pieces of a motion at most: the time of a step grows with their cube.
-const MOST: usize = 96;
+const MOST: usize = 128;
 /// Quadratic programmes of a descent, and the gain of merit that is worth one.
 const STEPS: usize = 80;
 const ENOUGH: f64 = 1e-5;
 /// Descents of the smoothest shape of a duration, each a little faster where limits made the last one slower.
 const TRIES: usize = 3;
 /// Slowings down, and the distance that they keep from a limit, as a share of it.
-const SLOWINGS: usize = 8;
+const SLOWINGS: i32 = 8;
 const CLEAR: f64 = 1e-10;
+/// Each slowing down is so many times stronger than the last.
+const STRONGER: f64 = 3.0;
+/// Room for the peaks of a load that move between the instants as a descent goes on.
+const BETWEEN: f64 = 1.0 + 1e-4;
 /// A plan slower than this many times what its descent ended with has met a limit that time does not mend.
 const SLOWEST: f64 = 1.5;
 
@@ -81,8 +85,19 @@ pub fn shape(
     }
     let chosen = &choice.timing.objectives;
     let mut aim = Aim::of(choice);
-    let (frame, mut curve) = start(setup, &choice.timing.interval_s, pieces).ok_or(NoShape::NoGain)?;
+    // A fine curve begins as the best of a coarser one.
+    let mut coarse = pieces;
+    while coarse > DEFAULT_MOST && coarse.is_multiple_of(2) {
+        coarse /= 2;
+    }
+    let (mut frame, mut curve) = start(setup, &choice.timing.interval_s, coarse).ok_or(NoShape::NoGain)?;
     let mut steps = 0;
+    while coarse < pieces {
+        let end = descend(&frame, curve, &aim, (STEPS, ENOUGH)).ok_or(NoShape::NoGain)?;
+        steps += end.steps;
+        (frame, curve) = frame.refined(&end.curve, 2).map_err(|_| NoShape::NoGain)?;
+        coarse *= 2;
+    }
     let mut found = None;
     for tried in 1..=TRIES {
         let end = descend(&frame, curve, &aim, (STEPS, ENOUGH)).ok_or(NoShape::NoGain)?;
@@ -99,7 +114,7 @@ pub fn shape(
             .as_ref()
             .map_or(1.0, |found| found.objectives[Objective::Duration] / chosen[Objective::Duration]);
         if again {
-            aim.guard *= load * (1.0 + 1e-6);
+            aim.guard *= load * BETWEEN;
         } else if slower > 1.0
             && let Pace::Within(within_s) = &mut aim.pace
         {
@@ -150,11 +165,13 @@ fn load(setup: &Setup, frame: &Frame<'_>, curve: &Curve) -> Result<f64, NoShape>
 /// The plan of a curve, slowed down until all limits hold exactly.
 fn kept(setup: &Setup, frame: &Frame<'_>, curve: &Curve) -> Result<PlanEvaluation, NoShape> {
     let (mut interval_s, mut slower) = (curve.interval_s.clone(), 1.0);
-    for _ in 0..SLOWINGS {
+    for tried in 0..SLOWINGS {
         let (times_s, via) = listed(frame, &interval_s, &curve.point_rad);
         let evaluation = PlanEvaluation::through(setup, &times_s, &via).map_err(|_| NoShape::NoGain)?;
         let Some(worst) = evaluation.broken().first().map(|margin| **margin) else { return Ok(evaluation) };
         let by = evaluation.broken().into_iter().map(factor).fold(1.0, f64::max) * (1.0 + CLEAR);
+        // A load that is nearly one at rest falls far less than time grows.
+        let by = by.powf(STRONGER.powi(tried));
         slower *= by;
         if worst.limit == Limit::Position || slower > SLOWEST {
             return Err(NoShape::Broken(worst));

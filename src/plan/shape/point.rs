@@ -37,10 +37,19 @@ pub(super) struct Point {
 impl Point {
     /// Takes a curve at the pace of the aim: at a duration that is given, or each of its segments as fast as the limits
     /// allow, or no faster than that within the ceiling on time; angles stay as they are. `None` if that is no motion.
-    pub(super) fn look(frame: &Frame<'_>, mut curve: Curve, aim: &Aim) -> Option<Self> {
+    pub(super) fn look(frame: &Frame<'_>, curve: Curve, aim: &Aim) -> Option<Self> {
+        Self::at(frame, curve, aim, true)
+    }
+
+    /// The same at the times that the curve has.
+    pub(super) fn as_it_is(frame: &Frame<'_>, curve: Curve, aim: &Aim) -> Option<Self> {
+        Self::at(frame, curve, aim, false)
+    }
+
+    fn at(frame: &Frame<'_>, mut curve: Curve, aim: &Aim, paced: bool) -> Option<Self> {
         let mut motion = frame.motion(&curve).ok()?;
         let mut mesh = Mesh::new(frame.setup);
-        if !matches!(aim.pace, Pace::Within(_)) {
+        if paced && !matches!(aim.pace, Pace::Within(_)) {
             mesh.integrate(frame.setup, &motion);
             for (index, [_, rates]) in frame.stretch(&motion).into_iter().enumerate() {
                 let [forces, speeds] = loads(&mesh, index).map(|share| aim.guard * share);
@@ -60,10 +69,12 @@ impl Point {
             _ => aim.ceilings[Objective::Duration],
         } - frame.resting_s();
         let moving_s: f64 = curve.interval_s.iter().sum();
-        if moving_s > most_s || matches!(aim.pace, Pace::Within(_)) {
+        if paced && (moving_s > most_s || matches!(aim.pace, Pace::Within(_))) {
             curve.interval_s.iter_mut().for_each(|s| *s *= most_s / moving_s);
         }
-        frame.clamp(&mut curve.interval_s);
+        if paced {
+            frame.clamp(&mut curve.interval_s);
+        }
         motion.retime(&frame.times_s(&curve.interval_s)).ok()?;
         mesh.integrate(frame.setup, &motion);
         let mut joint_jerk = vec![0.0; frame.joints()];

@@ -22,7 +22,7 @@ const FAR: f64 = 0.3;
 /// Shares above this curve with the intervals as an exponential does.
 const CURVED: f64 = 0.5;
 /// Price of changing the shape, times the longest change of a logarithm: steps shorten in angles as in times.
-const SHAPE_PRICE: f64 = 1e-5;
+const SHAPE_PRICE: f64 = 1e-3;
 /// Price of changing the angles at a key point, 1/rad², times the longest change of a logarithm: a tool stays where it is to the
 /// first order alone.
 const POSTURE_PRICE: f64 = 0.05;
@@ -155,11 +155,32 @@ impl<'a> Step<'a> {
 
     /// The step that lessens the model most.
     pub(super) fn solve(&self) -> Taken {
-        let near = |(number, row): &'a (usize, Row)| {
-            (row.value.abs() > FAR).then(|| (*number, (row, row.value.signum())))
+        self.solved(&self.model.shares)
+    }
+
+    /// The step that lessens the model most, with limits as they are where another step ends (Fletcher 1982,
+    /// doi:10.1007/BFb0120951). `there` has the model of that end, with rows at the same places.
+    pub(super) fn corrected(&self, taken: &Taken, there: &Model) -> Taken {
+        let mut shares = self.model.shares.clone();
+        for ((number, row), (_, end)) in shares.iter_mut().zip(&there.shares) {
+            // Loads have rows where they are near their limits, which differ from place to place.
+            if *number >= LOADS {
+                break;
+            }
+            let moved: f64 = self.hessian.entries(row).map(|(i, a)| a * taken.x[i]).sum();
+            row.value = end.value - moved;
+        }
+        self.solved(&shares)
+    }
+
+    fn solved(&self, shares: &[(usize, Row)]) -> Taken {
+        let near = |(at, (number, _)): (usize, &(usize, Row))| {
+            let was = self.model.shares[at].1.value;
+            (was.abs() > FAR).then_some((*number, at, was.signum()))
         };
-        let (numbers, limits): (Vec<usize>, Vec<(&Row, f64)>) =
-            self.model.shares.iter().filter_map(near).unzip();
+        let near: Vec<(usize, usize, f64)> = shares.iter().enumerate().filter_map(near).collect();
+        let numbers = near.iter().map(|(number, ..)| *number);
+        let limits: Vec<(&Row, f64)> = near.iter().map(|(_, at, sign)| (&shares[*at].1, *sign)).collect();
         let programme = Programme {
             hessian: &self.hessian,
             gradient: &self.gradient,
@@ -173,7 +194,7 @@ impl<'a> Step<'a> {
         let sloped: f64 = self.gradient.iter().zip(&x).map(|(a, b)| a * b).sum();
         let left = x[x.len() - 1];
         let mut multipliers = Multipliers::default();
-        for (number, multiplier) in numbers.into_iter().zip(found) {
+        for (number, multiplier) in numbers.zip(found) {
             *multipliers.limits.entry(number).or_default() += multiplier;
         }
         for ((objective, _), multiplier) in self.ceilings.iter().zip(ceilings) {

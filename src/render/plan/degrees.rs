@@ -1,6 +1,6 @@
 //! The same task by splines of other degrees, for people.
 
-use super::tables::{plans, row};
+use super::rows::{plans, row};
 use crate::{
     render::kit::{Id, Section, Sentence},
     workflow::plan::Planned,

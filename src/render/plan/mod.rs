@@ -6,6 +6,7 @@ mod figures;
 mod front;
 mod motion;
 mod page;
+mod rows;
 mod tables;
 
 pub(crate) use choices::Courses;
@@ -13,7 +14,7 @@ pub(super) use figures::front_figures;
 pub(crate) use figures::{figures, motion_figures};
 pub(super) use front::front;
 pub(crate) use page::{judged_page, page};
-pub use tables::limit_cell;
+pub use rows::limit_cell;
 pub(crate) use tables::{broken_lines, ceiling_lines, document, judged_document};
 
 use crate::{plan::Limit, units::degrees_from_radians};

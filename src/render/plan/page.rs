@@ -6,7 +6,8 @@ use super::{
     choices::{Courses, choices},
     front::front,
     motion::{motion_charts, path},
-    tables::{document, judged_document, limit_cell},
+    rows::limit_cell,
+    tables::{document, judged_document},
 };
 use crate::{
     plan::PlanEvaluation,
