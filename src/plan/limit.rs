@@ -43,6 +43,11 @@ impl Limit {
     /// Those of the arm as a whole, after the joints' rows.
     pub const OF_ARM: [Self; 2] = [Self::PumpFlow, Self::ToolSpeed];
 
+    /// Whether the spline alone decides it: of the others a plan asks the mechanics.
+    pub(super) fn is_of_the_spline(self) -> bool {
+        matches!(self, Self::Position | Self::Speed | Self::Acceleration | Self::Jerk)
+    }
+
     /// Number of rows for so many joints.
     pub(super) fn rows(joints: usize) -> usize {
         joints * Self::OF_JOINT.len() + Self::OF_ARM.len()

@@ -10,6 +10,8 @@ use crate::{
 
 /// Rows of one joint that come from the mechanics: shares of torque, rod speed and rod force.
 pub(super) const LOADED: usize = 3;
+/// The place of rod speed among them.
+const ROD_SPEED: usize = 1;
 
 /// Instants and what the arm does there; reused, it allocates only to grow.
 #[derive(Debug, Clone)]
@@ -113,6 +115,20 @@ impl Mesh {
     pub(super) fn row(&self, row: usize) -> &[f64] {
         let count = self.t_s.len();
         &self.shares[row * count..][..count]
+    }
+
+    /// Largest shares of limits in a segment: of torques and forces, and of what falls as time grows (rods, flow, tool).
+    pub(super) fn largest(&self, segment: usize) -> [f64; 2] {
+        let rows = self.shares.len() / self.t_s.len().max(1);
+        let mut most = [0.0_f64; 2];
+        for row in 0..rows {
+            let of_rate = row + 2 >= rows || row % LOADED == ROD_SPEED;
+            let kind = &mut most[usize::from(of_rate)];
+            *kind = self.row(row)[self.segment[segment].clone()]
+                .iter()
+                .fold(*kind, |most, share| most.max(*share));
+        }
+        most
     }
 
     /// The segment that an instant belongs to.
@@ -225,7 +241,7 @@ fn dispatched(task: &Task<'_>, samples: &Samples, weights_s: &[f64], lanes: &mut
                     let found = cylinder.actuation((sin[l], cos[l]), speed[l], torque[l]);
                     let most = if found.rod_speed_m_s > 0.0 { extend_m_s } else { retract_m_s };
                     flow_m3_s[l] += found.flow_m3_s;
-                    rows[1][l] = found.rod_speed_m_s.abs() / most;
+                    rows[ROD_SPEED][l] = found.rod_speed_m_s.abs() / most;
                     rows[2][l] = found.force_share;
                 }
             }

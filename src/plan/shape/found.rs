@@ -157,8 +157,7 @@ fn start<'a>(setup: &'a Setup, interval_s: &[f64], pieces: usize) -> Option<(Fra
 fn load(setup: &Setup, frame: &Frame<'_>, curve: &Curve) -> Result<f64, NoShape> {
     let (times_s, via) = listed(frame, &curve.interval_s, &curve.point_rad);
     let evaluation = PlanEvaluation::through(setup, &times_s, &via).map_err(|_| NoShape::NoGain)?;
-    let spline = |limit| matches!(limit, Limit::Position | Limit::Speed | Limit::Acceleration | Limit::Jerk);
-    let loads = evaluation.margins.iter().filter(|margin| !spline(margin.limit));
+    let loads = evaluation.margins.iter().filter(|margin| !margin.limit.is_of_the_spline());
     Ok(loads.fold(0.0, |most, margin| most.max(margin.share)))
 }
 

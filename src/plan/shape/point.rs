@@ -6,7 +6,7 @@ use super::{
     interior::PRICE,
 };
 use crate::{
-    plan::mesh::{LOADED, Mesh},
+    plan::mesh::Mesh,
     spline::Motion,
     task::{Objective, Objectives},
 };
@@ -37,22 +37,13 @@ pub(super) struct Point {
 impl Point {
     /// Takes a curve at the pace of the aim: at a duration that is given, or each of its segments as fast as the limits
     /// allow, or no faster than that within the ceiling on time; angles stay as they are. `None` if that is no motion.
-    pub(super) fn look(frame: &Frame<'_>, curve: Curve, aim: &Aim) -> Option<Self> {
-        Self::at(frame, curve, aim, true)
-    }
-
-    /// The same at the times that the curve has.
-    pub(super) fn as_it_is(frame: &Frame<'_>, curve: Curve, aim: &Aim) -> Option<Self> {
-        Self::at(frame, curve, aim, false)
-    }
-
-    fn at(frame: &Frame<'_>, mut curve: Curve, aim: &Aim, paced: bool) -> Option<Self> {
+    pub(super) fn look(frame: &Frame<'_>, mut curve: Curve, aim: &Aim) -> Option<Self> {
         let mut motion = frame.motion(&curve).ok()?;
-        let mut mesh = Mesh::new(frame.setup);
-        if paced && !matches!(aim.pace, Pace::Within(_)) {
+        if !matches!(aim.pace, Pace::Within(_)) {
+            let mut mesh = Mesh::new(frame.setup);
             mesh.integrate(frame.setup, &motion);
             for (index, [_, rates]) in frame.stretch(&motion).into_iter().enumerate() {
-                let [forces, speeds] = loads(&mesh, index).map(|share| aim.guard * share);
+                let [forces, speeds] = mesh.largest(index).map(|share| aim.guard * share);
                 let (first, last) = motion.segments()[index].ends();
                 // Nothing bounds what does not move.
                 let mut by = rates.max(speeds).max(LEAST_FACTOR);
@@ -69,13 +60,22 @@ impl Point {
             _ => aim.ceilings[Objective::Duration],
         } - frame.resting_s();
         let moving_s: f64 = curve.interval_s.iter().sum();
-        if paced && (moving_s > most_s || matches!(aim.pace, Pace::Within(_))) {
+        if moving_s > most_s || matches!(aim.pace, Pace::Within(_)) {
             curve.interval_s.iter_mut().for_each(|s| *s *= most_s / moving_s);
         }
-        if paced {
-            frame.clamp(&mut curve.interval_s);
-        }
+        frame.clamp(&mut curve.interval_s);
         motion.retime(&frame.times_s(&curve.interval_s)).ok()?;
+        Self::of(frame, curve, motion, aim)
+    }
+
+    /// At the times that the curve has.
+    pub(super) fn as_it_is(frame: &Frame<'_>, curve: Curve, aim: &Aim) -> Option<Self> {
+        let motion = frame.motion(&curve).ok()?;
+        Self::of(frame, curve, motion, aim)
+    }
+
+    fn of(frame: &Frame<'_>, curve: Curve, motion: Motion, aim: &Aim) -> Option<Self> {
+        let mut mesh = Mesh::new(frame.setup);
         mesh.integrate(frame.setup, &motion);
         let mut joint_jerk = vec![0.0; frame.joints()];
         motion.rms_jerk(&mut joint_jerk);
@@ -88,7 +88,7 @@ impl Point {
         let mut share =
             frame.stretch(&motion).iter().flatten().fold(0.0, |most: f64, share| most.max(*share));
         for index in 0..motion.segments().len() {
-            share = loads(&mesh, index).into_iter().fold(share, |most, load| most.max(aim.guard * load));
+            share = mesh.largest(index).into_iter().fold(share, |most, load| most.max(aim.guard * load));
         }
         let merit = aim.merit(&objectives);
         let beyond = aim.beyond(&objectives).fold(0.0, |most: f64, (_, beyond)| most.max(beyond));
@@ -119,18 +119,4 @@ impl Point {
     pub(super) fn worth(&self) -> f64 {
         self.merit + self.broken()
     }
-}
-
-/// Largest shares of limits in a segment: of torques and forces, and of what falls as time grows (rods, flow, tool).
-fn loads(mesh: &Mesh, segment: usize) -> [f64; 2] {
-    let (count, range) = (mesh.t_s.len(), mesh.segment[segment].clone());
-    let rows = mesh.shares.len() / count.max(1);
-    let mut most = [0.0_f64; 2];
-    for row in 0..rows {
-        let of_rate = row + 2 >= rows || row % LOADED == 1;
-        let own = &mesh.row(row)[range.clone()];
-        most[usize::from(of_rate)] =
-            own.iter().fold(most[usize::from(of_rate)], |most, share| most.max(*share));
-    }
-    most
 }

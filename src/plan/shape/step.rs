@@ -23,8 +23,8 @@ const FAR: f64 = 0.3;
 const CURVED: f64 = 0.5;
 /// Price of changing the shape, times the longest change of a logarithm: steps shorten in angles as in times.
 const SHAPE_PRICE: f64 = 1e-3;
-/// Price of changing the angles at a key point, 1/rad², times the longest change of a logarithm: a tool stays where it is to the
-/// first order alone.
+/// Price of changing the angles at a key point, 1/rad², times the longest change of a logarithm: the tool stays where
+/// it is to the first order alone.
 const POSTURE_PRICE: f64 = 0.05;
 /// Curvature that keeps unknowns without any in place.
 const LEAST: f64 = 1e-9;

@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use super::{Options, PlanRequest, Shaping};
+use super::{Options, PlanRequest, shaped::Made};
 use crate::{
-    plan::{Choice, PlanEvaluation, Rule, Setup, choose, search, shape},
+    plan::{Choice, PlanEvaluation, Setup, choose, search},
     task::Task,
 };
 
@@ -42,25 +42,9 @@ pub(super) fn degrees(
         let task = Task { degree, ..request.task.clone() };
         let setup = Setup::new(&task, request.setup.arm().clone()).ok()?;
         let found = search(&setup, &options.search, |_| ControlFlow::Continue(())).ok()?;
-        let by: (Rule, _) = (own.rule, own.weights);
-        let choice = choose(&setup, &found.front, &task.ceilings, by).ok()?;
-        let chosen = shaped(&setup, &task, &choice, options.shape)?;
+        let choice = choose(&setup, &found.front, &task.ceilings, (own.rule, own.weights)).ok()?;
+        let chosen = Made::of(&setup, &task, &choice, options.shape).ok()?.plan;
         Some(OfDegree { degree, better: own.gain(&here.objectives, &chosen.objectives), chosen })
     };
     others.filter_map(one).collect()
-}
-
-/// The plan of a choice, with its free shape where that is asked for and gains.
-pub(super) fn shaped(
-    setup: &Setup,
-    task: &Task,
-    choice: &Choice,
-    shaping: Shaping,
-) -> Option<PlanEvaluation> {
-    let free = match shaping {
-        Shaping::Timing => None,
-        Shaping::Free(pieces) => shape(setup, choice, &task.ceilings, pieces).ok(),
-    };
-    let timing = || PlanEvaluation::of(setup, &setup.times_s(&choice.timing.interval_s)).ok();
-    free.map(|free| free.evaluation).or_else(timing)
 }

@@ -8,11 +8,12 @@ mod degrees;
 mod document;
 mod failure;
 mod request;
+mod shaped;
 
 use crate::{
     plan::{
-        Choice, NoChoice, NoShape, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Shape,
-        Timing, bought, choose, ends, near, search, shape,
+        Choice, NoChoice, NoShape, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Timing,
+        bought, choose, ends, near, search,
     },
     remark::{Code, Remarks},
     task::{Objective, Objectives, Weights},
@@ -21,10 +22,12 @@ use convergence::Growth;
 pub use convergence::Step;
 pub use course::Course;
 pub use degrees::OfDegree;
-use degrees::{degrees, shaped};
+use degrees::degrees;
 pub use document::{ChosenPlan, MarginEntry, PlanDocument, PlanEntry};
 pub use failure::PlanFailure;
 pub use request::{PlanRequest, SAMPLE_TASK, TaskFiles};
+use shaped::Made;
+pub use shaped::{Shaped, Shaping};
 
 /// How to plan.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -41,25 +44,6 @@ pub struct Options {
     pub near_s: Option<f64>,
     /// Whether splines of the other degrees are tried too.
     pub degrees: bool,
-}
-
-/// Whether the chosen plan keeps the shape that its times give it.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Shaping {
-    /// It does.
-    #[default]
-    Timing,
-    /// Free points between the key points give it another; that many pieces an interval, by default as the task asks.
-    Free(Option<usize>),
-}
-
-/// What a free shape gained.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Shaped {
-    /// The plan of the same rule by times alone.
-    pub timing: PlanEvaluation,
-    /// Pieces that every interval between key points was split into.
-    pub pieces: usize,
 }
 
 /// Findings of `plan`.
@@ -179,19 +163,12 @@ pub fn run(
     let reference = Reference::of(objectives());
     let hypervolume = reference.measure(objectives());
     let best = ends.iter().map(|&end| evaluation(&found.front[end])).collect::<Result<_, _>>()?;
-    let timing = evaluation(&choice.timing)?;
+    let made = |choice: &Choice| Made::of(setup, task, choice, options.shape);
     let around = options.near_s.map(|near_s| near(setup, &found.front, &task.ceilings, near_s));
     let around = around.unwrap_or_default().into_iter();
-    let near =
-        around.filter_map(|(within_s, plan)| Some((within_s, shaped(setup, task, &plan, options.shape)?)));
-    let near = near.collect();
-    let (chosen, gained, no_shape) = match options.shape {
-        Shaping::Timing => (timing, None, None),
-        Shaping::Free(pieces) => match shape(setup, &choice, &task.ceilings, pieces) {
-            Ok(Shape { evaluation, pieces, .. }) => (evaluation, Some(Shaped { timing, pieces }), None),
-            Err(why) => (timing, None, Some(why)),
-        },
-    };
+    let near = around.map(|(within_s, choice)| Ok((within_s, made(&choice)?.plan)));
+    let near = near.collect::<Result<_, PlanError>>()?;
+    let Made { plan: chosen, shaped, no_shape } = made(&choice)?;
     let of_degrees = if options.degrees { degrees(request, options, (&choice, &chosen)) } else { Vec::new() };
     Ok(Planned {
         degree: task.degree,
@@ -201,7 +178,7 @@ pub fn run(
         ends,
         best,
         chosen,
-        shaped: gained,
+        shaped,
         no_shape,
         evaluations: found.evaluations + choice.evaluations,
         generations: found.generations,

@@ -1,0 +1,57 @@
+//! The plan of a choice, in the shape asked for.
+
+use crate::{
+    plan::{Choice, NoShape, PlanError, PlanEvaluation, Setup, Shape, shape},
+    task::Task,
+};
+
+/// Whether the chosen plan keeps the shape that its times give it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Shaping {
+    /// It does.
+    #[default]
+    Timing,
+    /// Free points between the key points give it another; that many pieces an interval, by default as the task asks.
+    Free(Option<usize>),
+}
+
+/// What a free shape gained.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shaped {
+    /// The plan of the same rule by times alone.
+    pub timing: PlanEvaluation,
+    /// Pieces that every interval between key points was split into.
+    pub pieces: usize,
+}
+
+/// The plan of a choice.
+pub(super) struct Made {
+    pub(super) plan: PlanEvaluation,
+    /// What its free shape gained, if one was sought and found.
+    pub(super) shaped: Option<Shaped>,
+    /// Why it has none, where one was sought.
+    pub(super) no_shape: Option<NoShape>,
+}
+
+impl Made {
+    /// # Errors
+    ///
+    /// [`PlanError`] of a choice from another task.
+    pub(super) fn of(
+        setup: &Setup,
+        task: &Task,
+        choice: &Choice,
+        shaping: Shaping,
+    ) -> Result<Self, PlanError> {
+        let timing = PlanEvaluation::of(setup, &setup.times_s(&choice.timing.interval_s))?;
+        Ok(match shaping {
+            Shaping::Timing => Self { plan: timing, shaped: None, no_shape: None },
+            Shaping::Free(pieces) => match shape(setup, choice, &task.ceilings, pieces) {
+                Ok(Shape { evaluation, pieces, .. }) => {
+                    Self { plan: evaluation, shaped: Some(Shaped { timing, pieces }), no_shape: None }
+                }
+                Err(why) => Self { plan: timing, shaped: None, no_shape: Some(why) },
+            },
+        })
+    }
+}
