@@ -91,8 +91,13 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// By what share one plan is better than another by the rule, at the prices that it has at the chosen plan.
+    /// By what share one plan is better than another by the rule, at the prices that it has at the chosen plan. A knee has
+    /// none: there a plan is better by what it gains in the objective that gains least.
     pub fn gain(&self, from: &Objectives, to: &Objectives) -> f64 {
+        if self.rule == Rule::Knee {
+            let gains = Objective::OF_PLAN.iter().map(|&k| 1.0 - to[k] / from[k]);
+            return gains.fold(f64::INFINITY, f64::min);
+        }
         let merit = self.merit.at_prices_of(&self.timing.objectives);
         let (before, after) = (merit.of(from), merit.of(to));
         if matches!(merit, Merit::Logarithms(_)) {

@@ -4,13 +4,16 @@ use nalgebra::{Matrix3, Rotation3, Translation3, Vector3};
 
 use super::{Limit, PlanError};
 use crate::{
-    arm::{Arm, Inertia, Load, Pose},
+    arm::{Arm, ArmError, Inertia, Load, Pose},
     spline::{Degree, Dwell, Ends, KeyPoints, Motion},
     task::{Boundary, KeyPoint, Place, Task},
 };
 
 /// Slack of a key point at the end of a joint's range, rad; files round angles.
 const SLACK_RAD: f64 = 1e-6;
+
+/// Shares of a range that a posture keeps clear of each end, as far as it can.
+const CLEAR: [f64; 3] = [0.1, 0.03, 0.0];
 
 /// Limits of a joint: the tighter of task and arm, infinite where there are none.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -257,10 +260,10 @@ fn key_points(
     for (point, key) in task.points.iter().enumerate() {
         near = match &key.place {
             Place::Joints(angles) => order.iter().map(|&own| angles[own]).collect(),
-            Place::Tool { x_m, z_m, pitch_rad, .. } => arm
-                .chain
-                .reach(&tool_pose([*x_m, *z_m], *pitch_rad), &near)
-                .map_err(|source| PlanError::Unreachable { point: point + 1, source })?,
+            Place::Tool { x_m, z_m, pitch_rad, .. } => {
+                reached(arm, limits, &tool_pose([*x_m, *z_m], *pitch_rad), &near)
+                    .map_err(|source| PlanError::Unreachable { point: point + 1, source })?
+            }
         };
         for (j, (&found_rad, limit)) in near.iter().zip(limits).enumerate() {
             let [lowest_rad, highest_rad] = limit.range_rad;
@@ -278,6 +281,19 @@ fn key_points(
         position_rad.extend_from_slice(&near);
     }
     Ok(KeyPoints::new(order.len(), position_rad)?)
+}
+
+/// A posture near another, clear of the ends of the ranges if there is one: a spline that passes an end leaves the range.
+fn reached(arm: &Arm, limits: &[JointLimits], pose: &Pose, near: &[f64]) -> Result<Vec<f64>, ArmError> {
+    let clear = |share: f64| {
+        let range = move |limits: &JointLimits| {
+            let [low, high] = limits.range_rad;
+            let room = if low.is_finite() && high.is_finite() { share * (high - low) } else { 0.0 };
+            [low + room, high - room]
+        };
+        arm.chain.clone().within(limits.iter().map(range)).reach(pose, near)
+    };
+    CLEAR.into_iter().map(clear).find(Result::is_ok).unwrap_or_else(|| arm.chain.reach(pose, near))
 }
 
 fn tool_pose([x_m, z_m]: [f64; 2], pitch_rad: f64) -> Pose {

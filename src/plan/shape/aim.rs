@@ -34,7 +34,7 @@ pub(super) struct Aim {
 
 impl Aim {
     /// Of a choice. One objective alone keeps what the choice found it by: the fastest plan its pace, the smoothest its
-    /// time. Any other rule keeps its prices, also where it weighs distances.
+    /// time, the one of least power its jerk. Any other rule keeps its prices, also where it weighs distances.
     pub(super) fn of(choice: &Choice) -> Self {
         let chosen = &choice.timing.objectives;
         let merit = choice.merit.at_prices_of(chosen);
@@ -48,7 +48,12 @@ impl Aim {
             }
             _ => Pace::Sought,
         };
-        let ceilings = if pace == Pace::Sought { choice.ceilings } else { Ceilings::NONE };
+        let mut ceilings = if pace == Pace::Sought { choice.ceilings } else { Ceilings::NONE };
+        if choice.rule == Rule::Best(Objective::RmsPower) {
+            // The least power has jerk that nothing but its limits holds.
+            let jerk = ceilings[Objective::RmsJerk].min(chosen[Objective::RmsJerk]);
+            ceilings = ceilings.with(Objective::RmsJerk, jerk);
+        }
         let prices = merit.slopes(chosen);
         let sum: f64 = prices.plan().iter().sum();
         Self { merit, scale: 1.0 / sum.max(f64::MIN_POSITIVE), ceilings, pace, guard: 1.0 }

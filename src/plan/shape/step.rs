@@ -21,6 +21,8 @@ use crate::{
 const FAR: f64 = 0.3;
 /// Shares above this curve with the intervals as an exponential does.
 const CURVED: f64 = 0.5;
+/// The shortest piece, as a share of an even one: across a shorter one a derivative would step.
+const SHORTEST: f64 = 0.1;
 /// Price of changing the shape, times the longest change of a logarithm: steps shorten in angles as in times.
 const SHAPE_PRICE: f64 = 1e-3;
 /// Price of changing the angles at a key point, 1/rad², times the longest change of a logarithm: the tool stays where
@@ -269,7 +271,13 @@ fn edges(frame: &Frame<'_>, here: &Point, aim: &Aim, trust: f64) -> Vec<Edge> {
         edges.push(Edge { entries, most: 0.0 });
     }
     for i in 0..interval_s.len() {
-        edges.extend([1.0, -1.0].map(|sign| Edge { entries: vec![(i, sign)], most: trust }));
+        let key = frame.key.partition_point(|key| *key <= i);
+        let own = frame.key[key - 1]..frame.key[key];
+        let whole: f64 = interval_s[own.clone()].iter().sum();
+        let shortest_s = SHORTEST * whole / own.len() as f64;
+        let shorter = (interval_s[i] / shortest_s).ln().clamp(0.0, trust);
+        edges.push(Edge { entries: vec![(i, 1.0)], most: trust });
+        edges.push(Edge { entries: vec![(i, -1.0)], most: shorter });
     }
     edges
 }

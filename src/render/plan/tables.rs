@@ -2,7 +2,7 @@
 
 use super::{
     degrees::degrees,
-    rows::{nearest, percent, plans, row, subject},
+    rows::{limit_cell, nearest, percent, plans, row, subject},
     shown,
 };
 use crate::{
@@ -289,6 +289,12 @@ pub(crate) fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEval
         let all = nearest.interval_s.len();
         lines.push(format!(
             "{longest} of {all} intervals have the longest duration allowed, {longest_s} s (interval_s)"
+        ));
+    }
+    if lines.is_empty() {
+        lines.push(format!(
+            "every limit holds but for rounding; {} is the nearest",
+            limit_cell(nearest, joints)
         ));
     }
     lines

@@ -18,33 +18,33 @@ const WORTH_NAMING: f64 = 0.01;
 pub struct OfDegree {
     /// Degree of the spline.
     pub degree: u8,
-    /// By what share it is better than the task's own by the rule; negative if it is worse.
-    pub better: f64,
-    /// The plan.
-    pub chosen: PlanEvaluation,
+    /// The plan, and by what share it is better than the task's own by the rule, negative if it is worse; `None` where no
+    /// plan of that degree was found.
+    pub chosen: Option<(PlanEvaluation, f64)>,
 }
 
 impl OfDegree {
-    /// Whether it is better by so much that the task may want it.
-    pub fn is_better(&self) -> bool {
-        self.better > WORTH_NAMING
+    /// By what share it is better, if that is so much that the task may want it.
+    pub fn better(&self) -> Option<f64> {
+        self.chosen.as_ref().map(|(_, better)| *better).filter(|better| *better > WORTH_NAMING)
     }
 }
 
-/// By every other degree that has a plan, searched and chosen as the task's own, which is `here`.
+/// By every other degree, searched and chosen as the task's own, which is `here`.
 pub(super) fn degrees(
     request: &PlanRequest,
     options: &Options,
     (own, here): (&Choice, &PlanEvaluation),
 ) -> Vec<OfDegree> {
     let others = DEGREES.into_iter().filter(|degree| *degree != request.task.degree);
-    let one = |degree| {
+    let plan = |degree| {
         let task = Task { degree, ..request.task.clone() };
         let setup = Setup::new(&task, request.setup.arm().clone()).ok()?;
         let found = search(&setup, &options.search, |_| ControlFlow::Continue(())).ok()?;
         let choice = choose(&setup, &found.front, &task.ceilings, (own.rule, own.weights)).ok()?;
         let chosen = Made::of(&setup, &task, &choice, options.shape).ok()?.plan;
-        Some(OfDegree { degree, better: own.gain(&here.objectives, &chosen.objectives), chosen })
+        let better = own.gain(&here.objectives, &chosen.objectives);
+        Some((chosen, better))
     };
-    others.filter_map(one).collect()
+    others.map(|degree| OfDegree { degree, chosen: plan(degree) }).collect()
 }

@@ -60,7 +60,8 @@ pub struct PlanDocument {
     /// The smoothest plans within round times, exact, where they were asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub near: Vec<PlanEntry>,
-    /// Plans by splines of other degrees, chosen by the same rule, where they were asked for.
+    /// Plans by splines of other degrees, chosen by the same rule, where they were asked for; a degree without a plan is
+    /// left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub degrees: Vec<DegreeEntry>,
     /// The plan to run; of an infeasible task the nearest to being one.
@@ -76,7 +77,7 @@ pub struct PlanDocument {
 pub struct DegreeEntry {
     /// Degree of the spline: 5, 6 or 7.
     pub degree: u8,
-    /// By what share it is better than the chosen plan by the rule; negative if it is worse.
+    /// By what share it is better than the chosen plan by the rule, at the knee in every objective; negative if it is worse.
     pub better_by_rule: f64,
     /// The plan.
     #[serde(flatten)]
@@ -188,8 +189,9 @@ impl PlanEntry {
 }
 
 impl DegreeEntry {
-    fn of(found: &OfDegree) -> Self {
-        Self { degree: found.degree, better_by_rule: found.better, plan: PlanEntry::of(&found.chosen) }
+    fn of(found: &OfDegree) -> Option<Self> {
+        let (plan, better) = found.chosen.as_ref()?;
+        Some(Self { degree: found.degree, better_by_rule: *better, plan: PlanEntry::of(plan) })
     }
 }
 
@@ -256,7 +258,7 @@ impl PlanDocument {
             front: plans.map(entry).collect(),
             best: Some(planned.ends.clone()),
             near: planned.near.iter().map(|(_, plan)| PlanEntry::of(plan)).collect(),
-            degrees: planned.degrees.iter().map(DegreeEntry::of).collect(),
+            degrees: planned.degrees.iter().filter_map(DegreeEntry::of).collect(),
             chosen: ChosenPlan {
                 rule: Some(choice.rule),
                 weights: choice.weights.map(|weights| weights.plan().to_vec()),
