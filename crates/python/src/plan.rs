@@ -57,6 +57,7 @@ fn written(request: &PlanRequest, document: &PlanDocument, rate_hz: f64) -> PyRe
         trajectory: None,
         carried: &Carried::default().with_plan(&request.files, document),
         rate_hz,
+        points_hz: request.setup.points_hz(&motion),
     };
     log.bytes().map_err(|error| Python::attach(|py| raised::<WriteError>(py, &error)))
 }

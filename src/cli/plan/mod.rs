@@ -173,6 +173,7 @@ impl Args {
             trajectory: None,
             carried: &Carried::default().with_plan(&request.files, document).with_provenance(provenance),
             rate_hz: self.rate,
+            points_hz: request.setup.points_hz(&motion),
         };
         write_file(path, &log.bytes()?)
     }

@@ -4,7 +4,10 @@ use super::{NoShape, Shape, shape};
 use crate::{
     arm::Arm,
     moea::Budget,
-    plan::{Choice, Evaluator, Limit, PlanEvaluation, Rule, Search, Setup, choose, search},
+    plan::{
+        BETWEEN, Choice, Evaluator, Limit, PlanEvaluation, Rule, Search, Setup, choose, points::states,
+        search,
+    },
     spline::{Motion, Quantity, Segment},
     task::{Ceilings, Objective, Place, Task},
 };
@@ -79,6 +82,11 @@ fn check(setup: &Setup, found: &Shape, motion: &Motion) {
         }
     }
     assert!(highest <= 1.0 + 1e-9, "{highest}");
+    // What a controller makes of the trajectory keeps them too.
+    let points_hz = setup.points_hz(motion);
+    let curve = setup.through_points(&states(motion, 1.0 / points_hz), 1.0 / points_hz);
+    let most = curve.iter().map(|(_, margin)| margin.share).fold(0.0, f64::max);
+    assert!(most <= 1.0 + BETWEEN, "{most} with {points_hz} points a second");
     for margin in setup.margins(motion, &mut Evaluator::new(setup)) {
         assert!(!margin.broken(), "{margin:?}");
     }

@@ -21,8 +21,11 @@ use crate::{
 const FAR: f64 = 0.3;
 /// Shares above this curve with the intervals as an exponential does.
 const CURVED: f64 = 0.5;
-/// The shortest piece, as a share of an even one: across a shorter one a derivative would step.
+/// The shortest piece: across a shorter one a derivative would step, and a controller that goes through points 0.01 s
+/// apart would leave the curve. As a share of an even one and in seconds, the longer, but at most the last share.
 const SHORTEST: f64 = 0.1;
+const SHORTEST_S: f64 = 0.1;
+const EVEN: f64 = 0.6;
 /// Price of changing the shape, times the longest change of a logarithm: steps shorten in angles as in times.
 const SHAPE_PRICE: f64 = 1e-3;
 /// Price of changing the angles at a key point, 1/rad², times the longest change of a logarithm: the tool stays where
@@ -274,7 +277,8 @@ fn edges(frame: &Frame<'_>, here: &Point, aim: &Aim, trust: f64) -> Vec<Edge> {
         let key = frame.key.partition_point(|key| *key <= i);
         let own = frame.key[key - 1]..frame.key[key];
         let whole: f64 = interval_s[own.clone()].iter().sum();
-        let shortest_s = SHORTEST * whole / own.len() as f64;
+        let even_s = whole / own.len() as f64;
+        let shortest_s = (EVEN * even_s).min(SHORTEST_S.max(SHORTEST * even_s));
         let shorter = (interval_s[i] / shortest_s).ln().clamp(0.0, trust);
         edges.push(Edge { entries: vec![(i, 1.0)], most: trust });
         edges.push(Edge { entries: vec![(i, -1.0)], most: shorter });

@@ -51,7 +51,8 @@ fn short(level: Level, finding: &Finding) -> String {
         Finding::Limits { broken, .. } if level == Level::Stop => {
             format!("{} broken", counted(*broken, "limit"))
         }
-        Finding::Limits { .. } => "the limits are unknown".to_owned(),
+        Finding::Limits { nearest, .. } if nearest.is_empty() => "the limits are unknown".to_owned(),
+        Finding::Limits { .. } => "a controller's curve goes a little beyond a limit".to_owned(),
         Finding::Trust { joints } => {
             let doubtful =
                 joints.iter().filter(|joint| joint.level == level).map(|joint| joint.joint.as_str());
@@ -101,11 +102,11 @@ fn words(level: Level, finding: &Finding) -> String {
                 acceleration_rad_s2.map_or(String::new(), |a| format!(", acceleration {} deg/s2", deg(a)));
             format!("{start}: speed {} deg/s{acceleration}.", deg(*speed_rad_s))
         }
-        Finding::Limits { broken, nearest, unlimited } => {
+        Finding::Limits { broken, between, nearest, unlimited } => {
             let none: Vec<&str> = unlimited.iter().map(|limit| plan::name(*limit)).collect();
             let none =
                 if none.is_empty() { String::new() } else { format!(" No limit: {}.", none.join(", ")) };
-            limits(*broken, nearest) + &none
+            limits([*broken, *between], nearest) + &none
         }
         Finding::Trust { joints } => trust(joints),
         Finding::Promise { log, promised, measured_mean_peak_rad } => format!(
@@ -156,7 +157,7 @@ fn because(reasons: &[Reason]) -> String {
     reasons.iter().map(one).collect::<Vec<_>>().join(", and ")
 }
 
-fn limits(broken: usize, nearest: &[MarginEntry]) -> String {
+fn limits([broken, between]: [usize; 2], nearest: &[MarginEntry]) -> String {
     let Some(worst) = nearest.first() else {
         return "Without a task the limits of the arm are unknown: check the command against yours."
             .to_owned();
@@ -173,9 +174,14 @@ fn limits(broken: usize, nearest: &[MarginEntry]) -> String {
     let mut kinds: Vec<Limit> = nearest.iter().map(|margin| margin.limit).collect();
     kinds.sort_unstable();
     let kinds: Vec<&str> = kinds.into_iter().map(plan::name).collect();
-    match broken {
-        0 => format!("All kept ({}). The nearest is {worst}.", kinds.join(", ")),
-        broken => format!("NOT kept: {}. The worst is {worst}.", counted(broken, "limit")),
+    match (broken, between) {
+        (0, 0) => format!("All kept ({}). The nearest is {worst}.", kinds.join(", ")),
+        (0, between) => format!(
+            "The plan lies at its limits, and between two points a controller's curve goes beyond {} of them by less than 1 %. \
+             The worst is {worst}.",
+            between
+        ),
+        (broken, _) => format!("NOT kept: {}. The worst is {worst}.", counted(broken, "limit")),
     }
 }
 

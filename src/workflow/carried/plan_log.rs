@@ -4,7 +4,7 @@
 use super::{
     Carried,
     arm_log::ArmLog,
-    stamp::{START_NS, TRAJECTORY_HZ, instants},
+    stamp::{START_NS, instants},
 };
 use crate::{
     arm::Chain,
@@ -48,6 +48,8 @@ pub struct PlanLog<'a> {
     pub carried: &'a Carried,
     /// Samples a second.
     pub rate_hz: f64,
+    /// Points a second of the trajectory to send.
+    pub points_hz: f64,
 }
 
 impl PlanLog<'_> {
@@ -87,7 +89,7 @@ impl PlanLog<'_> {
 
     /// The trajectory to send: the command, or the plan without one.
     pub(in crate::workflow) fn to_send(self) -> States {
-        let (names, t_s) = (self.plan.names(), instants(self.plan.end_s(), TRAJECTORY_HZ).collect());
+        let (names, t_s) = (self.plan.names(), instants(self.plan.end_s(), self.points_hz).collect());
         match &self.command {
             Some(command) => command.states(&names, t_s),
             None => self.plan.states(&names, t_s),

@@ -3,9 +3,6 @@
 /// Stamp of the first sample, ns since 1970: no wall clock, so that equal plans give equal logs.
 pub use crate::log::UNDATED_NS as START_NS;
 
-/// Points of a trajectory a second; controllers interpolate between states that have speeds.
-pub(super) const TRAJECTORY_HZ: f64 = 25.0;
-
 /// Even instants from 0 to the end, both included, s.
 pub(in crate::workflow) fn instants(end_s: f64, rate_hz: f64) -> impl Iterator<Item = f64> {
     let inner = (0_u64..).map(move |k| k as f64 / rate_hz).take_while(move |t_s| *t_s < end_s - 1e-9);

@@ -15,7 +15,7 @@ use crate::{
     fit::{Excitation, FitError, JointRoom, excite},
     log::WriteError,
     math::range,
-    plan::Setup,
+    plan::{POINTS_HZ, Setup},
     series::Series,
 };
 
@@ -124,6 +124,7 @@ impl Excited {
             trajectory: None,
             carried: &carried,
             rate_hz,
+            points_hz: POINTS_HZ[0],
         }
         .bytes()
     }

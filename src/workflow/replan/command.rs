@@ -6,19 +6,13 @@ use super::ReplanFailure;
 use crate::{
     fit::{Fit, Learning, Learnt, Oscillation, Room, STEP_S, Step, Trial, learn, predict},
     math::{State, lowpass, range},
-    plan::{Interpolation, KEPT_SHARE, Limit, Margin, Setup, SpeedRoom},
+    plan::{BETWEEN, Interpolation, Limit, Margin, POINTS_HZ, Setup, SpeedRoom},
     series::{Series, Track, align},
     spline::{Motion, Quantity, Samples},
 };
 
 /// Shares that are tried of a correction that breaks a limit of its joint or of the arm.
 const SHARES: [f64; 6] = [0.97, 0.9, 0.75, 0.5, 0.25, 0.0];
-
-/// Steps from one point of a trajectory to the next: of the samples, and of the trajectory in the log.
-const STRIDES: [usize; 2] = [1, 4];
-
-/// Shares of a limit are solved for as exactly as this.
-pub(super) const SOLVED: f64 = 1e-6;
 
 /// Times that what rods, pump and tool leave is dealt anew.
 const ROUNDS: usize = 4;
@@ -88,6 +82,8 @@ pub struct Commanded {
     pub hunting: usize,
     /// The limits of the task's arm; empty without a task.
     pub margins: Vec<Margin>,
+    /// Points a second of the trajectory to send.
+    pub points_hz: f64,
 }
 
 impl Commanded {
@@ -138,6 +134,7 @@ pub(super) fn commanded(
     let mut learnt = taught(&SpeedRoom::new())?;
     let mut shares: Vec<(f64, Option<Limit>)> = vec![(1.0, None); plan.tracks.len()];
     let mut margins = Vec::new();
+    let points_hz = subject.points_hz();
     if let Some(setup) = setup {
         let sent = |learnt: &Learnt, shares: &[(f64, Option<Limit>)]| -> Vec<Vec<State>> {
             let of = |name: &String| {
@@ -161,7 +158,7 @@ pub(super) fn commanded(
             exact || !matches!(margin.limit, Limit::Acceleration | Limit::Jerk)
         };
         let checked = |sent: &[Vec<State>]| -> Vec<(Checked, Margin)> {
-            checked(setup, sent).into_iter().filter(told).collect()
+            checked(setup, sent, points_hz).into_iter().filter(told).collect()
         };
         let own = checked(&own);
         let broken = |(how, margin): &&(Checked, Margin)| {
@@ -169,7 +166,7 @@ pub(super) fn commanded(
                 (other, own.limit, own.joint) == (how, margin.limit, margin.joint)
             };
             let least = own.iter().find(same).map_or(0.0, |(_, own)| own.share);
-            margin.share > KEPT_SHARE.max(least) + SOLVED
+            margin.share > least.max(1.0) + BETWEEN
         };
         let mut found = checked(&sent(&learnt, &shares));
         for share in SHARES {
@@ -201,24 +198,29 @@ pub(super) fn commanded(
         })
         .collect();
     let joints = joints(fit, plan, &series, &planned, &learnt, &shares)?;
-    Ok(Commanded { series, acceleration_rad_s2, joints, hunting: learnt.hunting, margins })
+    Ok(Commanded { series, acceleration_rad_s2, joints, hunting: learnt.hunting, margins, points_hz })
 }
 
 /// How something is interpolated, and how many steps a point lies after the one before.
 type Checked = (Interpolation, usize);
 
-/// All margins, by interpolation.
-fn checked(setup: &Setup, sent: &[Vec<State>]) -> Vec<(Checked, Margin)> {
-    let mut all = Vec::new();
-    for stride in STRIDES {
-        let points: Vec<Vec<State>> =
-            sent.iter().map(|states| states.iter().copied().step_by(stride).collect()).collect();
-        for how in Interpolation::ALL {
-            let found = setup.command_margins(&points, stride as f64 * STEP_S, how);
-            all.extend(found.into_iter().map(|margin| ((how, stride), margin)));
-        }
-    }
-    all
+/// All margins, by interpolation: of the samples, and of the trajectory in the log.
+fn checked(setup: &Setup, sent: &[Vec<State>], points_hz: f64) -> Vec<(Checked, Margin)> {
+    let through = |stride: usize| {
+        let every = |states: &Vec<State>| states.iter().copied().step_by(stride).collect();
+        let points: Vec<Vec<State>> = sent.iter().map(every).collect();
+        let found = setup.through_points(&points, stride as f64 * STEP_S).into_iter();
+        found.map(move |(how, margin)| ((how, stride), margin))
+    };
+    let stride = stride(points_hz);
+    (1..=stride).step_by((stride - 1).max(1)).flat_map(through).collect()
+}
+
+/// Samples from one point of a trajectory to the next.
+pub(super) fn stride(points_hz: f64) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small number")]
+    let found = (1.0 / (points_hz * STEP_S)).round() as usize;
+    found.max(1)
 }
 
 /// Of each limit the margin that is used most.
@@ -244,6 +246,12 @@ fn states(planned: &[[f64; 4]], correction: &[[f64; 3]], share: f64) -> Vec<Stat
 }
 
 impl Subject<'_> {
+    /// Points a second of a trajectory to send: what the plan needs, where its motion is known, but no more than there are samples.
+    fn points_hz(&self) -> f64 {
+        let known = self.motion.as_ref().zip(self.setup);
+        known.map_or(POINTS_HZ[0], |((motion, _), setup)| setup.points_hz(motion).min(1.0 / STEP_S))
+    }
+
     /// Angle, speed, acceleration and jerk of each joint's plan every step, and whether they are those of its motion; otherwise
     /// they are smoothed differences.
     fn derivatives(&self) -> (Vec<Vec<[f64; 4]>>, bool) {

@@ -4,12 +4,12 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 use rayon::prelude::*;
 
-use super::command::{Commanded, SOLVED, Subject, commanded};
+use super::command::{Commanded, Subject, commanded, stride};
 use crate::{
     arm::Arm,
     fit::{Fit, Learning, Observation, STEP_S, Trial, fit},
     math::State,
-    plan::{Interpolation, KEPT_SHARE, Limit, Margin, PlanEvaluation, Setup},
+    plan::{BETWEEN, Interpolation, Limit, Margin, PlanEvaluation, Setup},
     rng::{Stream, stream},
     series::{Series, Track},
     task::{KeyPoint, Place, Task},
@@ -124,17 +124,19 @@ fn task(rng: &mut ChaCha8Rng) -> Task {
     task
 }
 
-/// A task and times at which its plan keeps what a command has to keep, by a margin of up to a third; `None` where its
-/// poses are none for the arm.
+/// A task and times at which its plan keeps what a command has to keep, by a margin of up to a third or by next to nothing;
+/// `None` where its poses are none for the arm.
 fn planned(rng: &mut ChaCha8Rng) -> Option<(Setup, Vec<f64>)> {
     let setup = Setup::new(&task(rng), Arm::sample().unwrap()).ok()?;
     let mut interval_s: Vec<f64> = (0..setup.interval_count()).map(|_| uniform(rng, 1.0, 4.0)).collect();
     for _ in 0..14 {
         let times_s = setup.times_s(&interval_s);
-        let evaluation = PlanEvaluation::of(&setup, &times_s).ok()?;
-        let keeps =
-            evaluation.broken().iter().all(|margin| matches!(margin.limit, Limit::Torque | Limit::RodForce));
-        let by = if keeps { uniform(rng, 1.002, 1.1) } else { 1.15 };
+        let keeps = keeps(&setup, &times_s)?;
+        let by = match keeps {
+            true if uniform(rng, 0.0, 1.0) < 0.5 => at_limit(&setup, &interval_s)?,
+            true => uniform(rng, 1.002, 1.1),
+            false => 1.15,
+        };
         for interval in &mut interval_s {
             *interval = (by * *interval).min(20.0);
         }
@@ -143,6 +145,23 @@ fn planned(rng: &mut ChaCha8Rng) -> Option<(Setup, Vec<f64>)> {
         }
     }
     None
+}
+
+fn keeps(setup: &Setup, times_s: &[f64]) -> Option<bool> {
+    let evaluation = PlanEvaluation::of(setup, times_s).ok()?;
+    let loads = [Limit::Torque, Limit::RodForce];
+    Some(evaluation.broken().iter().all(|margin| loads.contains(&margin.limit)))
+}
+
+/// How many times as long a plan is that keeps its limits by less than one in a million.
+fn at_limit(setup: &Setup, interval_s: &[f64]) -> Option<f64> {
+    let (mut least, mut most) = (0.5, 1.0);
+    for _ in 0..20 {
+        let by = 0.5 * (least + most);
+        let times_s = setup.times_s(&interval_s.iter().map(|s| by * s).collect::<Vec<_>>());
+        if keeps(setup, &times_s)? { most = by } else { least = by }
+    }
+    Some(most)
 }
 
 struct Case {
@@ -202,7 +221,7 @@ fn broken(seed: u64, Case { setup, plan, command, plain }: &Case) -> Option<Stri
         }
     }
     for how in Interpolation::ALL {
-        for stride in [1, 4] {
+        for stride in [1, stride(command.points_hz)] {
             let margins = |of: &Commanded| {
                 let points: Vec<Vec<State>> =
                     states(of).map(|all| all.into_iter().step_by(stride).collect()).collect();
@@ -212,7 +231,7 @@ fn broken(seed: u64, Case { setup, plan, command, plain }: &Case) -> Option<Stri
             let over = |margin: &&Margin| {
                 let same = |own: &&Margin| (own.limit, own.joint) == (margin.limit, margin.joint);
                 let plain = own.iter().find(same).map_or(0.0, |own| own.share);
-                margin.share > KEPT_SHARE.max(plain) + SOLVED
+                margin.share > plain.max(1.0) + BETWEEN
             };
             if let Some(margin) = margins(command).iter().find(over) {
                 return Some(format!("{seed}: {how:?} every {stride}: {margin:?}"));
@@ -244,6 +263,7 @@ fn refused(plan: &Series, command: &Commanded, names: &[String]) -> Option<&'sta
         trajectory: None,
         carried: &Carried::default(),
         rate_hz: 100.0,
+        points_hz: command.points_hz,
     };
     let sent = log.to_send();
     let mut before_ns = -1;

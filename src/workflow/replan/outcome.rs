@@ -8,9 +8,9 @@ use super::{
     Candidate, Commanded, Decision, HeldTo, PastRun, Predicted, ReplanFailure, Response, last::Last,
 };
 use crate::{
-    fit::Fit,
+    fit::{Fit, STEP_S},
     log::{Recording, WriteError},
-    plan::{PlanEvaluation, Timing},
+    plan::{POINTS_HZ, PlanEvaluation, Timing},
     remark::{Code, Remarks},
     replay::{Rules, replay},
     series::{Series, align},
@@ -235,6 +235,18 @@ impl Replanned {
         }
     }
 
+    /// Points a second of the trajectory to send.
+    fn points_hz(&self) -> f64 {
+        if let Some(command) = &self.command {
+            return command.points_hz;
+        }
+        let known = self.request.as_ref().zip(self.evaluation.as_ref()).and_then(|(request, evaluation)| {
+            let motion = request.setup.motion_through(&evaluation.times_s, &evaluation.via).ok()?;
+            Some(request.setup.points_hz(&motion).min(1.0 / STEP_S))
+        });
+        known.unwrap_or(POINTS_HZ[0])
+    }
+
     /// The bytes of the log: plan and command as channels of their own, and the task with the new plan.
     ///
     /// # Errors
@@ -265,6 +277,7 @@ impl Replanned {
             trajectory: self.trajectory.as_deref(),
             carried: &carried,
             rate_hz,
+            points_hz: self.points_hz(),
         }
         .bytes()
     }

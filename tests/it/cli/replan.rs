@@ -55,6 +55,28 @@ fn a_first_correction_is_advised_by_half_and_half_of_it_is_safe_to_send() {
 }
 
 #[test]
+fn a_plan_at_its_limits_may_be_corrected_and_sent_whatever_its_shape() {
+    let folder = scratch();
+    let folder = folder.path();
+    fs::copy(sample("tasks/task-1.toml"), folder.join("task.toml")).unwrap();
+    for shape in ["timing", "free", "free --pieces 20"] {
+        let planned = format!(
+            "plan task.toml --choose fastest --evaluations 3000 --shape {shape} -o plan.mcap --force"
+        );
+        for line in [planned.as_str(), "simulate plan.mcap -o run.mcap --force"] {
+            let run = run_line(folder, line);
+            assert!(matches!(run.status.code(), Some(0 | 3)), "{line}: {}", stderr(&run));
+        }
+        let next = json(folder, "replan run.mcap --keep-plan --gain 0.5");
+        let limits = check(&next, "limits");
+        assert_eq!(limits["broken"], 0, "{shape}: {limits}");
+        let joints = next["command"].as_array().unwrap();
+        let corrected = joints.iter().filter(|joint| joint["share"].as_f64().unwrap() > 0.7).count();
+        assert!(corrected >= 5, "{shape}: {joints:#?}");
+    }
+}
+
+#[test]
 fn the_page_answers_with_verdict_checks_commands_and_every_joint_and_fetches_nothing() {
     let folder = with_run();
     let folder = folder.path();

@@ -66,6 +66,7 @@ impl Job {
             trajectory: None,
             carried: &carried,
             rate_hz: 1.0 / STEP_S,
+            points_hz: request.setup.points_hz(&motion),
         };
         Ok(Self { title, log: log.bytes()? })
     }

@@ -102,13 +102,15 @@ fn prepared((text, times_s): Task, seed: u64) -> Result<Prepared, Box<dyn Error>
     let evaluation = PlanEvaluation::of(&request.setup, times_s)?;
     let joints = request.setup.joint_names();
     let document = PlanDocument::evaluated(&request.task.title, &joints, &evaluation, true);
+    let motion = request.setup.motion(times_s)?;
     let plan = PlanLog {
-        plan: Planned::Motion(&request.setup.motion(times_s)?, &joints),
+        plan: Planned::Motion(&motion, &joints),
         command: None,
         arm: Some(&request.setup.arm().chain),
         trajectory: None,
         carried: &Carried::default().with_plan(&request.files, &document),
         rate_hz: RATE_HZ,
+        points_hz: request.setup.points_hz(&motion),
     };
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("plan.mcap");

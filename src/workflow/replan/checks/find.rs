@@ -3,12 +3,12 @@
 use super::{Check, Finding, JointTrust, Level, Reason, Replanned};
 use crate::{
     fit::{Character, LEAST_SKILL, Step},
-    plan::{Limit, Margin},
+    plan::{BETWEEN, Limit, Margin},
     series::{Series, Track},
     units::DEGREE_RAD,
     workflow::{
         plan::MarginEntry,
-        replan::{Commanded, JointCommand, command::SOLVED},
+        replan::{Commanded, JointCommand},
     },
 };
 
@@ -74,6 +74,9 @@ fn rest(sent: &Series, command: Option<&Commanded>) -> Check {
     Check { level, finding: Finding::Rest { speed_rad_s, acceleration_rad_s2 } }
 }
 
+/// The curve that a controller makes of the points of a plan at its limits may lie beyond them by this share; more is broken.
+const BEYOND: f64 = 0.01;
+
 /// Torques and forces of rods are those of the plan: a command has none.
 fn limits(replanned: &Replanned, command: Option<&Commanded>) -> Check {
     let of_plan = replanned.evaluation.iter().flat_map(|evaluation| &evaluation.margins);
@@ -82,7 +85,10 @@ fn limits(replanned: &Replanned, command: Option<&Commanded>) -> Check {
     let mut all: Vec<Margin> = of_command.to_vec();
     all.extend(of_plan.filter(|margin| of_command.is_empty() || loads.contains(&margin.limit)));
     all.sort_by(|a, b| b.share.total_cmp(&a.share));
-    let broken = all.iter().filter(|margin| margin.share > 1.0 + SOLVED || margin.share.is_nan()).count();
+    let beyond =
+        |by: f64| all.iter().filter(|margin| margin.share > 1.0 + by || margin.share.is_nan()).count();
+    let broken = beyond(BEYOND);
+    let between = beyond(BETWEEN) - broken;
     let mut kinds: Vec<Margin> = Vec::new();
     for margin in &all {
         if kinds.iter().all(|other| other.limit != margin.limit) {
@@ -92,12 +98,9 @@ fn limits(replanned: &Replanned, command: Option<&Commanded>) -> Check {
     let known = |limit: &Limit| kinds.iter().any(|margin| margin.limit == *limit);
     let unlimited = Limit::OF_JOINT.into_iter().chain(Limit::OF_ARM).filter(|limit| !known(limit)).collect();
     let names = replanned.request.as_ref().map_or_else(Vec::new, |request| request.setup.joint_names());
-    let level = match (broken, all.is_empty()) {
-        (0, true) => Level::Caution,
-        (0, false) => Level::Good,
-        _ => Level::Stop,
-    };
-    Check { level, finding: Finding::Limits { broken, nearest: MarginEntry::all(&kinds, &names), unlimited } }
+    let level = if broken > 0 { Level::Stop } else { caution(between > 0 || all.is_empty()) };
+    let nearest = MarginEntry::all(&kinds, &names);
+    Check { level, finding: Finding::Limits { broken, between, nearest, unlimited } }
 }
 
 fn trust(replanned: &Replanned) -> Check {
