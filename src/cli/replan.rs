@@ -6,6 +6,7 @@ use super::{
     CliError, Outcome, Run,
     console::{Console, Target, progress, spare_for_log, write_file},
     number::{degrees, growth_percent, share},
+    plan::Free,
     read::SentArgs,
 };
 use crate::{
@@ -76,6 +77,10 @@ struct ChangeArgs {
     #[arg(long, conflicts_with = "keep_plan")]
     retime: bool,
 
+    /// What a new plan is free in beside the times at the key points [default: the same as the last plan]
+    #[arg(long, value_name = "WHAT", conflicts_with = "keep_plan")]
+    shape: Option<Free>,
+
     /// Share of the correction to apply, 0 to 1; 0.5 for a cautious first run
     #[arg(long, value_name = "SHARE", default_value_t = 1.0, value_parser = share)]
     gain: f64,
@@ -114,6 +119,7 @@ impl Args {
             keep_plan: change.keep_plan,
             precompensate: !change.no_precompensation,
             retime: change.retime,
+            shape: change.shape.map(|shape| shape.shaping(None)),
             learning,
             time_growth: change.max_time_growth_percent,
             cost_growth: change.max_cost_growth_percent,

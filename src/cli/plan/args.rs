@@ -86,11 +86,21 @@ pub(super) struct ShapeArgs {
 
 /// What a plan is free in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Free {
+pub(in crate::cli) enum Free {
     /// Times at the key points alone, as in the paper
     Timing,
     /// Times and the curve between the key points, by the rule that chooses: faster, smoother or thriftier
     Free,
+}
+
+impl Free {
+    /// With so many pieces an interval, if it is free.
+    pub(in crate::cli) fn shaping(self, pieces: Option<u32>) -> Shaping {
+        match self {
+            Self::Timing => Shaping::Timing,
+            Self::Free => Shaping::Free(pieces.map(|n| n as usize)),
+        }
+    }
 }
 
 #[derive(Debug, clap::Args)]
@@ -224,10 +234,7 @@ impl Args {
             },
             rule,
             weights: self.choice.weights,
-            shape: match self.shape.shape {
-                Free::Timing => Shaping::Timing,
-                Free::Free => Shaping::Free(self.shape.pieces.map(|n| n as usize)),
-            },
+            shape: self.shape.shape.shaping(self.shape.pieces),
         }
     }
 }

@@ -5,6 +5,8 @@ mod watch;
 
 use std::{collections::BTreeMap, slice::from_ref};
 
+pub(super) use args::Free;
+
 use super::{
     CliError, Outcome, Run,
     console::{Console, Form, Target, spare_for_log, write_file},

@@ -125,7 +125,7 @@ pub fn shape(
     }
     let evaluation = found.ok_or(NoShape::NoGain)?;
     let within = Objective::OF_PLAN.iter().all(|&k| evaluation.objectives[k] <= ceilings[k]);
-    if within && aim.merit(&evaluation.objectives) < aim.merit(chosen) {
+    if within && (!chosen.within(ceilings) || aim.merit(&evaluation.objectives) < aim.merit(chosen)) {
         Ok(Shape { evaluation, pieces, steps })
     } else {
         Err(NoShape::NoGain)

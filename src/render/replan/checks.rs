@@ -177,9 +177,9 @@ fn limits([broken, between]: [usize; 2], nearest: &[MarginEntry]) -> String {
     match (broken, between) {
         (0, 0) => format!("All kept ({}). The nearest is {worst}.", kinds.join(", ")),
         (0, between) => format!(
-            "The plan lies at its limits, and between two points a controller's curve goes beyond {} of them by less than 1 %. \
-             The worst is {worst}.",
-            between
+            "The plan lies at its limits, and between two points a controller's curve goes beyond {} by less than 1 %. The worst is \
+             {worst}.",
+            counted(between, "limit")
         ),
         (broken, _) => format!("NOT kept: {}. The worst is {worst}.", counted(broken, "limit")),
     }

@@ -90,8 +90,10 @@ pub(super) fn levers(replanned: &Replanned) -> Vec<Fact> {
             let times = evaluation.as_ref().map_or_else(String::new, |evaluation| {
                 evaluation.times_s.iter().map(|t| format!("{t:.2}")).collect::<Vec<_>>().join(" ")
             });
+            let free = evaluation.as_ref().is_some_and(|evaluation| !evaluation.via.is_empty());
             format!(
-                "re-timed, one of {} timings from {} evaluations: {times} s",
+                "re-timed{}, one of {} timings from {} evaluations: {times} s",
+                if free { " in a free shape" } else { "" },
                 search.front.len(),
                 search.evaluations
             )

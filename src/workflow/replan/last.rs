@@ -17,7 +17,7 @@ use crate::{
             Carried,
             rest::{COMMAND_TAIL_S, PLAN_LEAD_S},
         },
-        plan::{PlanEntry, PlanRequest},
+        plan::{PlanEntry, PlanRequest, Shaping},
     },
 };
 
@@ -99,6 +99,11 @@ impl Last {
             trajectory: trajectory_topic(&recording.source.planned_topic),
             carried,
         })
+    }
+
+    /// What the plan is free in.
+    pub(super) fn shaping(&self) -> Shaping {
+        if self.via.is_empty() { Shaping::Timing } else { Shaping::Free(None) }
     }
 
     /// The motion of the task, if it is known.

@@ -14,6 +14,7 @@ mod outcome;
 mod predicted;
 mod retime;
 mod samples;
+mod shape;
 mod warp;
 
 use std::{ops::ControlFlow, path::PathBuf};
@@ -34,12 +35,12 @@ use super::fit::{self, LimitsFile};
 use crate::{
     fit::{Fit, JointFit, Learning, Trial},
     log::{ReadOptions, Recording},
-    plan::Setup,
+    plan::{PlanEvaluation, Setup, Via},
     remark::{Code, Remarks},
     replay::Rules,
     series::{Series, Track},
     task::{Ceilings, Objective, Objectives},
-    workflow::carried::rest::PLAN_LEAD_S,
+    workflow::{carried::rest::PLAN_LEAD_S, plan::Shaping},
 };
 use command::{Subject, commanded};
 use history::History;
@@ -64,6 +65,8 @@ pub struct Inputs {
     pub precompensate: bool,
     /// Whether other timings are searched though runs of this plan were corrected already: learning starts anew.
     pub retime: bool,
+    /// What a new plan is free in beside its times; `None`: the same as the last one.
+    pub shape: Option<Shaping>,
     /// How far a command may leave its plan.
     pub learning: Learning,
     /// How much longer the plan may take, as a share.
@@ -88,6 +91,7 @@ impl Default for Inputs {
             keep_plan: false,
             precompensate: true,
             retime: false,
+            shape: None,
             learning: Learning::default(),
             time_growth: 0.0,
             cost_growth: 0.1,
@@ -159,10 +163,8 @@ pub fn run(
     let decision = if learns { history.decision() } else { Decision::Send };
     let options = candidates(&last, search.as_ref())?;
     let maker = Maker { inputs, fit: &fit, setup, last: &last, history: &history, decision: &decision };
-    let made: Vec<Candidate> = options
-        .into_par_iter()
-        .map(|(interval_s, plan)| maker.candidate(interval_s, plan))
-        .collect::<Result<_, _>>()?;
+    let made: Vec<Candidate> =
+        options.into_par_iter().map(|(new, plan)| maker.candidate(new, plan)).collect::<Result<_, _>>()?;
     let chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
     let past =
         outcome::Past { gain: inputs.learning.gain, trust: history.trust(), runs: history.runs, decision };
@@ -194,50 +196,58 @@ fn searched(
     // The arm is that of the order; its files need not be read again.
     let setup = Setup::new(&task, request.setup.arm().clone())?;
     let start = last.times_s.as_ref().map(|times_s| setup.intervals_s(times_s)).transpose()?;
+    let shaping = inputs.shape.unwrap_or_else(|| last.shaping());
     let evaluation = last.evaluation(&setup)?;
     let time = (1.0 + inputs.time_growth) * (1.0 + 1e-9);
     let growth = |objective| if objective == Objective::Duration { time } else { 1.0 + inputs.cost_growth };
     let unknown = Objectives::NONE.with(Objective::Duration, last.duration_s);
     let most = evaluation.as_ref().map_or(unknown, |evaluation| evaluation.objectives);
     let ceilings = Ceilings::NONE.map_plan(|k| (most[k] * growth(k)).min(task.ceilings[k]));
-    let found = retime::retimed(
-        &setup,
-        fit,
-        start.as_deref(),
-        ceilings,
-        (inputs.evaluations, inputs.seed),
-        &mut observer,
-    )?;
-    Ok(Search { front: found.front, evaluations: found.evaluations, ceilings, held, start, evaluation })
+    let mut timings = |ceilings| {
+        let budget = (inputs.evaluations, inputs.seed);
+        retime::retimed(&setup, fit, start.as_deref(), ceilings, budget, &mut observer)
+    };
+    let mut found = timings(ceilings)?;
+    if found.front.is_empty() && shaping != Shaping::Timing {
+        let before = found.evaluations;
+        found = timings(shape::roomy(ceilings))?;
+        found.evaluations += before;
+    }
+    let best = &found.front[..found.front.len().min(CANDIDATES)];
+    let plans = shape::shaped(&setup, best, (start.as_deref(), &ceilings), shaping)?;
+    Ok(Search { front: found.front, plans, evaluations: found.evaluations, ceilings, held, evaluation })
 }
 
-/// A plan: times of movement, s, where it is one of the task's, and its samples.
-type Sampled = (Option<Vec<f64>>, Series);
+/// What tells a plan of a task: arrivals at the key points, s, and free points between them.
+pub(super) struct Path {
+    pub(super) times_s: Vec<f64>,
+    pub(super) via: Vec<Via>,
+}
+
+/// A plan: what tells it, where it is not the last one, and its samples.
+type Sampled = (Option<Path>, Series);
 
 /// Plans to look at with their commands: the last one first.
 fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, ReplanFailure> {
     let (Some(search), Some(request)) = (search, &last.request) else {
         return Ok(vec![(None, last.plan.clone())]);
     };
-    let kept = search.start.iter().filter(|_| search.keeps());
-    let others = search.front.iter().map(|timing| &timing.interval_s);
-    let all: Vec<&Vec<f64>> = kept.chain(others).take(CANDIDATES + 1).collect();
-    if all.is_empty() {
-        return Ok(vec![(None, last.plan.clone())]);
-    }
-    let sample = |interval_s: &Vec<f64>| -> Result<Sampled, ReplanFailure> {
-        if search.start.as_ref() == Some(interval_s) {
-            return Ok((Some(interval_s.clone()), last.plan.clone()));
-        }
-        let motion = request.setup.motion(&request.setup.times_s(interval_s))?;
-        Ok((Some(interval_s.clone()), sampled(&request.setup, &motion)?))
+    let sample = |plan: &PlanEvaluation| -> Result<Sampled, ReplanFailure> {
+        let path = Path { times_s: plan.times_s.clone(), via: plan.via.clone() };
+        let motion = request.setup.motion_through(&path.times_s, &path.via)?;
+        Ok((Some(path), sampled(&request.setup, &motion)?))
     };
-    all.into_iter().map(sample).collect()
+    let others = search.plans.iter().map(sample);
+    if search.keeps() || search.plans.is_empty() {
+        return std::iter::once(Ok((None, last.plan.clone()))).chain(others).collect();
+    }
+    others.collect()
 }
 
 /// A plan with its command and what is expected of it.
 pub(super) struct Candidate {
-    pub(super) interval_s: Option<Vec<f64>>,
+    /// What tells a plan that is not the last one.
+    pub(super) new: Option<Path>,
     pub(super) plan: Series,
     pub(super) command: Option<Commanded>,
     pub(super) predicted: Predicted,
@@ -255,17 +265,17 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// `interval_s` is that of another plan than the last; its runs say nothing of this one.
-    fn candidate(&self, interval_s: Option<Vec<f64>>, plan: Series) -> Result<Candidate, ReplanFailure> {
+    /// `new` is of another plan than the last; its runs say nothing of this one.
+    fn candidate(&self, new: Option<Path>, plan: Series) -> Result<Candidate, ReplanFailure> {
         let Self { inputs, fit, setup, last, history, decision } = self;
-        let kept = plan == last.plan;
-        let motion = match (&interval_s, setup) {
-            (Some(interval_s), Some(setup)) if !kept => {
-                Some((setup.motion(&setup.times_s(interval_s))?, PLAN_LEAD_S))
+        let kept = new.is_none();
+        let motion = match (&new, setup) {
+            (Some(Path { times_s, via }), Some(setup)) => {
+                Some((setup.motion_through(times_s, via)?, PLAN_LEAD_S))
             }
             _ => last.motion().zip(last.starts_s),
         };
-        let warped = if kept { None } else { self.warped(interval_s.as_deref(), &plan) };
+        let warped = new.as_ref().and_then(|path| self.warped(&path.times_s, &plan));
         let trials = match &warped {
             _ if kept => history.trials(),
             Some(measured) => vec![Trial { sent: &plan, measured }],
@@ -289,14 +299,13 @@ impl Maker<'_> {
         let spread_rad =
             |name: &str| command.as_ref()?.joints.iter().find(|joint| joint.name == name)?.spread_rad;
         let (predicted, responses) = promised(fit, &plan, sent, base, spread_rad, &inputs.rules)?;
-        Ok(Candidate { interval_s, plan, command, predicted, responses })
+        Ok(Candidate { new, plan, command, predicted, responses })
     }
 
     /// What the newest run tells of another timing.
-    fn warped(&self, interval_s: Option<&[f64]>, plan: &Series) -> Option<Series> {
-        let Self { fit, setup, last, history, .. } = self;
+    fn warped(&self, new_s: &[f64], plan: &Series) -> Option<Series> {
+        let Self { fit, last, history, .. } = self;
         let (starts_s, old_s) = (last.starts_s?, last.times_s.as_ref()?);
-        let new_s = setup.as_ref()?.times_s(interval_s?);
         let warp = Warp {
             old_s: old_s.iter().map(|t_s| starts_s + t_s).collect(),
             new_s: new_s.iter().map(|t_s| PLAN_LEAD_S + t_s).collect(),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Candidate, Commanded, Decision, HeldTo, PastRun, Predicted, ReplanFailure, Response, last::Last,
+    Candidate, Commanded, Decision, HeldTo, PastRun, Path, Predicted, ReplanFailure, Response, last::Last,
 };
 use crate::{
     fit::{Fit, STEP_S},
@@ -70,14 +70,14 @@ impl Before {
 pub struct Search {
     /// Timings on the Pareto front, least predicted start error first.
     pub front: Vec<Timing>,
+    /// The plans to look at: the first of them, in the shape asked for.
+    pub plans: Vec<PlanEvaluation>,
     /// Evaluations made.
     pub evaluations: u64,
     /// Ceilings on the objectives.
     pub ceilings: Ceilings,
     /// Limits of each joint in the search.
     pub held: Vec<HeldTo>,
-    /// Times of movement of the last plan, s, if they are known.
-    pub start: Option<Vec<f64>>,
     /// The last plan under the same limits.
     pub evaluation: Option<PlanEvaluation>,
 }
@@ -164,21 +164,16 @@ pub(super) fn replanned(
     chosen: Candidate,
     mut remarks: Remarks,
 ) -> Result<Replanned, ReplanFailure> {
-    let Candidate { interval_s, plan, command, predicted, responses } = chosen;
+    let Candidate { new, plan, command, predicted, responses } = chosen;
     let setup = last.request.as_ref().map(|request| &request.setup);
-    let times_s = match (setup, &interval_s) {
-        (Some(setup), Some(interval_s)) => Some(setup.times_s(interval_s)),
-        _ => last.times_s.clone(),
-    };
-    let retimed =
-        interval_s.is_some() && interval_s != search.as_ref().and_then(|search| search.start.clone());
+    let retimed = new.is_some();
     let last_evaluation = setup.map(|setup| last.evaluation(setup)).transpose()?.flatten();
     let objectives_before = last_evaluation.as_ref().map(|evaluation| evaluation.objectives);
-    let evaluation = match (setup, &times_s) {
-        (Some(setup), Some(times_s)) if retimed => Some(PlanEvaluation::of(setup, times_s)?),
+    let evaluation = match (setup, &new) {
+        (Some(setup), Some(Path { times_s, via })) => Some(PlanEvaluation::through(setup, times_s, via)?),
         _ => last_evaluation,
     };
-    if search.as_ref().is_some_and(|search| search.front.is_empty() && !search.keeps()) {
+    if search.as_ref().is_some_and(|search| search.plans.is_empty() && !search.keeps()) {
         let message = "no timing keeps the fitted limits within the time, jerk and power that are allowed: the plan \
                        stays; --max-time-growth-percent gives it more";
         remarks.add(Code::BeyondLimit, 1, message);

@@ -77,6 +77,35 @@ fn a_plan_at_its_limits_may_be_corrected_and_sent_whatever_its_shape() {
 }
 
 #[test]
+fn a_new_plan_may_have_a_free_shape_and_has_one_where_the_last_one_had() {
+    let folder = scratch();
+    let folder = folder.path();
+    fs::copy(sample("tasks/task-1.toml"), folder.join("task.toml")).unwrap();
+    for line in [
+        "plan task.toml --choose fastest --evaluations 3000 --shape free -o plan.mcap",
+        "simulate plan.mcap -o run.mcap",
+        "replan run.mcap --no-precompensation --max-time-growth-percent 5 --evaluations 3000 -o next.mcap",
+        "simulate next.mcap -o again.mcap",
+        "replan again.mcap --keep-plan --gain 0.5 -o corrected.mcap",
+    ] {
+        let run = run_line(folder, line);
+        assert!(matches!(run.status.code(), Some(0 | 3)), "{line}: {}", stderr(&run));
+        if line.contains("growth") {
+            let text = stdout(&run);
+            assert!(text.contains("re-timed in a free shape"), "{text}");
+        }
+    }
+    let of = |line: &str| {
+        let next = json(folder, line);
+        assert_eq!(check(&next, "limits")["broken"], 0, "{line}");
+        next["after"]["sum_of_peaks_rad"].as_f64().unwrap()
+    };
+    let both = of("replan run.mcap --max-time-growth-percent 5 --evaluations 3000");
+    let times = of("replan run.mcap --max-time-growth-percent 5 --evaluations 3000 --shape timing");
+    assert!(both <= times, "{both} {times}");
+}
+
+#[test]
 fn the_page_answers_with_verdict_checks_commands_and_every_joint_and_fetches_nothing() {
     let folder = with_run();
     let folder = folder.path();

@@ -75,6 +75,7 @@ fn rest(sent: &Series, command: Option<&Commanded>) -> Check {
 }
 
 /// The curve that a controller makes of the points of a plan at its limits may lie beyond them by this share; more is broken.
+/// Plan and correction may each take [`BETWEEN`] of it.
 const BEYOND: f64 = 0.01;
 
 /// Torques and forces of rods are those of the plan: a command has none.
@@ -88,7 +89,7 @@ fn limits(replanned: &Replanned, command: Option<&Commanded>) -> Check {
     let beyond =
         |by: f64| all.iter().filter(|margin| margin.share > 1.0 + by || margin.share.is_nan()).count();
     let broken = beyond(BEYOND);
-    let between = beyond(BETWEEN) - broken;
+    let between = beyond(2.0 * BETWEEN) - broken;
     let mut kinds: Vec<Margin> = Vec::new();
     for margin in &all {
         if kinds.iter().all(|other| other.limit != margin.limit) {

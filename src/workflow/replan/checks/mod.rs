@@ -83,7 +83,7 @@ pub enum Finding {
     Limits {
         /// Limits that are broken by more than 1 %.
         broken: usize,
-        /// Limits that a controller's curve breaks by less, but by more than 0.1 %: the plan lies at them.
+        /// Limits that a controller's curve breaks by less, but by more than 0.2 %: the plan lies at them.
         #[serde(default)]
         between: usize,
         /// Of each kind of limit the nearest, most used first; empty without a task.
