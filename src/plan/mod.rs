@@ -18,6 +18,7 @@ mod mesh;
 mod near;
 mod points;
 mod polish;
+mod posture;
 mod problem;
 mod quadratic;
 mod reference;

@@ -1,19 +1,16 @@
 //! A task on its arm, checked and in the form that an evaluation needs.
 
-use nalgebra::{Matrix3, Rotation3, Translation3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
-use super::{Limit, PlanError};
-use crate::{
-    arm::{Arm, ArmError, Inertia, Load, Pose},
-    spline::{Degree, Dwell, Ends, KeyPoints, Motion},
-    task::{Boundary, KeyPoint, Place, Task},
+use super::{
+    Limit, PlanError,
+    posture::{key_points, poses},
 };
-
-/// Slack of a key point at the end of a joint's range, rad; files round angles.
-const SLACK_RAD: f64 = 1e-6;
-
-/// Shares of a range that a posture keeps clear of each end, as far as it can.
-const CLEAR: [f64; 3] = [0.1, 0.03, 0.0];
+use crate::{
+    arm::{Arm, Inertia, Load, Pose},
+    spline::{Degree, Dwell, Ends, KeyPoints, Motion},
+    task::{Boundary, Task},
+};
 
 /// Limits of a joint: the tighter of task and arm, infinite where there are none.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +69,8 @@ impl Setup {
             .ok_or_else(|| PlanError::JointsDiffer { task: task.joints.join(", "), arm: names.join(", ") })?;
         let limits: Vec<JointLimits> =
             order.iter().enumerate().map(|(j, &own)| merged(task, &arm, j, own)).collect();
-        let points = key_points(task, &arm, &order, &limits)?;
+        let range_rad: Vec<[f64; 2]> = limits.iter().map(|limits| limits.range_rad).collect();
+        let points = key_points(task, &arm, &order, &range_rad)?;
         let ends = ends(task, &order);
         check_ends(&ends, &limits, &names)?;
         let given: Vec<Option<f64>> = task.points.iter().map(|key| key.dwell_s).collect();
@@ -242,77 +240,6 @@ fn merged(task: &Task, arm: &Arm, joint: usize, own: usize) -> JointLimits {
         torque_n_m: task.torque_n_m.min(limit.torque_nm),
         rod_speed_m_s,
     }
-}
-
-/// Key points in the arm's order; those given by the tool are solved near the one before.
-fn key_points(
-    task: &Task,
-    arm: &Arm,
-    order: &[usize],
-    limits: &[JointLimits],
-) -> Result<KeyPoints, PlanError> {
-    let middle = |limits: &JointLimits| {
-        let [low, high] = limits.range_rad;
-        if low.is_finite() && high.is_finite() { 0.5 * (low + high) } else { 0.0 }
-    };
-    let mut near: Vec<f64> = limits.iter().map(middle).collect();
-    let mut position_rad = Vec::with_capacity(task.points.len() * order.len());
-    for (point, key) in task.points.iter().enumerate() {
-        near = match &key.place {
-            Place::Joints(angles) => order.iter().map(|&own| angles[own]).collect(),
-            Place::Tool { x_m, z_m, pitch_rad, .. } => {
-                reached(arm, limits, &tool_pose([*x_m, *z_m], *pitch_rad), &near)
-                    .map_err(|source| PlanError::Unreachable { point: point + 1, source })?
-            }
-        };
-        for (j, (&found_rad, limit)) in near.iter().zip(limits).enumerate() {
-            let [lowest_rad, highest_rad] = limit.range_rad;
-            if found_rad < lowest_rad - SLACK_RAD || found_rad > highest_rad + SLACK_RAD {
-                let joint = arm.chain.joints()[j].name.clone();
-                return Err(PlanError::PointOutside {
-                    point: point + 1,
-                    joint,
-                    found_rad,
-                    lowest_rad,
-                    highest_rad,
-                });
-            }
-        }
-        position_rad.extend_from_slice(&near);
-    }
-    Ok(KeyPoints::new(order.len(), position_rad)?)
-}
-
-/// A posture near another, clear of the ends of the ranges if there is one: a spline that passes an end leaves the range.
-fn reached(arm: &Arm, limits: &[JointLimits], pose: &Pose, near: &[f64]) -> Result<Vec<f64>, ArmError> {
-    let clear = |share: f64| {
-        let range = move |limits: &JointLimits| {
-            let [low, high] = limits.range_rad;
-            let room = if low.is_finite() && high.is_finite() { share * (high - low) } else { 0.0 };
-            [low + room, high - room]
-        };
-        arm.chain.clone().within(limits.iter().map(range)).reach(pose, near)
-    };
-    CLEAR.into_iter().map(clear).find(Result::is_ok).unwrap_or_else(|| arm.chain.reach(pose, near))
-}
-
-fn tool_pose([x_m, z_m]: [f64; 2], pitch_rad: f64) -> Pose {
-    let turn = Rotation3::from_axis_angle(&Vector3::y_axis(), pitch_rad);
-    Pose::from_parts(Translation3::new(x_m, 0.0, z_m), turn)
-}
-
-/// Of key points where the arm passes and the task gives the tool alone.
-fn poses(task: &Task, rests: &[usize]) -> Vec<Option<Pose>> {
-    let last = task.points.len() - 1;
-    let of = |(point, key): (usize, &KeyPoint)| match key.place {
-        Place::Tool { x_m, z_m, pitch_rad, fixed_angles: false }
-            if point > 0 && point < last && !rests.contains(&point) =>
-        {
-            Some(tool_pose([x_m, z_m], pitch_rad))
-        }
-        _ => None,
-    };
-    task.points.iter().enumerate().map(of).collect()
 }
 
 fn ends(task: &Task, order: &[usize]) -> Ends {
