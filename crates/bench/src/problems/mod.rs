@@ -38,7 +38,7 @@ pub const FORM: Form = Form {
         measure("igd_plus", "IGD+", true, significant),
         measure("hypervolume", "HV", false, decimals),
     ],
-    heading: "Medians (quartiles), and against nsga3",
+    heading: "Medians (quartiles), and against the baseline",
     reference: (&["problem", "HV reference point"], &["objectives", "variables", "front points"], |facts| {
         let point: Vec<String> = facts.reference_point.iter().map(|&f| significant(f, 3)).collect();
         vec![

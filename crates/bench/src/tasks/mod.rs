@@ -84,7 +84,7 @@ pub const FORM: Form = Form {
             tally: "smoothest",
         },
     ],
-    heading: "Hypervolume: medians (quartiles), and against nsga3",
+    heading: "Hypervolume: medians (quartiles), and against the baseline",
     reference: (
         &["task"],
         &[
