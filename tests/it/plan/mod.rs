@@ -1,4 +1,5 @@
 //! Plans and the search for them.
 
+mod choice;
 mod optima;
 mod search;
