@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+mod alike;
 mod message;
 mod places;
 mod stamps;
@@ -10,6 +11,7 @@ pub(in crate::log) use stamps::Stamps;
 pub(super) use stamps::stamp_ns;
 
 use super::{Field, Form};
+use alike::Alike;
 use message::{Message, Names};
 use places::InterfacePlaces;
 
@@ -49,6 +51,7 @@ pub(in crate::log) struct Table {
     index: BTreeMap<String, usize>,
     /// Emptied columns, kept for their memory.
     spare: Vec<Vec<f64>>,
+    alike: Alike,
 }
 
 /// No arm has more; a topic that names more is not about joints.
@@ -101,6 +104,7 @@ impl Table {
             interfaces: InterfacePlaces::default(),
             index: BTreeMap::new(),
             spare: Vec::new(),
+            alike: Alike::default(),
         }
     }
 
@@ -121,6 +125,7 @@ impl Table {
 
     /// Takes the message that was just read into the samples.
     pub(in crate::log) fn commit(&mut self, publish_ns: u64, log_ns: u64) {
+        self.forget_alike();
         self.message.close_groups();
         self.lay_out();
         let rows = self.stamps.len();
@@ -175,6 +180,7 @@ impl Table {
 
     /// Appends the samples of another table of the same fields, and empties it for reuse.
     pub(in crate::log) fn append(&mut self, other: &mut Self) {
+        other.flush();
         let (rows, expected) = (self.len(), self.expected);
         let joints: Vec<Option<usize>> = other.joints.iter().map(|name| self.joint(name)).collect();
         for (mine, theirs) in self.columns.iter_mut().zip(&mut other.columns) {
@@ -190,6 +196,7 @@ impl Table {
             }
         }
         if !other.speed_scaling.is_empty() {
+            make_room(&mut self.speed_scaling, expected);
             self.speed_scaling.resize(rows, f64::NAN);
             self.speed_scaling.append(&mut other.speed_scaling);
         }
