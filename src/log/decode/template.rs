@@ -39,8 +39,9 @@ impl Template {
         Some(Self { bytes: message.len(), words })
     }
 
-    /// Whether a message is as long and agrees in every fixed byte.
-    #[inline]
+    /// Whether a message is as long and agrees in every fixed byte. A loop of its own: within a larger function it
+    /// runs out of registers.
+    #[inline(never)]
     pub(in crate::log) fn fits(&self, message: &[u8]) -> bool {
         if message.len() != self.bytes {
             return false;

@@ -1,6 +1,6 @@
 //! Messages laid out as one before them: their numbers lie at known places, and are stored in blocks.
 
-use super::{Table, stamp_ns};
+use super::{Table, add_scaling, stamp_ns};
 use crate::log::{
     decode::{Found, LayoutCache, Template, number_from},
     schema::Number,
@@ -21,7 +21,6 @@ pub(super) struct Alike {
     cells: Vec<(usize, usize)>,
     /// `[cell][row]`.
     block: Vec<[f64; ROWS]>,
-    speed_scaling: Option<[f64; ROWS]>,
     rows: usize,
 }
 
@@ -78,9 +77,7 @@ impl Table {
                 into[row] = f64::from_le_bytes(*eight);
             }
         }
-        if let Some(into) = &mut self.alike.speed_scaling {
-            into[row] = scaling;
-        }
+        add_scaling(&mut self.speed_scaling, (scaling, 1));
         self.alike.tries = 0;
         self.alike.rows = row + 1;
         self.stamps.push(stamp_ns(second, nanosecond), times_ns[0], times_ns[1]);
@@ -135,7 +132,6 @@ impl Table {
             }
         }
         self.alike.block.resize(self.alike.cells.len(), [f64::NAN; ROWS]);
-        self.alike.speed_scaling = speed_scaling.map(|_| [f64::NAN; ROWS]);
         let template = Template::of(body, counts.chain(names))?;
         Some(Layout { channel, template, second, nanosecond, speed_scaling, lists })
     }
@@ -151,12 +147,6 @@ impl Table {
             let column = &mut self.columns[field][joint];
             column.resize(before, f64::NAN);
             self.not_finite[field] += extend_finite(column, &values[..rows]);
-        }
-        if let Some(values) = &self.alike.speed_scaling {
-            for (row, value) in values[..rows].iter().enumerate().filter(|(_, value)| value.is_finite()) {
-                self.speed_scaling.resize(before + row, f64::NAN);
-                self.speed_scaling.push(*value);
-            }
         }
     }
 
