@@ -35,7 +35,9 @@ impl Template {
                 word.mask |= 0xff << (8 * (place - word.at));
             }
         }
-        words.iter_mut().for_each(|word| word.value &= word.mask);
+        for word in &mut words {
+            word.value &= word.mask;
+        }
         Some(Self { bytes: message.len(), words })
     }
 

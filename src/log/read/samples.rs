@@ -37,7 +37,7 @@ impl Axis {
         let shortest_s = t_s.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
         let cuts = cuts(&t_s, &jumps);
         let as_read = if whole { Instants::new(t_s.clone(), &cuts).ok() } else { None };
-        Self { cuts, t_s, rows, jumps, as_read, shortest_s }
+        Self { t_s, as_read, rows, jumps, cuts, shortest_s }
     }
 
     /// Number of samples.

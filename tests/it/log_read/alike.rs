@@ -111,7 +111,7 @@ fn log(runs: &[Run]) -> Log {
             let mut data = run.message(k);
             match run.damage {
                 Damage::Cut(bytes) if n + 1 == run.messages => {
-                    data.truncate(data.len().saturating_sub(bytes))
+                    data.truncate(data.len().saturating_sub(bytes));
                 }
                 Damage::Padded(bytes) if n + 1 == run.messages => data.extend(vec![0; bytes]),
                 Damage::Flipped(at) if n + 1 == run.messages => {

@@ -1,10 +1,13 @@
 //! Messages laid out as one before them: their numbers lie at known places, and are stored in blocks.
 
 use super::{Table, add_scaling, stamp_ns};
-use crate::log::{
-    decode::{Found, LayoutCache, Template, number_from},
-    schema::Number,
-    source::slot,
+use crate::{
+    log::{
+        decode::{Found, LayoutCache, Template, number_from},
+        schema::Number,
+        source::slot,
+    },
+    series::all_finite,
 };
 
 /// Rows that are stored at once.
@@ -161,8 +164,7 @@ impl Table {
 fn extend_finite(column: &mut Vec<f64>, values: &[f64]) -> u64 {
     let start = column.len();
     column.extend_from_slice(values);
-    // All values without a branch on any: nearly all are finite.
-    if values.iter().fold(true, |all, value| all & value.is_finite()) {
+    if all_finite(values) {
         return 0;
     }
     let bad = column[start..].iter_mut().filter(|value| !value.is_finite());
