@@ -40,5 +40,9 @@ pub fn nanoseconds(t_s: f64) -> i64 {
 
 /// Seconds from `epoch_ns` to `stamp_ns`, s. Exact to below a nanosecond within 104 days.
 pub fn seconds_since(epoch_ns: i64, stamp_ns: i64) -> f64 {
-    (i128::from(stamp_ns) - i128::from(epoch_ns)) as f64 / NS_PER_S
+    let since_ns = match stamp_ns.checked_sub(epoch_ns) {
+        Some(ns) => ns as f64,
+        None => (i128::from(stamp_ns) - i128::from(epoch_ns)) as f64,
+    };
+    since_ns / NS_PER_S
 }

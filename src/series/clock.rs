@@ -62,6 +62,9 @@ const SAME_JUMP_NS: i64 = 250_000_000;
 /// clock where that leaves fewer backward steps.
 pub fn continuous_clock(stamp_ns: &[i64], log_ns: &[i64], known_offsets_ns: &[i64]) -> Clock {
     let n = stamp_ns.len().min(log_ns.len());
+    if is_steady(&stamp_ns[..n]) {
+        return Clock { t_ns: stamp_ns[..n].to_vec(), rows: (0..n).collect(), ..Clock::default() };
+    }
     let mut order: Vec<usize> = (0..n).filter(|&i| stamp_ns[i] != 0).collect();
     let mut clock = Clock { unstamped: (n - order.len()) as u64, ..Clock::default() };
     let backward = |order: &[usize]| order.windows(2).filter(|w| stamp_ns[w[1]] < stamp_ns[w[0]]).count();
@@ -119,6 +122,14 @@ pub fn continuous_clock(stamp_ns: &[i64], log_ns: &[i64], known_offsets_ns: &[i6
     clock.cuts.retain(|&cut| cut > 0 && cut < clock.rows.len());
     clock.cuts.dedup();
     clock
+}
+
+/// Whether each stamp is set, later than the one before, and by no leap: then there is nothing to put in order.
+fn is_steady(stamp_ns: &[i64]) -> bool {
+    let step =
+        |w: &[i64]| (w[1] > w[0]) & (w[1].wrapping_sub(w[0]).cast_unsigned() <= LEAP_NS.cast_unsigned());
+    stamp_ns.first().is_some_and(|first| *first > 0)
+        && stamp_ns.windows(2).fold(true, |steady, pair| steady & step(pair))
 }
 
 /// Rows between places where stamps step back, or leap ahead of the recorder's clock.
@@ -216,6 +227,19 @@ mod tests {
     fn run(wrong: impl Fn(i64) -> i64) -> Clock {
         let due = |k: i64| 1000 + 20 * k;
         continuous_clock(&stamps((0..100).map(wrong)), &stamps((0..100).map(|k| due(k) + 9004)), &[])
+    }
+
+    #[test]
+    fn steady_stamps_are_taken_as_they_are_and_leaps_are_not_steady() {
+        let steady = stamps((1..100).map(|k| 10 * k));
+        let clock = continuous_clock(&steady, &vec![5; 99], &[]);
+        assert_eq!((clock.t_ns, clock.rows), (steady, (0..99).collect()));
+        assert!(is_steady(&[1, 1 + LEAP_NS]));
+        for other in
+            [&[][..], &[0, 1], &[-1, 1], &[2, 2], &[3, 2], &[1, 2 + LEAP_NS], &[1, i64::MAX, i64::MIN]]
+        {
+            assert!(!is_steady(other), "{other:?}");
+        }
     }
 
     #[test]

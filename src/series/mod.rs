@@ -20,6 +20,7 @@ pub use derivative::{LocalFit, each_local_quadratic, local_quadratic};
 pub use locate::{Located, locate};
 pub use noise::{Noise, noise};
 pub use pose::{PosePair, PoseSample};
+pub(crate) use signal::{Instants, all_finite};
 pub use signal::{JointKind, Quantity, Signal, SignalError};
 pub use track::{Series, Track, split_at_gaps, velocity_agrees};
 pub use trajectory::{PlannedPoint, PlannedTrajectory, plan_tracks};

@@ -113,6 +113,45 @@ pub enum SignalError {
     BadCut { cut: usize, samples: usize },
 }
 
+/// Instants that were checked, for signals that share them: finite, strictly increasing, at least one.
+#[derive(Debug, Clone)]
+pub(crate) struct Instants {
+    t_s: Arc<[f64]>,
+    segments: Vec<Range<usize>>,
+}
+
+impl Instants {
+    /// As [`Signal::new`].
+    pub(crate) fn new(t_s: impl Into<Arc<[f64]>>, cuts: &[usize]) -> Result<Self, SignalError> {
+        let t_s = t_s.into();
+        if t_s.is_empty() {
+            return Err(SignalError::Empty);
+        }
+        check_values("time", &t_s, t_s.len())?;
+        let stands = |pair: &[f64]| pair[1] <= pair[0];
+        if t_s.windows(2).fold(false, |any, pair| any | stands(pair))
+            && let Some(at) = t_s.windows(2).position(stands)
+        {
+            return Err(SignalError::NotIncreasing {
+                index: at + 1,
+                previous_s: t_s[at],
+                next_s: t_s[at + 1],
+            });
+        }
+        let mut segments = Vec::with_capacity(cuts.len() + 1);
+        let mut start = 0;
+        for &cut in cuts {
+            if cut <= start || cut >= t_s.len() {
+                return Err(SignalError::BadCut { cut, samples: t_s.len() });
+            }
+            segments.push(start..cut);
+            start = cut;
+        }
+        segments.push(start..t_s.len());
+        Ok(Self { t_s, segments })
+    }
+}
+
 /// Where an instant lies among the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
@@ -138,31 +177,18 @@ impl Signal {
         values: Vec<f64>,
         cuts: &[usize],
     ) -> Result<Self, SignalError> {
-        let t_s = t_s.into();
-        if t_s.is_empty() {
-            return Err(SignalError::Empty);
-        }
-        check_values("time", &t_s, t_s.len())?;
-        check_values("value", &values, t_s.len() * quantity.components())?;
-        for (i, pair) in t_s.windows(2).enumerate() {
-            if pair[1] <= pair[0] {
-                return Err(SignalError::NotIncreasing {
-                    index: i + 1,
-                    previous_s: pair[0],
-                    next_s: pair[1],
-                });
-            }
-        }
-        let mut segments = Vec::with_capacity(cuts.len() + 1);
-        let mut start = 0;
-        for &cut in cuts {
-            if cut <= start || cut >= t_s.len() {
-                return Err(SignalError::BadCut { cut, samples: t_s.len() });
-            }
-            segments.push(start..cut);
-            start = cut;
-        }
-        segments.push(start..t_s.len());
+        Self::on(&Instants::new(t_s, cuts)?, name, quantity, values)
+    }
+
+    /// As [`Signal::new`], of values at instants that were checked.
+    pub(crate) fn on(
+        instants: &Instants,
+        name: impl Into<String>,
+        quantity: Quantity,
+        values: Vec<f64>,
+    ) -> Result<Self, SignalError> {
+        check_values("value", &values, instants.t_s.len() * quantity.components())?;
+        let Instants { t_s, segments } = instants.clone();
         Ok(Self { name: name.into(), quantity, t_s, values, segments })
     }
 
@@ -257,10 +283,18 @@ pub(super) fn check_values(array: &'static str, values: &[f64], samples: usize) 
     if values.len() != samples {
         return Err(SignalError::LengthMismatch { array, times: samples, values: values.len() });
     }
+    if all_finite(values) {
+        return Ok(());
+    }
     match values.iter().position(|v| !v.is_finite()) {
         Some(index) => Err(SignalError::NotFinite { array, index, value: values[index] }),
         None => Ok(()),
     }
+}
+
+/// Whether all values are finite, without a branch on any: nearly always they are.
+pub(crate) fn all_finite(values: &[f64]) -> bool {
+    values.iter().fold(true, |all, value| all & value.is_finite())
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::{ops::Range, sync::Arc};
 
-use super::signal::{JointKind, Place, Signal, SignalError, check_values};
+use super::signal::{Instants, JointKind, Place, Signal, SignalError, check_values};
 use crate::math::{State, cubic, linear, median};
 
 /// The joints of one source, in the order in which the source names them.
@@ -79,7 +79,17 @@ impl Track {
         position: Vec<f64>,
         cuts: &[usize],
     ) -> Result<Self, SignalError> {
-        Ok(Self { kind, signal: Signal::new(name, kind.quantity(), t_s, position, cuts)?, velocity: None })
+        Self::on(&Instants::new(t_s, cuts)?, kind, name, position)
+    }
+
+    /// As [`Track::of`], of positions at instants that were checked.
+    pub(crate) fn on(
+        instants: &Instants,
+        kind: JointKind,
+        name: impl Into<String>,
+        position: Vec<f64>,
+    ) -> Result<Self, SignalError> {
+        Ok(Self { kind, signal: Signal::on(instants, name, kind.quantity(), position)?, velocity: None })
     }
 
     /// Adds the velocity that the source gives, in the joint's unit per second.
@@ -91,6 +101,15 @@ impl Track {
         check_values("velocity", &velocity, self.len())?;
         self.velocity = Some(velocity);
         Ok(self)
+    }
+
+    /// Adds the velocity that the source gives, unless it is not finite, not as long as the positions, or not their
+    /// slope.
+    pub(crate) fn with_velocity_that_agrees(self, velocity: Vec<f64>) -> Self {
+        let cuts: Vec<usize> = self.segments().iter().skip(1).map(|segment| segment.start).collect();
+        let sound = check_values("velocity", &velocity, self.len()).is_ok()
+            && velocity_agrees(self.t_s(), self.position(), &velocity, &cuts);
+        Self { velocity: sound.then_some(velocity), ..self }
     }
 
     /// Whether the joint turns or slides.
@@ -213,15 +232,50 @@ impl Track {
 /// field with zeros or with something else. Trapezoid steps must explain nine tenths of the
 /// motion. `cuts` as in [`Track::new`].
 pub fn velocity_agrees(t_s: &[f64], position: &[f64], velocity: &[f64], cuts: &[usize]) -> bool {
-    let (mut unexplained, mut motion) = (0.0, 0.0);
-    for i in (1..t_s.len()).filter(|i| cuts.binary_search(i).is_err()) {
-        let step = position[i] - position[i - 1];
-        let expected = 0.5 * (velocity[i] + velocity[i - 1]) * (t_s[i] - t_s[i - 1]);
-        unexplained += (step - expected).abs();
-        motion += step.abs().max(expected.abs());
+    let samples = t_s.len().min(position.len()).min(velocity.len());
+    let (mut start, mut sums) = (0, [0.0; 2]);
+    for end in cuts.iter().copied().filter(|cut| *cut < samples).chain([samples]) {
+        let stretch = start..end.max(start);
+        let of = unexplained_and_motion(
+            &t_s[stretch.clone()],
+            &position[stretch.clone()],
+            &velocity[stretch.clone()],
+        );
+        sums = [sums[0] + of[0], sums[1] + of[1]];
+        start = stretch.end;
     }
-    unexplained <= 0.1 * motion
+    sums[0] <= 0.1 * sums[1]
 }
+
+/// How far steps differ from those that velocities make, and how far all go: sums in lanes, so that the compiler takes
+/// several samples at once.
+fn unexplained_and_motion(t_s: &[f64], position: &[f64], velocity: &[f64]) -> [f64; 2] {
+    const LANES: usize = 8;
+    let mut sums = [[0.0; LANES]; 2];
+    let mut add = |lane: usize, [t_s, position, velocity]: [[f64; 2]; 3]| {
+        let step = position[1] - position[0];
+        let expected = 0.5 * (velocity[1] + velocity[0]) * (t_s[1] - t_s[0]);
+        sums[0][lane] += (step - expected).abs();
+        sums[1][lane] += step.abs().max(expected.abs());
+    };
+    let all = [t_s, position, velocity];
+    let before = all.map(|values| values.as_chunks::<LANES>().0);
+    let after = all.map(|values| values.get(1..).unwrap_or_default().as_chunks::<LANES>().0);
+    let whole = after[0].len();
+    for chunk in 0..whole {
+        let (before, after) = (before.map(|chunks| &chunks[chunk]), after.map(|chunks| &chunks[chunk]));
+        for lane in 0..LANES {
+            add(lane, [0, 1, 2].map(|of| [before[of][lane], after[of][lane]]));
+        }
+    }
+    for i in whole * LANES + 1..t_s.len() {
+        add(0, all.map(|values| [values[i - 1], values[i]]));
+    }
+    sums.map(|lanes| lanes.iter().sum())
+}
+
+/// The shortest silence that is one, s.
+const LEAST_GAP_S: f64 = 0.5;
 
 /// Cuts at silences longer than ten sample intervals and half a second.
 ///
@@ -230,8 +284,12 @@ pub fn split_at_gaps(t_s: &[f64]) -> Vec<usize> {
     if t_s.len() < 3 {
         return Vec::new();
     }
+    // Counted, so that the compiler takes several at once.
+    if t_s.windows(2).filter(|w| w[1] - w[0] > LEAST_GAP_S).count() == 0 {
+        return Vec::new();
+    }
     let usual_s = median(t_s.windows(2).map(|w| w[1] - w[0]).collect());
-    let longest_s = (10.0 * usual_s).max(0.5);
+    let longest_s = (10.0 * usual_s).max(LEAST_GAP_S);
     (1..t_s.len()).filter(|&i| t_s[i] - t_s[i - 1] > longest_s).collect()
 }
 

@@ -1,6 +1,11 @@
 //! Caches field offsets: a message whose lengths equal the previous one's is read without walking it.
 
-use super::sink::{Numbers, Sink, Slot, number_from, without_terminator};
+use std::ops::Range;
+
+use super::{
+    sink::{Numbers, Sink, Slot, number_from, without_terminator},
+    template::Template,
+};
 use crate::log::schema::Number;
 
 /// Where a walk found counts and wanted fields.
@@ -9,11 +14,11 @@ use crate::log::schema::Number;
 /// the same places; comparing the counts then replaces the walk. For one program and channel.
 #[derive(Debug, Default)]
 pub(in crate::log) struct LayoutCache {
-    /// Encapsulation and length of the message that was walked.
+    /// Encapsulation of the message that was walked.
     kind: u8,
-    bytes: usize,
-    /// Places of all counts, and the bytes there.
-    counts: Vec<(usize, [u8; 4])>,
+    /// Places of all counts, and the message there.
+    counts: Vec<usize>,
+    template: Template,
     fields: Vec<Found>,
     state: State,
     misses: u32,
@@ -29,7 +34,7 @@ enum State {
 
 /// A wanted field and where it lies: from, to.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Found {
+pub(in crate::log) enum Found {
     Number(Slot, Number, usize, usize),
     Numbers(Slot, Number, usize, usize),
     Text(Slot, usize, usize),
@@ -37,6 +42,8 @@ pub(super) enum Found {
     Element(Slot),
 }
 
+/// Bytes of a count.
+const COUNT: usize = 4;
 /// Messages with more counts or fields than this are walked each time.
 const MOST: usize = 256;
 /// After so many misses in a row the messages are taken to be different each time.
@@ -49,13 +56,8 @@ impl LayoutCache {
         if self.state != State::Whole {
             return false;
         }
-        let same = |(at, count): &(usize, [u8; 4])| {
-            body.get(*at..).and_then(<[u8]>::first_chunk::<4>).is_some_and(|bytes| bytes == count)
-        };
-        let hit = self.kind == kind
-            && self.bytes == body.len()
-            && self.counts.iter().all(same)
-            && self.fields(kind == 1, body, sink).is_some();
+        let hit =
+            self.kind == kind && self.template.fits(body) && self.fields(kind == 1, body, sink).is_some();
         self.misses = if hit { 0 } else { self.misses + 1 };
         hit
     }
@@ -85,24 +87,36 @@ impl LayoutCache {
     }
 
     /// A walk starts.
-    pub(super) fn start(&mut self, kind: u8, bytes: usize) {
+    pub(super) fn start(&mut self, kind: u8) {
         self.counts.clear();
         self.fields.clear();
-        (self.kind, self.bytes) = (kind, bytes);
+        self.kind = kind;
         self.state = if kind <= 1 && self.misses < MOST_MISSES { State::Noting } else { State::Empty };
     }
 
     /// The walk came to the end of a message that fits.
-    pub(super) fn finish(&mut self) {
-        if self.state == State::Noting {
+    pub(super) fn finish(&mut self, body: &[u8]) {
+        if self.state == State::Noting
+            && let Some(template) = Template::of(body, self.counts())
+        {
+            self.template = template;
             self.state = State::Whole;
         }
     }
 
+    /// The wanted fields of the last message, and the spans of its counts, if it is little-endian and can be recalled.
+    pub(in crate::log) fn learnt(&self) -> Option<(&[Found], impl Iterator<Item = Range<usize>>)> {
+        (self.state == State::Whole && self.kind == 1).then(|| (&*self.fields, self.counts()))
+    }
+
+    fn counts(&self) -> impl Iterator<Item = Range<usize>> {
+        self.counts.iter().map(|&at| at..at + COUNT)
+    }
+
     #[inline]
-    pub(super) fn note_count(&mut self, at: usize, count: [u8; 4]) {
+    pub(super) fn note_count(&mut self, at: usize) {
         if self.state == State::Noting {
-            self.counts.push((at, count));
+            self.counts.push(at);
             self.limit();
         }
     }

@@ -9,9 +9,11 @@ mod program;
 mod protobuf;
 mod run;
 mod sink;
+mod template;
 mod tree;
 
-pub(super) use layout_cache::LayoutCache;
+pub(super) use layout_cache::{Found, LayoutCache};
 pub(super) use program::{Program, Want, shape_at};
-pub(super) use sink::{Numbers, Sink, Slot, Texts};
+pub(super) use sink::{Numbers, Sink, Slot, Texts, number_from};
+pub(super) use template::Template;
 pub(super) use tree::Tree;

@@ -61,7 +61,7 @@ impl Program {
         if zero == 0 && cache.report(kind, body, sink) {
             return Ok(());
         }
-        cache.start(kind, body.len());
+        cache.start(kind);
         let mut walk = |little_endian, widest, sizes| {
             let reader = Reader { body, widest, sizes, cache: &mut *cache };
             self.walk(reader, little_endian, sink)
@@ -85,6 +85,11 @@ impl Program {
         }
     }
 
+    /// The bytes of a little-endian message without those that say how it is encoded; `None` of any other.
+    pub(in crate::log) fn little_endian<'a>(&self, message: &'a [u8]) -> Option<&'a [u8]> {
+        if self.packed { Some(message) } else { message.strip_prefix(&[0, 1])?.get(2..) }
+    }
+
     fn walk<S: Sink>(
         &self,
         mut reader: Reader<'_>,
@@ -103,7 +108,7 @@ impl Program {
         if left > padding && !self.open_ended {
             return Err(RunError::Long { left });
         }
-        reader.cache.finish();
+        reader.cache.finish(reader.body);
         Ok(())
     }
 }
@@ -142,7 +147,7 @@ impl<'a> Reader<'a> {
     fn length<const LITTLE: bool>(&mut self, at: usize) -> Result<(u32, usize), RunError> {
         let (bytes, end) = self.take(self.align(at, 4), 4)?;
         let bytes = bytes.try_into().unwrap_or_default();
-        self.cache.note_count(end - 4, bytes);
+        self.cache.note_count(end - 4);
         Ok((if LITTLE { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) }, end))
     }
 

@@ -107,7 +107,8 @@ pub(super) fn without_terminator(text: &[u8]) -> &[u8] {
 
 /// One number of the wire; `piece` is exactly its size.
 #[expect(clippy::cast_precision_loss, reason = "64-bit integers are read as f64 by contract")]
-pub(super) fn number_from(number: Number, little_endian: bool, piece: &[u8]) -> f64 {
+#[inline]
+pub(in crate::log) fn number_from(number: Number, little_endian: bool, piece: &[u8]) -> f64 {
     let mut bytes = [0; 8];
     let size = piece.len().min(8);
     // Little-endian form in the low bytes, whatever came in.

@@ -53,10 +53,21 @@ impl Content {
     pub(super) fn read(
         &mut self,
         decoder: &Decoder,
-        cache: &mut LayoutCache,
+        caches: &mut BTreeMap<u16, LayoutCache>,
         message: &MessageRecord<'_>,
     ) -> Result<(), String> {
         let data = unpacked(decoder, message.data)?;
+        let (channel, times_ns) = (message.channel_id, [message.publish_time_ns, message.log_time_ns]);
+        let alike = match decoder {
+            Decoder::Program(program) => program.little_endian(&data),
+            Decoder::Tree(_) => None,
+        };
+        if let (Self::Table(table), Some(body)) = (&mut *self, alike)
+            && table.take_alike(channel, body, times_ns)
+        {
+            return Ok(());
+        }
+        let cache = caches.entry(channel).or_default();
         macro_rules! read {
             ($sink:expr) => {{
                 match decoder {
@@ -65,13 +76,16 @@ impl Content {
                     }
                     Decoder::Tree(tree) => tree.run(&data, $sink)?,
                 }
-                $sink.commit(message.publish_time_ns, message.log_time_ns);
+                $sink.commit(times_ns[0], times_ns[1]);
             }};
         }
         match self {
             Self::Table(table) => {
                 let table = &mut **table;
                 read!(table);
+                if let Some(body) = alike {
+                    table.learn(channel, body, cache);
+                }
             }
             Self::Plans(plans) => read!(plans),
             Self::Versioned(versioned) => read!(versioned),

@@ -6,6 +6,7 @@ mod cylinders;
 mod description;
 mod extract;
 mod frames;
+mod frozen;
 mod indexed;
 mod joints;
 pub(super) mod lines;

@@ -26,6 +26,9 @@ pub(super) fn check<'a>(
 ) -> Result<(), LogError> {
     for candidate in chosen {
         let source = &extracted.sources[candidate.source];
+        if source.parts.len() < 2 {
+            continue;
+        }
         let (Content::Table(table), Some(field)) = (&source.content, candidate.field) else { continue };
         let stamp_ns = table.stamps.of(base);
         let parts = parts(source, table, stamp_ns);

@@ -208,8 +208,7 @@ fn read_block(
                 piece.touched_contents.push(*source);
             }
             let content = piece.contents[*source].get_or_insert_with(|| new(*source));
-            if let Err(error) = content.read(decoder, caches.entry(message.channel_id).or_default(), &message)
-            {
+            if let Err(error) = content.read(decoder, &mut caches, &message) {
                 topic.undecodable += 1;
                 topic.first_error.get_or_insert(error);
             }

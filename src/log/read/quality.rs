@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::frozen::frozen;
 use crate::{
     log::{
         options::{ReadOptions, TimeBase},
@@ -120,14 +121,16 @@ impl Gaps {
 }
 
 /// Numbers of samples paused and slowed; 0 where the field is never filled.
-fn scaling(factors: &[f64]) -> (u64, u64) {
-    if !factors.iter().any(|&f| f > 0.0) {
+fn scaling(factors: &[(f64, u64)]) -> (u64, u64) {
+    let most = factors.iter().map(|(factor, _)| *factor).fold(0.0, f64::max);
+    if most <= 0.0 {
         return (0, 0);
     }
-    let full = factors.iter().copied().fold(0.0, f64::max).min(1.0);
-    let paused = factors.iter().filter(|&&f| f <= 0.0).count();
-    let slowed = factors.iter().filter(|&&f| f > 0.0 && f < full - 1e-6).count();
-    (paused as u64, slowed as u64)
+    let full = most.min(1.0);
+    let samples = |of: &dyn Fn(f64) -> bool| {
+        factors.iter().filter(|(factor, _)| of(*factor)).map(|(_, samples)| samples).sum()
+    };
+    (samples(&|factor| factor <= 0.0), samples(&|factor| factor > 0.0 && factor < full - 1e-6))
 }
 
 /// Undoes full turns of joints declared continuous; remarks on them elsewhere.
@@ -156,8 +159,9 @@ pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: 
 
 /// Number of steps between neighbouring samples of about a full turn.
 fn turns(track: &Track) -> u64 {
-    let steps = track.position().windows(2);
-    steps.filter(|w| (w[1] - w[0]).abs() > PI && ((w[1] - w[0]).abs() - TAU).abs() < 1.0).count() as u64
+    let steps = track.position().windows(2).map(|w| (w[1] - w[0]).abs());
+    // Without a branch on any step, so that the compiler takes several at once.
+    steps.map(|step| u64::from((step > PI) & ((step - TAU).abs() < 1.0))).sum()
 }
 
 fn unwrapped(track: &Track) -> Option<Track> {
@@ -193,6 +197,9 @@ const STEP_ALONE: f64 = 10.0;
 /// Remarks on a plan that jumps.
 fn of_plan(track: &Track, remarks: &mut Remarks) {
     let (t_s, position) = (track.t_s(), track.position());
+    if position.windows(2).fold(true, |calm, w| calm & ((w[1] - w[0]).abs() <= LEAST_STEP)) {
+        return;
+    }
     let (mut jumps, mut largest) = (0, (0.0_f64, 0.0));
     for part in track.segments() {
         let step = |k: usize| (position[k] - position[k - 1]).abs();
@@ -278,41 +285,6 @@ fn span_rad(angle_rad: &[f64]) -> f64 {
     let step = (angle_rad.len() / ENOUGH).max(1);
     let some: Vec<f64> = angle_rad.iter().copied().step_by(step).collect();
     quantile(some.clone(), 0.99) - quantile(some, 0.01)
-}
-
-/// A plan that moves by this much while the sensor repeats one value is beyond any dead-band.
-const FROZEN_PLAN_RAD: f64 = 3.0 * DEGREE_RAD;
-/// The same for a joint that slides.
-const FROZEN_PLAN_M: f64 = 0.02;
-const FROZEN_S: f64 = 0.5;
-
-/// The longest stretch of exactly one measured value while the plan moves: from, to, samples.
-fn frozen(planned: &Track, measured: &Track) -> Option<(f64, f64, u64)> {
-    let (t_s, q) = (measured.t_s(), measured.position());
-    let mut longest: Option<(usize, usize)> = None;
-    let mut start = 0;
-    for i in 1..=q.len() {
-        if i < q.len() && q[i].to_bits() == q[start].to_bits() {
-            continue;
-        }
-        let long = t_s[i - 1] - t_s[start] > FROZEN_S && longest.is_none_or(|(a, b)| i - start > b - a);
-        if long && plan_moves(planned, t_s[start], t_s[i - 1]) {
-            longest = Some((start, i));
-        }
-        start = i;
-    }
-    longest.map(|(start, end)| (t_s[start], t_s[end - 1], (end - start) as u64))
-}
-
-fn plan_moves(planned: &Track, from_s: f64, to_s: f64) -> bool {
-    let range = |t: f64| planned.t_s().partition_point(|&s| s < t);
-    let plan = &planned.position()[range(from_s)..range(to_s)];
-    let (least, most) = plan.iter().fold((f64::MAX, f64::MIN), |(a, b), &q| (a.min(q), b.max(q)));
-    let dead = match planned.kind() {
-        JointKind::Turns => FROZEN_PLAN_RAD,
-        JointKind::Slides => FROZEN_PLAN_M,
-    };
-    most - least > dead
 }
 
 #[cfg(test)]

@@ -6,21 +6,21 @@ use super::quality::Gaps;
 use crate::{
     log::source::Table,
     remark::{Code, Remarks},
-    series::{Clock, JointKind, Quantity, Signal, Track, split_at_gaps, velocity_agrees},
+    series::{Clock, Instants, JointKind, Quantity, Signal, Track, all_finite, split_at_gaps},
     units::{radians_from_degrees, seconds_since},
 };
 
 /// The time axis that all joints of a table share.
 pub(super) struct Axis {
     t_s: Arc<[f64]>,
+    /// The times with their cuts, if the rows are all there, as they lie in the table, and times increase.
+    as_read: Option<Instants>,
     /// Rows of the table at these times; empty if they are all there, as they lie in the table.
     rows: Vec<usize>,
     /// Backward jumps of the clock.
     jumps: Vec<usize>,
     /// Jumps and gaps.
     cuts: Vec<usize>,
-    /// Whether the rows are all there, as they lie in the table, and times increase.
-    as_read: bool,
     /// Least time between neighbours.
     shortest_s: f64,
 }
@@ -35,8 +35,9 @@ impl Axis {
         let t_s: Arc<[f64]> = t_ns.iter().map(|&ns| seconds_since(epoch_ns, ns)).collect();
         drop(t_ns);
         let shortest_s = t_s.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
-        let as_read = whole && shortest_s > 0.0;
-        Self { cuts: cuts(&t_s, &jumps), t_s, rows, jumps, as_read, shortest_s }
+        let cuts = cuts(&t_s, &jumps);
+        let as_read = if whole { Instants::new(t_s.clone(), &cuts).ok() } else { None };
+        Self { t_s, as_read, rows, jumps, cuts, shortest_s }
     }
 
     /// Number of samples.
@@ -47,6 +48,12 @@ impl Axis {
     /// The row of the table at time `i`.
     fn row(&self, i: usize) -> usize {
         self.rows.get(i).copied().unwrap_or(i)
+    }
+
+    /// Whether the values of a column are finite, and none of them a spike if they are positions.
+    fn is_sound(&self, values: &[f64], positions: bool) -> bool {
+        let spiked = || (0..values.len()).any(|k| is_spike(k, values.len(), |i| self.t_s[i], |i| values[i]));
+        positions && is_calm(values, self.shortest_s) || all_finite(values) && !(positions && spiked())
     }
 
     /// The axis without the samples that are missing in a column: times, cuts and jumps.
@@ -64,8 +71,7 @@ impl Axis {
 /// Samples of one field of one joint: finite, in order of time, in the unit of the log.
 pub(super) struct Samples {
     pub(super) name: String,
-    t_s: Arc<[f64]>,
-    cuts: Vec<usize>,
+    instants: Instants,
     values: Vec<f64>,
     /// As many as values where the log gives velocities.
     velocity: Vec<f64>,
@@ -78,15 +84,12 @@ impl Samples {
             let all = self.values.iter_mut().chain(&mut self.velocity);
             all.for_each(|value| *value = radians_from_degrees(*value));
         }
-        let usable = self.velocity.len() == self.values.len()
-            && self.velocity.iter().all(|v| v.is_finite())
-            && velocity_agrees(&self.t_s, &self.values, &self.velocity, &self.cuts);
-        let track = Track::of(kind, self.name, self.t_s, self.values, &self.cuts).ok()?;
-        if usable { track.with_velocity(self.velocity).ok() } else { Some(track) }
+        let track = Track::on(&self.instants, kind, self.name, self.values).ok()?;
+        Some(track.with_velocity_that_agrees(self.velocity))
     }
 
     pub(super) fn into_signal(self, quantity: Quantity) -> Option<Signal> {
-        Signal::new(self.name, quantity, self.t_s, self.values, &self.cuts).ok()
+        Signal::on(&self.instants, self.name, quantity, self.values).ok()
     }
 }
 
@@ -116,13 +119,10 @@ pub(super) fn samples(
         let mut column =
             |field| if last { table.take_column(field, joint) } else { table.column(field, joint).to_vec() };
         let (values, speed) = (column(field), velocity_field.map(column).unwrap_or_default());
-        let spiked = || (0..values.len()).any(|k| is_spike(k, values.len(), |i| axis.t_s[i], |i| values[i]));
-        let whole = axis.as_read
-            && values.len() == axis.t_s.len()
-            && values.iter().all(|q| q.is_finite())
-            && !(positions && !calm(&values, axis.shortest_s) && spiked());
-        let ((t_s, cuts, jumps), values, velocity) = if whole {
-            ((axis.t_s.clone(), axis.cuts.clone(), axis.jumps.clone()), values, speed)
+        let sound = |_: &&Instants| values.len() == axis.t_s.len() && axis.is_sound(&values, positions);
+        let (instants, values, velocity) = if let Some(as_read) = axis.as_read.as_ref().filter(sound) {
+            gap.note(&axis.t_s, &axis.cuts, &axis.jumps);
+            (as_read.clone(), values, speed)
         } else {
             let at = |i: usize| values.get(axis.row(i)).copied().unwrap_or(f64::NAN);
             let mut kept: Vec<usize> = (0..axis.t_s.len()).filter(|&i| at(i).is_finite()).collect();
@@ -131,14 +131,13 @@ pub(super) fn samples(
             if positions {
                 spikes += drop_spikes(&mut kept, &axis.t_s, at);
             }
-            if kept.is_empty() {
-                continue;
-            }
+            let (t_s, cuts, jumps) = axis.kept(&kept);
+            gap.note(&t_s, &cuts, &jumps);
+            let Ok(instants) = Instants::new(t_s, &cuts) else { continue };
             let speed = kept.iter().map_while(|&i| speed.get(axis.row(i)).copied()).collect();
-            (axis.kept(&kept), kept.iter().map(|&i| at(i)).collect(), speed)
+            (instants, kept.iter().map(|&i| at(i)).collect(), speed)
         };
-        gap.note(&t_s, &cuts, &jumps);
-        found.push(Samples { name, t_s, cuts, values, velocity });
+        found.push(Samples { name, instants, values, velocity });
     }
     gap.remark(topic, remarks);
     let message =
@@ -185,21 +184,15 @@ fn is_spike(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usize) -
     (faster(FASTEST) || least > FAR && faster(FAST) && alone()) && !turn()
 }
 
-/// Whether no value is a spike because none is large and no step is: a quick look that spares the closer one.
-fn calm(values: &[f64], shortest_s: f64) -> bool {
-    // Lanes, so that the compiler takes several values at once.
-    let mut largest = [0.0_f64; 8];
-    let mut step = [0.0_f64; 8];
-    let later = values.get(1..).unwrap_or_default();
-    for (here, next) in values.chunks(8).zip(later.chunks(8)) {
-        for (k, (&a, &b)) in here.iter().zip(next).enumerate() {
-            largest[k] = largest[k].max(a.abs());
-            step[k] = step[k].max((b - a).abs());
-        }
-    }
-    let most = |lanes: [f64; 8]| lanes.into_iter().fold(0.0, f64::max);
-    let last = values.last().map_or(0.0, |last| last.abs());
-    most(largest).max(last) <= LARGEST && most(step) <= FAR.min(FASTEST * shortest_s)
+/// Whether no value is a spike or no number because none is large and no step is: a quick look that spares the closer
+/// one. It has no branch on any value, so that the compiler takes several at once.
+fn is_calm(values: &[f64], shortest_s: f64) -> bool {
+    let step = FAR.min(FASTEST * shortest_s);
+    let near = |value: f64| value.abs() <= LARGEST;
+    let pairs = values.iter().zip(values.get(1..).unwrap_or_default());
+    pairs.fold(values.last().is_none_or(|last| near(*last)), |calm, (here, next)| {
+        calm & near(*here) & ((next - here).abs() <= step)
+    })
 }
 
 /// Drops samples that no joint can have; returns how many.

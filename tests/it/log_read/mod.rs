@@ -1,5 +1,6 @@
 //! What the reader makes of logs of every kind, sound and broken.
 
+mod alike;
 mod cdr;
 mod choice;
 mod clocks;

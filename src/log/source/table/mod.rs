@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+mod alike;
 mod message;
 mod places;
 mod stamps;
@@ -10,6 +11,7 @@ pub(in crate::log) use stamps::Stamps;
 pub(super) use stamps::stamp_ns;
 
 use super::{Field, Form};
+use alike::Alike;
 use message::{Message, Names};
 use places::InterfacePlaces;
 
@@ -24,8 +26,8 @@ pub(in crate::log) struct Table {
     /// `[field][joint][sample]`; NaN where a message lacks the joint or the number. A column is
     /// empty if no message had it, and ends with the last message that did.
     pub(in crate::log) columns: Vec<Vec<Vec<f64>>>,
-    /// Speed scaling by sample; empty if the type has none.
-    pub(in crate::log) speed_scaling: Vec<f64>,
+    /// Speed scalings in the order of the samples, and how many in a row have each; mostly there is one.
+    pub(in crate::log) speed_scaling: Vec<(f64, u64)>,
     /// Numbers in the data that are NaN or infinite, by field.
     pub(in crate::log) not_finite: Vec<u64>,
     /// Messages whose array is not as long as the list of names, by field.
@@ -49,6 +51,7 @@ pub(in crate::log) struct Table {
     index: BTreeMap<String, usize>,
     /// Emptied columns, kept for their memory.
     spare: Vec<Vec<f64>>,
+    alike: Alike,
 }
 
 /// No arm has more; a topic that names more is not about joints.
@@ -71,6 +74,16 @@ struct Layout {
 pub(super) fn make_room<T>(column: &mut Vec<T>, rows: usize) {
     if column.capacity() == 0 {
         let _ = column.try_reserve_exact(rows);
+    }
+}
+
+/// Adds a speed scaling that so many samples in a row have; one that is no number says nothing.
+#[inline]
+fn add_scaling(all: &mut Vec<(f64, u64)>, (factor, samples): (f64, u64)) {
+    match all.last_mut() {
+        Some((last, count)) if last.to_bits() == factor.to_bits() => *count += samples,
+        _ if factor.is_finite() => all.push((factor, samples)),
+        _ => {}
     }
 }
 
@@ -101,6 +114,7 @@ impl Table {
             interfaces: InterfacePlaces::default(),
             index: BTreeMap::new(),
             spare: Vec::new(),
+            alike: Alike::default(),
         }
     }
 
@@ -121,6 +135,7 @@ impl Table {
 
     /// Takes the message that was just read into the samples.
     pub(in crate::log) fn commit(&mut self, publish_ns: u64, log_ns: u64) {
+        self.forget_alike();
         self.message.close_groups();
         self.lay_out();
         let rows = self.stamps.len();
@@ -144,10 +159,7 @@ impl Table {
             }
             self.not_finite[field] += bad.saturating_sub(message.absent[field]);
         }
-        if message.speed_scaling.is_finite() {
-            self.speed_scaling.resize(rows, f64::NAN);
-            self.speed_scaling.push(message.speed_scaling);
-        }
+        add_scaling(&mut self.speed_scaling, (message.speed_scaling, 1));
         self.stamps.push(stamp_ns(message.second, message.nanosecond), publish_ns, log_ns);
     }
 
@@ -175,6 +187,7 @@ impl Table {
 
     /// Appends the samples of another table of the same fields, and empties it for reuse.
     pub(in crate::log) fn append(&mut self, other: &mut Self) {
+        other.flush();
         let (rows, expected) = (self.len(), self.expected);
         let joints: Vec<Option<usize>> = other.joints.iter().map(|name| self.joint(name)).collect();
         for (mine, theirs) in self.columns.iter_mut().zip(&mut other.columns) {
@@ -189,10 +202,7 @@ impl Table {
                 }
             }
         }
-        if !other.speed_scaling.is_empty() {
-            self.speed_scaling.resize(rows, f64::NAN);
-            self.speed_scaling.append(&mut other.speed_scaling);
-        }
+        other.speed_scaling.drain(..).for_each(|scaling| add_scaling(&mut self.speed_scaling, scaling));
         self.stamps.append(&other.stamps, expected);
         for (mine, theirs) in self.not_finite.iter_mut().zip(&other.not_finite) {
             *mine += theirs;
