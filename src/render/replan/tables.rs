@@ -91,12 +91,12 @@ pub(super) fn levers(replanned: &Replanned) -> Vec<Fact> {
                 evaluation.times_s.iter().map(|t| format!("{t:.2}")).collect::<Vec<_>>().join(" ")
             });
             let free = evaluation.as_ref().is_some_and(|evaluation| !evaluation.via.is_empty());
-            format!(
-                "re-timed{}, one of {} timings from {} evaluations: {times} s",
-                if free { " in a free shape" } else { "" },
-                search.front.len(),
-                search.evaluations
-            )
+            let how = match (free, search.front.len()) {
+                (true, 0) => "in a free shape".to_owned(),
+                (true, count) => format!("re-timed in a free shape, one of {count} timings"),
+                (false, count) => format!("re-timed, one of {count} timings"),
+            };
+            format!("{how} from {} evaluations: {times} s", search.evaluations)
         }
     };
     let command = replanned.command.as_ref().filter(|command| command.applied());
