@@ -3,6 +3,7 @@
 mod hermite;
 mod lowpass;
 mod paired;
+mod programme;
 mod sin_cos;
 mod statistic;
 mod trend;
@@ -11,6 +12,7 @@ mod two_samples;
 pub use hermite::{State, cubic, linear, quintic};
 pub use lowpass::lowpass;
 pub use paired::{SignedRank, half_interval, signed_rank};
+pub use programme::{Columns, quadratic_programme};
 pub use sin_cos::sin_cos;
 pub use statistic::{SIGMA_PER_MAD, mad, median, quantile, quantile_sorted, range};
 pub use trend::{

@@ -1,9 +1,6 @@
 //! The quadratic programme of one step, solved by Clarabel.
 
-use clarabel::{
-    algebra::CscMatrix,
-    solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT},
-};
+use crate::math::{Columns, quadratic_programme};
 
 /// Price of breaking the linearised constraints, against weights of the merit that sum to one.
 pub(super) const PRICE: f64 = 20.0;
@@ -50,49 +47,18 @@ impl Step<'_> {
             a.column(rows.chain([(m + j, 1.0), (m + n + j, -1.0)]));
         }
         a.column((0..m).map(|i| (i, -1.0)).chain([(m + 2 * n, -1.0)]));
-        let rows = m + 2 * n + 1;
         let b: Vec<f64> = (self.constraint.iter().map(|c| -c))
             .chain(self.bounds.iter().map(|bound| bound.1))
             .chain(self.bounds.iter().map(|bound| -bound.0))
             .chain([0.0])
             .collect();
         let q: Vec<f64> = self.gradient.iter().copied().chain([PRICE]).collect();
-        let settings = DefaultSettingsBuilder::default().verbose(false).build().ok()?;
-        let cones = [SupportedConeT::NonnegativeConeT(rows)];
-        let (p, a) = (p.matrix(n + 1), a.matrix(rows));
-        let mut solver = DefaultSolver::new(&p, &q, &a, &b, &cones, settings).ok()?;
-        solver.solve();
-        let found = &solver.solution;
-        let solved = matches!(found.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
-        (solved && found.x.iter().all(|x| x.is_finite())).then(|| Solution {
-            step: found.x[..n].iter().zip(self.bounds).map(|(d, (low, high))| d.clamp(*low, *high)).collect(),
-            multiplier: found.z[..m].to_vec(),
-            broken: found.x[n].max(0.0),
+        let (x, multiplier) = quadratic_programme(p, &q, a, &b)?;
+        Some(Solution {
+            step: x[..n].iter().zip(self.bounds).map(|(d, (low, high))| d.clamp(*low, *high)).collect(),
+            multiplier: multiplier[..m].to_vec(),
+            broken: x[n].max(0.0),
         })
-    }
-}
-
-/// A sparse matrix in the making, column by column.
-#[derive(Default)]
-struct Columns {
-    start: Vec<usize>,
-    row: Vec<usize>,
-    value: Vec<f64>,
-}
-
-impl Columns {
-    fn column(&mut self, entries: impl Iterator<Item = (usize, f64)>) {
-        self.start.push(self.row.len());
-        for (row, value) in entries {
-            self.row.push(row);
-            self.value.push(value);
-        }
-    }
-
-    fn matrix(mut self, rows: usize) -> CscMatrix<f64> {
-        let columns = self.start.len();
-        self.start.push(self.row.len());
-        CscMatrix::new(rows, columns, self.start, self.row, self.value)
     }
 }
 

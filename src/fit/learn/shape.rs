@@ -7,12 +7,8 @@
 
 use std::ops::Range;
 
-use clarabel::{
-    algebra::CscMatrix,
-    solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT},
-};
-
 use super::super::model::STEP_S;
+use crate::math::{Columns, quadratic_programme};
 
 /// Steps between knots.
 const KNOT: usize = 10;
@@ -152,15 +148,8 @@ impl Part<'_> {
             a.column(column.into_iter());
         }
         let b: Vec<f64> = rows.iter().map(|(_, most)| *most).collect();
-        let settings = DefaultSettingsBuilder::default().verbose(false).build().ok()?;
-        let cones = [SupportedConeT::NonnegativeConeT(b.len())];
-        let (p, a) = (p.matrix(n), a.matrix(b.len()));
-        let mut solver = DefaultSolver::new(&p, &q, &a, &b, &cones, settings).ok()?;
-        solver.solve();
-        let found = &solver.solution;
-        let solved = matches!(found.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
-        let finite = found.x.iter().all(|x| x.is_finite());
-        (solved && finite).then(|| found.x.iter().map(|x| x * scale_rad).collect())
+        let (x, _) = quadratic_programme(p, &q, a, &b)?;
+        Some(x.iter().map(|x| x * scale_rad).collect())
     }
 
     /// Bounds on control points: entries by column, and the largest value of their sum, both by `scale_rad`.
@@ -202,30 +191,6 @@ impl Part<'_> {
                 }
             }
         }
-    }
-}
-
-/// A sparse matrix in the making, column by column.
-#[derive(Default)]
-struct Columns {
-    start: Vec<usize>,
-    row: Vec<usize>,
-    value: Vec<f64>,
-}
-
-impl Columns {
-    fn column(&mut self, entries: impl Iterator<Item = (usize, f64)>) {
-        self.start.push(self.row.len());
-        for (row, value) in entries {
-            self.row.push(row);
-            self.value.push(value);
-        }
-    }
-
-    fn matrix(mut self, rows: usize) -> CscMatrix<f64> {
-        let columns = self.start.len();
-        self.start.push(self.row.len());
-        CscMatrix::new(rows, columns, self.start, self.row, self.value)
     }
 }
 
