@@ -91,23 +91,6 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// A timing that is to become smoother within ceilings, which it need not keep.
-    pub fn smoother(timing: Timing, ceilings: &Ceilings) -> Self {
-        let ceilings = ceilings.map_plan(|k| ceilings[k] * (1.0 - CLEAR));
-        let (rule, merit) = (Rule::Best(Objective::RmsJerk), Merit::alone(Objective::RmsJerk));
-        Self {
-            timing,
-            rule,
-            weights: None,
-            within: 0,
-            horizon_s: None,
-            of: 0,
-            evaluations: 0,
-            merit,
-            ceilings,
-        }
-    }
-
     /// By what share one plan is better than another by the rule, at the prices that it has at the chosen plan. A knee has
     /// none: there a plan is better by what it gains in the objective that gains least.
     pub fn gain(&self, from: &Objectives, to: &Objectives) -> f64 {
@@ -143,8 +126,6 @@ pub const HORIZON: f64 = 2.0;
 const LAST: u64 = 600;
 /// Distance that descents keep from ceilings, as a share of them.
 const ROUNDING: f64 = 1e-6;
-/// The same of a plan that is slowed down at last, by as little as its limits ask for.
-const CLEAR: f64 = 1e-3;
 /// Divisions of the weights that knees are judged by.
 const WEIGHTS: usize = 12;
 

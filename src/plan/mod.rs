@@ -44,6 +44,6 @@ pub use reference::{BEYOND, Reference};
 pub use sampled_motion::SampledMotion;
 pub use search::{Found, Phase, Progress, Search, search};
 pub use setup::Setup;
-pub use shape::{MOST_PIECES, NoShape, Shape, shape};
+pub use shape::{MOST_PIECES, NoShape, Shape, shape, smoother};
 pub use speed_room::SpeedRoom;
 pub use via::Via;

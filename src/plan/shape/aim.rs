@@ -8,6 +8,9 @@ use crate::{
 /// Weight of jerk in every merit, against a sum of one: it settles joints that bound nothing.
 const SETTLE: f64 = 1e-3;
 
+/// Room below ceilings for what a plan is slowed down by at last.
+const SLOWED: f64 = 1e-3;
+
 /// What decides the duration of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Pace {
@@ -57,6 +60,13 @@ impl Aim {
         let prices = merit.slopes(chosen);
         let sum: f64 = prices.plan().iter().sum();
         Self { merit, scale: 1.0 / sum.max(f64::MIN_POSITIVE), ceilings, pace, guard: 1.0 }
+    }
+
+    /// The least jerk within ceilings, whether or not the start keeps them.
+    pub(super) fn smoother(ceilings: &Ceilings) -> Self {
+        let ceilings = ceilings.map_plan(|k| ceilings[k] * (1.0 - SLOWED));
+        let merit = Merit::alone(Objective::RmsJerk);
+        Self { merit, scale: 1.0, ceilings, pace: Pace::Sought, guard: 1.0 }
     }
 
     /// Of a plan; the less the better.

@@ -6,7 +6,7 @@ use super::{
     descend::descend,
 };
 use crate::{
-    plan::{Choice, KEPT_SHARE, Limit, Margin, PlanEvaluation, Setup, Via},
+    plan::{Choice, KEPT_SHARE, Limit, Margin, PlanEvaluation, Setup, Timing, Via},
     task::{Ceilings, Objective},
 };
 
@@ -76,6 +76,30 @@ pub fn shape(
     ceilings: &Ceilings,
     pieces: Option<usize>,
 ) -> Result<Shape, NoShape> {
+    sought(setup, &choice.timing, Aim::of(choice), ceilings, pieces)
+}
+
+/// The smoothest shape within ceilings, from times that need not keep them; `pieces` as of [`shape`].
+///
+/// # Errors
+///
+/// [`NoShape`] if the timing is within them and smoother, or no shape is within them.
+pub fn smoother(
+    setup: &Setup,
+    timing: &Timing,
+    ceilings: &Ceilings,
+    pieces: Option<usize>,
+) -> Result<Shape, NoShape> {
+    sought(setup, timing, Aim::smoother(ceilings), ceilings, pieces)
+}
+
+fn sought(
+    setup: &Setup,
+    timing: &Timing,
+    mut aim: Aim,
+    ceilings: &Ceilings,
+    pieces: Option<usize>,
+) -> Result<Shape, NoShape> {
     let intervals = setup.interval_count();
     let pieces = pieces
         .unwrap_or((PIECES / intervals.max(1)).clamp(FEWEST, DEFAULT_MOST))
@@ -83,14 +107,13 @@ pub fn shape(
     if intervals * pieces > MOST {
         return Err(NoShape::TooManyIntervals { found: intervals, most: MOST / pieces });
     }
-    let chosen = &choice.timing.objectives;
-    let mut aim = Aim::of(choice);
+    let chosen = &timing.objectives;
     // A fine curve begins as the best of a coarser one.
     let mut coarse = pieces;
     while coarse > DEFAULT_MOST && coarse.is_multiple_of(2) {
         coarse /= 2;
     }
-    let (mut frame, mut curve) = start(setup, &choice.timing.interval_s, coarse).ok_or(NoShape::NoGain)?;
+    let (mut frame, mut curve) = start(setup, &timing.interval_s, coarse).ok_or(NoShape::NoGain)?;
     let mut steps = 0;
     while coarse < pieces {
         let end = descend(&frame, curve, &aim, (STEPS, ENOUGH)).ok_or(NoShape::NoGain)?;

@@ -17,4 +17,4 @@ mod step;
 #[cfg(test)]
 mod laws;
 
-pub use found::{MOST_PIECES, NoShape, Shape, shape};
+pub use found::{MOST_PIECES, NoShape, Shape, shape, smoother};

@@ -82,8 +82,6 @@ pub struct Commanded {
     pub hunting: usize,
     /// The limits of the task's arm; empty without a task.
     pub margins: Vec<Margin>,
-    /// Points a second of the trajectory to send.
-    pub points_hz: f64,
 }
 
 impl Commanded {
@@ -99,6 +97,8 @@ pub(super) struct Subject<'a> {
     /// Its motion and when that starts, s.
     pub(super) motion: Option<(Motion, f64)>,
     pub(super) setup: Option<&'a Setup>,
+    /// Points a second of a trajectory to send: what the plan needs, where its motion is known, but no more than there are samples.
+    pub(super) points_hz: f64,
 }
 
 /// A command for a plan, by its runs and a fit. Limits of the joints are kept by construction; where the limits of the arm
@@ -113,7 +113,7 @@ pub(super) fn commanded(
     runs: &[Trial],
     settings: Learning,
 ) -> Result<Commanded, ReplanFailure> {
-    let Subject { plan, setup, .. } = subject;
+    let Subject { plan, setup, points_hz, .. } = subject;
     let (planned, exact) = subject.derivatives();
     let index = |name: &str| plan.tracks.iter().position(|track| track.name() == name);
     let names = setup.map(Setup::joint_names).unwrap_or_default();
@@ -134,7 +134,6 @@ pub(super) fn commanded(
     let mut learnt = taught(&SpeedRoom::new())?;
     let mut shares: Vec<(f64, Option<Limit>)> = vec![(1.0, None); plan.tracks.len()];
     let mut margins = Vec::new();
-    let points_hz = subject.points_hz();
     if let Some(setup) = setup {
         let sent = |learnt: &Learnt, shares: &[(f64, Option<Limit>)]| -> Vec<Vec<State>> {
             let of = |name: &String| {
@@ -158,7 +157,7 @@ pub(super) fn commanded(
             exact || !matches!(margin.limit, Limit::Acceleration | Limit::Jerk)
         };
         let checked = |sent: &[Vec<State>]| -> Vec<(Checked, Margin)> {
-            checked(setup, sent, points_hz).into_iter().filter(told).collect()
+            checked(setup, sent, *points_hz).into_iter().filter(told).collect()
         };
         let own = checked(&own);
         let broken = |(how, margin): &&(Checked, Margin)| {
@@ -198,7 +197,7 @@ pub(super) fn commanded(
         })
         .collect();
     let joints = joints(fit, plan, &series, &planned, &learnt, &shares)?;
-    Ok(Commanded { series, acceleration_rad_s2, joints, hunting: learnt.hunting, margins, points_hz })
+    Ok(Commanded { series, acceleration_rad_s2, joints, hunting: learnt.hunting, margins })
 }
 
 /// How something is interpolated, and how many steps a point lies after the one before.
@@ -212,8 +211,9 @@ fn checked(setup: &Setup, sent: &[Vec<State>], points_hz: f64) -> Vec<(Checked, 
         let found = setup.through_points(&points, stride as f64 * STEP_S).into_iter();
         found.map(move |(how, margin)| ((how, stride), margin))
     };
-    let stride = stride(points_hz);
-    (1..=stride).step_by((stride - 1).max(1)).flat_map(through).collect()
+    let mut strides = vec![1, stride(points_hz)];
+    strides.dedup();
+    strides.into_iter().flat_map(through).collect()
 }
 
 /// Samples from one point of a trajectory to the next.
@@ -245,11 +245,12 @@ fn states(planned: &[[f64; 4]], correction: &[[f64; 3]], share: f64) -> Vec<Stat
     planned.iter().zip(correction).map(one).collect()
 }
 
-impl Subject<'_> {
-    /// Points a second of a trajectory to send: what the plan needs, where its motion is known, but no more than there are samples.
-    fn points_hz(&self) -> f64 {
-        let known = self.motion.as_ref().zip(self.setup);
-        known.map_or(POINTS_HZ[0], |((motion, _), setup)| setup.points_hz(motion).min(1.0 / STEP_S))
+impl<'a> Subject<'a> {
+    pub(super) fn new(plan: &'a Series, motion: Option<(Motion, f64)>, setup: Option<&'a Setup>) -> Self {
+        let known = motion.as_ref().zip(setup);
+        let points_hz =
+            known.map_or(POINTS_HZ[0], |((motion, _), setup)| setup.points_hz(motion).min(1.0 / STEP_S));
+        Self { plan, motion, setup, points_hz }
     }
 
     /// Angle, speed, acceleration and jerk of each joint's plan every step, and whether they are those of its motion; otherwise

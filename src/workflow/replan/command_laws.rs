@@ -170,6 +170,7 @@ struct Case {
     command: Commanded,
     /// The plan itself as a command.
     plain: Commanded,
+    points_hz: f64,
 }
 
 /// One command of a random task, from up to three runs.
@@ -184,10 +185,11 @@ fn case(fit: &Fit, seed: u64) -> Case {
         most_rad: seed.is_multiple_of(2).then(|| uniform(&mut rng, 0.0, 0.2)),
         ..Learning::default()
     };
+    let motion = Some((setup.motion(&times_s).unwrap(), PLAN_LEAD_S));
+    let subject = Subject::new(&plan, motion, Some(&setup));
+    let points_hz = subject.points_hz;
     let made = |runs: &[(Series, Series)], settings: Learning| {
         let trials: Vec<Trial> = runs.iter().map(|(sent, measured)| Trial { sent, measured }).collect();
-        let motion = Some((setup.motion(&times_s).unwrap(), PLAN_LEAD_S));
-        let subject = Subject { plan: &plan, motion, setup: Some(&setup) };
         commanded(&fit, &subject, &trials, settings).unwrap()
     };
     let mut command = made(&runs, settings);
@@ -198,11 +200,11 @@ fn case(fit: &Fit, seed: u64) -> Case {
         command = made(&runs, settings);
     }
     let plain = made(&runs, Learning { gain: 0.0, ..settings });
-    Case { setup, plan, command, plain }
+    Case { setup, plan, command, plain, points_hz }
 }
 
 /// One broken law of a command, if there is one.
-fn broken(seed: u64, Case { setup, plan, command, plain }: &Case) -> Option<String> {
+fn broken(seed: u64, Case { setup, plan, command, plain, points_hz }: &Case) -> Option<String> {
     let names = setup.joint_names();
     for (name, (track, acceleration)) in
         names.iter().zip(command.series.tracks.iter().zip(&command.acceleration_rad_s2))
@@ -221,7 +223,7 @@ fn broken(seed: u64, Case { setup, plan, command, plain }: &Case) -> Option<Stri
         }
     }
     for how in Interpolation::ALL {
-        for stride in [1, stride(command.points_hz)] {
+        for stride in [1, stride(*points_hz)] {
             let margins = |of: &Commanded| {
                 let points: Vec<Vec<State>> =
                     states(of).map(|all| all.into_iter().step_by(stride).collect()).collect();
@@ -238,7 +240,7 @@ fn broken(seed: u64, Case { setup, plan, command, plain }: &Case) -> Option<Stri
             }
         }
     }
-    refused(plan, command, &names).map(|rule| format!("{seed}: {rule}"))
+    refused(plan, (command, *points_hz), &names).map(|rule| format!("{seed}: {rule}"))
 }
 
 fn states(of: &Commanded) -> impl Iterator<Item = Vec<State>> {
@@ -255,7 +257,7 @@ fn states(of: &Commanded) -> impl Iterator<Item = Vec<State>> {
 }
 
 /// Why a trajectory controller would refuse a command; its rules, with their source, are those of `cli::trajectory`.
-fn refused(plan: &Series, command: &Commanded, names: &[String]) -> Option<&'static str> {
+fn refused(plan: &Series, (command, points_hz): (&Commanded, f64), names: &[String]) -> Option<&'static str> {
     let log = PlanLog {
         plan: Planned::Series(plan),
         command: Some(Command { series: &command.series, acceleration_rad_s2: &command.acceleration_rad_s2 }),
@@ -263,7 +265,7 @@ fn refused(plan: &Series, command: &Commanded, names: &[String]) -> Option<&'sta
         trajectory: None,
         carried: &Carried::default(),
         rate_hz: 100.0,
-        points_hz: command.points_hz,
+        points_hz,
     };
     let sent = log.to_send();
     let mut before_ns = -1;

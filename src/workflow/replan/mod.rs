@@ -35,7 +35,7 @@ use super::fit::{self, LimitsFile};
 use crate::{
     fit::{Fit, JointFit, Learning, Trial},
     log::{ReadOptions, Recording},
-    plan::{PlanEvaluation, Setup, Via},
+    plan::{PlanEvaluation, Setup},
     remark::{Code, Remarks},
     replay::Rules,
     series::{Series, Track},
@@ -214,18 +214,13 @@ fn searched(
         found.evaluations += before;
     }
     let best = &found.front[..found.front.len().min(CANDIDATES)];
-    let plans = shape::shaped(&setup, best, (start.as_deref(), &ceilings), shaping)?;
+    let known = start.as_deref().filter(|_| last.shaping() == Shaping::Timing);
+    let plans = shape::shaped(&setup, best, (start.as_deref(), known), &ceilings, shaping)?;
     Ok(Search { front: found.front, plans, evaluations: found.evaluations, ceilings, held, evaluation })
 }
 
-/// What tells a plan of a task: arrivals at the key points, s, and free points between them.
-pub(super) struct Path {
-    pub(super) times_s: Vec<f64>,
-    pub(super) via: Vec<Via>,
-}
-
-/// A plan: what tells it, where it is not the last one, and its samples.
-type Sampled = (Option<Path>, Series);
+/// A plan under the limits of the search, where it is not the last one, and its samples.
+type Sampled = (Option<PlanEvaluation>, Series);
 
 /// Plans to look at with their commands: the last one first.
 fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, ReplanFailure> {
@@ -233,9 +228,8 @@ fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, Repl
         return Ok(vec![(None, last.plan.clone())]);
     };
     let sample = |plan: &PlanEvaluation| -> Result<Sampled, ReplanFailure> {
-        let path = Path { times_s: plan.times_s.clone(), via: plan.via.clone() };
-        let motion = request.setup.motion_through(&path.times_s, &path.via)?;
-        Ok((Some(path), sampled(&request.setup, &motion)?))
+        let motion = request.setup.motion_through(&plan.times_s, &plan.via)?;
+        Ok((Some(plan.clone()), sampled(&request.setup, &motion)?))
     };
     let others = search.plans.iter().map(sample);
     if search.keeps() || search.plans.is_empty() {
@@ -246,9 +240,11 @@ fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, Repl
 
 /// A plan with its command and what is expected of it.
 pub(super) struct Candidate {
-    /// What tells a plan that is not the last one.
-    pub(super) new: Option<Path>,
+    /// The plan under the limits of the search, if it is not the last one.
+    pub(super) new: Option<PlanEvaluation>,
     pub(super) plan: Series,
+    /// Points a second of a trajectory to send.
+    pub(super) points_hz: f64,
     pub(super) command: Option<Commanded>,
     pub(super) predicted: Predicted,
     pub(super) responses: Vec<Response>,
@@ -266,16 +262,14 @@ struct Maker<'a> {
 
 impl Maker<'_> {
     /// `new` is of another plan than the last; its runs say nothing of this one.
-    fn candidate(&self, new: Option<Path>, plan: Series) -> Result<Candidate, ReplanFailure> {
+    fn candidate(&self, new: Option<PlanEvaluation>, plan: Series) -> Result<Candidate, ReplanFailure> {
         let Self { inputs, fit, setup, last, history, decision } = self;
         let kept = new.is_none();
         let motion = match (&new, setup) {
-            (Some(Path { times_s, via }), Some(setup)) => {
-                Some((setup.motion_through(times_s, via)?, PLAN_LEAD_S))
-            }
+            (Some(new), Some(setup)) => Some((setup.motion_through(&new.times_s, &new.via)?, PLAN_LEAD_S)),
             _ => last.motion().zip(last.starts_s),
         };
-        let warped = new.as_ref().and_then(|path| self.warped(&path.times_s, &plan));
+        let warped = new.as_ref().and_then(|new| self.warped(&new.times_s, &plan));
         let trials = match &warped {
             _ if kept => history.trials(),
             Some(measured) => vec![Trial { sent: &plan, measured }],
@@ -287,19 +281,17 @@ impl Maker<'_> {
         };
         let gain = inputs.learning.gain * if kept { history.trust() } else { 1.0 };
         let learning = Learning { gain, keep, ..inputs.learning };
-        let command = if inputs.precompensate {
-            let subject = Subject { plan: &plan, motion, setup: *setup };
-            Some(commanded(fit, &subject, &trials, learning)?)
-        } else {
-            None
-        };
+        let subject = Subject::new(&plan, motion, *setup);
+        let points_hz = subject.points_hz;
+        let command =
+            inputs.precompensate.then(|| commanded(fit, &subject, &trials, learning)).transpose()?;
         let sent = command.as_ref().map_or(&plan, |command| &command.series);
         let newest = keep.unwrap_or(trials.len().saturating_sub(1));
         let base = trials.get(newest).map(|trial| (trial.sent, trial.measured));
         let spread_rad =
             |name: &str| command.as_ref()?.joints.iter().find(|joint| joint.name == name)?.spread_rad;
         let (predicted, responses) = promised(fit, &plan, sent, base, spread_rad, &inputs.rules)?;
-        Ok(Candidate { new, plan, command, predicted, responses })
+        Ok(Candidate { new, plan, points_hz, command, predicted, responses })
     }
 
     /// What the newest run tells of another timing.

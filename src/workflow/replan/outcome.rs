@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Candidate, Commanded, Decision, HeldTo, PastRun, Path, Predicted, ReplanFailure, Response, last::Last,
+    Candidate, Commanded, Decision, HeldTo, PastRun, Predicted, ReplanFailure, Response, last::Last,
 };
 use crate::{
-    fit::{Fit, STEP_S},
+    fit::Fit,
     log::{Recording, WriteError},
-    plan::{POINTS_HZ, PlanEvaluation, Timing},
+    plan::{PlanEvaluation, Timing},
     remark::{Code, Remarks},
     replay::{Rules, replay},
     series::{Series, align},
@@ -123,6 +123,8 @@ pub struct Replanned {
     pub plan: Series,
     /// When the times of the task's plan count from, s.
     pub starts_s: Option<f64>,
+    /// Points a second of the trajectory to send.
+    pub points_hz: f64,
     /// The task.
     pub request: Option<PlanRequest>,
     /// Doubts.
@@ -164,13 +166,13 @@ pub(super) fn replanned(
     chosen: Candidate,
     mut remarks: Remarks,
 ) -> Result<Replanned, ReplanFailure> {
-    let Candidate { new, plan, command, predicted, responses } = chosen;
+    let Candidate { new, plan, points_hz, command, predicted, responses } = chosen;
     let setup = last.request.as_ref().map(|request| &request.setup);
     let retimed = new.is_some();
     let last_evaluation = setup.map(|setup| last.evaluation(setup)).transpose()?.flatten();
     let objectives_before = last_evaluation.as_ref().map(|evaluation| evaluation.objectives);
     let evaluation = match (setup, &new) {
-        (Some(setup), Some(Path { times_s, via })) => Some(PlanEvaluation::through(setup, times_s, via)?),
+        (Some(setup), Some(new)) => Some(PlanEvaluation::through(setup, &new.times_s, &new.via)?),
         _ => last_evaluation,
     };
     if search.as_ref().is_some_and(|search| search.plans.is_empty() && !search.keeps()) {
@@ -214,6 +216,7 @@ pub(super) fn replanned(
         past,
         plan,
         starts_s,
+        points_hz,
         request: last.request,
         trajectory: last.trajectory,
         remarks,
@@ -228,18 +231,6 @@ impl Replanned {
             mean_peak_rad: self.after.mean_peak_rad,
             mean_peak_margin_rad: self.after.mean_peak_margin_rad,
         }
-    }
-
-    /// Points a second of the trajectory to send.
-    fn points_hz(&self) -> f64 {
-        if let Some(command) = &self.command {
-            return command.points_hz;
-        }
-        let known = self.request.as_ref().zip(self.evaluation.as_ref()).and_then(|(request, evaluation)| {
-            let motion = request.setup.motion_through(&evaluation.times_s, &evaluation.via).ok()?;
-            Some(request.setup.points_hz(&motion).min(1.0 / STEP_S))
-        });
-        known.unwrap_or(POINTS_HZ[0])
     }
 
     /// The bytes of the log: plan and command as channels of their own, and the task with the new plan.
@@ -272,7 +263,7 @@ impl Replanned {
             trajectory: self.trajectory.as_deref(),
             carried: &carried,
             rate_hz,
-            points_hz: self.points_hz(),
+            points_hz: self.points_hz,
         }
         .bytes()
     }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::{
-    plan::{Choice, PlanError, PlanEvaluation, Setup, Timing, shape},
+    plan::{PlanError, PlanEvaluation, Setup, Timing, smoother},
     task::{Ceilings, Objective},
     workflow::plan::Shaping,
 };
@@ -17,8 +17,8 @@ pub(super) fn roomy(ceilings: Ceilings) -> Ceilings {
     ceilings.with(Objective::Duration, SLOWER * ceilings[Objective::Duration])
 }
 
-/// Plans of timings, and, if it is free, each in a smoother shape and that of the last one's times; without those that stay beyond
-/// the ceilings.
+/// Plans of timings but the one that is `known`, and, if it is free, each in a smoother shape and that of the last one's times;
+/// without those that stay beyond the ceilings.
 ///
 /// # Errors
 ///
@@ -26,26 +26,26 @@ pub(super) fn roomy(ceilings: Ceilings) -> Ceilings {
 pub(super) fn shaped(
     setup: &Setup,
     best: &[Timing],
-    (start, ceilings): (Option<&[f64]>, &Ceilings),
+    (start, known): (Option<&[f64]>, Option<&[f64]>),
+    ceilings: &Ceilings,
     shaping: Shaping,
 ) -> Result<Vec<PlanEvaluation>, PlanError> {
     let of = |interval_s: &[f64]| PlanEvaluation::of(setup, &setup.times_s(interval_s));
+    let is_new = |timing: &&Timing| known != Some(timing.interval_s.as_slice());
     let Shaping::Free(pieces) = shaping else {
-        let others = best.iter().filter(|timing| start != Some(timing.interval_s.as_slice()));
-        return others.map(|timing| of(&timing.interval_s)).collect();
+        return best.iter().filter(is_new).map(|timing| of(&timing.interval_s)).collect();
     };
     let mut all = best.to_vec();
     if let Some(start) = start {
         let PlanEvaluation { objectives, violation, .. } = of(start)?;
         all.push(Timing { interval_s: start.to_vec(), objectives, violation });
     }
-    let one = |timing: Timing| -> Result<Vec<PlanEvaluation>, PlanError> {
-        let by_times =
-            if start == Some(timing.interval_s.as_slice()) { None } else { Some(of(&timing.interval_s)?) };
-        let smoother = shape(setup, &Choice::smoother(timing, ceilings), ceilings, pieces);
-        Ok(by_times.into_iter().chain(smoother.ok().map(|found| found.evaluation)).collect())
+    let one = |timing: &Timing| -> Result<Vec<PlanEvaluation>, PlanError> {
+        let by_times = Some(timing).filter(is_new).map(|timing| of(&timing.interval_s)).transpose()?;
+        let smoother = smoother(setup, timing, ceilings, pieces).ok().map(|found| found.evaluation);
+        Ok(by_times.into_iter().chain(smoother).collect())
     };
-    let made: Vec<Vec<PlanEvaluation>> = all.into_par_iter().map(one).collect::<Result<_, _>>()?;
+    let made: Vec<Vec<PlanEvaluation>> = all.par_iter().map(one).collect::<Result<_, _>>()?;
     let kept = |plan: &PlanEvaluation| plan.broken().is_empty() && plan.objectives.within(ceilings);
     Ok(made.into_iter().flatten().filter(kept).collect())
 }
