@@ -20,6 +20,7 @@ mod file;
 mod files;
 mod foreign;
 mod input;
+mod joined;
 mod joint_kind;
 mod looks;
 mod options;

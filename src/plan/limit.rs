@@ -29,6 +29,11 @@ pub enum Limit {
 }
 
 impl Limit {
+    /// Whether it is of what a motion takes, which no command has of itself.
+    pub fn is_load(self) -> bool {
+        matches!(self, Self::Torque | Self::RodForce)
+    }
+
     /// Those that every joint has, in the order of the rows.
     pub const OF_JOINT: [Self; 7] = [
         Self::Position,

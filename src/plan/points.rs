@@ -1,6 +1,6 @@
 //! How many points a trajectory needs, so that a controller keeps between them what the plan keeps.
 
-use super::{Interpolation, Margin, Setup};
+use super::{Evaluator, Interpolation, Margin, Setup};
 use crate::{
     math::State,
     spline::{Motion, Quantity, Samples},
@@ -14,13 +14,18 @@ pub const BETWEEN: f64 = 1e-3;
 
 impl Setup {
     /// Points a second of a motion's trajectory: 25, or as many more, up to 400, as it takes that no curve of a controller through
-    /// them breaks a limit by more than [`BETWEEN`]. 25 where the motion breaks one itself.
+    /// them breaks a limit of what is sent by more than [`BETWEEN`]. 25 where the motion breaks one itself: no points mend that.
     pub fn points_hz(&self, motion: &Motion) -> f64 {
         let keeps = |hz: &f64| {
             let found = self.through_points(&states(motion, 1.0 / hz), 1.0 / hz);
             found.iter().all(|(_, margin)| margin.share <= 1.0 + BETWEEN)
         };
-        POINTS_HZ.into_iter().find(keeps).unwrap_or(POINTS_HZ[0])
+        let [least, more @ ..] = &POINTS_HZ;
+        let broken = |margin: &Margin| margin.share > 1.0 + BETWEEN && !margin.limit.is_load();
+        if keeps(least) || self.margins(motion, &mut Evaluator::new(self)).iter().any(broken) {
+            return *least;
+        }
+        more.iter().copied().find(keeps).unwrap_or(*least)
     }
 
     /// Margins of curves through points, by all that a controller may make of them.

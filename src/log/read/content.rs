@@ -8,6 +8,7 @@ use crate::{
         channel::Decoder,
         decode::LayoutCache,
         file::MessageRecord,
+        joined::{self, Sent},
         source::{Form, Plans, Poses, Spec, Table, Versioned},
     },
     remark::Remarks,
@@ -156,6 +157,11 @@ pub(super) struct Extracted {
 }
 
 impl Extracted {
+    /// What was sent, where a plan was put beside it.
+    pub(super) fn sent(&self) -> Option<Sent<'_>> {
+        joined::sent(&self.metadata, self.topics.iter().map(|t| t.topic.as_str()))
+    }
+
     /// The topic of a source.
     pub(super) fn topic_of(&self, source: usize) -> &TopicCount {
         &self.topics[self.sources[source].topic]

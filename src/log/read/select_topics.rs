@@ -236,8 +236,13 @@ fn why(
     let list = |all: &[Candidate]| all.iter().map(topic).collect::<Vec<_>>().join(", ");
     let same =
         planned.len() == measured.len() && planned.iter().zip(measured).all(|(p, m)| p.source == m.source);
+    let given = |c: &Candidate| options.planned.iter().any(|named| named.topic == topic(c));
     let plan = match (options.planned.is_empty(), planned.first().map(|c| c.rank)) {
-        (false, _) => "plan as given".to_owned(),
+        (false, _) if planned.iter().all(given) => "plan as given".to_owned(),
+        (false, _) => {
+            let sent: Vec<&str> = options.planned.iter().map(|named| named.topic.as_str()).collect();
+            format!("plan from {}, joined for what was sent on {}", list(planned), sent.join(", "))
+        }
         (true, Some(1)) => format!("plan from {}, by its name", list(planned)),
         (true, Some(3 | 6)) if planned.iter().all(|c| c.field.is_none()) => {
             format!("plan sampled from the trajectory messages of {}", list(planned))
@@ -253,9 +258,11 @@ fn why(
 
 /// All that could serve in a role, best first; those the caller named, if any.
 fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<Vec<Candidate>, LogError> {
+    let sent = extracted.sent().filter(|_| role == Role::Planned);
     if named.is_empty() {
         let mut found = Vec::new();
-        for source in 0..extracted.sources.len() {
+        let is_sent = |source: usize| sent.is_some_and(|sent| sent.is_on(&extracted.topic_of(source).topic));
+        for source in (0..extracted.sources.len()).filter(|source| !is_sent(*source)) {
             found.extend(
                 of_source(extracted, source, role, None).into_iter().filter(|c| c.rank < ONLY_IF_NAMED),
             );
@@ -266,7 +273,15 @@ fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<V
         });
         return Ok(found);
     }
-    named.iter().map(|selector| self::named(extracted, selector, role)).collect()
+    let mut meant: Vec<Selector> = Vec::new();
+    for selector in named {
+        let plan = sent.and_then(|sent| sent.plan_behind(selector));
+        let selector = plan.unwrap_or_else(|| selector.clone());
+        if !meant.contains(&selector) {
+            meant.push(selector);
+        }
+    }
+    meant.iter().map(|selector| self::named(extracted, selector, role)).collect()
 }
 
 /// The candidate of a selector.

@@ -9,6 +9,7 @@ use crate::{
         error::LogError,
         file::{Blocks, MessageRecord, Opcode, records},
         files::{ScannedFile, ScannedLog},
+        joined,
         read::recording::Attachment,
         write::{LogWriter, Options, Role, Topics, WriteError},
     },
@@ -34,6 +35,8 @@ pub struct Addition<'a> {
     pub samples: Vec<PlanSample>,
     /// How much later than their stamps the log's messages were received, ns.
     pub log_delay_ns: i64,
+    /// Topics and fields of what was sent, joined by a comma, if the log has them.
+    pub sent: Option<[&'a str; 2]>,
     /// Files, in place of those of their names.
     pub files: &'a [Attachment],
     /// Name and entries of metadata, in place of those of this name.
@@ -82,8 +85,11 @@ impl<W: Write> Joining<'_, W> {
     ) -> Result<u64, CopyError> {
         let (name, entries) = &addition.metadata;
         let replaced: Vec<&str> =
-            addition.files.iter().map(|file| file.name.as_str()).chain([*name]).collect();
+            addition.files.iter().map(|file| file.name.as_str()).chain([*name, joined::METADATA]).collect();
         self.log.metadata(name, entries)?;
+        if let Some([topics, fields]) = addition.sent {
+            self.log.metadata(joined::METADATA, &joined::entries(topics, fields))?;
+        }
         let start_ns = addition.samples.first().map_or(0, |sample| sample.stamp_ns);
         for file in addition.files {
             self.log.attach(&file.name, &file.media_type, &file.data, start_ns)?;

@@ -162,6 +162,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         joints: names.clone(),
         samples,
         log_delay_ns: received.flatten().map_or(0, |[middle_s, _]| nanoseconds(middle_s)),
+        sent: sent.map(|_| [run.source.planned_topic.as_str(), run.source.planned_field.as_str()]),
         files: carried.files(),
         metadata: carried.metadata(),
     };

@@ -216,7 +216,8 @@ fn searched(
     let best = &found.front[..found.front.len().min(CANDIDATES)];
     let known = start.as_deref().filter(|_| last.shaping() == Shaping::Timing);
     let plans = shape::shaped(&setup, best, (start.as_deref(), known), &ceilings, shaping)?;
-    Ok(Search { front: found.front, plans, evaluations: found.evaluations, ceilings, held, evaluation })
+    let retime::Timings { front, evaluations } = found;
+    Ok(Search { front, plans, shaping, evaluations, ceilings, held, evaluation })
 }
 
 /// A plan under the limits of the search, where it is not the last one, and its samples.

@@ -21,7 +21,7 @@ use crate::{
             plan_log::{Command, PlanLog, Planned},
             rest::PLAN_LEAD_S,
         },
-        plan::{PlanDocument, PlanRequest},
+        plan::{PlanDocument, PlanRequest, Shaping},
     },
 };
 
@@ -72,6 +72,8 @@ pub struct Search {
     pub front: Vec<Timing>,
     /// The plans to look at: the first of them, in the shape asked for.
     pub plans: Vec<PlanEvaluation>,
+    /// What was free in them.
+    pub shaping: Shaping,
     /// Evaluations made.
     pub evaluations: u64,
     /// Ceilings on the objectives.
@@ -175,9 +177,15 @@ pub(super) fn replanned(
         (Some(setup), Some(new)) => Some(PlanEvaluation::through(setup, &new.times_s, &new.via)?),
         _ => last_evaluation,
     };
-    if search.as_ref().is_some_and(|search| search.plans.is_empty() && !search.keeps()) {
-        let message = "no timing keeps the fitted limits within the time, jerk and power that are allowed: the plan \
-                       stays; --max-time-growth-percent gives it more";
+    if let Some(search) = search.as_ref().filter(|search| search.plans.is_empty() && !search.keeps()) {
+        let (what, shape) = match search.shaping {
+            Shaping::Timing => ("timing", ", --shape free another shape"),
+            Shaping::Free(_) => ("plan", ""),
+        };
+        let message = format!(
+            "no {what} keeps the fitted limits within the time, jerk and power that are allowed: the plan stays; \
+             --max-time-growth-percent gives it more{shape}"
+        );
         remarks.add(Code::BeyondLimit, 1, message);
     }
     if let Some(command) = &command {

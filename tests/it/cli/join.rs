@@ -9,8 +9,8 @@ use std::{
 
 use hydrotrace::{
     log::{
-        ControllerState, LogWriter, Point, ReadOptions, Recording, Role, Selector, WriteOptions, read_plan,
-        read_recording,
+        ControllerState, LogWriter, Point, ReadOptions, Recording, Role, Selector, Topics, WriteOptions,
+        read_plan, read_recording,
     },
     series::{Series, Track},
 };
@@ -171,6 +171,55 @@ fn a_joined_log_reports_fits_and_compares_as_one_that_always_had_its_plan() {
         let [low, high] = [0, 1].map(|k| interval[k].as_f64().unwrap());
         assert!((low..=high).contains(&found.as_f64().unwrap()), "{interval} {found}");
     }
+}
+
+/// A recorder's log in which what was sent is called a reference, as a plan would be.
+fn referenced(path: &Path, sent: &Series, run: &Recording) {
+    let names: Vec<&str> = sent.tracks.iter().map(Track::name).collect();
+    let topics = Topics { planned: "/ref/joint_states".to_owned(), ..Topics::default() };
+    let options = WriteOptions { topics, ..WriteOptions::default() };
+    let mut log = LogWriter::new(BufWriter::new(File::create(path).unwrap()), &names, options).unwrap();
+    for &t_s in run.measured.tracks[0].t_s() {
+        let stamp_ns = START_NS + ns(t_s);
+        // Twice as often as the plan will stand there.
+        for t_s in [t_s, t_s + 0.005] {
+            log.joint_sample(Role::Planned, START_NS + ns(t_s), &angles(sent, t_s), &[], &[]).unwrap();
+        }
+        log.joint_sample(Role::Measured, stamp_ns, &angles(&run.measured, t_s), &[], &[]).unwrap();
+    }
+    log.finish().unwrap();
+}
+
+#[test]
+fn what_was_sent_is_no_plan_once_the_plan_stands_beside_it_and_one_line_reads_both_logs() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    // The first run is sent its plan, the second its command, on one topic.
+    let first = read_recording(&[RUNS.path().join("run.mcap")], &ReadOptions::default()).unwrap();
+    referenced(&at.join("first.mcap"), &first.planned, &first);
+    let (run, sent) = whole();
+    referenced(&at.join("second.mcap"), &sent, &run);
+    let next = RUNS.path().join("next.mcap");
+    let said = json(at, &format!("join second.mcap --plan {} -o after.mcap", next.display()));
+    assert_eq!(
+        (&said["sent"], &said["sent_is_command"]),
+        (&"/ref/joint_states:position".into(), &true.into())
+    );
+    let expected = peaks_deg(&json(RUNS.path(), "report whole.mcap"));
+    for named in ["", "--planned /ref/joint_states", "--planned /ref/joint_states:position"] {
+        let report = json(at, &format!("report after.mcap {named}"));
+        assert_eq!(report["source"]["planned_topic"], "/planned/joint_states", "{named}");
+        for (expected, found) in expected.iter().zip(&peaks_deg(&report)) {
+            assert!(expected.0 == found.0 && (expected.1 - found.1).abs() < 0.01, "{expected:?} {found:?}");
+        }
+        let why = report["source"]["why"].as_str().unwrap().to_owned();
+        assert_eq!(why.contains("joined for what was sent on /ref/joint_states"), !named.is_empty(), "{why}");
+    }
+    // The lines that `replan` prints name the topic for both logs.
+    let line = "first.mcap after.mcap --planned /ref/joint_states --json";
+    let compared: Value = serde_json::from_slice(&hydrotrace(at, &format!("compare {line}")).stdout).unwrap();
+    let topics = ["before", "after"].map(|side| compared[side][0]["source"]["planned_topic"].clone());
+    assert_eq!(topics, ["/ref/joint_states", "/planned/joint_states"]);
 }
 
 /// What a join that must fail says; it writes nothing.
