@@ -13,6 +13,9 @@ pub struct Cylinder {
     pull_area_m2: f64,
     push_n: f64,
     pull_n: f64,
+    /// One over them, 1/N.
+    per_push: f64,
+    per_pull: f64,
 }
 
 /// What is wrong with a cylinder: quantity, what was found, what is expected.
@@ -71,7 +74,8 @@ impl Cylinder {
             return Err(("rod_m", format!("{rod_m}"), "a rod so thin that supply pressure can pull it in"));
         }
         let offset = linkage.offset_rad.sin_cos();
-        Ok(Self { linkage, offset, push_area_m2, pull_area_m2, push_n, pull_n })
+        let [per_push, per_pull] = [push_n, pull_n].map(f64::recip);
+        Ok(Self { linkage, offset, push_area_m2, pull_area_m2, push_n, pull_n, per_push, per_pull })
     }
 
     /// Length from mount to mount, m, and its change by joint angle, m/rad, from the sine and cosine
@@ -108,14 +112,14 @@ impl Cylinder {
         let rod_speed_m_s = lever_m * speed_rad_s;
         let area_m2 = if rod_speed_m_s > 0.0 { self.push_area_m2 } else { self.pull_area_m2 };
         let force_n = torque_nm / lever_m.abs().max(1e-6).copysign(lever_m);
-        let most_n = if force_n > 0.0 { self.push_n } else { self.pull_n };
+        let per_most = if force_n > 0.0 { self.per_push } else { self.per_pull };
         Actuation {
             length_m,
             lever_m,
             rod_speed_m_s,
             flow_m3_s: area_m2 * rod_speed_m_s.abs(),
             force_n,
-            force_share: force_n.abs() / most_n,
+            force_share: force_n.abs() * per_most,
         }
     }
 

@@ -1,6 +1,6 @@
 //! How near a plan comes to every limit, exactly, and where.
 
-use super::{Evaluator, Margin, Setup, evaluate::vertex, limit::Limit, mesh::LOADED};
+use super::{Evaluator, Margin, Setup, limit::Limit, mesh::LOADED, shares::vertex};
 use crate::{
     arm::LANES,
     spline::{Extremum, Motion, Quantity},

@@ -2,7 +2,7 @@
 
 use multiversion::multiversion;
 
-use super::{Setup, setup::JointLimits};
+use super::Setup;
 use crate::{
     arm::{Chain, Cylinder, LANES, Load, Motion as ArmMotion, Workspace, inverse_dynamics},
     spline::{Gauss, Motion, Quantity, Samples},
@@ -32,6 +32,8 @@ pub(super) struct Mesh {
     /// Weights of the instants in integrals, s; zero where they are void.
     pub(super) weights_s: Vec<f64>,
     lanes: Lanes,
+    /// One over the limits of each joint: torque, and rod speed out and in.
+    reciprocals: Vec<[f64; 3]>,
 }
 
 /// One group of instants.
@@ -58,6 +60,7 @@ impl Mesh {
             squared_power: vec![0.0; joints],
             energy_j: 0.0,
             weights_s: Vec::new(),
+            reciprocals: Vec::new(),
             lanes: Lanes {
                 dynamics: Workspace::new(&setup.arm.chain),
                 state: [zeros(), zeros(), zeros()],
@@ -142,8 +145,7 @@ impl Mesh {
     }
 
     fn fill(&mut self, setup: &Setup, motion: &Motion) {
-        // A rest is never asked for, but its bounds are: a share of a step inside the segment decides.
-        motion.sample(&self.t_s, Quantity::Jerk, &mut self.samples);
+        motion.sample_segments(&self.t_s, &self.segment, &mut self.samples);
         self.load(setup);
     }
 
@@ -154,12 +156,17 @@ impl Mesh {
         self.power_w.resize(joints * count, 0.0);
         self.lanes.squared_power.fill([0.0; LANES]);
         self.lanes.power.fill(0.0);
+        self.reciprocals.clear();
+        self.reciprocals.extend(setup.limits.iter().map(|limit| {
+            let [extend_m_s, retract_m_s] = limit.rod_speed_m_s;
+            [limit.torque_n_m, extend_m_s, retract_m_s].map(f64::recip)
+        }));
         for (range, load) in self.segment.iter().zip(&setup.loads) {
             let task = Task {
                 chain: &setup.arm.chain,
                 load,
                 cylinders: setup.arm.hydraulics.cylinders(),
-                limits: &setup.limits,
+                reciprocals: &self.reciprocals,
                 pump_flow_m3_s: setup.arm.hydraulics.pump_flow_m3_s(),
                 range: range.clone(),
             };
@@ -195,7 +202,8 @@ struct Task<'a> {
     chain: &'a Chain,
     load: &'a Load,
     cylinders: &'a [Option<Cylinder>],
-    limits: &'a [JointLimits],
+    /// One over the limits of each joint.
+    reciprocals: &'a [[f64; 3]],
     pump_flow_m3_s: f64,
     range: std::ops::Range<usize>,
 }
@@ -209,23 +217,26 @@ struct Loads<'a> {
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "x86_64+sse4.1"))]
 fn dispatched(task: &Task<'_>, samples: &Samples, weights_s: &[f64], lanes: &mut Lanes, to: Loads<'_>) {
     let Loads { shares, power_w } = to;
-    let (joints, count) = (task.limits.len(), weights_s.len());
+    let (joints, count) = (task.reciprocals.len(), weights_s.len());
     let motion = [Quantity::Position, Quantity::Velocity, Quantity::Acceleration];
     let mut first = task.range.start;
     while first + LANES <= task.range.end {
         for (quantity, to) in motion.iter().zip(&mut lanes.state) {
             for (to, from) in to.iter_mut().zip(samples.all(*quantity).chunks_exact(count)) {
-                to.copy_from_slice(&from[first..first + LANES]);
+                // Of a known length, which needs no call.
+                if let Some(from) = from[first..].first_chunk() {
+                    *to = *from;
+                }
             }
         }
         let [position_rad, speed_rad_s, acceleration_rad_s2] = &lanes.state;
         let state = ArmMotion { position_rad, speed_rad_s, acceleration_rad_s2 };
         inverse_dynamics(task.chain, task.load, state, &mut lanes.dynamics, &mut lanes.torque_n_m);
-        let mut weights = [0.0; LANES];
-        weights.copy_from_slice(&weights_s[first..first + LANES]);
+        let weights = weights_s[first..].first_chunk().copied().unwrap_or([0.0; LANES]);
         let mut flow_m3_s = [0.0; LANES];
         for (j, (sin, cos)) in lanes.dynamics.sin_cos().enumerate().take(joints) {
-            let (torque, speed, limit) = (&lanes.torque_n_m[j], &speed_rad_s[j], &task.limits[j]);
+            let (torque, speed) = (&lanes.torque_n_m[j], &speed_rad_s[j]);
+            let [per_torque, per_extend, per_retract] = task.reciprocals[j];
             let mut rows = [[0.0; LANES]; LOADED];
             let own_w = &mut power_w[j * count + first..][..LANES];
             for l in 0..LANES {
@@ -233,20 +244,21 @@ fn dispatched(task: &Task<'_>, samples: &Samples, weights_s: &[f64], lanes: &mut
                 own_w[l] = power;
                 lanes.squared_power[j][l] += weights[l] * power * power;
                 lanes.power[l] += weights[l] * power.abs();
-                rows[0][l] = torque[l].abs() / limit.torque_n_m;
+                rows[0][l] = torque[l].abs() * per_torque;
             }
             if let Some(cylinder) = &task.cylinders[j] {
-                let [extend_m_s, retract_m_s] = limit.rod_speed_m_s;
                 for l in 0..LANES {
                     let found = cylinder.actuation((sin[l], cos[l]), speed[l], torque[l]);
-                    let most = if found.rod_speed_m_s > 0.0 { extend_m_s } else { retract_m_s };
+                    let per_most = if found.rod_speed_m_s > 0.0 { per_extend } else { per_retract };
                     flow_m3_s[l] += found.flow_m3_s;
-                    rows[ROD_SPEED][l] = found.rod_speed_m_s.abs() / most;
+                    rows[ROD_SPEED][l] = found.rod_speed_m_s.abs() * per_most;
                     rows[2][l] = found.force_share;
                 }
             }
             for (row, values) in rows.iter().enumerate() {
-                shares[(j * LOADED + row) * count + first..][..LANES].copy_from_slice(values);
+                if let Some(to) = shares[(j * LOADED + row) * count + first..].first_chunk_mut() {
+                    *to = *values;
+                }
             }
         }
         for (share, flow) in shares[joints * LOADED * count + first..].iter_mut().zip(flow_m3_s) {

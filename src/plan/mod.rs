@@ -27,6 +27,7 @@ mod search;
 mod seed;
 mod setup;
 mod shape;
+mod shares;
 mod speed_room;
 mod tangent;
 mod via;

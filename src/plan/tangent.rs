@@ -26,7 +26,7 @@ impl Point {
     pub(super) fn look(setup: &Setup, evaluator: &mut Evaluator, goal: &Goal, x: Vec<f64>) -> Option<Self> {
         let [low, high] = setup.interval_s;
         let interval_s: Vec<f64> = x.iter().map(|x| x.exp().clamp(low, high)).collect();
-        let objectives = evaluator.evaluate(setup, &interval_s)?;
+        let objectives = evaluator.evaluate_peaks(setup, &interval_s)?;
         let f = objectives.plan();
         if !f.iter().all(|f| f.is_finite() && *f > 0.0) {
             return None;

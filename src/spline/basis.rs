@@ -10,7 +10,8 @@ pub(super) const WIDTH: usize = 8;
 pub(super) type Row<const L: usize> = [[f64; L]; WIDTH];
 
 /// Row of degree 0.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 pub(super) fn constant<const L: usize>() -> Row<L> {
     let mut row = [[0.0; L]; WIDTH];
     row[0] = [1.0; L];
@@ -21,7 +22,8 @@ pub(super) fn constant<const L: usize>() -> Row<L> {
 ///
 /// The row of degree g weighs the control points `piece..=piece + g` of the derivative of
 /// order `degree - g`.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 pub(super) fn raise<const L: usize>(
     row: &mut Row<L>,
     to: usize,
@@ -57,7 +59,8 @@ pub(super) fn row<const DEGREE: usize, const L: usize>(
 }
 
 /// Sums of control points times basis functions.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 pub(super) fn weigh<const L: usize>(control: &[f64], row: &Row<L>) -> [f64; L] {
     let mut sum = [0.0; L];
     for (c, weights) in control.iter().zip(row) {

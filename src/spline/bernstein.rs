@@ -1,7 +1,8 @@
 //! One polynomial piece in Bernstein form, and its stationary points.
 
-use super::basis::WIDTH;
-use super::{Quantity, Spline};
+use multiversion::multiversion;
+
+use super::{Quantity, Spline, basis::WIDTH, knots::Knots};
 
 /// A polynomial over [0, 1] by its Bernstein coefficients; it lies between the least and the
 /// greatest of them and meets the first and the last.
@@ -24,33 +25,56 @@ impl Spline {
         piece: usize,
         (from_s, to_s): (f64, f64),
     ) -> Bernstein {
-        let knots = &self.knots;
+        let control = &self.control(joint, quantity)[piece..];
+        let (knots, first) = (&self.knots, piece + quantity.order());
         let degree = knots.degree - quantity.order();
-        let first = piece + quantity.order();
-        let mut values = [0.0; WIDTH];
-        values[..=degree].copy_from_slice(&self.control(joint, quantity)[piece..=piece + degree]);
-        // One step of de Boor's algorithm: the `level`-th argument of the blossom.
-        let step = |values: &mut [f64; WIDTH], level: usize, t_s: f64| {
-            let width = degree + 1 - level;
-            for k in (level..=degree).rev() {
-                let share = (t_s - knots.u[first + k]) * knots.reciprocal(first + k, width);
-                values[k] = (1.0 - share) * values[k - 1] + share * values[k];
-            }
-        };
-        let mut coefficients = [0.0; WIDTH];
-        for i in (0..=degree).rev() {
-            // `values` has taken in `from_s` degree - i times; the rest are `to_s`.
-            let mut rest = values;
-            for level in degree - i + 1..=degree {
-                step(&mut rest, level, to_s);
-            }
-            coefficients[i] = rest[degree];
-            if i > 0 {
-                step(&mut values, degree - i + 1, from_s);
+        Bernstein { degree, coefficients: dispatched(knots, degree, first, control, [from_s, to_s]) }
+    }
+}
+
+/// Coefficients on `[from_s, to_s]` of the piece whose knots and control points start here, by the widest vector unit
+/// of the processor; the result does not depend on which.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "x86_64+sse4.1"))]
+fn dispatched(knots: &Knots, degree: usize, first: usize, control: &[f64], ends_s: [f64; 2]) -> [f64; WIDTH] {
+    // The degree as a constant lets the compiler unroll.
+    match degree {
+        2 => blossoms::<2>(knots, first, control, ends_s),
+        3 => blossoms::<3>(knots, first, control, ends_s),
+        4 => blossoms::<4>(knots, first, control, ends_s),
+        5 => blossoms::<5>(knots, first, control, ends_s),
+        6 => blossoms::<6>(knots, first, control, ends_s),
+        _ => blossoms::<7>(knots, first, control, ends_s),
+    }
+}
+
+/// All coefficients at once: the one of lane `i` takes in the start `DEGREE - i` times and then the end.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
+fn blossoms<const DEGREE: usize>(
+    knots: &Knots,
+    first: usize,
+    control: &[f64],
+    [from_s, to_s]: [f64; 2],
+) -> [f64; WIDTH] {
+    let mut values = [[0.0; WIDTH]; WIDTH];
+    for (value, control) in values[..=DEGREE].iter_mut().zip(control) {
+        *value = [*control; WIDTH];
+    }
+    // De Boor's algorithm, a level for each argument of the blossom.
+    for level in 1..=DEGREE {
+        let reciprocals = &knots.reciprocals(first + level, DEGREE + 1 - level)[..=DEGREE - level];
+        let left_s = &knots.u[first + level..][..=DEGREE - level];
+        let mut t_s = [to_s; WIDTH];
+        t_s[..=DEGREE - level].fill(from_s);
+        for k in (level..=DEGREE).rev() {
+            let (reciprocal, left_s) = (reciprocals[k - level], left_s[k - level]);
+            for l in 0..WIDTH {
+                let share = (t_s[l] - left_s) * reciprocal;
+                values[k][l] = (1.0 - share) * values[k - 1][l] + share * values[k][l];
             }
         }
-        Bernstein { degree, coefficients }
     }
+    values[DEGREE]
 }
 
 impl Bernstein {

@@ -59,6 +59,13 @@ impl Spline {
         hull(self.control(joint, quantity))
     }
 
+    /// As [`Spline::hull`], of a piece and its neighbours.
+    pub(crate) fn hull_about(&self, joint: usize, quantity: Quantity, piece: usize) -> (f64, f64) {
+        let control = self.control(joint, quantity);
+        let end = piece + 3 + self.knots.degree - quantity.order();
+        hull(&control[piece.saturating_sub(1)..end.min(control.len())])
+    }
+
     /// Exact least and greatest value over the whole spline.
     ///
     /// # Panics

@@ -77,13 +77,7 @@ impl Knots {
         }
     }
 
-    /// 1 / (u[i + width] - u[i]), 1/s.
-    #[inline]
-    pub(super) fn reciprocal(&self, i: usize, width: usize) -> f64 {
-        self.reciprocals[(width - 1) * self.u.len() + i]
-    }
-
-    /// The reciprocals of that width at `i` and after.
+    /// 1 / (u[i + width] - u[i]), 1/s, at `i` and after.
     #[inline]
     pub(super) fn reciprocals(&self, i: usize, width: usize) -> &[f64] {
         &self.reciprocals[(width - 1) * self.u.len() + i..width * self.u.len()]

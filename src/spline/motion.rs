@@ -3,6 +3,8 @@
 //! A spline through two equal key points drifts between them; so a motion is split at every
 //! dwell into splines that come to rest, and is exactly constant while it dwells.
 
+use std::ops::Range;
+
 use super::{Degree, Ends, Extrema, KeyPoints, Quantity, Samples, Spline, SplineError, error::check};
 
 /// A rest at a key point.
@@ -208,6 +210,15 @@ impl Motion {
                 }
             }
             column += run;
+        }
+    }
+
+    /// All quantities at instants whose segments are known, `[segment]`; at a rest the ends of the curves.
+    pub(crate) fn sample_segments(&self, t_s: &[f64], ranges: &[Range<usize>], samples: &mut Samples) {
+        samples.shape(self.joints(), t_s.len(), Quantity::Jerk);
+        for (range, segment) in ranges.iter().zip(&self.segments) {
+            let instants = &t_s[range.clone()];
+            segment.spline.sample_into(instants, segment.start_s, Quantity::Jerk, samples, range.start);
         }
     }
 

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use multiversion::multiversion;
+
 use super::{
     Quantity, Spline,
     basis::{self, Row},
@@ -109,19 +111,15 @@ impl Spline {
                 count += 1;
             }
             let column = first + done..first + done + count;
-            // The degree as a constant lets the compiler unroll.
-            match self.knots.degree {
-                5 => self.lanes::<5>(piece, &instants, through.order(), samples, column),
-                6 => self.lanes::<6>(piece, &instants, through.order(), samples, column),
-                _ => self.lanes::<7>(piece, &instants, through.order(), samples, column),
-            }
+            dispatched(self, piece, &instants, through.order(), samples, column);
             done += count;
         }
     }
 
     /// Fills columns from instants of one piece.
-    #[inline]
-    fn lanes<const DEGREE: usize>(
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
+    fn lanes<const DEGREE: usize, const WHOLE: bool>(
         &self,
         piece: usize,
         t_s: &[f64; LANES],
@@ -144,11 +142,33 @@ impl Spline {
             for (control, line) in controls.zip(lines) {
                 let sum = basis::weigh(&control[piece..=piece + degree], &row);
                 let line = &mut line[columns.clone()];
-                match line.first_chunk_mut() {
-                    Some(line) => *line = sum,
-                    None => line.copy_from_slice(&sum[..line.len()]),
+                if !WHOLE {
+                    line.copy_from_slice(&sum[..line.len()]);
+                } else if let Some(line) = line.first_chunk_mut() {
+                    *line = sum;
                 }
             }
         }
+    }
+}
+
+/// Instants of one piece, by the widest vector unit of the processor; the result does not depend on which.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "x86_64+sse4.1"))]
+fn dispatched(
+    spline: &Spline,
+    piece: usize,
+    t_s: &[f64; LANES],
+    through: usize,
+    samples: &mut Samples,
+    columns: Range<usize>,
+) {
+    // The degree as a constant lets the compiler unroll, a whole group copy without a call.
+    match (spline.knots.degree, columns.len() == LANES) {
+        (5, true) => spline.lanes::<5, true>(piece, t_s, through, samples, columns),
+        (5, false) => spline.lanes::<5, false>(piece, t_s, through, samples, columns),
+        (6, true) => spline.lanes::<6, true>(piece, t_s, through, samples, columns),
+        (6, false) => spline.lanes::<6, false>(piece, t_s, through, samples, columns),
+        (_, true) => spline.lanes::<7, true>(piece, t_s, through, samples, columns),
+        (_, false) => spline.lanes::<7, false>(piece, t_s, through, samples, columns),
     }
 }

@@ -149,7 +149,10 @@ fn a_log_that_is_still_being_written_is_reported_when_it_is_whole() {
     fs::write(bag.join("metadata.yaml"), metadata).unwrap();
     assert!(next(&mut lines).contains("M01 bag: "));
     // What changes is reported again, in the place of what was.
-    fs::write(&log, small_log("M00", 1, 3, [0.2, 0.2])).unwrap();
+    // At once: a file that is half written is no log, and would be said to be none.
+    let whole = folder.path().join("whole.mcap");
+    fs::write(&whole, small_log("M00", 1, 3, [0.2, 0.2])).unwrap();
+    fs::rename(&whole, &log).unwrap();
     assert!(next(&mut lines).starts_with("2026-03-02"));
     fs::write(&log, "no log").unwrap();
     assert!(next(&mut lines).starts_with("run.mcap: FAILED: "));
