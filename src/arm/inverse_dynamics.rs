@@ -117,9 +117,12 @@ pub fn inverse_dynamics<const L: usize>(
     let zero = [[0.0; L]; 3];
     let (mut speed, mut acceleration) = (zero, zero);
     let mut reach = [[0.0; L], [0.0; L], [GRAVITY_M_S2; L]];
+    // None waits for another, so these come first.
+    for (body, position_rad) in work.bodies[..joints].iter_mut().zip(motion.position_rad) {
+        (body.sin, body.cos) = sin_cos(position_rad);
+    }
     for i in 0..joints {
         let body = &mut work.bodies[i];
-        (body.sin, body.cos) = sin_cos(&motion.position_rad[i]);
         let inertia = if i + 1 == chain.steps.len() { &load.0 } else { &chain.bodies[i] };
         let onwards = chain.steps.get(i + 1).map_or([0.0; 3], |next| next.offset_m.into());
         let rates = (&motion.speed_rad_s[i], &motion.acceleration_rad_s2[i]);
