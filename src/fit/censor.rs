@@ -29,10 +29,10 @@ pub(super) fn seen(
     let data = |residuals: &[f64]| residuals.iter().map(|r| cost(r / found.scale_rad)).sum::<f64>();
     problem.residuals(&found.x, workspace, &mut residuals);
     let (with, kappa) = (data(&residuals), inefficiency(&residuals));
-    let mut seen = problem.seen;
-    for limit in (0..problem.seen.len()).filter(|&limit| problem.seen[limit]) {
+    let mut seen = problem.shown.limits;
+    for limit in (0..problem.shown.limits.len()).filter(|&limit| problem.shown.limits[limit]) {
         let mut without = problem.clone();
-        without.seen[limit] = false;
+        without.shown.limits[limit] = false;
         without.residuals(&found.x, workspace, &mut residuals);
         let mut shows = 2.0 * (data(&residuals) - with) / kappa > THRESHOLD;
         if shows {

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{
     model::Model,
-    parameters::{DEAD_TIME, LIMITS, Priors, SHARED, STICTION},
+    parameters::{DEAD_TIME, Priors, SHARED, STICTION, Shown},
     robust::{cost, inefficiency, scale, weight},
     run::{Run, Sample},
     simulate::{LANES, Start, simulate, simulate_lanes},
@@ -42,8 +42,8 @@ impl Part {
 pub(super) struct Problem<'a> {
     pub(super) runs: &'a [Run],
     pub(super) priors: &'a Priors,
-    /// Limits that the model has.
-    pub(super) seen: [bool; 4],
+    /// What the model has.
+    pub(super) shown: Shown,
     pub(super) part: Part,
     /// Statistical inefficiency: correlated residuals per effective sample; divides their cost.
     pub(super) inefficiency: f64,
@@ -152,7 +152,7 @@ impl Workspace {
 
 impl Problem<'_> {
     pub(super) fn model(&self, x: &[f64]) -> Model {
-        self.priors.model(x, self.seen)
+        self.priors.model(x, self.shown)
     }
 
     /// All residuals, rad, run by run.
@@ -192,8 +192,7 @@ impl Problem<'_> {
 
     /// Indices of the shared parameters that move.
     pub(super) fn free(&self) -> Vec<usize> {
-        let fixed = |i: usize| i >= LIMITS && !self.seen[i - LIMITS];
-        (0..SHARED).filter(|&i| !fixed(i)).collect()
+        (0..SHARED).filter(|&i| self.shown.has(i)).collect()
     }
 
     /// Slopes of a run's residuals in scales, a column a parameter: those of `free`, then its integral. `residuals_rad` are those at `x`.

@@ -18,3 +18,10 @@ pub struct Estimated {
     #[serde(default)]
     pub upper_bound: Option<f64>,
 }
+
+impl Estimated {
+    /// Whether it is known to be above a number.
+    pub fn is_above(&self, least: f64) -> bool {
+        self.identified && self.value.is_some_and(|value| value >= least)
+    }
+}

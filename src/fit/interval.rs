@@ -8,7 +8,8 @@ use nalgebra::DMatrix;
 use super::{
     Estimated,
     estimate::{Problem, Workspace},
-    parameters::{DEAD_BAND, DEAD_TIME, POSITION_GAIN, STICTION, TIME_CONSTANT},
+    outcome::LEAST_FEED_FORWARD,
+    parameters::{DEAD_BAND, DEAD_TIME, FEED_FORWARD, POSITION_GAIN, STICTION, TIME_CONSTANT},
     robust::inefficiency,
     run::ASKED_OVER_S,
 };
@@ -55,7 +56,7 @@ pub(super) struct Knowledge {
     covariance: DMatrix<f64>,
     pub(super) inefficiency: f64,
     /// Whether a start asks for more than the dead band within the lag.
-    sharp: bool,
+    pub(super) sharp: bool,
     /// Whether the machine answers as the model does; if not, nothing is claimed of its numbers.
     pub(super) holds: bool,
 }
@@ -119,7 +120,31 @@ impl Knowledge {
         let found = self.positive(lag_s, &parts, missed);
         // Within the lag a smooth start does not leave the dead band: its delay is the band's, and bounds the lag.
         let upper_bound = found.interval.map(|[_, most_s]| most_s).filter(|_| !self.sharp);
-        Estimated { identified: found.identified && self.sharp, upper_bound, ..found }
+        Estimated {
+            identified: found.identified && self.sharp && self.feeds_forward(problem, x),
+            upper_bound,
+            ..found
+        }
+    }
+
+    /// Wanted speed by sent speed.
+    pub(super) fn feed_forward(&self, problem: &Problem, x: &[f64]) -> Estimated {
+        let part = (FEED_FORWARD, problem.priors.of(FEED_FORWARD).deviation);
+        self.positive(problem.model(x).feed_forward, &[part], discrepancy::GAIN)
+    }
+
+    /// Whether the loop is known to feed speeds forward. Where it does not, a filter of its set values acts as a lower gain
+    /// and more lag, and no log of angles tells them apart.
+    fn feeds_forward(&self, problem: &Problem, x: &[f64]) -> bool {
+        self.feed_forward(problem, x).is_above(LEAST_FEED_FORWARD)
+    }
+
+    /// The position gain.
+    pub(super) fn position_gain(&self, problem: &Problem, x: &[f64]) -> Estimated {
+        let part = (POSITION_GAIN, problem.priors.of(POSITION_GAIN).deviation);
+        let missed = self.missed(discrepancy::POSITION_GAIN, discrepancy::SMOOTH_POSITION_GAIN);
+        let found = self.positive(problem.model(x).position_gain_1_s, &[part], missed);
+        Estimated { identified: found.identified && self.feeds_forward(problem, x), ..found }
     }
 
     /// What must be wanted before the joint leaves rest: dead band and stiction, which no log of angles

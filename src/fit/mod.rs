@@ -10,6 +10,7 @@
 //! numbers. Discrepancies were found on simulated machines, and no hardware was at hand.
 
 mod censor;
+mod edge;
 mod error;
 mod estimate;
 mod estimated;

@@ -14,7 +14,7 @@ pub(super) const BACKLASH_RAD: f64 = 0.05 * DEGREE_RAD;
 /// A joint with its valve, its position loop and its sensor, from sent to measured angle.
 ///
 /// The loop wants a speed w = `feed_forward` * sent speed + `position_gain` * error + integral, which
-/// arrives after the dead time. What is left of it beyond the dead band, scaled by
+/// arrives after the dead time. What is left of it beyond the dead band, b, gives the speed b² / (b + `edge`), scaled by
 /// exp(±`asymmetry` / 2) for growing and shrinking angles and by the pose, and clipped to the speed limits, is
 /// approached with a time constant, within the acceleration limits. Speeds, gains and dead band are
 /// as the joint shows them: a loop gain that no log can tell apart is in all of them.
@@ -60,6 +60,10 @@ pub struct Model {
     #[serde(with = "limits")]
     #[cfg_attr(test, schemars(with = "[Option<f64>; 2]"))]
     pub acceleration_limit_rad_s2: [Option<f64>; 2],
+    /// What is wanted beyond the dead band, rad/s, at which the edges of the valve pass half of their share; 0 where
+    /// speed grows in proportion.
+    #[serde(default)]
+    pub edge_rad_s: f64,
     /// Full width of the play before the sensor, rad.
     pub backlash_rad: f64,
 }
@@ -79,6 +83,7 @@ impl Model {
             ("feed_forward", self.feed_forward),
             ("dead_band_rad_s", self.dead_band_rad_s),
             ("stiction_rad_s", self.stiction_rad_s),
+            ("edge_rad_s", self.edge_rad_s),
             ("backlash_rad", self.backlash_rad),
         ];
         let limits = [

@@ -7,6 +7,9 @@ use super::{Estimated, FitError, Model};
 /// Held-out skill below which no command should be made from a model.
 pub const LEAST_SKILL: f64 = 0.3;
 
+/// A feed-forward that is not known to be above this may be none.
+pub(super) const LEAST_FEED_FORWARD: f64 = 0.3;
+
 /// A machine as its logs show it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -112,6 +115,11 @@ impl Fit {
 }
 
 impl JointFit {
+    /// Whether the loop is known to feed sent speeds forward; if not, neither lag nor position gain is identified.
+    pub fn feeds_forward(&self) -> bool {
+        self.feed_forward.is_above(LEAST_FEED_FORWARD)
+    }
+
     /// Whether the model predicts well enough to make commands from it.
     pub fn trusted(&self) -> bool {
         self.held_out_r2 >= LEAST_SKILL

@@ -7,7 +7,7 @@ use super::model::{BACKLASH_RAD, Model};
 use crate::units::DEGREE_RAD;
 
 /// Number of parameters that all runs share.
-pub(super) const SHARED: usize = 17;
+pub(super) const SHARED: usize = 18;
 
 pub(super) const DEAD_TIME: usize = 0;
 pub(super) const TIME_CONSTANT: usize = 1;
@@ -24,6 +24,7 @@ const POSE_ASYMMETRY: usize = 11;
 const POSE_CURVE: usize = 12;
 /// Speed limits for growing and shrinking angles, then acceleration limits.
 pub(super) const LIMITS: usize = 13;
+pub(super) const EDGE: usize = LIMITS + 4;
 
 /// Prior of one parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,7 +63,28 @@ const PRIORS: [Prior; SHARED] = [
     positive(1.0, 1.5),
     positive(1.0, 1.5),
     positive(1.0, 1.5),
+    positive(2.0 * DEGREE_RAD, 1.0),
 ];
+
+/// Parts that a model has only where the data show them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Shown {
+    /// Speed limits for growing and shrinking angles, then acceleration limits.
+    pub(super) limits: [bool; 4],
+    /// Edges of the valve that open gradually.
+    pub(super) edge: bool,
+}
+
+impl Shown {
+    /// Whether a parameter moves.
+    pub(super) fn has(&self, parameter: usize) -> bool {
+        match parameter {
+            EDGE => self.edge,
+            LIMITS.. => self.limits.get(parameter - LIMITS).is_none_or(|shown| *shown),
+            _ => true,
+        }
+    }
+}
 
 /// Of the integral at the start of a run, rad/s.
 const INTEGRAL: Prior = around_zero(0.7 * DEGREE_RAD);
@@ -89,10 +111,10 @@ impl Priors {
         self.shared.get(parameter).copied().unwrap_or(INTEGRAL)
     }
 
-    /// The model that `x` stands for, without the limits that were not `seen`.
-    pub(super) fn model(&self, x: &[f64], seen: [bool; 4]) -> Model {
+    /// The model that `x` stands for, without what is not shown.
+    pub(super) fn model(&self, x: &[f64], shown: Shown) -> Model {
         let value = |i: usize| self.of(i).value(x.get(i).copied().unwrap_or_default());
-        let limit = |i: usize| seen[i].then(|| value(LIMITS + i));
+        let limit = |i: usize| shown.limits[i].then(|| value(LIMITS + i));
         Model {
             dead_time_s: value(DEAD_TIME),
             time_constant_s: value(TIME_CONSTANT),
@@ -110,6 +132,7 @@ impl Priors {
             pose_curve_1_rad2: value(POSE_CURVE),
             speed_limit_rad_s: [limit(0), limit(1)],
             acceleration_limit_rad_s2: [limit(2), limit(3)],
+            edge_rad_s: if shown.edge { value(EDGE) } else { 0.0 },
             backlash_rad: BACKLASH_RAD,
         }
     }

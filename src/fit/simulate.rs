@@ -83,6 +83,7 @@ fn lanes<const N: usize>(
     let most = of(|m| m.acceleration_limit_rad_s2[0].unwrap_or(f64::INFINITY) * STEP_S);
     let least = of(|m| -m.acceleration_limit_rad_s2[1].unwrap_or(f64::INFINITY) * STEP_S);
     let approach = of(|m| -(-STEP_S / m.time_constant_s.max(1e-4)).exp_m1());
+    let edge = of(|m| m.edge_rad_s);
     let half_play = of(|m| 0.5 * m.backlash_rad);
     let delay = of(|m| m.dead_time_s / STEP_S);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few hundred steps")]
@@ -119,6 +120,8 @@ fn lanes<const N: usize>(
             }
             for i in 0..N {
                 let way = target[i].signum();
+                let beyond = way * target[i];
+                target[i] *= if edge[i] > 0.0 { beyond / (beyond + edge[i]) } else { 1.0 };
                 let off = within(angle[i], lowest[i], highest[i]) - 0.5 * (lowest[i] + highest[i]);
                 let exponent = way * (asymmetry[i] + bent[i] * off) + (slope[i] + curve[i] * off) * off;
                 target[i] = within(exp(exponent) * target[i], slowest[i], fastest[i]);

@@ -84,7 +84,7 @@ fn summary(fitted: &Fitted, next: Option<&Section>) -> Markup {
 fn doubt(joint: &JointFit) -> String {
     let JointFit { name, held_out_r2, .. } = joint;
     if joint.trusted() {
-        format!("The model does not hold for {name}: what it leaves rings. Its numbers have no intervals.")
+        format!("The model does not hold for {name} (R2 {held_out_r2:.2}). Its numbers have no intervals.")
     } else {
         format!("{name} is predicted with an R2 of {held_out_r2:.2} only: no command is made for it.")
     }

@@ -185,9 +185,26 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         fit.joints.iter().filter(|joint| !joint.model_holds).map(|joint| joint.name.as_str()).collect();
     if !not.is_empty() {
         lines.push(format!(
-            "The model does not hold for {}: what it leaves unexplained rings, or it predicts worse than the mean. Numbers \
-             of these joints have no intervals.",
+            "The model does not hold for {}: what it leaves unexplained rings, or it predicts worse than the mean, or than \
+             99 % where starts are sharp. Numbers of these joints have no intervals.",
             not.join(", ")
+        ));
+    }
+    let edged = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.edge_rad_s > 0.0);
+    let edged: Vec<&str> = edged.map(|joint| joint.name.as_str()).collect();
+    if !edged.is_empty() {
+        lines.push(format!(
+            "The speed of {} grows by more than what is asked: the valve opens gradually. Gains are those of the wide-open valve.",
+            edged.join(", ")
+        ));
+    }
+    let unfed = fit.joints.iter().filter(|joint| joint.model_holds && !joint.feeds_forward());
+    let unfed: Vec<&str> = unfed.map(|joint| joint.name.as_str()).collect();
+    if !unfed.is_empty() {
+        lines.push(format!(
+            "The logs show no feed-forward of {}. A filter of set values then acts as a lower gain and more lag: no log of angles \
+             tells them apart.",
+            unfed.join(", ")
         ));
     }
     lines.extend(left_out_line(fit));

@@ -27,6 +27,7 @@ const MODEL: Model = Model {
     pose_curve_1_rad2: 0.0,
     speed_limit_rad_s: [Some(0.35), Some(0.28)],
     acceleration_limit_rad_s2: [None, None],
+    edge_rad_s: 0.0,
     backlash_rad: 0.05 * DEGREE_RAD,
 };
 
@@ -37,9 +38,13 @@ fn trial(joints: &[&str]) -> Series {
 
 /// The model's answer with an encoder's noise, without the samples for which `lost` holds.
 fn measured(plan: &Series, seed: u64, lost: impl Fn(f64) -> bool) -> Series {
+    measured_of(&MODEL, plan, seed, lost)
+}
+
+fn measured_of(model: &Model, plan: &Series, seed: u64, lost: impl Fn(f64) -> bool) -> Series {
     let mut rng = stream(seed, Stream::SensorNoise);
     let track = |sent: &Track| {
-        let exact = predict(&MODEL, sent).unwrap();
+        let exact = predict(model, sent).unwrap();
         let noisy: Vec<(f64, f64)> = exact
             .t_s()
             .iter()
@@ -79,6 +84,22 @@ fn a_model_is_found_again_from_its_own_noisy_response() {
         let fit = fitted(&[(&plan, &measured(&plan, seed, |_| false))]);
         assert!(worst(&fit) < 0.04, "{seed}: {} {:?}", worst(&fit), fit.joints[0]);
         assert!(fit.joints[0].held_out_r2 > 0.99);
+    }
+}
+
+#[test]
+fn edges_that_open_gradually_are_found_where_they_are_and_nowhere_else() {
+    let plan = trial(&["J"]);
+    let edged = Model { edge_rad_s: 2.5 * DEGREE_RAD, ..MODEL };
+    for seed in 1..=3 {
+        let [plain, found] = [&MODEL, &edged].map(|model| {
+            let fit = fitted(&[(&plan, &measured_of(model, &plan, seed, |_| false))]);
+            assert!(fit.joints[0].held_out_r2 > 0.99 && fit.joints[0].feed_forward.identified);
+            fit.joints[0].model
+        });
+        assert!(plain.edge_rad_s <= 0.0, "{seed}: {plain:?}");
+        assert!((found.edge_rad_s / edged.edge_rad_s).ln().abs() < 0.15, "{seed}: {found:?}");
+        assert!((found.feed_forward / edged.feed_forward).ln().abs() < 0.05, "{seed}: {found:?}");
     }
 }
 
