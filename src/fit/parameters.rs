@@ -77,7 +77,7 @@ pub(super) struct Shown {
 
 impl Shown {
     /// Whether a parameter moves.
-    pub(super) fn has(&self, parameter: usize) -> bool {
+    pub(super) fn has(self, parameter: usize) -> bool {
         match parameter {
             EDGE => self.edge,
             LIMITS.. => self.limits.get(parameter - LIMITS).is_none_or(|shown| *shown),
