@@ -20,8 +20,8 @@ pub struct Estimated {
 }
 
 impl Estimated {
-    /// Whether it is known to be above a number.
+    /// Whether its interval lies above a number.
     pub fn is_above(&self, least: f64) -> bool {
-        self.identified && self.value.is_some_and(|value| value >= least)
+        self.identified && self.interval.is_some_and(|[low, _]| low >= least)
     }
 }

@@ -9,7 +9,7 @@ use super::{
     Estimated,
     estimate::{Problem, Workspace},
     outcome::LEAST_FEED_FORWARD,
-    parameters::{DEAD_BAND, DEAD_TIME, FEED_FORWARD, POSITION_GAIN, STICTION, TIME_CONSTANT},
+    parameters::{DEAD_BAND, DEAD_TIME, FEED_FORWARD, HYSTERESIS, POSITION_GAIN, STICTION, TIME_CONSTANT},
     robust::inefficiency,
     run::ASKED_OVER_S,
 };
@@ -127,16 +127,17 @@ impl Knowledge {
         }
     }
 
-    /// Wanted speed by sent speed.
+    /// Wanted speed by sent speed; one that may be none is not identified.
     pub(super) fn feed_forward(&self, problem: &Problem, x: &[f64]) -> Estimated {
         let part = (FEED_FORWARD, problem.priors.of(FEED_FORWARD).deviation);
-        self.positive(problem.model(x).feed_forward, &[part], discrepancy::GAIN)
+        let found = self.positive(problem.model(x).feed_forward, &[part], discrepancy::GAIN);
+        Estimated { identified: found.is_above(LEAST_FEED_FORWARD), ..found }
     }
 
     /// Whether the loop is known to feed speeds forward. Where it does not, a filter of its set values acts as a lower gain
     /// and more lag, and no log of angles tells them apart.
     fn feeds_forward(&self, problem: &Problem, x: &[f64]) -> bool {
-        self.feed_forward(problem, x).is_above(LEAST_FEED_FORWARD)
+        self.feed_forward(problem, x).identified
     }
 
     /// The position gain.
@@ -147,20 +148,22 @@ impl Knowledge {
         Estimated { identified: found.identified && self.feeds_forward(problem, x), ..found }
     }
 
-    /// What must be wanted before the joint leaves rest: dead band and stiction, which no log of angles
-    /// tells apart; and the same by the position gain, an error.
+    /// What must be wanted before the joint leaves rest: dead band, hysteresis and stiction, which logs of angles hardly
+    /// tell apart; and the same by the position gain, an error.
     pub(super) fn dead_band(&self, problem: &Problem, x: &[f64]) -> [Estimated; 2] {
         let model = problem.model(x);
-        let whole_rad_s = model.dead_band_rad_s + model.stiction_rad_s;
+        let whole_rad_s = model.dead_band_rad_s + model.hysteresis_rad_s + model.stiction_rad_s;
         let part = |i: usize, share: f64| (i, share * problem.priors.of(i).deviation);
         let band = part(DEAD_BAND, model.dead_band_rad_s / whole_rad_s);
         let stiction = part(STICTION, model.stiction_rad_s / whole_rad_s);
+        let play = part(HYSTERESIS, model.hysteresis_rad_s / whole_rad_s);
         let gain = part(POSITION_GAIN, -1.0);
+        let speed = self.positive(whole_rad_s, &[band, stiction, play], discrepancy::DEAD_BAND);
         [
-            self.positive(whole_rad_s, &[band, stiction], discrepancy::DEAD_BAND),
+            Estimated { identified: speed.identified && self.feeds_forward(problem, x), ..speed },
             self.positive(
                 whole_rad_s / model.position_gain_1_s,
-                &[band, stiction, gain],
+                &[band, stiction, play, gain],
                 discrepancy::DEAD_BAND,
             ),
         ]

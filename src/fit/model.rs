@@ -3,20 +3,16 @@
 use serde::{Deserialize, Serialize};
 
 use super::FitError;
-use crate::units::DEGREE_RAD;
 
 /// Step of the simulation, s; that of the position loops it stands for.
 pub const STEP_S: f64 = 0.01;
 
-/// Width of the play between joint and sensor that every model has, rad.
-pub(super) const BACKLASH_RAD: f64 = 0.05 * DEGREE_RAD;
-
 /// A joint with its valve, its position loop and its sensor, from sent to measured angle.
 ///
 /// The loop wants a speed w = `feed_forward` * sent speed + `position_gain` * error + integral, which
-/// arrives after the dead time. What is left of it beyond the dead band, b, gives the speed b² / (b + `edge`), scaled by
-/// exp(±`asymmetry` / 2) for growing and shrinking angles and by the pose, and clipped to the speed limits, is
-/// approached with a time constant, within the acceleration limits. Speeds, gains and dead band are
+/// arrives after the dead time; the spool follows it with a play of ±`hysteresis`. What is left beyond the dead band,
+/// b, gives the speed b² / (b + `edge`). Scaled by exp(±`asymmetry` / 2) for growing and shrinking angles and by the
+/// pose, and clipped to the speed limits, it is approached with a time constant, within the acceleration limits. Speeds, gains and dead band are
 /// as the joint shows them: a loop gain that no log can tell apart is in all of them.
 ///
 /// Pairs are for growing and for shrinking angles, both positive; a limit that no data showed is
@@ -60,6 +56,9 @@ pub struct Model {
     #[serde(with = "limits")]
     #[cfg_attr(test, schemars(with = "[Option<f64>; 2]"))]
     pub acceleration_limit_rad_s2: [Option<f64>; 2],
+    /// Half width of the play of the valve's spool behind what is wanted, rad/s.
+    #[serde(default)]
+    pub hysteresis_rad_s: f64,
     /// What is wanted beyond the dead band, rad/s, at which the edges of the valve pass half of their share; 0 where
     /// speed grows in proportion.
     #[serde(default)]
@@ -83,6 +82,7 @@ impl Model {
             ("feed_forward", self.feed_forward),
             ("dead_band_rad_s", self.dead_band_rad_s),
             ("stiction_rad_s", self.stiction_rad_s),
+            ("hysteresis_rad_s", self.hysteresis_rad_s),
             ("edge_rad_s", self.edge_rad_s),
             ("backlash_rad", self.backlash_rad),
         ];

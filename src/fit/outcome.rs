@@ -7,8 +7,8 @@ use super::{Estimated, FitError, Model};
 /// Held-out skill below which no command should be made from a model.
 pub const LEAST_SKILL: f64 = 0.3;
 
-/// A feed-forward that is not known to be above this may be none.
-pub(super) const LEAST_FEED_FORWARD: f64 = 0.3;
+/// A feed-forward whose interval does not lie above this may be none.
+pub(super) const LEAST_FEED_FORWARD: f64 = 0.4;
 
 /// A machine as its logs show it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -117,7 +117,7 @@ impl Fit {
 impl JointFit {
     /// Whether the loop is known to feed sent speeds forward; if not, neither lag nor position gain is identified.
     pub fn feeds_forward(&self) -> bool {
-        self.feed_forward.is_above(LEAST_FEED_FORWARD)
+        self.feed_forward.identified
     }
 
     /// Whether the model predicts well enough to make commands from it.

@@ -3,11 +3,11 @@
 //! Every parameter is measured from its prior mean in prior standard deviations; positive ones by
 //! their logarithm. A prior then costs half the sum of squares.
 
-use super::model::{BACKLASH_RAD, Model};
+use super::model::Model;
 use crate::units::DEGREE_RAD;
 
 /// Number of parameters that all runs share.
-pub(super) const SHARED: usize = 18;
+pub(super) const SHARED: usize = 19;
 
 pub(super) const DEAD_TIME: usize = 0;
 pub(super) const TIME_CONSTANT: usize = 1;
@@ -22,9 +22,13 @@ const OFFSET: usize = 9;
 const POSE: usize = 10;
 const POSE_ASYMMETRY: usize = 11;
 const POSE_CURVE: usize = 12;
+pub(super) const HYSTERESIS: usize = 13;
 /// Speed limits for growing and shrinking angles, then acceleration limits.
-pub(super) const LIMITS: usize = 13;
+pub(super) const LIMITS: usize = 14;
 pub(super) const EDGE: usize = LIMITS + 4;
+
+/// Width of the play between joint and sensor that every model has, rad: a free one stands in for the lag of smooth runs.
+const BACKLASH_RAD: f64 = 0.05 * DEGREE_RAD;
 
 /// Prior of one parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,6 +63,7 @@ const PRIORS: [Prior; SHARED] = [
     around_zero(0.5),
     around_zero(0.3),
     around_zero(0.7),
+    positive(0.1 * DEGREE_RAD, 1.0),
     positive(1.0, 1.5),
     positive(1.0, 1.5),
     positive(1.0, 1.5),
@@ -132,6 +137,7 @@ impl Priors {
             pose_curve_1_rad2: value(POSE_CURVE),
             speed_limit_rad_s: [limit(0), limit(1)],
             acceleration_limit_rad_s2: [limit(2), limit(3)],
+            hysteresis_rad_s: value(HYSTERESIS),
             edge_rad_s: if shown.edge { value(EDGE) } else { 0.0 },
             backlash_rad: BACKLASH_RAD,
         }

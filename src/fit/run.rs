@@ -26,8 +26,9 @@ pub(super) const MOVES_RAD_S: f64 = 0.05 * DEGREE_RAD;
 /// Rest before a motion that belongs to its run, s.
 const BEFORE_S: f64 = 1.0;
 
-/// Rest after a motion that belongs to its run, s.
-const AFTER_S: f64 = 3.0;
+/// Rest after a motion that belongs to its run, s. What the integral holds at the end of a motion decides when the next one
+/// starts: motions a dwell apart are one run.
+const AFTER_S: f64 = 9.0;
 
 /// Shortest run, s.
 const SHORTEST_S: f64 = 2.0;

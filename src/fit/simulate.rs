@@ -83,6 +83,7 @@ fn lanes<const N: usize>(
     let most = of(|m| m.acceleration_limit_rad_s2[0].unwrap_or(f64::INFINITY) * STEP_S);
     let least = of(|m| -m.acceleration_limit_rad_s2[1].unwrap_or(f64::INFINITY) * STEP_S);
     let approach = of(|m| -(-STEP_S / m.time_constant_s.max(1e-4)).exp_m1());
+    let hysteresis = of(|m| m.hysteresis_rad_s);
     let edge = of(|m| m.edge_rad_s);
     let half_play = of(|m| 0.5 * m.backlash_rad);
     let delay = of(|m| m.dead_time_s / STEP_S);
@@ -91,6 +92,7 @@ fn lanes<const N: usize>(
     let part = delay.map(f64::fract);
     let mut angle: [f64; N] = std::array::from_fn(|i| start[i].angle_rad - offset[i]);
     let (mut seen, mut speed) = (angle, start.map(|start| start.speed_rad_s));
+    let mut spool = [0.0; N];
     let mut integral = start.map(|start| start.integral_rad_s);
     for (k, &(sent_rad, sent_rad_s)) in sent.iter().enumerate() {
         let moves = sent_rad_s.abs() > 0.0;
@@ -109,7 +111,8 @@ fn lanes<const N: usize>(
             let late = k.saturating_sub(whole[i]);
             let (new, old) = (wanted[late * N + i], wanted[late.saturating_sub(1) * N + i]);
             let arrived = new + part[i] * (old - new);
-            within(arrived - up[i], 0.0, f64::INFINITY) + within(arrived - down[i], f64::NEG_INFINITY, 0.0)
+            spool[i] = within(spool[i], arrived - hysteresis[i], arrived + hysteresis[i]);
+            within(spool[i] - up[i], 0.0, f64::INFINITY) + within(spool[i] - down[i], f64::NEG_INFINITY, 0.0)
         });
         if target.iter().any(|beyond| *beyond != 0.0) {
             for i in 0..N {

@@ -21,13 +21,13 @@ const CALM_HZ: f64 = 0.5;
 const OF_OSCILLATION: f64 = 0.35;
 
 /// A model is inverted below this, Hz: of a calm joint beside data and alone, and of one that oscillates.
-const CALM_INVERTED_HZ: f64 = 0.6;
+const CALM_INVERTED_HZ: f64 = 0.8;
 pub(super) const CALM_MODEL_HZ: f64 = 1.0;
 const INVERTED_HZ: f64 = 4.0;
 
 /// Rounds of the inversion, and the share of the predicted error that one corrects.
-const ROUNDS: usize = 60;
-const SHARE: f64 = 0.5;
+const ROUNDS: usize = 100;
+const SHARE: f64 = 0.3;
 
 /// Share of a first measured error that is corrected.
 const FIRST_GAIN: f64 = 0.9;

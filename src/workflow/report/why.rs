@@ -134,6 +134,7 @@ fn with_dead_band(model: &Model, times: f64) -> Model {
     Model {
         dead_band_rad_s: times * model.dead_band_rad_s,
         dead_band_centre_rad_s: times * model.dead_band_centre_rad_s,
+        hysteresis_rad_s: times * model.hysteresis_rad_s,
         stiction_rad_s: times * model.stiction_rad_s,
         ..*model
     }

@@ -27,6 +27,7 @@ const MODEL: Model = Model {
     pose_curve_1_rad2: 0.0,
     speed_limit_rad_s: [Some(0.35), Some(0.28)],
     acceleration_limit_rad_s2: [None, None],
+    hysteresis_rad_s: 0.1 * DEGREE_RAD,
     edge_rad_s: 0.0,
     backlash_rad: 0.05 * DEGREE_RAD,
 };
@@ -70,7 +71,10 @@ fn worst(fit: &Fit) -> f64 {
         (joint.model.position_gain_1_s, MODEL.position_gain_1_s),
         (joint.model.feed_forward, MODEL.feed_forward),
         (joint.gain_ratio.value.unwrap(), MODEL.asymmetry.exp()),
-        (joint.dead_band_rad_s.value.unwrap(), MODEL.dead_band_rad_s + MODEL.stiction_rad_s),
+        (
+            joint.dead_band_rad_s.value.unwrap(),
+            MODEL.dead_band_rad_s + MODEL.hysteresis_rad_s + MODEL.stiction_rad_s,
+        ),
         (joint.speed_limit_growing_rad_s.value.unwrap(), 0.35),
         (joint.speed_limit_shrinking_rad_s.value.unwrap(), 0.28),
     ];
@@ -82,7 +86,7 @@ fn a_model_is_found_again_from_its_own_noisy_response() {
     let plan = trial(&["J"]);
     for seed in 1..=3 {
         let fit = fitted(&[(&plan, &measured(&plan, seed, |_| false))]);
-        assert!(worst(&fit) < 0.04, "{seed}: {} {:?}", worst(&fit), fit.joints[0]);
+        assert!(worst(&fit) < 0.08, "{seed}: {} {:?}", worst(&fit), fit.joints[0]);
         assert!(fit.joints[0].held_out_r2 > 0.99);
     }
 }
@@ -98,8 +102,8 @@ fn edges_that_open_gradually_are_found_where_they_are_and_nowhere_else() {
             fit.joints[0].model
         });
         assert!(plain.edge_rad_s <= 0.0, "{seed}: {plain:?}");
-        assert!((found.edge_rad_s / edged.edge_rad_s).ln().abs() < 0.15, "{seed}: {found:?}");
-        assert!((found.feed_forward / edged.feed_forward).ln().abs() < 0.05, "{seed}: {found:?}");
+        assert!((found.edge_rad_s / edged.edge_rad_s).ln().abs() < 0.3, "{seed}: {found:?}");
+        assert!((found.feed_forward / edged.feed_forward).ln().abs() < 0.1, "{seed}: {found:?}");
     }
 }
 
@@ -122,8 +126,8 @@ fn long_logs_are_searched_in_parts_and_fitted_as_a_whole() {
     let one = fitted(&[(&plan, &logs[0])]);
     let all = fitted(&logs.iter().map(|log| (&plan, log)).collect::<Vec<_>>());
     assert_eq!((all.joints[0].runs, all.joints[0].samples), (12, 12 * one.joints[0].samples));
-    // About one fit in fifty ends where dead band and feed-forward stand in for each other, 6 % off.
-    assert!(worst(&all) < 0.08, "{} {:?}", worst(&all), all.joints[0]);
+    // Dead band, hysteresis and feed-forward stand in for each other: the dead band is up to a tenth off.
+    assert!(worst(&all) < 0.12, "{} {:?}", worst(&all), all.joints[0]);
 }
 
 #[test]
