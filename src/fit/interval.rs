@@ -134,8 +134,8 @@ impl Knowledge {
         Estimated { identified: found.is_above(LEAST_FEED_FORWARD), ..found }
     }
 
-    /// Whether the loop is known to feed speeds forward. Where it does not, a filter of its set values acts as a lower gain
-    /// and more lag, and no log of angles tells them apart.
+    /// Whether the loop is known to feed speeds forward. Where it does not, a filter of its set values acts as a lower gain,
+    /// more lag and another dead band, and no log of angles tells them apart.
     fn feeds_forward(&self, problem: &Problem, x: &[f64]) -> bool {
         self.feed_forward(problem, x).identified
     }
@@ -158,14 +158,14 @@ impl Knowledge {
         let stiction = part(STICTION, model.stiction_rad_s / whole_rad_s);
         let play = part(HYSTERESIS, model.hysteresis_rad_s / whole_rad_s);
         let gain = part(POSITION_GAIN, -1.0);
-        let speed = self.positive(whole_rad_s, &[band, stiction, play], discrepancy::DEAD_BAND);
+        let fed = self.feeds_forward(problem, x);
+        let known = |value: f64, parts: &[(usize, f64)]| {
+            let found = self.positive(value, parts, discrepancy::DEAD_BAND);
+            Estimated { identified: found.identified && fed, ..found }
+        };
         [
-            Estimated { identified: speed.identified && self.feeds_forward(problem, x), ..speed },
-            self.positive(
-                whole_rad_s / model.position_gain_1_s,
-                &[band, stiction, play, gain],
-                discrepancy::DEAD_BAND,
-            ),
+            known(whole_rad_s, &[band, stiction, play]),
+            known(whole_rad_s / model.position_gain_1_s, &[band, stiction, play, gain]),
         ]
     }
 }

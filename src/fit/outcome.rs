@@ -115,7 +115,7 @@ impl Fit {
 }
 
 impl JointFit {
-    /// Whether the loop is known to feed sent speeds forward; if not, neither lag nor position gain is identified.
+    /// Whether the loop is known to feed sent speeds forward; if not, neither lag, dead band nor position gain is identified.
     pub fn feeds_forward(&self) -> bool {
         self.feed_forward.identified
     }

@@ -58,7 +58,7 @@ const PRIORS: [Prior; SHARED] = [
     around_zero(0.4),
     positive(DEGREE_RAD, 1.0),
     around_zero(0.5 * DEGREE_RAD),
-    positive(0.2 * DEGREE_RAD, 1.0),
+    positive(0.1 * DEGREE_RAD, 1.0),
     around_zero(0.05 * DEGREE_RAD),
     around_zero(0.5),
     around_zero(0.3),

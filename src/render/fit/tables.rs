@@ -202,8 +202,8 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
     let unfed: Vec<&str> = unfed.map(|joint| joint.name.as_str()).collect();
     if !unfed.is_empty() {
         lines.push(format!(
-            "The logs show no feed-forward of {}. A filter of set values then acts as a lower gain and more lag: no log of angles \
-             tells them apart.",
+            "The logs show no feed-forward of {}. A filter of set values then acts as a lower gain, more lag and another dead \
+             band: no log of angles tells them apart.",
             unfed.join(", ")
         ));
     }

@@ -19,7 +19,7 @@ const MODEL: Model = Model {
     asymmetry: 0.2,
     dead_band_rad_s: 0.015,
     dead_band_centre_rad_s: 0.0,
-    stiction_rad_s: 0.2 * DEGREE_RAD,
+    stiction_rad_s: 0.1 * DEGREE_RAD,
     offset_rad: 0.0,
     pose_rad: [0.8, 1.2],
     pose_slope_1_rad: 0.2,
