@@ -3,15 +3,16 @@
 //! Splines are judged exactly on the way; torques, rods, flow and tool by eight instants a piece, between which a
 //! peak may hide. Where one breaks its limit the search goes on from there under a limit that is tighter by as much.
 
-use rayon::prelude::*;
-
 use super::{
     Evaluator, Limit, Margin, Setup, Timing,
     descend::{FINE, NEARLY, descend},
     front::thinned,
     goal::{Goal, Merit},
 };
-use crate::task::{Ceilings, Objective};
+use crate::{
+    task::{Ceilings, Objective},
+    threads,
+};
 
 /// Descents under ever tighter limits, and slowings down, that a plan is given.
 const TRIES: usize = 4;
@@ -86,19 +87,17 @@ pub(super) fn kept(
 
 /// The front without plans that break a limit somewhere: slowed down until they keep it, the fastest the best
 /// near it, and those left out that others are then better than. With the evaluations it took.
-pub(super) fn kept_front(setup: &Setup, front: Vec<Timing>, most: usize) -> (Vec<Timing>, u64) {
-    let checked: Vec<(Option<Timing>, bool)> = front
-        .into_par_iter()
-        .map_init(
-            || Evaluator::new(setup),
-            |evaluator, timing| {
-                if setup.keeps(&timing.interval_s, evaluator) {
-                    return (Some(timing), true);
-                }
-                (slow(setup, evaluator, &timing.interval_s), false)
-            },
-        )
-        .collect();
+pub(super) fn kept_front(setup: &Setup, front: &[Timing], most: usize) -> (Vec<Timing>, u64) {
+    let checked: Vec<(Option<Timing>, bool)> = threads::mapped(
+        front,
+        || Evaluator::new(setup),
+        |evaluator, timing| {
+            if setup.keeps(&timing.interval_s, evaluator) {
+                return (Some(timing.clone()), true);
+            }
+            (slow(setup, evaluator, &timing.interval_s), false)
+        },
+    );
     let sound = checked.iter().all(|(_, as_it_was)| *as_it_was);
     let mut front: Vec<Timing> = checked.into_iter().filter_map(|(timing, _)| timing).collect();
     if sound {

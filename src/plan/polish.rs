@@ -1,14 +1,12 @@
 //! Descents from the plans found, each to one that is nowhere worse.
 
-use rayon::prelude::*;
-
 use super::{
     Evaluator, Setup, Timing,
     descend::{COARSE, Descended, NEARLY, descend},
     front::thinned,
     goal::{Goal, Merit},
 };
-use crate::task::Objective;
+use crate::{task::Objective, threads};
 
 /// Shares of an objective that count as clearly better and as hardly worse.
 const CLEAR: f64 = 0.005;
@@ -40,24 +38,22 @@ pub(super) fn polish(setup: &Setup, plans: &[Timing], evaluations: u64) -> Polis
         if most <= step || polished.rough.is_empty() {
             return polished;
         }
-        let ends: Vec<(Timing, Descended)> = std::mem::take(&mut polished.rough)
-            .into_par_iter()
-            .map_init(
-                || Evaluator::new(setup),
-                |evaluator, timing| {
-                    let goal = Goal {
-                        merit: Merit::even(),
-                        ceilings: timing.objectives,
-                        evaluations: most,
-                        trust: NEARLY,
-                        enough: COARSE,
-                    };
-                    let end = descend(setup, evaluator, &timing.interval_s, &goal);
-                    (timing, end)
-                },
-            )
-            .collect();
-        for (start, end) in ends {
+        let rough = std::mem::take(&mut polished.rough);
+        let ends: Vec<Descended> = threads::mapped(
+            &rough,
+            || Evaluator::new(setup),
+            |evaluator, timing| {
+                let goal = Goal {
+                    merit: Merit::even(),
+                    ceilings: timing.objectives,
+                    evaluations: most,
+                    trust: NEARLY,
+                    enough: COARSE,
+                };
+                descend(setup, evaluator, &timing.interval_s, &goal)
+            },
+        );
+        for (start, end) in rough.into_iter().zip(ends) {
             polished.evaluations += end.evaluations;
             let kept = if end.settled { &mut polished.exact } else { &mut polished.rough };
             kept.push(end.timing.unwrap_or(start));

@@ -162,7 +162,7 @@ pub fn search(
         thinned(setup, &evolved, search.front)
     };
     front.sort_by(|a, b| a.objectives[Objective::Duration].total_cmp(&b.objectives[Objective::Duration]));
-    let (front, more) = exact::kept_front(setup, front, search.front);
+    let (front, more) = exact::kept_front(setup, &front, search.front);
     evaluations += more;
     let _ = observer(&Progress {
         phase: Phase::Polish,

@@ -5,14 +5,15 @@
 //! while no limit binds, its shapes hardly depend on the duration. So a few descents and what lies
 //! between them cover the front.
 
-use rayon::prelude::*;
-
 use super::{
     Evaluator, Setup, Timing,
     descend::{COARSE, Descended, FAR_OFF, FINE, NEARLY, descend},
     goal::{Goal, Merit},
 };
-use crate::task::{Ceilings, Objective, Weights};
+use crate::{
+    task::{Ceilings, Objective, Weights},
+    threads,
+};
 /// Weight of power against jerk, both as logarithms, on each curve. Power moves only near 1; at 1 jerk
 /// would be left to chance.
 const CURVES: [f64; 5] = [0.0, 0.5, 0.75, 0.92, 0.985];
@@ -60,7 +61,7 @@ pub(super) fn seeds(setup: &Setup, budget: u64) -> Seeds {
     }
     let most = share(DESCENTS) / (CURVES.len() * durations_s.len()).max(1) as u64;
     let curves: Vec<Vec<Descended>> =
-        CURVES.par_iter().map(|&power| curve(setup, &fastest, &durations_s, power, most)).collect();
+        threads::mapped(&CURVES, || (), |(), &power| curve(setup, &fastest, &durations_s, power, most));
     let curves: Vec<Vec<Timing>> = curves
         .into_iter()
         .map(|curve| curve.into_iter().filter_map(|end| seeds.take(end)).collect())

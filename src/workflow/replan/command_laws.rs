@@ -2,7 +2,6 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
-use rayon::prelude::*;
 
 use super::command::{Commanded, Subject, commanded, stride};
 use crate::{
@@ -13,6 +12,7 @@ use crate::{
     rng::{Stream, stream},
     series::{Series, Track},
     task::{KeyPoint, Place, Task},
+    threads,
     workflow::{
         carried::{
             Carried,
@@ -290,11 +290,12 @@ fn no_command_breaks_a_limit_a_rule_of_the_controller_or_the_end_of_its_plan() {
     let setup = Setup::new(&Task::parse(TASK).unwrap(), Arm::sample().unwrap()).unwrap();
     let plan = sampled(&setup, &setup.motion(&TIMES_S).unwrap()).unwrap();
     let fit = machine(&plan, &mut stream(0, Stream::SensorNoise));
-    let of = |seed: u64| {
+    let of = |k: usize| {
+        let seed = k as u64 + 1;
         let case = case(&fit, seed);
         (broken(seed, &case), usize::from(case.command.applied()))
     };
-    let found: Vec<(Option<String>, usize)> = (1..=count()).into_par_iter().map(of).collect();
+    let found: Vec<(Option<String>, usize)> = threads::numbered(usize::try_from(count()).unwrap(), of);
     let corrected: usize = found.iter().map(|(_, corrected)| corrected).sum();
     let broken: Vec<String> = found.into_iter().filter_map(|(broken, _)| broken).collect();
     println!("{} commands, {corrected} of them no plain plan, {} break a law", count(), broken.len());

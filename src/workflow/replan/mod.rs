@@ -19,8 +19,6 @@ mod warp;
 
 use std::{ops::ControlFlow, path::PathBuf};
 
-use rayon::prelude::*;
-
 pub use checks::{Check, Checks, Finding, JointTrust, Level, Reason, Verdict};
 pub use command::{Commanded, JointCommand};
 pub use course::{Drawn, JointCourse, courses};
@@ -40,6 +38,7 @@ use crate::{
     replay::Rules,
     series::{Series, Track},
     task::{Ceilings, Objective, Objectives},
+    threads,
     workflow::{carried::rest::PLAN_LEAD_S, plan::Shaping},
 };
 use command::{Subject, commanded};
@@ -163,8 +162,8 @@ pub fn run(
     let decision = if learns { history.decision() } else { Decision::Send };
     let options = candidates(&last, search.as_ref())?;
     let maker = Maker { inputs, fit: &fit, setup, last: &last, history: &history, decision: &decision };
-    let made: Vec<Candidate> =
-        options.into_par_iter().map(|(new, plan)| maker.candidate(new, plan)).collect::<Result<_, _>>()?;
+    let made = threads::mapped(&options, || (), |(), (new, plan)| maker.candidate(new.clone(), plan.clone()));
+    let made: Vec<Candidate> = made.into_iter().collect::<Result<_, _>>()?;
     let chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
     let past =
         outcome::Past { gain: inputs.learning.gain, trust: history.trust(), runs: history.runs, decision };

@@ -1,10 +1,9 @@
 //! New plans in a free shape: smoother within the time, jerk and power that are allowed, or within them at all.
 
-use rayon::prelude::*;
-
 use crate::{
     plan::{PlanError, PlanEvaluation, Setup, Timing, smoother},
     task::{Ceilings, Objective},
+    threads,
     workflow::plan::Shaping,
 };
 
@@ -45,7 +44,8 @@ pub(super) fn shaped(
         let smoother = smoother(setup, timing, ceilings, pieces).ok().map(|found| found.evaluation);
         Ok(by_times.into_iter().chain(smoother).collect())
     };
-    let made: Vec<Vec<PlanEvaluation>> = all.par_iter().map(one).collect::<Result<_, _>>()?;
+    let made = threads::mapped(&all, || (), |(), timing| one(timing)).into_iter();
+    let made: Vec<Vec<PlanEvaluation>> = made.collect::<Result<_, _>>()?;
     let kept = |plan: &PlanEvaluation| plan.broken().is_empty() && plan.objectives.within(ceilings);
     Ok(made.into_iter().flatten().filter(kept).collect())
 }

@@ -79,6 +79,11 @@ fn faults(path: &Path, text: &str) -> Vec<String> {
         if foreign("rerun") && module != "viewer" {
             faults.push(format!("{place}: only viewer sees rerun"));
         }
+        if foreign("rayon") && module != "threads" {
+            faults.push(format!(
+                "{place}: only threads sees rayon, or work alone on a thread would not be alone"
+            ));
+        }
         let untyped = code.contains("serde_json") && code.contains("Value");
         if untyped && module != "log" && !tested(path, text, number) {
             faults.push(format!("{place}: a document reads a type, serde_json::Value only a log's JSON"));
@@ -156,6 +161,7 @@ fn every_rule_finds_its_fault() {
         (("workflow/a.rs", "crate::cli::run()"), "lies above"),
         (("replay/a.rs", "let deg = x.to_degrees();"), "degrees"),
         (("replay/a.rs", "use mcap::Writer;"), "only log"),
+        (("plan/a.rs", "use rayon::prelude::*;"), "only threads"),
         (("render/a.rs", "let x: serde_json::Value = y;"), "reads a type"),
         (("workflow/a.rs", "use serde_json::{Value, json};"), "reads a type"),
         (("log/a.rs", "unsafe { x() }"), "nothing is unsafe"),

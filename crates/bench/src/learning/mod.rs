@@ -20,6 +20,7 @@ use hydrotrace::{
     plan::PlanError,
     plant::PlantError,
     series::SignalError,
+    threads,
     units::degrees_from_radians,
     workflow::{
         plan::PlanFailure,
@@ -130,7 +131,8 @@ pub fn run(inputs: &Inputs, done: impl Fn() + Sync) -> Result<Vec<Cell>, Learnin
     cells
         .into_par_iter()
         .map(|(machine, job, seed)| {
-            let cell = cell(machine, job, seed, inputs);
+            // A thread that waits for a part of its cell would take on another cell, and its stack would grow with each.
+            let cell = threads::alone(|| cell(machine, job, seed, inputs));
             done();
             cell
         })
