@@ -62,18 +62,48 @@ pub(crate) fn to_send(
 fn after_run(section: Section, next: &str, logs: &[PathBuf]) -> Section {
     let last = logs.last().map_or("RUN.mcap".to_owned(), argument);
     let aim = "After the run, to put the plan into the recorder's log:";
-    let joined = step(section, aim, &["join", "RUN.mcap", "--plan", next, "-o", "after.mcap"]);
-    let compared =
-        step(joined, "To see whether the error became smaller:", &["compare", &last, "after.mcap"]);
+    let after = unused("after", 1, logs, next);
+    let joined = step(section, aim, &["join", "RUN.mcap", "--plan", next, "-o", &after]);
+    let compared = step(joined, "To see whether the error became smaller:", &["compare", &last, &after]);
     let mut words: Vec<String> = vec!["replan".to_owned()];
     words.extend(logs.iter().map(argument));
-    let again = format!("next-{}.mcap", logs.len() + 1);
-    words.extend(["after.mcap", "-o", &again].map(str::to_owned));
+    words.extend([after, "-o".to_owned(), unused("next", logs.len() + 1, logs, next)]);
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     step(compared, "To learn from it too, until nothing more is to be gained:", &words)
+}
+
+/// A name of a log with a number, the first without one, that is none of the logs and not `next`.
+fn unused(name: &str, from: usize, logs: &[PathBuf], next: &str) -> String {
+    let numbered = |k: usize| if k == 1 { format!("{name}.mcap") } else { format!("{name}-{k}.mcap") };
+    let taken = |file: &String| file == next || logs.iter().any(|log| argument(log) == *file);
+    // One more than may be taken.
+    (from..=from + logs.len() + 1).map(numbered).find(|file| !taken(file)).unwrap_or_default()
 }
 
 /// After a run was written.
 pub(super) fn report(section: Section, run: &Path) -> Section {
     step(section, "To see how the arm followed its plan:", &["report", &argument(run)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_printed_line_names_a_file_of_another_line() {
+        let said = |next: &str, logs: &[&str]| -> Vec<String> {
+            let logs: Vec<PathBuf> = logs.iter().map(PathBuf::from).collect();
+            let lines = next_written(Path::new(next), &logs, &[]).blocks.into_iter();
+            lines
+                .filter_map(|block| if let Block::Command(line) = block { Some(line) } else { None })
+                .collect()
+        };
+        let first = said("next.mcap", &["run.mcap"]);
+        assert_eq!(first[1], "hydrotrace compare run.mcap after.mcap");
+        let second = said("next-2.mcap", &["run.mcap", "after.mcap"]);
+        assert_eq!(second[0], "hydrotrace join RUN.mcap --plan next-2.mcap -o after-2.mcap");
+        assert_eq!(second[1], "hydrotrace compare after.mcap after-2.mcap");
+        assert_eq!(second[2], "hydrotrace replan run.mcap after.mcap after-2.mcap -o next-3.mcap");
+        assert!(said("next-2.mcap", &["run.mcap"])[2].ends_with("-o next-3.mcap"));
+    }
 }
