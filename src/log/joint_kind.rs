@@ -5,16 +5,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::series::JointKind;
 
 /// Name of the metadata: joint to how it moves.
-pub(super) const METADATA: &str = "hydrotrace.joints";
+pub(crate) const METADATA: &str = "hydrotrace.joints";
 
 const SLIDES: &str = "slides";
 
 /// The entries for joints that slide; those that turn need none.
-pub(super) fn entries<'a>(
-    joints: impl Iterator<Item = (&'a String, &'a JointKind)>,
-) -> BTreeMap<String, String> {
-    let sliding = joints.filter(|(_, kind)| **kind == JointKind::Slides);
-    sliding.map(|(joint, _)| (joint.clone(), SLIDES.to_owned())).collect()
+pub(crate) fn entries<'a>(joints: impl Iterator<Item = (&'a str, JointKind)>) -> BTreeMap<String, String> {
+    let sliding = joints.filter(|(_, kind)| *kind == JointKind::Slides);
+    sliding.map(|(joint, _)| (joint.to_owned(), SLIDES.to_owned())).collect()
 }
 
 /// Names of the joints that slide.

@@ -48,6 +48,7 @@ pub use files::{LogFiles, ScannedLog};
 pub use files::{Passes, passes};
 pub use foreign::read_csv;
 pub use input::Input;
+pub(crate) use joint_kind::{METADATA as JOINT_KINDS, entries as joint_kinds};
 pub use options::{Cylinders, ReadOptions, Selector, Sides, SignalRole, TimeBase, WantedSignal};
 pub use range::TimeRange;
 pub use read::{

@@ -138,7 +138,7 @@ impl Learnt {
             let states = || planned.iter().zip(&joint.correction);
             let position_rad = states().map(|(planned, made)| planned.0 + by * made[0]).collect();
             let velocity_rad_s = states().map(|(planned, made)| planned.1 + by * made[1]).collect();
-            Track::new(track.name(), t_s, position_rad, &[])?.with_velocity(velocity_rad_s)
+            Track::of(track.kind(), track.name(), t_s, position_rad, &[])?.with_velocity(velocity_rad_s)
         };
         Ok(Series { tracks: plan.tracks.iter().map(one).collect::<Result<_, _>>()? })
     }

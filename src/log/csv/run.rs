@@ -65,7 +65,8 @@ impl CsvRun {
         let mut origin: BTreeMap<String, String> = columns.collect();
         origin.extend([("file".to_owned(), understood.file.clone()), ("time".to_owned(), time)]);
         log.metadata(ORIGIN, &origin)?;
-        let kinds = joint_kind::entries(layout.joints.iter().zip(&self.kinds));
+        let kinds =
+            joint_kind::entries(layout.joints.iter().map(String::as_str).zip(self.kinds.iter().copied()));
         if !kinds.is_empty() {
             log.metadata(joint_kind::METADATA, &kinds)?;
         }

@@ -39,8 +39,8 @@ pub struct Addition<'a> {
     pub sent: Option<[&'a str; 2]>,
     /// Files, in place of those of their names.
     pub files: &'a [Attachment],
-    /// Name and entries of metadata, in place of those of this name.
-    pub metadata: (&'a str, BTreeMap<String, String>),
+    /// Names and entries of metadata, in place of those of these names.
+    pub metadata: Vec<(&'a str, BTreeMap<String, String>)>,
 }
 
 impl ScannedLog<'_> {
@@ -83,10 +83,12 @@ impl<W: Write> Joining<'_, W> {
         parts: Vec<(&ScannedFile<'_>, Copier)>,
         addition: &Addition<'_>,
     ) -> Result<u64, CopyError> {
-        let (name, entries) = &addition.metadata;
-        let replaced: Vec<&str> =
-            addition.files.iter().map(|file| file.name.as_str()).chain([*name, joined::METADATA]).collect();
-        self.log.metadata(name, entries)?;
+        let files = addition.files.iter().map(|file| file.name.as_str());
+        let metadata = addition.metadata.iter().map(|(name, _)| *name);
+        let replaced: Vec<&str> = files.chain(metadata).chain([joined::METADATA]).collect();
+        for (name, entries) in &addition.metadata {
+            self.log.metadata(name, entries)?;
+        }
         if let Some([topics, fields]) = addition.sent {
             self.log.metadata(joined::METADATA, &joined::entries(topics, fields))?;
         }

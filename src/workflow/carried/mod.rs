@@ -23,7 +23,7 @@ use super::plan::{PlanDocument, PlanEntry, PlanFailure, TaskFiles};
 use crate::{
     arm::Arm,
     input_file,
-    log::{Attachment, LogWriter, Recording, WriteError},
+    log::{Attachment, JOINT_KINDS, LogWriter, Recording, WriteError, joint_kinds},
     plant::Truth,
     remark::{Code, Remarks},
     task::{ArmSource, Task, TaskError},
@@ -57,6 +57,8 @@ pub struct Carried {
     provenance: BTreeMap<String, String>,
     /// Names of files that are not those that were written, by their SHA-256.
     altered: Vec<String>,
+    /// What is said of joints that slide.
+    kinds: BTreeMap<String, String>,
 }
 
 impl Carried {
@@ -72,7 +74,9 @@ impl Carried {
         };
         let altered = files.iter().filter(altered).map(|file| file.name.clone()).collect();
         provenance.retain(|key, _| !key.starts_with(SHA256));
-        Self { files, provenance, altered }
+        let tracks = recording.planned.tracks.iter().chain(&recording.measured.tracks);
+        let kinds = joint_kinds(tracks.map(|track| (track.name(), track.kind())));
+        Self { files, provenance, altered, kinds }
     }
 
     /// A task with its arm, and a plan of it.
@@ -231,15 +235,16 @@ impl Carried {
         self.provenance.get(STARTS)?.parse().ok().filter(|s: &f64| s.is_finite())
     }
 
-    /// Name and entries of the metadata, with the SHA-256 of every file where an arm's are among them: the sample arm
+    /// Names and entries of the metadata, with the SHA-256 of every file where an arm's are among them: the sample arm
     /// is the program's own.
-    pub fn metadata(&self) -> (&'static str, BTreeMap<String, String>) {
+    pub fn metadata(&self) -> Vec<(&'static str, BTreeMap<String, String>)> {
         let hash = |file: &Attachment| (format!("{SHA256}{}", file.name), sha256(file));
         let mut entries = self.provenance.clone();
         if self.file(URDF).is_some() {
             entries.extend(self.files.iter().map(hash));
         }
-        (PROVENANCE, entries)
+        let kinds = (!self.kinds.is_empty()).then(|| (JOINT_KINDS, self.kinds.clone()));
+        std::iter::once((PROVENANCE, entries)).chain(kinds).collect()
     }
 
     /// The files.
@@ -253,8 +258,7 @@ impl Carried {
     ///
     /// [`WriteError`].
     pub fn begin<W: Write>(&self, log: &mut LogWriter<W>) -> Result<(), WriteError> {
-        let (name, entries) = self.metadata();
-        log.metadata(name, &entries)
+        self.metadata().iter().try_for_each(|(name, entries)| log.metadata(name, entries))
     }
 
     /// Writes the files, after the samples, stamped with the start of the log.

@@ -2,8 +2,6 @@
 
 /// Rest before the plan in the log of a plan, s.
 pub const PLAN_LEAD_S: f64 = 1.5;
-/// Rest after it, s.
-pub const PLAN_TAIL_S: f64 = 1.0;
 /// Rest after a plan that is sent with a command, s: the command comes back to the plan within it.
 pub const COMMAND_TAIL_S: f64 = 2.0;
 /// Rest before the plan in the log of a run, s.

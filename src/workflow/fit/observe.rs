@@ -46,18 +46,17 @@ pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, Obse
     Ok(recording)
 }
 
-/// Leaves out joints that slide, and says so.
+/// Leaves out what was measured of joints that slide, and says so; what is planned for them stays, for a command is of all
+/// joints.
 fn leave_out_sliding(recording: &mut Recording) {
-    let Recording { planned, measured, command, remarks, .. } = recording;
-    for track in measured.tracks.iter().filter(|track| track.kind() == JointKind::Slides) {
-        let message =
-            format!("{} slides (m): the model of a fit is of joints that turn (rad); left out", track.name());
-        remarks.add(Code::NotSupported, 1, message);
+    for track in recording.measured.tracks.iter().filter(|track| track.kind() == JointKind::Slides) {
+        let message = format!(
+            "{} slides (m): the model of a fit is of joints that turn (rad); it is not fitted",
+            track.name()
+        );
+        recording.remarks.add(Code::NotSupported, 1, message);
     }
-    let sent = command.as_mut().map(|command| &mut command.series);
-    for series in [planned, measured].into_iter().chain(sent) {
-        series.tracks.retain(|track| track.kind() == JointKind::Turns);
-    }
+    recording.measured.tracks.retain(|track| track.kind() == JointKind::Turns);
 }
 
 /// The same for a fit: the command if the log has one, else the plan.

@@ -7,7 +7,7 @@ use crate::{
     fit::{Fit, Learning, Learnt, Oscillation, Room, STEP_S, Step, Trial, learn, predict},
     math::{State, lowpass, range},
     plan::{BETWEEN, Interpolation, Limit, Margin, POINTS_HZ, Setup, SpeedRoom},
-    series::{Series, Track, align},
+    series::{JointKind, Series, Track, align},
     spline::{Motion, Quantity, Samples},
 };
 
@@ -76,7 +76,7 @@ pub struct Commanded {
     pub series: Series,
     /// Its accelerations, rad/s², by track and sample.
     pub acceleration_rad_s2: Vec<Vec<f64>>,
-    /// One entry a joint of the plan.
+    /// One entry a joint of the plan that turns; those that slide are sent as planned.
     pub joints: Vec<JointCommand>,
     /// Joints that hunt; with three or more nothing is corrected.
     pub hunting: usize,
@@ -317,6 +317,9 @@ fn joints(
     for (((made, planned), (share, because)), (track, sent)) in
         learnt.joints.iter().zip(planned).zip(shares).zip(plan.tracks.iter().zip(&sent.tracks))
     {
+        if track.kind() == JointKind::Slides {
+            continue;
+        }
         let rms_rad = |sent: &Track| -> Result<Option<f64>, ReplanFailure> {
             let Some(joint) = fit.joint(&made.name) else { return Ok(None) };
             let response = predict(&joint.model, sent)?;

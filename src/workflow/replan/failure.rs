@@ -7,7 +7,7 @@ use thiserror::Error;
 use crate::{
     fit::FitError,
     plan::PlanError,
-    series::SignalError,
+    series::{JointKind, SignalError},
     units::Degrees,
     workflow::{fit::FitFailure, plan::PlanFailure},
 };
@@ -49,7 +49,7 @@ pub enum ReplanFailure {
          once; give the whole log, or name the task with --task",
         path.display(),
         if *begins { "begins" } else { "ends" },
-        Degrees(*speed_rad_s),
+        Moved(*kind, *speed),
         if *begins { "starts" } else { "stops" }
     )]
     CutInMotion {
@@ -59,8 +59,10 @@ pub enum ReplanFailure {
         begins: bool,
         /// The joint.
         joint: String,
-        /// Its planned speed there.
-        speed_rad_s: f64,
+        /// Whether it turns or slides.
+        kind: JointKind,
+        /// Its planned speed there, rad/s or m/s.
+        speed: f64,
         /// The first or last planned instant.
         at_s: f64,
     },
@@ -97,4 +99,16 @@ pub enum ReplanFailure {
         /// The least for commands.
         least: f64,
     },
+}
+
+/// A distance of a joint as people read it.
+struct Moved(JointKind, f64);
+
+impl std::fmt::Display for Moved {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.0 {
+            JointKind::Turns => Degrees(self.1).fmt(f),
+            JointKind::Slides => write!(f, "{:.1} mm", 1e3 * self.1),
+        }
+    }
 }

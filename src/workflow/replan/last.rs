@@ -21,10 +21,10 @@ use crate::{
     },
 };
 
-/// Planned speed that is motion, rad/s.
+/// Planned speed that is motion, rad/s, or m/s of joints that slide.
 const MOVES_RAD_S: f64 = 0.05 * DEGREE_RAD;
 
-/// Planned speed at which a plan does not end, rad/s, and how close to its end that is looked for, s.
+/// Planned speed at which a plan does not end, rad/s or m/s, and how close to its end that is looked for, s.
 const CUT_RAD_S: f64 = DEGREE_RAD;
 const CUT_S: f64 = 0.05;
 
@@ -132,10 +132,10 @@ fn check_ends(path: &Path, planned: &Series, [from_s, to_s]: [f64; 2]) -> Result
         let ends = [first].into_iter().filter(|_| begins).chain([last].into_iter().filter(|_| ends));
         for (at, next, _, begins) in ends.filter(|(at, _, end_s, _)| (t_s[*at] - end_s).abs() <= CUT_S) {
             let step = (position[at] - position[next]) / (t_s[at] - t_s[next]);
-            let speed_rad_s = track.velocity().map_or(step, |speed| speed[at]);
-            if speed_rad_s.abs() > CUT_RAD_S {
-                let (path, joint) = (path.to_owned(), track.name().to_owned());
-                return Err(ReplanFailure::CutInMotion { path, begins, joint, speed_rad_s, at_s: t_s[at] });
+            let speed = track.velocity().map_or(step, |speed| speed[at]);
+            if speed.abs() > CUT_RAD_S {
+                let (path, joint, kind) = (path.to_owned(), track.name().to_owned(), track.kind());
+                return Err(ReplanFailure::CutInMotion { path, begins, joint, kind, speed, at_s: t_s[at] });
             }
         }
     }

@@ -59,7 +59,7 @@ pub(super) fn cut(series: &Series, from_s: f64, to_s: f64) -> Result<Series, Sig
     let one = |track: &Track| {
         let states: Vec<_> = t_s.iter().map(|t| track.held_at(t + from_s)).collect();
         let position = states.iter().map(|state| state.position).collect();
-        let made = Track::new(track.name(), t_s.clone(), position, &[])?;
+        let made = Track::of(track.kind(), track.name(), t_s.clone(), position, &[])?;
         match track.velocity() {
             Some(_) => made.with_velocity(states.iter().map(|state| state.velocity).collect()),
             None => Ok(made),
@@ -81,7 +81,7 @@ pub(super) fn cut_measured(series: &Series, from_s: f64, to_s: f64) -> Result<Se
             kept_s.push(*t);
             position.push(state.position);
         }
-        (!kept_s.is_empty()).then(|| Track::new(track.name(), kept_s, position, &cuts))
+        (!kept_s.is_empty()).then(|| Track::of(track.kind(), track.name(), kept_s, position, &cuts))
     };
     Ok(Series { tracks: series.tracks.iter().filter_map(one).collect::<Result<_, _>>()? })
 }

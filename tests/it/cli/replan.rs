@@ -192,3 +192,46 @@ fn a_log_without_a_task_asks_for_a_look_at_the_limits_and_a_promise_is_held_to_w
     assert_ne!(second["checks"]["verdict"], "half_first", "{}", second["checks"]);
     assert_eq!(check(&second, "gain")["reasons"], serde_json::json!([]));
 }
+
+/// The export of a log: its columns, and its rows of cells.
+fn exported(folder: &Path, log: &str) -> (Vec<String>, Vec<Vec<String>>) {
+    let run = run_line(folder, &format!("export {log} -o rows.csv --force"));
+    assert!(run.status.success(), "{}", stderr(&run));
+    let text = fs::read_to_string(folder.join("rows.csv")).unwrap();
+    let cells = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
+    let mut lines = text.lines().map(cells);
+    (lines.next().unwrap(), lines.collect())
+}
+
+#[test]
+fn a_joint_that_slides_is_sent_as_planned_in_metres_beside_corrected_joints() {
+    let folder = with_run();
+    let folder = folder.path();
+    let (header, rows) = exported(folder, "run.mcap");
+    let column = |name: &str| header.iter().position(|cell| cell == name).unwrap();
+    let [planned, measured, t_s] = ["J1_planned_rad", "J1_measured_rad", "time_s"].map(column);
+    let mut csv = "time_s,boom_planned_rad,boom_measured_rad,tele_planned_mm,tele_measured_mm\n".to_owned();
+    for row in rows.iter().filter(|row| !row[planned].is_empty() && !row[measured].is_empty()) {
+        let mm = |cell: &str| 1e3 * cell.parse::<f64>().unwrap();
+        let [plan, came] = [&row[planned], &row[measured]];
+        csv += &format!("{},{plan},{came},{},{}\n", row[t_s], mm(plan), mm(came));
+    }
+    fs::write(folder.join("crane.csv"), csv).unwrap();
+    let document = json(folder, "replan crane.csv --keep-plan -o next.mcap");
+    assert!(document["remarks"].to_string().contains("tele slides (m)"), "{}", document["remarks"]);
+    let corrected = document["command"].as_array().unwrap();
+    assert_eq!(corrected.iter().map(|joint| &joint["name"]).collect::<Vec<_>>(), ["boom"]);
+    let (header, rows) = exported(folder, "next.mcap");
+    let column =
+        |name: &str| header.iter().position(|cell| cell == name).unwrap_or_else(|| panic!("{header:?}"));
+    let number = |row: &[String], name: &str| row[column(name)].parse::<f64>().unwrap();
+    let off = |joint: &str, unit: &str| {
+        let apart = |row: &Vec<String>| {
+            number(row, &format!("{joint}_command_{unit}")) - number(row, &format!("{joint}_planned_{unit}"))
+        };
+        rows.iter().map(apart).fold(0.0, |most: f64, apart| most.max(apart.abs()))
+    };
+    assert!(off("tele", "m") < 1e-12 && off("boom", "rad") > 1e-3);
+    let moves = |row: &Vec<String>| number(row, "tele_planned_m");
+    assert!(rows.iter().map(moves).fold(0.0, f64::max) > 0.8, "it moves in metres");
+}

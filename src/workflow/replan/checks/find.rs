@@ -4,7 +4,7 @@ use super::{Check, Finding, JointTrust, Level, Reason, Replanned};
 use crate::{
     fit::{Character, LEAST_SKILL, Step},
     plan::{BETWEEN, Limit, Margin},
-    series::{Series, Track},
+    series::{JointKind, Series, Track},
     units::DEGREE_RAD,
     workflow::{
         plan::MarginEntry,
@@ -67,9 +67,14 @@ fn rest(sent: &Series, command: Option<&Commanded>) -> Check {
         (None, [.., t0, t1], [.., p0, p1]) => (p1 - p0) / (t1 - t0),
         _ => f64::NAN,
     };
-    let speed_rad_s = most(sent.tracks.iter().map(speed));
+    // Joints that slide are sent as planned.
+    let turns = |track: &&Track| track.kind() == JointKind::Turns;
+    let speed_rad_s = most(sent.tracks.iter().filter(turns).map(speed));
     let last = |values: &Vec<f64>| values.last().copied().unwrap_or(f64::NAN);
-    let acceleration_rad_s2 = command.map(|command| most(command.acceleration_rad_s2.iter().map(last)));
+    let acceleration_rad_s2 = command.map(|command| {
+        let both = command.series.tracks.iter().zip(&command.acceleration_rad_s2);
+        most(both.filter(|(track, _)| turns(track)).map(|(_, values)| last(values)))
+    });
     let level = within(speed_rad_s, REST[0]).max(within(acceleration_rad_s2.unwrap_or(0.0), REST[1]));
     Check { level, finding: Finding::Rest { speed_rad_s, acceleration_rad_s2 } }
 }
