@@ -18,10 +18,3 @@ pub struct Estimated {
     #[serde(default)]
     pub upper_bound: Option<f64>,
 }
-
-impl Estimated {
-    /// Whether its interval lies above a number.
-    pub fn is_above(&self, least: f64) -> bool {
-        self.identified && self.interval.is_some_and(|[low, _]| low >= least)
-    }
-}

@@ -8,7 +8,6 @@ use nalgebra::DMatrix;
 use super::{
     Estimated,
     estimate::{Problem, Workspace},
-    outcome::LEAST_FEED_FORWARD,
     parameters::{DEAD_BAND, DEAD_TIME, FEED_FORWARD, HYSTERESIS, POSITION_GAIN, STICTION, TIME_CONSTANT},
     robust::inefficiency,
     run::ASKED_OVER_S,
@@ -45,6 +44,9 @@ const VAGUE: f64 = 0.6;
 
 /// The data must narrow the prior to this share.
 const NARROWED: f64 = 0.6;
+
+/// A feed-forward whose interval does not lie above this may be none.
+const LEAST_FEED_FORWARD: f64 = 0.4;
 
 /// Sent speeds that change by less within a tenth of a second are smooth, rad/s.
 const SHARP_RAD_S: f64 = 2.5 * DEGREE_RAD;
@@ -117,35 +119,31 @@ impl Knowledge {
         let part = |i: usize, value: f64| (i, problem.priors.of(i).deviation * value / lag_s);
         let parts = [part(DEAD_TIME, model.dead_time_s), part(TIME_CONSTANT, model.time_constant_s)];
         let missed = self.missed(discrepancy::LAG, discrepancy::SMOOTH_LAG);
-        let found = self.positive(lag_s, &parts, missed);
+        let found = self.unfiltered(problem, x, self.positive(lag_s, &parts, missed));
         // Within the lag a smooth start does not leave the dead band: its delay is the band's, and bounds the lag.
         let upper_bound = found.interval.map(|[_, most_s]| most_s).filter(|_| !self.sharp);
-        Estimated {
-            identified: found.identified && self.sharp && self.feeds_forward(problem, x),
-            upper_bound,
-            ..found
-        }
+        Estimated { identified: found.identified && self.sharp, upper_bound, ..found }
     }
 
     /// Wanted speed by sent speed; one that may be none is not identified.
     pub(super) fn feed_forward(&self, problem: &Problem, x: &[f64]) -> Estimated {
         let part = (FEED_FORWARD, problem.priors.of(FEED_FORWARD).deviation);
         let found = self.positive(problem.model(x).feed_forward, &[part], discrepancy::GAIN);
-        Estimated { identified: found.is_above(LEAST_FEED_FORWARD), ..found }
+        let sure = found.interval.is_some_and(|[low, _]| low >= LEAST_FEED_FORWARD);
+        Estimated { identified: found.identified && sure, ..found }
     }
 
-    /// Whether the loop is known to feed speeds forward. Where it does not, a filter of its set values acts as a lower gain,
-    /// more lag and another dead band, and no log of angles tells them apart.
-    fn feeds_forward(&self, problem: &Problem, x: &[f64]) -> bool {
-        self.feed_forward(problem, x).identified
+    /// A number that a filter of set values changes: in a loop without feed-forward one acts as a lower gain, more lag and
+    /// another dead band, and no log of angles tells them apart.
+    fn unfiltered(&self, problem: &Problem, x: &[f64], found: Estimated) -> Estimated {
+        Estimated { identified: found.identified && self.feed_forward(problem, x).identified, ..found }
     }
 
     /// The position gain.
     pub(super) fn position_gain(&self, problem: &Problem, x: &[f64]) -> Estimated {
         let part = (POSITION_GAIN, problem.priors.of(POSITION_GAIN).deviation);
         let missed = self.missed(discrepancy::POSITION_GAIN, discrepancy::SMOOTH_POSITION_GAIN);
-        let found = self.positive(problem.model(x).position_gain_1_s, &[part], missed);
-        Estimated { identified: found.identified && self.feeds_forward(problem, x), ..found }
+        self.unfiltered(problem, x, self.positive(problem.model(x).position_gain_1_s, &[part], missed))
     }
 
     /// What must be wanted before the joint leaves rest: dead band, hysteresis and stiction, which logs of angles hardly
@@ -158,14 +156,12 @@ impl Knowledge {
         let stiction = part(STICTION, model.stiction_rad_s / whole_rad_s);
         let play = part(HYSTERESIS, model.hysteresis_rad_s / whole_rad_s);
         let gain = part(POSITION_GAIN, -1.0);
-        let fed = self.feeds_forward(problem, x);
-        let known = |value: f64, parts: &[(usize, f64)]| {
-            let found = self.positive(value, parts, discrepancy::DEAD_BAND);
-            Estimated { identified: found.identified && fed, ..found }
-        };
         [
-            known(whole_rad_s, &[band, stiction, play]),
-            known(whole_rad_s / model.position_gain_1_s, &[band, stiction, play, gain]),
+            (whole_rad_s, &[band, stiction, play][..]),
+            (whole_rad_s / model.position_gain_1_s, &[band, stiction, play, gain]),
         ]
+        .map(|(value, parts)| {
+            self.unfiltered(problem, x, self.positive(value, parts, discrepancy::DEAD_BAND))
+        })
     }
 }

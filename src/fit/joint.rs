@@ -6,7 +6,7 @@ use super::{
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
     interval::{Knowledge, discrepancy},
-    outcome::JointFit,
+    outcome::{JointFit, LEAST_SHARP_SKILL},
     parameters::{ASYMMETRY, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
     run::Run,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
@@ -31,10 +31,6 @@ const ENOUGH_TO_HOLD_OUT_S: f64 = 450.0;
 
 /// Slowest time constant of an integral that shows, s.
 const SLOWEST_INTEGRAL_S: f64 = 20.0;
-
-/// Held-out skill below which a model does not hold where starts are sharp: errors are large there, and a machine of the
-/// model's structure is predicted to 0.3 % of their square.
-const LEAST_SHARP_R2: f64 = 0.99;
 
 /// Rounds over all runs after a search in some.
 const ROUNDS: usize = 4;
@@ -93,7 +89,7 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     let skill = skill(&Problem { runs: &held_out, ..problem.clone() }, &x, FOLD_ROUNDS, &mut workspace);
     let samples = runs.iter().map(|run| run.samples.len()).sum();
     let left = Oscillation::of(&problem.longest_left_rad(&found.x, &mut workspace));
-    let least_r2 = if knowledge.sharp { LEAST_SHARP_R2 } else { 0.0 };
+    let least_r2 = if knowledge.sharp { LEAST_SHARP_SKILL } else { 0.0 };
     knowledge.holds = left.character == Character::Calm && skill.held_out_r2 >= least_r2;
     let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
     let ratios = skill.starts.iter().flatten().filter_map(HeldOutStart::ratio).collect();

@@ -37,7 +37,7 @@ pub use excite::{Excitation, JointRoom, Ramp, excite};
 pub use held_out::HeldOut;
 pub use learn::{Character, JointStep, Learning, Learnt, Oscillation, Room, Step, Trial, learn};
 pub use model::{Model, STEP_S};
-pub use outcome::{Fit, JointFit, LEAST_SKILL, LeftOut};
+pub use outcome::{Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LeftOut};
 pub use predict::predict;
 pub use run::Observation;
 pub use start_error::{PredictedStart, StartErrorPredictor};

@@ -12,8 +12,8 @@ pub const STEP_S: f64 = 0.01;
 /// The loop wants a speed w = `feed_forward` * sent speed + `position_gain` * error + integral, which
 /// arrives after the dead time; the spool follows it with a play of ±`hysteresis`. What is left beyond the dead band,
 /// b, gives the speed b² / (b + `edge`). Scaled by exp(±`asymmetry` / 2) for growing and shrinking angles and by the
-/// pose, and clipped to the speed limits, it is approached with a time constant, within the acceleration limits. Speeds, gains and dead band are
-/// as the joint shows them: a loop gain that no log can tell apart is in all of them.
+/// pose, and clipped to the speed limits, it is approached with a time constant, within the acceleration limits.
+/// Speeds, gains and dead band are as the joint shows them: a loop gain that no log can tell apart is in all of them.
 ///
 /// Pairs are for growing and for shrinking angles, both positive; a limit that no data showed is
 /// `None`.

@@ -7,8 +7,9 @@ use super::{Estimated, FitError, Model};
 /// Held-out skill below which no command should be made from a model.
 pub const LEAST_SKILL: f64 = 0.3;
 
-/// A feed-forward whose interval does not lie above this may be none.
-pub(super) const LEAST_FEED_FORWARD: f64 = 0.4;
+/// Held-out skill below which a model does not hold where starts are sharp: errors are large there, and a machine of the
+/// model's structure is predicted to 0.3 % of their square.
+pub const LEAST_SHARP_SKILL: f64 = 0.99;
 
 /// A machine as its logs show it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -64,10 +65,10 @@ pub struct JointFit {
     pub unexplained_peak_rad: Option<[f64; 2]>,
     /// Dead time, time constant and half a period of the loop, s.
     pub lag_s: Estimated,
-    /// Speed that must be wanted before the joint leaves rest, mean of both directions, rad/s: logs of
-    /// angles do not tell the directions apart.
+    /// Speed that must be wanted before the joint leaves rest: dead band, hysteresis and stiction, which logs of angles
+    /// do not tell apart; mean of both directions, rad/s.
     pub dead_band_rad_s: Estimated,
-    /// Position error inside the dead band: its half width divided by the position gain, rad.
+    /// Position error at which the joint leaves rest: the dead band divided by the position gain, rad.
     pub dead_band_error_rad: Estimated,
     /// Wanted speed per position error, 1/s.
     pub position_gain_1_s: Estimated,
@@ -115,11 +116,6 @@ impl Fit {
 }
 
 impl JointFit {
-    /// Whether the loop is known to feed sent speeds forward; if not, neither lag, dead band nor position gain is identified.
-    pub fn feeds_forward(&self) -> bool {
-        self.feed_forward.identified
-    }
-
     /// Whether the model predicts well enough to make commands from it.
     pub fn trusted(&self) -> bool {
         self.held_out_r2 >= LEAST_SKILL

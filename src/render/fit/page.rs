@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::tables::{document, left_out_line, machine};
 use crate::{
-    fit::{Fit, HeldOut, JointFit},
+    fit::{Fit, HeldOut, JointFit, LEAST_SHARP_SKILL},
     render::{
         kit::{
             self, Id, Section, clean, counted,
@@ -84,7 +84,10 @@ fn summary(fitted: &Fitted, next: Option<&Section>) -> Markup {
 fn doubt(joint: &JointFit) -> String {
     let JointFit { name, held_out_r2, .. } = joint;
     if joint.trusted() {
-        format!("The model does not hold for {name} (R2 {held_out_r2:.2}). Its numbers have no intervals.")
+        format!(
+            "The model does not hold for {name} (R2 {held_out_r2:.2}): what it leaves unexplained rings, or starts are sharp \
+             and the R2 is below {LEAST_SHARP_SKILL}. Its numbers have no intervals."
+        )
     } else {
         format!("{name} is predicted with an R2 of {held_out_r2:.2} only: no command is made for it.")
     }

@@ -2,8 +2,8 @@
 
 use super::Shown;
 use crate::{
-    fit::{Estimated, Fit, JointFit, LEAST_SKILL, LeftOut},
-    render::kit::{Document, Id, Section, Sentence, Table, counted, deg, optional},
+    fit::{Estimated, Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LeftOut},
+    render::kit::{Document, Id, Section, Sentence, Table, counted, deg, optional, some_of},
     units::degrees_from_radians,
     workflow::fit::{Fitted, torque::JointTorque},
 };
@@ -151,9 +151,9 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
     let fit = &fitted.fit;
     let good = fit.joints.iter().filter(|joint| joint.trusted()).count();
     let mut lines = vec![format!(
-        "{good} of {} reach a held-out R2 of {LEAST_SKILL} or more, enough to make commands for them. In 90 % of {} held-out \
-         starts the measured peak stays below {:.2} times the predicted one.",
-        counted(fit.joints.len(), "joint"),
+        "Commands can be made for {}: a held-out R2 of {LEAST_SKILL} is enough. In 90 % of {} held-out starts the measured peak \
+         stays below {:.2} times the predicted one.",
+        some_of(good, fit.joints.len(), "joint"),
         fit.margin_starts,
         fit.peak_margin
     )];
@@ -181,32 +181,29 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
                 .into()
         }));
     }
-    let not: Vec<&str> =
-        fit.joints.iter().filter(|joint| !joint.model_holds).map(|joint| joint.name.as_str()).collect();
-    if !not.is_empty() {
-        lines.push(format!(
-            "The model does not hold for {}: what it leaves unexplained rings, or it predicts worse than the mean, or than \
-             99 % where starts are sharp. Numbers of these joints have no intervals.",
-            not.join(", ")
-        ));
-    }
-    let edged = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.edge_rad_s > 0.0);
-    let edged: Vec<&str> = edged.map(|joint| joint.name.as_str()).collect();
-    if !edged.is_empty() {
-        lines.push(format!(
-            "The speed of {} grows by more than what is asked: the valve opens gradually. Gains are those of the wide-open valve.",
-            edged.join(", ")
-        ));
-    }
-    let unfed = fit.joints.iter().filter(|joint| joint.model_holds && !joint.feeds_forward());
-    let unfed: Vec<&str> = unfed.map(|joint| joint.name.as_str()).collect();
-    if !unfed.is_empty() {
-        lines.push(format!(
-            "The logs show no feed-forward of {}. A filter of set values then acts as a lower gain, more lag and another dead \
-             band: no log of angles tells them apart.",
-            unfed.join(", ")
-        ));
-    }
+    let of = |which: &dyn Fn(&JointFit) -> bool| {
+        let joints: Vec<&str> =
+            fit.joints.iter().filter(|joint| which(joint)).map(|joint| joint.name.as_str()).collect();
+        (!joints.is_empty()).then(|| joints.join(", "))
+    };
+    lines.extend(of(&|joint| !joint.model_holds).map(|joints| {
+        format!(
+            "The model does not hold for {joints}: what it leaves unexplained rings, or its held-out R2 is below 0, or below \
+             {LEAST_SHARP_SKILL} where starts are sharp. Numbers of these joints have no intervals."
+        )
+    }));
+    lines.extend(of(&|joint| joint.model_holds && joint.model.edge_rad_s > 0.0).map(|joints| {
+        format!(
+            "The speed of {joints} grows by more than what is asked: the valve opens gradually. Gains are those of the \
+             wide-open valve."
+        )
+    }));
+    lines.extend(of(&|joint| joint.model_holds && !joint.feed_forward.identified).map(|joints| {
+        format!(
+            "The logs show no sure feed-forward of {joints}. Without one a filter of set values acts as a lower gain, more \
+             lag and another dead band: no log of angles tells them apart."
+        )
+    }));
     lines.extend(left_out_line(fit));
     lines.into_iter().map(Sentence::Finding).collect()
 }

@@ -64,6 +64,11 @@ pub fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("one {noun}") } else { format!("{count} {noun}s") }
 }
 
+/// Some of a number of things: `1 of 1 joint`, `3 of 6 joints`.
+pub fn some_of(some: usize, count: usize, noun: &str) -> String {
+    format!("{some} of {count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 /// That many significant digits.
 pub fn significant(value: f64, digits: u8) -> String {
     if !value.is_finite() {

@@ -3,7 +3,7 @@
 use super::{checks, learning};
 use crate::{
     log::Topics,
-    render::kit::{Block, Document, Fact, Id, NONE, Section, Sentence, Table, counted, deg, fact, optional},
+    render::kit::{Block, Document, Fact, Id, NONE, Section, Sentence, Table, deg, fact, optional, some_of},
     task::Objective,
     units::degrees_from_radians,
     workflow::replan::{Checks, Commanded, HeldTo, Origin, Predicted, Replanned},
@@ -105,9 +105,8 @@ pub(super) fn levers(replanned: &Replanned) -> Vec<Fact> {
         let applied = joints.iter().filter(|joint| joint.applied());
         let most = joints.iter().map(|joint| joint.peak_correction_rad).fold(0.0, f64::max);
         format!(
-            "corrected on {} of {}, by {} deg at most",
-            applied.count(),
-            counted(joints.len(), "joint"),
+            "corrected on {}, by {} deg at most",
+            some_of(applied.count(), joints.len(), "joint"),
             deg(most)
         )
     });
