@@ -28,13 +28,13 @@ const BEFORE_S: f64 = 1.0;
 
 /// Rest after a motion that belongs to its run, s. What the integral holds at the end of a motion decides when the next one
 /// starts: motions a dwell apart are one run.
-const AFTER_S: f64 = 9.0;
+const AFTER_S: f64 = 30.0;
 
 /// Shortest run, s.
 const SHORTEST_S: f64 = 2.0;
 
 /// Longer motions are cut, s.
-const LONGEST_S: f64 = 70.0;
+const LONGEST_S: f64 = 150.0;
 
 /// After a start in motion the first errors are those of the unknown state, s.
 const SETTLE_S: f64 = 0.6;

@@ -33,7 +33,7 @@ const SHARE: f64 = 0.3;
 const FIRST_GAIN: f64 = 0.9;
 
 /// Weight of the model = this / (this + square of the unexplained share of the error).
-const TRUSTED: f64 = 0.5;
+const TRUSTED: f64 = 2.0;
 
 /// Of one joint: what its corrections are made with.
 #[derive(Debug, Clone, Copy)]
@@ -85,7 +85,12 @@ impl Workspace {
     }
 
     /// Response to the plan with a correction.
-    fn corrected(&mut self, model: &Model, planned: &[(f64, f64)], correction_rad: &[f64]) -> &[f64] {
+    pub(super) fn corrected(
+        &mut self,
+        model: &Model,
+        planned: &[(f64, f64)],
+        correction_rad: &[f64],
+    ) -> &[f64] {
         self.sent.clear();
         let last = planned.len().saturating_sub(1);
         for (k, planned) in planned.iter().enumerate() {
@@ -99,11 +104,11 @@ impl Workspace {
     }
 }
 
-/// The correction whose predicted response, with a disturbance that repeats itself, is the plan.
+/// The correction whose predicted response, with a disturbance that repeats itself, is the plan; none where `fade` is zero.
 pub(super) fn inverted(
     model: &Model,
     manner: &Manner,
-    planned: &[(f64, f64)],
+    (planned, fade): (&[(f64, f64)], &[f64]),
     (disturbance_rad, calm_hz): (Option<&[f64]>, f64),
     workspace: &mut Workspace,
 ) -> Vec<f64> {
@@ -126,6 +131,7 @@ pub(super) fn inverted(
             *correction += SHARE * error_rad[(k + manner.ahead).min(last)];
         }
         lowpass(&mut correction_rad, inner_hz, STEP_S);
+        faded(&mut correction_rad, fade);
         for correction in &mut correction_rad {
             *correction = correction.clamp(-manner.most_rad, manner.most_rad);
         }
@@ -141,7 +147,7 @@ pub(super) fn inverted(
 pub(super) fn first(
     model: &Model,
     manner: &Manner,
-    planned: &[(f64, f64)],
+    (planned, fade): (&[(f64, f64)], &[f64]),
     run: &Answer,
     skill: f64,
     workspace: &mut Workspace,
@@ -151,7 +157,8 @@ pub(super) fn first(
     let beta = model_weight(manner, &unexplained_rad, &error_rad, skill);
     let mut disturbance_rad = unexplained_rad;
     lowpass(&mut disturbance_rad, manner.cut_off_hz, STEP_S);
-    let by_model = inverted(model, manner, planned, (Some(&disturbance_rad), CALM_INVERTED_HZ), workspace);
+    let by_model =
+        inverted(model, manner, (planned, fade), (Some(&disturbance_rad), CALM_INVERTED_HZ), workspace);
     let by_data = manner.learnt(&error_rad, FIRST_GAIN);
     let blend = by_model.iter().zip(&by_data).map(|(model, data)| beta * model + (1.0 - beta) * data);
     (blend.collect(), beta)
@@ -172,6 +179,11 @@ pub(super) fn model_weight(manner: &Manner, unexplained_rad: &[f64], error_rad: 
     let left = rms(unexplained_rad) / rms(error_rad).max(f64::MIN_POSITIVE);
     let beta = TRUSTED / (TRUSTED + left * left);
     if beta.is_finite() { beta } else { 0.0 }
+}
+
+/// Fades a correction out where it must be none.
+pub(super) fn faded(correction_rad: &mut [f64], fade: &[f64]) {
+    correction_rad.iter_mut().zip(fade).for_each(|(correction, fade)| *correction *= fade);
 }
 
 pub(super) fn rms(values: &[f64]) -> f64 {

@@ -6,7 +6,7 @@ use super::{
     super::{FitError, JointFit, Model, model::STEP_S},
     JointStep, Learning, Room, Step, Trial,
     answer::Answer,
-    correct::{CALM_MODEL_HZ, Manner, Workspace, first, inverted, rms, unexplained_rad},
+    correct::{CALM_MODEL_HZ, Manner, Workspace, faded, first, inverted, rms, unexplained_rad},
     oscillation::{Character, Oscillation},
     shape::{Wanted, shaped},
 };
@@ -100,9 +100,10 @@ impl<'a> Joint<'a> {
         let manner = Manner::new(&fit.model, character, frequency_hz, most_rad);
         made.cut_off_hz = manner.cut_off_hz;
         made.spread_rad = self.spread_rad(&fit.model);
-        let (step, mut wanted_rad) = self.wanted(fit, &manner, &made.rms_error_rad, settings);
+        let fade = fade(self.planned.len(), free);
+        let (step, mut wanted_rad) = self.wanted(fit, &manner, &made.rms_error_rad, &fade, settings);
         made.step = step;
-        fade(&mut wanted_rad, free);
+        faded(&mut wanted_rad, &fade);
         let wanted = Wanted {
             correction_rad: &wanted_rad,
             cut_off_hz: FINISHED_HZ.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz),
@@ -128,6 +129,7 @@ impl<'a> Joint<'a> {
         fit: &JointFit,
         manner: &Manner,
         rms_rad: &[f64],
+        fade: &[f64],
         settings: Learning,
     ) -> (Step, Vec<f64>) {
         let gain = settings.gain;
@@ -142,7 +144,7 @@ impl<'a> Joint<'a> {
             if !fit.trusted() {
                 return (Step::None, vec![0.0; planned.len()]);
             }
-            let by_model = inverted(&fit.model, manner, planned, (None, CALM_MODEL_HZ), workspace);
+            let by_model = inverted(&fit.model, manner, (planned, fade), (None, CALM_MODEL_HZ), workspace);
             return (Step::Model, scaled(by_model, gain));
         };
         if let Some((from, run)) = settings.keep.and_then(|from| Some((from, answers.get(from)?))) {
@@ -151,7 +153,7 @@ impl<'a> Joint<'a> {
         let corrected = |run: &Answer| run.correction_rad(planned).iter().any(|d| d.abs() > NONE_RAD);
         if !corrected(newest) && answers.len() == 1 {
             let (wanted, model_weight) =
-                first(&fit.model, manner, planned, newest, fit.held_out_r2, workspace);
+                first(&fit.model, manner, (planned, fade), newest, fit.held_out_r2, workspace);
             return (Step::First { model_weight }, scaled(wanted, gain));
         }
         let (from, trust) = trusted(rms_rad);
@@ -197,9 +199,9 @@ fn trusted(rms_rad: &[f64]) -> (usize, f64) {
     (from, trust)
 }
 
-/// Fades a wanted correction out towards the ends of its stretches.
-fn fade(wanted_rad: &mut [f64], free: &[Range<usize>]) {
-    let mut weight = vec![0.0; wanted_rad.len()];
+/// What is left of a correction that fades out towards the ends of its stretches, 0 to 1 by step.
+fn fade(steps: usize, free: &[Range<usize>]) -> Vec<f64> {
+    let mut weight = vec![0.0; steps];
     let over = FADES_S / STEP_S;
     for stretch in free {
         for k in stretch.clone() {
@@ -208,7 +210,7 @@ fn fade(wanted_rad: &mut [f64], free: &[Range<usize>]) {
             weight[k] = since * until;
         }
     }
-    wanted_rad.iter_mut().zip(weight).for_each(|(wanted, weight)| *wanted *= weight);
+    weight
 }
 
 /// From 0 to 1 with zero speed and acceleration at both.

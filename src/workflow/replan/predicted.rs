@@ -70,7 +70,7 @@ const PEAKS_OF_SPREAD: [f64; 2] = [2.0, 3.0];
 
 /// Share of what the model does not explain that does not come again in the next run of the plan: the rest is measured in the last
 /// one and corrected. From the study of docs/replan.md; the bound keeps the whole.
-const NOT_REPEATED: f64 = 0.6;
+const NOT_REPEATED: f64 = 0.75;
 
 /// The same with the responses behind it, from what was sent and what came in a run of this plan, if one is known: the model then
 /// tells only what changes.
