@@ -3,7 +3,7 @@
 use super::Replanned;
 use crate::{
     plan::Setup,
-    series::{Track, local_quadratic},
+    series::{JointKind, Track, local_quadratic},
 };
 
 /// Half of the window in which the speed of an answer is told, s.
@@ -37,7 +37,7 @@ pub struct JointCourse {
     pub speed_limit_rad_s: f64,
 }
 
-/// Of every joint of the plan.
+/// Of every joint of the plan that turns.
 pub fn courses(replanned: &Replanned) -> Vec<JointCourse> {
     let setup = replanned.request.as_ref().map(|request| &request.setup);
     let names = setup.map(Setup::joint_names).unwrap_or_default();
@@ -60,7 +60,7 @@ pub fn courses(replanned: &Replanned) -> Vec<JointCourse> {
             speed_limit_rad_s,
         }
     };
-    replanned.plan.tracks.iter().map(one).collect()
+    replanned.plan.tracks.iter().filter(|track| track.kind() == JointKind::Turns).map(one).collect()
 }
 
 fn drawn(track: &Track, t_s: &[f64]) -> Drawn {

@@ -218,6 +218,10 @@ fn a_joint_that_slides_is_sent_as_planned_in_metres_beside_corrected_joints() {
     }
     fs::write(folder.join("crane.csv"), csv).unwrap();
     let document = json(folder, "replan crane.csv --keep-plan -o next.mcap");
+    assert!(
+        !page(folder, "replan crane.csv --keep-plan").contains("tele: corrected"),
+        "its metres would stand as degrees"
+    );
     assert!(document["remarks"].to_string().contains("tele slides (m)"), "{}", document["remarks"]);
     let corrected = document["command"].as_array().unwrap();
     assert_eq!(corrected.iter().map(|joint| &joint["name"]).collect::<Vec<_>>(), ["boom"]);

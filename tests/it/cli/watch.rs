@@ -138,7 +138,13 @@ fn a_log_that_is_still_being_written_is_reported_when_it_is_whole() {
     let mut watch = start(folder.path(), "watch logs --into out --settle 0 --every 0.05");
     let mut lines = BufReader::new(watch.stdout.take().unwrap());
     until("look", || folder.path().join("out/index.html").exists());
-    fs::write(&log, &bytes).unwrap();
+    // At once: what is half written would be reported as it is, and then again.
+    let whole = folder.path().join("whole");
+    let put = |bytes: &[u8], path: &Path| {
+        fs::write(&whole, bytes).unwrap();
+        fs::rename(&whole, path).unwrap();
+    };
+    put(&bytes, &log);
     let line = next(&mut lines);
     assert!(
         line.starts_with("2026-03-01 08:00:00  M00 run.mcap: ") && line.contains(", no limits set  pages/"),
@@ -146,15 +152,12 @@ fn a_log_that_is_still_being_written_is_reported_when_it_is_whole() {
     );
     let metadata =
         "rosbag2_bagfile_information:\n  storage_identifier: mcap\n  relative_file_paths: [bag_0.mcap]\n";
-    fs::write(bag.join("metadata.yaml"), metadata).unwrap();
+    put(metadata.as_bytes(), &bag.join("metadata.yaml"));
     assert!(next(&mut lines).contains("M01 bag: "));
     // What changes is reported again, in the place of what was.
-    // At once: a file that is half written is no log, and would be said to be none.
-    let whole = folder.path().join("whole.mcap");
-    fs::write(&whole, small_log("M00", 1, 3, [0.2, 0.2])).unwrap();
-    fs::rename(&whole, &log).unwrap();
+    put(&small_log("M00", 1, 3, [0.2, 0.2]), &log);
     assert!(next(&mut lines).starts_with("2026-03-02"));
-    fs::write(&log, "no log").unwrap();
+    put(b"no log", &log);
     assert!(next(&mut lines).starts_with("run.mcap: FAILED: "));
     assert_eq!(interrupted(watch, &mut lines).0, 3);
     assert_eq!(pages(&folder.path().join("out")).len(), 1 + 2 + 1, "no page of what failed");

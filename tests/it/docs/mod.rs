@@ -68,6 +68,24 @@ fn the_readme_is_short_and_has_its_two_commands() {
     assert!(text.contains("\ncargo run --release -- demo ") && text.contains("\ncargo test "));
 }
 
+/// What stands between two texts.
+fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
+    let after = text.split_once(from).unwrap_or_else(|| panic!("no {from}")).1;
+    after.split_once(to).unwrap_or_else(|| panic!("no {to}")).0
+}
+
+#[test]
+fn the_readmes_first_fact_is_what_the_pages_behind_it_show() {
+    let (readme, demo, study) = (read("README.md"), read("docs/guide/demo.md"), read("docs/replan.md"));
+    let shown = between(&demo, "    peak error ", " deg in the mean");
+    let share = between(&demo, " deg in the mean (", ")");
+    let said = format!("from {} deg ({share})", shown.replace("->", "to"));
+    assert!(readme.contains(&said), "{said}");
+    let median: Vec<&str> = between(&study, "| median of all | ", " |\n").split(" | ").collect();
+    let said = format!("{} after the first command, {} after the second", median[0], median[1]);
+    assert!(readme.contains(&said), "{said}");
+}
+
 fn help(arguments: &[&str]) -> String {
     let run = Command::new(env!("CARGO_BIN_EXE_hydrotrace")).args(arguments).arg("--help").output().unwrap();
     String::from_utf8(run.stdout).unwrap()
