@@ -85,12 +85,7 @@ impl Workspace {
     }
 
     /// Response to the plan with a correction.
-    pub(super) fn corrected(
-        &mut self,
-        model: &Model,
-        planned: &[(f64, f64)],
-        correction_rad: &[f64],
-    ) -> &[f64] {
+    fn corrected(&mut self, model: &Model, planned: &[(f64, f64)], correction_rad: &[f64]) -> &[f64] {
         self.sent.clear();
         let last = planned.len().saturating_sub(1);
         for (k, planned) in planned.iter().enumerate() {

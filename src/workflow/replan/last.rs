@@ -22,10 +22,10 @@ use crate::{
 };
 
 /// Planned speed that is motion, rad/s, or m/s of joints that slide.
-const MOVES_RAD_S: f64 = 0.05 * DEGREE_RAD;
+const MOVES: f64 = 0.05 * DEGREE_RAD;
 
 /// Planned speed at which a plan does not end, rad/s or m/s, and how close to its end that is looked for, s.
-const CUT_RAD_S: f64 = DEGREE_RAD;
+const CUT_SPEED: f64 = DEGREE_RAD;
 const CUT_S: f64 = 0.05;
 
 /// The longest time without a plan within one motion, s.
@@ -133,7 +133,7 @@ fn check_ends(path: &Path, planned: &Series, [from_s, to_s]: [f64; 2]) -> Result
         for (at, next, _, begins) in ends.filter(|(at, _, end_s, _)| (t_s[*at] - end_s).abs() <= CUT_S) {
             let step = (position[at] - position[next]) / (t_s[at] - t_s[next]);
             let speed = track.velocity().map_or(step, |speed| speed[at]);
-            if speed.abs() > CUT_RAD_S {
+            if speed.abs() > CUT_SPEED {
                 let (path, joint, kind) = (path.to_owned(), track.name().to_owned(), track.kind());
                 return Err(ReplanFailure::CutInMotion { path, begins, joint, kind, speed, at_s: t_s[at] });
             }
@@ -193,9 +193,9 @@ fn moving_within_s(series: &Series, [begin_s, end_s]: [f64; 2]) -> Option<[f64; 
         let (t_s, angle_rad) = (track.t_s(), track.position());
         let within = t_s.partition_point(|t| *t < begin_s)..t_s.partition_point(|t| *t <= end_s);
         let moving = |k: usize| {
-            let fast = track.velocity().is_some_and(|speed| speed[k].abs() > MOVES_RAD_S);
+            let fast = track.velocity().is_some_and(|speed| speed[k].abs() > MOVES);
             fast || (k > within.start
-                && (angle_rad[k] - angle_rad[k - 1]).abs() > MOVES_RAD_S * (t_s[k] - t_s[k - 1]).max(1e-3))
+                && (angle_rad[k] - angle_rad[k - 1]).abs() > MOVES * (t_s[k] - t_s[k - 1]).max(1e-3))
         };
         let first = within.clone().find(|&k| moving(k));
         let last = within.clone().rev().find(|&k| moving(k));

@@ -24,18 +24,18 @@ const TASKS: [&str; 2] = [
     include_str!("../../../../sample-logs/tasks/task-2.toml"),
 ];
 
-/// Name, task and arrivals at its key points, s: the paper's timings first.
-const TIMINGS: [(&str, usize, &[f64]); 6] = [
-    ("task 1, 38.7 s", 0, &[0.0, 7.744, 15.307, 22.863, 30.976, 38.72]),
-    ("task 1, uneven", 0, &[0.0, 5.31, 11.47, 16.36, 26.27, 38.72]),
-    ("task 1, 30.0 s", 0, &[0.0, 6.0, 11.86, 17.71, 24.0, 30.0]),
-    ("task 2, 49.0 s", 1, &[0.0, 9.431, 19.334, 34.66, 39.14, 49.043]),
-    ("task 2, 60.0 s", 1, &[0.0, 12.0, 24.0, 40.0, 47.0, 60.0]),
-    (WAITS, 0, &[0.0, 7.744, 15.307, 22.863, 48.976, 56.72]),
+/// Name, task, its dwell, s, and arrivals at its key points, s: the paper's timings first.
+const TIMINGS: [(&str, usize, f64, &[f64]); 6] = [
+    ("task 1, 38.7 s", 0, DWELL_S, &[0.0, 7.744, 15.307, 22.863, 30.976, 38.72]),
+    ("task 1, uneven", 0, DWELL_S, &[0.0, 5.31, 11.47, 16.36, 26.27, 38.72]),
+    ("task 1, 30.0 s", 0, DWELL_S, &[0.0, 6.0, 11.86, 17.71, 24.0, 30.0]),
+    ("task 2, 49.0 s", 1, DWELL_S, &[0.0, 9.431, 19.334, 34.66, 39.14, 49.043]),
+    ("task 2, 60.0 s", 1, DWELL_S, &[0.0, 12.0, 24.0, 40.0, 47.0, 60.0]),
+    ("task 1, waits", 0, 20.0, &[0.0, 7.744, 15.307, 22.863, 48.976, 56.72]),
 ];
 
-/// The one that waits at its dwell for 20 s in place of 2 s.
-const WAITS: &str = "task 1, waits";
+/// Dwell of the tasks' texts, s.
+const DWELL_S: f64 = 2.0;
 
 /// A plan to repeat.
 #[derive(Debug)]
@@ -53,11 +53,13 @@ impl Job {
     ///
     /// [`LearningError`] if a task cannot be planned, which the tests exclude.
     pub fn all() -> Result<Vec<Self>, LearningError> {
-        let task = |title: &str, task: usize| match title {
-            WAITS => TASKS[task].replace("dwell_s = 2.0", "dwell_s = 20.0"),
-            _ => TASKS[task].to_owned(),
-        };
-        TIMINGS.iter().map(|(title, of, times_s)| Self::of(title, task(title, *of), times_s)).collect()
+        let dwell = |seconds: f64| format!("dwell_s = {seconds:.1}");
+        TIMINGS
+            .iter()
+            .map(|(title, task, dwell_s, times_s)| {
+                Self::of(title, TASKS[*task].replace(&dwell(DWELL_S), &dwell(*dwell_s)), times_s)
+            })
+            .collect()
     }
 
     fn of(title: &'static str, task: String, times_s: &[f64]) -> Result<Self, LearningError> {
