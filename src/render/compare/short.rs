@@ -17,6 +17,10 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     let mut lines = Vec::new();
     match comparison.overall(PEAK_ERROR) {
         Some(peak) if peak.pairs > 0 => lines.push(verdict(peak, kind(comparison, &Scope::All))),
+        _ if comparison.summaries.iter().any(|summary| summary.pairs > 0) => lines.push(
+            "Joints that turn and joints that slide have no common mean: the change of each joint stands in the tables."
+                .to_owned(),
+        ),
         _ => lines.push("No transition is found in every run: there is none to compare.".to_owned()),
     }
     lines.extend(at_the_tool(comparison).map(|changes| format!("At the tool: {changes}.")));

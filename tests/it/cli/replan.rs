@@ -225,6 +225,8 @@ fn a_joint_that_slides_is_sent_as_planned_in_metres_beside_corrected_joints() {
     assert!(document["remarks"].to_string().contains("tele slides (m)"), "{}", document["remarks"]);
     let corrected = document["command"].as_array().unwrap();
     assert_eq!(corrected.iter().map(|joint| &joint["name"]).collect::<Vec<_>>(), ["boom"]);
+    let compared = run_line(folder, "compare crane.csv crane.csv");
+    assert!(stdout(&compared).contains("no common mean"), "{}", stdout(&compared));
     let (header, rows) = exported(folder, "next.mcap");
     let column =
         |name: &str| header.iter().position(|cell| cell == name).unwrap_or_else(|| panic!("{header:?}"));
