@@ -63,13 +63,17 @@ pub(crate) struct LearningArgs {
     #[arg(long, value_delimiter = ',', value_name = "NAME")]
     pub(crate) machine: Vec<String>,
 
-    /// Plans by number, 0 to 4
+    /// Plans by number, 0 to 5
     #[arg(long, value_delimiter = ',', default_value = "0,1,2,3,4", value_name = "N")]
     pub(crate) plan: Vec<usize>,
 
-    /// Seeds, from 1 on
+    /// Number of seeds
     #[arg(long, default_value_t = 2, value_parser = value_parser!(u64).range(1..=1000))]
     pub(crate) seeds: u64,
+
+    /// First seed
+    #[arg(long, default_value_t = 1, value_parser = value_parser!(u64).range(1..=1_000_000))]
+    pub(crate) seed: u64,
 
     /// Runs with a command
     #[arg(long, default_value_t = 4, value_parser = value_parser!(u64).range(1..=100))]

@@ -57,7 +57,8 @@ fn run(study: &StudyArgs) -> Result<(), Box<dyn Error>> {
                 args.machine.clone()
             };
             let teacher = if args.proportional { Teacher::Proportional } else { Teacher::Learn };
-            let (jobs, seeds, runs) = (args.plan.clone(), (1..=args.seeds).collect(), args.runs);
+            let seeds = (args.seed..args.seed + args.seeds).collect();
+            let (jobs, runs) = (args.plan.clone(), args.runs);
             let inputs = learning::Inputs { machines, jobs, seeds, runs, teacher };
             let bar =
                 progress((inputs.machines.len() * inputs.jobs.len() * inputs.seeds.len()) as u64, "cells");
