@@ -121,16 +121,18 @@ impl Evaluator {
         let mut most = at_nodes(nodes, (middle, allowed), shares);
         // Most rows are far from their limit.
         let near = if most > COARSE { nodes.len() } else { 0 };
-        for ((piece, nodes), shares) in nodes.iter().enumerate().zip(&mut *shares).take(near) {
-            for (sign, share) in [1.0, -1.0].into_iter().zip(shares) {
+        // The highest piece comes first: then the others are seen to be lower.
+        let highest = shares.iter().position(|shares| shares.contains(&most)).unwrap_or(0);
+        let pieces = std::iter::once(highest).chain((0..near).filter(|piece| *piece != highest));
+        for piece in pieces.take(near) {
+            for (sign, share) in [1.0, -1.0].into_iter().zip(&mut shares[piece]) {
+                let floor = if wanted == Wanted::Largest { most } else { 0.0 };
                 *share = blend(*share, || {
-                    let node = piece * LANES + largest_node(nodes.map(|value| sign * (value - middle)));
-                    let share_of = |value: f64| sign * (value - middle) / allowed;
-                    let bounded = || share_of(self.bound(joint, quantity, node, sign > 0.0)) <= most;
-                    if wanted == Wanted::Largest && bounded() {
-                        return 0.0;
-                    }
-                    share_of(self.near(joint, quantity, node, sign > 0.0))
+                    let node =
+                        piece * LANES + largest_node(nodes[piece].map(|value| sign * (value - middle)));
+                    let floor = sign * middle + floor * allowed;
+                    let found = self.near(joint, quantity, node, sign > 0.0, floor);
+                    found.map_or(0.0, |value| (value - sign * middle) / allowed)
                 });
                 most = larger(*share, most);
             }
@@ -149,24 +151,16 @@ impl Evaluator {
         }
     }
 
-    /// What the greatest (or least) value between the neighbours of a node cannot exceed.
-    fn bound(&self, joint: usize, quantity: Quantity, node: usize, greatest: bool) -> f64 {
-        let index = self.mesh.segment_of(node);
-        let piece = (node - self.mesh.segment[index].start) / LANES;
-        let (least, most) = self.motion.segments()[index].spline.hull_about(joint, quantity, piece);
-        if greatest { most } else { least }
-    }
-
-    /// The greatest (or least) value between the neighbours of a node.
-    fn near(&self, joint: usize, quantity: Quantity, node: usize, greatest: bool) -> f64 {
+    /// The greatest value (or negative value) between the neighbours of a node, if it exceeds `floor`.
+    fn near(&self, joint: usize, quantity: Quantity, node: usize, greatest: bool, floor: f64) -> Option<f64> {
         let mesh = &self.mesh;
         let index = mesh.segment_of(node);
         let (range, segment) = (&mesh.segment[index], &self.motion.segments()[index]);
         let (start_s, end_s) = (segment.start_s, segment.start_s + segment.spline.duration_s());
         let from_s = if node > range.start { mesh.t_s[node - 1] } else { start_s };
         let to_s = if node + 1 < range.end { mesh.t_s[node + 1] } else { end_s };
-        let found = segment.spline.extrema_within(joint, quantity, (from_s - start_s, to_s - start_s));
-        if greatest { found.greatest.value } else { found.least.value }
+        let within = (from_s - start_s, to_s - start_s);
+        segment.spline.greatest_beyond((joint, quantity), greatest, within, floor)
     }
 
     /// Shares of a sampled row by piece: by the parabola through the largest and its neighbours, with some slack.

@@ -59,13 +59,6 @@ impl Spline {
         hull(self.control(joint, quantity))
     }
 
-    /// As [`Spline::hull`], of a piece and its neighbours.
-    pub(crate) fn hull_about(&self, joint: usize, quantity: Quantity, piece: usize) -> (f64, f64) {
-        let control = self.control(joint, quantity);
-        let end = piece + 3 + self.knots.degree - quantity.order();
-        hull(&control[piece.saturating_sub(1)..end.min(control.len())])
-    }
-
     /// Exact least and greatest value over the whole spline.
     ///
     /// # Panics
@@ -122,6 +115,43 @@ impl Spline {
         extrema.unwrap_or(Extrema { least: nothing, greatest: nothing })
     }
 
+    /// The greatest value between two instants, of the quantity or of its negative, if it exceeds `floor`; much cheaper
+    /// than [`Spline::extrema_within`] where it does not.
+    pub(crate) fn greatest_beyond(
+        &self,
+        (joint, quantity): (usize, Quantity),
+        greatest: bool,
+        (from_s, to_s): (f64, f64),
+        floor: f64,
+    ) -> Option<f64> {
+        let (start, end) = self.span_s();
+        let (from_s, to_s) = (from_s.clamp(start, end), to_s.clamp(start, end));
+        let functions = self.knots.degree + 1 - quantity.order();
+        let control = self.control(joint, quantity);
+        let breaks = self.knots.breaks();
+        let sign = if greatest { 1.0 } else { -1.0 };
+        let top =
+            |values: &[f64]| values.iter().fold(f64::NEG_INFINITY, |most, value| most.max(sign * value));
+        let mut most = floor;
+        for piece in self.knots.piece(from_s)..=self.knots.piece(to_s) {
+            if top(&control[piece..piece + functions]) <= most {
+                continue;
+            }
+            let within = (from_s.max(breaks[piece]), to_s.min(breaks[piece + 1]));
+            let polynomial = self.bernstein(joint, quantity, piece, within);
+            let c = polynomial.coefficients();
+            let highest = top(c);
+            if highest <= most {
+                continue;
+            }
+            most = most.max(sign * c[0]).max(sign * c[c.len() - 1]);
+            if highest > most {
+                polynomial.stationary(|x| most = most.max(sign * polynomial.at(x).0));
+            }
+        }
+        (most > floor).then_some(most)
+    }
+
     /// How far a joint leaves the range of the key points `interval` and `interval + 1` between
     /// them: the larger of both sides.
     ///
@@ -150,4 +180,31 @@ fn hull(coefficients: &[f64]) -> (f64, f64) {
 
 fn inside((least, most): (f64, f64), known: &Extrema) -> bool {
     least >= known.least.value && most <= known.greatest.value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spline::{Degree, Ends, KeyPoints};
+
+    #[test]
+    fn what_exceeds_a_floor_is_the_greatest_and_nothing_else_is_told() {
+        let t_s: Vec<f64> = (0..9).map(|i| f64::from(i) + 0.3 * f64::from(i % 3)).collect();
+        let position = t_s.iter().map(|t| (1.7 * t).sin()).collect();
+        let points = KeyPoints::new(1, position).unwrap();
+        let spline = Spline::new(Degree::Sextic, points, &Ends::at_rest(1), &t_s).unwrap();
+        for k in 0..400 {
+            let from_s = 8.0 * (0.5 + 0.5 * f64::from(3 * k).sin());
+            let within = (from_s, from_s + 0.4 * f64::from(k % 7));
+            for quantity in Quantity::ALL {
+                let known = spline.extrema_within(0, quantity, within);
+                for (greatest, most) in [(true, known.greatest.value), (false, -known.least.value)] {
+                    let found = |floor| spline.greatest_beyond((0, quantity), greatest, within, floor);
+                    let near = |value: f64| (value - most).abs() < 1e-12 * (1.0 + most.abs());
+                    assert!(found(most - 1e-3).is_some_and(near), "{quantity:?} {within:?} {most}");
+                    assert_eq!(found(most + 1e-9), None, "{quantity:?} {within:?} {most}");
+                }
+            }
+        }
+    }
 }
