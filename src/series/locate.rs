@@ -1,6 +1,6 @@
 //! Finds a stretch of motion within a longer one.
 
-use super::{JointKind, Series, Track, track::span_s};
+use super::{Series, Track, track::span_s};
 
 /// Where a motion was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +37,7 @@ const ALIKE_SHARE: f64 = 0.01;
 /// places the first. `None` if they share no joint, the motion does not move, less than four fifths
 /// of it lie within, or one lasts three days.
 pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
-    let turns = |track: &&Track| track.kind() == JointKind::Turns;
+    let turns = |track: &&Track| track.turns();
     let both = |track| Some((track, within.track(Track::name(track)).filter(turns)?));
     let pairs: Vec<(&Track, &Track)> = motion.tracks.iter().filter(turns).filter_map(both).collect();
     let [from_s, to_s] = span_s(pairs.iter().map(|pair| pair.0))?;

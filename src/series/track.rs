@@ -117,6 +117,11 @@ impl Track {
         self.kind
     }
 
+    /// Whether the joint turns, so that its positions are angles.
+    pub const fn turns(&self) -> bool {
+        matches!(self.kind, JointKind::Turns)
+    }
+
     /// The position as a signal.
     pub const fn signal(&self) -> &Signal {
         &self.signal

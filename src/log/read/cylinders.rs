@@ -89,8 +89,7 @@ impl Kinds {
             return Err(LogError::NoCylinder { file: file.clone(), joints, present });
         }
         // Of a URDF it is known that they turn.
-        let known =
-            |(track, rod): (&Track, &Rod)| track.kind() == JointKind::Slides || rod.range_rad.is_some();
+        let known = |(track, rod): (&Track, &Rod)| !track.turns() || rod.range_rad.is_some();
         if *into == JointKind::Turns && !found.any(known) {
             let message = "no joint with a cylinder is logged as a length, all are taken as angles; --slides NAME says of \
                            a joint that it is a length";
@@ -210,7 +209,7 @@ fn doubt(
          triangle has {from:.4} to {to:.4}; {hint}"
     );
     remarks.add(Code::Implausible, dropped, message);
-    if after.kind() == JointKind::Slides {
+    if !after.turns() {
         return;
     }
     if dropped == 0 && most + rod.zero_m > MOST_EXTENDED * (least + rod.zero_m) {

@@ -10,7 +10,7 @@ use crate::{
     },
     math::quantile,
     remark::{Code, Remarks},
-    series::{Clock, JointKind, Series, Track},
+    series::{Clock, Series, Track},
     units::{DEGREE_RAD, NS_PER_S},
 };
 
@@ -135,7 +135,7 @@ fn scaling(factors: &[(f64, u64)]) -> (u64, u64) {
 
 /// Undoes full turns of joints declared continuous; remarks on them elsewhere.
 pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: &mut Remarks) {
-    for track in series.tracks.iter_mut().filter(|track| track.kind() == JointKind::Turns) {
+    for track in series.tracks.iter_mut().filter(|track| track.turns()) {
         let turns = turns(track);
         if turns == 0 {
             continue;
@@ -231,7 +231,7 @@ const RATIO_TOLERANCE: f64 = 0.15;
 const TURN_AND_A_HALF_RAD: f64 = 1.5 * TAU;
 
 fn of_pair(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &mut Remarks) {
-    if planned.kind() == JointKind::Turns {
+    if planned.turns() {
         of_units(planned, measured, options, remarks);
     }
     if let Some((from_s, to_s, samples)) = frozen(planned, measured) {

@@ -9,7 +9,7 @@ use crate::{
     fit::Observation,
     log::{Input, LogError, LogFiles, ReadOptions, Recording, SignalRole},
     remark::Code,
-    series::JointKind,
+    series::Track,
 };
 
 /// Why a run cannot be fitted.
@@ -49,14 +49,14 @@ pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, Obse
 /// Leaves out what was measured of joints that slide, and says so; what is planned for them stays, for a command is of all
 /// joints.
 fn leave_out_sliding(recording: &mut Recording) {
-    for track in recording.measured.tracks.iter().filter(|track| track.kind() == JointKind::Slides) {
+    for track in recording.measured.tracks.iter().filter(|track| !track.turns()) {
         let message = format!(
             "{} slides (m): the model of a fit is of joints that turn (rad); it is not fitted",
             track.name()
         );
         recording.remarks.add(Code::NotSupported, 1, message);
     }
-    recording.measured.tracks.retain(|track| track.kind() == JointKind::Turns);
+    recording.measured.tracks.retain(Track::turns);
 }
 
 /// The same for a fit: the command if the log has one, else the plan.

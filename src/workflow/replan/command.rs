@@ -7,7 +7,7 @@ use crate::{
     fit::{Fit, Learning, Learnt, Oscillation, Room, STEP_S, Step, Trial, learn, predict},
     math::{State, lowpass, range},
     plan::{BETWEEN, Interpolation, Limit, Margin, POINTS_HZ, Setup, SpeedRoom},
-    series::{JointKind, Series, Track, align},
+    series::{Series, Track, align},
     spline::{Motion, Quantity, Samples},
 };
 
@@ -317,7 +317,7 @@ fn joints(
     for (((made, planned), (share, because)), (track, sent)) in
         learnt.joints.iter().zip(planned).zip(shares).zip(plan.tracks.iter().zip(&sent.tracks))
     {
-        if track.kind() == JointKind::Slides {
+        if !track.turns() {
             continue;
         }
         let rms_rad = |sent: &Track| -> Result<Option<f64>, ReplanFailure> {

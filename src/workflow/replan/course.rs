@@ -3,7 +3,7 @@
 use super::Replanned;
 use crate::{
     plan::Setup,
-    series::{JointKind, Track, local_quadratic},
+    series::{Track, local_quadratic},
 };
 
 /// Half of the window in which the speed of an answer is told, s.
@@ -60,7 +60,7 @@ pub fn courses(replanned: &Replanned) -> Vec<JointCourse> {
             speed_limit_rad_s,
         }
     };
-    replanned.plan.tracks.iter().filter(|track| track.kind() == JointKind::Turns).map(one).collect()
+    replanned.plan.tracks.iter().filter(|track| track.turns()).map(one).collect()
 }
 
 fn drawn(track: &Track, t_s: &[f64]) -> Drawn {

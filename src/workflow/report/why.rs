@@ -10,7 +10,7 @@ use crate::{
     fit::{Fit, FitError, JointFit, Model, Observation, fit, predict},
     log::{Recording, SignalRole},
     replay::{Replay, Rules, Transition, replay},
-    series::{JointKind, Pair, Series, Track, align, local_quadratic},
+    series::{Pair, Series, Track, align, local_quadratic},
 };
 
 /// The model by which a delay is explained.
@@ -107,7 +107,7 @@ impl DelayModel {
         }
         let sent = recording.command.as_ref().map_or(&recording.planned, |command| &command.series);
         let turning = |series: &Series| Series {
-            tracks: series.tracks.iter().filter(|track| track.kind() == JointKind::Turns).cloned().collect(),
+            tracks: series.tracks.iter().filter(|track| track.turns()).cloned().collect(),
         };
         let (plan, sent, measured) =
             (turning(&recording.planned), turning(sent), turning(&recording.measured));

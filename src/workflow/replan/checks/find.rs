@@ -4,7 +4,7 @@ use super::{Check, Finding, JointTrust, Level, Reason, Replanned};
 use crate::{
     fit::{Character, LEAST_SKILL, Step},
     plan::{BETWEEN, Limit, Margin},
-    series::{JointKind, Series, Track},
+    series::{Series, Track},
     units::DEGREE_RAD,
     workflow::{
         plan::MarginEntry,
@@ -68,7 +68,7 @@ fn rest(sent: &Series, command: Option<&Commanded>) -> Check {
         _ => f64::NAN,
     };
     // Joints that slide are sent as planned.
-    let turns = |track: &&Track| track.kind() == JointKind::Turns;
+    let turns = |track: &&Track| track.turns();
     let speed_rad_s = most(sent.tracks.iter().filter(turns).map(speed));
     let last = |values: &Vec<f64>| values.last().copied().unwrap_or(f64::NAN);
     let acceleration_rad_s2 = command.map(|command| {
