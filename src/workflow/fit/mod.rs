@@ -113,19 +113,11 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
             joint.held_out_r2
         );
     }
-    let mut remarks = Remarks::default();
+    let mut remarks = doubts(logs, observed);
     let mut runs = Vec::new();
     for (path, observed) in logs.iter().zip(observed) {
-        let log = name(path);
-        // A machine is fitted to what was sent, whatever was planned.
-        let doubts = observed.remarks.clone().without(Code::PlanIsCommand);
-        for remark in doubts.as_slice() {
-            let message =
-                if logs.len() > 1 { format!("{log}: {}", remark.message) } else { remark.message.clone() };
-            remarks.add(remark.code, remark.count, message);
-        }
         runs.push(FittedRun {
-            log,
+            log: name(path),
             source: observed.source.clone(),
             commanded: observed.command.is_some(),
             valves: observed.has(SignalRole::Valve),
@@ -143,6 +135,20 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
     let torques = observed.iter().map(torques).find(|torques| !torques.is_empty()).unwrap_or_default();
     let with_task = observed.iter().rposition(|observed| Carried::of(observed).task().is_some());
     Ok(Fitted { fit, held_out, torques, runs, with_task, remarks })
+}
+
+/// What is doubtful in the logs, each named if there are several.
+pub(super) fn doubts(logs: &[PathBuf], observed: &[Recording]) -> Remarks {
+    let mut remarks = Remarks::default();
+    for (path, observed) in logs.iter().zip(observed) {
+        // A machine is fitted to what was sent, whatever was planned.
+        for remark in observed.remarks.clone().without(Code::PlanIsCommand).as_slice() {
+            let message = &remark.message;
+            let message = if logs.len() > 1 { format!("{}: {message}", name(path)) } else { message.clone() };
+            remarks.add(remark.code, remark.count, message);
+        }
+    }
+    remarks
 }
 
 /// Every log must share a joint with those before it: a machine is fitted, not several.

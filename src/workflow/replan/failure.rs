@@ -46,7 +46,7 @@ pub enum ReplanFailure {
     /// The plan was cut.
     #[error(
         "the plan in {} {} at {at_s:.2} s while {joint} moves at {} per second: the log was cut, and no arm {} at \
-         once; give the whole log, or name the task with --task",
+         once; give the whole log, or with --from and --to a part of it that begins and ends at rest",
         path.display(),
         if *begins { "begins" } else { "ends" },
         Moved(*kind, *speed),
@@ -65,6 +65,29 @@ pub enum ReplanFailure {
         speed: f64,
         /// The first or last planned instant.
         at_s: f64,
+    },
+    /// Plan or command are silent while a joint moves.
+    #[error(
+        "the {what} in {} is missing from {:.2} s to {:.2} s while {joint} moves by {}: a command would jump there; give \
+         a log without such a hole, or with --from and --to a part of this one",
+        path.display(),
+        hole_s[0],
+        hole_s[1],
+        Moved(*kind, *moved)
+    )]
+    HoleInMotion {
+        /// The log.
+        path: PathBuf,
+        /// Plan or command.
+        what: &'static str,
+        /// The joint.
+        joint: String,
+        /// Whether it turns or slides.
+        kind: JointKind,
+        /// How far it is away after the hole, rad or m.
+        moved: f64,
+        /// The last instant before it and the first one after it, s.
+        hole_s: [f64; 2],
     },
     /// No task to plan.
     #[error(

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{
     Inputs, ReplanFailure,
+    hole::{bridged, check_holes},
     samples::{cut, found_at_s, sampled},
 };
 use crate::{
@@ -53,7 +54,7 @@ pub(super) struct Last {
 
 impl Last {
     pub(super) fn of(path: &Path, recording: &Recording, inputs: &Inputs) -> Result<Self, ReplanFailure> {
-        let planned = &recording.planned;
+        let planned = &bridged(&recording.planned)?;
         let [from_s, to_s] =
             moving_s(planned).ok_or_else(|| ReplanFailure::AtRest { path: path.to_owned() })?;
         let carried = Carried::of(recording).of_plan();
@@ -87,6 +88,10 @@ impl Last {
         };
         if exact.is_none() {
             check_ends(path, planned, [from_s, to_s])?;
+            check_holes(path, "plan", planned, [from_s, to_s])?;
+        }
+        if let Some(command) = &recording.command {
+            check_holes(path, "command", &bridged(&command.series)?, [from_s, to_s])?;
         }
         let (times_s, via) = entry.map(|entry| (entry.times_s, entry.via)).unzip();
         Ok(Self {

@@ -8,6 +8,7 @@ mod course;
 mod document;
 mod failure;
 mod history;
+mod hole;
 mod last;
 mod limits;
 mod outcome;
@@ -176,7 +177,7 @@ fn machine(inputs: &Inputs, observed: &[Recording]) -> Result<(Fit, Vec<String>,
         let file = LimitsFile::read(path)?;
         let joints = observed.iter().flat_map(|run| &run.measured.tracks).map(Track::name);
         file.check_joints(path, joints)?;
-        return Ok((file.fit, file.logs, Remarks::default()));
+        return Ok((file.fit, file.logs, fit::doubts(&inputs.logs, observed)));
     }
     let fitted = fit::of(&inputs.logs, observed).map_err(fit::FitFailure::from)?;
     Ok((fitted.fit, fitted.runs.into_iter().map(|run| run.log).collect(), fitted.remarks))

@@ -95,3 +95,31 @@ fn a_page_does_not_replace_the_plan_nor_a_file_that_was_read() {
         assert_eq!(fs::read(folder.path().join("limits.toml")).unwrap(), limits);
     }
 }
+
+#[test]
+fn no_command_is_made_across_a_hole_in_the_plan_and_limits_hide_no_doubt() {
+    let folder = with(&["panel-install.mcap"]);
+    let whole = clean(folder.path(), "export panel-install.mcap --csv");
+    let without = |name: &str, [from_s, to_s]: [f64; 2]| {
+        let kept = |line: &&str| {
+            let t_s = line.split(',').nth(1).and_then(|cell| cell.parse().ok());
+            t_s.is_none_or(|t_s: f64| t_s < from_s || t_s > to_s)
+        };
+        let lines: Vec<&str> = whole.lines().filter(kept).collect();
+        fs::write(folder.path().join(name), lines.join("\n")).unwrap();
+    };
+    without("hole.csv", [8.0, 10.5]);
+    let (code, _, error) = said(&run_line(folder.path(), "replan hole.csv --keep-plan -o next.mcap"));
+    assert!(code == 1 && error.contains("is missing from 7.99 s to 10.5"), "{error}");
+    assert!(error.contains("moves by") && !folder.path().join("next.mcap").exists(), "{error}");
+    // At rest nothing is missed, but it is said, whether the machine is fitted or given.
+    without("still.csv", [0.5, 1.9]);
+    let fitted = run_line(folder.path(), "fit panel-install.mcap -o limits.toml");
+    assert!(fitted.status.code().is_some_and(|code| code == 0 || code == 3));
+    for line in
+        ["replan still.csv --keep-plan --json", "replan still.csv --keep-plan --limits limits.toml --json"]
+    {
+        let (code, text, _) = said(&run_line(folder.path(), line));
+        assert!(code == 3 && text.contains("nothing is computed across them"), "{line}: {code}");
+    }
+}
