@@ -220,11 +220,24 @@ pub(super) fn spare_inputs(output: Option<&Path>, inputs: &[PathBuf]) -> Result<
 }
 
 /// The same of a file that is not text and so does not go to standard output.
-pub(super) fn spare_for_log(output: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
+pub(super) fn spare_for_file(output: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
     spare_inputs(output, inputs)?;
     if output.is_some_and(is_stdout) {
         let why = "standard output is for text; give --output the name of a file";
         return Err(CliError::Usage(why.to_owned()));
+    }
+    Ok(())
+}
+
+/// The same of a log, whose name is not to say that it is something else.
+pub(super) fn spare_for_log(output: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
+    const OTHERS: [&str; 12] =
+        ["bag", "csv", "db3", "htm", "html", "json", "md", "parquet", "toml", "tsv", "txt", "yaml"];
+    spare_for_file(output, inputs)?;
+    if let Some(path) = output.filter(|_| OTHERS.iter().any(|ending| ends(output, ending))) {
+        let (path, named) = (path.display(), path.with_extension("mcap"));
+        let named = named.display();
+        return Err(CliError::Usage(format!("what is written to {path} is an MCAP log; name it {named}")));
     }
     Ok(())
 }

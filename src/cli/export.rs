@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::{
     CliError, Outcome, Run,
-    console::{Console, Form, Target, ends, spare_for_log, spare_inputs},
+    console::{Console, Form, Target, ends, spare_for_file, spare_inputs},
     read::{ReadArgs, selector},
     views::ViewArgs,
 };
@@ -102,7 +102,7 @@ impl Run for Args {
         spare_inputs(file, &self.logs)?;
         let parquet = self.is_parquet()?;
         if parquet {
-            spare_for_log(file, &self.logs)?;
+            spare_for_file(file, &self.logs)?;
         }
         let exported = run(&inputs)?;
         let table = &exported.table;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{
     CliError, Outcome, Run,
-    console::{Console, Form, Target, ends, spare_for_log, write_file},
+    console::{Console, Form, Target, ends, spare_for_file, write_file},
     read::SentArgs,
 };
 use crate::{
@@ -52,8 +52,8 @@ impl Args {
 
     /// Fits the runs and writes the limits.
     pub(super) fn fitted(&self) -> Result<Fitted, CliError> {
-        spare_for_log(self.output.as_deref(), &self.logs)?;
-        spare_for_log(self.html.as_deref(), &self.logs)?;
+        spare_for_file(self.output.as_deref(), &self.logs)?;
+        spare_for_file(self.html.as_deref(), &self.logs)?;
         if self.html.is_some() && self.html == self.output {
             return Err(CliError::Usage(
                 "--output and --html name the same file; give each its own".to_owned(),

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, ffi::OsString, ops::ControlFlow, path::PathBuf}
 
 use super::{
     CliError, Outcome, Run,
-    console::{Console, Target, progress, spare_for_log, write_file},
+    console::{Console, Target, progress, spare_for_file, spare_for_log, write_file},
     number::{degrees, growth_percent, share},
     plan::Free,
     read::SentArgs,
@@ -134,7 +134,7 @@ impl Args {
         let request = self.request();
         let read: Vec<PathBuf> = self.logs.iter().chain(&self.limits).chain(&self.task).cloned().collect();
         spare_for_log(self.output.as_deref(), &read)?;
-        spare_for_log(self.html.as_deref(), &read)?;
+        spare_for_file(self.html.as_deref(), &read)?;
         if self.html.is_some() && self.html == self.output {
             return Err(CliError::Usage(
                 "--output and --html name the same file; give each its own".to_owned(),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{
     CliError, Outcome,
-    console::{Console, Form, Target, spare_for_log, spare_inputs, write_file},
+    console::{Console, Form, Target, spare_for_file, spare_inputs, write_file},
 };
 use crate::{
     document::pretty,
@@ -36,7 +36,7 @@ impl ViewArgs {
     /// Writes what was asked for.
     pub(super) fn write(&self, inputs: &Inputs, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         spare_inputs(self.foxglove_layout.as_deref(), &inputs.logs)?;
-        spare_for_log(self.rerun_blueprint.as_deref(), &inputs.logs)?;
+        spare_for_file(self.rerun_blueprint.as_deref(), &inputs.logs)?;
         let asked = [(&self.foxglove_layout, For::Foxglove), (&self.rerun_blueprint, For::Rerun)];
         if self.foxglove_layout == self.rerun_blueprint {
             return Err(CliError::Usage("one file cannot be both a layout and a blueprint".to_owned()));

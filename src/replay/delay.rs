@@ -36,7 +36,9 @@ pub fn measured_stops(pair: &Pair, rules: &Rules) -> Vec<(i8, f64)> {
 
 /// Start of a measured motion; the crossing of the stop threshold where no better is known.
 pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> Onset {
-    let at_crossing = Onset { at_s: motion.start_s, interval_s: [motion.start_s; 2] };
+    let window_s = signals.thresholds.window_s;
+    // A smoothed speed shows a start up to half a window early.
+    let at_crossing = Onset { at_s: motion.start_s, interval_s: [motion.start_s, motion.start_s + window_s] };
     if motion.reversal {
         return at_crossing;
     }
@@ -45,7 +47,7 @@ pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, ru
         direction: motion.direction,
         crossing_s: motion.start_s,
         rest_s: motion.rest_before_s,
-        window_s: signals.thresholds.window_s,
+        window_s,
         stop_speed: signals.sizes.stop_speed,
     };
     onset_of(pair, &search, rules).unwrap_or(at_crossing)

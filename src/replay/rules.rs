@@ -178,10 +178,11 @@ impl Rules {
 
     /// Half window of the velocity fit, s: as narrow as lets a motion at the target speed pass
     /// the start threshold (an even window of n samples within h has the slope deviation
-    /// sigma sqrt(1.5 dt / h³)).
+    /// sigma sqrt(1.5 dt / h³)), and as wide as holds the fewest samples.
     pub fn window_s(&self, kind: JointKind, sample_interval_s: f64, sigma: f64) -> f64 {
         let noise = self.start_sigmas * sigma / self.sizes(kind).target_speed;
         let needed_s = (1.5 * sample_interval_s * noise * noise).cbrt();
-        needed_s.min(self.window_max_s).max(self.window_min_s)
+        let filled_s = 0.5 * self.window_points.saturating_sub(1) as f64 * sample_interval_s;
+        needed_s.min(self.window_max_s).max(self.window_min_s).max(filled_s)
     }
 }

@@ -25,6 +25,7 @@ mod allocations;
 mod architecture;
 mod arm;
 mod cli;
+mod delay;
 mod docs;
 mod fit;
 mod golden;

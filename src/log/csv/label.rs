@@ -177,7 +177,8 @@ fn joint_name(words: &[Word<'_>]) -> String {
             continue;
         }
         if !name.is_empty() && (word.apart || gap) {
-            name.push('_');
+            // A name of ROS keeps its namespace.
+            name.push(if word.slashed && !gap { '/' } else { '_' });
         }
         name.push_str(word.text);
         gap = false;
@@ -215,6 +216,11 @@ mod tests {
         assert_eq!(said("commandedPos2").0, Some(Role::Command));
         assert_eq!(said("q_ref_2_rad"), (plan, position, "joint_2".into(), Some("rad")));
         assert_eq!(said("J1 Geschwindigkeit Ist in °/s").1, Some(Quantity::Velocity));
+        for header in
+            ["arm/lift_actual_deg", "arm/lift_measured_deg", "ist arm/lift [deg]", "arm/lift/actual_deg"]
+        {
+            assert_eq!(said(header).2, "arm/lift", "{header}");
+        }
     }
 
     #[test]

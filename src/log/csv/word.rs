@@ -52,6 +52,8 @@ pub(super) struct Word<'a> {
     pub(super) text: &'a str,
     /// Whether anything separates it from the word before.
     pub(super) apart: bool,
+    /// Whether a slash alone does.
+    pub(super) slashed: bool,
     pub(super) meaning: Meaning,
 }
 
@@ -59,7 +61,11 @@ pub(super) struct Word<'a> {
 /// `istpos` is split too if all of its parts are known.
 pub(super) fn words(header: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
+    let mut after = 0;
     for part in header.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()) {
+        let from = part.as_ptr().addr() - header.as_ptr().addr();
+        let (first, slashed) = (words.len(), &header[after..from] == "/");
+        after = from + part.len();
         let mut start = 0;
         let mut before: Option<char> = None;
         for (at, c) in part.char_indices() {
@@ -72,6 +78,7 @@ pub(super) fn words(header: &str) -> Vec<Word<'_>> {
             before = Some(c);
         }
         push(&part[start..], start == 0, &mut words);
+        words[first].slashed = slashed;
     }
     words
 }
@@ -89,13 +96,14 @@ fn push<'a>(text: &'a str, apart: bool, words: &mut Vec<Word<'a>>) {
             words.push(Word {
                 text: &text[start..end],
                 apart: apart && start == 0,
+                slashed: false,
                 meaning: meaning_of_word(&lower[start..end]),
             });
             start = end;
         }
         return;
     }
-    words.push(Word { text, apart, meaning });
+    words.push(Word { text, apart, slashed: false, meaning });
 }
 
 /// Where the parts of a word of two or three known parts end.

@@ -16,6 +16,9 @@ pub(super) const EXPECTED: Id = Id("expected");
 pub(crate) fn document(replanned: &Replanned) -> Document {
     let title = replanned.request.as_ref().map_or("the logged plan", |request| request.task.title.as_str());
     let learnt = format!("The machine was fitted to {}.", replanned.fitted_to.join(", "));
+    let stays =
+        "The log holds no task, so the plan stays and only the command changes; --task FILE names one.";
+    let stays = replanned.request.is_none().then(|| Sentence::finding(stays.to_owned()));
     let verdict = learning::kept(replanned).map(Sentence::Advice);
     let margin = format!(
         "Expected peaks include the error that the model left unexplained after held-out starts. 90 % of starts stay below \
@@ -23,7 +26,10 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
         replanned.fit.peak_margin
     );
     let mut document = Document::titled(format!("Next run of {title}"))
-        .with(Section::plain(Id::SUMMARY, verdict.into_iter().chain([Sentence::finding(learnt)])))
+        .with(Section::plain(
+            Id::SUMMARY,
+            verdict.into_iter().chain([Sentence::finding(learnt)]).chain(stays),
+        ))
         .with(checks::section(&Checks::of(replanned)))
         .with(Section::new(EXPECTED, "Expected", [expected(replanned)]).with(Sentence::note(margin)))
         .with(Section::new(Id::OTHER, "What changes", [Block::Facts(levers(replanned))]));

@@ -42,6 +42,8 @@ pub const PLAN: &str = "plan.json";
 const PROVENANCE: &str = "hydrotrace.plan";
 /// Key of the provenance: when the times of the plan count from, s since the start of the log; 0 without.
 const STARTS: &str = "starts_s";
+/// Key of the provenance: where the controller takes trajectories; ours without.
+const TRAJECTORY: &str = "trajectory_topic";
 /// Start of the keys of the provenance that hold the SHA-256 of the files, by name.
 const SHA256: &str = "sha256.";
 /// Name of the metadata that hold a simulated machine's truth, as JSON under the key [`JSON`].
@@ -103,6 +105,13 @@ impl Carried {
     #[must_use]
     pub fn with_starts_s(mut self, starts_s: f64) -> Self {
         self.provenance.insert(STARTS.to_owned(), starts_s.to_string());
+        self
+    }
+
+    /// Where the controller takes trajectories.
+    #[must_use]
+    pub fn with_trajectory_topic(mut self, topic: &str) -> Self {
+        self.provenance.insert(TRAJECTORY.to_owned(), topic.to_owned());
         self
     }
 
@@ -233,6 +242,11 @@ impl Carried {
     /// When the times of the plan count from, s since the start of the log.
     pub fn starts_s(&self) -> Option<f64> {
         self.provenance.get(STARTS)?.parse().ok().filter(|s: &f64| s.is_finite())
+    }
+
+    /// Where the controller takes trajectories, if a log before this one told it.
+    pub fn trajectory_topic(&self) -> Option<&str> {
+        self.provenance.get(TRAJECTORY).map(String::as_str)
     }
 
     /// Names and entries of the metadata, with the SHA-256 of every file where an arm's are among them: the sample arm

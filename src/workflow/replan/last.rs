@@ -101,7 +101,9 @@ impl Last {
             request,
             times_s,
             via: via.unwrap_or_default(),
-            trajectory: trajectory_topic(&recording.source.planned_topic),
+            // A joined log has its plan on our topic.
+            trajectory: trajectory_topic(&recording.source.planned_topic)
+                .or_else(|| carried.trajectory_topic().map(str::to_owned)),
             carried,
         })
     }

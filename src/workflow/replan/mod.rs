@@ -151,13 +151,8 @@ pub fn run(
         }
         _ => None,
     };
-    if search.is_none() && !inputs.keep_plan && !learns {
-        if !inputs.precompensate {
-            return Err(ReplanFailure::NoTask { path: path.clone() });
-        }
-        let message =
-            "the log holds no task, so the plan stays and only the command changes; --task names one";
-        remarks.add(Code::NotSupported, 1, message);
+    if search.is_none() && !inputs.keep_plan && !learns && !inputs.precompensate {
+        return Err(ReplanFailure::NoTask { path: path.clone() });
     }
     let setup = last.request.as_ref().map(|request| &request.setup);
     let decision = if learns { history.decision() } else { Decision::Send };

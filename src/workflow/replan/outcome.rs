@@ -260,6 +260,9 @@ impl Replanned {
         if let Some(starts_s) = self.starts_s {
             carried = carried.with_starts_s(starts_s);
         }
+        if let Some(topic) = &self.trajectory {
+            carried = carried.with_trajectory_topic(topic);
+        }
         PlanLog {
             plan: Planned::Series(&self.plan),
             command: self

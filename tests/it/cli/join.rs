@@ -10,7 +10,7 @@ use std::{
 use hydrotrace::{
     log::{
         ControllerState, LogWriter, Point, ReadOptions, Recording, Role, Selector, Topics, WriteOptions,
-        read_plan, read_recording,
+        read_plan, read_recording, survey,
     },
     series::{Series, Track},
 };
@@ -173,10 +173,10 @@ fn a_joined_log_reports_fits_and_compares_as_one_that_always_had_its_plan() {
     }
 }
 
-/// A recorder's log in which what was sent is called a reference, as a plan would be.
-fn referenced(path: &Path, sent: &Series, run: &Recording) {
+/// A recorder's log in which what was sent has a topic as a plan would.
+fn referenced(path: &Path, topic: &str, sent: &Series, run: &Recording) {
     let names: Vec<&str> = sent.tracks.iter().map(Track::name).collect();
-    let topics = Topics { planned: "/ref/joint_states".to_owned(), ..Topics::default() };
+    let topics = Topics { planned: topic.to_owned(), ..Topics::default() };
     let options = WriteOptions { topics, ..WriteOptions::default() };
     let mut log = LogWriter::new(BufWriter::new(File::create(path).unwrap()), &names, options).unwrap();
     for &t_s in run.measured.tracks[0].t_s() {
@@ -196,9 +196,9 @@ fn what_was_sent_is_no_plan_once_the_plan_stands_beside_it_and_one_line_reads_bo
     let at = folder.path();
     // The first run is sent its plan, the second its command, on one topic.
     let first = read_recording(&[RUNS.path().join("run.mcap")], &ReadOptions::default()).unwrap();
-    referenced(&at.join("first.mcap"), &first.planned, &first);
+    referenced(&at.join("first.mcap"), "/ref/joint_states", &first.planned, &first);
     let (run, sent) = whole();
-    referenced(&at.join("second.mcap"), &sent, &run);
+    referenced(&at.join("second.mcap"), "/ref/joint_states", &sent, &run);
     let next = RUNS.path().join("next.mcap");
     let said = json(at, &format!("join second.mcap --plan {} -o after.mcap", next.display()));
     assert_eq!(
@@ -220,6 +220,24 @@ fn what_was_sent_is_no_plan_once_the_plan_stands_beside_it_and_one_line_reads_bo
     let compared: Value = serde_json::from_slice(&hydrotrace(at, &format!("compare {line}")).stdout).unwrap();
     let topics = ["before", "after"].map(|side| compared[side][0]["source"]["planned_topic"].clone());
     assert_eq!(topics, ["/ref/joint_states", "/planned/joint_states"]);
+}
+
+#[test]
+fn the_controller_of_the_first_log_takes_the_trajectory_of_every_later_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let run = read_recording(&[RUNS.path().join("run.mcap")], &ReadOptions::default()).unwrap();
+    referenced(&at.join("first.mcap"), "/desired/joint_trajectory", &run.planned, &run);
+    let mut last = "first.mcap".to_owned();
+    for round in 1..=3 {
+        let (next, after) = (format!("next-{round}.mcap"), format!("after-{round}.mcap"));
+        done(at, &format!("replan {last} -o {next}"));
+        let topics = survey(&[at.join(&next)], &ReadOptions::default()).unwrap().topics;
+        assert!(topics.iter().any(|topic| topic.topic == "/desired/joint_trajectory"), "{round}: {topics:?}");
+        let joined = hydrotrace(at, &format!("join first.mcap --plan {next} -o {after}"));
+        assert!(matches!(joined.status.code(), Some(0 | 3)), "{round}: {}", stderr(&joined));
+        last = after;
+    }
 }
 
 /// What a join that must fail says; it writes nothing.

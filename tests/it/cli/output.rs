@@ -103,6 +103,23 @@ fn a_dash_is_standard_output_for_texts_and_refused_for_logs() {
 }
 
 #[test]
+fn a_log_is_not_written_under_the_name_of_another_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    for (words, named) in [
+        ("replan SAMPLES/task-1-run.mcap --keep-plan -o next.json", "next.mcap"),
+        ("simulate SAMPLES/task-1-run.mcap -o run.csv", "run.mcap"),
+        ("join SAMPLES/panel-install.mcap --plan SAMPLES/task-1-run.mcap -o both.db3", "both.mcap"),
+        (&format!("{TIMES} -o plan.toml"), "plan.mcap"),
+    ] {
+        let (code, text, error) = said(&hydrotrace(path, words));
+        assert_eq!((code, text.as_str()), (2, ""), "{words}: {error}");
+        assert!(error.contains(&format!("is an MCAP log; name it {named}")), "{words}: {error}");
+    }
+    assert_eq!(fs::read_dir(path).unwrap().count(), 0, "a file was made");
+}
+
+#[test]
 fn devices_and_pipes_are_written_to_as_they_are() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
