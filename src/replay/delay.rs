@@ -36,16 +36,17 @@ pub fn measured_stops(pair: &Pair, rules: &Rules) -> Vec<(i8, f64)> {
 
 /// Start of a measured motion; the crossing of the stop threshold where no better is known.
 pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> Onset {
-    let window_s = signals.thresholds.window_s;
+    let crossing_s = motion.start_s;
+    let window_s = reach_s(pair, signals, motion, (motion.samples.start, crossing_s), rules);
     // A smoothed speed shows a start up to half a window early.
-    let at_crossing = Onset { at_s: motion.start_s, interval_s: [motion.start_s, motion.start_s + window_s] };
+    let at_crossing = Onset { at_s: crossing_s, interval_s: [crossing_s, crossing_s + window_s] };
     if motion.reversal {
         return at_crossing;
     }
     let search = Search {
         segment: motion.segment.clone(),
         direction: motion.direction,
-        crossing_s: motion.start_s,
+        crossing_s,
         rest_s: motion.rest_before_s,
         window_s,
         stop_speed: signals.sizes.stop_speed,
@@ -99,7 +100,7 @@ pub(super) fn delay(
     let Some((motion, onset)) = measured else {
         return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     };
-    let blind_s = blind_s(pair, signals, planned);
+    let blind_s = blind_s(pair, signals, (planned, planned_s), (motion, onset.at_s));
     if motion.reversal {
         return reversal(pair, signals, (planned, planned_s), motion, blind_s, rules);
     }
@@ -135,12 +136,14 @@ fn unshaken(
     let level_rad_s = signals.thresholds.measured_start;
     let crossing =
         (asked..motion.samples.end).find(|&i| along(motion, signals.measured_rad_s[i]) > level_rad_s)?;
+    let crossing_s = pair.t_s[crossing];
+    let window_s = reach_s(pair, signals, motion, (crossing, crossing_s), rules);
     let search = Search {
         segment: motion.segment.clone(),
         direction: motion.direction,
-        crossing_s: pair.t_s[crossing],
-        rest_s: pair.t_s[crossing] - planned_s + signals.thresholds.window_s,
-        window_s: signals.thresholds.window_s,
+        crossing_s,
+        rest_s: crossing_s - planned_s + window_s,
+        window_s,
         stop_speed: signals.sizes.stop_speed,
     };
     onset_of(pair, &search, rules)
@@ -209,14 +212,41 @@ fn smoothed_plan<'a>(
     (t_s, fits.iter().map(|fit| along(motion, fit.velocity)).collect())
 }
 
-/// How long a motion cannot be seen for want of samples and encoder steps, s: the longer sample
-/// interval of plan and measurement, and the time in which the plan travels half a step.
-fn blind_s(pair: &Pair, signals: &Signals, planned: &Motion) -> f64 {
+/// How far after a crossing the fit that showed it sees, s: further than the window where samples are few.
+fn reach_s(
+    pair: &Pair,
+    signals: &Signals,
+    motion: &Motion,
+    (at, crossing_s): (usize, f64),
+    rules: &Rules,
+) -> f64 {
+    let ahead = (at + rules.window_points / 2).min(motion.segment.end - 1);
+    signals.thresholds.window_s.max(pair.t_s[ahead] - crossing_s)
+}
+
+/// How long a motion cannot be seen for want of samples and encoder steps, s: the longest of the sample intervals of
+/// plan and measurement and of what lies without a sample around the two starts, and the time in which the plan
+/// travels half a step.
+fn blind_s(
+    pair: &Pair,
+    signals: &Signals,
+    (planned, planned_s): (&Motion, f64),
+    (measured, measured_s): (&Motion, f64),
+) -> f64 {
     let step_rad = 0.5 * signals.noise.lsb.unwrap_or(0.0);
     let first = planned.samples.start;
     let travelled = |i: &usize| (pair.planned[*i] - pair.planned[first]).abs() >= step_rad;
     let seen = planned.samples.clone().find(travelled).unwrap_or(first);
-    signals.sample_interval_s.max(pair.planned_interval_s) + pair.t_s[seen] - pair.t_s[first]
+    let usual_s = signals.sample_interval_s.max(pair.planned_interval_s);
+    let gap_s = gap_s(pair, planned, planned_s).max(gap_s(pair, measured, measured_s));
+    usual_s.max(gap_s) + pair.t_s[seen] - pair.t_s[first]
+}
+
+/// Time between the two samples around an instant, s.
+fn gap_s(pair: &Pair, motion: &Motion, at_s: f64) -> f64 {
+    let times = &pair.t_s[motion.segment.clone()];
+    let next = times.partition_point(|&t| t <= at_s);
+    if next == 0 || next == times.len() { 0.0 } else { times[next] - times[next - 1] }
 }
 
 /// The upward crossing of a level nearest to a time, s.

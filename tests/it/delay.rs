@@ -28,28 +28,44 @@ fn a_known_start_has_the_metrics_worked_out_by_hand() {
     assert!(found.joints[0].standstill_error.unwrap().peak < 1e-12);
 }
 
+/// How many of 40 intervals hold a delay of 0.15 s, each of a start elsewhere between two samples; none lies below 0 s.
+fn held(t_s: &[f64], interval_s: f64) -> usize {
+    let middle_s = 0.5 * t_s[t_s.len() - 1];
+    let case = |case: u32| {
+        let start_s = middle_s + f64::from(case) / 40.0 * 0.2;
+        let wave = |t: f64| 0.01 * DEGREE_RAD * (1e3 * t).sin();
+        let measured = t_s.iter().map(|&t| ramp(t, start_s + 0.15) + wave(t)).collect();
+        let planned = t_s.iter().map(|&t| ramp(t, start_s)).collect();
+        let whole = std::iter::once(0..t_s.len()).collect();
+        let pair =
+            Pair { planned_interval_s: interval_s, ..recorded(t_s.to_vec(), planned, measured, whole) };
+        let interval_s = of(&pair).transitions.first().and_then(|t| t.onset_delay_interval_s);
+        let [low_s, high_s] = interval_s.unwrap_or([f64::NAN; 2]);
+        assert!(high_s >= 0.0, "every {interval_s:?} s, case {case}: {low_s} to {high_s}");
+        low_s <= 0.15 && 0.15 <= high_s
+    };
+    (0..40).filter(|k| case(*k)).count()
+}
+
 #[test]
 fn of_a_sparse_log_the_intervals_are_wider_and_hold_the_delay() {
     for rate_hz in [5.0, 8.0, 10.0, 12.5, 20.0] {
         let t_s: Vec<f64> = (0..80).map(|k| f64::from(k) / rate_hz).collect();
-        let middle_s = 0.5 * t_s[79];
-        let mut held = 0;
-        for case in 0..40 {
-            // Where between two samples the plan starts decides what is seen of it.
-            let start_s = middle_s + f64::from(case) / 40.0 / rate_hz;
-            let wave = |t: f64| 0.01 * DEGREE_RAD * (1e3 * t).sin();
-            let measured = t_s.iter().map(|&t| ramp(t, start_s + 0.15) + wave(t)).collect();
-            let planned = t_s.iter().map(|&t| ramp(t, start_s)).collect();
-            let pair = Pair {
-                planned_interval_s: 1.0 / rate_hz,
-                ..recorded(t_s.clone(), planned, measured, std::iter::once(0..80).collect())
-            };
-            let interval_s = of(&pair).transitions.first().and_then(|t| t.onset_delay_interval_s);
-            let [low_s, high_s] = interval_s.unwrap_or([f64::NAN; 2]);
-            assert!(high_s >= 0.0, "{rate_hz} Hz, case {case}: {low_s} to {high_s}");
-            held += usize::from(low_s <= 0.15 && 0.15 <= high_s);
-        }
+        let held = held(&t_s, 1.0 / rate_hz);
         assert!(held >= 38, "{rate_hz} Hz: {held} of 40");
+    }
+}
+
+#[test]
+fn of_a_log_of_uneven_samples_too() {
+    let even = |k: u32| f64::from(k) * 0.01;
+    // Four samples at 100 Hz, then none for 0.12 s; and two fifths of the samples of a log at 20 Hz.
+    let bursts: Vec<f64> = (0..1600).filter(|k| k % 15 < 4).map(even).collect();
+    let lossy: Vec<f64> =
+        (0..320_u32).filter(|k| k.wrapping_mul(2_654_435_761) >> 16 & 7 < 3).map(|k| even(5 * k)).collect();
+    for (name, t_s, interval_s) in [("bursts", bursts, 0.01), ("lossy", lossy, 0.05)] {
+        let held = held(&t_s, interval_s);
+        assert!(held >= 38, "{name}: {held} of 40");
     }
 }
 
