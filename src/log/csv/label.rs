@@ -1,5 +1,7 @@
 //! Reads role, quantity, joint and unit from the header of a column.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::{
     Quantity, Role,
     unit::{Measure, UNITLESS, Unit, parse_unit, split_suffix},
@@ -120,19 +122,30 @@ fn without_d<'a>(words: &[Word<'a>]) -> Option<Vec<Word<'a>>> {
 }
 
 /// Settles what only all headers together tell: that `q_d_1` is the plan of `q_1`, and that `J1_planned_rad` and
-/// `J1_actual_rad` are of one joint.
+/// `J1_actual_rad` are of one joint. Names that differ in case alone are of one where no two say the same of it.
 pub(super) fn settle(labels: &mut [Label]) {
+    let says = |label: &Label| {
+        let quantity = label.quantity.unwrap_or(Quantity::Position);
+        (label.key.to_lowercase(), label.role.unwrap_or(Role::Measured), quantity)
+    };
+    let mut said = BTreeMap::<_, usize>::new();
+    for label in labels.iter().filter(|label| label.is_joint) {
+        *said.entry(says(label)).or_default() += 1;
+    }
+    let twice: BTreeSet<String> =
+        said.into_iter().filter(|(_, count)| *count > 1).map(|((key, ..), _)| key).collect();
     for at in 0..labels.len() {
         let other = |key: &str| {
             labels.iter().enumerate().any(|(index, label)| index != at && label.is_joint && label.key == key)
         };
         let lower = labels[at].key.to_lowercase();
         let desired = labels[at].desired.clone().filter(|(key, _)| other(key));
-        let alone = labels[at].is_joint && !other(&labels[at].key) && other(&lower);
+        let one =
+            labels[at].is_joint && (!twice.contains(&lower) || !other(&labels[at].key) && other(&lower));
         if let Some((key, joint)) = desired {
             (labels[at].key, labels[at].joint) = (key, joint);
             labels[at].role = Some(Role::Planned);
-        } else if alone {
+        } else if one {
             labels[at].key = lower;
         }
     }
@@ -258,17 +271,23 @@ mod tests {
 
     #[test]
     fn headers_together_tell_what_one_does_not() {
-        let settled = |headers: [&str; 2]| {
+        fn settled<const N: usize>(headers: [&str; N]) -> [(Option<Role>, String); N] {
             let mut labels = headers.map(|header| label(header, None));
             settle(&mut labels);
             labels.map(|label| (label.role, label.key))
-        };
+        }
         let (plan, real) = (Some(Role::Planned), Some(Role::Measured));
         assert_eq!(settled(["q_d_1", "q_1"]), [(plan, "joint_1".into()), (None, "joint_1".into())]);
         assert_eq!(settled(["q_d_1", "q_2"]), [(None, "d_1".into()), (None, "joint_2".into())]);
         assert_eq!(settled(["J1_planned_rad", "J1_actual_rad"]), [(plan, "j1".into()), (real, "j1".into())]);
         let own = ["q_planned_rad", "Q_measured_rad"];
         assert_eq!(settled(own), [(plan, "q".into()), (real, "q".into())]);
+        let sent = settled(["J1_planned_rad", "J1_actual_rad", "J1_command_rad"]);
+        assert!(sent.iter().all(|(_, key)| key == "j1"), "{sent:?}");
+        let sent = settled(["J1_target_rad", "J1_measured_rad", "J1_command_rad"]);
+        assert!(sent.iter().all(|(_, key)| key == "j1"), "{sent:?}");
+        let two = settled(["q_planned_rad", "Q_planned_rad", "q_measured_rad", "Q_measured_rad"]);
+        assert_eq!(two.map(|(_, key)| key), ["q", "Q", "q", "Q"]);
     }
 
     #[test]

@@ -61,11 +61,14 @@ pub(super) struct Word<'a> {
 /// `istpos` is split too if all of its parts are known.
 pub(super) fn words(header: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
-    let mut after = 0;
-    for part in header.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()) {
-        let from = part.as_ptr().addr() - header.as_ptr().addr();
-        let (first, slashed) = (words.len(), &header[after..from] == "/");
-        after = from + part.len();
+    let separates = |c: char| !c.is_alphanumeric();
+    let mut slashed = false;
+    for piece in header.split_inclusive(separates) {
+        let (part, first) = (piece.trim_end_matches(separates), words.len());
+        if part.is_empty() {
+            slashed = false;
+            continue;
+        }
         let mut start = 0;
         let mut before: Option<char> = None;
         for (at, c) in part.char_indices() {
@@ -79,6 +82,7 @@ pub(super) fn words(header: &str) -> Vec<Word<'_>> {
         }
         push(&part[start..], start == 0, &mut words);
         words[first].slashed = slashed;
+        slashed = piece.ends_with('/');
     }
     words
 }
