@@ -34,6 +34,8 @@ pub enum Code {
     NotFinite,
     /// Angles that look like degrees.
     LooksLikeDegrees,
+    /// A joint that was recorded in another frame than its plan: sign, zero, unit or name.
+    UnlikePlan,
     /// Header stamps that are zero or stand still, so another clock was used.
     UnusableStamp,
     /// Samples with the stamp of their predecessor, dropped.

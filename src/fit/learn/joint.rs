@@ -38,6 +38,10 @@ const GAINS: [f64; 3] = [0.7, 0.6, 0.9];
 /// Between slow and fast, Hz.
 const FAST_HZ: f64 = 1.5;
 
+/// A joint whose error is more than this share of its motion does not follow its plan: what it does is no error to be
+/// corrected. Smaller errors than that of the lesser cap are.
+const FOLLOWS: f64 = 0.5;
+
 /// Corrections below this are none, rad.
 const NONE_RAD: f64 = 1e-3 * DEGREE_RAD;
 
@@ -92,6 +96,10 @@ impl<'a> Joint<'a> {
         let Some(fit) = self.fit.filter(|_| !untouched && !free.is_empty() && settings.gain > 0.0) else {
             return made;
         };
+        if errors.last().is_some_and(|error_rad| self.astray(error_rad)) {
+            made.step = Step::Astray;
+            return made;
+        }
         let mut character = self.oscillation.map_or(Character::Calm, |found| found.character);
         if all_ring && character == Character::Calm {
             character = Character::Rings;
@@ -112,6 +120,14 @@ impl<'a> Joint<'a> {
         };
         made.correction = shaped(wanted, free, room(self.name).as_ref());
         made
+    }
+
+    /// Whether the newest run has little to do with the plan: wrong sign, zero, unit or name, or a joint that is stuck.
+    fn astray(&self, error_rad: &[f64]) -> bool {
+        let mean_rad =
+            self.planned.iter().map(|planned| planned.0).sum::<f64>() / self.planned.len().max(1) as f64;
+        let motion_rad: Vec<f64> = self.planned.iter().map(|planned| planned.0 - mean_rad).collect();
+        rms(error_rad) > CAP_RAD.max(FOLLOWS * rms(&motion_rad))
     }
 
     /// What the last two runs differ by though the model says that they should not, rad.

@@ -83,6 +83,8 @@ pub enum Step {
         /// The run.
         from: usize,
     },
+    /// None: the joint does not follow its plan; its error is more than half of its motion.
+    Astray,
     /// None: the joint is not known, not predicted, or not to be touched.
     None,
 }

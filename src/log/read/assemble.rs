@@ -11,7 +11,7 @@ use super::{
     samples::{Axis, Reading, Samples, samples},
     select_topics::{Candidate, Choice, named},
     time_base::time_base,
-    trajectories,
+    trajectories, unlike,
     window::nothing_in,
 };
 use crate::{
@@ -120,6 +120,7 @@ pub(super) fn assemble(
     }
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
+    unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);
     let mut source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
     source.measured_delay_s = Some(delay_s).filter(|delay_s| *delay_s != 0.0);
     let Extracted { attachments, metadata, .. } = assembly.extracted;

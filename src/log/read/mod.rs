@@ -20,6 +20,7 @@ mod select_topics;
 mod time_base;
 mod topics;
 mod trajectories;
+mod unlike;
 mod window;
 
 use std::path::{Path, PathBuf};

@@ -247,12 +247,16 @@ fn of_pair(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &m
     }
 }
 
+/// Whether one range is so many times the other as degrees are radians.
+pub(super) fn looks_like_degrees(ratio: f64) -> bool {
+    (ratio / DEGREES_IN_RADIAN - 1.0).abs() < RATIO_TOLERANCE
+}
+
 /// Remarks on angles that look like degrees.
 fn of_units(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &mut Remarks) {
     let (plan_rad, angle_rad) = (span_rad(planned.position()), span_rad(measured.position()));
-    let near = |ratio: f64| (ratio / DEGREES_IN_RADIAN - 1.0).abs() < RATIO_TOLERANCE;
     let name = planned.name();
-    if near(angle_rad / plan_rad) {
+    if looks_like_degrees(angle_rad / plan_rad) {
         let cause = if options.planned_in_degrees {
             "--planned-degrees does that to a plan in radians: drop it"
         } else {
@@ -260,7 +264,7 @@ fn of_units(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &
         };
         let message = format!("{name} spans 57.3 times its plan: {cause}");
         remarks.add(Code::LooksLikeDegrees, 1, message);
-    } else if near(plan_rad / angle_rad) {
+    } else if looks_like_degrees(plan_rad / angle_rad) {
         let cause = if options.measured_in_degrees {
             "--measured-degrees does that to a measurement in radians: drop it"
         } else {

@@ -89,7 +89,9 @@ fn doubt(joint: &JointFit) -> String {
              and the R2 is below {LEAST_SHARP_SKILL}. Its numbers have no intervals."
         )
     } else {
-        format!("{name} is predicted with an R2 of {held_out_r2:.2} only: no command is made for it.")
+        format!(
+            "{name} is predicted with an R2 of {held_out_r2:.2} only: no command is made of its model alone."
+        )
     }
 }
 

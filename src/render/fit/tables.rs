@@ -151,7 +151,7 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
     let fit = &fitted.fit;
     let good = fit.joints.iter().filter(|joint| joint.trusted()).count();
     let mut lines = vec![format!(
-        "Commands can be made for {}: a held-out R2 of {LEAST_SKILL} is enough. In 90 % of {} held-out starts the measured peak \
+        "Commands can be made of the model alone for {}: a held-out R2 of {LEAST_SKILL} is enough. In 90 % of {} held-out starts the measured peak \
          stays below {:.2} times the predicted one.",
         some_of(good, fit.joints.len(), "joint"),
         fit.margin_starts,

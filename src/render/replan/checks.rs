@@ -204,7 +204,16 @@ fn trust(joints: &[JointTrust]) -> String {
         found.push(format!("Ringing: {ringing}; their corrections are slow and mild."));
     }
     let calm = joints.iter().filter(|joint| matches!(joint.character, None | Some(Character::Calm)));
-    found.extend(calm.filter(|joint| joint.level != Level::Good).map(doubt));
+    found.extend(calm.filter(|joint| joint.level != Level::Good && !joint.astray).map(doubt));
+    let astray = joints.iter().filter(|joint| joint.astray).map(|joint| joint.joint.as_str());
+    let astray: Vec<&str> = astray.collect();
+    if !astray.is_empty() {
+        found.push(format!(
+            "Not following the plan, their error is more than half of their motion: {}; they are not corrected: are sign, \
+             zero, unit and name right?",
+            astray.join(", ")
+        ));
+    }
     if !hunting.is_empty() && joints.iter().all(|joint| !joint.corrected) {
         found.push(
             "Nothing is corrected: a correction may throw such a loop into a larger oscillation.".to_owned(),

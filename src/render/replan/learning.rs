@@ -91,6 +91,7 @@ fn row(replanned: &Replanned, joint: &JointCommand) -> Vec<String> {
         Step::First { model_weight } => format!("{:.0} % model, else data", 100.0 * model_weight),
         Step::Later { from, gain } => format!("{} + {:.2} error", run(from), gain),
         Step::Kept { from } => format!("{} again", run(from)),
+        Step::Astray => "does not follow".to_owned(),
         Step::None => "not corrected".to_owned(),
     };
     vec![

@@ -125,7 +125,7 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
     }
     for joint in fit.joints.iter().filter(|joint| !joint.trusted()) {
         let message = format!(
-            "{} is predicted with a held-out R2 of {:.2}, less than {}: no command is made for it",
+            "{} is predicted with a held-out R2 of {:.2}, less than {}: no command is made of its model alone",
             joint.name,
             joint.held_out_r2,
             crate::fit::LEAST_SKILL

@@ -65,7 +65,7 @@ pub struct JointCommand {
 impl JointCommand {
     /// Whether the joint is corrected.
     pub fn applied(&self) -> bool {
-        self.step != Step::None && self.share > 0.0
+        !matches!(self.step, Step::None | Step::Astray) && self.share > 0.0
     }
 }
 

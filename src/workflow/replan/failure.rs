@@ -122,6 +122,16 @@ pub enum ReplanFailure {
         /// The least for commands.
         least: f64,
     },
+    /// What was measured has little to do with the plan.
+    #[error(
+        "{}: the joints do not follow their plan, the error of each is more than half of its motion, so none can be \
+         corrected; `hydrotrace report` of the log says where sign, zero, unit or name look wrong",
+        path.display()
+    )]
+    Astray {
+        /// The log.
+        path: PathBuf,
+    },
 }
 
 /// A distance of a joint as people read it.

@@ -103,7 +103,7 @@ impl Last {
             via: via.unwrap_or_default(),
             // A joined log has its plan on our topic.
             trajectory: trajectory_topic(&recording.source.planned_topic)
-                .or_else(|| carried.trajectory_topic().map(str::to_owned)),
+                .or_else(|| carried.trajectory_topic().and_then(trajectory_topic)),
             carried,
         })
     }

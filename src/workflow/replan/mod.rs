@@ -32,7 +32,7 @@ pub use predicted::{Predicted, PredictedTransition, Response, predicted, promise
 
 use super::fit::{self, LimitsFile};
 use crate::{
-    fit::{Fit, JointFit, Learning, Trial},
+    fit::{Fit, JointFit, Learning, Step, Trial},
     log::{ReadOptions, Recording},
     plan::{PlanEvaluation, Setup},
     remark::{Code, Remarks},
@@ -128,11 +128,12 @@ pub fn run(
     if inputs.task.is_none() {
         last.carried.remark_others(path, &mut remarks);
     }
-    if inputs.precompensate
-        && !last.plan.tracks.iter().any(|t| fit.joint(t.name()).is_some_and(JointFit::trusted))
-    {
+    let history = History::of(&inputs.logs, &observed, &last.plan, &inputs.rules)?;
+    let learns = inputs.precompensate && history.begun() && !inputs.retime;
+    let known = last.plan.tracks.iter().any(|t| fit.joint(t.name()).is_some_and(JointFit::trusted));
+    if inputs.precompensate && !known {
         let best = fit.joints.iter().map(|joint| joint.held_out_r2).fold(f64::NEG_INFINITY, f64::max);
-        if inputs.keep_plan {
+        if inputs.keep_plan || learns || last.request.is_none() {
             return Err(ReplanFailure::Unpredictable { best, least: crate::fit::LEAST_SKILL });
         }
         remarks.add(
@@ -141,26 +142,39 @@ pub fn run(
             "no joint is predicted well enough for a command: only the plan changes",
         );
     }
+    let precompensates = inputs.precompensate && known;
     let before =
         Before::of(newest, &last, predicted(&fit, &last.plan, &last.plan, &inputs.rules)?, &inputs.rules);
-    let history = History::of(&inputs.logs, &observed, &last.plan, &inputs.rules)?;
-    let learns = inputs.precompensate && history.begun() && !inputs.retime;
     let search = match &last.request {
         Some(request) if !inputs.keep_plan && !learns => {
             Some(searched(inputs, &fit, &last, request, observer)?)
         }
         _ => None,
     };
-    if search.is_none() && !inputs.keep_plan && !learns && !inputs.precompensate {
+    if search.is_none() && !inputs.keep_plan && !learns && !precompensates {
         return Err(ReplanFailure::NoTask { path: path.clone() });
     }
     let setup = last.request.as_ref().map(|request| &request.setup);
     let decision = if learns { history.decision() } else { Decision::Send };
     let options = candidates(&last, search.as_ref())?;
-    let maker = Maker { inputs, fit: &fit, setup, last: &last, history: &history, decision: &decision };
+    let maker = Maker {
+        inputs,
+        precompensates,
+        fit: &fit,
+        setup,
+        last: &last,
+        history: &history,
+        decision: &decision,
+    };
     let made = threads::mapped(&options, || (), |(), (new, plan)| maker.candidate(new.clone(), plan.clone()));
     let made: Vec<Candidate> = made.into_iter().collect::<Result<_, _>>()?;
     let chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
+    if let Some(command) = chosen.command.as_ref().filter(|_| chosen.new.is_none())
+        && !command.applied()
+        && command.joints.iter().any(|joint| joint.step == Step::Astray)
+    {
+        return Err(ReplanFailure::Astray { path: path.clone() });
+    }
     let past =
         outcome::Past { gain: inputs.learning.gain, trust: history.trust(), runs: history.runs, decision };
     outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)
@@ -249,6 +263,8 @@ pub(super) struct Candidate {
 /// Makes candidates.
 struct Maker<'a> {
     inputs: &'a Inputs,
+    /// Whether a command is wanted and some joint is known well enough for one.
+    precompensates: bool,
     fit: &'a Fit,
     setup: Option<&'a Setup>,
     last: &'a Last,
@@ -259,7 +275,7 @@ struct Maker<'a> {
 impl Maker<'_> {
     /// `new` is of another plan than the last; its runs say nothing of this one.
     fn candidate(&self, new: Option<PlanEvaluation>, plan: Series) -> Result<Candidate, ReplanFailure> {
-        let Self { inputs, fit, setup, last, history, decision } = self;
+        let Self { inputs, precompensates, fit, setup, last, history, decision } = self;
         let kept = new.is_none();
         let motion = match (&new, setup) {
             (Some(new), Some(setup)) => Some((setup.motion_through(&new.times_s, &new.via)?, PLAN_LEAD_S)),
@@ -279,8 +295,7 @@ impl Maker<'_> {
         let learning = Learning { gain, keep, ..inputs.learning };
         let subject = Subject::new(&plan, motion, *setup);
         let points_hz = subject.points_hz;
-        let command =
-            inputs.precompensate.then(|| commanded(fit, &subject, &trials, learning)).transpose()?;
+        let command = precompensates.then(|| commanded(fit, &subject, &trials, learning)).transpose()?;
         let sent = command.as_ref().map_or(&plan, |command| &command.series);
         let newest = keep.unwrap_or(trials.len().saturating_sub(1));
         let base = trials.get(newest).map(|trial| (trial.sent, trial.measured));

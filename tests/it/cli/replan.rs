@@ -203,6 +203,78 @@ fn exported(folder: &Path, log: &str) -> (Vec<String>, Vec<Vec<String>>) {
     (lines.next().unwrap(), lines.collect())
 }
 
+/// The log as a table; measured angles by joint, time and angle.
+fn table(folder: &Path, log: &str, path: &str, measured: impl Fn(usize, f64, f64) -> f64) {
+    let (header, rows) = exported(folder, log);
+    let time = header.iter().position(|name| name == "time_s").unwrap();
+    let mut csv = header.join(",") + "\n";
+    for row in rows {
+        let t_s = row[time].parse::<f64>().unwrap();
+        let cell = |(name, value): (&String, &String)| match name.strip_suffix("_measured_rad") {
+            Some(joint) if !value.is_empty() => {
+                measured(joint[1..].parse().unwrap(), t_s, value.parse().unwrap()).to_string()
+            }
+            _ => value.clone(),
+        };
+        csv += &(header.iter().zip(&row).map(cell).collect::<Vec<_>>().join(",") + "\n");
+    }
+    fs::write(folder.join(path), csv).unwrap();
+}
+
+#[test]
+fn of_a_machine_that_cannot_be_predicted_no_command_is_made() {
+    let folder = with_run();
+    let folder = folder.path();
+    fs::copy(sample("tasks/task-1.toml"), folder.join("task.toml")).unwrap();
+    clean(folder, "replan run.mcap --keep-plan -o sent.mcap");
+    clean(folder, "simulate sent.mcap -o run-2.mcap");
+    let wanders = |joint: usize, t_s: f64, angle_rad: f64| {
+        angle_rad + 0.1 * (0.02 * t_s * t_s + joint as f64).sin() * (1.7 * t_s).cos()
+    };
+    table(folder, "run.mcap", "odd.csv", wanders);
+    table(folder, "run-2.mcap", "second.csv", wanders);
+    for line in ["odd.csv", "odd.csv --task task.toml --keep-plan", "second.csv --task task.toml"] {
+        let run = run_line(folder, &format!("replan {line} -o next.mcap"));
+        assert_eq!(run.status.code(), Some(1), "{line}: {}", stdout(&run));
+        assert!(stderr(&run).contains("no joint is predicted well enough"), "{line}: {}", stderr(&run));
+        assert!(!folder.join("next.mcap").exists(), "{line}");
+    }
+    let planned = json(folder, "replan odd.csv --task task.toml --evaluations 1000 -o next.mcap");
+    assert!(planned["remarks"].to_string().contains("only the plan changes"), "{}", planned["remarks"]);
+    assert_eq!(planned["command"], serde_json::json!([]));
+    table(folder, "run.mcap", "stray.csv", |_, _, angle_rad| 0.9 - angle_rad);
+    let run = run_line(folder, "replan stray.csv -o stray.mcap");
+    assert_eq!(run.status.code(), Some(1), "{}", stdout(&run));
+    assert!(!folder.join("stray.mcap").exists());
+}
+
+#[test]
+fn a_joint_in_another_frame_than_its_plan_is_told_and_left_alone() {
+    let folder = with_run();
+    let folder = folder.path();
+    table(folder, "run.mcap", "odd.csv", |joint, _, angle_rad| match joint {
+        2 => -angle_rad,
+        5 => angle_rad + 0.2,
+        _ => angle_rad,
+    });
+    let next = json(folder, "replan odd.csv -o next.mcap");
+    for said in ["J2 moves against its plan", "J5 was measured 11.44 deg beside its plan"] {
+        assert!(next["remarks"].to_string().contains(said), "{said}: {}", next["remarks"]);
+    }
+    let joints = next["command"].as_array().unwrap();
+    let by = |joint: &Value| joint["step"]["by"].as_str().unwrap().to_owned();
+    let by: Vec<String> = joints.iter().map(by).collect();
+    assert_eq!(by, ["first", "astray", "first", "first", "astray", "first"]);
+    assert!(check(&next, "leave")["distance_rad"].as_f64().unwrap() < 0.05, "{}", check(&next, "leave"));
+    let trust = check(&next, "trust");
+    assert_eq!(
+        (&trust["level"], &trust["joints"][1]["astray"]),
+        (&"caution".into(), &true.into()),
+        "{trust}"
+    );
+    assert!(page(folder, "replan odd.csv").contains("Not following the plan"));
+}
+
 #[test]
 fn a_joint_that_slides_is_sent_as_planned_in_metres_beside_corrected_joints() {
     let folder = with_run();

@@ -208,6 +208,7 @@ fn note(next: &Replanned) -> String {
             Step::First { model_weight } => format!("first {model_weight:.2}"),
             Step::Later { from, gain } => format!("later {from} {gain:.2}"),
             Step::Kept { from } => format!("kept {from}"),
+            Step::Astray => "astray".to_owned(),
             Step::None => "none".to_owned(),
         };
         format!("{}: {step}, share {:.2}{rings}", joint.name, joint.share)

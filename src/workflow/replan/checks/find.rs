@@ -116,10 +116,11 @@ fn trust(replanned: &Replanned) -> Check {
         let found = made.and_then(|made| made.oscillation);
         let character = found.map(|found| found.character);
         let known = fit.is_some_and(|fit| fit.model_holds && fit.held_out_r2 >= LEAST_SKILL);
+        let astray = made.is_some_and(|made| made.step == Step::Astray);
         let level = match character {
             Some(Character::Hunts) => Level::Stop,
             Some(Character::Rings) => Level::Caution,
-            _ => caution(!known),
+            _ => caution(!known || astray),
         };
         JointTrust {
             joint: track.name().to_owned(),
@@ -127,6 +128,7 @@ fn trust(replanned: &Replanned) -> Check {
             corrected: made.is_some_and(JointCommand::applied),
             held_out_r2: fit.map(|fit| fit.held_out_r2),
             model_holds: fit.is_some_and(|fit| fit.model_holds),
+            astray,
             character,
             frequency_hz: found.filter(|f| f.character != Character::Calm).map(|f| f.frequency_hz),
         }

@@ -146,6 +146,9 @@ pub struct JointTrust {
     pub held_out_r2: Option<f64>,
     /// Whether the machine answers as the model does.
     pub model_holds: bool,
+    /// Whether its error is more than half of its motion: it does not follow its plan, and is not corrected.
+    #[serde(default)]
+    pub astray: bool,
     /// Whether it rings or hunts; null without a run of this plan.
     pub character: Option<Character>,
     /// At which frequency, Hz.

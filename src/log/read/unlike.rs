@@ -1,0 +1,208 @@
+//! Finds joints that were recorded in another frame than their plan: sign, zero, unit or name.
+
+use super::quality::looks_like_degrees;
+use crate::{
+    remark::{Code, Remarks},
+    series::{JointKind, Series, Track},
+    units::Degrees,
+};
+
+/// Instants at which plan and measurement are compared, evenly spread over the measurement; fewer than the least tell
+/// nothing.
+const INSTANTS: usize = 2000;
+const LEAST_INSTANTS: usize = 50;
+
+/// A joint follows its plan if the root mean square of its error is below this share of that of the planned motion.
+const FOLLOWS: f64 = 0.3;
+
+/// Errors below are no matter of frames: rad, and m.
+const SMALL: [f64; 2] = [0.025, 0.02];
+
+/// Correlation with the plan from which on they move alike, and below which against each other.
+const ALIKE: f64 = 0.95;
+const AGAINST: f64 = -0.8;
+
+/// Factors of the planned motion between which the unit is the same.
+const SAME_UNIT: [f64; 2] = [0.5, 2.0];
+
+/// The plan of another joint is followed if its error is less than this share of its motion, and of the own error.
+const OTHERS: f64 = 0.2;
+
+/// Positions of plan and measurement at the same instants.
+type Both = Vec<[f64; 2]>;
+
+/// Remarks joints whose measurement looks like their plan in another frame.
+pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+    for track in &planned.tracks {
+        let Some(came) = measured.track(track.name()).filter(|came| came.kind() == track.kind()) else {
+            continue;
+        };
+        let others = || planned.tracks.iter().filter(|other| other.name() != track.name());
+        if let Some(message) = of_joint(track, came, others()) {
+            remarks.add(Code::UnlikePlan, 1, message);
+        }
+    }
+}
+
+fn of_joint<'a>(
+    planned: &Track,
+    measured: &Track,
+    mut others: impl Iterator<Item = &'a Track>,
+) -> Option<String> {
+    let alike = Alike::of(&both(planned, measured))?;
+    let small = SMALL[usize::from(!planned.turns())];
+    if alike.rms_error < small.max(FOLLOWS * alike.motion) {
+        return None;
+    }
+    let name = planned.name();
+    let size = |value: f64| match planned.kind() {
+        JointKind::Turns => Degrees(value).to_string(),
+        JointKind::Slides => format!("{:.1} mm", 1e3 * value),
+    };
+    let followed = |other: &&Track| {
+        let found = Alike::of(&both(other, measured)).filter(|_| other.kind() == planned.kind());
+        found.is_some_and(|found| {
+            found.rms_error < OTHERS * found.motion.min(alike.rms_error) && found.motion > small
+        })
+    };
+    if let Some(other) = others.find(followed) {
+        let other = other.name();
+        return Some(format!(
+            "{name} follows the plan of {other} and not its own, from which it is {} away (root mean square): are the \
+             names or columns of two joints exchanged?",
+            size(alike.rms_error)
+        ));
+    }
+    let Alike { correlation, slope, mean_error, motion, .. } = alike;
+    if motion < small {
+        return None;
+    }
+    if correlation < AGAINST {
+        return Some(format!(
+            "{name} moves against its plan (correlation {correlation:.2}): is the sign of one of the two the other way \
+             round?"
+        ));
+    }
+    if correlation < ALIKE {
+        return None;
+    }
+    if !(SAME_UNIT[0]..=SAME_UNIT[1]).contains(&slope) {
+        if planned.turns() && [slope, 1.0 / slope].iter().any(|ratio| looks_like_degrees(*ratio)) {
+            return None;
+        }
+        return Some(format!(
+            "{name} moves {slope:.4} times as far as its plan (correlation {correlation:.2}): is one of the two in \
+             another unit, or before a gear?"
+        ));
+    }
+    (mean_error.abs() > FOLLOWS * motion).then(|| {
+        format!(
+            "{name} was measured {} beside its plan all the time: is the zero another?",
+            size(mean_error.abs())
+        )
+    })
+}
+
+/// How a measurement is like a plan.
+struct Alike {
+    /// Root mean square of measured less planned.
+    rms_error: f64,
+    /// Its mean.
+    mean_error: f64,
+    /// Root mean square distance of the plan from its mean.
+    motion: f64,
+    /// Of plan and measurement; 0 where one of them stands still.
+    correlation: f64,
+    /// Measured motion by planned motion.
+    slope: f64,
+}
+
+impl Alike {
+    /// `None` with too few instants.
+    fn of(both: &Both) -> Option<Self> {
+        if both.len() < LEAST_INSTANTS {
+            return None;
+        }
+        let mean = |of: &dyn Fn(&[f64; 2]) -> f64| both.iter().map(of).sum::<f64>() / both.len() as f64;
+        let (plan, came) = (mean(&|p| p[0]), mean(&|p| p[1]));
+        let squares = mean(&|p| (p[0] - plan).powi(2));
+        let products = mean(&|p| (p[0] - plan) * (p[1] - came));
+        let spread = mean(&|p| (p[1] - came).powi(2)).sqrt();
+        let motion = squares.sqrt();
+        let or_none = |value: f64| if value.is_finite() { value } else { 0.0 };
+        Some(Self {
+            rms_error: mean(&|p| (p[1] - p[0]).powi(2)).sqrt(),
+            mean_error: came - plan,
+            motion,
+            correlation: or_none(products / (motion * spread)),
+            slope: or_none(products / squares),
+        })
+    }
+}
+
+fn both(planned: &Track, measured: &Track) -> Both {
+    let step = measured.len().div_ceil(INSTANTS).max(1);
+    let came = measured.t_s().iter().zip(measured.position()).step_by(step);
+    came.filter_map(|(t_s, came)| Some([planned.at(*t_s)?.position, *came])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn track(name: &str, position: impl Fn(f64) -> f64) -> Track {
+        let t_s: Vec<f64> = (0..3000).map(|k| f64::from(k) * 0.01).collect();
+        let q = t_s.iter().map(|&t| position(t)).collect();
+        Track::new(name, t_s, q, &[]).unwrap()
+    }
+
+    /// Remarks on two joints of a plan, of which the first was measured so.
+    fn remarks(boom: impl Fn(f64) -> f64, stick: impl Fn(f64) -> f64) -> Vec<String> {
+        let planned = Series { tracks: vec![track("boom", plan), track("stick", of_stick)] };
+        let measured = Series { tracks: vec![track("boom", boom), track("stick", stick)] };
+        let mut remarks = Remarks::default();
+        of_sides(&planned, &measured, &mut remarks);
+        remarks.as_slice().iter().map(|remark| remark.message.clone()).collect()
+    }
+
+    fn plan(t: f64) -> f64 {
+        0.3 + 0.5 * (0.2 * t).sin()
+    }
+
+    fn of_stick(t: f64) -> f64 {
+        -0.8 + 0.4 * (0.31 * t).cos()
+    }
+
+    #[test]
+    fn a_joint_in_another_frame_is_told_with_what_is_wrong() {
+        for (boom, told) in [
+            ((|t| -plan(t)) as fn(f64) -> f64, "moves against its plan (correlation -1.00)"),
+            (|t| plan(t - 0.4) + 0.2, "beside its plan all the time"),
+            (|t| 1e3 * plan(t), "moves 1000.0000 times as far"),
+            (|t| 0.01 * plan(t), "moves 0.0100 times as far"),
+        ] {
+            let found = remarks(boom, of_stick);
+            assert!(
+                matches!(&found[..], [one] if one.starts_with("boom") && one.contains(told)),
+                "{told}: {found:?}"
+            );
+        }
+        let found = remarks(of_stick, plan);
+        assert!(found.len() == 2 && found[0].starts_with("boom follows the plan of stick"), "{found:?}");
+    }
+
+    #[test]
+    fn a_joint_that_follows_badly_or_not_at_all_is_not() {
+        let late = |t: f64| plan(t - 1.0);
+        let dead = |_: f64| plan(0.0);
+        let soft = |t: f64| plan(t) + 0.1 * (6.0 * t).sin();
+        let sags = |t: f64| 0.95 * plan(t) - 0.03;
+        let odd = |t: f64| 0.3 + 0.5 * (1.7 * t).cos();
+        for (name, boom) in
+            [("late", &late as &dyn Fn(f64) -> f64), ("dead", &dead), ("soft", &soft), ("sags", &sags)]
+        {
+            assert_eq!(remarks(boom, of_stick), Vec::<String>::new(), "{name}");
+        }
+        assert_eq!(remarks(odd, of_stick), Vec::<String>::new());
+    }
+}
