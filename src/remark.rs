@@ -36,6 +36,8 @@ pub enum Code {
     LooksLikeDegrees,
     /// A joint that was recorded in another frame than its plan: sign, zero, unit or name.
     UnlikePlan,
+    /// Joints that follow their plan at another time: clocks differ, or the machine ran at another speed.
+    OtherTime,
     /// Header stamps that are zero or stand still, so another clock was used.
     UnusableStamp,
     /// Samples with the stamp of their predecessor, dropped.

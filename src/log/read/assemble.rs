@@ -6,7 +6,7 @@ use super::{
     content::{Content, Extracted},
     cylinders::Kinds,
     joints::{add_new, keep_joints},
-    overlap, poses, quality,
+    other_time, overlap, poses, quality,
     recording::{Command, Recording, SourceInfo},
     samples::{Axis, Reading, Samples, samples},
     select_topics::{Candidate, Choice, named},
@@ -121,6 +121,7 @@ pub(super) fn assemble(
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);
+    other_time::of_sides(sides[0].1, sides[1].1, &mut remarks);
     let mut source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
     source.measured_delay_s = Some(delay_s).filter(|delay_s| *delay_s != 0.0);
     let Extracted { attachments, metadata, .. } = assembly.extracted;

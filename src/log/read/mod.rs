@@ -10,6 +10,7 @@ mod frozen;
 mod indexed;
 mod joints;
 pub(super) mod lines;
+mod other_time;
 mod overlap;
 mod parallel;
 mod poses;

@@ -9,7 +9,7 @@ use crate::{
 
 /// Instants at which plan and measurement are compared, evenly spread over the measurement; fewer than the least tell
 /// nothing.
-const INSTANTS: usize = 2000;
+const INSTANTS: usize = 500;
 const LEAST_INSTANTS: usize = 50;
 
 /// A joint follows its plan if the root mean square of its error is below this share of that of the planned motion.
@@ -21,6 +21,9 @@ const SMALL: [f64; 2] = [0.025, 0.02];
 /// Correlation with the plan from which on they move alike, and below which against each other.
 const ALIKE: f64 = 0.95;
 const AGAINST: f64 = -0.8;
+
+/// Share of the planned motion that one against it has at least.
+const MOVES: f64 = 0.3;
 
 /// Factors of the planned motion between which the unit is the same.
 const SAME_UNIT: [f64; 2] = [0.5, 2.0];
@@ -77,7 +80,7 @@ fn of_joint<'a>(
     if motion < small {
         return None;
     }
-    if correlation < AGAINST {
+    if correlation < AGAINST && slope < -MOVES {
         return Some(format!(
             "{name} moves against its plan (correlation {correlation:.2}): is the sign of one of the two the other way \
              round?"

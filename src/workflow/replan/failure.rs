@@ -122,6 +122,14 @@ pub enum ReplanFailure {
         /// The least for commands.
         least: f64,
     },
+    /// A run at another time than its plan.
+    #[error("{}: {why} No command is made from such a run", path.display())]
+    OtherTime {
+        /// The log.
+        path: PathBuf,
+        /// How so.
+        why: String,
+    },
     /// What was measured has little to do with the plan.
     #[error(
         "{}: the joints do not follow their plan, the error of each is more than half of its motion, so none can be \

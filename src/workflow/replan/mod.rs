@@ -122,6 +122,12 @@ pub fn run(
         return Err(ReplanFailure::NothingToChange);
     }
     let observed = fit::observed(&inputs.logs, &inputs.read).map_err(fit::FitFailure::from)?;
+    for (path, recording) in inputs.logs.iter().zip(&observed) {
+        let remarks = recording.remarks.as_slice();
+        if let Some(remark) = remarks.iter().find(|remark| remark.code == Code::OtherTime) {
+            return Err(ReplanFailure::OtherTime { path: path.clone(), why: remark.message.clone() });
+        }
+    }
     let (fit, fitted_to, mut remarks) = machine(inputs, &observed)?;
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
     let last = Last::of(path, newest, inputs)?;

@@ -276,6 +276,22 @@ fn a_joint_in_another_frame_than_its_plan_is_told_and_left_alone() {
 }
 
 #[test]
+fn of_a_run_whose_clocks_differ_no_command_is_made() {
+    let folder = with_run();
+    let folder = folder.path();
+    for (delay_ms, told) in [(2500, "s before their plan"), (-2500, "s after their plan")] {
+        let taken_off = format!("run.mcap --measured-delay-ms={delay_ms}");
+        let report = run_line(folder, &format!("report {taken_off}"));
+        assert_eq!(report.status.code(), Some(3), "{told}: {}", stderr(&report));
+        assert!(stdout(&report).contains(told), "{told}: {}", stdout(&report));
+        let next = run_line(folder, &format!("replan {taken_off} -o next.mcap"));
+        assert_eq!(next.status.code(), Some(1), "{told}: {}", stdout(&next));
+        assert!(stderr(&next).contains(told), "{told}: {}", stderr(&next));
+        assert!(!folder.join("next.mcap").exists(), "{told}");
+    }
+}
+
+#[test]
 fn a_joint_that_slides_is_sent_as_planned_in_metres_beside_corrected_joints() {
     let folder = with_run();
     let folder = folder.path();

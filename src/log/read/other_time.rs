@@ -1,0 +1,215 @@
+//! Finds measurements that follow their plan at another time: clocks that differ, or a run at another speed.
+
+use crate::{
+    math::quantile,
+    remark::{Code, Remarks},
+    series::{Series, Track},
+};
+
+/// Instants at which plan and measurement are compared.
+const INSTANTS: usize = 400;
+
+/// Planned motion, root mean square distance from its mean, of a joint that can tell: rad or m.
+const TELLS: f64 = 0.01;
+
+/// Measured motion by planned motion of a joint that can tell.
+const MOVED: f64 = 0.5;
+
+/// Runs whose joints lie this far from their plan, root mean square by planned motion, are looked at.
+const FAR: f64 = 0.05;
+
+/// What is left of that if the time is the reason.
+const LEFT: f64 = 0.4;
+
+/// Shifts that are tried, s, by coarse and by fine steps.
+const WIDEST_S: f64 = 15.0;
+const STEPS_S: [f64; 2] = [0.25, 0.01];
+
+/// Shifts between these are what machines do, s.
+const USUAL_S: [f64; 2] = [-0.1, 1.0];
+
+/// Durations by planned durations that machines keep.
+const USUAL_PACE: [f64; 2] = [0.97, 1.03];
+
+/// Share of its range after which a joint has begun to move, and before which it has not ended.
+const BEGUN: f64 = 0.05;
+
+/// Remarks a run whose joints follow their plan, but earlier, much later, slower or faster.
+pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+    let both = |track| Both::of(track, measured.track(track.name())?);
+    let joints: Vec<Both> = planned.tracks.iter().filter_map(both).collect();
+    let apart = apart(&joints, |t_s| t_s);
+    if !apart.is_finite() || apart < FAR {
+        return;
+    }
+    let shift_s = shift_s(&joints);
+    if self::apart(&joints, |t_s| t_s - shift_s) < LEFT * apart {
+        if shift_s < USUAL_S[0] {
+            let message = format!(
+                "the joints move {:.2} s before their plan, which no machine does: the clocks of plan and measurement differ. \
+                 --measured-delay-ms={:.0} puts one onto the other, but takes the lag of the machine off, too.",
+                -shift_s,
+                1e3 * shift_s
+            );
+            remarks.add(Code::OtherTime, 1, message);
+        } else if shift_s > USUAL_S[1] {
+            let message = format!(
+                "the joints move {shift_s:.2} s after their plan, all of them, more than machines lag: the clocks of plan and \
+                 measurement differ, or the plan was stamped before it was started. --measured-delay-ms={:.0} puts one onto \
+                 the other, but takes the lag of the machine off, too.",
+                1e3 * shift_s
+            );
+            remarks.add(Code::OtherTime, 1, message);
+        }
+        return;
+    }
+    let Some(pace) = Pace::of(&joints) else { return };
+    let usual = (USUAL_PACE[0]..=USUAL_PACE[1]).contains(&pace.ratio);
+    if !usual
+        && self::apart(&joints, |t_s| pace.planned_s + (t_s - pace.measured_s) / pace.ratio) < LEFT * apart
+    {
+        let message = format!(
+            "the joints take {:.2} times as long as their plan: was the machine run at another speed (override)? Errors at \
+             the same instant say little then, the distance to the path does.",
+            pace.ratio
+        );
+        remarks.add(Code::OtherTime, 1, message);
+    }
+}
+
+/// A joint's plan, and some of its measurement.
+struct Both<'a> {
+    planned: &'a Track,
+    measured: &'a Track,
+    /// Instant, s, and position, while there is a plan.
+    came: Vec<[f64; 2]>,
+    /// Root mean square distance of the plan from its mean.
+    motion: f64,
+}
+
+impl<'a> Both<'a> {
+    /// `None` for a joint that is not planned to move, or did not.
+    fn of(planned: &'a Track, measured: &'a Track) -> Option<Self> {
+        let [first_s, last_s] = [planned.t_s().first()?, planned.t_s().last()?];
+        let within = measured.t_s().partition_point(|t_s| t_s < first_s)
+            ..measured.t_s().partition_point(|t_s| t_s <= last_s);
+        let (t_s, q) = (measured.t_s().get(within.clone())?, measured.position().get(within)?);
+        let step = t_s.len().div_ceil(INSTANTS).max(1);
+        let came: Vec<[f64; 2]> = t_s.iter().zip(q).step_by(step).map(|(t_s, q)| [*t_s, *q]).collect();
+        let motion = spread(came.iter().map(|[t_s, _]| planned.held_at(*t_s).position));
+        let moved = spread(came.iter().map(|[_, q]| *q));
+        (motion > TELLS && moved > MOVED * motion).then_some(Self { planned, measured, came, motion })
+    }
+
+    /// Root mean square error by planned motion, with the plan at another time.
+    fn apart(&self, planned_s: impl Fn(f64) -> f64) -> f64 {
+        let square = |[t_s, q]: &[f64; 2]| (q - self.planned.held_at(planned_s(*t_s)).position).powi(2);
+        (self.came.iter().map(square).sum::<f64>() / self.came.len() as f64).sqrt() / self.motion
+    }
+}
+
+/// Root mean square distance from the mean.
+fn spread(values: impl ExactSizeIterator<Item = f64> + Clone) -> f64 {
+    let count = values.len() as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    (values.map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+/// That of the joint in the middle; NaN without a joint.
+fn apart(joints: &[Both], planned_s: impl Fn(f64) -> f64) -> f64 {
+    quantile(joints.iter().map(|joint| joint.apart(&planned_s)).collect(), 0.5)
+}
+
+/// By how much the measurement is later than a plan that it follows best, s.
+fn shift_s(joints: &[Both]) -> f64 {
+    let mut best = (f64::INFINITY, 0.0);
+    let mut reach_s = WIDEST_S;
+    for step_s in STEPS_S {
+        let middle_s = best.1;
+        let mut shift_s = middle_s - reach_s;
+        while shift_s <= middle_s + reach_s {
+            let apart = apart(joints, |t_s| t_s - shift_s);
+            if apart < best.0 {
+                best = (apart, shift_s);
+            }
+            shift_s += step_s;
+        }
+        reach_s = step_s;
+    }
+    best.1
+}
+
+/// Where a motion begins in plan and measurement, s, and how much longer the measured one takes.
+struct Pace {
+    planned_s: f64,
+    measured_s: f64,
+    ratio: f64,
+}
+
+impl Pace {
+    /// Of the joint that moves most.
+    fn of(joints: &[Both]) -> Option<Self> {
+        let joint = joints.iter().max_by(|a, b| a.motion.total_cmp(&b.motion))?;
+        let [planned, measured] = [motion_s(joint.planned)?, motion_s(joint.measured)?];
+        let ratio = (measured[1] - measured[0]) / (planned[1] - planned[0]);
+        ratio.is_finite().then_some(Self { planned_s: planned[0], measured_s: measured[0], ratio })
+    }
+}
+
+/// When a joint has left where it begins, and when it is not yet where it ends, s.
+fn motion_s(track: &Track) -> Option<[f64; 2]> {
+    let (t_s, q) = (track.t_s(), track.position());
+    let (lowest, highest) =
+        q.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &q| (a.min(q), b.max(q)));
+    let far = |from: f64, q: f64| (q - from).abs() > BEGUN * (highest - lowest);
+    let first = q.iter().position(|x| far(q[0], *x))?;
+    let last = q.iter().rposition(|x| far(q[q.len() - 1], *x))?;
+    Some([t_s[first], t_s[last]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn series(at_s: impl Fn(f64) -> f64) -> Series {
+        let step = |t: f64| {
+            let x = t.clamp(0.0, 1.0);
+            x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+        };
+        let plan = |joint: f64, t: f64| joint * (step((t - 4.0) / 8.0) - 0.6 * step((t - 20.0) / 6.0));
+        let t_s: Vec<f64> = (0..4000).map(|k| f64::from(k) * 0.01).collect();
+        let track = |name: &str, size: f64| {
+            let q = t_s.iter().map(|&t| plan(size, at_s(t))).collect();
+            Track::new(name, t_s.clone(), q, &[]).unwrap()
+        };
+        Series { tracks: vec![track("swing", 1.0), track("boom", -0.5), track("stick", 0.8)] }
+    }
+
+    fn said(at_s: impl Fn(f64) -> f64) -> Vec<String> {
+        let mut remarks = Remarks::default();
+        of_sides(&series(|t| t), &series(at_s), &mut remarks);
+        remarks.as_slice().iter().map(|remark| remark.message.clone()).collect()
+    }
+
+    #[test]
+    fn clocks_that_differ_and_another_speed_are_told() {
+        for (by_s, told) in
+            [(-2.0, "2.00 s before"), (-0.8, "0.80 s before"), (3.0, "3.00 s after"), (9.3, "9.30 s")]
+        {
+            let found = said(|t| t - by_s);
+            assert!(matches!(&found[..], [one] if one.contains(told)), "{by_s}: {found:?}");
+        }
+        for (pace, told) in [(1.25, "1.25 times as long"), (0.7, "0.70 times as long"), (1.4, "1.40 times")] {
+            let found = said(|t| 4.0 + (t - 4.0) / pace);
+            assert!(matches!(&found[..], [one] if one.contains(told)), "{pace}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn what_machines_do_is_not() {
+        assert_eq!(said(|t| t), Vec::<String>::new());
+        assert_eq!(said(|t| t - 0.6), Vec::<String>::new());
+        assert_eq!(said(|_| 0.0), Vec::<String>::new(), "none moves");
+        assert_eq!(said(|t| t.min(10.0)), Vec::<String>::new(), "they stop for good");
+    }
+}
