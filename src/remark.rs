@@ -38,6 +38,8 @@ pub enum Code {
     UnlikePlan,
     /// Joints that follow their plan at another time: clocks differ, or the machine ran at another speed.
     OtherTime,
+    /// A machine that stood while its plan went on.
+    Stopped,
     /// Header stamps that are zero or stand still, so another clock was used.
     UnusableStamp,
     /// Samples with the stamp of their predecessor, dropped.
@@ -99,6 +101,11 @@ pub enum Code {
 }
 
 impl Code {
+    /// Whether a run with this doubt is no run of its plan, which no command is made from.
+    pub fn spoils_runs(self) -> bool {
+        matches!(self, Self::OtherTime | Self::Stopped)
+    }
+
     /// The stable name, as in JSON.
     pub fn name(self) -> String {
         serde_json::to_value(self).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()

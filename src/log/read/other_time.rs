@@ -47,7 +47,7 @@ pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remark
         if shift_s < USUAL_S[0] {
             let message = format!(
                 "the joints move {:.2} s before their plan, which no machine does: the clocks of plan and measurement differ. \
-                 --measured-delay-ms={:.0} puts one onto the other, but takes the lag of the machine off, too.",
+                 --measured-delay-ms={:.0} puts one onto the other, but takes the lag of the machine off, too",
                 -shift_s,
                 1e3 * shift_s
             );
@@ -56,7 +56,7 @@ pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remark
             let message = format!(
                 "the joints move {shift_s:.2} s after their plan, all of them, more than machines lag: the clocks of plan and \
                  measurement differ, or the plan was stamped before it was started. --measured-delay-ms={:.0} puts one onto \
-                 the other, but takes the lag of the machine off, too.",
+                 the other, but takes the lag of the machine off, too",
                 1e3 * shift_s
             );
             remarks.add(Code::OtherTime, 1, message);
@@ -70,7 +70,7 @@ pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remark
     {
         let message = format!(
             "the joints take {:.2} times as long as their plan: was the machine run at another speed (override)? Errors at \
-             the same instant say little then, the distance to the path does.",
+             the same instant say little then, the distance to the path does",
             pace.ratio
         );
         remarks.add(Code::OtherTime, 1, message);

@@ -122,9 +122,9 @@ pub enum ReplanFailure {
         /// The least for commands.
         least: f64,
     },
-    /// A run at another time than its plan.
-    #[error("{}: {why} No command is made from such a run", path.display())]
-    OtherTime {
+    /// A run that is none of its plan.
+    #[error("{}: {why}. No command is made from such a run", path.display())]
+    Spoilt {
         /// The log.
         path: PathBuf,
         /// How so.
@@ -132,8 +132,8 @@ pub enum ReplanFailure {
     },
     /// What was measured has little to do with the plan.
     #[error(
-        "{}: the joints do not follow their plan, the error of each is more than half of its motion, so none can be \
-         corrected; `hydrotrace report` of the log says where sign, zero, unit or name look wrong",
+        "{}: half of the joints or more do not follow their plan, the error of each is more than half of its motion, so \
+         no command is made; `hydrotrace report` of the log says where sign, zero, unit or name look wrong",
         path.display()
     )]
     Astray {

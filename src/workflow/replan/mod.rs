@@ -124,8 +124,8 @@ pub fn run(
     let observed = fit::observed(&inputs.logs, &inputs.read).map_err(fit::FitFailure::from)?;
     for (path, recording) in inputs.logs.iter().zip(&observed) {
         let remarks = recording.remarks.as_slice();
-        if let Some(remark) = remarks.iter().find(|remark| remark.code == Code::OtherTime) {
-            return Err(ReplanFailure::OtherTime { path: path.clone(), why: remark.message.clone() });
+        if let Some(remark) = remarks.iter().find(|remark| remark.code.spoils_runs()) {
+            return Err(ReplanFailure::Spoilt { path: path.clone(), why: remark.message.clone() });
         }
     }
     let (fit, fitted_to, mut remarks) = machine(inputs, &observed)?;
@@ -176,8 +176,8 @@ pub fn run(
     let made: Vec<Candidate> = made.into_iter().collect::<Result<_, _>>()?;
     let chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
     if let Some(command) = chosen.command.as_ref().filter(|_| chosen.new.is_none())
-        && !command.applied()
-        && command.joints.iter().any(|joint| joint.step == Step::Astray)
+        && 2 * command.joints.iter().filter(|joint| joint.step == Step::Astray).count()
+            >= command.joints.len().max(1)
     {
         return Err(ReplanFailure::Astray { path: path.clone() });
     }

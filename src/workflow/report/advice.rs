@@ -2,7 +2,6 @@
 
 use super::outcome::Report;
 use crate::{
-    remark::Code,
     replay::{JointReplay, Transition, Verdict},
     series::JointKind,
 };
@@ -27,7 +26,7 @@ pub enum Advice {
         joint: String,
         /// Its lag, s.
         lag_s: f64,
-        /// Whether a command can be made from it: of joints that turn, at the time of their plan.
+        /// Whether a command can be made from it: of joints that turn, in a run of the plan.
         fits: bool,
     },
     /// The error lives in the transitions, most in those of a joint.
@@ -85,8 +84,8 @@ pub fn advice(report: &Report) -> Vec<Advice> {
         return advice;
     };
     let verdict = replay.whole_run.concentration.as_ref().map(|c| c.verdict);
-    let at_its_time = report.remarks.as_slice().iter().all(|remark| remark.code != Code::OtherTime);
-    let fits = at_its_time && replay.joints.iter().any(|joint| joint.kind == JointKind::Turns);
+    let sound = report.remarks.as_slice().iter().all(|remark| !remark.code.spoils_runs());
+    let fits = sound && replay.joints.iter().any(|joint| joint.kind == JointKind::Turns);
     if let Some((joint, lag_s)) = mostly_lag(report) {
         advice.push(Advice::ShiftCommand { joint, lag_s, fits });
     } else if verdict == Some(Verdict::Elsewhere) {

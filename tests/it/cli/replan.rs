@@ -292,6 +292,25 @@ fn of_a_run_whose_clocks_differ_no_command_is_made() {
 }
 
 #[test]
+fn of_a_run_that_was_stopped_no_command_is_made() {
+    let folder = with_run();
+    let folder = folder.path();
+    let stood = std::cell::RefCell::new([0.0; 7]);
+    table(folder, "run.mcap", "stopped.csv", |joint, t_s, angle_rad| {
+        if t_s < 33.0 {
+            stood.borrow_mut()[joint] = angle_rad;
+        }
+        stood.borrow()[joint] + 1e-4 * (1e3 * t_s).sin()
+    });
+    let report = run_line(folder, "report stopped.csv");
+    assert!(stdout(&report).contains("stopped x1"), "{}", stdout(&report));
+    let next = run_line(folder, "replan stopped.csv -o next.mcap");
+    assert_eq!(next.status.code(), Some(1), "{}", stdout(&next));
+    assert!(stderr(&next).contains("the machine was stopped"), "{}", stderr(&next));
+    assert!(!folder.join("next.mcap").exists());
+}
+
+#[test]
 fn a_joint_that_slides_is_sent_as_planned_in_metres_beside_corrected_joints() {
     let folder = with_run();
     let folder = folder.path();
