@@ -74,7 +74,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     }
     let timely = timely(&words);
     let means = |meaning: Meaning| words.iter().any(|word| word.meaning == meaning);
-    let role = words.iter().find_map(|word| match word.meaning {
+    // Of a path the last part says most: `fbAxis.SetPos`.
+    let role = words.iter().rev().find_map(|word| match word.meaning {
         // What is a command as well was sent: `target_cmd`.
         Meaning::Role(Role::Planned) if means(Meaning::Role(Role::Command)) => Some(Role::Command),
         Meaning::Role(role) => Some(role),
@@ -94,13 +95,14 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let long = matches!(measure, Some(Measure::Length | Measure::LinearSpeed));
     let fits = long || matches!(measure, None | Some(Measure::Angle | Measure::AngularSpeed));
     let strong = quantity.is_some() && !long || means(Meaning::Joint);
-    let joint = joint_name(&words);
+    let words = &words[topic(&words)..];
+    let joint = joint_name(words);
     // Of a tool, not of a joint; such a position is told like that of a joint that slides.
     let place =
         role.is_some() && measure == Some(Measure::Length) && PLACE.contains(&joint.to_lowercase().as_str());
     let foreign = means(Meaning::Foreign) && !place;
     let is_joint = !timely && fits && !foreign && (strong || role.is_some() || long);
-    let desired = role.is_none().then(|| without_d(&words)).flatten();
+    let desired = role.is_none().then(|| without_d(words)).flatten();
     let desired = desired.map(|words| joint_name(&words)).map(|joint| (joint.to_lowercase(), joint));
     let key = joint.to_lowercase();
     // A quaternion has no unit; that it is meant shows where plan and measurement have it.
@@ -110,6 +112,14 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let stated = stated.or(unit);
     let words = words.iter().map(|word| word.text.to_lowercase()).collect();
     Label { role, quantity, unit, stated, words, key, joint, is_time, is_joint, is_weak: !strong, desired }
+}
+
+/// How many words are those of a topic, which names no joint: `/joint_states/boom/position`.
+fn topic(words: &[Word<'_>]) -> usize {
+    let states =
+        |word: &Word<'_>| ["state", "states"].iter().any(|state| word.text.eq_ignore_ascii_case(state));
+    let at = words.windows(2).rposition(|two| states(&two[0]) && two[1].slashed);
+    at.map_or(0, |at| at + 1)
 }
 
 /// The words without a `d` that follows a word for the position, if there is one.
@@ -220,6 +230,17 @@ mod tests {
         assert_eq!(said("actual_qd_5"), (real, Some(Quantity::Velocity), "joint_5".into(), None));
         assert_eq!(said("Achse1 Soll [°]"), (plan, position, "Achse1".into(), Some("deg")));
         assert_eq!(said("J1_ist (deg)"), (real, position, "J1".into(), Some("deg")));
+        assert_eq!(
+            said("MAIN.fbAxis[2].NcToPlc.SetPos"),
+            (plan, position, "MAIN_Axis_2_NcToPlc".into(), None)
+        );
+        assert_eq!(said("/joint_states/arm/lift/position").2, "arm/lift");
+        assert_eq!(said("/planned_joint_states/lift/position"), (plan, position, "lift".into(), None));
+        assert_eq!(
+            said("/arm/controller_state/reference/positions[2]"),
+            (plan, position, "joint_2".into(), None)
+        );
+        assert_eq!(said("/joint_states/position[2]").2, "joint_2");
         assert_eq!(said("GVL.fActPos[3]"), (real, position, "GVL_f_3".into(), None));
         assert_eq!(
             said("shoulder_pan_joint cmd"),
