@@ -34,12 +34,14 @@ use super::fit::{self, LimitsFile};
 use crate::{
     fit::{Fit, JointFit, Learning, Step, Trial},
     log::{ReadOptions, Recording},
+    math::range,
     plan::{PlanEvaluation, Setup},
     remark::{Code, Remarks},
     replay::Rules,
     series::{Series, Track},
     task::{Ceilings, Objective, Objectives},
     threads,
+    units::DEGREE_RAD,
     workflow::{carried::rest::PLAN_LEAD_S, plan::Shaping},
 };
 use command::{Subject, commanded};
@@ -104,6 +106,9 @@ impl Default for Inputs {
 
 /// Timings of the search that are looked at with their commands.
 const CANDIDATES: usize = 6;
+
+/// A plan of a joint that travels less is to hold it, rad.
+const MOVES_RAD: f64 = 0.5 * DEGREE_RAD;
 
 /// A new timing must be expected to lower the sum of all peaks by this share; otherwise the proven one stays.
 const WORTH: f64 = 0.02;
@@ -175,10 +180,7 @@ pub fn run(
     let made = threads::mapped(&options, || (), |(), (new, plan)| maker.candidate(new.clone(), plan.clone()));
     let made: Vec<Candidate> = made.into_iter().collect::<Result<_, _>>()?;
     let chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
-    if let Some(command) = chosen.command.as_ref().filter(|_| chosen.new.is_none())
-        && 2 * command.joints.iter().filter(|joint| joint.step == Step::Astray).count()
-            >= command.joints.len().max(1)
-    {
+    if chosen.new.is_none() && chosen.astray() {
         return Err(ReplanFailure::Astray { path: path.clone() });
     }
     let past =
@@ -264,6 +266,21 @@ pub(super) struct Candidate {
     pub(super) command: Option<Commanded>,
     pub(super) predicted: Predicted,
     pub(super) responses: Vec<Response>,
+}
+
+impl Candidate {
+    /// Whether half of the joints that are to move, or more, do not follow.
+    fn astray(&self) -> bool {
+        let moves = |joint: &&JointCommand| {
+            self.plan.track(&joint.name).is_some_and(|track| {
+                let [lowest, highest] = range(track.position().iter().copied());
+                highest - lowest > MOVES_RAD
+            })
+        };
+        let joints = || self.command.iter().flat_map(|command| &command.joints).filter(moves);
+        let astray = joints().filter(|joint| joint.step == Step::Astray).count();
+        astray > 0 && 2 * astray >= joints().count()
+    }
 }
 
 /// Makes candidates.
