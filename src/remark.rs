@@ -101,9 +101,12 @@ pub enum Code {
 }
 
 impl Code {
-    /// Whether a run with this doubt is no run of its plan, which no command is made from.
+    /// Doubts with which a run is none of its plan: no command is made from it, and it says nothing of the machine.
+    pub const SPOILS_RUNS: [Self; 2] = [Self::OtherTime, Self::Stopped];
+
+    /// Whether this is one of [`Self::SPOILS_RUNS`].
     pub fn spoils_runs(self) -> bool {
-        matches!(self, Self::OtherTime | Self::Stopped)
+        Self::SPOILS_RUNS.contains(&self)
     }
 
     /// The stable name, as in JSON.

@@ -123,6 +123,16 @@ impl History {
             rows.extend(read(root, &part.path(Name::Runs), Name::Runs, &RUN)?);
         }
         history.take_runs(rows);
+        let mut spoilt = BTreeSet::new();
+        for path in found.iter().map(|part| part.path(Name::Remarks)).filter(|path| root.join(path).exists())
+        {
+            let rows = read(root, &path, Name::Remarks, &REMARK)?;
+            let spoils = |row: &&Vec<Cell>| {
+                row[1].as_text().is_some_and(|code| Code::SPOILS_RUNS.iter().any(|c| c.name() == code))
+            };
+            spoilt.extend(rows.iter().filter(spoils).filter_map(|row| row[0].as_text().map(str::to_owned)));
+        }
+        history.leave_out_spoilt(&spoilt);
         if let Some(machine) = &filter.machine {
             history.check(machine)?;
         }
@@ -179,6 +189,14 @@ impl History {
         self.remarks.add(Code::SameRun, repeated, "logs with the content of another one; left out");
         self.remarks.add(Code::UnreadableLog, failed, "logs that could not be analysed; left out");
         self.remarks.add(Code::UnknownMachine, unnamed, "runs that name no machine; left out");
+    }
+
+    /// What came of another time than planned, or of a stop, says nothing of the machine.
+    fn leave_out_spoilt(&mut self, ids: &BTreeSet<String>) {
+        let all = self.runs.len();
+        self.runs.retain(|run| !ids.contains(&run.id));
+        let message = "runs at another time than their plan, or stopped on their way; left out";
+        self.remarks.add(Code::OtherTime, (all - self.runs.len()) as u64, message);
     }
 
     /// A run that nobody knows the time of has no place in a history.
@@ -296,6 +314,7 @@ impl History {
 const RUN: [&str; 6] = ["run_id", "machine", "started_at", "log_uri", "log_sha256", "error"];
 const START: [&str; 8] =
     ["run_id", "plan_id", "joint", "unit", "event_index", "planned_onset_s", "peak_error", "onset_delay_s"];
+const REMARK: [&str; 2] = ["run_id", "code"];
 const LAG: [&str; 5] = ["run_id", "plan_id", "joint", "unit", "lag_s"];
 
 fn read(root: &Path, path: &str, name: Name, columns: &[&str]) -> Result<Vec<Vec<Cell>>, FleetFailure> {

@@ -67,6 +67,17 @@ fn new_changed_and_broken_logs_are_taken_up_and_old_rows_give_way() {
 }
 
 #[test]
+fn a_run_whose_clocks_differ_is_no_part_of_the_history() {
+    let folder = fleet(1, 5);
+    let log = small_log("M00", 5, 97, [3.0, 3.0]);
+    fs::write(folder.path().join("logs/M00/05.mcap"), log).unwrap();
+    json(folder.path(), "fleet scan logs --into data");
+    let worst = json(folder.path(), "fleet worst data");
+    assert!(worst["remarks"].to_string().contains("other-time"), "{}", worst["remarks"]);
+    assert_eq!(worst["runs"], 5, "{worst}");
+}
+
+#[test]
 fn parts_of_many_scans_are_joined_and_every_row_stays() {
     let folder = fleet(3, 1);
     let (logs, data) = (folder.path().join("logs"), folder.path().join("data"));
