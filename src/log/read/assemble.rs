@@ -119,11 +119,11 @@ pub(super) fn assemble(
     for (_, series) in &mut *sides {
         quality::unwrap_turns(series, &options.continuous, &mut remarks);
     }
+    other_time::of_sides(sides[0].1, sides[1].1, &mut remarks);
     stopped::of_sides(sides[0].1, sides[1].1, &mut remarks);
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);
-    other_time::of_sides(sides[0].1, sides[1].1, &mut remarks);
     let mut source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
     source.measured_delay_s = Some(delay_s).filter(|delay_s| *delay_s != 0.0);
     let Extracted { attachments, metadata, .. } = assembly.extracted;

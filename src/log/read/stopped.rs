@@ -6,42 +6,49 @@ use crate::{
     units::DEGREE_RAD,
 };
 
-/// A joint within this of where it ends stands: rad, and m.
-const STANDS: [f64; 2] = [0.3 * DEGREE_RAD, 0.005];
+/// Motion in half a second with which a joint stands: rad, and m.
+const STANDS: [f64; 2] = [0.15 * DEGREE_RAD, 0.002];
+const STEP_S: f64 = 0.5;
 
 /// Motion of machine and plan that is worth a remark: rad, and m.
 const MOVES: [f64; 2] = [3.0 * DEGREE_RAD, 0.03];
 
-/// For so long after a stop a plan may go on: machines lag, s.
+/// For so long after a stop a plan may go on, and before a start: machines lag, s.
 const LAGS_S: f64 = 1.0;
 
-/// Remarks a run in which all joints stand from some instant on, though the plan goes on, of one joint at least, for
-/// longer and farther than machines lag.
+/// Remarks a run in which all joints stand for a while, or from then on, though the plan goes on, of one joint at least,
+/// for longer and farther than machines lag.
 pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+    if remarks.as_slice().iter().any(|remark| remark.code.spoils_runs()) {
+        return;
+    }
     let both = |track| Some((track, measured.track(Track::name(track))?));
     let joints: Vec<(&Track, &Track)> = planned.tracks.iter().filter_map(both).collect();
-    let Some(stood_s) = joints.iter().filter_map(|(_, came)| stands_from_s(came)).reduce(f64::max) else {
-        return;
-    };
-    let moved =
-        |(_, came): &(&Track, &Track)| travel(came, [f64::NEG_INFINITY, stood_s]) > least(came.kind(), MOVES);
-    if !joints.iter().any(moved) {
-        return;
-    }
-    let mut names = Vec::new();
-    for (plan, came) in &joints {
-        let end_s = came.t_s().last().copied().unwrap_or_default();
-        if travel(plan, [stood_s + LAGS_S, end_s]) > least(plan.kind(), MOVES) {
-            names.push(plan.name());
+    let ends = |(_, came): &(&Track, &Track)| Some([*came.t_s().first()?, *came.t_s().last()?]);
+    let common = joints.iter().filter_map(ends).reduce(|a, b| [a[0].max(b[0]), a[1].min(b[1])]);
+    let Some([first_s, last_s]) = common else { return };
+    let never = joints.iter().all(|(_, came)| travel(came, [first_s, last_s]) < least(came.kind(), MOVES));
+    for [from_s, to_s] in standing(&joints, [first_s, last_s]) {
+        let mut names = Vec::new();
+        for (plan, came) in &joints {
+            let missed = travel(plan, [from_s + LAGS_S, to_s - LAGS_S]) - travel(came, [from_s, to_s]);
+            if missed > least(plan.kind(), MOVES) {
+                names.push(plan.name());
+            }
         }
-    }
-    if !names.is_empty() {
+        if names.is_empty() || never {
+            continue;
+        }
+        let for_good = to_s + STEP_S > last_s;
+        let until = if for_good { " on".to_owned() } else { format!(" until {to_s:.1} s") };
         let message = format!(
-            "no joint moves after {stood_s:.2} s, though the plan of {} goes on: the machine was stopped (emergency stop, \
-             fault, hold)",
+            "no joint moves from {from_s:.1} s{until}, though the plan of {} goes on: the machine was stopped (emergency \
+             stop, fault, hold)",
             names.join(", ")
         );
         remarks.add(Code::Stopped, 1, message);
+        // What stands later, stands at another time than planned.
+        return;
     }
 }
 
@@ -52,12 +59,26 @@ fn least(kind: JointKind, of: [f64; 2]) -> f64 {
     }
 }
 
-/// When a joint is where it ends and stays there, s.
-fn stands_from_s(track: &Track) -> Option<f64> {
-    let end = track.position().last()?;
-    let away = |q: &f64| (q - end).abs() > least(track.kind(), STANDS);
-    let last = track.position().iter().rposition(away).map_or(0, |at| at + 1);
-    track.t_s().get(last).copied()
+/// Stretches in which all joints stand, s; a hole in the first one's samples ends one.
+fn standing(joints: &[(&Track, &Track)], [first_s, last_s]: [f64; 2]) -> Vec<[f64; 2]> {
+    let mut found: Vec<[f64; 2]> = Vec::new();
+    let places = |t_s: f64| joints.iter().map(|(_, came)| came.held_at(t_s).position).collect::<Vec<_>>();
+    let (mut at_s, mut before) = (first_s, places(first_s));
+    for &next_s in joints.first().map_or(&[][..], |(_, came)| came.t_s()) {
+        if next_s < at_s + STEP_S || next_s > last_s {
+            continue;
+        }
+        let now = places(next_s);
+        let moved = |k: usize| (now[k] - before[k]).abs() > least(joints[k].1.kind(), STANDS);
+        if next_s < at_s + 2.0 * STEP_S && !(0..joints.len()).any(moved) {
+            match found.last_mut().filter(|[_, to_s]| *to_s >= at_s) {
+                Some(last) => last[1] = next_s,
+                None => found.push([at_s, next_s]),
+            }
+        }
+        (at_s, before) = (next_s, now);
+    }
+    found
 }
 
 /// Between lowest and highest position in a span of time.
@@ -74,6 +95,11 @@ mod tests {
 
     /// What is said of a machine that follows, 0.2 s late, until it is stopped.
     fn said(stopped_s: f64, ends_s: f64) -> Vec<String> {
+        of_course(ends_s, |t| t.min(stopped_s) - 0.2)
+    }
+
+    /// The same of one that is so far at each instant.
+    fn of_course(ends_s: f64, course: impl Fn(f64) -> f64) -> Vec<String> {
         let plan = |size: f64, t: f64| {
             size * (((t - 3.0) / 10.0).clamp(0.0, 1.0) - ((t - 15.0) / 5.0).clamp(0.0, 0.4))
         };
@@ -87,7 +113,7 @@ mod tests {
             Series { tracks: vec![track("swing", 1.0), track("boom", -0.5)] }
         };
         let mut remarks = Remarks::default();
-        of_sides(&of(30.0, &|t| t), &of(ends_s, &|t| t.min(stopped_s) - 0.2), &mut remarks);
+        of_sides(&of(30.0, &|t| t), &of(ends_s, &course), &mut remarks);
         remarks.as_slice().iter().map(|remark| remark.message.clone()).collect()
     }
 
@@ -96,10 +122,12 @@ mod tests {
         for stopped_s in [6.0, 15.5] {
             let found = said(stopped_s, 30.0);
             let one = found.first().map_or("", String::as_str);
-            let at_s = one.trim_start_matches("no joint moves after ").split(' ').next().unwrap_or_default();
-            let late_s = stopped_s - at_s.parse::<f64>().unwrap_or(f64::NAN);
-            assert!(found.len() == 1 && late_s.abs() < 0.2, "{stopped_s}: {found:?}");
+            let at_s = one.trim_start_matches("no joint moves from ").split(' ').next().unwrap_or_default();
+            let late_s = at_s.parse::<f64>().unwrap_or(f64::NAN) - stopped_s;
+            assert!(found.len() == 1 && late_s.abs() < 1.0, "{stopped_s}: {found:?}");
         }
+        let held = of_course(30.0, |t| if t < 6.0 { t } else { (t - 4.0).max(6.0) });
+        assert!(matches!(&held[..], [one] if one.contains(" until 10.0 s")), "{held:?}");
         assert_eq!(said(f64::INFINITY, 30.0), Vec::<String>::new());
         assert_eq!(said(f64::INFINITY, 9.0), Vec::<String>::new(), "a log that ends early");
         assert_eq!(said(16.9, 30.0), Vec::<String>::new(), "almost at the end");
