@@ -20,9 +20,10 @@ pub enum LogError {
     NotMcap { path: PathBuf, found: String, fix: &'static str },
     /// A table that does not say all that is needed.
     #[error(
-        "{} is a table that leaves something open; `hydrotrace import {} -o run.mcap` takes options for that, and \
+        "{} is a table that leaves something open; `hydrotrace import {}{} -o run.mcap` {}, and \
          the log that it writes is read as any other",
-        path.display(), shell_argument(path)
+        path.display(), shell_argument(path), source.option().map_or("", |(option, _)| option),
+        source.option().map_or("takes options for that", |(_, meaning)| meaning)
     )]
     Table { path: PathBuf, source: Box<CsvError> },
     /// A file of another form that cannot be read.

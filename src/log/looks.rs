@@ -7,20 +7,59 @@ use super::file::Span;
 /// As much of a file as tells what it is if it is no log.
 pub(super) const LOOKED_AT: Span = Span { start: 0, end: 4096 };
 
-/// Whether the first bytes of a file are text whose first lines are split alike, or text of a file named as a table.
+/// Marks that begin text in UTF-16.
+const MARKS_OF_WIDE_TEXT: [&[u8]; 2] = [b"\xff\xfe", b"\xfe\xff"];
+
+/// Whether the first bytes of a file are text whose first or last lines are split alike, or text of a file named as a table.
 pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
     const LINES: usize = 3;
+    if MARKS_OF_WIDE_TEXT.iter().any(|mark| bytes.starts_with(mark)) {
+        return true;
+    }
     let text = String::from_utf8_lossy(bytes);
     if text.trim().is_empty() || text.chars().any(|c| c.is_control() && !c.is_whitespace()) {
         return false;
     }
     let named = path
         .extension()
-        .is_some_and(|ending| ["csv", "tsv"].iter().any(|one| ending.eq_ignore_ascii_case(one)));
-    let alike = |separator: char| {
-        let lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#')).take(LINES);
-        let counts: Vec<usize> = lines.map(|line| line.matches(separator).count()).collect();
-        counts.len() == LINES && counts[0] > 0 && counts.iter().all(|count| *count == counts[0])
+        .is_some_and(|ending| ["csv", "tsv", "lvm"].iter().any(|one| ending.eq_ignore_ascii_case(one)));
+    let lines: Vec<&str> =
+        text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#')).collect();
+    // Below other lines a table has its own; the very last may be cut.
+    let last = lines.len().saturating_sub(LINES + 1);
+    let alike = |separator: char, lines: &[&str]| {
+        let mut counts = lines.iter().take(LINES).map(|line| line.matches(separator).count());
+        let first = counts.next().unwrap_or_default();
+        lines.len() >= LINES && first > 0 && counts.all(|count| count == first)
     };
-    named || [';', ',', '\t'].into_iter().any(alike)
+    let numbers = |separator: char, line: &&str| {
+        let cells: Vec<&str> = line.split(separator).map(str::trim).filter(|cell| !cell.is_empty()).collect();
+        let known = cells.iter().filter(|cell| cell.replace(',', ".").parse::<f64>().is_ok()).count();
+        2 * known > cells.len()
+    };
+    let below = |one: char| {
+        let lines = &lines[last..];
+        alike(one, lines) && lines.iter().take(LINES).all(|line| numbers(one, line))
+    };
+    named || [';', ',', '\t'].into_iter().any(|one| alike(one, &lines) || below(one))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_may_stand_below_other_lines_and_text_in_utf_16_is_one() {
+        let is = |name: &str, text: &[u8]| is_table(Path::new(name), text);
+        assert!(is("a.txt", b"Trace 1\nof 3.5.2026\n\nt;a;b\n0;1,5;2\n1;1,5;2\n2;1,5;2\n3;1,5;2\n"));
+        assert!(is("a.txt", b"\xff\xfet\0;\0"));
+        assert!(is("run.lvm", b"LabVIEW Measurement\n"));
+        for text in [
+            &b"{\n  \"a\": [\n    1,\n    2,\n    3\n  ]\n}\n"[..],
+            b"a: 1\nb: 2\nc: 3\nd: 4\n",
+            b"a, b, c\nd\n",
+        ] {
+            assert!(!is("a.txt", text), "{}", String::from_utf8_lossy(text));
+        }
+    }
 }

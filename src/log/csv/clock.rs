@@ -8,7 +8,7 @@ use super::{
     head::Head,
     label::Label,
     number::nanoseconds,
-    time::{FIRST_ABSOLUTE_NS, TimeSource},
+    time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
     unit::{Measure, Unit, parse_unit},
 };
 use crate::{
@@ -129,7 +129,10 @@ impl Look<'_> {
                 expected: "time",
             });
         }
-        if let Some(unit) = given.or(stated) {
+        let mut behind = self.cells(column).filter(|cell| !cell.is_empty()).map(|cell| with_unit(cell).1);
+        let first = behind.next().flatten();
+        let written = first.filter(|_| behind.all(|unit| unit == first));
+        if let Some(unit) = written.or(given).or(stated) {
             return Ok(self.found(TimeSource::Number { column, unit }, None));
         }
         let milli: Vec<i64> = self.cells(column).filter_map(|cell| nanoseconds(cell, comma, 1_000)).collect();

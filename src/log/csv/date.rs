@@ -21,7 +21,7 @@ pub(super) enum Part {
 }
 
 /// Tried in this order: of two that fit, the first is meant more often.
-const FORMS: [(&str, &str, Part); 17] = [
+const FORMS: [(&str, &str, Part); 18] = [
     ("%Y-%m-%d %H:%M:%S%.f%#z", "yyyy-mm-dd hh:mm:ss with zone", Part::Zoned),
     ("%Y-%m-%d %H:%M:%S%.f", "yyyy-mm-dd hh:mm:ss", Part::Local),
     ("%Y/%m/%d %H:%M:%S%.f", "yyyy/mm/dd hh:mm:ss", Part::Local),
@@ -34,6 +34,7 @@ const FORMS: [(&str, &str, Part); 17] = [
     ("%d/%m/%Y %H:%M:%S%.f", "dd/mm/yyyy hh:mm:ss", Part::Local),
     ("%m/%d/%Y %H:%M:%S%.f", "mm/dd/yyyy hh:mm:ss", Part::Local),
     ("%H:%M:%S%.f", "hh:mm:ss", Part::TimeOfDay),
+    ("%I:%M:%S%.f %p", "hh:mm:ss am/pm", Part::TimeOfDay),
     ("%Y-%m-%d", "yyyy-mm-dd", Part::Day),
     ("%Y/%m/%d", "yyyy/mm/dd", Part::Day),
     ("%d.%m.%Y", "dd.mm.yyyy", Part::Day),
@@ -80,7 +81,7 @@ impl DateForm {
 }
 
 /// The same text with a blank between date and time and a point before the fraction, which some
-/// write as a comma or as a third colon.
+/// write as a comma, a semicolon or a third colon.
 fn plain(text: &str) -> Option<String> {
     const LONGEST: usize = 48;
     if text.len() > LONGEST || !text.starts_with(|c: char| c.is_ascii_digit()) {
@@ -90,7 +91,7 @@ fn plain(text: &str) -> Option<String> {
     let mut zoned = false;
     let plain = text.char_indices().map(|(at, c)| match c {
         'T' | 't' | '_' if at >= 8 && !zoned && colons == 0 => ' ',
-        ',' => '.',
+        ',' | ';' => '.',
         ':' if !zoned => {
             colons += 1;
             if colons == 3 { '.' } else { ':' }
@@ -140,6 +141,8 @@ mod tests {
     #[test]
     fn a_time_of_day_counts_from_midnight() {
         assert_eq!(ns("00:01:00,5"), (60_500_000_000, "hh:mm:ss"));
+        assert_eq!(ns("00:01:00;500"), (60_500_000_000, "hh:mm:ss"));
+        assert_eq!(ns("12:01:00.5 AM"), (60_500_000_000, "hh:mm:ss am/pm"));
     }
 
     #[test]

@@ -118,3 +118,13 @@ pub enum CsvError {
     #[error(transparent)]
     Write(#[from] WriteError),
 }
+
+impl CsvError {
+    /// The option that is missing most likely, and what an import with it does.
+    pub(in crate::log) const fn option(&self) -> Option<(&'static str, &'static str)> {
+        match self {
+            Self::AngleUnit { .. } => Some((" --degrees", "reads it if its angles are in degrees")),
+            _ => None,
+        }
+    }
+}

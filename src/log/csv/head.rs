@@ -33,6 +33,9 @@ pub(super) struct Head {
 
 const SAMPLE_ROWS: usize = 200;
 
+/// So many rows with numbers may stand above the names of columns.
+const FEW_ROWS: usize = 5;
+
 pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) -> Head {
     let start = head(text);
     let mut rows = Rows::new(start, dialect.separator);
@@ -45,6 +48,16 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) ->
         if found.sample.is_empty() && !is_data(&record, dialect.width) {
             above.push((line, record.iter().map(cell_text).collect()));
             continue;
+        }
+        if found.sample.len() < FEW_ROWS {
+            let cells: Vec<String> = record.iter().map(cell_text).collect();
+            let again = above.iter().any(|(_, other)| *other == cells);
+            if record.len().abs_diff(dialect.width) <= 1 && cells.len() > 2 && are_names(&cells) && !again {
+                // What came before looked like numbers, but the names stand here.
+                found.sample.clear();
+                above.push((line, cells));
+                continue;
+            }
         }
         if found.sample.is_empty() {
             found.first_line = line;

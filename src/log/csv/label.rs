@@ -42,6 +42,8 @@ const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 /// Reads a header; `below` is the cell of a row of units.
 pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let header = header.trim();
+    // `rostopic echo -p` puts it before the path of every field.
+    let header = header.strip_prefix("field.").unwrap_or(header);
     let (name, stated) = without_unit(header);
     let mut unit = stated.or_else(|| below.and_then(parse_unit));
     if let Some((joint, role)) = own(name).filter(|_| unit.is_some()) {
@@ -91,7 +93,11 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         Some(Measure::AngularSpeed | Measure::LinearSpeed) => Some(Quantity::Velocity),
         _ => quantity,
     };
-    let is_time = timely && matches!(measure, None | Some(Measure::Time)) && !means(Meaning::Foreign);
+    // As LabVIEW names it.
+    let timely = timely || header == "X_Value";
+    let is_time = timely
+        && matches!(measure, None | Some(Measure::Time))
+        && (!means(Meaning::Foreign) || header == "X_Value");
     let long = matches!(measure, Some(Measure::Length | Measure::LinearSpeed));
     let fits = long || matches!(measure, None | Some(Measure::Angle | Measure::AngularSpeed));
     let strong = quantity.is_some() && !long || means(Meaning::Joint);
@@ -168,7 +174,7 @@ fn own(name: &str) -> Option<(&str, Role)> {
 
 /// The header before its unit, and the unit.
 fn without_unit(header: &str) -> (&str, Option<Unit>) {
-    for (open, close) in [('[', ']'), ('(', ')')] {
+    for (open, close) in [('[', ']'), ('(', ')'), ('（', '）')] {
         let Some(inner) = header.strip_suffix(close).and_then(|rest| rest.rsplit_once(open)) else {
             continue;
         };
@@ -194,8 +200,11 @@ fn without_unit(header: &str) -> (&str, Option<Unit>) {
 fn joint_name(words: &[Word<'_>]) -> String {
     let mut name = String::new();
     let mut gap = false;
-    for word in words {
-        if matches!(word.meaning, Meaning::Role(_) | Meaning::Quantity(_) | Meaning::Time) {
+    for (at, word) in words.iter().enumerate() {
+        // The type of a variable of a controller: `fActPos`, `lrSetPosition`.
+        let typed = ["f", "r", "lr"].contains(&word.text)
+            && words.get(at + 1).is_some_and(|next| !next.apart && matches!(next.meaning, Meaning::Role(_)));
+        if typed || matches!(word.meaning, Meaning::Role(_) | Meaning::Quantity(_) | Meaning::Time) {
             gap = true;
             continue;
         }
@@ -241,7 +250,7 @@ mod tests {
             (plan, position, "joint_2".into(), None)
         );
         assert_eq!(said("/joint_states/position[2]").2, "joint_2");
-        assert_eq!(said("GVL.fActPos[3]"), (real, position, "GVL_f_3".into(), None));
+        assert_eq!(said("GVL.fActPos[3]"), (real, position, "GVL_3".into(), None));
         assert_eq!(
             said("shoulder_pan_joint cmd"),
             (Some(Role::Command), None, "shoulder_pan_joint".into(), None)

@@ -7,6 +7,7 @@ use super::{
     column::{find, present},
     head::Head,
     label::Label,
+    pairing::{Draft, plan_beside_measured, without_shared_words},
 };
 use crate::{
     remark::{Code, Remarks},
@@ -37,17 +38,6 @@ pub(super) struct Layout {
     pub(super) joints: Vec<String>,
     pub(super) uses: Vec<Use>,
     pub(super) interfaces: Vec<Interface>,
-}
-
-#[derive(Debug, Clone)]
-struct Draft {
-    column: usize,
-    role: Role,
-    quantity: Quantity,
-    key: String,
-    joint: String,
-    /// Whether the caller or a word of the header says the role.
-    stated: bool,
 }
 
 /// The option that names columns of a role and quantity.
@@ -107,7 +97,9 @@ pub(super) fn lay_out(
         let (key, joint) = (label.key.clone(), label.joint.clone());
         drafts.push(Draft { column, role, quantity, key, joint, stated: label.role.is_some() });
     }
+    plan_beside_measured(head, &mut drafts, remarks);
     drop_repeats(head, &mut drafts, remarks)?;
+    without_shared_words(&mut drafts);
     let joints = joints(head, &drafts, remarks)?;
     let place = |key: &str| joints.iter().position(|(known, _)| known == key);
     let uses = drafts.iter().filter_map(|draft| {

@@ -14,10 +14,12 @@ mod expression;
 mod head;
 mod label;
 mod layout;
+mod long;
 mod map;
 mod number;
 mod objects;
 mod options;
+mod pairing;
 mod read;
 mod rows;
 mod run;
@@ -37,6 +39,8 @@ pub(in crate::log) use run::ORIGIN;
 pub use stream::TableStream;
 pub use time::{UNDATED_NS, is_dated};
 pub use understood::{ColumnRead, TimeRead, Understood};
+
+use std::borrow::Cow;
 
 use super::write::Role;
 use crate::remark::Remarks;
@@ -62,6 +66,7 @@ pub(in crate::log) fn joint_in(name: &str) -> String {
 /// [`CsvError`]
 pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<CsvRun, CsvError> {
     let text = text::of_bytes(name, bytes)?;
+    let text = long::widened(name, &text, options).map_or(text, Cow::Owned);
     let mut remarks = Remarks::default();
     Form::of(name, &text, options, &mut remarks)?.read(name, &text, remarks).map(|(run, _)| run)
 }

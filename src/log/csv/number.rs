@@ -105,7 +105,7 @@ pub(super) fn looks(cell: &[u8]) -> Looks {
         (None, None) => {
             let dated = cell.len() >= 8
                 && cell[0].is_ascii_digit()
-                && cell.iter().all(|byte| byte.is_ascii_digit() || b" -:./,TZ+APMUC".contains(byte));
+                && cell.iter().all(|byte| byte.is_ascii_digit() || b" -:./,;TZ+APMUC".contains(byte));
             if dated { Looks::Date } else { Looks::Text }
         }
     }

@@ -3,7 +3,7 @@
 use super::{
     date::{DateForm, Part},
     number::nanoseconds,
-    unit::Unit,
+    unit::{Measure, Unit, parse_unit},
 };
 use crate::units::NS_PER_S;
 
@@ -39,7 +39,9 @@ impl TimeSource {
     ) -> Option<i64> {
         match self {
             Self::Rate { hz } => whole(row as f64 * NS_PER_S / hz),
-            Self::Number { column, unit } => nanoseconds(cell(*column), decimal_comma, whole(unit.factor)?),
+            Self::Number { column, unit } => {
+                nanoseconds(with_unit(cell(*column)).0, decimal_comma, whole(unit.factor)?)
+            }
             Self::Date { column, form } => form.ns(cell(*column)),
             Self::DayAndTime { day, time } => day.1.ns(cell(day.0))?.checked_add(time.1.ns(cell(time.0))?),
         }
@@ -101,6 +103,16 @@ impl TimeSource {
             *ns = ns.saturating_add(start_ns);
         }
     }
+}
+
+/// The number of a cell, and the unit that some programs write behind each: `0.25 sec`.
+pub(super) fn with_unit(cell: &[u8]) -> (&[u8], Option<Unit>) {
+    let cell = cell.trim_ascii();
+    let digits = cell.iter().rposition(u8::is_ascii_digit).map_or(0, |at| at + 1);
+    let unit = cell.get(digits..).filter(|rest| !rest.is_empty());
+    let unit = unit.and_then(|rest| parse_unit(std::str::from_utf8(rest).ok()?));
+    unit.filter(|unit| unit.measure == Measure::Time)
+        .map_or((cell, None), |unit| (&cell[..digits], Some(unit)))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "range checked")]

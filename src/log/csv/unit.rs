@@ -41,9 +41,14 @@ const CENTIMETRE: Unit = unit("cm", Measure::Length, 1e-2);
 const METRE: Unit = unit("m", Measure::Length, 1.0);
 
 /// Spellings, in lower case and with `deg` for the degree sign.
-const UNITS: [(&[&str], Unit); 27] = [
-    (&["rad", "radian", "radians"], RADIAN),
-    (&["deg", "degree", "degrees", "grad"], DEGREE),
+const UNITS: [(&[&str], Unit); 32] = [
+    (&["rad", "radian", "radians", "弧度"], RADIAN),
+    (&["deg", "degree", "degrees", "grad", "grados", "gradi", "degrés", "度"], DEGREE),
+    (&["0.1deg", "0.1 deg"], unit("0.1 deg", Measure::Angle, 0.1 * DEGREE_RAD)),
+    (&["0.01deg", "0.01 deg"], unit("0.01 deg", Measure::Angle, 0.01 * DEGREE_RAD)),
+    (&["0.001deg", "0.001 deg"], unit("0.001 deg", Measure::Angle, 0.001 * DEGREE_RAD)),
+    (&["0.1mm", "0.1 mm"], unit("0.1 mm", Measure::Length, 1e-4)),
+    (&["0.01mm", "0.01 mm"], unit("0.01 mm", Measure::Length, 1e-5)),
     (&["mrad"], unit("mrad", Measure::Angle, 1e-3)),
     (&["mdeg"], unit("mdeg", Measure::Angle, 1e-3 * DEGREE_RAD)),
     (&["rev", "turn", "turns"], unit("rev", Measure::Angle, TAU)),
@@ -54,14 +59,14 @@ const UNITS: [(&[&str], Unit); 27] = [
     ),
     (&["mrad/s", "mrad_s"], unit("mrad/s", Measure::AngularSpeed, 1e-3)),
     (&["rpm", "1/min", "u/min"], unit("rpm", Measure::AngularSpeed, TAU / 60.0)),
-    (&["mm", "millimetre", "millimetres", "millimeter", "millimeters"], MILLIMETRE),
+    (&["mm", "毫米", "millimetre", "millimetres", "millimeter", "millimeters"], MILLIMETRE),
     (&["cm", "centimetre", "centimetres", "centimeter", "centimeters"], CENTIMETRE),
     (&["m", "metre", "metres", "meter", "meters"], METRE),
     (&["mm/s", "mm_s", "mm/sec"], unit("mm/s", Measure::LinearSpeed, 1e-3)),
     (&["cm/s", "cm_s", "cm/sec"], unit("cm/s", Measure::LinearSpeed, 1e-2)),
     (&["m/s", "m_s", "m/sec"], unit("m/s", Measure::LinearSpeed, 1.0)),
-    (&["s", "sec", "secs", "seconds", "second"], unit("s", Measure::Time, 1e9)),
-    (&["ms", "msec", "milliseconds", "millis"], unit("ms", Measure::Time, 1e6)),
+    (&["s", "秒", "sec", "secs", "seconds", "second"], unit("s", Measure::Time, 1e9)),
+    (&["ms", "毫秒", "msec", "milliseconds", "millis"], unit("ms", Measure::Time, 1e6)),
     (&["us", "µs", "μs", "usec", "microseconds", "micros"], unit("us", Measure::Time, 1e3)),
     (&["ns", "nsec", "nanosec", "nanoseconds", "nanos"], unit("ns", Measure::Time, 1.0)),
     (&["min", "minutes"], unit("min", Measure::Time, 60e9)),
@@ -92,9 +97,10 @@ pub(super) fn parse_unit(text: &str) -> Option<Unit> {
 
 /// The unit that ends a name, as in `q1_deg` or `J1_planned_rad_s`, and the name without it.
 pub(super) fn split_suffix(name: &str) -> Option<(&str, Unit)> {
-    const SUFFIXES: [&str; 21] = [
-        "rad_s", "deg_s", "mrad_s", "mm_s", "cm_s", "m_s", "rad", "deg", "mrad", "mdeg", "mm", "cm", "m",
-        "ms", "us", "ns", "s", "bar", "mbar", "pa", "°",
+    const SUFFIXES: [&str; 26] = [
+        "0.1deg", "0.01deg", "0.001deg", "0.1mm", "0.01mm", "rad_s", "deg_s", "mrad_s", "mm_s", "cm_s",
+        "m_s", "rad", "deg", "mrad", "mdeg", "mm", "cm", "m", "ms", "us", "ns", "s", "bar", "mbar", "pa",
+        "°",
     ];
     let lower = name.to_lowercase();
     let suffix = SUFFIXES.iter().find(|suffix| {
@@ -127,6 +133,7 @@ mod tests {
         assert_eq!(split("stamp_ns"), Some(("stamp", "ns")));
         assert_eq!(split("boom_set_mm"), Some(("boom_set", "mm")));
         assert_eq!(split("boom_measured_m_s"), Some(("boom_measured", "m/s")));
+        assert_eq!(split("boom_PV_0.1deg"), Some(("boom_PV", "0.1 deg")));
         assert_eq!(split("axes"), None);
         assert_eq!(split("İ_deg").map(|(stem, _)| stem), Some("İ"));
     }

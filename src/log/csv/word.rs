@@ -17,19 +17,27 @@ pub(super) enum Meaning {
 }
 
 const PLANNED: &str = "target planned plan desired des reference ref setpoint set sp soll sollwert goal nominal nom demand \
-    wanted consigne trajectory traj fuehrung";
+    wanted consigne trajectory traj fuehrung aspos consigna referencia riferimento alvo ohje ohjearvo börvärde zadana zadane \
+    规划 规划值 计划 期望 期望值 目标 目标值 设定 设定值 给定 给定值 参考 参考值 目標 目標値 設定値 목표 목표값 \
+    задание задано заданное заданный уставка план";
 const MEASURED: &str = "actual act measured meas feedback fb fbk ist istwert real sensor encoder enc pv measurement reached \
-    mess messwert ms";
-const COMMAND: &str = "command commands commanded cmd stell";
-const POSITION: &str = "q pos position positions posn angle angles winkel lage theta phi";
-const VELOCITY: &str = "qd dq vel velocity velocities velo speed omega geschwindigkeit drehzahl qdot";
-const JOINT: &str = "j joint axis achse gelenk ax axes jnt joints";
-const TIME: &str = "time timestamp zeit zeitstempel date datum uhrzeit datetime stamp elapsed temps clock";
+    mess messwert ms aipos mesure mesuré mesurée réel réelle medido medida misurato misurata attuale mitattu oloarvo ärvärde \
+    zmierzona 实际 实际值 实测 实测值 测量 测量值 反馈 反馈值 当前 当前值 実際 実際値 実測 実測値 現在 現在値 실제 실제값 측정 측정값 \
+    факт фактический фактическое текущее измерено измеренное измеренный";
+const COMMAND: &str = "command commands commanded cmd stell 指令 指令值 指令値 命令 명령";
+const POSITION: &str = "q pos position positions posn angle angles winkel lage theta phi posición posicion posizione ángulo \
+    angulo angolo kulma vinkel 角度 转角 位置 각도 위치 угол положение";
+const VELOCITY: &str = "qd dq vel velocity velocities velo speed omega geschwindigkeit drehzahl qdot vitesse velocidad \
+    velocità nopeus hastighet 速度 角速度 转速 속도 скорость";
+const JOINT: &str = "j joint axis achse gelenk ax axes jnt joints eje asse 关节 関節 軸 轴 관절 ось сустав";
+const TIME: &str = "time timestamp zeit zeitstempel date datum uhrzeit datetime stamp elapsed temps clock ipoc tiempo tempo \
+    aika tid czas 时间 时刻 時間 時刻 시간 время";
 const FOREIGN: &str = "qdd ddq acc accel acceleration beschleunigung torque tau effort moment drehmoment current strom \
     voltage spannung power leistung temperature temp temperatur pressure druck flow valve ventil spool \
     force kraft mode status error err fehler deviation abweichung lag schleppfehler tcp tool pose cart \
     cartesian output input digital analog safety runtime counter index scaling fraction robot x y z jerk \
-    level temperatures currents torques forces pressures modes voltages";
+    level temperatures currents torques forces pressures modes voltages following schleppabstand erreur écart errore \
+    pression presión pressione 误差 偏差 压力 电流 电压 温度 力矩 扭矩 流量 加速度 誤差 圧力 電流 電圧 流量 오차 압력 ошибка давление";
 
 fn meaning_of_word(word: &str) -> Meaning {
     let lists = [
@@ -55,6 +63,11 @@ pub(super) struct Word<'a> {
     /// Whether a slash alone does.
     pub(super) slashed: bool,
     pub(super) meaning: Meaning,
+}
+
+/// How many words of a text that are not in ASCII have a meaning in a header.
+pub(super) fn foreign_words(text: &str) -> usize {
+    words(text).iter().filter(|word| !word.text.is_ascii() && word.meaning != Meaning::Name).count()
 }
 
 /// Splits at separators, between letters and digits, and where lower case turns into upper case;
@@ -90,24 +103,47 @@ pub(super) fn words(header: &str) -> Vec<Word<'_>> {
 fn push<'a>(text: &'a str, apart: bool, words: &mut Vec<Word<'a>>) {
     let lower = text.to_lowercase();
     let meaning = meaning_of_word(&lower);
-    // Byte offsets into the lower-case text hold for the text itself only in ASCII.
-    if meaning == Meaning::Name
-        && text.is_ascii()
-        && let Some(cuts) = compound(&lower)
-    {
-        let mut start = 0;
-        for end in cuts {
-            words.push(Word {
-                text: &text[start..end],
-                apart: apart && start == 0,
-                slashed: false,
-                meaning: meaning_of_word(&lower[start..end]),
-            });
-            start = end;
-        }
-        return;
+    // Byte offsets into the lower-case text hold for the text itself where no letter changes its length.
+    let cuts = match meaning {
+        Meaning::Name if text.is_ascii() => compound(&lower),
+        Meaning::Name if lower == text => unspaced(text),
+        _ => None,
+    };
+    let mut start = 0;
+    for end in cuts.unwrap_or_default() {
+        let meaning = meaning_of_word(&lower[start..end]);
+        words.push(Word { text: &text[start..end], apart: apart && start == 0, slashed: false, meaning });
+        start = end;
     }
-    words.push(Word { text, apart, slashed: false, meaning });
+    if start < text.len() {
+        words.push(Word { text: &text[start..], apart: apart && start == 0, slashed: false, meaning });
+    }
+}
+
+/// Where the parts of a text end that is written without blanks between words, as Chinese and Japanese are: the longest
+/// known words, and what lies between them.
+fn unspaced(text: &str) -> Option<Vec<usize>> {
+    const LONGEST: usize = 3 * 40;
+    const FIRST: char = '\u{2e80}';
+    if text.len() > LONGEST || !text.starts_with(|c| c >= FIRST) {
+        return None;
+    }
+    let ends = |start: usize| text[start..].char_indices().map(move |(at, c)| start + at + c.len_utf8());
+    let mut cuts = Vec::new();
+    let mut start = 0;
+    while let Some(next) = ends(start).next() {
+        match ends(start).rfind(|end| meaning_of_word(&text[start..*end]) != Meaning::Name) {
+            Some(end) => {
+                cuts.extend([start, end]);
+                start = end;
+            }
+            None => start = next,
+        }
+    }
+    cuts.push(text.len());
+    cuts.dedup();
+    cuts.retain(|cut| *cut > 0);
+    Some(cuts)
 }
 
 /// Where the parts of a word of two or three known parts end.
@@ -147,6 +183,9 @@ mod tests {
         assert_eq!(split("istpos.J2"), ["ist", "pos", "J", "2"]);
         assert_eq!(split("shoulder_pan_joint"), ["shoulder", "pan", "joint"]);
         assert_eq!(split("qsollwinkel"), ["q", "soll", "winkel"]);
+        assert_eq!(split("关节1规划角度"), ["关节", "1", "规划", "角度"]);
+        assert_eq!(split("大臂角度设定值"), ["大臂", "角度", "设定值"]);
+        assert_eq!(split("目標角度"), ["目標", "角度"]);
     }
 
     #[test]

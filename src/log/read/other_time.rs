@@ -1,5 +1,6 @@
 //! Finds measurements that follow their plan at another time: clocks that differ, or a run at another speed.
 
+use super::stopped;
 use crate::{
     math::quantile,
     remark::{Code, Remarks},
@@ -34,8 +35,18 @@ const USUAL_PACE: [f64; 2] = [0.97, 1.03];
 /// Share of its range after which a joint has begun to move, and before which it has not ended.
 const BEGUN: f64 = 0.05;
 
+/// Remarks a run that was stopped or held, or else one at another time than its plan, or one that was late and was stopped.
+pub(super) fn or_stopped(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+    stopped::of_sides(planned, measured, true, remarks);
+    of_sides(planned, measured, remarks);
+    stopped::of_sides(planned, measured, false, remarks);
+}
+
 /// Remarks a run whose joints follow their plan, but earlier, much later, slower or faster.
-pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+    if remarks.as_slice().iter().any(|remark| remark.code.spoils_runs()) {
+        return;
+    }
     let both = |track| Both::of(track, measured.track(track.name())?);
     let joints: Vec<Both> = planned.tracks.iter().filter_map(both).collect();
     let apart = apart(&joints, |t_s| t_s);

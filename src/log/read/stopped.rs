@@ -1,6 +1,7 @@
 //! Finds a machine that was stopped while its plan went on.
 
 use crate::{
+    math::quantile,
     remark::{Code, Remarks},
     series::{JointKind, Series, Track},
     units::DEGREE_RAD,
@@ -13,12 +14,17 @@ const STEP_S: f64 = 0.5;
 /// Motion of machine and plan that is worth a remark: rad, and m.
 const MOVES: [f64; 2] = [3.0 * DEGREE_RAD, 0.03];
 
+/// Share of that within a step with which a plan is on its way.
+const WAY: f64 = 0.3;
+
 /// For so long after a stop a plan may go on, and before a start: machines lag, s.
 const LAGS_S: f64 = 1.0;
 
 /// Remarks a run in which all joints stand for a while, or from then on, though the plan goes on, of one joint at least,
 /// for longer and farther than machines lag.
-pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+///
+/// With `in_time` only one that followed its plan at the same time before: what stands later than planned is late.
+pub(super) fn of_sides(planned: &Series, measured: &Series, in_time: bool, remarks: &mut Remarks) {
     if remarks.as_slice().iter().any(|remark| remark.code.spoils_runs()) {
         return;
     }
@@ -36,10 +42,15 @@ pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remark
                 names.push(plan.name());
             }
         }
-        if names.is_empty() || never {
+        let for_good = to_s + STEP_S > last_s;
+        // One that stands where its plan rests may be late.
+        let on_its_way = joints.iter().any(|(plan, _)| {
+            travel(plan, [from_s - STEP_S, from_s + STEP_S]) > WAY * least(plan.kind(), MOVES)
+        });
+        let told = for_good || on_its_way;
+        if names.is_empty() || never || !told || in_time && !followed(&joints, [first_s, from_s]) {
             continue;
         }
-        let for_good = to_s + STEP_S > last_s;
         let until = if for_good { " on".to_owned() } else { format!(" until {to_s:.1} s") };
         let message = format!(
             "no joint moves from {from_s:.1} s{until}, though the plan of {} goes on: the machine was stopped (emergency \
@@ -81,6 +92,25 @@ fn standing(joints: &[(&Track, &Track)], [first_s, last_s]: [f64; 2]) -> Vec<[f6
     found
 }
 
+/// Whether the joints that moved in a span of time lay near their plan, that in the middle, by the planned motion.
+fn followed(joints: &[(&Track, &Track)], [from_s, to_s]: [f64; 2]) -> bool {
+    const NEAR: f64 = 0.8;
+    let mut apart = Vec::new();
+    for (plan, came) in joints {
+        if travel(came, [from_s, to_s]) < least(came.kind(), MOVES) {
+            continue;
+        }
+        let within = |t_s: &f64| (from_s..=to_s).contains(t_s);
+        let pairs = came.t_s().iter().zip(came.position()).filter(|(t_s, _)| within(t_s));
+        let wanted: Vec<(f64, f64)> = pairs.map(|(t_s, q)| (plan.held_at(*t_s).position, *q)).collect();
+        let mean = wanted.iter().map(|(plan, _)| plan).sum::<f64>() / wanted.len() as f64;
+        let motion = wanted.iter().map(|(plan, _)| (plan - mean).powi(2)).sum::<f64>();
+        let error = wanted.iter().map(|(plan, came)| (plan - came).powi(2)).sum::<f64>();
+        apart.push((error / motion).sqrt());
+    }
+    quantile(apart, 0.5) < NEAR
+}
+
 /// Between lowest and highest position in a span of time.
 fn travel(track: &Track, [from_s, to_s]: [f64; 2]) -> f64 {
     let at = |t_s: f64| track.t_s().partition_point(|t| *t < t_s);
@@ -113,7 +143,7 @@ mod tests {
             Series { tracks: vec![track("swing", 1.0), track("boom", -0.5)] }
         };
         let mut remarks = Remarks::default();
-        of_sides(&of(30.0, &|t| t), &of(ends_s, &course), &mut remarks);
+        of_sides(&of(30.0, &|t| t), &of(ends_s, &course), true, &mut remarks);
         remarks.as_slice().iter().map(|remark| remark.message.clone()).collect()
     }
 
@@ -132,5 +162,6 @@ mod tests {
         assert_eq!(said(f64::INFINITY, 9.0), Vec::<String>::new(), "a log that ends early");
         assert_eq!(said(16.9, 30.0), Vec::<String>::new(), "almost at the end");
         assert_eq!(said(0.0, 30.0), Vec::<String>::new(), "it never moved");
+        assert_eq!(of_course(30.0, |t| t.min(10.0) - 3.0), Vec::<String>::new(), "it was late before");
     }
 }

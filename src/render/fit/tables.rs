@@ -171,9 +171,13 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
             (!joints.is_empty()).then(|| format!("{} of {of}", shown.name))
         })
         .collect();
-    if open.is_empty() {
+    let spoilt = fitted.remarks.as_slice().iter().any(|remark| remark.code.spoils_runs());
+    lines.extend(spoilt.then(|| {
+        "A run does not belong to its plan, as the remarks say: the numbers are of that, too, not of the machine alone.".into()
+    }));
+    if open.is_empty() && fit.joints.iter().all(|joint| joint.model_holds) {
         lines.push("The logs identify every number above.".into());
-    } else {
+    } else if !open.is_empty() {
         lines.push(format!("The logs do not identify: {}.", open.join("; ")));
         lines.extend(open.iter().any(|open| open.starts_with("speed")).then(|| {
             "Smooth runs never reach the limits of speed. `hydrotrace excite` writes a run that does, with strokes \

@@ -60,8 +60,9 @@ pub struct Fitted {
     pub torques: Vec<JointTorque>,
     /// The runs.
     pub runs: Vec<FittedRun>,
-    /// Which run holds the task of its plan and so can be planned again: the last one that does.
-    pub with_task: Option<usize>,
+    /// Which run can be planned again: the last one that holds the task of its plan, or else the last; none of those that
+    /// do not belong to their plan.
+    pub again: Option<usize>,
     /// Doubts about the data.
     pub remarks: Remarks,
 }
@@ -133,8 +134,10 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
         remarks.add(Code::PoorFit, 1, message);
     }
     let torques = observed.iter().map(torques).find(|torques| !torques.is_empty()).unwrap_or_default();
-    let with_task = observed.iter().rposition(|observed| Carried::of(observed).task().is_some());
-    Ok(Fitted { fit, held_out, torques, runs, with_task, remarks })
+    let sound = |one: &Recording| !one.remarks.as_slice().iter().any(|remark| remark.code.spoils_runs());
+    let with_task = observed.iter().rposition(|one| sound(one) && Carried::of(one).task().is_some());
+    let again = with_task.or_else(|| observed.iter().rposition(sound));
+    Ok(Fitted { fit, held_out, torques, runs, again, remarks })
 }
 
 /// What is doubtful in the logs, each named if there are several.

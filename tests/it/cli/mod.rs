@@ -4,6 +4,7 @@ mod answer;
 mod carried;
 mod columns;
 mod compare;
+mod controllers;
 mod csv;
 mod cut;
 mod cylinders;

@@ -1,0 +1,254 @@
+//! Tables with a row for each joint or signal at each instant, as databases give them, become tables with a row an
+//! instant.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use ::csv::{ByteRecord, WriterBuilder};
+
+use super::{
+    CsvOptions, Separator,
+    dialect::{Dialect, detect},
+    head::{Head, read_head},
+    label::label,
+    number::{Looks, looks, number},
+    rows::{Rows, cell_text},
+    word::words,
+};
+use crate::remark::Remarks;
+
+/// Headers of columns that say of what a row is.
+const NAMES: [&str; 21] = [
+    "joint",
+    "joints",
+    "name",
+    "signal",
+    "signals",
+    "signalname",
+    "variable",
+    "variablename",
+    "tag",
+    "tagname",
+    "channel",
+    "field",
+    "axis",
+    "achse",
+    "gelenk",
+    "kanal",
+    "topic",
+    "metric",
+    "parameter",
+    "关节",
+    "变量",
+];
+
+/// First words of headers of columns that say only that they hold the value.
+const VALUES: [&str; 6] = ["value", "values", "val", "wert", "varvalue", "值"];
+
+/// More signals than these are no joints.
+const MOST_NAMES: usize = 512;
+
+/// What the columns of a long table hold.
+struct Long {
+    dialect: Dialect,
+    head: Head,
+    times: Vec<usize>,
+    names: Vec<usize>,
+    values: Vec<usize>,
+    /// Whether the names alone say what the values are.
+    bare: bool,
+}
+
+/// The text of a long table with a row an instant; `None` if it is no long table.
+pub(super) fn widened(file: &str, text: &[u8], options: &CsvOptions) -> Option<Vec<u8>> {
+    let dialect = detect(file, text, options).ok()?;
+    let Separator::Byte(separator) = dialect.separator else { return None };
+    let head = read_head(text, dialect, &mut Remarks::default());
+    let long = Long::of(dialect, head, options)?;
+    let (signals, rows) = long.gather(text)?;
+    let mut wide = WriterBuilder::new().delimiter(separator).from_writer(Vec::new());
+    let names = long.times.iter().map(|&column| long.head.names[column].clone());
+    wide.write_record(names.chain(signals)).ok()?;
+    for (instant, cells) in rows {
+        wide.write_record(instant.into_iter().chain(cells)).ok()?;
+    }
+    wide.into_inner().ok()
+}
+
+/// Cells of the time, and a cell for each signal, empty where it has none.
+type Row = (Vec<Vec<u8>>, Vec<Vec<u8>>);
+
+impl Long {
+    fn of(dialect: Dialect, head: Head, options: &CsvOptions) -> Option<Self> {
+        if !head.named || options.rate_hz.is_some() {
+            return None;
+        }
+        let plain = |column: &usize| head.names[*column].trim_matches(['_', ' ']).to_lowercase();
+        let all = 0..head.names.len();
+        let names: Vec<usize> =
+            all.clone().filter(|column| NAMES.contains(&plain(column).as_str())).collect();
+        let timely = |column: &usize| match &options.time {
+            Some(time) => time.eq_ignore_ascii_case(&head.names[*column]),
+            None => label(&head.names[*column], None).is_time,
+        };
+        let times: Vec<usize> =
+            all.clone().filter(|column| !names.contains(column) && timely(column)).collect();
+        if names.is_empty() || times.is_empty() {
+            return None;
+        }
+        let numeric = |column: &usize| {
+            let cells = head.sample.iter().filter_map(|row| row.get(*column)).map(|cell| looks(cell));
+            let (mut numbers, mut others) = (0, 0);
+            for look in cells {
+                match look {
+                    Looks::Whole | Looks::Point | Looks::Comma => numbers += 1,
+                    Looks::Empty => {}
+                    Looks::Date | Looks::Text => others += 1,
+                }
+            }
+            numbers > others
+        };
+        let rest = all.filter(|column| !names.contains(column) && !times.contains(column) && numeric(column));
+        let rest: Vec<usize> = rest.collect();
+        let says_value = |column: &&usize| {
+            let header = plain(column);
+            words(&header).first().is_some_and(|word| VALUES.contains(&word.text))
+        };
+        let values: Vec<usize> = rest.iter().filter(says_value).copied().collect();
+        let bare = !values.is_empty();
+        let values = if bare { values } else { rest };
+        (!values.is_empty()).then_some(Self { dialect, head, times, names, values, bare })
+    }
+
+    /// Headers of the signals, and the rows in the order of their times.
+    fn gather(&self, text: &[u8]) -> Option<(Vec<String>, Vec<Row>)> {
+        let mut ids: Vec<Vec<Vec<u8>>> = Vec::new();
+        let mut of_id: BTreeMap<Vec<Vec<u8>>, usize> = BTreeMap::new();
+        let mut of_time: BTreeMap<Vec<Vec<u8>>, usize> = BTreeMap::new();
+        let mut found: Vec<(usize, usize, Vec<Vec<u8>>)> = Vec::new();
+        let mut rows = Rows::new(text, self.dialect.separator);
+        let mut record = ByteRecord::new();
+        while let Some(line) = rows.next(&mut record) {
+            let cells = |columns: &[usize]| -> Vec<Vec<u8>> {
+                columns
+                    .iter()
+                    .map(|&column| record.get(column).unwrap_or_default().trim_ascii().to_vec())
+                    .collect()
+            };
+            let values = cells(&self.values);
+            let usable = values.iter().any(|cell| number(cell, self.dialect.decimal_comma).is_some());
+            if line < self.head.first_line || record.len() != self.dialect.width || !usable {
+                continue;
+            }
+            let id = cells(&self.names);
+            let next = ids.len();
+            let id_at = *of_id.entry(id.clone()).or_insert(next);
+            if id_at == next {
+                ids.push(id);
+            }
+            if ids.len() > MOST_NAMES {
+                return None;
+            }
+            let next = of_time.len();
+            found.push((*of_time.entry(cells(&self.times)).or_insert(next), id_at, values));
+        }
+        // A column of words beside rows with times of their own is a note.
+        let shared = 2 * found.len() >= 3 * of_time.len();
+        if ids.len() < 2 || !(shared || self.bare) {
+            return None;
+        }
+        let mut wide: Vec<Row> = vec![(Vec::new(), Vec::new()); of_time.len()];
+        for (time, at) in of_time {
+            wide[at] = (time, vec![Vec::new(); ids.len() * self.values.len()]);
+        }
+        for (time_at, id_at, values) in found {
+            for (slot, value) in wide[time_at].1.iter_mut().skip(id_at * self.values.len()).zip(values) {
+                if slot.is_empty() {
+                    *slot = value;
+                }
+            }
+        }
+        self.sort(&mut wide);
+        Some((self.headers(&ids), wide))
+    }
+
+    /// Blocks of signals that have times of their own come one after the other.
+    fn sort(&self, wide: &mut [Row]) {
+        let comma = self.dialect.decimal_comma;
+        let one = |row: &Row| row.0.first().and_then(|cell| number(cell, comma)).filter(|t| t.is_finite());
+        let iso = |row: &Row| row.0.first().is_some_and(|cell| cell.get(4) == Some(&b'-'));
+        if self.times.len() == 1 && wide.iter().all(|row| one(row).is_some()) {
+            wide.sort_by(|a, b| one(a).unwrap_or_default().total_cmp(&one(b).unwrap_or_default()));
+        } else if wide.iter().all(iso) {
+            let plain = |row: &Row| {
+                row.0.iter().map(|cell| cell.strip_suffix(b"Z").unwrap_or(cell).to_vec()).collect::<Vec<_>>()
+            };
+            wide.sort_by_cached_key(plain);
+        }
+    }
+
+    /// A header for each signal: what the row is of, and what the column says.
+    fn headers(&self, ids: &[Vec<Vec<u8>>]) -> Vec<String> {
+        let telling = |k: &usize| ids.iter().map(|id| &id[*k]).collect::<BTreeSet<_>>().len() > 1;
+        let telling: Vec<usize> = (0..self.names.len()).filter(telling).collect();
+        let name = |id: &[Vec<u8>]| {
+            let parts = telling.iter().map(|&k| {
+                let text = cell_text(&id[k]);
+                let counts = text.bytes().all(|byte| byte.is_ascii_digit());
+                if counts {
+                    format!("{} {text}", self.head.names[self.names[k]].trim_matches('_'))
+                } else {
+                    text
+                }
+            });
+            parts.collect::<Vec<_>>().join(" ")
+        };
+        let of_value = |column: usize| {
+            let header = self.head.names[column].trim_matches('_');
+            match words(header).first().filter(|_| self.bare) {
+                Some(word) => header.get(word.text.len()..).unwrap_or_default().to_owned(),
+                None => format!(" {header}"),
+            }
+        };
+        let columns = ids.iter().flat_map(|id| self.values.iter().map(move |&column| (id, column)));
+        columns.map(|(id, column)| name(id) + &of_value(column)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wide(text: &str) -> Option<String> {
+        let wide = widened("a.csv", text.as_bytes(), &CsvOptions::default())?;
+        Some(String::from_utf8(wide).unwrap())
+    }
+
+    #[test]
+    fn a_row_for_each_joint_becomes_a_row_an_instant() {
+        let text =
+            "time,joint,planned_deg,actual_deg\n0.0,boom,1,2\n0.0,arm,3,4\n0.1,boom,5,6\n0.1,arm,7,8\n";
+        let expected = "time,boom planned_deg,boom actual_deg,arm planned_deg,arm actual_deg\n0.0,1,2,3,4\n0.1,5,6,7,8\n";
+        assert_eq!(wide(text).as_deref(), Some(expected));
+        let text = "t;axis;set [mm]\n0,0;1;1,5\n0,0;2;2,5\n0,1;1;3,5\n";
+        assert_eq!(wide(text).as_deref(), Some("t;axis 1 set [mm];axis 2 set [mm]\n0,0;1,5;2,5\n0,1;3,5;\n"));
+    }
+
+    #[test]
+    fn signals_one_after_the_other_are_put_beside_each_other() {
+        let text = "#group,false\n,table,_time,_value,_field,_measurement\n\
+                    ,0,2026-11-20T10:00:00Z,1.5,boom_set,arm\n,0,2026-11-20T10:00:01Z,2.5,boom_set,arm\n\n\
+                    ,table,_time,_value,_field,_measurement\n,1,2026-11-20T10:00:00.5Z,0.5,boom_actual,arm\n";
+        let expected = "_time,boom_set,boom_actual\n2026-11-20T10:00:00Z,1.5,\n2026-11-20T10:00:00.5Z,,0.5\n\
+                        2026-11-20T10:00:01Z,2.5,\n";
+        assert_eq!(wide(text).as_deref(), Some(expected));
+        let text = "time,name,value_deg\n0,boom set,1\n0,boom act,2\n1,boom set,3\n1,boom act,4\n";
+        assert_eq!(wide(text).as_deref(), Some("time,boom set_deg,boom act_deg\n0,1,2\n1,3,4\n"));
+    }
+
+    #[test]
+    fn a_column_of_words_beside_a_row_an_instant_is_a_note() {
+        assert_eq!(wide("t,name,q_set,q_act\n0,lift,1,2\n1,lift,1,2\n2,place,1,2\n3,place,1,2\n"), None);
+        assert_eq!(wide("t,name,q_set,q_act\n0,a,1,2\n0,a,1,2\n1,a,1,2\n"), None);
+        assert_eq!(wide("t,q_set,q_act\n0,1,2\n1,1,2\n"), None);
+    }
+}
