@@ -311,8 +311,8 @@ def peers(options):
         return lambda task: [planner(task, leg, options, *more) for leg in task.legs]
     yield "hydrotrace, times", None, lambda task: hydrotrace(task, options)
     yield "hydrotrace, free shape", None, lambda task: hydrotrace(task, options, "--shape", "free")
-    yield ("hydrotrace, free, 20 pieces", None,
-           lambda task: hydrotrace(task, options, "--shape", "free", "--pieces", "20"))
+    yield ("hydrotrace, free, 30 pieces", None,
+           lambda task: hydrotrace(task, options, "--shape", "free", "--pieces", "30"))
     yield "Ruckig, stops at key points", "ruckig", legs(ruckig_stop)
     yield "Ruckig, sought", "ruckig", legs(ruckig_sought)
     yield "TOPP-RA", "toppra", legs(toppra_fastest)

@@ -79,7 +79,7 @@ pub(super) struct ShapeArgs {
     pub(super) shape: Free,
 
     /// Pieces that an interval between key points is split into, with --shape free [default: as many as make 25
-    /// altogether, 2 to 5]; 20 give a percent or two more in five times the time
+    /// altogether, 2 to 5]; 30 give a percent or two more in six times the time
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=i64::from(MOST_PIECES)))]
     pub(super) pieces: Option<u32>,
 }

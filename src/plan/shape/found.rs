@@ -38,13 +38,13 @@ pub enum NoShape {
 }
 
 /// Pieces of an interval at most.
-pub const MOST_PIECES: u32 = 20;
+pub const MOST_PIECES: u32 = 30;
 /// Pieces that a motion is split into by default, and how many that is of an interval at least and most.
 const PIECES: usize = 25;
 const FEWEST: usize = 2;
 const DEFAULT_MOST: usize = 5;
-/// Pieces of a motion at most: the time of a step grows with their cube.
-const MOST: usize = 128;
+/// Pieces of a motion at most, by default and of a caller who says how many: the time of a step grows with their cube.
+const MOST: [usize; 2] = [128, 256];
 /// Quadratic programmes of a descent, and the gain of merit that is worth one.
 const STEPS: usize = 80;
 const ENOUGH: f64 = 1e-5;
@@ -101,11 +101,12 @@ fn sought(
     pieces: Option<usize>,
 ) -> Result<Shape, NoShape> {
     let intervals = setup.interval_count();
+    let most = MOST[usize::from(pieces.is_some())];
     let pieces = pieces
         .unwrap_or((PIECES / intervals.max(1)).clamp(FEWEST, DEFAULT_MOST))
         .clamp(1, MOST_PIECES as usize);
-    if intervals * pieces > MOST {
-        return Err(NoShape::TooManyIntervals { found: intervals, most: MOST / pieces });
+    if intervals * pieces > most {
+        return Err(NoShape::TooManyIntervals { found: intervals, most: most / pieces });
     }
     let chosen = &timing.objectives;
     // A fine curve begins as the best of a coarser one.
