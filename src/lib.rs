@@ -48,8 +48,8 @@
 //!
 //! # Features
 //!
-//! `cli` (default) is the program; the library without features knows no terminal, page or plot. `parquet`
-//! writes tables as Parquet, `png` figures as pixels, `viewer` shows runs in Rerun.
+//! `cli` (default) is the program; the library without features knows no terminal, page or plot. `encodings` reads
+//! tables of old programs, `parquet` writes tables as Parquet, `png` figures as pixels, `viewer` shows runs in Rerun.
 
 // Hidden: for the program, its tests and studies, without a promise.
 

@@ -44,8 +44,14 @@ const NAMES: [&str; 21] = [
 /// First words of headers of columns that say only that they hold the value.
 const VALUES: [&str; 6] = ["value", "values", "val", "wert", "varvalue", "值"];
 
+/// Stands between cells that are kept, and in none that is a number.
+const END: u8 = b'\n';
+
 /// More signals than these are no joints.
 const MOST_NAMES: usize = 512;
+
+/// Cells by filled cells of a table that is worth making.
+const MOST_EMPTY: usize = 64;
 
 /// What the columns of a long table hold.
 struct Long {
@@ -64,18 +70,37 @@ pub(super) fn widened(file: &str, text: &[u8], options: &CsvOptions) -> Option<V
     let Separator::Byte(separator) = dialect.separator else { return None };
     let head = read_head(text, dialect, &mut Remarks::default());
     let long = Long::of(dialect, head, options)?;
-    let (signals, rows) = long.gather(text)?;
+    let gathered = long.gather(text)?;
     let mut wide = WriterBuilder::new().delimiter(separator).from_writer(Vec::new());
     let names = long.times.iter().map(|&column| long.head.names[column].clone());
-    wide.write_record(names.chain(signals)).ok()?;
-    for (instant, cells) in rows {
-        wide.write_record(instant.into_iter().chain(cells)).ok()?;
+    wide.write_record(names.chain(long.headers(&gathered.ids))).ok()?;
+    for (row, time) in long.in_order(&gathered.times) {
+        let cells = gathered.row(row).map(|[from, to]| gathered.text.get(from..to).unwrap_or_default());
+        wide.write_record(time.iter().map(Vec::as_slice).chain(cells)).ok()?;
     }
     wide.into_inner().ok()
 }
 
-/// Cells of the time, and a cell for each signal, empty where it has none.
-type Row = (Vec<Vec<u8>>, Vec<Vec<u8>>);
+/// Cells of some columns of a row.
+type Key = Vec<Vec<u8>>;
+
+/// What the rows of a long table hold.
+struct Gathered {
+    ids: Vec<Key>,
+    /// Cells of the time, to the row they get.
+    times: BTreeMap<Key, usize>,
+    /// The cells of the values, one after the other.
+    text: Vec<u8>,
+    /// Where in that each cell is, `[rows][ids x values]`; nowhere if there is none.
+    cells: Vec<[usize; 2]>,
+    width: usize,
+}
+
+impl Gathered {
+    fn row(&self, row: usize) -> impl Iterator<Item = [usize; 2]> {
+        self.cells.iter().skip(row * self.width).take(self.width).copied()
+    }
+}
 
 impl Long {
     fn of(dialect: Dialect, head: Head, options: &CsvOptions) -> Option<Self> {
@@ -119,28 +144,23 @@ impl Long {
         (!values.is_empty()).then_some(Self { dialect, head, times, names, values, bare })
     }
 
-    /// Headers of the signals, and the rows in the order of their times.
-    fn gather(&self, text: &[u8]) -> Option<(Vec<String>, Vec<Row>)> {
-        let mut ids: Vec<Vec<Vec<u8>>> = Vec::new();
-        let mut of_id: BTreeMap<Vec<Vec<u8>>, usize> = BTreeMap::new();
-        let mut of_time: BTreeMap<Vec<Vec<u8>>, usize> = BTreeMap::new();
-        let mut found: Vec<(usize, usize, Vec<Vec<u8>>)> = Vec::new();
+    /// `None` if the rows are not of several signals at each instant.
+    fn gather(&self, text: &[u8]) -> Option<Gathered> {
+        let mut of_id: BTreeMap<Key, usize> = BTreeMap::new();
+        let mut times: BTreeMap<Key, usize> = BTreeMap::new();
+        let (mut ids, mut kept, mut found) = (Vec::new(), Vec::new(), Vec::new());
         let mut rows = Rows::new(text, self.dialect.separator);
         let mut record = ByteRecord::new();
         while let Some(line) = rows.next(&mut record) {
-            let cells = |columns: &[usize]| -> Vec<Vec<u8>> {
-                columns
-                    .iter()
-                    .map(|&column| record.get(column).unwrap_or_default().trim_ascii().to_vec())
-                    .collect()
-            };
-            let values = cells(&self.values);
-            let usable = values.iter().any(|cell| number(cell, self.dialect.decimal_comma).is_some());
+            let cell = |column: &usize| record.get(*column).unwrap_or_default().trim_ascii();
+            let key =
+                |columns: &[usize]| -> Key { columns.iter().map(|column| cell(column).to_vec()).collect() };
+            let usable =
+                self.values.iter().any(|column| number(cell(column), self.dialect.decimal_comma).is_some());
             if line < self.head.first_line || record.len() != self.dialect.width || !usable {
                 continue;
             }
-            let id = cells(&self.names);
-            let next = ids.len();
+            let (id, next) = (key(&self.names), ids.len());
             let id_at = *of_id.entry(id.clone()).or_insert(next);
             if id_at == next {
                 ids.push(id);
@@ -148,46 +168,56 @@ impl Long {
             if ids.len() > MOST_NAMES {
                 return None;
             }
-            let next = of_time.len();
-            found.push((*of_time.entry(cells(&self.times)).or_insert(next), id_at, values));
-        }
-        // A column of words beside rows with times of their own is a note.
-        let shared = 2 * found.len() >= 3 * of_time.len();
-        if ids.len() < 2 || !(shared || self.bare) {
-            return None;
-        }
-        let mut wide: Vec<Row> = vec![(Vec::new(), Vec::new()); of_time.len()];
-        for (time, at) in of_time {
-            wide[at] = (time, vec![Vec::new(); ids.len() * self.values.len()]);
-        }
-        for (time_at, id_at, values) in found {
-            for (slot, value) in wide[time_at].1.iter_mut().skip(id_at * self.values.len()).zip(values) {
-                if slot.is_empty() {
-                    *slot = value;
-                }
+            let next = times.len();
+            found.push((*times.entry(key(&self.times)).or_insert(next), id_at));
+            for column in &self.values {
+                kept.extend(cell(column).iter().filter(|byte| **byte != END));
+                kept.push(END);
             }
         }
-        self.sort(&mut wide);
-        Some((self.headers(&ids), wide))
+        // A column of words beside rows with times of their own is a note.
+        let shared = 2 * found.len() >= 3 * times.len();
+        let sparse = times.len().saturating_mul(ids.len()) > MOST_EMPTY * found.len();
+        if ids.len() < 2 || !(shared || self.bare) || sparse {
+            return None;
+        }
+        let width = ids.len() * self.values.len();
+        let mut cells = vec![[0; 2]; times.len().checked_mul(width)?];
+        let mut ends = memchr::memchr_iter(END, &kept);
+        let mut from = 0;
+        for (time_at, id_at) in found {
+            for value in 0..self.values.len() {
+                let to = ends.next()?;
+                let slot = &mut cells[time_at * width + id_at * self.values.len() + value];
+                if slot[0] == slot[1] {
+                    *slot = [from, to];
+                }
+                from = to + 1;
+            }
+        }
+        Some(Gathered { ids, times, text: kept, cells, width })
     }
 
-    /// Blocks of signals that have times of their own come one after the other.
-    fn sort(&self, wide: &mut [Row]) {
+    /// The rows in the order of their times: blocks of signals that have times of their own come one after the other.
+    fn in_order<'a>(&self, times: &'a BTreeMap<Key, usize>) -> Vec<(usize, &'a Key)> {
+        let mut rows: Vec<(usize, &Key)> = times.iter().map(|(time, row)| (*row, time)).collect();
+        rows.sort_unstable_by_key(|(row, _)| *row);
         let comma = self.dialect.decimal_comma;
-        let one = |row: &Row| row.0.first().and_then(|cell| number(cell, comma)).filter(|t| t.is_finite());
-        let iso = |row: &Row| row.0.first().is_some_and(|cell| cell.get(4) == Some(&b'-'));
-        if self.times.len() == 1 && wide.iter().all(|row| one(row).is_some()) {
-            wide.sort_by(|a, b| one(a).unwrap_or_default().total_cmp(&one(b).unwrap_or_default()));
-        } else if wide.iter().all(iso) {
-            let plain = |row: &Row| {
-                row.0.iter().map(|cell| cell.strip_suffix(b"Z").unwrap_or(cell).to_vec()).collect::<Vec<_>>()
+        let one = |time: &Key| time.first().and_then(|cell| number(cell, comma)).filter(|t| t.is_finite());
+        let iso = |time: &Key| time.first().is_some_and(|cell| cell.get(4) == Some(&b'-'));
+        if self.times.len() == 1 && rows.iter().all(|(_, time)| one(time).is_some()) {
+            rows.sort_by(|a, b| one(a.1).unwrap_or_default().total_cmp(&one(b.1).unwrap_or_default()));
+        } else if rows.iter().all(|(_, time)| iso(time)) {
+            let plain = |time: &Key| -> Key {
+                time.iter().map(|cell| cell.strip_suffix(b"Z").unwrap_or(cell).to_vec()).collect()
             };
-            wide.sort_by_cached_key(plain);
+            rows.sort_by_cached_key(|(_, time)| plain(time));
         }
+        rows
     }
 
     /// A header for each signal: what the row is of, and what the column says.
-    fn headers(&self, ids: &[Vec<Vec<u8>>]) -> Vec<String> {
+    fn headers(&self, ids: &[Key]) -> Vec<String> {
         let telling = |k: &usize| ids.iter().map(|id| &id[*k]).collect::<BTreeSet<_>>().len() > 1;
         let telling: Vec<usize> = (0..self.names.len()).filter(telling).collect();
         let name = |id: &[Vec<u8>]| {

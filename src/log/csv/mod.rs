@@ -9,6 +9,8 @@ mod clock;
 mod column;
 mod date;
 mod dialect;
+#[cfg(feature = "encodings")]
+mod encoding;
 mod error;
 mod expression;
 mod head;

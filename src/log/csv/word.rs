@@ -66,6 +66,7 @@ pub(super) struct Word<'a> {
 }
 
 /// How many words of a text that are not in ASCII have a meaning in a header.
+#[cfg(feature = "encodings")]
 pub(super) fn foreign_words(text: &str) -> usize {
     words(text).iter().filter(|word| !word.text.is_ascii() && word.meaning != Meaning::Name).count()
 }
