@@ -132,7 +132,7 @@ impl Look<'_> {
         let mut behind = self.cells(column).filter(|cell| !cell.is_empty()).map(|cell| with_unit(cell).1);
         let first = behind.next().flatten();
         let written = first.filter(|_| behind.all(|unit| unit == first));
-        if let Some(unit) = written.or(given).or(stated) {
+        if let Some(unit) = given.or(written).or(stated) {
             return Ok(self.found(TimeSource::Number { column, unit }, None));
         }
         let milli: Vec<i64> = self.cells(column).filter_map(|cell| nanoseconds(cell, comma, 1_000)).collect();
