@@ -20,10 +20,11 @@ pub enum LogError {
     NotMcap { path: PathBuf, found: String, fix: &'static str },
     /// A table that does not say all that is needed.
     #[error(
-        "{} is a table that leaves something open; `hydrotrace import {}{} -o run.mcap` {}, and \
+        "{} is a table that leaves something open; `hydrotrace import {}{}{} -o run.mcap` {}, and \
          the log that it writes is read as any other",
-        path.display(), shell_argument(path), source.option().map_or("", |(option, _)| option),
-        source.option().map_or("takes options for that", |(_, meaning)| meaning)
+        path.display(), shell_argument(path), source.missing_option().map_or("", |_| " "),
+        source.missing_option().map_or("", |(option, _)| option),
+        source.missing_option().map_or("takes options for that", |(_, meaning)| meaning)
     )]
     Table { path: PathBuf, source: Box<CsvError> },
     /// A file of another form that cannot be read.

@@ -121,9 +121,9 @@ pub enum CsvError {
 
 impl CsvError {
     /// The option that is missing most likely, and what an import with it does.
-    pub(in crate::log) const fn option(&self) -> Option<(&'static str, &'static str)> {
+    pub(in crate::log) const fn missing_option(&self) -> Option<(&'static str, &'static str)> {
         match self {
-            Self::AngleUnit { .. } => Some((" --degrees", "reads it if its angles are in degrees")),
+            Self::AngleUnit { .. } => Some(("--degrees", "reads it if its angles are in degrees")),
             _ => None,
         }
     }

@@ -39,6 +39,9 @@ const PLACE: [&str; 3] = ["x", "y", "z"];
 /// Components of its orientation.
 const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 
+/// Headers that are a time, whatever their words mean; the second as LabVIEW names it.
+const TIMES: [&str; 2] = ["t", "X_Value"];
+
 /// Reads a header; `below` is the cell of a row of units.
 pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let header = header.trim();
@@ -65,10 +68,9 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         };
     }
     let mut words = words(name);
-    let timely = |words: &[Word<'_>]| {
-        let lone_t = matches!(words, [word] if word.text.eq_ignore_ascii_case("t"));
-        lone_t || words.iter().any(|word| word.meaning == Meaning::Time)
-    };
+    let bare = name.trim_matches(|c: char| !c.is_alphanumeric());
+    let named = TIMES.iter().any(|time| bare.eq_ignore_ascii_case(time));
+    let timely = |words: &[Word<'_>]| named || words.iter().any(|word| word.meaning == Meaning::Time);
     let is_time_unit = unit.is_some_and(|unit| unit.measure == Measure::Time);
     if is_time_unit && stated.is_some() && !header.ends_with([']', ')']) && !timely(&words) {
         // `Boom Ms` is measured, not in ms.
@@ -93,11 +95,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         Some(Measure::AngularSpeed | Measure::LinearSpeed) => Some(Quantity::Velocity),
         _ => quantity,
     };
-    // As LabVIEW names it.
-    let timely = timely || header == "X_Value";
-    let is_time = timely
-        && matches!(measure, None | Some(Measure::Time))
-        && (!means(Meaning::Foreign) || header == "X_Value");
+    let is_time =
+        timely && matches!(measure, None | Some(Measure::Time)) && (named || !means(Meaning::Foreign));
     let long = matches!(measure, Some(Measure::Length | Measure::LinearSpeed));
     let fits = long || matches!(measure, None | Some(Measure::Angle | Measure::AngularSpeed));
     let strong = quantity.is_some() && !long || means(Meaning::Joint);

@@ -45,48 +45,39 @@ pub(super) fn plan_beside_measured(head: &Head, drafts: &mut [Draft], remarks: &
 /// Where no joint has plan and measurement, words that all columns of a side share are of that side, not of a joint:
 /// `Boom S-0-0047 value`, `Boom S-0-0051 value 1`.
 pub(super) fn without_shared_words(drafts: &mut [Draft]) {
-    let planned = |draft: &Draft| draft.role != Role::Measured;
-    let keys = |drafts: &[Draft], side: bool| -> Vec<String> {
-        let of = drafts.iter().filter(|one| one.quantity == Quantity::Position && planned(one) == side);
-        of.map(|one| one.key.clone()).collect()
+    // A command counts as the plan's, as in the names of its columns.
+    let of_plan = |draft: &Draft| draft.role != Role::Measured;
+    let positions = |plan: bool| {
+        let wanted = move |draft: &&Draft| draft.quantity == Quantity::Position && of_plan(draft) == plan;
+        drafts.iter().filter(wanted).map(|draft| draft.key.as_str())
     };
-    let [before, came] = [true, false].map(|side| keys(drafts, side));
-    if before.len() < 2 || came.len() < 2 || before.iter().any(|key| came.contains(key)) {
+    let [plan, measured] = [true, false].map(|plan| positions(plan).collect::<Vec<_>>());
+    let paired = plan.iter().any(|key| measured.contains(key));
+    if plan.len() < 2 || measured.len() < 2 || paired {
         return;
     }
-    let shared = [&before, &came].map(|keys| {
-        let mut words = keys.iter().map(|key| words(key));
-        let first = words.next().unwrap_or_default();
-        words.fold(first, |shared, words| shared.intersection(&words).cloned().collect())
-    });
-    let short: Vec<(String, String)> = drafts
-        .iter()
-        .map(|one| {
-            let shared = &shared[usize::from(!planned(one))];
-            let name = |text: &str| {
-                let parts = text.split('_').filter(|part| !shared.contains(&part.to_lowercase()));
-                parts.collect::<Vec<_>>().join("_")
-            };
-            (name(&one.key), name(&one.joint))
-        })
-        .collect();
-    let of = |side: bool| {
-        let keys = drafts
-            .iter()
-            .zip(&short)
-            .filter(|(one, _)| one.quantity == Quantity::Position && planned(one) == side);
-        keys.map(|(_, (key, _))| key.as_str()).collect::<Vec<_>>()
+    let shared = [&measured, &plan].map(|keys| shared_parts(keys));
+    let short = |name: &str, plan: bool| {
+        let own = |part: &&str| !shared[usize::from(plan)].contains(&part.to_lowercase());
+        name.split('_').filter(own).collect::<Vec<_>>().join("_")
     };
-    let [before, came] = [of(true), of(false)];
-    let distinct = |keys: &[&str]| keys.iter().collect::<BTreeSet<_>>().len() == keys.len();
-    let named = short.iter().all(|(key, _)| !key.is_empty());
-    if named && distinct(&before) && distinct(&came) && before.iter().all(|key| came.contains(key)) {
-        for (draft, (key, joint)) in drafts.iter_mut().zip(short) {
+    let names = |keys: &[&str], plan: bool| keys.iter().map(|key| short(key, plan)).collect::<BTreeSet<_>>();
+    let [plan_names, measured_names] = [names(&plan, true), names(&measured, false)];
+    let distinct = plan_names.len() == plan.len() && measured_names.len() == measured.len();
+    if distinct && plan_names.is_subset(&measured_names) && !measured_names.contains("") {
+        let renamed: Vec<[String; 2]> = drafts
+            .iter()
+            .map(|draft| [&draft.key, &draft.joint].map(|name| short(name, of_plan(draft))))
+            .collect();
+        for (draft, [key, joint]) in drafts.iter_mut().zip(renamed) {
             (draft.key, draft.joint) = (key, joint);
         }
     }
 }
 
-fn words(key: &str) -> BTreeSet<String> {
-    key.split('_').map(str::to_lowercase).collect()
+/// Parts between underscores that all names have.
+fn shared_parts(names: &[&str]) -> BTreeSet<String> {
+    let parts = |name: &&str| name.split('_').map(str::to_lowercase).collect::<BTreeSet<_>>();
+    let shared = names.iter().map(parts).reduce(|shared, parts| &shared & &parts);
+    shared.unwrap_or_default()
 }

@@ -6,10 +6,11 @@ use super::{
     content::{Content, Extracted},
     cylinders::Kinds,
     joints::{add_new, keep_joints},
-    other_time, overlap, poses, quality,
+    overlap, poses, quality,
     recording::{Command, Recording, SourceInfo},
     samples::{Axis, Reading, Samples, samples},
     select_topics::{Candidate, Choice, named},
+    spoilt,
     time_base::time_base,
     trajectories, unlike,
     window::nothing_in,
@@ -118,7 +119,7 @@ pub(super) fn assemble(
     for (_, series) in &mut *sides {
         quality::unwrap_turns(series, &options.continuous, &mut remarks);
     }
-    other_time::or_stopped(sides[0].1, sides[1].1, &mut remarks);
+    spoilt::of_sides(sides[0].1, sides[1].1, &mut remarks);
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);

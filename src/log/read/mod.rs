@@ -18,6 +18,7 @@ mod quality;
 pub(super) mod recording;
 mod samples;
 mod select_topics;
+mod spoilt;
 mod stopped;
 mod time_base;
 mod topics;

@@ -1,9 +1,7 @@
 //! Finds measurements that follow their plan at another time: clocks that differ, or a run at another speed.
 
-use super::stopped;
 use crate::{
     math::quantile,
-    remark::{Code, Remarks},
     series::{Series, Track},
 };
 
@@ -35,58 +33,42 @@ const USUAL_PACE: [f64; 2] = [0.97, 1.03];
 /// Share of its range after which a joint has begun to move, and before which it has not ended.
 const BEGUN: f64 = 0.05;
 
-/// Remarks a run that was stopped or held, or else one at another time than its plan, or one that was late and was stopped.
-pub(super) fn or_stopped(planned: &Series, measured: &Series, remarks: &mut Remarks) {
-    stopped::of_sides(planned, measured, true, remarks);
-    of_sides(planned, measured, remarks);
-    stopped::of_sides(planned, measured, false, remarks);
-}
-
-/// Remarks a run whose joints follow their plan, but earlier, much later, slower or faster.
-fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remarks) {
-    if remarks.as_slice().iter().any(|remark| remark.code.spoils_runs()) {
-        return;
-    }
+/// Says that the joints follow their plan, but earlier, much later, slower or faster.
+pub(super) fn message(planned: &Series, measured: &Series) -> Option<String> {
     let both = |track| Both::of(track, measured.track(track.name())?);
     let joints: Vec<Both> = planned.tracks.iter().filter_map(both).collect();
-    let apart = apart(&joints, |t_s| t_s);
-    if !apart.is_finite() || apart < FAR {
-        return;
+    let as_it_is = apart(&joints, |t_s| t_s);
+    if !as_it_is.is_finite() || as_it_is < FAR {
+        return None;
     }
     let shift_s = shift_s(&joints);
-    let left = self::apart(&joints, |t_s| t_s - shift_s) / apart;
+    let left = apart(&joints, |t_s| t_s - shift_s) / as_it_is;
     if shift_s < USUAL_S[0] && left < LEFT[0] {
-        let message = format!(
+        return Some(format!(
             "the joints move {:.2} s before their plan, which no machine does: the clocks of plan and measurement differ. \
              --measured-delay-ms={:.0} puts one onto the other, but takes the lag of the machine off, too",
             -shift_s,
             1e3 * shift_s
-        );
-        remarks.add(Code::OtherTime, 1, message);
-        return;
+        ));
     }
     if shift_s > USUAL_S[1] && left < LEFT[1] {
-        let message = format!(
+        return Some(format!(
             "the joints move {shift_s:.2} s after their plan, all of them, more than machines lag: the clocks of plan and \
              measurement differ, or the plan was stamped before it was started. --measured-delay-ms={:.0} puts one onto \
              the other, but takes the lag of the machine off, too",
             1e3 * shift_s
-        );
-        remarks.add(Code::OtherTime, 1, message);
-        return;
+        ));
     }
-    let Some(pace) = Pace::of(&joints) else { return };
+    let pace = Pace::of(&joints)?;
     let usual = (USUAL_PACE[0]..=USUAL_PACE[1]).contains(&pace.ratio);
-    if !usual
-        && self::apart(&joints, |t_s| pace.planned_s + (t_s - pace.measured_s) / pace.ratio) < LEFT[1] * apart
-    {
-        let message = format!(
+    let planned_s = |t_s: f64| pace.planned_s + (t_s - pace.measured_s) / pace.ratio;
+    (!usual && apart(&joints, planned_s) < LEFT[1] * as_it_is).then(|| {
+        format!(
             "the joints take {:.2} times as long as their plan: was the machine run at another speed (override)? Errors at \
              the same instant say little then, the distance to the path does",
             pace.ratio
-        );
-        remarks.add(Code::OtherTime, 1, message);
-    }
+        )
+    })
 }
 
 /// A joint's plan, and some of its measurement.
@@ -197,10 +179,8 @@ mod tests {
         Series { tracks: vec![track("swing", 1.0), track("boom", -0.5), track("stick", 0.8)] }
     }
 
-    fn said(at_s: impl Fn(f64) -> f64) -> Vec<String> {
-        let mut remarks = Remarks::default();
-        of_sides(&series(|t| t), &series(at_s), &mut remarks);
-        remarks.as_slice().iter().map(|remark| remark.message.clone()).collect()
+    fn said(at_s: impl Fn(f64) -> f64) -> Option<String> {
+        message(&series(|t| t), &series(at_s))
     }
 
     #[test]
@@ -209,19 +189,19 @@ mod tests {
             [(-2.0, "2.00 s before"), (-0.8, "0.80 s before"), (3.0, "3.00 s after"), (9.3, "9.30 s")]
         {
             let found = said(|t| t - by_s);
-            assert!(matches!(&found[..], [one] if one.contains(told)), "{by_s}: {found:?}");
+            assert!(found.as_ref().is_some_and(|one| one.contains(told)), "{by_s}: {found:?}");
         }
         for (pace, told) in [(1.25, "1.25 times as long"), (0.7, "0.70 times as long"), (1.4, "1.40 times")] {
             let found = said(|t| 4.0 + (t - 4.0) / pace);
-            assert!(matches!(&found[..], [one] if one.contains(told)), "{pace}: {found:?}");
+            assert!(found.as_ref().is_some_and(|one| one.contains(told)), "{pace}: {found:?}");
         }
     }
 
     #[test]
     fn what_machines_do_is_not() {
-        assert_eq!(said(|t| t), Vec::<String>::new());
-        assert_eq!(said(|t| t - 0.6), Vec::<String>::new());
-        assert_eq!(said(|_| 0.0), Vec::<String>::new(), "none moves");
+        assert_eq!(said(|t| t), None);
+        assert_eq!(said(|t| t - 0.6), None);
+        assert_eq!(said(|_| 0.0), None, "none moves");
         let plan = series(|t| t);
         for share in [0.9, 0.7, 0.5, 0.35] {
             let limited = |track: &Track| {
@@ -235,10 +215,8 @@ mod tests {
                 Track::new(track.name(), track.t_s(), q, &[]).unwrap()
             };
             let measured = Series { tracks: plan.tracks.iter().map(limited).collect() };
-            let mut remarks = Remarks::default();
-            of_sides(&plan, &measured, &mut remarks);
-            assert!(remarks.is_empty(), "all at {share} of the speed that is asked: {remarks:?}");
+            assert_eq!(message(&plan, &measured), None, "all at {share} of the speed that is asked");
         }
-        assert_eq!(said(|t| t.min(10.0)), Vec::<String>::new(), "they stop for good");
+        assert_eq!(said(|t| t.min(10.0)), None, "they stop for good");
     }
 }

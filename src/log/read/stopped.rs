@@ -2,7 +2,6 @@
 
 use crate::{
     math::quantile,
-    remark::{Code, Remarks},
     series::{JointKind, Series, Track},
     units::DEGREE_RAD,
 };
@@ -20,35 +19,36 @@ const WAY: f64 = 0.3;
 /// For so long after a stop a plan may go on, and before a start: machines lag, s.
 const LAGS_S: f64 = 1.0;
 
-/// Remarks a run in which all joints stand for a while, or from then on, though the plan goes on, of one joint at least,
-/// for longer and farther than machines lag.
-///
-/// With `in_time` only one that followed its plan at the same time before: what stands later than planned is late.
-pub(super) fn of_sides(planned: &Series, measured: &Series, in_time: bool, remarks: &mut Remarks) {
-    if remarks.as_slice().iter().any(|remark| remark.code.spoils_runs()) {
-        return;
-    }
+/// What was found, and whether the run had followed its plan at the same time before: what had not may be late.
+pub(super) struct Stop {
+    pub(super) message: String,
+    pub(super) in_time: bool,
+}
+
+/// Whiles in which all joints stand, or from then on, though the plan goes on, of one joint at least, for longer and
+/// farther than machines lag.
+pub(super) fn stops(planned: &Series, measured: &Series) -> Vec<Stop> {
     let both = |track| Some((track, measured.track(Track::name(track))?));
     let joints: Vec<(&Track, &Track)> = planned.tracks.iter().filter_map(both).collect();
     let ends = |(_, came): &(&Track, &Track)| Some([*came.t_s().first()?, *came.t_s().last()?]);
     let common = joints.iter().filter_map(ends).reduce(|a, b| [a[0].max(b[0]), a[1].min(b[1])]);
-    let Some([first_s, last_s]) = common else { return };
-    let never = joints.iter().all(|(_, came)| travel(came, [first_s, last_s]) < least(came.kind(), MOVES));
+    let Some([first_s, last_s]) = common else { return Vec::new() };
+    if joints.iter().all(|(_, came)| travel(came, [first_s, last_s]) < least(came.kind(), MOVES)) {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
     for [from_s, to_s] in standing(&joints, [first_s, last_s]) {
-        let mut names = Vec::new();
-        for (plan, came) in &joints {
+        let goes_on = |(plan, came): &&(&Track, &Track)| {
             let missed = travel(plan, [from_s + LAGS_S, to_s - LAGS_S]) - travel(came, [from_s, to_s]);
-            if missed > least(plan.kind(), MOVES) {
-                names.push(plan.name());
-            }
-        }
+            missed > least(plan.kind(), MOVES)
+        };
+        let names: Vec<&str> = joints.iter().filter(goes_on).map(|(plan, _)| plan.name()).collect();
         let for_good = to_s + STEP_S > last_s;
         // One that stands where its plan rests may be late.
         let on_its_way = joints.iter().any(|(plan, _)| {
             travel(plan, [from_s - STEP_S, from_s + STEP_S]) > WAY * least(plan.kind(), MOVES)
         });
-        let told = for_good || on_its_way;
-        if names.is_empty() || never || !told || in_time && !followed(&joints, [first_s, from_s]) {
+        if names.is_empty() || !for_good && !on_its_way {
             continue;
         }
         let until = if for_good { " on".to_owned() } else { format!(" until {to_s:.1} s") };
@@ -57,10 +57,9 @@ pub(super) fn of_sides(planned: &Series, measured: &Series, in_time: bool, remar
              stop, fault, hold)",
             names.join(", ")
         );
-        remarks.add(Code::Stopped, 1, message);
-        // What stands later, stands at another time than planned.
-        return;
+        found.push(Stop { message, in_time: followed(&joints, [first_s, from_s]) });
     }
+    found
 }
 
 fn least(kind: JointKind, of: [f64; 2]) -> f64 {
@@ -142,9 +141,8 @@ mod tests {
             };
             Series { tracks: vec![track("swing", 1.0), track("boom", -0.5)] }
         };
-        let mut remarks = Remarks::default();
-        of_sides(&of(30.0, &|t| t), &of(ends_s, &course), true, &mut remarks);
-        remarks.as_slice().iter().map(|remark| remark.message.clone()).collect()
+        let stops = stops(&of(30.0, &|t| t), &of(ends_s, &course));
+        stops.into_iter().filter(|stop| stop.in_time).map(|stop| stop.message).take(1).collect()
     }
 
     #[test]

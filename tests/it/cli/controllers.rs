@@ -31,6 +31,22 @@ fn millis(k: u32) -> String {
     (20 * k).to_string()
 }
 
+fn comma_s(k: u32) -> String {
+    seconds(k).replace('.', ",")
+}
+
+fn with_unit(k: u32) -> String {
+    format!("{} sec", seconds(k))
+}
+
+fn counter(k: u32) -> String {
+    (4_208_163_634 + u64::from(k) * 20).to_string()
+}
+
+fn nanos(k: u32) -> String {
+    (1_700_000_000_000_000_000 + u64::from(k) * 20_000_000).to_string()
+}
+
 fn degrees(q: f64) -> String {
     format!("{q:.4}")
 }
@@ -74,22 +90,29 @@ fn tables() -> Vec<(&'static str, Vec<u8>, &'static [&'static str], &'static str
             "{name}: S-0-0047, Position set value [Deg];{name}: S-0-0051, Position feedback value 1 [Deg]"
         )
     };
-    let gbk = b"\xca\xb1\xbc\xe4(s),\xb9\xd8\xbd\xda1\xb9\xe6\xbb\xae\xbd\xc7\xb6\xc8(\xa1\xe3),\xb9\xd8\xbd\xda1\xca\xb5\xbc\xca\xbd\xc7\xb6\xc8(\xa1\xe3),\xb9\xd8\xbd\xda2\xb9\xe6\xbb\xae\xbd\xc7\xb6\xc8(\xa1\xe3),\xb9\xd8\xbd\xda2\xca\xb5\xbc\xca\xbd\xc7\xb6\xc8(\xa1\xe3)".to_vec();
+    let gbk = b"\xca\xb1\xbc\xe4(s),\
+                \xb9\xd8\xbd\xda1\xb9\xe6\xbb\xae\xbd\xc7\xb6\xc8(\xa1\xe3),\
+                \xb9\xd8\xbd\xda1\xca\xb5\xbc\xca\xbd\xc7\xb6\xc8(\xa1\xe3),\
+                \xb9\xd8\xbd\xda2\xb9\xe6\xbb\xae\xbd\xc7\xb6\xc8(\xa1\xe3),\
+                \xb9\xd8\xbd\xda2\xca\xb5\xbc\xca\xbd\xc7\xb6\xc8(\xa1\xe3)";
     let chinese = "时间(s),关节1规划角度(°),关节1实际角度(°),关节2规划角度(°),关节2实际角度(°)";
+    let french = &b"Temps (s);Fl\xe8che consigne (\xb0);Fl\xe8che mesure (\xb0);Bras consigne (\xb0);\
+                    Bras mesure (\xb0)"[..];
+    let plc = "Time [ms];Boom.Position [°];Boom.ActualPosition [°];Arm.Position [°];Arm.ActualPosition [°]";
+    let soft_plc =
+        "Time;GVL.Boom.fSetPosition;GVL.Boom.fActPosition;GVL.Arm.fSetPosition;GVL.Arm.fActPosition";
+    let tenths = "Timestamp (s),Boom_SP_0.1deg,Boom_PV_0.1deg,Arm_SP_0.1deg,Arm_PV_0.1deg";
+    let echo = "%time,field.desired.positions0,field.actual.positions0,field.desired.positions1,\
+                field.actual.positions1";
     let below = rows("", ",", seconds, degrees).into_bytes();
     vec![
         (
             "axes of a PLC whose set value has no word of its own",
-            rows("Time [ms];Boom.Position [°];Boom.ActualPosition [°];Arm.Position [°];Arm.ActualPosition [°]", ";", millis, comma).into(),
+            rows(plc, ";", millis, comma).into(),
             none,
             "Boom",
         ),
-        (
-            "axes of a soft PLC",
-            rows("Time;GVL.Boom.fSetPosition;GVL.Boom.fActPosition;GVL.Arm.fSetPosition;GVL.Arm.fActPosition", ";", millis, degrees).into(),
-            deg,
-            "GVL_Boom",
-        ),
+        ("axes of a soft PLC", rows(soft_plc, ";", millis, degrees).into(), deg, "GVL_Boom"),
         ("a trend with a day and a time of day", rows(trend, ",", clock, quoted).into(), deg, "Boom"),
         (
             "numbers of parameters of a drive",
@@ -99,13 +122,13 @@ fn tables() -> Vec<(&'static str, Vec<u8>, &'static [&'static str], &'static str
         ),
         (
             "sensor interface of a robot",
-            rows("IPOC;ASPos.A1;AIPos.A1;ASPos.A2;AIPos.A2", ";", |k| (4_208_163_634 + u64::from(k) * 20).to_string(), degrees).into(),
+            rows("IPOC;ASPos.A1;AIPos.A1;ASPos.A2;AIPos.A2", ";", counter, degrees).into(),
             deg,
             "A1",
         ),
         (
             "a timetable with the unit in each cell",
-            rows("Time,Boom_ref,Boom_meas,Arm_ref,Arm_meas", ",", |k| format!("{} sec", seconds(k)), degrees).into(),
+            rows("Time,Boom_ref,Boom_meas,Arm_ref,Arm_meas", ",", with_unit, degrees).into(),
             deg,
             "Boom",
         ),
@@ -114,27 +137,27 @@ fn tables() -> Vec<(&'static str, Vec<u8>, &'static [&'static str], &'static str
         ("a block for each signal", blocks.into(), deg, "Boom"),
         (
             "UTF-16",
-            wide(&rows("Zeit;Boom Soll [°];Boom Ist [°];Arm Soll [°];Arm Ist [°]", ";", |k| seconds(k).replace('.', ","), comma)),
+            wide(&rows("Zeit;Boom Soll [°];Boom Ist [°];Arm Soll [°];Arm Ist [°]", ";", comma_s, comma)),
             none,
             "Boom",
         ),
         ("Chinese", rows(chinese, ",", seconds, degrees).into(), none, "关节1"),
-        ("Chinese of an old program", [gbk, below].concat(), none, "关节1"),
+        ("Chinese of an old program", [&gbk[..], &below].concat(), none, "关节1"),
         (
             "French of an old program",
-            [&b"Temps (s);Fl\xe8che consigne (\xb0);Fl\xe8che mesure (\xb0);Bras consigne (\xb0);Bras mesure (\xb0)"[..], rows("", ";", |k| seconds(k).replace('.', ","), comma).as_bytes()].concat(),
+            [french, rows("", ";", comma_s, comma).as_bytes()].concat(),
             none,
             "Flèche",
         ),
         (
             "tenths of a degree",
-            rows("Timestamp (s),Boom_SP_0.1deg,Boom_PV_0.1deg,Arm_SP_0.1deg,Arm_PV_0.1deg", ",", seconds, |q| format!("{:.3}", q * 10.0)).into(),
+            rows(tenths, ",", seconds, |q| format!("{:.3}", q * 10.0)).into(),
             none,
             "Boom",
         ),
         (
             "rostopic echo -p",
-            rows("%time,field.desired.positions0,field.actual.positions0,field.desired.positions1,field.actual.positions1", ",", |k| (1_700_000_000_000_000_000_u64 + u64::from(k) * 20_000_000).to_string(), |q| format!("{:.6}", q.to_radians())).into(),
+            rows(echo, ",", nanos, |q| format!("{:.6}", q.to_radians())).into(),
             none,
             "joint_0",
         ),
