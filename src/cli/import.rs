@@ -24,6 +24,7 @@ Examples:
   hydrotrace import trace.csv -o trace.mcap --planned BOOM=measured+error --slides BOOM=mm
   hydrotrace import trace.csv -o trace.mcap --save-map arm.toml
   hydrotrace import next.csv -o next.mcap --map arm.toml
+  hydrotrace import my-bag -o run.mcap --degrees
 
 A column is given by its header, by its number as #3, or as a sum such as #3+#4, 0.5*raw-12: the factors and
 constants are in the unit of the column. A map file holds the same as the options:
@@ -40,11 +41,11 @@ names contain target/actual, soll/ist, planned/measured, ref/meas or set/act tog
 a unit such as [deg]. Columns cmd and command are the command, not the plan. The output lists how the file
 was read; every guess is a remark.";
 
-/// Turn a CSV file (PLC trace, RTDE, any table) into a log
+/// Turn a table (PLC trace, RTDE, CSV) or an unknown bag into a log
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// The CSV file
+    /// The table, log or bag
     file: PathBuf,
 
     /// Write the log to LOG

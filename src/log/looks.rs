@@ -41,7 +41,22 @@ pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
         let lines = &lines[last..];
         alike(one, lines) && lines.iter().take(LINES).all(|line| numbers(one, line))
     };
-    named || [';', ',', '\t'].into_iter().any(|one| alike(one, &lines) || below(one))
+    named
+        || [';', ',', '\t'].into_iter().any(|one| alike(one, &lines) || below(one))
+        || spaced(&lines[last..])
+}
+
+/// Whether lines are numbers between blanks, as many in each.
+fn spaced(lines: &[&str]) -> bool {
+    const LINES: usize = 3;
+    const LEAST_CELLS: usize = 3;
+    let cells = |line: &&str| {
+        let mut cells = line.split_whitespace().map(|cell| cell.parse::<f64>().ok());
+        cells.try_fold(0, |count, number| number.map(|_| count + 1))
+    };
+    let counts: Vec<Option<usize>> = lines.iter().take(LINES).map(cells).collect();
+    let first = counts.first().copied().flatten().unwrap_or_default();
+    counts.len() == LINES && first >= LEAST_CELLS && counts.iter().all(|count| *count == Some(first))
 }
 
 #[cfg(test)]
@@ -52,6 +67,7 @@ mod tests {
     fn a_table_may_stand_below_other_lines_and_text_in_utf_16_is_one() {
         let is = |name: &str, text: &[u8]| is_table(Path::new(name), text);
         assert!(is("a.txt", b"Trace 1\nof 3.5.2026\n\nt;a;b\n0;1,5;2\n1;1,5;2\n2;1,5;2\n3;1,5;2\n"));
+        assert!(is("a.txt", b"# t  q1  q2\n0 1.5 2\n1  1.5 2\n2 1.5  -2e-3\n3 1 1\n"));
         assert!(is("a.txt", b"\xff\xfet\0;\0"));
         assert!(is("run.lvm", b"LabVIEW Measurement\n"));
         for text in [

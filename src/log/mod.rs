@@ -18,6 +18,7 @@ mod error;
 mod export;
 mod file;
 mod files;
+mod flat;
 mod foreign;
 mod input;
 mod joined;
@@ -46,6 +47,7 @@ pub use file::ReadAt;
 pub use files::{LogFiles, ScannedLog};
 #[doc(hidden)]
 pub use files::{Passes, passes};
+pub use flat::read_messages;
 pub use foreign::read_csv;
 pub use input::Input;
 pub(crate) use joint_kind::{METADATA as JOINT_KINDS, entries as joint_kinds};

@@ -67,10 +67,19 @@ pub enum CsvError {
     TimeUnit { column: String, step: f64 },
     /// Angles without a unit, too large for radians.
     #[error(
-        "column {column:?} says no unit and reaches {reach}, too far for radians; say --degrees, --radians, or \
-         --slides JOINT=mm of a joint that slides"
+        "column {column:?} says no unit and reaches {}, too far for radians; say --degrees, --radians, or \
+         --slides JOINT=mm of a joint that slides",
+        reach.round()
     )]
     AngleUnit { column: String, reach: f64 },
+    /// Numbers without a unit, too large for degrees, too.
+    #[error(
+        "column {column:?} says no unit and reaches {}, too far for degrees, too: is it in steps of an encoder? Say what \
+         one is with --planned JOINT=FACTOR*COLUMN,... --measured JOINT=FACTOR*COLUMN,... --degrees, or --slides \
+         JOINT=mm of a joint that slides",
+        reach.round()
+    )]
+    Counts { column: String, reach: f64 },
     /// A recording cannot look at what is to come.
     #[error(
         "column {column:?} says no unit, and a recording cannot tell by what is to come; say --degrees, --radians, \
@@ -124,6 +133,7 @@ impl CsvError {
     pub(in crate::log) const fn missing_option(&self) -> Option<(&'static str, &'static str)> {
         match self {
             Self::AngleUnit { .. } => Some(("--degrees", "reads it if its angles are in degrees")),
+            Self::NoTime { .. } => Some(("--rate HZ", "reads it if a row comes HZ times a second")),
             _ => None,
         }
     }

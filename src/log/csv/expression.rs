@@ -2,12 +2,12 @@
 
 use super::{
     CsvError, CsvOptions,
+    by_meaning::by_meaning,
     column::find,
     head::Head,
     label::Label,
     layout::option,
     read::{Cells, Column},
-    word::{Meaning, words},
 };
 
 /// A column that no cell of the file holds: the sum of factors times columns, and a constant in their unit.
@@ -120,23 +120,6 @@ fn term(text: &str, sign: f64) -> Option<Part<'_>> {
         return Some(Part::Column(sign / divisor, name.trim()));
     }
     Some(Part::Column(sign, text))
-}
-
-/// The only column of a joint that is `measured`, `planned`, `command` or `error`.
-fn by_meaning(name: &str, joint: &str, labels: &[Label]) -> Option<usize> {
-    let wanted = words(name);
-    let [wanted] = wanted.as_slice() else { return None };
-    let joint = joint.to_lowercase();
-    let fits = |label: &Label| match wanted.meaning {
-        Meaning::Role(role) => label.is_joint && label.key == joint && label.role == Some(role),
-        Meaning::Foreign => {
-            let said = |text: &str| label.words.iter().any(|word| word == text);
-            said(&wanted.text.to_lowercase()) && words(&joint).iter().all(|word| said(word.text))
-        }
-        _ => false,
-    };
-    let mut found = (0..labels.len()).filter(|&column| fits(&labels[column]));
-    found.next().filter(|_| found.next().is_none())
 }
 
 #[cfg(test)]

@@ -66,6 +66,14 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) ->
             found.sample.push(record.iter().map(<[u8]>::to_vec).collect());
         }
     }
+    let mut units = None;
+    above.retain(|(_, cells)| match described(cells) {
+        None => true,
+        Some((key, values)) => {
+            units = units.take().or(key.eq_ignore_ascii_case("unit").then_some(values));
+            false
+        }
+    });
     // A header may lack the empty cell that a trailing separator adds to every row, or have it alone.
     let fits = |cells: &[String]| {
         cells.len().abs_diff(dialect.width) <= 1 && cells.iter().any(|cell| !cell.is_empty())
@@ -90,6 +98,7 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) ->
     if above.len() > 1 && above.last().is_some_and(|(_, cells)| is_units(cells)) {
         found.units = above.pop().map(|(_, cells)| cells);
     }
+    found.units = found.units.or(units);
     if let Some((line, names)) = above.pop() {
         found.line = line;
         found.names = names;
@@ -121,6 +130,17 @@ fn are_names(cells: &[String]) -> bool {
     named.len() > 1
         && distinct.len() == named.len()
         && named.iter().all(|cell| looks(cell.as_bytes()) == Looks::Text)
+}
+
+/// The word and what follows it, if each cell of a row is empty or such as `Unit: deg`, all with the same word.
+fn described(cells: &[String]) -> Option<(String, Vec<String>)> {
+    let (word, _) = cells.iter().find(|cell| !cell.is_empty())?.split_once(": ")?;
+    let said = cells.iter().map(|cell| match cell.split_once(": ") {
+        Some((one, said)) if one == word => Some(said.to_owned()),
+        _ => cell.is_empty().then(String::new),
+    });
+    let said = said.collect::<Option<Vec<String>>>()?;
+    (said.iter().filter(|said| !said.is_empty()).count() > 1).then(|| (word.to_owned(), said))
 }
 
 fn is_units(cells: &[String]) -> bool {

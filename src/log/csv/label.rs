@@ -1,10 +1,10 @@
 //! Reads role, quantity, joint and unit from the header of a column.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use super::{
     Quantity, Role,
-    unit::{Measure, UNITLESS, Unit, parse_unit, split_suffix},
+    letter::{Lettered, lettered},
+    name::joint_name,
+    unit::{METRE, Measure, UNITLESS, Unit, parse_unit, split_suffix},
     word::{Meaning, Word, words},
 };
 
@@ -26,8 +26,8 @@ pub(super) struct Label {
     pub(super) is_joint: bool,
     /// Only a role or a length says that this may be a joint: it needs a partner.
     pub(super) is_weak: bool,
-    /// Key and name of the joint if the `d` of `q_d_1` means desired.
-    pub(super) desired: Option<(String, String)>,
+    /// What it is if a letter says so.
+    pub(super) lettered: Option<Lettered>,
 }
 
 /// Endings that `export` writes; the joint's name before them is taken as it is.
@@ -39,8 +39,21 @@ const PLACE: [&str; 3] = ["x", "y", "z"];
 /// Components of its orientation.
 const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 
-/// Headers that are a time, whatever their words mean; the second as LabVIEW names it.
-const TIMES: [&str; 2] = ["t", "X_Value"];
+/// Headers that are a time, whatever their words mean; the second as `LabVIEW` names it.
+const TIMES: [&str; 12] = [
+    "t",
+    "X_Value",
+    "ts",
+    "s",
+    "sec",
+    "secs",
+    "seconds",
+    "ms",
+    "millis",
+    "milliseconds",
+    "micros",
+    "duration",
+];
 
 /// Reads a header; `below` is the cell of a row of units.
 pub(super) fn label(header: &str, below: Option<&str>) -> Label {
@@ -64,12 +77,15 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
             is_time: false,
             is_joint: true,
             is_weak: false,
-            desired: None,
+            lettered: None,
         };
     }
     let mut words = words(name);
     let bare = name.trim_matches(|c: char| !c.is_alphanumeric());
     let named = TIMES.iter().any(|time| bare.eq_ignore_ascii_case(time));
+    if named {
+        unit = unit.or_else(|| parse_unit(bare));
+    }
     let timely = |words: &[Word<'_>]| named || words.iter().any(|word| word.meaning == Meaning::Time);
     let is_time_unit = unit.is_some_and(|unit| unit.measure == Measure::Time);
     if is_time_unit && stated.is_some() && !header.ends_with([']', ')']) && !timely(&words) {
@@ -85,7 +101,10 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         Meaning::Role(role) => Some(role),
         _ => None,
     });
+    // `theta_dot` is a speed.
+    let dotted = words.iter().any(|word| word.text.eq_ignore_ascii_case("dot"));
     let quantity = words.iter().find_map(|word| match word.meaning {
+        Meaning::Quantity(_) if dotted => Some(Quantity::Velocity),
         Meaning::Quantity(quantity) => Some(quantity),
         _ => None,
     });
@@ -107,8 +126,10 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         role.is_some() && measure == Some(Measure::Length) && PLACE.contains(&joint.to_lowercase().as_str());
     let foreign = means(Meaning::Foreign) && !place;
     let is_joint = !timely && fits && !foreign && (strong || role.is_some() || long);
-    let desired = role.is_none().then(|| without_d(words)).flatten();
-    let desired = desired.map(|words| joint_name(&words)).map(|joint| (joint.to_lowercase(), joint));
+    // Of `q1_m` beside `q1_d` the letter is no metre.
+    let whole = self::words(header);
+    let letters = if stated == Some(METRE) { whole.get(topic(&whole)..).unwrap_or_default() } else { words };
+    let lettered = role.is_none().then(|| lettered(letters)).flatten();
     let key = joint.to_lowercase();
     // A quaternion has no unit; that it is meant shows where plan and measurement have it.
     let turns = unit.is_none() && QUATERNION.contains(&key.as_str());
@@ -116,7 +137,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let strong = strong && !turns;
     let stated = stated.or(unit);
     let words = words.iter().map(|word| word.text.to_lowercase()).collect();
-    Label { role, quantity, unit, stated, words, key, joint, is_time, is_joint, is_weak: !strong, desired }
+    Label { role, quantity, unit, stated, words, key, joint, is_time, is_joint, is_weak: !strong, lettered }
 }
 
 /// How many words are those of a topic, which names no joint: `/joint_states/boom/position`.
@@ -125,45 +146,6 @@ fn topic(words: &[Word<'_>]) -> usize {
         |word: &Word<'_>| ["state", "states"].iter().any(|state| word.text.eq_ignore_ascii_case(state));
     let at = words.windows(2).rposition(|two| states(&two[0]) && two[1].slashed);
     at.map_or(0, |at| at + 1)
-}
-
-/// The words without a `d` that follows a word for the position, if there is one.
-fn without_d<'a>(words: &[Word<'a>]) -> Option<Vec<Word<'a>>> {
-    let position = Meaning::Quantity(Quantity::Position);
-    let at =
-        words.windows(2).position(|w| w[0].meaning == position && w[1].text.eq_ignore_ascii_case("d"))?;
-    let kept = words.iter().enumerate().filter(|(index, _)| *index != at + 1);
-    Some(kept.map(|(_, word)| word.clone()).collect())
-}
-
-/// Settles what only all headers together tell: that `q_d_1` is the plan of `q_1`, and that `J1_planned_rad` and
-/// `J1_actual_rad` are of one joint. Names that differ in case alone are of one where no two say the same of it.
-pub(super) fn settle(labels: &mut [Label]) {
-    let says = |label: &Label| {
-        let quantity = label.quantity.unwrap_or(Quantity::Position);
-        (label.key.to_lowercase(), label.role.unwrap_or(Role::Measured), quantity)
-    };
-    let mut said = BTreeMap::<_, usize>::new();
-    for label in labels.iter().filter(|label| label.is_joint) {
-        *said.entry(says(label)).or_default() += 1;
-    }
-    let twice: BTreeSet<String> =
-        said.into_iter().filter(|(_, count)| *count > 1).map(|((key, ..), _)| key).collect();
-    for at in 0..labels.len() {
-        let other = |key: &str| {
-            labels.iter().enumerate().any(|(index, label)| index != at && label.is_joint && label.key == key)
-        };
-        let lower = labels[at].key.to_lowercase();
-        let desired = labels[at].desired.clone().filter(|(key, _)| other(key));
-        let one =
-            labels[at].is_joint && (!twice.contains(&lower) || !other(&labels[at].key) && other(&lower));
-        if let Some((key, joint)) = desired {
-            (labels[at].key, labels[at].joint) = (key, joint);
-            labels[at].role = Some(Role::Planned);
-        } else if one {
-            labels[at].key = lower;
-        }
-    }
 }
 
 fn own(name: &str) -> Option<(&str, Role)> {
@@ -192,32 +174,6 @@ fn without_unit(header: &str) -> (&str, Option<Unit>) {
         return (name.strip_suffix(" in").unwrap_or(name), Some(unit));
     }
     split_suffix(header).map_or((header, None), |(name, unit)| (name, Some(unit)))
-}
-
-/// What is left of the words once role and quantity are gone; `joint_3` where that is a number,
-/// `joint` where nothing is left.
-fn joint_name(words: &[Word<'_>]) -> String {
-    let mut name = String::new();
-    let mut gap = false;
-    for (at, word) in words.iter().enumerate() {
-        // The type of a variable of a controller: `fActPos`, `lrSetPosition`.
-        let typed = ["f", "r", "lr"].contains(&word.text)
-            && words.get(at + 1).is_some_and(|next| !next.apart && matches!(next.meaning, Meaning::Role(_)));
-        if typed || matches!(word.meaning, Meaning::Role(_) | Meaning::Quantity(_) | Meaning::Time) {
-            gap = true;
-            continue;
-        }
-        if !name.is_empty() && (word.apart || gap) {
-            // A name of ROS keeps its namespace.
-            name.push(if word.slashed && !gap { '/' } else { '_' });
-        }
-        name.push_str(word.text);
-        gap = false;
-    }
-    if name.is_empty() {
-        return "joint".to_owned();
-    }
-    if name.chars().all(|c| c.is_ascii_digit()) { format!("joint_{name}") } else { name }
 }
 
 #[cfg(test)]
@@ -296,27 +252,6 @@ mod tests {
     fn a_unit_of_time_behind_a_joint_is_a_word() {
         let label = label("Boom Ms", None);
         assert_eq!((label.joint.as_str(), label.role, label.unit), ("Boom", Some(Role::Measured), None));
-    }
-
-    #[test]
-    fn headers_together_tell_what_one_does_not() {
-        fn settled<const N: usize>(headers: [&str; N]) -> [(Option<Role>, String); N] {
-            let mut labels = headers.map(|header| label(header, None));
-            settle(&mut labels);
-            labels.map(|label| (label.role, label.key))
-        }
-        let (plan, real) = (Some(Role::Planned), Some(Role::Measured));
-        assert_eq!(settled(["q_d_1", "q_1"]), [(plan, "joint_1".into()), (None, "joint_1".into())]);
-        assert_eq!(settled(["q_d_1", "q_2"]), [(None, "d_1".into()), (None, "joint_2".into())]);
-        assert_eq!(settled(["J1_planned_rad", "J1_actual_rad"]), [(plan, "j1".into()), (real, "j1".into())]);
-        let own = ["q_planned_rad", "Q_measured_rad"];
-        assert_eq!(settled(own), [(plan, "q".into()), (real, "q".into())]);
-        let sent = settled(["J1_planned_rad", "J1_actual_rad", "J1_command_rad"]);
-        assert!(sent.iter().all(|(_, key)| key == "j1"), "{sent:?}");
-        let sent = settled(["J1_target_rad", "J1_measured_rad", "J1_command_rad"]);
-        assert!(sent.iter().all(|(_, key)| key == "j1"), "{sent:?}");
-        let two = settled(["q_planned_rad", "Q_planned_rad", "q_measured_rad", "Q_measured_rad"]);
-        assert_eq!(two.map(|(_, key)| key), ["q", "Q", "q", "Q"]);
     }
 
     #[test]

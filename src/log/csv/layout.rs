@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::{
     CsvError, CsvOptions, Quantity, Role,
+    by_meaning::plan_by_error,
     column::{find, present},
     head::Head,
     label::Label,
@@ -100,7 +101,7 @@ pub(super) fn lay_out(
     plan_beside_measured(head, &mut drafts, remarks);
     drop_repeats(head, &mut drafts, remarks)?;
     without_shared_words(&mut drafts);
-    let joints = joints(head, &drafts, remarks)?;
+    let joints = joints(head, labels, &drafts, remarks)?;
     let place = |key: &str| joints.iter().position(|(known, _)| known == key);
     let uses = drafts.iter().filter_map(|draft| {
         let Draft { column, role, quantity, .. } = *draft;
@@ -166,7 +167,12 @@ fn drop_repeats(head: &Head, drafts: &mut Vec<Draft>, remarks: &mut Remarks) -> 
 
 /// Key and name of the joints that have plan and measurement; all of one side if the file has no other.
 /// The command stands in for a plan if the file has none.
-fn joints(head: &Head, drafts: &[Draft], remarks: &mut Remarks) -> Result<Vec<(String, String)>, CsvError> {
+fn joints(
+    head: &Head,
+    labels: &[Label],
+    drafts: &[Draft],
+    remarks: &mut Remarks,
+) -> Result<Vec<(String, String)>, CsvError> {
     let side = |role: Role| {
         let mut list: Vec<&Draft> = Vec::new();
         for draft in drafts.iter().filter(|d| d.role == role && d.quantity == Quantity::Position) {
@@ -208,8 +214,13 @@ fn joints(head: &Head, drafts: &[Draft], remarks: &mut Remarks) -> Result<Vec<(S
             return Ok(found);
         }
     };
+    let errors = plan_by_error(all.iter().map(|draft| draft.joint.as_str()), labels);
+    let by_error = match errors.filter(|_| missing == "plan") {
+        Some(sums) => format!("say {flag} {sums} if the error is plan less measurement, else "),
+        None => String::new(),
+    };
     let message = format!(
-        "no column looks like a {missing}, and a report needs one: name its columns with {flag} \
+        "no column looks like a {missing}, and a report needs one: {by_error}name its columns with {flag} \
          JOINT=COLUMN,..., or, if it is in a file of its own with the same zero of time, import that too and \
          give both logs: `hydrotrace report THIS.mcap OTHER.mcap`"
     );

@@ -17,8 +17,13 @@ use super::{
 use crate::remark::Remarks;
 
 /// Headers of columns that say of what a row is.
-const NAMES: [&str; 21] = [
+const NAMES: [&str; 26] = [
     "joint",
+    "joint_name",
+    "joint name",
+    "jointname",
+    "motor_name",
+    "axis_name",
     "joints",
     "name",
     "signal",

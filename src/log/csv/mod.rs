@@ -5,19 +5,23 @@
 //! name says, `clock` which column is the time, `layout` which column is which joint's; `read` then walks all
 //! rows. What a file does not say, [`CsvOptions`] do; what is only guessed is a remark.
 
+mod by_meaning;
 mod clock;
 mod column;
 mod date;
 mod dialect;
 #[cfg(feature = "encodings")]
+mod efforts;
 mod encoding;
 mod error;
 mod expression;
 mod head;
 mod label;
 mod layout;
+mod letter;
 mod long;
 mod map;
+mod name;
 mod number;
 mod objects;
 mod options;
@@ -25,6 +29,7 @@ mod pairing;
 mod read;
 mod rows;
 mod run;
+mod settle;
 mod si;
 mod stream;
 mod text;
@@ -59,6 +64,11 @@ pub enum Quantity {
 /// The joint that a header or the name of a topic speaks of, without the words for plan, measurement and angle.
 pub(in crate::log) fn joint_in(name: &str) -> String {
     label::label(name, None).joint
+}
+
+/// Whether a header is one of a joint by its words alone: of its position or speed, planned, measured or sent.
+pub(in crate::log) fn is_of_joint(name: &str) -> bool {
+    label::label(name, None).is_joint
 }
 
 /// Reads a CSV file in memory.
@@ -96,7 +106,7 @@ impl Form {
         let names = head.names.iter().enumerate();
         let mut labels: Vec<label::Label> =
             names.map(|(column, name)| label::label(name, below(column))).collect();
-        label::settle(&mut labels);
+        settle::settle(&mut labels);
         let mut options = options.clone();
         let derived = expression::derive(&mut head, &mut labels, &mut options)?;
         let time = clock::choose(&head, &labels, dialect, &options, remarks)?;
@@ -126,9 +136,12 @@ impl Form {
         let Self { dialect, head, labels, derived, time, layout, options } = self;
         let mut cells = read::read(text, head, *dialect, time, self.wanted(), &mut remarks)?;
         expression::compute(derived, &mut cells);
-        let (units, kinds) = si::to_si(head, labels, layout, options, &mut cells, &mut remarks)?;
-        let layout_added = (layout, self.added());
+        let given = options.columns.contains_key(&(Role::Command, Quantity::Position));
+        let stated = |column: usize| given || labels[column].unit.is_some();
+        let layout = efforts::left_out(layout, head, &cells, stated, &mut remarks);
+        let (units, kinds) = si::to_si(head, labels, &layout, options, &mut cells, &mut remarks)?;
+        let layout_added = (&*layout, self.added());
         let understood = Understood::new(name, *dialect, head, time, layout_added, &cells, &units);
-        Ok((CsvRun::new((layout.clone(), kinds), cells, understood, remarks), units))
+        Ok((CsvRun::new((layout.into_owned(), kinds), cells, understood, remarks), units))
     }
 }

@@ -24,6 +24,8 @@ pub(super) struct Settled {
 
 /// Joints with end stops stay within one and a half turns to either side, rad.
 const FARTHEST_RAD: f64 = 3.0 * std::f64::consts::PI;
+/// Joints of arms turn no farther; a number above is of other steps, deg.
+const FARTHEST_DEG: f64 = 1080.0;
 
 /// Converts the columns in use; also how each joint moves, `[joints]`.
 pub(super) fn to_si(
@@ -171,7 +173,13 @@ fn angle(
         (None, None) => {
             let reach = cells.columns.get(&one.column).map_or(0.0, super::read::Column::reach);
             if one.quantity == Quantity::Position && reach > FARTHEST_RAD {
-                return Err(CsvError::AngleUnit { column: head.names[one.column].clone(), reach });
+                let column = head.names[one.column].clone();
+                let counts = reach > FARTHEST_DEG;
+                return Err(if counts {
+                    CsvError::Counts { column, reach }
+                } else {
+                    CsvError::AngleUnit { column, reach }
+                });
             }
             (RADIAN, "guess")
         }

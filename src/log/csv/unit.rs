@@ -38,7 +38,7 @@ pub(super) const UNITLESS: Unit = unit("1", Measure::Angle, 1.0);
 pub(super) const DEGREE: Unit = unit("deg", Measure::Angle, DEGREE_RAD);
 const MILLIMETRE: Unit = unit("mm", Measure::Length, 1e-3);
 const CENTIMETRE: Unit = unit("cm", Measure::Length, 1e-2);
-const METRE: Unit = unit("m", Measure::Length, 1.0);
+pub(super) const METRE: Unit = unit("m", Measure::Length, 1.0);
 
 /// Spellings, in lower case and with `deg` for the degree sign.
 const UNITS: [(&[&str], Unit); 32] = [

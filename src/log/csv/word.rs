@@ -20,23 +20,23 @@ const PLANNED: &str = "target planned plan desired des reference ref setpoint se
     wanted consigne trajectory traj fuehrung aspos consigna referencia riferimento alvo ohje ohjearvo börvärde zadana zadane \
     规划 规划值 计划 期望 期望值 目标 目标值 设定 设定值 给定 给定值 参考 参考值 目標 目標値 設定値 목표 목표값 \
     задание задано заданное заданный уставка план";
-const MEASURED: &str = "actual act measured meas feedback fb fbk ist istwert real sensor encoder enc pv measurement reached \
+const MEASURED: &str = "actual act measured meas feedback fb fbk process present observation ist istwert real sensor encoder enc pv measurement reached \
     mess messwert ms aipos mesure mesuré mesurée réel réelle medido medida misurato misurata attuale mitattu oloarvo ärvärde \
     zmierzona 实际 实际值 实测 实测值 测量 测量值 反馈 反馈值 当前 当前值 実際 実際値 実測 実測値 現在 現在値 실제 실제값 측정 측정값 \
     факт фактический фактическое текущее измерено измеренное измеренный";
-const COMMAND: &str = "command commands commanded cmd stell 指令 指令值 指令値 命令 명령";
+const COMMAND: &str = "command commands commanded cmd action stell 指令 指令值 指令値 命令 명령";
 const POSITION: &str = "q pos position positions posn angle angles winkel lage theta phi posición posicion posizione ángulo \
     angulo angolo kulma vinkel 角度 转角 位置 각도 위치 угол положение";
-const VELOCITY: &str = "qd dq vel velocity velocities velo speed omega geschwindigkeit drehzahl qdot vitesse velocidad \
+const VELOCITY: &str = "qd dq vel velocity velocities velo speed omega geschwindigkeit drehzahl qdot dot vitesse velocidad \
     velocità nopeus hastighet 速度 角速度 转速 속도 скорость";
 const JOINT: &str = "j joint axis achse gelenk ax axes jnt joints eje asse 关节 関節 軸 轴 관절 ось сустав";
-const TIME: &str = "time timestamp zeit zeitstempel date datum uhrzeit datetime stamp elapsed temps clock ipoc tiempo tempo \
+const TIME: &str = "time timestamp timestamps zeit zeitstempel date datum uhrzeit datetime stamp elapsed temps clock ipoc tiempo tempo \
     aika tid czas 时间 时刻 時間 時刻 시간 время";
-const FOREIGN: &str = "qdd ddq acc accel acceleration beschleunigung torque tau effort moment drehmoment current strom \
+const FOREIGN: &str = "qdd ddq ddot acc accel acceleration beschleunigung torque tau effort moment drehmoment current strom \
     voltage spannung power leistung temperature temp temperatur pressure druck flow valve ventil spool \
     force kraft mode status error err fehler deviation abweichung lag schleppfehler tcp tool pose cart \
     cartesian output input digital analog safety runtime counter index scaling fraction robot x y z jerk \
-    level temperatures currents torques forces pressures modes voltages following schleppabstand erreur écart errore \
+    level gain gains clamp temperatures currents torques forces pressures modes voltages following schleppabstand erreur écart errore \
     pression presión pressione 误差 偏差 压力 电流 电压 温度 力矩 扭矩 流量 加速度 誤差 圧力 電流 電圧 流量 오차 압력 ошибка давление";
 
 fn meaning_of_word(word: &str) -> Meaning {

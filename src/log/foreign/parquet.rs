@@ -49,17 +49,49 @@ fn rows(bytes: Vec<u8>) -> Result<Vec<u8>> {
     }
     let mut writer = ::csv::Writer::from_writer(Vec::new());
     let fields = reader.metadata().file_metadata().schema().get_fields();
-    writer.write_record(fields.iter().map(|field| field.name())).map_err(other)?;
+    let names: Vec<&str> = fields.iter().map(|field| field.name()).collect();
+    let mut widths: Option<Vec<Option<usize>>> = None;
     let mut cell = Vec::new();
     for row in reader.get_row_iter(None)? {
-        for (_, field) in row?.get_column_iter() {
-            cell.clear();
-            put(field, &mut cell)?;
-            writer.write_field(&cell).map_err(other)?;
+        let row = row?;
+        if widths.is_none() {
+            let found: Vec<Option<usize>> = row.get_column_iter().map(|(_, field)| width(field)).collect();
+            writer.write_record(headers(&names, &found)).map_err(other)?;
+            widths = Some(found);
+        }
+        for ((_, field), width) in row.get_column_iter().zip(widths.iter().flatten()) {
+            let elements = match field {
+                Field::ListInternal(list) => list.elements(),
+                one => std::slice::from_ref(one),
+            };
+            for at in 0..width.unwrap_or(1) {
+                cell.clear();
+                elements.get(at).map_or(Ok(()), |element| put(element, &mut cell))?;
+                writer.write_field(&cell).map_err(other)?;
+            }
         }
         writer.write_record(None::<&[u8]>).map_err(other)?;
     }
+    if widths.is_none() {
+        writer.write_record(&names).map_err(other)?;
+    }
     writer.into_inner().map_err(|error| other(error.into_error()))
+}
+
+/// Elements of a list are columns of their own, as many as the first row has.
+fn width(field: &Field) -> Option<usize> {
+    match field {
+        Field::ListInternal(list) => Some(list.len()),
+        _ => None,
+    }
+}
+
+fn headers(names: &[&str], widths: &[Option<usize>]) -> Vec<String> {
+    let of = |(name, width): (&&str, &Option<usize>)| match *width {
+        Some(width) => (0..width).map(|at| format!("{name}[{at}]")).collect(),
+        None => vec![(*name).to_owned()],
+    };
+    names.iter().zip(widths).flat_map(of).collect()
 }
 
 /// Instants become ns since 1970.
@@ -84,4 +116,35 @@ fn put(field: &Field, cell: &mut Vec<u8>) -> std::io::Result<()> {
 
 fn other<E: std::error::Error + Send + Sync + 'static>(error: E) -> ParquetError {
     ParquetError::External(Box::new(error))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use ::parquet::{
+        data_type::DoubleType, file::writer::SerializedFileWriter, schema::parser::parse_message_type,
+    };
+
+    use super::*;
+
+    #[test]
+    fn elements_of_lists_are_columns() {
+        let schema = "message run { required double t; required group action (LIST) { repeated group list { \
+                      required double element; } } }";
+        let schema = Arc::new(parse_message_type(schema).unwrap());
+        let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::default()).unwrap();
+        let mut group = writer.next_row_group().unwrap();
+        let mut put = |values: &[f64], levels: Option<(&[i16], &[i16])>| {
+            let mut column = group.next_column().unwrap().unwrap();
+            let (depth, again) = levels.unzip();
+            column.typed::<DoubleType>().write_batch(values, depth, again).unwrap();
+            column.close().unwrap();
+        };
+        put(&[0.0, 0.5], None);
+        put(&[1.0, 2.0, 3.0], Some((&[1, 1, 1], &[0, 1, 0])));
+        group.close().unwrap();
+        let text = rows(writer.into_inner().unwrap()).unwrap();
+        assert_eq!(String::from_utf8(text).unwrap(), "t,action[0],action[1]\n0,1,2\n0.5,3,\n");
+    }
 }

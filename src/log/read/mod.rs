@@ -1,6 +1,7 @@
 //! Reading: from the files of a run to plan, measurement and other signals.
 
 mod assemble;
+mod by_words;
 mod content;
 mod cylinders;
 mod description;
@@ -130,7 +131,9 @@ impl ScannedLog<'_> {
     ///
     /// [`LogError`] if something that the options require is not found.
     pub fn read(&self, options: &ReadOptions) -> Result<Recording, LogError> {
-        recording(extract(self, options), options)
+        let extracted = extract(self, options);
+        let description = description::of(&extracted);
+        recording(extracted, options).or_else(|error| by_words::recording(self, options, description, error))
     }
 
     fn survey(&self, options: &ReadOptions) -> Survey {
@@ -143,7 +146,9 @@ impl ScannedLog<'_> {
         let begins_ns = times().map(|topic| topic.first_log_ns).min().unwrap_or(0);
         let ends_ns = times().map(|topic| topic.last_log_ns).max().unwrap_or(0);
         let duration_s = ends_ns.saturating_sub(begins_ns) as f64 / NS_PER_S;
-        let recording = recording(extracted, options);
+        let description = description::of(&extracted);
+        let recording = recording(extracted, options)
+            .or_else(|error| by_words::recording(self, options, description, error));
         let remarks = recording.as_ref().map_or(remarks, |r| r.remarks.clone());
         Survey { files, topics, attachments, duration_s, recording, remarks }
     }

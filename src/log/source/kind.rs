@@ -67,6 +67,9 @@ const NANOSECONDS: [&str; 4] = ["nanosec", "nsec", "nsecs", "nanos"];
 const STAMPS: [&str; 3] = ["header.stamp", "stamp", "timestamp"];
 const NAMES: [&str; 3] = ["joint_names", "names", "name"];
 
+/// What an element of a list calls the joint that it is of.
+const ELEMENT_NAMES: [&str; 4] = ["name", "joint_name", "joint", "axis"];
+
 /// How to read messages of this type, `None` if it holds no joints and `selectors` name none of
 /// its fields; with speeds where plan or measurement depends on the topic, if they are wanted. Without a definition (JSON, Protobuf) every spelling is tried on each message.
 pub(in crate::log) fn spec_for(
@@ -314,7 +317,26 @@ impl Builder<'_> {
                 Some((parent, "position")) => format!("{parent}.velocity"),
                 _ => String::new(),
             };
+            self.list_of(path);
             self.position(path, &velocity, role);
+        }
+    }
+
+    /// A number within a list of structs is of as many joints, by the names in them.
+    fn list_of(&mut self, path: &str) {
+        let Some(definition) = self.definition else { return };
+        let is_list = |path: &&str| match shape_at(definition, path) {
+            Some(Shape::Sequence(of) | Shape::Array(_, of)) => matches!(**of, Shape::Struct(_)),
+            _ => false,
+        };
+        let list = path.match_indices('.').map(|(at, _)| &path[..at]).find(is_list);
+        let Some(list) = list else { return };
+        self.spec.form = Form::Groups;
+        self.want(list, slot::GROUP);
+        let names = ELEMENT_NAMES.map(|name| format!("{list}.{name}"));
+        let text = |path: &&String| matches!(shape_at(definition, path), Some(Shape::Text));
+        if let Some(name) = names.iter().find(text) {
+            self.want(name, slot::NAMES);
         }
     }
 }

@@ -2,7 +2,10 @@
 
 mod document;
 
-use std::{io::Write, path::PathBuf};
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
 
 use thiserror::Error;
 
@@ -10,7 +13,7 @@ pub use document::Imported;
 
 use crate::{
     atomic_file::{AtomicError, write_atomically},
-    log::{CsvError, CsvOptions, WriteError, read_csv},
+    log::{Contents, CsvError, CsvOptions, LogError, WriteError, contents, read_csv, read_messages},
 };
 
 /// Input, options and output of an import.
@@ -32,6 +35,9 @@ pub enum ImportError {
     /// The file is not understood.
     #[error(transparent)]
     Csv(#[from] CsvError),
+    /// The bag or log is not read.
+    #[error(transparent)]
+    Log(#[from] LogError),
     /// The log cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -43,13 +49,25 @@ pub enum ImportError {
     Atomic(#[from] AtomicError),
 }
 
-/// Imports a CSV file.
+/// Whether a path is that of a log or of a bag, whose messages are a table.
+fn is_recording(path: &Path) -> bool {
+    path.is_dir() || matches!(contents(path), Ok(Contents::Log { .. } | Contents::Recording(_)))
+}
+
+/// Imports a table, or the messages of a bag by the words of their fields.
 ///
 /// # Errors
 ///
 /// [`ImportError`]; then there is no output.
 pub fn run(inputs: &Inputs) -> Result<Imported, ImportError> {
-    let run = read_csv(&inputs.file, &inputs.options)?;
+    let run = if is_recording(&inputs.file) {
+        read_messages(&inputs.file, &inputs.options).map_err(|error| match error {
+            LogError::Table { source, .. } => ImportError::Csv(*source),
+            other => other.into(),
+        })?
+    } else {
+        read_csv(&inputs.file, &inputs.options)?
+    };
     write_atomically(&inputs.output, |file| run.write(file).map(|_| ()).map_err(ImportError::from))?;
     if let Some(path) = &inputs.map {
         let text = inputs.options.to_map(&run.understood);

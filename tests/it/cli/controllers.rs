@@ -55,16 +55,8 @@ fn comma(q: f64) -> String {
     degrees(q).replace('.', ",")
 }
 
-/// Name, bytes, options of `import`, the first joint's name.
-fn tables() -> Vec<(&'static str, Vec<u8>, &'static [&'static str], &'static str)> {
-    let none: &[&str] = &[];
-    let deg: &[&str] = &["--degrees"];
-    let wide = |text: &str| {
-        let units = text.encode_utf16().flat_map(u16::to_le_bytes);
-        [0xff, 0xfe].into_iter().chain(units).collect::<Vec<u8>>()
-    };
-    let clock = |k: u32| format!("\"Data\",\"11/20/2026\",\"10:00:{:02};{:03}\"", k / 50, k % 50 * 20);
-    let quoted = |q: f64| format!("\"{q:.4}\"");
+/// The run with a row for each joint, and with a block for each signal.
+fn by_row() -> [String; 2] {
     let mut long = "time,joint,planned_deg,actual_deg\n".to_owned();
     let mut blocks = "#group,false,false,true,true\n".to_owned();
     for k in 0..500 {
@@ -80,6 +72,61 @@ fn tables() -> Vec<(&'static str, Vec<u8>, &'static [&'static str], &'static str
             writeln!(blocks, ",,{signal},2026-11-20T10:00:{s:02}.{ms:03}Z,{value:.4},{name}").unwrap();
         }
     }
+    [long, blocks]
+}
+
+/// Forms as in [`tables`], without a unit where a loop writes radians.
+fn loops() -> Vec<(&'static str, Vec<u8>, &'static [&'static str], &'static str)> {
+    let none: &[&str] = &[];
+    let deg: &[&str] = &["--degrees"];
+    let rad = |q: f64| format!("{:.6}", q.to_radians());
+    let described = rows("time,Boom Ref,Boom Meas,Arm Ref,Arm Meas", ",", seconds, degrees);
+    let described = described.replacen(
+        '\n',
+        "\n,Unit: deg,Unit: deg,Unit: deg,Unit: deg\n,Interp: linear,Interp: linear,\
+                                              Interp: linear,Interp: linear\n",
+        1,
+    );
+    let demand = "Time (ms),Boom.Position demand value,Boom.Position actual value,Arm.Position demand value,\
+                  Arm.Position actual value";
+    let process = "%time,boom_set_point,boom_process_value,arm_set_point,arm_process_value";
+    vec![
+        ("a letter for the side", rows("t,q1_d,q1_m,q2_d,q2_m", ",", seconds, rad).into(), none, "joint_1"),
+        (
+            "a letter for the plan",
+            rows("t,theta1_d,theta1,theta2_d,theta2", ",", seconds, rad).into(),
+            none,
+            "joint_1",
+        ),
+        ("set point and process value", rows(process, ",", nanos, rad).into(), none, "boom"),
+        ("demand and actual value", rows(demand, ",", millis, degrees).into(), deg, "Boom"),
+        (
+            "milliseconds by name",
+            rows("millis,a_target,a_angle,b_target,b_angle", ",", millis, degrees).into(),
+            deg,
+            "a",
+        ),
+        ("rows of what columns are", described.into(), none, "Boom"),
+        (
+            "blanks between, names in a comment",
+            rows("# ts  q1d  q1  q2d  q2", "  ", seconds, rad).into(),
+            none,
+            "joint_1",
+        ),
+    ]
+}
+
+/// Name, bytes, options of `import`, the first joint's name.
+fn tables() -> Vec<(&'static str, Vec<u8>, &'static [&'static str], &'static str)> {
+    let none: &[&str] = &[];
+    let deg: &[&str] = &["--degrees"];
+    let wide = |text: &str| {
+        let units = text.encode_utf16().flat_map(u16::to_le_bytes);
+        [0xff, 0xfe].into_iter().chain(units).collect::<Vec<u8>>()
+    };
+    let clock = |k: u32| format!("\"Data\",\"11/20/2026\",\"10:00:{:02};{:03}\"", k / 50, k % 50 * 20);
+    let quoted = |q: f64| format!("\"{q:.4}\"");
+    let [long, blocks] = by_row();
     let lab = "LabVIEW Measurement\nWriter_Version\t2\nSeparator\tTab\nTime\t10:00:00.0\n***End_of_Header***\n\n\
                Channels\t4\nSamples\t500\t500\t500\t500\nX0\t0\t0\t0\t0\nDelta_X\t0.02\t0.02\t0.02\t0.02\n\
                ***End_of_Header***\nX_Value\tBoom Set\tBoom Actual\tArm Set\tArm Actual\tComment";
@@ -166,7 +213,7 @@ fn tables() -> Vec<(&'static str, Vec<u8>, &'static [&'static str], &'static str
 
 #[test]
 fn one_run_is_the_same_in_every_form() {
-    for (form, bytes, options, joint) in tables() {
+    for (form, bytes, options, joint) in tables().into_iter().chain(loops()) {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("a.csv"), bytes).unwrap();
         let (code, text, error) =
@@ -200,6 +247,19 @@ fn a_table_that_lacks_a_unit_gets_a_command_that_reads_it() {
     let (code, text, error) =
         said(&hydrotrace(folder.path(), &["import", "a.csv", "--degrees", "-o", "run.mcap"]));
     assert_eq!(code, 0, "{text}{error}");
+    let counts = rows("t,B_set,B_act,A_set,A_act", ",", seconds, |q| format!("{:.0}", 2048.0 + 11.4 * q));
+    fs::write(folder.path().join("c.csv"), counts).unwrap();
+    let (code, _, error) = said(&hydrotrace(folder.path(), &["report", "c.csv"]));
+    assert!(
+        code == 1
+            && error.contains("steps of an encoder")
+            && !error.contains("`hydrotrace import c.csv --degrees"),
+        "{error}"
+    );
+    let errors = rows("t,B_pos,B_err,A_pos,A_err", ",", seconds, |q| format!("{:.5}", q.to_radians()));
+    fs::write(folder.path().join("d.csv"), errors).unwrap();
+    let (_, text, error) = said(&hydrotrace(folder.path(), &["import", "d.csv", "-o", "d.mcap"]));
+    assert!(text.contains("say --planned B=measured+err,A=measured+err if the error"), "{text}{error}");
     fs::write(folder.path().join("b.txt"), "header:\n  stamp:\n    sec: 1\nposition:\n- 0.5\n---\n").unwrap();
     let (code, _, error) = said(&hydrotrace(folder.path(), &["report", "b.txt"]));
     assert!(code == 1 && error.contains("ros2 bag record"), "{error}");

@@ -1,0 +1,37 @@
+//! Columns of a joint that are named by what they mean.
+
+use super::{
+    label::Label,
+    word::{Meaning, words},
+};
+
+/// Words for the plan less the measurement.
+const ERRORS: [&str; 8] =
+    ["error", "err", "deviation", "abweichung", "schleppfehler", "schleppabstand", "erreur", "误差"];
+
+/// The only column of a joint that is `measured`, `planned`, `command` or `error`.
+pub(super) fn by_meaning(name: &str, joint: &str, labels: &[Label]) -> Option<usize> {
+    let wanted = words(name);
+    let [wanted] = wanted.as_slice() else { return None };
+    let joint = joint.to_lowercase();
+    let fits = |label: &Label| match wanted.meaning {
+        Meaning::Role(role) => label.is_joint && label.key == joint && label.role == Some(role),
+        Meaning::Foreign => {
+            let said = |text: &str| label.words.iter().any(|word| word == text);
+            said(&wanted.text.to_lowercase()) && words(&joint).iter().all(|word| said(word.text))
+        }
+        _ => false,
+    };
+    let mut found = (0..labels.len()).filter(|&column| fits(&labels[column]));
+    found.next().filter(|_| found.next().is_none())
+}
+
+/// What makes the plan of joints that have a measurement and an error: `BOOM=measured+error,ARM=measured+error`.
+pub(super) fn plan_by_error<'a>(joints: impl Iterator<Item = &'a str>, labels: &[Label]) -> Option<String> {
+    let sum = |joint: &str| {
+        let word = ERRORS.iter().find(|word| by_meaning(word, joint, labels).is_some())?;
+        Some(format!("{joint}=measured+{word}"))
+    };
+    let sums: Option<Vec<String>> = joints.map(sum).collect();
+    sums.map(|sums| sums.join(","))
+}

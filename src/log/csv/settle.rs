@@ -1,0 +1,116 @@
+//! Settles what only all headers together tell of each.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Quantity, Role, label::Label, letter::Lettered, unit::METRE};
+
+/// Letters behind a quantity that are gains of a controller where all three come: `position_p`.
+const GAINS: [&str; 3] = ["p", "i", "d"];
+
+/// Settles what only all headers together tell: that `q_d_1` is the plan of `q_1`, and that `J1_planned_rad` and
+/// `J1_actual_rad` are of one joint. Names that differ in case alone are of one where no two say the same of it.
+pub(super) fn settle(labels: &mut [Label]) {
+    leave_out_gains(labels);
+    let says = |label: &Label| {
+        let quantity = label.quantity.unwrap_or(Quantity::Position);
+        (label.key.to_lowercase(), label.role.unwrap_or(Role::Measured), quantity)
+    };
+    let mut said = BTreeMap::<_, usize>::new();
+    for label in labels.iter().filter(|label| label.is_joint) {
+        *said.entry(says(label)).or_default() += 1;
+    }
+    let twice: BTreeSet<String> =
+        said.into_iter().filter(|(_, count)| *count > 1).map(|((key, ..), _)| key).collect();
+    for at in 0..labels.len() {
+        let other = |key: &str| {
+            labels.iter().enumerate().any(|(index, label)| index != at && label.is_joint && label.key == key)
+        };
+        let lower = labels[at].key.to_lowercase();
+        let lettered = labels[at].lettered.clone().filter(|own| holds(own, labels, at));
+        let one =
+            labels[at].is_joint && (!twice.contains(&lower) || !other(&labels[at].key) && other(&lower));
+        if let Some(Lettered { role, key, joint }) = lettered {
+            (labels[at].key, labels[at].joint, labels[at].role) = (key, joint, Some(role));
+            if labels[at].unit == Some(METRE) {
+                (labels[at].unit, labels[at].stated) = (None, None);
+            }
+        } else if one {
+            labels[at].key = lower;
+        }
+    }
+}
+
+/// `position_p`, `position_i` and `position_d` are no joints.
+fn leave_out_gains(labels: &mut [Label]) {
+    let is = |label: &Label, name: &str| label.role.is_none() && label.key == name;
+    if GAINS.iter().all(|name| labels.iter().any(|label| is(label, name))) {
+        for label in labels.iter_mut().filter(|label| GAINS.iter().any(|name| is(label, name))) {
+            (label.is_joint, label.lettered) = (false, None);
+        }
+    }
+}
+
+/// Whether another column is the same joint's of the other side: one without a letter beside a plan, or one with.
+fn holds(own: &Lettered, labels: &[Label], at: usize) -> bool {
+    let mut others = labels.iter().enumerate().filter(|(index, _)| *index != at).map(|(_, label)| label);
+    others.any(|other| match &other.lettered {
+        Some(lettered) => lettered.key == own.key && lettered.role != own.role,
+        None => own.role == Role::Planned && other.is_joint && other.key == own.key,
+    })
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::csv::label::label;
+
+    fn labels<const N: usize>(headers: [&str; N]) -> [Label; N] {
+        let mut labels = headers.map(|header| label(header, None));
+        settle(&mut labels);
+        labels
+    }
+
+    #[test]
+    fn a_letter_behind_a_joint_is_no_metre_where_it_says_a_side() {
+        let units = |headers: [&str; 2]| labels(headers).map(|label| label.unit.map(|unit| unit.name));
+        assert_eq!(units(["q1_d", "q1_m"]), [None, None]);
+        assert_eq!(units(["q1_rad", "q3_m"]), [Some("rad"), Some("m")]);
+    }
+
+    #[test]
+    fn gains_of_a_controller_are_no_joints() {
+        let gains =
+            ["set_point", "process_value", "process_value_dot", "position_p", "position_i", "position_d"];
+        let found = labels(gains).map(|label| (label.is_joint, label.role, label.quantity));
+        let (plan, real) = (Some(Role::Planned), Some(Role::Measured));
+        assert_eq!(
+            found[..3],
+            [(true, plan, None), (true, real, None), (true, real, Some(Quantity::Velocity))]
+        );
+        assert!(found[3..].iter().all(|(is_joint, ..)| !is_joint), "{found:?}");
+        assert_eq!(labels(["set_point", "process_value"]).map(|label| label.key), ["joint", "joint"]);
+    }
+
+    #[test]
+    fn headers_together_tell_what_one_does_not() {
+        fn settled<const N: usize>(headers: [&str; N]) -> [(Option<Role>, String); N] {
+            let mut labels = headers.map(|header| label(header, None));
+            settle(&mut labels);
+            labels.map(|label| (label.role, label.key))
+        }
+        let (plan, real) = (Some(Role::Planned), Some(Role::Measured));
+        assert_eq!(settled(["q_d_1", "q_1"]), [(plan, "joint_1".into()), (None, "joint_1".into())]);
+        assert_eq!(settled(["q_d_1", "q_2"]), [(None, "d_1".into()), (None, "joint_2".into())]);
+        assert_eq!(settled(["J1_planned_rad", "J1_actual_rad"]), [(plan, "j1".into()), (real, "j1".into())]);
+        assert_eq!(settled(["q1_d", "q1"]), [(plan, "joint_1".into()), (None, "joint_1".into())]);
+        assert_eq!(settled(["q1_d", "q1_m"]), [(plan, "joint_1".into()), (real, "joint_1".into())]);
+        assert_eq!(settled(["theta_r", "theta_a"]), [(plan, "joint".into()), (real, "joint".into())]);
+        let own = ["q_planned_rad", "Q_measured_rad"];
+        assert_eq!(settled(own), [(plan, "q".into()), (real, "q".into())]);
+        let sent = settled(["J1_planned_rad", "J1_actual_rad", "J1_command_rad"]);
+        assert!(sent.iter().all(|(_, key)| key == "j1"), "{sent:?}");
+        let sent = settled(["J1_target_rad", "J1_measured_rad", "J1_command_rad"]);
+        assert!(sent.iter().all(|(_, key)| key == "j1"), "{sent:?}");
+        let two = settled(["q_planned_rad", "Q_planned_rad", "q_measured_rad", "Q_measured_rad"]);
+        assert_eq!(two.map(|(_, key)| key), ["q", "Q", "q", "Q"]);
+    }
+}

@@ -1,0 +1,177 @@
+//! Messages of types that nobody told the reader of: their fields say what they are.
+
+use super::{cdr::Cdr, file::Channel, *};
+
+const HEADER: &str = "\n================================================================================\nMSG: std_msgs/Header\n\
+                      builtin_interfaces/Time stamp\nstring frame_id\n\
+                      ================================================================================\n\
+                      MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
+
+fn header(cdr: &mut Cdr, k: i64) {
+    cdr.i32((stamp(k) / 1_000_000_000) as i32);
+    cdr.u32((stamp(k) % 1_000_000_000) as u32);
+    cdr.text("");
+}
+
+/// A topic whose messages `write` fills behind their header; the recorder had them 3 ms later.
+fn add(log: &mut Log, topic: &str, fields: &str, write: impl Fn(&mut Cdr, i64)) {
+    let schema = format!("std_msgs/Header header\n{fields}{HEADER}");
+    let channel = log.channel(Channel::cdr(topic, "our_arm/msg/Any").with_schema("ros2msg", schema));
+    for k in 0..SAMPLES {
+        let data = Cdr::message(cdr::Kind::LittleEndian, |cdr| {
+            header(cdr, k);
+            write(cdr, k);
+        });
+        log.send(channel, stamp(k) + 3_000_000, data);
+    }
+}
+
+/// A log of one topic, `/arm/any`.
+fn of(fields: &str, write: impl Fn(&mut Cdr, i64)) -> Log {
+    let mut log = Log::default();
+    add(&mut log, "/arm/any", fields, write);
+    log
+}
+
+#[track_caller]
+fn assert_both(log: &Log, names: [&str; 2]) {
+    let recording = read(log);
+    assert_eq!([joints(&recording.planned), joints(&recording.measured)], [names, names]);
+    for (series, values) in
+        [(&recording.planned, plan as fn(i64) -> Vec<f64>), (&recording.measured, measurement)]
+    {
+        for (j, track) in series.tracks.iter().enumerate() {
+            let expected: Vec<f64> = (0..SAMPLES).map(|k| values(k)[j]).collect();
+            let far = |(q, e): (&f64, &f64)| (q - e).abs() > 1e-12;
+            assert_eq!(track.len(), expected.len(), "{names:?}");
+            assert!(
+                !track.position().iter().zip(&expected).any(far),
+                "{}: {:?}",
+                track.name(),
+                track.position()
+            );
+            assert!((track.t_s()[10] - 0.2).abs() < 1e-9, "{:?}", track.t_s());
+        }
+    }
+    assert!(
+        recording.remarks.as_slice().iter().all(|remark| remark.code == Code::Guessed),
+        "{:?}",
+        recording.remarks
+    );
+    assert!(count(&recording.remarks, Code::Guessed) > 0);
+}
+
+#[test]
+fn arrays_of_one_message_are_plan_and_measurement_by_their_names() {
+    let arrays = |cdr: &mut Cdr, k: i64| {
+        measurement(k).iter().chain(&plan(k)).chain(&[7.0, 7.0]).for_each(|value| cdr.f64(*value));
+    };
+    let log = of(
+        "float64[2] measured_joint_position\nfloat64[2] desired_joint_position\nfloat64[2] torque\n",
+        arrays,
+    );
+    assert_both(&log, ["joint_0", "joint_1"]);
+    assert_both(&of("float64[2] q\nfloat64[2] q_d\nfloat64[2] tau_J\n", arrays), ["joint_0", "joint_1"]);
+    let named = of("string[] names\nfloat64[] target\nfloat64[] actual\n", |cdr, k| {
+        cdr.list(&["boom", "stick"], |cdr, name| cdr.text(name));
+        cdr.f64s(&plan(k));
+        cdr.f64s(&measurement(k));
+    });
+    assert_both(&named, ["boom", "stick"]);
+}
+
+#[test]
+fn a_list_of_joints_and_one_joint_a_message_are_told_by_their_names() {
+    let one = |cdr: &mut Cdr, k: i64, j: usize| {
+        cdr.text(["boom", "stick"][j]);
+        cdr.f64(plan(k)[j]);
+        cdr.f64(measurement(k)[j]);
+    };
+    let list = "our_arm/Axis[] axes\n================================================================================\n\
+                MSG: our_arm/Axis\nstring name\nfloat64 reference\nfloat64 feedback\n";
+    let log = of(list, |cdr, k| cdr.list(&[0, 1], |cdr, j| one(cdr, k, *j)));
+    assert_both(&log, ["boom", "stick"]);
+    let named = options(&["/arm/any:axes.reference"], &["/arm/any:axes.feedback"], &[]);
+    let recording = read_with(&log, &named);
+    assert_eq!(joints(&recording.planned), ["boom", "stick"]);
+    assert_eq!(recording.planned.tracks[0].position()[20], plan(20)[0]);
+
+    let mut alone = Log::default();
+    let channel = alone.channel(Channel::cdr("/axis", "our_arm/msg/Axis").with_schema(
+        "ros2msg",
+        format!("std_msgs/Header header\nstring name\nfloat64 set_point\nfloat64 process_value\n{HEADER}"),
+    ));
+    for (k, j) in (0..SAMPLES).flat_map(|k| [(k, 0), (k, 1)]) {
+        let data = Cdr::message(cdr::Kind::LittleEndian, |cdr| {
+            header(cdr, k);
+            one(cdr, k, j);
+        });
+        alone.send(channel, stamp(k) + 1_000_000 * (j as i64 + 1), data);
+    }
+    assert_both(&alone, ["boom", "stick"]);
+}
+
+#[test]
+fn a_topic_for_each_joint_gives_it_the_name() {
+    let mut log = Log::default();
+    for (j, name) in ["boom", "stick"].into_iter().enumerate() {
+        add(
+            &mut log,
+            &format!("/{name}/state"),
+            "float64 set_point\nfloat64 process_value\nfloat64 p\nfloat64 i\n",
+            |cdr, k| {
+                [plan(k)[j], measurement(k)[j], 50.0, 0.1].into_iter().for_each(|value| cdr.f64(value));
+            },
+        );
+    }
+    log.messages.sort_by_key(|message| message.log_ns);
+    assert_both(&log, ["boom", "stick"]);
+
+    let mut numbers = Log::default();
+    let topics = ["/boom/setpoint", "/boom/angle", "/stick/setpoint", "/stick/angle"];
+    for (at, topic) in topics.into_iter().enumerate() {
+        let value = move |k: i64| if at % 2 == 0 { plan(k)[at / 2] } else { measurement(k)[at / 2] };
+        let channel = numbers
+            .channel(Channel::cdr(topic, "std_msgs/msg/Float64").with_schema("ros2msg", "float64 data\n"));
+        for k in 0..SAMPLES {
+            numbers.send(channel, stamp(k), Cdr::message(cdr::Kind::LittleEndian, |cdr| cdr.f64(value(k))));
+        }
+    }
+    assert_both(&numbers, ["boom", "stick"]);
+}
+
+#[test]
+fn json_is_read_alike() {
+    let mut log = Log::default();
+    let channel = log.channel(Channel::cdr("/arm", "arm").with_schema("jsonschema", "{}").encoded("json"));
+    for k in 0..SAMPLES {
+        let [p, m] = [plan(k), measurement(k)];
+        let text = format!(
+            "{{\"boom\":{{\"target\":{:?},\"actual\":{:?}}},\"stick\":{{\"target\":{:?},\"actual\":{:?}}},\"mode\":3}}",
+            p[0], m[0], p[1], m[1]
+        );
+        log.send(channel, stamp(k), text.into_bytes());
+    }
+    assert_both(&log, ["boom", "stick"]);
+}
+
+#[test]
+fn angles_in_degrees_are_asked_for_with_the_line_that_reads_them() {
+    let log = of("float32 boom_setpoint\nfloat32 boom_angle\n", |cdr, k| {
+        cdr.f32(plan(k)[0].to_degrees() as f32 + 40.0);
+        cdr.f32(measurement(k)[0].to_degrees() as f32 + 40.0);
+    });
+    let said = error(&log, &ReadOptions::default());
+    assert!(
+        said.contains("hydrotrace import ") && said.contains("run.mcap --degrees -o run.mcap`"),
+        "{said}"
+    );
+}
+
+#[test]
+fn fields_without_such_words_stay_unread() {
+    let log = of("float64 boom\nfloat64 stick\nfloat64 battery_target\n", |cdr, k| {
+        [plan(k)[0], plan(k)[1], 3.0].into_iter().for_each(|value| cdr.f64(value));
+    });
+    assert!(error(&log, &ReadOptions::default()).contains("found no planned joint angles"));
+}
