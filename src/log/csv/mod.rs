@@ -10,8 +10,8 @@ mod clock;
 mod column;
 mod date;
 mod dialect;
-#[cfg(feature = "encodings")]
 mod efforts;
+#[cfg(feature = "encodings")]
 mod encoding;
 mod error;
 mod expression;
