@@ -71,6 +71,17 @@ pub(in crate::log) fn is_of_joint(name: &str) -> bool {
     label::label(name, None).is_joint
 }
 
+/// Whether a header is that of a joint though no other goes with it.
+pub(in crate::log) fn is_of_lone_joint(name: &str) -> bool {
+    let label = label::label(name, None);
+    label.is_joint && !label.is_weak
+}
+
+/// Whether a part of a name says that something is planned, measured or sent.
+pub(in crate::log) fn says_side(part: &str) -> bool {
+    word::words(part).iter().any(|word| matches!(word.meaning, word::Meaning::Role(_)))
+}
+
 /// Reads a CSV file in memory.
 ///
 /// # Errors

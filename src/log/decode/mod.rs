@@ -14,6 +14,7 @@ mod tree;
 
 pub(super) use layout_cache::{Found, LayoutCache};
 pub(super) use program::{Program, Want, shape_at};
+pub(super) use protobuf::Whole;
 pub(super) use sink::{Numbers, Sink, Slot, Texts, number_from};
 pub(super) use template::Template;
 pub(super) use tree::Tree;

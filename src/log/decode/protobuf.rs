@@ -145,6 +145,22 @@ impl Descriptors {
         });
         Some(wanted.collect())
     }
+
+    /// Everything but bytes and choices; `left` is how many fields there may be yet.
+    fn all(&self, name: &str, depth: usize, left: &mut usize) -> Option<Vec<Planned>> {
+        const BYTES: u64 = 12;
+        const CHOICE: u64 = 14;
+        let mut found = Vec::new();
+        for field in self.0.get(name).filter(|_| depth < MAX_DEPTH)? {
+            if [BYTES, CHOICE].contains(&field.kind) {
+                continue;
+            }
+            *left = left.checked_sub(1)?;
+            let below = if field.of.is_empty() { Vec::new() } else { self.all(&field.of, depth + 1, left)? };
+            found.push(Planned { field: field.clone(), below });
+        }
+        Some(found)
+    }
 }
 
 impl Field {
@@ -176,6 +192,23 @@ fn text(bytes: &[u8]) -> String {
 pub(super) struct Planned {
     field: Field,
     below: Vec<Planned>,
+}
+
+/// All numbers and texts of a message type.
+#[derive(Debug, Clone)]
+pub(in crate::log) struct Whole(Vec<Planned>);
+
+impl Whole {
+    /// `None` of a type that the descriptors lack, or that has more fields than messages of joints have.
+    pub(in crate::log) fn of(name: &str, descriptors: &[u8]) -> Option<Self> {
+        let mut left = 500;
+        Descriptors::parse(descriptors).ok()?.all(name, 0, &mut left).map(Self)
+    }
+
+    /// A message; `None` of bytes that are none.
+    pub(in crate::log) fn value(&self, message: &[u8]) -> Option<Value> {
+        object(&self.0, message).ok()
+    }
 }
 
 /// The wanted fields of a message, as an object.

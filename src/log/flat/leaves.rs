@@ -29,6 +29,9 @@ const MOST_DEPTH: usize = 6;
 const MOST_PLACES: u32 = 64;
 const MOST_LEAVES: usize = 240;
 
+/// How the numbers of a `MultiArray` lie.
+const LAYOUT: &str = "layout";
+
 /// Fields that name what the numbers beside are of.
 const NAMES: [&str; 8] =
     ["name", "names", "joint", "joints", "joint_name", "joint_names", "axis", "axis_name"];
@@ -62,6 +65,9 @@ impl Leaves {
         }
         let one = definition.structs.get(at)?;
         for (name, shape) in &one.fields {
+            if name == LAYOUT {
+                continue;
+            }
             let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
             let (shape, list) = match shape {
                 Shape::Array(count, of) if *count <= MOST_PLACES => (&**of, true),

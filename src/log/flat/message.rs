@@ -143,17 +143,16 @@ impl Sink for Message {
     fn same_texts(&mut self, _: Slot) {}
 }
 
-/// The stamp of a message in JSON, ns, if it has one, and its numbers.
-pub(super) fn of_json(data: &[u8]) -> Option<(Option<i64>, Cells)> {
-    let value: Value = serde_json::from_slice(data).ok()?;
+/// The stamp of a parsed message, ns, if it has one, and its numbers.
+pub(super) fn of_value(value: &Value) -> (Option<i64>, Cells) {
     let mut cells = Cells::new();
-    walk(&value, String::new(), &mut cells);
+    walk(value, String::new(), &mut cells);
     let stamps = [value.pointer("/header/stamp"), value.get("stamp"), value.get("timestamp")];
     let stamp_ns = stamps.into_iter().flatten().find_map(|stamp| {
         let part = |names: &[&str]| names.iter().find_map(|name| stamp.get(*name)?.as_f64());
         stamp_ns(part(&SECONDS)?, part(&NANOSECONDS).unwrap_or(0.0))
     });
-    Some((stamp_ns, cells))
+    (stamp_ns, cells)
 }
 
 fn walk(value: &Value, path: String, cells: &mut Cells) {

@@ -5,24 +5,29 @@ mod leaves;
 mod message;
 mod rows;
 
-use std::{collections::BTreeMap, path::Path};
+use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use super::{
     channel::{Definitions, OwnedSchema},
     csv::{CsvError, CsvOptions, CsvRun, read_csv_bytes},
-    decode::{LayoutCache, Program},
+    decode::{LayoutCache, Program, Whole},
     error::LogError,
     file::{Blocks, ChannelRecord, MessageRecord, Opcode, records},
     files::{LogFiles, ScannedLog, file_name},
-    schema::Definition,
+    schema::{Definition, plain_name},
     source::spec_for,
 };
 use leaves::Leaves;
 use message::Message;
+pub(in crate::log) use rows::LONE;
 use rows::Rows;
 
 /// Steps of one program: messages of joints take some hundred.
 const MOST_STEPS: usize = 5_000;
+
+/// More schemas and topics than any machine has are not looked at.
+const MOST_SCHEMAS: usize = 300;
+const MOST_TOPICS: usize = 3_000;
 
 /// Packages whose messages hold no joints that are not known already.
 const OTHERS: [&str; 14] = [
@@ -42,19 +47,26 @@ const OTHERS: [&str; 14] = [
     "trajectory_msgs",
 ];
 
+/// Types that are known, and that a message of another type may go with.
+const KNOWN: [&str; 2] = ["sensor_msgs/JointState", "std_msgs/Float64MultiArray"];
+
 /// How the messages of a channel are read.
 enum Reader {
     Program(Box<Program>, Leaves),
     Json,
+    Protobuf(Whole),
 }
 
 /// The run that the messages of a log hold by the words of their fields; `None` if no field is one of a joint.
+///
+/// Of a `lone` side, such as a measurement without a plan, words for the side are enough.
 pub(super) fn run(
     log: &ScannedLog<'_>,
     name: &str,
     options: &CsvOptions,
+    lone: bool,
 ) -> Option<Result<CsvRun, CsvError>> {
-    let text = text(log)?;
+    let text = text(log, lone)?;
     Some(read_csv_bytes(name, &text, options))
 }
 
@@ -66,7 +78,7 @@ pub(super) fn run(
 pub fn read_messages(path: &Path, options: &CsvOptions) -> Result<CsvRun, LogError> {
     let files = LogFiles::open(&[path.to_owned()])?;
     let fault = |source| LogError::Table { path: path.to_owned(), source: Box::new(source) };
-    run(&files.scan()?, &file_name(path), options)
+    run(&files.scan()?, &file_name(path), options, false)
         .unwrap_or_else(|| {
             Err(CsvError::NoJoints { present: "none whose words are those of a joint".to_owned() })
         })
@@ -74,17 +86,11 @@ pub fn read_messages(path: &Path, options: &CsvOptions) -> Result<CsvRun, LogErr
 }
 
 /// The table.
-fn text(log: &ScannedLog<'_>) -> Option<Vec<u8>> {
+fn text(log: &ScannedLog<'_>, lone: bool) -> Option<Vec<u8>> {
     let mut rows = Rows::default();
     for file in &log.files {
         let Definitions { schemas, channels } = Definitions::gather(&file.layout, file.source, false);
-        let readers: BTreeMap<u16, (String, Reader)> = channels
-            .into_iter()
-            .filter_map(|(id, channel)| {
-                let reader = reader(schemas.get(&channel.schema_id), &channel)?;
-                Some((id, (channel.topic, reader)))
-            })
-            .collect();
+        let readers = readers(&schemas, channels);
         if readers.is_empty() {
             continue;
         }
@@ -103,13 +109,16 @@ fn text(log: &ScannedLog<'_>) -> Option<Vec<u8>> {
                 let Some(one) = MessageRecord::parse(record.body) else { continue };
                 let Some((topic, reader)) = readers.get(&one.channel_id) else { continue };
                 let mut message = Message::default();
-                let read = match reader {
+                let read = match &**reader {
                     Reader::Program(program, leaves) => {
                         let cache = caches.entry(one.channel_id).or_default();
                         let read = program.run(one.data, cache, &mut message).is_ok();
                         read.then(|| message.cells(leaves))
                     }
-                    Reader::Json => message::of_json(one.data),
+                    Reader::Json => {
+                        serde_json::from_slice(one.data).ok().map(|value| message::of_value(&value))
+                    }
+                    Reader::Protobuf(whole) => whole.value(one.data).map(|value| message::of_value(&value)),
                 };
                 let Some((stamp_ns, cells)) = read else { continue };
                 let stamp_ns =
@@ -118,14 +127,36 @@ fn text(log: &ScannedLog<'_>) -> Option<Vec<u8>> {
             }
         }
     }
-    rows.table()
+    rows.table(lone)
+}
+
+/// Topics that are read, by channel; those of one schema share how.
+fn readers(
+    schemas: &BTreeMap<u16, OwnedSchema>,
+    channels: BTreeMap<u16, ChannelRecord>,
+) -> BTreeMap<u16, (String, Arc<Reader>)> {
+    let mut known: BTreeMap<(u16, String), Option<Arc<Reader>>> = BTreeMap::new();
+    let mut found = BTreeMap::new();
+    for (id, channel) in channels {
+        let key = (channel.schema_id, channel.encoding.clone());
+        if known.len() >= MOST_SCHEMAS && !known.contains_key(&key) || found.len() >= MOST_TOPICS {
+            continue;
+        }
+        let new = || reader(schemas.get(&channel.schema_id), &channel).map(Arc::new);
+        if let Some(reader) = known.entry(key).or_insert_with(new) {
+            found.insert(id, (channel.topic, reader.clone()));
+        }
+    }
+    found
 }
 
 fn reader(schema: Option<&OwnedSchema>, channel: &ChannelRecord) -> Option<Reader> {
     let name = schema.map_or("", |schema| schema.name.as_str());
     let plain = name.replace('.', "/");
     let other = plain.split('/').next().is_some_and(|package| OTHERS.contains(&package));
-    if other || spec_for(name, None, (&[], false)).is_some() {
+    // Of types that are known those whose topics may say something in words.
+    let known = spec_for(name, None, (&[], false)).is_some() || other;
+    if known && !KNOWN.contains(&plain_name(&plain).as_str()) {
         return None;
     }
     match channel.encoding.as_str() {
@@ -137,6 +168,7 @@ fn reader(schema: Option<&OwnedSchema>, channel: &ChannelRecord) -> Option<Reade
             let program = Program::compile(&definition, &leaves.wants(), MOST_STEPS).ok()?;
             Some(Reader::Program(Box::new(program), leaves))
         }
+        "protobuf" => Whole::of(name, &schema?.data).map(Reader::Protobuf),
         _ => None,
     }
 }

@@ -3,16 +3,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::message::Cells;
-use crate::log::csv::is_of_joint;
+use crate::log::csv::{is_of_joint, is_of_lone_joint, says_side};
 
 /// Rows by their instant.
 #[derive(Debug, Default)]
 #[expect(clippy::struct_field_names, reason = "a table has rows")]
 pub(super) struct Rows {
-    /// Names of columns in the order of their appearance: topic and path, parts between slashes.
-    names: Vec<String>,
+    /// Topic and path of columns in the order of their appearance, parts between slashes.
+    names: Vec<[String; 2]>,
     /// Name to column; `None` of numbers that are not of joints.
-    columns: BTreeMap<String, Option<usize>>,
+    columns: BTreeMap<[String; 2], Option<usize>>,
     rows: BTreeMap<i64, Vec<(usize, f64)>>,
     cells: usize,
 }
@@ -21,18 +21,23 @@ pub(super) struct Rows {
 const MOST_CELLS: usize = 60_000_000;
 const MOST_COLUMNS: usize = 2_000;
 
+/// Ends the name of a column that only its side tells to be of a joint.
+pub(in crate::log) const LONE: &str = "/position";
+
 impl Rows {
     /// Adds a message; `None` if there are too many.
     pub(super) fn add(&mut self, stamp_ns: i64, topic: &str, cells: Cells) -> Option<()> {
         let Self { names, columns, rows, cells: count } = self;
         for (path, value) in cells {
-            let name = match path.as_str() {
-                "data" | "value" => topic.to_owned(),
-                path => format!("{topic}/{path}"),
+            let path = match path.strip_prefix("data") {
+                Some(rest) if rest.is_empty() || rest.starts_with('[') => rest.to_owned(),
+                _ if path == "value" => String::new(),
+                _ => path,
             };
-            let column = *columns.entry(name).or_insert_with_key(|name| {
+            let column = *columns.entry([topic.to_owned(), path]).or_insert_with_key(|name| {
                 // A topic such as `/arm_status` says nothing against its fields.
-                (is_of_joint(name) || is_of_joint(&path)).then(|| {
+                let [_, path] = name;
+                (is_of_joint(&name.join("/")) || is_of_joint(path)).then(|| {
                     names.push(name.clone());
                     names.len() - 1
                 })
@@ -48,13 +53,16 @@ impl Rows {
             .then_some(())
     }
 
-    /// The table; `None` if it has no plan or no measurement to be.
-    pub(super) fn table(self) -> Option<Vec<u8>> {
-        if self.names.len() < 2 {
+    /// The table; `None` if it has no column. Of a `lone` side what says a side is a position.
+    pub(super) fn table(self, lone: bool) -> Option<Vec<u8>> {
+        if self.names.is_empty() {
             return None;
         }
         let mut writer = ::csv::Writer::from_writer(Vec::new());
-        let names = short(&self.names);
+        let mut names = short(&self.names);
+        for name in names.iter_mut().filter(|name| lone && !is_of_lone_joint(name)) {
+            name.push_str(LONE);
+        }
         writer.write_record(std::iter::once("stamp_ns").chain(names.iter().map(String::as_str))).ok()?;
         let mut line: Vec<String> = vec![String::new(); 1 + names.len()];
         for (stamp_ns, row) in self.rows {
@@ -69,16 +77,29 @@ impl Rows {
     }
 }
 
-/// The names without the parts that all of them have, if they stay distinct.
-fn short(names: &[String]) -> Vec<String> {
-    let parts = |name: &String| name.split('/').map(str::to_owned).collect::<BTreeSet<_>>();
-    let shared = names.iter().map(parts).reduce(|shared, parts| &shared & &parts).unwrap_or_default();
-    let without = |name: &String| {
-        let (before, last) = name.rsplit_once('/').unwrap_or(("", name));
-        let kept = before.split('/').filter(|part| !shared.contains(*part));
-        kept.chain([last]).collect::<Vec<_>>().join("/")
+/// The names as short as they stay distinct: paths, behind the parts of the topics that say a side; else without what all
+/// have in common; else whole.
+fn short(names: &[[String; 2]]) -> Vec<String> {
+    let parts =
+        |[topic, path]: &[String; 2]| format!("{topic}/{path}").split('/').map(str::to_owned).collect();
+    let all: Vec<Vec<String>> = names.iter().map(parts).collect();
+    let join =
+        |kept: Vec<&str>| kept.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("/");
+    let sets = all.iter().map(|parts| parts.iter().map(String::as_str).collect::<BTreeSet<_>>());
+    let shared = sets.reduce(|shared, parts| &shared & &parts).unwrap_or_default();
+    let tells = |part: &str| says_side(part) || !shared.contains(part);
+    let of_side = |[topic, path]: &[String; 2]| {
+        let (before, last) = path.rsplit_once('/').unwrap_or(("", path));
+        let topic = topic.split('/').filter(|part| path.is_empty() || says_side(part));
+        join(topic.chain(before.split('/').filter(|part| tells(part))).chain([last]).collect())
     };
-    let short: Vec<String> = names.iter().map(without).collect();
-    let distinct = short.iter().collect::<BTreeSet<_>>().len() == short.len();
-    if distinct { short } else { names.to_vec() }
+    let apart = |parts: &Vec<String>| {
+        let last = parts.iter().rposition(|part| !part.is_empty());
+        let kept = |(at, part): &(usize, &String)| Some(*at) == last || tells(part);
+        join(parts.iter().enumerate().filter(kept).map(|(_, part)| part.as_str()).collect())
+    };
+    let forms = [names.iter().map(of_side).collect(), all.iter().map(apart).collect::<Vec<_>>()];
+    let distinct = |names: &&Vec<String>| names.iter().collect::<BTreeSet<_>>().len() == names.len();
+    let whole = || all.iter().map(|parts| parts.join("/")).collect();
+    forms.iter().find(distinct).cloned().unwrap_or_else(whole)
 }

@@ -1,9 +1,9 @@
 //! Reads a log without joints of a known type by the words of its fields.
 
-use super::{extract::extract, recording::Recording};
+use super::{extract::extract, recording::Recording, select_topics::MEASURED};
 use crate::{
     log::{
-        csv::{AngleUnit, CsvError, CsvOptions},
+        csv::{AngleUnit, CsvError, CsvOptions, CsvRun},
         error::LogError,
         files::{ScannedFile, ScannedLog, file_name},
         flat,
@@ -20,38 +20,65 @@ pub(super) fn recording(
     error: LogError,
 ) -> Result<Recording, LogError> {
     let named = !options.planned.is_empty() || !options.measured.is_empty();
-    let (true, Some(first)) = (matches!(error, LogError::Missing { .. }) && !named, log.files.first()) else {
+    let (LogError::Missing { missing, .. }, false, Some(first)) = (&error, named, log.files.first()) else {
         return Err(error);
     };
     let degrees = options.planned_in_degrees && options.measured_in_degrees;
     let read = CsvOptions { angle_unit: degrees.then_some(AngleUnit::Degrees), ..CsvOptions::default() };
-    let run = match flat::run(log, &file_name(first.path), &read) {
-        Some(Ok(run)) => run,
-        Some(Err(source @ (CsvError::AngleUnit { .. } | CsvError::Counts { .. }))) => {
-            return Err(LogError::Table { path: first.path.to_owned(), source: Box::new(source) });
-        }
-        _ => return Err(error),
-    };
-    let of = |side: &str| run.understood.columns.iter().find(|column| column.becomes == side);
-    let sides = [of("planned position").or_else(|| of("command position")), of("measured position")];
-    let [Some(plan), Some(measured)] = sides else { return Err(error) };
-    let message = format!(
-        "no topic has joints in a form that is known; fields were read by their words, such as {:?} as the plan of {} and \
-         {:?} as its measurement; else name them with --planned TOPIC:FIELD and --measured TOPIC:FIELD",
-        plan.header, plan.joint, measured.header
-    );
-    let mut remarks = Remarks::default();
-    remarks.add(Code::Guessed, 1, message);
-    remarks.extend(run.remarks.clone());
-    let Ok(bytes) = run.write(Vec::new()) else { return Err(error) };
-    let source = bytes.into();
-    let Ok(file) = ScannedFile::of(first.path, &source) else { return Err(error) };
-    let log = ScannedLog { files: vec![file], ordered: true, remarks };
+    let run = |lone| flat::run(log, &file_name(first.path), &read, lone);
     let options = ReadOptions {
         description: options.description.clone().or(description),
         planned_in_degrees: options.planned_in_degrees && !degrees,
         measured_in_degrees: options.measured_in_degrees && !degrees,
         ..options.clone()
     };
-    super::recording(extract(&log, &options), &options)
+    // A plan of a form that is known goes with a measurement that is not.
+    if *missing == MEASURED
+        && let Some(Ok(run)) = run(true)
+        && let Some(found) = recorded(log, &run.measured(), true, &options)
+    {
+        return Ok(found);
+    }
+    match run(false) {
+        Some(Ok(run)) => recorded(log, &run, false, &options).ok_or(error),
+        Some(Err(source @ (CsvError::AngleUnit { .. } | CsvError::Counts { .. }))) => {
+            Err(LogError::Table { path: first.path.to_owned(), source: Box::new(source) })
+        }
+        _ => Err(error),
+    }
+}
+
+/// The recording of a run, `beside` what else the log has or alone; `None` if it is none.
+fn recorded(log: &ScannedLog<'_>, run: &CsvRun, beside: bool, options: &ReadOptions) -> Option<Recording> {
+    let of = |side: &str| run.understood.columns.iter().find(|column| column.becomes == side);
+    let plan = of("planned position").or_else(|| of("command position"));
+    let measured = of("measured position")?;
+    // Places in a list are counted from 0 here, and joints without a name elsewhere from 1.
+    if beside && run.understood.columns.iter().any(|column| column.header.contains('[')) {
+        return None;
+    }
+    let plan = match plan {
+        _ if beside => String::new(),
+        Some(plan) => format!("{:?} as the plan of {} and ", plan.header, plan.joint),
+        None => return None,
+    };
+    let message = format!(
+        "not all joints are in messages of a form that is known; fields were read by their words, such as {plan}{:?} as \
+         the measurement of {}; else name them with --planned TOPIC:FIELD and --measured TOPIC:FIELD",
+        measured.header.strip_suffix(flat::LONE).filter(|_| beside).unwrap_or(&measured.header),
+        measured.joint
+    );
+    let mut remarks = if beside { log.remarks.clone() } else { Remarks::default() };
+    remarks.add(Code::Guessed, 1, message);
+    for remark in run.remarks.as_slice().iter().filter(|one| !beside || one.code != Code::UnpairedJoint) {
+        remarks.add(remark.code, remark.count, remark.message.clone());
+    }
+    let source = run.write(Vec::new()).ok()?.into();
+    let mut files = Vec::new();
+    for one in log.files.iter().filter(|_| beside) {
+        files.push(ScannedFile::of(one.path, one.source).ok()?);
+    }
+    files.push(ScannedFile::of(log.files.first()?.path, &source).ok()?);
+    let log = ScannedLog { files, ordered: true, remarks };
+    super::recording(extract(&log, options), options).ok()
 }

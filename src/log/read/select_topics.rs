@@ -102,7 +102,7 @@ pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Cho
 }
 
 const PLANNED: &str = "planned";
-const MEASURED: &str = "measured";
+pub(super) const MEASURED: &str = "measured";
 
 /// What a log lacks, and how to say where it is: of a table by its columns, which is for `import`.
 fn missing(extracted: &Extracted, missing: &'static str, flag: &str) -> LogError {

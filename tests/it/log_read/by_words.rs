@@ -141,6 +141,91 @@ fn a_topic_for_each_joint_gives_it_the_name() {
 }
 
 #[test]
+fn topics_say_a_side_and_go_with_messages_that_are_known() {
+    let fields = "float64 boom\nfloat64 stick\n";
+    let write = |values: fn(i64) -> Vec<f64>| {
+        move |cdr: &mut Cdr, k: i64| values(k).into_iter().for_each(|value| cdr.f64(value))
+    };
+    let mut log = Log::default();
+    add(&mut log, "/arm/setpoints", fields, write(plan));
+    add(&mut log, "/arm/feedback", fields, write(measurement));
+    assert_both(&log, ["boom", "stick"]);
+
+    let joints = |log: &mut Log, topic: &str, values: fn(i64) -> Vec<f64>| {
+        let channel = log.channel(Channel::cdr(topic, "sensor_msgs/msg/JointState"));
+        for k in 0..SAMPLES {
+            let kind = cdr::Kind::LittleEndian;
+            log.send(
+                channel,
+                stamp(k),
+                encode::joint_state(kind, stamp(k), &["boom", "stick"], &values(k), &[]),
+            );
+        }
+    };
+    let mut measured = Log::default();
+    add(&mut measured, "/arm/reference", fields, write(plan));
+    joints(&mut measured, "/joint_states", measurement);
+    assert_both(&measured, ["boom", "stick"]);
+
+    let mut planned = Log::default();
+    joints(&mut planned, "/planned/joint_states", plan);
+    add(&mut planned, "/arm/feedback", fields, write(measurement));
+    assert_both(&planned, ["boom", "stick"]);
+    assert_eq!(read(&planned).source.planned_topic, "/planned/joint_states");
+}
+
+#[test]
+fn places_of_lists_are_not_taken_for_joints_that_are_counted_otherwise() {
+    let mut log = Log::default();
+    for (topic, values) in [("/arm/target", plan as fn(i64) -> Vec<f64>), ("/arm/actual", measurement)] {
+        let layout = "std_msgs/MultiArrayLayout layout\nfloat64[] data\n\
+                      ================================================================================\n\
+                      MSG: std_msgs/MultiArrayLayout\nuint32 data_offset\n";
+        let channel =
+            log.channel(Channel::cdr(topic, "std_msgs/msg/Float64MultiArray").with_schema("ros2msg", layout));
+        for k in 0..SAMPLES {
+            let data = Cdr::message(cdr::Kind::LittleEndian, |cdr| {
+                cdr.u32(0);
+                cdr.f64s(&values(k));
+            });
+            log.send(channel, stamp(k), data);
+        }
+    }
+    assert_both(&log, ["joint_0", "joint_1"]);
+}
+
+#[test]
+fn protobuf_is_read_alike() {
+    use super::protobuf::{descriptor_file, double, field, message, nested};
+    const DOUBLE: u64 = 1;
+    const TEXT: u64 = 9;
+    const MESSAGE: u64 = 11;
+    let axis = message(
+        "Axis",
+        &[
+            field("name", 1, false, TEXT, ""),
+            field("target", 2, false, DOUBLE, ""),
+            field("actual", 3, false, DOUBLE, ""),
+        ],
+    );
+    let arm = message("Arm", &[field("axes", 1, true, MESSAGE, ".our.Axis")]);
+    let descriptors = descriptor_file("our.proto", "our", &[], &[axis, arm]);
+    let mut log = Log::default();
+    let channel =
+        log.channel(Channel::cdr("/arm", "our.Arm").with_schema("protobuf", descriptors).encoded("protobuf"));
+    for k in 0..SAMPLES {
+        let axes = ["boom", "stick"].iter().enumerate().flat_map(|(j, name)| {
+            nested(
+                1,
+                &[nested(1, name.as_bytes()), double(2, plan(k)[j]), double(3, measurement(k)[j])].concat(),
+            )
+        });
+        log.send(channel, stamp(k), axes.collect());
+    }
+    assert_both(&log, ["boom", "stick"]);
+}
+
+#[test]
 fn json_is_read_alike() {
     let mut log = Log::default();
     let channel = log.channel(Channel::cdr("/arm", "arm").with_schema("jsonschema", "{}").encoded("json"));

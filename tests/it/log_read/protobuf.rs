@@ -21,7 +21,7 @@ pub(crate) fn integer(number: u64, value: u64) -> Vec<u8> {
     [varint(number << 3), varint(value)].concat()
 }
 
-fn double(number: u64, value: f64) -> Vec<u8> {
+pub(crate) fn double(number: u64, value: f64) -> Vec<u8> {
     [varint(number << 3 | 1), value.to_le_bytes().to_vec()].concat()
 }
 
