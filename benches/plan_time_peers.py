@@ -317,7 +317,8 @@ def peers(options):
     yield "Ruckig, sought", "ruckig", legs(ruckig_sought)
     yield "TOPP-RA", "toppra", legs(toppra_fastest)
     yield "TOPP-RA, smoothed", "toppra", legs(toppra_smoothed)
-    yield f"Drake, {options.spans[-1]} spans, times fixed", "pydrake", legs(drake, options.spans[-1], False)
+    fixed = options.spans[:2][-1]
+    yield f"Drake, {fixed} spans, times fixed", "pydrake", legs(drake, fixed, False)
     for spans in options.spans:
         yield f"Drake, {spans} spans, times free", "pydrake", legs(drake, spans, True)
     for pieces in options.pieces:
@@ -354,7 +355,7 @@ def main():
     parser.add_argument("--only", default="", help="rows whose name holds this")
     parser.add_argument("--pieces", nargs="+", type=int, default=[2, 3, 4], help="of an interval, by collocation")
     parser.add_argument("--starts", type=int, default=3, help="of collocation")
-    parser.add_argument("--spans", nargs="+", type=int, default=[6, 40], help="of an interval, by Drake")
+    parser.add_argument("--spans", nargs="+", type=int, default=[6, 40, 60], help="of an interval, by Drake")
     options = parser.parse_args()
     packages = []
     for name in "numpy", "scipy", "pin", "ruckig", "toppra", "drake", "casadi":

@@ -66,15 +66,18 @@ pub(in crate::log) fn joint_in(name: &str) -> String {
     label::label(name, None).joint
 }
 
-/// Whether a header is one of a joint by its words alone: of its position or speed, planned, measured or sent.
-pub(in crate::log) fn is_of_joint(name: &str) -> bool {
-    label::label(name, None).is_joint
+/// What a header says if it is one of a joint by its words: of its position or speed, planned, measured or sent.
+pub(in crate::log) fn of_joint(name: &str) -> Option<OfJoint> {
+    let label = label::label(name, None);
+    label.is_joint.then_some(OfJoint { role: label.role, alone: !label.is_weak })
 }
 
-/// Whether a header is that of a joint though no other goes with it.
-pub(in crate::log) fn is_of_lone_joint(name: &str) -> bool {
-    let label = label::label(name, None);
-    label.is_joint && !label.is_weak
+/// What a header of a joint says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::log) struct OfJoint {
+    pub(in crate::log) role: Option<Role>,
+    /// Whether it says so without another column of the joint.
+    pub(in crate::log) alone: bool,
 }
 
 /// Whether a part of a name says that something is planned, measured or sent.

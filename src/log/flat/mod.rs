@@ -59,7 +59,7 @@ enum Reader {
 
 /// The run that the messages of a log hold by the words of their fields; `None` if no field is one of a joint.
 ///
-/// Of a `lone` side, such as a measurement without a plan, words for the side are enough.
+/// With `lone` a measurement alone, which goes with a plan that is known: words for the side are enough.
 pub(super) fn run(
     log: &ScannedLog<'_>,
     name: &str,
@@ -88,9 +88,10 @@ pub fn read_messages(path: &Path, options: &CsvOptions) -> Result<CsvRun, LogErr
 /// The table.
 fn text(log: &ScannedLog<'_>, lone: bool) -> Option<Vec<u8>> {
     let mut rows = Rows::default();
+    rows.lone = lone;
     for file in &log.files {
         let Definitions { schemas, channels } = Definitions::gather(&file.layout, file.source, false);
-        let readers = readers(&schemas, channels);
+        let readers = readers(&schemas, channels, lone);
         if readers.is_empty() {
             continue;
         }
@@ -127,13 +128,14 @@ fn text(log: &ScannedLog<'_>, lone: bool) -> Option<Vec<u8>> {
             }
         }
     }
-    rows.table(lone)
+    rows.table()
 }
 
 /// Topics that are read, by channel; those of one schema share how.
 fn readers(
     schemas: &BTreeMap<u16, OwnedSchema>,
     channels: BTreeMap<u16, ChannelRecord>,
+    lone: bool,
 ) -> BTreeMap<u16, (String, Arc<Reader>)> {
     let mut known: BTreeMap<(u16, String), Option<Arc<Reader>>> = BTreeMap::new();
     let mut found = BTreeMap::new();
@@ -142,7 +144,7 @@ fn readers(
         if known.len() >= MOST_SCHEMAS && !known.contains_key(&key) || found.len() >= MOST_TOPICS {
             continue;
         }
-        let new = || reader(schemas.get(&channel.schema_id), &channel).map(Arc::new);
+        let new = || reader(schemas.get(&channel.schema_id), &channel, lone).map(Arc::new);
         if let Some(reader) = known.entry(key).or_insert_with(new) {
             found.insert(id, (channel.topic, reader.clone()));
         }
@@ -150,13 +152,13 @@ fn readers(
     found
 }
 
-fn reader(schema: Option<&OwnedSchema>, channel: &ChannelRecord) -> Option<Reader> {
+fn reader(schema: Option<&OwnedSchema>, channel: &ChannelRecord, lone: bool) -> Option<Reader> {
     let name = schema.map_or("", |schema| schema.name.as_str());
     let plain = name.replace('.', "/");
     let other = plain.split('/').next().is_some_and(|package| OTHERS.contains(&package));
     // Of types that are known those whose topics may say something in words.
     let known = spec_for(name, None, (&[], false)).is_some() || other;
-    if known && !KNOWN.contains(&plain_name(&plain).as_str()) {
+    if known && (lone || !KNOWN.contains(&plain_name(&plain).as_str())) {
         return None;
     }
     match channel.encoding.as_str() {

@@ -3,12 +3,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::message::Cells;
-use crate::log::csv::{is_of_joint, is_of_lone_joint, says_side};
+use crate::log::{
+    csv::{of_joint, says_side},
+    write::Role,
+};
 
 /// Rows by their instant.
 #[derive(Debug, Default)]
 #[expect(clippy::struct_field_names, reason = "a table has rows")]
 pub(super) struct Rows {
+    /// Whether a measurement alone is looked for.
+    pub(super) lone: bool,
     /// Topic and path of columns in the order of their appearance, parts between slashes.
     names: Vec<[String; 2]>,
     /// Name to column; `None` of numbers that are not of joints.
@@ -27,7 +32,7 @@ pub(in crate::log) const LONE: &str = "/position";
 impl Rows {
     /// Adds a message; `None` if there are too many.
     pub(super) fn add(&mut self, stamp_ns: i64, topic: &str, cells: Cells) -> Option<()> {
-        let Self { names, columns, rows, cells: count } = self;
+        let Self { lone, names, columns, rows, cells: count } = self;
         for (path, value) in cells {
             let path = match path.strip_prefix("data") {
                 Some(rest) if rest.is_empty() || rest.starts_with('[') => rest.to_owned(),
@@ -37,7 +42,9 @@ impl Rows {
             let column = *columns.entry([topic.to_owned(), path]).or_insert_with_key(|name| {
                 // A topic such as `/arm_status` says nothing against its fields.
                 let [_, path] = name;
-                (is_of_joint(&name.join("/")) || is_of_joint(path)).then(|| {
+                let said = of_joint(&name.join("/")).or_else(|| of_joint(path));
+                let other_side = |role| *lone && role != Role::Measured;
+                said.filter(|said| !said.role.is_some_and(other_side)).map(|_| {
                     names.push(name.clone());
                     names.len() - 1
                 })
@@ -53,14 +60,15 @@ impl Rows {
             .then_some(())
     }
 
-    /// The table; `None` if it has no column. Of a `lone` side what says a side is a position.
-    pub(super) fn table(self, lone: bool) -> Option<Vec<u8>> {
+    /// The table; `None` if it has no column. Of a measurement alone what says so is a position.
+    pub(super) fn table(self) -> Option<Vec<u8>> {
+        let lone = self.lone;
         if self.names.is_empty() {
             return None;
         }
         let mut writer = ::csv::Writer::from_writer(Vec::new());
         let mut names = short(&self.names);
-        for name in names.iter_mut().filter(|name| lone && !is_of_lone_joint(name)) {
+        for name in names.iter_mut().filter(|name| lone && !of_joint(name).is_some_and(|said| said.alone)) {
             name.push_str(LONE);
         }
         writer.write_record(std::iter::once("stamp_ns").chain(names.iter().map(String::as_str))).ok()?;
@@ -96,10 +104,15 @@ fn short(names: &[[String; 2]]) -> Vec<String> {
     let apart = |parts: &Vec<String>| {
         let last = parts.iter().rposition(|part| !part.is_empty());
         let kept = |(at, part): &(usize, &String)| Some(*at) == last || tells(part);
-        join(parts.iter().enumerate().filter(kept).map(|(_, part)| part.as_str()).collect())
+        join(parts.iter().enumerate().filter(kept).map(|(_, part)| plain(part)).collect())
     };
     let forms = [names.iter().map(of_side).collect(), all.iter().map(apart).collect::<Vec<_>>()];
     let distinct = |names: &&Vec<String>| names.iter().collect::<BTreeSet<_>>().len() == names.len();
     let whole = || all.iter().map(|parts| parts.join("/")).collect();
     forms.iter().find(distinct).cloned().unwrap_or_else(whole)
+}
+
+/// A controller is called after what it controls.
+fn plain(part: &str) -> &str {
+    part.strip_suffix("_controller").unwrap_or(part)
 }

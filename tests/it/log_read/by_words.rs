@@ -117,7 +117,7 @@ fn a_topic_for_each_joint_gives_it_the_name() {
     for (j, name) in ["boom", "stick"].into_iter().enumerate() {
         add(
             &mut log,
-            &format!("/{name}/state"),
+            &format!("/{name}_controller/state"),
             "float64 set_point\nfloat64 process_value\nfloat64 p\nfloat64 i\n",
             |cdr, k| {
                 [plan(k)[j], measurement(k)[j], 50.0, 0.1].into_iter().for_each(|value| cdr.f64(value));
@@ -172,6 +172,20 @@ fn topics_say_a_side_and_go_with_messages_that_are_known() {
     add(&mut planned, "/arm/feedback", fields, write(measurement));
     assert_both(&planned, ["boom", "stick"]);
     assert_eq!(read(&planned).source.planned_topic, "/planned/joint_states");
+
+    // As `join` writes it: the message's own plan is none beside that.
+    let mut joined = Log::default();
+    joints(&mut joined, "/planned/joint_states", plan);
+    let schema = "our_arm/Axis[] axes\n================================================================================\n\
+                  MSG: our_arm/Axis\nstring name\nfloat64 reference\nfloat64 feedback\n";
+    add(&mut joined, "/arm/any", schema, |cdr, k| {
+        cdr.list(&[0, 1], |cdr, j| {
+            cdr.text(["boom", "stick"][*j]);
+            cdr.f64(9.0);
+            cdr.f64(measurement(k)[*j]);
+        });
+    });
+    assert_both(&joined, ["boom", "stick"]);
 }
 
 #[test]
