@@ -155,22 +155,24 @@ pub(super) fn of_value(value: &Value) -> (Option<i64>, Cells) {
     (stamp_ns, cells)
 }
 
-fn walk(value: &Value, path: String, cells: &mut Cells) {
+/// What an object says it is of.
+fn name_of(value: &Value) -> Option<&str> {
     const NAMES: [&str; 4] = ["name", "joint", "joint_name", "axis"];
+    NAMES.iter().find_map(|name| value.get(*name)?.as_str())
+}
+
+fn walk(value: &Value, path: String, cells: &mut Cells) {
     let join = |part: &str| if path.is_empty() { part.to_owned() } else { format!("{path}/{part}") };
     match value {
         Value::Number(number) => cells.extend(number.as_f64().map(|value| (path, value))),
         Value::Array(all) => {
             for (place, one) in all.iter().enumerate() {
-                let of = match one {
-                    Value::Object(_) => path.clone(),
-                    _ => format!("{path}[{place}]"),
-                };
+                let of = if name_of(one).is_some() { path.clone() } else { format!("{path}[{place}]") };
                 walk(one, of, cells);
             }
         }
         Value::Object(fields) => {
-            let name = NAMES.iter().find_map(|name| fields.get(*name)?.as_str());
+            let name = name_of(value);
             for (field, one) in
                 fields.iter().filter(|(field, _)| !["header", "stamp", "timestamp"].contains(&field.as_str()))
             {

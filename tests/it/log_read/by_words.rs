@@ -242,7 +242,9 @@ fn protobuf_is_read_alike() {
 #[test]
 fn json_is_read_alike() {
     let mut log = Log::default();
-    let channel = log.channel(Channel::cdr("/arm", "arm").with_schema("jsonschema", "{}").encoded("json"));
+    let json = || Channel::cdr("/arm", "arm").with_schema("jsonschema", "{}").encoded("json");
+    let (channel, mut listed) = (log.channel(json()), Log::default());
+    let other = listed.channel(json());
     for k in 0..SAMPLES {
         let [p, m] = [plan(k), measurement(k)];
         let text = format!(
@@ -250,8 +252,14 @@ fn json_is_read_alike() {
             p[0], m[0], p[1], m[1]
         );
         log.send(channel, stamp(k), text.into_bytes());
+        let text = format!(
+            "{{\"ts\":{k},\"axes\":[{{\"set\":{:?},\"act\":{:?}}},{{\"set\":{:?},\"act\":{:?}}}]}}",
+            p[0], m[0], p[1], m[1]
+        );
+        listed.send(other, stamp(k), text.into_bytes());
     }
     assert_both(&log, ["boom", "stick"]);
+    assert_both(&listed, ["axes_0", "axes_1"]);
 }
 
 #[test]
