@@ -59,7 +59,9 @@ pub(super) fn without_shared_words(drafts: &mut [Draft]) {
     let shared = [&measured, &plan].map(|keys| shared_parts(keys));
     let short = |name: &str, plan: bool| {
         let own = |part: &&str| !shared[usize::from(plan)].contains(&part.to_lowercase());
-        name.split('_').filter(own).collect::<Vec<_>>().join("_")
+        let left = name.split('_').filter(own).collect::<Vec<_>>().join("_");
+        let counts = !left.is_empty() && left.bytes().all(|byte| byte.is_ascii_digit());
+        if counts { format!("joint_{left}") } else { left }
     };
     let names = |keys: &[&str], plan: bool| keys.iter().map(|key| short(key, plan)).collect::<BTreeSet<_>>();
     let [plan_names, measured_names] = [names(&plan, true), names(&measured, false)];

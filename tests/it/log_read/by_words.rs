@@ -189,6 +189,36 @@ fn topics_say_a_side_and_go_with_messages_that_are_known() {
 }
 
 #[test]
+fn motors_of_a_command_and_of_a_state_are_told_by_their_places() {
+    let list = |of: &str, fields: &str| {
+        format!(
+            "our_arm/{of}[2] motor_{}\n================================================================================\n\
+             MSG: our_arm/{of}\nuint8 mode\n{fields}",
+            of.to_lowercase()
+        )
+    };
+    let mut log = Log::default();
+    add(&mut log, "/lowcmd", &list("Cmd", "float32 q\nfloat32 kp\n"), |cdr, k| {
+        cdr.array(&plan(k), |cdr, q| {
+            cdr.u8(1);
+            cdr.f32(*q as f32);
+            cdr.f32(50.0);
+        });
+    });
+    add(&mut log, "/lowstate", &list("State", "float32 q\nfloat32 q_raw\n"), |cdr, k| {
+        cdr.array(&measurement(k), |cdr, q| {
+            cdr.u8(1);
+            cdr.f32(*q as f32);
+            cdr.f32(*q as f32 + 0.1);
+        });
+    });
+    let recording = read(&log);
+    assert_eq!([joints(&recording.planned), joints(&recording.measured)], [["joint_0", "joint_1"]; 2]);
+    assert!(count(&recording.remarks, Code::PlanIsCommand) > 0, "{:?}", recording.remarks);
+    assert!((recording.planned.tracks[1].position()[7] - plan(7)[1]).abs() < 1e-6);
+}
+
+#[test]
 fn places_of_lists_are_not_taken_for_joints_that_are_counted_otherwise() {
     let mut log = Log::default();
     for (topic, values) in [("/arm/target", plan as fn(i64) -> Vec<f64>), ("/arm/actual", measurement)] {
