@@ -16,8 +16,10 @@ pub(super) struct Rows {
     pub(super) lone: bool,
     /// Topic and path of columns in the order of their appearance, parts between slashes.
     names: Vec<[String; 2]>,
-    /// Name to column; `None` of numbers that are not of joints.
-    columns: BTreeMap<[String; 2], Option<usize>>,
+    /// Topic and path to column; `None` of numbers that are not of joints.
+    columns: BTreeMap<String, BTreeMap<String, Option<usize>>>,
+    /// How many of these there are.
+    seen: usize,
     rows: BTreeMap<i64, Vec<(usize, f64)>>,
     cells: usize,
 }
@@ -32,22 +34,28 @@ pub(in crate::log) const LONE: &str = "/position";
 impl Rows {
     /// Adds a message; `None` if there are too many.
     pub(super) fn add(&mut self, stamp_ns: i64, topic: &str, cells: Cells) -> Option<()> {
-        let Self { lone, names, columns, rows, cells: count } = self;
+        if !self.columns.contains_key(topic) {
+            self.columns.insert(topic.to_owned(), BTreeMap::new());
+        }
+        let Self { lone, names, columns, seen, rows, cells: count } = self;
+        let columns = columns.get_mut(topic)?;
         for (path, value) in cells {
             let path = match path.strip_prefix("data") {
-                Some(rest) if rest.is_empty() || rest.starts_with('[') => rest.to_owned(),
-                _ if path == "value" => String::new(),
-                _ => path,
+                Some(rest) if rest.is_empty() || rest.starts_with('[') => rest,
+                _ if path == "value" => "",
+                _ => path.as_str(),
             };
-            let column = *columns.entry([topic.to_owned(), path]).or_insert_with_key(|name| {
+            let column = columns.get(path).copied().unwrap_or_else(|| {
                 // A topic such as `/arm_status` says nothing against its fields.
-                let [_, path] = name;
-                let said = of_joint(&name.join("/")).or_else(|| of_joint(path));
+                let said = of_joint(&format!("{topic}/{path}")).or_else(|| of_joint(path));
                 let other_side = |role| *lone && role != Role::Measured;
-                said.filter(|said| !said.role.is_some_and(other_side)).map(|_| {
-                    names.push(name.clone());
+                let column = said.filter(|said| !said.role.is_some_and(other_side)).map(|_| {
+                    names.push([topic.to_owned(), path.to_owned()]);
                     names.len() - 1
-                })
+                });
+                *seen += 1;
+                columns.insert(path.to_owned(), column);
+                column
             });
             let Some(column) = column.filter(|_| value.is_finite()) else { continue };
             let row = rows.entry(stamp_ns).or_default();
@@ -56,8 +64,7 @@ impl Rows {
                 *count += 1;
             }
         }
-        (*count <= MOST_CELLS && names.len() <= MOST_COLUMNS && columns.len() <= 10 * MOST_COLUMNS)
-            .then_some(())
+        (*count <= MOST_CELLS && names.len() <= MOST_COLUMNS && *seen <= 10 * MOST_COLUMNS).then_some(())
     }
 
     /// The table; `None` if it has no column. Of a measurement alone what says so is a position.
