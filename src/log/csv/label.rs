@@ -60,6 +60,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let header = header.trim();
     // `rostopic echo -p` puts it before the path of every field.
     let header = header.strip_prefix("field.").unwrap_or(header);
+    let indexed = unit_before_index(header);
+    let header = indexed.as_deref().unwrap_or(header);
     let (name, stated) = without_unit(header);
     let mut unit = stated.or_else(|| below.and_then(parse_unit));
     if let Some((joint, role)) = own(name).filter(|_| unit.is_some()) {
@@ -140,6 +142,16 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     Label { role, quantity, unit, stated, words, key, joint, is_time, is_joint, is_weak: !strong, lettered }
 }
 
+/// `q_deg[0]` as `q[0] [deg]`.
+fn unit_before_index(header: &str) -> Option<String> {
+    let (base, index) = header.strip_suffix(']')?.rsplit_once('[')?;
+    let (name, unit) = split_suffix(base)?;
+    let of_joint = [Measure::Angle, Measure::AngularSpeed, Measure::Length, Measure::LinearSpeed]
+        .contains(&unit.measure);
+    let counts = !index.is_empty() && index.bytes().all(|byte| byte.is_ascii_digit());
+    (of_joint && counts).then(|| format!("{name}[{index}] [{}]", unit.name))
+}
+
 /// How many words are those of a topic, which names no joint: `/joint_states/boom/position`.
 fn topic(words: &[Word<'_>]) -> usize {
     let states =
@@ -205,6 +217,7 @@ mod tests {
             (plan, position, "joint_2".into(), None)
         );
         assert_eq!(said("/joint_states/position[2]").2, "joint_2");
+        assert_eq!(said("joint_target_deg[0]"), (plan, position, "joint_0".into(), Some("deg")));
         assert_eq!(said("GVL.fActPos[3]"), (real, position, "GVL_3".into(), None));
         assert_eq!(
             said("shoulder_pan_joint cmd"),

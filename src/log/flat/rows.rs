@@ -46,8 +46,7 @@ impl Rows {
                 _ => path.as_str(),
             };
             let column = columns.get(path).copied().unwrap_or_else(|| {
-                // A topic such as `/arm_status` says nothing against its fields.
-                let said = of_joint(&format!("{topic}/{path}")).or_else(|| of_joint(path));
+                let said = of_joint(&format!("{}/{path}", without_own(topic)));
                 let other_side = |role| *lone && role != Role::Measured;
                 let column = said.filter(|said| !said.role.is_some_and(other_side)).map(|_| {
                     names.push([topic.to_owned(), path.to_owned()]);
@@ -122,4 +121,11 @@ fn short(names: &[[String; 2]]) -> Vec<String> {
 /// A controller is called after what it controls.
 fn plain(part: &str) -> &str {
     part.strip_suffix("_controller").unwrap_or(part)
+}
+
+/// A topic without words for itself, which say nothing against its fields: `/arm_status`. Others do: `/tracking_error`.
+fn without_own(topic: &str) -> String {
+    const OWN: [&str; 4] = ["status", "robot", "safety", "runtime"];
+    let parts = topic.split(['/', '_']).filter(|part| !OWN.contains(&part.to_ascii_lowercase().as_str()));
+    parts.collect::<Vec<_>>().join("/")
 }
