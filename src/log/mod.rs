@@ -55,6 +55,7 @@ pub use options::{Cylinders, ReadOptions, Selector, Sides, SignalRole, TimeBase,
 pub use range::TimeRange;
 pub use read::{
     lines::{DrawnTopic, Line, LineRole, Lines, Step},
+    origin::Origin,
     read_plan, read_recording,
     recording::{Attachment, Command, FileInfo, Recording, SourceInfo, Survey, ToolPoses, TopicInfo},
     survey, survey_bytes,

@@ -1,6 +1,9 @@
 //! What is in a log.
 
-use super::kit::{Block, Document, Id, Section, Sentence, Table, fact};
+use super::{
+    kit::{Block, Document, Id, Section, Sentence, Table, fact},
+    source::{clock, measured, planned, why, why_clock},
+};
 use crate::log::Survey;
 
 /// As headings, sentences and tables.
@@ -42,11 +45,12 @@ fn used(survey: &Survey) -> Block {
     match &survey.recording {
         Ok(recording) => {
             let source = &recording.source;
+            let stamps = why_clock(source).map(|why| format!("{} ({why})", source.time_base.name()));
             Block::Facts(vec![
-                fact("planned", format!("{}:{}", source.planned_topic, source.planned_field)),
-                fact("measured", format!("{}:{}", source.measured_topic, source.measured_field)),
-                fact("why", &source.why),
-                fact("clock", format!("{} ({})", source.time_base.name(), source.time_base_why)),
+                fact("planned", planned(source, ":")),
+                fact("measured", measured(source, ":")),
+                fact("why", why(source)),
+                fact("clock", stamps.unwrap_or_else(|| clock(source))),
                 fact("joints", survey.joints().collect::<Vec<_>>().join(", ")),
             ])
         }

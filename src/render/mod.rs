@@ -20,4 +20,5 @@ pub(crate) mod recover;
 pub(crate) mod replan;
 pub(crate) mod report;
 pub(crate) mod simulate;
+mod source;
 pub(crate) mod watch;

@@ -183,7 +183,10 @@ proptest! {
         prop_assert!((found.joints[0].lag_s.unwrap() - delay_s).abs() < 0.003, "{:?}", found.joints[0].lag_s);
         prop_assert!(!found.transitions.is_empty());
         for t in &found.transitions {
-            prop_assert!((t.onset_delay_s.unwrap() - delay_s).abs() < 0.03, "{t:?}");
+            let off_s = (t.onset_delay_s.unwrap() - delay_s).abs();
+            // A plan that creeps away from a turn is dated less sharply, and its interval says so.
+            let holds = t.onset_delay_interval_s.is_some_and(|[low, high]| low <= delay_s && delay_s <= high);
+            prop_assert!(off_s < 0.03 || holds && off_s < 0.06, "{t:?}");
         }
         let mut off: Vec<f64> = found.transitions.iter().map(|t| (t.onset_delay_s.unwrap() - delay_s).abs()).collect();
         off.sort_by(f64::total_cmp);

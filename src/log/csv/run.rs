@@ -14,6 +14,8 @@ type ByJoint<'a> = Vec<Option<&'a [f64]>>;
 
 /// Name of the metadata that says where an imported log comes from.
 pub(in crate::log) const ORIGIN: &str = "hydrotrace.import";
+/// Its entry on the time.
+pub(in crate::log) const TIME_OF_ORIGIN: &str = "time";
 
 /// A run as a CSV file gave it: SI units, one row an instant.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +72,7 @@ impl CsvRun {
             understood.columns.iter().map(|c| (format!("{} of {}", c.becomes, c.joint), c.header.clone()));
         let time = format!("{} ({})", understood.time.columns.join(", "), understood.time.form);
         let mut origin: BTreeMap<String, String> = columns.collect();
-        origin.extend([("file".to_owned(), understood.file.clone()), ("time".to_owned(), time)]);
+        origin.extend([("file".to_owned(), understood.file.clone()), (TIME_OF_ORIGIN.to_owned(), time)]);
         log.metadata(ORIGIN, &origin)?;
         let kinds =
             joint_kind::entries(layout.joints.iter().map(String::as_str).zip(self.kinds.iter().copied()));

@@ -384,6 +384,7 @@ impl Assembly {
             duration_s: if cut { last_s - first_s.min(last_s) } else { last_s },
             recorder_delay_s: delays_ns
                 .map(|[_, middle, most]| [middle, most].map(|ns| seconds_since(0, ns))),
+            origin: None,
             measured_delay_s: None,
         }
     }

@@ -12,6 +12,9 @@ use crate::{
     remark::{Code, Remarks},
 };
 
+/// What dates fields of messages.
+const TIME: &str = "stamps of the messages";
+
 /// The recording, of a log in which nothing was found and the caller named nothing; else the error that it was.
 pub(super) fn recording(
     log: &ScannedLog<'_>,
@@ -80,5 +83,12 @@ fn recorded(log: &ScannedLog<'_>, run: &CsvRun, beside: bool, options: &ReadOpti
     }
     files.push(ScannedFile::of(log.files.first()?.path, &source).ok()?);
     let log = ScannedLog { files, ordered: true, remarks };
-    super::recording(extract(&log, options), options).ok()
+    let mut found = super::recording(extract(&log, options), options).ok()?;
+    if let Some(origin) = &mut found.source.origin {
+        TIME.clone_into(&mut origin.time);
+        for header in origin.measured.iter_mut().filter(|_| beside) {
+            header.truncate(header.strip_suffix(flat::LONE).map_or(header.len(), str::len));
+        }
+    }
+    Some(found)
 }

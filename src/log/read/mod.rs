@@ -11,6 +11,7 @@ mod frozen;
 mod indexed;
 mod joints;
 pub(super) mod lines;
+pub(super) mod origin;
 mod other_time;
 mod overlap;
 mod parallel;
@@ -44,6 +45,7 @@ use {
     cylinders::Kinds,
     extract::extract,
     lines::{Descriptions, Lines},
+    origin::Origin,
     recording::{Recording, Survey},
     select_topics::choose,
     topics::topic_infos,
@@ -190,8 +192,10 @@ fn assembled(mut extracted: Extracted, options: &ReadOptions) -> Result<Recordin
             topic.joint_fields
         );
     }
-    let recording = assemble(extracted, &choice, options, kinds)?;
-    let source = &recording.source;
+    let mut recording = assemble(extracted, &choice, options, kinds)?;
+    let Recording { planned, measured, metadata, source, .. } = &mut recording;
+    let topics = [&source.planned_topic, &source.measured_topic];
+    source.origin = Origin::of(metadata, topics, [planned, measured]);
     ::log::info!("planned {}:{}", source.planned_topic, source.planned_field);
     ::log::info!("measured {}:{}", source.measured_topic, source.measured_field);
     ::log::info!("chosen: {}", source.why);

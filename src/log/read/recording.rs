@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::origin::Origin;
 use crate::{
     log::{
         error::LogError,
@@ -64,6 +65,9 @@ pub struct SourceInfo {
     pub duration_s: f64,
     /// Median and largest delay from the header's stamp to the recorder, s, where both exist.
     pub recorder_delay_s: Option<[f64; 2]>,
+    /// What an imported log was read from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Origin>,
     /// What the caller had taken off the measurement's stamps, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measured_delay_s: Option<f64>,

@@ -8,6 +8,7 @@ use crate::{
             percent, probability, signed,
         },
         metric::{Units, number, position, unit},
+        source::{measured, planned},
     },
     replay::{Answer, Dimension, Keyed, Metric, PEAK_ERROR, ToolReplay, Transition},
     series::JointKind,
@@ -39,14 +40,12 @@ fn run_facts(comparison: &Comparison) -> Vec<Fact> {
         let plan = run.plan_duration_s.map_or(String::new(), |s| format!(", plan {s:.2} s"));
         let source = &run.source;
         let text = format!(
-            "{}: {:.2} s{plan}, {}; planned {} {}, measured {} {}",
+            "{}: {:.2} s{plan}, {}; planned {}, measured {}",
             run.log,
             source.duration_s,
             counted(run.transitions, "transition"),
-            source.planned_topic,
-            source.planned_field,
-            source.measured_topic,
-            source.measured_field,
+            planned(source, " "),
+            measured(source, " "),
         );
         fact(side, text)
     };

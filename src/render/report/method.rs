@@ -5,6 +5,7 @@ use crate::{
     render::{
         kit::{Block, Id, Section, fact, ms},
         metric::{number, on_paper, position, unit},
+        source::{why, why_clock},
     },
     replay::Dimension,
     workflow::report::Report,
@@ -100,8 +101,9 @@ pub(super) fn method(report: &Report) -> Option<Section> {
                 100.0 * rules.mostly_lag_share,
             ),
         ),
-        fact("source", report.source.why.clone()),
-        fact("clock", report.source.time_base_why.clone()),
+        fact("source", why(&report.source)),
     ];
+    let clock = why_clock(&report.source).map(|why| fact("clock", why));
+    let facts = facts.into_iter().chain(clock).collect();
     Some(Section::new(Id::METHOD, "How", [Block::Facts(facts)]))
 }

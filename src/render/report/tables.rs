@@ -10,6 +10,7 @@ use crate::{
         },
         metric::{Units, position, with_unit},
         promise,
+        source::{clock, measured, planned},
     },
     replay::{Answer, JOINT, JointReplay, Profiles, Replay, TRANSITION, Transition, Verdict},
     series::JointKind,
@@ -57,9 +58,9 @@ fn source_facts(report: &Report) -> Vec<Fact> {
                 counted(report.alignment.len(), "joint")
             ),
         ),
-        fact("planned", format!("{}  {}", source.planned_topic, source.planned_field)),
-        fact("measured", format!("{}  {}", source.measured_topic, source.measured_field)),
-        fact("clock", format!("{} stamps{delay}{taken_off}", source.time_base.name())),
+        fact("planned", planned(source, "  ")),
+        fact("measured", measured(source, "  ")),
+        fact("clock", format!("{}{delay}{taken_off}", clock(source))),
     ]
 }
 

@@ -61,7 +61,7 @@ fn beside_a_plan_the_command_is_no_reason_for_a_remark() {
     assert!(text.contains("planned position") && text.contains("command position"), "{text}");
     let (code, text, _) = said(&hydrotrace(folder.path(), "report a.mcap"));
     assert_eq!((code, text.contains("plan-is-command")), (0, false), "{text}");
-    assert!(text.contains("planned   /planned/joint_states"), "{text}");
+    assert!(text.contains("planned   J1_ref of a.csv"), "{text}");
 }
 
 #[test]

@@ -1,0 +1,57 @@
+//! What an imported log was read from.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    log::{
+        csv::{ORIGIN, TIME_OF_ORIGIN},
+        write::Topics,
+    },
+    series::Series,
+};
+
+/// Columns of a table, or fields of messages, that an imported log was read from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Origin {
+    /// Name of the file that had them.
+    pub file: String,
+    /// Headers of the plan, by joint; none if the plan is from elsewhere.
+    pub planned: Vec<String>,
+    /// Headers of the measurement, by joint; none if it is from elsewhere.
+    pub measured: Vec<String>,
+    /// Column of the time, and its form.
+    pub time: String,
+}
+
+impl Origin {
+    /// `None` of a log that was recorded, or of which other topics are read.
+    pub(super) fn of(
+        metadata: &BTreeMap<String, BTreeMap<String, String>>,
+        topics: [&String; 2],
+        series: [&Series; 2],
+    ) -> Option<Self> {
+        let origin = metadata.get(ORIGIN)?;
+        let known = Topics::default();
+        let of = |side: usize| {
+            let (topic, series) = (topics[side], series[side]);
+            let becomes = [
+                (&known.planned, "planned position"),
+                (&known.measured, "measured position"),
+                (&known.command, "command position"),
+            ];
+            let becomes = becomes.iter().find(|(one, _)| **one == *topic).map(|(_, becomes)| becomes);
+            let header = |joint: &str| {
+                origin.get(&format!("{} of {joint}", becomes?)).filter(|one| !one.is_empty()).cloned()
+            };
+            series.tracks.iter().filter_map(|track| header(track.name())).collect::<Vec<_>>()
+        };
+        let planned = of(0);
+        let measured = of(1);
+        let text = |key: &str| origin.get(key).cloned().unwrap_or_default();
+        let any = !planned.is_empty() || !measured.is_empty();
+        any.then(|| Self { file: text("file"), planned, measured, time: text(TIME_OF_ORIGIN) })
+    }
+}
