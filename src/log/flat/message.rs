@@ -1,6 +1,7 @@
 //! The numbers of one message, and what each is called.
 
-use serde_json::Value;
+use chrono::DateTime;
+use serde_json::{Number, Value};
 
 use super::leaves::{Kind, Leaves, NANOSECONDS, SECONDS};
 use crate::log::decode::{Numbers, Sink, Slot, Texts};
@@ -143,16 +144,41 @@ impl Sink for Message {
     fn same_texts(&mut self, _: Slot) {}
 }
 
-/// The stamp of a parsed message, ns, if it has one, and its numbers.
+/// Fields of an object that date it.
+const TIMES: [&str; 6] = ["stamp", "timestamp", "@timestamp", "time", "ts", "t"];
+
+/// The stamp of a parsed message, ns, if it has one that says the date, and its numbers.
 pub(super) fn of_value(value: &Value) -> (Option<i64>, Cells) {
     let mut cells = Cells::new();
     walk(value, String::new(), &mut cells);
-    let stamps = [value.pointer("/header/stamp"), value.get("stamp"), value.get("timestamp")];
-    let stamp_ns = stamps.into_iter().flatten().find_map(|stamp| {
-        let part = |names: &[&str]| names.iter().find_map(|name| stamp.get(*name)?.as_f64());
-        stamp_ns(part(&SECONDS)?, part(&NANOSECONDS).unwrap_or(0.0))
-    });
+    let own = TIMES.iter().filter_map(|name| value.get(*name));
+    let stamp_ns = value.pointer("/header/stamp").into_iter().chain(own).find_map(instant_ns);
     (stamp_ns, cells)
+}
+
+/// An instant as an object of seconds and their parts, as a text, or as a number since 1970.
+fn instant_ns(instant: &Value) -> Option<i64> {
+    match instant {
+        Value::Object(_) => {
+            let part = |names: &[&str]| names.iter().find_map(|name| instant.get(*name)?.as_f64());
+            stamp_ns(part(&SECONDS)?, part(&NANOSECONDS).unwrap_or(0.0))
+        }
+        Value::String(text) => DateTime::parse_from_rfc3339(text).ok()?.timestamp_nanos_opt(),
+        Value::Number(number) => since_1970_ns(number),
+        _ => None,
+    }
+}
+
+/// `None` of a count from elsewhere. Between 2001 and 2100 the size of a number tells its unit.
+fn since_1970_ns(number: &Number) -> Option<i64> {
+    const SECONDS: std::ops::Range<f64> = 1.0e9..4.1e9;
+    const UNITS_NS: [i64; 4] = [1, 1_000, 1_000_000, 1_000_000_000];
+    let value = number.as_f64()?;
+    let unit_ns = UNITS_NS.into_iter().find(|unit_ns| SECONDS.contains(&(value * *unit_ns as f64 / 1e9)))?;
+    #[expect(clippy::cast_possible_truncation, reason = "within the range of i64")]
+    let rounded = |ns: f64| ns.round() as i64;
+    let exact = number.as_i64().and_then(|whole| whole.checked_mul(unit_ns));
+    Some(exact.unwrap_or_else(|| rounded(value * unit_ns as f64)))
 }
 
 /// What an object says it is of.
@@ -173,9 +199,8 @@ fn walk(value: &Value, path: String, cells: &mut Cells) {
         }
         Value::Object(fields) => {
             let name = name_of(value);
-            for (field, one) in
-                fields.iter().filter(|(field, _)| !["header", "stamp", "timestamp"].contains(&field.as_str()))
-            {
+            let dates = |field: &String| field == "header" || TIMES.contains(&field.as_str());
+            for (field, one) in fields.iter().filter(|(field, _)| !dates(field)) {
                 let at = name.map_or_else(|| join(field), |name| format!("{}/{field}", join(name)));
                 walk(one, at, cells);
             }

@@ -85,8 +85,13 @@ pub fn read_messages(path: &Path, options: &CsvOptions) -> Result<CsvRun, LogErr
         .map_err(fault)
 }
 
-/// The table.
+/// The table, by the stamps of the messages if all of its topics have such that move; else by when they were published.
 fn text(log: &ScannedLog<'_>, lone: bool) -> Option<Vec<u8>> {
+    let stamped = rows(log, lone, true)?;
+    if stamped.run() { stamped } else { rows(log, lone, false)? }.table()
+}
+
+fn rows(log: &ScannedLog<'_>, lone: bool, stamped: bool) -> Option<Rows> {
     let mut rows = Rows::default();
     rows.lone = lone;
     for file in &log.files {
@@ -122,13 +127,12 @@ fn text(log: &ScannedLog<'_>, lone: bool) -> Option<Vec<u8>> {
                     Reader::Protobuf(whole) => whole.value(one.data).map(|value| message::of_value(&value)),
                 };
                 let Some((stamp_ns, cells)) = read else { continue };
-                let stamp_ns =
-                    stamp_ns.filter(|ns| *ns > 0).unwrap_or_else(|| one.publish_time_ns.cast_signed());
-                rows.add(stamp_ns, topic, cells)?;
+                let stamp_ns = stamp_ns.filter(|ns| *ns > 0 && stamped);
+                rows.add(stamp_ns, one.publish_time_ns.cast_signed(), topic, cells)?;
             }
         }
     }
-    rows.table()
+    Some(rows)
 }
 
 /// Topics that are read, by channel; those of one schema share how.

@@ -22,6 +22,17 @@ pub(super) struct Rows {
     seen: usize,
     rows: BTreeMap<i64, Vec<(usize, f64)>>,
     cells: usize,
+    /// By column.
+    stamps: Vec<Stamps>,
+}
+
+/// Stamps of the numbers of a column.
+#[derive(Debug, Default)]
+struct Stamps {
+    numbers: usize,
+    /// How many differ from the one before.
+    moved: usize,
+    last_ns: Option<i64>,
 }
 
 /// A log with more is not read like this: numbers by the hundred million are no joints.
@@ -32,12 +43,18 @@ const MOST_COLUMNS: usize = 2_000;
 pub(in crate::log) const LONE: &str = "/position";
 
 impl Rows {
-    /// Adds a message; `None` if there are too many.
-    pub(super) fn add(&mut self, stamp_ns: i64, topic: &str, cells: Cells) -> Option<()> {
+    /// Adds a message with its stamp, if it has one, and when it was published; `None` if there are too many.
+    pub(super) fn add(
+        &mut self,
+        stamp_ns: Option<i64>,
+        published_ns: i64,
+        topic: &str,
+        cells: Cells,
+    ) -> Option<()> {
         if !self.columns.contains_key(topic) {
             self.columns.insert(topic.to_owned(), BTreeMap::new());
         }
-        let Self { lone, names, columns, seen, rows, cells: count } = self;
+        let Self { lone, names, columns, seen, rows, cells: count, stamps } = self;
         let columns = columns.get_mut(topic)?;
         for (path, value) in cells {
             let path = match path.strip_prefix("data") {
@@ -50,6 +67,7 @@ impl Rows {
                 let other_side = |role| *lone && role != Role::Measured;
                 let column = said.filter(|said| !said.role.is_some_and(other_side)).map(|_| {
                     names.push([topic.to_owned(), path.to_owned()]);
+                    stamps.push(Stamps::default());
                     names.len() - 1
                 });
                 *seen += 1;
@@ -57,13 +75,19 @@ impl Rows {
                 column
             });
             let Some(column) = column.filter(|_| value.is_finite()) else { continue };
-            let row = rows.entry(stamp_ns).or_default();
+            stamps.get_mut(column)?.add(stamp_ns);
+            let row = rows.entry(stamp_ns.unwrap_or(published_ns)).or_default();
             if row.iter().all(|(known, _)| *known != column) {
                 row.push((column, value));
                 *count += 1;
             }
         }
         (*count <= MOST_CELLS && names.len() <= MOST_COLUMNS && *seen <= 10 * MOST_COLUMNS).then_some(())
+    }
+
+    /// Whether the stamps of every column move.
+    pub(super) fn run(&self) -> bool {
+        self.stamps.iter().all(|stamps| 2 * stamps.moved >= stamps.numbers)
     }
 
     /// The table; `None` if it has no column. Of a measurement alone what says so is a position.
@@ -88,6 +112,14 @@ impl Rows {
             writer.write_record(&line).ok()?;
         }
         writer.into_inner().ok()
+    }
+}
+
+impl Stamps {
+    fn add(&mut self, stamp_ns: Option<i64>) {
+        self.numbers += 1;
+        self.moved += usize::from(stamp_ns.is_some() && stamp_ns != self.last_ns);
+        self.last_ns = stamp_ns;
     }
 }
 

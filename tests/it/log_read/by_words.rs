@@ -293,6 +293,57 @@ fn json_is_read_alike() {
 }
 
 #[test]
+fn json_is_dated_by_its_own_stamps_where_these_say_the_date() {
+    const START_MS: i64 = 1_750_000_000_000;
+    let json = || Channel::cdr("/arm", "arm").with_schema("jsonschema", "{}").encoded("json");
+    let stamps: [fn(i64) -> String; 5] = [
+        |k| format!("\"timestamp\":{}", START_MS + 20 * k),
+        |k| format!("\"ts\":{:.2}", (START_MS + 20 * k) as f64 / 1e3),
+        |k| format!("\"time\":{}", (START_MS + 20 * k) * 1_000_000),
+        |k| format!("\"@timestamp\":\"2025-06-15T15:06:{:02}.{:03}Z\"", 40 + k / 50, 20 * (k % 50)),
+        |k| {
+            format!(
+                "\"header\":{{\"stamp\":{{\"sec\":{},\"nanosec\":{}}}}}",
+                9 + k / 50,
+                20_000_000 * (k % 50)
+            )
+        },
+    ];
+    for at in stamps {
+        let mut log = Log::default();
+        let channel = log.channel(json());
+        for k in 0..SAMPLES.min(900) {
+            let [p, m] = [plan(k), measurement(k)];
+            let text = format!("{{{},\"boom\":{{\"target\":{:?},\"actual\":{:?}}}}}", at(k), p[0], m[0]);
+            // It comes late and in bursts.
+            log.send(channel, stamp(k - k % 7) + 500_000_000, text.into_bytes());
+        }
+        let track = &read(&log).measured.tracks[0];
+        assert!((track.t_s()[10] - 0.2).abs() < 1e-6, "{}: {:?}", at(0), &track.t_s()[..12]);
+    }
+}
+
+#[test]
+fn stamps_that_rest_or_are_missing_on_one_side_date_nothing() {
+    let json = |topic: &str| Channel::cdr(topic, "arm").with_schema("jsonschema", "{}").encoded("json");
+    for at in ["\"timestamp\":1750000000000,", "", "\"timestamp\":12.5,"] {
+        let mut log = Log::default();
+        let [targets, actuals] = ["/plc/target", "/plc/actual"].map(|topic| log.channel(json(topic)));
+        for k in 0..SAMPLES {
+            let [p, m] = [plan(k), measurement(k)];
+            let stamped = format!("{{\"timestamp\":{},\"boom\":{:?}}}", 1_760_000_000_000 + 20 * k, p[0]);
+            log.send(targets, stamp(k), stamped.into_bytes());
+            log.send(actuals, stamp(k), format!("{{{at}\"boom\":{:?}}}", m[0]).into_bytes());
+        }
+        let recording = read(&log);
+        for series in [&recording.planned, &recording.measured] {
+            assert!((series.tracks[0].t_s()[10] - 0.2).abs() < 1e-6, "{at}");
+            assert_eq!(series.tracks[0].len(), SAMPLES as usize, "{at}");
+        }
+    }
+}
+
+#[test]
 fn angles_in_degrees_are_asked_for_with_the_line_that_reads_them() {
     let log = of("float32 boom_setpoint\nfloat32 boom_angle\n", |cdr, k| {
         cdr.f32(plan(k)[0].to_degrees() as f32 + 40.0);
