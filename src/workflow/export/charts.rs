@@ -8,7 +8,7 @@ use super::{super::report::analyse, Inputs};
 use crate::{
     log::{
         Contents, DrawnTopic, Line, LineRole, Lines, LogError, LogFiles, ReadOptions, Recording, SignalRole,
-        TimeBase, WantedSignal, contents, recording_files,
+        TimeBase, WantedSignal, contents, read_recording, recording_files,
     },
     remark::{Code, Remarks},
     replay::Rules,
@@ -36,6 +36,12 @@ pub enum ChartsFailure {
     /// A file that the program does not open.
     #[error("{} is {what}, which {program} does not open; {fix}", path.display())]
     Unopened { path: PathBuf, what: &'static str, program: &'static str, fix: String },
+    /// Messages of types that are not known.
+    #[error(
+        "{} has its joints in messages of no form that is known, of which no line can be told to another program; {fix}",
+        path.display()
+    )]
+    OnlyByWords { path: PathBuf, fix: String },
 }
 
 /// What a chart shows.
@@ -116,7 +122,8 @@ pub fn charts(inputs: &Inputs, programs: &[For]) -> Result<Charts, ChartsFailure
         cylinders: None,
         ..inputs.read.clone()
     };
-    let mut lines = LogFiles::open(&inputs.logs)?.lines(&read)?;
+    let lines = LogFiles::open(&inputs.logs)?.lines(&read);
+    let mut lines = lines.map_err(|error| only_by_words(inputs).unwrap_or(error.into()))?;
     let mut remarks = Remarks::default();
     let recording = match std::mem::replace(&mut lines.recording, Err(LogError::NotLookedAt)) {
         Ok(recording) => Some(recording),
@@ -155,8 +162,7 @@ fn opens(file: &Path, program: For) -> Result<(), ChartsFailure> {
         Err(_) | Ok(Contents::Log { .. }) => return Ok(()),
         Ok(found) => found,
     };
-    let shown = crate::text::shell_argument(file);
-    let import = format!("make a log of it with `hydrotrace import {shown} -o run.mcap`");
+    let import = import(file);
     let (what, fix) = match found {
         Contents::Recording(what) if program == For::Foxglove && what.starts_with("a database") => {
             return Ok(());
@@ -174,6 +180,19 @@ fn opens(file: &Path, program: For) -> Result<(), ChartsFailure> {
         For::Rerun => "Rerun",
     };
     Err(ChartsFailure::Unopened { path: file.to_owned(), what, program, fix })
+}
+
+/// What to do with a log without lines that is read by the words of its fields; `None` if it is not.
+fn only_by_words(inputs: &Inputs) -> Option<ChartsFailure> {
+    let path = inputs.logs.first()?;
+    read_recording(&inputs.logs, &inputs.read).ok()?;
+    let fix = import(path);
+    Some(ChartsFailure::OnlyByWords { path: path.clone(), fix })
+}
+
+/// The line that makes a log of what other programs do not read.
+fn import(path: &Path) -> String {
+    format!("make a log of it with `hydrotrace import {} -o run.mcap`", crate::text::shell_argument(path))
 }
 
 fn is_parquet(file: &Path) -> bool {

@@ -1,6 +1,9 @@
 //! Messages of types that nobody told the reader of: their fields say what they are.
 
+use std::fs;
+
 use super::{cdr::Cdr, file::Channel, *};
+use crate::support::{run_line, said, scratch};
 
 const HEADER: &str = "\n================================================================================\nMSG: std_msgs/Header\n\
                       builtin_interfaces/Time stamp\nstring frame_id\n\
@@ -362,4 +365,25 @@ fn fields_without_such_words_stay_unread() {
         [plan(k)[0], plan(k)[1], 3.0].into_iter().for_each(|value| cdr.f64(value));
     });
     assert!(error(&log, &ReadOptions::default()).contains("found no planned joint angles"));
+}
+
+#[test]
+fn a_layout_of_such_a_log_is_that_of_the_log_made_of_it_by_the_line_that_is_printed() {
+    let log = of("float64[2] q\nfloat64[2] q_d\n", |cdr, k| {
+        measurement(k).iter().chain(&plan(k)).for_each(|value| cdr.f64(*value));
+    });
+    let folder = scratch();
+    fs::write(folder.path().join("arm.mcap"), log.bytes(mcap::WriteOptions::new())).unwrap();
+    let layout = |log: &str| {
+        said(&run_line(folder.path(), &format!("export {log} --foxglove-layout layout.json --force")))
+    };
+    let (code, _, error) = layout("arm.mcap");
+    assert_eq!(code, 1, "{error}");
+    let line = error.split('`').nth(1).unwrap_or_else(|| panic!("{error}"));
+    assert_eq!(line, "hydrotrace import arm.mcap -o run.mcap");
+    said(&run_line(folder.path(), line.strip_prefix("hydrotrace ").unwrap()));
+    let (code, _, error) = layout("run.mcap");
+    assert_eq!(code, 0, "{error}");
+    let text = fs::read_to_string(folder.path().join("layout.json")).unwrap();
+    assert!(text.contains("/planned/joint_states.position[1]"), "{text}");
 }
