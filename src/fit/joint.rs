@@ -5,6 +5,7 @@ use super::{
     censor::{ASKED, seen},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
+    integral,
     interval::{Knowledge, discrepancy},
     outcome::{JointFit, LEAST_SHARP_SKILL},
     parameters::{ASYMMETRY, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
@@ -51,7 +52,7 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     let mut problem = Problem {
         runs: &some,
         priors: &priors,
-        shown: Shown { limits: asked_for(runs, limits), edge: false },
+        shown: Shown { limits: asked_for(runs, limits), edge: false, integral: true },
         part: Part::All,
         inefficiency: INEFFICIENCY,
     };
@@ -66,6 +67,10 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
         }
         problem.shown.limits = seen;
         found = problem.descend(found.x, 30, &mut workspace);
+    }
+    if let Some(without) = integral::without(&problem, &found, &mut workspace) {
+        problem.shown.integral = false;
+        found = without;
     }
     if let Some(edged) = edge(&problem, &found, &mut workspace) {
         problem.shown.edge = true;
@@ -91,7 +96,12 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     let left = Oscillation::of(&problem.longest_left_rad(&found.x, &mut workspace));
     let least_r2 = if knowledge.sharp { LEAST_SHARP_SKILL } else { 0.0 };
     knowledge.holds = left.character == Character::Calm && skill.held_out_r2 >= least_r2;
-    let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
+    let none = skill.is_none();
+    let skill = if none { skill.of_none(&held_out) } else { skill };
+    let mut joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
+    if none {
+        joint = joint.without_model();
+    }
     let ratios = skill.starts.iter().flatten().filter_map(HeldOutStart::ratio).collect();
     let runs = held_out.iter().zip(&skill.errors).zip(&skill.starts);
     let stretches = runs.map(|((run, errors), starts)| HeldOut::of(name, run, errors, starts)).collect();
@@ -129,6 +139,9 @@ fn report(
     let mut integral = one(INTEGRAL_GAIN, model.integral_gain_1_s2, integral_gain);
     // One that acts more slowly than runs last cannot be told from none.
     integral.identified &= model.position_gain_1_s < SLOWEST_INTEGRAL_S * model.integral_gain_1_s2;
+    if !problem.shown.integral {
+        integral = Estimated { value: Some(0.0), ..Estimated::default() };
+    }
     let [dead_band_rad_s, dead_band_error_rad] = knowledge.dead_band(problem, &found.x);
     JointFit {
         name: name.to_owned(),

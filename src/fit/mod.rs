@@ -16,6 +16,7 @@ mod estimate;
 mod estimated;
 mod excite;
 mod held_out;
+mod integral;
 mod interval;
 mod joint;
 mod learn;

@@ -68,6 +68,29 @@ pub struct Model {
 }
 
 impl Model {
+    /// A joint that is where it is sent, within a step: what is predicted where no model holds.
+    pub(super) const FOLLOWS: Self = Self {
+        dead_time_s: 0.0,
+        time_constant_s: 0.0,
+        position_gain_1_s: 10.0,
+        integral_gain_1_s2: 0.0,
+        feed_forward: 1.0,
+        asymmetry: 0.0,
+        dead_band_rad_s: 0.0,
+        dead_band_centre_rad_s: 0.0,
+        stiction_rad_s: 0.0,
+        offset_rad: 0.0,
+        pose_rad: [0.0; 2],
+        pose_slope_1_rad: 0.0,
+        pose_asymmetry_1_rad: 0.0,
+        pose_curve_1_rad2: 0.0,
+        speed_limit_rad_s: [None; 2],
+        acceleration_limit_rad_s2: [None; 2],
+        hysteresis_rad_s: 0.0,
+        edge_rad_s: 0.0,
+        backlash_rad: 0.0,
+    };
+
     /// Holds every number to what it may be.
     ///
     /// # Errors

@@ -55,7 +55,7 @@ pub struct JointFit {
     /// Share of the squared tracking error (sent minus measured, about its mean) that is predicted
     /// where it was not fitted: time is dealt in blocks of 3 s to four parts in turn, and each part is
     /// predicted by a fit to the other three, simulated from the start of the run. 1 is perfect, 0 no
-    /// better than the mean. It says how well runs like these are predicted, not others.
+    /// better than the mean, -1 worse by as much or more. It says how well runs like these are predicted, not others.
     pub held_out_r2: f64,
     /// Whether the machine answers as the model does; if not, no number has an interval.
     #[serde(default = "holds")]
@@ -116,6 +116,29 @@ impl Fit {
 }
 
 impl JointFit {
+    /// The same where no model predicts the joint: it is taken to be where it is sent, no number is known, and limits
+    /// are what was reached.
+    pub(super) fn without_model(self) -> Self {
+        let none = Estimated::default();
+        let reached = |limit: Estimated| Estimated { lower_bound: limit.lower_bound, ..none };
+        Self {
+            model_holds: false,
+            lag_s: none,
+            dead_band_rad_s: none,
+            dead_band_error_rad: none,
+            position_gain_1_s: none,
+            integral_gain_1_s2: none,
+            feed_forward: none,
+            gain_ratio: none,
+            speed_limit_growing_rad_s: reached(self.speed_limit_growing_rad_s),
+            speed_limit_shrinking_rad_s: reached(self.speed_limit_shrinking_rad_s),
+            acceleration_limit_growing_rad_s2: reached(self.acceleration_limit_growing_rad_s2),
+            acceleration_limit_shrinking_rad_s2: reached(self.acceleration_limit_shrinking_rad_s2),
+            model: Model { pose_rad: self.model.pose_rad, ..Model::FOLLOWS },
+            ..self
+        }
+    }
+
     /// Whether the model predicts well enough to make commands from it.
     pub fn trusted(&self) -> bool {
         self.held_out_r2 >= LEAST_SKILL

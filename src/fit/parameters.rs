@@ -78,6 +78,8 @@ pub(super) struct Shown {
     pub(super) limits: [bool; 4],
     /// Edges of the valve that open gradually.
     pub(super) edge: bool,
+    /// Integral action of the position loop.
+    pub(super) integral: bool,
 }
 
 impl Shown {
@@ -85,6 +87,7 @@ impl Shown {
     pub(super) fn has(self, parameter: usize) -> bool {
         match parameter {
             EDGE => self.edge,
+            INTEGRAL_GAIN => self.integral,
             LIMITS.. => self.limits.get(parameter - LIMITS).is_none_or(|shown| *shown),
             _ => true,
         }
@@ -124,7 +127,7 @@ impl Priors {
             dead_time_s: value(DEAD_TIME),
             time_constant_s: value(TIME_CONSTANT),
             position_gain_1_s: value(POSITION_GAIN),
-            integral_gain_1_s2: value(INTEGRAL_GAIN),
+            integral_gain_1_s2: if shown.integral { value(INTEGRAL_GAIN) } else { 0.0 },
             feed_forward: value(FEED_FORWARD),
             asymmetry: value(ASYMMETRY),
             dead_band_rad_s: value(DEAD_BAND),

@@ -11,6 +11,9 @@ const FADE_RAD_S: f64 = 0.15 * DEGREE_RAD;
 /// While the sent angle rests, an error below this leaves the integral as it is, rad.
 const FREEZE_RAD: f64 = 0.08 * DEGREE_RAD;
 
+/// No joint is faster, rad/s or m/s: the response of an unstable loop stays a number.
+const FASTEST_RAD_S: f64 = 50.0;
+
 /// State in which a run begins.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Start {
@@ -78,8 +81,8 @@ fn lanes<const N: usize>(
     let (lowest, highest) = (of(|m| m.pose_rad[0]), of(|m| m.pose_rad[1]));
     let (slope, curve) = (of(|m| m.pose_slope_1_rad), of(|m| m.pose_curve_1_rad2));
     let (asymmetry, bent) = (of(|m| 0.5 * m.asymmetry), of(|m| m.pose_asymmetry_1_rad));
-    let fastest = of(|m| m.speed_limit_rad_s[0].unwrap_or(f64::INFINITY));
-    let slowest = of(|m| -m.speed_limit_rad_s[1].unwrap_or(f64::INFINITY));
+    let fastest = of(|m| m.speed_limit_rad_s[0].unwrap_or(FASTEST_RAD_S));
+    let slowest = of(|m| -m.speed_limit_rad_s[1].unwrap_or(FASTEST_RAD_S));
     let most = of(|m| m.acceleration_limit_rad_s2[0].unwrap_or(f64::INFINITY) * STEP_S);
     let least = of(|m| -m.acceleration_limit_rad_s2[1].unwrap_or(f64::INFINITY) * STEP_S);
     let approach = of(|m| -(-STEP_S / m.time_constant_s.max(1e-4)).exp_m1());

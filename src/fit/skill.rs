@@ -10,6 +10,10 @@ use crate::math::quantile;
 /// Margin where there are too few starts to measure it.
 const MARGIN: f64 = 1.2;
 
+/// Prediction that is worse than this has nothing to do with the joint, and is not told apart: such as a model of one that
+/// is stuck.
+const WORST_R2: f64 = -1.0;
+
 /// Fewest starts that make a margin.
 const STARTS: usize = 10;
 
@@ -65,15 +69,36 @@ pub(super) fn skill(problem: &Problem, x: &[f64], rounds: usize, workspace: &mut
             }
         }
     }
+    Skill::of(problem.runs, errors)
+}
+
+/// Share of the squared measured error, about its mean, that is predicted; no less than [`WORST_R2`].
+fn r2(errors: &[Vec<(f64, f64)>]) -> f64 {
     let all = || errors.iter().flatten();
     let count = all().count().max(1) as f64;
     let mean = all().map(|error| error.0).sum::<f64>() / count;
     let total: f64 = all().map(|error| (error.0 - mean).powi(2)).sum();
     let left: f64 = all().map(|error| (error.0 - error.1).powi(2)).sum();
-    let held_out_r2 = 1.0 - left / total;
-    let held_out_r2 = if held_out_r2.is_finite() { held_out_r2 } else { -1.0 };
-    let starts = problem.runs.iter().zip(&errors).map(|(run, errors)| starts(run, errors)).collect();
-    Skill { held_out_r2, errors, starts }
+    let r2 = 1.0 - left / total;
+    if r2.is_finite() { r2.max(WORST_R2) } else { WORST_R2 }
+}
+
+impl Skill {
+    fn of(runs: &[Run], errors: Vec<Vec<(f64, f64)>>) -> Self {
+        let starts = runs.iter().zip(&errors).map(|(run, errors)| starts(run, errors)).collect();
+        Self { held_out_r2: r2(&errors), errors, starts }
+    }
+
+    /// The skill of [`Model::FOLLOWS`](super::Model), where no model predicts anything: all error is unexplained.
+    pub(super) fn of_none(self, runs: &[Run]) -> Self {
+        let measured = |of_run: Vec<(f64, f64)>| of_run.into_iter().map(|error| (error.0, 0.0)).collect();
+        Self::of(runs, self.errors.into_iter().map(measured).collect())
+    }
+
+    /// Whether the model is farther off than the mean of the error by all that can be told.
+    pub(super) fn is_none(&self) -> bool {
+        self.held_out_r2 <= WORST_R2
+    }
 }
 
 /// Sent angle at a sample, rad.

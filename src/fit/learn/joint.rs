@@ -51,6 +51,8 @@ pub(super) struct Joint<'a> {
     name: &'a str,
     pub(super) planned: Vec<(f64, f64)>,
     answers: Vec<Answer>,
+    /// Whether the newest run has little to do with the plan.
+    astray: bool,
     pub(super) oscillation: Option<Oscillation>,
     workspace: Workspace,
 }
@@ -63,10 +65,12 @@ impl<'a> Joint<'a> {
         let answer = |trial: &Trial| Answer::of(trial, track.name(), from_s, &planned);
         let answers: Vec<Answer> = runs.iter().filter_map(answer).collect();
         let mut workspace = Workspace::default();
-        let newest = fit.zip(answers.last());
+        let astray = answers.last().is_some_and(|run| astray(&planned, &run.error_rad(&planned)));
+        // What a joint does that follows another plan, or none, is no oscillation of its loop.
+        let newest = fit.zip(answers.last()).filter(|_| !astray);
         let oscillation =
             newest.map(|(fit, run)| Oscillation::of(&unexplained_rad(run, &fit.model, &mut workspace)));
-        Ok(Self { fit, name: track.name(), planned, answers, oscillation, workspace })
+        Ok(Self { fit, name: track.name(), planned, answers, astray, oscillation, workspace })
     }
 
     pub(super) fn next(
@@ -96,7 +100,7 @@ impl<'a> Joint<'a> {
         let Some(fit) = self.fit.filter(|_| !untouched && !free.is_empty() && settings.gain > 0.0) else {
             return made;
         };
-        if errors.last().is_some_and(|error_rad| self.astray(error_rad)) {
+        if self.astray {
             made.step = Step::Astray;
             return made;
         }
@@ -122,17 +126,11 @@ impl<'a> Joint<'a> {
         made
     }
 
-    /// Whether the newest run has little to do with the plan: wrong sign, zero, unit or name, or a joint that is stuck.
-    fn astray(&self, error_rad: &[f64]) -> bool {
-        let mean_rad =
-            self.planned.iter().map(|planned| planned.0).sum::<f64>() / self.planned.len().max(1) as f64;
-        let motion_rad: Vec<f64> = self.planned.iter().map(|planned| planned.0 - mean_rad).collect();
-        rms(error_rad) > CAP_RAD.max(FOLLOWS * rms(&motion_rad))
-    }
-
-    /// What the last two runs differ by though the model says that they should not, rad.
+    /// What the last run and one before it differ by though the model says that they should not, rad: one in which the same
+    /// was sent, if there is one, for then the model matters little.
     fn spread_rad(&mut self, model: &Model) -> Option<f64> {
-        let [.., before, last] = &self.answers[..] else { return None };
+        let (last, others) = self.answers.split_last()?;
+        let before = others.iter().rfind(|run| alike(run, last)).or(others.last())?;
         let before_rad = unexplained_rad(before, model, &mut self.workspace);
         let last_rad = unexplained_rad(last, model, &mut self.workspace);
         let difference_rad: Vec<f64> = last_rad.iter().zip(&before_rad).map(|(a, b)| a - b).collect();
@@ -189,6 +187,18 @@ impl<'a> Joint<'a> {
         }
         (Step::Later { from, gain }, next)
     }
+}
+
+/// Whether a run has little to do with the plan: wrong sign, zero, unit or name, or a joint that is stuck.
+fn astray(planned: &[(f64, f64)], error_rad: &[f64]) -> bool {
+    let mean_rad = planned.iter().map(|planned| planned.0).sum::<f64>() / planned.len().max(1) as f64;
+    let motion_rad: Vec<f64> = planned.iter().map(|planned| planned.0 - mean_rad).collect();
+    rms(error_rad) > CAP_RAD.max(FOLLOWS * rms(&motion_rad))
+}
+
+/// Whether the same was sent.
+fn alike(a: &Answer, b: &Answer) -> bool {
+    a.sent.iter().zip(&b.sent).all(|(a, b)| (a.0 - b.0).abs() < NONE_RAD)
 }
 
 /// Size of an error below [`COMPARED_HZ`], rad.

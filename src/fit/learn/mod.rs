@@ -100,8 +100,8 @@ pub struct JointStep {
     pub oscillation: Option<Oscillation>,
     /// Root mean square error of each run below 1.5 Hz, rad.
     pub rms_error_rad: Vec<f64>,
-    /// Root mean square difference of runs that the model does not explain, below 1.5 Hz, by the root of two: what
-    /// comes differently each time; `None` with fewer than two runs.
+    /// Root mean square difference that the model does not explain of the last run and one before it, one in which the same
+    /// was sent if there is one, below 1.5 Hz, by the root of two: what comes differently each time; `None` with fewer than two runs.
     pub spread_rad: Option<f64>,
     /// Largest correction that was allowed, rad.
     pub most_rad: f64,

@@ -60,7 +60,7 @@ fn short(level: Level, finding: &Finding) -> String {
             format!("joints {what} ({})", doubtful.collect::<Vec<_>>().join(", "))
         }
         Finding::Promise { .. } => "more error came than was promised".to_owned(),
-        Finding::Outlook { .. } => "no smaller error is expected".to_owned(),
+        Finding::Outlook { .. } => "a larger error is expected".to_owned(),
         Finding::Leave { .. } => "it leaves the plan far".to_owned(),
         Finding::Gain { reasons, .. } => because(reasons),
     }
@@ -204,13 +204,16 @@ fn trust(joints: &[JointTrust]) -> String {
         found.push(format!("Ringing: {ringing}; their corrections are slow and mild."));
     }
     let calm = joints.iter().filter(|joint| matches!(joint.character, None | Some(Character::Calm)));
-    found.extend(calm.filter(|joint| joint.level != Level::Good && !joint.astray).map(doubt));
+    let some = joints.iter().any(|joint| joint.corrected);
+    found.extend(
+        calm.filter(|joint| joint.level != Level::Good && !joint.astray).map(|joint| doubt(joint, some)),
+    );
     let astray = joints.iter().filter(|joint| joint.astray).map(|joint| joint.joint.as_str());
     let astray: Vec<&str> = astray.collect();
     if !astray.is_empty() {
         found.push(format!(
             "Not following the plan, their error is more than half of their motion: {}; they are not corrected: are sign, \
-             zero, unit and name right?",
+             zero, unit and name right, and do they move at all?",
             astray.join(", ")
         ));
     }
@@ -225,10 +228,10 @@ fn trust(joints: &[JointTrust]) -> String {
     found.join(" ")
 }
 
-/// Of a joint that neither rings nor hunts.
-fn doubt(joint: &JointTrust) -> String {
+/// Of a joint that neither rings nor hunts; `some` are corrected.
+fn doubt(joint: &JointTrust, some: bool) -> String {
     let name = &joint.joint;
-    let sent = if joint.corrected { "" } else { ", so it is not corrected" };
+    let sent = if joint.corrected || !some { "" } else { ", so it is not corrected" };
     match joint.held_out_r2 {
         None => format!("{name} was not fitted{sent}."),
         Some(r2) if r2 < LEAST_SKILL => format!("{name} is predicted badly{sent}."),

@@ -2,20 +2,62 @@
 
 use crate::{
     fit::Step,
-    render::kit::{Id, NONE, Section, Sentence, Table, deg, optional},
-    workflow::replan::{Decision, JointCommand, PastRun, Replanned},
+    render::kit::{Id, NONE, Section, Sentence, Table, counted, deg, optional},
+    workflow::replan::{Decision, JointCommand, KeepReason, PastRun, Replanned},
 };
 
-/// Which command to keep, where the last correction gained too little.
+/// What to keep, where nothing more is to be gained, and why.
 pub(super) fn kept(replanned: &Replanned) -> Option<String> {
-    let Decision::Keep { run, best_rad, last_rad } = &replanned.past.decision else { return None };
-    let name = replanned.past.runs.get(*run).map_or("the best run", |run| run.log.as_str());
-    Some(format!(
-        "Keep the command of {name}: its mean peak is {} deg, the last run has {} deg, which is less than a tenth better than \
-         the best run before it. What is left comes differently from run to run.",
-        deg(*best_rad),
-        deg(*last_rad)
-    ))
+    let Decision::Keep { run, because, best_rad, last_rad } = &replanned.past.decision else { return None };
+    let (best, last) = (deg(*best_rad), deg(*last_rad));
+    let kept = match replanned.past.runs.get(*run) {
+        Some(run) if run.corrected => format!("Keep the command of {}: its mean peak is {best} deg", run.log),
+        Some(run) => format!(
+            "Send the plan as it is, without a correction: its mean peak was {best} deg in {}",
+            run.log
+        ),
+        None => format!("Keep what was sent in the best run: its mean peak is {best} deg"),
+    };
+    let why = match because {
+        KeepReason::GainedLittle if last_rad > best_rad => {
+            format!(", the last run has {last} deg, which is no better.")
+        }
+        KeepReason::GainedLittle => {
+            ", which is less than a tenth better than the best run before it.".to_owned()
+        }
+        KeepReason::Failed { corrections } => {
+            format!("; {} gained nothing.", counted(*corrections, "correction"))
+        }
+        KeepReason::ExpectedWorse { expected_rad } => {
+            format!("; another correction is expected to give {} deg.", deg(*expected_rad))
+        }
+    };
+    Some(kept + &why + repeats(replanned).unwrap_or_default())
+}
+
+/// Share of an error from which on its spread from run to run is most of it.
+const MOSTLY: f64 = 0.7;
+
+/// Whether what is left comes again; `None` where fewer than two runs tell.
+fn repeats(replanned: &Replanned) -> Option<&'static str> {
+    let joints = replanned.command.as_ref()?.joints.iter();
+    let both = joints.filter_map(|joint| Some((joint.spread_rad?, *joint.rms_error_rad.last()?)));
+    let (mut spread, mut error) = (0.0, 0.0);
+    for (of_spread, of_error) in both {
+        spread += of_spread * of_spread;
+        error += of_error * of_error;
+    }
+    let Decision::Keep { because, .. } = &replanned.past.decision else { return None };
+    let failed = matches!(because, KeepReason::Failed { .. });
+    let told = error > 0.0 && !matches!(because, KeepReason::ExpectedWorse { .. });
+    told.then(|| match (spread >= MOSTLY * MOSTLY * error, failed) {
+        (true, _) => " What is left comes differently from run to run.",
+        (false, false) => " What is left comes again in every run, faster than corrections are.",
+        (false, true) => {
+            " What is left comes again in every run, and no correction lifts it: where a limit of speed or flow, or a pump that \
+             joints share, holds them back, a slower plan or fewer joints at once help."
+        }
+    })
 }
 
 /// Runs of the plan so far, promised beside measured.
@@ -75,7 +117,8 @@ pub(super) fn command(replanned: &Replanned) -> Option<Section> {
     Some(Section::new(Id::OTHER, "Command", [Table::new(&["joint", "by"], &numbers, rows)])
         .with(Sentence::note(
             "By: what the correction is made from. Rms error: measured in the last run, below 1.5 Hz; spread: the part of it that \
-             differs between the last two runs for no reason that the model knows. Ratios: peak speed and acceleration \
+             differs between the last run and the one before, or one in which the same was sent, for no reason that the model \
+             knows. Ratios: peak speed and acceleration \
              of the command over those of the plan.",
         ))
         .with_all(cut_off(&command.joints).map(Sentence::Advice)))
@@ -90,6 +133,7 @@ fn row(replanned: &Replanned, joint: &JointCommand) -> Vec<String> {
         Step::Model => "model".to_owned(),
         Step::First { model_weight } => format!("{:.0} % model, else data", 100.0 * model_weight),
         Step::Later { from, gain } => format!("{} + {:.2} error", run(from), gain),
+        Step::Kept { .. } if !joint.applied() => "the plan".to_owned(),
         Step::Kept { from } => format!("{} again", run(from)),
         Step::Astray => "does not follow".to_owned(),
         Step::None => "not corrected".to_owned(),

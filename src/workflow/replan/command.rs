@@ -23,6 +23,9 @@ const KNOWN_HZ: f64 = 2.0;
 /// A plan and a motion are the same if their angles differ by no more, rad.
 const SAME_RAD: f64 = 1e-6;
 
+/// A kept correction below this is none, rad.
+const NONE_RAD: f64 = 1e-5;
+
 /// The command of one joint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -63,9 +66,14 @@ pub struct JointCommand {
 }
 
 impl JointCommand {
-    /// Whether the joint is corrected.
+    /// Whether the joint is corrected; to keep the plan is no correction.
     pub fn applied(&self) -> bool {
-        !matches!(self.step, Step::None | Step::Astray) && self.share > 0.0
+        let made = match self.step {
+            Step::None | Step::Astray => false,
+            Step::Kept { .. } => self.peak_correction_rad > NONE_RAD,
+            Step::Model | Step::First { .. } | Step::Later { .. } => true,
+        };
+        made && self.share > 0.0
     }
 }
 

@@ -24,6 +24,12 @@ const NONE_RAD: f64 = 1e-3;
 /// A run whose mean peak is not below this share of the best before it was not worth its correction.
 const WORTH: f64 = 0.9;
 
+/// A correction that is expected to come above the best run by this factor is not worth sending.
+const WORSE: f64 = 1.1;
+
+/// So many corrections that gained nothing are enough.
+const FAILURES: usize = 2;
+
 /// Share of the usual gain that is left however much a command broke its promise.
 const LEAST_TRUST: f64 = 0.5;
 
@@ -48,14 +54,37 @@ pub struct PastRun {
 pub enum Decision {
     /// Send the new command.
     Send,
-    /// Keep the command of a run (by index): the last correction gained too little.
+    /// Keep what was sent in a run (by index): there is nothing more to gain.
     Keep {
         /// The run.
         run: usize,
+        /// How that is known.
+        #[serde(default)]
+        because: KeepReason,
         /// Its mean peak, rad.
         best_rad: f64,
         /// Mean peak of the last run, rad.
         last_rad: f64,
+    },
+}
+
+/// Why nothing more is to be gained.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(tag = "why", rename_all = "snake_case")]
+pub enum KeepReason {
+    /// The last correction gained less than a tenth, or nothing.
+    #[default]
+    GainedLittle,
+    /// So many corrections brought nothing.
+    Failed {
+        /// How many.
+        corrections: usize,
+    },
+    /// The next correction is expected to do worse.
+    ExpectedWorse {
+        /// Its mean peak, rad.
+        expected_rad: f64,
     },
 }
 
@@ -126,21 +155,53 @@ impl History {
         if ratio.is_finite() { ratio.clamp(LEAST_TRUST, 1.0) } else { 1.0 }
     }
 
+    /// Mean peak of each run that has one, rad, by its index.
+    fn peaks_rad(&self) -> Vec<(usize, f64)> {
+        self.runs.iter().enumerate().filter_map(|(k, run)| Some((k, run.mean_peak_rad?))).collect()
+    }
+
     /// Whether the last correction was worth it.
     pub(super) fn decision(&self) -> Decision {
-        let peaks: Vec<(usize, f64)> =
-            self.runs.iter().enumerate().filter_map(|(k, run)| Some((k, run.mean_peak_rad?))).collect();
+        let peaks = self.peaks_rad();
         let Some(((last, last_rad), before)) = peaks.split_last() else { return Decision::Send };
-        let best_before = before.iter().min_by(|a, b| a.1.total_cmp(&b.1));
-        let Some(best_before) = best_before.filter(|_| self.runs[*last].corrected && before.len() > 1) else {
-            return Decision::Send;
+        let Some(best_before) = best(before).filter(|_| before.len() > 1) else { return Decision::Send };
+        let failed = |k: &usize| {
+            let before = best(&peaks[..*k]).is_some_and(|best| peaks[*k].1 >= WORTH * best.1);
+            before && self.runs[peaks[*k].0].corrected
         };
-        if *last_rad < WORTH * best_before.1 {
+        let because = if self.runs[*last].corrected {
+            KeepReason::GainedLittle
+        } else {
+            // What was kept is the plan as it is: it tells nothing of corrections.
+            KeepReason::Failed { corrections: (1..before.len()).filter(failed).count() }
+        };
+        let enough = match because {
+            KeepReason::Failed { corrections } => corrections >= FAILURES,
+            _ => *last_rad >= WORTH * best_before.1,
+        };
+        if !enough {
             return Decision::Send;
         }
-        let (run, best_rad) = if *last_rad < best_before.1 { (*last, *last_rad) } else { *best_before };
-        Decision::Keep { run, best_rad, last_rad: *last_rad }
+        let (run, best_rad) = if *last_rad < best_before.1 { (*last, *last_rad) } else { best_before };
+        Decision::Keep { run, because, best_rad, last_rad: *last_rad }
     }
+
+    /// What to keep in place of a correction whose mean peak is expected to be clearly above that of the best run.
+    pub(super) fn better_than(&self, expected_rad: f64) -> Option<Decision> {
+        let peaks = self.peaks_rad();
+        let (last, (run, best_rad)) = (peaks.last()?, best(&peaks)?);
+        let because = KeepReason::ExpectedWorse { expected_rad };
+        (expected_rad > WORSE * best_rad).then_some(Decision::Keep {
+            run,
+            because,
+            best_rad,
+            last_rad: last.1,
+        })
+    }
+}
+
+fn best(peaks: &[(usize, f64)]) -> Option<(usize, f64)> {
+    peaks.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 #[cfg(test)]
@@ -185,8 +246,29 @@ mod tests {
         assert_eq!(history(&[1.0]).decision(), Decision::Send);
         assert_eq!(history(&[1.0, 1.2]).decision(), Decision::Send);
         assert_eq!(history(&[1.0, 0.3, 0.2]).decision(), Decision::Send);
-        let kept = |run, best_rad, last_rad| Decision::Keep { run, best_rad, last_rad };
+        let because = KeepReason::GainedLittle;
+        let kept = |run, best_rad, last_rad| Decision::Keep { run, because, best_rad, last_rad };
         assert_eq!(history(&[1.0, 0.3, 0.28]).decision(), kept(2, 0.28, 0.28));
         assert_eq!(history(&[1.0, 0.3, 0.2, 0.4]).decision(), kept(2, 0.2, 0.4));
+    }
+
+    #[test]
+    fn after_two_corrections_that_gained_nothing_the_plan_is_kept_however_often_it_is_run() {
+        let mut history = history(&[4.19, 4.24, 4.25, 4.18]);
+        history.runs[3].corrected = false;
+        let because = KeepReason::Failed { corrections: 2 };
+        let kept = Decision::Keep { run: 3, because, best_rad: 4.18, last_rad: 4.18 };
+        assert_eq!(history.decision(), kept);
+        history.runs.remove(2);
+        assert_eq!(history.decision(), Decision::Send);
+    }
+
+    #[test]
+    fn what_is_expected_to_be_worse_than_the_best_run_is_not_sent() {
+        assert_eq!(history(&[]).better_than(9.0), None);
+        assert_eq!(history(&[4.2, 4.3]).better_than(4.5), None);
+        let because = KeepReason::ExpectedWorse { expected_rad: 6.0 };
+        let kept = Decision::Keep { run: 0, because, best_rad: 4.2, last_rad: 4.3 };
+        assert_eq!(history(&[4.2, 4.3]).better_than(6.0), Some(kept));
     }
 }

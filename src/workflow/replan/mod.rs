@@ -25,7 +25,7 @@ pub use command::{Commanded, JointCommand};
 pub use course::{Drawn, JointCourse, courses};
 pub use document::ReplanDocument;
 pub use failure::ReplanFailure;
-pub use history::{Decision, PastRun};
+pub use history::{Decision, KeepReason, PastRun};
 pub use limits::{HeldTo, Origin};
 pub use outcome::{Before, Replanned, Search};
 pub use predicted::{Predicted, PredictedTransition, Response, predicted, promised};
@@ -168,18 +168,16 @@ pub fn run(
     let setup = last.request.as_ref().map(|request| &request.setup);
     let decision = if learns { history.decision() } else { Decision::Send };
     let options = candidates(&last, search.as_ref())?;
-    let maker = Maker {
-        inputs,
-        precompensates,
-        fit: &fit,
-        setup,
-        last: &last,
-        history: &history,
-        decision: &decision,
-    };
+    let mut maker =
+        Maker { inputs, precompensates, fit: &fit, setup, last: &last, history: &history, decision };
     let made = threads::mapped(&options, || (), |(), (new, plan)| maker.candidate(new.clone(), plan.clone()));
     let made: Vec<Candidate> = made.into_iter().collect::<Result<_, _>>()?;
-    let chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
+    let mut chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
+    if let Some(keep) = chosen.kept_instead(&history) {
+        maker.decision = keep;
+        chosen = maker.candidate(None, last.plan.clone())?;
+    }
+    let decision = maker.decision;
     if chosen.new.is_none() && chosen.astray() {
         return Err(ReplanFailure::Astray { path: path.clone() });
     }
@@ -269,6 +267,12 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
+    /// What to keep where more error is expected of a correction of the last plan than its best run had.
+    fn kept_instead(&self, history: &History) -> Option<Decision> {
+        let corrects = self.new.is_none() && self.command.as_ref().is_some_and(Commanded::applied);
+        history.better_than(self.predicted.mean_peak_rad).filter(|_| corrects)
+    }
+
     /// Whether half of the joints that are to move, or more, do not follow.
     fn astray(&self) -> bool {
         let moves = |joint: &&JointCommand| {
@@ -292,7 +296,7 @@ struct Maker<'a> {
     setup: Option<&'a Setup>,
     last: &'a Last,
     history: &'a History,
-    decision: &'a Decision,
+    decision: Decision,
 }
 
 impl Maker<'_> {

@@ -87,7 +87,15 @@ pub fn promised(
     rules: &Rules,
 ) -> Result<(Predicted, Vec<Response>), FitError> {
     let repeats = if run.is_some() { NOT_REPEATED } else { 1.0 };
-    let left_rad = |name: &str| left_rad(fit, name, repeats, spread_rad(name));
+    // A joint that is sent what it was sent before is expected to do what it did.
+    let again = |name: &str| {
+        let before = run.and_then(|(before, _)| before.track(name)).zip(sent.track(name));
+        before.is_some_and(|(before, sent)| alike(before, sent))
+    };
+    let left_rad = |name: &str| {
+        let [mean_rad, most_rad] = left_rad(fit, name, repeats, spread_rad(name));
+        [if again(name) { 0.0 } else { mean_rad }, most_rad]
+    };
     let (mut pairs, mut responses) = (Vec::new(), Vec::new());
     for track in &plan.tracks {
         let (Some(joint), Some(sent)) = (fit.joint(track.name()), sent.track(track.name())) else { continue };
@@ -102,6 +110,14 @@ pub fn promised(
         responses.push(Response { angle: response, band_rad: left_rad(track.name())[1] });
     }
     Ok((summary(&left_rad, fit.peak_margin, &pairs, rules), responses))
+}
+
+/// Angles that differ by less are the same, rad.
+const SAME_RAD: f64 = 1e-5;
+
+fn alike(before: &Track, sent: &Track) -> bool {
+    let apart = |(t_s, position): (&f64, &f64)| (before.held_at(*t_s).position - position).abs();
+    sent.t_s().iter().zip(sent.position()).map(apart).fold(0.0, f64::max) < SAME_RAD
 }
 
 /// What came before, and what the model says that changes.

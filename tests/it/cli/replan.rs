@@ -276,6 +276,50 @@ fn a_joint_in_another_frame_than_its_plan_is_told_and_left_alone() {
 }
 
 #[test]
+fn a_joint_that_is_stuck_is_expected_to_stay_so_and_the_others_are_corrected() {
+    let folder = with_run();
+    let folder = folder.path();
+    let noise = std::cell::RefCell::new(0_u32);
+    table(folder, "run.mcap", "stuck.csv", |joint, _, angle_rad| {
+        let mut state = noise.borrow_mut();
+        *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        if joint == 2 { 0.9 + 4e-4 * (f64::from(*state) / f64::from(u32::MAX) - 0.5) } else { angle_rad }
+    });
+    let next = json(folder, "replan stuck.csv -o next.mcap");
+    let last_rad = next["before"]["measured_mean_peak_rad"].as_f64().unwrap();
+    let next_rad = next["after"]["mean_peak_rad"].as_f64().unwrap();
+    assert!((0.7 * last_rad..last_rad).contains(&next_rad), "{last_rad} {next_rad}");
+    let trust = check(&next, "trust");
+    let stuck = &trust["joints"][1];
+    assert_eq!(stuck["astray"], true, "{trust}");
+    assert_eq!(stuck["frequency_hz"], Value::Null, "{trust}");
+    assert!(stuck["held_out_r2"].as_f64().unwrap() >= -1.0, "{trust}");
+}
+
+#[test]
+fn after_corrections_that_gained_nothing_the_plan_is_sent_as_it_is() {
+    let folder = with_run();
+    let folder = folder.path();
+    clean(folder, "replan run.mcap --keep-plan -o sent.mcap");
+    clean(folder, "simulate sent.mcap -o run-2.mcap");
+    for (path, by) in [("bad-1.csv", 0.03), ("bad-2.csv", 0.031)] {
+        table(folder, "run-2.mcap", path, |_, t_s, angle_rad| angle_rad + by * (0.6 * t_s).sin());
+    }
+    let line = "replan run.mcap bad-1.csv bad-2.csv run.mcap -o next.mcap";
+    let next = json(folder, line);
+    assert_eq!(next["decision"]["because"]["why"], "failed", "{}", next["decision"]);
+    assert_eq!(next["decision"]["because"]["corrections"], 2);
+    let joints = next["command"].as_array().unwrap();
+    let corrected = |joint: &Value| joint["peak_correction_rad"].as_f64().unwrap() > 1e-6;
+    assert!(!joints.iter().any(corrected), "{joints:?}");
+    let said = stdout(&run_line(folder, line));
+    for part in ["Send the plan as it is", "2 corrections gained nothing", "command  is the plan"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert!(!stdout(&run_line(folder, "info next.mcap")).contains("/command/joint_states"));
+}
+
+#[test]
 fn of_a_run_whose_clocks_differ_no_command_is_made() {
     let folder = with_run();
     let folder = folder.path();

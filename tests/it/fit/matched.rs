@@ -108,6 +108,45 @@ fn edges_that_open_gradually_are_found_where_they_are_and_nowhere_else() {
 }
 
 #[test]
+fn a_loop_without_an_integral_shows_its_dead_band_over_long_rests_too() {
+    let stroke = |t_s: f64| {
+        let (over_s, ramp) = (6.0, 0.15);
+        let u = (t_s / over_s).clamp(0.0, 1.0);
+        let rising = |u: f64| if u < ramp { u * u / (2.0 * ramp) } else { u - 0.5 * ramp };
+        if u > 1.0 - ramp { 1.0 - rising(1.0 - u) / (1.0 - ramp) } else { rising(u) / (1.0 - ramp) }
+    };
+    let t_s: Vec<f64> = (0..=8400).map(|k| f64::from(k) * 0.01).collect();
+    let of = |t_s: f64| {
+        (0..4).map(move |k| (stroke(t_s - 2.0 - 20.0 * f64::from(k)), if k % 2 == 0 { 0.43 } else { -0.43 }))
+    };
+    let position = t_s.iter().map(|t_s| of(*t_s).map(|(share, by)| share * by).sum()).collect();
+    let plan = Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] };
+    let model = Model {
+        dead_time_s: 0.05,
+        time_constant_s: 0.12,
+        position_gain_1_s: 2.5,
+        integral_gain_1_s2: 0.0,
+        feed_forward: 1.0,
+        asymmetry: 0.0,
+        dead_band_rad_s: 0.5 * DEGREE_RAD,
+        stiction_rad_s: 0.0,
+        hysteresis_rad_s: 0.0,
+        backlash_rad: 0.0,
+        speed_limit_rad_s: [None; 2],
+        ..MODEL
+    };
+    let fit = fitted(&[(&plan, &measured_of(&model, &plan, 1, |_| false))]);
+    let joint = &fit.joints[0];
+    let dead_band_deg_s = joint.dead_band_rad_s.value.unwrap() / DEGREE_RAD;
+    assert!((0.4..0.7).contains(&dead_band_deg_s), "{dead_band_deg_s}");
+    assert_eq!((joint.model.integral_gain_1_s2, joint.integral_gain_1_s2.identified), (0.0, false));
+    // One that integrates is not taken for one that does not.
+    let integrates = Model { integral_gain_1_s2: 0.4, ..model };
+    let fit = fitted(&[(&plan, &measured_of(&integrates, &plan, 1, |_| false))]);
+    assert!(fit.joints[0].model.integral_gain_1_s2 > 0.1, "{:?}", fit.joints[0].model);
+}
+
+#[test]
 fn gaps_and_a_plan_without_speeds_do_not_mislead() {
     let plan = trial(&["J"]);
     let log = measured(&plan, 1, |t_s| (6.0..7.5).contains(&t_s) || (t_s * 100.0).round() % 7.0 == 0.0);

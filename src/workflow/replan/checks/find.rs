@@ -21,6 +21,9 @@ const REST: [f64; 2] = [1e-2 * DEGREE_RAD, 0.1 * DEGREE_RAD];
 /// A command that leaves its plan by more, rad, or takes the tool off it by more, m, needs room that people may not leave.
 const WIDE: (f64, f64) = (3.0 * DEGREE_RAD, 0.1);
 
+/// Errors up to this times another are no larger.
+const SAME_ERROR: f64 = 1.02;
+
 /// More than this times what nine runs of ten stay below is another machine than the fitted one.
 const OTHER_MACHINE: f64 = 2.0;
 
@@ -154,7 +157,7 @@ fn promise(replanned: &Replanned) -> Option<Check> {
 
 fn outlook(replanned: &Replanned) -> Check {
     let (expected, last_mean_peak_rad) = (replanned.promise(), replanned.before.measured_mean_peak_rad);
-    let worse = last_mean_peak_rad.is_some_and(|last_rad| expected.mean_peak_rad > last_rad);
+    let worse = last_mean_peak_rad.is_some_and(|last_rad| expected.mean_peak_rad > SAME_ERROR * last_rad);
     Check { level: caution(worse), finding: Finding::Outlook { last_mean_peak_rad, expected } }
 }
 
