@@ -60,6 +60,8 @@ pub enum Code {
     JointsChange,
     /// Planned joints that were never measured, or the other way round.
     UnpairedJoint,
+    /// A table that holds a plan without a measurement, or the other way round.
+    OneSide,
     /// Samples outside the time in which both planned and measured exist.
     Unmatched,
     /// A start time known only from the receipt of a message.

@@ -22,6 +22,18 @@ pub enum FitError {
         /// What counts as motion.
         least_travel_rad: f64,
     },
+    /// Joints move, but are not sampled often enough to show how.
+    #[error(
+        "no joint can be fitted: measured samples are {:.2} s apart, and how a joint answers shows in samples {} s apart or \
+         less; record at {:.0} Hz or more",
+        interval_s, most_s, most_s.recip()
+    )]
+    TooSparse {
+        /// Mean distance of the samples of the joint that has most of them, s.
+        interval_s: f64,
+        /// What is needed, s.
+        most_s: f64,
+    },
     /// A number of a model that cannot be.
     #[error("{key} of joint {joint} is {found}; a number from {least} to {most} is expected")]
     Value {

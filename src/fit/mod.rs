@@ -40,11 +40,11 @@ pub use learn::{Character, JointStep, Learning, Learnt, Oscillation, Room, Step,
 pub use model::{Model, STEP_S};
 pub use outcome::{Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LeftOut};
 pub use predict::predict;
-pub use run::Observation;
+pub use run::{Observation, SPARSEST_S};
 pub use start_error::{PredictedStart, StartErrorPredictor};
 
 use crate::{threads, units::DEGREE_RAD};
-use run::{Run, runs};
+use run::{Run, runs, sparse_s};
 
 /// A joint that is sent less far than this cannot be fitted, rad.
 const LEAST_TRAVEL_RAD: f64 = 0.5 * DEGREE_RAD;
@@ -118,6 +118,13 @@ pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), Fit
     }
     if joints.is_empty() {
         let least_travel_rad = LEAST_TRAVEL_RAD;
+        let sparse_s = |log: &Observation, name: &str| {
+            sparse_s(log.sent.track(name)?, log.measured.track(name)?, least_travel_rad)
+        };
+        let all_s = logs.iter().flat_map(|log| names.iter().filter_map(move |name| sparse_s(log, name)));
+        if let Some(interval_s) = all_s.reduce(f64::min) {
+            return Err(FitError::TooSparse { interval_s, most_s: SPARSEST_S });
+        }
         return Err(FitError::NothingMoves { logs: logs.len(), shared: names.len(), least_travel_rad });
     }
     let fit = Fit { joints, left_out, margin_starts: ratios.len(), peak_margin: skill::margin(ratios) };

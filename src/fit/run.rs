@@ -49,7 +49,7 @@ const BLOCK_S: f64 = 3.0;
 pub(super) const FOLDS: usize = 4;
 
 /// Samples farther apart than this on average show no dynamics, s.
-const SPARSEST_S: f64 = 0.2;
+pub const SPARSEST_S: f64 = 0.2;
 
 /// Window of a measured speed, half, s.
 const SPEED_WINDOW_S: f64 = 0.1;
@@ -131,6 +131,17 @@ pub(super) fn sampled(track: &Track, from_s: f64, steps: usize) -> Vec<(f64, f64
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a log has few steps")]
 pub(super) fn steps_in(span_s: f64) -> usize {
     (span_s / STEP_S + 1e-6).clamp(0.0, 1e9) as usize
+}
+
+/// Mean distance of measured samples, s, where a joint is sent through `least_rad` or more and they are too far apart.
+pub(super) fn sparse_s(sent: &Track, measured: &Track, least_rad: f64) -> Option<f64> {
+    let pair = align(sent, measured)?;
+    let travel_rad: f64 = pair.planned.windows(2).map(|two| (two[1] - two[0]).abs()).sum();
+    let steps = pair.t_s.len().saturating_sub(pair.segments.len());
+    let within_s: f64 =
+        pair.segments.iter().map(|segment| pair.t_s[segment.end - 1] - pair.t_s[segment.start]).sum();
+    let interval_s = within_s / steps as f64;
+    (travel_rad >= least_rad && interval_s > SPARSEST_S).then_some(interval_s)
 }
 
 /// Runs of one joint in one log.

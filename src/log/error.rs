@@ -39,6 +39,11 @@ pub enum LogError {
     /// A topic that the caller asked for.
     #[error("no topic {topic:?}{}; the log has {present}", suggestion(nearest.as_deref()))]
     NoTopic { topic: String, nearest: Option<String>, present: String },
+    /// Columns of a table where a topic is asked for.
+    #[error(
+        "{columns:?} are columns of a table, not a topic: name them when it is imported, and give the log: {fix}"
+    )]
+    ColumnsNamed { columns: String, fix: String },
     /// A topic that the caller asked for holds no joint angles in that field.
     #[error(
         "topic {topic:?} ({type_name}) has no joint angles{}{}; it has {present}",

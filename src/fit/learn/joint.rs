@@ -42,6 +42,9 @@ const FAST_HZ: f64 = 1.5;
 /// corrected. Smaller errors than that of the lesser cap are.
 const FOLLOWS: f64 = 0.5;
 
+/// Share of the error of a slow joint that its model may leave.
+const EXPLAINED: f64 = 0.2;
+
 /// Corrections below this are none, rad.
 const NONE_RAD: f64 = 1e-3 * DEGREE_RAD;
 
@@ -65,7 +68,10 @@ impl<'a> Joint<'a> {
         let answer = |trial: &Trial| Answer::of(trial, track.name(), from_s, &planned);
         let answers: Vec<Answer> = runs.iter().filter_map(answer).collect();
         let mut workspace = Workspace::default();
-        let astray = answers.last().is_some_and(|run| astray(&planned, &run.error_rad(&planned)));
+        let astray = answers.last().is_some_and(|run| {
+            astray(&planned, &run.error_rad(&planned))
+                && !fit.is_some_and(|fit| slow(&planned, run, fit, &mut workspace))
+        });
         // What a joint does that follows another plan, or none, is no oscillation of its loop.
         let newest = fit.zip(answers.last()).filter(|_| !astray);
         let oscillation =
@@ -194,6 +200,19 @@ fn astray(planned: &[(f64, f64)], error_rad: &[f64]) -> bool {
     let mean_rad = planned.iter().map(|planned| planned.0).sum::<f64>() / planned.len().max(1) as f64;
     let motion_rad: Vec<f64> = planned.iter().map(|planned| planned.0 - mean_rad).collect();
     rms(error_rad) > CAP_RAD.max(FOLLOWS * rms(&motion_rad))
+}
+
+/// Whether a joint that is far from its plan is on the way there as its model says: late, but by a loop that is known.
+fn slow(planned: &[(f64, f64)], run: &Answer, fit: &JointFit, workspace: &mut Workspace) -> bool {
+    let left_rad = unexplained_rad(run, &fit.model, workspace);
+    let motion_rad = |of: &mut dyn Iterator<Item = f64>| {
+        let all: Vec<f64> = of.collect();
+        let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
+        rms(&all.iter().map(|x| x - mean).collect::<Vec<_>>())
+    };
+    let came = motion_rad(&mut run.measured_rad.iter().copied());
+    let asked = motion_rad(&mut planned.iter().map(|planned| planned.0));
+    fit.trusted() && rms(&left_rad) < EXPLAINED * rms(&run.error_rad(planned)) && came > FOLLOWS * asked
 }
 
 /// Whether the same was sent.

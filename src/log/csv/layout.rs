@@ -221,9 +221,10 @@ fn joints(
     };
     let message = format!(
         "no column looks like a {missing}, and a report needs one: {by_error}name its columns with {flag} \
-         JOINT=COLUMN,..., or, if it is in a file of its own with the same zero of time, import that too and \
-         give both logs: `hydrotrace report THIS.mcap OTHER.mcap`"
+         {}, or, if it is in a file of its own with the same zero of time, import that too and \
+         give both logs: `hydrotrace report THIS.mcap OTHER.mcap`",
+        all.iter().map(|draft| format!("{}=COLUMN", draft.joint)).collect::<Vec<_>>().join(",")
     );
-    remarks.add(Code::UnpairedJoint, all.len() as u64, message);
+    remarks.add(Code::OneSide, all.len() as u64, message);
     Ok(all.iter().map(pair).collect())
 }

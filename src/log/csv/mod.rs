@@ -42,7 +42,7 @@ pub use error::CsvError;
 pub use objects::JsonLines;
 pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
 pub use run::CsvRun;
-pub(in crate::log) use run::{ORIGIN, TIME_OF_ORIGIN};
+pub(in crate::log) use run::{ORIGIN, TIME_OF_ORIGIN, UNUSED_OF_ORIGIN};
 pub use stream::TableStream;
 pub use time::{UNDATED_NS, is_dated};
 pub use understood::{ColumnRead, TimeRead, Understood};

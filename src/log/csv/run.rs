@@ -17,6 +17,12 @@ pub(in crate::log) const ORIGIN: &str = "hydrotrace.import";
 /// Its entry on the time.
 pub(in crate::log) const TIME_OF_ORIGIN: &str = "time";
 
+/// Columns that are named of those that were not used.
+const NAMED: usize = 20;
+
+/// Its entry of columns that were not used.
+pub(in crate::log) const UNUSED_OF_ORIGIN: &str = "not used";
+
 /// A run as a CSV file gave it: SI units, one row an instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CsvRun {
@@ -73,6 +79,15 @@ impl CsvRun {
         let time = format!("{} ({})", understood.time.columns.join(", "), understood.time.form);
         let mut origin: BTreeMap<String, String> = columns.collect();
         origin.extend([("file".to_owned(), understood.file.clone()), (TIME_OF_ORIGIN.to_owned(), time)]);
+        let unused = &understood.unused;
+        if !unused.is_empty() {
+            let more = if unused.len() > NAMED {
+                format!(" and {} more", unused.len() - NAMED)
+            } else {
+                String::new()
+            };
+            origin.insert(UNUSED_OF_ORIGIN.to_owned(), unused[..unused.len().min(NAMED)].join(", ") + &more);
+        }
         log.metadata(ORIGIN, &origin)?;
         let kinds =
             joint_kind::entries(layout.joints.iter().map(String::as_str).zip(self.kinds.iter().copied()));

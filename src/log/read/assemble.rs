@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{
+    choice::remark_choice,
     content::{Content, Extracted},
     cylinders::Kinds,
     joints::{add_new, keep_joints},
@@ -24,7 +25,7 @@ use crate::{
         range::TimeRange,
         source::{AXES, Role, Stamps},
     },
-    remark::{Code, Remarks},
+    remark::Remarks,
     series::{Clock, JointKind, Series, Signal, continuous_clock},
     units::seconds_since,
 };
@@ -40,7 +41,7 @@ pub(super) fn assemble(
     let alone = (choice.planned.is_empty() || choice.measured.is_empty()).then(|| remarks.clone());
     let (base, base_why) = time_base(&extracted, choice, options.time_base, &mut remarks)?;
     overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?;
-    let plan_is_command = remark_choice(choice, options, &mut remarks);
+    let plan_is_command = remark_choice(choice, options, &extracted.metadata, &mut remarks);
     let sliding = &mut kinds.sliding;
     sliding.extend(options.description.as_deref().map(sliding_joints).unwrap_or_default());
     // Where they are the arm's, joints called x, y and z are no pose.
@@ -140,25 +141,6 @@ pub(super) fn assemble(
         metadata,
         description: options.description.clone(),
     })
-}
-
-/// Remarks on the choice; returns whether the plan is a command.
-fn remark_choice(choice: &Choice, options: &ReadOptions, remarks: &mut Remarks) -> bool {
-    for rival in &choice.rivals {
-        let message = format!("{rival} measures the same joints and was not used; choose with --measured");
-        remarks.add(Code::Ambiguous, 1, message);
-    }
-    let commanded: Vec<&str> =
-        if options.planned.is_empty() { choice.commanded().collect() } else { Vec::new() };
-    if let [first, ..] = commanded.as_slice() {
-        let message = format!(
-            "{first} is what was sent, and nothing in the log looks like the plan behind it: the error is against \
-             the command, not against what was wanted; `hydrotrace join LOG --plan next.mcap` puts the plan into \
-             the log, --planned TOPIC names it"
-        );
-        remarks.add(Code::PlanIsCommand, commanded.len() as u64, message);
-    }
-    !commanded.is_empty()
 }
 
 /// Where a signal is, on a clock that runs.

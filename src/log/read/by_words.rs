@@ -73,7 +73,8 @@ fn recorded(log: &ScannedLog<'_>, run: &CsvRun, beside: bool, options: &ReadOpti
     );
     let mut remarks = if beside { log.remarks.clone() } else { Remarks::default() };
     remarks.add(Code::Guessed, 1, message);
-    for remark in run.remarks.as_slice().iter().filter(|one| !beside || one.code != Code::UnpairedJoint) {
+    let moot = [Code::UnpairedJoint, Code::OneSide];
+    for remark in run.remarks.as_slice().iter().filter(|one| !beside || !moot.contains(&one.code)) {
         remarks.add(remark.code, remark.count, remark.message.clone());
     }
     let source = run.write(Vec::new()).ok()?.into();

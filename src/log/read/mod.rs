@@ -2,6 +2,7 @@
 
 mod assemble;
 mod by_words;
+mod choice;
 mod content;
 mod cylinders;
 mod description;

@@ -6,11 +6,52 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     log::{
-        csv::{ORIGIN, TIME_OF_ORIGIN},
+        csv::{ORIGIN, TIME_OF_ORIGIN, UNUSED_OF_ORIGIN},
         write::Topics,
     },
     series::Series,
+    text::{shell_argument, shell_word},
 };
+
+/// What a log that was imported tells of its table.
+pub(super) struct Imported<'a> {
+    /// Its name.
+    pub(super) file: &'a str,
+    /// What became of which column.
+    origin: &'a BTreeMap<String, String>,
+}
+
+impl<'a> Imported<'a> {
+    /// `None` of a log that was recorded.
+    pub(super) fn of(metadata: &'a BTreeMap<String, BTreeMap<String, String>>) -> Option<Self> {
+        let origin = metadata.get(ORIGIN)?;
+        Some(Self { file: origin.get("file")?, origin })
+    }
+
+    /// The joints and columns that it has positions of.
+    fn positions(&self) -> impl Iterator<Item = (&'a str, &'a str)> {
+        let joint = |key: &'a str| key.split_once(" position of ").map(|(_, joint)| joint);
+        self.origin.iter().filter_map(move |(key, column)| Some((joint(key)?, column.as_str())))
+    }
+
+    /// Its columns, in use or not.
+    pub(super) fn columns(&self) -> String {
+        let used: Vec<&str> = self.positions().map(|(_, column)| column).collect();
+        let unused = self.origin.get(UNUSED_OF_ORIGIN);
+        let unused = unused.map_or(String::new(), |unused| format!(", whose columns {unused} were not used"));
+        format!("{} of {}{unused}", used.join(", "), self.file)
+    }
+
+    /// The line that imports it with columns of this option, which are to be filled in if they are not given.
+    pub(super) fn import_line(&self, option: &str, columns: Option<&str>) -> String {
+        let columns = columns.map_or_else(
+            || self.positions().map(|(joint, _)| format!("{joint}=COLUMN")).collect::<Vec<_>>().join(","),
+            str::to_owned,
+        );
+        let (file, columns) = (shell_argument(self.file), shell_word(&columns));
+        format!("hydrotrace import {file} {option} {columns} -o run.mcap")
+    }
+}
 
 /// Columns of a table, or fields of messages, that an imported log was read from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

@@ -5,11 +5,10 @@ use std::collections::BTreeSet;
 use super::{
     content::{Content, Extracted, TopicCount},
     frames,
-    topics::{fields_of, lacks_positions, present},
+    topics::{fields_of, lacks_positions, missing, not_there},
 };
 use crate::{
     log::{
-        csv::ORIGIN,
         error::LogError,
         options::{ReadOptions, Selector, Sides},
         source::{Form, Role, is_field},
@@ -103,16 +102,6 @@ pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Cho
 
 const PLANNED: &str = "planned";
 pub(super) const MEASURED: &str = "measured";
-
-/// What a log lacks, and how to say where it is: of a table by its columns, which is for `import`.
-fn missing(extracted: &Extracted, missing: &'static str, flag: &str) -> LogError {
-    let fix = if extracted.metadata.contains_key(ORIGIN) {
-        format!("{flag} JOINT=COLUMN,... of `hydrotrace import`")
-    } else {
-        format!("{flag} TOPIC[:FIELD]")
-    };
-    LogError::Missing { missing, present: present(extracted), fix }
-}
 
 fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
     let planned = candidates(extracted, &options.planned, Role::Planned)?;
@@ -286,12 +275,8 @@ fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<V
 
 /// The candidate of a selector.
 pub(super) fn named(extracted: &Extracted, selector: &Selector, role: Role) -> Result<Candidate, LogError> {
-    let topic =
-        extracted.topics.iter().position(|t| t.topic == selector.topic).ok_or_else(|| LogError::NoTopic {
-            topic: selector.topic.clone(),
-            nearest: nearest(&selector.topic, extracted.topics.iter().map(|t| t.topic.as_str())),
-            present: present(extracted),
-        })?;
+    let topic = extracted.topics.iter().position(|t| t.topic == selector.topic);
+    let topic = topic.ok_or_else(|| not_there(extracted, selector, role))?;
     frames::check_selector(extracted, topic, selector)?;
     let sources = (0..extracted.sources.len()).filter(|&s| extracted.sources[s].topic == topic);
     let fitting = sources.flat_map(|s| of_source(extracted, s, role, selector.field.as_deref()));

@@ -4,10 +4,16 @@ use std::collections::BTreeSet;
 
 use super::{
     content::{Content, Extracted, Source},
+    origin::Imported,
     recording::TopicInfo,
 };
 use crate::{
-    log::source::{Form, Table},
+    log::{
+        error::LogError,
+        options::Selector,
+        source::{Form, Role, Table},
+    },
+    suggest::nearest,
     units::NS_PER_S,
 };
 
@@ -100,4 +106,33 @@ fn topic_info<'a>(
         }
     }
     info
+}
+
+/// What a log lacks, and how to say where it is: of a table by its columns, which is for `import`.
+pub(super) fn missing(extracted: &Extracted, missing: &'static str, flag: &str) -> LogError {
+    let (present, fix) = match Imported::of(&extracted.metadata) {
+        Some(table) if flag.contains(' ') => {
+            (table.columns(), format!("{flag} JOINT=COLUMN,... of `hydrotrace import`"))
+        }
+        Some(table) => (table.columns(), table.import_line(flag, None)),
+        None => (present(extracted), format!("{flag} TOPIC[:FIELD]")),
+    };
+    LogError::Missing { missing, present, fix }
+}
+
+/// Of a topic that is not in the log, or of columns of the table that the log is made of.
+pub(super) fn not_there(extracted: &Extracted, selector: &Selector, role: Role) -> LogError {
+    let topic = selector.topic.clone();
+    match Imported::of(&extracted.metadata).filter(|_| topic.contains('=')) {
+        Some(table) => {
+            let option = if matches!(role, Role::Measured) { "--measured" } else { "--planned" };
+            let fix = table.import_line(option, Some(&topic));
+            LogError::ColumnsNamed { fix, columns: topic }
+        }
+        None => LogError::NoTopic {
+            nearest: nearest(&topic, extracted.topics.iter().map(|t| t.topic.as_str())),
+            present: present(extracted),
+            topic,
+        },
+    }
 }

@@ -50,7 +50,7 @@ fn repeats(replanned: &Replanned) -> Option<&'static str> {
     let Decision::Keep { because, .. } = &replanned.past.decision else { return None };
     let failed = matches!(because, KeepReason::Failed { .. });
     let told = error > 0.0 && !matches!(because, KeepReason::ExpectedWorse { .. });
-    told.then(|| match (spread >= MOSTLY * MOSTLY * error, failed) {
+    told.then_some(match (spread >= MOSTLY * MOSTLY * error, failed) {
         (true, _) => " What is left comes differently from run to run.",
         (false, false) => " What is left comes again in every run, faster than corrections are.",
         (false, true) => {
@@ -121,7 +121,17 @@ pub(super) fn command(replanned: &Replanned) -> Option<Section> {
              knows. Ratios: peak speed and acceleration \
              of the command over those of the plan.",
         ))
-        .with_all(cut_off(&command.joints).map(Sentence::Advice)))
+        .with_all(cut_off(&command.joints).map(Sentence::Advice))
+        .with_all(stamped(replanned, &command.joints).map(|text| Sentence::note(text.to_owned()))))
+}
+
+/// What a first correction hangs on that no log of one clock tells.
+fn stamped(replanned: &Replanned, joints: &[JointCommand]) -> Option<&'static str> {
+    let first = |joint: &JointCommand| joint.applied() && matches!(joint.step, Step::First { .. });
+    (!replanned.delay_known && joints.iter().any(first)).then_some(
+        "A recorder that stamps the measurement late looks like a lag of that size, and the command would come as much too \
+         early: if it does, give --measured-delay-ms.",
+    )
 }
 
 fn row(replanned: &Replanned, joint: &JointCommand) -> Vec<String> {

@@ -49,8 +49,8 @@ pub enum JoinFailure {
     Log(#[from] LogError),
     /// The log does not hold what was sent, so the start of the plan is unknown.
     #[error(
-        "the log of the run does not say what was sent, so that the start of its plan is unknown; name the \
-         topic with --planned TOPIC[:FIELD], or the time of the plan's first sample with --at SECONDS"
+        "the log of the run does not say what was sent, so that the start of its plan is unknown; name what was \
+         sent, as below, or give the time of the plan's first sample with --at SECONDS"
     )]
     NothingSent(#[source] LogError),
     /// The plan is of other joints, does not move, or is longer than the run.
@@ -111,7 +111,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     let sent = (!run.planned.tracks.is_empty()).then_some(&run.planned);
     let topic = format!("{}:{}", run.source.planned_topic, run.source.planned_field);
     // A missing plan is the reason for the join, no doubt.
-    let mut remarks = run.remarks.clone().without(Code::PlanIsCommand);
+    let mut remarks = run.remarks.clone().without(Code::PlanIsCommand).without(Code::OneSide);
     let [from_s, to_s] = plan.span_s();
     if to_s - from_s > LONGEST_S {
         return Err(JoinFailure::TooLong { plan: inputs.plan.clone(), duration_s: to_s - from_s });

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use super::Unclear;
 use crate::{
     fit::FitError,
     plan::PlanError,
@@ -113,14 +114,15 @@ pub enum ReplanFailure {
     },
     /// No joint predicted well enough for a command.
     #[error(
-        "no joint is predicted well enough for a command: the best held-out R2 is {best:.2}, {least} is needed; \
-         was something else sent than the plan (--command), or did valves or controller change between the logs?"
+        "no joint is predicted well enough for a command: the best held-out R2 is {best:.2}, {least} is needed; {why}"
     )]
     Unpredictable {
         /// The best found.
         best: f64,
         /// The least for commands.
         least: f64,
+        /// What may be the reason.
+        why: Unclear,
     },
     /// A run that is none of its plan.
     #[error("{}: {why}. No command is made from such a run", path.display())]

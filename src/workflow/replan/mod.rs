@@ -16,6 +16,7 @@ mod predicted;
 mod retime;
 mod samples;
 mod shape;
+mod unclear;
 mod warp;
 
 use std::{ops::ControlFlow, path::PathBuf};
@@ -29,6 +30,7 @@ pub use history::{Decision, KeepReason, PastRun};
 pub use limits::{HeldTo, Origin};
 pub use outcome::{Before, Replanned, Search};
 pub use predicted::{Predicted, PredictedTransition, Response, predicted, promised};
+pub use unclear::Unclear;
 
 use super::fit::{self, LimitsFile};
 use crate::{
@@ -145,7 +147,8 @@ pub fn run(
     if inputs.precompensate && !known {
         let best = fit.joints.iter().map(|joint| joint.held_out_r2).fold(f64::NEG_INFINITY, f64::max);
         if inputs.keep_plan || learns || last.request.is_none() {
-            return Err(ReplanFailure::Unpredictable { best, least: crate::fit::LEAST_SKILL });
+            let why = Unclear::of(inputs.logs.len(), newest, &inputs.rules);
+            return Err(ReplanFailure::Unpredictable { best, least: crate::fit::LEAST_SKILL, why });
         }
         remarks.add(
             Code::PoorFit,
@@ -183,7 +186,8 @@ pub fn run(
     }
     let past =
         outcome::Past { gain: inputs.learning.gain, trust: history.trust(), runs: history.runs, decision };
-    outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)
+    let delay_known = newest.source.measured_delay_s.is_some();
+    outcome::replanned((fit, fitted_to), (last, delay_known), before, past, search, chosen, remarks)
 }
 
 /// The machine: fitted, or from a file; with the names of the logs behind it.

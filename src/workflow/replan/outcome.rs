@@ -127,6 +127,8 @@ pub struct Replanned {
     pub starts_s: Option<f64>,
     /// Points a second of the trajectory to send.
     pub points_hz: f64,
+    /// Whether a delay of the measurement was given, and taken off.
+    pub delay_known: bool,
     /// The task.
     pub request: Option<PlanRequest>,
     /// Doubts.
@@ -161,7 +163,7 @@ impl Past {
 
 pub(super) fn replanned(
     (fit, fitted_to): (Fit, Vec<String>),
-    last: Last,
+    (last, delay_known): (Last, bool),
     before: Before,
     past: Past,
     search: Option<Search>,
@@ -225,6 +227,7 @@ pub(super) fn replanned(
         plan,
         starts_s,
         points_hz,
+        delay_known,
         request: last.request,
         trajectory: last.trajectory,
         remarks,

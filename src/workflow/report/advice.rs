@@ -2,6 +2,7 @@
 
 use super::outcome::Report;
 use crate::{
+    fit::SPARSEST_S,
     replay::{JointReplay, Transition, Verdict},
     series::JointKind,
 };
@@ -26,7 +27,7 @@ pub enum Advice {
         joint: String,
         /// Its lag, s.
         lag_s: f64,
-        /// Whether a command can be made from it: of joints that turn, in a run of the plan.
+        /// Whether a command can be made from it: of joints that turn, sampled often enough, in a run of the plan.
         fits: bool,
     },
     /// The error lives in the transitions, most in those of a joint.
@@ -35,7 +36,7 @@ pub enum Advice {
         joint: String,
         /// Median delay of timed starts over all joints, s.
         delay_s: Option<f64>,
-        /// Whether a command can be made from it: of joints that turn.
+        /// The same.
         fits: bool,
         /// Whether a gentler plan can be made from it.
         gentler: bool,
@@ -85,7 +86,8 @@ pub fn advice(report: &Report) -> Vec<Advice> {
     };
     let verdict = replay.whole_run.concentration.as_ref().map(|c| c.verdict);
     let sound = report.remarks.as_slice().iter().all(|remark| !remark.code.spoils_runs());
-    let fits = sound && replay.joints.iter().any(|joint| joint.kind == JointKind::Turns);
+    let tells = |joint: &JointReplay| joint.kind == JointKind::Turns && joint.sample_interval_s <= SPARSEST_S;
+    let fits = sound && replay.joints.iter().any(tells);
     if let Some((joint, lag_s)) = mostly_lag(report) {
         advice.push(Advice::ShiftCommand { joint, lag_s, fits });
     } else if verdict == Some(Verdict::Elsewhere) {

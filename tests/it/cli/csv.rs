@@ -236,7 +236,7 @@ fn what_is_guessed_is_a_remark() {
         (trace(header, 1.0, ";", 1.0), &[][..], "guessed", "--degrees"),
         (trace("t;J1 soll [rad];J1 ist [rad]", 1e3, ";", 1.0), &[], "guessed", "--time-unit"),
         (trace("t [s];J1 soll [rad];J1 ist", 1.0, ";", 1.0), &[], "guessed", "taken as rad"),
-        (trace("t [s];J1 ist [rad];druck", 1.0, ";", 1.0), &[], "unpaired-joint", "--planned"),
+        (trace("t [s];J1 ist [rad];druck", 1.0, ";", 1.0), &[], "one-side", "--planned J1=COLUMN"),
         (
             trace("t [s];J1 soll [rad];J1 ist [rad]", 1.0, ";", 1.0) + "11;0\n",
             &[],

@@ -53,6 +53,68 @@ fn what_was_sent_stays_what_was_sent_and_the_missing_plan_is_a_remark() {
 }
 
 #[test]
+fn what_a_table_lacks_is_told_in_its_columns_and_by_the_line_that_names_them() {
+    let folder = folder("t,boom_act_deg,p1,arm_act_deg,p2");
+    let folder = folder.path();
+    hydrotrace(folder, "import a.csv -o a.mcap");
+    let asks = "boom_act_deg of a.csv, whose columns p1, p2 were not used; name them with \
+                hydrotrace import a.csv --planned arm=COLUMN,boom=COLUMN -o run.mcap";
+    for line in ["report a.csv", "report a.mcap", "fit a.csv", "replan a.mcap -o next.mcap"] {
+        let (code, _, text) = said(&hydrotrace(folder, line));
+        assert!(code == 1 && text.contains(asks) && !text.contains("joint_states"), "{line}: {text}");
+    }
+    let columns = "--planned arm=p2,boom=p1";
+    let (code, _, text) = said(&hydrotrace(folder, &format!("report a.csv {columns}")));
+    let paste = format!("import a.csv {columns} -o run.mcap");
+    assert!(code == 1 && text.contains(&paste), "{text}");
+    hydrotrace(folder, &paste);
+    assert!(said(&hydrotrace(folder, "report run.mcap")).1.contains("p1, p2 of a.csv"));
+}
+
+#[test]
+fn a_table_of_a_command_alone_is_doubted_once_and_in_its_own_words() {
+    let folder = folder("t,J1_command_deg,J1_measured_deg,J2_command_deg,J2_measured_deg");
+    hydrotrace(folder.path(), "import a.csv -o a.mcap");
+    for log in ["a.csv", "a.mcap"] {
+        let (_, text, _) = said(&hydrotrace(folder.path(), &format!("report {log}")));
+        assert_eq!(text.matches("plan-is-command").count(), 1, "{log}: {text}");
+        let (_, doubts) = text.split_once("REMARKS").unwrap();
+        assert!(doubts.contains("JOINT=COLUMN") && !doubts.contains("joint_states"), "{log}: {doubts}");
+    }
+}
+
+#[test]
+fn a_table_at_two_hertz_is_told_to_be_recorded_faster_and_no_line_leads_to_a_fit() {
+    let folder = folder("t,J1_ref_deg,J1_act_deg,J2_ref_deg,J2_act_deg");
+    let folder = folder.path();
+    let text = fs::read_to_string(folder.join("a.csv")).unwrap();
+    let mut lines = text.lines();
+    let head = lines.next().unwrap().replacen('t', "time_s", 1);
+    let slow: Vec<&str> = lines.step_by(25).collect();
+    fs::write(folder.join("a.csv"), format!("{head}\n{}\n", slow.join("\n"))).unwrap();
+    let (code, _, text) = said(&hydrotrace(folder, "fit a.csv"));
+    let asks = "samples are 0.50 s apart";
+    assert!(code == 1 && text.contains(asks) && text.contains("record at 5 Hz or more"), "{text}");
+    assert!(!said(&hydrotrace(folder, "a.csv")).1.contains("hydrotrace fit"));
+}
+
+#[test]
+fn joining_a_plan_to_a_table_without_one_leaves_no_doubt_of_that() {
+    let folder = folder("t,J1_ref_deg,J1_act_deg,J2_ref_deg,J2_act_deg");
+    let folder = folder.path();
+    hydrotrace(folder, "import a.csv -o plan.mcap");
+    let text = fs::read_to_string(folder.join("a.csv")).unwrap();
+    let measured = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        [cells[0], cells[2], cells[4]].join(",")
+    };
+    let lines: Vec<String> = text.lines().map(measured).collect();
+    fs::write(folder.join("b.csv"), lines.join("\n")).unwrap();
+    let (code, text, error) = said(&hydrotrace(folder, "join b.csv --plan plan.mcap --at 0 -o after.mcap"));
+    assert_eq!(code, 0, "{text}{error}");
+}
+
+#[test]
 fn beside_a_plan_the_command_is_no_reason_for_a_remark() {
     let folder = folder("t,J1_ref,J1_act,J1_cmd,J2_act");
     let (code, text, _) =

@@ -1,7 +1,7 @@
 //! Fits to responses of the model itself: what is lost is lost by the estimator.
 
 use hydrotrace::{
-    fit::{Excitation, Fit, FitError, JointRoom, Learning, Model, Step, excite, learn, predict},
+    fit::{Excitation, Fit, FitError, JointRoom, Learning, Model, Step, Trial, excite, learn, predict},
     rng::{Stream, stream},
     series::{Series, Track, split_at_gaps},
     units::DEGREE_RAD,
@@ -107,8 +107,8 @@ fn edges_that_open_gradually_are_found_where_they_are_and_nowhere_else() {
     }
 }
 
-#[test]
-fn a_loop_without_an_integral_shows_its_dead_band_over_long_rests_too() {
+/// Four strokes of 6 s with long rests between them.
+fn strokes() -> Series {
     let stroke = |t_s: f64| {
         let (over_s, ramp) = (6.0, 0.15);
         let u = (t_s / over_s).clamp(0.0, 1.0);
@@ -120,7 +120,28 @@ fn a_loop_without_an_integral_shows_its_dead_band_over_long_rests_too() {
         (0..4).map(move |k| (stroke(t_s - 2.0 - 20.0 * f64::from(k)), if k % 2 == 0 { 0.43 } else { -0.43 }))
     };
     let position = t_s.iter().map(|t_s| of(*t_s).map(|(share, by)| share * by).sum()).collect();
-    let plan = Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] };
+    Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] }
+}
+
+#[test]
+fn a_slow_loop_is_corrected_and_a_joint_that_is_stuck_is_not() {
+    let plan = strokes();
+    let slow = Model { feed_forward: 0.0, position_gain_1_s: 0.25, integral_gain_1_s2: 0.0, ..MODEL };
+    let still = plan.tracks[0].t_s().iter().map(|t_s| 1e-4 * (7919.0 * t_s).sin()).collect();
+    let still = Track::new("J", plan.tracks[0].t_s(), still, &[]).unwrap();
+    let stuck = Series { tracks: vec![still] };
+    for (measured, astray) in [(measured_of(&slow, &plan, 1, |_| false), false), (stuck, true)] {
+        let fit = fitted(&[(&plan, &measured)]);
+        let runs = [Trial { sent: &plan, measured: &measured }];
+        let made = learn(&fit, &plan, &runs, Learning::default(), |_| None).unwrap();
+        assert_eq!(made.joints[0].step == Step::Astray, astray, "{:?}", made.joints[0].rms_error_rad);
+        assert!(made.joints[0].rms_error_rad[0] > 0.09, "{:?}", made.joints[0].rms_error_rad);
+    }
+}
+
+#[test]
+fn a_loop_without_an_integral_shows_its_dead_band_over_long_rests_too() {
+    let plan = strokes();
     let model = Model {
         dead_time_s: 0.05,
         time_constant_s: 0.12,

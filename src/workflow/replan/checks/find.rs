@@ -1,8 +1,10 @@
 //! The checks one by one.
 
+use super::super::MOVES_RAD;
 use super::{Check, Finding, JointTrust, Level, Reason, Replanned};
 use crate::{
     fit::{Character, LEAST_SKILL, Step},
+    math::range,
     plan::{BETWEEN, Limit, Margin},
     series::{Series, Track},
     units::DEGREE_RAD,
@@ -120,10 +122,13 @@ fn trust(replanned: &Replanned) -> Check {
         let character = found.map(|found| found.character);
         let known = fit.is_some_and(|fit| fit.model_holds && fit.held_out_r2 >= LEAST_SKILL);
         let astray = made.is_some_and(|made| made.step == Step::Astray);
+        let [lowest, highest] = range(track.position().iter().copied());
+        // A joint that is held, and does not oscillate, need not be known.
+        let held = fit.is_none() && highest - lowest < MOVES_RAD;
         let level = match character {
             Some(Character::Hunts) => Level::Stop,
             Some(Character::Rings) => Level::Caution,
-            _ => caution(!known || astray),
+            _ => caution(!(known || held) || astray),
         };
         JointTrust {
             joint: track.name().to_owned(),

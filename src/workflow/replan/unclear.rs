@@ -1,0 +1,64 @@
+//! Why no joint of a run can be predicted, as far as the run tells.
+
+use crate::{
+    log::Recording,
+    replay::{Rules, replay},
+    series::{JointKind, align},
+    units::Degrees,
+};
+
+/// Share of a joint's RMS error from which on the noise of its sensor hides how it answers.
+const HIDES: f64 = 0.5;
+
+/// What may be the reason that no joint is predicted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unclear {
+    /// Noise of the measurement, of the joint that has least of it, beside its RMS error, rad.
+    Noise {
+        /// Standard deviation, rad.
+        noise_rad: f64,
+        /// RMS error, rad.
+        error_rad: f64,
+    },
+    /// The logs may be of different machines.
+    Logs,
+    /// What was sent may be missing in the log.
+    Sent,
+}
+
+impl Unclear {
+    /// Of the newest of so many logs.
+    pub(super) fn of(logs: usize, newest: &Recording, rules: &Rules) -> Self {
+        let turns = newest.measured.tracks.iter().filter(|track| track.kind() == JointKind::Turns);
+        let pairs: Vec<_> =
+            turns.filter_map(|track| align(newest.planned.track(track.name())?, track)).collect();
+        let joints = replay(&pairs, rules).joints;
+        let both = joints.iter().map(|joint| (joint.noise.sigma, joint.tracking_error.rms));
+        let least = both.min_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
+        match least {
+            Some((noise_rad, error_rad)) if noise_rad >= HIDES * error_rad => {
+                Self::Noise { noise_rad, error_rad }
+            }
+            _ if logs > 1 => Self::Logs,
+            _ => Self::Sent,
+        }
+    }
+}
+
+impl std::fmt::Display for Unclear {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match *self {
+            Self::Noise { noise_rad, error_rad } => write!(
+                f,
+                "the measurement has {} of noise, of an RMS error of {}: mend or filter the sensor, or log a run whose error is \
+                 larger than that",
+                Degrees(noise_rad),
+                Degrees(error_rad)
+            ),
+            Self::Logs => {
+                f.write_str("was something else sent than the plan (--command), or did valves or controller change between the logs?")
+            }
+            Self::Sent => f.write_str("was something else sent than the plan (--command), or does the machine answer differently each time?"),
+        }
+    }
+}
