@@ -156,7 +156,8 @@ fn a_log_that_is_still_being_written_is_reported_when_it_is_whole() {
     assert!(next(&mut lines).contains("M01 bag: "));
     // What changes is reported again, in the place of what was.
     put(&small_log("M00", 1, 3, [0.2, 0.2]), &log);
-    assert!(next(&mut lines).starts_with("2026-03-02"));
+    let line = next(&mut lines);
+    assert!(line.starts_with("2026-03-02"), "{line}");
     put(b"no log", &log);
     assert!(next(&mut lines).starts_with("run.mcap: FAILED: "));
     assert_eq!(interrupted(watch, &mut lines).0, 3);
