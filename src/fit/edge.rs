@@ -20,14 +20,9 @@ const ROUNDS: usize = 20;
 pub(super) fn edge(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Option<Estimate> {
     let mut edged = problem.clone();
     edged.shown.edge = true;
-    let mut residuals = Vec::new();
-    let mut cost = |problem: &Problem, x: &[f64], workspace: &mut Workspace| {
-        problem.residuals(x, workspace, &mut residuals);
-        problem.cost(x, &residuals, found.scale_rad)
-    };
-    let before = cost(problem, &found.x, workspace);
+    let before = problem.cost_at(&found.x, found.scale_rad, workspace);
     let with = edged.descend(found.x.clone(), ROUNDS, workspace);
-    let gained = before - cost(&edged, &with.x, workspace);
+    let gained = before - edged.cost_at(&with.x, found.scale_rad, workspace);
     let edge_rad_s = problem.priors.of(EDGE).value(with.x[EDGE]);
     (gained > GAIN && edge_rad_s > SHORTEST_RAD_S).then_some(with)
 }

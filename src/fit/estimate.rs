@@ -190,6 +190,13 @@ impl Problem<'_> {
         if total.is_nan() { f64::INFINITY } else { total }
     }
 
+    /// The same of the residuals at `x`.
+    pub(super) fn cost_at(&self, x: &[f64], scale_rad: f64, workspace: &mut Workspace) -> f64 {
+        let mut residuals = Vec::new();
+        self.residuals(x, workspace, &mut residuals);
+        self.cost(x, &residuals, scale_rad)
+    }
+
     /// Indices of the shared parameters that move.
     pub(super) fn free(&self) -> Vec<usize> {
         (0..SHARED).filter(|&i| self.shown.has(i)).collect()
@@ -330,14 +337,12 @@ impl Problem<'_> {
             x
         };
         let mut best: Option<(f64, Estimate)> = None;
-        let mut residuals = Vec::new();
         let mut common_rad = None;
         for &dead_time_s in dead_times_s {
             let found = self.descend(from(dead_time_s), 8, workspace);
             // Costs compare at one scale only.
             let scale_rad = *common_rad.get_or_insert(found.scale_rad);
-            self.residuals(&found.x, workspace, &mut residuals);
-            let cost = self.cost(&found.x, &residuals, scale_rad);
+            let cost = self.cost_at(&found.x, scale_rad, workspace);
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 best = Some((cost, found));
             }

@@ -9,20 +9,15 @@ use super::{
 /// Rounds of the descent without an integral.
 const ROUNDS: usize = 20;
 
-/// The estimate without an integral, if the data are explained no worse by one.
+/// The estimate without an integral, if it costs less: then the data do not show one.
 pub(super) fn without(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Option<Estimate> {
     let mut other = problem.clone();
     other.shown.integral = false;
-    let mut residuals = Vec::new();
-    let mut cost = |problem: &Problem, x: &[f64], workspace: &mut Workspace| {
-        problem.residuals(x, workspace, &mut residuals);
-        problem.cost(x, &residuals, found.scale_rad)
-    };
-    let before = cost(problem, &found.x, workspace);
+    let before = problem.cost_at(&found.x, found.scale_rad, workspace);
     let mut x = found.x.clone();
+    // The dead band starts anew: it has held the integral off.
     x[INTEGRAL_GAIN] = 0.0;
     x[DEAD_BAND] = 0.0;
     let without = other.descend(x, ROUNDS, workspace);
-    let after = cost(&other, &without.x, workspace);
-    (after < before).then_some(without)
+    (other.cost_at(&without.x, found.scale_rad, workspace) < before).then_some(without)
 }

@@ -96,12 +96,10 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     let left = Oscillation::of(&problem.longest_left_rad(&found.x, &mut workspace));
     let least_r2 = if knowledge.sharp { LEAST_SHARP_SKILL } else { 0.0 };
     knowledge.holds = left.character == Character::Calm && skill.held_out_r2 >= least_r2;
-    let none = skill.is_none();
-    let skill = if none { skill.of_none(&held_out) } else { skill };
-    let mut joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
-    if none {
-        joint = joint.without_model();
-    }
+    let nothing = skill.explains_nothing();
+    let skill = if nothing { skill.without_model(&held_out) } else { skill };
+    let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
+    let joint = if nothing { joint.without_model() } else { joint };
     let ratios = skill.starts.iter().flatten().filter_map(HeldOutStart::ratio).collect();
     let runs = held_out.iter().zip(&skill.errors).zip(&skill.starts);
     let stretches = runs.map(|((run, errors), starts)| HeldOut::of(name, run, errors, starts)).collect();

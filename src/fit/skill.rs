@@ -90,13 +90,13 @@ impl Skill {
     }
 
     /// The skill of [`Model::FOLLOWS`](super::Model), where no model predicts anything: all error is unexplained.
-    pub(super) fn of_none(self, runs: &[Run]) -> Self {
+    pub(super) fn without_model(self, runs: &[Run]) -> Self {
         let measured = |of_run: Vec<(f64, f64)>| of_run.into_iter().map(|error| (error.0, 0.0)).collect();
         Self::of(runs, self.errors.into_iter().map(measured).collect())
     }
 
     /// Whether the model is farther off than the mean of the error by all that can be told.
-    pub(super) fn is_none(&self) -> bool {
+    pub(super) fn explains_nothing(&self) -> bool {
         self.held_out_r2 <= WORST_R2
     }
 }

@@ -68,10 +68,7 @@ impl<'a> Joint<'a> {
         let answer = |trial: &Trial| Answer::of(trial, track.name(), from_s, &planned);
         let answers: Vec<Answer> = runs.iter().filter_map(answer).collect();
         let mut workspace = Workspace::default();
-        let astray = answers.last().is_some_and(|run| {
-            astray(&planned, &run.error_rad(&planned))
-                && !fit.is_some_and(|fit| slow(&planned, run, fit, &mut workspace))
-        });
+        let astray = answers.last().is_some_and(|run| is_astray(&planned, run, fit, &mut workspace));
         // What a joint does that follows another plan, or none, is no oscillation of its loop.
         let newest = fit.zip(answers.last()).filter(|_| !astray);
         let oscillation =
@@ -195,24 +192,31 @@ impl<'a> Joint<'a> {
     }
 }
 
-/// Whether a run has little to do with the plan: wrong sign, zero, unit or name, or a joint that is stuck.
-fn astray(planned: &[(f64, f64)], error_rad: &[f64]) -> bool {
-    let mean_rad = planned.iter().map(|planned| planned.0).sum::<f64>() / planned.len().max(1) as f64;
-    let motion_rad: Vec<f64> = planned.iter().map(|planned| planned.0 - mean_rad).collect();
-    rms(error_rad) > CAP_RAD.max(FOLLOWS * rms(&motion_rad))
+/// Whether a run has little to do with the plan: wrong sign, zero, unit or name, or a joint that is stuck. One that moves,
+/// and is as far off as its model says, is no such joint but a slow one.
+fn is_astray(
+    planned: &[(f64, f64)],
+    run: &Answer,
+    fit: Option<&JointFit>,
+    workspace: &mut Workspace,
+) -> bool {
+    let error_rad = rms(&run.error_rad(planned));
+    let asked_rad = motion(planned.iter().map(|planned| planned.0).collect());
+    let slow = |fit: &JointFit| {
+        let left_rad = rms(&unexplained_rad(run, &fit.model, workspace));
+        let moves = motion(run.measured_rad.clone()) > FOLLOWS * asked_rad;
+        fit.trusted() && moves && left_rad < EXPLAINED * error_rad
+    };
+    error_rad > CAP_RAD.max(FOLLOWS * asked_rad) && !fit.is_some_and(slow)
 }
 
-/// Whether a joint that is far from its plan is on the way there as its model says: late, but by a loop that is known.
-fn slow(planned: &[(f64, f64)], run: &Answer, fit: &JointFit, workspace: &mut Workspace) -> bool {
-    let left_rad = unexplained_rad(run, &fit.model, workspace);
-    let motion_rad = |of: &mut dyn Iterator<Item = f64>| {
-        let all: Vec<f64> = of.collect();
-        let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
-        rms(&all.iter().map(|x| x - mean).collect::<Vec<_>>())
-    };
-    let came = motion_rad(&mut run.measured_rad.iter().copied());
-    let asked = motion_rad(&mut planned.iter().map(|planned| planned.0));
-    fit.trusted() && rms(&left_rad) < EXPLAINED * rms(&run.error_rad(planned)) && came > FOLLOWS * asked
+/// Root mean square distance from the mean, rad.
+fn motion(mut angle_rad: Vec<f64>) -> f64 {
+    let mean_rad = angle_rad.iter().sum::<f64>() / angle_rad.len().max(1) as f64;
+    for angle in &mut angle_rad {
+        *angle -= mean_rad;
+    }
+    rms(&angle_rad)
 }
 
 /// Whether the same was sent.

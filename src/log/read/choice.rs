@@ -27,7 +27,7 @@ pub(super) fn remark_choice(
         let (sent, fix) = match Imported::of(metadata) {
             Some(table) => (
                 format!("the command in {}", table.file),
-                "importing its columns with --planned JOINT=COLUMN,... too",
+                "or import its columns with --planned JOINT=COLUMN,...",
             ),
             None => ((*first).to_owned(), "--planned TOPIC names it"),
         };

@@ -160,28 +160,28 @@ impl History {
         self.runs.iter().enumerate().filter_map(|(k, run)| Some((k, run.mean_peak_rad?))).collect()
     }
 
-    /// Whether the last correction was worth it.
+    /// Corrections that were not worth it.
+    fn failures(&self, peaks_rad: &[(usize, f64)]) -> usize {
+        let failed = |k: &usize| {
+            let (run, peak_rad) = peaks_rad[*k];
+            let worth = best(&peaks_rad[..*k]).is_none_or(|best| peak_rad < WORTH * best.1);
+            self.runs[run].corrected && !worth
+        };
+        (0..peaks_rad.len()).filter(failed).count()
+    }
+
+    /// Whether the last correction was worth it; of a plan that was sent as it is again, whether those before it were.
     pub(super) fn decision(&self) -> Decision {
         let peaks = self.peaks_rad();
         let Some(((last, last_rad), before)) = peaks.split_last() else { return Decision::Send };
         let Some(best_before) = best(before).filter(|_| before.len() > 1) else { return Decision::Send };
-        let failed = |k: &usize| {
-            let before = best(&peaks[..*k]).is_some_and(|best| peaks[*k].1 >= WORTH * best.1);
-            before && self.runs[peaks[*k].0].corrected
-        };
         let because = if self.runs[*last].corrected {
-            KeepReason::GainedLittle
+            (*last_rad >= WORTH * best_before.1).then_some(KeepReason::GainedLittle)
         } else {
-            // What was kept is the plan as it is: it tells nothing of corrections.
-            KeepReason::Failed { corrections: (1..before.len()).filter(failed).count() }
+            let corrections = self.failures(before);
+            (corrections >= FAILURES).then_some(KeepReason::Failed { corrections })
         };
-        let enough = match because {
-            KeepReason::Failed { corrections } => corrections >= FAILURES,
-            _ => *last_rad >= WORTH * best_before.1,
-        };
-        if !enough {
-            return Decision::Send;
-        }
+        let Some(because) = because else { return Decision::Send };
         let (run, best_rad) = if *last_rad < best_before.1 { (*last, *last_rad) } else { best_before };
         Decision::Keep { run, because, best_rad, last_rad: *last_rad }
     }
