@@ -1,6 +1,6 @@
 //! Contents of the blocks of a recording, before plan and measurement are chosen.
 
-use std::{borrow::Cow, collections::BTreeMap, io::Read};
+use std::{borrow::Cow, collections::BTreeMap, io::Read, path::PathBuf};
 
 use super::recording::{Attachment, FileInfo};
 use crate::{
@@ -146,6 +146,8 @@ pub(super) struct Source {
 /// Content of all files.
 #[derive(Debug, Default)]
 pub(super) struct Extracted {
+    /// Of the first file.
+    pub(super) path: PathBuf,
     pub(super) files: Vec<FileInfo>,
     pub(super) topics: Vec<TopicCount>,
     pub(super) sources: Vec<Source>,

@@ -1,6 +1,6 @@
 //! What an imported log was read from.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, path::Path};
 
 use serde::{Deserialize, Serialize};
 
@@ -43,12 +43,15 @@ impl<'a> Imported<'a> {
     }
 
     /// The line that imports it with columns of this option, which are to be filled in if they are not given.
-    pub(super) fn import_line(&self, option: &str, columns: Option<&str>) -> String {
+    /// `path` is where the log was read from: the table itself, if it has its name.
+    pub(super) fn import_line(&self, path: &Path, option: &str, columns: Option<&str>) -> String {
+        let own = path.file_name().is_some_and(|name| name == self.file);
+        let file = if own { path } else { Path::new(self.file) };
         let columns = columns.map_or_else(
             || self.positions().map(|(joint, _)| format!("{joint}=COLUMN")).collect::<Vec<_>>().join(","),
             str::to_owned,
         );
-        let (file, columns) = (shell_argument(self.file), shell_word(&columns));
+        let (file, columns) = (shell_argument(file), shell_word(&columns));
         format!("hydrotrace import {file} {option} {columns} -o run.mcap")
     }
 }

@@ -114,7 +114,7 @@ pub(super) fn missing(extracted: &Extracted, missing: &'static str, flag: &str) 
         Some(table) if flag.contains(' ') => {
             (table.columns(), format!("{flag} JOINT=COLUMN,... of `hydrotrace import`"))
         }
-        Some(table) => (table.columns(), table.import_line(flag, None)),
+        Some(table) => (table.columns(), table.import_line(&extracted.path, flag, None)),
         None => (present(extracted), format!("{flag} TOPIC[:FIELD]")),
     };
     LogError::Missing { missing, present, fix }
@@ -126,7 +126,7 @@ pub(super) fn not_there(extracted: &Extracted, selector: &Selector, role: Role) 
     match Imported::of(&extracted.metadata).filter(|_| topic.contains('=')) {
         Some(table) => {
             let option = if matches!(role, Role::Measured) { "--measured" } else { "--planned" };
-            let fix = table.import_line(option, Some(&topic));
+            let fix = table.import_line(&extracted.path, option, Some(&topic));
             LogError::ColumnsNamed { fix, columns: topic }
         }
         None => LogError::NoTopic {

@@ -176,7 +176,9 @@ pub fn run(
     let made = threads::mapped(&options, || (), |(), (new, plan)| maker.candidate(new.clone(), plan.clone()));
     let made: Vec<Candidate> = made.into_iter().collect::<Result<_, _>>()?;
     let mut chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
-    if let Some(keep) = chosen.kept_instead(&history) {
+    // What is kept is no other correction, whatever is expected of it.
+    let sends = maker.decision == Decision::Send;
+    if let Some(keep) = chosen.kept_instead(&history).filter(|_| sends) {
         maker.decision = keep;
         chosen = maker.candidate(None, last.plan.clone())?;
     }

@@ -69,6 +69,11 @@ fn what_a_table_lacks_is_told_in_its_columns_and_by_the_line_that_names_them() {
     assert!(code == 1 && text.contains(&paste), "{text}");
     hydrotrace(folder, &paste);
     assert!(said(&hydrotrace(folder, "report run.mcap")).1.contains("p1, p2 of a.csv"));
+    // From another folder, too.
+    fs::create_dir(folder.join("sub")).unwrap();
+    fs::rename(folder.join("a.csv"), folder.join("sub/a.csv")).unwrap();
+    let (_, _, text) = said(&hydrotrace(folder, &format!("report sub/a.csv {columns}")));
+    assert!(text.contains(&format!("hydrotrace import sub/a.csv {columns} -o run.mcap")), "{text}");
 }
 
 #[test]
