@@ -13,6 +13,7 @@ mod pose;
 mod signal;
 mod track;
 mod trajectory;
+mod whole;
 
 pub use align::{Pair, align};
 pub use clock::{Clock, continuous_clock};
@@ -24,3 +25,5 @@ pub(crate) use signal::{Instants, all_finite};
 pub use signal::{JointKind, Quantity, Signal, SignalError};
 pub use track::{Series, Track, split_at_gaps, velocity_agrees};
 pub use trajectory::{PlannedPoint, PlannedTrajectory, plan_tracks};
+pub use whole::Broken;
+pub(crate) use whole::{bridged, moving_s};

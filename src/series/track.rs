@@ -174,9 +174,13 @@ impl Track {
     /// The state at any time: as [`Track::at`], and elsewhere at rest at the last sample before (at
     /// the first one before the track starts).
     pub fn held_at(&self, t_s: f64) -> State {
-        self.at(t_s).unwrap_or_else(|| {
-            let before = self.t_s().partition_point(|&t| t <= t_s).saturating_sub(1);
-            let position = self.position().get(before).copied().unwrap_or_default();
+        self.held_after(&mut 0, t_s)
+    }
+
+    /// As [`Track::held_at`], for a caller that walks forward in time: `cursor` makes the next look-up cheap.
+    pub(crate) fn held_after(&self, cursor: &mut usize, t_s: f64) -> State {
+        self.at_after(cursor, t_s).unwrap_or_else(|| {
+            let position = self.position().get(*cursor).copied().unwrap_or_default();
             State { position, velocity: 0.0, acceleration: 0.0 }
         })
     }

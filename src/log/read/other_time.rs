@@ -24,6 +24,10 @@ const LEFT: [f64; 2] = [0.4, 0.2];
 const WIDEST_S: f64 = 15.0;
 const STEPS_S: [f64; 2] = [0.25, 0.01];
 
+/// A search for a shift looks at a plan in steps, s, up to so many; one that is longer is looked up each time.
+const PLAN_STEP_S: f64 = 0.02;
+const MOST_STEPS: f64 = 1e6;
+
 /// Shifts between these are what machines do, s.
 const USUAL_S: [f64; 2] = [-0.1, 1.0];
 
@@ -37,12 +41,15 @@ const BEGUN: f64 = 0.05;
 pub(super) fn message(planned: &Series, measured: &Series) -> Option<String> {
     let both = |track| Both::of(track, measured.track(track.name())?);
     let joints: Vec<Both> = planned.tracks.iter().filter_map(both).collect();
-    let as_it_is = apart(&joints, |t_s| t_s);
+    let apart = |planned_s: &dyn Fn(f64) -> f64| {
+        apart(&joints, |joint, t_s| joints[joint].planned.held_at(planned_s(t_s)).position)
+    };
+    let as_it_is = apart(&|t_s| t_s);
     if !as_it_is.is_finite() || as_it_is < FAR {
         return None;
     }
     let shift_s = shift_s(&joints);
-    let left = apart(&joints, |t_s| t_s - shift_s) / as_it_is;
+    let left = apart(&|t_s| t_s - shift_s) / as_it_is;
     if shift_s < USUAL_S[0] && left < LEFT[0] {
         return Some(format!(
             "the joints move {:.2} s before their plan, which no machine does: the clocks of plan and measurement differ. \
@@ -62,7 +69,7 @@ pub(super) fn message(planned: &Series, measured: &Series) -> Option<String> {
     let pace = Pace::of(&joints)?;
     let usual = (USUAL_PACE[0]..=USUAL_PACE[1]).contains(&pace.ratio);
     let planned_s = |t_s: f64| pace.planned_s + (t_s - pace.measured_s) / pace.ratio;
-    (!usual && apart(&joints, planned_s) < LEFT[1] * as_it_is).then(|| {
+    (!usual && apart(&planned_s) < LEFT[1] * as_it_is).then(|| {
         format!(
             "the joints take {:.2} times as long as their plan: was the machine run at another speed (override)? Errors at \
              the same instant say little then, the distance to the path does",
@@ -95,10 +102,41 @@ impl<'a> Both<'a> {
         (motion > TELLS && moved > MOVED * motion).then_some(Self { planned, measured, came, motion })
     }
 
-    /// Root mean square error by planned motion, with the plan at another time.
-    fn apart(&self, planned_s: impl Fn(f64) -> f64) -> f64 {
-        let square = |[t_s, q]: &[f64; 2]| (q - self.planned.held_at(planned_s(*t_s)).position).powi(2);
+    /// Root mean square error by planned motion, where the plan is so.
+    fn apart(&self, plan: impl Fn(f64) -> f64) -> f64 {
+        let square = |[t_s, q]: &[f64; 2]| (q - plan(*t_s)).powi(2);
         (self.came.iter().map(square).sum::<f64>() / self.came.len() as f64).sqrt() / self.motion
+    }
+}
+
+/// A plan in even steps, with lines between them.
+struct Steps {
+    first_s: f64,
+    position: Vec<f64>,
+}
+
+impl Steps {
+    /// `None` if the plan is so long that steps would take more memory than they are worth.
+    fn of(planned: &Track) -> Option<Self> {
+        let [first_s, last_s] = [*planned.t_s().first()?, *planned.t_s().last()?];
+        let steps = ((last_s - first_s) / PLAN_STEP_S).ceil();
+        if steps > MOST_STEPS {
+            return None;
+        }
+        let mut cursor = 0;
+        let at = |k: f64| planned.held_after(&mut cursor, first_s + k * PLAN_STEP_S).position;
+        let position =
+            std::iter::successors(Some(0.0), |k| (*k < steps).then_some(k + 1.0)).map(at).collect();
+        Some(Self { first_s, position })
+    }
+
+    /// Before the first step and after the last, the plan holds.
+    fn at(&self, t_s: f64) -> f64 {
+        let steps = ((t_s - self.first_s) / PLAN_STEP_S).clamp(0.0, (self.position.len() - 1) as f64);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the steps")]
+        let before = steps as usize;
+        let (from, to) = (self.position[before], self.position[(before + 1).min(self.position.len() - 1)]);
+        from + (steps - steps.floor()) * (to - from)
     }
 }
 
@@ -109,20 +147,26 @@ fn spread(values: impl ExactSizeIterator<Item = f64> + Clone) -> f64 {
     (values.map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
-/// That of the joint in the middle; NaN without a joint.
-fn apart(joints: &[Both], planned_s: impl Fn(f64) -> f64) -> f64 {
-    quantile(joints.iter().map(|joint| joint.apart(&planned_s)).collect(), 0.5)
+/// That of the joint in the middle, by the position that the plan of each has at an instant; NaN without a joint.
+fn apart(joints: &[Both], plan: impl Fn(usize, f64) -> f64) -> f64 {
+    let each = joints.iter().enumerate();
+    quantile(each.map(|(joint, both)| both.apart(|t_s| plan(joint, t_s))).collect(), 0.5)
 }
 
 /// By how much the measurement is later than a plan that it follows best, s.
 fn shift_s(joints: &[Both]) -> f64 {
+    let steps: Vec<Option<Steps>> = joints.iter().map(|joint| Steps::of(joint.planned)).collect();
+    let plan = |joint: usize, t_s: f64| match &steps[joint] {
+        Some(steps) => steps.at(t_s),
+        None => joints[joint].planned.held_at(t_s).position,
+    };
     let mut best = (f64::INFINITY, 0.0);
     let mut reach_s = WIDEST_S;
     for step_s in STEPS_S {
         let middle_s = best.1;
         let mut shift_s = middle_s - reach_s;
         while shift_s <= middle_s + reach_s {
-            let apart = apart(joints, |t_s| t_s - shift_s);
+            let apart = apart(joints, |joint, t_s| plan(joint, t_s - shift_s));
             if apart < best.0 {
                 best = (apart, shift_s);
             }

@@ -80,6 +80,9 @@ fn words(step: &Advice, limit: &str) -> String {
             "Record a run in which joints leave rest by plan, with the plan in the log: there is no transition to judge."
                 .to_owned()
         }
+        Advice::RecordWhole(broken) => format!(
+            "Record from rest to rest: the plan {broken}, so that no command can be made from this log."
+        ),
         Advice::SetLimits => {
             format!("Say what is good enough: limits ({limit} and others) make the verdict and the exit code:")
         }

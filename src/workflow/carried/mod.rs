@@ -26,6 +26,7 @@ use crate::{
     log::{Attachment, JOINT_KINDS, LogWriter, Recording, WriteError, joint_kinds},
     plant::Truth,
     remark::{Code, Remarks},
+    series::Broken,
     task::{ArmSource, Task, TaskError},
 };
 
@@ -79,6 +80,12 @@ impl Carried {
         let tracks = recording.planned.tracks.iter().chain(&recording.measured.tracks);
         let kinds = joint_kinds(tracks.map(|track| (track.name(), track.kind())));
         Self { files, provenance, altered, kinds }
+    }
+
+    /// Where the plan of a log is broken, unless the log holds its task, which tells the plan exactly.
+    pub(in crate::workflow) fn broken(&self, recording: &Recording) -> Option<Broken> {
+        let known = self.task().is_some() && self.chosen().is_some();
+        if known { None } else { Broken::of(&recording.planned) }
     }
 
     /// A task with its arm, and a plan of it.

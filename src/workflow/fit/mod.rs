@@ -61,7 +61,7 @@ pub struct Fitted {
     /// The runs.
     pub runs: Vec<FittedRun>,
     /// Which run can be planned again: the last one that holds the task of its plan, or else the last; none of those that
-    /// do not belong to their plan.
+    /// do not belong to their plan, or whose plan is broken.
     pub again: Option<usize>,
     /// Doubts about the data.
     pub remarks: Remarks,
@@ -135,8 +135,11 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
     }
     let torques = observed.iter().map(torques).find(|torques| !torques.is_empty()).unwrap_or_default();
     let sound = |one: &Recording| !one.remarks.as_slice().iter().any(|remark| remark.code.spoils_runs());
-    let with_task = observed.iter().rposition(|one| sound(one) && Carried::of(one).task().is_some());
-    let again = with_task.or_else(|| observed.iter().rposition(sound));
+    let carried: Vec<Carried> = observed.iter().map(Carried::of).collect();
+    let again = |k: &usize| sound(&observed[*k]) && carried[*k].broken(&observed[*k]).is_none();
+    let again: Vec<usize> = (0..observed.len()).filter(again).collect();
+    let with_task = again.iter().rfind(|k| carried[**k].task().is_some());
+    let again = with_task.or(again.last()).copied();
     Ok(Fitted { fit, held_out, torques, runs, again, remarks })
 }
 

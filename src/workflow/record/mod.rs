@@ -25,6 +25,9 @@ use output::Synced;
 const FIRST_LINES: usize = 10;
 const MOST_LINES: usize = 200;
 
+/// So many objects are waited for while none has a key of the other side.
+const ONE_SIDED: usize = 300;
+
 /// Where the log goes, and what the caller says of the lines.
 #[derive(Debug, Clone, Default)]
 pub struct Inputs {
@@ -144,9 +147,19 @@ impl<'a> Recording<'a> {
     fn line(&mut self, line: &[u8]) -> Result<(), RecordError> {
         self.progress.lines += 1;
         if self.progress.lines == 1 && JsonLines::is_object(line) {
-            self.objects = Some(JsonLines::default());
+            let named = self.inputs.options.columns.values().flatten().map(|(_, column)| column.clone());
+            self.objects = Some(JsonLines::expecting(named.filter(|column| is_key(column))));
         }
         let text = match &mut self.objects {
+            Some(objects) if self.open.is_none() => {
+                if !objects.gather(line) {
+                    self.unread += 1;
+                    return Ok(());
+                }
+                self.first_lines += 1;
+                let due = self.first_lines.is_multiple_of(FIRST_LINES);
+                return if due { self.settle(false) } else { Ok(()) };
+            }
             Some(objects) => {
                 let Some(text) = objects.row(line) else {
                     self.unread += 1;
@@ -170,8 +183,23 @@ impl<'a> Recording<'a> {
             return Ok(());
         }
         let name = self.inputs.output.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if let Some(objects) = &self.objects {
+            self.first = objects.table().into_bytes();
+        }
+        let one_sided = |stream: &TableStream| {
+            stream.remarks().as_slice().iter().any(|remark| remark.code == Code::OneSide)
+        };
         match TableStream::begin(&name, &self.first, &self.inputs.options) {
+            // The other side's sensor may not send yet; rows that wait are lost if the power is.
+            Ok(stream)
+                if self.objects.is_some() && !last && self.first_lines < ONE_SIDED && one_sided(&stream) =>
+            {
+                Ok(())
+            }
             Ok(stream) => {
+                if let Some(objects) = &mut self.objects {
+                    objects.settle();
+                }
                 self.progress.joints = stream.understood().joints.len();
                 let log = stream.log(self.next_part()?)?;
                 self.open = Some((stream, log));
@@ -231,8 +259,20 @@ impl<'a> Recording<'a> {
         log.finish()?;
         let mut remarks: Remarks = stream.remarks();
         remarks.add(Code::UndecodableMessage, self.unread, "lines that are no JSON object; left out");
+        if let Some((keys, lines)) = self.objects.as_ref().and_then(JsonLines::late) {
+            let message = format!(
+                "lines with keys that came after the columns were settled, and were left out: {keys}; name them before, as \
+                 --measured JOINT=KEY, or begin when they are sent"
+            );
+            remarks.add(Code::NotSupported, lines, message);
+        }
         Ok(Recorded::new(&self.parts, &self.progress, stream.understood(), remarks))
     }
+}
+
+/// Whether a column as a caller names it is a key, and no number of a column or sum of several.
+fn is_key(column: &str) -> bool {
+    !column.starts_with('#') && column.chars().all(|c| c.is_alphanumeric() || "_. ".contains(c))
 }
 
 /// `run.mcap`, `run-2.mcap`, `run-3.mcap`.

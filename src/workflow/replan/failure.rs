@@ -8,8 +8,7 @@ use super::Unclear;
 use crate::{
     fit::FitError,
     plan::PlanError,
-    series::{JointKind, SignalError},
-    units::Degrees,
+    series::{Broken, SignalError},
     workflow::{fit::FitFailure, plan::PlanFailure},
 };
 
@@ -44,51 +43,15 @@ pub enum ReplanFailure {
         /// The log.
         path: PathBuf,
     },
-    /// The plan was cut.
-    #[error(
-        "the plan in {} {} at {at_s:.2} s while {joint} moves at {} per second: the log was cut, and no arm {} at \
-         once; give the whole log, or with --from and --to a part of it that begins and ends at rest",
-        path.display(),
-        if *begins { "begins" } else { "ends" },
-        Moved(*kind, *speed),
-        if *begins { "starts" } else { "stops" }
-    )]
-    CutInMotion {
-        /// The log.
-        path: PathBuf,
-        /// Whether it is the beginning that is cut off, or the end.
-        begins: bool,
-        /// The joint.
-        joint: String,
-        /// Whether it turns or slides.
-        kind: JointKind,
-        /// Its planned speed there, rad/s or m/s.
-        speed: f64,
-        /// The first or last planned instant.
-        at_s: f64,
-    },
-    /// Plan or command are silent while a joint moves.
-    #[error(
-        "the {what} in {} is missing from {:.2} s to {:.2} s while {joint} moves by {}: a command would jump there; give \
-         a log without such a hole, or with --from and --to a part of this one",
-        path.display(),
-        hole_s[0],
-        hole_s[1],
-        Moved(*kind, *moved)
-    )]
-    HoleInMotion {
+    /// Plan or command begin or end in motion, or are silent in it.
+    #[error("the {what} in {} {}", path.display(), Said(broken))]
+    Broken {
         /// The log.
         path: PathBuf,
         /// Plan or command.
         what: &'static str,
-        /// The joint.
-        joint: String,
-        /// Whether it turns or slides.
-        kind: JointKind,
-        /// How far it is away after the hole, rad or m.
-        moved: f64,
-        /// The last instant before it and the first one after it, s.
-        hole_s: [f64; 2],
+        /// Where it is broken.
+        broken: Broken,
     },
     /// No task to plan.
     #[error(
@@ -144,14 +107,23 @@ pub enum ReplanFailure {
     },
 }
 
-/// A distance of a joint as people read it.
-struct Moved(JointKind, f64);
+/// Where a plan or command is broken, what that means, and what to give.
+struct Said<'a>(&'a Broken);
 
-impl std::fmt::Display for Moved {
+impl std::fmt::Display for Said<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: ", self.0)?;
         match self.0 {
-            JointKind::Turns => Degrees(self.1).fmt(f),
-            JointKind::Slides => write!(f, "{:.1} mm", 1e3 * self.1),
+            Broken::Cut { begins, .. } => write!(
+                f,
+                "the log was cut, and no arm {} at once; give the whole log, or with --from and --to a part of it that \
+                 begins and ends at rest",
+                if *begins { "starts" } else { "stops" }
+            ),
+            Broken::Hole { .. } => write!(
+                f,
+                "a command would jump there; give a log without such a hole, or with --from and --to a part of this one"
+            ),
         }
     }
 }

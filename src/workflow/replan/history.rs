@@ -6,15 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     ReplanFailure,
-    hole::bridged,
-    last::moving_s,
     samples::{cut, cut_measured, found_at_s, within},
 };
 use crate::{
     fit::Trial,
     log::Recording,
     replay::{Rules, replay},
-    series::{Series, align},
+    series::{Series, align, bridged, moving_s},
     workflow::carried::{Carried, Promise, rest::PLAN_LEAD_S},
 };
 
@@ -106,13 +104,13 @@ impl History {
         let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
         for (path, recording) in paths.iter().zip(recordings) {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
-            let Some(starts_s) = found_at_s(plan, &bridged(&recording.planned)?, from_s - PLAN_LEAD_S)?
+            let Some(starts_s) = found_at_s(plan, &*bridged(&recording.planned)?, from_s - PLAN_LEAD_S)?
             else {
                 continue;
             };
             let sent = recording.command.as_ref().map_or(&recording.planned, |command| &command.series);
             let (sent, measured) = (
-                cut(&bridged(sent)?, starts_s, starts_s + end_s)?,
+                cut(&*bridged(sent)?, starts_s, starts_s + end_s)?,
                 cut_measured(&recording.measured, starts_s, starts_s + end_s)?,
             );
             let pairs: Vec<_> = (recording.measured.tracks.iter())

@@ -8,7 +8,6 @@ mod course;
 mod document;
 mod failure;
 mod history;
-mod hole;
 mod last;
 mod limits;
 mod outcome;

@@ -4,7 +4,7 @@ use super::outcome::Report;
 use crate::{
     fit::SPARSEST_S,
     replay::{JointReplay, Transition, Verdict},
-    series::JointKind,
+    series::{Broken, JointKind},
 };
 
 /// A next step, the most urgent first.
@@ -27,7 +27,7 @@ pub enum Advice {
         joint: String,
         /// Its lag, s.
         lag_s: f64,
-        /// Whether a command can be made from it: of joints that turn, sampled often enough, in a run of the plan.
+        /// Whether a command can be made from it: of joints that turn, sampled often enough, in a run of a whole plan.
         fits: bool,
     },
     /// The error lives in the transitions, most in those of a joint.
@@ -57,6 +57,8 @@ pub enum Advice {
     },
     /// No joint is asked to leave rest.
     RecordStarts,
+    /// No command can be made from the log, because its plan is broken.
+    RecordWhole(Broken),
     /// No limit was set, so nothing says whether this run is good enough.
     SetLimits,
     /// Whatever is changed: run again and compare.
@@ -87,7 +89,8 @@ pub fn advice(report: &Report) -> Vec<Advice> {
     let verdict = replay.whole_run.concentration.as_ref().map(|c| c.verdict);
     let sound = report.remarks.as_slice().iter().all(|remark| !remark.code.spoils_runs());
     let tells = |joint: &JointReplay| joint.kind == JointKind::Turns && joint.sample_interval_s <= SPARSEST_S;
-    let fits = sound && replay.joints.iter().any(tells);
+    let could = sound && replay.joints.iter().any(tells);
+    let fits = could && report.broken.is_none();
     if let Some((joint, lag_s)) = mostly_lag(report) {
         advice.push(Advice::ShiftCommand { joint, lag_s, fits });
     } else if verdict == Some(Verdict::Elsewhere) {
@@ -100,6 +103,7 @@ pub fn advice(report: &Report) -> Vec<Advice> {
             gentler: report.holds_task,
         });
     }
+    advice.extend(report.broken.clone().filter(|_| could).map(Advice::RecordWhole));
     if report.gates.is_empty() {
         advice.push(Advice::SetLimits);
     }

@@ -114,6 +114,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     let carried = Carried::of(&recording);
     let mut remarks = recording.remarks.clone();
     carried.remark_altered(&mut remarks);
+    let broken = carried.broken(&recording);
     let model = inputs.delay_model.ready(&recording);
     let sides = [&recording.planned, &recording.measured];
     let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
@@ -152,6 +153,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
             .promise()
             .map(|promise| promise.held(replay.transitions.iter().map(|t| t.peak_error))),
         holds_task: carried.task().is_some(),
+        broken,
         schedule: Schedule::of(&carried),
         source: recording.source,
         alignment,

@@ -9,7 +9,7 @@ use crate::{
     log::{Command, SignalRole, SourceInfo},
     remark::Remarks,
     replay::{Profiles, Replay},
-    series::{Pair, Signal},
+    series::{Broken, Pair, Signal},
     workflow::{
         carried::{Held, Schedule},
         plan::PlanDocument,
@@ -45,6 +45,8 @@ pub struct Report {
     pub promised: Option<Held>,
     /// Whether the log holds the task of its plan, so that a gentler plan can be made from it.
     pub holds_task: bool,
+    /// Where the plan is broken, so that no command can be made of it.
+    pub broken: Option<Broken>,
     /// Where the data come from.
     pub source: SourceInfo,
     /// How plan and measurement were matched, by joint.

@@ -1,0 +1,237 @@
+//! Whether a plan is whole: it begins and ends at rest, and is not silent while a joint moves.
+
+use std::{borrow::Cow, fmt};
+
+use super::{JointKind, Series, SignalError, Track};
+use crate::units::{DEGREE_RAD, Degrees};
+
+/// Planned speed that is motion, rad/s, or m/s of joints that slide.
+const MOVES: f64 = 0.05 * DEGREE_RAD;
+
+/// Planned speed at which a plan does not end, rad/s or m/s, and how close to its end that is looked for, s.
+const CUT_SPEED: f64 = DEGREE_RAD;
+const CUT_S: f64 = 0.05;
+
+/// The longest time without a plan within one motion, s.
+const LONGEST_HOLE_S: f64 = 60.0;
+
+/// Cuts with less silence than this, s, which a clock that was set makes, are no holes: between their sides a track goes on.
+const BRIDGED_S: f64 = 0.3;
+
+/// A joint that is so far away after a hole has moved within it, rad or m.
+const MOVED: f64 = 1e-3;
+
+/// Where the motion of a joint is broken off.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Broken {
+    /// It begins or ends in motion: it was cut off, for no arm starts or stops at once.
+    Cut {
+        /// The joint.
+        joint: String,
+        /// Whether it turns or slides.
+        kind: JointKind,
+        /// Whether it is the beginning that is cut off, or the end.
+        begins: bool,
+        /// Its speed there, rad/s or m/s.
+        speed: f64,
+        /// The first or last instant, s.
+        at_s: f64,
+    },
+    /// It is missing while the joint moves.
+    Hole {
+        /// The joint.
+        joint: String,
+        /// Whether it turns or slides.
+        kind: JointKind,
+        /// How far it is away after the hole, rad or m.
+        moved: f64,
+        /// The last instant before it and the first one after it, s.
+        hole_s: [f64; 2],
+    },
+}
+
+impl Broken {
+    /// Where a plan is broken in its newest motion, if it is; `None` for one that never moves.
+    pub fn of(series: &Series) -> Option<Self> {
+        let bridged = bridged(series).ok()?;
+        let span_s = moving_s(&bridged)?;
+        Self::cut(&bridged, span_s).or_else(|| Self::hole(&bridged, span_s))
+    }
+
+    /// The first joint that begins or ends in motion, of a motion between these instants, s.
+    pub(crate) fn cut(series: &Series, [from_s, to_s]: [f64; 2]) -> Option<Self> {
+        for track in &series.tracks {
+            let (t_s, position) = (track.t_s(), track.position());
+            let first = t_s.partition_point(|t| *t < from_s - CUT_S);
+            let last = t_s.partition_point(|t| *t <= to_s + CUT_S).saturating_sub(1);
+            let begins = track.segments().iter().any(|part| part.start == first && part.len() > 1);
+            let ends = track.segments().iter().any(|part| part.end == last + 1 && part.len() > 1);
+            // An end, its neighbour, and where the motion has its own.
+            let first = (first, first + 1, from_s, true);
+            let last = (last, last.wrapping_sub(1), to_s, false);
+            let ends = [first].into_iter().filter(|_| begins).chain([last].into_iter().filter(|_| ends));
+            for (at, next, _, begins) in ends.filter(|(at, _, end_s, _)| (t_s[*at] - end_s).abs() <= CUT_S) {
+                let step = (position[at] - position[next]) / (t_s[at] - t_s[next]);
+                let speed = track.velocity().map_or(step, |speed| speed[at]);
+                if speed.abs() > CUT_SPEED {
+                    let (joint, kind) = (track.name().to_owned(), track.kind());
+                    return Some(Self::Cut { joint, kind, begins, speed, at_s: t_s[at] });
+                }
+            }
+        }
+        None
+    }
+
+    /// The first hole in which a joint moves, between these instants, s.
+    pub(crate) fn hole(series: &Series, [from_s, to_s]: [f64; 2]) -> Option<Self> {
+        for track in &series.tracks {
+            for two in track.segments().windows(2) {
+                let (a, b) = (two[0].end - 1, two[1].start);
+                let hole_s = [track.t_s()[a], track.t_s()[b]];
+                let moved = track.position()[b] - track.position()[a];
+                if hole_s[1] > from_s && hole_s[0] < to_s && moved.abs() > MOVED {
+                    let (joint, kind) = (track.name().to_owned(), track.kind());
+                    return Some(Self::Hole { joint, kind, moved, hole_s });
+                }
+            }
+        }
+        None
+    }
+}
+
+impl fmt::Display for Broken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = |kind, value: f64| match kind {
+            JointKind::Turns => Degrees(value).to_string(),
+            JointKind::Slides => format!("{:.1} mm", 1e3 * value),
+        };
+        match self {
+            Self::Cut { joint, kind, begins, speed, at_s } => {
+                let (does, speed) = (if *begins { "begins" } else { "ends" }, size(*kind, *speed));
+                write!(f, "{does} at {at_s:.2} s while {joint} moves at {speed} per second")
+            }
+            Self::Hole { joint, kind, moved, hole_s: [from_s, to_s] } => {
+                let moved = size(*kind, *moved);
+                write!(f, "is missing from {from_s:.2} s to {to_s:.2} s while {joint} moves by {moved}")
+            }
+        }
+    }
+}
+
+/// The series with its short holes closed.
+///
+/// # Errors
+///
+/// [`SignalError`], which tracks do not have.
+pub(crate) fn bridged(series: &Series) -> Result<Cow<'_, Series>, SignalError> {
+    if series.tracks.iter().all(|track| track.segments().len() < 2) {
+        return Ok(Cow::Borrowed(series));
+    }
+    let one = |track: &Track| {
+        let (t_s, starts) = (track.t_s(), track.segments().iter().map(|part| part.start));
+        let cuts: Vec<usize> = starts.filter(|k| *k > 0 && t_s[*k] - t_s[*k - 1] > BRIDGED_S).collect();
+        let made = Track::of(track.kind(), track.name(), t_s.to_vec(), track.position().to_vec(), &cuts)?;
+        track.velocity().map_or(Ok(made.clone()), |speed| made.with_velocity(speed.to_vec()))
+    };
+    Ok(Cow::Owned(Series { tracks: series.tracks.iter().map(one).collect::<Result<_, _>>()? }))
+}
+
+/// When the first joint starts to move and the last one stops, s, in the newest part of the log in which one moves.
+pub(crate) fn moving_s(series: &Series) -> Option<[f64; 2]> {
+    parts_s(series).into_iter().rev().find_map(|part_s| moving_within_s(series, part_s))
+}
+
+/// Parts of a log with holes between them in which no joint has a plan: a clock was set, or recording paused. What
+/// lies on two sides of one is not one motion.
+fn parts_s(series: &Series) -> Vec<[f64; 2]> {
+    let span = |track: &Track| {
+        let t_s = track.t_s().to_vec();
+        track.segments().iter().map(move |part| [t_s[part.start], t_s[part.end - 1]]).collect::<Vec<_>>()
+    };
+    let mut all: Vec<[f64; 2]> = series.tracks.iter().flat_map(span).collect();
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut parts: Vec<[f64; 2]> = Vec::new();
+    for [from_s, to_s] in all {
+        match parts.last_mut() {
+            Some(part) if from_s - part[1] <= LONGEST_HOLE_S => part[1] = part[1].max(to_s),
+            _ => parts.push([from_s, to_s]),
+        }
+    }
+    parts
+}
+
+fn moving_within_s(series: &Series, [begin_s, end_s]: [f64; 2]) -> Option<[f64; 2]> {
+    let mut found: Option<[f64; 2]> = None;
+    for track in &series.tracks {
+        let (t_s, angle_rad) = (track.t_s(), track.position());
+        let within = t_s.partition_point(|t| *t < begin_s)..t_s.partition_point(|t| *t <= end_s);
+        let moving = |k: usize| {
+            let fast = track.velocity().is_some_and(|speed| speed[k].abs() > MOVES);
+            fast || (k > within.start
+                && (angle_rad[k] - angle_rad[k - 1]).abs() > MOVES * (t_s[k] - t_s[k - 1]).max(1e-3))
+        };
+        let first = within.clone().find(|&k| moving(k));
+        let last = within.clone().rev().find(|&k| moving(k));
+        if let (Some(first), Some(last)) = (first, last) {
+            let [from, to] = found.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
+            found = Some([from.min(t_s[first]), to.max(t_s[last])]);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wave(missing: std::ops::Range<usize>, with_speed: bool) -> Track {
+        let kept: Vec<usize> = (0..300).filter(|k| !missing.contains(k)).collect();
+        let t_s: Vec<f64> = kept.iter().map(|k| *k as f64 * 0.02).collect();
+        let position = t_s.iter().map(|t| (0.7 * t).sin()).collect();
+        let made = Track::new("J", t_s.clone(), position, &[missing.start]).unwrap();
+        if !with_speed {
+            return made;
+        }
+        made.with_velocity(t_s.iter().map(|t| 0.7 * (0.7 * t).cos()).collect()).unwrap()
+    }
+
+    #[test]
+    fn a_short_hole_is_closed_and_a_long_one_in_motion_refused() {
+        for with_speed in [true, false] {
+            let short = Series { tracks: vec![wave(100..110, with_speed)] };
+            let whole = bridged(&short).unwrap();
+            assert_eq!((short.tracks[0].segments().len(), whole.tracks[0].segments().len()), (2, 1));
+            let there = whole.tracks[0].held_at(2.09);
+            assert!((there.position - (0.7_f64 * 2.09).sin()).abs() < 4e-3, "{there:?}");
+            assert_eq!(
+                (Broken::hole(&whole, [0.0, 6.0]), Broken::hole(&short, [0.0, 6.0]).is_some()),
+                (None, true)
+            );
+        }
+        let long = Series { tracks: vec![wave(100..130, true)] };
+        let long = bridged(&long).unwrap();
+        let found = Broken::hole(&long, [0.0, 6.0]);
+        assert!(
+            matches!(&found, Some(Broken::Hole { hole_s: [a, b], .. }) if *a == 1.98 && *b == 2.6),
+            "{found:?}"
+        );
+        assert_eq!(Broken::hole(&long, [3.0, 6.0]), None);
+    }
+
+    #[test]
+    fn a_plan_that_begins_or_ends_in_motion_is_cut_and_one_at_rest_is_whole() {
+        let of = |within: std::ops::Range<i32>| {
+            let t_s: Vec<f64> = within.map(|k| f64::from(k) * 0.02).collect();
+            let step = |t: &f64| {
+                let x = ((t - 1.0) / 2.0).clamp(0.0, 1.0);
+                x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+            };
+            let position = t_s.iter().map(step).collect();
+            Broken::of(&Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] })
+        };
+        assert_eq!(of(0..200), None);
+        assert!(matches!(of(90..200), Some(Broken::Cut { begins: true, .. })));
+        assert!(matches!(of(0..110), Some(Broken::Cut { begins: false, .. })));
+        assert_eq!(of(0..40), None, "it never moves");
+    }
+}
