@@ -12,11 +12,15 @@ pub(super) struct ColumnArgs {
     #[arg(long, value_name = "FILE", help_heading = "Columns")]
     map: Option<PathBuf>,
 
+    /// Rows with this value in this column alone, such as one machine of several
+    #[arg(long, value_name = "COLUMN=VALUE", value_parser = pair, help_heading = "Columns")]
+    only: Option<(String, String)>,
+
     /// Column of the time
     #[arg(long, value_name = "COLUMN", help_heading = "Columns", conflicts_with = "rate")]
     time: Option<String>,
 
-    /// Unit of the time: s, ms, us, ns
+    /// Unit of the time: s, ms, us, ns, min, h, filetime, excel
     #[arg(long, value_name = "UNIT", help_heading = "Columns", conflicts_with = "rate")]
     time_unit: Option<String>,
 
@@ -89,6 +93,7 @@ impl ColumnArgs {
         let own = CsvOptions {
             separator: self.separator,
             decimal_comma: flag(self.decimal_comma, self.decimal_point),
+            only: self.only.clone(),
             time: self.time.clone(),
             time_unit: self.time_unit.clone(),
             rate_hz: self.rate,

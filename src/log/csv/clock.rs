@@ -7,9 +7,9 @@ use super::{
     dialect::Dialect,
     head::Head,
     label::Label,
-    number::nanoseconds,
+    number::{nanoseconds, number},
     time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
-    unit::{Measure, Unit, parse_unit},
+    unit::{EXCEL_DAY, FILETIME, Measure, Unit, parse_unit},
 };
 use crate::{
     math::median,
@@ -41,6 +41,7 @@ pub(super) fn choose(
         }
     }
     look.join_day_and_time(&mut usable);
+    look.join_parts(&mut usable);
     // What resolves the rows is better than what does not, then what has a date.
     usable.sort_by_key(|found| (!found.resolves, !found.absolute));
     match (usable.into_iter().next(), failure) {
@@ -75,6 +76,8 @@ impl Found {
         self.source
     }
 }
+
+const NS_PER_SECOND: i64 = 1_000_000_000;
 
 struct Look<'a> {
     head: &'a Head,
@@ -135,20 +138,68 @@ impl Look<'_> {
         if let Some(unit) = given.or(written).or(stated) {
             return Ok(self.found(TimeSource::Number { column, unit }, None));
         }
+        // More digits than a thousandth, as days have.
+        let fine: Vec<f64> = self.cells(column).filter_map(|cell| number(cell, comma)).collect();
         let milli: Vec<i64> = self.cells(column).filter_map(|cell| nanoseconds(cell, comma, 1_000)).collect();
         let values: Vec<f64> = milli.iter().map(|value| *value as f64 / 1e3).collect();
-        let whole = milli.iter().all(|value| value % 1_000 == 0);
+        let whole =
+            milli.iter().all(|value| value % 1_000 == 0) && fine.iter().all(|value| value.fract() == 0.0);
         // Stamps of 19 digits are nanoseconds; times 1000 they fit no i64.
         let huge = milli.is_empty() && self.cells(column).any(|cell| nanoseconds(cell, comma, 1).is_some());
-        let steps: Vec<f64> = values.windows(2).map(|w| w[1] - w[0]).filter(|step| *step > 0.0).collect();
-        let step = if steps.is_empty() { 0.0 } else { median(steps) };
-        let (unit, doubt) = if huge {
+        let step = match typical_step(&values) {
+            0.0 => typical_step(&fine),
+            step => step,
+        };
+        let (unit, doubt) = if huge && fine.first().is_none_or(|first| *first > 1e18) {
             (parse_unit("ns"), None)
         } else {
-            guess_unit(values.first().copied().unwrap_or(0.0), step, whole)
+            guess_unit(fine.first().copied().unwrap_or(0.0), step, whole)
         };
         let Some(unit) = unit else { return Err(CsvError::TimeUnit { column: name(), step }) };
         Ok(self.found(TimeSource::Number { column, unit }, doubt))
+    }
+
+    /// Seconds in one column and what is beyond them in another are one time: `sec` and `nanosec`, a time of day and `ms`.
+    fn join_parts(&self, usable: &mut Vec<Found>) {
+        let last_word = |column: usize| self.labels[column].words.last().map_or("", String::as_str);
+        let says_seconds =
+            |column: usize| ["s", "sec", "secs", "second", "seconds"].contains(&last_word(column));
+        let part = |column: &usize| {
+            let name = self.head.names[*column].to_lowercase();
+            let spelt = name.rsplit(|c: char| !c.is_alphabetic()).next().filter(|word| !word.is_empty());
+            let unit = match spelt? {
+                "millitm" => parse_unit("ms"),
+                word => parse_unit(word).filter(|unit| unit.measure == Measure::Time && unit.factor < 1e9),
+            }?;
+            let mut cells = self.cells(*column).filter(|cell| !cell.trim_ascii().is_empty()).peekable();
+            let within = |cell: &[u8]| {
+                let whole = cell.trim_ascii().iter().all(u8::is_ascii_digit);
+                whole && number(cell, false).is_some_and(|value| value * unit.factor < 1e9)
+            };
+            (!self.labels[*column].is_joint && cells.peek().is_some() && cells.all(within)).then_some(unit)
+        };
+        let parts = (0..self.labels.len()).filter_map(|column| Some((column, part(&column)?)));
+        // The finest counts: others may say the same less finely.
+        let Some((part, unit)) = parts.min_by(|a, b| a.1.factor.total_cmp(&b.1.factor)) else { return };
+        let seconds = |source: &TimeSource| {
+            let source = match source {
+                // Counted in seconds, whatever its steps look like.
+                TimeSource::Number { column, .. } if says_seconds(*column) => {
+                    TimeSource::Number { column: *column, unit: parse_unit("s")? }
+                }
+                other => other.clone(),
+            };
+            let comma = self.dialect.decimal_comma;
+            let whole = self.head.sample.iter().all(|row| {
+                let cell = |column: usize| row.get(column).map_or(&[][..], Vec::as_slice);
+                source.ns(0, cell, comma).is_none_or(|ns| ns % NS_PER_SECOND == 0)
+            });
+            (whole && !source.columns().contains(&part)).then_some(source)
+        };
+        if let Some(whole) = usable.iter().find_map(|found| seconds(&found.source)) {
+            let joined = self.found(TimeSource::WithPart { whole: Box::new(whole), part, unit }, None);
+            usable.insert(0, joined);
+        }
     }
 
     /// A day in one column and a time of day in another are one time.
@@ -166,10 +217,25 @@ impl Look<'_> {
     }
 }
 
+/// The step between most neighbours that do not stand; 0 if all do.
+fn typical_step(values: &[f64]) -> f64 {
+    let steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0).collect();
+    if steps.is_empty() { 0.0 } else { median(steps) }
+}
+
 /// The unit of a column that names none: by its size if it counts from 1970, or else the one in
 /// which the rows come at 2 to 2000 Hz.
 fn guess_unit(first: f64, step: f64, whole: bool) -> (Option<Unit>, Option<String>) {
     const SINCE_1970_S: [f64; 2] = [1.0e9, 4.2e9];
+    // From 1995 to 2130, and from 2000 to 2100.
+    const SINCE_1601: [f64; 2] = [1.243e17, 1.67e17];
+    const SINCE_1899_DAYS: [f64; 2] = [36_526.0, 73_051.0];
+    if whole && (SINCE_1601[0]..SINCE_1601[1]).contains(&first) {
+        return (Some(FILETIME), None);
+    }
+    if !whole && (SINCE_1899_DAYS[0]..SINCE_1899_DAYS[1]).contains(&first) && step < 1e-4 {
+        return (Some(EXCEL_DAY), None);
+    }
     for (name, per_second) in [("s", 1.0), ("ms", 1e3), ("us", 1e6)] {
         let (size, step_s) = (first / per_second, step / per_second);
         if (SINCE_1970_S[0]..SINCE_1970_S[1]).contains(&size) && step_s <= 10.0 {
@@ -205,6 +271,9 @@ mod tests {
         assert_eq!(guess(0.0, 20.0, true), ("ms", true));
         assert_eq!(guess(0.0, 2e4, true), ("us", true));
         assert_eq!(guess(0.0, 2e7, true), ("ns", true));
+        assert_eq!(guess(1.3393e17, 1e5, true), ("100 ns since 1601", false));
+        assert_eq!(guess(45_811.375, 1.157e-7, false), ("days since 1899-12-30", false));
+        assert_eq!(guess(45_811.375, 0.01, false), ("s", false));
         assert_eq!(guess(0.0, 0.0, true), ("none", false));
         assert_eq!(guess(0.0, 1e10, true), ("none", false));
     }

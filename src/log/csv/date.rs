@@ -21,13 +21,17 @@ pub(super) enum Part {
 }
 
 /// Tried in this order: of two that fit, the first is meant more often.
-const FORMS: [(&str, &str, Part); 18] = [
+const FORMS: [(&str, &str, Part); 22] = [
     ("%Y-%m-%d %H:%M:%S%.f%#z", "yyyy-mm-dd hh:mm:ss with zone", Part::Zoned),
     ("%Y-%m-%d %H:%M:%S%.f", "yyyy-mm-dd hh:mm:ss", Part::Local),
     ("%Y/%m/%d %H:%M:%S%.f", "yyyy/mm/dd hh:mm:ss", Part::Local),
     ("%Y-%m-%d-%H:%M:%S%.f", "yyyy-mm-dd-hh:mm:ss", Part::Local),
     ("%Y%m%d %H%M%S%.f", "yyyymmdd hhmmss", Part::Local),
+    ("%Y%m%d %H%M%S%.f%#z", "yyyymmdd hhmmss with zone", Part::Zoned),
     ("%d.%m.%Y %H:%M:%S%.f", "dd.mm.yyyy hh:mm:ss", Part::Local),
+    ("%d.%m.%y %H:%M:%S%.f", "dd.mm.yy hh:mm:ss", Part::Local),
+    ("%d-%b-%Y %H:%M:%S%.f", "dd-mon-yyyy hh:mm:ss", Part::Local),
+    ("%d-%b-%y %H:%M:%S%.f", "dd-mon-yy hh:mm:ss", Part::Local),
     ("%d-%m-%Y %H:%M:%S%.f", "dd-mm-yyyy hh:mm:ss", Part::Local),
     ("%d/%m/%Y %I:%M:%S%.f %p", "dd/mm/yyyy hh:mm:ss am/pm", Part::Local),
     ("%m/%d/%Y %I:%M:%S%.f %p", "mm/dd/yyyy hh:mm:ss am/pm", Part::Local),
@@ -133,6 +137,10 @@ mod tests {
             "06/15/2025 03:06:40.020 PM",
             "2025-06-15-15:06:40.020",
             "20250615 150640.020",
+            "20250615T150640.020Z",
+            "15.06.25 15:06:40.020",
+            "15-Jun-2025 15:06:40.020",
+            "15-JUN-25 15:06:40,020",
         ] {
             assert_eq!(ns(text).0, NOON_NS, "{text}");
         }

@@ -40,12 +40,28 @@ pub enum CsvError {
     /// One column is named for two things.
     #[error("column {column:?} (#{number}) is named for two things; one column is one angle of one joint")]
     SameColumn { column: String, number: usize },
+    /// Rows of several machines.
+    #[error(
+        "column {column:?} tells several machines apart ({known}), and a log is of one; say which with \
+         --only '{column}={first}'"
+    )]
+    Machines { column: String, known: String, first: String },
+    /// Rows that the caller named.
+    #[error("no row has {value:?} in column {column:?}; there are {known}")]
+    NoMachine { column: String, value: String, known: String },
     /// No column is a joint's angle.
     #[error(
         "no column looks like a joint angle; the columns are {present}; name them with \
          --planned JOINT=COLUMN,... and --measured JOINT=COLUMN,..., or in a file with --map"
     )]
     NoJoints { present: String },
+    /// All columns of joints are in a unit of another kind.
+    #[error(
+        "column {column:?} is in {unit}, which is no angle or length; say what one is with \
+         --planned JOINT=FACTOR*COLUMN,... --measured JOINT=FACTOR*COLUMN,... --degrees, or --slides JOINT=mm of a joint \
+         that slides"
+    )]
+    OddUnit { column: String, unit: &'static str },
     /// Planned and measured columns are of different joints.
     #[error(
         "the planned columns are of {planned}, the measured ones of {measured}: no joint has both; say \
@@ -62,7 +78,7 @@ pub enum CsvError {
     NoTime { why: String, present: String },
     /// A column of time that does not say its unit.
     #[error(
-        "column {column:?} counts time in steps of {step}; say in what with --time-unit s|ms|us|ns, or give --rate HZ"
+        "column {column:?} counts time in steps of {step}; say in what with --time-unit s|ms|us|ns|min|h, or give --rate HZ"
     )]
     TimeUnit { column: String, step: f64 },
     /// Angles without a unit, too large for radians.

@@ -116,11 +116,13 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) ->
     found
 }
 
-/// Whether a row is one of numbers: as wide as most, and mostly no words.
+/// Whether a row is one of numbers: as wide as most, and no more words than numbers; or a time and a number beside words
+/// that say of what it is.
 fn is_data(record: &ByteRecord, width: usize) -> bool {
     let all: Vec<Looks> = record.iter().map(looks).filter(|looks| *looks != Looks::Empty).collect();
     let words = all.iter().filter(|looks| **looks == Looks::Text).count();
-    record.len() == width && !all.is_empty() && 2 * words < all.len()
+    let numbers = all.len() - words;
+    record.len() == width && !all.is_empty() && (words < numbers || numbers >= 2)
 }
 
 /// Whether the cells of a row may be the names of columns: several, none a number, no two alike.

@@ -9,6 +9,7 @@ use super::{
     head::Head,
     label::Label,
     pairing::{Draft, plan_beside_measured, without_shared_words},
+    unit::Unit,
 };
 use crate::{
     remark::{Code, Remarks},
@@ -125,12 +126,28 @@ pub(super) fn lay_out(
             interfaces.push(Interface { name: name.clone(), column, joint });
         }
     }
+    let taken = |column: &usize| uses.iter().any(|one| one.column == *column);
+    let left: Vec<usize> =
+        (0..labels.len()).filter(|column| odd(&labels[*column]).is_some() && !taken(column)).collect();
+    if let Some(first) = left.first() {
+        let message = format!(
+            "columns in a unit that is no angle or length, such as {:?}, left out; say what one is with --planned \
+             JOINT=FACTOR*COLUMN,... and --measured",
+            head.names[*first]
+        );
+        remarks.add(Code::NotSupported, left.len() as u64, message);
+    }
     let mut used = BTreeSet::new();
     let mut all = uses.iter().map(|one| one.column).chain(interfaces.iter().map(|one| one.column));
     if let Some(column) = all.find(|column| !used.insert(*column)) {
         return Err(CsvError::SameColumn { column: head.names[column].clone(), number: column + 1 });
     }
     Ok(Layout { joints: joints.into_iter().map(|(_, name)| name).collect(), uses, interfaces })
+}
+
+/// The unit of a column that would be a joint's, if one knew what one of it is.
+fn odd(label: &Label) -> Option<Unit> {
+    label.stated.filter(|unit| unit.is_odd() && label.role.is_some())
 }
 
 /// Two columns for one thing are an error, unless they say the same.
@@ -187,7 +204,13 @@ fn joints(
     let commanded = planned.is_empty() && !sent.is_empty();
     let asked = if commanded { sent } else { planned };
     let (all, missing, flag) = match (asked.is_empty(), measured.is_empty()) {
-        (true, true) => return Err(CsvError::NoJoints { present: present(&head.names) }),
+        (true, true) => {
+            let odd = labels.iter().zip(&head.names).find_map(|(label, name)| Some((odd(label)?, name)));
+            return Err(match odd {
+                Some((unit, name)) => CsvError::OddUnit { column: name.clone(), unit: unit.name },
+                None => CsvError::NoJoints { present: present(&head.names) },
+            });
+        }
         (true, false) => (&measured, "plan", "--planned"),
         (false, true) => (&asked, "measurement", "--measured"),
         (false, false) => {

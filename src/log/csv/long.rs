@@ -14,7 +14,7 @@ use super::{
     rows::{Rows, cell_text},
     word::words,
 };
-use crate::remark::Remarks;
+use crate::remark::{Code, Remarks};
 
 /// Headers of columns that say of what a row is.
 const NAMES: [&str; 26] = [
@@ -70,7 +70,12 @@ struct Long {
 }
 
 /// The text of a long table with a row an instant; `None` if it is no long table.
-pub(super) fn widened(file: &str, text: &[u8], options: &CsvOptions) -> Option<Vec<u8>> {
+pub(super) fn widened(
+    file: &str,
+    text: &[u8],
+    options: &CsvOptions,
+    remarks: &mut Remarks,
+) -> Option<Vec<u8>> {
     let dialect = detect(file, text, options).ok()?;
     let Separator::Byte(separator) = dialect.separator else { return None };
     let head = read_head(text, dialect, &mut Remarks::default());
@@ -83,6 +88,9 @@ pub(super) fn widened(file: &str, text: &[u8], options: &CsvOptions) -> Option<V
         let cells = gathered.row(row).map(|[from, to]| gathered.text.get(from..to).unwrap_or_default());
         wide.write_record(time.iter().map(Vec::as_slice).chain(cells)).ok()?;
     }
+    let message = "values of a signal at an instant that it has another value at, left out: is the table of several runs \
+                   or machines?";
+    remarks.add(Code::DuplicateStamp, gathered.twice, message);
     wide.into_inner().ok()
 }
 
@@ -99,6 +107,8 @@ struct Gathered {
     /// Where in that each cell is, `[rows][ids x values]`; nowhere if there is none.
     cells: Vec<[usize; 2]>,
     width: usize,
+    /// Values beyond the first of a signal at an instant that differ from it.
+    twice: u64,
 }
 
 impl Gathered {
@@ -189,18 +199,20 @@ impl Long {
         let width = ids.len() * self.values.len();
         let mut cells = vec![[0; 2]; times.len().checked_mul(width)?];
         let mut ends = memchr::memchr_iter(END, &kept);
-        let mut from = 0;
+        let (mut from, mut twice) = (0, 0);
         for (time_at, id_at) in found {
             for value in 0..self.values.len() {
                 let to = ends.next()?;
                 let slot = &mut cells[time_at * width + id_at * self.values.len() + value];
                 if slot[0] == slot[1] {
                     *slot = [from, to];
+                } else if kept.get(from..to) != kept.get(slot[0]..slot[1]) {
+                    twice += 1;
                 }
                 from = to + 1;
             }
         }
-        Some(Gathered { ids, times, text: kept, cells, width })
+        Some(Gathered { ids, times, text: kept, cells, width, twice })
     }
 
     /// The rows in the order of their times: blocks of signals that have times of their own come one after the other.
@@ -254,7 +266,7 @@ mod tests {
     use super::*;
 
     fn wide(text: &str) -> Option<String> {
-        let wide = widened("a.csv", text.as_bytes(), &CsvOptions::default())?;
+        let wide = widened("a.csv", text.as_bytes(), &CsvOptions::default(), &mut Remarks::default())?;
         Some(String::from_utf8(wide).unwrap())
     }
 

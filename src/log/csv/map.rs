@@ -18,6 +18,9 @@ struct MapFile {
     separator: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     decimal_comma: Option<bool>,
+    /// Column, then value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    only: Option<[String; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     time: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -76,6 +79,7 @@ impl CsvOptions {
         Ok(Self {
             separator,
             decimal_comma: file.decimal_comma,
+            only: file.only.map(|[column, value]| (column, value)),
             time: file.time,
             time_unit: file.time_unit,
             rate_hz: file.rate_hz,
@@ -126,6 +130,7 @@ impl CsvOptions {
         let file = MapFile {
             separator: Some(read.separator.clone()),
             decimal_comma: Some(read.decimal == "comma"),
+            only: self.only.clone().map(|(column, value)| [column, value]),
             time_unit: time.as_ref().and(read.time.form.strip_prefix("counts ").map(str::to_owned)),
             time,
             rate_hz: self.rate_hz,

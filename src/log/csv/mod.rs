@@ -15,6 +15,7 @@ mod efforts;
 mod encoding;
 mod error;
 mod expression;
+mod grouping;
 mod head;
 mod label;
 mod layout;
@@ -24,6 +25,7 @@ mod map;
 mod name;
 mod number;
 mod objects;
+mod only;
 mod options;
 mod pairing;
 mod read;
@@ -91,9 +93,12 @@ pub(in crate::log) fn says_side(part: &str) -> bool {
 ///
 /// [`CsvError`]
 pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<CsvRun, CsvError> {
-    let text = text::of_bytes(name, bytes)?;
-    let text = long::widened(name, &text, options).map_or(text, Cow::Owned);
     let mut remarks = Remarks::default();
+    let text = text::of_bytes(name, bytes)?;
+    let text = objects::as_table(&text).map_or(text, Cow::Owned);
+    let text = only::of_one(name, text, options)?;
+    let text = grouping::plain(name, text, options, &mut remarks);
+    let text = long::widened(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
     Form::of(name, &text, options, &mut remarks)?.read(name, &text, remarks).map(|(run, _)| run)
 }
 

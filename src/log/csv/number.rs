@@ -4,49 +4,61 @@
 const LONGEST: usize = 400;
 
 /// The number in a cell; `None` if it is none. NaN and infinities, which some programs write as
-/// words, are numbers here. Points may set thousands apart where a comma is the decimal mark.
+/// words, are numbers here. The other mark may set thousands apart before the decimal mark.
 pub(super) fn number(cell: &[u8], decimal_comma: bool) -> Option<f64> {
     let cell = cell.trim_ascii();
     if cell.is_empty() || cell.len() > LONGEST {
         return None;
     }
-    let comma = if decimal_comma { memchr::memchr(b',', cell) } else { None };
-    let Some(comma) = comma else {
-        if decimal_comma && memchr::memchr(b'.', cell).is_some() {
-            return None;
-        }
+    let (decimal, group) = if decimal_comma { (b',', b'.') } else { (b'.', b',') };
+    let grouped = memchr::memchr(group, cell).is_some();
+    if !decimal_comma && !grouped {
         return std::str::from_utf8(cell).ok()?.parse().ok();
+    }
+    let Some(mark) = memchr::memrchr(decimal, cell) else {
+        // Alone, the other mark may be a decimal mark, too.
+        return if grouped { None } else { std::str::from_utf8(cell).ok()?.parse().ok() };
     };
     let mut buffer = [0_u8; LONGEST];
-    let (whole, part) = cell.split_at(comma);
+    let (whole, part) = cell.split_at(mark);
     let mut length = 0;
     let mut put = |byte: u8| {
         buffer[length] = byte;
         length += 1;
     };
-    match memchr::memchr(b'.', whole) {
+    match memchr::memchr(group, whole) {
         None => whole.iter().for_each(|byte| put(*byte)),
-        Some(_) => ungrouped(whole)?.for_each(&mut put),
+        Some(_) => ungrouped(whole, group)?.for_each(&mut put),
     }
     put(b'.');
     part.iter().skip(1).for_each(|byte| put(*byte));
     std::str::from_utf8(buffer.get(..length)?).ok()?.parse().ok()
 }
 
-/// The digits of a whole number whose thousands are set apart by points, with its sign: `-1.234.567`; `None` if they are
+/// The digits of a whole number whose thousands are set apart by a mark, with its sign: `-1.234.567`; `None` if they are
 /// not groups of three.
-fn ungrouped(whole: &[u8]) -> Option<impl Iterator<Item = u8>> {
+fn ungrouped(whole: &[u8], mark: u8) -> Option<impl Iterator<Item = u8>> {
     let digits = whole.strip_prefix(b"-").or_else(|| whole.strip_prefix(b"+")).unwrap_or(whole);
-    let grouped = digits.split(|byte| *byte == b'.').enumerate().all(|(k, group)| {
+    let grouped = digits.split(|byte| *byte == mark).enumerate().all(|(k, group)| {
         let long = if k == 0 { (1..=3).contains(&group.len()) } else { group.len() == 3 };
         long && group.iter().all(u8::is_ascii_digit)
     });
-    grouped.then(|| whole.iter().copied().filter(|byte| *byte != b'.'))
+    grouped.then(|| whole.iter().copied().filter(move |byte| *byte != mark))
 }
 
-/// A plain decimal number times `unit_ns`, rounded to whole nanoseconds without a detour over
-/// binary fractions: stamps of 19 digits keep them all. `None` beyond what an `i64` holds.
+/// As [`nanoseconds_after`], from 0 on.
 pub(super) fn nanoseconds(cell: &[u8], decimal_comma: bool, unit_ns: i64) -> Option<i64> {
+    nanoseconds_after(0, cell, decimal_comma, unit_ns)
+}
+
+/// An instant and a plain decimal number times `unit_ns` after it, rounded to whole nanoseconds without a detour over
+/// binary fractions: stamps of 19 digits keep them all. `None` beyond what an `i64` holds.
+pub(super) fn nanoseconds_after(
+    zero_ns: i128,
+    cell: &[u8],
+    decimal_comma: bool,
+    unit_ns: i64,
+) -> Option<i64> {
     let cell = cell.trim_ascii();
     let (negative, digits) = match cell.first()? {
         b'-' => (true, &cell[1..]),
@@ -60,7 +72,8 @@ pub(super) fn nanoseconds(cell: &[u8], decimal_comma: bool, unit_ns: i64) -> Opt
     };
     let plain = |digits: &[u8]| digits.iter().all(u8::is_ascii_digit);
     if !plain(whole) || !plain(fraction) {
-        return scientific(cell, decimal_comma, unit_ns);
+        return scientific(cell, decimal_comma, unit_ns)
+            .and_then(|ns| i64::try_from(zero_ns + i128::from(ns)).ok());
     }
     if whole.len() > 19 || whole.is_empty() && fraction.is_empty() {
         return None;
@@ -72,7 +85,7 @@ pub(super) fn nanoseconds(cell: &[u8], decimal_comma: bool, unit_ns: i64) -> Opt
     let scale = 10_i128.pow(u32::try_from(fraction.len()).ok()?);
     let rounded = (2 * value(fraction) * unit + scale) / (2 * scale);
     let total = value(whole) * unit + rounded;
-    i64::try_from(if negative { -total } else { total }).ok()
+    i64::try_from(zero_ns + if negative { -total } else { total }).ok()
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "range checked")]
@@ -116,7 +129,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn points_set_thousands_apart_only_before_a_decimal_comma_and_only_in_threes() {
+    fn one_mark_sets_thousands_apart_only_before_the_other_and_only_in_threes() {
+        for (cell, value) in [("1,493.02", 1493.02), ("-1,234,567.5", -1_234_567.5)] {
+            assert_eq!(number(cell.as_bytes(), false), Some(value), "{cell}");
+            assert_eq!(looks(cell.as_bytes()), Looks::Point, "{cell}");
+        }
+        for cell in ["1,49.02", "1493,020.5", "1,493", "1.493,02", ",493.0"] {
+            assert_eq!(number(cell.as_bytes(), false), None, "{cell}");
+        }
         for (cell, value) in [("1.493,02", 1493.02), ("-1.234.567,5", -1_234_567.5), ("+12.000,0", 12_000.0)]
         {
             assert_eq!(number(cell.as_bytes(), true), Some(value), "{cell}");

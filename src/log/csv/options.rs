@@ -16,9 +16,11 @@ pub struct CsvOptions {
     pub separator: Option<Separator>,
     /// Whether numbers are written 1,5; `None`: found.
     pub decimal_comma: Option<bool>,
+    /// A column and its value in the rows to read; `None`: all rows.
+    pub only: Option<(String, String)>,
     /// Column of the time; `None`: found by name.
     pub time: Option<String>,
-    /// Unit of the time column: s, ms, us or ns.
+    /// Unit of the time column: s, ms, us, ns, min, h, filetime (100 ns since 1601) or excel (days since 1899-12-30).
     pub time_unit: Option<String>,
     /// Rows come at this rate, Hz; the file's own times are not used.
     pub rate_hz: Option<f64>,
@@ -120,6 +122,7 @@ impl CsvOptions {
     pub fn or(mut self, other: Self) -> Self {
         self.separator = self.separator.or(other.separator);
         self.decimal_comma = self.decimal_comma.or(other.decimal_comma);
+        self.only = self.only.or(other.only);
         self.time = self.time.or(other.time);
         self.time_unit = self.time_unit.or(other.time_unit);
         self.rate_hz = self.rate_hz.or(other.rate_hz);
@@ -145,7 +148,7 @@ impl CsvOptions {
         if let Some(text) = &self.time_unit
             && parse_unit(text).is_none_or(|unit| unit.measure != Measure::Time)
         {
-            return Err(bad("--time-unit", text.clone(), "s, ms, us or ns"));
+            return Err(bad("--time-unit", text.clone(), "s, ms, us, ns, min, h, filetime or excel"));
         }
         Ok(())
     }

@@ -98,6 +98,10 @@ pub(super) fn read(
         let message = "last row, which breaks off in a number: the file was cut there; left out";
         remarks.add(Code::NotClosed, 1, message);
     }
+    if runs_backwards(&stamp_ns) {
+        stamp_ns.reverse();
+        columns.values_mut().for_each(|column| column.values.reverse());
+    }
     let absolute = time.settle(&mut stamp_ns);
     let outside = drop_outside(&mut stamp_ns, &mut columns);
     let clock = time.columns().first().map_or("", |&column| head.names[column].as_str());
@@ -107,6 +111,13 @@ pub(super) fn read(
         column.judge(&head.names[*at], dialect, remarks)?;
     }
     Ok(Cells { stamp_ns, received_ns, absolute, columns })
+}
+
+/// Whether the newest row comes first, as databases are asked for them: nearly every row is earlier than the one before.
+fn runs_backwards(stamp_ns: &[i64]) -> bool {
+    let falls = stamp_ns.windows(2).filter(|w| w[1] < w[0]).count();
+    let rises = stamp_ns.windows(2).filter(|w| w[1] > w[0]).count();
+    falls >= FEWEST && rises <= falls / 100
 }
 
 /// An error if most rows have no time, a remark if some rows have no time.

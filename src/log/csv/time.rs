@@ -2,7 +2,7 @@
 
 use super::{
     date::{DateForm, Part},
-    number::nanoseconds,
+    number::{nanoseconds, nanoseconds_after},
     unit::{Measure, Unit, parse_unit},
 };
 use crate::units::NS_PER_S;
@@ -23,10 +23,27 @@ pub(super) const FIRST_ABSOLUTE_NS: i64 = 100_000_000_000_000_000;
 /// How each row gets its stamp.
 #[derive(Debug, Clone)]
 pub(super) enum TimeSource {
-    Rate { hz: f64 },
-    Number { column: usize, unit: Unit },
-    Date { column: usize, form: DateForm },
-    DayAndTime { day: (usize, DateForm), time: (usize, DateForm) },
+    Rate {
+        hz: f64,
+    },
+    Number {
+        column: usize,
+        unit: Unit,
+    },
+    Date {
+        column: usize,
+        form: DateForm,
+    },
+    DayAndTime {
+        day: (usize, DateForm),
+        time: (usize, DateForm),
+    },
+    /// Whole seconds, and what is beyond them in a column of its own.
+    WithPart {
+        whole: Box<TimeSource>,
+        part: usize,
+        unit: Unit,
+    },
 }
 
 impl TimeSource {
@@ -34,13 +51,20 @@ impl TimeSource {
     pub(super) fn ns<'a>(
         &self,
         row: u64,
-        cell: impl Fn(usize) -> &'a [u8],
+        cell: impl Fn(usize) -> &'a [u8] + Copy,
         decimal_comma: bool,
     ) -> Option<i64> {
         match self {
             Self::Rate { hz } => whole(row as f64 * NS_PER_S / hz),
-            Self::Number { column, unit } => {
-                nanoseconds(with_unit(cell(*column)).0, decimal_comma, whole(unit.factor)?)
+            Self::Number { column, unit } => nanoseconds_after(
+                unit.zero_ns(),
+                with_unit(cell(*column)).0,
+                decimal_comma,
+                whole(unit.factor)?,
+            ),
+            Self::WithPart { whole: seconds, part, unit } => {
+                let beyond_ns = nanoseconds(cell(*part), decimal_comma, whole(unit.factor)?)?;
+                seconds.ns(row, cell, decimal_comma)?.checked_add(beyond_ns)
             }
             Self::Date { column, form } => form.ns(cell(*column)),
             Self::DayAndTime { day, time } => day.1.ns(cell(day.0))?.checked_add(time.1.ns(cell(time.0))?),
@@ -53,6 +77,11 @@ impl TimeSource {
             Self::Rate { .. } => Vec::new(),
             Self::Number { column, .. } | Self::Date { column, .. } => vec![*column],
             Self::DayAndTime { day, time } => vec![day.0, time.0],
+            Self::WithPart { whole, part, .. } => {
+                let mut columns = whole.columns();
+                columns.push(*part);
+                columns
+            }
         }
     }
 
@@ -68,6 +97,7 @@ impl TimeSource {
             Self::DayAndTime { day, time } => {
                 format!("{} and {}, no zone, taken as UTC", day.1.name, time.1.name)
             }
+            Self::WithPart { whole, unit, .. } => format!("{}, and {} beside", whole.form(), unit.name),
         }
     }
 
@@ -91,7 +121,8 @@ impl TimeSource {
 
     /// Whether a time of a day that follows another is on the next day.
     pub(super) fn next_day(&self, before_ns: i64, ns: i64) -> bool {
-        matches!(self, Self::Date { form, .. } if form.part() == Part::TimeOfDay)
+        let whole = if let Self::WithPart { whole, .. } = self { whole } else { self };
+        matches!(whole, Self::Date { form, .. } if form.part() == Part::TimeOfDay)
             && before_ns.saturating_sub(ns) > Self::DAY_NS / 2
     }
 

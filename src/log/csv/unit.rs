@@ -40,18 +40,69 @@ const MILLIMETRE: Unit = unit("mm", Measure::Length, 1e-3);
 const CENTIMETRE: Unit = unit("cm", Measure::Length, 1e-2);
 pub(super) const METRE: Unit = unit("m", Measure::Length, 1.0);
 
+/// Of clocks of Windows.
+pub(super) const FILETIME: Unit = unit("100 ns since 1601", Measure::Time, 100.0);
+/// Of spreadsheets.
+pub(super) const EXCEL_DAY: Unit = unit("days since 1899-12-30", Measure::Time, 86_400e9);
+
+/// Units before which a number stands, as `[10 ms]` or `0.1mm`.
+const SCALED: [Unit; 10] = [
+    unit("0.1 deg", Measure::Angle, 0.1 * DEGREE_RAD),
+    unit("0.01 deg", Measure::Angle, 0.01 * DEGREE_RAD),
+    unit("0.001 deg", Measure::Angle, 0.001 * DEGREE_RAD),
+    unit("0.1 mm", Measure::Length, 1e-4),
+    unit("0.01 mm", Measure::Length, 1e-5),
+    unit("0.1 s", Measure::Time, 1e8),
+    unit("0.01 s", Measure::Time, 1e7),
+    unit("0.1 ms", Measure::Time, 1e5),
+    unit("10 us", Measure::Time, 1e4),
+    unit("100 ns", Measure::Time, 100.0),
+];
+
+/// The name of a scale that no program is known to write.
+const ODD: &str = "another unit";
+
+/// Units of other quantities, and, from a place on, counts of what only the machine's maker knows.
+const FIRST_COUNT: usize = 16;
+const OTHERS: [&str; 27] = [
+    "nm",
+    "n m",
+    "n*m",
+    "a",
+    "ma",
+    "v",
+    "mv",
+    "n",
+    "kn",
+    "%",
+    "c",
+    "degc",
+    "l/min",
+    "hz",
+    "pct",
+    "percent",
+    "count",
+    "counts",
+    "cnt",
+    "inc",
+    "incr",
+    "increments",
+    "tick",
+    "ticks",
+    "steps",
+    "digits",
+    "lsb",
+];
+
 /// Spellings, in lower case and with `deg` for the degree sign.
 const UNITS: [(&[&str], Unit); 32] = [
     (&["rad", "radian", "radians", "弧度"], RADIAN),
     (&["deg", "degree", "degrees", "grad", "grados", "gradi", "degrés", "度"], DEGREE),
-    (&["0.1deg", "0.1 deg"], unit("0.1 deg", Measure::Angle, 0.1 * DEGREE_RAD)),
-    (&["0.01deg", "0.01 deg"], unit("0.01 deg", Measure::Angle, 0.01 * DEGREE_RAD)),
-    (&["0.001deg", "0.001 deg"], unit("0.001 deg", Measure::Angle, 0.001 * DEGREE_RAD)),
-    (&["0.1mm", "0.1 mm"], unit("0.1 mm", Measure::Length, 1e-4)),
-    (&["0.01mm", "0.01 mm"], unit("0.01 mm", Measure::Length, 1e-5)),
     (&["mrad"], unit("mrad", Measure::Angle, 1e-3)),
     (&["mdeg"], unit("mdeg", Measure::Angle, 1e-3 * DEGREE_RAD)),
     (&["rev", "turn", "turns"], unit("rev", Measure::Angle, TAU)),
+    (&["gon"], unit("gon", Measure::Angle, TAU / 400.0)),
+    (&["arcmin"], unit("arcmin", Measure::Angle, DEGREE_RAD / 60.0)),
     (&["rad/s", "rad_s", "rads", "rad/sec", "rad s^-1"], unit("rad/s", Measure::AngularSpeed, 1.0)),
     (
         &["deg/s", "deg_s", "degs", "deg/sec", "dps", "grad/s"],
@@ -62,6 +113,7 @@ const UNITS: [(&[&str], Unit); 32] = [
     (&["mm", "毫米", "millimetre", "millimetres", "millimeter", "millimeters"], MILLIMETRE),
     (&["cm", "centimetre", "centimetres", "centimeter", "centimeters"], CENTIMETRE),
     (&["m", "metre", "metres", "meter", "meters"], METRE),
+    (&["in", "inch", "inches"], unit("in", Measure::Length, 0.0254)),
     (&["mm/s", "mm_s", "mm/sec"], unit("mm/s", Measure::LinearSpeed, 1e-3)),
     (&["cm/s", "cm_s", "cm/sec"], unit("cm/s", Measure::LinearSpeed, 1e-2)),
     (&["m/s", "m_s", "m/sec"], unit("m/s", Measure::LinearSpeed, 1.0)),
@@ -69,20 +121,33 @@ const UNITS: [(&[&str], Unit); 32] = [
     (&["ms", "毫秒", "msec", "milliseconds", "millis"], unit("ms", Measure::Time, 1e6)),
     (&["us", "µs", "μs", "usec", "microseconds", "micros"], unit("us", Measure::Time, 1e3)),
     (&["ns", "nsec", "nanosec", "nanoseconds", "nanos"], unit("ns", Measure::Time, 1.0)),
-    (&["min", "minutes"], unit("min", Measure::Time, 60e9)),
+    (&["min", "minute", "minutes"], unit("min", Measure::Time, 60e9)),
+    (&["h", "hr", "hrs", "hour", "hours"], unit("h", Measure::Time, 3600e9)),
+    (&["filetime", "100 ns since 1601"], FILETIME),
+    (&["excel", "days since 1899-12-30"], EXCEL_DAY),
     (&["pa"], unit("Pa", Measure::Pressure, 1.0)),
     (&["kpa"], unit("kPa", Measure::Pressure, 1e3)),
     (&["mpa"], unit("MPa", Measure::Pressure, 1e6)),
     (&["mbar"], unit("mbar", Measure::Pressure, 100.0)),
     (&["bar"], unit("bar", Measure::Pressure, 1e5)),
     (&["psi"], unit("psi", Measure::Pressure, 6_894.757_293_168)),
-    (
-        &["nm", "n m", "n*m", "a", "ma", "v", "mv", "n", "kn", "%", "c", "degc", "l/min", "hz"],
-        unit("another unit", Measure::Other, 1.0),
-    ),
 ];
 
 impl Unit {
+    /// The instant from which it counts, ns since 1970; 0 for a unit that says none.
+    pub(super) fn zero_ns(self) -> i128 {
+        match self {
+            FILETIME => -11_644_473_600_000_000_000,
+            EXCEL_DAY => -2_209_161_600_000_000_000,
+            _ => 0,
+        }
+    }
+
+    /// Whether a joint may be counted in it, but how far one is only its maker knows: counts, increments, odd scales.
+    pub(super) fn is_odd(self) -> bool {
+        self.measure == Measure::Other && (self.name == ODD || OTHERS[FIRST_COUNT..].contains(&self.name))
+    }
+
     /// The unit of a speed: this one a second.
     pub(super) fn per_second(self) -> Self {
         parse_unit(&format!("{}/s", self.name)).unwrap_or(self)
@@ -92,15 +157,34 @@ impl Unit {
 /// The unit that a text names, if it is one.
 pub(super) fn parse_unit(text: &str) -> Option<Unit> {
     let text = text.trim().trim_matches(['[', ']', '(', ')']).trim().to_lowercase().replace('°', "deg");
-    UNITS.iter().find(|(spellings, _)| spellings.contains(&text.as_str())).map(|(_, unit)| *unit)
+    let known = UNITS.iter().find(|(spellings, _)| spellings.contains(&text.as_str())).map(|(_, unit)| *unit);
+    let other = || OTHERS.iter().find(|other| **other == text).map(|name| unit(name, Measure::Other, 1.0));
+    known.or_else(other).or_else(|| scaled(&text))
+}
+
+/// A unit behind a number or a fraction of one; one that no program is known to write is another unit.
+fn scaled(text: &str) -> Option<Unit> {
+    let name = text.find(|c: char| !(c.is_ascii_digit() || ".,/".contains(c))).filter(|at| *at > 0)?;
+    let (number, name) = text.split_at(name);
+    let (above, below) = number.split_once('/').unwrap_or((number, "1"));
+    let [above, below] = [above, below].map(|text| text.replace(',', ".").parse::<f64>().ok());
+    let factor = above? / below?;
+    let name = name.trim_start_matches([' ', '*', 'x', '·']);
+    let (_, base) = UNITS.iter().find(|(spellings, _)| spellings.contains(&name))?;
+    let alike =
+        |one: &&Unit| one.measure == base.measure && (one.factor / (factor * base.factor) - 1.0).abs() < 1e-9;
+    let bases = UNITS.iter().map(|(_, unit)| unit);
+    let mut all = SCALED.iter().chain(bases);
+    Some(all.find(alike).copied().unwrap_or(unit(ODD, Measure::Other, 1.0)))
 }
 
 /// The unit that ends a name, as in `q1_deg` or `J1_planned_rad_s`, and the name without it.
 pub(super) fn split_suffix(name: &str) -> Option<(&str, Unit)> {
-    const SUFFIXES: [&str; 26] = [
+    const SUFFIXES: [&str; 40] = [
         "0.1deg", "0.01deg", "0.001deg", "0.1mm", "0.01mm", "rad_s", "deg_s", "mrad_s", "mm_s", "cm_s",
         "m_s", "rad", "deg", "mrad", "mdeg", "mm", "cm", "m", "ms", "us", "ns", "s", "bar", "mbar", "pa",
-        "°",
+        "°", "min", "minutes", "h", "hours", "sec", "msec", "usec", "nsec", "nanosec", "gon", "pct",
+        "percent", "counts", "ticks",
     ];
     let lower = name.to_lowercase();
     let suffix = SUFFIXES.iter().find(|suffix| {
@@ -123,6 +207,24 @@ mod tests {
         }
         assert_eq!(parse_unit("°/s").map(|unit| unit.name), Some("deg/s"));
         assert_eq!(parse_unit("soll"), None);
+        for (text, name) in [
+            ("[1/10 mm]", "0.1 mm"),
+            ("0.1deg", "0.1 deg"),
+            ("[0,1 ms]", "0.1 ms"),
+            ("(1/100 s)", "0.01 s"),
+            ("10 ms", "0.01 s"),
+            ("[100ns]", "100 ns"),
+            ("1 mm", "mm"),
+            ("[7 mm]", "another unit"),
+            ("[counts]", "counts"),
+            ("1000 ms", "s"),
+        ] {
+            assert_eq!(parse_unit(text).map(|unit| unit.name), Some(name), "{text}");
+        }
+        assert_eq!(
+            (parse_unit("12"), parse_unit("1/0 mm").map(|unit| unit.name)),
+            (None, Some("another unit"))
+        );
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::{
     choice::remark_choice,
     content::{Content, Extracted},
     cylinders::Kinds,
+    held,
     joints::{add_new, keep_joints},
     overlap, poses, quality,
     recording::{Command, Recording, SourceInfo},
@@ -119,6 +120,11 @@ pub(super) fn assemble(
     assembly.kinds.convert(JointKind::Turns, sides, &mut remarks)?;
     for (_, series) in &mut *sides {
         quality::unwrap_turns(series, &options.continuous, &mut remarks);
+    }
+    // Trajectories say themselves how they go on.
+    if choice.planned.iter().all(|candidate| candidate.field.is_some()) {
+        let [(_, planned), (_, measured)] = &mut *sides;
+        held::of_sides(planned, measured, &mut remarks);
     }
     spoilt::of_sides(sides[0].1, sides[1].1, &mut remarks);
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);

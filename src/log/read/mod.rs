@@ -9,6 +9,7 @@ mod description;
 mod extract;
 mod frames;
 mod frozen;
+mod held;
 mod indexed;
 mod joints;
 pub(super) mod lines;

@@ -188,36 +188,64 @@ pub(super) fn of_pairs(planned: &Series, measured: &Series, options: &ReadOption
     }
 }
 
-/// A planned step within one sample that no joint can follow: rad or m, and rad/s or m/s; larger than the steps beside
-/// it by the factor.
+/// A step within one sample that no joint can make: rad or m, and rad/s or m/s; larger than the steps beside it by the
+/// factor.
 const LEAST_STEP: f64 = 0.2;
 const STEP_SPEED: f64 = 20.0;
 const STEP_ALONE: f64 = 10.0;
 
 /// Remarks on a plan that jumps.
 fn of_plan(track: &Track, remarks: &mut Remarks) {
-    let (t_s, position) = (track.t_s(), track.position());
-    if position.windows(2).fold(true, |calm, w| calm & ((w[1] - w[0]).abs() <= LEAST_STEP)) {
-        return;
-    }
-    let (mut jumps, mut largest) = (0, (0.0_f64, 0.0));
-    for part in track.segments() {
-        let step = |k: usize| (position[k] - position[k - 1]).abs();
-        for k in part.start + 1..part.end {
-            let beside = || [k - 1, k + 1].into_iter().filter(|k| (part.start + 1..part.end).contains(k));
-            let far = step(k) > LEAST_STEP.max(STEP_SPEED * (t_s[k] - t_s[k - 1]));
-            if far && step(k) > STEP_ALONE * beside().map(step).fold(0.0, f64::max) {
-                jumps += 1;
-                largest = if step(k) > largest.0 { (step(k), t_s[k]) } else { largest };
-            }
-        }
-    }
-    let ((most, at_s), name, unit) = (largest, track.name(), track.kind().unit());
+    let Jumps { count, most, at_s } = Jumps::of(track);
+    let (name, unit) = (track.name(), track.kind().unit());
     let message = format!(
         "steps of the plan of {name} within one sample, the largest of {most:.3} {unit} at {at_s:.2} s: the plan itself \
          jumps, which no joint can follow"
     );
-    remarks.add(Code::PlanJumps, jumps, message);
+    remarks.add(Code::PlanJumps, count, message);
+}
+
+/// Remarks on a measurement that jumps and stays there.
+fn of_measurement(track: &Track, remarks: &mut Remarks) {
+    let Jumps { count, most, at_s } = Jumps::of(track);
+    let (name, unit) = (track.name(), track.kind().unit());
+    let message = format!(
+        "steps of the measured {name} within one sample, the largest of {most:.3} {unit} at {at_s:.2} s: no joint moves \
+         so, and errors there are the sensor's (a fault value, a lost reference, another zero)"
+    );
+    remarks.add(Code::Implausible, count, message);
+}
+
+/// Steps of a track that no joint can make.
+struct Jumps {
+    count: u64,
+    /// The largest, rad or m, and when, s.
+    most: f64,
+    at_s: f64,
+}
+
+impl Jumps {
+    fn of(track: &Track) -> Self {
+        let (t_s, position) = (track.t_s(), track.position());
+        let mut found = Self { count: 0, most: 0.0, at_s: 0.0 };
+        if position.windows(2).fold(true, |calm, w| calm & ((w[1] - w[0]).abs() <= LEAST_STEP)) {
+            return found;
+        }
+        for part in track.segments() {
+            let step = |k: usize| (position[k] - position[k - 1]).abs();
+            for k in part.start + 1..part.end {
+                let beside = || [k - 1, k + 1].into_iter().filter(|k| (part.start + 1..part.end).contains(k));
+                let far = step(k) > LEAST_STEP.max(STEP_SPEED * (t_s[k] - t_s[k - 1]));
+                if far && step(k) > STEP_ALONE * beside().map(step).fold(0.0, f64::max) {
+                    found.count += 1;
+                    if step(k) > found.most {
+                        (found.most, found.at_s) = (step(k), t_s[k]);
+                    }
+                }
+            }
+        }
+        found
+    }
 }
 
 pub(super) fn unmeasured(joint: &str, remarks: &mut Remarks) {
@@ -233,6 +261,10 @@ const TURN_AND_A_HALF_RAD: f64 = 1.5 * TAU;
 fn of_pair(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &mut Remarks) {
     if planned.turns() {
         of_units(planned, measured, options, remarks);
+    }
+    // Full turns are told of elsewhere.
+    if turns(measured) == 0 {
+        of_measurement(measured, remarks);
     }
     if let Some((from_s, to_s, samples)) = frozen(planned, measured) {
         let name = planned.name();

@@ -113,7 +113,15 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
         return Err(missing(extracted, MEASURED, "--measured"));
     }
     let measured_joints: BTreeSet<&String> = measured.iter().flat_map(|c| &c.joints).collect();
-    let first = planned.iter().find(|c| c.joints.iter().any(|joint| measured_joints.contains(joint)));
+    let common = |c: &&Candidate| c.joints.iter().any(|joint| measured_joints.contains(joint));
+    let best = planned.iter().find(common);
+    // Of several arms that of the measurement, if the caller names one.
+    let near = |c: &Candidate| measured.iter().map(|m| kinship(&c.topic, &m.topic)).max().unwrap_or(0);
+    let named = !options.measured.is_empty() && options.planned.is_empty();
+    let alike =
+        planned.iter().filter(|c| named && best.is_some_and(|best| best.rank == c.rank)).filter(common);
+    // The first of the nearest.
+    let first = alike.rev().max_by_key(|c| near(c)).or(best);
     let Some(first) = first else {
         let list = |all: &[Candidate]| {
             let names: BTreeSet<&str> = all.iter().flat_map(|c| &c.joints).map(String::as_str).collect();
@@ -127,9 +135,8 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
     let wanted: BTreeSet<&String> = planned.iter().flat_map(|c| &c.joints).collect();
     // The message that holds the plan holds the measurement of the same instant, if any does.
     let mut ordered: Vec<&Candidate> = measured.iter().collect();
-    let kinship =
-        |c: &Candidate| planned.iter().map(|p| shared_namespace(&p.topic, &c.topic)).max().unwrap_or(0);
-    ordered.sort_by_key(|c| (!planned.iter().any(|p| p.source == c.source), std::cmp::Reverse(kinship(c))));
+    let near = |c: &Candidate| planned.iter().map(|p| kinship(&p.topic, &c.topic)).max().unwrap_or(0);
+    ordered.sort_by_key(|c| (!planned.iter().any(|p| p.source == c.source), std::cmp::Reverse(near(c))));
     let all_measured = measured.clone();
     let measured = cover(ordered.into_iter(), Some(&wanted), None);
     if let (Some(p), Some(m)) = (planned.first(), measured.first())
@@ -165,9 +172,11 @@ fn choose_one(extracted: &Extracted, options: &ReadOptions, role: Role) -> Resul
     Ok(Choice { planned, measured, why, rivals: Vec::new() })
 }
 
-/// Leading parts of their names that two topics share.
-fn shared_namespace(a: &str, b: &str) -> usize {
-    namespace(a).zip(namespace(b)).take_while(|(a, b)| a == b).count()
+/// Leading words of their namespaces that two topics share: two of `/arm_right/joint_states` and
+/// `/arm_right_controller/joint_trajectory`.
+fn kinship(a: &str, b: &str) -> usize {
+    let [a, b] = [a, b].map(|topic| namespace(topic).flat_map(|part| part.split('_')));
+    a.zip(b).take_while(|(a, b)| a == b).count()
 }
 
 /// The parts of a topic's name but the last.

@@ -1,0 +1,209 @@
+//! Numbers whose thousands are set apart, without these marks.
+
+use std::borrow::Cow;
+
+use ::csv::{ByteRecord, WriterBuilder};
+
+use super::{
+    CsvOptions, Separator,
+    dialect::{Dialect, detect},
+    head::read_head,
+    label::label,
+    rows::Rows,
+};
+use crate::remark::{Code, Remarks};
+
+/// Marks between groups of three that are no decimal marks, as UTF-8: apostrophes and blanks of several widths.
+const MARKS: [&[u8]; 5] = [
+    "'".as_bytes(),
+    "\u{2019}".as_bytes(),
+    "\u{a0}".as_bytes(),
+    "\u{202f}".as_bytes(),
+    "\u{2009}".as_bytes(),
+];
+/// The sign that typesetters put before negative numbers.
+const MINUS: &[u8] = "\u{2212}".as_bytes();
+
+/// The text with plain numbers.
+pub(super) fn plain<'a>(
+    file: &str,
+    text: Cow<'a, [u8]>,
+    options: &CsvOptions,
+    remarks: &mut Remarks,
+) -> Cow<'a, [u8]> {
+    let text = without_marks(&text).map_or(text, Cow::Owned);
+    let Some((dialect, mark)) = grouped(file, &text, options, remarks) else { return text };
+    without_groups(&text, dialect, mark).map_or(text, Cow::Owned)
+}
+
+/// Without marks that can only set thousands apart, between a digit and three others; `None` if there are none.
+fn without_marks(text: &[u8]) -> Option<Vec<u8>> {
+    let mut plain = Vec::new();
+    let mut from = 0;
+    let three = |rest: &[u8]| {
+        rest.get(..3).is_some_and(|three| three.iter().all(u8::is_ascii_digit))
+            && !rest.get(3).is_some_and(u8::is_ascii_digit)
+    };
+    for at in memchr::memchr3_iter(b'\'', 0xc2, 0xe2, text) {
+        let rest = &text[at..];
+        let mark = MARKS.iter().find(|mark| {
+            let before = at.checked_sub(1).and_then(|before| text.get(before));
+            rest.starts_with(mark) && before.is_some_and(u8::is_ascii_digit) && three(&rest[mark.len()..])
+        });
+        let put: Option<(usize, &[u8])> = match mark {
+            Some(mark) => Some((mark.len(), b"")),
+            None if rest.starts_with(MINUS) => Some((MINUS.len(), b"-")),
+            None => None,
+        };
+        if let Some((length, put)) = put {
+            plain.extend_from_slice(&text[from..at]);
+            plain.extend_from_slice(put);
+            from = at + length;
+        }
+    }
+    (from > 0).then(|| {
+        plain.extend_from_slice(&text[from..]);
+        plain
+    })
+}
+
+/// How the digits of a cell are set apart by a mark.
+#[derive(PartialEq)]
+enum Groups {
+    /// In groups of three, as thousands are, and with a decimal mark behind: that is certain.
+    WithDecimals,
+    /// In groups of three, as thousands are, or as three decimals are.
+    Perhaps,
+    /// A whole number of at most three digits, and of more.
+    Short,
+    Long,
+    /// Otherwise.
+    Decimal,
+}
+
+fn groups(cell: &[u8], mark: u8) -> Option<Groups> {
+    let cell = cell.trim_ascii();
+    let digits = cell.strip_prefix(b"-").or_else(|| cell.strip_prefix(b"+")).unwrap_or(cell);
+    let other = if mark == b',' { b'.' } else { b',' };
+    let numeric = |byte: &u8| byte.is_ascii_digit() || *byte == mark || *byte == other;
+    if digits.is_empty() || !digits.iter().all(numeric) || !digits[0].is_ascii_digit() {
+        return None;
+    }
+    let (whole, decimals) = match digits.iter().position(|byte| *byte == other) {
+        Some(at) => (&digits[..at], Some(&digits[at + 1..])),
+        None => (digits, None),
+    };
+    if !whole.contains(&mark) {
+        return Some(match decimals {
+            Some(_) => Groups::Decimal,
+            None if whole.len() > 3 => Groups::Long,
+            None => Groups::Short,
+        });
+    }
+    let in_threes = whole.split(|byte| *byte == mark).enumerate().all(|(k, group)| match k {
+        0 => (1..=3).contains(&group.len()) && group[0] != b'0',
+        _ => group.len() == 3,
+    });
+    let plain = decimals.is_none_or(|decimals| decimals.iter().all(u8::is_ascii_digit));
+    let several = whole.iter().filter(|byte| **byte == mark).count() > 1;
+    Some(match (in_threes && plain, decimals.is_some() || several) {
+        (true, true) => Groups::WithDecimals,
+        (true, false) => Groups::Perhaps,
+        (false, _) => Groups::Decimal,
+    })
+}
+
+/// The mark that sets thousands apart, if one does. `1.380` may be either: it is thousands where the column has whole
+/// numbers below a thousand, too, or is in millimetres, and no number of the file says otherwise.
+fn grouped(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Option<(Dialect, u8)> {
+    let dialect = detect(file, text, options).ok()?;
+    let head = read_head(text, dialect, &mut Remarks::default());
+    let cells = |column: usize| head.sample.iter().filter_map(move |row| row.get(column)).map(Vec::as_slice);
+    for mark in [b',', b'.'] {
+        let (mut certain, mut perhaps, mut decimal) = (false, None, false);
+        for (column, name) in head.names.iter().enumerate() {
+            let found: Vec<Groups> = cells(column).filter_map(|cell| groups(cell, mark)).collect();
+            certain |= found.contains(&Groups::WithDecimals);
+            decimal |=
+                found.contains(&Groups::Decimal) && found.iter().all(|one| *one != Groups::WithDecimals);
+            if found.contains(&Groups::Perhaps) {
+                let short = found.contains(&Groups::Short);
+                let millimetres = label(name, None).unit.is_some_and(|unit| unit.name == "mm");
+                // All columns must allow it.
+                let allowed = (short || millimetres) && !found.contains(&Groups::Long);
+                perhaps = Some(perhaps.unwrap_or(true) && allowed);
+            }
+        }
+        if certain && options.decimal_comma != Some(mark == b',') {
+            return Some((dialect, mark));
+        }
+        if perhaps == Some(true) && !decimal && options.decimal_comma.is_none() {
+            let mark_name = if mark == b',' { "commas" } else { "points" };
+            let message = format!(
+                "{mark_name} between numbers such as 1{0}380 are taken to set thousands apart; if they are decimal \
+                 marks, say --decimal-{1}",
+                char::from(mark),
+                if mark == b',' { "comma" } else { "point" }
+            );
+            remarks.add(Code::Guessed, 1, message);
+            return Some((dialect, mark));
+        }
+    }
+    None
+}
+
+/// The same table with each cell of grouped digits without the mark.
+fn without_groups(text: &[u8], dialect: Dialect, mark: u8) -> Option<Vec<u8>> {
+    let separator = match dialect.separator {
+        Separator::Byte(byte) => byte,
+        Separator::Space => b'\t',
+    };
+    let mut plain = WriterBuilder::new().delimiter(separator).flexible(true).from_writer(Vec::new());
+    let mut rows = Rows::new(text, dialect.separator);
+    let mut record = ByteRecord::new();
+    while rows.next(&mut record).is_some() {
+        let cells = record.iter().map(|cell| match groups(cell, mark) {
+            Some(Groups::WithDecimals | Groups::Perhaps) => {
+                Cow::Owned(cell.iter().copied().filter(|byte| *byte != mark).collect::<Vec<u8>>())
+            }
+            _ => Cow::Borrowed(cell),
+        });
+        plain.write_record(cells).ok()?;
+    }
+    plain.into_inner().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> (String, usize) {
+        let mut remarks = Remarks::default();
+        let plain = plain("a.csv", Cow::Borrowed(text.as_bytes()), &CsvOptions::default(), &mut remarks);
+        (String::from_utf8(plain.into_owned()).unwrap(), remarks.as_slice().len())
+    }
+
+    #[test]
+    fn thousands_lose_their_marks_where_these_can_be_nothing_else() {
+        assert_eq!(
+            of("t,q\n0,1'180.5\n1,\u{2212}1\u{202f}180.5\n"),
+            ("t,q\n0,1180.5\n1,-1180.5\n".into(), 0)
+        );
+        assert_eq!(of("t,q\n0.0,\"1,480.0\"\n0.5,\"980.5\"\n"), ("t,q\n0.0,1480.0\n0.5,980.5\n".into(), 0));
+        assert_eq!(of("t;q\n0;999\n1;1.000\n2;1.001\n"), ("t;q\n0;999\n1;1000\n2;1001\n".into(), 1));
+        assert_eq!(of("t;q [mm]\n0;1,380\n1;1,381\n"), ("t;q [mm]\n0;1380\n1;1381\n".into(), 1));
+    }
+
+    #[test]
+    fn decimals_stay() {
+        for text in [
+            "t;q [m]\n0;1,380\n1;1,381\n",
+            "t;q [mm]\n0,000;1,380\n0,010;1,381\n",
+            "t,q [deg]\n0,1.380\n1,1.381\n",
+            "t;q [mm]\n0;1.380\n1;1.38\n",
+            "t;q\n0;it's 1\n1;2\n",
+        ] {
+            assert_eq!(of(text), (text.to_owned(), 0));
+        }
+    }
+}

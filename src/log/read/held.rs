@@ -1,0 +1,136 @@
+//! Plans that are written only where they change, as historians and subscriptions write them: between two values the
+//! first one holds.
+
+use crate::{
+    remark::{Code, Remarks},
+    series::{Series, Track},
+};
+
+/// Fewer values tell nothing.
+const LEAST: usize = 20;
+
+/// Of so many values one may repeat the one before, as it is rounded.
+const REPEATS: usize = 20;
+
+/// A value after a silence is no farther from the one before than so many of the steps elsewhere: more was lost.
+const STEPS: f64 = 3.0;
+
+/// Holds the plan through its silences, up to the end of the measurement, if it is written so; and the measurement, if
+/// that is, too.
+pub(super) fn of_sides(planned: &mut Series, measured: &mut Series, remarks: &mut Remarks) {
+    let Some([_, until_s]) = measured.span_s() else { return };
+    if of_side("plan", planned, until_s, remarks) {
+        of_side("measurement", measured, until_s, remarks);
+    }
+}
+
+fn of_side(side: &str, series: &mut Series, until_s: f64, remarks: &mut Remarks) -> bool {
+    let on_change: Vec<bool> =
+        series.tracks.iter().map(|track| is_written_on_change(track, &series.tracks)).collect();
+    let (mut silences, mut names) = (0, Vec::new());
+    for (track, _) in series.tracks.iter_mut().zip(on_change).filter(|(_, on_change)| *on_change) {
+        if let Some((held, count)) = held(track, until_s) {
+            silences += count;
+            names.push(track.name().to_owned());
+            *track = held;
+        }
+    }
+    let message = format!(
+        "silences of the {side} of {}, which hardly has a value twice in a row: it is written only where it changes, and \
+         is held in between",
+        names.join(", ")
+    );
+    remarks.add(Code::Guessed, silences, message);
+    silences > 0
+}
+
+/// Whether hardly a row repeats the one before, that of all joints at these instants, and none after a silence is far
+/// from the one before.
+fn is_written_on_change(track: &Track, all: &[Track]) -> bool {
+    let parts = track.segments();
+    if parts.len() < 2 || track.len() < LEAST {
+        return false;
+    }
+    let step = |track: &Track, k: usize| (track.position()[k] - track.position()[k - 1]).abs();
+    let rows = || parts.iter().flat_map(|part| part.start + 1..part.end);
+    let beside: Vec<&Track> = all.iter().filter(|other| other.t_s() == track.t_s()).collect();
+    let repeats = rows().filter(|k| beside.iter().all(|one| step(one, *k) <= 0.0)).count();
+    let near = |one: &&Track| {
+        let largest = rows().map(|k| step(one, k)).fold(0.0, f64::max);
+        parts.iter().skip(1).all(|part| step(one, part.start) <= STEPS * largest)
+    };
+    REPEATS * repeats <= track.len() && beside.iter().all(near)
+}
+
+/// The track with two samples more in each silence, and how many silences there are.
+fn held(track: &Track, until_s: f64) -> Option<(Track, u64)> {
+    let step_s = track.sample_interval_s();
+    let (mut t_s, mut position) = (Vec::new(), Vec::new());
+    let mut silences = 0;
+    let mut hold = |from: f64, to_s: f64, q: f64, t_s: &mut Vec<f64>, position: &mut Vec<f64>| {
+        if to_s - from > 3.0 * step_s {
+            t_s.extend([from + step_s, to_s - step_s]);
+            position.extend([q, q]);
+            silences += 1;
+        }
+    };
+    let parts = track.segments();
+    for (k, part) in parts.iter().enumerate() {
+        t_s.extend_from_slice(&track.t_s()[part.clone()]);
+        position.extend_from_slice(&track.position()[part.clone()]);
+        let last = part.end.checked_sub(1)?;
+        let to_s = parts.get(k + 1).map_or(until_s + step_s, |next| track.t_s()[next.start]);
+        hold(track.t_s()[last], to_s, track.position()[last], &mut t_s, &mut position);
+    }
+    Some((Track::of(track.kind(), track.name(), t_s, position, &[]).ok()?, silences))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two moves with a rest of 6 s between, and rests around, sampled at 50 Hz.
+    fn moves(t: f64) -> f64 {
+        let step = |from: f64| {
+            let x = ((t - from) / 3.0).clamp(0.0, 1.0);
+            x * x * (3.0 - 2.0 * x)
+        };
+        0.2 + 0.5 * step(4.0) - 0.3 * step(13.0)
+    }
+
+    fn series(kept: impl Fn(usize, &[f64]) -> bool) -> Series {
+        let t_s: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.02).collect();
+        let q: Vec<f64> = t_s.iter().map(|t| moves(*t)).collect();
+        let rows: Vec<usize> = (0..q.len()).filter(|k| kept(*k, &q)).collect();
+        let of = |all: &[f64]| rows.iter().map(|k| all[*k]).collect::<Vec<f64>>();
+        let cuts = crate::series::split_at_gaps(&of(&t_s));
+        Series { tracks: vec![Track::new("J", of(&t_s), of(&q), &cuts).unwrap()] }
+    }
+
+    fn told(mut plan: Series) -> (Series, u64) {
+        let mut remarks = Remarks::default();
+        of_sides(&mut plan, &mut series(|_, _| true), &mut remarks);
+        (plan, remarks.as_slice().iter().map(|remark| remark.count).sum())
+    }
+
+    #[test]
+    fn a_plan_that_is_written_where_it_changes_is_held_in_between() {
+        let changes = |k: usize, q: &[f64]| k == 0 || q[k] != q[k - 1];
+        let (held, silences) = told(series(changes));
+        assert_eq!((silences, held.tracks[0].segments().len()), (3, 1));
+        for k in 0..999 {
+            let t = f64::from(k) * 0.02;
+            let found = held.tracks[0].at(t).unwrap().position;
+            assert!((found - moves(t)).abs() < 1e-9, "{t}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_plan_with_holes_is_left_as_it_is() {
+        let lost = |within: std::ops::Range<usize>| series(move |k, _| !within.contains(&k));
+        let moved = |k: usize, q: &[f64]| !(230..280).contains(&k) && (k == 0 || q[k] != q[k - 1]);
+        for plan in [lost(225..275), lost(400..500), series(moved)] {
+            assert_eq!(told(plan.clone()), (plan, 0));
+        }
+    }
+}
