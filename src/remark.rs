@@ -92,6 +92,8 @@ pub enum Code {
     SentOtherwise,
     /// A model that predicts too badly to make commands from.
     PoorFit,
+    /// A machine that no longer answers the same command with the same error: older runs say little of it.
+    MachineChanged,
     /// Logs among many that cannot be analysed.
     UnreadableLog,
     /// Runs among many that name no machine.

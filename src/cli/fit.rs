@@ -75,9 +75,9 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let fitted = self.fitted()?;
         let target = Target::new(Form::of(&[(self.json, Form::Json)], self.document()), self.document())?;
-        let again = fitted.again.and_then(|place| self.logs.get(place));
+        let again: Vec<&PathBuf> = fitted.again.iter().filter_map(|place| self.logs.get(*place)).collect();
         let next = self.output.as_deref().filter(|_| self.document().is_none());
-        let next = next.map(|path| next::limits_written(path, again).reading(&self.sent.words()));
+        let next = next.map(|path| next::limits_written(path, &again).reading(&self.sent.words()));
         if let Some(file) = &self.html {
             write_file(file, words::page(&fitted, next.as_ref()).as_bytes())?;
         }

@@ -106,6 +106,28 @@ struct ChangeArgs {
     seed: u64,
 }
 
+impl ChangeArgs {
+    /// Options that hold for the next command, too: bounds, and what must not change.
+    fn words_of_next(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        let plain = |value: f64| (1e9 * value).round() / 1e9;
+        if let Some(most_rad) = self.max_correction_deg {
+            words.push(format!("--max-correction-deg={}", plain(most_rad.to_degrees())));
+        }
+        if self.no_precompensation {
+            words.push("--no-precompensation".to_owned());
+        }
+        let growths =
+            [("time", self.max_time_growth_percent, 0.0), ("cost", self.max_cost_growth_percent, 0.1)];
+        for (what, share, usual) in growths {
+            if (share - usual).abs() > 1e-12 {
+                words.push(format!("--max-{what}-growth-percent={}", plain(100.0 * share)));
+            }
+        }
+        words
+    }
+}
+
 impl Args {
     fn request(&self) -> Inputs {
         let change = &self.change;
@@ -176,7 +198,7 @@ impl Run for Args {
             let sending = next::to_send(
                 self.output.as_deref(),
                 &self.logs,
-                (&again, &self.sent.words_of_next()),
+                (&again, &self.sent.words_of_next(), &self.change.words_of_next()),
                 whole,
             );
             write_file(file, words::page(&replanned, &sending).as_bytes())?;
@@ -184,7 +206,8 @@ impl Run for Args {
         let result = match &self.output {
             _ if self.json => ReplanDocument::of(&replanned).json(),
             Some(path) => {
-                let next = next::next_written(path, &self.logs, &self.sent.words_of_next());
+                let words = (&*self.sent.words_of_next(), &*self.change.words_of_next());
+                let next = next::next_written(path, &self.logs, words);
                 target.text(&words::document(&replanned).with_above_remarks(next))
             }
             None => target.text(&words::document(&replanned)),

@@ -122,6 +122,11 @@ impl Setup {
         &self.arm
     }
 
+    /// Whether the tool gives a key point, so that its angles may be others than those of the template.
+    pub(crate) fn is_free(&self, point: usize) -> bool {
+        self.poses.get(point).is_some_and(Option::is_some)
+    }
+
     /// A motion with the task's key points, dwells and ends, to be given its times.
     pub fn template(&self) -> &Motion {
         &self.template

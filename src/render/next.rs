@@ -19,26 +19,31 @@ pub(crate) fn plan_written(log: &Path) -> Section {
     step(written(&log), aim, &["simulate", &log, "-o", "run.mcap"])
 }
 
-/// After `fit`; `log` is the run to plan again: one that holds a task, if there is one.
-pub(crate) fn limits_written(limits: &Path, log: Option<&PathBuf>) -> Section {
+/// After `fit`; `logs` are the runs of the plan to plan again.
+pub(crate) fn limits_written(limits: &Path, logs: &[&PathBuf]) -> Section {
     let limits = argument(limits);
-    let log = log.map_or("RUN.mcap".to_owned(), argument);
+    let logs: Vec<String> = logs.iter().map(argument).collect();
+    let logs = if logs.is_empty() { "RUN.mcap".to_owned() } else { logs.join(" ") };
     let aim = "To plan the next run, with half of the correction at first:";
-    step(written(&limits), aim, &["replan", &log, "--limits", &limits, "--gain", "0.5", "-o", "next.mcap"])
+    step(written(&limits), aim, &["replan", &logs, "--limits", &limits, "--gain", "0.5", "-o", "next.mcap"])
 }
 
-/// After `replan` of these logs.
-pub(crate) fn next_written(next: &Path, logs: &[PathBuf], reading: &[String]) -> Section {
+/// After `replan` of these logs, read by these options; `changing` are its options of what may change.
+pub(crate) fn next_written(
+    next: &Path,
+    logs: &[PathBuf],
+    (reading, changing): (&[String], &[String]),
+) -> Section {
     let next = argument(next);
-    after_run(written(&next), &next, logs).reading(reading)
+    after_run(written(&next), &next, logs, changing).reading(reading)
 }
 
 /// What to type before and after a run; `again` are words of `replan` that make the same command anew, and `whole` says that more
-/// than half of the correction was asked for. `reading` are options by which the logs were read.
+/// than half of the correction was asked for. `reading` are options by which the logs were read, `changing` those of what may change.
 pub(crate) fn to_send(
     next: Option<&Path>,
     logs: &[PathBuf],
-    (again, reading): (&[String], &[String]),
+    (again, reading, changing): (&[String], &[String], &[String]),
     whole: bool,
 ) -> Section {
     let with = |section, aim, more: [&str; 4]| {
@@ -47,7 +52,7 @@ pub(crate) fn to_send(
         step(section, aim, &words)
     };
     let none = || Section::new(Id::NEXT, "Commands", std::iter::empty::<Block>());
-    let after = |next: &str| after_run(none(), next, logs).reading(reading).blocks;
+    let after = |next: &str| after_run(none(), next, logs, changing).reading(reading).blocks;
     let section = none();
     let careful = "To send half of the correction first, the careful step:";
     let section =
@@ -59,7 +64,7 @@ pub(crate) fn to_send(
     section.with_all(after(&argument(next)))
 }
 
-fn after_run(section: Section, next: &str, logs: &[PathBuf]) -> Section {
+fn after_run(section: Section, next: &str, logs: &[PathBuf], changing: &[String]) -> Section {
     let last = logs.last().map_or("RUN.mcap".to_owned(), argument);
     let aim = "After the run, to put the plan into the recorder's log:";
     let after = unused("after", 1, logs, next);
@@ -67,7 +72,9 @@ fn after_run(section: Section, next: &str, logs: &[PathBuf]) -> Section {
     let compared = step(joined, "To see whether the error became smaller:", &["compare", &last, &after]);
     let mut words: Vec<String> = vec!["replan".to_owned()];
     words.extend(logs.iter().map(argument));
-    words.extend([after, "-o".to_owned(), unused("next", logs.len() + 1, logs, next)]);
+    words.push(after);
+    words.extend(changing.iter().cloned());
+    words.extend(["-o".to_owned(), unused("next", logs.len() + 1, logs, next)]);
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     step(compared, "To learn from it too, until nothing more is to be gained:", &words)
 }
@@ -93,7 +100,7 @@ mod tests {
     fn no_printed_line_names_a_file_of_another_line() {
         let said = |next: &str, logs: &[&str]| -> Vec<String> {
             let logs: Vec<PathBuf> = logs.iter().map(PathBuf::from).collect();
-            let lines = next_written(Path::new(next), &logs, &[]).blocks.into_iter();
+            let lines = next_written(Path::new(next), &logs, (&[], &[])).blocks.into_iter();
             lines
                 .filter_map(|block| if let Block::Command(line) = block { Some(line) } else { None })
                 .collect()

@@ -28,6 +28,11 @@ impl Replay {
         self.joints.first().map_or(JointKind::Turns, |joint| joint.kind)
     }
 
+    /// Peak errors of the transitions of joints that turn, rad: lengths are no angles.
+    pub fn turning_peaks_rad(&self) -> impl Iterator<Item = f64> {
+        self.transitions.iter().filter(|t| t.joint_kind == JointKind::Turns).map(|t| t.peak_error)
+    }
+
     /// The joints, the one with the largest error first, compared as transitions are.
     pub fn joints_worst_first(&self) -> Vec<&JointReplay> {
         let bands =

@@ -86,7 +86,13 @@ impl<'a> Joint<'a> {
     ) -> JointStep {
         let errors: Vec<Vec<f64>> = self.answers.iter().map(|run| run.error_rad(&self.planned)).collect();
         let largest_rad = errors.iter().flatten().fold(0.0_f64, |most, error| most.max(error.abs()));
-        let most_rad = settings.most_rad.unwrap_or(CAP_RAD.max(CAP_BY_ERROR * largest_rad));
+        let kept = settings
+            .keep
+            .and_then(|from| Some((from, self.answers.get(from)?.correction_rad(&self.planned))));
+        let of_kept = kept.iter().flat_map(|(_, kept)| kept).fold(0.0_f64, |most, kept| most.max(kept.abs()));
+        let most_rad = settings
+            .most_rad
+            .unwrap_or(CAP_RAD.max(CAP_BY_ERROR * largest_rad).max(of_kept / settings.share));
         let rms_error_rad: Vec<f64> = errors.iter().map(|error_rad| compared(error_rad)).collect();
         let nothing = vec![[0.0; 3]; self.planned.len()];
         let mut made = JointStep {
@@ -103,7 +109,7 @@ impl<'a> Joint<'a> {
         let Some(fit) = self.fit.filter(|_| !untouched && !free.is_empty() && settings.gain > 0.0) else {
             return made;
         };
-        if self.astray {
+        if self.astray && kept.is_none() {
             made.step = Step::Astray;
             return made;
         }
@@ -116,9 +122,14 @@ impl<'a> Joint<'a> {
         made.cut_off_hz = manner.cut_off_hz;
         made.spread_rad = self.spread_rad(&fit.model);
         let fade = fade(self.planned.len(), free);
-        let (step, mut wanted_rad) = self.wanted(fit, &manner, &made.rms_error_rad, &fade, settings);
+        let (step, wanted_rad) = if let Some((from, kept)) = kept {
+            (Step::Kept { from }, kept)
+        } else {
+            let (step, mut wanted_rad) = self.wanted(fit, &manner, &made.rms_error_rad, &fade, settings);
+            faded(&mut wanted_rad, &fade);
+            (step, wanted_rad)
+        };
         made.step = step;
-        faded(&mut wanted_rad, &fade);
         let wanted = Wanted {
             correction_rad: &wanted_rad,
             cut_off_hz: FINISHED_HZ.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz),
@@ -164,9 +175,6 @@ impl<'a> Joint<'a> {
             let by_model = inverted(&fit.model, manner, (planned, fade), (None, CALM_MODEL_HZ), workspace);
             return (Step::Model, scaled(by_model, gain));
         };
-        if let Some((from, run)) = settings.keep.and_then(|from| Some((from, answers.get(from)?))) {
-            return (Step::Kept { from }, run.correction_rad(planned));
-        }
         let corrected = |run: &Answer| run.correction_rad(planned).iter().any(|d| d.abs() > NONE_RAD);
         if !corrected(newest) && answers.len() == 1 {
             let (wanted, model_weight) =

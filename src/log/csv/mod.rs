@@ -7,6 +7,7 @@
 
 mod by_meaning;
 mod clock;
+mod clocks;
 mod column;
 mod date;
 mod dialect;
@@ -98,6 +99,7 @@ pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<
     let text = objects::as_table(&text).map_or(text, Cow::Owned);
     let text = only::of_one(name, text, options)?;
     let text = grouping::plain(name, text, options, &mut remarks);
+    let text = clocks::joined(name, &text, options).map_or(text, Cow::Owned);
     let text = long::widened(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
     Form::of(name, &text, options, &mut remarks)?.read(name, &text, remarks).map(|(run, _)| run)
 }

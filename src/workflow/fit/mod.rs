@@ -15,7 +15,7 @@ use crate::{
     fit::{Fit, FitError, HeldOut, Observation, fit_and_held_out},
     log::{ReadOptions, Recording, SignalRole, SourceInfo},
     remark::{Code, Remarks},
-    series::Track,
+    series::{Series, Track, moving_s},
     workflow::carried::Carried,
 };
 use {
@@ -60,9 +60,9 @@ pub struct Fitted {
     pub torques: Vec<JointTorque>,
     /// The runs.
     pub runs: Vec<FittedRun>,
-    /// Which run can be planned again: the last one that holds the task of its plan, or else the last; none of those that
-    /// do not belong to their plan, or whose plan is broken.
-    pub again: Option<usize>,
+    /// Runs of the plan that can be planned again, in their order: that of the last one that holds its task, or else of the
+    /// last; none that does not belong to its plan, or whose plan is broken.
+    pub again: Vec<usize>,
     /// Doubts about the data.
     pub remarks: Remarks,
 }
@@ -139,8 +139,26 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
     let again = |k: &usize| sound(&observed[*k]) && carried[*k].broken(&observed[*k]).is_none();
     let again: Vec<usize> = (0..observed.len()).filter(again).collect();
     let with_task = again.iter().rfind(|k| carried[**k].task().is_some());
-    let again = with_task.or(again.last()).copied();
+    let newest = with_task.or(again.last()).copied();
+    let of_plan = |k: &usize| {
+        newest
+            .is_some_and(|newest| *k <= newest && same_plan(&observed[*k].planned, &observed[newest].planned))
+    };
+    let again: Vec<usize> = again.into_iter().filter(of_plan).collect();
     Ok(Fitted { fit, held_out, torques, runs, again, remarks })
+}
+
+/// Whether two plans are one, each on its own clock.
+fn same_plan(a: &Series, b: &Series) -> bool {
+    const INSTANTS: u32 = 50;
+    const SAME: f64 = 2e-3;
+    let (Some(a_s), Some(b_s)) = (moving_s(a), moving_s(b)) else { return false };
+    let at = |[from_s, to_s]: [f64; 2], k: u32| from_s + (to_s - from_s) * f64::from(k) / f64::from(INSTANTS);
+    let near = |track: &Track, k: u32| {
+        let other = b.track(track.name())?;
+        Some((track.held_at(at(a_s, k)).position - other.held_at(at(b_s, k)).position).abs() < SAME)
+    };
+    a.tracks.iter().all(|track| (0..=INSTANTS).all(|k| near(track, k).unwrap_or(false)))
 }
 
 /// What is doubtful in the logs, each named if there are several.

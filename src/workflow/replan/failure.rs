@@ -9,6 +9,7 @@ use crate::{
     fit::FitError,
     plan::PlanError,
     series::{Broken, SignalError},
+    units::Degrees,
     workflow::{fit::FitFailure, plan::PlanFailure},
 };
 
@@ -61,6 +62,21 @@ pub enum ReplanFailure {
     NoTask {
         /// The log.
         path: PathBuf,
+    },
+    /// A task that begins elsewhere.
+    #[error(
+        "the plan in {} begins {} beside the first key point of the task ({joint}): the arm would jump there; give the task of \
+         this plan, or leave out --task",
+        path.display(),
+        Degrees(*far)
+    )]
+    OtherStart {
+        /// The log.
+        path: PathBuf,
+        /// The joint that is farthest away.
+        joint: String,
+        /// By how much, rad.
+        far: f64,
     },
     /// A task of another arm.
     #[error(

@@ -13,6 +13,7 @@ use crate::{
     log::Recording,
     replay::{Rules, replay},
     series::{Series, align, bridged, moving_s},
+    units::{DEGREE_RAD, Degrees},
     workflow::carried::{Carried, Promise, rest::PLAN_LEAD_S},
 };
 
@@ -27,6 +28,10 @@ const WORSE: f64 = 1.1;
 
 /// So many corrections that gained nothing are enough.
 const FAILURES: usize = 2;
+
+/// Mean peaks of one command that differ by this factor, and by so much, rad, are those of two machines.
+const CHANGED: f64 = 2.0;
+const CHANGED_RAD: f64 = 0.1 * DEGREE_RAD;
 
 /// Share of the usual gain that is left however much a command broke its promise.
 const LEAST_TRUST: f64 = 0.5;
@@ -89,6 +94,8 @@ pub enum KeepReason {
 /// Runs of one plan on its clock.
 pub(super) struct History {
     series: Vec<(Series, Series)>,
+    /// Places of their logs among all.
+    places: Vec<usize>,
     pub(super) runs: Vec<PastRun>,
 }
 
@@ -100,9 +107,9 @@ impl History {
         plan: &Series,
         rules: &Rules,
     ) -> Result<Self, ReplanFailure> {
-        let mut history = Self { series: Vec::new(), runs: Vec::new() };
+        let mut history = Self { series: Vec::new(), runs: Vec::new(), places: Vec::new() };
         let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
-        for (path, recording) in paths.iter().zip(recordings) {
+        for (place, (path, recording)) in paths.iter().zip(recordings).enumerate() {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
             let Some(starts_s) = found_at_s(plan, &*bridged(&recording.planned)?, from_s - PLAN_LEAD_S)?
             else {
@@ -117,8 +124,8 @@ impl History {
                 .filter_map(|track| align(recording.planned.track(track.name())?, track))
                 .collect();
             let found = replay(&pairs, rules);
-            let count = found.transitions.len() as f64;
-            let sum: f64 = found.transitions.iter().map(|t| t.peak_error).sum();
+            let count = found.turning_peaks_rad().count() as f64;
+            let sum: f64 = found.turning_peaks_rad().sum();
             history.runs.push(PastRun {
                 log: path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
                 corrected: !within(&sent, plan, NONE_RAD),
@@ -126,8 +133,44 @@ impl History {
                 promised: Carried::of(recording).promise(),
             });
             history.series.push((sent, measured));
+            history.places.push(place);
         }
         Ok(history)
+    }
+
+    /// Leaves out the runs before the machine changed, if it did: the first log that is left, and what is to be said.
+    pub(super) fn without_another_machine(&mut self) -> (usize, Option<String>) {
+        let Some((before, after)) = self.changed() else { return (0, None) };
+        let said =
+            |run: &PastRun| format!("{} in {}", Degrees(run.mean_peak_rad.unwrap_or_default()), run.log);
+        let message = format!(
+            "the same was sent twice and gave a mean peak error of {}, then of {}: the machine has changed in between, and \
+             logs up to {} are left out",
+            said(&self.runs[before]),
+            said(&self.runs[after]),
+            self.runs[before].log
+        );
+        let first = before + 1;
+        self.runs.drain(..first);
+        self.series.drain(..first);
+        self.places.drain(..first);
+        (self.places.first().copied().unwrap_or_default(), Some(message))
+    }
+
+    /// The last run after which the same command gave an error of another size, and the run that shows it.
+    fn changed(&self) -> Option<(usize, usize)> {
+        let peaks = self.peaks_rad();
+        let same = |a: usize, b: usize| {
+            let both = self.series.get(a).zip(self.series.get(b));
+            both.is_some_and(|((a, _), (b, _))| within(a, b, NONE_RAD))
+        };
+        let differs = |a: f64, b: f64| (a - b).abs() > CHANGED_RAD && a.max(b) > CHANGED * a.min(b);
+        let pairs = peaks
+            .iter()
+            .enumerate()
+            .flat_map(|(k, after)| peaks[..k].iter().map(move |before| (*before, *after)));
+        let changes = pairs.filter(|(before, after)| differs(before.1, after.1) && same(before.0, after.0));
+        changes.map(|(before, after)| (before.0, after.0)).max()
     }
 
     /// As the learning takes them.
@@ -213,7 +256,28 @@ mod tests {
             mean_peak_rad: Some(*peak),
             promised: None,
         };
-        History { series: Vec::new(), runs: peaks.iter().enumerate().map(run).collect() }
+        History { series: Vec::new(), runs: peaks.iter().enumerate().map(run).collect(), places: Vec::new() }
+    }
+
+    #[test]
+    fn a_machine_that_answers_the_same_otherwise_is_another_from_then_on() {
+        let sent = |by: f64| {
+            let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
+            let q = t_s.iter().map(|t| by * t).collect();
+            Series { tracks: vec![crate::series::Track::new("J", t_s, q, &[]).unwrap()] }
+        };
+        let of = |sent_by: &[f64], peaks: &[f64]| {
+            let mut history = history(peaks);
+            history.series = sent_by.iter().map(|by| (sent(*by), sent(0.0))).collect();
+            history.places = (0..peaks.len()).map(|k| 2 * k).collect();
+            let (first, said) = history.without_another_machine();
+            (first, said.is_some(), history.runs.len())
+        };
+        assert_eq!(of(&[1.0, 1.2, 1.0], &[0.01, 0.04, 0.045]), (2, true, 2));
+        assert_eq!(of(&[1.0, 1.2, 1.3, 1.3], &[0.01, 0.002, 0.001, 0.02]), (6, true, 1));
+        assert_eq!(of(&[1.0, 1.2, 1.0], &[0.04, 0.01, 0.01]), (2, true, 2), "it was mended");
+        assert_eq!(of(&[1.0, 1.2, 1.0], &[0.01, 0.04, 0.018]), (0, false, 3));
+        assert_eq!(of(&[1.0, 1.2, 1.3], &[0.01, 0.04, 0.09]), (0, false, 3), "other commands");
     }
 
     #[test]

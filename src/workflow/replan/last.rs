@@ -11,6 +11,7 @@ use crate::{
     plan::{PlanError, PlanEvaluation, Setup, Via},
     series::{Broken, Series, Track, bridged, moving_s},
     spline::Motion,
+    units::{DEGREE_RAD, Degrees},
     workflow::{
         carried::{
             Carried,
@@ -19,6 +20,16 @@ use crate::{
         plan::{PlanEntry, PlanRequest, Shaping},
     },
 };
+
+/// A joint that is so near its rest is there, rad or m; how long one may creep before it is called motion, and by what
+/// steps that is looked for, s.
+const AT_REST: f64 = 1e-3 * DEGREE_RAD;
+const MOST_CREEP_S: f64 = 10.0;
+const CREEP_STEP_S: f64 = 0.1;
+
+/// Instants at which a plan is looked at for key points, which it misses by so much at least, rad.
+const INSTANTS: u32 = 4000;
+const MISSES_RAD: f64 = 2.0 * DEGREE_RAD;
 
 /// The last run's plan.
 pub(super) struct Last {
@@ -38,6 +49,8 @@ pub(super) struct Last {
     pub(super) trajectory: Option<String>,
     /// What the log carries of the plan.
     pub(super) carried: Carried,
+    /// Key points of a task that was given which the plan does not pass.
+    pub(super) elsewhere: Vec<String>,
 }
 
 impl Last {
@@ -45,14 +58,19 @@ impl Last {
         let planned = &*bridged(&recording.planned)?;
         let [from_s, to_s] =
             moving_s(planned).ok_or_else(|| ReplanFailure::AtRest { path: path.to_owned() })?;
+        let [from_s, to_s] = rests_s(planned, [from_s, to_s]);
         let carried = Carried::of(recording).of_plan();
         let request = match (&inputs.task, carried.task_files()) {
             (Some(task), _) => Some(PlanRequest::read(task)?),
             (None, Some(files)) => Some(PlanRequest::of(path, files)?),
             (None, None) => None,
         };
+        let mut elsewhere = Vec::new();
         if let Some(request) = &request {
             check_joints(path, request, planned)?;
+            if inputs.task.is_some() {
+                elsewhere = check_points(path, request, planned, [from_s, to_s])?;
+            }
         }
         let through = |request: &PlanRequest, entry: &PlanEntry| {
             request.setup.motion_through(&entry.times_s, &entry.via)
@@ -85,6 +103,7 @@ impl Last {
         let (times_s, via) = entry.map(|entry| (entry.times_s, entry.via)).unzip();
         Ok(Self {
             plan: exact.map_or_else(|| cut(planned, near_s, to_s + COMMAND_TAIL_S), Ok)?,
+            elsewhere,
             starts_s,
             duration_s: to_s - from_s,
             request,
@@ -112,6 +131,71 @@ impl Last {
         let of = |times_s: &Vec<f64>| PlanEvaluation::through(setup, times_s, &self.via);
         self.times_s.as_ref().map(of).transpose()
     }
+}
+
+/// When the motion between two instants begins and ends in earnest, s: a slow plan creeps away from its rest below the
+/// speed that is called motion. Only where the rests around it are not reached otherwise.
+fn rests_s(planned: &Series, [from_s, to_s]: [f64; 2]) -> [f64; 2] {
+    let away = |at_s: f64, rest_s: f64| {
+        let far =
+            |track: &Track| (track.held_at(at_s).position - track.held_at(rest_s).position).abs() > AT_REST;
+        planned.tracks.iter().any(far)
+    };
+    let walk = |from_s: f64, by_s: f64, margin_s: f64| {
+        let rest_s = from_s + by_s.signum() * MOST_CREEP_S;
+        let mut at_s = from_s;
+        while away(at_s + by_s.signum() * margin_s, rest_s) && (at_s - from_s).abs() < MOST_CREEP_S {
+            at_s += by_s;
+        }
+        at_s
+    };
+    [walk(from_s, -CREEP_STEP_S, PLAN_LEAD_S), walk(to_s, CREEP_STEP_S, COMMAND_TAIL_S)]
+}
+
+/// How far a plan passes a key point of its task, rad.
+const PASSES_RAD: f64 = 0.5 * DEGREE_RAD;
+
+/// A task that is given must begin where the plan does, or the arm would jump there. Other key points that the plan does
+/// not pass are told of.
+fn check_points(
+    path: &Path,
+    request: &PlanRequest,
+    planned: &Series,
+    [from_s, to_s]: [f64; 2],
+) -> Result<Vec<String>, ReplanFailure> {
+    let setup = &request.setup;
+    let names = setup.joint_names();
+    let tracks: Vec<&Track> = names.iter().filter_map(|name| planned.track(name)).collect();
+    let points = setup.template().points();
+    // The joint that is farthest from a point at an instant, and how far.
+    let apart = |point: usize, t_s: f64| {
+        let each =
+            tracks.iter().zip(points.of(point)).map(|(track, q)| (track.held_at(t_s).position - q).abs());
+        each.enumerate().fold((0, 0.0), |most, (joint, far)| if far > most.1 { (joint, far) } else { most })
+    };
+    let (joint, far) = apart(0, from_s - PLAN_LEAD_S);
+    if far > PASSES_RAD {
+        let joint = names.get(joint).cloned().unwrap_or_default();
+        return Err(ReplanFailure::OtherStart { path: path.to_owned(), joint, far });
+    }
+    let instants = || (0..=INSTANTS).map(|k| from_s + (to_s - from_s) * f64::from(k) / f64::from(INSTANTS));
+    let nearest = |point: usize| {
+        let all = instants().map(|t_s| apart(point, t_s));
+        all.fold((0, f64::INFINITY), |best, now| if now.1 < best.1 { now } else { best })
+    };
+    let missed = (1..setup.template().t_s().len()).filter(|point| !setup.is_free(*point)).filter_map(|point| {
+        let (joint, far) = nearest(point);
+        (far > MISSES_RAD).then(|| {
+            format!(
+                "the plan in {} does not pass key point {point} of the task: {} stays {} away from it; the next plan passes \
+                 it",
+                path.display(),
+                names.get(joint).map_or("", String::as_str),
+                Degrees(far)
+            )
+        })
+    });
+    Ok(missed.collect())
 }
 
 /// A plan that is broken would be one with a start, a stop or a jump that no arm can make.

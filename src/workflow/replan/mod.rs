@@ -134,13 +134,20 @@ pub fn run(
             return Err(ReplanFailure::Spoilt { path: path.clone(), why: remark.message.clone() });
         }
     }
-    let (fit, fitted_to, mut remarks) = machine(inputs, &observed)?;
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
     let last = Last::of(path, newest, inputs)?;
+    let mut history = History::of(&inputs.logs, &observed, &last.plan, &inputs.rules)?;
+    let (first, changed) = history.without_another_machine();
+    let (fit, fitted_to, mut remarks) = machine(inputs, &inputs.logs[first..], &observed[first..])?;
+    if let Some(message) = &changed {
+        remarks.add(Code::MachineChanged, 1, message);
+    }
+    for message in &last.elsewhere {
+        remarks.add(Code::OtherFile, 1, message);
+    }
     if inputs.task.is_none() {
         last.carried.remark_others(path, &mut remarks);
     }
-    let history = History::of(&inputs.logs, &observed, &last.plan, &inputs.rules)?;
     let learns = inputs.precompensate && history.begun() && !inputs.retime;
     let known = last.plan.tracks.iter().any(|t| fit.joint(t.name()).is_some_and(JointFit::trusted));
     if inputs.precompensate && !known {
@@ -192,14 +199,18 @@ pub fn run(
 }
 
 /// The machine: fitted, or from a file; with the names of the logs behind it.
-fn machine(inputs: &Inputs, observed: &[Recording]) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
+fn machine(
+    inputs: &Inputs,
+    logs: &[PathBuf],
+    observed: &[Recording],
+) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
     if let Some(path) = &inputs.limits {
         let file = LimitsFile::read(path)?;
         let joints = observed.iter().flat_map(|run| &run.measured.tracks).map(Track::name);
         file.check_joints(path, joints)?;
-        return Ok((file.fit, file.logs, fit::doubts(&inputs.logs, observed)));
+        return Ok((file.fit, file.logs, fit::doubts(logs, observed)));
     }
-    let fitted = fit::of(&inputs.logs, observed).map_err(fit::FitFailure::from)?;
+    let fitted = fit::of(logs, observed).map_err(fit::FitFailure::from)?;
     Ok((fitted.fit, fitted.runs.into_iter().map(|run| run.log).collect(), fitted.remarks))
 }
 

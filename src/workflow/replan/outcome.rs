@@ -53,8 +53,8 @@ impl Before {
             |measured: &crate::series::Track| align(recording.planned.track(measured.name())?, measured);
         let pairs: Vec<_> = recording.measured.tracks.iter().filter_map(pair).collect();
         let found = replay(&pairs, rules);
-        let peaks = || found.transitions.iter().map(|t| t.peak_error);
-        let count = found.transitions.len();
+        let peaks = || found.turning_peaks_rad();
+        let count = peaks().count();
         Self {
             measured_transitions: count,
             measured_mean_peak_rad: (count > 0).then(|| peaks().sum::<f64>() / count as f64),

@@ -149,9 +149,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         paths: inputs.logs.clone(),
         machine: named("machine"),
         run: named("run"),
-        promised: carried
-            .promise()
-            .map(|promise| promise.held(replay.transitions.iter().map(|t| t.peak_error))),
+        promised: carried.promise().map(|promise| promise.held(replay.turning_peaks_rad())),
         holds_task: carried.task().is_some(),
         broken,
         schedule: Schedule::of(&carried),

@@ -6,6 +6,7 @@ use crate::{
     fit::{Character, LEAST_SKILL, Step},
     math::range,
     plan::{BETWEEN, Limit, Margin},
+    remark::Code,
     series::{Series, Track},
     units::DEGREE_RAD,
     workflow::{
@@ -148,16 +149,21 @@ fn trust(replanned: &Replanned) -> Check {
 
 /// `None` if the last log carries no promise, or nothing was measured.
 fn promise(replanned: &Replanned) -> Option<Check> {
-    let run = replanned.past.runs.last().filter(|run| run.corrected)?;
+    let run = replanned.past.runs.last()?;
     let (promised, measured_mean_peak_rad) = (run.promised?, run.mean_peak_rad?);
     let bound_rad = promised.mean_peak_margin_rad;
     let level = match measured_mean_peak_rad {
         came if came <= bound_rad => Level::Good,
-        came if came <= OTHER_MACHINE * bound_rad => Level::Caution,
+        // What was promised of the machine before it changed is no reason against what was learnt since.
+        came if came <= OTHER_MACHINE * bound_rad || changed(replanned) => Level::Caution,
         _ => Level::Stop,
     };
     let finding = Finding::Promise { log: run.log.clone(), promised, measured_mean_peak_rad };
     Some(Check { level, finding })
+}
+
+fn changed(replanned: &Replanned) -> bool {
+    replanned.remarks.as_slice().iter().any(|remark| remark.code == Code::MachineChanged)
 }
 
 fn outlook(replanned: &Replanned) -> Check {
