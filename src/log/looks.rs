@@ -20,9 +20,9 @@ pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
     if text.trim().is_empty() || text.chars().any(|c| c.is_control() && !c.is_whitespace()) {
         return false;
     }
-    let named = path
-        .extension()
-        .is_some_and(|ending| ["csv", "tsv", "lvm"].iter().any(|one| ending.eq_ignore_ascii_case(one)));
+    let named = path.extension().is_some_and(|ending| {
+        ["csv", "tsv", "lvm", "jsonl", "ndjson"].iter().any(|one| ending.eq_ignore_ascii_case(one))
+    });
     let lines: Vec<&str> =
         text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#')).collect();
     // Below other lines a table has its own; the very last may be cut.
@@ -41,7 +41,11 @@ pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
         let lines = &lines[last..];
         alike(one, lines) && lines.iter().take(LINES).all(|line| numbers(one, line))
     };
+    // An object a line, the last of which may be cut.
+    let objects =
+        lines.len() > 1 && lines.iter().take(2).all(|line| line.starts_with('{') && line.ends_with('}'));
     named
+        || objects
         || [';', ',', '\t'].into_iter().any(|one| alike(one, &lines) || below(one))
         || spaced(&lines[last..])
 }
@@ -69,6 +73,7 @@ mod tests {
         assert!(is("a.txt", b"Trace 1\nof 3.5.2026\n\nt;a;b\n0;1,5;2\n1;1,5;2\n2;1,5;2\n3;1,5;2\n"));
         assert!(is("a.txt", b"# t  q1  q2\n0 1.5 2\n1  1.5 2\n2 1.5  -2e-3\n3 1 1\n"));
         assert!(is("a.txt", b"\xff\xfet\0;\0"));
+        assert!(is("a.txt", b"{\"t\": 0, \"q\": 1}\n{\"t\": 1}\n{\"t\":"));
         assert!(is("run.lvm", b"LabVIEW Measurement\n"));
         for text in [
             &b"{\n  \"a\": [\n    1,\n    2,\n    3\n  ]\n}\n"[..],

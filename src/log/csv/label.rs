@@ -88,8 +88,13 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     if named {
         unit = unit.or_else(|| parse_unit(bare));
     }
-    let timely = |words: &[Word<'_>]| named || words.iter().any(|word| word.meaning == Meaning::Time);
     let is_time_unit = unit.is_some_and(|unit| unit.measure == Measure::Time);
+    // Of `t_set_s` the letter is the time, too.
+    let t = |words: &[Word<'_>]| {
+        is_time_unit && words.first().is_some_and(|word| word.text.eq_ignore_ascii_case("t"))
+    };
+    let timely =
+        |words: &[Word<'_>]| named || t(words) || words.iter().any(|word| word.meaning == Meaning::Time);
     if is_time_unit && stated.is_some() && !header.ends_with([']', ')']) && !timely(&words) {
         // `Boom Ms` is measured, not in ms.
         (unit, words) = (below.and_then(parse_unit), self::words(header));
@@ -269,9 +274,18 @@ mod tests {
 
     #[test]
     fn times_are_known_by_name() {
-        for header in
-            ["t", "time", "Zeit [ms]", "timestamp", "stamp_ns", "time_s", "Datum", "t[s]", "Time (us)"]
-        {
+        for header in [
+            "t",
+            "time",
+            "Zeit [ms]",
+            "timestamp",
+            "stamp_ns",
+            "time_s",
+            "Datum",
+            "t[s]",
+            "Time (us)",
+            "t_set_s",
+        ] {
             assert!(label(header, None).is_time, "{header}");
         }
         assert_eq!(label("Zeit [ms]", None).unit.map(|unit| unit.factor), Some(1e6));

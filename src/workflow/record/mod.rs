@@ -206,6 +206,11 @@ impl<'a> Recording<'a> {
                 let first = std::mem::take(&mut self.first);
                 self.write(&first)
             }
+            Err(CsvError::NoJoints { .. } | CsvError::NoPair { .. })
+                if self.objects.is_some() && !last && self.first_lines < ONE_SIDED =>
+            {
+                Ok(())
+            }
             // Rows that are yet to come may settle it; an option that is missing will be missing then.
             Err(CsvError::NoTable { .. } | CsvError::NoTime { .. } | CsvError::TimeUnit { .. })
                 if !last && self.first_lines < MOST_LINES =>

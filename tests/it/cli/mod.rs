@@ -11,6 +11,7 @@ mod cylinders;
 mod figures;
 mod fleet;
 #[cfg(unix)]
+mod historians;
 mod hostile;
 mod join;
 mod layout;

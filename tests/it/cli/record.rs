@@ -65,6 +65,29 @@ fn what_is_recorded_reports_as_the_same_table_imported() {
 }
 
 #[test]
+fn a_sensor_that_sends_later_than_the_plan_is_recorded() {
+    let lines = |from: u32| -> String {
+        let line = |k: u32| {
+            let t_s = f64::from(k) * 0.02;
+            let [planned, measured] = moves(t_s).map(f64::to_degrees);
+            let came = if k < from { String::new() } else { format!(", \"boom_act_deg\": {measured}") };
+            format!("{{\"t_s\": {t_s}, \"boom_set_deg\": {planned}{came}}}\n")
+        };
+        (0..500).map(line).collect()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let (code, out, error) = recorded(folder.path(), &lines(60), &[]);
+    assert!(code == 0 && out.contains("boom_act_deg: measured position"), "{out}{error}");
+    assert_eq!(report(folder.path(), "run.mcap")["joints"][0]["starts"], 1);
+    // Later than is waited for: told, or taken if it is named.
+    let (code, out, _) = recorded(folder.path(), &lines(400), &["--force"]);
+    assert!(code == 3 && out.contains("keys that came after the columns were settled"), "{out}");
+    let named = ["--force", "--planned", "boom=boom_set_deg", "--measured", "boom=boom_act_deg"];
+    let (_, out, _) = recorded(folder.path(), &lines(400), &named);
+    assert!(out.contains("boom_act_deg: measured position") && !out.contains("keys that came"), "{out}");
+}
+
+#[test]
 fn a_recording_is_not_written_over_and_a_unit_not_guessed() {
     let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
     let folder = tempfile::tempdir().unwrap();

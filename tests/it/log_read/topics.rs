@@ -74,6 +74,28 @@ fn subsets_on_several_topics_are_put_together() {
 }
 
 #[test]
+fn the_plan_is_of_the_arm_whose_measurement_is_named() {
+    let mut log = Log::default();
+    let later = |q: Vec<f64>| q.iter().map(|q| q + 0.3).collect::<Vec<f64>>();
+    add_joint_state(&mut log, "/left/planned/joint_states", plan);
+    add_joint_state(&mut log, "/right/planned/joint_states", move |k| later(plan(k)));
+    add_joint_state(&mut log, "/left/joint_states", measurement);
+    add_joint_state(&mut log, "/right/joint_states", move |k| later(measurement(k)));
+    for (arm, by) in [("left", 0.0), ("right", 0.3)] {
+        let named = format!("/{arm}/joint_states");
+        let recording = read_with(&log, &options(&[], &[&named], &[]));
+        assert_eq!(recording.source.planned_topic, format!("/{arm}/planned/joint_states"));
+        assert!((recording.planned.tracks[0].position()[0] - plan(0)[0] - by).abs() < 1e-12, "{arm}");
+        assert!(recording.remarks.is_empty(), "{:?}", recording.remarks);
+    }
+    let mut log = Log::default();
+    add_joint_state(&mut log, "/arm_right_planner/planned/joint_states", plan);
+    add_joint_state(&mut log, "/arm_left/joint_states", measurement);
+    add_joint_state(&mut log, "/arm_right/joint_states", measurement);
+    assert_eq!(read(&log).source.measured_topic, "/arm_right/joint_states");
+}
+
+#[test]
 fn dynamic_joint_states_yield_positions_and_other_interfaces_by_name() {
     for kind in KINDS {
         let mut log = Log::default();

@@ -1,0 +1,191 @@
+//! Tables as historians, databases, spreadsheets and scopes write them: the same run, or a refusal that says what to do.
+
+use std::{fmt::Write as _, fs, path::Path};
+
+use serde_json::Value;
+
+use super::csv::{moves, report};
+use crate::support::{run_args as hydrotrace, said};
+
+/// Planned and measured angle of the boom, deg, 50 times a second; the measurement is 0.1 s late at up to 0.26 rad/s.
+fn angles(k: u32) -> [f64; 2] {
+    moves(f64::from(k) * 0.02).map(f64::to_degrees)
+}
+
+const ROWS: u32 = 500;
+
+/// A header and a line for each row.
+fn table(head: &str, line: impl Fn(u32, [f64; 2]) -> String) -> String {
+    (0..ROWS).fold(format!("{head}\n"), |mut text, k| {
+        writeln!(text, "{}", line(k, angles(k))).unwrap();
+        text
+    })
+}
+
+/// Peak of the tracking error of the first joint, rad, after an import with these options.
+fn peak(folder: &Path, name: &str, text: &str, options: &[&str]) -> f64 {
+    fs::write(folder.join(name), text).unwrap();
+    let line = [&["import", name, "-o", "a.mcap", "--force"], options].concat();
+    let (code, out, error) = said(&hydrotrace(folder, &line));
+    assert!(code == 0 || code == 3, "{name}: {out}{error}");
+    let log: Value = report(folder, "a.mcap");
+    assert_eq!(log["joints"].as_array().map(Vec::len), Some(1), "{name}");
+    log["joints"][0]["tracking_error"]["peak"].as_f64().unwrap()
+}
+
+fn assert_peak(name: &str, text: &str, options: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    let found = peak(folder.path(), name, text, options);
+    assert!((found - 0.026).abs() < 0.001, "{name}: {found}");
+}
+
+#[test]
+fn times_in_any_unit_and_in_parts_are_one_run() {
+    let head = |time: &str| format!("{time},boom_set_deg,boom_act_deg");
+    let of = |time: &str, cell: &dyn Fn(u32) -> String| {
+        table(&head(time), |k, [plan, came]| format!("{},{plan:.4},{came:.4}", cell(k)))
+    };
+    let s = |k: u32| f64::from(k) * 0.02;
+    let whole = |k: u32| (k / 50, k % 50 * 20);
+    for (name, text) in [
+        ("minutes.csv", of("elapsed_min", &|k| format!("{:.9}", s(k) / 60.0))),
+        ("hours.csv", of("time [h]", &|k| format!("{:.12}", s(k) / 3600.0))),
+        ("ticks.csv", of("time [10 ms]", &|k| (2 * k).to_string())),
+        ("hundredths.csv", of("Time [1/100 s]", &|k| (2 * k).to_string())),
+        ("filetime.csv", of("Time", &|k| (133_932_816_000_000_000_u64 + u64::from(k) * 200_000).to_string())),
+        ("excel.csv", of("Time", &|k| format!("{:.10}", 45_811.375 + s(k) / 86_400.0))),
+        ("matlab.csv", of("Time", &|k| format!("03-Jun-2025 09:00:{:02}.{:03}", whole(k).0, whole(k).1))),
+        ("basic.csv", of("Time", &|k| format!("20250603T0900{:02}.{:03}Z", whole(k).0, whole(k).1))),
+        (
+            "stamp.csv",
+            of("header.stamp.sec,header.stamp.nanosec", &|k| {
+                format!("{},{}", 1_749_000_000 + whole(k).0, whole(k).1 * 1_000_000)
+            }),
+        ),
+        (
+            "millis.csv",
+            of("Date,Time,Millitm", &|k| format!("06/03/2025,09:00:{:02},{}", whole(k).0, whole(k).1)),
+        ),
+    ] {
+        assert_peak(name, &text, &[]);
+    }
+}
+
+#[test]
+fn the_newest_row_may_come_first() {
+    let head = "time_s,boom_set_deg,boom_act_deg";
+    let text = table(head, |k, _| {
+        let k = ROWS - 1 - k;
+        let [plan, came] = angles(k);
+        format!("{:.2},{plan:.4},{came:.4}", f64::from(k) * 0.02)
+    });
+    assert_peak("newest.csv", &text, &[]);
+}
+
+#[test]
+fn thousands_may_be_set_apart() {
+    let of = |separator: &str, number: &dyn Fn(f64) -> String| {
+        let head = ["t_ms", "boom_set [0.001 deg]", "boom_act [0.001 deg]"].join(separator);
+        table(&head, |k, both| {
+            let [plan, came] = both.map(|deg| number((1000.0 * deg).round()));
+            [(20 * k).to_string(), plan, came].join(separator)
+        })
+    };
+    // Never below a thousand but at rest, where whole numbers tell.
+    let grouped = |mark: &str, value: f64| {
+        let (sign, size) = (if value < 0.0 { "-" } else { "" }, value.abs());
+        let (thousands, rest) = ((size / 1000.0).floor(), size % 1000.0);
+        if thousands > 0.0 { format!("{sign}{thousands}{mark}{rest:03}") } else { format!("{sign}{rest}") }
+    };
+    assert_peak("points.csv", &of(";", &|value| grouped(".", value)), &[]);
+    assert_peak("commas.csv", &of(";", &|value| grouped(",", value)), &[]);
+    assert_peak("quoted.csv", &of(",", &|value| format!("\"{}.0\"", grouped(",", value))), &[]);
+    assert_peak("apostrophes.csv", &of(",", &|value| grouped("'", value)), &[]);
+    assert_peak("blanks.csv", &of(";", &|value| grouped("\u{202f}", value).replace('-', "\u{2212}")), &[]);
+}
+
+#[test]
+fn a_long_table_may_have_words_beside_each_value_and_each_signal_a_clock() {
+    let long = table("time_s,signal,value,quality,unit", |k, [plan, came]| {
+        let t = f64::from(k) * 0.02;
+        format!("{t:.2},boom_set_deg,{plan:.4},Good,deg\n{t:.2},boom_act_deg,{came:.4},Good,deg")
+    });
+    assert_peak("long.csv", &long, &[]);
+    let clocks = table("t_set_s,boom_set_deg,t_act_s,boom_act_deg", |k, [plan, _]| {
+        // The second channel was begun a quarter of a second later.
+        let [_, came] = moves(f64::from(k) * 0.02 + 0.25).map(f64::to_degrees);
+        let t = f64::from(k) * 0.02;
+        format!("{t:.2},{plan:.4},{:.2},{came:.4}", t + 0.25)
+    });
+    assert_peak("clocks.csv", &clocks, &[]);
+}
+
+#[test]
+fn objects_a_line_each_are_a_table() {
+    let of = |k: u32, [plan, came]: [f64; 2]| {
+        let t = f64::from(k) * 0.02;
+        let came = if k == 0 { String::new() } else { format!(", \"boom_act_deg\": {came:.4}") };
+        format!("{{\"t_s\": {t:.2}, \"boom_set_deg\": {plan:.4}{came}}}")
+    };
+    let lines = table("", of);
+    assert_peak("lines.jsonl", lines.trim_start(), &[]);
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("lines.jsonl"), lines.trim_start()).unwrap();
+    let (code, text, error) = said(&hydrotrace(folder.path(), &["report", "lines.jsonl"]));
+    assert!(code == 0 && text.contains("boom"), "{text}{error}");
+}
+
+#[test]
+fn a_plan_that_is_written_only_where_it_changes_is_held() {
+    let head = "time_s,boom_set_deg,boom_act_deg";
+    let text = table(head, |k, [plan, came]| {
+        let same = k > 0 && angles(k - 1)[0] == plan;
+        let plan = if same { String::new() } else { format!("{plan:.6}") };
+        format!("{:.2},{plan},{came:.4}", f64::from(k) * 0.02)
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let found = peak(folder.path(), "changes.csv", &text, &[]);
+    assert!((found - 0.026).abs() < 0.001, "{found}");
+    let (code, text, _) = said(&hydrotrace(folder.path(), &["report", "a.mcap"]));
+    assert!(code == 3 && text.contains("written only where it changes"), "{text}");
+    let starts = report(folder.path(), "a.mcap")["joints"][0]["starts"].clone();
+    assert!(starts.as_u64().is_some_and(|starts| starts > 0), "{starts}");
+}
+
+#[test]
+fn a_table_of_two_machines_is_read_of_one() {
+    let head = "time_s,machine,boom_set_deg,boom_act_deg";
+    let text = table(head, |k, [plan, came]| {
+        let t = f64::from(k) * 0.02;
+        format!("{t:.2},EX1,{plan:.4},{came:.4}\n{:.3},EX2,{plan:.4},{:.4}", t + 0.004, 0.5 * came)
+    });
+    assert_peak("one.csv", &text, &["--only", "machine=EX1"]);
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("two.csv"), &text).unwrap();
+    for line in [&["report", "two.csv"][..], &["import", "two.csv", "-o", "a.mcap"]] {
+        let (code, _, error) = said(&hydrotrace(folder.path(), line));
+        assert!(code == 1 && error.contains("--only 'machine=EX1'"), "{error}");
+    }
+    let (code, _, error) =
+        said(&hydrotrace(folder.path(), &["import", "two.csv", "--only", "machine=EX9", "-o", "a.mcap"]));
+    assert!(code == 1 && error.contains("EX1, EX2"), "{error}");
+}
+
+#[test]
+fn counts_are_refused_and_a_sensor_that_jumps_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let counts = table("time_s,boom_set [counts],boom_act [counts]", |k, both| {
+        let [plan, came] = both.map(|deg| (100.0 * deg).round());
+        format!("{:.2},{plan},{came}", f64::from(k) * 0.02)
+    });
+    fs::write(folder.path().join("counts.csv"), counts).unwrap();
+    let (code, _, error) = said(&hydrotrace(folder.path(), &["report", "counts.csv"]));
+    assert!(code == 1 && error.contains("is in counts, which is no angle or length"), "{error}");
+    let fault = table("time_s,boom_set_deg,boom_act_deg", |k, [plan, came]| {
+        let came = if (200..210).contains(&k) { -999.0 } else { came };
+        format!("{:.2},{plan:.4},{came:.4}", f64::from(k) * 0.02)
+    });
+    fs::write(folder.path().join("fault.csv"), fault).unwrap();
+    let (code, text, error) = said(&hydrotrace(folder.path(), &["report", "fault.csv"]));
+    assert!(code == 3 && text.contains("steps of the measured boom within one sample"), "{text}{error}");
+}
