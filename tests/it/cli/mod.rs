@@ -16,6 +16,7 @@ mod hostile;
 mod join;
 mod layout;
 #[cfg(unix)]
+mod next_run;
 mod output;
 mod plan;
 mod record;

@@ -1,0 +1,47 @@
+//! `replan` over several runs: what older ones still tell, and what holds for the next line.
+
+use std::fs;
+
+use super::replan::{check, with_run};
+use crate::support::{clean, json, run_line, sample, stderr, stdout};
+
+#[test]
+fn a_task_that_begins_elsewhere_is_refused_and_bounds_hold_for_the_next_line() {
+    let folder = with_run();
+    let folder = folder.path();
+    let task = fs::read_to_string(folder.join("task-1.toml")).unwrap();
+    let first = task.find("angles_deg = { J1 = ").unwrap();
+    let (before, angles) = task.split_at(first + "angles_deg = { J1 = ".len());
+    let end = angles.find(',').unwrap();
+    let moved = format!("{before}{}{}", angles[..end].parse::<f64>().unwrap() + 15.0, &angles[end..]);
+    fs::write(folder.join("moved.toml"), moved).unwrap();
+    let run = run_line(folder, "replan run.mcap --task moved.toml -o next.mcap");
+    assert_eq!(run.status.code(), Some(1), "{}", stdout(&run));
+    assert!(stderr(&run).contains("beside the first key point of the task (J1)"), "{}", stderr(&run));
+    assert!(!folder.join("next.mcap").exists());
+    let run = run_line(folder, "replan run.mcap --keep-plan --max-correction-deg 1 -o next.mcap");
+    let line =
+        stdout(&run).lines().find(|line| line.contains("replan run.mcap after.mcap")).map(str::to_owned);
+    assert_eq!(
+        line.as_deref().map(str::trim),
+        Some("hydrotrace replan run.mcap after.mcap --max-correction-deg=1 -o next-2.mcap")
+    );
+}
+
+#[test]
+fn a_machine_that_has_changed_is_learnt_anew() {
+    let folder = with_run();
+    let folder = folder.path();
+    clean(folder, "replan run.mcap --keep-plan -o next.mcap");
+    clean(folder, "simulate next.mcap --plant position-only -o run-2.mcap --seed 2");
+    clean(folder, "simulate run.mcap --plant position-only -o run-3.mcap --seed 3");
+    let next = json(folder, "replan run.mcap run-2.mcap run-3.mcap");
+    let runs = next["runs"].as_array().unwrap().len();
+    assert!(next["remarks"].to_string().contains("machine-changed") && runs == 2, "{}", next["remarks"]);
+    // What is promised is of the machine as it is.
+    let promised = check(&next, "outlook")["expected"]["mean_peak_rad"].as_f64().unwrap();
+    run_line(folder, "replan run.mcap run-2.mcap run-3.mcap -o next-2.mcap");
+    clean(folder, "simulate next-2.mcap --plant position-only -o run-4.mcap --seed 4");
+    let came = json(folder, "report run-4.mcap")["promised"]["measured_mean_peak_rad"].as_f64().unwrap();
+    assert!((0.5..2.0).contains(&(came / promised)), "{promised} rad promised, {came} rad came");
+}
