@@ -54,7 +54,7 @@ pub(super) fn joined(file: &str, text: &[u8], options: &CsvOptions) -> Option<Ve
     let columns = || groups.iter().flat_map(|group| group.columns.clone());
     let names = std::iter::once(first.time).chain(columns()).map(|column| head.names[column].as_bytes());
     out.write_record(names).ok()?;
-    for instant in samples.chunk_by(|a, b| a.0 == b.0 && a.1 < b.1) {
+    for instant in samples.chunk_by(|a, b| a.0 >= b.0 && a.1 < b.1) {
         let time = instant.first().and_then(|(_, _, cells)| cells.get(0)).unwrap_or_default();
         let mut row = vec![time];
         for (k, group) in groups.iter().enumerate() {
@@ -90,7 +90,7 @@ fn groups(head: &Head, dialect: Dialect) -> Option<Vec<Group>> {
     };
     // Clocks that count from elsewhere are other clocks of the same rows.
     let of = |column: usize| head.sample.iter().filter_map(move |row| time(row, column));
-    let [from, to] = crate::math::range(of(first)).into();
+    let [from, to] = crate::math::range(of(first));
     let near = |column: &usize| {
         of(*column).next().is_some_and(|start| (start - from).abs() <= FARTHEST * (to - from))
     };

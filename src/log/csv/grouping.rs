@@ -105,7 +105,7 @@ fn groups(cell: &[u8], mark: u8) -> Option<Groups> {
         _ => group.len() == 3,
     });
     let plain = decimals.is_none_or(|decimals| decimals.iter().all(u8::is_ascii_digit));
-    let several = whole.iter().filter(|byte| **byte == mark).count() > 1;
+    let several = memchr::memchr(mark, whole) != memchr::memrchr(mark, whole);
     Some(match (in_threes && plain, decimals.is_some() || several) {
         (true, true) => Groups::WithDecimals,
         (true, false) => Groups::Perhaps,

@@ -100,7 +100,9 @@ pub(super) fn read(
     }
     if runs_backwards(&stamp_ns) {
         stamp_ns.reverse();
-        columns.values_mut().for_each(|column| column.values.reverse());
+        for column in columns.values_mut() {
+            column.values.reverse();
+        }
     }
     let absolute = time.settle(&mut stamp_ns);
     let outside = drop_outside(&mut stamp_ns, &mut columns);

@@ -121,11 +121,7 @@ pub(super) fn assemble(
     for (_, series) in &mut *sides {
         quality::unwrap_turns(series, &options.continuous, &mut remarks);
     }
-    // Trajectories say themselves how they go on.
-    if choice.planned.iter().all(|candidate| candidate.field.is_some()) {
-        let [(_, planned), (_, measured)] = &mut *sides;
-        held::of_sides(planned, measured, &mut remarks);
-    }
+    held::of_sides(choice, sides, &mut remarks);
     spoilt::of_sides(sides[0].1, sides[1].1, &mut remarks);
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;

@@ -1,6 +1,7 @@
 //! Plans that are written only where they change, as historians and subscriptions write them: between two values the
 //! first one holds.
 
+use super::select_topics::Choice;
 use crate::{
     remark::{Code, Remarks},
     series::{Series, Track},
@@ -17,7 +18,15 @@ const STEPS: f64 = 3.0;
 
 /// Holds the plan through its silences, up to the end of the measurement, if it is written so; and the measurement, if
 /// that is, too.
-pub(super) fn of_sides(planned: &mut Series, measured: &mut Series, remarks: &mut Remarks) {
+pub(super) fn of_sides(choice: &Choice, sides: &mut [(&str, &mut Series); 2], remarks: &mut Remarks) {
+    let [(_, planned), (_, measured)] = sides;
+    // Trajectories say themselves how they go on.
+    if choice.planned.iter().all(|candidate| candidate.field.is_some()) {
+        of_both(planned, measured, remarks);
+    }
+}
+
+fn of_both(planned: &mut Series, measured: &mut Series, remarks: &mut Remarks) {
     let Some([_, until_s]) = measured.span_s() else { return };
     if of_side("plan", planned, until_s, remarks) {
         of_side("measurement", measured, until_s, remarks);
@@ -109,7 +118,7 @@ mod tests {
 
     fn told(mut plan: Series) -> (Series, u64) {
         let mut remarks = Remarks::default();
-        of_sides(&mut plan, &mut series(|_, _| true), &mut remarks);
+        of_both(&mut plan, &mut series(|_, _| true), &mut remarks);
         (plan, remarks.as_slice().iter().map(|remark| remark.count).sum())
     }
 

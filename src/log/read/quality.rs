@@ -196,7 +196,7 @@ const STEP_ALONE: f64 = 10.0;
 
 /// Remarks on a plan that jumps.
 fn of_plan(track: &Track, remarks: &mut Remarks) {
-    let Jumps { count, most, at_s } = Jumps::of(track);
+    let Jumps { count, most, at_s } = Jumps::of(track, |_| true);
     let (name, unit) = (track.name(), track.kind().unit());
     let message = format!(
         "steps of the plan of {name} within one sample, the largest of {most:.3} {unit} at {at_s:.2} s: the plan itself \
@@ -205,9 +205,9 @@ fn of_plan(track: &Track, remarks: &mut Remarks) {
     remarks.add(Code::PlanJumps, count, message);
 }
 
-/// Remarks on a measurement that jumps and stays there.
-fn of_measurement(track: &Track, remarks: &mut Remarks) {
-    let Jumps { count, most, at_s } = Jumps::of(track);
+/// Remarks on a measurement that jumps and stays there, while there is a plan.
+fn of_measurement(planned: &Track, track: &Track, remarks: &mut Remarks) {
+    let Jumps { count, most, at_s } = Jumps::of(track, |t_s| planned.at(t_s).is_some());
     let (name, unit) = (track.name(), track.kind().unit());
     let message = format!(
         "steps of the measured {name} within one sample, the largest of {most:.3} {unit} at {at_s:.2} s: no joint moves \
@@ -225,7 +225,8 @@ struct Jumps {
 }
 
 impl Jumps {
-    fn of(track: &Track) -> Self {
+    /// Those at instants that count.
+    fn of(track: &Track, counts: impl Fn(f64) -> bool) -> Self {
         let (t_s, position) = (track.t_s(), track.position());
         let mut found = Self { count: 0, most: 0.0, at_s: 0.0 };
         if position.windows(2).fold(true, |calm, w| calm & ((w[1] - w[0]).abs() <= LEAST_STEP)) {
@@ -236,7 +237,7 @@ impl Jumps {
             for k in part.start + 1..part.end {
                 let beside = || [k - 1, k + 1].into_iter().filter(|k| (part.start + 1..part.end).contains(k));
                 let far = step(k) > LEAST_STEP.max(STEP_SPEED * (t_s[k] - t_s[k - 1]));
-                if far && step(k) > STEP_ALONE * beside().map(step).fold(0.0, f64::max) {
+                if far && step(k) > STEP_ALONE * beside().map(step).fold(0.0, f64::max) && counts(t_s[k]) {
                     found.count += 1;
                     if step(k) > found.most {
                         (found.most, found.at_s) = (step(k), t_s[k]);
@@ -264,7 +265,7 @@ fn of_pair(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &m
     }
     // Full turns are told of elsewhere.
     if turns(measured) == 0 {
-        of_measurement(measured, remarks);
+        of_measurement(planned, measured, remarks);
     }
     if let Some((from_s, to_s, samples)) = frozen(planned, measured) {
         let name = planned.name();

@@ -218,7 +218,10 @@ fn how(comparison: &Comparison) -> Vec<Fact> {
         fact("change", "after minus before, over each pair; negative is better"),
         fact(
             "events",
-            format!("starts of any joints within {} s count as one in interval and test", rules.same_event_s),
+            format!(
+                "starts of any joints, each within {} s of the one before, count as one in interval and test",
+                rules.same_event_s
+            ),
         ),
         fact("95 %", "Student's t of the mean change, robust to events; three events at least"),
         fact(

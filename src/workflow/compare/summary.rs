@@ -117,14 +117,15 @@ fn summary(
         .collect();
     found.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut events: Vec<Vec<f64>> = Vec::new();
-    let mut began_s = f64::NEG_INFINITY;
+    // One after the other: of a move of many joints the last may begin later than one event lasts.
+    let mut last_s = f64::NEG_INFINITY;
     for [at_s, before, after] in &found {
-        if let Some(event) = events.last_mut().filter(|_| at_s - began_s <= rules.same_event_s) {
+        if let Some(event) = events.last_mut().filter(|_| at_s - last_s <= rules.same_event_s) {
             event.push(after - before);
         } else {
-            began_s = *at_s;
             events.push(vec![after - before]);
         }
+        last_s = *at_s;
     }
     let mean =
         |values: &[f64]| (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);

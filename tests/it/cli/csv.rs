@@ -297,7 +297,7 @@ fn what_is_not_understood_is_an_error_that_names_the_way_out() {
         (headless, &[], "column_2", "--time COLUMN"),
         (good.clone(), &["--separator", "|"], "two columns", "--separator CHAR"),
         (good.clone(), &["--rate", "0"], "--rate 0", "samples a second"),
-        (good.clone(), &["--time-unit", "deg"], "--time-unit deg", "s, ms, us or ns"),
+        (good.clone(), &["--time-unit", "deg"], "--time-unit deg", "s, ms, us, ns, min, h"),
         (good.clone(), &["--planned", "J1=#2", "--measured", "J1=#2"], "(#2)", "two things"),
         (good, &["--map", "missing.toml"], "missing.toml", "map"),
         (String::new(), &[], "empty", "--separator"),

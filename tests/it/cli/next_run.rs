@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::replan::{check, with_run};
-use crate::support::{clean, json, run_line, sample, stderr, stdout};
+use crate::support::{clean, json, run_line, stderr, stdout};
 
 #[test]
 fn a_task_that_begins_elsewhere_is_refused_and_bounds_hold_for_the_next_line() {
