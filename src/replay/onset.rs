@@ -126,9 +126,13 @@ pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &
     let rest = times.get(from..until).zip(position_rad.get(segment.start + from..segment.start + until));
     let sinks = rest.and_then(|(t_s, position)| drift(t_s, position)).unwrap_or(0.0);
     let sinks = f64::from(search.direction) * sinks;
-    let x: Vec<f64> = x.iter().zip(&t).map(|(x, t)| x - sinks * t).collect();
-    let mean = mean_of(&x);
-    let x: Vec<f64> = x.iter().map(|x| x - mean).collect();
+    let x = if sinks.abs() <= 0.0 {
+        x
+    } else {
+        let x: Vec<f64> = x.iter().zip(&t).map(|(x, t)| x - sinks * t).collect();
+        let mean = mean_of(&x);
+        x.iter().map(|x| x - mean).collect()
+    };
     let stop_speed = search.stop_speed - sinks;
 
     // The crossing of a smoothed speed may lie closer to the segment's start than the rest does.
@@ -261,12 +265,13 @@ mod tests {
             for sinks_deg_s in [0.0, 0.01, 0.03, 0.045] {
                 let (sinks, acceleration) = (sinks_deg_s * crate::units::DEGREE_RAD, 0.05);
                 let leaves_s = 3.0 + 0.003 * round as f64;
-                let t_s: Vec<f64> = (0..500).map(|k| k as f64 * 0.01).collect();
-                let position: Vec<f64> = (0..500_u64)
-                    .map(|k| {
-                        let since_s = (t_s[k as usize] - leaves_s).max(0.0);
+                let t_s: Vec<f64> = (0..500).map(|k| f64::from(k) * 0.01).collect();
+                let position: Vec<f64> = (0_u64..)
+                    .zip(&t_s)
+                    .map(|(k, t_s)| {
+                        let since_s = (t_s - leaves_s).max(0.0);
                         let scatter = 1e-4 * noise(1000 * round + k);
-                        scatter - sinks * t_s[k as usize] + 0.5 * acceleration * since_s * since_s
+                        scatter - sinks * t_s + 0.5 * acceleration * since_s * since_s
                     })
                     .collect();
                 let true_s = leaves_s + (STOP + sinks) / acceleration;
