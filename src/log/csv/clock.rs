@@ -9,7 +9,7 @@ use super::{
     label::Label,
     number::{nanoseconds, number},
     time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
-    unit::{EXCEL_DAY, FILETIME, Measure, Unit, parse_unit},
+    unit::{ARCHIVE_DAY, EXCEL_DAY, FILETIME, Measure, Unit, parse_unit},
 };
 use crate::{
     math::median,
@@ -39,6 +39,9 @@ pub(super) fn choose(
             Ok(found) => usable.push(found),
             Err(error) => failure = failure.or(Some(error)),
         }
+    }
+    if usable.is_empty() && failure.is_none() {
+        usable.extend(look.index());
     }
     look.join_day_and_time(&mut usable);
     look.join_parts(&mut usable);
@@ -124,6 +127,9 @@ impl Look<'_> {
             return Ok(self.found(TimeSource::Date { column, form: form.clone() }, doubt));
         }
         let given = self.options.time_unit.as_deref().and_then(parse_unit);
+        if given.is_none() && self.is_of_archive(column) {
+            return Ok(self.found(TimeSource::Number { column, unit: ARCHIVE_DAY }, None));
+        }
         let stated = self.labels.get(column).and_then(|label| label.stated);
         if let Some(other) = stated.filter(|unit| given.is_none() && unit.measure != Measure::Time) {
             return Err(CsvError::WrongUnit {
@@ -157,6 +163,39 @@ impl Look<'_> {
         };
         let Some(unit) = unit else { return Err(CsvError::TimeUnit { column: name(), step }) };
         Ok(self.found(TimeSource::Number { column, unit }, doubt))
+    }
+
+    /// Whether a column counts as archives do: it is named as a time in ms, is of days, and stands beside a date.
+    fn is_of_archive(&self, column: usize) -> bool {
+        const MILLIONTHS: [f64; 2] = [1e6 * SINCE_1899_DAYS[0], 1e6 * SINCE_1899_DAYS[1]];
+        let value = |cell: &[u8]| number(cell, self.dialect.decimal_comma);
+        let dated = |other: usize| {
+            DateForm::fitting(&self.cells(other)).first().is_some_and(|form| form.part() == Part::Local)
+        };
+        self.head.names[column].eq_ignore_ascii_case("time_ms")
+            && self
+                .cells(column)
+                .filter_map(value)
+                .all(|value| (MILLIONTHS[0]..MILLIONTHS[1]).contains(&value))
+            && (0..self.labels.len()).any(dated)
+    }
+
+    /// The first column as the index of a data frame, which has no name of its own, where it rises as a time does and
+    /// does not count rows.
+    fn index(&self) -> Option<Found> {
+        let name = self.head.names.first()?.to_lowercase();
+        if !self.head.named || !["column_1", "unnamed: 0", "index"].contains(&name.as_str()) {
+            return None;
+        }
+        let comma = self.dialect.decimal_comma;
+        let found = self.column(0).ok()?;
+        let cells = || self.cells(0).map(|cell| found.source.ns(0, |_| cell, comma));
+        let rises = cells().zip(cells().skip(1)).all(|(a, b)| a.is_some() && a < b);
+        let counts = self.cells(0).enumerate().all(|(row, cell)| number(cell, comma) == Some(row as f64));
+        (rises && !counts).then(|| {
+            let said = "has no name, and rises from row to row as a time does; else say --time or --rate";
+            Found { doubt: Some(found.doubt.unwrap_or_else(|| said.to_owned())), ..found }
+        })
     }
 
     /// Seconds in one column and what is beyond them in another are one time: `sec` and `nanosec`, a time of day and `ms`.
@@ -223,13 +262,15 @@ fn typical_step(values: &[f64]) -> f64 {
     if steps.is_empty() { 0.0 } else { median(steps) }
 }
 
+/// From 2000 to 2100.
+const SINCE_1899_DAYS: [f64; 2] = [36_526.0, 73_051.0];
+
 /// The unit of a column that names none: by its size if it counts from 1970, or else the one in
 /// which the rows come at 2 to 2000 Hz.
 fn guess_unit(first: f64, step: f64, whole: bool) -> (Option<Unit>, Option<String>) {
     const SINCE_1970_S: [f64; 2] = [1.0e9, 4.2e9];
-    // From 1995 to 2130, and from 2000 to 2100.
+    // From 1995 to 2130.
     const SINCE_1601: [f64; 2] = [1.243e17, 1.67e17];
-    const SINCE_1899_DAYS: [f64; 2] = [36_526.0, 73_051.0];
     if whole && (SINCE_1601[0]..SINCE_1601[1]).contains(&first) {
         return (Some(FILETIME), None);
     }

@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use ::csv::{ByteRecord, WriterBuilder};
+use ::csv::ByteRecord;
 
 use super::{
-    CsvOptions, Separator,
+    CsvOptions,
     dialect::{Dialect, detect},
     head::{Head, read_head},
     label::label,
     number::number,
-    rows::Rows,
+    rows::{Rows, writer},
 };
 use crate::remark::Remarks;
 
@@ -30,7 +30,6 @@ pub(super) fn joined(file: &str, text: &[u8], options: &CsvOptions) -> Option<Ve
         return None;
     }
     let dialect = detect(file, text, options).ok()?;
-    let Separator::Byte(separator) = dialect.separator else { return None };
     let head = read_head(text, dialect, &mut Remarks::default());
     let groups = groups(&head, dialect)?;
     let mut samples: Vec<(f64, usize, ByteRecord)> = Vec::new();
@@ -49,7 +48,7 @@ pub(super) fn joined(file: &str, text: &[u8], options: &CsvOptions) -> Option<Ve
         }
     }
     samples.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut out = WriterBuilder::new().delimiter(separator).from_writer(Vec::new());
+    let mut out = writer(dialect.separator);
     let first = groups.first()?;
     let columns = || groups.iter().flat_map(|group| group.columns.clone());
     let names = std::iter::once(first.time).chain(columns()).map(|column| head.names[column].as_bytes());

@@ -2,6 +2,8 @@
 
 use chrono::format::{Item, Parsed, StrftimeItems, parse};
 
+use super::elapsed;
+
 /// A way to write an instant.
 #[derive(Debug, Clone)]
 pub(super) struct DateForm {
@@ -18,16 +20,20 @@ pub(super) enum Part {
     Local,
     Day,
     TimeOfDay,
+    /// A span from a zero that is not said.
+    Elapsed,
 }
 
 /// Tried in this order: of two that fit, the first is meant more often.
-const FORMS: [(&str, &str, Part); 22] = [
+const FORMS: [(&str, &str, Part); 25] = [
     ("%Y-%m-%d %H:%M:%S%.f%#z", "yyyy-mm-dd hh:mm:ss with zone", Part::Zoned),
     ("%Y-%m-%d %H:%M:%S%.f", "yyyy-mm-dd hh:mm:ss", Part::Local),
     ("%Y/%m/%d %H:%M:%S%.f", "yyyy/mm/dd hh:mm:ss", Part::Local),
     ("%Y-%m-%d-%H:%M:%S%.f", "yyyy-mm-dd-hh:mm:ss", Part::Local),
     ("%Y%m%d %H%M%S%.f", "yyyymmdd hhmmss", Part::Local),
     ("%Y%m%d %H%M%S%.f%#z", "yyyymmdd hhmmss with zone", Part::Zoned),
+    ("%Y%m%d%H%M%S%3f", "yyyymmddhhmmssfff", Part::Local),
+    ("%Y%m%d%H%M%S%.f", "yyyymmddhhmmss", Part::Local),
     ("%d.%m.%Y %H:%M:%S%.f", "dd.mm.yyyy hh:mm:ss", Part::Local),
     ("%d.%m.%y %H:%M:%S%.f", "dd.mm.yy hh:mm:ss", Part::Local),
     ("%d-%b-%Y %H:%M:%S%.f", "dd-mon-yyyy hh:mm:ss", Part::Local),
@@ -44,6 +50,7 @@ const FORMS: [(&str, &str, Part); 22] = [
     ("%d.%m.%Y", "dd.mm.yyyy", Part::Day),
     ("%d/%m/%Y", "dd/mm/yyyy", Part::Day),
     ("%m/%d/%Y", "mm/dd/yyyy", Part::Day),
+    ("", elapsed::NAME, Part::Elapsed),
 ];
 
 impl DateForm {
@@ -69,7 +76,11 @@ impl DateForm {
     /// The instant in a cell, ns since 1970 (UTC where the text gives no zone), or since midnight
     /// for a time of day.
     pub(super) fn ns(&self, cell: &[u8]) -> Option<i64> {
-        let text = plain(std::str::from_utf8(cell).ok()?.trim())?;
+        let text = std::str::from_utf8(cell).ok()?.trim();
+        if self.part == Part::Elapsed {
+            return elapsed::elapsed_ns(text);
+        }
+        let text = plain(text)?;
         let mut parsed = Parsed::new();
         parse(&mut parsed, &text, self.items.iter()).ok()?;
         match self.part {
@@ -80,6 +91,7 @@ impl DateForm {
                 let time = parsed.to_naive_time().ok()?;
                 time.signed_duration_since(chrono::NaiveTime::MIN).num_nanoseconds()
             }
+            Part::Elapsed => None,
         }
     }
 }
@@ -141,6 +153,8 @@ mod tests {
             "15.06.25 15:06:40.020",
             "15-Jun-2025 15:06:40.020",
             "15-JUN-25 15:06:40,020",
+            "20250615150640020",
+            "20250615150640.02",
         ] {
             assert_eq!(ns(text).0, NOON_NS, "{text}");
         }
@@ -155,7 +169,17 @@ mod tests {
 
     #[test]
     fn what_is_no_date_has_no_form() {
-        for text in ["", "12", "1.5", "99.99.2025 10:00:00", "25:00:00", "zwei"] {
+        for text in [
+            "",
+            "12",
+            "1.5",
+            "20251315150640020",
+            "1750000000020",
+            "17500000000200000",
+            "99.99.2025 10:00:00",
+            "25:00:00",
+            "zwei",
+        ] {
             assert!(DateForm::fitting(&std::iter::once(text.as_bytes())).is_empty(), "{text}");
         }
     }

@@ -43,7 +43,7 @@ pub enum CsvError {
     /// Rows of several machines.
     #[error(
         "column {column:?} tells several machines apart ({known}), and a log is of one; say which with \
-         --only '{column}={first}'"
+         --only '{column}={first}', or --only '{column}=*' if all rows are of one"
     )]
     Machines { column: String, known: String, first: String },
     /// Rows that the caller named.

@@ -2,14 +2,14 @@
 
 use std::borrow::Cow;
 
-use ::csv::{ByteRecord, WriterBuilder};
+use ::csv::ByteRecord;
 
 use super::{
-    CsvOptions, Separator,
+    CsvOptions,
     dialect::{Dialect, detect},
     head::read_head,
     label::label,
-    rows::Rows,
+    rows::{Rows, writer},
 };
 use crate::remark::{Code, Remarks};
 
@@ -154,11 +154,7 @@ fn grouped(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks)
 
 /// The same table with each cell of grouped digits without the mark.
 fn without_groups(text: &[u8], dialect: Dialect, mark: u8) -> Option<Vec<u8>> {
-    let separator = match dialect.separator {
-        Separator::Byte(byte) => byte,
-        Separator::Space => b'\t',
-    };
-    let mut plain = WriterBuilder::new().delimiter(separator).flexible(true).from_writer(Vec::new());
+    let mut plain = writer(dialect.separator);
     let mut rows = Rows::new(text, dialect.separator);
     let mut record = ByteRecord::new();
     while rows.next(&mut record).is_some() {

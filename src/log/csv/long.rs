@@ -3,21 +3,21 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use ::csv::{ByteRecord, WriterBuilder};
+use ::csv::ByteRecord;
 
 use super::{
-    CsvOptions, Separator,
+    CsvOptions,
     dialect::{Dialect, detect},
     head::{Head, read_head},
     label::label,
     number::{Looks, looks, number},
-    rows::{Rows, cell_text},
+    rows::{Rows, cell_text, writer},
     word::words,
 };
 use crate::remark::{Code, Remarks};
 
 /// Headers of columns that say of what a row is.
-const NAMES: [&str; 26] = [
+const NAMES: [&str; 27] = [
     "joint",
     "joint_name",
     "joint name",
@@ -31,6 +31,7 @@ const NAMES: [&str; 26] = [
     "signalname",
     "variable",
     "variablename",
+    "varname",
     "tag",
     "tagname",
     "channel",
@@ -77,11 +78,10 @@ pub(super) fn widened(
     remarks: &mut Remarks,
 ) -> Option<Vec<u8>> {
     let dialect = detect(file, text, options).ok()?;
-    let Separator::Byte(separator) = dialect.separator else { return None };
     let head = read_head(text, dialect, &mut Remarks::default());
     let long = Long::of(dialect, head, options)?;
     let gathered = long.gather(text)?;
-    let mut wide = WriterBuilder::new().delimiter(separator).from_writer(Vec::new());
+    let mut wide = writer(dialect.separator);
     let names = long.times.iter().map(|&column| long.head.names[column].clone());
     wide.write_record(names.chain(long.headers(&gathered.ids))).ok()?;
     for (row, time) in long.in_order(&gathered.times) {
@@ -251,7 +251,7 @@ impl Long {
         };
         let of_value = |column: usize| {
             let header = self.head.names[column].trim_matches('_');
-            match words(header).first().filter(|_| self.bare) {
+            match words(&header.to_lowercase()).first().filter(|_| self.bare) {
                 Some(word) => header.get(word.text.len()..).unwrap_or_default().to_owned(),
                 None => format!(" {header}"),
             }
@@ -288,6 +288,8 @@ mod tests {
         let expected = "_time,boom_set,boom_actual\n2026-11-20T10:00:00Z,1.5,\n2026-11-20T10:00:00.5Z,,0.5\n\
                         2026-11-20T10:00:01Z,2.5,\n";
         assert_eq!(wide(text).as_deref(), Some(expected));
+        let text = "VarName;Time;VarValue\nb_set;0;1\nb_act;0;2\nb_set;1;3\n";
+        assert_eq!(wide(text).as_deref(), Some("Time;b_set;b_act\n0;1;2\n1;3;\n"));
         let text = "time,name,value_deg\n0,boom set,1\n0,boom act,2\n1,boom set,3\n1,boom act,4\n";
         assert_eq!(wide(text).as_deref(), Some("time,boom set_deg,boom act_deg\n0,1,2\n1,3,4\n"));
     }

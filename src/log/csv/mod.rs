@@ -5,6 +5,7 @@
 //! name says, `clock` which column is the time, `layout` which column is which joint's; `read` then walks all
 //! rows. What a file does not say, [`CsvOptions`] do; what is only guessed is a remark.
 
+mod behind;
 mod by_meaning;
 mod clock;
 mod clocks;
@@ -12,6 +13,7 @@ mod column;
 mod date;
 mod dialect;
 mod efforts;
+mod elapsed;
 #[cfg(feature = "encodings")]
 mod encoding;
 mod error;
@@ -98,6 +100,7 @@ pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<
     let text = text::of_bytes(name, bytes)?;
     let text = objects::as_table(&text).map_or(text, Cow::Owned);
     let text = only::of_one(name, text, options)?;
+    let text = behind::without_units(name, text, options);
     let text = grouping::plain(name, text, options, &mut remarks);
     let text = clocks::joined(name, &text, options).map_or(text, Cow::Owned);
     let text = long::widened(name, &text, options, &mut remarks).map_or(text, Cow::Owned);

@@ -1,5 +1,11 @@
 //! Numbers as files write them, with a decimal point or a decimal comma.
 
+use super::{
+    elapsed::elapsed_ns,
+    rows::cell_text,
+    unit::{Unit, parse_unit},
+};
+
 /// A number near zero without an exponent has some 345 characters, and `export` writes those.
 const LONGEST: usize = 400;
 
@@ -94,6 +100,16 @@ fn scientific(cell: &[u8], decimal_comma: bool, unit_ns: i64) -> Option<i64> {
     (value_ns.abs() < 9.0e18).then(|| value_ns.round() as i64)
 }
 
+/// The number of a cell and the unit behind it: `20.0 mm`.
+pub(super) fn with_unit(cell: &[u8]) -> Option<(&[u8], Unit)> {
+    let cell = cell.trim_ascii();
+    let end = cell.iter().rposition(u8::is_ascii_digit)? + 1;
+    let (digits, behind) = cell.split_at(end);
+    let plain = |digits: &[u8]| number(digits, false).is_some() || number(digits, true).is_some();
+    let unit = parse_unit(&cell_text(behind)).filter(|_| !behind.is_empty())?;
+    plain(digits).then_some((digits, unit))
+}
+
 /// The kind of a cell, before the file's decimal mark is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Looks {
@@ -116,6 +132,13 @@ pub(super) fn looks(cell: &[u8]) -> Looks {
         (_, Some(_)) if has(b',') => Looks::Comma,
         (Some(_), _) | (_, Some(_)) => Looks::Whole,
         (None, None) => {
+            let spans = cell[0].eq_ignore_ascii_case(&b't') || has(b':');
+            if spans && std::str::from_utf8(cell).ok().and_then(elapsed_ns).is_some() {
+                return Looks::Date;
+            }
+            if let Some((digits, _)) = with_unit(cell) {
+                return looks(digits);
+            }
             let dated = cell.len() >= 8
                 && cell[0].is_ascii_digit()
                 && cell.iter().all(|byte| byte.is_ascii_digit() || b" -:./,;TZ+APMUC".contains(byte));
@@ -186,5 +209,9 @@ mod tests {
         assert_eq!(looks(b"2025-06-15T15:06:40Z"), Looks::Date);
         assert_eq!(looks(b"standstill"), Looks::Text);
         assert_eq!(looks(b"1,25"), Looks::Comma);
+        assert_eq!(looks(b"T#1s10ms"), Looks::Date);
+        assert_eq!(looks("-1.5\u{b0}".as_bytes()), Looks::Point);
+        assert_eq!(looks(b"20 mm"), Looks::Whole);
+        assert_eq!(looks(b"joint 1"), Looks::Text);
     }
 }

@@ -1,15 +1,19 @@
 //! Tables of several machines: rows of one of them.
 
-use std::{borrow::Cow, collections::BTreeMap};
+use std::{
+    borrow::Cow,
+    collections::BTreeMap,
+    fmt::{self, Display, Formatter},
+};
 
-use ::csv::{ByteRecord, WriterBuilder};
+use ::csv::ByteRecord;
 
 use super::{
-    CsvError, CsvOptions, Separator,
+    CsvError, CsvOptions,
     column::find,
     dialect::{Dialect, detect},
     head::read_head,
-    rows::{Rows, cell_text},
+    rows::{Rows, cell_text, writer},
 };
 use crate::remark::Remarks;
 
@@ -44,73 +48,107 @@ const MACHINES: [&str; 24] = [
 /// More of them than these are not listed.
 const LISTED: usize = 8;
 
+/// Says that all rows are meant.
+const ALL: &str = "*";
+
+/// Rows with a value in a column.
+#[derive(Debug, Clone)]
+pub(super) struct Only {
+    column: usize,
+    value: String,
+}
+
+impl Display for Only {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.value)
+    }
+}
+
+impl Only {
+    /// The rows that the caller names, or of the first machine where a column tells of which one a row is; `None` for
+    /// all rows.
+    pub(super) fn of(file: &str, text: &[u8], options: &CsvOptions) -> Result<Option<Self>, CsvError> {
+        Ok(Table::of(file, text, options)?.and_then(|table| {
+            let named = options.only.as_ref().map(|(_, value)| value.clone());
+            let value = named.or_else(|| table.counts.into_keys().next())?;
+            Some(Self { column: table.column, value })
+        }))
+    }
+
+    pub(super) fn holds(&self, row: &ByteRecord) -> bool {
+        row.get(self.column).map(cell_text).as_ref() == Some(&self.value)
+    }
+}
+
 /// The rows of the machine that the caller names; an error if the table is of several and none is named.
 pub(super) fn of_one<'a>(
     file: &str,
     text: Cow<'a, [u8]>,
     options: &CsvOptions,
 ) -> Result<Cow<'a, [u8]>, CsvError> {
-    let Ok(dialect) = detect(file, &text, options) else { return Ok(text) };
-    let head = read_head(&text, dialect, &mut Remarks::default());
-    let is_machine =
-        |name: &String| MACHINES.contains(&name.trim().to_lowercase().replace([' ', '-'], "_").as_str());
-    let column = match &options.only {
-        Some((column, _)) => Some(find(column, "--only", &head.names)?),
-        None => head.names.iter().position(is_machine),
-    };
-    let Some(column) = column else { return Ok(text) };
-    let counts = counted(&text, dialect, head.first_line, column);
-    let known = || counts.keys().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
-    let (header, known) = (head.names[column].clone(), known());
+    let Some(table) = Table::of(file, &text, options)? else { return Ok(text) };
+    let known = || table.counts.keys().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
+    let column = || table.header.clone();
     match &options.only {
-        None if counts.len() < 2 => Ok(text),
+        None if table.counts.len() < 2 => Ok(text),
         None => {
-            let first = counts.into_keys().next().unwrap_or_default();
-            Err(CsvError::Machines { column: header, known, first })
+            let first = table.counts.keys().next().cloned().unwrap_or_default();
+            Err(CsvError::Machines { column: column(), known: known(), first })
         }
-        Some((_, value)) if !counts.contains_key(value) => {
-            Err(CsvError::NoMachine { column: header, value: value.clone(), known })
+        Some((_, value)) if !table.counts.contains_key(value) => {
+            Err(CsvError::NoMachine { column: column(), value: value.clone(), known: known() })
         }
-        Some((_, value)) => {
-            Ok(rows_of(&text, dialect, head.first_line, (column, value)).map_or(text, Cow::Owned))
-        }
+        Some((_, value)) => Ok(table.rows_with(&text, value).map_or(text, Cow::Owned)),
     }
 }
 
-/// The values of a column, with their rows.
-fn counted(text: &[u8], dialect: Dialect, first_line: u64, column: usize) -> BTreeMap<String, u64> {
-    let mut counts = BTreeMap::new();
-    let mut rows = Rows::new(text, dialect.separator);
-    let mut record = ByteRecord::new();
-    while let Some(line) = rows.next(&mut record) {
-        let cell = record.get(column).map(cell_text).filter(|cell| !cell.is_empty());
-        if let Some(cell) = cell.filter(|_| line >= first_line && record.len() == dialect.width) {
-            *counts.entry(cell).or_default() += 1;
-        }
-    }
-    counts
-}
-
-/// The table with all rows above the first of numbers, and of those the ones with a value in a column.
-fn rows_of(
-    text: &[u8],
+/// A table with a column that tells rows apart.
+struct Table {
     dialect: Dialect,
     first_line: u64,
-    (column, value): (usize, &String),
-) -> Option<Vec<u8>> {
-    let separator = match dialect.separator {
-        Separator::Byte(byte) => byte,
-        Separator::Space => b'\t',
-    };
-    let mut kept = WriterBuilder::new().delimiter(separator).flexible(true).from_writer(Vec::new());
-    let mut rows = Rows::new(text, dialect.separator);
-    let mut record = ByteRecord::new();
-    while let Some(line) = rows.next(&mut record) {
-        if line < first_line || record.get(column).map(cell_text).as_ref() == Some(value) {
-            kept.write_byte_record(&record).ok()?;
+    column: usize,
+    header: String,
+    /// The values of that column, with their rows.
+    counts: BTreeMap<String, u64>,
+}
+
+impl Table {
+    fn of(file: &str, text: &[u8], options: &CsvOptions) -> Result<Option<Self>, CsvError> {
+        let Ok(dialect) = detect(file, text, options) else { return Ok(None) };
+        let head = read_head(text, dialect, &mut Remarks::default());
+        let is_machine =
+            |name: &String| MACHINES.contains(&name.trim().to_lowercase().replace([' ', '-'], "_").as_str());
+        let column = match &options.only {
+            Some((column, value)) => Some(find(column, "--only", &head.names)?).filter(|_| value != ALL),
+            None => head.names.iter().position(is_machine),
+        };
+        let Some(column) = column else { return Ok(None) };
+        let mut counts = BTreeMap::new();
+        let mut rows = Rows::new(text, dialect.separator);
+        let mut record = ByteRecord::new();
+        while let Some(line) = rows.next(&mut record) {
+            let cell = record.get(column).map(cell_text).filter(|cell| !cell.is_empty());
+            if let Some(cell) = cell.filter(|_| line >= head.first_line && record.len() == dialect.width) {
+                *counts.entry(cell).or_default() += 1;
+            }
         }
+        let header = head.names[column].clone();
+        Ok(Some(Self { dialect, first_line: head.first_line, column, header, counts }))
     }
-    kept.into_inner().ok()
+
+    /// The table with all rows above the first of numbers, and of those the ones with a value in the column.
+    fn rows_with(&self, text: &[u8], value: &str) -> Option<Vec<u8>> {
+        let only = Only { column: self.column, value: value.to_owned() };
+        let mut kept = writer(self.dialect.separator);
+        let mut rows = Rows::new(text, self.dialect.separator);
+        let mut record = ByteRecord::new();
+        while let Some(line) = rows.next(&mut record) {
+            if line < self.first_line || only.holds(&record) {
+                kept.write_byte_record(&record).ok()?;
+            }
+        }
+        kept.into_inner().ok()
+    }
 }
 
 #[cfg(test)]
@@ -132,6 +170,7 @@ mod tests {
         assert!(said.contains("EX1, EX2") && said.contains("--only 'Machine=EX1'"), "{said}");
         assert_eq!(of(two, Some(("machine", "EX2"))).unwrap(), "t,Machine,q\n0,EX2,2\n1,EX2,4\n");
         assert!(of(two, Some(("machine", "EX3"))).unwrap_err().contains("EX1, EX2"));
+        assert_eq!(of(two, Some(("machine", "*"))).unwrap(), two);
         let one = "t,machine,q\n0,EX1,1\n1,EX1,3\n";
         assert_eq!(of(one, None).unwrap(), one);
         let none = "t,phase,q\n0,lift,1\n1,place,3\n";

@@ -1,6 +1,6 @@
 //! Rows of cells, whatever separates them.
 
-use ::csv::{ByteRecord, Reader, ReaderBuilder};
+use ::csv::{ByteRecord, Reader, ReaderBuilder, Writer, WriterBuilder};
 
 use super::Separator;
 
@@ -60,6 +60,15 @@ impl<'a> Rows<'a> {
             },
         }
     }
+}
+
+/// Writes rows that are read again with the same separator; between cells that blanks separate it puts tabs.
+pub(super) fn writer(separator: Separator) -> Writer<Vec<u8>> {
+    let byte = match separator {
+        Separator::Byte(byte) => byte,
+        Separator::Space => b'\t',
+    };
+    WriterBuilder::new().delimiter(byte).flexible(true).from_writer(Vec::new())
 }
 
 /// The line of a record, whose position is where the one before ended: blank lines and comments

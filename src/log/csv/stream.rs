@@ -1,11 +1,12 @@
 //! Rows that come one by one, as from a controller that runs.
 
-use std::io::Write;
+use std::{borrow::Cow, io::Write};
 
 use ::csv::ByteRecord;
 
 use super::{
     CsvError, CsvOptions, CsvRun, Form, Quantity, Understood, expression,
+    only::{self, Only},
     read::{Cells, Column},
     rows::Rows,
     si::{self, Settled},
@@ -30,6 +31,8 @@ pub struct TableStream {
     units: Vec<Settled>,
     run: CsvRun,
     rows: u64,
+    /// Rows that are written; all, if `None`.
+    only: Option<Only>,
     /// Line of the first row in what is written first; 0 afterwards.
     first_line: u64,
     /// Latest instant of receipt, what the clock was set back by, the last step, ns; rows behind in turn.
@@ -48,6 +51,7 @@ struct Counts {
     ragged: u64,
     unstamped: u64,
     bad_cells: u64,
+    others: u64,
     late: u64,
     set_back: u64,
 }
@@ -61,6 +65,12 @@ impl TableStream {
     pub fn begin(name: &str, first: &[u8], options: &CsvOptions) -> Result<Self, CsvError> {
         let text = text::of_bytes(name, first)?;
         let mut remarks = Remarks::default();
+        let only = Only::of(name, &text, options)?;
+        // Rows of the one that is meant may be yet to come.
+        let text = match only::of_one(name, Cow::Borrowed(&text), options) {
+            Err(CsvError::NoMachine { .. }) => text.clone(),
+            one => one?,
+        };
         let form = Form::of(name, &text, options, &mut remarks)?;
         let (run, units) = form.read(name, &text, remarks)?;
         let guessed =
@@ -71,6 +81,7 @@ impl TableStream {
         }
         Ok(Self {
             first_line: form.head.first_line,
+            only,
             form,
             units,
             run,
@@ -142,6 +153,10 @@ impl TableStream {
             self.counts.ragged += 1;
             return;
         }
+        if self.only.as_ref().is_some_and(|only| !only.holds(record)) {
+            self.counts.others += 1;
+            return;
+        }
         let cell = |column: usize| record.get(column).unwrap_or_default();
         let Some(ns) =
             self.form.time.ns(self.rows + cells.stamp_ns.len() as u64, cell, dialect.decimal_comma)
@@ -190,8 +205,15 @@ impl TableStream {
     /// Doubts so far.
     pub fn remarks(&self) -> Remarks {
         let mut remarks = self.run.remarks.clone().without(Code::Guessed);
-        let Counts { ragged, unstamped, bad_cells, late, set_back } = self.counts;
+        let Counts { ragged, unstamped, bad_cells, others, late, set_back } = self.counts;
         let width = self.form.dialect.width;
+        if let Some(only) = self.only.as_ref().filter(|_| self.form.options.only.is_none()) {
+            remarks.add(
+                Code::Ambiguous,
+                others,
+                format!("rows of another machine than {only}, left out; --only COLUMN=VALUE names one"),
+            );
+        }
         remarks.add(Code::LengthMismatch, ragged, format!("lines that have not {width} cells; left out"));
         remarks.add(Code::NotFinite, unstamped, "lines without a time, such as a header again; left out");
         remarks.add(Code::NotFinite, bad_cells, "cells that are no number; left empty");
@@ -230,6 +252,25 @@ mod tests {
         assert_eq!(stream.rows(), 300);
         assert!(log.finish().unwrap() == imported.write(Vec::new()).unwrap());
         assert!(stream.remarks().is_empty(), "{:?}", stream.remarks());
+    }
+
+    #[test]
+    fn rows_of_another_machine_are_left_out() {
+        let row = |k: u32| format!("{k},EX{},{k},{k}\n", 1 + k / 2 % 2);
+        let first = format!("t_s,machine,boom_set_mm,boom_act_mm\n{}{}", row(0), row(1));
+        let later: String = (2..8).map(row).collect();
+        for (only, rows, said) in [(None, 4, 1), (Some("EX1"), 4, 0), (Some("EX2"), 4, 0), (Some("*"), 8, 0)]
+        {
+            let only = only.map(|value| ("machine".to_owned(), value.to_owned()));
+            let options = CsvOptions { only, ..CsvOptions::default() };
+            let mut stream = TableStream::begin("a.csv", first.as_bytes(), &options).unwrap();
+            let mut log = stream.log(Vec::new()).unwrap();
+            stream.write(format!("{first}{later}").as_bytes(), &mut log).unwrap();
+            assert_eq!((stream.rows(), stream.remarks().as_slice().len()), (rows, said), "{options:?}");
+        }
+        let both = format!("{first}{later}");
+        let begun = TableStream::begin("a.csv", both.as_bytes(), &CsvOptions::default());
+        assert!(matches!(begun, Err(CsvError::Machines { .. })));
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use super::{
     date::{DateForm, Part},
-    number::{nanoseconds, nanoseconds_after},
-    unit::{Measure, Unit, parse_unit},
+    number::{self, nanoseconds, nanoseconds_after},
+    unit::{Measure, Unit},
 };
 use crate::units::NS_PER_S;
 
@@ -136,14 +136,10 @@ impl TimeSource {
     }
 }
 
-/// The number of a cell, and the unit that some programs write behind each: `0.25 sec`.
+/// The number of a cell, and the unit of time that some programs write behind each: `0.25 sec`.
 pub(super) fn with_unit(cell: &[u8]) -> (&[u8], Option<Unit>) {
-    let cell = cell.trim_ascii();
-    let digits = cell.iter().rposition(u8::is_ascii_digit).map_or(0, |at| at + 1);
-    let unit = cell.get(digits..).filter(|rest| !rest.is_empty());
-    let unit = unit.and_then(|rest| parse_unit(std::str::from_utf8(rest).ok()?));
-    unit.filter(|unit| unit.measure == Measure::Time)
-        .map_or((cell, None), |unit| (&cell[..digits], Some(unit)))
+    let found = number::with_unit(cell).filter(|(_, unit)| unit.measure == Measure::Time);
+    found.map_or((cell.trim_ascii(), None), |(digits, unit)| (digits, Some(unit)))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "range checked")]

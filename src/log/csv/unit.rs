@@ -44,6 +44,8 @@ pub(super) const METRE: Unit = unit("m", Measure::Length, 1.0);
 pub(super) const FILETIME: Unit = unit("100 ns since 1601", Measure::Time, 100.0);
 /// Of spreadsheets.
 pub(super) const EXCEL_DAY: Unit = unit("days since 1899-12-30", Measure::Time, 86_400e9);
+/// Of archives of Siemens, in a column `Time_ms` beside a date.
+pub(super) const ARCHIVE_DAY: Unit = unit("millionths of days since 1899-12-30", Measure::Time, 86_400e3);
 
 /// Units before which a number stands, as `[10 ms]` or `0.1mm`.
 const SCALED: [Unit; 10] = [
@@ -138,7 +140,7 @@ impl Unit {
     pub(super) fn zero_ns(self) -> i128 {
         match self {
             FILETIME => -11_644_473_600_000_000_000,
-            EXCEL_DAY => -2_209_161_600_000_000_000,
+            EXCEL_DAY | ARCHIVE_DAY => -2_209_161_600_000_000_000,
             _ => 0,
         }
     }
@@ -159,13 +161,22 @@ pub(super) fn parse_unit(text: &str) -> Option<Unit> {
     let text = text.trim().trim_matches(['[', ']', '(', ')']).trim().to_lowercase().replace('°', "deg");
     let known = UNITS.iter().find(|(spellings, _)| spellings.contains(&text.as_str())).map(|(_, unit)| *unit);
     let other = || OTHERS.iter().find(|other| **other == text).map(|name| unit(name, Measure::Other, 1.0));
-    known.or_else(other).or_else(|| scaled(&text))
+    // Values that are so many times the unit.
+    let times = || {
+        let (name, number) = text.split_once(['*', 'x'])?;
+        scale_of((&format!("1/{}", number.trim()), name.trim()))
+    };
+    known.or_else(other).or_else(|| scaled(&text)).or_else(times)
 }
 
 /// A unit behind a number or a fraction of one; one that no program is known to write is another unit.
 fn scaled(text: &str) -> Option<Unit> {
     let name = text.find(|c: char| !(c.is_ascii_digit() || ".,/".contains(c))).filter(|at| *at > 0)?;
-    let (number, name) = text.split_at(name);
+    scale_of(text.split_at(name))
+}
+
+/// The unit that a number and a unit's name make.
+fn scale_of((number, name): (&str, &str)) -> Option<Unit> {
     let (above, below) = number.split_once('/').unwrap_or((number, "1"));
     let [above, below] = [above, below].map(|text| text.replace(',', ".").parse::<f64>().ok());
     let factor = above? / below?;
@@ -214,6 +225,8 @@ mod tests {
             ("(1/100 s)", "0.01 s"),
             ("10 ms", "0.01 s"),
             ("[100ns]", "100 ns"),
+            ("[deg*10]", "0.1 deg"),
+            ("mm x 100", "0.01 mm"),
             ("1 mm", "mm"),
             ("[7 mm]", "another unit"),
             ("[counts]", "counts"),

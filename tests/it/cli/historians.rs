@@ -55,6 +55,12 @@ fn times_in_any_unit_and_in_parts_are_one_run() {
         ("filetime.csv", of("Time", &|k| (133_932_816_000_000_000_u64 + u64::from(k) * 200_000).to_string())),
         ("excel.csv", of("Time", &|k| format!("{:.10}", 45_811.375 + s(k) / 86_400.0))),
         ("matlab.csv", of("Time", &|k| format!("03-Jun-2025 09:00:{:02}.{:03}", whole(k).0, whole(k).1))),
+        ("index.csv", of("", &|k| format!("{:.2}", s(k)))),
+        ("dates.csv", of("", &|k| format!("2025-06-03 09:00:{:02}.{:03}", whole(k).0, whole(k).1))),
+        ("deltas.csv", of("index", &|k| format!("0 days 00:00:{:02}.{:03}000", whole(k).0, whole(k).1))),
+        ("plc.csv", of("time", &|k| format!("T#{}S{}MS", whole(k).0, whole(k).1))),
+        ("passed.csv", of("time", &|k| format!("00:{:02}.{:03}", whole(k).0, whole(k).1))),
+        ("digits.csv", of("time", &|k| format!("202506030900{:02}{:03}", whole(k).0, whole(k).1))),
         ("basic.csv", of("Time", &|k| format!("20250603T0900{:02}.{:03}Z", whole(k).0, whole(k).1))),
         (
             "stamp.csv",
@@ -118,6 +124,44 @@ fn a_long_table_may_have_words_beside_each_value_and_each_signal_a_clock() {
         format!("{t:.2},{plan:.4},{:.2},{came:.4}", t + 0.25)
     });
     assert_peak("clocks.csv", &clocks, &[]);
+}
+
+#[test]
+fn an_archive_counts_millionths_of_days_beside_a_date() {
+    let line = |k: u32, signal, value| {
+        let number = |value: f64| format!("{value:.6}").replace('.', ",");
+        let days = number(45_811.375e6 + f64::from(k) * 0.02 / 0.0864);
+        format!("\"boom_{signal}\";\"03.06.2025 09:00:{:02}\";{};1;{days}", k / 50, number(value))
+    };
+    let of = |k: u32, [plan, came]: [f64; 2]| {
+        format!("{}\n{}", line(k, "set_deg", plan), line(k, "act_deg", came))
+    };
+    assert_peak(
+        "wincc.csv",
+        &table("\"VarName\";\"TimeString\";\"VarValue\";\"Validity\";\"Time_ms\"", of),
+        &[],
+    );
+}
+
+#[test]
+fn units_may_stand_behind_the_numbers() {
+    let text = table("Time,boom set,boom act", |k, [plan, came]| {
+        format!("{:.2} s,{plan:.4}\u{b0},{came:.4}\u{b0}", f64::from(k) * 0.02)
+    });
+    assert_peak("board.csv", &text, &[]);
+    let text = table("t_s,boom_set [deg*10],boom_act [deg*10]", |k, [plan, came]| {
+        format!("{:.2},{:.3},{:.3}", f64::from(k) * 0.02, 10.0 * plan, 10.0 * came)
+    });
+    assert_peak("tenths.csv", &text, &[]);
+}
+
+#[test]
+fn a_column_that_counts_rows_is_no_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = table(",boom_set_deg,boom_act_deg", |k, [plan, came]| format!("{k},{plan:.4},{came:.4}"));
+    fs::write(folder.path().join("rows.csv"), text).unwrap();
+    let (code, _, error) = said(&hydrotrace(folder.path(), &["report", "rows.csv"]));
+    assert!(code == 1 && error.contains("--rate HZ"), "{error}");
 }
 
 #[test]
