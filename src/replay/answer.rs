@@ -21,8 +21,8 @@ pub(super) fn untimed(
     cut: bool,
     rules: &Rules,
 ) -> Answer {
-    let needed_rad = rules.follow_share * rise_rad(&pair.planned[window.clone()], direction);
-    if rise_rad(&signals.measured_rad[window.clone()], direction) >= needed_rad.max(signals.min_travel) {
+    let needed_rad = rules.follow_share * rise(&pair.planned[window.clone()], direction);
+    if rise(&signals.measured_rad[window.clone()], direction) >= needed_rad.max(signals.min_travel) {
         return Answer::Creeps;
     }
     let lasts_s = pair.t_s[window.end - 1] - pair.t_s[window.start];
@@ -30,9 +30,9 @@ pub(super) fn untimed(
     if needed_rad < signals.min_travel || lasts_s < enough_s { Answer::Unclear } else { Answer::Never }
 }
 
-/// Largest travel in a direction from any angle to a later one, rad: a joint that comes out of the
+/// Largest travel in a direction from any angle to a later one: a joint that comes out of the
 /// opposite motion is measured from where it turns.
-fn rise_rad(angle_rad: &[f64], direction: i8) -> f64 {
+pub(super) fn rise(angle_rad: &[f64], direction: i8) -> f64 {
     let mut lowest = f64::INFINITY;
     let mut most = 0.0_f64;
     for angle_rad in angle_rad {
@@ -45,11 +45,9 @@ fn rise_rad(angle_rad: &[f64], direction: i8) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn travel_counts_from_the_turning_point_and_only_along_the_motion() {
-        let rise = |angle_rad: &[f64], direction| format!("{:.3}", rise_rad(angle_rad, direction));
+        let rise = |angle_rad: &[f64], direction| format!("{:.3}", super::rise(angle_rad, direction));
         assert_eq!(rise(&[1.0, 0.5, 2.0, 1.5], 1), "1.500");
         assert_eq!(rise(&[1.0, 0.5, 2.0, 1.5], -1), "0.500");
         assert_eq!(rise(&[3.0, 2.0, 1.0], 1), "0.000");

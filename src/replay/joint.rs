@@ -2,6 +2,7 @@
 
 use super::{
     Answer, JointReplay, Rules, Stop, Transition,
+    answer::rise,
     delay::{measured_onset, planned_onset_s},
     lag::{Lag, Speeds, lag},
     lag_share::{Block, blocks, lag_share},
@@ -51,7 +52,7 @@ pub(super) fn joint<'a>(pair: &'a Pair, rules: &Rules) -> Option<Joint<'a>> {
         .filter(|m| m.starts())
         .map(|m| (m, measured_onset(pair, &signals, m, rules)))
         .collect();
-    let answers = answers(pair, &planned, &untils_s, &measured, rules);
+    let answers = answers((pair, &signals), &planned, &untils_s, &measured, rules);
     let transitions: Vec<Transition> = (0..planned.len())
         .map(|k| {
             let answer = answers[k].and_then(|answer: usize| measured.get(answer).copied());
@@ -106,7 +107,7 @@ fn travel_rad(angle_rad: &[f64], motion: &Motion) -> f64 {
 /// it; of several, the first answers. A joint that moves before it is asked to is shaken by the
 /// others, unless it goes on to cover a good part of the planned travel.
 fn answers(
-    pair: &Pair,
+    (pair, signals): (&Pair, &Signals),
     planned: &[&Motion],
     untils_s: &[f64],
     measured: &[(&Motion, Onset)],
@@ -121,6 +122,7 @@ fn answers(
                 && planned[p].segment == motion.segment
                 && onset.at_s <= window_end_s + rules.match_after_s
                 && answers[p].is_none()
+                && !followed_before((pair, signals), planned[p], untils_s[p], onset.at_s, rules)
                 && (onset.interval_s[1] >= planned[p].start_s
                     || travel_rad(&pair.measured, motion)
                         >= rules.early_travel_share * travel_rad(&pair.planned, planned[p]))
@@ -130,6 +132,30 @@ fn answers(
         }
     }
     answers
+}
+
+/// Whether a joint covered a good part of the planned travel before an instant, and stands there: what starts then is no
+/// answer to the plan, which it followed without a start that was seen.
+fn followed_before(
+    (pair, signals): (&Pair, &Signals),
+    planned: &Motion,
+    until_s: f64,
+    at_s: f64,
+    rules: &Rules,
+) -> bool {
+    let times = &pair.t_s[planned.segment.clone()];
+    let at = |t_s: f64| planned.segment.start + times.partition_point(|&t| t < t_s);
+    let begins = planned.samples.start;
+    let ends = at(until_s.min(planned.start_s + rules.transition_window_s)).max(begins + 1);
+    let needed =
+        rules.follow_share * rise(&pair.planned[begins..ends.min(planned.segment.end)], planned.direction);
+    let from = at(planned.start_s - rules.match_before_s);
+    let until = at(at_s).clamp(from, planned.segment.end);
+    let measured = &signals.measured_rad[from..until];
+    let along = |angle: f64| f64::from(planned.direction) * angle;
+    let reached = measured.last().map_or(0.0, |last| along(*last) - along(pair.planned[begins]));
+    let needed = needed.max(signals.min_travel);
+    reached >= needed && rise(measured, planned.direction) >= needed
 }
 
 /// Dynamic-to-static events; a measured stop belongs to the latest planned one that it could

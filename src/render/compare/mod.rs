@@ -19,10 +19,12 @@ use crate::{
 
 /// Whether the joints of a scope turn or slide.
 fn kind(comparison: &Comparison, scope: &Scope) -> JointKind {
-    let of = comparison.whole_run.iter().find(|figures| match scope {
-        Scope::Joint(joint) => figures.joint.as_ref() == Some(joint),
-        Scope::All | Scope::Starts => true,
-    });
+    let of = match scope {
+        Scope::Turning => return JointKind::Turns,
+        Scope::Sliding => return JointKind::Slides,
+        Scope::Joint(joint) => comparison.whole_run.iter().find(|one| one.joint.as_ref() == Some(joint)),
+        Scope::All | Scope::Starts => comparison.whole_run.first(),
+    };
     of.map_or(JointKind::Turns, |figures| figures.kind)
 }
 
@@ -30,6 +32,8 @@ fn scope(scope: &Scope) -> String {
     match scope {
         Scope::All => "all".to_owned(),
         Scope::Starts => "from rest".to_owned(),
+        Scope::Turning => "turning".to_owned(),
+        Scope::Sliding => "sliding".to_owned(),
         Scope::Joint(joint) => joint.clone(),
     }
 }

@@ -71,10 +71,9 @@ fn change(comparison: &Comparison) -> Markup {
         Verdict::Equal => ("open", "Nothing changed"),
         Verdict::TooFew => ("open", "Too few to tell"),
     };
-    let peak = comparison.overall(PEAK_ERROR);
-    let kind = kind(comparison, &Scope::All);
     let body = html! {
-        @if let Some(peak) = peak {
+        @for peak in comparison.overall(PEAK_ERROR) {
+            @let kind = kind(comparison, &peak.scope);
             @if let (Some(before), Some(after)) = (peak.mean_before, peak.mean_after) {
                 p {
                     (format!("mean {} -> {}", position(kind, before), position(kind, after)))

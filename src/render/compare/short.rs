@@ -7,22 +7,21 @@ use crate::{
         metric::{position, with_unit},
         promise,
     },
-    replay::PEAK_ERROR,
+    replay::{Answer, PEAK_ERROR},
     series::JointKind,
-    workflow::compare::{Comparison, Form, GateResult, Scope, Summary, Verdict},
+    workflow::compare::{Comparison, Form, GateResult, Scope, Summary, TransitionPair, Verdict},
 };
 
 /// Verdict, whole run, plans; then joints that call for a word, and limits.
 pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     let mut lines = Vec::new();
-    match comparison.overall(PEAK_ERROR) {
-        Some(peak) if peak.pairs > 0 => lines.push(verdict(peak, kind(comparison, &Scope::All))),
-        _ if comparison.summaries.iter().any(|summary| summary.pairs > 0) => lines.push(
-            "Joints that turn and joints that slide have no common mean: the change of each joint stands in the tables."
-                .to_owned(),
-        ),
-        _ => lines.push("No transition is found in every run: there is none to compare.".to_owned()),
+    let peaks = comparison.overall(PEAK_ERROR);
+    let some = peaks.iter().filter(|peak| peak.pairs > 0);
+    lines.extend(some.map(|peak| verdict(peak, kind(comparison, &peak.scope))));
+    if lines.is_empty() {
+        lines.push("No transition is found in every run: there is none to compare.".to_owned());
     }
+    lines.extend(answers(comparison));
     lines.extend(at_the_tool(comparison).map(|changes| format!("At the tool: {changes}.")));
     lines.extend(whole_run(comparison));
     lines.push(plans(comparison));
@@ -33,7 +32,30 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     lines.into_iter().map(Sentence::Finding).chain(verdicts(comparison)).collect()
 }
 
+/// How many starts are answered on one side only: they have no delay that could be compared.
+fn answers(comparison: &Comparison) -> Vec<String> {
+    let never = |before: bool, after: bool| {
+        let of = |pair: &&TransitionPair| {
+            (pair.answer_before == Answer::Never) == before && (pair.answer_after == Answer::Never) == after
+        };
+        comparison.pairs.iter().filter(of).count()
+    };
+    let said = |count: usize, what: &str| {
+        let starts = counted(count, "start");
+        (count > 0).then(|| format!("{starts}: the joint {what}; such delays stand in no row."))
+    };
+    let lost = said(never(false, true), "followed before, and no longer does");
+    let gained = said(never(true, false), "did not follow before, and does now");
+    lost.into_iter().chain(gained).collect()
+}
+
 fn verdict(peak: &Summary, kind: JointKind) -> String {
+    let of = match peak.scope {
+        Scope::Turning => " of joints that turn",
+        Scope::Sliding => " of joints that slide",
+        _ => "",
+    };
+    let what = format!("peak error at transitions{of}");
     let shown = |error: f64| position(kind, error);
     let numbers = format!(
         "mean {} -> {}, {}{}{}",
@@ -54,18 +76,19 @@ fn verdict(peak: &Summary, kind: JointKind) -> String {
         peak.larger
     );
     match peak.verdict {
-        Verdict::Smaller => format!("The peak error at transitions became smaller: {numbers}; {counts}."),
-        Verdict::Larger => format!("The peak error at transitions became larger: {numbers}; {counts}."),
+        Verdict::Smaller => format!("The {what} became smaller: {numbers}; {counts}."),
+        Verdict::Larger => format!("The {what} became larger: {numbers}; {counts}."),
+        Verdict::NotShown if peak.interval_95.is_some_and(|[low, high]| low > 0.0 || high < 0.0) => format!(
+            "Whether the {what} changed is open, its interval says so and the test by ranks does not: {numbers}; {counts}."
+        ),
         Verdict::NotShown => {
-            format!(
-                "No change of the peak error at transitions is shown, chance could explain it: {numbers}; {counts}."
-            )
+            format!("No change of the {what} is shown, chance could explain it: {numbers}; {counts}.")
         }
         Verdict::Equal => {
-            format!("The peak error at transitions is the same in {}; p = 1.", counted(peak.pairs, "pair"))
+            format!("The {what} is the same in {}; p = 1.", counted(peak.pairs, "pair"))
         }
         Verdict::TooFew => format!(
-            "Not enough starts to tell whether the peak error changed ({}; the smallest possible p is {}): {numbers}; {counts}.",
+            "Not enough starts to tell whether the peak error{of} changed ({}; the smallest possible p is {}): {numbers}; {counts}.",
             counted(peak.events, "event"),
             probability(peak.least_p())
         ),

@@ -39,8 +39,11 @@ fn run_facts(comparison: &Comparison) -> Vec<Fact> {
     let of_run = |side: &str, run: &Run| {
         let plan = run.plan_duration_s.map_or(String::new(), |s| format!(", plan {s:.2} s"));
         let source = &run.source;
+        let compared = run
+            .stretch_s
+            .map_or(String::new(), |[from_s, to_s]| format!(" ({from_s:.2} to {to_s:.2} s compared)"));
         let text = format!(
-            "{}: {:.2} s{plan}, {}; planned {}, measured {}",
+            "{}: {:.2} s{compared}{plan}, {}; planned {}, measured {}",
             run.log,
             source.duration_s,
             counted(run.transitions, "transition"),
@@ -146,13 +149,18 @@ fn figures_table(figures: &[Figures]) -> Table {
         let ratio = || Column::numbers("ratio").meaning("After divided by before.");
         std::iter::once(column).chain(has_ratio(metric.key).then(ratio))
     });
-    let rows = figures.iter().map(|f| {
+    let rows = figures.iter().enumerate().map(|(row, f)| {
+        let together = match (row, f.kind) {
+            (0, _) => "all",
+            (_, JointKind::Turns) => "turning",
+            (_, JointKind::Slides) => "sliding",
+        };
         let cells = f.changes.iter().flat_map(|(metric, change)| {
             let ratio = || optional(change.ratio, |ratio| format!("{ratio:.2}"));
             std::iter::once(arrow(change, metric.dimension, f.kind, units))
                 .chain(has_ratio(metric.key).then(ratio))
         });
-        std::iter::once(f.joint.clone().unwrap_or("all".to_owned())).chain(cells).collect()
+        std::iter::once(f.joint.clone().unwrap_or(together.to_owned())).chain(cells).collect()
     });
     Table::of(
         std::iter::once(Column::words("joint")).chain(metrics).collect::<Vec<_>>(),
@@ -214,6 +222,11 @@ fn how(comparison: &Comparison) -> Vec<Fact> {
             "pairs",
             "same joint, kind and direction; by time since the first planned start, by the key points of the task where \
              both logs hold it, or by order where another plan starts a joint equally often in the same directions",
+        ),
+        fact(
+            "compared",
+            "what every run holds of the plan and of the rests before and after it: a recorder that runs on or stops \
+             early is no change",
         ),
         fact("change", "after minus before, over each pair; negative is better"),
         fact(

@@ -60,8 +60,9 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// The summary of a metric over all transitions.
-    pub fn overall(&self, key: &str) -> Option<&Summary> {
+    /// The summary of a metric over all transitions; of an arm with both kinds, that of joints that turn and that of
+    /// joints that slide.
+    pub fn overall(&self, key: &str) -> Vec<&Summary> {
         overall(&self.summaries, key)
     }
 }

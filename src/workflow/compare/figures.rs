@@ -9,11 +9,11 @@ use crate::{
     workflow::report::Report,
 };
 
-/// Whole-run figures of one joint, or of all together.
+/// Whole-run figures of one joint, or of several together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Figures {
-    /// The joint; `None` for all together.
+    /// The joint; `None` for all together, and, of an arm that has both, for those that turn and for those that slide.
     pub joint: Option<String>,
     /// The unit of positions: "rad" or "m".
     #[serde(rename = "unit", with = "crate::replay::unit")]
@@ -24,7 +24,7 @@ pub struct Figures {
     pub changes: Changes<Metric<JointReplay>>,
 }
 
-/// All joints together, then each joint.
+/// All joints together, of an arm with both kinds those that turn and those that slide, then each joint.
 pub(super) fn figures(before: &[Report], after: &[Report], joints: &[String], rules: &Rules) -> Vec<Figures> {
     let all = || before.iter().chain(after);
     let windows_s: Vec<f64> = joints
@@ -56,12 +56,25 @@ pub(super) fn figures(before: &[Report], after: &[Report], joints: &[String], ru
             change(&|_, joints| joints.iter().find(|j| j.name == *name).and_then(|j| metric.number(j)))
         }),
     });
-    let together = Figures {
+    let kinds: Vec<JointKind> = joints.iter().map(|name| kind(name)).collect();
+    let first = kinds.first().copied().unwrap_or(JointKind::Turns);
+    let of_kind = |only: Option<JointKind>| Figures {
         joint: None,
-        kind: joints.first().map_or(JointKind::Turns, |name| kind(name)),
-        changes: Changes::of(|metric| change(&|report, joints| together(metric, report, joints))),
+        kind: only.unwrap_or(first),
+        changes: Changes::of(|metric| {
+            change(&|report, joints| {
+                let own: Vec<JointReplay> = joints
+                    .iter()
+                    .filter(|joint| only.is_none_or(|only| joint.kind == only))
+                    .cloned()
+                    .collect();
+                together(metric, report, &own)
+            })
+        }),
     };
-    std::iter::once(together).chain(each).collect()
+    let both = kinds.iter().any(|kind| *kind != first);
+    let of_kinds = [JointKind::Turns, JointKind::Slides].into_iter().filter(|_| both).map(Some);
+    std::iter::once(None).chain(of_kinds).map(of_kind).chain(each).collect()
 }
 
 /// The figures at the tool, where every run has the same one.

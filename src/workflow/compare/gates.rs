@@ -42,9 +42,9 @@ pub enum Form {
 
 /// What is judged.
 struct Found<'a> {
-    peak: Option<&'a Summary>,
+    peaks: Vec<&'a Summary>,
     pairs: &'a [TransitionPair],
-    figures: Option<&'a Figures>,
+    figures: &'a [Figures],
     tool: Option<&'a Changes<Metric<ToolReplay>>>,
 }
 
@@ -63,14 +63,14 @@ static GATES: &[Gate] = &[
         name: "reduction of the mean transition peak",
         form: Form::Reduction,
         find: |found| {
-            let peak = found.peak?;
-            let value = match (peak.relative_change, peak.mean_difference) {
-                (Some(change), _) => -change,
+            let reduction = |peak: &&Summary| match (peak.relative_change, peak.mean_difference) {
+                (Some(change), _) => Some(-change),
                 // Nothing to reduce.
-                (None, Some(difference)) if difference <= 0.0 => 0.0,
-                _ => return None,
+                (None, Some(difference)) if difference <= 0.0 => Some(0.0),
+                _ => None,
             };
-            Some(Worst { value, ..Worst::default() })
+            let all: Option<Vec<f64>> = found.peaks.iter().map(reduction).collect();
+            Some(Worst { value: all?.into_iter().reduce(f64::min)?, ..Worst::default() })
         },
     },
     Gate {
@@ -78,9 +78,10 @@ static GATES: &[Gate] = &[
         name: "p of a reduction of transition peaks",
         form: Form::Probability,
         find: |found| {
-            let peak = found.peak.filter(|peak| peak.pairs > 0)?;
-            let no_reduction = peak.mean_difference.is_none_or(|difference| difference >= 0.0);
-            Some(Worst { value: peak.p_value, no_reduction, ..Worst::default() })
+            let some = found.peaks.iter().all(|peak| peak.pairs > 0);
+            let value = found.peaks.iter().filter(|_| some).map(|peak| peak.p_value).reduce(f64::max)?;
+            let grows = |peak: &&Summary| peak.mean_difference.is_none_or(|difference| difference >= 0.0);
+            Some(Worst { value, no_reduction: found.peaks.iter().any(grows), ..Worst::default() })
         },
     },
     Gate {
@@ -130,7 +131,15 @@ fn growth(found: &Found<'_>, kind: JointKind) -> Option<Worst> {
 }
 
 fn ratio(found: &Found<'_>, key: &str) -> Option<Worst> {
-    Some(Worst { value: found.figures?.changes.get(key).ratio?, ..Worst::default() })
+    // All joints together, or, where they have no unit in common, those that turn and those that slide.
+    let together = found.figures.iter().filter(|figures| figures.joint.is_none());
+    let ratios: Vec<Option<f64>> = together.map(|figures| figures.changes.get(key).ratio).collect();
+    let value = match ratios.as_slice() {
+        [None, kinds @ ..] => kinds.iter().copied().reduce(|a, b| Some(a?.max(b?)))??,
+        [all, ..] => (*all)?,
+        [] => return None,
+    };
+    Some(Worst { value, ..Worst::default() })
 }
 
 fn after(found: &Found<'_>, key: &str) -> Option<Worst> {
@@ -194,8 +203,7 @@ impl Gates {
         summaries: &[Summary],
         (figures, tool): (&[Figures], Option<&Changes<Metric<ToolReplay>>>),
     ) -> Vec<GateResult> {
-        let peak = overall(summaries, PEAK_ERROR);
-        let found = Found { peak, pairs, figures: figures.first(), tool };
+        let found = Found { peaks: overall(summaries, PEAK_ERROR), pairs, figures, tool };
         let judge = |&(gate, limit): &(Row<Gate>, f64)| {
             let worst = (gate.find)(&found);
             let kept = worst.as_ref().map_or(self.empty_is_kept, |worst| match gate.form {

@@ -6,10 +6,11 @@ use super::{
     change::{Change, Changes},
     pair::{Run, Side, TransitionPair, Unpaired},
     pairing::{Match, PairedBy},
+    stretch::Extent,
 };
 use crate::{
     remark::{Code, Remarks},
-    replay::{Answer, Metric, Replay, Transition},
+    replay::{Answer, Metric, Transition},
     workflow::report::Report,
 };
 
@@ -20,6 +21,7 @@ pub(super) struct Member<'a> {
     pub(super) number: usize,
     pub(super) path: &'a Path,
     pub(super) report: &'a Report,
+    pub(super) extent: &'a Extent,
     /// How it corresponds to the first run before.
     pub(super) matched: Match,
 }
@@ -32,7 +34,8 @@ impl Member<'_> {
             log: self.path.file_name().unwrap_or(self.path.as_os_str()).to_string_lossy().into_owned(),
             source: self.report.source.clone(),
             transitions: replay.transitions.iter().filter(|t| joints.contains(&t.joint)).count(),
-            plan_duration_s: plan_duration_s(replay, joints),
+            plan_duration_s: self.extent.plan_duration_s,
+            stretch_s: self.extent.stretch_s,
             offset_s: self.matched.offset_s,
             plan_difference: plans.map(|plans| plans.most_rad),
             same_plan: plans.is_some_and(|plans| plans.same),
@@ -66,15 +69,6 @@ impl Member<'_> {
             remarks.add(Code::NotSupported, 1, message);
         }
     }
-}
-
-/// From the first planned start to the last planned stop, s.
-fn plan_duration_s(replay: &Replay, joints: &[String]) -> Option<f64> {
-    let within = |joint: &String| joints.contains(joint);
-    let starts = replay.transitions.iter().filter(|t| within(&t.joint)).map(|t| t.planned_onset_s);
-    let stops = replay.stops.iter().filter(|s| within(&s.joint)).filter_map(|s| s.planned_s);
-    let span_s = stops.reduce(f64::max)? - starts.reduce(f64::min)?;
-    (span_s > 0.0).then_some(span_s)
 }
 
 /// Transitions of the first run that every run has, and all that are left over.
@@ -128,9 +122,10 @@ pub(super) fn pairs(
         });
     }
     let alone = |(member, used): (&Member<'_>, Vec<bool>)| {
-        let left = member.report.replay.transitions.iter().zip(used).filter(|(_, used)| !used);
-        left.filter(|(t, _)| joints.contains(&t.joint))
-            .map(|(t, _)| Unpaired {
+        let within = member.report.replay.transitions.iter().zip(used).filter(|(_, used)| !used);
+        let left = within.map(|(t, _)| t).chain(&member.extent.beyond);
+        left.filter(|t| joints.contains(&t.joint))
+            .map(|t| Unpaired {
                 side: member.side,
                 run: member.number,
                 joint: t.joint.clone(),

@@ -9,6 +9,7 @@ mod pair;
 mod pairing;
 mod plans;
 mod same;
+mod stretch;
 mod summary;
 
 use std::path::PathBuf;
@@ -36,7 +37,8 @@ use figures::{figures, tool};
 use member::{Member, pairs};
 use pairing::matched;
 use same::is_same;
-use summary::{overall, summaries};
+use stretch::cut_alike;
+use summary::{overall, summaries, worst};
 
 /// What to compare, how, and what must hold.
 #[derive(Debug, Clone, Default)]
@@ -138,12 +140,17 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     }
 
     check_kinds(&joints, &before.iter().chain(&after).collect::<Vec<_>>())?;
+    let extents = cut_alike(inputs, &joints, &mut before.iter_mut().chain(&mut after).collect::<Vec<_>>())?;
+    let (extents_before, extents_after) = extents.split_at(before.len());
+    let first = before.first().ok_or(CompareFailure::NoRun(Side::Before))?;
     let mut all: Vec<Member> = Vec::new();
-    for (side, reports, paths) in
-        [(Side::Before, &before, &inputs.before), (Side::After, &after, &inputs.after)]
-    {
-        for (k, (report, path)) in reports.iter().zip(paths).enumerate() {
-            all.push(Member { side, number: k + 1, path, report, matched: matched(first, report, &joints) });
+    for (side, reports, extents, paths) in [
+        (Side::Before, &before, extents_before, &inputs.before),
+        (Side::After, &after, extents_after, &inputs.after),
+    ] {
+        for (k, ((report, extent), path)) in reports.iter().zip(extents).zip(paths).enumerate() {
+            let matched = matched(first, report, &joints);
+            all.push(Member { side, number: k + 1, path, report, extent, matched });
         }
     }
     let (pairs, unpaired) = pairs(first, &all, &joints);
@@ -178,7 +185,7 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
         before: runs_before,
         after: runs_after,
         joints: joints.clone(),
-        verdict: overall(&summaries, PEAK_ERROR).map_or(Verdict::TooFew, |peak| peak.verdict),
+        verdict: worst(&overall(&summaries, PEAK_ERROR)),
         summaries,
         pairs,
         unpaired,

@@ -39,6 +39,10 @@ pub struct Run {
     pub transitions: usize,
     /// From the first planned start to the last planned stop, s.
     pub plan_duration_s: Option<f64>,
+    /// From when to when it is compared, s, where the other runs hold less of the plan and of the rests around it; null for
+    /// all of it.
+    #[serde(default)]
+    pub stretch_s: Option<[f64; 2]>,
     /// What is added to a time of the first run before to get the same moment of the plan here, s.
     pub offset_s: f64,
     /// Largest difference of any joint's plan from that of the first run before, at equal times, in the joint's unit;

@@ -6,6 +6,7 @@ use super::pair::TransitionPair;
 use crate::{
     math::{half_interval, median, signed_rank},
     replay::{Keyed, Kind, Metric, Row, Rules, Transition},
+    series::JointKind,
 };
 
 /// Which transitions.
@@ -17,6 +18,10 @@ pub enum Scope {
     All,
     /// Starts from rest of all joints, without reversals.
     Starts,
+    /// All of joints that turn, of an arm that has joints of both kinds.
+    Turning,
+    /// All of joints that slide, likewise.
+    Sliding,
     /// All of one joint.
     Joint(String),
 }
@@ -85,8 +90,11 @@ impl Summary {
 /// Every metric over all transitions, over starts from rest if there are reversals too, and by joint.
 pub(super) fn summaries(pairs: &[TransitionPair], joints: &[String], rules: &Rules) -> Vec<Summary> {
     let mixed = pairs.iter().any(|p| p.kind == Kind::Start) && pairs.iter().any(|p| p.kind == Kind::Reversal);
+    let both =
+        [JointKind::Turns, JointKind::Slides].iter().all(|kind| pairs.iter().any(|p| p.joint_kind == *kind));
+    let of_kinds = [both.then_some(Scope::Turning), both.then_some(Scope::Sliding)];
     let scopes = [Some(Scope::All), mixed.then_some(Scope::Starts)];
-    let scopes = scopes.into_iter().flatten().chain(joints.iter().cloned().map(Scope::Joint));
+    let scopes = scopes.into_iter().chain(of_kinds).flatten().chain(joints.iter().cloned().map(Scope::Joint));
     let metrics = Metric::<Transition>::rows();
     let of = |scope: Scope| metrics.iter().map(move |metric| summary(pairs, metric, scope.clone(), rules));
     scopes.flat_map(of).collect()
@@ -101,6 +109,8 @@ fn summary(
     let within = |pair: &&TransitionPair| match &scope {
         Scope::All => true,
         Scope::Starts => pair.kind == Kind::Start,
+        Scope::Turning => pair.joint_kind == JointKind::Turns,
+        Scope::Sliding => pair.joint_kind == JointKind::Slides,
         Scope::Joint(joint) => pair.joint == *joint,
     };
     let change = |pair: &TransitionPair| pair.changes.get(metric.key);
@@ -165,7 +175,19 @@ fn summary(
     }
 }
 
-/// That of a metric over all transitions.
-pub(super) fn overall<'a>(summaries: &'a [Summary], key: &str) -> Option<&'a Summary> {
-    summaries.iter().find(|summary| summary.measure.key == key && summary.scope == Scope::All)
+/// Those of a metric over all transitions: one, or one of joints that turn and one of joints that slide.
+pub(super) fn overall<'a>(summaries: &'a [Summary], key: &str) -> Vec<&'a Summary> {
+    let of = |scopes: &[Scope]| {
+        summaries.iter().filter(|s| s.measure.key == key && scopes.contains(&s.scope)).collect::<Vec<_>>()
+    };
+    let of_kinds = of(&[Scope::Turning, Scope::Sliding]);
+    if of_kinds.is_empty() { of(&[Scope::All]) } else { of_kinds }
+}
+
+/// What several say together: the worst of them, where less is known the less good.
+pub(super) fn worst(summaries: &[&Summary]) -> Verdict {
+    const ORDER: [Verdict; 5] =
+        [Verdict::Larger, Verdict::TooFew, Verdict::NotShown, Verdict::Equal, Verdict::Smaller];
+    let said = |verdict: &&Verdict| summaries.iter().any(|summary| summary.verdict == **verdict);
+    ORDER.iter().find(said).copied().unwrap_or(Verdict::TooFew)
 }

@@ -39,8 +39,8 @@ use crate::{
     input_file,
     log::{LogError, ReadOptions, Recording, SignalRole, read_recording},
     remark::{Code, Remarks},
-    replay::{Profiles, Rules},
-    series::PosePair,
+    replay::{Profiles, Replay, Rules, Transition},
+    series::{Broken, PosePair},
 };
 
 /// What to analyse, how, and what must hold.
@@ -140,6 +140,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     };
     let explained = |ready: Ready| ready.why(&pairs, &replay).map_err(|error| error.to_string());
     let why = model.map(|model| model.and_then(explained));
+    remark_cut(broken.as_ref(), &replay, &mut remarks);
     let gates = inputs.gates.judge(&replay, tool.found());
     let front = front(&carried, &mut remarks);
     let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -166,6 +167,23 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         pairs,
         front,
     })
+}
+
+/// Starts whose window ends with the plan, in motion: their errors may have become larger.
+fn remark_cut(broken: Option<&Broken>, replay: &Replay, remarks: &mut Remarks) {
+    let Some(Broken::Cut { begins: false, at_s, .. }) = broken else { return };
+    let cut = |start: &&Transition| start.window_s[1] >= at_s - start.time_resolution_s;
+    let starts: Vec<&Transition> = replay.transitions.iter().filter(cut).collect();
+    if let Some(last) = starts.iter().max_by(|a, b| a.planned_onset_s.total_cmp(&b.planned_onset_s)) {
+        let message = format!(
+            "starts whose plan is cut off in motion, the last one {} at {:.2} s, {:.2} s before the end: what came later \
+             is in no figure",
+            last.joint,
+            last.planned_onset_s,
+            at_s - last.planned_onset_s
+        );
+        remarks.add(Code::Unmatched, starts.len() as u64, message);
+    }
 }
 
 fn front(carried: &Carried, remarks: &mut Remarks) -> Option<PlanDocument> {

@@ -20,6 +20,7 @@ mod next_run;
 mod output;
 mod plan;
 mod record;
+mod recorders;
 #[cfg(feature = "cloud")]
 mod remote;
 mod replan;

@@ -1,0 +1,191 @@
+//! The stretch of the plan that every run holds: a recorder that ran on at rest, or one that stopped early, is no change.
+
+use super::{CompareFailure, Inputs, pairing::matched};
+use crate::{
+    log::TimeRange,
+    replay::{Replay, Transition},
+    workflow::report::{self, Report},
+};
+
+/// Ends this close together are one, s.
+const ALIKE_S: f64 = 0.5;
+/// So much more rest is kept than the run with the least has, so that no sample decides what is a start, s.
+const MARGIN_S: f64 = 0.05;
+
+/// Onsets of one plan as close as this are one, s.
+const SAME_S: f64 = 0.1;
+
+/// What of a run is compared.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Extent {
+    /// From the first planned start of the whole run to its last planned stop, s.
+    pub(super) plan_duration_s: Option<f64>,
+    /// From when to when; `None` for all of it.
+    pub(super) stretch_s: Option<[f64; 2]>,
+    /// Transitions of the run that lie outside.
+    pub(super) beyond: Vec<Transition>,
+}
+
+/// Cuts each run to what all of them hold of the plan, from the rest before its first start to the rest after its last
+/// stop.
+pub(super) fn cut_alike(
+    inputs: &Inputs,
+    joints: &[String],
+    reports: &mut [&mut Report],
+) -> Result<Vec<Extent>, CompareFailure> {
+    let stretches = common(joints, &reports.iter().map(|report| &**report).collect::<Vec<_>>());
+    let each = reports.iter_mut().zip(stretches);
+    each.map(|(report, stretch_s)| {
+        let plan_duration_s = plan_duration_s(&report.replay, joints);
+        let beyond = stretch_s.map_or(Ok(Vec::new()), |stretch_s| cut(report, stretch_s, inputs))?;
+        Ok(Extent { plan_duration_s, stretch_s, beyond })
+    })
+    .collect()
+}
+
+/// Replays a stretch of a run in place of all of it; the transitions beyond.
+fn cut(report: &mut Report, stretch_s: [f64; 2], inputs: &Inputs) -> Result<Vec<Transition>, CompareFailure> {
+    let [from_s, to_s] = stretch_s;
+    let mut read = inputs.read.clone();
+    read.range = TimeRange::of_seconds(Some(from_s), Some(to_s));
+    let again = report::Inputs {
+        logs: report.paths.clone(),
+        read,
+        rules: inputs.rules.clone(),
+        ..report::Inputs::default()
+    };
+    let failed =
+        |source| CompareFailure::Run { path: report.paths.first().cloned().unwrap_or_default(), source };
+    let part = report::run(&again).map_err(failed)?;
+    let whole = std::mem::replace(&mut report.replay, part.replay);
+    (report.pairs, report.tool) = (part.pairs, part.tool);
+    // What begins as the stretch ends is no start there.
+    let within = |start: &Transition| {
+        let same = |other: &Transition| {
+            other.joint == start.joint && (other.planned_onset_s - start.planned_onset_s).abs() < SAME_S
+        };
+        report.replay.transitions.iter().any(same)
+    };
+    Ok(whole.transitions.into_iter().filter(|start| !within(start)).collect())
+}
+
+/// Where the plan begins and ends in a run, and where the run does, s.
+struct Span {
+    /// What is added to times of the first run to get those of this one, if both are of one plan.
+    offset_s: Option<f64>,
+    plan_s: [f64; 2],
+    run_s: [f64; 2],
+}
+
+/// For each run the stretch to compare; `None` where it has no more than the others.
+fn common(joints: &[String], reports: &[&Report]) -> Vec<Option<[f64; 2]>> {
+    let none = || vec![None; reports.len()];
+    let Some(first) = reports.first() else { return none() };
+    let spans: Option<Vec<Span>> = reports
+        .iter()
+        .enumerate()
+        .map(|(k, report)| {
+            let matched = (k > 0).then(|| matched(first, report, joints));
+            let offset_s = matched.map_or(Some(0.0), |matched| {
+                matched.plans.filter(|plans| plans.same).map(|plans| plans.offset_s)
+            });
+            Some(Span { offset_s, plan_s: plan_s(report, joints)?, run_s: run_s(report, joints)? })
+        })
+        .collect();
+    let Some(spans) = spans else { return none() };
+    let stretches = of_spans(&spans);
+    // Where nothing would be left of a run, they are compared as they are.
+    let holds = |(report, stretch): (&&Report, &Option<[f64; 2]>)| {
+        let within = |at_s: f64| stretch.is_none_or(|[from_s, to_s]| (from_s..=to_s).contains(&at_s));
+        report.replay.transitions.iter().any(|start| within(start.planned_onset_s))
+    };
+    if reports.iter().zip(&stretches).all(holds) { stretches } else { none() }
+}
+
+fn of_spans(spans: &[Span]) -> Vec<Option<[f64; 2]>> {
+    // Of one plan the run with the most tells where it begins and ends.
+    let ends = spans
+        .iter()
+        .filter_map(|span| Some(span.plan_s.map(|at_s| at_s - span.offset_s.unwrap_or(f64::NAN))));
+    let plan_s = ends
+        .filter(|ends| ends[0].is_finite())
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |all, one| [all[0].min(one[0]), all[1].max(one[1])]);
+    let plan_of = |span: &Span| match span.offset_s {
+        Some(offset_s) => plan_s.map(|at_s| at_s + offset_s),
+        None => span.plan_s,
+    };
+    let rest_s = |span: &Span| {
+        let [begins_s, ends_s] = plan_of(span);
+        [begins_s - span.run_s[0], span.run_s[1] - ends_s]
+    };
+    let least = spans
+        .iter()
+        .map(rest_s)
+        .fold([f64::INFINITY; 2], |all, one| [all[0].min(one[0]), all[1].min(one[1])]);
+    let stretch = |span: &Span| {
+        let least = if span.offset_s.is_some() { least } else { least.map(|s| s.max(0.0)) };
+        let [begins_s, ends_s] = plan_of(span);
+        let margin = |rest_s: f64| if rest_s > 0.0 { MARGIN_S } else { 0.0 };
+        let cut_s = [begins_s - least[0] - margin(least[0]), ends_s + least[1] + margin(least[1])];
+        let more = cut_s[0] - span.run_s[0] > ALIKE_S || span.run_s[1] - cut_s[1] > ALIKE_S;
+        more.then(|| [cut_s[0].max(span.run_s[0]), cut_s[1].min(span.run_s[1])])
+    };
+    spans.iter().map(stretch).collect()
+}
+
+/// From the first planned start to the last planned stop or start of a run, s.
+fn plan_s(report: &Report, joints: &[String]) -> Option<[f64; 2]> {
+    let within = |joint: &String| joints.contains(joint);
+    let starts = report.replay.transitions.iter().filter(|t| within(&t.joint)).map(|t| t.planned_onset_s);
+    let stops = report.replay.stops.iter().filter(|s| within(&s.joint)).filter_map(|s| s.planned_s);
+    let begins_s = starts.clone().reduce(f64::min)?;
+    Some([begins_s, stops.chain(starts).reduce(f64::max)?])
+}
+
+/// From when to when all joints of a run are known, s.
+fn run_s(report: &Report, joints: &[String]) -> Option<[f64; 2]> {
+    let pairs = report.pairs.iter().filter(|pair| joints.contains(&pair.name));
+    let ends = pairs.filter_map(|pair| Some([*pair.t_s.first()?, *pair.t_s.last()?]));
+    ends.reduce(|all, one| [all[0].max(one[0]), all[1].min(one[1])])
+}
+
+/// From the first planned start to the last planned stop, s.
+fn plan_duration_s(replay: &Replay, joints: &[String]) -> Option<f64> {
+    let within = |joint: &String| joints.contains(joint);
+    let starts = replay.transitions.iter().filter(|t| within(&t.joint)).map(|t| t.planned_onset_s);
+    let stops = replay.stops.iter().filter(|s| within(&s.joint)).filter_map(|s| s.planned_s);
+    let span_s = stops.reduce(f64::max)? - starts.reduce(f64::min)?;
+    (span_s > 0.0).then_some(span_s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn span(offset_s: Option<f64>, plan_s: [f64; 2], run_s: [f64; 2]) -> Span {
+        Span { offset_s, plan_s, run_s }
+    }
+
+    #[test]
+    fn runs_are_cut_to_what_all_of_them_hold() {
+        let near = |found: &Option<[f64; 2]>, expected: [f64; 2]| {
+            let found = found.unwrap();
+            assert!((0..2).all(|k| (found[k] - expected[k]).abs() < 1e-9), "{found:?} {expected:?}");
+        };
+        let whole = span(Some(0.0), [2.0, 20.0], [0.0, 25.0]);
+        // The recorder ran on, and began earlier on a clock of its own.
+        let found = of_spans(&[whole, span(Some(7.0), [9.0, 27.0], [0.0, 90.0])]);
+        assert_eq!(found[0], None);
+        near(&found[1], [6.95, 32.05]);
+        // It stopped in the middle of the plan.
+        let found =
+            of_spans(&[span(Some(0.0), [2.0, 20.0], [0.0, 25.0]), span(Some(0.0), [2.0, 14.0], [0.0, 14.3])]);
+        near(&found[0], [0.0, 14.3]);
+        assert_eq!(found[1], None);
+        // Another plan, which takes longer: the rests are made equal.
+        let found =
+            of_spans(&[span(Some(0.0), [2.0, 20.0], [0.0, 25.0]), span(None, [2.0, 24.0], [0.0, 40.0])]);
+        assert_eq!(found[0], None);
+        near(&found[1], [0.0, 29.05]);
+    }
+}

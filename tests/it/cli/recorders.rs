@@ -1,0 +1,146 @@
+//! What recorders do to a run: they go on or stop early, and what they wrote is damaged; none of it is a change of the
+//! machine.
+
+use std::{fmt::Write as _, fs, path::Path};
+
+use serde_json::Value;
+
+use crate::support::{hold_to_schema, run_line, said, scratch};
+
+/// A stroke of 8 deg in 2 s, as a share of the way.
+fn stroke(t: f64) -> f64 {
+    let t = (0.5 * t).clamp(0.0, 1.0);
+    t * t * t * (10.0 + t * (6.0 * t - 15.0))
+}
+
+/// Six strokes there and back, 6 s apart from 2 s on, deg.
+fn plan(t: f64) -> f64 {
+    (0..6).map(|k| 8.0 * if k % 2 == 0 { 1.0 } else { -1.0 } * stroke(t - 2.0 - 6.0 * f64::from(k))).sum()
+}
+
+/// A table at 100 Hz over some seconds.
+fn table([from_s, to_s]: [f64; 2], measured: impl Fn(f64) -> f64) -> String {
+    let mut text = "t_s,boom planned [deg],boom measured [deg]\n".to_owned();
+    let mut t = from_s;
+    while t < to_s {
+        writeln!(text, "{t:.2},{:.5},{:.5}", plan(t), measured(t)).unwrap();
+        t += 0.01;
+    }
+    text
+}
+
+/// Late by so much, with a little noise.
+fn late(by_s: f64) -> impl Fn(f64) -> f64 {
+    move |t| plan(t - by_s) + 0.003 * (1000.0 * t).sin()
+}
+
+fn compared(folder: &Path, line: &str) -> (i32, Value) {
+    let (code, text, error) = said(&run_line(folder, line));
+    (code, serde_json::from_str(&text).unwrap_or_else(|_| panic!("{error}")))
+}
+
+fn ratio(document: &Value) -> f64 {
+    document["whole_run"][0]["rms"]["ratio"].as_f64().unwrap()
+}
+
+#[test]
+fn a_recorder_that_runs_on_or_begins_later_is_no_change() {
+    let folder = scratch();
+    let write = |name: &str, text: String| fs::write(folder.path().join(name), text).unwrap();
+    write("a.csv", table([0.0, 40.0], late(0.35)));
+    write("long.csv", table([0.0, 100.0], late(0.35)));
+    write("early.csv", table([-9.0, 40.0], late(0.35)));
+    for after in ["long.csv", "early.csv"] {
+        for line in [format!("compare a.csv {after}"), format!("compare {after} a.csv")] {
+            let (code, document) = compared(folder.path(), &format!("{line} --json --max-rms-ratio 0.9"));
+            hold_to_schema(&document, "compare.v1");
+            assert!(code == 4 && (ratio(&document) - 1.0).abs() < 0.01, "{line}: {}", ratio(&document));
+        }
+    }
+    let (_, text, _) = said(&run_line(folder.path(), "compare a.csv long.csv"));
+    assert!(text.contains("long.csv: 99.99 s (0.00 to 40.04 s compared)"), "{text}");
+}
+
+#[test]
+fn a_start_that_one_log_cuts_off_is_no_improvement() {
+    let folder = scratch();
+    fs::write(folder.path().join("a.csv"), table([0.0, 40.0], late(0.35))).unwrap();
+    for end_s in [14.3, 14.6, 16.0] {
+        fs::write(folder.path().join("b.csv"), table([0.0, end_s], late(0.35))).unwrap();
+        for line in ["compare a.csv b.csv", "compare b.csv a.csv"] {
+            let (code, document) = compared(folder.path(), &format!("{line} --json"));
+            let pairs = document["pairs"].as_array().unwrap();
+            let least = |pair: &Value| pair["peak_error"]["difference"].as_f64().unwrap().abs() < 0.02;
+            assert!(code == 3 && pairs.len() == 3 && pairs.iter().all(least), "{line} to {end_s}: {pairs:?}");
+            assert_eq!(document["unpaired"].as_array().unwrap().len(), 3, "{line} to {end_s}");
+        }
+    }
+}
+
+#[test]
+fn starts_that_a_joint_no_longer_follows_are_counted() {
+    let folder = scratch();
+    fs::write(folder.path().join("a.csv"), table([0.0, 40.0], late(0.35))).unwrap();
+    let stops = |t: f64| late(0.25)(t.min(19.0));
+    fs::write(folder.path().join("b.csv"), table([0.0, 40.0], stops)).unwrap();
+    let (code, text, _) = said(&run_line(folder.path(), "compare a.csv b.csv"));
+    assert!(code == 3 && text.contains("3 starts: the joint followed before, and no longer does"), "{text}");
+}
+
+#[test]
+fn a_joint_that_moves_before_its_plan_does_not_start_seconds_late() {
+    let folder = scratch();
+    // The plan smoothed over time, and a small swing after each stroke.
+    let measured = |t: f64| {
+        let weights = (-40..=40).map(|k| (f64::from(k) * 0.02, 41.0 - f64::from(k).abs()));
+        let (sum, all) = weights.fold((0.0, 0.0), |(sum, all), (off, w)| (sum + w * plan(t + off), all + w));
+        let after = |k: i32| {
+            let since = t - 2.0 - 6.0 * f64::from(k) - 2.7;
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            if (0.0..2.4).contains(&since) { -0.1 * sign * (1.0 - (2.618 * since).cos()) } else { 0.0 }
+        };
+        sum / all + (0..6).map(after).sum::<f64>() + 0.003 * (1000.0 * t).sin()
+    };
+    fs::write(folder.path().join("a.csv"), table([0.0, 44.0], measured)).unwrap();
+    let (code, text, error) = said(&run_line(folder.path(), "report a.csv --json"));
+    assert_eq!(code, 0, "{error}");
+    let report: Value = serde_json::from_str(&text).unwrap();
+    let starts = report["transitions"].as_array().unwrap();
+    let late = |start: &Value| start["onset_delay_s"].as_f64().is_some_and(|s| s > 0.5);
+    assert!(starts.len() == 6 && !starts.iter().any(late), "{starts:?}");
+}
+
+#[test]
+fn what_was_doubtful_when_a_log_was_recovered_stays_so() {
+    let folder = scratch();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("a.csv"), table([0.0, 40.0], late(0.35))).unwrap();
+    let clean = |line: &str| {
+        let (code, _, error) = said(&run_line(folder.path(), line));
+        assert!(code == 0 || code == 3, "{line}: {error}");
+    };
+    clean("import a.csv -o a.mcap");
+    let sound = fs::read(path("a.mcap")).unwrap();
+    // Within the compressed data of the first chunk, where a byte is a byte of the text or breaks it.
+    let damaged = |at: usize| {
+        let mut bytes = sound.clone();
+        bytes[at] ^= 0x10;
+        fs::write(path("b.mcap"), bytes).unwrap();
+        let (_, text, _) = said(&run_line(folder.path(), "recover b.mcap -o c.mcap --json --force"));
+        serde_json::from_str::<Value>(&text).ok()
+    };
+    let (mut kept, mut lost) = (0, 0);
+    for at in (2000..sound.len() / 2).step_by(1499) {
+        let Some(document) = damaged(at) else { continue };
+        let [messages, doubtful, dropped] =
+            ["messages", "doubtful_messages", "dropped_blocks"].map(|key| document[key].as_u64().unwrap());
+        assert!(messages > 0 || dropped > 0, "byte {at}: {document}");
+        lost += dropped;
+        if doubtful > 0 {
+            kept += 1;
+            let (code, text, error) = said(&run_line(folder.path(), "report c.mcap"));
+            assert!(code == 1 || code == 3 && text.contains("damaged-chunk"), "byte {at}: {text}{error}");
+        }
+    }
+    assert!(kept + lost > 0);
+}
