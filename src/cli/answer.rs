@@ -78,7 +78,9 @@ pub(super) fn with_verb(mut args: Vec<OsString>) -> Vec<OsString> {
     while let Some(arg) = args.get(place).filter(|arg| is_option(arg)) {
         place += 1 + usize::from(takes_value(arg));
     }
-    let Some(first) = args.get(place) else { return args };
+    // After `--` all are files.
+    let first = args.get(place).map(|arg| if arg == "--" { args.get(place + 1) } else { Some(arg) });
+    let Some(first) = first.flatten() else { return args };
     let is_verb = first.to_str().is_some_and(|name| command.find_subcommand(name).is_some());
     if !is_verb && is_file(first) {
         args.insert(place, "answer".into());
@@ -87,7 +89,7 @@ pub(super) fn with_verb(mut args: Vec<OsString>) -> Vec<OsString> {
 }
 
 fn is_option(arg: &OsStr) -> bool {
-    arg.as_encoded_bytes().starts_with(b"-") && arg != "-"
+    arg.as_encoded_bytes().starts_with(b"-") && arg != "-" && arg != "--"
 }
 
 /// Whether it is there, or is written as files are.
@@ -112,6 +114,7 @@ mod tests {
                 "hydrotrace --color never -q ./run --explain",
                 "hydrotrace --color never -q answer ./run --explain",
             ),
+            ("hydrotrace -q -- -p.csv", "hydrotrace -q answer -- -p.csv"),
             ("hydrotrace --color=never a.csv b.csv", "hydrotrace --color=never answer a.csv b.csv"),
         ] {
             assert_eq!(with(line), becomes);

@@ -115,6 +115,9 @@ pub(super) enum Form {
     Html,
 }
 
+/// Endings of files that are no text, and that no verb writes.
+const OTHER_FORMS: [&str; 10] = ["pdf", "xlsx", "xls", "docx", "doc", "odt", "ods", "pptx", "png", "jpg"];
+
 impl Form {
     fn ending(self) -> Option<&'static str> {
         match self {
@@ -145,6 +148,12 @@ impl<'a> Target<'a> {
     /// A megabyte of markup on a terminal helps nobody: refused.
     pub(super) fn new(form: Form, file: Option<&'a Path>) -> Result<Self, CliError> {
         let file = file.filter(|path| !is_stdout(path));
+        let other = OTHER_FORMS.iter().find(|ending| form == Form::Text && ends(file, ending));
+        if let Some(ending) = other {
+            return Err(CliError::Usage(format!(
+                "no .{ending} is written; a page for a browser ends in .html, and prints as PDF"
+            )));
+        }
         if form == Form::Html && file.is_none() && std::io::stdout().is_terminal() {
             let why = "a page is for a browser, not for a terminal; give --output FILE or redirect it";
             return Err(CliError::Usage(why.to_owned()));

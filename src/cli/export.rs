@@ -41,7 +41,7 @@ pub(super) struct Args {
     format: FormatArgs,
 
     /// Write to FILE; .csv and .parquet set the form. CSV without FILE goes to standard output
-    #[arg(short, long, value_name = "FILE", required_unless_present_any = ["csv", "foxglove_layout", "rerun_blueprint"])]
+    #[arg(short, long, value_name = "FILE", required_if_eq("parquet", "true"))]
     output: Option<PathBuf>,
 
     /// Angles in degrees; the names of the columns change with the unit

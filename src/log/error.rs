@@ -118,6 +118,9 @@ pub enum LogError {
     /// A joint that the caller asked for.
     #[error("no joint {joint:?}{}; the log has {present}", suggestion(nearest.as_deref()))]
     NoJoint { joint: String, nearest: Option<String>, present: String },
+    /// The same joint asked for twice.
+    #[error("joint {joint:?} is named twice; a joint counts once")]
+    JointTwice { joint: String },
     /// A clock that the caller asked for.
     #[error("the {clock} time of topic {topic:?} is zero or stands still; try --time log or leave it out")]
     NoClock { clock: &'static str, topic: String },

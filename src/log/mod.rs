@@ -27,6 +27,7 @@ mod looks;
 mod options;
 mod range;
 mod read;
+mod recovered;
 pub mod remote;
 mod repair;
 mod schema;

@@ -21,7 +21,10 @@ pub(super) fn keep_joints(series: &mut Series, wanted: &[String]) -> Result<(), 
         return Ok(());
     }
     let mut kept = Vec::with_capacity(wanted.len());
-    for name in wanted {
+    for (place, name) in wanted.iter().enumerate() {
+        if wanted[..place].contains(name) {
+            return Err(LogError::JointTwice { joint: name.clone() });
+        }
         let track = series.track(name).ok_or_else(|| LogError::NoJoint {
             joint: name.clone(),
             nearest: nearest(name, series.tracks.iter().map(Track::name)),

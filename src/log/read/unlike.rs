@@ -76,7 +76,7 @@ fn of_joint<'a>(
             size(alike.rms_error)
         ));
     }
-    let Alike { correlation, slope, mean_error, motion, .. } = alike;
+    let Alike { correlation, slope, mean_error, offset, motion, .. } = alike;
     if motion < small {
         return None;
     }
@@ -98,7 +98,9 @@ fn of_joint<'a>(
              another unit, or before a gear?"
         ));
     }
-    (mean_error.abs() > FOLLOWS * motion).then(|| {
+    // An error that grows with the speed is a lag.
+    let beside = mean_error.abs().min(offset.abs());
+    (beside > FOLLOWS * motion).then(|| {
         format!(
             "{name} was measured {} beside its plan all the time: is the zero another?",
             size(mean_error.abs())
@@ -112,6 +114,8 @@ struct Alike {
     rms_error: f64,
     /// Its mean.
     mean_error: f64,
+    /// The same where the plan has no speed, by a line through errors over speeds.
+    offset: f64,
     /// Root mean square distance of the plan from its mean.
     motion: f64,
     /// Of plan and measurement; 0 where one of them stands still.
@@ -132,10 +136,20 @@ impl Alike {
         let products = mean(&|p| (p[0] - plan) * (p[1] - came));
         let spread = mean(&|p| (p[1] - came).powi(2)).sqrt();
         let motion = squares.sqrt();
+        let step = |k: usize| both[(k + 1).min(both.len() - 1)][0] - both[k.saturating_sub(1)][0];
+        let steps = || (0..both.len()).map(step);
+        let usual = steps().sum::<f64>() / both.len() as f64;
+        let (mut with_error, mut with_step) = (0.0, 0.0);
+        for (step, [plan_at, came_at]) in steps().zip(both) {
+            with_error += (step - usual) * (came_at - plan_at);
+            with_step += (step - usual).powi(2);
+        }
+        let lag = if with_step > 0.0 { with_error / with_step } else { 0.0 };
         let or_none = |value: f64| if value.is_finite() { value } else { 0.0 };
         Some(Self {
             rms_error: mean(&|p| (p[1] - p[0]).powi(2)).sqrt(),
             mean_error: came - plan,
+            offset: came - plan - lag * usual,
             motion,
             correlation: or_none(products / (motion * spread)),
             slope: or_none(products / squares),
@@ -207,5 +221,21 @@ mod tests {
             assert_eq!(remarks(boom, of_stick), Vec::<String>::new(), "{name}");
         }
         assert_eq!(remarks(odd, of_stick), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_lag_in_a_stretch_of_one_motion_is_no_other_zero() {
+        let cut = |position: &dyn Fn(f64) -> f64| {
+            let t_s: Vec<f64> = (0..200).map(|k| f64::from(k) * 0.01).collect();
+            let q = t_s.iter().map(|&t| position(t)).collect();
+            Series { tracks: vec![Track::new("boom", t_s, q, &[]).unwrap()] }
+        };
+        let rises = |t: f64| 0.3 * (1.0 - (1.2 * t).cos());
+        let count = |measured: &dyn Fn(f64) -> f64| {
+            let mut remarks = Remarks::default();
+            of_sides(&cut(&rises), &cut(measured), &mut remarks);
+            remarks.as_slice().len()
+        };
+        assert_eq!((count(&|t| rises(t - 0.4)), count(&|t| rises(t) + 0.2)), (0, 1));
     }
 }

@@ -14,6 +14,7 @@ use crate::{
         file::{Blocks, Loss, MessageRecord, Opcode, records},
         files::ScannedFile,
         input::Input,
+        recovered,
     },
     remark::{Code, Remarks},
 };
@@ -118,6 +119,11 @@ fn copy<W: Write + Seek>(
                     format!("the file ends within a chunk; {kept} whole messages before the cut were kept");
                 saved.remarks.add(Code::PartialChunk, 1, message);
             }
+            // Nothing of it could be unpacked.
+            Loss::Doubtful(reason) if saved.messages == before => {
+                saved.dropped_blocks += 1;
+                dropped.entry(reason).or_default().push((number, block.span.start, 1));
+            }
             Loss::Doubtful(reason) => {
                 let kept = saved.messages - before;
                 saved.doubtful += kept;
@@ -144,6 +150,12 @@ fn copy<W: Write + Seek>(
         copier.unknown,
         "messages of channels that the file does not define",
     );
+    if saved.doubtful > 0 {
+        writer.write_metadata(&mcap::records::Metadata {
+            name: recovered::METADATA.to_owned(),
+            metadata: recovered::metadata(saved.doubtful),
+        })?;
+    }
     writer.finish()?;
     Ok(())
 }

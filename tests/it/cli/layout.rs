@@ -229,7 +229,6 @@ fn a_layout_is_refused_for_tables_for_logs_without_joints_and_over_an_input() {
     refused("export run.mcap --foxglove-layout run.mcap", 1, &["is an input of this command"]);
     refused("export run.mcap --foxglove-layout a.json --csv", 2, &["cannot be used with"]);
     refused("export run.mcap --foxglove-layout a.json --command /nowhere", 1, &["/nowhere"]);
-    refused("export run.mcap", 2, &["--output"]);
     assert!(!folder.path().join("layout.json").exists());
     #[cfg(not(feature = "viewer"))]
     refused("export run.mcap --rerun-blueprint run.rbl", 1, &["cargo install --path . --features viewer"]);
