@@ -6,6 +6,7 @@ mod paired;
 mod programme;
 mod sin_cos;
 mod statistic;
+mod step;
 mod trend;
 mod two_samples;
 
@@ -15,6 +16,7 @@ pub use paired::{SignedRank, half_interval, signed_rank};
 pub use programme::{Columns, quadratic_programme};
 pub use sin_cos::sin_cos;
 pub use statistic::{SIGMA_PER_MAD, mad, median, quantile, quantile_sorted, range};
+pub use step::{Step, step};
 pub use trend::{
     Trend, begins, column_levels, false_discovery, row_weights, step_scatter, theil_sen, trend,
     weighted_median,

@@ -3,7 +3,7 @@
 use super::{day, name, shown, shown_change, shown_unit};
 use crate::{
     render::kit::{Document, Id, NONE, Section, Sentence, Table, counted, percent, probability},
-    workflow::fleet::{Drift, Effect, GateResult, Gated, JointEffect, JointTrend, Worst},
+    workflow::fleet::{Drift, Effect, GateResult, Gated, JointEffect, JointTrend, LevelStep, Worst},
 };
 
 fn interval(unit: &str, [low, high]: [f64; 2]) -> String {
@@ -46,7 +46,30 @@ fn more(all: usize, most: usize) -> Option<Sentence> {
     (all > most).then(|| Sentence::note(format!("{} more; --all shows them.", all - most)))
 }
 
+/// Between which days a step is, and what it changes.
+fn stepped(trend: &JointTrend, step: &LevelStep) -> String {
+    let unit = shown_unit(&trend.unit);
+    let days = [&step.after, &step.by].map(|at| at.as_deref().map_or(NONE, day));
+    format!(
+        "{} {unit} from {} to {} ({} {unit}, 95 %)",
+        shown_change(&trend.unit, step.change),
+        days[0],
+        days[1],
+        interval(&trend.unit, step.interval_95),
+    )
+}
+
 pub(in crate::render) fn said(trend: &JointTrend) -> String {
+    if let Some(step) = trend.step.as_ref().filter(|_| trend.is_step) {
+        return format!(
+            "{} {}: the {} changes at once, by {}; q = {}.",
+            trend.machine,
+            trend.joint,
+            name(trend.metric),
+            stepped(trend, step),
+            probability(step.q_value),
+        );
+    }
     let grows = if trend.slope_per_day > 0.0 { "grows" } else { "falls" };
     let unit = shown_unit(&trend.unit);
     let since = trend.since.as_deref().map_or(String::new(), |since| format!(", since {}", day(since)));
@@ -67,7 +90,7 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
     let of = format!("{} of {}", counted(drift.runs, "run"), counted(drift.machines, "machine"));
     let first = match (found.len(), drift.trends.len()) {
         (_, 0) => format!("{of}: no joint has five runs of one plan, which a trend takes."),
-        (0, all) => format!("{of}: no drift found among {}.", counted(all, "trend")),
+        (0, all) => format!("{of}: no drift and no step found among {}.", counted(all, "trend")),
         (some, all) => format!("{of}: {some} of {} found.", counted(all, "trend")),
     };
     let mut section = Section::plain(Id::SUMMARY, [Sentence::finding(first)]);
@@ -78,7 +101,8 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
     section = section.with_all(more(drift.trends.len(), most));
     let note = "Each start is compared with the same start of the same plan. q: share of false discoveries if this trend \
                 and all surer ones count as found; found: q below 5 %, and three robust deviations from what is \
-                usual where ten joints or more tell that.";
+                usual where ten joints or more tell that. A step is a level that changes between two runs and stays; it \
+                stands in place of a trend where it explains the levels better.";
     section = section.with(Sentence::note(note));
     if drift.too_few > 0 {
         let few =
@@ -86,6 +110,11 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
         section = section.with(Sentence::note(few));
     }
     Document::default().with(section).remarked(&drift.remarks)
+}
+
+/// The q of what is found, or of the trend.
+fn q(trend: &JointTrend) -> f64 {
+    trend.step.as_ref().filter(|_| trend.is_step).map_or(trend.q_value, |step| step.q_value)
 }
 
 fn trends<'a>(trends: impl Iterator<Item = &'a JointTrend>) -> Table {
@@ -97,8 +126,13 @@ fn trends<'a>(trends: impl Iterator<Item = &'a JointTrend>) -> Table {
             shown_unit(&trend.unit).to_owned(),
             shown_change(&trend.unit, trend.slope_per_day),
             interval(&trend.unit, trend.interval_95),
-            probability(trend.q_value),
-            if trend.found { "yes" } else { "no" }.to_owned(),
+            probability(q(trend)),
+            match (trend.found, trend.is_step) {
+                (true, true) => "step",
+                (true, false) => "yes",
+                (false, _) => "no",
+            }
+            .to_owned(),
             trend.since.as_deref().filter(|_| trend.found).map_or(NONE, day).to_owned(),
             shown(&trend.unit, trend.level),
             trend.starts.to_string(),
@@ -189,15 +223,25 @@ fn verdict(gate: &GateResult) -> Sentence {
     let limit =
         format!("{} growth of {} {unit} a day at most", name(gate.metric), most.trim_start_matches('+'));
     let found = match &gate.worst {
-        None => "nothing to judge: no joint has five runs of one plan".to_owned(),
+        None => match gate.unit.as_str() {
+            "m" => "nothing to judge: no joint that slides has five runs of one plan".to_owned(),
+            "rad" => "nothing to judge: no joint that turns has five runs of one plan".to_owned(),
+            _ => "nothing to judge: no joint has five runs of one plan".to_owned(),
+        },
         Some(worst) => {
+            let grows = match worst.step.as_ref().filter(|_| worst.is_step) {
+                Some(step) => stepped(worst, step),
+                None => format!("{} {unit} a day", shown_change(&worst.unit, worst.slope_per_day)),
+            };
             let sure = if worst.found { "found" } else { "not proven" };
+            let above = worst.growth_per_day() > gate.most_per_day;
+            let start =
+                if above && !worst.found { "no growth above it is proven; the largest is " } else { "" };
             let trend = format!(
-                "{} {unit} a day at {} {} ({sure}, q = {})",
-                shown_change(&worst.unit, worst.slope_per_day),
+                "{start}{grows} at {} {} ({sure}, q = {})",
                 worst.machine,
                 worst.joint,
-                probability(worst.q_value)
+                probability(q(worst))
             );
             if gate.broken_by > 1 {
                 format!("{trend}, and at {} more", counted(gate.broken_by - 1, "joint"))

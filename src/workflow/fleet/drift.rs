@@ -1,4 +1,4 @@
-//! `fleet drift`: which joint of which machine changes over the days, how fast, and since when.
+//! `fleet drift`: which joint of which machine changes over the days, how fast, and since when; or at once, and when.
 //!
 //! A start is compared with the same start of the same plan only. Runs are what varies on its own, so the test and the
 //! interval are of one level a run: that which is left when each start's own level is taken off. The slope is the median
@@ -17,7 +17,7 @@ use super::{
 use crate::{
     document::PROGRAM,
     math::{
-        SIGMA_PER_MAD, begins, column_levels, false_discovery, mad, median, row_weights, step_scatter,
+        SIGMA_PER_MAD, begins, column_levels, false_discovery, mad, median, row_weights, step, step_scatter,
         theil_sen, trend, weighted_median,
     },
     remark::Remarks,
@@ -81,12 +81,18 @@ pub struct JointTrend {
     pub p_value: f64,
     /// The same, corrected for the number of machines, joints and metrics (false-discovery rate).
     pub q_value: f64,
-    /// Whether the trend is found: q below the false-discovery rate, and three robust standard deviations or more from what
-    /// is usual where ten joints or more tell that.
+    /// Whether a change is found, as a trend or as a step: q below the false-discovery rate, and three robust standard
+    /// deviations or more from what is usual where ten joints or more tell that.
     pub found: bool,
+    /// Whether what is found is a step, which leaves less of the levels unexplained than the trend does.
+    #[serde(default)]
+    pub is_step: bool,
+    /// The step that explains the levels best; null for fewer than six runs.
+    #[serde(default)]
+    pub step: Option<LevelStep>,
     /// The slope in robust standard deviations of the slopes of this metric in all joints; null where these are equal.
     pub stands_out: Option<f64>,
-    /// When the level begins to change, UTC; the first run if it changes all the time.
+    /// When the level begins to change, UTC: of a step the first run after it, else the first run if it changes all the time.
     pub since: Option<String>,
     /// Starts that were followed from run to run.
     pub starts: usize,
@@ -98,6 +104,36 @@ pub struct JointTrend {
     pub level: f64,
     /// The level of each run, in the order of time; only of trends that are found.
     pub levels: Vec<Level>,
+}
+
+/// A level that changes between two runs and stays.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct LevelStep {
+    /// The last run before it, UTC.
+    pub after: Option<String>,
+    /// The first run with the new level, UTC.
+    pub by: Option<String>,
+    /// From the one to the other, days.
+    pub days: f64,
+    /// Mean level after less mean level before, three runs at least on each side.
+    pub change: f64,
+    /// Its 95 % interval, by Student's t.
+    pub interval_95: [f64; 2],
+    /// Two-sided probability of such a step at any time by chance.
+    pub p_value: f64,
+    /// The same, corrected for the number of machines, joints and metrics (false-discovery rate).
+    pub q_value: f64,
+    /// Sum of squares that it leaves, over that which the trend leaves.
+    pub left: f64,
+}
+
+impl JointTrend {
+    /// Growth a day: of a step that from the last run before it to the first run after it, taken as a day at least.
+    pub fn growth_per_day(&self) -> f64 {
+        let step = self.step.as_ref().filter(|_| self.is_step);
+        step.map_or(self.slope_per_day, |step| step.change / step.days.max(1.0))
+    }
 }
 
 /// What the starts of a joint were like in one run, each start's own level taken off and their median put back.
@@ -166,18 +202,7 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
             }),
         }
     }
-    let p: Vec<f64> = trends.iter().map(|trend| trend.p_value).collect();
-    let tell = stand_out(&mut trends);
-    for ((trend, q), tells) in trends.iter_mut().zip(false_discovery(&p)).zip(tell) {
-        trend.q_value = q;
-        let usual = tells && trend.stands_out.is_some_and(|out| out < STANDS_OUT);
-        trend.found = q < MOST_FALSE && !usual;
-        if trend.found {
-            trend.levels.iter_mut().for_each(|level| level.page = page_beside(&level.log));
-        } else {
-            trend.levels.clear();
-        }
-    }
+    judge(&mut trends);
     trends.sort_by(|a, b| {
         let out = |trend: &JointTrend| trend.stands_out.unwrap_or(0.0);
         let by_size = out(b).total_cmp(&out(a));
@@ -193,6 +218,68 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
         maps: maps(&history, by),
         too_few,
         remarks: history.remarks,
+    })
+}
+
+/// Which trends and steps are found. Both are tests of the same data, so they are corrected for together.
+fn judge(trends: &mut [JointTrend]) {
+    let tell = stand_out(trends);
+    let usual_steps = usual_steps(trends);
+    let p_trend = trends.iter().map(|trend| trend.p_value);
+    let p_step = trends.iter().map(|trend| trend.step.as_ref().map_or(1.0, |step| step.p_value));
+    let q = false_discovery(&p_trend.chain(p_step).collect::<Vec<f64>>());
+    let (q_trend, q_step) = q.split_at(trends.len());
+    for (k, trend) in trends.iter_mut().enumerate() {
+        trend.q_value = q_trend[k];
+        let usual = tell[k] && trend.stands_out.is_some_and(|out| out < STANDS_OUT);
+        let drifts = trend.q_value < MOST_FALSE && !usual;
+        let least = usual_steps.get(&(trend.metric, trend.unit.clone())).copied().unwrap_or_default();
+        if let Some(step) = &mut trend.step {
+            step.q_value = q_step[k];
+            let steps = step.q_value < MOST_FALSE && step.change.abs() >= STANDS_OUT * least;
+            trend.is_step = steps && (!drifts || step.left < 1.0);
+            if trend.is_step {
+                trend.since.clone_from(&step.by);
+            }
+        }
+        trend.found = drifts || trend.is_step;
+        if trend.found {
+            trend.levels.iter_mut().for_each(|level| level.page = page_beside(&level.log));
+        } else {
+            trend.levels.clear();
+        }
+    }
+}
+
+/// What the best steps of a metric are like in most joints, as a robust standard deviation, where enough joints tell that.
+fn usual_steps(trends: &[JointTrend]) -> BTreeMap<(By, String), f64> {
+    let mut sizes: BTreeMap<(By, String), Vec<f64>> = BTreeMap::new();
+    for trend in trends {
+        let size = trend.step.as_ref().map_or(0.0, |step| step.change.abs());
+        sizes.entry((trend.metric, trend.unit.clone())).or_default().push(size);
+    }
+    let enough = sizes.into_iter().filter(|(_, sizes)| sizes.len() >= FEWEST_JOINTS);
+    enough.map(|(key, sizes)| (key, SIGMA_PER_MAD * median(sizes))).collect()
+}
+
+/// The step that explains the levels of the runs best, beside their trend.
+fn best_step(levels: &[(f64, f64)]) -> Option<LevelStep> {
+    let values: Vec<f64> = levels.iter().map(|(_, level)| *level).collect();
+    let found = step(&values)?;
+    let slope = theil_sen(levels);
+    let off: Vec<f64> = levels.iter().map(|(at, level)| level - slope * at).collect();
+    let middle = off.iter().sum::<f64>() / off.len() as f64;
+    let of_trend: f64 = off.iter().map(|off| (off - middle).powi(2)).sum();
+    let (before, after) = (levels.get(found.at.checked_sub(1)?)?.0, levels.get(found.at)?.0);
+    Some(LevelStep {
+        after: date(before),
+        by: date(after),
+        days: after - before,
+        change: found.change,
+        interval_95: found.interval,
+        p_value: found.p,
+        q_value: 1.0,
+        left: if of_trend > 0.0 { found.squares / of_trend } else { f64::MAX },
     })
 }
 
@@ -248,6 +335,8 @@ fn joint_trend(runs: &[Run], values: &Values, scatters: (&str, &Scatters)) -> Op
         p_value: found.p,
         q_value: 1.0,
         found: false,
+        is_step: false,
+        step: best_step(&levels),
         stands_out: None,
         since: begins(&levels).and_then(date),
         starts: rows.len(),
@@ -304,6 +393,24 @@ mod tests {
             (event, of)
         });
         assert_eq!(joint_trend(&runs, &few.collect(), ("boom", &Scatters::new())), None);
+    }
+
+    #[test]
+    fn a_level_that_jumps_is_a_step_on_the_day_it_jumps() {
+        let (runs, mut values) = values(0.0);
+        for of_runs in values.values_mut() {
+            of_runs.iter_mut().filter(|(run, _)| **run >= 6).for_each(|(_, value)| *value += 3.0);
+        }
+        let mut found = vec![joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap()];
+        judge(&mut found);
+        let step = found[0].step.clone().unwrap();
+        assert!(found[0].found && found[0].is_step, "{found:?}");
+        assert_eq!(found[0].since.as_deref(), Some("1970-01-07T00:00:00Z"));
+        assert!((step.change - 3.0).abs() < 0.2 && (found[0].growth_per_day() - step.change).abs() < 1e-12);
+        let (runs, values) = super::tests::values(2.0);
+        let mut drifts = vec![joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap()];
+        judge(&mut drifts);
+        assert!(drifts[0].found && !drifts[0].is_step, "{drifts:?}");
     }
 
     #[test]

@@ -7,6 +7,7 @@ use thiserror::Error;
 use crate::{
     atomic_file::AtomicError,
     log::{dataset::DatasetError, remote::RemoteError},
+    text::{shell_argument, shell_word},
 };
 
 /// Why a scan or an answer failed. A log that cannot be read is no failure: it is a row with its error.
@@ -62,13 +63,16 @@ pub enum FleetFailure {
     },
     /// Nothing is known of what was done.
     #[error(
-        "{} holds no note{of}; give --machine and --at, or note what was done: `hydrotrace fleet note {} --machine M07 \
+        "{} holds no note{}; give --machine and --at, or note what was done: `hydrotrace fleet note {} --machine {} \
          --at 2026-03-06 'valve replaced'`",
-        dataset.display(), dataset.display()
+        dataset.display(),
+        machine.as_ref().map_or(String::new(), |machine| format!(" of {machine}")),
+        shell_argument(dataset),
+        machine.as_deref().map_or("MACHINE".to_owned(), shell_word)
     )]
     NoNote {
-        /// Of which machine, with a blank before; empty for all.
-        of: String,
+        /// Of which machine; none for all.
+        machine: Option<String>,
         /// The dataset.
         dataset: PathBuf,
     },

@@ -54,7 +54,7 @@ pub struct GateResult {
     pub most_per_day: f64,
     /// Joints whose trend was judged.
     pub judged: usize,
-    /// Joints that break the limit: they grow faster, and their trend is found (q below the false-discovery rate).
+    /// Joints that break the limit: they grow faster, and their trend or step is found (q below the false-discovery rate).
     pub broken_by: usize,
     /// The fastest growth among the joints that break the limit, else among all; null if there was nothing to judge.
     pub worst: Option<JointTrend>,
@@ -86,8 +86,8 @@ pub fn gate(
 
 fn judged(gate: &Gate, found: &Drift, empty_is_kept: bool) -> GateResult {
     let own = || found.trends.iter().filter(|trend| trend.metric == gate.metric && trend.unit == gate.unit);
-    let breaks = |trend: &&JointTrend| trend.found && trend.slope_per_day > gate.most_per_day;
-    let fastest = |a: &&JointTrend, b: &&JointTrend| a.slope_per_day.total_cmp(&b.slope_per_day);
+    let breaks = |trend: &&JointTrend| trend.found && trend.growth_per_day() > gate.most_per_day;
+    let fastest = |a: &&JointTrend, b: &&JointTrend| a.growth_per_day().total_cmp(&b.growth_per_day());
     let (judged, broken_by) = (own().count(), own().filter(breaks).count());
     let worst = own().filter(breaks).max_by(fastest).or_else(|| own().max_by(fastest));
     GateResult {
@@ -117,6 +117,8 @@ mod tests {
             p_value: 0.01,
             q_value: 0.01,
             found: *found,
+            is_step: false,
+            step: None,
             stands_out: None,
             since: None,
             starts: 3,

@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     log::{
+        UNDATED_NS,
         dataset::{Cell, read_table},
         is_dated,
     },
@@ -171,7 +172,8 @@ impl History {
             let text = |k: usize| row.get(k).and_then(Cell::as_text).map(str::to_owned);
             match (text(5).is_some(), text(1), row.get(2).and_then(Cell::as_whole)) {
                 (true, ..) => failed += 1,
-                (false, Some(machine), Some(started_us)) => {
+                (false, Some(machine), started_us) => {
+                    let started_us = started_us.unwrap_or(UNDATED_NS / 1000);
                     let log = text(3).unwrap_or_default();
                     let run = Run { id: text(0).unwrap_or_default(), machine, log, started_us };
                     runs.push((run, text(4).unwrap_or_default()));

@@ -27,7 +27,7 @@ mod worst;
 pub use compact::{Compacted, compact};
 pub(in crate::workflow) use dated::began_ns;
 pub use document::{Failure, Scanned};
-pub use drift::{Drift, JointTrend, Level, drift};
+pub use drift::{Drift, JointTrend, Level, LevelStep, drift};
 pub use effect::{Effect, JointEffect, effect};
 pub use failure::FleetFailure;
 pub use gate::{Gate, GateResult, Gated, gate};

@@ -119,7 +119,7 @@ pub fn effect_of_last_note(
     by: &[By],
 ) -> Result<Effect, FleetFailure> {
     let last = notes(root, machine)?.pop().ok_or_else(|| FleetFailure::NoNote {
-        of: machine.map(|machine| format!(" of {machine}")).unwrap_or_default(),
+        machine: machine.map(str::to_owned),
         dataset: root.to_owned(),
     })?;
     let filter = Filter { joint: filter.joint.clone().or(last.joint), ..filter.clone() };

@@ -210,10 +210,16 @@ pub fn analysed(log: &Log, found: &Findings) -> Rows {
     let concentration = whole.concentration.as_ref();
     let is_command = report.remarks.iter().any(|remark| remark.code == Code::PlanIsCommand);
     let verdict = concentration.and_then(|c| serde_json::to_string(&c.verdict).ok());
+    let began_ns = began_ns(&log.uri, report.source.epoch_ns);
+    let undated = began_ns.is_none().then(|| Remark {
+        code: Code::Undated,
+        count: 1,
+        message: "neither the stamps nor the name of the run say a date".to_owned(),
+    });
     let run = vec![
         Cell::from(found.run_id.as_str()),
         Cell::from(log.machine.as_deref()),
-        micros(began_ns(&log.uri, report.source.epoch_ns).unwrap_or(report.source.epoch_ns)),
+        began_ns.map_or(Cell::None, micros),
         Cell::from(log.uri.as_str()),
         Cell::from(log.etag.as_str()),
         Cell::from(log.bytes),
@@ -238,7 +244,7 @@ pub fn analysed(log: &Log, found: &Findings) -> Rows {
         Cell::from(whole.lag_share.map(|lag| lag.share)),
         Cell::from(verdict.as_deref().map(|text| text.trim_matches('"'))),
         Cell::from(concentration.and_then(|c| c.test).map(|test| test.p_value)),
-        Cell::from(report.remarks.len()),
+        Cell::from(report.remarks.len() + usize::from(undated.is_some())),
         Cell::None,
         Cell::from(false),
         Cell::from(log.tries),
@@ -248,7 +254,13 @@ pub fn analysed(log: &Log, found: &Findings) -> Rows {
     rows.extend(
         report.transitions.iter().map(|start| (Name::Transitions, transition_row(log, found, start))),
     );
-    rows.extend(report.remarks.iter().map(|remark| (Name::Remarks, remark_row(log, &found.run_id, remark))));
+    rows.extend(
+        report
+            .remarks
+            .iter()
+            .chain(&undated)
+            .map(|remark| (Name::Remarks, remark_row(log, &found.run_id, remark))),
+    );
     rows
 }
 

@@ -378,4 +378,38 @@ fn tables_that_count_from_zero_have_the_dates_of_their_names_and_those_without_a
         code == 3 && out.contains("undated") && out.contains("undated x3  runs that say no date"),
         "{code}: {out}"
     );
+    let data = folder.path().join("more");
+    assert!(cells(&data, "runs", "started_at").iter().all(String::is_empty));
+    assert_eq!(cells(&data, "remarks", "code").iter().filter(|code| *code == "undated").count(), 3);
+}
+
+#[test]
+fn a_level_that_changes_at_once_is_told_and_breaks_a_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    for machine in ["M1", "M2", "M3"] {
+        let logs = folder.path().join("logs").join(machine);
+        fs::create_dir_all(&logs).unwrap();
+        for day in 1..=12 {
+            // The delay of a day of the table grows by 15 ms a day: four days on, 60 ms.
+            let wears = machine == "M2" && day > 8;
+            let text = table(if wears { 5 } else { 1 });
+            fs::write(
+                logs.join(format!("trace_2026-03-{day:02}_0600.csv")),
+                text + &format!("# {machine} {day}\n"),
+            )
+            .unwrap();
+        }
+    }
+    json(folder.path(), "fleet scan logs/*/*.csv --into data --machine-from path:1");
+    let drift = json(folder.path(), "fleet drift data --by delay");
+    hold_to_schema(&drift, "fleet-drift.v1");
+    let found: Vec<&Value> =
+        drift["trends"].as_array().unwrap().iter().filter(|trend| trend["found"] == true).collect();
+    let [step] = found[..] else { panic!("{found:?}") };
+    assert_eq!((&step["machine"], &step["is_step"]), (&"M2".into(), &true.into()));
+    assert!(step["since"].as_str().unwrap().starts_with("2026-03-09"), "{step}");
+    assert!((step["step"]["change"].as_f64().unwrap() - 0.06).abs() < 0.01, "{step}");
+    let gate = run_line(folder.path(), "fleet gate data --max-drift-delay-ms 10");
+    let (code, out, _) = said(&gate);
+    assert!(code == 4 && out.contains("from 2026-03-08 to 2026-03-09"), "{code}: {out}");
 }
