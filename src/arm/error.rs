@@ -47,7 +47,7 @@ pub enum ArmError {
     SeveralTools {
         /// File, or what stands for it.
         file: String,
-        /// Links without children.
+        /// The link at which the chain branches, and links without children.
         tools: Vec<String>,
     },
     /// Joints between base and tool whose positions are not known.

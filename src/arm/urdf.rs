@@ -155,7 +155,11 @@ impl<'a> Tree<'a> {
             [leaf] => Ok(leaf),
             _ => Err(ArmError::SeveralTools {
                 file: self.at.0.to_owned(),
-                tools: leaves.iter().map(ToString::to_string).collect(),
+                tools: {
+                    // That before the fingers of a gripper.
+                    let branch = Some(self.end(self.root)).filter(|end| *end != self.root);
+                    branch.into_iter().chain(leaves).map(str::to_owned).collect()
+                },
             }),
         }
     }
@@ -207,7 +211,8 @@ impl<'a> Tree<'a> {
         Ok(builder.finish())
     }
 
-    /// Adds the masses of a link and of all that is fixed to it, but for the joint `onwards`.
+    /// Adds the masses of a link and of all that is fixed to it, but for the joint `onwards`. What moves beyond the tool, such
+    /// as the fingers of a gripper, is held at zero.
     fn bodies(&self, link: &'a str, onwards: Option<&str>, builder: &mut Builder) -> Result<(), ArmError> {
         let mut waiting = vec![(link, Pose::identity())];
         while let Some((link, place)) = waiting.pop() {
@@ -217,8 +222,8 @@ impl<'a> Tree<'a> {
                     continue;
                 }
                 let element = format!("<joint {:?}>", joint.name);
-                if joint.kind != JointKind::Fixed {
-                    let found = "a moving joint beside or beyond the path to the tool";
+                if joint.kind != JointKind::Fixed && onwards.is_some() {
+                    let found = "a moving joint beside the path to the tool";
                     return Err(self.at.unexpected(element, found, "a serial chain; name another tool"));
                 }
                 waiting.push((joint.child.link.as_str(), place * self.pose(&joint.origin, &element)?));

@@ -92,7 +92,7 @@ pub enum FitError {
     },
     /// A joint without room for the run.
     #[error(
-        "joint {joint} starts at {} and may go from {} to {}; {} either way do not fit: start elsewhere or ask for less",
+        "joint {joint} starts at {} and may go from {} to {}; a stroke takes {} on one side at least: start elsewhere",
         Degrees(*home_rad), Degrees(*lowest_rad), Degrees(*highest_rad), Degrees(*travel_rad)
     )]
     NoRoom {

@@ -30,6 +30,11 @@ pub struct Ramp {
     pub travel_rad: f64,
 }
 
+/// Strokes shorter than this show nothing, rad.
+const LEAST_RAD: f64 = DEGREE_RAD;
+/// Angles as close as this are one, rad.
+const ROUNDED_RAD: f64 = 1e-9;
+
 /// One joint of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointRoom {
@@ -82,11 +87,12 @@ impl Excitation {
 /// Drives one joint after the other through its ramps, the others at home, every [`STEP_S`] with
 /// positions and speeds.
 ///
-/// A stroke that would leave a joint's range is made to the other side only, twice.
+/// A stroke that would leave a joint's range is made to the other side only, twice; one that fits on neither side is as long
+/// as the range allows.
 ///
 /// # Errors
 ///
-/// [`FitError::Setting`], and [`FitError::NoRoom`] for a joint that has room on neither side.
+/// [`FitError::Setting`], and [`FitError::NoRoom`] for a joint that has less than a degree on either side.
 pub fn excite(joints: &[JointRoom], excitation: &Excitation) -> Result<Series, FitError> {
     excitation.check()?;
     let mut strokes = Vec::with_capacity(joints.len());
@@ -127,13 +133,21 @@ fn no_room(joint: &JointRoom, travel_rad: f64) -> FitError {
 /// Angles and speeds of one joint's part of the run.
 fn joint_strokes(joint: &JointRoom, excitation: &Excitation) -> Result<Vec<(f64, f64)>, FitError> {
     let [lowest, highest] = joint.range_rad;
-    let inside = |angle_rad: f64| (lowest..=highest).contains(&angle_rad);
+    let inside = |angle_rad: f64| (lowest - ROUNDED_RAD..=highest + ROUNDED_RAD).contains(&angle_rad);
     let home = joint.home_rad;
+    let [below, above] = [home - lowest, highest - home];
+    if below < -ROUNDED_RAD || above < -ROUNDED_RAD || below.max(above) < LEAST_RAD {
+        return Err(no_room(joint, LEAST_RAD));
+    }
+    // To both sides, if that leaves enough.
+    let room = if below.min(above) >= LEAST_RAD { below.min(above) } else { below.max(above) };
     let mut states = Vec::new();
     let fastest_rad_s = excitation.ramps.iter().map(|ramp| ramp.speed_rad_s).fold(0.0, f64::max);
     for ramp in &excitation.ramps {
-        let (up, down) = (home + ramp.travel_rad, home - ramp.travel_rad);
-        let goals = match (inside(home) && inside(up), inside(home) && inside(down)) {
+        let fits = inside(home + ramp.travel_rad) || inside(home - ramp.travel_rad);
+        let travel_rad = if fits { ramp.travel_rad } else { ramp.travel_rad.min(room) };
+        let (up, down) = ((home + travel_rad).min(highest), (home - travel_rad).max(lowest));
+        let goals = match (inside(home + travel_rad), inside(home - travel_rad)) {
             // At the top speed both directions need a long stroke.
             (true, true) if ramp.speed_rad_s >= fastest_rad_s => vec![up, down, up, home],
             (true, true) => vec![up, down, home],

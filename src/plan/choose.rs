@@ -124,6 +124,8 @@ pub enum NoChoice {
 pub const HORIZON: f64 = 2.0;
 /// Evaluations of the last descent at most.
 const LAST: u64 = 600;
+/// Times that the fastest plan is quickened as it is.
+const QUICKENED: usize = 3;
 /// Distance that descents keep from ceilings, as a share of them.
 const ROUNDING: f64 = 1e-6;
 /// Divisions of the weights that knees are judged by.
@@ -204,7 +206,26 @@ pub fn choose(
     let better = exact.filter(|timing| {
         timing.violation <= 0.0 && excess(timing) <= 1.0 && worth(merit, timing) < worth(merit, picked)
     });
-    let timing = better.unwrap_or_else(|| picked.clone());
+    let mut timing = better.unwrap_or_else(|| picked.clone());
+    if rule == Rule::Best(Objective::Duration) {
+        // Where a descent stands at a kink, all times alike may still be shorter, and it goes on from there.
+        for _ in 0..QUICKENED {
+            let Some(quicker) = exact::quickened(setup, &timing).filter(|quicker| excess(quicker) <= 1.0)
+            else {
+                break;
+            };
+            let end = descend(setup, &mut evaluator, &quicker.interval_s, &goal);
+            let (exact, more) =
+                end.timing.map_or((None, 0), |timing| exact::kept(setup, &timing, merit, own));
+            used += end.evaluations + more;
+            let better = |timing: &Timing| {
+                timing.violation <= 0.0
+                    && excess(timing) <= 1.0
+                    && worth(merit, timing) < worth(merit, &quicker)
+            };
+            timing = exact.filter(better).unwrap_or(quicker);
+        }
+    }
     Ok(Choice {
         timing,
         rule,
@@ -251,7 +272,8 @@ impl Scale {
                 worst[k] = worst[k].max(timing.objectives[k]);
             }
         }
-        let range = |k| (worst[k] - ideal[k]).max(1e-9 * worst[k]).max(f64::MIN_POSITIVE);
+        // What is zero in all plans, as the power of an arm without masses, tells none from another.
+        let range = |k| if worst[k] > 0.0 { (worst[k] - ideal[k]).max(1e-9 * worst[k]) } else { 1.0 };
         Self { ideal, range: ideal.map_plan(range) }
     }
 

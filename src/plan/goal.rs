@@ -27,7 +27,8 @@ impl Merit {
     pub(super) fn of(&self, objectives: &Objectives) -> f64 {
         let sum = |term: &dyn Fn(Objective) -> f64| Objective::OF_PLAN.iter().map(|&k| term(k)).sum::<f64>();
         match self {
-            Self::Logarithms(weights) => sum(&|k| weights[k] * objectives[k].ln()),
+            // An arm without masses has no power: a constant.
+            Self::Logarithms(weights) => sum(&|k| weights[k] * objectives[k].max(f64::MIN_POSITIVE).ln()),
             Self::Sum(weights) => sum(&|k| weights[k] * objectives[k]),
             Self::Distance { ideal, scale } => {
                 sum(&|k| ((objectives[k] - ideal[k]) / scale[k]).powi(2)).sqrt()

@@ -1,23 +1,38 @@
 //! The front where someone looks: exact plans of given times, and what a little more time buys.
 
-use super::{Choice, Rule, Setup, Timing, choose};
+use super::{Choice, Evaluator, Rule, Setup, Timing, choose};
 use crate::task::{Ceilings, Objective};
 
 /// A little more time, as a share.
 pub const MORE: f64 = 0.01;
-/// Room for rounding at what is held.
+/// Room for rounding at what is held, and below it.
 const HELD: f64 = 1.0 + 2e-6;
+const HELD_BACK: f64 = 2e-6;
 
 /// By what share each objective but time falls at most where a plan may take [`MORE`] time, the others held.
 pub fn bought(setup: &Setup, timing: &Timing) -> Vec<(Objective, f64)> {
     let longer_s = timing.objectives[Objective::Duration] * (1.0 + MORE);
+    // The same plan, slower, is what a descent begins from at least.
+    let rest_s = setup.resting_s();
+    let slower = (longer_s * (1.0 - HELD_BACK) - rest_s) / (timing.objectives[Objective::Duration] - rest_s);
+    let slower_s: Vec<f64> = timing.interval_s.iter().map(|s| s * slower).collect();
+    let slower = (slower.is_finite() && slower_s.iter().all(|s| *s <= setup.interval_s[1]))
+        .then(|| {
+            let mut evaluator = Evaluator::new(setup);
+            let objectives = evaluator.evaluate_peaks(setup, &slower_s)?;
+            Some(Timing { interval_s: slower_s, objectives, violation: evaluator.violation() })
+        })
+        .flatten()
+        .filter(|slower| slower.violation <= 0.0);
+    let from: Vec<Timing> = slower.into_iter().chain([timing.clone()]).collect();
     let one = |objective: Objective| {
         let held = Ceilings::NONE.map_plan(|k| timing.objectives[k] * HELD);
         let held = held.with(Objective::Duration, longer_s).with(objective, f64::INFINITY);
-        let best = choose(setup, std::slice::from_ref(timing), &held, (Rule::Best(objective), None)).ok()?;
+        let best = choose(setup, &from, &held, (Rule::Best(objective), None)).ok()?;
         Some((objective, 1.0 - best.timing.objectives[objective] / timing.objectives[objective]))
     };
-    Objective::OF_PLAN.iter().copied().filter(|k| *k != Objective::Duration).filter_map(one).collect()
+    let others = Objective::OF_PLAN.iter().copied().filter(|k| *k != Objective::Duration);
+    others.filter(|k| timing.objectives[*k] > 0.0).filter_map(one).collect()
 }
 
 /// The smoothest plans within round times around one, s, each descended as far as it goes; none for times that no plan

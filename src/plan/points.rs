@@ -44,7 +44,7 @@ impl Setup {
 pub(super) fn states(motion: &Motion, step_s: f64) -> Vec<Vec<State>> {
     let (mut samples, end_s) = (Samples::default(), motion.duration_s());
     let steps = (0_u32..).map(|k| f64::from(k) * step_s);
-    let mut t_s: Vec<f64> = steps.take_while(|t_s| *t_s < end_s).collect();
+    let mut t_s: Vec<f64> = steps.take_while(|t_s| *t_s < end_s - 0.01 * step_s).collect();
     t_s.push(end_s);
     motion.sample(&t_s, Quantity::Acceleration, &mut samples);
     let of = |joint| {

@@ -12,6 +12,9 @@ use crate::{
     task::{Boundary, Task},
 };
 
+/// Angles as close as this are one, rad.
+const ROUNDED_RAD: f64 = 1e-9;
+
 /// Limits of a joint: the tighter of task and arm, infinite where there are none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct JointLimits {
@@ -43,7 +46,7 @@ pub struct Setup {
     pub(super) interval_s: [f64; 2],
     /// Per limit: safety factor for peaks between evaluation nodes; 1 until one was found.
     pub(super) slack: Vec<f64>,
-    /// Key points where the arm stops because the next or the last one is the same.
+    /// Key points where the arm stops because the next or the last one is the same, or a joint's range ends there.
     pub(super) stops: Vec<usize>,
     /// Payload by segment, kg.
     pub(super) payload_kg: Vec<f64>,
@@ -74,7 +77,7 @@ impl Setup {
         let ends = ends(task, &order);
         check_ends(&ends, &limits, &names)?;
         let given: Vec<Option<f64>> = task.points.iter().map(|key| key.dwell_s).collect();
-        let stops = stops(&points, &ends, &given);
+        let stops = stops(&points, &ends, &given, &range_rad);
         let dwells: Vec<Dwell> = given
             .iter()
             .enumerate()
@@ -198,7 +201,7 @@ impl Setup {
     }
 
     /// Indices of key points without a dwell at which the arm stops all the same: a spline through two equal key points
-    /// would drift between them.
+    /// would drift between them, and one through the end of a range would pass it.
     pub fn stops(&self) -> &[usize] {
         &self.stops
     }
@@ -209,13 +212,23 @@ impl Setup {
     }
 }
 
-/// Key points without a dwell that equal a neighbour; those at an end that moves are left as they are.
-fn stops(points: &KeyPoints, ends: &Ends, dwell_s: &[Option<f64>]) -> Vec<usize> {
+/// Key points without a dwell that equal a neighbour, or at which a joint is at the end of its range, where it can but turn
+/// back; those at an end that moves are left as they are.
+fn stops(points: &KeyPoints, ends: &Ends, dwell_s: &[Option<f64>], range_rad: &[[f64; 2]]) -> Vec<usize> {
     let last = points.len() - 1;
     let resting = Ends::at_rest(points.joints());
     let free = |point: usize| dwell_s[point].is_none() && (point > 0 && point < last || *ends == resting);
     let same = |point: usize| point < last && points.of(point) == points.of(point + 1);
-    (0..=last).filter(|&point| free(point) && (same(point) || point > 0 && same(point - 1))).collect()
+    let at_end = |point: usize| {
+        let ends = |joint: usize, [lower, upper]: [f64; 2]| {
+            let [before, angle, after] = [point - 1, point, point + 1].map(|point| points.of(point)[joint]);
+            let moves = (angle - before).abs() > ROUNDED_RAD || (angle - after).abs() > ROUNDED_RAD;
+            moves && (angle <= lower + ROUNDED_RAD || angle >= upper - ROUNDED_RAD)
+        };
+        (1..last).contains(&point) && range_rad.iter().enumerate().any(|(joint, range)| ends(joint, *range))
+    };
+    let stops = |point: usize| same(point) || point > 0 && same(point - 1) || at_end(point);
+    (0..=last).filter(|&point| free(point) && stops(point)).collect()
 }
 
 fn arrivals(interval_s: &[f64], dwell_before_s: &[f64]) -> Vec<f64> {

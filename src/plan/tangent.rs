@@ -28,10 +28,13 @@ impl Point {
         let interval_s: Vec<f64> = x.iter().map(|x| x.exp().clamp(low, high)).collect();
         let objectives = evaluator.evaluate_peaks(setup, &interval_s)?;
         let f = objectives.plan();
-        if !f.iter().all(|f| f.is_finite() && *f > 0.0) {
+        if !f.iter().all(|f| f.is_finite() && *f >= 0.0) {
             return None;
         }
-        let ceilings = f.iter().zip(goal.ceilings.plan()).map(|(f, ceiling)| (f / ceiling).max(1e-6).ln());
+        let ceilings = f
+            .iter()
+            .zip(goal.ceilings.plan())
+            .map(|(f, ceiling)| (f / ceiling.max(f64::MIN_POSITIVE)).max(1e-6).ln());
         let limits = evaluator.peaks.iter().map(|share| share.clamp(1e-6, 1e6).ln() + WITHIN);
         let constraint = ceilings.chain(limits).collect();
         let timing = Timing { interval_s, objectives, violation: evaluator.violation() };

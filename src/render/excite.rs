@@ -30,7 +30,21 @@ pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
     );
     let what = format!("The joints move one after the other: {}.", strokes.join("; "));
     let numbers = ["home deg", "sent from", "to", "allowed from", "to"];
+    let longest_rad = excited.excitation.ramps.iter().map(|ramp| ramp.travel_rad).fold(0.0, f64::max);
+    let short: Vec<&str> = excited
+        .joints
+        .iter()
+        .filter(|joint| joint.range_rad.iter().any(|end| (end - joint.home_rad).abs() < longest_rad - 1e-9))
+        .map(|joint| joint.name.as_str())
+        .collect();
+    let short = (!short.is_empty()).then(|| {
+        Sentence::finding(format!(
+            "The range of {} is too near for some: these strokes go to one side only, or no farther than it allows.",
+            short.join(", ")
+        ))
+    });
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(what)])
+        .with_all(short)
         .with(Table::new(&["joint"], &numbers, rows))
         .with(Sentence::advice(
             "The arm must stand at home when the run starts. The fast strokes exceed the speed of most machines, to show \

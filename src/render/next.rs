@@ -12,11 +12,17 @@ fn step(section: Section, aim: &str, words: &[&str]) -> Section {
     section.with(Sentence::advice(aim)).with(Block::Command(command(words)))
 }
 
-/// After `plan`.
-pub(crate) fn plan_written(log: &Path) -> Section {
+/// After `plan`; `simulated`: whether the machine that `simulate` takes by itself has its joints.
+pub(crate) fn plan_written(log: &Path, simulated: bool) -> Section {
     let log = argument(log);
-    let aim = "To run it on a simulated machine:";
-    step(written(&log), aim, &["simulate", &log, "-o", "run.mcap"])
+    if simulated {
+        let aim = "To run it on a simulated machine:";
+        return step(written(&log), aim, &["simulate", &log, "-o", "run.mcap"]);
+    }
+    let aim = "To send it as a table, where the trajectory in it is not what the controller takes:";
+    let sent = step(written(&log), aim, &["export", &log, "-o", "plan.csv"]);
+    let aim = "After the run, to put the plan into the recorder's log:";
+    step(sent, aim, &["join", "RUN.mcap", "--plan", &log, "-o", "run.mcap"])
 }
 
 /// After `fit`; `logs` are the runs of the plan to plan again.

@@ -72,7 +72,7 @@ impl Args {
         let result = match target.form {
             Form::Json => document.json(),
             Form::Html => judged_page(title, &joints, &course, request.setup.arm().chain.tool_name()),
-            _ => target.text(&self.noted(judged_document(title, &joints, &evaluation))),
+            _ => target.text(&self.noted(request, judged_document(title, &joints, &evaluation))),
         };
         self.figures.write(console, target, || motion_figures(&joints, &course))?;
         let outcome = console.finish(target, &result, &Remarks::default(), &[])?;
@@ -97,7 +97,8 @@ impl Args {
                     Courses { chosen: &course, of_front: &of_front, tool, ceilings, task: &self.task };
                 words::page(&document, &options, ceilings, &planned, &courses)
             }
-            _ => target.text(&self.noted(words::document(title, algorithm, &options, ceilings, &planned))),
+            _ => target
+                .text(&self.noted(request, words::document(title, algorithm, &options, ceilings, &planned))),
         };
         self.figures.write(console, target, || words::figures(&document, &course))?;
         console.finish(target, &result, &planned.remarks, &[])
@@ -128,9 +129,9 @@ impl Args {
     }
 
     /// The document, with where the log is if there is one.
-    fn noted(&self, document: Document) -> Document {
+    fn noted(&self, request: &PlanRequest, document: Document) -> Document {
         match self.log() {
-            Some(log) => document.with_above_remarks(next::plan_written(log)),
+            Some(log) => document.with_above_remarks(next::plan_written(log, request.is_simulated())),
             None => document,
         }
     }

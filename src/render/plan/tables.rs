@@ -156,14 +156,15 @@ fn exchange(planned: &Planned) -> Option<String> {
 /// The front where it was asked for.
 fn near(near_s: Option<f64>, planned: &Planned) -> Option<Section> {
     let near_s = near_s?;
-    let fastest_s = planned.best.first().map_or(f64::NAN, |plan| plan.objectives[Objective::Duration]);
+    let of_front = planned.best.first().map_or(f64::NAN, |plan| plan.objectives[Objective::Duration]);
+    let fastest_s = of_front.min(planned.chosen.objectives[Objective::Duration]);
     let title = format!("The smoothest plans near {near_s} s");
     let one = |(within_s, plan): &(f64, PlanEvaluation)| {
         row(&format!("within {within_s} s"), plan, &planned.joints)
     };
     Some(if planned.near.is_empty() {
         let none = format!(
-            "No plan that keeps all limits and ceilings is so fast: the fastest takes {fastest_s:.2} s."
+            "No plan that keeps all limits and ceilings was found that is so fast: the fastest takes {fastest_s:.2} s."
         );
         Section::new(Id::OTHER, title, [Sentence::finding(none)])
     } else {

@@ -43,6 +43,10 @@ pub const PLAN: &str = "plan.json";
 const PROVENANCE: &str = "hydrotrace.plan";
 /// Key of the provenance: when the times of the plan count from, s since the start of the log; 0 without.
 const STARTS: &str = "starts_s";
+/// Key of the provenance: the verb that made the plan, where it is not `plan`.
+pub(super) const MADE_BY: &str = "made_by";
+/// That of an identification run.
+pub(super) const EXCITE: &str = "excite";
 /// Key of the provenance: where the controller takes trajectories; ours without.
 const TRAJECTORY: &str = "trajectory_topic";
 /// Start of the keys of the provenance that hold the SHA-256 of the files, by name.
@@ -100,6 +104,11 @@ impl Carried {
     #[must_use]
     pub fn with_arm_of(self, task: &TaskFiles) -> Self {
         Self { files: attached(ARM, task), ..self }
+    }
+
+    /// Whether `excite` made the plan: no task is to be done by it.
+    pub(in crate::workflow) fn identifies(&self) -> bool {
+        self.provenance.get(MADE_BY).is_some_and(|by| by == EXCITE)
     }
 
     /// The provenance in place of what was there.

@@ -3,8 +3,9 @@
 /// Stamp of the first sample, ns since 1970: no wall clock, so that equal plans give equal logs.
 pub use crate::log::UNDATED_NS as START_NS;
 
-/// Even instants from 0 to the end, both included, s.
+/// Even instants from 0 to the end, both included, s; the last interval may be a hundredth longer, but not as short as that.
 pub(in crate::workflow) fn instants(end_s: f64, rate_hz: f64) -> impl Iterator<Item = f64> {
-    let inner = (0_u64..).map(move |k| k as f64 / rate_hz).take_while(move |t_s| *t_s < end_s - 1e-9);
+    let inner =
+        (0_u64..).map(move |k| k as f64 / rate_hz).take_while(move |t_s| *t_s < end_s - 0.01 / rate_hz);
     inner.chain(std::iter::once(end_s))
 }

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::{
     carried::{
-        Carried,
+        Carried, EXCITE, MADE_BY,
         plan_log::{PlanLog, Planned},
     },
     plan::{PlanFailure, PlanRequest, TaskFiles},
@@ -116,7 +116,7 @@ impl Excited {
         // So that whoever runs it knows its arm.
         let carried =
             self.task.as_ref().map_or_else(Carried::default, |task| Carried::default().with_arm_of(task));
-        let carried = carried.with_provenance(BTreeMap::from([("made_by".to_owned(), "excite".to_owned())]));
+        let carried = carried.with_provenance(BTreeMap::from([(MADE_BY.to_owned(), EXCITE.to_owned())]));
         PlanLog {
             plan: Planned::Series(&self.command),
             command: None,

@@ -136,7 +136,9 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
     let torques = observed.iter().map(torques).find(|torques| !torques.is_empty()).unwrap_or_default();
     let sound = |one: &Recording| !one.remarks.as_slice().iter().any(|remark| remark.code.spoils_runs());
     let carried: Vec<Carried> = observed.iter().map(Carried::of).collect();
-    let again = |k: &usize| sound(&observed[*k]) && carried[*k].broken(&observed[*k]).is_none();
+    let again = |k: &usize| {
+        !carried[*k].identifies() && sound(&observed[*k]) && carried[*k].broken(&observed[*k]).is_none()
+    };
     let again: Vec<usize> = (0..observed.len()).filter(again).collect();
     let with_task = again.iter().rfind(|k| carried[**k].task().is_some());
     let newest = with_task.or(again.last()).copied();

@@ -152,7 +152,8 @@ pub fn run(
     }
     if let [first, ..] = setup.stops() {
         let message = format!(
-            "key point {} and the one beside it are the same: the arm stops there; dwell_s says for how long",
+            "key point {} is the same as the one beside it, or the range of a joint ends there: the arm stops there; \
+             dwell_s says for how long",
             first + 1
         );
         remarks.add(Code::EqualKeyPoints, setup.stops().len() as u64, message);

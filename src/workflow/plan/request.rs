@@ -55,6 +55,11 @@ impl PlanRequest {
         Self::parse(Path::new("task-1.toml"), SAMPLE_TASK.to_owned())
     }
 
+    /// Whether its arm is the sample arm, for which `simulate` has machines of its own.
+    pub fn is_simulated(&self) -> bool {
+        self.files.urdf.is_none()
+    }
+
     /// Takes a task file's text; reads the arm that it names, from beside `path`.
     ///
     /// # Errors

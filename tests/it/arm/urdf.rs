@@ -85,8 +85,38 @@ fn several_possible_tools_are_named() {
     assert_eq!(found, "a.urdf: the tool could be any of camera, tool; name one");
     assert_eq!(read(SPATIAL, Some("tool")).unwrap().joint_count(), 7);
     assert!(read(SPATIAL, Some("nose")).unwrap_err().contains("tool: found nose"));
-    assert!(read(SPATIAL, Some("camera")).unwrap_err().contains("moving joint beside or beyond"));
+    // What moves beyond is held.
+    assert!(read(SPATIAL, Some("camera")).unwrap().joint_count() < 7);
     assert!(read(SPATIAL, Some("base")).unwrap_err().contains("no turning joint"));
+}
+
+#[test]
+fn the_fingers_of_a_gripper_are_held_and_an_arm_beside_is_refused() {
+    let joint = |name: &str, kind: &str, from: &str, to: &str| {
+        let range = r#"<limit lower="-1" upper="1" effort="9" velocity="1"/>"#;
+        format!(
+            r#"<joint name="{name}" type="{kind}"><parent link="{from}"/><child link="{to}"/><origin xyz="0 0 1"/><axis xyz="0 1 0"/>{range}</joint>"#
+        )
+    };
+    let mass =
+        r#"<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>"#;
+    let links: String = ["base", "l1", "hand", "f1", "f2"]
+        .map(|name| format!(r#"<link name="{name}">{mass}</link>"#))
+        .concat();
+    let arm = joint("j1", "revolute", "base", "l1") + &joint("j2", "revolute", "l1", "hand");
+    let fingers = joint("g1", "prismatic", "hand", "f1") + &joint("g2", "revolute", "hand", "f2");
+    let text = format!(r#"<robot name="r">{links}{arm}{fingers}</robot>"#);
+    assert_eq!(read(&text, None).unwrap_err(), "a.urdf: the tool could be any of hand, f1, f2; name one");
+    let held = read(&text, Some("hand")).unwrap();
+    let fixed = text.replace("prismatic", "fixed").replace(r#""g2" type="revolute""#, r#""g2" type="fixed""#);
+    assert_eq!(held.joint_count(), 2);
+    assert_eq!(
+        format!("{:?}", held.load(None)),
+        format!("{:?}", read(&fixed, Some("hand")).unwrap().load(None))
+    );
+    let beside = text
+        .replace(r#"<parent link="hand"/><child link="f2"/>"#, r#"<parent link="l1"/><child link="f2"/>"#);
+    assert!(read(&beside, Some("hand")).unwrap_err().contains("moving joint beside"), "{beside}");
 }
 
 #[test]

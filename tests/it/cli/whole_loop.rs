@@ -174,7 +174,7 @@ fn what_cannot_be_done_says_why_and_writes_nothing() {
         ("fit run.mcap -o run.mcap", 1, "is an input"),
         ("fit run.mcap --html run.mcap", 1, "is an input"),
         ("excite -o x.mcap --joint a=1:2", 2, "NAME=HOME:LOW:HIGH"),
-        ("excite -o x.mcap --joint a=1:0:2", 1, "do not fit"),
+        ("excite -o x.mcap --joint a=1:0.5:1.5", 1, "on one side at least"),
         ("demo --dir plan.mcap", 1, "cannot make the folder"),
     ] {
         let run = hydrotrace(folder, line);

@@ -288,6 +288,17 @@ fn a_trial_stays_in_range_and_one_without_room_is_refused() {
         let moving = |k: usize| run.tracks.iter().filter(|t| t.velocity().unwrap()[k] != 0.0).count();
         assert!((0..run.tracks[0].len()).all(|k| moving(k) <= 1));
     }
-    let tight = [JointRoom { range_rad: [0.95, 1.05], ..rooms[1].clone() }];
-    assert!(matches!(excite(&tight, &Excitation::minimal()), Err(FitError::NoRoom { .. })));
+    let within = |home_rad: f64, range_rad| {
+        let room = [JointRoom { home_rad, range_rad, ..rooms[1].clone() }];
+        let run = excite(&room, &Excitation::minimal())?;
+        let sent = run.tracks[0].position();
+        Ok(sent.iter().fold([f64::MAX, f64::MIN], |[a, b], q| [a.min(*q), b.max(*q)]))
+    };
+    let none: Result<[f64; 2], FitError> = within(1.0, [0.99, 1.01]);
+    assert!(matches!(none, Err(FitError::NoRoom { .. })));
+    // A narrow joint goes as far as it may; a stroke that fits exactly is not cut by rounding.
+    assert_eq!(within(1.0, [0.95, 1.05]).unwrap(), [0.95, 1.05]);
+    let [low, home, high] = [23.3_f64, 33.3, 43.3].map(f64::to_radians);
+    let [from, to] = within(home, [low, high]).unwrap();
+    assert!((from - low).abs() < 1e-9 && (to - high).abs() < 1e-9, "{from} {to}");
 }

@@ -2,4 +2,5 @@
 
 mod choice;
 mod optima;
+mod other_arms;
 mod search;
