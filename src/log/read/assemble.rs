@@ -24,7 +24,6 @@ use crate::{
         joint_kind,
         options::{ReadOptions, SignalRole, TimeBase, WantedSignal},
         range::TimeRange,
-        recovered,
         source::{AXES, Role, Stamps},
     },
     remark::Remarks,
@@ -43,7 +42,6 @@ pub(super) fn assemble(
     let alone = (choice.planned.is_empty() || choice.measured.is_empty()).then(|| remarks.clone());
     let (base, base_why) = time_base(&extracted, choice, options.time_base, &mut remarks)?;
     overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?;
-    recovered::remark(&extracted.metadata, &mut remarks);
     let plan_is_command = remark_choice(choice, options, &extracted.metadata, &mut remarks);
     let sliding = &mut kinds.sliding;
     sliding.extend(options.description.as_deref().map(sliding_joints).unwrap_or_default());

@@ -36,6 +36,7 @@ use super::{
     error::LogError,
     files::{LogFiles, ScannedFile, ScannedLog},
     options::{ReadOptions, Sides},
+    recovered,
 };
 use crate::{
     remark::{Code, Remarks},
@@ -195,7 +196,8 @@ fn assembled(mut extracted: Extracted, options: &ReadOptions) -> Result<Recordin
         );
     }
     let mut recording = assemble(extracted, &choice, options, kinds)?;
-    let Recording { planned, measured, metadata, source, .. } = &mut recording;
+    let Recording { planned, measured, metadata, source, remarks, .. } = &mut recording;
+    recovered::remark(metadata, remarks);
     let topics = [&source.planned_topic, &source.measured_topic];
     source.origin = Origin::of(metadata, topics, [planned, measured]);
     ::log::info!("planned {}:{}", source.planned_topic, source.planned_field);

@@ -53,6 +53,8 @@ const TRIES: usize = 3;
 /// Slowings down, and the distance that they keep from a limit, as a share of it.
 const SLOWINGS: i32 = 8;
 const CLEAR: f64 = 1e-10;
+/// A range that is passed by no more than this is kept by points a little nearer to its middle.
+const ROUNDED: f64 = 1.0 + 1e-4;
 /// Each slowing down is so many times stronger than the last.
 const STRONGER: f64 = 3.0;
 /// Room for the peaks of a load that move between the instants as a descent goes on.
@@ -189,13 +191,32 @@ fn load(setup: &Setup, frame: &Frame<'_>, curve: &Curve) -> Result<f64, NoShape>
     Ok(loads.fold(0.0, |most, margin| most.max(margin.share)))
 }
 
+/// Brings the free points of a joint nearer to the middle of its range, by twice what the curve is beyond an end.
+fn pulled(frame: &Frame<'_>, point_rad: &mut [f64], margin: &Margin) {
+    let Some((joint, bounds)) = margin.joint.and_then(|joint| Some((joint, frame.bounds.get(joint)?))) else {
+        return;
+    };
+    let [low, high] = bounds.range_rad;
+    let (middle, by) = (0.5 * (low + high), 1.0 - 2.0 * (margin.share - 1.0));
+    for (point, angles) in point_rad.chunks_exact_mut(frame.joints()).enumerate() {
+        if !frame.is_given(point) && frame.pose(point).is_none() {
+            angles[joint] = middle + by * (angles[joint] - middle);
+        }
+    }
+}
+
 /// The plan of a curve, slowed down until all limits hold exactly.
 fn kept(setup: &Setup, frame: &Frame<'_>, curve: &Curve) -> Result<PlanEvaluation, NoShape> {
-    let (mut interval_s, mut slower) = (curve.interval_s.clone(), 1.0);
+    let (mut interval_s, mut point_rad, mut slower) =
+        (curve.interval_s.clone(), curve.point_rad.clone(), 1.0);
     for tried in 0..SLOWINGS {
-        let (times_s, via) = listed(frame, &interval_s, &curve.point_rad);
+        let (times_s, via) = listed(frame, &interval_s, &point_rad);
         let evaluation = PlanEvaluation::through(setup, &times_s, &via).map_err(|_| NoShape::NoGain)?;
         let Some(worst) = evaluation.broken().first().map(|margin| **margin) else { return Ok(evaluation) };
+        if worst.limit == Limit::Position && worst.share < ROUNDED {
+            pulled(frame, &mut point_rad, &worst);
+            continue;
+        }
         let by = evaluation.broken().into_iter().map(factor).fold(1.0, f64::max) * (1.0 + CLEAR);
         // A load that is nearly one at rest falls far less than time grows.
         let by = by.powf(STRONGER.powi(tried));

@@ -70,6 +70,7 @@ fn cut(report: &mut Report, stretch_s: [f64; 2], inputs: &Inputs) -> Result<Vec<
 }
 
 /// Where the plan begins and ends in a run, and where the run does, s.
+#[expect(clippy::struct_field_names, reason = "the unit ends each name")]
 struct Span {
     /// What is added to times of the first run to get those of this one, if both are of one plan.
     offset_s: Option<f64>,
@@ -104,12 +105,10 @@ fn common(joints: &[String], reports: &[&Report]) -> Vec<Option<[f64; 2]>> {
 
 fn of_spans(spans: &[Span]) -> Vec<Option<[f64; 2]>> {
     // Of one plan the run with the most tells where it begins and ends.
-    let ends = spans
-        .iter()
-        .filter_map(|span| Some(span.plan_s.map(|at_s| at_s - span.offset_s.unwrap_or(f64::NAN))));
-    let plan_s = ends
-        .filter(|ends| ends[0].is_finite())
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |all, one| [all[0].min(one[0]), all[1].max(one[1])]);
+    let of_plan = |span: &Span| span.offset_s.map(|offset_s| span.plan_s.map(|at_s| at_s - offset_s));
+    let ends = spans.iter().filter_map(of_plan);
+    let plan_s =
+        ends.fold([f64::INFINITY, f64::NEG_INFINITY], |all, one| [all[0].min(one[0]), all[1].max(one[1])]);
     let plan_of = |span: &Span| match span.offset_s {
         Some(offset_s) => plan_s.map(|at_s| at_s + offset_s),
         None => span.plan_s,

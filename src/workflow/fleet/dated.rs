@@ -4,7 +4,10 @@ use std::ops::RangeInclusive;
 
 use chrono::{NaiveDate, NaiveDateTime};
 
-use crate::log::is_dated;
+use crate::{
+    log::is_dated,
+    remark::{Code, Remark},
+};
 
 /// Names of the log and of so many folders above it are looked at.
 const NAMES: usize = 4;
@@ -21,6 +24,12 @@ pub(in crate::workflow) fn began_ns(uri: &str, epoch_ns: i64) -> Option<i64> {
     }
     let mut names = uri.trim_end_matches('/').rsplit('/').take(NAMES);
     names.find_map(date_in)?.and_utc().timestamp_nanos_opt()
+}
+
+/// The doubt about a run without one.
+pub(super) fn undated() -> Remark {
+    let message = "neither the stamps nor the name of the run say a date".to_owned();
+    Remark { code: Code::Undated, count: 1, message }
 }
 
 fn date_in(name: &str) -> Option<NaiveDateTime> {

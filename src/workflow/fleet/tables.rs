@@ -1,6 +1,6 @@
 //! The tables of the dataset: their columns, and the rows of one log. Positions are in the joint's unit, rad or m.
 
-use super::dated::began_ns;
+use super::dated::{began_ns, undated};
 use crate::{
     document::PROGRAM,
     log::dataset::{Cell, Column},
@@ -211,11 +211,6 @@ pub fn analysed(log: &Log, found: &Findings) -> Rows {
     let is_command = report.remarks.iter().any(|remark| remark.code == Code::PlanIsCommand);
     let verdict = concentration.and_then(|c| serde_json::to_string(&c.verdict).ok());
     let began_ns = began_ns(&log.uri, report.source.epoch_ns);
-    let undated = began_ns.is_none().then(|| Remark {
-        code: Code::Undated,
-        count: 1,
-        message: "neither the stamps nor the name of the run say a date".to_owned(),
-    });
     let run = vec![
         Cell::from(found.run_id.as_str()),
         Cell::from(log.machine.as_deref()),
@@ -244,7 +239,7 @@ pub fn analysed(log: &Log, found: &Findings) -> Rows {
         Cell::from(whole.lag_share.map(|lag| lag.share)),
         Cell::from(verdict.as_deref().map(|text| text.trim_matches('"'))),
         Cell::from(concentration.and_then(|c| c.test).map(|test| test.p_value)),
-        Cell::from(report.remarks.len() + usize::from(undated.is_some())),
+        Cell::from(report.remarks.len() + usize::from(began_ns.is_none())),
         Cell::None,
         Cell::from(false),
         Cell::from(log.tries),
@@ -254,13 +249,9 @@ pub fn analysed(log: &Log, found: &Findings) -> Rows {
     rows.extend(
         report.transitions.iter().map(|start| (Name::Transitions, transition_row(log, found, start))),
     );
-    rows.extend(
-        report
-            .remarks
-            .iter()
-            .chain(&undated)
-            .map(|remark| (Name::Remarks, remark_row(log, &found.run_id, remark))),
-    );
+    let doubt = |remark: &Remark| (Name::Remarks, remark_row(log, &found.run_id, remark));
+    rows.extend(report.remarks.iter().map(doubt));
+    rows.extend(began_ns.is_none().then(|| doubt(&undated())));
     rows
 }
 

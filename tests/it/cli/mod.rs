@@ -10,6 +10,7 @@ mod cut;
 mod cylinders;
 mod figures;
 mod fleet;
+mod fleet_dates;
 #[cfg(unix)]
 mod historians;
 mod hostile;

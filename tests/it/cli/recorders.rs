@@ -53,7 +53,7 @@ fn a_recorder_that_runs_on_or_begins_later_is_no_change() {
     for after in ["long.csv", "early.csv"] {
         for line in [format!("compare a.csv {after}"), format!("compare {after} a.csv")] {
             let (code, document) = compared(folder.path(), &format!("{line} --json --max-rms-ratio 0.9"));
-            hold_to_schema(&document, "compare.v1");
+            hold_to_schema(&document, "compare.v2");
             assert!(code == 4 && (ratio(&document) - 1.0).abs() < 0.01, "{line}: {}", ratio(&document));
         }
     }

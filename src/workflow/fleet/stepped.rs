@@ -1,0 +1,49 @@
+//! A level of a joint that changes between two runs and stays.
+
+use serde::{Deserialize, Serialize};
+
+use super::history::date;
+use crate::math::{step, theil_sen};
+
+/// A level that changes between two runs and stays.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct LevelStep {
+    /// The last run before it, UTC.
+    pub after: Option<String>,
+    /// The first run with the new level, UTC.
+    pub by: Option<String>,
+    /// From the one to the other, days.
+    pub days: f64,
+    /// Mean level after less mean level before, three runs at least on each side.
+    pub change: f64,
+    /// Its 95 % interval, by Student's t.
+    pub interval_95: [f64; 2],
+    /// Two-sided probability of such a step at any time by chance.
+    pub p_value: f64,
+    /// The same, corrected for the number of machines, joints and metrics (false-discovery rate).
+    pub q_value: f64,
+    /// Sum of squares that it leaves, over that which the trend leaves.
+    pub left: f64,
+}
+
+/// The step that explains the levels of the runs best, beside their trend.
+pub(super) fn best_step(levels: &[(f64, f64)]) -> Option<LevelStep> {
+    let values: Vec<f64> = levels.iter().map(|(_, level)| *level).collect();
+    let found = step(&values)?;
+    let slope = theil_sen(levels);
+    let off: Vec<f64> = levels.iter().map(|(at, level)| level - slope * at).collect();
+    let middle = off.iter().sum::<f64>() / off.len() as f64;
+    let of_trend: f64 = off.iter().map(|off| (off - middle).powi(2)).sum();
+    let (before, after) = (levels.get(found.at.checked_sub(1)?)?.0, levels.get(found.at)?.0);
+    Some(LevelStep {
+        after: date(before),
+        by: date(after),
+        days: after - before,
+        change: found.change,
+        interval_95: found.interval,
+        p_value: found.p,
+        q_value: 1.0,
+        left: if of_trend > 0.0 { found.squares / of_trend } else { f64::MAX },
+    })
+}

@@ -1,0 +1,85 @@
+//! Tables that count from zero, in a fleet: their dates, and what changes at once.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::support::{
+    fleet::{cells, files},
+    hold_to_schema, json, run_line, said,
+};
+
+/// Of a PLC that counts from zero: the boom starts 15 ms later each day.
+fn table(day: u32) -> String {
+    let mut text = "t_s,boom_planned_rad,boom_measured_rad\n".to_owned();
+    for k in 0..600 {
+        let t_s = 0.02 * f64::from(k);
+        let at = |late_s: f64| {
+            let stroke = |from_s: f64| crate::support::fleet::smooth((t_s - from_s - late_s) / 2.0);
+            0.2 * stroke(2.0) - 0.2 * stroke(6.0)
+        };
+        text += &format!("{t_s:.2},{:.6},{:.6}\n", at(0.0), at(0.1 + 0.015 * f64::from(day)));
+    }
+    text
+}
+
+#[test]
+fn tables_that_count_from_zero_have_the_dates_of_their_names_and_those_without_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let logs = folder.path().join("logs/M07");
+    fs::create_dir_all(&logs).unwrap();
+    for day in 1..=9 {
+        fs::write(logs.join(format!("trace_2026-03-{day:02}_0600.csv")), table(day)).unwrap();
+    }
+    json(folder.path(), "fleet scan logs/*/*.csv --into data --machine-from path:1");
+    let drift = json(folder.path(), "fleet drift data --by delay");
+    let trends = drift["trends"].as_array().unwrap();
+    let late = trends.iter().find(|trend| trend["found"] == true && trend["metric"] == "delay").unwrap();
+    assert!((late["slope_per_day"].as_f64().unwrap() - 0.015).abs() < 0.003, "{late}");
+    assert_eq!(late["days"], 8.0);
+    fs::create_dir_all(folder.path().join("others/M08")).unwrap();
+    for day in 1..=3 {
+        fs::write(folder.path().join(format!("others/M08/trace{day}.csv")), table(day)).unwrap();
+    }
+    run_line(folder.path(), "fleet scan others/*/*.csv --into more --machine-from path:1");
+    let (code, out, _) = said(&run_line(folder.path(), "fleet drift more"));
+    assert!(
+        code == 3 && out.contains("undated") && out.contains("undated x3  runs that say no date"),
+        "{code}: {out}"
+    );
+    let data = folder.path().join("more");
+    let of_day = |path: &std::path::PathBuf| path.to_string_lossy().contains("date=20");
+    assert!(!files(&data).keys().any(of_day), "no date is made up");
+    assert_eq!(cells(&data, "remarks", "code").iter().filter(|code| *code == "undated").count(), 3);
+}
+
+#[test]
+fn a_level_that_changes_at_once_is_told_and_breaks_a_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    for machine in ["M1", "M2", "M3"] {
+        let logs = folder.path().join("logs").join(machine);
+        fs::create_dir_all(&logs).unwrap();
+        for day in 1..=12 {
+            // The delay of a day of the table grows by 15 ms a day: four days on, 60 ms.
+            let wears = machine == "M2" && day > 8;
+            let text = table(if wears { 5 } else { 1 });
+            fs::write(
+                logs.join(format!("trace_2026-03-{day:02}_0600.csv")),
+                text + &format!("# {machine} {day}\n"),
+            )
+            .unwrap();
+        }
+    }
+    json(folder.path(), "fleet scan logs/*/*.csv --into data --machine-from path:1");
+    let drift = json(folder.path(), "fleet drift data --by delay");
+    hold_to_schema(&drift, "fleet-drift.v1");
+    let found: Vec<&Value> =
+        drift["trends"].as_array().unwrap().iter().filter(|trend| trend["found"] == true).collect();
+    let [step] = found[..] else { panic!("{found:?}") };
+    assert_eq!((&step["machine"], &step["is_step"]), (&"M2".into(), &true.into()));
+    assert!(step["since"].as_str().unwrap().starts_with("2026-03-09"), "{step}");
+    assert!((step["step"]["change"].as_f64().unwrap() - 0.06).abs() < 0.01, "{step}");
+    let gate = run_line(folder.path(), "fleet gate data --max-drift-delay-ms 10");
+    let (code, out, _) = said(&gate);
+    assert!(code == 4 && out.contains("from 2026-03-08 to 2026-03-09"), "{code}: {out}");
+}
