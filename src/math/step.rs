@@ -62,7 +62,7 @@ mod tests {
         let values = [0.456, 0.454, 0.461, 0.461, 0.453, 0.413, 0.418, 0.286, 0.289, 0.311, 0.311, 0.270];
         let found = step(&values).unwrap();
         assert_eq!(found.at, 7);
-        // scipy.stats.ttest_ind(values[7:], values[:7]): p and interval; seven places were tried.
+        // The t-test of SciPy for equal variances, values[7:] and values[:7]: p and interval; seven places were tried.
         assert!((found.p / (7.0 * 1.070_697_605_017_341e-7) - 1.0).abs() < 1e-6, "{found:?}");
         assert!((found.interval[0] + 0.177_081_770_350_539).abs() < 1e-9, "{found:?}");
         assert!((found.interval[1] + 0.126_403_943_935_175).abs() < 1e-9, "{found:?}");
