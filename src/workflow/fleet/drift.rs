@@ -34,8 +34,11 @@ pub(super) const MOST_FALSE: f64 = 0.05;
 /// Robust standard deviations of the fleet's slopes that a slope must stand out by to be found: less than that many
 /// healthy joints change by, in a season or with other work.
 const STANDS_OUT: f64 = 3.0;
-/// Joints that tell what is usual, at least.
+/// Joints that tell what is usual, at least; of steps, which a day that all share makes in all.
 const FEWEST_JOINTS: usize = 10;
+const FEWEST_OF_STEPS: usize = 4;
+/// A step that is a smaller share of the level is of no concern.
+const RELEVANT: f64 = 0.02;
 
 /// The trends of all joints of a fleet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -215,7 +218,8 @@ fn judge(trends: &mut [JointTrend]) {
         let least = usual_steps.get(&(trend.metric, trend.unit.clone())).copied().unwrap_or_default();
         if let Some(step) = &mut trend.step {
             step.q_value = q_step[k];
-            let steps = step.q_value < MOST_FALSE && step.change.abs() >= STANDS_OUT * least;
+            let least = (STANDS_OUT * least).max(RELEVANT * trend.level.abs());
+            let steps = step.q_value < MOST_FALSE && step.change.abs() >= least;
             trend.is_step = steps && (!drifts || step.left < 1.0);
             if trend.is_step {
                 trend.since.clone_from(&step.by);
@@ -237,7 +241,7 @@ fn usual_steps(trends: &[JointTrend]) -> BTreeMap<(By, String), f64> {
         let size = trend.step.as_ref().map_or(0.0, |step| step.change.abs());
         sizes.entry((trend.metric, trend.unit.clone())).or_default().push(size);
     }
-    let enough = sizes.into_iter().filter(|(_, sizes)| sizes.len() >= FEWEST_JOINTS);
+    let enough = sizes.into_iter().filter(|(_, sizes)| sizes.len() >= FEWEST_OF_STEPS);
     enough.map(|(key, sizes)| (key, SIGMA_PER_MAD * median(sizes))).collect()
 }
 
