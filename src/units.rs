@@ -38,6 +38,12 @@ pub fn nanoseconds(t_s: f64) -> i64 {
     (t_s * NS_PER_S).round() as i64
 }
 
+/// Nanoseconds, rounded; `None` beyond what an `i64` holds.
+#[expect(clippy::cast_possible_truncation, reason = "range checked")]
+pub fn whole_ns(ns: f64) -> Option<i64> {
+    (ns.abs() < 9.0e18).then(|| ns.round() as i64)
+}
+
 /// Seconds from `epoch_ns` to `stamp_ns`, s. Exact to below a nanosecond within 104 days.
 pub fn seconds_since(epoch_ns: i64, stamp_ns: i64) -> f64 {
     let since_ns = match stamp_ns.checked_sub(epoch_ns) {

@@ -168,7 +168,29 @@ fn slowed(interval_s: &[f64], margins: &[Margin]) -> Vec<f64> {
 }
 
 /// With its objectives.
-fn evaluated(setup: &Setup, evaluator: &mut Evaluator, interval_s: Vec<f64>) -> Option<Timing> {
+pub(super) fn evaluated(setup: &Setup, evaluator: &mut Evaluator, interval_s: Vec<f64>) -> Option<Timing> {
     let objectives = evaluator.evaluate(setup, &interval_s)?;
     Some(Timing { interval_s, objectives, violation: evaluator.violation() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{arm::Arm, task::Task};
+
+    #[test]
+    fn a_plan_with_room_is_quickened_to_its_limit_and_one_without_is_left() {
+        let task = Task::parse(include_str!("../../sample-logs/tasks/task-1.toml")).unwrap();
+        let setup = Setup::new(&task, Arm::sample().unwrap()).unwrap();
+        let mut evaluator = Evaluator::new(&setup);
+        let slow = evaluated(&setup, &mut evaluator, vec![6.0; 5]).unwrap();
+        let mut here = slow.clone();
+        while let Some(quicker) = quickened(&setup, &here) {
+            assert!(setup.keeps(&quicker.interval_s, &mut evaluator));
+            here = quicker;
+        }
+        assert!(here.objectives[Objective::Duration] < slow.objectives[Objective::Duration]);
+        let shorter: Vec<f64> = here.interval_s.iter().map(|s| s * 0.999).collect();
+        assert!(!setup.keeps(&shorter, &mut evaluator));
+    }
 }

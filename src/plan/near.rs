@@ -1,6 +1,6 @@
 //! The front where someone looks: exact plans of given times, and what a little more time buys.
 
-use super::{Choice, Evaluator, Rule, Setup, Timing, choose};
+use super::{Choice, Evaluator, Rule, Setup, Timing, choose, exact};
 use crate::task::{Ceilings, Objective};
 
 /// A little more time, as a share.
@@ -17,11 +17,7 @@ pub fn bought(setup: &Setup, timing: &Timing) -> Vec<(Objective, f64)> {
     let slower = (longer_s * (1.0 - HELD_BACK) - rest_s) / (timing.objectives[Objective::Duration] - rest_s);
     let slower_s: Vec<f64> = timing.interval_s.iter().map(|s| s * slower).collect();
     let slower = (slower.is_finite() && slower_s.iter().all(|s| *s <= setup.interval_s[1]))
-        .then(|| {
-            let mut evaluator = Evaluator::new(setup);
-            let objectives = evaluator.evaluate_peaks(setup, &slower_s)?;
-            Some(Timing { interval_s: slower_s, objectives, violation: evaluator.violation() })
-        })
+        .then(|| exact::evaluated(setup, &mut Evaluator::new(setup), slower_s))
         .flatten()
         .filter(|slower| slower.violation <= 0.0);
     let from: Vec<Timing> = slower.into_iter().chain([timing.clone()]).collect();

@@ -12,10 +12,10 @@ fn step(section: Section, aim: &str, words: &[&str]) -> Section {
     section.with(Sentence::advice(aim)).with(Block::Command(command(words)))
 }
 
-/// After `plan`; `simulated`: whether the machine that `simulate` takes by itself has its joints.
-pub(crate) fn plan_written(log: &Path, simulated: bool) -> Section {
+/// After `plan`; `of_sample_arm`: whether the machines that `simulate` knows by name have its joints.
+pub(crate) fn plan_written(log: &Path, of_sample_arm: bool) -> Section {
     let log = argument(log);
-    if simulated {
+    if of_sample_arm {
         let aim = "To run it on a simulated machine:";
         return step(written(&log), aim, &["simulate", &log, "-o", "run.mcap"]);
     }

@@ -131,7 +131,7 @@ impl Args {
     /// The document, with where the log is if there is one.
     fn noted(&self, request: &PlanRequest, document: Document) -> Document {
         match self.log() {
-            Some(log) => document.with_above_remarks(next::plan_written(log, request.is_simulated())),
+            Some(log) => document.with_above_remarks(next::plan_written(log, request.is_of_sample_arm())),
             None => document,
         }
     }

@@ -77,21 +77,22 @@ impl DateForm {
     /// for a time of day.
     pub(super) fn ns(&self, cell: &[u8]) -> Option<i64> {
         let text = std::str::from_utf8(cell).ok()?.trim();
-        if self.part == Part::Elapsed {
-            return elapsed::elapsed_ns(text);
-        }
-        let text = plain(text)?;
-        let mut parsed = Parsed::new();
-        parse(&mut parsed, &text, self.items.iter()).ok()?;
+        let parsed = || {
+            let mut parsed = Parsed::new();
+            parse(&mut parsed, &plain(text)?, self.items.iter()).ok()?;
+            Some(parsed)
+        };
         match self.part {
-            Part::Zoned => parsed.to_datetime().ok()?.timestamp_nanos_opt(),
-            Part::Local => parsed.to_naive_datetime_with_offset(0).ok()?.and_utc().timestamp_nanos_opt(),
-            Part::Day => parsed.to_naive_date().ok()?.and_hms_opt(0, 0, 0)?.and_utc().timestamp_nanos_opt(),
+            Part::Zoned => parsed()?.to_datetime().ok()?.timestamp_nanos_opt(),
+            Part::Local => parsed()?.to_naive_datetime_with_offset(0).ok()?.and_utc().timestamp_nanos_opt(),
+            Part::Day => {
+                parsed()?.to_naive_date().ok()?.and_hms_opt(0, 0, 0)?.and_utc().timestamp_nanos_opt()
+            }
             Part::TimeOfDay => {
-                let time = parsed.to_naive_time().ok()?;
+                let time = parsed()?.to_naive_time().ok()?;
                 time.signed_duration_since(chrono::NaiveTime::MIN).num_nanoseconds()
             }
-            Part::Elapsed => None,
+            Part::Elapsed => elapsed::elapsed_ns(text),
         }
     }
 }

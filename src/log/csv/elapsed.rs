@@ -1,6 +1,6 @@
 //! Spans of time as controllers and tables write them.
 
-use crate::units::NS_PER_S;
+use crate::units::{NS_PER_S, whole_ns};
 
 /// For a person.
 pub(super) const NAME: &str = "time passed, as T#1m2s, 0 days 00:01:02 or mm:ss.s";
@@ -22,7 +22,7 @@ pub(super) fn elapsed_ns(text: &str) -> Option<i64> {
         (None, None) if text.contains(['.', ',']) => clock_ns(&text, 2)?,
         (None, None) => return None,
     };
-    whole(ns)
+    whole_ns(ns)
 }
 
 /// `1m2s500ms`
@@ -54,11 +54,6 @@ fn clock_ns(text: &str, parts: usize) -> Option<f64> {
         (k == 0 || value < 60.0).then_some(60.0 * sum + value)
     })?;
     Some(seconds * NS_PER_S)
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "range checked")]
-fn whole(ns: f64) -> Option<i64> {
-    (ns.abs() < 9.0e18).then(|| ns.round() as i64)
 }
 
 #[cfg(test)]

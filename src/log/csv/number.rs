@@ -5,6 +5,7 @@ use super::{
     rows::cell_text,
     unit::{Unit, parse_unit},
 };
+use crate::units::whole_ns;
 
 /// A number near zero without an exponent has some 345 characters, and `export` writes those.
 const LONGEST: usize = 400;
@@ -94,10 +95,8 @@ pub(super) fn nanoseconds_after(
     i64::try_from(zero_ns + if negative { -total } else { total }).ok()
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "range checked")]
 fn scientific(cell: &[u8], decimal_comma: bool, unit_ns: i64) -> Option<i64> {
-    let value_ns = number(cell, decimal_comma)? * unit_ns as f64;
-    (value_ns.abs() < 9.0e18).then(|| value_ns.round() as i64)
+    whole_ns(number(cell, decimal_comma)? * unit_ns as f64)
 }
 
 /// The number of a cell and the unit behind it: `20.0 mm`.

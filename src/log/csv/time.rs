@@ -5,7 +5,7 @@ use super::{
     number::{self, nanoseconds, nanoseconds_after},
     unit::{Measure, Unit},
 };
-use crate::units::NS_PER_S;
+use crate::units::{NS_PER_S, whole_ns};
 
 /// The instant that times without a date count from, ns since 1970: 2025-10-09 08:53:20 UTC. No wall clock,
 /// so that equal files give equal logs and files with one zero of time fit together.
@@ -55,15 +55,15 @@ impl TimeSource {
         decimal_comma: bool,
     ) -> Option<i64> {
         match self {
-            Self::Rate { hz } => whole(row as f64 * NS_PER_S / hz),
+            Self::Rate { hz } => whole_ns(row as f64 * NS_PER_S / hz),
             Self::Number { column, unit } => nanoseconds_after(
                 unit.zero_ns(),
                 with_unit(cell(*column)).0,
                 decimal_comma,
-                whole(unit.factor)?,
+                whole_ns(unit.factor)?,
             ),
             Self::WithPart { whole: seconds, part, unit } => {
-                let beyond_ns = nanoseconds(cell(*part), decimal_comma, whole(unit.factor)?)?;
+                let beyond_ns = nanoseconds(cell(*part), decimal_comma, whole_ns(unit.factor)?)?;
                 seconds.ns(row, cell, decimal_comma)?.checked_add(beyond_ns)
             }
             Self::Date { column, form } => form.ns(cell(*column)),
@@ -140,11 +140,6 @@ impl TimeSource {
 pub(super) fn with_unit(cell: &[u8]) -> (&[u8], Option<Unit>) {
     let found = number::with_unit(cell).filter(|(_, unit)| unit.measure == Measure::Time);
     found.map_or((cell.trim_ascii(), None), |(digits, unit)| (digits, Some(unit)))
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "range checked")]
-fn whole(ns: f64) -> Option<i64> {
-    (ns.abs() < 9.0e18).then(|| ns.round() as i64)
 }
 
 #[cfg(test)]

@@ -7,7 +7,6 @@ use crate::{
 };
 
 /// Share of a range that descents keep to: rounding beyond its end could not be mended by more time.
-/// Key points at the end itself are kept as they are.
 const WITHIN: f64 = 1.0 - 1e-6;
 
 /// Limits of a joint that a descent keeps; infinite where there are none.
@@ -15,24 +14,16 @@ const WITHIN: f64 = 1.0 - 1e-6;
 pub(super) struct Bounds {
     /// Lowest and highest angle, rad.
     pub(super) range_rad: [f64; 2],
-    /// Whether a key point is at an end of it.
-    pub(super) touched: bool,
     /// Largest speed, rad/s, acceleration, rad/s², and jerk, rad/s³.
     pub(super) most: [f64; 3],
 }
 
 impl Bounds {
-    /// Whether an angle is nearer to an end of a range than descents keep.
-    pub(super) fn touches([low, high]: [f64; 2], angle_rad: f64) -> bool {
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        (angle_rad - middle).abs() > half * WITHIN
-    }
-
     /// Middle and half the width of what is allowed of the angle's derivative of an order, if it is bounded.
     pub(super) fn of(&self, order: usize) -> Option<(f64, f64)> {
         let [low, high] = self.range_rad;
         let (middle, half) = match order.checked_sub(1) {
-            None => (0.5 * (low + high), 0.5 * (high - low) * if self.touched { 1.0 } else { WITHIN }),
+            None => (0.5 * (low + high), 0.5 * (high - low) * WITHIN),
             Some(k) => (0.0, *self.most.get(k)?),
         };
         (middle.is_finite() && half.is_finite()).then_some((middle, half))

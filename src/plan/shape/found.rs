@@ -162,19 +162,15 @@ fn sought(
 fn start<'a>(setup: &'a Setup, interval_s: &[f64], pieces: usize) -> Option<(Frame<'a>, Curve)> {
     let template = setup.template();
     let points = template.points();
-    let limits = setup.limits.iter().enumerate();
-    let touched = |joint: usize, range_rad| {
-        (0..points.len()).any(|point| Bounds::touches(range_rad, points.of(point)[joint]))
-    };
+    let limits = setup.limits.iter();
     let frame = Frame {
         setup,
         poses: setup.poses.iter().enumerate().filter_map(|(point, pose)| Some((point, (*pose)?))).collect(),
         dwells: setup.dwells(),
         key: (0..points.len()).collect(),
         bounds: limits
-            .map(|(joint, limits)| Bounds {
+            .map(|limits| Bounds {
                 range_rad: limits.range_rad,
-                touched: touched(joint, limits.range_rad),
                 most: [limits.speed_rad_s, limits.acceleration_rad_s2, limits.jerk_rad_s3],
             })
             .collect(),

@@ -55,8 +55,8 @@ impl PlanRequest {
         Self::parse(Path::new("task-1.toml"), SAMPLE_TASK.to_owned())
     }
 
-    /// Whether its arm is the sample arm, for which `simulate` has machines of its own.
-    pub fn is_simulated(&self) -> bool {
+    /// Whether its arm is the sample arm, the only one that the machines of `simulate` by name have.
+    pub fn is_of_sample_arm(&self) -> bool {
         self.files.urdf.is_none()
     }
 

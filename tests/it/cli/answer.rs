@@ -1,6 +1,6 @@
 //! A log without a verb.
 
-use crate::support::{json, root, run_args, run_at_root, run_line, said, sample, scratch, stdout};
+use crate::support::{json, pasted, root, run_args, run_at_root, run_line, said, sample, scratch, stdout};
 
 #[test]
 fn a_log_without_a_verb_is_answered_in_ten_lines_whose_last_runs() {
@@ -23,12 +23,7 @@ fn a_log_without_a_verb_is_answered_in_ten_lines_whose_last_runs() {
 fn a_pasted_line_reads_the_log_as_the_one_before_it_did() {
     let folder = scratch();
     std::fs::copy(sample("task-1-run.mcap"), folder.path().join("my run.mcap")).unwrap();
-    let shell = |line: &str| {
-        let folder_of = std::path::Path::new(env!("CARGO_BIN_EXE_hydrotrace")).parent().unwrap();
-        let path = format!("{}:{}", folder_of.display(), std::env::var("PATH").unwrap());
-        let mut run = std::process::Command::new("sh");
-        said(&run.args(["-c", line]).env("PATH", path).current_dir(folder.path()).output().unwrap())
-    };
+    let shell = |line: &str| pasted(folder.path(), line);
     let options = "--joints J1,J3 --from 1.5 --measured-delay-ms=-2";
     let (code, text, error) = shell(&format!("hydrotrace 'my run.mcap' {options}"));
     assert!(code == 0 || code == 3, "{code} {error}");

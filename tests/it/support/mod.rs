@@ -72,6 +72,15 @@ pub(crate) fn clean(folder: &Path, line: &str) -> String {
     stdout(&run)
 }
 
+/// A line as it is pasted into a shell.
+#[cfg(unix)]
+pub(crate) fn pasted(folder: &Path, line: &str) -> (i32, String, String) {
+    let program = Path::new(env!("CARGO_BIN_EXE_hydrotrace")).parent().unwrap();
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+    let mut shell = Command::new("sh");
+    said(&shell.args(["-c", line]).env("PATH", path).current_dir(folder).output().unwrap())
+}
+
 /// The document of a command that may end with remarks.
 pub(crate) fn json(folder: &Path, line: &str) -> Value {
     let run = run_line(folder, &format!("{line} --json"));
