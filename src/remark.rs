@@ -84,6 +84,8 @@ pub enum Code {
     NoMass,
     /// Two key points in a row that are one, where the arm stops.
     EqualKeyPoints,
+    /// A key point at the end of a joint's range, where the arm stops.
+    RangeEnd,
     /// A ceiling so high that it binds nothing.
     InactiveBound,
     /// Both sides of a comparison are one run.

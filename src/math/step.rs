@@ -37,9 +37,10 @@ pub fn step(values: &[f64]) -> Option<Step> {
     let change = mean(&values[at..]) - mean(&values[..at]);
     let (before, after) = (at as f64, (values.len() - at) as f64);
     let freedom = before + after - 2.0;
-    let error = (squares / freedom * (1.0 / before + 1.0 / after)).sqrt();
+    let variance = (squares / freedom).max(quantum(values).powi(2) / 12.0);
+    let error = (variance * (1.0 / before + 1.0 / after)).sqrt();
     let t = StudentsT::new(0.0, 1.0, freedom).ok().filter(|_| change.abs() > 0.0)?;
-    let one = if error > 0.0 { 2.0 * t.cdf(-(change / error).abs()) } else { 0.0 };
+    let one = 2.0 * t.cdf(-(change / error).abs());
     let half = t.inverse_cdf(0.975) * error;
     Some(Step {
         at,
@@ -48,6 +49,14 @@ pub fn step(values: &[f64]) -> Option<Step> {
         p: (one * tried as f64).min(1.0),
         squares,
     })
+}
+
+/// The smallest difference between two of the values: those that repeat are known no better.
+fn quantum(values: &[f64]) -> f64 {
+    let mut ascending = values.to_vec();
+    ascending.sort_unstable_by(f64::total_cmp);
+    let gaps = ascending.windows(2).map(|two| two[1] - two[0]).filter(|gap| *gap > 0.0);
+    gaps.reduce(f64::min).unwrap_or(0.0)
 }
 
 #[cfg(test)]
@@ -66,6 +75,12 @@ mod tests {
         assert!((found.p / (7.0 * 1.070_697_605_017_341e-7) - 1.0).abs() < 1e-6, "{found:?}");
         assert!((found.interval[0] + 0.177_081_770_350_539).abs() < 1e-9, "{found:?}");
         assert!((found.interval[1] + 0.126_403_943_935_175).abs() < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn values_that_repeat_are_known_to_their_smallest_difference() {
+        let found = step(&[0.35, 0.35, 0.35, 0.36, 0.36, 0.36]).unwrap();
+        assert!(found.p > 0.005 && found.interval[0] > 0.0 && found.interval[0] < 0.005, "{found:?}");
     }
 
     #[test]

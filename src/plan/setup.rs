@@ -46,8 +46,10 @@ pub struct Setup {
     pub(super) interval_s: [f64; 2],
     /// Per limit: safety factor for peaks between evaluation nodes; 1 until one was found.
     pub(super) slack: Vec<f64>,
-    /// Key points where the arm stops because the next or the last one is the same, or a joint's range ends there.
+    /// Key points where the arm stops because the next or the last one is the same.
     pub(super) stops: Vec<usize>,
+    /// Key points where it stops because the range of a joint ends there.
+    pub(super) range_ends: Vec<usize>,
     /// Payload by segment, kg.
     pub(super) payload_kg: Vec<f64>,
     /// Where the tool is at key points whose joints may have any angles that bring it there.
@@ -77,13 +79,14 @@ impl Setup {
         let ends = ends(task, &order);
         check_ends(&ends, &limits, &names)?;
         let given: Vec<Option<f64>> = task.points.iter().map(|key| key.dwell_s).collect();
-        let stops = stops(&points, &ends, &given, &range_rad);
+        let stops = stops(&points, &ends, &given);
+        let range_ends = range_ends(&points, &given, &range_rad);
         let dwells: Vec<Dwell> = given
             .iter()
             .enumerate()
             .filter_map(|(point, given_s)| {
-                let stopped_s = stops.contains(&point).then_some(0.0);
-                Some(Dwell { point, length_s: given_s.or(stopped_s)? })
+                let stopped = stops.contains(&point) || range_ends.contains(&point);
+                Some(Dwell { point, length_s: given_s.or(stopped.then_some(0.0))? })
             })
             .collect();
         let rests: Vec<usize> = dwells.iter().map(|dwell| dwell.point).collect();
@@ -115,6 +118,7 @@ impl Setup {
             interval_s: task.interval_s,
             slack: vec![1.0; Limit::rows(joints)],
             stops,
+            range_ends,
             payload_kg,
             poses: poses(task, &rests),
         })
@@ -201,9 +205,14 @@ impl Setup {
     }
 
     /// Indices of key points without a dwell at which the arm stops all the same: a spline through two equal key points
-    /// would drift between them, and one through the end of a range would pass it.
+    /// would drift between them.
     pub fn stops(&self) -> &[usize] {
         &self.stops
+    }
+
+    /// The same of key points at the end of a joint's range, which a spline through them would pass.
+    pub fn range_ends(&self) -> &[usize] {
+        &self.range_ends
     }
 
     /// Payload from the start of each segment of the motion on, kg.
@@ -212,23 +221,24 @@ impl Setup {
     }
 }
 
-/// Key points without a dwell that equal a neighbour, or at which a joint is at the end of its range, where it can but turn
-/// back; those at an end that moves are left as they are.
-fn stops(points: &KeyPoints, ends: &Ends, dwell_s: &[Option<f64>], range_rad: &[[f64; 2]]) -> Vec<usize> {
+/// Key points without a dwell that equal a neighbour; those at an end that moves are left as they are.
+fn stops(points: &KeyPoints, ends: &Ends, dwell_s: &[Option<f64>]) -> Vec<usize> {
     let last = points.len() - 1;
     let resting = Ends::at_rest(points.joints());
     let free = |point: usize| dwell_s[point].is_none() && (point > 0 && point < last || *ends == resting);
     let same = |point: usize| point < last && points.of(point) == points.of(point + 1);
-    let at_end = |point: usize| {
-        let ends = |joint: usize, [lower, upper]: [f64; 2]| {
-            let [before, angle, after] = [point - 1, point, point + 1].map(|point| points.of(point)[joint]);
-            let moves = (angle - before).abs() > ROUNDED_RAD || (angle - after).abs() > ROUNDED_RAD;
-            moves && (angle <= lower + ROUNDED_RAD || angle >= upper - ROUNDED_RAD)
-        };
-        (1..last).contains(&point) && range_rad.iter().enumerate().any(|(joint, range)| ends(joint, *range))
+    (0..=last).filter(|&point| free(point) && (same(point) || point > 0 && same(point - 1))).collect()
+}
+
+/// Key points without a dwell, but first and last, at which a joint comes to the end of its range or leaves it.
+fn range_ends(points: &KeyPoints, dwell_s: &[Option<f64>], range_rad: &[[f64; 2]]) -> Vec<usize> {
+    let turns = |point: usize, joint: usize, [lower, upper]: [f64; 2]| {
+        let [before, angle, after] = [point - 1, point, point + 1].map(|point| points.of(point)[joint]);
+        let moves = (angle - before).abs() > ROUNDED_RAD || (angle - after).abs() > ROUNDED_RAD;
+        moves && (angle <= lower + ROUNDED_RAD || angle >= upper - ROUNDED_RAD)
     };
-    let stops = |point: usize| same(point) || point > 0 && same(point - 1) || at_end(point);
-    (0..=last).filter(|&point| free(point) && stops(point)).collect()
+    let stops = |point: usize| range_rad.iter().enumerate().any(|(joint, range)| turns(point, joint, *range));
+    (1..points.len() - 1).filter(|&point| dwell_s[point].is_none() && stops(point)).collect()
 }
 
 fn arrivals(interval_s: &[f64], dwell_before_s: &[f64]) -> Vec<f64> {

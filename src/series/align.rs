@@ -42,6 +42,28 @@ impl Pair {
     }
 }
 
+impl Pair {
+    /// The samples from one instant to another, both included; `None` if there are none.
+    pub(crate) fn within(&self, [from_s, to_s]: [f64; 2]) -> Option<Self> {
+        let kept = self.t_s.partition_point(|t| *t < from_s)..self.t_s.partition_point(|t| *t <= to_s);
+        let t_s = self.t_s.get(kept.clone()).filter(|t_s| !t_s.is_empty())?;
+        let part = |values: &[f64]| values.get(kept.clone()).unwrap_or_default().to_vec();
+        let inside = |segment: &Range<usize>| {
+            let part = segment.start.max(kept.start)..segment.end.min(kept.end);
+            (part.start < part.end).then(|| part.start - kept.start..part.end - kept.start)
+        };
+        Some(Self {
+            t_s: t_s.into(),
+            planned: part(&self.planned),
+            planned_velocity: self.planned_velocity.as_deref().map(part),
+            measured: part(&self.measured),
+            segments: self.segments.iter().filter_map(inside).collect(),
+            matched: t_s.len(),
+            ..self.clone()
+        })
+    }
+}
+
 /// Interpolates `planned` onto the stamps of `measured`; `None` if they never overlap in time, or if
 /// one turns and the other slides.
 pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
@@ -127,6 +149,18 @@ mod tests {
         assert_eq!(pair.matched + pair.unmatched, 51);
         assert_eq!(pair.segments, [0..11, 11..22]);
         assert!(pair.t_s[11] > 2.99);
+    }
+
+    #[test]
+    fn a_part_of_a_pair_has_its_samples_and_stretches() {
+        let planned = track(vec![0.0, 1.0, 3.0, 4.0], &[2]);
+        let measured = track((0..=40).map(|k| f64::from(k) * 0.1).collect(), &[]);
+        let pair = align(&planned, &measured).unwrap();
+        let part = pair.within([0.55, 3.55]).unwrap();
+        assert_eq!((part.t_s[0], part.t_s.len(), part.matched), (pair.t_s[6], 11, 11));
+        assert_eq!(part.segments, [0..5, 5..11]);
+        assert_eq!(part.measured, pair.measured[6..17]);
+        assert_eq!(pair.within([1.1, 2.9]), None);
     }
 
     #[test]

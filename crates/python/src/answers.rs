@@ -55,6 +55,15 @@ const DRIFT: &[Of<Drift, JointTrend>] = &[
     (Column::whole("starts"), |_, one| Cell::from(one.starts)),
     (Column::whole("runs"), |_, one| Cell::from(one.runs)),
     (Column::real("days"), |_, one| Cell::from(one.days)),
+    (Column::flag("is_step"), |_, one| Cell::from(one.is_step)),
+    (Column::text("step_after"), |_, one| {
+        Cell::from(one.step.as_ref().and_then(|step| step.after.as_deref()))
+    }),
+    (Column::text("step_by"), |_, one| Cell::from(one.step.as_ref().and_then(|step| step.by.as_deref()))),
+    (Column::real("step_change"), |_, one| Cell::from(one.step.as_ref().map(|step| step.change))),
+    (Column::real("step_low"), |_, one| Cell::from(one.step.as_ref().map(|step| step.interval_95[0]))),
+    (Column::real("step_high"), |_, one| Cell::from(one.step.as_ref().map(|step| step.interval_95[1]))),
+    (Column::real("step_q_value"), |_, one| Cell::from(one.step.as_ref().map(|step| step.q_value))),
 ];
 
 const EFFECT: &[Of<Effect, JointEffect>] = &[

@@ -180,18 +180,20 @@ impl Look<'_> {
             && (0..self.labels.len()).any(dated)
     }
 
-    /// The first column as the index of a data frame, which has no name of its own, where it rises as a time does and
-    /// does not count rows.
+    /// The column that is the index of a data frame, which has no name of its own, where it rises as a time does. Whole
+    /// numbers that are no instants count rows, perhaps every tenth of them.
     fn index(&self) -> Option<Found> {
-        let name = self.head.names.first()?.to_lowercase();
-        if !self.head.named || !["column_1", "unnamed: 0", "index"].contains(&name.as_str()) {
-            return None;
-        }
+        const NAMES: [&str; 3] = ["unnamed: 0", "index", "__index_level_0__"];
+        let named = |name: &String| NAMES.contains(&name.to_lowercase().as_str());
+        let unnamed =
+            self.head.names.first().filter(|name| self.head.named && *name == "column_1").map(|_| 0);
+        let column = unnamed.or_else(|| self.head.names.iter().position(named))?;
         let comma = self.dialect.decimal_comma;
-        let found = self.column(0).ok()?;
-        let cells = || self.cells(0).map(|cell| found.source.ns(0, |_| cell, comma));
+        let found = self.column(column).ok()?;
+        let cells = || self.cells(column).map(|cell| found.source.ns(0, |_| cell, comma));
         let rises = cells().zip(cells().skip(1)).all(|(a, b)| a.is_some() && a < b);
-        let counts = self.cells(0).enumerate().all(|(row, cell)| number(cell, comma) == Some(row as f64));
+        let whole = |cell: &[u8]| number(cell, comma).is_some_and(|value| value.fract() == 0.0);
+        let counts = !found.absolute && self.cells(column).all(whole);
         (rises && !counts).then(|| {
             let said = "has no name, and rises from row to row as a time does; else say --time or --rate";
             Found { doubt: Some(found.doubt.unwrap_or_else(|| said.to_owned())), ..found }

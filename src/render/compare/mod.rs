@@ -19,12 +19,8 @@ use crate::{
 
 /// Whether the joints of a scope turn or slide.
 fn kind(comparison: &Comparison, scope: &Scope) -> JointKind {
-    let of = match scope {
-        Scope::Turning => return JointKind::Turns,
-        Scope::Sliding => return JointKind::Slides,
-        Scope::Joint(joint) => comparison.whole_run.iter().find(|one| one.joint.as_ref() == Some(joint)),
-        Scope::All | Scope::Starts => comparison.whole_run.first(),
-    };
+    let scope = if *scope == Scope::Starts { &Scope::All } else { scope };
+    let of = comparison.whole_run.iter().find(|figures| figures.scope == *scope);
     of.map_or(JointKind::Turns, |figures| figures.kind)
 }
 

@@ -149,18 +149,13 @@ fn figures_table(figures: &[Figures]) -> Table {
         let ratio = || Column::numbers("ratio").meaning("After divided by before.");
         std::iter::once(column).chain(has_ratio(metric.key).then(ratio))
     });
-    let rows = figures.iter().enumerate().map(|(row, f)| {
-        let together = match (row, f.kind) {
-            (0, _) => "all",
-            (_, JointKind::Turns) => "turning",
-            (_, JointKind::Slides) => "sliding",
-        };
+    let rows = figures.iter().map(|f| {
         let cells = f.changes.iter().flat_map(|(metric, change)| {
             let ratio = || optional(change.ratio, |ratio| format!("{ratio:.2}"));
             std::iter::once(arrow(change, metric.dimension, f.kind, units))
                 .chain(has_ratio(metric.key).then(ratio))
         });
-        std::iter::once(f.joint.clone().unwrap_or(together.to_owned())).chain(cells).collect()
+        std::iter::once(scope(&f.scope)).chain(cells).collect()
     });
     Table::of(
         std::iter::once(Column::words("joint")).chain(metrics).collect::<Vec<_>>(),

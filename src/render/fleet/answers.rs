@@ -46,8 +46,13 @@ fn more(all: usize, most: usize) -> Option<Sentence> {
     (all > most).then(|| Sentence::note(format!("{} more; --all shows them.", all - most)))
 }
 
+/// The step, if it is what was found.
+pub(super) fn step_of(trend: &JointTrend) -> Option<&LevelStep> {
+    trend.step.as_ref().filter(|_| trend.is_step)
+}
+
 /// Between which days a step is, and what it changes.
-fn stepped(trend: &JointTrend, step: &LevelStep) -> String {
+pub(super) fn stepped(trend: &JointTrend, step: &LevelStep) -> String {
     let unit = shown_unit(&trend.unit);
     let days = [&step.after, &step.by].map(|at| at.as_deref().map_or(NONE, day));
     format!(
@@ -60,7 +65,7 @@ fn stepped(trend: &JointTrend, step: &LevelStep) -> String {
 }
 
 pub(in crate::render) fn said(trend: &JointTrend) -> String {
-    if let Some(step) = trend.step.as_ref().filter(|_| trend.is_step) {
+    if let Some(step) = step_of(trend) {
         return format!(
             "{} {}: the {} changes at once, by {}; q = {}.",
             trend.machine,
@@ -113,8 +118,8 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
 }
 
 /// The q of what is found, or of the trend.
-fn q(trend: &JointTrend) -> f64 {
-    trend.step.as_ref().filter(|_| trend.is_step).map_or(trend.q_value, |step| step.q_value)
+pub(super) fn q(trend: &JointTrend) -> f64 {
+    step_of(trend).map_or(trend.q_value, |step| step.q_value)
 }
 
 fn trends<'a>(trends: impl Iterator<Item = &'a JointTrend>) -> Table {
@@ -229,7 +234,7 @@ fn verdict(gate: &GateResult) -> Sentence {
             _ => "nothing to judge: no joint has five runs of one plan".to_owned(),
         },
         Some(worst) => {
-            let grows = match worst.step.as_ref().filter(|_| worst.is_step) {
+            let grows = match step_of(worst) {
                 Some(step) => stepped(worst, step),
                 None => format!("{} {unit} a day", shown_change(&worst.unit, worst.slope_per_day)),
             };

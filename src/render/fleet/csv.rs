@@ -68,8 +68,16 @@ pub(crate) fn drift_csv(drift: &Drift) -> String {
         "starts",
         "runs",
         "days",
+        "is_step",
+        "step_after",
+        "step_by",
+        "step_change",
+        "step_low",
+        "step_high",
+        "step_q_value",
     ];
     let rows = drift.trends.iter().map(|trend| {
+        let step = trend.step.as_ref();
         vec![
             trend.machine.clone(),
             trend.joint.clone(),
@@ -87,6 +95,13 @@ pub(crate) fn drift_csv(drift: &Drift) -> String {
             trend.starts.to_string(),
             trend.runs.to_string(),
             trend.days.to_string(),
+            trend.is_step.to_string(),
+            step.and_then(|step| step.after.clone()).unwrap_or_default(),
+            step.and_then(|step| step.by.clone()).unwrap_or_default(),
+            optional(step.map(|step| step.change)),
+            optional(step.map(|step| step.interval_95[0])),
+            optional(step.map(|step| step.interval_95[1])),
+            optional(step.map(|step| step.q_value)),
         ]
     });
     csv(headings, rows)

@@ -229,23 +229,36 @@ fn chart(trend: &JointTrend) -> Chart {
     let (x0, y0) = (centre(&xs), centre(&y));
     let ends = [xs.first(), xs.last()].map(|x| x.copied().unwrap_or(0.0));
     let room = 0.03 * (ends[1] - ends[0]).max(1.0);
-    let line = ends.map(|x| rounded(y0 + trend.slope_per_day * scale * (x - x0))).to_vec();
+    let step = answers::step_of(trend).and_then(|step| {
+        let (before, after) = (y.get(..step.runs_before)?, y.get(step.runs_before..)?);
+        let mean = |side: &[f64]| rounded(side.iter().sum::<f64>() / side.len() as f64);
+        let (last, first) = (*xs.get(step.runs_before.checked_sub(1)?)?, *xs.get(step.runs_before)?);
+        let (before, after) = (mean(before), mean(after));
+        Some((
+            vec![ends[0], last, first, ends[1]],
+            vec![before, before, after, after],
+            answers::stepped(trend, step),
+        ))
+    });
+    let (guide, at, line, what) = step.map_or_else(
+        || {
+            let line = ends.map(|x| rounded(y0 + trend.slope_per_day * scale * (x - x0))).to_vec();
+            let what = format!("{} {} a day", shown_change(unit, trend.slope_per_day), shown_unit(unit));
+            ("slope", ends.to_vec(), line, what)
+        },
+        |(at, line, what)| ("level", at, line, what),
+    );
     let series = |name: &str, role, x, y, names| Series { name: name.to_owned(), role, x, y, names };
     Chart {
         title: format!("{} {}: {}", trend.machine, trend.joint, name(trend.metric)),
-        note: format!(
-            "{} {} a day, q = {}",
-            shown_change(unit, trend.slope_per_day),
-            shown_unit(unit),
-            probability(trend.q_value)
-        ),
+        note: format!("{what}, q = {}", probability(answers::q(trend))),
         x_label: "days since the first run".into(),
         x_range: Some([ends[0] - room, ends[1] + room]),
-        xs: vec![xs, ends.to_vec()],
+        xs: vec![xs, at],
         panels: vec![Panel {
             label: format!("{} {}", name(trend.metric), shown_unit(unit)),
             series: vec![
-                series("slope", Role::Guide, 1, line, Vec::new()),
+                series(guide, Role::Guide, 1, line, Vec::new()),
                 series("run", Role::Point, 0, y, names.collect()),
             ],
             share: 1.0,

@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::change::{Change, Changes};
+use super::{
+    change::{Change, Changes},
+    summary::Scope,
+};
 use crate::{
     replay::{JointReplay, Metric, Rules, Together, ToolReplay, TrackingError, peak_motion},
     series::JointKind,
@@ -13,7 +16,9 @@ use crate::{
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Figures {
-    /// The joint; `None` for all together, and, of an arm that has both, for those that turn and for those that slide.
+    /// Which joints: all, of an arm that has both those that turn and those that slide, or one.
+    pub scope: Scope,
+    /// The joint; `None` for several together.
     pub joint: Option<String>,
     /// The unit of positions: "rad" or "m".
     #[serde(rename = "unit", with = "crate::replay::unit")]
@@ -50,6 +55,7 @@ pub(super) fn figures(before: &[Report], after: &[Report], joints: &[String], ru
     };
     let kind = |name: &str| all().find_map(|r| joint_of(r, name)).map_or(JointKind::Turns, |j| j.kind);
     let each = joints.iter().map(|name| Figures {
+        scope: Scope::Joint(name.clone()),
         joint: Some(name.clone()),
         kind: kind(name),
         changes: Changes::of(|metric: &Metric<JointReplay>| {
@@ -59,6 +65,11 @@ pub(super) fn figures(before: &[Report], after: &[Report], joints: &[String], ru
     let kinds: Vec<JointKind> = joints.iter().map(|name| kind(name)).collect();
     let first = kinds.first().copied().unwrap_or(JointKind::Turns);
     let of_kind = |only: Option<JointKind>| Figures {
+        scope: match only {
+            None => Scope::All,
+            Some(JointKind::Turns) => Scope::Turning,
+            Some(JointKind::Slides) => Scope::Sliding,
+        },
         joint: None,
         kind: only.unwrap_or(first),
         changes: Changes::of(|metric| {

@@ -6,7 +6,7 @@ use super::{
     change::Changes,
     figures::Figures,
     pair::TransitionPair,
-    summary::{Summary, overall},
+    summary::{Scope, Summary, overall},
 };
 use crate::{
     replay::{Keyed, Metric, PEAK_ERROR, Row, ToolReplay},
@@ -131,14 +131,12 @@ fn growth(found: &Found<'_>, kind: JointKind) -> Option<Worst> {
 }
 
 fn ratio(found: &Found<'_>, key: &str) -> Option<Worst> {
-    // All joints together, or, where they have no unit in common, those that turn and those that slide.
-    let together = found.figures.iter().filter(|figures| figures.joint.is_none());
-    let ratios: Vec<Option<f64>> = together.map(|figures| figures.changes.get(key).ratio).collect();
-    let value = match ratios.as_slice() {
-        [None, kinds @ ..] => kinds.iter().copied().reduce(|a, b| Some(a?.max(b?)))??,
-        [all, ..] => (*all)?,
-        [] => return None,
+    // All joints together, or, where they have no unit in common, the worse of those that turn and those that slide.
+    let of = |scope: Scope| {
+        found.figures.iter().find(|figures| figures.scope == scope).and_then(|f| f.changes.get(key).ratio)
     };
+    let of_kinds = || Some(of(Scope::Turning)?.max(of(Scope::Sliding)?));
+    let value = of(Scope::All).or_else(of_kinds)?;
     Some(Worst { value, ..Worst::default() })
 }
 

@@ -1,5 +1,7 @@
 //! The stretch of the plan that every run holds: a recorder that ran on at rest, or one that stopped early, is no change.
 
+use std::collections::BTreeMap;
+
 use super::{CompareFailure, Inputs, pairing::matched};
 use crate::{
     log::TimeRange,
@@ -20,14 +22,17 @@ const SAME_S: f64 = 0.1;
 pub(super) struct Extent {
     /// From the first planned start of the whole run to its last planned stop, s.
     pub(super) plan_duration_s: Option<f64>,
-    /// From when to when; `None` for all of it.
+    /// From when to when, of any joint; `None` for all of it.
     pub(super) stretch_s: Option<[f64; 2]>,
     /// Transitions of the run that lie outside.
     pub(super) beyond: Vec<Transition>,
 }
 
+/// By joint, from when to when it is compared, s; empty for all of a run.
+type Stretches = BTreeMap<String, [f64; 2]>;
+
 /// Cuts each run to what all of them hold of the plan, from the rest before its first start to the rest after its last
-/// stop.
+/// stop; each joint by itself, for a sensor may fail before the others.
 pub(super) fn cut_alike(
     inputs: &Inputs,
     joints: &[String],
@@ -35,23 +40,28 @@ pub(super) fn cut_alike(
 ) -> Result<Vec<Extent>, CompareFailure> {
     let stretches = common(joints, &reports.iter().map(|report| &**report).collect::<Vec<_>>());
     let each = reports.iter_mut().zip(stretches);
-    each.map(|(report, stretch_s)| {
+    each.map(|(report, stretches_s)| {
         let plan_duration_s = plan_duration_s(&report.replay, joints);
-        let beyond = stretch_s.map_or(Ok(Vec::new()), |stretch_s| cut(report, stretch_s, inputs))?;
-        Ok(Extent { plan_duration_s, stretch_s, beyond })
+        let outer = stretches_s.values().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let beyond = outer.map_or(Ok(Vec::new()), |outer| cut(report, (outer, stretches_s), inputs))?;
+        Ok(Extent { plan_duration_s, stretch_s: outer, beyond })
     })
     .collect()
 }
 
-/// Replays a stretch of a run in place of all of it; the transitions beyond.
-fn cut(report: &mut Report, stretch_s: [f64; 2], inputs: &Inputs) -> Result<Vec<Transition>, CompareFailure> {
-    let [from_s, to_s] = stretch_s;
+/// Replays stretches of a run in place of all of it; the transitions beyond.
+fn cut(
+    report: &mut Report,
+    ([from_s, to_s], stretches_s): ([f64; 2], Stretches),
+    inputs: &Inputs,
+) -> Result<Vec<Transition>, CompareFailure> {
     let mut read = inputs.read.clone();
     read.range = TimeRange::of_seconds(Some(from_s), Some(to_s));
     let again = report::Inputs {
         logs: report.paths.clone(),
         read,
         rules: inputs.rules.clone(),
+        stretches_s,
         ..report::Inputs::default()
     };
     let failed =
@@ -69,20 +79,20 @@ fn cut(report: &mut Report, stretch_s: [f64; 2], inputs: &Inputs) -> Result<Vec<
     Ok(whole.transitions.into_iter().filter(|start| !within(start)).collect())
 }
 
-/// Where the plan begins and ends in a run, and where the run does, s.
+/// Where the plan begins and ends in a run, and where the samples of a joint do, s.
 #[expect(clippy::struct_field_names, reason = "the unit ends each name")]
 struct Span {
     /// What is added to times of the first run to get those of this one, if both are of one plan.
     offset_s: Option<f64>,
     plan_s: [f64; 2],
-    run_s: [f64; 2],
+    joint_s: [f64; 2],
 }
 
-/// For each run the stretch to compare; `None` where it has no more than the others.
-fn common(joints: &[String], reports: &[&Report]) -> Vec<Option<[f64; 2]>> {
-    let none = || vec![None; reports.len()];
+/// For each run the stretches to compare, of all its joints if any has more than in the other runs.
+fn common(joints: &[String], reports: &[&Report]) -> Vec<Stretches> {
+    let none = || vec![Stretches::new(); reports.len()];
     let Some(first) = reports.first() else { return none() };
-    let spans: Option<Vec<Span>> = reports
+    let plans: Option<Vec<(Option<f64>, [f64; 2])>> = reports
         .iter()
         .enumerate()
         .map(|(k, report)| {
@@ -90,15 +100,36 @@ fn common(joints: &[String], reports: &[&Report]) -> Vec<Option<[f64; 2]>> {
             let offset_s = matched.map_or(Some(0.0), |matched| {
                 matched.plans.filter(|plans| plans.same).map(|plans| plans.offset_s)
             });
-            Some(Span { offset_s, plan_s: plan_s(report, joints)?, run_s: run_s(report, joints)? })
+            Some((offset_s, plan_s(report, joints)?))
         })
         .collect();
-    let Some(spans) = spans else { return none() };
-    let stretches = of_spans(&spans);
+    let Some(plans) = plans else { return none() };
+    let mut stretches = none();
+    for joint in joints {
+        let span = |(report, (offset_s, plan_s)): (&&Report, &(Option<f64>, [f64; 2]))| {
+            Some(Span { offset_s: *offset_s, plan_s: *plan_s, joint_s: joint_s(report, joint)? })
+        };
+        let Some(spans) = reports.iter().zip(&plans).map(span).collect::<Option<Vec<Span>>>() else {
+            continue;
+        };
+        for (of_run, stretch_s) in stretches.iter_mut().zip(of_spans(&spans)) {
+            of_run.extend(stretch_s.map(|stretch_s| (joint.clone(), stretch_s)));
+        }
+    }
+    // What the reading cuts off for one joint may not be cut off from another.
+    for (of_run, report) in stretches.iter_mut().zip(reports).filter(|(of_run, _)| !of_run.is_empty()) {
+        for joint in joints {
+            if let Some(all_s) = joint_s(report, joint) {
+                of_run.entry(joint.clone()).or_insert(all_s);
+            }
+        }
+    }
     // Where nothing would be left of a run, they are compared as they are.
-    let holds = |(report, stretch): (&&Report, &Option<[f64; 2]>)| {
-        let within = |at_s: f64| stretch.is_none_or(|[from_s, to_s]| (from_s..=to_s).contains(&at_s));
-        report.replay.transitions.iter().any(|start| within(start.planned_onset_s))
+    let holds = |(report, of_run): (&&Report, &Stretches)| {
+        report.replay.transitions.iter().any(|start| {
+            let stretch_s = of_run.get(&start.joint);
+            stretch_s.is_none_or(|[from_s, to_s]| (*from_s..=*to_s).contains(&start.planned_onset_s))
+        })
     };
     if reports.iter().zip(&stretches).all(holds) { stretches } else { none() }
 }
@@ -115,7 +146,7 @@ fn of_spans(spans: &[Span]) -> Vec<Option<[f64; 2]>> {
     };
     let rest_s = |span: &Span| {
         let [begins_s, ends_s] = plan_of(span);
-        [begins_s - span.run_s[0], span.run_s[1] - ends_s]
+        [begins_s - span.joint_s[0], span.joint_s[1] - ends_s]
     };
     let least = spans
         .iter()
@@ -126,43 +157,50 @@ fn of_spans(spans: &[Span]) -> Vec<Option<[f64; 2]>> {
         let [begins_s, ends_s] = plan_of(span);
         let margin = |rest_s: f64| if rest_s > 0.0 { MARGIN_S } else { 0.0 };
         let cut_s = [begins_s - least[0] - margin(least[0]), ends_s + least[1] + margin(least[1])];
-        let more = cut_s[0] - span.run_s[0] > ALIKE_S || span.run_s[1] - cut_s[1] > ALIKE_S;
-        more.then(|| [cut_s[0].max(span.run_s[0]), cut_s[1].min(span.run_s[1])])
+        let more = cut_s[0] - span.joint_s[0] > ALIKE_S || span.joint_s[1] - cut_s[1] > ALIKE_S;
+        more.then(|| [cut_s[0].max(span.joint_s[0]), cut_s[1].min(span.joint_s[1])])
     };
     spans.iter().map(stretch).collect()
 }
 
 /// From the first planned start to the last planned stop or start of a run, s.
 fn plan_s(report: &Report, joints: &[String]) -> Option<[f64; 2]> {
-    let within = |joint: &String| joints.contains(joint);
-    let starts = report.replay.transitions.iter().filter(|t| within(&t.joint)).map(|t| t.planned_onset_s);
-    let stops = report.replay.stops.iter().filter(|s| within(&s.joint)).filter_map(|s| s.planned_s);
-    let begins_s = starts.clone().reduce(f64::min)?;
-    Some([begins_s, stops.chain(starts).reduce(f64::max)?])
+    let Ends { starts_s: [first_s, last_s], stop_s } = ends(&report.replay, joints)?;
+    Some([first_s, stop_s.map_or(last_s, |stop_s| stop_s.max(last_s))])
 }
 
-/// From when to when all joints of a run are known, s.
-fn run_s(report: &Report, joints: &[String]) -> Option<[f64; 2]> {
-    let pairs = report.pairs.iter().filter(|pair| joints.contains(&pair.name));
-    let ends = pairs.filter_map(|pair| Some([*pair.t_s.first()?, *pair.t_s.last()?]));
-    ends.reduce(|all, one| [all[0].max(one[0]), all[1].min(one[1])])
+/// From when to when a joint of a run is known, s.
+fn joint_s(report: &Report, joint: &str) -> Option<[f64; 2]> {
+    let pair = report.pairs.iter().find(|pair| pair.name == joint)?;
+    Some([*pair.t_s.first()?, *pair.t_s.last()?])
 }
 
 /// From the first planned start to the last planned stop, s.
 fn plan_duration_s(replay: &Replay, joints: &[String]) -> Option<f64> {
+    let Ends { starts_s: [first_s, _], stop_s } = ends(replay, joints)?;
+    Some(stop_s? - first_s).filter(|span_s| *span_s > 0.0)
+}
+
+/// The first and the last planned start of some joints, and their last planned stop, s.
+struct Ends {
+    starts_s: [f64; 2],
+    stop_s: Option<f64>,
+}
+
+fn ends(replay: &Replay, joints: &[String]) -> Option<Ends> {
     let within = |joint: &String| joints.contains(joint);
     let starts = replay.transitions.iter().filter(|t| within(&t.joint)).map(|t| t.planned_onset_s);
     let stops = replay.stops.iter().filter(|s| within(&s.joint)).filter_map(|s| s.planned_s);
-    let span_s = stops.reduce(f64::max)? - starts.reduce(f64::min)?;
-    (span_s > 0.0).then_some(span_s)
+    let starts_s = [starts.clone().reduce(f64::min)?, starts.reduce(f64::max)?];
+    Some(Ends { starts_s, stop_s: stops.reduce(f64::max) })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn span(offset_s: Option<f64>, plan_s: [f64; 2], run_s: [f64; 2]) -> Span {
-        Span { offset_s, plan_s, run_s }
+    fn span(offset_s: Option<f64>, plan_s: [f64; 2], joint_s: [f64; 2]) -> Span {
+        Span { offset_s, plan_s, joint_s }
     }
 
     #[test]

@@ -9,6 +9,8 @@ use crate::math::{step, theil_sen};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LevelStep {
+    /// Runs before it.
+    pub runs_before: usize,
     /// The last run before it, UTC.
     pub after: Option<String>,
     /// The first run with the new level, UTC.
@@ -37,6 +39,7 @@ pub(super) fn best_step(levels: &[(f64, f64)]) -> Option<LevelStep> {
     let of_trend: f64 = off.iter().map(|off| (off - middle).powi(2)).sum();
     let (before, after) = (levels.get(found.at.checked_sub(1)?)?.0, levels.get(found.at)?.0);
     Some(LevelStep {
+        runs_before: found.at,
         after: date(before),
         by: date(after),
         days: after - before,

@@ -152,11 +152,17 @@ pub fn run(
     }
     if let [first, ..] = setup.stops() {
         let message = format!(
-            "key point {} is the same as the one beside it, or the range of a joint ends there: the arm stops there; \
-             dwell_s says for how long",
+            "key point {} and the one beside it are the same: the arm stops there; dwell_s says for how long",
             first + 1
         );
         remarks.add(Code::EqualKeyPoints, setup.stops().len() as u64, message);
+    }
+    if let [first, ..] = setup.range_ends() {
+        let message = format!(
+            "the range of a joint ends at key point {}: the arm stops there; a little more range lets it pass",
+            first + 1
+        );
+        remarks.add(Code::RangeEnd, setup.range_ends().len() as u64, message);
     }
     let objectives = || found.front.iter().map(|timing| timing.objectives.plan());
     let largest = |k| found.front.iter().map(|timing| timing.objectives[k]).fold(0.0, f64::max);

@@ -40,7 +40,7 @@ use crate::{
     log::{LogError, ReadOptions, Recording, SignalRole, read_recording},
     remark::{Code, Remarks},
     replay::{Profiles, Replay, Rules, Transition},
-    series::{Broken, PosePair},
+    series::{Broken, Pair, PosePair},
 };
 
 /// What to analyse, how, and what must hold.
@@ -62,6 +62,8 @@ pub struct Inputs {
     pub delay_model: DelayModel,
     /// Whether command, valves and pressures are wanted too, for plots.
     pub with_signals: bool,
+    /// By joint, from when to when it is judged, s; all of it without.
+    pub stretches_s: BTreeMap<String, [f64; 2]>,
 }
 
 /// Beside plan and measurement, what plots show.
@@ -119,6 +121,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     let sides = [&recording.planned, &recording.measured];
     let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
     let (alignment, pairs) = aligned(taken(&mut recording), &inputs.rules, &mut remarks);
+    let pairs = stretches(pairs, &inputs.stretches_s);
     if pairs.is_empty() {
         return Err(LogError::NoOverlap { planned_s, measured_s }.into());
     }
@@ -167,6 +170,23 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         pairs,
         front,
     })
+}
+
+/// The pairs over the stretches asked for; those of equal stamps share them, as they did.
+fn stretches(pairs: Vec<Pair>, stretches_s: &BTreeMap<String, [f64; 2]>) -> Vec<Pair> {
+    let mut parts: Vec<Pair> = Vec::with_capacity(pairs.len());
+    for pair in pairs {
+        let Some(stretch_s) = stretches_s.get(&pair.name) else {
+            parts.push(pair);
+            continue;
+        };
+        let Some(mut part) = pair.within(*stretch_s) else { continue };
+        if let Some(before) = parts.last().filter(|before| before.t_s == part.t_s) {
+            part.t_s = before.t_s.clone();
+        }
+        parts.push(part);
+    }
+    parts
 }
 
 /// Starts whose window ends with the plan, in motion: their errors may have become larger.

@@ -79,6 +79,19 @@ fn a_level_that_changes_at_once_is_told_and_breaks_a_limit() {
     assert_eq!((&step["machine"], &step["is_step"]), (&"M2".into(), &true.into()));
     assert!(step["since"].as_str().unwrap().starts_with("2026-03-09"), "{step}");
     assert!((step["step"]["change"].as_f64().unwrap() - 0.06).abs() < 0.01, "{step}");
+    let (_, table, _) = said(&run_line(folder.path(), "fleet drift data --by delay --csv"));
+    assert!(
+        table.lines().any(|row| row.starts_with("M2,boom,dead_time") && row.contains(",true,2026-03-08")),
+        "{table}"
+    );
+    run_line(folder.path(), "fleet drift data --by delay -o page.html");
+    let page = fs::read_to_string(folder.path().join("page.html")).unwrap();
+    assert!(
+        page.contains("from 2026-03-08 to 2026-03-09") && page.contains("\"level\""),
+        "no level is drawn"
+    );
+    let (code, out, _) = said(&run_line(folder.path(), "fleet gate data --max-drift-peak-mm 5"));
+    assert!(code == 4 && out.contains("no joint that slides"), "{out}");
     let gate = run_line(folder.path(), "fleet gate data --max-drift-delay-ms 10");
     let (code, out, _) = said(&gate);
     assert!(code == 4 && out.contains("from 2026-03-08 to 2026-03-09"), "{code}: {out}");

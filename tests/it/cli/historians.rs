@@ -158,10 +158,15 @@ fn units_may_stand_behind_the_numbers() {
 #[test]
 fn a_column_that_counts_rows_is_no_time() {
     let folder = tempfile::tempdir().unwrap();
-    let text = table(",boom_set_deg,boom_act_deg", |k, [plan, came]| format!("{k},{plan:.4},{came:.4}"));
-    fs::write(folder.path().join("rows.csv"), text).unwrap();
-    let (code, _, error) = said(&hydrotrace(folder.path(), &["report", "rows.csv"]));
-    assert!(code == 1 && error.contains("--rate HZ"), "{error}");
+    // All rows, those of a part of a run, every tenth row.
+    for (from, step) in [(0, 1), (1500, 1), (0, 10)] {
+        let text = table(",boom_set_deg,boom_act_deg", |k, [plan, came]| {
+            format!("{},{plan:.4},{came:.4}", from + step * k)
+        });
+        fs::write(folder.path().join("rows.csv"), text).unwrap();
+        let (code, _, error) = said(&hydrotrace(folder.path(), &["report", "rows.csv"]));
+        assert!(code == 1 && error.contains("--rate HZ"), "{from}, {step}: {error}");
+    }
 }
 
 #[test]

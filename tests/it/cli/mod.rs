@@ -19,6 +19,8 @@ mod layout;
 #[cfg(unix)]
 mod next_run;
 mod output;
+#[cfg(unix)]
+mod pasted;
 mod plan;
 mod record;
 mod recorders;

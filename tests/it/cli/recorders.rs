@@ -78,6 +78,31 @@ fn a_start_that_one_log_cuts_off_is_no_improvement() {
 }
 
 #[test]
+fn a_sensor_that_fails_before_the_others_costs_no_start_of_theirs() {
+    let folder = scratch();
+    let write = |name: &str, by_s: f64, fails_s: f64| {
+        let mut text =
+            "t_s,boom planned [deg],boom measured [deg],arm planned [deg],arm measured [deg]\n".to_owned();
+        for t in (0..4000).map(|k| 0.01 * f64::from(k)) {
+            let (boom, arm) = (late(by_s)(t), late(by_s)(t - 0.7));
+            let arm = if t < fails_s { format!("{arm:.5}") } else { String::new() };
+            writeln!(text, "{t:.2},{:.5},{boom:.5},{:.5},{arm}", plan(t), plan(t - 0.7)).unwrap();
+        }
+        fs::write(folder.path().join(name), text).unwrap();
+    };
+    write("a.csv", 0.35, 99.0);
+    write("b.csv", 0.35, 15.0);
+    for line in ["compare a.csv b.csv --json", "compare b.csv a.csv --json"] {
+        let (_, document) = compared(folder.path(), line);
+        let pairs = document["pairs"].as_array().unwrap();
+        let of = |joint: &str| pairs.iter().filter(|pair| pair["joint"] == joint).count();
+        assert_eq!((of("boom"), of("arm")), (6, 3), "{line}: {pairs:?}");
+        let alike = |pair: &Value| pair["peak_error"]["difference"].as_f64().unwrap().abs() < 0.02;
+        assert!(pairs.iter().all(alike) && (ratio(&document) - 1.0).abs() < 0.01, "{line}: {document}");
+    }
+}
+
+#[test]
 fn starts_that_a_joint_no_longer_follows_are_counted() {
     let folder = scratch();
     fs::write(folder.path().join("a.csv"), table([0.0, 40.0], late(0.35))).unwrap();

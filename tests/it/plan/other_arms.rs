@@ -76,11 +76,11 @@ fn at_a_key_point_at_the_end_of_a_range_the_arm_stops() {
     let points = [[0.0, 0.0], [45.0, 20.0], [10.0, -10.0]];
     let free = Shaping::Free(None);
     let found = planned(arm(""), task(&points, [-20.0, 45.0]), free).unwrap();
-    assert!(found.remarks.as_slice().iter().any(|remark| remark.code == Code::EqualKeyPoints));
+    assert!(found.remarks.as_slice().iter().any(|remark| remark.code == Code::RangeEnd));
     // Two moves from rest to rest: 2.75 and 2.44 s.
     assert!((5.19..5.6).contains(&duration_s(&found)), "{}", duration_s(&found));
     let wide = planned(arm(""), task(&points, [-20.0, 46.0]), free).unwrap();
-    assert!(wide.remarks.as_slice().iter().all(|remark| remark.code != Code::EqualKeyPoints));
+    assert!(wide.remarks.as_slice().iter().all(|remark| remark.code != Code::RangeEnd));
 }
 
 #[test]
