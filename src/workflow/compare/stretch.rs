@@ -80,10 +80,9 @@ fn cut(
 }
 
 /// Where the plan begins and ends in a run, and where the samples of a joint do, s.
-#[expect(clippy::struct_field_names, reason = "the unit ends each name")]
 struct Span {
-    /// What is added to times of the first run to get those of this one, if both are of one plan.
-    offset_s: Option<f64>,
+    /// Whether it is the plan of the first run.
+    same_plan: bool,
     plan_s: [f64; 2],
     joint_s: [f64; 2],
 }
@@ -91,28 +90,14 @@ struct Span {
 /// For each run the stretches to compare, of all its joints if any has more than in the other runs.
 fn common(joints: &[String], reports: &[&Report]) -> Vec<Stretches> {
     let none = || vec![Stretches::new(); reports.len()];
-    let Some(first) = reports.first() else { return none() };
-    let plans: Option<Vec<(Option<f64>, [f64; 2])>> = reports
-        .iter()
-        .enumerate()
-        .map(|(k, report)| {
-            let matched = (k > 0).then(|| matched(first, report, joints));
-            let offset_s = matched.map_or(Some(0.0), |matched| {
-                matched.plans.filter(|plans| plans.same).map(|plans| plans.offset_s)
-            });
-            Some((offset_s, plan_s(report, joints)?))
-        })
-        .collect();
-    let Some(plans) = plans else { return none() };
+    let Some(plans) = plans(joints, reports) else { return none() };
     let mut stretches = none();
     for joint in joints {
-        let span = |(report, (offset_s, plan_s)): (&&Report, &(Option<f64>, [f64; 2]))| {
-            Some(Span { offset_s: *offset_s, plan_s: *plan_s, joint_s: joint_s(report, joint)? })
+        let span = |(report, (same_plan, plan_s)): (&&Report, &(bool, [f64; 2]))| {
+            Some(Span { same_plan: *same_plan, plan_s: *plan_s, joint_s: joint_s(report, joint)? })
         };
-        let Some(spans) = reports.iter().zip(&plans).map(span).collect::<Option<Vec<Span>>>() else {
-            continue;
-        };
-        for (of_run, stretch_s) in stretches.iter_mut().zip(of_spans(&spans)) {
+        let spans: Option<Vec<Span>> = reports.iter().zip(&plans).map(span).collect();
+        for (of_run, stretch_s) in stretches.iter_mut().zip(spans.iter().flat_map(|spans| of_spans(spans))) {
             of_run.extend(stretch_s.map(|stretch_s| (joint.clone(), stretch_s)));
         }
     }
@@ -124,39 +109,42 @@ fn common(joints: &[String], reports: &[&Report]) -> Vec<Stretches> {
             }
         }
     }
-    // Where nothing would be left of a run, they are compared as they are.
-    let holds = |(report, of_run): (&&Report, &Stretches)| {
-        report.replay.transitions.iter().any(|start| {
-            let stretch_s = of_run.get(&start.joint);
-            stretch_s.is_none_or(|[from_s, to_s]| (*from_s..=*to_s).contains(&start.planned_onset_s))
-        })
+    // Runs that share nothing are compared as they are.
+    let holds = |stretches_s: &Stretches| stretches_s.values().all(|[from_s, to_s]| from_s < to_s);
+    if stretches.iter().all(holds) { stretches } else { none() }
+}
+
+/// Whether each run is of the first one's plan, and where its plan begins and ends in it, s: of one plan the run with the
+/// most tells, for another may hold no start of it. `None` if that is known of no run.
+fn plans(joints: &[String], reports: &[&Report]) -> Option<Vec<(bool, [f64; 2])>> {
+    let first = reports.first()?;
+    let offset_s = |(k, report): (usize, &&Report)| match k {
+        0 => Some(0.0),
+        _ => matched(first, report, joints).plans.filter(|plans| plans.same).map(|plans| plans.offset_s),
     };
-    if reports.iter().zip(&stretches).all(holds) { stretches } else { none() }
+    let offsets_s: Vec<Option<f64>> = reports.iter().enumerate().map(offset_s).collect();
+    let on_first = |(report, offset_s): (&&Report, &Option<f64>)| {
+        offset_s.and_then(|offset_s| Some(plan_s(report, joints)?.map(|at_s| at_s - offset_s)))
+    };
+    let of_first = reports.iter().zip(&offsets_s).filter_map(on_first);
+    let of_first = of_first.reduce(|all, one| [all[0].min(one[0]), all[1].max(one[1])]);
+    let each = reports.iter().zip(&offsets_s).map(|(report, offset_s)| match offset_s {
+        Some(offset_s) => Some((true, of_first?.map(|at_s| at_s + offset_s))),
+        None => Some((false, plan_s(report, joints)?)),
+    });
+    each.collect()
 }
 
 fn of_spans(spans: &[Span]) -> Vec<Option<[f64; 2]>> {
-    // Of one plan the run with the most tells where it begins and ends.
-    let of_plan = |span: &Span| span.offset_s.map(|offset_s| span.plan_s.map(|at_s| at_s - offset_s));
-    let ends = spans.iter().filter_map(of_plan);
-    let plan_s =
-        ends.fold([f64::INFINITY, f64::NEG_INFINITY], |all, one| [all[0].min(one[0]), all[1].max(one[1])]);
-    let plan_of = |span: &Span| match span.offset_s {
-        Some(offset_s) => plan_s.map(|at_s| at_s + offset_s),
-        None => span.plan_s,
-    };
-    let rest_s = |span: &Span| {
-        let [begins_s, ends_s] = plan_of(span);
-        [begins_s - span.joint_s[0], span.joint_s[1] - ends_s]
-    };
-    let least = spans
-        .iter()
-        .map(rest_s)
-        .fold([f64::INFINITY; 2], |all, one| [all[0].min(one[0]), all[1].min(one[1])]);
+    let rest_s = |span: &Span| [span.plan_s[0] - span.joint_s[0], span.joint_s[1] - span.plan_s[1]];
+    let least = spans.iter().map(rest_s);
+    let least = least.fold([f64::INFINITY; 2], |all, one| [all[0].min(one[0]), all[1].min(one[1])]);
     let stretch = |span: &Span| {
-        let least = if span.offset_s.is_some() { least } else { least.map(|s| s.max(0.0)) };
-        let [begins_s, ends_s] = plan_of(span);
+        // Of another plan nothing but rests is cut.
+        let least = if span.same_plan { least } else { least.map(|s| s.max(0.0)) };
         let margin = |rest_s: f64| if rest_s > 0.0 { MARGIN_S } else { 0.0 };
-        let cut_s = [begins_s - least[0] - margin(least[0]), ends_s + least[1] + margin(least[1])];
+        let cut_s =
+            [span.plan_s[0] - least[0] - margin(least[0]), span.plan_s[1] + least[1] + margin(least[1])];
         let more = cut_s[0] - span.joint_s[0] > ALIKE_S || span.joint_s[1] - cut_s[1] > ALIKE_S;
         more.then(|| [cut_s[0].max(span.joint_s[0]), cut_s[1].min(span.joint_s[1])])
     };
@@ -199,8 +187,8 @@ fn ends(replay: &Replay, joints: &[String]) -> Option<Ends> {
 mod tests {
     use super::*;
 
-    fn span(offset_s: Option<f64>, plan_s: [f64; 2], joint_s: [f64; 2]) -> Span {
-        Span { offset_s, plan_s, joint_s }
+    fn span(same_plan: bool, plan_s: [f64; 2], joint_s: [f64; 2]) -> Span {
+        Span { same_plan, plan_s, joint_s }
     }
 
     #[test]
@@ -209,19 +197,19 @@ mod tests {
             let found = found.unwrap();
             assert!((0..2).all(|k| (found[k] - expected[k]).abs() < 1e-9), "{found:?} {expected:?}");
         };
-        let whole = span(Some(0.0), [2.0, 20.0], [0.0, 25.0]);
+        let whole = || span(true, [2.0, 20.0], [0.0, 25.0]);
         // The recorder ran on, and began earlier on a clock of its own.
-        let found = of_spans(&[whole, span(Some(7.0), [9.0, 27.0], [0.0, 90.0])]);
+        let found = of_spans(&[whole(), span(true, [9.0, 27.0], [0.0, 90.0])]);
         assert_eq!(found[0], None);
         near(&found[1], [6.95, 32.05]);
-        // It stopped in the middle of the plan.
-        let found =
-            of_spans(&[span(Some(0.0), [2.0, 20.0], [0.0, 25.0]), span(Some(0.0), [2.0, 14.0], [0.0, 14.3])]);
-        near(&found[0], [0.0, 14.3]);
-        assert_eq!(found[1], None);
+        // It stopped in the middle of the plan, or before its first start.
+        for end_s in [14.3, 1.5] {
+            let found = of_spans(&[whole(), span(true, [2.0, 20.0], [0.0, end_s])]);
+            near(&found[0], [0.0, end_s]);
+            assert_eq!(found[1], None);
+        }
         // Another plan, which takes longer: the rests are made equal.
-        let found =
-            of_spans(&[span(Some(0.0), [2.0, 20.0], [0.0, 25.0]), span(None, [2.0, 24.0], [0.0, 40.0])]);
+        let found = of_spans(&[whole(), span(false, [2.0, 24.0], [0.0, 40.0])]);
         assert_eq!(found[0], None);
         near(&found[1], [0.0, 29.05]);
     }

@@ -78,6 +78,26 @@ fn a_start_that_one_log_cuts_off_is_no_improvement() {
 }
 
 #[test]
+fn a_log_that_ends_before_the_first_start_is_no_run_without_error() {
+    let folder = scratch();
+    let begins = |t: f64| late(0.35)(t - 3.0);
+    let shifted = |to_s: f64| {
+        let mut text = "t_s,boom planned [deg],boom measured [deg]\n".to_owned();
+        for t in (0..).map(|k| 0.01 * f64::from(k)).take_while(|t| *t < to_s) {
+            writeln!(text, "{t:.2},{:.5},{:.5}", plan(t - 3.0), begins(t)).unwrap();
+        }
+        text
+    };
+    fs::write(folder.path().join("a.csv"), shifted(44.0)).unwrap();
+    fs::write(folder.path().join("b.csv"), shifted(4.5)).unwrap();
+    for line in ["compare a.csv b.csv", "compare b.csv a.csv"] {
+        let (code, document) = compared(folder.path(), &format!("{line} --json --max-rms-ratio 0.5"));
+        assert!(code == 4 && (0.8..1.25).contains(&ratio(&document)), "{line}: {}", ratio(&document));
+        assert_eq!(document["unpaired"].as_array().unwrap().len(), 6, "{line}");
+    }
+}
+
+#[test]
 fn a_sensor_that_fails_before_the_others_costs_no_start_of_theirs() {
     let folder = scratch();
     let write = |name: &str, by_s: f64, fails_s: f64| {
