@@ -60,11 +60,11 @@ pub(super) struct Args {
     seconds: Option<f64>,
 
     /// Begin a new file, LOG-2 and on, after so many megabytes
-    #[arg(long, value_name = "MB", conflicts_with = "part_minutes")]
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "part_minutes")]
     part_mb: Option<u32>,
 
     /// Begin a new file after so many minutes
-    #[arg(long, value_name = "MINUTES")]
+    #[arg(long, value_name = "MINUTES", value_parser = clap::value_parser!(u32).range(1..))]
     part_minutes: Option<u32>,
 
     /// At the end put the plan of FILE beside the run, found by what was sent, into LOG-with-plan

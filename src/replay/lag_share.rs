@@ -33,6 +33,11 @@ pub(super) fn blocks(
 ) -> Vec<Block> {
     let mut blocks: Vec<Block> =
         motions.iter().map(|motion| Block { start_s: motion.start_s, whole: 0.0, left: 0.0 }).collect();
+    if blocks.is_empty() {
+        // The error of a joint whose plan rests is error all the same, and no lag.
+        let start_s = pair.t_s.first().copied().unwrap_or_default();
+        blocks.push(Block { start_s, whole: 0.0, left: 0.0 });
+    }
     let mut place = 0;
     for segment in &pair.segments {
         let mut cursor = segment.start;

@@ -102,6 +102,12 @@ pub enum CsvError {
          or --slides JOINT=mm of a joint that slides"
     )]
     NoUnit { column: String },
+    /// A second header with other names.
+    #[error(
+        "line {line} is a header with other columns than line {first}: what is below it has another meaning; cut the file \
+         there and import both parts"
+    )]
+    AnotherHeader { line: u64, first: u64 },
     /// A column in a unit of something else.
     #[error(
         "column {column:?} is in {unit}, which is no {expected}; map another column or correct its header"

@@ -109,6 +109,18 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) ->
         found.names = names;
         found.named = true;
     }
+    // A trailing separator in every row alone gives a header that is one cell shorter.
+    let unnamed = |row: &Vec<Vec<u8>>| row.last().is_some_and(|cell| !cell.trim_ascii().is_empty());
+    if found.named && found.names.len() + 1 == dialect.width && found.sample.iter().all(unnamed) {
+        let message = format!(
+            "the header, line {}, has {} cells and the rows have {}: which of them has no name is not known, the names \
+             are taken from the left; name columns by number, such as --time '#1', to be sure",
+            found.line,
+            dialect.width - 1,
+            dialect.width
+        );
+        remarks.add(Code::LengthMismatch, 1, message);
+    }
     found.names.resize(dialect.width, String::new());
     for (index, name) in found.names.iter_mut().enumerate().filter(|(_, name)| name.is_empty()) {
         *name = format!("column_{}", index + 1);
@@ -126,7 +138,7 @@ fn is_data(record: &ByteRecord, width: usize) -> bool {
 }
 
 /// Whether the cells of a row may be the names of columns: several, none a number, no two alike.
-fn are_names(cells: &[String]) -> bool {
+pub(super) fn are_names(cells: &[String]) -> bool {
     let named: Vec<&String> = cells.iter().filter(|cell| !cell.is_empty()).collect();
     let distinct: BTreeSet<&String> = named.iter().copied().collect();
     named.len() > 1

@@ -63,6 +63,9 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let indexed = unit_before_index(header);
     let header = indexed.as_deref().unwrap_or(header);
     let (name, stated) = without_unit(header);
+    let within = if stated.is_none() && below.is_none() { unit_within(name) } else { None };
+    let stated = stated.or(within.as_ref().map(|(_, unit)| *unit));
+    let name = within.as_ref().map_or(name, |(name, _)| name.as_str());
     let mut unit = stated.or_else(|| below.and_then(parse_unit));
     if let Some((joint, role)) = own(name).filter(|_| unit.is_some()) {
         let speeds = [Measure::AngularSpeed, Measure::LinearSpeed];
@@ -100,6 +103,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         (unit, words) = (below.and_then(parse_unit), self::words(header));
     }
     let timely = timely(&words);
+    let measure = unit.map(|unit| unit.measure);
+    current_is_measured(&mut words, matches!(measure, Some(Measure::Angle | Measure::Length)));
     let means = |meaning: Meaning| words.iter().any(|word| word.meaning == meaning);
     // Of a path the last part says most: `fbAxis.SetPos`.
     let role = words.iter().rev().find_map(|word| match word.meaning {
@@ -109,13 +114,14 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         _ => None,
     });
     // `theta_dot` is a speed.
-    let dotted = words.iter().any(|word| word.text.eq_ignore_ascii_case("dot"));
-    let quantity = words.iter().find_map(|word| match word.meaning {
-        Meaning::Quantity(_) if dotted => Some(Quantity::Velocity),
-        Meaning::Quantity(quantity) => Some(quantity),
-        _ => None,
+    let dots = words.iter().filter(|word| word.text.eq_ignore_ascii_case("dot")).count();
+    // So is what names an angle and a speed: `elbow_angle_vel`.
+    let quantity = words.iter().fold(None, |before, word| match word.meaning {
+        Meaning::Quantity(_) if dots > 0 => Some(Quantity::Velocity),
+        Meaning::Quantity(Quantity::Velocity) => Some(Quantity::Velocity),
+        Meaning::Quantity(quantity) => before.or(Some(quantity)),
+        _ => before,
     });
-    let measure = unit.map(|unit| unit.measure);
     let quantity = match measure {
         Some(Measure::Angle | Measure::Length) => Some(Quantity::Position),
         Some(Measure::AngularSpeed | Measure::LinearSpeed) => Some(Quantity::Velocity),
@@ -131,7 +137,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     // Of a tool, not of a joint; such a position is told like that of a joint that slides.
     let place =
         role.is_some() && measure == Some(Measure::Length) && PLACE.contains(&joint.to_lowercase().as_str());
-    let foreign = means(Meaning::Foreign) && !place;
+    // `q_dot_dot` is an acceleration.
+    let foreign = (means(Meaning::Foreign) || dots > 1) && !place;
     let is_joint = !timely && fits && !foreign && (strong || role.is_some() || long);
     // Of `q1_m` beside `q1_d` the letter is no metre.
     let whole = self::words(header);
@@ -145,6 +152,36 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let stated = stated.or(unit);
     let words = words.iter().map(|word| word.text.to_lowercase()).collect();
     Label { role, quantity, unit, stated, words, key, joint, is_time, is_joint, is_weak: !strong, lettered }
+}
+
+/// `current_position` is measured now, and so is a current in degrees: it is no electric one.
+fn current_is_measured(words: &mut [Word<'_>], is_position: bool) {
+    for at in 0..words.len() {
+        let of = words.get(at + 1).map(|next| next.meaning);
+        let position = is_position || of == Some(Meaning::Quantity(Quantity::Position));
+        if position && words[at].text.eq_ignore_ascii_case("current") {
+            words[at].meaning = Meaning::Role(Role::Measured);
+        }
+    }
+}
+
+/// The header without a unit in mid-name, and that unit: `j1_deg_actual`, `boom_mm_set`. In German a wheel is a `Rad`:
+/// radians stand behind what no joint is named by.
+fn unit_within(name: &str) -> Option<(String, Unit)> {
+    const UNITS: [&str; 8] = ["deg", "degree", "degrees", "mdeg", "mrad", "mm", "cm", "rad"];
+    let separates = |c: char| ['_', '.', ' ', '-'].contains(&c);
+    let parts: Vec<&str> = name.split_inclusive(separates).collect();
+    let bare = |part: &str| part.trim_end_matches(separates).to_lowercase();
+    let is_unit = |at: &usize| UNITS.contains(&bare(parts[*at]).as_str());
+    let mut found = (1..parts.len()).filter(is_unit);
+    let (at, None) = (found.next()?, found.next()) else { return None };
+    let unit = bare(parts[at]);
+    let before = words(parts[at - 1]);
+    let named = before.iter().all(|word| word.meaning == Meaning::Name && word.text.parse::<u32>().is_err());
+    if unit == "rad" && named {
+        return None;
+    }
+    Some((parts[..at].concat() + &parts[at + 1..].concat(), parse_unit(&unit)?))
 }
 
 /// `q_deg[0]` as `q[0] [deg]`.

@@ -5,6 +5,7 @@
 //! name says, `clock` which column is the time, `layout` which column is which joint's; `read` then walks all
 //! rows. What a file does not say, [`CsvOptions`] do; what is only guessed is a remark.
 
+mod again;
 mod behind;
 mod by_meaning;
 mod clock;

@@ -99,12 +99,37 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
 }
 
 fn cells(line: &[u8]) -> Option<Cells> {
-    let object: Map<String, Value> = serde_json::from_slice(line).ok()?;
+    let object: Map<String, Value> =
+        serde_json::from_slice(line).or_else(|_| serde_json::from_slice(&without_nan(line))).ok()?;
     let mut cells = Vec::new();
     for (key, value) in &object {
         flatten(key, value, &mut cells);
     }
     Some(cells)
+}
+
+/// A line with `null` for the numbers that are none, which Python writes and JSON does not know.
+fn without_nan(line: &[u8]) -> Vec<u8> {
+    const NONE: [&[u8]; 3] = [b"NaN", b"-Infinity", b"Infinity"];
+    let mut kept = Vec::with_capacity(line.len());
+    let (mut quoted, mut at) = (false, 0);
+    while let Some(&byte) = line.get(at) {
+        let word = NONE.into_iter().find(|word| !quoted && line[at..].starts_with(word));
+        if let Some(word) = word {
+            kept.extend_from_slice(b"null");
+            at += word.len();
+            continue;
+        }
+        if byte == b'\\' && quoted {
+            kept.push(byte);
+            at += 1;
+        } else if byte == b'"' {
+            quoted = !quoted;
+        }
+        kept.extend(line.get(at));
+        at += 1;
+    }
+    kept
 }
 
 fn flatten(key: &str, value: &Value, cells: &mut Cells) {

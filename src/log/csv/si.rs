@@ -59,7 +59,7 @@ pub(super) fn to_si(
     if let Some(first) = guessed.first() {
         let unit = fallback.map_or(RADIAN, |(unit, _)| unit).name;
         let message = format!(
-            "columns that say no unit, such as {first:?}, taken as {unit}; else say --degrees or --radians"
+            "columns that say no unit, such as {first:?}, taken as {unit}; else import with --degrees or --radians"
         );
         remarks.add(Code::Guessed, guessed.len() as u64, message);
     }

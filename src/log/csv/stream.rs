@@ -5,7 +5,9 @@ use std::{borrow::Cow, io::Write};
 use ::csv::ByteRecord;
 
 use super::{
-    CsvError, CsvOptions, CsvRun, Form, Quantity, Understood, expression,
+    CsvError, CsvOptions, CsvRun, Form, Quantity, Understood,
+    again::is_another_header,
+    expression,
     only::{self, Only},
     read::{Cells, Column},
     rows::Rows,
@@ -43,6 +45,8 @@ pub struct TableStream {
     day_ns: i64,
     before_ns: i64,
     counts: Counts,
+    /// A header with other columns came: what is below it is not read.
+    over: bool,
 }
 
 /// Rows that are not as they should be.
@@ -93,6 +97,7 @@ impl TableStream {
             day_ns: 0,
             before_ns: i64::MIN,
             counts: Counts::default(),
+            over: false,
         })
     }
 
@@ -104,6 +109,11 @@ impl TableStream {
     /// Rows so far that became samples.
     pub fn rows(&self) -> u64 {
         self.rows
+    }
+
+    /// Whether a header with other columns came: no later row is written.
+    pub fn is_over(&self) -> bool {
+        self.over
     }
 
     /// Starts a log of the rows that come.
@@ -148,9 +158,13 @@ impl TableStream {
 
     fn row(&mut self, record: &ByteRecord, line: u64, cells: &mut Cells) {
         let dialect = self.form.dialect;
+        if self.over {
+            return;
+        }
         let beyond = record.iter().skip(dialect.width).any(|cell| !cell.trim_ascii().is_empty());
         if record.len() < dialect.width || beyond {
-            self.counts.ragged += 1;
+            self.over = is_another_header(&self.form.head, record);
+            self.counts.ragged += u64::from(!self.over);
             return;
         }
         if self.only.as_ref().is_some_and(|only| !only.holds(record)) {
@@ -161,7 +175,8 @@ impl TableStream {
         let Some(ns) =
             self.form.time.ns(self.rows + cells.stamp_ns.len() as u64, cell, dialect.decimal_comma)
         else {
-            self.counts.unstamped += 1;
+            self.over = is_another_header(&self.form.head, record);
+            self.counts.unstamped += u64::from(!self.over);
             return;
         };
         let ns = self.settled(ns);
@@ -204,7 +219,7 @@ impl TableStream {
 
     /// Doubts so far.
     pub fn remarks(&self) -> Remarks {
-        let mut remarks = self.run.remarks.clone().without(Code::Guessed);
+        let mut remarks = self.run.remarks.clone();
         let Counts { ragged, unstamped, bad_cells, others, late, set_back } = self.counts;
         let width = self.form.dialect.width;
         if let Some(only) = self.only.as_ref().filter(|_| self.form.options.only.is_none()) {
@@ -214,6 +229,14 @@ impl TableStream {
                 format!("rows of another machine than {only}, left out; --only COLUMN=VALUE names one"),
             );
         }
+        remarks.add(
+            Code::NotSupported,
+            u64::from(self.over),
+            format!(
+                "header with other columns than the first one, after {} rows; the recording ends there: begin another one",
+                self.rows
+            ),
+        );
         remarks.add(Code::LengthMismatch, ragged, format!("lines that have not {width} cells; left out"));
         remarks.add(Code::NotFinite, unstamped, "lines without a time, such as a header again; left out");
         remarks.add(Code::NotFinite, bad_cells, "cells that are no number; left empty");

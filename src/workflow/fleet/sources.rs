@@ -184,7 +184,7 @@ fn walk(folder: &Path, wanted: &mut dyn FnMut(&Path) -> bool, found: &mut Found)
             if !entry.file_type().is_ok_and(|kind| kind.is_symlink()) {
                 walk(&path, wanted, found)?;
             }
-        } else if found.is_log(&name) && wanted(&path) {
+        } else if is.is_file() && found.is_log(&name) && wanted(&path) {
             put(path, &is, &mut found.logs);
         }
     }

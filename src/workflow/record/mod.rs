@@ -108,6 +108,9 @@ pub fn run(
             None => recording.settle(false)?,
         }
         told(&recording.progress);
+        if recording.open.as_ref().is_some_and(|(stream, _)| stream.is_over()) {
+            break;
+        }
     }
     recording.end()
 }

@@ -238,3 +238,49 @@ fn counts_are_refused_and_a_sensor_that_jumps_is_told() {
     let (code, text, error) = said(&hydrotrace(folder.path(), &["report", "fault.csv"]));
     assert!(code == 3 && text.contains("steps of the measured boom within one sample"), "{text}{error}");
 }
+
+#[test]
+fn a_unit_or_a_role_may_stand_within_a_name() {
+    let angles = |scale: f64| {
+        move |k: u32, [plan, came]: [f64; 2]| {
+            format!("{:.2},{:.5},{:.5}", f64::from(k) * 0.02, scale * plan, scale * came)
+        }
+    };
+    let (degrees, radians) = (angles(1.0), angles(1.0_f64.to_radians()));
+    for head in [
+        "j1_deg_target,j1_deg_actual",
+        "target_angle_deg_1,angle_deg_1",
+        "boom_deg_soll,boom_deg_ist",
+        "target_angle_degrees_1,angle_degrees_1",
+        "target_angle_deg,current_angle_deg",
+        "target_deg_j1,current_deg_j1",
+        "A1_RSol [deg],A1_RIst [deg]",
+    ] {
+        assert_peak("deg.csv", &table(&format!("time_s,{head}"), degrees), &[]);
+    }
+    for head in ["target_angle_rad_1,angle_rad_1", "linkes_rad_soll,linkes_rad_ist"] {
+        assert_peak("rad.csv", &table(&format!("time_s,{head}"), radians), &[]);
+    }
+    // A joint that slides: 1 deg is 1 mm here.
+    let folder = tempfile::tempdir().unwrap();
+    let found = peak(folder.path(), "mm.csv", &table("time_s,boom_mm_set,boom_mm_act", degrees), &[]);
+    assert!((found - 0.026_f64.to_degrees() / 1000.0).abs() < 1e-4, "{found} m");
+}
+
+#[test]
+fn a_speed_is_no_angle_and_a_header_that_lacks_a_name_is_doubted() {
+    let folder = tempfile::tempdir().unwrap();
+    let import = |text: &str| {
+        fs::write(folder.path().join("a.csv"), text).unwrap();
+        said(&hydrotrace(folder.path(), &["import", "a.csv", "-o", "a.mcap", "--force"]))
+    };
+    let (_, out, error) = import("time,elbow_angle_target,elbow_angle_vel\n0,0.1,0\n0.1,0.2,1\n0.2,0.3,1\n");
+    assert!(out.contains("measured velocity"), "{out}{error}");
+    let (_, out, error) = import("time,q1,q1_dot,q1_dot_dot\n0,0.1,0,0\n0.1,0.2,0,0\n0.2,0.2,0,0\n");
+    assert!(out.contains("Not used: q1_dot_dot"), "{out}{error}");
+    let (code, out, error) = import("time,target_deg,actual_deg\n0.0,1,2,3\n0.1,1,2,3\n0.2,1,2,3\n");
+    assert!(code == 3 && out.contains("has 3 cells and the rows have 4"), "{code}: {out}{error}");
+    // A separator at the end of every row is no cell.
+    let (code, out, error) = import("time_s,target_deg,actual_deg\n0.0,1,2,\n0.1,1,2,\n0.2,1,2,\n");
+    assert_eq!(code, 0, "{out}{error}");
+}

@@ -175,3 +175,43 @@ fn a_kill_takes_a_second_at_most() {
     let found = report(folder.path(), "run.mcap");
     assert!(found["source"]["duration_s"].as_f64().unwrap() >= 8.9);
 }
+
+#[test]
+fn a_header_with_other_columns_ends_a_recording_and_the_same_one_does_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let head = "t_s,boom_set_deg,boom_act_deg,arm_set_deg,arm_act_deg";
+    let rows = |from: u32| -> String {
+        (from..from + 300).map(|k| format!("{},1,2,3,4\n", f64::from(k) * 0.01)).collect()
+    };
+    for (again, kept, code, import) in [
+        (head, 600, 3, 3),
+        ("t_s,arm_set_deg,arm_act_deg,boom_set_deg,boom_act_deg", 300, 3, 1),
+        ("t_s,boom_set_rad,boom_act_rad,arm_set_rad,arm_act_rad", 300, 3, 1),
+        ("t_s,boom_set_deg,boom_act_deg,arm_set_deg,arm_act_deg,note", 300, 3, 1),
+    ] {
+        let text = format!("{head}\n{}{again}\n{}", rows(0), rows(300));
+        let (found, out, _) = recorded(folder.path(), &text, &["--force"]);
+        assert!(found == code && out.starts_with(&format!("{kept} rows of")), "{again}: {found} {out}");
+        fs::write(folder.path().join("a.csv"), &text).unwrap();
+        let line = ["import", "a.csv", "-o", "a.mcap", "--force"];
+        let (found, out, error) = said(&hydrotrace(folder.path(), &line));
+        assert_eq!(found, import, "{again}: {out}{error}");
+        assert!(import == 3 || error.contains("line 302 is a header"), "{error}");
+    }
+}
+
+#[test]
+fn a_guess_is_a_remark_of_a_recording_too_and_a_number_that_is_none_loses_no_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = trace("t,boom_set_mm,boom_act_mm", 1000.0, ",", 1000.0);
+    let (code, out, _) = recorded(folder.path(), &text, &[]);
+    assert!(code == 3 && out.contains("says no unit") && out.contains("--time-unit"), "{code}: {out}");
+    let line =
+        |k: u32| format!("{{\"t_s\": {k}, \"set_deg\": 1, \"act_deg\": NaN, \"said\": \"a \\\" NaN\"}}\n");
+    let lines: String =
+        (0..50).map(|k| if k < 20 { line(k).replace(": NaN", ": 1") } else { line(k) }).collect();
+    let (_, out, _) = recorded(folder.path(), &lines, &["--force"]);
+    assert!(out.starts_with("50 rows of 50 lines"), "{out}");
+    let (code, _, error) = recorded(folder.path(), &text, &["--force", "--part-mb", "0"]);
+    assert!(code == 2 && error.contains("--part-mb"), "{error}");
+}
