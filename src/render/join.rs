@@ -40,5 +40,5 @@ pub(crate) fn document(joined: &Joined, plan: &Path, output: &Path) -> Document 
     let written =
         format!("{messages} messages of the run and the plan of {plan} written to {}.", output.display());
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)]).with(Block::Facts(facts));
-    Document::default().with(next::report(section, output)).remarked(remarks)
+    Document::default().with(next::report(section, &[output])).remarked(remarks)
 }

@@ -93,9 +93,10 @@ fn unused(name: &str, from: usize, logs: &[PathBuf], next: &str) -> String {
     (from..=from + logs.len() + 1).map(numbered).find(|file| !taken(file)).unwrap_or_default()
 }
 
-/// After a run was written.
-pub(super) fn report(section: Section, run: &Path) -> Section {
-    step(section, "To see how the arm followed its plan:", &["report", &argument(run)])
+/// After a run was written, or the parts of one.
+pub(super) fn report(section: Section, parts: &[impl AsRef<Path>]) -> Section {
+    let parts: Vec<String> = parts.iter().map(argument).collect();
+    step(section, "To see how the arm followed its plan:", &["report", &parts.join(" ")])
 }
 
 #[cfg(test)]

@@ -33,6 +33,6 @@ pub(crate) fn document(recorded: &Recorded, joined: Option<&Path>) -> Document {
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)]).with(Block::Facts(columns));
     let with_plan =
         joined.map(|log| Sentence::finding(format!("With the plan beside it: {}.", log.display())));
-    let last = joined.or(logs.first().map(std::path::PathBuf::as_path)).unwrap_or(Path::new("run.mcap"));
-    Document::default().with(next::report(section.with_all(with_plan), last)).remarked(remarks)
+    let runs = joined.map_or_else(|| logs.clone(), |log| vec![log.to_owned()]);
+    Document::default().with(next::report(section.with_all(with_plan), &runs)).remarked(remarks)
 }

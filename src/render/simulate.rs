@@ -21,5 +21,5 @@ pub(crate) fn document(run: &Run, plant: &str, seed: u64, file: &Path) -> Docume
         file.display(),
     );
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(ran)]);
-    Document::default().with(next::report(section, file))
+    Document::default().with(next::report(section, &[file]))
 }

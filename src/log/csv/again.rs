@@ -9,12 +9,19 @@ use super::{
 
 /// Whether a row below the header is another header: names alone, one of them known, and not the same ones.
 pub(super) fn is_another_header(head: &Head, record: &ByteRecord) -> bool {
-    let mut cells: Vec<String> = record.iter().map(cell_text).collect();
-    while cells.last().is_some_and(String::is_empty) {
-        cells.pop();
+    // Nearly all rows begin with a number.
+    let begins = record.as_slice().trim_ascii_start().first();
+    if !head.named || begins.is_none_or(|byte| byte.is_ascii_digit() || b"+-.,".contains(byte)) {
+        return false;
     }
-    let same = head.names.len() >= cells.len()
-        && head.names.iter().zip(&cells).all(|(name, cell)| name == cell)
-        && head.names[cells.len()..].iter().all(|name| name.starts_with("column_"));
-    head.named && !same && are_names(&cells) && cells.iter().any(|cell| head.names.contains(cell))
+    let cells: Vec<String> = record.iter().map(cell_text).collect();
+    are_names(&cells)
+        && cells.iter().any(|cell| !cell.is_empty() && head.written.contains(cell))
+        && trimmed(&cells) != trimmed(&head.written)
+}
+
+/// Without the empty cells that separators at the end make.
+fn trimmed(cells: &[String]) -> &[String] {
+    let last = cells.iter().rposition(|cell| !cell.is_empty());
+    &cells[..last.map_or(0, |last| last + 1)]
 }

@@ -102,10 +102,17 @@ pub enum CsvError {
          or --slides JOINT=mm of a joint that slides"
     )]
     NoUnit { column: String },
+    /// The header names fewer columns than the rows have.
+    #[error(
+        "the header, line {line}, has {names} names and every row has {cells} cells: which of them has no name cannot be \
+         told; correct the header, or name columns by their number, such as --time '#1' --planned 'JOINT=#2' \
+         --measured 'JOINT=#3'"
+    )]
+    ShortHeader { line: u64, names: usize, cells: usize },
     /// A second header with other names.
     #[error(
-        "line {line} is a header with other columns than line {first}: what is below it has another meaning; cut the file \
-         there and import both parts"
+        "line {line} is a header with other columns than line {first}: what is below it has another meaning; give the rows \
+         above and below it as two files"
     )]
     AnotherHeader { line: u64, first: u64 },
     /// A column in a unit of something else.

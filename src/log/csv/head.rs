@@ -17,8 +17,12 @@ use crate::remark::{Code, Remarks};
 pub(super) struct Head {
     /// By column; `column_3` where the file has none.
     pub(super) names: Vec<String>,
+    /// Cells of the header as the file has them; none without one.
+    pub(super) written: Vec<String>,
     /// Whether the file has a header.
     pub(super) named: bool,
+    /// Whether the header names fewer columns than every row has: which of them has no name cannot be told.
+    pub(super) is_short: bool,
     /// Cells of a row of units below the header.
     pub(super) units: Option<Vec<String>>,
     /// Line of the header, 0 if there is none.
@@ -78,6 +82,7 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) ->
     let fits = |cells: &[String]| {
         cells.len().abs_diff(dialect.width) <= 1 && cells.iter().any(|cell| !cell.is_empty())
     };
+    let mut whole = None;
     if !above.iter().any(|(_, cells)| fits(cells)) {
         above.retain(|(_, cells)| are_names(cells));
         if let Some((line, cells)) = above.last_mut() {
@@ -87,6 +92,7 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) ->
                 dialect.width
             );
             remarks.add(Code::LengthMismatch, 1, message);
+            whole = Some(cells.clone());
             cells.resize(dialect.width, String::new());
         }
     }
@@ -101,31 +107,32 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) ->
     found.units = found.units.or(units);
     if let Some((line, names)) = above.pop() {
         found.line = line;
+        found.written = whole.unwrap_or_else(|| names.clone());
         found.names = names;
         found.above = above.len();
         found.named = true;
     } else if let Some((line, names)) = commented(start, found.first_line, dialect) {
         found.line = line;
+        found.written.clone_from(&names);
         found.names = names;
         found.named = true;
     }
-    // A trailing separator in every row alone gives a header that is one cell shorter.
-    let unnamed = |row: &Vec<Vec<u8>>| row.last().is_some_and(|cell| !cell.trim_ascii().is_empty());
-    if found.named && found.names.len() + 1 == dialect.width && found.sample.iter().all(unnamed) {
-        let message = format!(
-            "the header, line {}, has {} cells and the rows have {}: which of them has no name is not known, the names \
-             are taken from the left; name columns by number, such as --time '#1', to be sure",
-            found.line,
-            dialect.width - 1,
-            dialect.width
-        );
-        remarks.add(Code::LengthMismatch, 1, message);
-    }
+    let written = found.written.len();
+    let holds = |row: &Vec<Vec<u8>>| row[written..].iter().any(|cell| !cell.trim_ascii().is_empty());
+    let is_short = found.named && written < dialect.width && !found.sample.is_empty();
+    found.is_short = is_short && found.sample.iter().all(holds);
     found.names.resize(dialect.width, String::new());
-    for (index, name) in found.names.iter_mut().enumerate().filter(|(_, name)| name.is_empty()) {
-        *name = format!("column_{}", index + 1);
+    for (name, number) in found.names.iter_mut().zip(numbered(dialect.width)) {
+        if name.is_empty() {
+            *name = number;
+        }
     }
     found
+}
+
+/// Names of columns that have none.
+pub(super) fn numbered(width: usize) -> Vec<String> {
+    (1..=width).map(|number| format!("column_{number}")).collect()
 }
 
 /// Whether a row is one of numbers: as wide as most, and no more words than numbers; or a time and a number beside words

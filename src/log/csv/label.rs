@@ -5,6 +5,7 @@ use super::{
     letter::{Lettered, lettered},
     name::joint_name,
     unit::{METRE, Measure, UNITLESS, Unit, parse_unit, split_suffix},
+    within::take_unit,
     word::{Meaning, Word, words},
 };
 
@@ -63,9 +64,6 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let indexed = unit_before_index(header);
     let header = indexed.as_deref().unwrap_or(header);
     let (name, stated) = without_unit(header);
-    let within = if stated.is_none() && below.is_none() { unit_within(name) } else { None };
-    let stated = stated.or(within.as_ref().map(|(_, unit)| *unit));
-    let name = within.as_ref().map_or(name, |(name, _)| name.as_str());
     let mut unit = stated.or_else(|| below.and_then(parse_unit));
     if let Some((joint, role)) = own(name).filter(|_| unit.is_some()) {
         let speeds = [Measure::AngularSpeed, Measure::LinearSpeed];
@@ -103,6 +101,10 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         (unit, words) = (below.and_then(parse_unit), self::words(header));
     }
     let timely = timely(&words);
+    // `Zeit_hh_mm_ss` is in no millimetres.
+    if unit.is_none() && !timely {
+        unit = take_unit(&mut words);
+    }
     let measure = unit.map(|unit| unit.measure);
     current_is_measured(&mut words, matches!(measure, Some(Measure::Angle | Measure::Length)));
     let means = |meaning: Meaning| words.iter().any(|word| word.meaning == meaning);
@@ -163,25 +165,6 @@ fn current_is_measured(words: &mut [Word<'_>], is_position: bool) {
             words[at].meaning = Meaning::Role(Role::Measured);
         }
     }
-}
-
-/// The header without a unit in mid-name, and that unit: `j1_deg_actual`, `boom_mm_set`. In German a wheel is a `Rad`:
-/// radians stand behind what no joint is named by.
-fn unit_within(name: &str) -> Option<(String, Unit)> {
-    const UNITS: [&str; 8] = ["deg", "degree", "degrees", "mdeg", "mrad", "mm", "cm", "rad"];
-    let separates = |c: char| ['_', '.', ' ', '-'].contains(&c);
-    let parts: Vec<&str> = name.split_inclusive(separates).collect();
-    let bare = |part: &str| part.trim_end_matches(separates).to_lowercase();
-    let is_unit = |at: &usize| UNITS.contains(&bare(parts[*at]).as_str());
-    let mut found = (1..parts.len()).filter(is_unit);
-    let (at, None) = (found.next()?, found.next()) else { return None };
-    let unit = bare(parts[at]);
-    let before = words(parts[at - 1]);
-    let named = before.iter().all(|word| word.meaning == Meaning::Name && word.text.parse::<u32>().is_err());
-    if unit == "rad" && named {
-        return None;
-    }
-    Some((parts[..at].concat() + &parts[at + 1..].concat(), parse_unit(&unit)?))
 }
 
 /// `q_deg[0]` as `q[0] [deg]`.

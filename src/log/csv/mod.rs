@@ -42,6 +42,7 @@ mod text;
 mod time;
 mod understood;
 mod unit;
+mod within;
 mod word;
 
 pub use error::CsvError;
@@ -126,6 +127,13 @@ impl Form {
         options.check()?;
         let dialect = dialect::detect(name, text, options)?;
         let mut head = head::read_head(text, dialect, remarks);
+        if head.is_short && options.by_number() {
+            // No name stands above its own column.
+            head = head::Head { names: head::numbered(dialect.width), named: false, units: None, ..head };
+        } else if head.is_short {
+            let [names, cells] = [head.written.len(), dialect.width];
+            return Err(CsvError::ShortHeader { line: head.line, names, cells });
+        }
         let below =
             |column: usize| head.units.as_ref().and_then(|units| units.get(column)).map(String::as_str);
         let names = head.names.iter().enumerate();

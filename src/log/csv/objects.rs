@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
+use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 /// Keys and cells of an object.
@@ -87,7 +88,7 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
             (2 * objects > all.count()).then(|| lines.table().into_bytes())
         }
         b'[' => {
-            let objects: Vec<Map<String, Value>> = serde_json::from_slice(text).ok()?;
+            let objects: Vec<Map<String, Value>> = parsed(text)?;
             for object in &objects {
                 let line = serde_json::to_vec(object).ok()?;
                 lines.gather(&line);
@@ -99,8 +100,7 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
 }
 
 fn cells(line: &[u8]) -> Option<Cells> {
-    let object: Map<String, Value> =
-        serde_json::from_slice(line).or_else(|_| serde_json::from_slice(&without_nan(line))).ok()?;
+    let object: Map<String, Value> = parsed(line)?;
     let mut cells = Vec::new();
     for (key, value) in &object {
         flatten(key, value, &mut cells);
@@ -108,13 +108,17 @@ fn cells(line: &[u8]) -> Option<Cells> {
     Some(cells)
 }
 
-/// A line with `null` for the numbers that are none, which Python writes and JSON does not know.
-fn without_nan(line: &[u8]) -> Vec<u8> {
+fn parsed<T: DeserializeOwned>(text: &[u8]) -> Option<T> {
+    serde_json::from_slice(text).or_else(|_| serde_json::from_slice(&without_nan(text))).ok()
+}
+
+/// A text with `null` for the numbers that are none, which Python writes and JSON does not know.
+fn without_nan(text: &[u8]) -> Vec<u8> {
     const NONE: [&[u8]; 3] = [b"NaN", b"-Infinity", b"Infinity"];
-    let mut kept = Vec::with_capacity(line.len());
+    let mut kept = Vec::with_capacity(text.len());
     let (mut quoted, mut at) = (false, 0);
-    while let Some(&byte) = line.get(at) {
-        let word = NONE.into_iter().find(|word| !quoted && line[at..].starts_with(word));
+    while let Some(&byte) = text.get(at) {
+        let word = NONE.into_iter().find(|word| !quoted && text[at..].starts_with(word));
         if let Some(word) = word {
             kept.extend_from_slice(b"null");
             at += word.len();
@@ -126,7 +130,7 @@ fn without_nan(line: &[u8]) -> Vec<u8> {
         } else if byte == b'"' {
             quoted = !quoted;
         }
-        kept.extend(line.get(at));
+        kept.extend(text.get(at));
         at += 1;
     }
     kept

@@ -117,6 +117,15 @@ impl Separator {
 }
 
 impl CsvOptions {
+    /// Whether every column is named by its number, the time too if there is one.
+    pub(super) fn by_number(&self) -> bool {
+        let columns = || self.columns.values().flatten().map(|(_, column)| column);
+        let timed = self.time.is_some() || self.rate_hz.is_some();
+        timed
+            && columns().next().is_some()
+            && columns().chain(&self.time).all(|column| column.starts_with('#'))
+    }
+
     /// These options, completed by those of `other`.
     #[must_use]
     pub fn or(mut self, other: Self) -> Self {

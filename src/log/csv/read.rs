@@ -65,21 +65,18 @@ pub(super) fn read(
         if line < head.first_line {
             continue;
         }
+        if is_another_header(head, &record) {
+            return Err(CsvError::AnotherHeader { line, first: head.line });
+        }
         row += 1;
         let beyond = record.iter().skip(dialect.width).any(|cell| !cell.trim_ascii().is_empty());
         if record.len() < dialect.width || beyond {
-            if is_another_header(head, &record) {
-                return Err(CsvError::AnotherHeader { line, first: head.line });
-            }
             ragged += 1;
             ragged_line.get_or_insert((line, record.len()));
             continue;
         }
         let cell = |column: usize| record.get(column).unwrap_or_default();
         let Some(ns) = time.ns(row - 1, cell, dialect.decimal_comma) else {
-            if is_another_header(head, &record) {
-                return Err(CsvError::AnotherHeader { line, first: head.line });
-            }
             unstamped += 1;
             let example =
                 || (time.columns().first().map_or_else(String::new, |&c| clip(&cell_text(cell(c)))), line);

@@ -158,13 +158,13 @@ impl TableStream {
 
     fn row(&mut self, record: &ByteRecord, line: u64, cells: &mut Cells) {
         let dialect = self.form.dialect;
+        self.over |= is_another_header(&self.form.head, record);
         if self.over {
             return;
         }
         let beyond = record.iter().skip(dialect.width).any(|cell| !cell.trim_ascii().is_empty());
         if record.len() < dialect.width || beyond {
-            self.over = is_another_header(&self.form.head, record);
-            self.counts.ragged += u64::from(!self.over);
+            self.counts.ragged += 1;
             return;
         }
         if self.only.as_ref().is_some_and(|only| !only.holds(record)) {
@@ -175,8 +175,7 @@ impl TableStream {
         let Some(ns) =
             self.form.time.ns(self.rows + cells.stamp_ns.len() as u64, cell, dialect.decimal_comma)
         else {
-            self.over = is_another_header(&self.form.head, record);
-            self.counts.unstamped += u64::from(!self.over);
+            self.counts.unstamped += 1;
             return;
         };
         let ns = self.settled(ns);
@@ -233,7 +232,7 @@ impl TableStream {
             Code::NotSupported,
             u64::from(self.over),
             format!(
-                "header with other columns than the first one, after {} rows; the recording ends there: begin another one",
+                "header with other columns, after {} rows: what follows is in a part of its own",
                 self.rows
             ),
         );

@@ -108,9 +108,6 @@ pub fn run(
             None => recording.settle(false)?,
         }
         told(&recording.progress);
-        if recording.open.as_ref().is_some_and(|(stream, _)| stream.is_over()) {
-            break;
-        }
     }
     recording.end()
 }
@@ -122,6 +119,8 @@ struct Recording<'a> {
     first: Vec<u8>,
     first_lines: usize,
     open: Option<(TableStream, LogWriter<Synced>)>,
+    /// What came before the last header with other columns.
+    closed: Vec<TableStream>,
     parts: Vec<PathBuf>,
     /// Bytes of the part that is being written.
     counter: Arc<AtomicU64>,
@@ -139,6 +138,7 @@ impl<'a> Recording<'a> {
             first: Vec::new(),
             first_lines: 0,
             open: None,
+            closed: Vec::new(),
             parts: Vec::new(),
             counter: Arc::default(),
             part_from: progress,
@@ -227,7 +227,7 @@ impl<'a> Recording<'a> {
     fn write(&mut self, text: &[u8]) -> Result<(), RecordError> {
         let Some((stream, log)) = &mut self.open else { return Ok(()) };
         stream.write(text, log)?;
-        self.progress.rows = stream.rows();
+        self.progress.rows = stream.rows() + self.closed.iter().map(TableStream::rows).sum::<u64>();
         self.progress.bytes = self.counter.load(Ordering::Relaxed);
         let begun = self.part_from;
         let ends = match self.inputs.part {
@@ -238,9 +238,18 @@ impl<'a> Recording<'a> {
                 (self.progress.rows - begun.rows) as f64 >= most_s * rate_hz
             }
         };
-        if ends && let Some((stream, log)) = self.open.take() {
+        let is_over = stream.is_over();
+        if (ends || is_over)
+            && let Some((stream, log)) = self.open.take()
+        {
             log.finish()?;
             self.part_from = self.progress;
+            if is_over {
+                // The header is the first line of those that settle the columns anew.
+                (self.first, self.first_lines) = (text.to_vec(), 1);
+                self.closed.push(stream);
+                return Ok(());
+            }
             let log = stream.log(self.next_part()?)?;
             self.open = Some((stream, log));
         }
@@ -262,10 +271,17 @@ impl<'a> Recording<'a> {
         if self.progress.lines == 0 {
             return Err(RecordError::Nothing);
         }
-        self.settle(true)?;
-        let Some((stream, log)) = self.open else { return Err(RecordError::Nothing) };
-        log.finish()?;
-        let mut remarks: Remarks = stream.remarks();
+        // A last header without rows is no part.
+        if self.closed.is_empty() || self.first_lines > 1 {
+            self.settle(true)?;
+        }
+        if let Some((stream, log)) = self.open.take() {
+            log.finish()?;
+            self.closed.push(stream);
+        }
+        let Some(last) = self.closed.last() else { return Err(RecordError::Nothing) };
+        let mut remarks = Remarks::default();
+        self.closed.iter().for_each(|stream| remarks.extend(stream.remarks()));
         remarks.add(Code::UndecodableMessage, self.unread, "lines that are no JSON object; left out");
         if let Some((keys, lines)) = self.objects.as_ref().and_then(JsonLines::late) {
             let message = format!(
@@ -274,7 +290,7 @@ impl<'a> Recording<'a> {
             );
             remarks.add(Code::NotSupported, lines, message);
         }
-        Ok(Recorded::new(&self.parts, &self.progress, stream.understood(), remarks))
+        Ok(Recorded::new(&self.parts, &self.progress, last.understood(), remarks))
     }
 }
 

@@ -268,7 +268,7 @@ fn a_unit_or_a_role_may_stand_within_a_name() {
 }
 
 #[test]
-fn a_speed_is_no_angle_and_a_header_that_lacks_a_name_is_doubted() {
+fn a_speed_is_no_angle_and_a_format_of_times_is_no_length() {
     let folder = tempfile::tempdir().unwrap();
     let import = |text: &str| {
         fs::write(folder.path().join("a.csv"), text).unwrap();
@@ -278,9 +278,37 @@ fn a_speed_is_no_angle_and_a_header_that_lacks_a_name_is_doubted() {
     assert!(out.contains("measured velocity"), "{out}{error}");
     let (_, out, error) = import("time,q1,q1_dot,q1_dot_dot\n0,0.1,0,0\n0.1,0.2,0,0\n0.2,0.2,0,0\n");
     assert!(out.contains("Not used: q1_dot_dot"), "{out}{error}");
-    let (code, out, error) = import("time,target_deg,actual_deg\n0.0,1,2,3\n0.1,1,2,3\n0.2,1,2,3\n");
-    assert!(code == 3 && out.contains("has 3 cells and the rows have 4"), "{code}: {out}{error}");
+    for pair in ["j1_deg_s_set,j1_deg_s_act", "v_rad_per_s_1_set,v_rad_per_s_1_act", "a_mm_s_set,a_mm_s_act"]
+    {
+        let (code, out, error) = import(&format!("time_s,{pair}\n0,1,0\n0.1,2,1\n0.2,3,1\n"));
+        assert!(code == 1 && error.contains("no column looks like a joint angle"), "{pair}: {out}{error}");
+    }
+    let (code, out, error) =
+        import("Zeit_hh_mm_ss,a_set_deg,a_act_deg\n12:00:01.0,1,2\n12:00:01.1,1,2\n12:00:01.2,1,2\n");
+    assert!(code == 0 && out.contains("Zeit_hh_mm_ss: hh:mm:ss"), "{out}{error}");
+}
+
+#[test]
+fn a_header_that_lacks_a_name_is_refused_and_one_that_comes_again_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let import = |text: &str, options: &[&str]| {
+        fs::write(folder.path().join("a.csv"), text).unwrap();
+        said(&hydrotrace(folder.path(), &[&["import", "a.csv", "-o", "a.mcap", "--force"], options].concat()))
+    };
+    // As R writes rows with their names.
+    let short = "t_s,j_set_deg,j_act_deg\n1,0.01,1,2\n2,0.02,1,2\n3,0.03,1,2\n";
+    let (code, out, error) = import(short, &[]);
+    assert!(code == 1 && error.contains("3 names and every row has 4 cells"), "{code}: {out}{error}");
+    let by_number =
+        ["--time", "#2", "--time-unit", "s", "--planned", "j=#3", "--measured", "j=#4", "--degrees"];
+    let (code, out, error) = import(short, &by_number);
+    assert!(code == 0 && out.contains("0.02 s at 100.0 Hz"), "{code}: {out}{error}");
     // A separator at the end of every row is no cell.
-    let (code, out, error) = import("time_s,target_deg,actual_deg\n0.0,1,2,\n0.1,1,2,\n0.2,1,2,\n");
+    let (code, out, error) = import("t_s,j_set_deg,j_act_deg\n0.0,1,2,\n0.1,1,2,\n0.2,1,2,\n", &[]);
     assert_eq!(code, 0, "{out}{error}");
+    for (head, row) in [("t_s,j_set_deg,j_act_deg,by,note", ""), (",t_s,j_set_deg,j_act_deg", "0,")] {
+        let rows = |from: u32| -> String { (from..from + 5).map(|k| format!("{row}{k},1,2\n")).collect() };
+        let (code, out, error) = import(&format!("{head}\n{}{head}\n{}", rows(0), rows(5)), &[]);
+        assert!(code == 3 && out.starts_with("10 rows"), "{head}: {out}{error}");
+    }
 }

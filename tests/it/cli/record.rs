@@ -177,26 +177,37 @@ fn a_kill_takes_a_second_at_most() {
 }
 
 #[test]
-fn a_header_with_other_columns_ends_a_recording_and_the_same_one_does_not() {
+fn a_header_with_other_columns_begins_a_part_and_the_same_one_does_not() {
     let folder = tempfile::tempdir().unwrap();
+    // Time, boom 1 and 2, arm 3 and 4, in deg.
     let head = "t_s,boom_set_deg,boom_act_deg,arm_set_deg,arm_act_deg";
-    let rows = |from: u32| -> String {
-        (from..from + 300).map(|k| format!("{},1,2,3,4\n", f64::from(k) * 0.01)).collect()
+    let rows = |from: u32, row: [f64; 4], more: &str| -> String {
+        let [a, b, c, d] = row;
+        (from..from + 300).map(|k| format!("{},{a},{b},{c},{d}{more}\n", f64::from(k) * 0.01)).collect()
     };
-    for (again, kept, code, import) in [
-        (head, 600, 3, 3),
-        ("t_s,arm_set_deg,arm_act_deg,boom_set_deg,boom_act_deg", 300, 3, 1),
-        ("t_s,boom_set_rad,boom_act_rad,arm_set_rad,arm_act_rad", 300, 3, 1),
-        ("t_s,boom_set_deg,boom_act_deg,arm_set_deg,arm_act_deg,note", 300, 3, 1),
+    let same = [1.0, 2.0, 3.0, 4.0];
+    for (again, row, more, parts) in [
+        (head, same, "", 1),
+        ("t_s,arm_set_deg,arm_act_deg,boom_set_deg,boom_act_deg", [3.0, 4.0, 1.0, 2.0], "", 2),
+        ("t_s,boom_set_rad,boom_act_rad,arm_set_rad,arm_act_rad", same.map(f64::to_radians), "", 2),
+        ("t_s,boom_set_deg,boom_act_deg,arm_set_deg,arm_act_deg,note", same, ",on", 2),
     ] {
-        let text = format!("{head}\n{}{again}\n{}", rows(0), rows(300));
-        let (found, out, _) = recorded(folder.path(), &text, &["--force"]);
-        assert!(found == code && out.starts_with(&format!("{kept} rows of")), "{again}: {found} {out}");
+        let text = format!("{head}\n{}{again}\n{}", rows(0, same, ""), rows(300, row, more));
+        let (code, out, error) = recorded(folder.path(), &text, &["--force"]);
+        assert!(code == 3 && out.starts_with("600 rows of 602 lines"), "{again}: {code} {out}{error}");
+        let logs: &[&str] = if parts == 1 { &["run.mcap"] } else { &["run.mcap", "run-2.mcap"] };
+        assert!(out.contains(&format!("hydrotrace report {}\n", logs.join(" "))), "{out}");
+        let out = said(&hydrotrace(folder.path(), &[&["report", "--json"], logs].concat())).1;
+        let whole: Value = serde_json::from_str(&out).unwrap();
+        for joint in 0..2 {
+            let rms = whole["joints"][joint]["tracking_error"]["rms"].as_f64().unwrap().to_degrees();
+            assert!((rms - 1.0).abs() < 1e-6, "{again}: {rms}");
+        }
         fs::write(folder.path().join("a.csv"), &text).unwrap();
-        let line = ["import", "a.csv", "-o", "a.mcap", "--force"];
-        let (found, out, error) = said(&hydrotrace(folder.path(), &line));
-        assert_eq!(found, import, "{again}: {out}{error}");
-        assert!(import == 3 || error.contains("line 302 is a header"), "{error}");
+        let (code, _, error) =
+            said(&hydrotrace(folder.path(), &["import", "a.csv", "-o", "a.mcap", "--force"]));
+        let refused = error.contains("line 302 is a header");
+        assert_eq!((code, refused), if parts == 1 { (3, false) } else { (1, true) }, "{again}: {error}");
     }
 }
 

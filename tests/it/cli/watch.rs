@@ -166,6 +166,23 @@ fn a_log_that_is_still_being_written_is_reported_when_it_is_whole() {
 }
 
 #[test]
+fn a_pipe_that_is_named_as_a_log_is_none() {
+    let folder = empty();
+    let pipe = folder.path().join("logs/pipe.csv");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let mut watch = start(folder.path(), ONCE);
+    let from = Instant::now();
+    while watch.try_wait().unwrap().is_none() {
+        if from.elapsed() > Duration::from_secs(20) {
+            // One that waits for the pipe hears nothing else.
+            watch.kill().unwrap();
+            panic!("no end after 20 s");
+        }
+        sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
 fn a_log_that_its_recorder_left_is_reported_with_a_remark() {
     let folder = empty();
     let log = folder.path().join("logs/run.mcap");
