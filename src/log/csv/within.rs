@@ -59,7 +59,7 @@ mod tests {
         assert_eq!(said("j1 rad per sec actual"), (Some("rad/s"), "j 1 actual".into()));
         assert_eq!(said("boom_mm_s_act"), (Some("mm/s"), "boom act".into()));
         for header in [
-            "linkes_rad_ist",
+            "vorn_rad_ist",
             "rad_1_ist",
             "arm_m_act",
             "deg2_act",

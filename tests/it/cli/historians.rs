@@ -258,7 +258,7 @@ fn a_unit_or_a_role_may_stand_within_a_name() {
     ] {
         assert_peak("deg.csv", &table(&format!("time_s,{head}"), degrees), &[]);
     }
-    for head in ["target_angle_rad_1,angle_rad_1", "linkes_rad_soll,linkes_rad_ist"] {
+    for head in ["target_angle_rad_1,angle_rad_1", "vorn_rad_soll,vorn_rad_ist"] {
         assert_peak("rad.csv", &table(&format!("time_s,{head}"), radians), &[]);
     }
     // A joint that slides: 1 deg is 1 mm here.
