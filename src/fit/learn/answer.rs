@@ -1,9 +1,16 @@
 //! What came of what was sent, joint by joint.
 
+use std::ops::Range;
+
 use super::{
-    super::{model::STEP_S, run::sampled},
+    super::{
+        model::{Model, STEP_S},
+        run::{sampled, steps_in},
+    },
     Trial,
 };
+use crate::units::DEGREE_RAD;
+
 /// Where nothing was measured while the plan moves, an error fades within this, s: what nobody saw teaches nothing.
 const FADES_S: f64 = 0.3;
 
@@ -13,11 +20,24 @@ const RESTS_RAD: f64 = 1e-3;
 /// Planned speed that is motion, rad/s.
 const MOVES_RAD_S: f64 = 1e-3;
 
+/// A joint that rests this far from its plan before its first motion, and as far after its last one, was measured from
+/// another zero, rad: no correction that ends where the plan ends mends that. Loads hold joints off by less.
+const SHIFTED_RAD: f64 = DEGREE_RAD;
+
+/// The two rests agree within this share.
+const SHIFTED_ALIKE: f64 = 0.2;
+
+/// Rest that is looked at on either side, s, and how much of it must have been measured.
+const AT_REST_S: f64 = 0.5;
+const LEAST_AT_REST_S: f64 = 0.2;
+
 /// What was sent to one joint and what came of it, every [`STEP_S`].
 pub(super) struct Answer {
     pub(super) sent: Vec<(f64, f64)>,
     /// Made up where nothing was measured.
     pub(super) measured_rad: Vec<f64>,
+    /// By how much the measurement was shifted, rad; zero if it was not.
+    pub(super) shifted_rad: f64,
     /// Whether anything was.
     seen: Vec<bool>,
 }
@@ -32,13 +52,39 @@ impl Answer {
             sent: sampled(sent, from_s, steps),
             measured_rad: (0..steps).map(|k| measured.held_at(at_s(k)).position).collect(),
             seen: (0..steps).map(|k| measured.at(at_s(k)).is_some()).collect(),
+            shifted_rad: 0.0,
         };
+        made.shift(planned);
         made.fill(planned);
         Some(made)
     }
 
+    /// Finds what the joint was off by at rest, before and after all motion alike.
+    fn shift(&mut self, planned: &[(f64, f64)]) {
+        let moves = |two: &[(f64, f64)]| (two[1].0 - two[0].0).abs() > MOVES_RAD_S * STEP_S;
+        let mut motion = planned.windows(2).enumerate().filter(|(_, two)| moves(two)).map(|(k, _)| k);
+        let Some(first) = motion.next() else { return };
+        let last = motion.last().unwrap_or(first) + 1;
+        let off_rad = |range: Range<usize>| {
+            let seen = || range.clone().filter(|&k| self.seen[k]);
+            let sum: f64 = seen().map(|k| self.measured_rad[k] - planned[k].0).sum();
+            let count = seen().count();
+            (count >= steps_in(LEAST_AT_REST_S)).then(|| sum / count as f64)
+        };
+        let rest = steps_in(AT_REST_S);
+        let (before, after) =
+            (first.saturating_sub(rest)..first, planned.len().saturating_sub(rest).max(last)..planned.len());
+        let Some((before, after)) = off_rad(before).zip(off_rad(after)) else { return };
+        let mean_rad = 0.5 * (before + after);
+        if mean_rad.abs() > SHIFTED_RAD && (before - after).abs() < SHIFTED_ALIKE * mean_rad.abs() {
+            self.shifted_rad = mean_rad;
+        }
+    }
+
+    /// From where the joint should be by the zero that it was measured from.
     pub(super) fn error_rad(&self, planned: &[(f64, f64)]) -> Vec<f64> {
-        planned.iter().zip(&self.measured_rad).map(|(planned, measured)| planned.0 - measured).collect()
+        let error = |(planned, measured): (&(f64, f64), &f64)| planned.0 + self.shifted_rad - measured;
+        planned.iter().zip(&self.measured_rad).map(error).collect()
     }
 
     /// Where nothing was measured, the error is that before and after it: as long as the plan rests, and fading from where
@@ -63,10 +109,15 @@ impl Answer {
                 add(end, &mut (first..end).rev());
             }
             for (k, [share, sum_rad]) in (first..end).zip(sums) {
-                self.measured_rad[k] = planned[k].0 - sum_rad / f64::max(share, 1.0);
+                self.measured_rad[k] = planned[k].0 + self.shifted_rad - sum_rad / f64::max(share, 1.0);
             }
             from = end;
         }
+    }
+
+    /// Offset of the model where the measurement was shifted: that is no error then.
+    pub(super) fn offset_rad(&self, model: &Model) -> f64 {
+        if self.shifted_rad == 0.0 { 0.0 } else { model.offset_rad }
     }
 
     /// For how long the plan moves and nothing was measured, s.
@@ -113,7 +164,8 @@ mod tests {
                 last
             });
             let measured_rad = measured_rad.collect();
-            let mut answer = Answer { sent: Vec::new(), measured_rad, seen: (0..n).map(seen).collect() };
+            let seen = (0..n).map(seen).collect();
+            let mut answer = Answer { sent: Vec::new(), measured_rad, seen, shifted_rad: 0.0 };
             answer.fill(&planned);
             (answer.error_rad(&planned), answer.unseen_s(&planned))
         };
@@ -130,5 +182,26 @@ mod tests {
         assert!(near(cut[at(2.4)], 0.0) && near(cut[n - 1], 0.0));
         let (rest, unseen_s) = errors(&|k| k < at(3.5));
         assert!(rest.iter().all(|e| near(*e, 0.1)) && unseen_s == 0.0);
+    }
+
+    /// A joint that is off by `before` at first and by `after` at last, linear in between.
+    #[test]
+    fn what_a_joint_is_off_by_at_both_rests_is_its_zero() {
+        let n = 800;
+        let plan = |k: usize| ((k as f64 * STEP_S - 2.0) / 2.0).clamp(0.0, 1.0);
+        let planned: Vec<(f64, f64)> = (0..n).map(|k| (plan(k), 0.0)).collect();
+        let shifted = |before: f64, after: f64, seen: &dyn Fn(usize) -> bool| {
+            let measured_rad = (0..n).map(|k| plan(k) + before + plan(k) * (after - before)).collect();
+            let seen = (0..n).map(seen).collect();
+            let mut answer = Answer { sent: Vec::new(), measured_rad, seen, shifted_rad: 0.0 };
+            answer.shift(&planned);
+            (answer.shifted_rad, answer.error_rad(&planned)[n / 2])
+        };
+        let (by, left) = shifted(0.035, 0.035, &|_| true);
+        assert!((by - 0.035).abs() < 1e-9 && left.abs() < 1e-9);
+        for (before, after) in [(0.035, 0.0), (0.0, 0.035), (0.035, -0.035), (0.02, 0.035), (0.015, 0.015)] {
+            assert!(shifted(before, after, &|_| true).0.abs() < 1e-12, "{before} {after}");
+        }
+        assert!(shifted(0.035, 0.035, &|k| k > 250).0.abs() < 1e-12, "not seen at rest");
     }
 }

@@ -99,24 +99,37 @@ impl Workspace {
     }
 }
 
+/// What a response is to be, and to what.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Aim<'a> {
+    /// What the model does not explain and comes again, rad.
+    pub(super) disturbance_rad: Option<&'a [f64]>,
+    /// A calm joint's model is inverted below this, Hz.
+    pub(super) calm_hz: f64,
+    /// What the model measures beside the plan's zero, and no correction mends, rad.
+    pub(super) offset_rad: f64,
+}
+
 /// The correction whose predicted response, with a disturbance that repeats itself, is the plan; none where `fade` is zero.
 pub(super) fn inverted(
     model: &Model,
     manner: &Manner,
     (planned, fade): (&[(f64, f64)], &[f64]),
-    (disturbance_rad, calm_hz): (Option<&[f64]>, f64),
+    aim: Aim,
     workspace: &mut Workspace,
 ) -> Vec<f64> {
     let last = planned.len().saturating_sub(1);
     // What a loop that rings leaves unexplained is not the same in the next run.
-    let disturbance_rad = disturbance_rad.filter(|_| manner.calm());
-    let inner_hz = if manner.calm() { calm_hz } else { INVERTED_HZ };
+    let disturbance_rad = aim.disturbance_rad.filter(|_| manner.calm());
+    let inner_hz = if manner.calm() { aim.calm_hz } else { INVERTED_HZ };
     let mut correction_rad = vec![0.0; planned.len()];
     let mut best = (f64::INFINITY, correction_rad.clone());
     for _ in 0..=ROUNDS {
         let response = workspace.corrected(model, planned, &correction_rad);
         let error_rad: Vec<f64> = (planned.iter().zip(response).enumerate())
-            .map(|(k, (planned, response))| planned.0 - response - disturbance_rad.map_or(0.0, |d| d[k]))
+            .map(|(k, (planned, response))| {
+                planned.0 + aim.offset_rad - response - disturbance_rad.map_or(0.0, |d| d[k])
+            })
             .collect();
         let left = rms(&error_rad);
         if left < best.0 {
@@ -152,17 +165,27 @@ pub(super) fn first(
     let beta = model_weight(manner, &unexplained_rad, &error_rad, skill);
     let mut disturbance_rad = unexplained_rad;
     lowpass(&mut disturbance_rad, manner.cut_off_hz, STEP_S);
-    let by_model =
-        inverted(model, manner, (planned, fade), (Some(&disturbance_rad), CALM_INVERTED_HZ), workspace);
-    let by_data = manner.learnt(&error_rad, FIRST_GAIN);
-    let blend = by_model.iter().zip(&by_data).map(|(model, data)| beta * model + (1.0 - beta) * data);
+    let aim = Aim {
+        disturbance_rad: Some(&disturbance_rad),
+        calm_hz: CALM_INVERTED_HZ,
+        offset_rad: run.offset_rad(model),
+    };
+    let by_model = inverted(model, manner, (planned, fade), aim, workspace);
+    let sent_rad = run.correction_rad(planned);
+    let learnt_rad = manner.learnt(&error_rad, FIRST_GAIN);
+    let by_data = sent_rad
+        .iter()
+        .zip(learnt_rad)
+        .map(|(sent, more)| (sent + more).clamp(-manner.most_rad, manner.most_rad));
+    let blend = by_model.iter().zip(by_data).map(|(model, data)| beta * model + (1.0 - beta) * data);
     (blend.collect(), beta)
 }
 
-/// Measured less modelled angles, rad.
+/// Measured less modelled angles, rad; without what their zeros differ by where the measurement's is known to be shifted.
 pub(super) fn unexplained_rad(run: &Answer, model: &Model, workspace: &mut Workspace) -> Vec<f64> {
+    let zero_rad = run.shifted_rad - run.offset_rad(model);
     let response = workspace.response(model, &run.sent);
-    run.measured_rad.iter().zip(response).map(|(measured, response)| measured - response).collect()
+    run.measured_rad.iter().zip(response).map(|(measured, response)| measured - response - zero_rad).collect()
 }
 
 /// How much a model counts beside data, 0 to 1.

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::{
-    super::{FitError, JointFit, Model, model::STEP_S},
+    super::{FitError, JointFit, Model, model::STEP_S, run::MOVES_RAD_S},
     JointStep, Learning, Room, Step, Trial,
     answer::Answer,
-    correct::{CALM_MODEL_HZ, Manner, Workspace, faded, first, inverted, rms, unexplained_rad},
+    correct::{Aim, CALM_MODEL_HZ, Manner, Workspace, faded, first, inverted, rms, unexplained_rad},
     oscillation::{Character, Oscillation},
     shape::{Wanted, shaped},
 };
@@ -15,7 +15,7 @@ use crate::{math::lowpass, series::Track, units::DEGREE_RAD};
 /// Part of these over which a wanted correction fades, s.
 const FADES_S: f64 = 0.5;
 
-/// Largest correction without a largest error, rad, and by the largest error.
+/// Largest correction of a plan that was not corrected yet, rad, and by its largest error.
 const CAP_RAD: f64 = 1.5 * DEGREE_RAD;
 
 const CAP_BY_ERROR: f64 = 1.25;
@@ -71,8 +71,10 @@ impl<'a> Joint<'a> {
         let astray = answers.last().is_some_and(|run| is_astray(&planned, run, fit, &mut workspace));
         // What a joint does that follows another plan, or none, is no oscillation of its loop.
         let newest = fit.zip(answers.last()).filter(|_| !astray);
-        let oscillation =
-            newest.map(|(fit, run)| Oscillation::of(&unexplained_rad(run, &fit.model, &mut workspace)));
+        let rests = rests(&planned);
+        let oscillation = newest.map(|(fit, run)| {
+            Oscillation::with_rests(&unexplained_rad(run, &fit.model, &mut workspace), &rests)
+        });
         Ok(Self { fit, name: track.name(), planned, answers, astray, oscillation, workspace })
     }
 
@@ -85,14 +87,21 @@ impl<'a> Joint<'a> {
         room: &impl Fn(&str) -> Option<Room>,
     ) -> JointStep {
         let errors: Vec<Vec<f64>> = self.answers.iter().map(|run| run.error_rad(&self.planned)).collect();
-        let largest_rad = errors.iter().flatten().fold(0.0_f64, |most, error| most.max(error.abs()));
+        let largest = |of: &Vec<f64>| of.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let largest_rad = errors.iter().map(largest).fold(0.0, f64::max);
         let kept = settings
             .keep
             .and_then(|from| Some((from, self.answers.get(from)?.correction_rad(&self.planned))));
         let of_kept = kept.iter().flat_map(|(_, kept)| kept).fold(0.0_f64, |most, kept| most.max(kept.abs()));
+        // What the plan would be off by unaided, as a run that was corrected tells: a cap below it would undo what was learnt.
+        let needed = |(run, error_rad): (&Answer, &Vec<f64>)| {
+            let sent_rad = run.correction_rad(&self.planned);
+            largest(&sent_rad).max(largest(&sent_rad.iter().zip(error_rad).map(|(d, e)| d + e).collect()))
+        };
+        let needed_rad = self.answers.iter().zip(&errors).map(needed).fold(0.0, f64::max);
         let most_rad = settings
             .most_rad
-            .unwrap_or(CAP_RAD.max(CAP_BY_ERROR * largest_rad).max(of_kept / settings.share));
+            .unwrap_or(CAP_RAD.max(CAP_BY_ERROR * largest_rad).max(needed_rad).max(of_kept / settings.share));
         let rms_error_rad: Vec<f64> = errors.iter().map(|error_rad| compared(error_rad)).collect();
         let nothing = vec![[0.0; 3]; self.planned.len()];
         let mut made = JointStep {
@@ -104,6 +113,7 @@ impl<'a> Joint<'a> {
             most_rad,
             cut_off_hz: 0.0,
             unseen_s: self.answers.last().map_or(0.0, |run| run.unseen_s(&self.planned)),
+            shifted_rad: self.answers.last().map_or(0.0, |run| run.shifted_rad),
             correction: nothing,
         };
         let Some(fit) = self.fit.filter(|_| !untouched && !free.is_empty() && settings.gain > 0.0) else {
@@ -172,11 +182,12 @@ impl<'a> Joint<'a> {
             if !fit.trusted() {
                 return (Step::None, vec![0.0; planned.len()]);
             }
-            let by_model = inverted(&fit.model, manner, (planned, fade), (None, CALM_MODEL_HZ), workspace);
+            let aim = Aim { disturbance_rad: None, calm_hz: CALM_MODEL_HZ, offset_rad: 0.0 };
+            let by_model = inverted(&fit.model, manner, (planned, fade), aim, workspace);
             return (Step::Model, scaled(by_model, gain));
         };
         let corrected = |run: &Answer| run.correction_rad(planned).iter().any(|d| d.abs() > NONE_RAD);
-        if !corrected(newest) && answers.len() == 1 {
+        if answers.len() == 1 && (settings.anew || !corrected(newest)) {
             let (wanted, model_weight) =
                 first(&fit.model, manner, (planned, fade), newest, fit.held_out_r2, workspace);
             return (Step::First { model_weight }, scaled(wanted, gain));
@@ -225,6 +236,18 @@ fn motion(mut angle_rad: Vec<f64>) -> f64 {
         *angle -= mean_rad;
     }
     rms(&angle_rad)
+}
+
+/// Steps in which the plan rests.
+fn rests(planned: &[(f64, f64)]) -> Vec<Range<usize>> {
+    let mut rests: Vec<Range<usize>> = Vec::new();
+    for (k, _) in planned.iter().enumerate().filter(|(_, planned)| planned.1.abs() <= MOVES_RAD_S) {
+        match rests.last_mut() {
+            Some(last) if last.end == k => last.end = k + 1,
+            _ => rests.push(k..k + 1),
+        }
+    }
+    rests
 }
 
 /// Whether the same was sent.

@@ -42,11 +42,14 @@ pub struct Learning {
     pub share: f64,
     /// The run whose correction is to be kept.
     pub keep: Option<usize>,
+    /// Whether the only run is the first of a machine that has changed: its correction was made for another one, and the next
+    /// is a first one again.
+    pub anew: bool,
 }
 
 impl Default for Learning {
     fn default() -> Self {
-        Self { gain: 1.0, most_rad: None, share: 0.95, keep: None }
+        Self { gain: 1.0, most_rad: None, share: 0.95, keep: None, anew: false }
     }
 }
 
@@ -109,6 +112,9 @@ pub struct JointStep {
     pub cut_off_hz: f64,
     /// For how long the plan moves and the newest run was not measured, s: nothing is learnt there.
     pub unseen_s: f64,
+    /// What the newest run was off by at rest, before its first motion and after its last alike, rad: that is a zero, or a load,
+    /// and is not learnt; zero where the rests differ.
+    pub shifted_rad: f64,
     /// Correction, rad, its speed, rad/s, and acceleration, rad/s², every [`STEP_S`] from the plan's first sample.
     pub correction: Vec<[f64; 3]>,
 }

@@ -45,6 +45,10 @@ pub struct JointCommand {
     /// For how long the plan moves and the newest run was not measured, s: nothing is learnt there.
     #[serde(default)]
     pub unseen_s: f64,
+    /// What the newest run was off by at rest, before its first motion and after its last alike, rad: not learnt; zero where the
+    /// rests differ.
+    #[serde(default)]
+    pub shifted_rad: f64,
     /// Predicted root mean square error of the plan sent as it is, rad; null if the fit does not know the joint.
     pub plain_rms_rad: Option<f64>,
     /// The same of the command, rad.
@@ -353,6 +357,7 @@ fn joints(
             rms_error_rad: made.rms_error_rad.clone(),
             spread_rad: made.spread_rad,
             unseen_s: made.unseen_s,
+            shifted_rad: made.shifted_rad,
             plain_rms_rad: rms_rad(track)?,
             compensated_rms_rad: rms_rad(sent)?,
             peak_correction_rad: share * most(&mut made.correction.iter().map(|made| made[0])),

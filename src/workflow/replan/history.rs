@@ -13,7 +13,6 @@ use crate::{
     log::Recording,
     replay::{Rules, replay},
     series::{Series, align, bridged, moving_s},
-    units::{DEGREE_RAD, Degrees},
     workflow::carried::{Carried, Promise, rest::PLAN_LEAD_S},
 };
 
@@ -28,10 +27,6 @@ const WORSE: f64 = 1.1;
 
 /// So many corrections that gained nothing are enough.
 const FAILURES: usize = 2;
-
-/// Mean peaks of one command that differ by this factor, and by so much, rad, are those of two machines.
-const CHANGED: f64 = 2.0;
-const CHANGED_RAD: f64 = 0.1 * DEGREE_RAD;
 
 /// Share of the usual gain that is left however much a command broke its promise.
 const LEAST_TRUST: f64 = 0.5;
@@ -93,10 +88,12 @@ pub enum KeepReason {
 
 /// Runs of one plan on its clock.
 pub(super) struct History {
-    series: Vec<(Series, Series)>,
+    pub(super) series: Vec<(Series, Series)>,
     /// Places of their logs among all.
-    places: Vec<usize>,
+    pub(super) places: Vec<usize>,
     pub(super) runs: Vec<PastRun>,
+    /// Whether the first run is the first of a machine that has changed: what was sent to the one before it is no guide.
+    pub(super) anew: bool,
 }
 
 impl History {
@@ -107,7 +104,7 @@ impl History {
         plan: &Series,
         rules: &Rules,
     ) -> Result<Self, ReplanFailure> {
-        let mut history = Self { series: Vec::new(), runs: Vec::new(), places: Vec::new() };
+        let mut history = Self { series: Vec::new(), runs: Vec::new(), places: Vec::new(), anew: false };
         let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
         for (place, (path, recording)) in paths.iter().zip(recordings).enumerate() {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
@@ -138,41 +135,6 @@ impl History {
         Ok(history)
     }
 
-    /// Leaves out the runs before the machine changed, if it did: the first log that is left, and what is to be said.
-    pub(super) fn without_another_machine(&mut self) -> (usize, Option<String>) {
-        let Some((before, after)) = self.changed() else { return (0, None) };
-        let said =
-            |run: &PastRun| format!("{} in {}", Degrees(run.mean_peak_rad.unwrap_or_default()), run.log);
-        let message = format!(
-            "the same was sent twice and gave a mean peak error of {}, then of {}: the machine has changed in between, and \
-             logs up to {} are left out",
-            said(&self.runs[before]),
-            said(&self.runs[after]),
-            self.runs[before].log
-        );
-        let first = before + 1;
-        self.runs.drain(..first);
-        self.series.drain(..first);
-        self.places.drain(..first);
-        (self.places.first().copied().unwrap_or_default(), Some(message))
-    }
-
-    /// The last run after which the same command gave an error of another size, and the run that shows it.
-    fn changed(&self) -> Option<(usize, usize)> {
-        let peaks = self.peaks_rad();
-        let same = |a: usize, b: usize| {
-            let both = self.series.get(a).zip(self.series.get(b));
-            both.is_some_and(|((a, _), (b, _))| within(a, b, NONE_RAD))
-        };
-        let differs = |a: f64, b: f64| (a - b).abs() > CHANGED_RAD && a.max(b) > CHANGED * a.min(b);
-        let pairs = peaks
-            .iter()
-            .enumerate()
-            .flat_map(|(k, after)| peaks[..k].iter().map(move |before| (*before, *after)));
-        let changes = pairs.filter(|(before, after)| differs(before.1, after.1) && same(before.0, after.0));
-        changes.map(|(before, after)| (before.0, after.0)).max()
-    }
-
     /// As the learning takes them.
     pub(super) fn trials(&self) -> Vec<Trial<'_>> {
         self.series.iter().map(|(sent, measured)| Trial { sent, measured }).collect()
@@ -192,12 +154,13 @@ impl History {
     /// should have, in the ratio of the two, and no less than a half.
     pub(super) fn trust(&self) -> f64 {
         let of = |run: &PastRun| Some(run.promised?.mean_peak_margin_rad / run.mean_peak_rad?);
-        let ratio = self.runs.last().filter(|run| run.corrected).and_then(of).unwrap_or(1.0);
+        let told = |run: &&PastRun| run.corrected && !(self.anew && self.runs.len() == 1);
+        let ratio = self.runs.last().filter(told).and_then(of).unwrap_or(1.0);
         if ratio.is_finite() { ratio.clamp(LEAST_TRUST, 1.0) } else { 1.0 }
     }
 
     /// Mean peak of each run that has one, rad, by its index.
-    fn peaks_rad(&self) -> Vec<(usize, f64)> {
+    pub(super) fn peaks_rad(&self) -> Vec<(usize, f64)> {
         self.runs.iter().enumerate().filter_map(|(k, run)| Some((k, run.mean_peak_rad?))).collect()
     }
 
@@ -246,38 +209,18 @@ fn best(peaks: &[(usize, f64)]) -> Option<(usize, f64)> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn history(peaks: &[f64]) -> History {
+    pub(in crate::workflow::replan) fn history(peaks: &[f64]) -> History {
         let run = |(k, peak): (usize, &f64)| PastRun {
             log: format!("run-{k}"),
             corrected: k > 0,
             mean_peak_rad: Some(*peak),
             promised: None,
         };
-        History { series: Vec::new(), runs: peaks.iter().enumerate().map(run).collect(), places: Vec::new() }
-    }
-
-    #[test]
-    fn a_machine_that_answers_the_same_otherwise_is_another_from_then_on() {
-        let sent = |by: f64| {
-            let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
-            let q = t_s.iter().map(|t| by * t).collect();
-            Series { tracks: vec![crate::series::Track::new("J", t_s, q, &[]).unwrap()] }
-        };
-        let of = |sent_by: &[f64], peaks: &[f64]| {
-            let mut history = history(peaks);
-            history.series = sent_by.iter().map(|by| (sent(*by), sent(0.0))).collect();
-            history.places = (0..peaks.len()).map(|k| 2 * k).collect();
-            let (first, said) = history.without_another_machine();
-            (first, said.is_some(), history.runs.len())
-        };
-        assert_eq!(of(&[1.0, 1.2, 1.0], &[0.01, 0.04, 0.045]), (2, true, 2));
-        assert_eq!(of(&[1.0, 1.2, 1.3, 1.3], &[0.01, 0.002, 0.001, 0.02]), (6, true, 1));
-        assert_eq!(of(&[1.0, 1.2, 1.0], &[0.04, 0.01, 0.01]), (2, true, 2), "it was mended");
-        assert_eq!(of(&[1.0, 1.2, 1.0], &[0.01, 0.04, 0.018]), (0, false, 3));
-        assert_eq!(of(&[1.0, 1.2, 1.3], &[0.01, 0.04, 0.09]), (0, false, 3), "other commands");
+        let runs = peaks.iter().enumerate().map(run).collect();
+        History { series: Vec::new(), runs, places: Vec::new(), anew: false }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! `replan`: from the logs of runs to a plan and a command for the next one.
 
+mod changed;
 mod checks;
 mod command;
 #[cfg(test)]
@@ -137,7 +138,10 @@ pub fn run(
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
     let last = Last::of(path, newest, inputs)?;
     let mut history = History::of(&inputs.logs, &observed, &last.plan, &inputs.rules)?;
-    let (first, changed) = history.without_another_machine();
+    let (first, changed) = history.without_another_machine(&mut |from, to| {
+        let logs = inputs.logs.get(from..to).filter(|_| inputs.limits.is_none())?;
+        Some(fit::of(logs, observed.get(from..to)?).ok()?.fit)
+    });
     let (fit, fitted_to, mut remarks) = machine(inputs, &inputs.logs[first..], &observed[first..])?;
     if let Some(message) = &changed {
         remarks.add(Code::MachineChanged, 1, message);
@@ -335,7 +339,8 @@ impl Maker<'_> {
             _ => None,
         };
         let gain = inputs.learning.gain * if kept { history.trust() } else { 1.0 };
-        let learning = Learning { gain, keep, ..inputs.learning };
+        let anew = kept && history.anew && trials.len() == 1;
+        let learning = Learning { gain, keep, anew, ..inputs.learning };
         let subject = Subject::new(&plan, motion, *setup);
         let points_hz = subject.points_hz;
         let command = precompensates.then(|| commanded(fit, &subject, &trials, learning)).transpose()?;

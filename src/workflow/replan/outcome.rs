@@ -15,6 +15,7 @@ use crate::{
     replay::{Rules, replay},
     series::{Series, align},
     task::{Ceilings, Objective, Objectives},
+    units::Degrees,
     workflow::{
         carried::{
             Carried, Promise,
@@ -198,6 +199,15 @@ pub(super) fn replanned(
                 joint.name, joint.unseen_s
             );
             remarks.add(Code::Gap, 1, message);
+        }
+        for joint in command.joints.iter().filter(|joint| joint.shifted_rad != 0.0) {
+            let message = format!(
+                "{} rests {} from its plan before and after all motion: its zero is shifted, or its load holds it off; no correction \
+                 mends that, and none is made for it",
+                joint.name,
+                Degrees(joint.shifted_rad)
+            );
+            remarks.add(Code::UnlikePlan, 1, message);
         }
         for joint in command.joints.iter().filter(|joint| joint.share < LEAST_SHARE) {
             let message = format!(

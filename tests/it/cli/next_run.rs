@@ -45,3 +45,43 @@ fn a_machine_that_has_changed_is_learnt_anew() {
     let came = json(folder, "report run-4.mcap")["promised"]["measured_mean_peak_rad"].as_f64().unwrap();
     assert!((0.5..2.0).contains(&(came / promised)), "{promised} rad promised, {came} rad came");
 }
+
+/// With a careful gain no command comes twice, so that none tells by itself that the machine answers otherwise.
+#[test]
+fn what_was_sent_to_another_machine_is_not_sent_again_though_no_command_came_twice() {
+    let folder = with_run();
+    let folder = folder.path();
+    clean(folder, "replan run.mcap --keep-plan --gain 0.5 -o next-2.mcap");
+    clean(folder, "simulate next-2.mcap -o run-2.mcap --seed 2");
+    clean(folder, "replan run.mcap run-2.mcap --gain 0.5 -o next-3.mcap");
+    clean(folder, "simulate next-3.mcap --plant lag-limited -o run-3.mcap --seed 3");
+    let line = "replan run.mcap run-2.mcap run-3.mcap";
+    let next = json(folder, line);
+    assert!(next["remarks"].to_string().contains("moved otherwise in run-3.mcap"), "{}", next["remarks"]);
+    assert_eq!(next["runs"].as_array().unwrap().len(), 1, "{}", next["runs"]);
+    run_line(folder, &format!("{line} -o next-4.mcap"));
+    clean(folder, "simulate next-4.mcap --plant lag-limited -o run-4.mcap --seed 4");
+    let mean = |log: &str| {
+        json(folder, &format!("report {log}"))["promised"]["measured_mean_peak_rad"].as_f64().unwrap()
+    };
+    let (before, after) = (mean("run-3.mcap"), mean("run-4.mcap"));
+    assert!(after < 0.3 * before, "{before} rad, then {after}");
+}
+
+/// A new timing is sent with the correction that it needs; its errors are small then, and bound no later correction.
+#[test]
+fn learning_goes_on_after_a_new_timing_that_was_sent_with_a_wide_correction() {
+    let folder = with_run();
+    let folder = folder.path();
+    clean(folder, "simulate run.mcap --plant lag-limited -o slow.mcap --seed 1");
+    clean(folder, "replan slow.mcap -o next.mcap --evaluations 4000");
+    clean(folder, "simulate next.mcap --plant lag-limited -o slow-2.mcap --seed 2");
+    let next = json(folder, "replan slow.mcap slow-2.mcap");
+    assert_eq!(next["decision"]["what"], "send", "{}", next["decision"]);
+    let peak = |key: &str| -> f64 {
+        let all = next["command"].as_array().unwrap().iter().map(|joint| joint[key].as_f64().unwrap());
+        all.fold(0.0, f64::max)
+    };
+    assert!(peak("peak_correction_rad") > 0.027, "{}", peak("peak_correction_rad"));
+    assert!(peak("most_correction_rad") >= peak("peak_correction_rad"));
+}

@@ -24,6 +24,9 @@ const REST: [f64; 2] = [1e-2 * DEGREE_RAD, 0.1 * DEGREE_RAD];
 /// A command that leaves its plan by more, rad, or takes the tool off it by more, m, needs room that people may not leave.
 const WIDE: (f64, f64) = (3.0 * DEGREE_RAD, 0.1);
 
+/// A tool that is sent farther off its plan, m, is sent somewhere else.
+const ELSEWHERE_M: f64 = 1.0;
+
 /// Errors up to this times another are no larger.
 const SAME_ERROR: f64 = 1.02;
 
@@ -189,7 +192,8 @@ fn leave(replanned: &Replanned, command: Option<&Commanded>) -> Option<Check> {
     let tool_m = tool_m(replanned, sent);
     let wide = distance_rad > WIDE.0 || tool_m.is_some_and(|tool_m| tool_m > WIDE.1);
     let finding = Finding::Leave { joint: track.name().to_owned(), distance_rad, t_s, tool_m };
-    Some(Check { level: caution(wide), finding })
+    let elsewhere = tool_m.is_some_and(|tool_m| tool_m > ELSEWHERE_M);
+    Some(Check { level: if elsewhere { Level::Stop } else { caution(wide) }, finding })
 }
 
 /// Largest distance of the tool from where the plan has it, m.
