@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{
-    super::{FitError, JointFit, Model, model::STEP_S, run::MOVES_RAD_S},
+    super::{FitError, JointFit, Model, model::STEP_S},
     JointStep, Learning, Room, Step, Trial,
     answer::Answer,
     correct::{Aim, CALM_MODEL_HZ, Manner, Workspace, faded, first, inverted, rms, unexplained_rad},
@@ -71,10 +71,8 @@ impl<'a> Joint<'a> {
         let astray = answers.last().is_some_and(|run| is_astray(&planned, run, fit, &mut workspace));
         // What a joint does that follows another plan, or none, is no oscillation of its loop.
         let newest = fit.zip(answers.last()).filter(|_| !astray);
-        let rests = rests(&planned);
-        let oscillation = newest.map(|(fit, run)| {
-            Oscillation::with_rests(&unexplained_rad(run, &fit.model, &mut workspace), &rests)
-        });
+        let oscillation =
+            newest.map(|(fit, run)| Oscillation::of(&unexplained_rad(run, &fit.model, &mut workspace)));
         Ok(Self { fit, name: track.name(), planned, answers, astray, oscillation, workspace })
     }
 
@@ -219,7 +217,9 @@ fn is_astray(
     fit: Option<&JointFit>,
     workspace: &mut Workspace,
 ) -> bool {
-    let error_rad = rms(&run.error_rad(planned));
+    // A zero that is shifted far is told as one.
+    let off_rad: Vec<f64> = run.error_rad(planned).iter().map(|error| error - run.shifted_rad).collect();
+    let error_rad = rms(&off_rad);
     let asked_rad = motion(planned.iter().map(|planned| planned.0).collect());
     let slow = |fit: &JointFit| {
         let left_rad = rms(&unexplained_rad(run, &fit.model, workspace));
@@ -236,18 +236,6 @@ fn motion(mut angle_rad: Vec<f64>) -> f64 {
         *angle -= mean_rad;
     }
     rms(&angle_rad)
-}
-
-/// Steps in which the plan rests.
-fn rests(planned: &[(f64, f64)]) -> Vec<Range<usize>> {
-    let mut rests: Vec<Range<usize>> = Vec::new();
-    for (k, _) in planned.iter().enumerate().filter(|(_, planned)| planned.1.abs() <= MOVES_RAD_S) {
-        match rests.last_mut() {
-            Some(last) if last.end == k => last.end = k + 1,
-            _ => rests.push(k..k + 1),
-        }
-    }
-    rests
 }
 
 /// Whether the same was sent.

@@ -1,10 +1,10 @@
 //! Whether what a model leaves unexplained rings.
 
-use std::{f64::consts::PI, ops::Range};
+use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::super::{model::STEP_S, run::steps_in};
+use super::super::model::STEP_S;
 use crate::math::lowpass;
 
 /// Frequencies above this are noise of sensors, Hz.
@@ -18,11 +18,6 @@ const RINGS_ABOVE: f64 = 0.3;
 
 /// Next maximum above which it goes on by itself.
 const HUNTS_ABOVE: f64 = 0.8;
-
-/// Rest that tells whether an oscillation goes on by itself, s, and the share of its power in the first half of the rests
-/// that is left in the second halves if it does.
-const RESTS_S: f64 = 1.2;
-const GOES_ON: f64 = 0.65;
 
 /// Frequencies at which a peak is looked for, Hz.
 const PEAK_HZ: [f64; 2] = [0.4, 4.0];
@@ -63,12 +58,6 @@ pub struct Oscillation {
 impl Oscillation {
     /// Of measured less modelled angles, rad, every [`STEP_S`].
     pub(in crate::fit) fn of(unexplained_rad: &[f64]) -> Self {
-        Self::with_rests(unexplained_rad, &[])
-    }
-
-    /// The same where it is known when the joint is to rest: what dies away there does not go on by itself, however little it
-    /// is damped.
-    pub(in crate::fit) fn with_rests(unexplained_rad: &[f64], rests: &[Range<usize>]) -> Self {
         let mut smooth = unexplained_rad.to_vec();
         lowpass(&mut smooth, LOOKED_AT_HZ, STEP_S);
         let mut speed_rad_s: Vec<f64> = smooth.windows(2).map(|w| (w[1] - w[0]) / STEP_S).collect();
@@ -77,38 +66,14 @@ impl Oscillation {
             *speed -= mean;
         }
         let [first_minimum, next_maximum] = turns(&speed_rad_s);
-        let frequency_hz = peak_hz(&speed_rad_s);
         let rings = first_minimum < RINGS_BELOW && next_maximum > RINGS_ABOVE;
-        let hunts = next_maximum > HUNTS_ABOVE && !dies_away(&speed_rad_s, frequency_hz, rests);
-        let character = match (rings, hunts) {
+        let character = match (rings, next_maximum > HUNTS_ABOVE) {
             (true, true) => Character::Hunts,
             (true, false) => Character::Rings,
             (false, _) => Character::Calm,
         };
-        Self { first_minimum, next_maximum, frequency_hz, character }
+        Self { first_minimum, next_maximum, frequency_hz: peak_hz(&speed_rad_s), character }
     }
-}
-
-/// Whether an oscillation loses power from the first to the second half of rests; not if none is long enough to tell.
-fn dies_away(speed_rad_s: &[f64], frequency_hz: f64, rests: &[Range<usize>]) -> bool {
-    // Without what creeps in a rest.
-    let mut slow = speed_rad_s.to_vec();
-    lowpass(&mut slow, 0.5 * frequency_hz, STEP_S);
-    let power = |steps: Range<usize>| -> f64 {
-        speed_rad_s[steps.clone()].iter().zip(&slow[steps]).map(|(x, slow)| (x - slow).powi(2)).sum()
-    };
-    let least = steps_in(RESTS_S.max(1.0 / frequency_hz));
-    let mut halves = [0.0; 2];
-    for rest in rests {
-        let end = rest.end.min(speed_rad_s.len());
-        let half = end.saturating_sub(rest.start) / 2;
-        if 2 * half >= least {
-            let middle = rest.start + half;
-            halves[0] += power(rest.start..middle);
-            halves[1] += power(middle..middle + half);
-        }
-    }
-    halves[1] < GOES_ON * halves[0]
 }
 
 /// First minimum of the autocorrelation and the maximum after it.
@@ -205,30 +170,9 @@ mod tests {
     }
 
     #[test]
-    fn what_dies_away_at_rest_does_not_go_on_by_itself() {
-        let rests: Vec<Range<usize>> = (0..4).map(|k| 1200 * k + 400..1200 * k + 700).collect();
-        for seed in 0..5 {
-            let creeps = |t_s: f64| 2e-3 * (-(t_s % 12.0 - 4.0).max(0.0)).exp();
-            let of = |amplitude: &dyn Fn(f64) -> f64| {
-                let mut all = left(seed, amplitude);
-                for (k, x) in all.iter_mut().enumerate() {
-                    *x += creeps(k as f64 * STEP_S);
-                }
-                (Oscillation::of(&all).character, Oscillation::with_rests(&all, &rests).character)
-            };
-            let little_damped = |t_s: f64| 8e-3 * (-((t_s % 12.0) - 4.0).max(0.0) / 3.0).exp();
-            assert_eq!(of(&little_damped), (Character::Hunts, Character::Rings), "{seed}");
-            assert_eq!(of(&|_| 6e-3), (Character::Hunts, Character::Hunts), "{seed}");
-            // A rest too short to tell.
-            let short = Oscillation::with_rests(&left(seed, little_damped), &[400..450]);
-            assert_eq!(short.character, Character::Hunts, "{seed}");
-        }
-    }
-
-    #[test]
     fn no_length_of_data_panics() {
         for count in 0..6 {
-            let found = Oscillation::with_rests(&vec![0.1; count], &[0..2, 3..900, 5..1]);
+            let found = Oscillation::of(&vec![0.1; count]);
             assert_eq!(found.character, Character::Calm);
         }
     }
