@@ -61,10 +61,9 @@ impl Answer {
 
     /// Finds what the joint was off by at rest, before and after all motion alike.
     fn shift(&mut self, planned: &[(f64, f64)]) {
-        let moves = |two: &[(f64, f64)]| (two[1].0 - two[0].0).abs() > MOVES_RAD_S * STEP_S;
-        let mut motion = planned.windows(2).enumerate().filter(|(_, two)| moves(two)).map(|(k, _)| k);
+        let mut motion = (0..planned.len()).filter(|&k| moves(planned, k));
         let Some(first) = motion.next() else { return };
-        let last = motion.last().unwrap_or(first) + 1;
+        let last = motion.next_back().unwrap_or(first) + 1;
         let off_rad = |range: Range<usize>| {
             let seen = || range.clone().filter(|&k| self.seen[k]);
             let sum: f64 = seen().map(|k| self.measured_rad[k] - planned[k].0).sum();
@@ -81,7 +80,7 @@ impl Answer {
         }
     }
 
-    /// From where the joint should be by the zero that it was measured from.
+    /// Planned less measured angles, rad; by the zero that the joint was measured from.
     pub(super) fn error_rad(&self, planned: &[(f64, f64)]) -> Vec<f64> {
         let error = |(planned, measured): (&(f64, f64), &f64)| planned.0 + self.shifted_rad - measured;
         planned.iter().zip(&self.measured_rad).map(error).collect()
@@ -122,14 +121,18 @@ impl Answer {
 
     /// For how long the plan moves and nothing was measured, s.
     pub(super) fn unseen_s(&self, planned: &[(f64, f64)]) -> f64 {
-        let moves = |two: &[(f64, f64)]| (two[1].0 - two[0].0).abs() > MOVES_RAD_S * STEP_S;
-        let unseen = planned.windows(2).zip(&self.seen).filter(|(two, seen)| !**seen && moves(two));
+        let unseen = (0..planned.len()).filter(|&k| !self.seen[k] && moves(planned, k));
         unseen.count() as f64 * STEP_S
     }
 
     pub(super) fn correction_rad(&self, planned: &[(f64, f64)]) -> Vec<f64> {
         planned.iter().zip(&self.sent).map(|(planned, sent)| sent.0 - planned.0).collect()
     }
+}
+
+/// Whether a plan moves from a step to the next.
+fn moves(planned: &[(f64, f64)], k: usize) -> bool {
+    planned.get(k + 1).is_some_and(|next| (next.0 - planned[k].0).abs() > MOVES_RAD_S * STEP_S)
 }
 
 /// What of the error at instant `from` is left at others, in their order away from it.

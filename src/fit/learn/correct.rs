@@ -99,7 +99,7 @@ impl Workspace {
     }
 }
 
-/// What a response is to be, and to what.
+/// What an inversion takes for granted beside the model.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Aim<'a> {
     /// What the model does not explain and comes again, rad.

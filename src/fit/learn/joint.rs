@@ -85,16 +85,16 @@ impl<'a> Joint<'a> {
         room: &impl Fn(&str) -> Option<Room>,
     ) -> JointStep {
         let errors: Vec<Vec<f64>> = self.answers.iter().map(|run| run.error_rad(&self.planned)).collect();
-        let largest = |of: &Vec<f64>| of.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let largest_rad = errors.iter().map(largest).fold(0.0, f64::max);
+        let largest_rad = errors.iter().map(|error_rad| largest(error_rad)).fold(0.0, f64::max);
         let kept = settings
             .keep
             .and_then(|from| Some((from, self.answers.get(from)?.correction_rad(&self.planned))));
-        let of_kept = kept.iter().flat_map(|(_, kept)| kept).fold(0.0_f64, |most, kept| most.max(kept.abs()));
+        let of_kept = kept.as_ref().map_or(0.0, |(_, kept)| largest(kept));
         // What the plan would be off by unaided, as a run that was corrected tells: a cap below it would undo what was learnt.
         let needed = |(run, error_rad): (&Answer, &Vec<f64>)| {
             let sent_rad = run.correction_rad(&self.planned);
-            largest(&sent_rad).max(largest(&sent_rad.iter().zip(error_rad).map(|(d, e)| d + e).collect()))
+            let both: Vec<f64> = sent_rad.iter().zip(error_rad).map(|(sent, error)| sent + error).collect();
+            largest(&sent_rad).max(largest(&both))
         };
         let needed_rad = self.answers.iter().zip(&errors).map(needed).fold(0.0, f64::max);
         let most_rad = settings
@@ -217,12 +217,14 @@ fn is_astray(
     fit: Option<&JointFit>,
     workspace: &mut Workspace,
 ) -> bool {
-    // A zero that is shifted far is told as one.
-    let off_rad: Vec<f64> = run.error_rad(planned).iter().map(|error| error - run.shifted_rad).collect();
-    let error_rad = rms(&off_rad);
+    // A zero that is shifted by more than the motion is no detail of it.
+    let missed_rad = |by: &mut dyn Iterator<Item = f64>| {
+        rms(&by.zip(&run.measured_rad).map(|(angle, measured)| angle - measured).collect::<Vec<f64>>())
+    };
+    let error_rad = missed_rad(&mut planned.iter().map(|planned| planned.0));
     let asked_rad = motion(planned.iter().map(|planned| planned.0).collect());
     let slow = |fit: &JointFit| {
-        let left_rad = rms(&unexplained_rad(run, &fit.model, workspace));
+        let left_rad = missed_rad(&mut workspace.response(&fit.model, &run.sent).iter().copied());
         let moves = motion(run.measured_rad.clone()) > FOLLOWS * asked_rad;
         fit.trusted() && moves && left_rad < EXPLAINED * error_rad
     };
@@ -236,6 +238,11 @@ fn motion(mut angle_rad: Vec<f64>) -> f64 {
         *angle -= mean_rad;
     }
     rms(&angle_rad)
+}
+
+/// Largest distance from zero.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// Whether the same was sent.

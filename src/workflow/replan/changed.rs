@@ -1,17 +1,14 @@
 //! Whether the machine changed between two runs: then what the older ones taught is no guide.
 
 use super::{
-    history::{History, PastRun},
+    history::{History, NONE_RAD, PastRun},
     samples::within,
 };
 use crate::{
-    fit::{Fit, predict},
+    fit::{Fit, JointFit, predict},
     series::{Series, Track},
     units::{DEGREE_RAD, Degrees},
 };
-
-/// Commands that differ by less are the same, rad.
-const SAME_RAD: f64 = 1e-3;
 
 /// Errors that differ by this factor, and by so much, rad, are those of two machines.
 const CHANGED: f64 = 2.0;
@@ -38,7 +35,7 @@ impl History {
         let mut first = 0;
         let mut said = None;
         for run in 1..self.runs.len() {
-            if let Some(sign) = self.changed(first, run, fits) {
+            if let Some(sign) = self.sign(first, run, fits) {
                 said = Some(self.said(run, &sign));
                 first = match sign {
                     // Of what came between the two nobody knows.
@@ -53,18 +50,21 @@ impl History {
         self.runs.drain(..first);
         self.series.drain(..first);
         self.places.drain(..first);
-        self.anew = true;
+        self.changed = true;
         (self.places.first().copied().unwrap_or_default(), said)
     }
 
-    fn changed(&self, first: usize, run: usize, fits: Fits) -> Option<Sign> {
+    /// What tells that the machine changed before a run, since the first of these.
+    fn sign(&self, first: usize, run: usize, fits: Fits) -> Option<Sign> {
         let peak = |k: usize| self.runs.get(k)?.mean_peak_rad;
         let now_rad = peak(run)?;
         let same = |k: &usize| {
             let both = self.series.get(*k).zip(self.series.get(run));
-            both.is_some_and(|((a, _), (b, _))| within(a, b, SAME_RAD))
+            both.is_some_and(|((a, _), (b, _))| within(a, b, NONE_RAD))
         };
-        let differs = |k: &usize| peak(*k).is_some_and(|before_rad| differ(before_rad, now_rad));
+        let differs = |k: &usize| {
+            peak(*k).is_some_and(|before_rad| exceeds(before_rad, now_rad) || exceeds(now_rad, before_rad))
+        };
         if let Some(before) = (first..run).rev().find(|k| differs(k) && same(k)) {
             return Some(Sign::Pair(before));
         }
@@ -81,15 +81,14 @@ impl History {
             let name = track.name();
             let own = own.joint(name).filter(|joint| joint.trusted())?;
             let older = older.joint(name)?;
-            let missed = |fit: &crate::fit::JointFit, k: usize| missed_rad(fit, self.series.get(k)?);
-            let found = [missed(older, run)?, missed(own, run)?, missed(older, run - 1)?];
-            let [missed_rad, own_rad, before_rad] = found;
-            (differ(missed_rad, own_rad.max(before_rad)) && missed_rad > own_rad.max(before_rad))
-                .then(|| (name.to_owned(), found))
+            let missed = |fit: &JointFit, k: usize| missed_rad(fit, self.series.get(k)?);
+            let (missed_rad, own_rad, before_rad) =
+                (missed(older, run)?, missed(own, run)?, missed(older, run - 1)?);
+            let sign = Sign::Model { joint: name.to_owned(), missed_rad, own_rad, before_rad };
+            exceeds(missed_rad, own_rad.max(before_rad)).then_some((missed_rad, sign))
         };
         let all = self.series.get(run)?.1.tracks.iter().filter_map(joint);
-        let (joint, [missed_rad, own_rad, before_rad]) = all.max_by(|a, b| a.1[0].total_cmp(&b.1[0]))?;
-        Some(Sign::Model { joint, missed_rad, own_rad, before_rad })
+        Some(all.max_by(|a, b| a.0.total_cmp(&b.0))?.1)
     }
 
     fn said(&self, run: usize, sign: &Sign) -> String {
@@ -118,12 +117,13 @@ impl History {
     }
 }
 
-fn differ(a_rad: f64, b_rad: f64) -> bool {
-    (a_rad - b_rad).abs() > CHANGED_RAD && a_rad.max(b_rad) > CHANGED * a_rad.min(b_rad)
+/// Whether an error is of another machine than a smaller one.
+fn exceeds(error_rad: f64, other_rad: f64) -> bool {
+    error_rad - other_rad > CHANGED_RAD && error_rad > CHANGED * other_rad
 }
 
 /// Root mean square of what a model misses of a run, rad.
-fn missed_rad(fit: &crate::fit::JointFit, (sent, measured): &(Series, Series)) -> Option<f64> {
+fn missed_rad(fit: &JointFit, (sent, measured): &(Series, Series)) -> Option<f64> {
     let (sent, measured) = (sent.track(&fit.name)?, measured.track(&fit.name)?);
     let response = predict(&fit.model, sent).ok()?;
     let squares = measured.t_s().iter().zip(measured.position());
@@ -140,7 +140,7 @@ mod tests {
         let sent = |by: f64| {
             let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
             let q = t_s.iter().map(|t| by * t).collect();
-            Series { tracks: vec![crate::series::Track::new("J", t_s, q, &[]).unwrap()] }
+            Series { tracks: vec![Track::new("J", t_s, q, &[]).unwrap()] }
         };
         let of = |sent_by: &[f64], peaks: &[f64]| {
             let mut history = history(peaks);

@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// A correction below this is none, rad.
-const NONE_RAD: f64 = 1e-3;
+pub(super) const NONE_RAD: f64 = 1e-3;
 
 /// A run whose mean peak is not below this share of the best before it was not worth its correction.
 const WORTH: f64 = 0.9;
@@ -92,8 +92,8 @@ pub(super) struct History {
     /// Places of their logs among all.
     pub(super) places: Vec<usize>,
     pub(super) runs: Vec<PastRun>,
-    /// Whether the first run is the first of a machine that has changed: what was sent to the one before it is no guide.
-    pub(super) anew: bool,
+    /// Whether runs were left out because the machine changed.
+    pub(super) changed: bool,
 }
 
 impl History {
@@ -104,7 +104,7 @@ impl History {
         plan: &Series,
         rules: &Rules,
     ) -> Result<Self, ReplanFailure> {
-        let mut history = Self { series: Vec::new(), runs: Vec::new(), places: Vec::new(), anew: false };
+        let mut history = Self { series: Vec::new(), runs: Vec::new(), places: Vec::new(), changed: false };
         let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
         for (place, (path, recording)) in paths.iter().zip(recordings).enumerate() {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
@@ -150,12 +150,16 @@ impl History {
         self.runs.iter().any(|run| run.corrected)
     }
 
+    /// Whether the only run is the first of a machine that has changed: what was sent in it was made for another one.
+    pub(super) fn anew(&self) -> bool {
+        self.changed && self.runs.len() == 1
+    }
+
     /// Share of the usual gain, by what the newest command promised: less than one where more came than nine runs of ten
     /// should have, in the ratio of the two, and no less than a half.
     pub(super) fn trust(&self) -> f64 {
         let of = |run: &PastRun| Some(run.promised?.mean_peak_margin_rad / run.mean_peak_rad?);
-        let told = |run: &&PastRun| run.corrected && !(self.anew && self.runs.len() == 1);
-        let ratio = self.runs.last().filter(told).and_then(of).unwrap_or(1.0);
+        let ratio = self.runs.last().filter(|run| run.corrected && !self.anew()).and_then(of).unwrap_or(1.0);
         if ratio.is_finite() { ratio.clamp(LEAST_TRUST, 1.0) } else { 1.0 }
     }
 
@@ -220,7 +224,7 @@ pub(super) mod tests {
             promised: None,
         };
         let runs = peaks.iter().enumerate().map(run).collect();
-        History { series: Vec::new(), runs, places: Vec::new(), anew: false }
+        History { series: Vec::new(), runs, places: Vec::new(), changed: false }
     }
 
     #[test]

@@ -339,7 +339,7 @@ impl Maker<'_> {
             _ => None,
         };
         let gain = inputs.learning.gain * if kept { history.trust() } else { 1.0 };
-        let anew = kept && history.anew && trials.len() == 1;
+        let anew = kept && history.anew();
         let learning = Learning { gain, keep, anew, ..inputs.learning };
         let subject = Subject::new(&plan, motion, *setup);
         let points_hz = subject.points_hz;
