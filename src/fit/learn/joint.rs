@@ -15,7 +15,7 @@ use crate::{math::lowpass, series::Track, units::DEGREE_RAD};
 /// Part of these over which a wanted correction fades, s.
 const FADES_S: f64 = 0.5;
 
-/// Largest correction of a plan that was not corrected yet, rad, and by its largest error.
+/// Largest correction of a plan that is off by little, rad, and of others by what they are off by.
 const CAP_RAD: f64 = 1.5 * DEGREE_RAD;
 
 const CAP_BY_ERROR: f64 = 1.25;
@@ -89,17 +89,17 @@ impl<'a> Joint<'a> {
         let kept = settings
             .keep
             .and_then(|from| Some((from, self.answers.get(from)?.correction_rad(&self.planned))));
-        let of_kept = kept.as_ref().map_or(0.0, |(_, kept)| largest(kept));
-        // What the plan would be off by unaided, as a run that was corrected tells: a cap below it would undo what was learnt.
-        let needed = |(run, error_rad): (&Answer, &Vec<f64>)| {
-            let sent_rad = run.correction_rad(&self.planned);
-            let both: Vec<f64> = sent_rad.iter().zip(error_rad).map(|(sent, error)| sent + error).collect();
-            largest(&sent_rad).max(largest(&both))
+        let sent: Vec<Vec<f64>> = self.answers.iter().map(|run| run.correction_rad(&self.planned)).collect();
+        // What the plan is off by unaided, as its first run tells; what was sent beyond that is never clipped, and does not grow
+        // where a joint cannot follow.
+        let unaided = |(sent, error): (&Vec<f64>, &Vec<f64>)| {
+            largest(&sent.iter().zip(error).map(|(sent, error)| sent + error).collect::<Vec<f64>>())
         };
-        let needed_rad = self.answers.iter().zip(&errors).map(needed).fold(0.0, f64::max);
-        let most_rad = settings
-            .most_rad
-            .unwrap_or(CAP_RAD.max(CAP_BY_ERROR * largest_rad).max(needed_rad).max(of_kept / settings.share));
+        let unaided_rad = sent.iter().zip(&errors).next().map_or(0.0, unaided);
+        let sent_rad = sent.iter().map(|sent| largest(sent)).fold(0.0, f64::max);
+        let most_rad = settings.most_rad.unwrap_or(
+            CAP_RAD.max(CAP_BY_ERROR * largest_rad.max(unaided_rad)).max(sent_rad / settings.share),
+        );
         let rms_error_rad: Vec<f64> = errors.iter().map(|error_rad| compared(error_rad)).collect();
         let nothing = vec![[0.0; 3]; self.planned.len()];
         let mut made = JointStep {

@@ -128,8 +128,12 @@ fn words(level: Level, finding: &Finding) -> String {
         ),
         Finding::Leave { joint, distance_rad, t_s, tool_m } => {
             let tool = tool_m.map_or(String::new(), |m| format!(", up to {} mm at the tool", mm(m)));
+            let advice = match level {
+                Level::Stop => "send less of it (--gain 0.5), or a slower plan",
+                Level::Good | Level::Caution => "keep that room free",
+            };
             format!(
-                "It leaves the plan by up to {} deg ({joint} at {t_s:.1} s){tool}: keep that room free.",
+                "It leaves the plan by up to {} deg ({joint} at {t_s:.1} s){tool}: {advice}.",
                 deg(*distance_rad)
             )
         }

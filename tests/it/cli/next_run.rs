@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::replan::{check, with_run};
-use crate::support::{clean, json, run_line, stderr, stdout};
+use crate::support::{clean, json, run_line, sample, stderr, stdout};
 
 #[test]
 fn a_task_that_begins_elsewhere_is_refused_and_bounds_hold_for_the_next_line() {
@@ -84,4 +84,24 @@ fn learning_goes_on_after_a_new_timing_that_was_sent_with_a_wide_correction() {
     };
     assert!(peak("peak_correction_rad") > 0.027, "{}", peak("peak_correction_rad"));
     assert!(peak("most_correction_rad") >= peak("peak_correction_rad"));
+}
+
+/// A machine that lags by seconds is well known and asks for a command that takes the tool somewhere else.
+#[test]
+fn a_command_that_takes_the_tool_a_metre_off_its_plan_is_not_to_be_sent() {
+    let folder = with_run();
+    let folder = folder.path();
+    let plant = fs::read_to_string(sample("plant/position-only.toml")).unwrap();
+    let slow = plant.replace("position_gain_1_s = 2.0", "position_gain_1_s = 0.25");
+    fs::write(folder.join("slow.toml"), slow).unwrap();
+    clean(folder, "simulate run.mcap --plant slow.toml -o slow.mcap");
+    for (line, level) in
+        [("replan slow.mcap --keep-plan", "stop"), ("replan slow.mcap --keep-plan --gain 0.5", "caution")]
+    {
+        let next = json(folder, line);
+        assert_eq!(check(&next, "leave")["level"], level, "{}", check(&next, "leave"));
+    }
+    assert!(
+        stdout(&run_line(folder, "replan slow.mcap --keep-plan")).contains("send less of it (--gain 0.5)")
+    );
 }
