@@ -70,6 +70,14 @@ pub enum MoeaError {
         /// The limit.
         most: usize,
     },
+    /// More objectives than anyone can mean.
+    #[error("{objectives} objectives are more than {most}")]
+    TooManyObjectives {
+        /// Number of objectives.
+        objectives: usize,
+        /// The limit.
+        most: usize,
+    },
     /// A reference direction has the wrong length, a value below 0 or that is no number, or no length.
     #[error(
         "reference direction {index} has {sound} values not below 0, {wanted} are needed, finite and not all 0"

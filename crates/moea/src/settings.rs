@@ -1,7 +1,7 @@
 //! What a run is asked to do.
 
 use super::{
-    direction::Directions,
+    direction::{Directions, MOST_OBJECTIVES},
     error::MoeaError,
     focus::Focus,
     variables::{Space, Variables},
@@ -116,6 +116,9 @@ pub(super) fn check(
     let space = Space::new(variables)?;
     if objectives == 0 {
         return Err(MoeaError::NoObjectives);
+    }
+    if objectives > MOST_OBJECTIVES {
+        return Err(MoeaError::TooManyObjectives { objectives, most: MOST_OBJECTIVES });
     }
     for (member, x) in settings.initial.iter().enumerate() {
         let given = x.iter().filter(|v| v.is_finite()).count();
