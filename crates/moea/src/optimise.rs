@@ -85,7 +85,8 @@ pub(super) fn method_of(
     mating: impl Mating + 'static,
     survival: impl Survival + 'static,
 ) -> Result<(Checked, Box<dyn Method>), MoeaError> {
-    let settings = Settings { algorithm: Algorithm::Nsga3, ..settings.clone() };
+    // As many members as wanted: nobody knows whether the caller's survival has directions.
+    let settings = Settings { algorithm: Algorithm::Nsga2, ..settings.clone() };
     let checked = check(variables, objectives, &settings)?;
     let breeding = Breeding::new(settings.operators, checked.mutation_rate, checked.space.clone());
     let method = Genetic::new(Box::new(mating), Box::new(survival), breeding);

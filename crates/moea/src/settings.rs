@@ -63,8 +63,9 @@ pub struct Settings {
     pub algorithm: Algorithm,
     /// Reference directions.
     pub directions: Directions,
-    /// Wanted number of members; by default the smallest multiple of four not below the number
-    /// of directions, and never fewer than directions.
+    /// Wanted number of members, by default that of directions; rounded up to a multiple of four. NSGA-III, U-NSGA-III
+    /// and NSGA-III-FO have no fewer members than directions ([`Directions::FromPopulation`] gives as many as fit),
+    /// MOEA/D has one a direction.
     pub population: Option<usize>,
     /// Length of the run; 20 000 evaluations by default.
     pub budget: Budget,
@@ -150,9 +151,11 @@ pub(super) fn check(
         Algorithm::Moead { .. } if objectives == 1 => (vec![1.0; wanted.max(4)], wanted.max(4)),
         _ => (directions, count),
     };
+    let rounded = |members: usize| members.max(4).next_multiple_of(4);
     let members = match settings.algorithm {
         Algorithm::Moead { .. } => count,
-        _ => wanted.max(count).max(4).next_multiple_of(4),
+        Algorithm::Nsga3 | Algorithm::UNsga3 | Algorithm::Nsga3Fo { .. } => rounded(wanted.max(count)),
+        Algorithm::Nsga2 | Algorithm::Msops2 | Algorithm::AgeMoea2 | Algorithm::SmsEmoa => rounded(wanted),
     };
     Ok(Checked { space, objectives, directions, members, mutation_rate })
 }
