@@ -3,10 +3,11 @@
 #![allow(clippy::unwrap_used, clippy::float_cmp)]
 
 use moea::{
-    Population,
-    benchmark::Benchmark,
+    Algorithm, Budget, Population, Settings,
+    benchmark::{Benchmark, NAMES},
     compare::Reference,
     indicator::{igd, igd_plus},
+    optimise, silent,
 };
 
 /// A front from (0, 2) to (2, 0), moved and in other units.
@@ -57,5 +58,23 @@ fn a_member_that_is_no_number_brings_no_front_nearer() {
         assert_eq!(igd(set, &front, 2), f64::INFINITY, "{set:?}");
         let both = [set, &[3.0, 3.0]].concat();
         assert_eq!(igd_plus(&both, &front, 2), igd_plus(&[3.0, 3.0], &front, 2));
+    }
+}
+
+#[test]
+fn a_front_is_whole_if_nothing_found_lies_beyond_it() {
+    for name in NAMES {
+        for m in 2..5 {
+            let problem = Benchmark::named(name, m).unwrap();
+            let (front, nadir) = (problem.front(3000), problem.nadir());
+            let budget = Budget::Evaluations(10_000);
+            let settings = Settings { algorithm: Algorithm::Nsga2, budget, ..Settings::default() };
+            let found = optimise(&problem, &settings, silent).unwrap().population;
+            // Beyond the front is who beats each of its points in some objective by more than their spacing.
+            let beats = |f: &[f64], z: &[f64]| (0..m).any(|k| f[k] < z[k] - 0.15 * nadir[k]);
+            let beyond =
+                (0..found.len()).filter(|&i| front.chunks_exact(m).all(|z| beats(found.f(i), z))).count();
+            assert_eq!(beyond == 0, problem.has_whole_front(), "{name}, {m} objectives: {beyond}");
+        }
     }
 }

@@ -91,9 +91,23 @@ impl Benchmark {
         format!("{family}{}", self.number)
     }
 
-    /// At most about `count` points spread over the true front, `[n][objectives]`.
+    /// At most about `count` points spread over the true front, `[n][objectives]`; over the usual part of it where
+    /// [`Self::has_whole_front`] is false.
     pub fn front(&self, count: usize) -> Vec<f64> {
         front::points(self, count)
+    }
+
+    /// Whether [`Self::front`] covers the whole true front.
+    ///
+    /// WFG3 from three objectives on, and DTLZ5 and DTLZ6 from four on, were meant to have a curve for a front, and
+    /// comparisons measure to this curve. Their true fronts have further parts (Ishibuchi, Masuda and Nojima 2016, on
+    /// degenerate test problems): IGD and IGD+ do not reward members there.
+    pub fn has_whole_front(&self) -> bool {
+        match (self.family, self.number) {
+            (Family::Wfg, 3) => self.objectives < 3,
+            (Family::Dtlz, 5 | 6) => self.objectives < 4,
+            _ => true,
+        }
     }
 
     /// Largest value of each objective on the front, `[objectives]`; the smallest is taken as 0.
