@@ -25,12 +25,12 @@ pub enum Algorithm {
     },
     /// Deb, Pratap, Agarwal and Meyarivan 2002.
     Nsga2,
-    /// Zhang and Li 2007 with boundary intersection (PBI, theta = 5).
+    /// Zhang and Li 2007 with boundary intersection (PBI, theta = 5). As published, units of the objectives matter.
     Moead {
-        /// Whether objectives are divided by the range of the population first.
+        /// Whether objectives are divided by the intercepts of the front first.
         normalized: bool,
     },
-    /// Hughes 2007.
+    /// Hughes 2007. Units of the objectives matter.
     Msops2,
     /// Panichella 2022, with the tournament of NSGA-II.
     AgeMoea2,
