@@ -37,6 +37,9 @@ impl Geodesic {
     /// Fits the shape to the first front, and scores its members.
     fn score_first(&mut self, merged: &Population) {
         let m = merged.objectives();
+        if m == 0 {
+            return;
+        }
         let mut front = self.sorting.front(0).to_vec();
         front.sort_unstable();
         let mut points: Vec<f64> = front.iter().flat_map(|&i| merged.f(i)).copied().collect();

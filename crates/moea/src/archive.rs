@@ -20,7 +20,7 @@ impl Archive {
     /// An empty archive.
     pub fn new(variables: usize, objectives: usize, capacity: usize) -> Self {
         // Twice as many are held between two clearings.
-        let capacity = capacity.clamp(objectives, usize::MAX / 2);
+        let capacity = capacity.max(objectives).min(usize::MAX / 2);
         let room = capacity.min(ROOM) * 2;
         Self {
             kept: Population::with_capacity(variables, objectives, room),
@@ -42,8 +42,12 @@ impl Archive {
         self.kept
     }
 
-    /// Offers every member. O(members x kept).
+    /// Offers every member; none of another shape. O(members x kept).
     pub fn extend(&mut self, members: &Population) {
+        let shape = |of: &Population| (of.variables(), of.objectives());
+        if shape(members) != shape(&self.kept) {
+            return;
+        }
         for i in 0..members.len() {
             if members.is_feasible(i) {
                 self.offer(members, i);

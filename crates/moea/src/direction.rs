@@ -5,6 +5,9 @@ use super::error::MoeaError;
 /// More directions than this are refused: a population of that size cannot be meant.
 pub const MOST_DIRECTIONS: usize = 100_000;
 
+/// More objectives than this are refused.
+pub(super) const MOST_OBJECTIVES: usize = 1000;
+
 /// Where the reference directions come from.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Directions {
@@ -27,9 +30,12 @@ pub enum Directions {
 /// Number of directions of `divisions` for `objectives`: C(m + p - 1, p), eq. 7; `None` when
 /// it is beyond [`MOST_DIRECTIONS`].
 pub fn direction_count(objectives: usize, divisions: usize) -> Option<usize> {
+    if divisions == 0 {
+        return Some(1);
+    }
     let mut count: u128 = 1;
     for k in 1..objectives {
-        count = count.checked_mul((divisions + k) as u128)? / k as u128;
+        count = count.checked_mul(divisions as u128 + k as u128)? / k as u128;
         if count > MOST_DIRECTIONS as u128 {
             return None;
         }
@@ -42,8 +48,11 @@ pub fn direction_count(objectives: usize, divisions: usize) -> Option<usize> {
 ///
 /// # Errors
 ///
-/// [`MoeaError::TooManyDirections`] beyond [`MOST_DIRECTIONS`].
+/// [`MoeaError::TooManyDirections`] beyond [`MOST_DIRECTIONS`], [`MoeaError::TooManyObjectives`] beyond 1000.
 pub fn das_dennis(objectives: usize, divisions: usize) -> Result<Vec<f64>, MoeaError> {
+    if objectives > MOST_OBJECTIVES {
+        return Err(MoeaError::TooManyObjectives { objectives, most: MOST_OBJECTIVES });
+    }
     let too_many = MoeaError::TooManyDirections { objectives, divisions, most: MOST_DIRECTIONS };
     let count = direction_count(objectives, divisions).ok_or(too_many)?;
     let mut flat = Vec::with_capacity(count * objectives);
@@ -83,13 +92,15 @@ impl Directions {
     ///
     /// # Errors
     ///
-    /// [`MoeaError::TooManyDirections`] beyond [`MOST_DIRECTIONS`]; [`MoeaError::Direction`] and
+    /// [`MoeaError::TooManyDirections`] beyond [`MOST_DIRECTIONS`], [`MoeaError::TooManyObjectives`] beyond 1000;
+    /// [`MoeaError::Direction`] and
     /// [`MoeaError::DirectionCount`] for directions of the caller's that are none.
     pub fn points(&self, objectives: usize, wanted: usize) -> Result<Vec<f64>, MoeaError> {
         match *self {
-            Self::Own(ref given) => own(objectives, given),
+            Self::Own(ref given) => own(objectives, given.iter().map(Vec::as_slice)),
             Self::Divisions(divisions) => das_dennis(objectives, divisions),
             Self::Layers(outer, inner) => layers(objectives, outer, inner),
+            _ if objectives > MOST_OBJECTIVES => das_dennis(objectives, 1),
             Self::FromPopulation => fitting(objectives, wanted),
             Self::Usual => match objectives {
                 0 | 1 => das_dennis(objectives, 1),
@@ -114,12 +125,15 @@ fn layers(objectives: usize, outer: usize, inner: usize) -> Result<Vec<f64>, Moe
 }
 
 /// Directions of the caller's, each divided by its sum.
-fn own(objectives: usize, given: &[Vec<f64>]) -> Result<Vec<f64>, MoeaError> {
-    if given.is_empty() || given.len() > MOST_DIRECTIONS {
+pub(super) fn own<'a>(
+    objectives: usize,
+    given: impl ExactSizeIterator<Item = &'a [f64]>,
+) -> Result<Vec<f64>, MoeaError> {
+    if given.len() == 0 || given.len() > MOST_DIRECTIONS {
         return Err(MoeaError::DirectionCount { given: given.len(), most: MOST_DIRECTIONS });
     }
-    let mut flat = Vec::with_capacity(given.len() * objectives);
-    for (index, direction) in given.iter().enumerate() {
+    let mut flat = Vec::new();
+    for (index, direction) in given.enumerate() {
         let sound = direction.iter().filter(|z| **z >= 0.0).count();
         let largest = direction.iter().copied().fold(0.0, f64::max);
         if direction.len() != objectives || sound != objectives || !(largest > 0.0 && largest.is_finite()) {

@@ -70,6 +70,14 @@ pub enum MoeaError {
         /// The limit.
         most: usize,
     },
+    /// More objectives than anyone can mean.
+    #[error("{objectives} objectives are more than {most}")]
+    TooManyObjectives {
+        /// Number of objectives.
+        objectives: usize,
+        /// The limit.
+        most: usize,
+    },
     /// A reference direction has the wrong length, a value below 0 or that is no number, or no length.
     #[error(
         "reference direction {index} has {sound} values not below 0, {wanted} are needed, finite and not all 0"
@@ -104,6 +112,22 @@ pub enum MoeaError {
         /// Values of objectives that they have.
         wanted: usize,
     },
+    /// Violations of single constraints told are not as many as the members asked for need.
+    #[error("told {violations} violations one by one; {members} members need {}", needed(*members, *constraints))]
+    ToldEach {
+        /// Number of violations told.
+        violations: usize,
+        /// Members asked for.
+        members: usize,
+        /// Constraints of the run; none before the first values are told.
+        constraints: Option<usize>,
+    },
+    /// Values told again, or before anybody asked.
+    #[error("after {evaluations} evaluations values were told of members that were not asked for")]
+    NotAsked {
+        /// Evaluations told so far.
+        evaluations: u64,
+    },
     /// A record is of another run.
     #[error(
         "after {evaluation} evaluations the record is of a run with other settings, or of another version"
@@ -120,4 +144,10 @@ pub enum MoeaError {
         /// The limit.
         most: usize,
     },
+}
+
+/// How many violations of single constraints members need.
+fn needed(members: usize, constraints: Option<usize>) -> String {
+    let total = constraints.map(|constraints| members.saturating_mul(constraints));
+    total.map_or_else(|| format!("a multiple of {members}"), |total| total.to_string())
 }

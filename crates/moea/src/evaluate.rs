@@ -13,19 +13,22 @@ pub(super) struct Evaluation<P: Problem> {
     workspaces: Vec<P::Workspace>,
     /// Violations of the members evaluated last, `[n][constraints]`.
     each: Vec<f64>,
-    /// What a violation of each constraint is divided by; 0 until somebody violated it.
-    scale: Vec<f64>,
+    scales: Scales,
 }
+
+/// What a violation of each constraint is divided by, `[constraints]`; 0 until somebody violated it.
+pub(super) struct Scales(pub(super) Vec<f64>);
 
 impl<P: Problem> Evaluation<P> {
     pub(super) fn new(problem: &P) -> Self {
-        Self { workspaces: Vec::new(), each: Vec::new(), scale: vec![0.0; problem.constraints()] }
+        Self { workspaces: Vec::new(), each: Vec::new(), scales: Scales(vec![0.0; problem.constraints()]) }
     }
 
     /// Evaluates all members; draws nothing at random, and writes by index.
     pub(super) fn evaluate(&mut self, problem: &P, population: &mut Population) {
         let (d, m, n) = (population.variables().max(1), population.objectives().max(1), population.len());
-        let (c, width) = (self.scale.len(), self.scale.len().max(1));
+        let c = self.scales.0.len();
+        let width = c.max(1);
         let (x, f, violation) = population.evaluation_parts();
         self.each.clear();
         self.each.resize(n * width, 0.0);
@@ -56,21 +59,24 @@ impl<P: Problem> Evaluation<P> {
                 .zip(self.workspaces.par_iter_mut())
                 .for_each(|((((x, f), violation), each), memory)| run(x, f, violation, each, memory));
         }
-        if c > 0 {
-            self.add_each(violation);
-        }
+        self.scales.add_each(&self.each, violation);
     }
+}
 
-    /// Adds the violations of single constraints to the totals, each by its scale.
-    fn add_each(&mut self, total: &mut [f64]) {
-        let c = self.scale.len();
-        for (j, scale) in self.scale.iter_mut().enumerate().filter(|(_, scale)| **scale <= 0.0) {
-            let sound = self.each.iter().skip(j).step_by(c).filter(|v| **v <= LARGEST);
+impl Scales {
+    /// Adds the violations of single constraints, `[n][constraints]`, to the totals, `[n]`, each by its scale.
+    pub(super) fn add_each(&mut self, each: &[f64], total: &mut [f64]) {
+        let c = self.0.len();
+        if c == 0 {
+            return;
+        }
+        for (j, scale) in self.0.iter_mut().enumerate().filter(|(_, scale)| **scale <= 0.0) {
+            let sound = each.iter().skip(j).step_by(c).filter(|v| **v <= LARGEST);
             *scale = sound.fold(0.0, |largest, &v| v.max(largest));
         }
-        for (total, each) in total.iter_mut().zip(self.each.chunks_exact(c)) {
+        for (total, each) in total.iter_mut().zip(each.chunks_exact(c)) {
             // A constraint without a scale has been violated by nobody.
-            let shares = each.iter().zip(&self.scale).filter(|(v, _)| **v > 0.0);
+            let shares = each.iter().zip(&self.0).filter(|(v, _)| **v > 0.0);
             let sum = shares.map(|(v, scale)| v / scale).sum::<f64>().min(LARGEST);
             let sound = each.iter().all(|v| v.abs() <= LARGEST);
             *total = if sound { *total + sum } else { f64::INFINITY };

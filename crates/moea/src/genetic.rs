@@ -112,7 +112,7 @@ impl Genetic {
     fn select(&mut self, population: &mut Population, keep: usize, streams: &mut Streams) {
         self.survival.select(&self.merged, keep, &mut streams.survival, &mut self.chosen, &mut self.ranking);
         population.clear();
-        for &i in &self.chosen {
+        for &i in self.chosen.iter().filter(|i| **i < self.merged.len()) {
             population.push_from(&self.merged, i);
         }
     }
@@ -138,7 +138,8 @@ impl Method for Genetic {
     ) {
         let context = MatingContext { population, ranking: &self.ranking, progress };
         self.mating.pair(&context, wanted, &mut streams.variation, &mut self.pairs);
-        for &pair in &self.pairs {
+        let exists = |pair: &&Pair| pair.first.max(pair.second) < population.len();
+        for &pair in self.pairs.iter().filter(exists) {
             self.breeding.breed(population, pair, wanted, children, &mut streams.variation);
         }
     }

@@ -7,8 +7,9 @@
 //!
 //! # Scale and origin
 //!
-//! Every threshold of normalisation is relative, so that objectives of 1e-3 and 1e3 side by
-//! side, or far from zero, are optimised as well as any.
+//! Units of the objectives change nothing for NSGA-II, NSGA-III in all forms, AGE-MOEA-II, SMS-EMOA and normalised
+//! MOEA/D: every threshold of theirs is relative, also to the origin. MOEA/D as published takes objectives as they are,
+//! and MSOPS-II angles and distances between them: objectives of 1e-3 and 1e3 side by side are searched badly by both.
 //!
 //! # Departures from the paper
 //!

@@ -37,7 +37,8 @@ impl Pair {
 
 /// Chooses parents.
 pub trait Mating: Send {
-    /// Writes pairs of parents for at least `children` children, two children a pair.
+    /// Writes pairs of parents for at least `children` children, two children a pair. A pair of members that do not
+    /// exist has none.
     fn pair(&mut self, context: &MatingContext<'_>, children: usize, rng: &mut Random, pairs: &mut Vec<Pair>);
 
     /// Number of offspring slots that are not filled by new children.

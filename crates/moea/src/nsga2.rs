@@ -52,7 +52,12 @@ impl Survival for Crowding {
     }
 }
 
-/// Both parents win a tournament of two.
+/// Both parents win a tournament of two: by violation, then front, then crowding distance.
+///
+/// Differences to the published selection: the first of two is the next of a random order of all members, an
+/// infeasible one already replaced by the winner by violation against a random member; the second is any member,
+/// also the first itself, where the authors' program takes the next of a second order; and of two that are level the
+/// first wins, not one by lot.
 #[derive(Debug, Clone, Default)]
 pub struct Tournament {
     permutation: Permutation,

@@ -6,8 +6,9 @@
 //! doi 10.1109/TEVC.2013.2281534.
 
 use super::{
-    Population,
+    MoeaError, Population,
     crowding::CrowdingDistance,
+    direction::own,
     normalize::Normalizer,
     random::Random,
     sorting::Sorting,
@@ -87,9 +88,22 @@ pub struct Niching {
 const SURPLUS: f64 = 0.1;
 
 impl Niching {
-    /// For reference directions, `[count][m]` in one slice, of a problem with `m` objectives.
-    pub fn new(directions: &[f64], m: usize) -> Self {
-        let m = m.max(1);
+    /// For reference directions, `[count][m]` in one slice, of a problem with `m` objectives. Of a population with
+    /// another number of objectives the first members survive.
+    ///
+    /// # Errors
+    ///
+    /// [`MoeaError::NoObjectives`]; [`MoeaError::DirectionCount`] and [`MoeaError::Direction`] for directions that are
+    /// none.
+    pub fn new(directions: &[f64], m: usize) -> Result<Self, MoeaError> {
+        if m == 0 {
+            return Err(MoeaError::NoObjectives);
+        }
+        own(m, directions.chunks(m)).map(|_| Self::of(directions, m))
+    }
+
+    /// As [`Self::new`], for directions that have been checked.
+    pub(super) fn of(directions: &[f64], m: usize) -> Self {
         let rays = Rays::new(directions, m);
         let count = rays.count;
         Self {
@@ -113,8 +127,16 @@ impl Niching {
     /// As [`Self::new`], but once every direction that has candidates has a member, and more than a
     /// tenth of the places is still open, the least crowded of the overflowing front get them, not
     /// random ones. Where a front meets few of the directions, most places are of this kind.
-    pub fn filled_by_crowding(directions: &[f64], m: usize) -> Self {
-        Self { crowding: Some(CrowdingDistance::default()), ..Self::new(directions, m) }
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`].
+    pub fn filled_by_crowding(directions: &[f64], m: usize) -> Result<Self, MoeaError> {
+        Self::new(directions, m).map(Self::with_crowding)
+    }
+
+    pub(super) fn with_crowding(self) -> Self {
+        Self { crowding: Some(CrowdingDistance::default()), ..self }
     }
 
     /// Directions, distances to them and to the reference plane of all candidates.
@@ -212,6 +234,10 @@ impl Survival for Niching {
     ) {
         chosen.clear();
         ranking.clear();
+        if merged.objectives() != self.normalised.len() {
+            chosen.extend(0..keep.min(merged.len()));
+            return;
+        }
         self.feasibility.split(merged);
         let feasible = &self.feasibility.feasible;
         self.sorting.sort(merged, feasible);
@@ -283,8 +309,8 @@ mod tests {
         let at = crowded.chain((1..=20).map(|i| 0.1 + 0.045 * f64::from(i)));
         let line: Vec<f64> = at.flat_map(|t| [t, t, 1.0 - t]).collect();
         let directions = das_dennis(3, 2).unwrap();
-        let (random, _) = survivors(Niching::new(&directions, 3), &line, 40);
-        let (spread, _) = survivors(Niching::filled_by_crowding(&directions, 3), &line, 40);
+        let (random, _) = survivors(Niching::new(&directions, 3).unwrap(), &line, 40);
+        let (spread, _) = survivors(Niching::filled_by_crowding(&directions, 3).unwrap(), &line, 40);
         let sparse = |kept: &[f64]| kept.iter().filter(|&&t| t > 0.1).count();
         assert_eq!(sparse(&spread), 20);
         assert!(sparse(&random) < 20, "{random:?}");
@@ -297,8 +323,8 @@ mod tests {
         let front = [directions.clone(), das_dennis(3, 23).unwrap()].concat();
         // 91 niches have a member each; 10 places of 101 are a tenth, 11 of 102 are more.
         for (keep, equal) in [(101, true), (102, false)] {
-            let random = survivors(Niching::new(&directions, 3), &front, keep);
-            let spread = survivors(Niching::filled_by_crowding(&directions, 3), &front, keep);
+            let random = survivors(Niching::new(&directions, 3).unwrap(), &front, keep);
+            let spread = survivors(Niching::filled_by_crowding(&directions, 3).unwrap(), &front, keep);
             assert_eq!(spread == random, equal, "{keep}");
         }
     }

@@ -85,7 +85,8 @@ pub(super) fn method_of(
     mating: impl Mating + 'static,
     survival: impl Survival + 'static,
 ) -> Result<(Checked, Box<dyn Method>), MoeaError> {
-    let settings = Settings { algorithm: Algorithm::Nsga3, ..settings.clone() };
+    // As many members as wanted: nobody knows whether the caller's survival has directions.
+    let settings = Settings { algorithm: Algorithm::Nsga2, ..settings.clone() };
     let checked = check(variables, objectives, &settings)?;
     let breeding = Breeding::new(settings.operators, checked.mutation_rate, checked.space.clone());
     let method = Genetic::new(Box::new(mating), Box::new(survival), breeding);
@@ -96,14 +97,14 @@ pub(super) fn method_of(
 pub(super) fn method(checked: &Checked, settings: &Settings) -> Box<dyn Method> {
     let (m, directions) = (checked.objectives, &checked.directions);
     let breeding = Breeding::new(settings.operators, checked.mutation_rate, checked.space.clone());
-    let niching = || Box::new(Niching::new(directions, m));
+    let niching = || Box::new(Niching::of(directions, m));
     match settings.algorithm {
         Algorithm::Nsga3 => Box::new(Genetic::new(Box::<Uniform>::default(), niching(), breeding)),
         Algorithm::UNsga3 => Box::new(Genetic::new(Box::<NicheTournament>::default(), niching(), breeding)),
         Algorithm::Nsga3Fo { focus, adaptive_rates } => {
             let mating = Focused::new(focus, adaptive_rates, directions, m);
             let survival = if focus.fills_by_crowding() {
-                Box::new(Niching::filled_by_crowding(directions, m))
+                Box::new(Niching::of(directions, m).with_crowding())
             } else {
                 niching()
             };

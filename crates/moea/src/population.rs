@@ -14,16 +14,26 @@ pub struct Population {
     fingerprint: Vec<u64>,
 }
 
+/// Numbers that room is made for at most before there are any.
+const MOST_ROOM: usize = 1 << 20;
+
+/// Row `i` of `[n][width]`; empty if there is none.
+fn row(flat: &[f64], i: usize, width: usize) -> &[f64] {
+    let start = i.saturating_mul(width);
+    flat.get(start..start.saturating_add(width)).unwrap_or_default()
+}
+
 impl Population {
     /// An empty population with room for `capacity` members.
     pub fn with_capacity(variables: usize, objectives: usize, capacity: usize) -> Self {
+        let room = |each: usize| each.saturating_mul(capacity).min(MOST_ROOM);
         Self {
             variables,
             objectives,
-            x: Vec::with_capacity(variables * capacity),
-            f: Vec::with_capacity(objectives * capacity),
-            violation: Vec::with_capacity(capacity),
-            fingerprint: Vec::with_capacity(capacity),
+            x: Vec::with_capacity(room(variables)),
+            f: Vec::with_capacity(room(objectives)),
+            violation: Vec::with_capacity(room(1)),
+            fingerprint: Vec::with_capacity(room(1)),
         }
     }
 
@@ -47,24 +57,24 @@ impl Population {
         self.objectives
     }
 
-    /// Variables of member `i`, `[variables]`.
+    /// Variables of member `i`, `[variables]`; empty if there is none.
     pub fn x(&self, i: usize) -> &[f64] {
-        &self.x[i * self.variables..][..self.variables]
+        row(&self.x, i, self.variables)
     }
 
-    /// Objectives of member `i`, `[objectives]`.
+    /// Objectives of member `i`, `[objectives]`; empty if there is none.
     pub fn f(&self, i: usize) -> &[f64] {
-        &self.f[i * self.objectives..][..self.objectives]
+        row(&self.f, i, self.objectives)
     }
 
-    /// Total violation of constraints of member `i`, 0 if feasible.
+    /// Total violation of constraints of member `i`, 0 if feasible; infinite if there is none.
     pub fn violation(&self, i: usize) -> f64 {
-        self.violation[i]
+        self.violation.get(i).copied().unwrap_or(f64::INFINITY)
     }
 
     /// Whether member `i` violates nothing.
     pub fn is_feasible(&self, i: usize) -> bool {
-        self.violation[i] <= 0.0
+        self.violation(i) <= 0.0
     }
 
     /// Objectives of all members, `[n][objectives]` in one slice.

@@ -11,6 +11,8 @@ use super::Population;
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Record {
     batches: Vec<Batch>,
+    /// Knows the members again that were asked for next; none if the run was over.
+    next: Option<u64>,
 }
 
 /// The members of one question.
@@ -18,8 +20,8 @@ pub struct Record {
 pub(super) struct Batch {
     /// Knows the members again.
     print: u64,
-    /// Bits of objectives and violation of each, `[n][objectives + 1]`: no format loses a digit of them,
-    /// or what is no number.
+    /// Bits of objectives, total violation and violations of single constraints of each,
+    /// `[n][objectives + 1 + constraints]`: no format loses a digit of them, or what is no number.
     values: Vec<u64>,
 }
 
@@ -28,26 +30,52 @@ impl Record {
         &self.batches
     }
 
-    pub(super) fn push(&mut self, asked: &Population, f: &[f64], violations: &[f64]) {
-        let m = asked.objectives().max(1);
-        let members = f.chunks_exact(m).zip(violations);
-        let values = members.flat_map(|(f, violation)| f.iter().chain([violation]).map(|v| v.to_bits()));
-        self.batches.push(Batch { print: asked.print(), values: values.collect() });
+    pub(super) fn push(&mut self, asked: &Population, told: &Told) {
+        let (m, n) = (asked.objectives(), asked.len());
+        let c = told.each.len() / n.max(1);
+        let mut values = Vec::with_capacity(n * (m + 1 + c));
+        for (i, violation) in told.violations.iter().enumerate() {
+            let member = told.f[i * m..][..m].iter().chain([violation]).chain(&told.each[i * c..][..c]);
+            values.extend(member.map(|v| v.to_bits()));
+        }
+        self.batches.push(Batch { print: asked.print(), values });
+    }
+
+    /// Notes the members asked for after the last values told.
+    pub(super) fn ask_next(&mut self, asked: &Population) {
+        self.next = (!asked.is_empty()).then(|| asked.print());
+    }
+
+    /// Whether both runs go on with the same members, unless one of them is over.
+    pub(super) fn goes_on_as(&self, other: &Self) -> bool {
+        self.next.zip(other.next).is_none_or(|(own, other)| own == other)
     }
 }
 
+/// Values of the members of one question: objectives `[n][objectives]`, total violations `[n]` and those of single
+/// constraints `[n][constraints]`.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Told {
+    pub(super) f: Vec<f64>,
+    pub(super) violations: Vec<f64>,
+    pub(super) each: Vec<f64>,
+}
+
 impl Batch {
-    /// Objectives and violations; none if they are of other members than those asked for.
-    pub(super) fn values(&self, asked: &Population) -> Option<(Vec<f64>, Vec<f64>)> {
-        let m = asked.objectives();
-        if self.print != asked.print() || self.values.len() != asked.len() * (m + 1) {
+    /// What was told; none if it is of other members than those asked for.
+    pub(super) fn values(&self, asked: &Population) -> Option<Told> {
+        let (m, n) = (asked.objectives(), asked.len());
+        let width = self.values.len() / n.max(1);
+        if self.print != asked.print() || width <= m || self.values.len() != n * width {
             return None;
         }
-        let (mut f, mut violations) = (Vec::new(), Vec::new());
-        for member in self.values.chunks_exact(m + 1) {
-            f.extend(member[..m].iter().map(|&bits| f64::from_bits(bits)));
-            violations.push(f64::from_bits(member[m]));
+        let mut told = Told::default();
+        for member in self.values.chunks_exact(width) {
+            let number = |&bits: &u64| f64::from_bits(bits);
+            told.f.extend(member[..m].iter().map(number));
+            told.violations.push(f64::from_bits(member[m]));
+            told.each.extend(member[m + 1..].iter().map(number));
         }
-        Some((f, violations))
+        Some(told)
     }
 }

@@ -1,10 +1,15 @@
 //! A run step by step: members are asked for and their values told.
 
+use std::cell::Cell;
+
 use super::{
-    MoeaError, Outcome, Progress, Record, Settings, Variables, evaluate,
+    MoeaError, Outcome, Progress, Record, Settings, Variables,
+    evaluate::{self, Scales},
+    genetic::Method,
     mating::Mating,
     optimise::{method, method_of},
-    settings::check,
+    record::Told,
+    settings::{Checked, check},
     state::State,
     survival::Survival,
 };
@@ -39,9 +44,18 @@ use super::{
 pub struct Run {
     state: State,
     record: Record,
+    /// None before the first values are told.
+    scales: Option<Scales>,
+    /// Whether somebody asked since values were told.
+    asked: Cell<bool>,
 }
 
 impl Run {
+    fn of(checked: &Checked, settings: &Settings, method: Box<dyn Method>) -> Self {
+        let state = State::new(checked, settings, method);
+        Self { state, record: Record::default(), scales: None, asked: Cell::new(false) }
+    }
+
     /// A run of the algorithm of the settings on variables: bounds alone, `[variables]`, if all are real, else
     /// [`Variables`].
     ///
@@ -55,7 +69,7 @@ impl Run {
     ) -> Result<Self, MoeaError> {
         let checked = check(variables.into(), objectives, settings)?;
         let method = method(&checked, settings);
-        Ok(Self { state: State::new(&checked, settings, method), record: Record::default() })
+        Ok(Self::of(&checked, settings, method))
     }
 
     /// A run with a mating and a survival of the caller's, as [`optimise_with`](super::optimise_with).
@@ -71,7 +85,7 @@ impl Run {
         survival: impl Survival + 'static,
     ) -> Result<Self, MoeaError> {
         let (checked, method) = method_of(variables.into(), objectives, settings, mating, survival)?;
-        Ok(Self { state: State::new(&checked, settings, method), record: Record::default() })
+        Ok(Self::of(&checked, settings, method))
     }
 
     /// Takes up a run of [`Self::new`] where its record ends.
@@ -91,26 +105,32 @@ impl Run {
         Ok(run)
     }
 
-    /// Tells a new run what the record of an equal one holds.
+    /// Tells a new run what the record of an equal one holds. After an error the run is of no use.
     ///
     /// # Errors
     ///
-    /// [`MoeaError::Record`] when the record holds other members than this run asks for.
+    /// [`MoeaError::Record`] when the record holds other members than this run asks for, those after the last
+    /// values too, or when this run was told values before.
     pub fn replay(&mut self, record: &Record) -> Result<(), MoeaError> {
+        let is_new = self.record.batches().is_empty();
         for batch in record.batches() {
-            let other = MoeaError::Record { evaluation: self.progress().evaluations };
             let asked = &self.state.pending;
-            let Some((f, violations)) = batch.values(asked).filter(|_| !self.is_over()) else {
-                return Err(other);
-            };
-            self.tell(&f, &violations)?;
+            let told = batch.values(asked).filter(|_| is_new && !self.is_over());
+            let told = told.ok_or_else(|| self.other_record())?;
+            self.asked.set(true);
+            self.take(&told)?;
         }
-        Ok(())
+        if is_new && self.record.goes_on_as(record) { Ok(()) } else { Err(self.other_record()) }
+    }
+
+    fn other_record(&self) -> MoeaError {
+        MoeaError::Record { evaluation: self.progress().evaluations }
     }
 
     /// Variables of the members to evaluate next, `[variables]` each; the same until they are told,
     /// none when the run is over.
     pub fn ask(&self) -> Vec<&[f64]> {
+        self.asked.set(true);
         (0..self.state.pending.len()).map(|i| self.state.pending.x(i)).collect()
     }
 
@@ -119,23 +139,49 @@ impl Run {
     ///
     /// # Errors
     ///
-    /// [`MoeaError::Told`] for another number of values; then nothing has changed.
+    /// [`MoeaError::Told`] for another number of values, [`MoeaError::NotAsked`] for values told again,
+    /// [`MoeaError::ToldEach`] if constraints were told one by one before; then nothing has changed.
     pub fn tell(&mut self, objectives: &[f64], violations: &[f64]) -> Result<(), MoeaError> {
+        self.take(&Told { f: objectives.to_vec(), violations: violations.to_vec(), each: Vec::new() })
+    }
+
+    /// As [`Self::tell`], with the violations of single constraints, `[n][constraints]` in one slice, each in a unit of
+    /// its own, as [`Problem::violations`](super::Problem::violations) writes them: what is not above 0 is kept.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::tell`]; [`MoeaError::ToldEach`] for another number of constraints than before.
+    pub fn tell_each(&mut self, objectives: &[f64], violations: &[f64]) -> Result<(), MoeaError> {
+        let totals = vec![0.0; self.state.pending.len()];
+        self.take(&Told { f: objectives.to_vec(), violations: totals, each: violations.to_vec() })
+    }
+
+    fn take(&mut self, told: &Told) -> Result<(), MoeaError> {
         let (members, m) = (self.state.pending.len(), self.state.pending.objectives());
-        if objectives.len() != members * m || violations.len() != members {
-            let (objectives, violations) = (objectives.len(), violations.len());
+        if told.f.len() != members * m || told.violations.len() != members {
+            let (objectives, violations) = (told.f.len(), told.violations.len());
             return Err(MoeaError::Told { objectives, violations, members, wanted: members * m });
+        }
+        let constraints = self.scales.as_ref().map(|scales| scales.0.len());
+        let c = told.each.len() / members.max(1);
+        if told.each.len() != members * c || constraints.is_some_and(|before| members > 0 && before != c) {
+            return Err(MoeaError::ToldEach { violations: told.each.len(), members, constraints });
         }
         if members == 0 {
             return Ok(());
         }
-        self.record.push(&self.state.pending, objectives, violations);
-        let (_, f, violation) = self.state.pending.evaluation_parts();
-        f.copy_from_slice(objectives);
-        for ((f, own), &told) in f.chunks_exact_mut(m).zip(violation).zip(violations) {
+        if !self.asked.take() {
+            return Err(MoeaError::NotAsked { evaluations: self.progress().evaluations });
+        }
+        self.record.push(&self.state.pending, told);
+        let (_, f, totals) = self.state.pending.evaluation_parts();
+        f.copy_from_slice(&told.f);
+        for ((f, own), &told) in f.chunks_exact_mut(m).zip(totals.iter_mut()).zip(&told.violations) {
             *own = evaluate::checked(told, f);
         }
+        self.scales.get_or_insert_with(|| Scales(vec![0.0; c])).add_each(&told.each, totals);
         self.state.advance();
+        self.record.ask_next(&self.state.pending);
         Ok(())
     }
 

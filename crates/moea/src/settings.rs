@@ -1,7 +1,7 @@
 //! What a run is asked to do.
 
 use super::{
-    direction::Directions,
+    direction::{Directions, MOST_OBJECTIVES},
     error::MoeaError,
     focus::Focus,
     variables::{Space, Variables},
@@ -25,12 +25,12 @@ pub enum Algorithm {
     },
     /// Deb, Pratap, Agarwal and Meyarivan 2002.
     Nsga2,
-    /// Zhang and Li 2007 with boundary intersection (PBI, theta = 5).
+    /// Zhang and Li 2007 with boundary intersection (PBI, theta = 5). As published, units of the objectives matter.
     Moead {
-        /// Whether objectives are divided by the range of the population first.
+        /// Whether objectives are divided by the intercepts of the front first.
         normalized: bool,
     },
-    /// Hughes 2007.
+    /// Hughes 2007. Units of the objectives matter.
     Msops2,
     /// Panichella 2022, with the tournament of NSGA-II.
     AgeMoea2,
@@ -63,8 +63,9 @@ pub struct Settings {
     pub algorithm: Algorithm,
     /// Reference directions.
     pub directions: Directions,
-    /// Wanted number of members; by default the smallest multiple of four not below the number
-    /// of directions, and never fewer than directions.
+    /// Wanted number of members, by default that of directions; rounded up to a multiple of four. NSGA-III, U-NSGA-III
+    /// and NSGA-III-FO have no fewer members than directions ([`Directions::FromPopulation`] gives as many as fit),
+    /// MOEA/D has one a direction.
     pub population: Option<usize>,
     /// Length of the run; 20 000 evaluations by default.
     pub budget: Budget,
@@ -117,6 +118,9 @@ pub(super) fn check(
     if objectives == 0 {
         return Err(MoeaError::NoObjectives);
     }
+    if objectives > MOST_OBJECTIVES {
+        return Err(MoeaError::TooManyObjectives { objectives, most: MOST_OBJECTIVES });
+    }
     for (member, x) in settings.initial.iter().enumerate() {
         let given = x.iter().filter(|v| v.is_finite()).count();
         if given != space.len() || x.len() != space.len() {
@@ -147,9 +151,11 @@ pub(super) fn check(
         Algorithm::Moead { .. } if objectives == 1 => (vec![1.0; wanted.max(4)], wanted.max(4)),
         _ => (directions, count),
     };
+    let rounded = |members: usize| members.max(4).next_multiple_of(4);
     let members = match settings.algorithm {
         Algorithm::Moead { .. } => count,
-        _ => wanted.max(count).max(4).next_multiple_of(4),
+        Algorithm::Nsga3 | Algorithm::UNsga3 | Algorithm::Nsga3Fo { .. } => rounded(wanted.max(count)),
+        Algorithm::Nsga2 | Algorithm::Msops2 | Algorithm::AgeMoea2 | Algorithm::SmsEmoa => rounded(wanted),
     };
     Ok(Checked { space, objectives, directions, members, mutation_rate })
 }

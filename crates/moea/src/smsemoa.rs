@@ -59,6 +59,8 @@ impl LeastContribution {
         let (value, measured) = (&mut self.value, &mut self.measured);
         value.clear();
         value.extend(super::indicator::contributions(points.set, points.reference));
+        // Without objectives there are no contributions.
+        value.resize(self.order.len(), 0.0);
         measured.clear();
         measured.resize(self.order.len(), 0);
         for gone in 0..self.order.len().saturating_sub(keep) {

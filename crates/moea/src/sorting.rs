@@ -22,7 +22,7 @@ pub fn dominates(a: &[f64], b: &[f64]) -> bool {
 
 impl Sorting {
     /// Sorts the given members into fronts by objectives alone; members with equal objectives
-    /// share a front.
+    /// share a front. Members that the population has not are left out.
     pub fn sort(&mut self, population: &Population, members: &[usize]) {
         for front in &mut self.fronts[..self.used] {
             front.clear();
@@ -32,7 +32,7 @@ impl Sorting {
         }
         self.used = 0;
         self.order.clear();
-        self.order.extend_from_slice(members);
+        self.order.extend(members.iter().filter(|i| **i < population.len()));
         let m = population.objectives();
         self.order.sort_unstable_by(|&a, &b| {
             let (fa, fb) = (population.f(a), population.f(b));

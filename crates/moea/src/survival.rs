@@ -71,7 +71,8 @@ impl Ranking {
 /// ```
 pub trait Survival: Send {
     /// Writes the indices of `keep` members (all, if fewer) of `merged` into `chosen`, and the
-    /// findings on them into `ranking`, in the same order. Both hold those of the call before.
+    /// findings on them into `ranking`, in the same order. Both hold those of the call before. An index that
+    /// `merged` has not is left out.
     fn select(
         &mut self,
         merged: &Population,

@@ -8,7 +8,8 @@ use super::{Population, Progress, indicator::igd_plus};
 ///
 /// The gain from an old front to a new one is the IGD+ of the old one to the new one less that of the
 /// new one to the old one, in shares of the new front's range: fronts that differ in spacing alone gain
-/// nothing. Nothing ends before a feasible member is found. With [`Budget::Observer`] a run ends by it
+/// nothing. In an objective in which the new front has no range, as with a single objective, the gain is a share of the
+/// range of all feasible members watched so far: neither origin nor unit of an objective matters. Nothing ends before a feasible member is found. With [`Budget::Observer`] a run ends by it
 /// alone; the focus of NSGA-III-FO fades with a budget only.
 ///
 /// [`Budget::Observer`]: super::Budget::Observer
@@ -28,30 +29,42 @@ pub struct Tolerance {
     period: u64,
     /// Front of the comparison before, `[n][objectives]`.
     before: Vec<f64>,
+    /// Least and largest value of each objective of the feasible members so far, `[objectives]`.
+    seen: Vec<(f64, f64)>,
 }
 
 impl Tolerance {
     /// Ends a run that gains no more than `least` (a share of the front's range) within `period`
     /// generations.
     pub fn new(least: f64, period: u64) -> Self {
-        Self { least, period: period.max(1), before: Vec::new() }
+        Self { least, period: period.max(1), before: Vec::new(), seen: Vec::new() }
     }
 
     /// Breaks if the run has gained too little.
     pub fn watch(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
+        let population = progress.population;
+        self.see(population);
         if !progress.generation.is_multiple_of(self.period) {
             return ControlFlow::Continue(());
         }
-        let population = progress.population;
         let now = front(population);
         let before = std::mem::replace(&mut self.before, now);
         if before.is_empty() || self.before.is_empty() {
             return ControlFlow::Continue(());
         }
-        if gain(&before, &self.before, population.objectives()) <= self.least {
+        if gain(&before, &self.before, &self.seen) <= self.least {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
+        }
+    }
+
+    fn see(&mut self, population: &Population) {
+        self.seen.resize(population.objectives(), (f64::INFINITY, f64::NEG_INFINITY));
+        for i in (0..population.len()).filter(|&i| population.is_feasible(i)) {
+            for ((least, most), &f) in self.seen.iter_mut().zip(population.f(i)) {
+                (*least, *most) = (least.min(f), most.max(f));
+            }
         }
     }
 }
@@ -61,16 +74,16 @@ fn front(population: &Population) -> Vec<f64> {
     population.front().into_iter().flat_map(|i| population.f(i).iter().copied()).collect()
 }
 
-/// Mean distance by which a front is better than one before, in shares of its range.
-fn gain(before: &[f64], now: &[f64], m: usize) -> f64 {
-    let range: Vec<f64> = (0..m)
-        .map(|k| {
-            let values = || now.iter().skip(k).step_by(m).copied();
-            let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
-            // A front without extent in an objective is measured by its size.
-            if range > 0.0 { range } else { values().fold(f64::MIN_POSITIVE, |most, v| most.max(v.abs())) }
-        })
-        .collect();
+/// Mean distance by which a front is better than one before, in shares of its range; of the range of all that was
+/// `seen` where it has none, `[m]`.
+fn gain(before: &[f64], now: &[f64], seen: &[(f64, f64)]) -> f64 {
+    let m = seen.len();
+    let range = seen.iter().enumerate().map(|(k, (least, most))| {
+        let values = || now.iter().skip(k).step_by(m).copied();
+        let own = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+        [own, most - least].into_iter().find(|range| *range > 0.0).unwrap_or(1.0)
+    });
+    let range: Vec<f64> = range.collect();
     let scaled = |f: &[f64]| f.iter().enumerate().map(|(i, f)| f / range[i % m]).collect::<Vec<f64>>();
     let (before, now) = (scaled(before), scaled(now));
     igd_plus(&before, &now, m) - igd_plus(&now, &before, m)
@@ -86,11 +99,12 @@ mod tests {
             let at = move |i: u32| f64::from(i) / f64::from(n);
             (0..=n).flat_map(|i| [at(i) + above, 500.0 * (1.0 - at(i) + above)]).collect()
         };
-        assert!(gain(&line(50, 0.0), &line(50, 0.0), 2).abs() < 1e-15);
+        let seen = [(0.0, 1.0); 2];
+        assert!(gain(&line(50, 0.0), &line(50, 0.0), &seen).abs() < 1e-15);
         // A front that comes nearer by a tenth of its range in both objectives; neighbours shorten the way.
         let (near, far) = (line(200, 0.0), line(200, 0.1));
-        assert!((gain(&far, &near, 2) - 0.1 * 2_f64.sqrt()).abs() < 0.01, "{}", gain(&far, &near, 2));
-        assert!(gain(&near, &far, 2) < -0.1);
-        assert!(gain(&line(10, 0.0), &line(11, 0.0), 2).abs() < 0.01);
+        assert!((gain(&far, &near, &seen) - 0.1 * 2_f64.sqrt()).abs() < 0.01, "{}", gain(&far, &near, &seen));
+        assert!(gain(&near, &far, &seen) < -0.1);
+        assert!(gain(&line(10, 0.0), &line(11, 0.0), &seen).abs() < 0.01);
     }
 }

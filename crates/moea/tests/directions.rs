@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
-use moea::{ALGORITHMS, Budget, Directions, Settings, benchmark::Benchmark, optimise, silent};
+use moea::{
+    ALGORITHMS, Budget, Crowding, Directions, Settings, Tournament, benchmark::Benchmark, optimise,
+    optimise_with, silent,
+};
 
 #[test]
 fn members_gather_where_own_directions_point() {
@@ -20,6 +23,28 @@ fn members_gather_where_own_directions_point() {
     };
     let (own, usual) = (share(Directions::Own(corner)), share(Directions::Usual));
     assert!(own > 0.8 && usual < 0.3, "{own} {usual}");
+}
+
+#[test]
+fn a_wanted_population_is_kept_where_no_directions_need_members() {
+    let problem = Benchmark::named("DTLZ2", 3).unwrap();
+    let members = |settings: Settings| optimise(&problem, &settings, silent).unwrap().population.len();
+    for named in ALGORITHMS {
+        for (wanted, kept, with_directions) in [(1, 4, 92), (20, 20, 92), (93, 96, 96), (200, 200, 200)] {
+            let (budget, population) = (Budget::Generations(2), Some(wanted));
+            let settings = Settings { algorithm: named.algorithm, budget, population, ..Settings::default() };
+            let want = match named.name {
+                "nsga2" | "msops2" | "age-moea-2" | "sms-emoa" => kept,
+                "moead" | "moead-normalized" => 91,
+                _ => with_directions,
+            };
+            assert_eq!(members(settings), want, "{} {wanted}", named.name);
+        }
+    }
+    // A mating and a survival of the caller's.
+    let settings = Settings { budget: Budget::Generations(2), population: Some(20), ..Settings::default() };
+    let run = optimise_with(&problem, &settings, Tournament::default(), Crowding::default(), silent);
+    assert_eq!(run.unwrap().population.len(), 20);
 }
 
 #[test]

@@ -21,6 +21,55 @@ fn a_run_ends_early_with_nearly_the_quality_of_a_long_one() {
     }
 }
 
+/// A bowl whose one objective, and the second of two, is `least` at the bottom, in a unit.
+struct Bowl {
+    objectives: usize,
+    least: f64,
+    unit: f64,
+}
+
+impl Problem for Bowl {
+    type Workspace = ();
+
+    fn bounds(&self) -> Vec<Bounds> {
+        vec![(-1.0, 2.0); 4]
+    }
+
+    fn objectives(&self) -> usize {
+        self.objectives
+    }
+
+    fn evaluate(&self, x: &[f64], f: &mut [f64], (): &mut ()) -> f64 {
+        f.fill(self.unit * (x.iter().map(|x| x * x).sum::<f64>() + self.least));
+        0.0
+    }
+
+    fn is_cheap(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn a_run_whose_front_is_a_point_ends_at_the_same_time_whatever_the_origin_and_the_unit() {
+    let settings = Settings { budget: Budget::Generations(400), ..Settings::default() };
+    for objectives in [1, 2] {
+        let ends = |least: f64, unit: f64| {
+            let mut tolerance = Tolerance::new(1e-3, 10);
+            let problem = Bowl { objectives, least, unit };
+            optimise(&problem, &settings, |progress| tolerance.watch(progress)).unwrap().generations
+        };
+        let generations = ends(0.0, 1.0);
+        assert!((20..200).contains(&generations), "{objectives}: {generations}");
+        for (least, unit) in [(-64.0, 1.0), (1024.0, 1.0), (0.0, 1_048_576.0), (0.0, 1.0 / 1_048_576.0)] {
+            let moved = ends(least, unit);
+            assert!(
+                moved.abs_diff(generations) <= 10,
+                "{objectives}, {least} {unit}: {moved}, not {generations}"
+            );
+        }
+    }
+}
+
 /// Nothing is feasible.
 struct Never;
 

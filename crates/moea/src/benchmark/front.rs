@@ -7,6 +7,8 @@ use crate::{Population, das_dennis, direction_count};
 
 /// Cells an objective's range is cut into where a front is thinned to one point a cell.
 const CELLS: f64 = 40.0;
+/// Most points of any front.
+const MOST: usize = 1_000_000;
 /// Most points of a front before it is thinned.
 const GRID: f64 = 20_000.0;
 
@@ -21,7 +23,7 @@ fn directions(m: usize, count: usize) -> Vec<f64> {
 
 /// At most about `count` points of the front, spread over it, `[n][m]`.
 pub(super) fn points(problem: &Benchmark, count: usize) -> Vec<f64> {
-    let m = problem.objectives;
+    let (m, count) = (problem.objectives, count.clamp(1, MOST));
     match (problem.family, problem.number) {
         (Family::Dtlz, 1) => scaled(directions(m, count), m, |z, _| 0.5 / z.iter().sum::<f64>()),
         (Family::Dtlz, 2..=4) => scaled(directions(m, count), m, |z, _| 1.0 / length(z)),
@@ -101,12 +103,26 @@ fn line(m: usize, count: usize) -> Vec<f64> {
     flat
 }
 
-/// All combinations of evenly spaced numbers in 0 to 1, at most about `most` of them.
+/// All combinations of evenly spaced numbers in 0 to 1, at most about `most` of them. Where there are many
+/// more corners than that, only those with no, one, or all axes up to one at their upper ends.
 fn each_of_grid(axes: usize, most: f64, mut take: impl FnMut(&[f64])) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive root")]
     let steps = (most.powf(1.0 / axes.max(1) as f64).floor() as usize).max(2);
     let mut at = vec![0usize; axes];
     let mut u = vec![0.0; axes];
+    if 2_f64.powf(axes as f64) > 4.0 * most {
+        take(&u);
+        for single in [true, false] {
+            for axis in 0..axes {
+                u[axis] = 1.0;
+                take(&u);
+                if single {
+                    u[axis] = 0.0;
+                }
+            }
+        }
+        return;
+    }
     loop {
         for (u, &at) in u.iter_mut().zip(&at) {
             *u = at as f64 / (steps - 1) as f64;

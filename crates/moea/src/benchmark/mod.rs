@@ -4,7 +4,10 @@ mod dtlz;
 mod front;
 mod wfg;
 
-use super::problem::{Bounds, Problem};
+use super::{
+    direction::MOST_OBJECTIVES,
+    problem::{Bounds, Problem},
+};
 
 /// A family of problems that share their conventions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -25,6 +28,8 @@ pub struct Benchmark {
     positions: usize,
 }
 
+const MOST_VARIABLES: usize = 1_000_000;
+
 /// Every name that [`Benchmark::named`] knows.
 pub const NAMES: [&str; 16] = [
     "DTLZ1", "DTLZ2", "DTLZ3", "DTLZ4", "DTLZ5", "DTLZ6", "DTLZ7", "WFG1", "WFG2", "WFG3", "WFG4", "WFG5",
@@ -32,7 +37,7 @@ pub const NAMES: [&str; 16] = [
 ];
 
 impl Benchmark {
-    /// The problem of a name such as "DTLZ3" or "wfg1" for at least two objectives, with the
+    /// The problem of a name such as "DTLZ3" or "wfg1" for 2 to 1000 objectives, with the
     /// usual number of variables: m + 4 for DTLZ1, m + 19 for DTLZ7, m + 9 for the other DTLZ,
     /// m - 1 positions and 10 distances for WFG.
     pub fn named(name: &str, objectives: usize) -> Option<Self> {
@@ -48,18 +53,19 @@ impl Benchmark {
             (Family::Dtlz, 7) => 20,
             _ => 10,
         };
-        (objectives >= 2).then_some(Self {
+        let positions = objectives.saturating_sub(1).min(MOST_OBJECTIVES);
+        (2..=MOST_OBJECTIVES).contains(&objectives).then_some(Self {
             family,
             number,
             objectives,
-            variables: objectives - 1 + distances,
-            positions: objectives - 1,
+            variables: positions + distances,
+            positions,
         })
     }
 
     /// The same problem with other numbers of positions and distances; `None` where the family
     /// does not allow them: DTLZ has m - 1 positions, WFG a multiple of it and an even number
-    /// of distances, both at least one distance.
+    /// of distances, both at least one distance; there are at most a million variables.
     #[must_use]
     pub fn with_variables(self, positions: usize, distances: usize) -> Option<Self> {
         let groups = self.objectives - 1;
@@ -72,7 +78,8 @@ impl Benchmark {
                     && distances.is_multiple_of(2)
             }
         };
-        fits.then_some(Self { positions, variables: positions.checked_add(distances)?, ..self })
+        let variables = positions.checked_add(distances).filter(|most| *most <= MOST_VARIABLES)?;
+        fits.then_some(Self { variables, positions, ..self })
     }
 
     /// Name, as "DTLZ3".
@@ -84,9 +91,23 @@ impl Benchmark {
         format!("{family}{}", self.number)
     }
 
-    /// At most about `count` points spread over the true front, `[n][objectives]`.
+    /// At most about `count` points spread over the true front, `[n][objectives]`; over the usual part of it where
+    /// [`Self::has_whole_front`] is false.
     pub fn front(&self, count: usize) -> Vec<f64> {
         front::points(self, count)
+    }
+
+    /// Whether [`Self::front`] covers the whole true front.
+    ///
+    /// WFG3 from three objectives on, and DTLZ5 and DTLZ6 from four on, were meant to have a curve for a front, and
+    /// comparisons measure to this curve. Their true fronts have further parts (Ishibuchi, Masuda and Nojima 2016, on
+    /// degenerate test problems): IGD and IGD+ do not reward members there.
+    pub fn has_whole_front(&self) -> bool {
+        match (self.family, self.number) {
+            (Family::Wfg, 3) => self.objectives < 3,
+            (Family::Dtlz, 5 | 6) => self.objectives < 4,
+            _ => true,
+        }
     }
 
     /// Largest value of each objective on the front, `[objectives]`; the smallest is taken as 0.
@@ -112,6 +133,9 @@ impl Problem for Benchmark {
     }
 
     fn evaluate(&self, x: &[f64], objectives: &mut [f64], workspace: &mut Vec<f64>) -> f64 {
+        if x.len() != self.variables || objectives.len() != self.objectives {
+            return f64::INFINITY;
+        }
         match self.family {
             Family::Dtlz => dtlz::evaluate(self.number, x, objectives),
             Family::Wfg => wfg::evaluate(self.number, self.positions, x, objectives, workspace),

@@ -208,7 +208,7 @@ mod tests {
         let (mut chosen, mut ranking) = (Vec::new(), Ranking::default());
         let mut rng = Random::new(1, Stream::Survival);
         let n = population.len();
-        Niching::filled_by_crowding(&directions, 3).select(
+        Niching::filled_by_crowding(&directions, 3).unwrap().select(
             population,
             n,
             &mut rng,

@@ -6,7 +6,7 @@ use super::hypervolume::exclusive;
 /// minimised.
 ///
 /// `set` is `[n][objectives]` in one slice, `reference` `[objectives]`. Points that are dominated, repeated or not
-/// better than the reference in every objective contribute nothing. O(n²) for two and three objectives where few
+/// better than the reference in every objective, or not finite, contribute nothing. O(n²) for two and three objectives where few
 /// points border on one, at worst O(n³); about n times more for each further one. Exact but for rounding, about
 /// 1e-15 of the largest box.
 pub fn contributions(set: &[f64], reference: &[f64]) -> Vec<f64> {
@@ -29,7 +29,9 @@ impl Points<'_> {
     pub(crate) fn contribution(&self, i: usize, counts: impl Fn(usize) -> bool) -> f64 {
         let m = self.reference.len();
         let point = |j: usize| &self.set[j * m..][..m];
-        let inside = |j: usize| point(j).iter().zip(self.reference).all(|(f, reference)| f < reference);
+        let inside = |j: usize| {
+            point(j).iter().zip(self.reference).all(|(f, reference)| f < reference && f.is_finite())
+        };
         if m == 0 || !inside(i) {
             return 0.0;
         }

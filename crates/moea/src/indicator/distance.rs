@@ -3,8 +3,8 @@
 /// Inverted generational distance: the mean over the reference points of the Euclidean
 /// distance to the nearest member of `set`.
 ///
-/// Both sets are `[n][objectives]` in one slice. Infinite for an empty set, NaN for no
-/// reference points. O(n x n).
+/// Both sets are `[n][objectives]` in one slice. A member with an objective that is NaN counts for nothing. Infinite
+/// for an empty set, NaN for no reference points. O(n x n).
 ///
 /// DIFFERENCE(eq. 10): the paper sums over the set and divides by the number of reference
 /// points; the definition (Bosman and Thierens 2003) sums over the reference points.
@@ -15,7 +15,7 @@ pub fn igd(set: &[f64], reference: &[f64], objectives: usize) -> f64 {
 /// IGD+ (Ishibuchi et al. 2015): as [`igd`], but only objectives in which the member is worse
 /// than the reference point count, which makes it agree with dominance.
 pub fn igd_plus(set: &[f64], reference: &[f64], objectives: usize) -> f64 {
-    mean_nearest(set, reference, objectives, |gap| gap.max(0.0))
+    mean_nearest(set, reference, objectives, |gap| if gap < 0.0 { 0.0 } else { gap })
 }
 
 fn mean_nearest(set: &[f64], reference: &[f64], objectives: usize, part: impl Fn(f64) -> f64) -> f64 {

@@ -7,7 +7,7 @@
 /// Volume that `set` dominates within `reference`, all objectives minimised.
 ///
 /// `set` is `[n][objectives]` in one slice, `reference` `[objectives]`. Points that are not
-/// better than the reference in every objective count for nothing. O(n²) for three objectives,
+/// better than the reference in every objective, or not finite, count for nothing. O(n²) for three objectives,
 /// about n times more for each further one. Exact but for rounding, about 1e-15 a point.
 pub fn hypervolume(set: &[f64], reference: &[f64]) -> f64 {
     let m = reference.len();
@@ -16,7 +16,7 @@ pub fn hypervolume(set: &[f64], reference: &[f64]) -> f64 {
     }
     let points: Vec<f64> = set
         .chunks_exact(m)
-        .filter(|p| p.iter().zip(reference).all(|(p, r)| p < r))
+        .filter(|p| p.iter().zip(reference).all(|(p, r)| p < r && p.is_finite()))
         .flatten()
         .copied()
         .collect();
