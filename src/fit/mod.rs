@@ -36,7 +36,7 @@ pub use error::FitError;
 pub use estimated::Estimated;
 pub use excite::{Excitation, JointRoom, Ramp, excite};
 pub use held_out::HeldOut;
-pub use learn::{Character, JointStep, Learning, Learnt, Oscillation, Room, Step, Trial, learn};
+pub use learn::{Character, JointStep, Learning, Learnt, Oscillation, Room, Stalled, Step, Trial, learn};
 pub use model::{Model, STEP_S};
 pub use outcome::{Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LeftOut};
 pub use predict::predict;

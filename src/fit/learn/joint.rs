@@ -9,6 +9,7 @@ use super::{
     correct::{Aim, CALM_MODEL_HZ, Manner, Workspace, faded, first, inverted, rms, unexplained_rad},
     oscillation::{Character, Oscillation},
     shape::{Wanted, shaped},
+    stalled::stalled,
 };
 use crate::{math::lowpass, series::Track, units::DEGREE_RAD};
 
@@ -46,7 +47,7 @@ const FOLLOWS: f64 = 0.5;
 const EXPLAINED: f64 = 0.2;
 
 /// Corrections below this are none, rad.
-const NONE_RAD: f64 = 1e-3 * DEGREE_RAD;
+pub(super) const NONE_RAD: f64 = 1e-3 * DEGREE_RAD;
 
 /// One joint with its runs.
 pub(super) struct Joint<'a> {
@@ -112,6 +113,7 @@ impl<'a> Joint<'a> {
             cut_off_hz: 0.0,
             unseen_s: self.answers.last().map_or(0.0, |run| run.unseen_s(&self.planned)),
             shifted_rad: self.answers.last().map_or(0.0, |run| run.shifted_rad),
+            stalled: stalled(&sent, &errors, free),
             correction: nothing,
         };
         let Some(fit) = self.fit.filter(|_| !untouched && !free.is_empty() && settings.gain > 0.0) else {
@@ -134,6 +136,9 @@ impl<'a> Joint<'a> {
             (Step::Kept { from }, kept)
         } else {
             let (step, mut wanted_rad) = self.wanted(fit, &manner, &made.rms_error_rad, &fade, settings);
+            for held in &made.stalled {
+                wanted_rad[held.steps.clone()].copy_from_slice(&sent[held.from][held.steps.clone()]);
+            }
             faded(&mut wanted_rad, &fade);
             (step, wanted_rad)
         };
@@ -241,7 +246,7 @@ fn motion(mut angle_rad: Vec<f64>) -> f64 {
 }
 
 /// Largest distance from zero.
-fn largest(values: &[f64]) -> f64 {
+pub(super) fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 

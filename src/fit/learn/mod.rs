@@ -6,11 +6,13 @@ mod correct;
 mod joint;
 mod oscillation;
 mod shape;
+mod stalled;
 
 use std::ops::Range;
 
 pub use oscillation::{Character, Oscillation};
 pub use shape::Room;
+pub use stalled::Stalled;
 
 use super::{
     Fit, FitError,
@@ -115,6 +117,8 @@ pub struct JointStep {
     /// What the newest run was off by at rest, before its first motion and after its last alike, rad: that is a zero, or a load,
     /// and is not learnt; zero where the rests differ.
     pub shifted_rad: f64,
+    /// Where a larger correction gained nothing: the smaller one is taken again there.
+    pub stalled: Vec<Stalled>,
     /// Correction, rad, its speed, rad/s, and acceleration, rad/s², every [`STEP_S`] from the plan's first sample.
     pub correction: Vec<[f64; 3]>,
 }

@@ -31,6 +31,13 @@ const MOST_STEPS: f64 = 1e6;
 /// Shifts between these are what machines do, s.
 const USUAL_S: [f64; 2] = [-0.1, 1.0];
 
+/// A lag that leaves less than what a shift leaves by this factor is the reason: filters of set values lag by seconds.
+const LAGS: f64 = 1.25;
+
+/// Lags that are tried, by the shift, and how many equal filters make them.
+const LAGS_BY_SHIFT: [f64; 5] = [0.8, 0.9, 1.0, 1.1, 1.2];
+const FILTERS: [u32; 3] = [1, 2, 3];
+
 /// Durations by planned durations that machines keep.
 const USUAL_PACE: [f64; 2] = [0.97, 1.03];
 
@@ -58,7 +65,7 @@ pub(super) fn message(planned: &Series, measured: &Series) -> Option<String> {
             1e3 * shift_s
         ));
     }
-    if shift_s > USUAL_S[1] && left < LEFT[1] {
+    if shift_s > USUAL_S[1] && left < LEFT[1] && left < LAGS * lagged(&joints, shift_s) / as_it_is {
         return Some(format!(
             "the joints move {shift_s:.2} s after their plan, all of them, more than machines lag: the clocks of plan and \
              measurement differ, or the plan was stamped before it was started. --measured-delay-ms={:.0} puts one onto \
@@ -130,6 +137,20 @@ impl Steps {
         Some(Self { first_s, position })
     }
 
+    /// Behind so many filters of a time constant, s.
+    fn lagged(&self, filters: u32, time_s: f64) -> Self {
+        let follow = 1.0 - (-PLAN_STEP_S / time_s).exp();
+        let mut position = self.position.clone();
+        for _ in 0..filters {
+            let mut now = position[0];
+            for at in &mut position {
+                now += follow * (*at - now);
+                *at = now;
+            }
+        }
+        Self { first_s: self.first_s, position }
+    }
+
     /// Before the first step and after the last, the plan holds.
     fn at(&self, t_s: f64) -> f64 {
         let steps = ((t_s - self.first_s) / PLAN_STEP_S).clamp(0.0, (self.position.len() - 1) as f64);
@@ -175,6 +196,21 @@ fn shift_s(joints: &[Both]) -> f64 {
         reach_s = step_s;
     }
     best.1
+}
+
+/// What is left, as by [`apart`], where filters that lag by about so much are the reason.
+fn lagged(joints: &[Both], shift_s: f64) -> f64 {
+    let Some(steps) = joints.iter().map(|joint| Steps::of(joint.planned)).collect::<Option<Vec<Steps>>>()
+    else {
+        return f64::INFINITY;
+    };
+    let left = |(filters, by_shift): (u32, f64)| {
+        let time_s = by_shift * shift_s / f64::from(filters);
+        let plans: Vec<Steps> = steps.iter().map(|steps| steps.lagged(filters, time_s)).collect();
+        apart(joints, |joint, t_s| plans[joint].at(t_s))
+    };
+    let tried = FILTERS.into_iter().flat_map(|filters| LAGS_BY_SHIFT.map(|by_shift| (filters, by_shift)));
+    tried.map(left).fold(f64::INFINITY, f64::min)
 }
 
 /// Where a motion begins in plan and measurement, s, and how much longer the measured one takes.
@@ -262,5 +298,26 @@ mod tests {
             assert_eq!(message(&plan, &measured), None, "all at {share} of the speed that is asked");
         }
         assert_eq!(said(|t| t.min(10.0)), None, "they stop for good");
+    }
+
+    #[test]
+    fn filters_of_set_values_are_no_clock_however_slow() {
+        let plan = series(|t| t);
+        for (filters, lag_s) in [(1, 1.4), (2, 1.1), (2, 1.6), (3, 1.8)] {
+            let behind = |track: &Track| {
+                let time_s = lag_s / f64::from(filters);
+                let mut q = track.position().to_vec();
+                for _ in 0..filters {
+                    let mut now = q[0];
+                    for at in &mut q {
+                        now += (*at - now) * (1.0 - (-0.01 / time_s).exp());
+                        *at = now;
+                    }
+                }
+                Track::new(track.name(), track.t_s(), q, &[]).unwrap()
+            };
+            let measured = Series { tracks: plan.tracks.iter().map(behind).collect() };
+            assert_eq!(message(&plan, &measured), None, "{filters} filters, {lag_s} s together");
+        }
     }
 }

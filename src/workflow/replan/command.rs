@@ -49,6 +49,10 @@ pub struct JointCommand {
     /// rests differ.
     #[serde(default)]
     pub shifted_rad: f64,
+    /// By how much more of a correction gained nothing in some motion, rad: the smaller one is taken again there. Zero if it did
+    /// nowhere.
+    #[serde(default)]
+    pub stalled_rad: f64,
     /// Predicted root mean square error of the plan sent as it is, rad; null if the fit does not know the joint.
     pub plain_rms_rad: Option<f64>,
     /// The same of the command, rad.
@@ -358,6 +362,7 @@ fn joints(
             spread_rad: made.spread_rad,
             unseen_s: made.unseen_s,
             shifted_rad: made.shifted_rad,
+            stalled_rad: most(&mut made.stalled.iter().map(|held| held.more_rad)),
             plain_rms_rad: rms_rad(track)?,
             compensated_rms_rad: rms_rad(sent)?,
             peak_correction_rad: share * most(&mut made.correction.iter().map(|made| made[0])),

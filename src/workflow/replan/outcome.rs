@@ -209,6 +209,15 @@ pub(super) fn replanned(
             );
             remarks.add(Code::UnlikePlan, 1, message);
         }
+        for joint in command.joints.iter().filter(|joint| joint.stalled_rad > 0.0) {
+            let message = format!(
+                "{} more of a correction gained nothing on {}: a limit that no file tells holds it, such as its valve or a pump that \
+                 joints share; the smaller correction is as good there, and more time is what helps",
+                Degrees(joint.stalled_rad),
+                joint.name
+            );
+            remarks.add(Code::BeyondLimit, 1, message);
+        }
         for joint in command.joints.iter().filter(|joint| joint.share < LEAST_SHARE) {
             let message = format!(
                 "{:.0} % of the correction of {} is applied: more of it would break a limit",

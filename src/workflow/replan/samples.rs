@@ -10,9 +10,13 @@ use crate::{
 /// Plans whose angles differ by less are the same, rad.
 const SAME_RAD: f64 = 1e-3;
 
-/// Rounds that bring a plan onto the clock of another, and the longest step of one, s.
-const ROUNDS: usize = 3;
+/// Rounds that bring a plan onto the clock of another at most, the longest step of one, and one that is none any more, s. A slow plan
+/// creeps from its rest for seconds before it is seen to move.
+const ROUNDS: usize = 40;
 const MOST_AHEAD_S: f64 = 0.5;
+const SETTLED_S: f64 = 1e-5;
+
+const ROUNDING_S: f64 = 1e-6;
 
 /// When a plan, of which every joint starts at 0, begins in a log of it, s; `None` if the log holds another. `near_s` is known from
 /// the first moving sample; the whole plan tells it better.
@@ -21,8 +25,12 @@ pub(super) fn found_at_s(plan: &Series, log: &Series, near_s: f64) -> Result<Opt
     let mut starts_s = near_s;
     let mut planned = cut(log, starts_s, starts_s + end_s)?;
     for _ in 0..ROUNDS {
-        starts_s -= ahead_s(&planned, plan);
+        let ahead_s = ahead_s(&planned, plan);
+        starts_s -= ahead_s;
         planned = cut(log, starts_s, starts_s + end_s)?;
+        if ahead_s.abs() < SETTLED_S {
+            break;
+        }
     }
     let same = planned.tracks.len() == plan.tracks.len() && within(&planned, plan, SAME_RAD);
     Ok(same.then_some(starts_s))
@@ -86,9 +94,11 @@ pub(super) fn cut_measured(series: &Series, from_s: f64, to_s: f64) -> Result<Se
     Ok(Series { tracks: series.tracks.iter().filter_map(one).collect::<Result<_, _>>()? })
 }
 
+/// A duration that is the difference of two instants is off by their rounding, and no step the longer for it.
 fn grid(duration_s: f64) -> Vec<f64> {
+    let end_s = duration_s - ROUNDING_S;
     let mut t_s = vec![0.0];
-    while let Some(last) = t_s.last().filter(|last| **last < duration_s) {
+    while let Some(last) = t_s.last().filter(|last| **last < end_s) {
         let next = (last / crate::fit::STEP_S).round() + 1.0;
         t_s.push(next * crate::fit::STEP_S);
     }
@@ -124,6 +134,21 @@ mod tests {
         for shift_s in [-0.2, -0.004, 0.0, 0.0071, 0.15] {
             let found = ahead_s(&wave(shift_s), &wave(0.0));
             assert!((found - shift_s).abs() < 0.01 * shift_s.abs() + 1e-4, "{shift_s} {found}");
+        }
+    }
+
+    #[test]
+    fn a_slow_plan_is_found_however_late_it_is_seen_to_move() {
+        let sigmoid = |shift_s: f64, steps: u32| {
+            let t_s: Vec<f64> = (0..steps).map(|k| f64::from(k) * 0.01).collect();
+            let position = t_s.iter().map(|t| 0.8 * (0.5 + 0.5 * ((t - shift_s) / 12.0).tanh())).collect();
+            Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] }
+        };
+        let plan = sigmoid(30.0, 6000);
+        for off_s in [-4.0, -1.6, -0.7, 0.0, 0.7, 1.6, 4.0] {
+            let log = sigmoid(35.0, 7000);
+            let found = found_at_s(&plan, &log, 5.0 + off_s).unwrap();
+            assert!(found.is_some_and(|at_s| (at_s - 5.0).abs() < 1e-3), "{off_s} s: {found:?}");
         }
     }
 }

@@ -33,6 +33,9 @@ const SAME_ERROR: f64 = 1.02;
 /// More than this times what nine runs of ten stay below is another machine than the fitted one.
 const OTHER_MACHINE: f64 = 2.0;
 
+/// A run whose error is at most this share of the best before it was helped by its command.
+const HELPED: f64 = 0.75;
+
 pub(super) fn all(replanned: &Replanned) -> impl Iterator<Item = Check> {
     let command = replanned.command.as_ref().filter(|command| command.applied());
     let plan = &replanned.plan;
@@ -155,10 +158,14 @@ fn promise(replanned: &Replanned) -> Option<Check> {
     let run = replanned.past.runs.last()?;
     let (promised, measured_mean_peak_rad) = (run.promised?, run.mean_peak_rad?);
     let bound_rad = promised.mean_peak_margin_rad;
+    let before = replanned.past.runs.iter().rev().skip(1).filter_map(|run| run.mean_peak_rad);
+    let best_before_rad = before.fold(f64::INFINITY, f64::min);
     let level = match measured_mean_peak_rad {
         came if came <= bound_rad => Level::Good,
-        // What was promised of the machine before it changed is no reason against what was learnt since.
+        // What was promised of the machine before it changed is no reason against what was learnt since, nor is too much of a promise
+        // against a command that served the machine well.
         came if came <= OTHER_MACHINE * bound_rad || changed(replanned) => Level::Caution,
+        came if best_before_rad.is_finite() && came <= HELPED * best_before_rad => Level::Caution,
         _ => Level::Stop,
     };
     let finding = Finding::Promise { log: run.log.clone(), promised, measured_mean_peak_rad };
