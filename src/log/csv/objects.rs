@@ -103,7 +103,7 @@ impl JsonLines {
                     self.keys.push(key.clone());
                 }
             }
-            match rows.last_mut().map(|row| add(row, cells.clone())) {
+            match rows.last_mut().map(|row| add(row, &cells)) {
                 Some(true) => self.adds = true,
                 _ => rows.push(cells),
             }
@@ -111,7 +111,9 @@ impl JsonLines {
         self.pending = if self.live && self.adds { rows.pop() } else { None };
         let mut text = String::new();
         push(&mut text, self.keys.iter().map(String::as_str));
-        rows.iter().for_each(|cells| self.push_row(&mut text, cells));
+        for cells in &rows {
+            self.push_row(&mut text, cells);
+        }
         text
     }
 
@@ -147,7 +149,7 @@ impl JsonLines {
         let mut text = String::new();
         if !self.adds {
             self.push_row(&mut text, &cells);
-        } else if !self.pending.as_mut().is_some_and(|row| add(row, cells.clone())) {
+        } else if !self.pending.as_mut().is_some_and(|row| add(row, &cells)) {
             text = self.rest();
             self.pending = Some(cells);
         }
@@ -184,7 +186,7 @@ fn is_naming(key: &str) -> bool {
 }
 
 /// Adds cells to a row that has some of them, all alike, and lacks others; else `false`.
-fn add(row: &mut Cells, cells: Cells) -> bool {
+fn add(row: &mut Cells, cells: &Cells) -> bool {
     let filled = || cells.iter().filter(|(_, cell)| !cell.is_empty());
     let of_row = |key: &str| cell(row, key).filter(|cell| !cell.is_empty());
     let (mut shared, mut new) = (false, false);
