@@ -4,7 +4,10 @@ use std::{
     io::BufRead,
     net::UdpSocket,
     path::{Path, PathBuf},
-    sync::mpsc::{Receiver, RecvTimeoutError, sync_channel},
+    sync::{
+        Arc, Mutex, PoisonError,
+        mpsc::{Receiver, RecvTimeoutError, sync_channel},
+    },
     thread,
     time::{Duration, Instant},
 };
@@ -24,7 +27,7 @@ use crate::{
     render::record as words,
     workflow::{
         join,
-        record::{Inputs, Part, Progress, run},
+        record::{Inputs, Part, Progress, Senders, run},
     },
 };
 
@@ -114,16 +117,44 @@ impl Iterator for Lines {
     }
 }
 
+/// Lines, those in UTF-16 behind its byte order mark as UTF-8.
+fn lines_of(mut input: impl BufRead + 'static) -> Box<dyn Iterator<Item = Vec<u8>>> {
+    let unit: fn([u8; 2]) -> u16 = match input.fill_buf() {
+        Ok([0xff, 0xfe, ..]) => u16::from_le_bytes,
+        Ok([0xfe, 0xff, ..]) => u16::from_be_bytes,
+        _ => return Box::new(input.split(b'\n').map_while(Result::ok)),
+    };
+    let mut next = move || {
+        let mut pair = [0; 2];
+        input.read_exact(&mut pair).ok().map(|()| unit(pair))
+    };
+    next();
+    Box::new(std::iter::from_fn(move || {
+        let first = next()?;
+        let end = u16::from(b'\n');
+        let rest = std::iter::from_fn(&mut next).take_while(|unit| *unit != end);
+        let line: Vec<u16> =
+            if first == end { Vec::new() } else { std::iter::once(first).chain(rest).collect() };
+        Some(String::from_utf16_lossy(&line).into_bytes())
+    }))
+}
+
 /// Sends each line on; ends with its input or with the one who listens.
-fn listen(udp: Option<&str>) -> Result<Receiver<Vec<u8>>, CliError> {
+fn listen(udp: Option<&str>, senders: &Arc<Mutex<Senders>>) -> Result<Receiver<Vec<u8>>, CliError> {
     let (send, from) = sync_channel(WAITING);
     match udp {
         Some(address) => {
             let failed = CliError::step(format!("cannot listen at {address}"));
             let socket = UdpSocket::bind(address).map_err(|error| failed(error.into()))?;
+            let (senders, begun) = (senders.clone(), Instant::now());
             thread::spawn(move || {
                 let mut packet = vec![0; PACKET];
-                while let Ok(length) = socket.recv(&mut packet) {
+                while let Ok((length, sender)) = socket.recv_from(&mut packet) {
+                    let mut senders = senders.lock().unwrap_or_else(PoisonError::into_inner);
+                    if !senders.takes(sender, begun.elapsed().as_secs_f64()) {
+                        continue;
+                    }
+                    drop(senders);
                     let lines = packet[..length].split(|byte| *byte == b'\n');
                     for line in lines.filter(|line| !line.trim_ascii().is_empty()) {
                         if send.send(line.to_vec()).is_err() {
@@ -135,8 +166,7 @@ fn listen(udp: Option<&str>) -> Result<Receiver<Vec<u8>>, CliError> {
         }
         None => {
             thread::spawn(move || {
-                for line in std::io::stdin().lock().split(b'\n') {
-                    let Ok(line) = line else { return };
+                for line in lines_of(std::io::stdin().lock()) {
                     if !line.trim_ascii().is_empty() && send.send(line).is_err() {
                         return;
                     }
@@ -165,10 +195,13 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let inputs: Vec<PathBuf> = self.plan.iter().cloned().collect();
         spare_for_log(Some(&self.output), &inputs)?;
+        // What is wrong with it should not show after an hour.
+        self.plan.as_deref().map(join::check_plan).transpose()?;
         let request = self.inputs(self.output.exists())?;
+        let senders = Arc::default();
         super::interrupt::ask_only();
         let until = self.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
-        let lines = Lines { from: listen(self.udp.as_deref())?, until, left: WAITING };
+        let lines = Lines { from: listen(self.udp.as_deref(), &senders)?, until, left: WAITING };
         let bar = progress(None, "{spinner} {elapsed}  {msg}");
         bar.enable_steady_tick(Duration::from_millis(200));
         let mut shown = Instant::now();
@@ -179,7 +212,8 @@ impl Run for Args {
             }
         });
         bar.finish_and_clear();
-        let recorded = recorded?;
+        let mut recorded = recorded?;
+        recorded.remarks.extend(senders.lock().unwrap_or_else(PoisonError::into_inner).remarks());
         let joined = self.plan.as_deref().map(|plan| self.join(plan, &recorded.logs)).transpose()?;
         let target = Target::stdout(self.json);
         let result = if self.json {

@@ -17,7 +17,7 @@ use super::{
 use crate::remark::{Code, Remarks};
 
 /// Headers of columns that say of what a row is.
-const NAMES: [&str; 27] = [
+pub(super) const NAMES: [&str; 27] = [
     "joint",
     "joint_name",
     "joint name",

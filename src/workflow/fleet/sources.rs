@@ -64,6 +64,20 @@ impl Found {
         let tables = TABLES.iter().filter(|_| self.tables);
         ENDINGS.iter().chain(tables).any(|ending| name.ends_with(ending))
     }
+
+    /// The logs by path; of links to one log the first, and none beside the log itself.
+    fn each_once(self) -> Vec<Source> {
+        let own = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let mut first: BTreeMap<PathBuf, PathBuf> = BTreeMap::new();
+        for path in self.logs.keys() {
+            let own = own(path);
+            if !first.contains_key(&own) || *path == own {
+                first.insert(own, path.clone());
+            }
+        }
+        let kept: BTreeSet<PathBuf> = first.into_values().collect();
+        self.logs.into_values().filter(|log| kept.contains(&log.path)).collect()
+    }
 }
 
 /// The logs of all sources, each once, in the order of their paths.
@@ -77,18 +91,14 @@ pub(super) fn sources(texts: &[String]) -> Result<Vec<Source>, FleetFailure> {
         }
     }
     let first = texts.first().cloned().unwrap_or_default();
-    if found.logs.is_empty() {
-        Err(FleetFailure::NoLogs { text: first })
-    } else {
-        Ok(found.logs.into_values().collect())
-    }
+    if found.logs.is_empty() { Err(FleetFailure::NoLogs { text: first }) } else { Ok(found.each_once()) }
 }
 
 /// The logs that are there now, tables among them; none is no fault.
 pub(in crate::workflow) fn sources_now(texts: &[String]) -> Result<Vec<Source>, FleetFailure> {
     let mut found = Found { tables: true, ..Found::default() };
     texts.iter().try_for_each(|text| add(text, Path::new(""), &mut found))?;
-    Ok(found.logs.into_values().collect())
+    Ok(found.each_once())
 }
 
 /// Adds the logs of one source; a relative path counts from `base`.
@@ -305,6 +315,27 @@ mod tests {
         assert!(matches!(sources(&["ftp://bucket/logs".into()]), Err(FleetFailure::Remote { .. })));
         let nothing = at("nothing*").to_string_lossy().into_owned();
         assert!(matches!(sources(&[nothing]), Err(FleetFailure::NoLogs { .. })));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_log_that_links_lead_to_counts_once_and_by_its_own_name_if_it_is_among_them() {
+        let temporary = tempfile::tempdir().unwrap();
+        let at = |name: &str| temporary.path().join(name);
+        for folder in ["logs", "else"] {
+            fs::create_dir(at(folder)).unwrap();
+        }
+        for (log, links) in [("logs/m.mcap", ["a.mcap", "z.mcap"]), ("else/b.mcap", ["b.mcap", "c.mcap"])] {
+            fs::write(at(log), "x").unwrap();
+            for link in links {
+                std::os::unix::fs::symlink(at(log), at("logs").join(link)).unwrap();
+            }
+        }
+        let texts = [at("logs").to_string_lossy().into_owned()];
+        for found in [sources(&texts).unwrap(), sources_now(&texts).unwrap()] {
+            let names: Vec<_> = found.iter().map(|one| one.path.file_name().unwrap()).collect();
+            assert_eq!(names, ["b.mcap", "m.mcap"]);
+        }
     }
 
     #[test]

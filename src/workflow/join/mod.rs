@@ -3,7 +3,7 @@
 mod document;
 mod place;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -89,6 +89,24 @@ const RESTS_RAD: f64 = 0.05 * DEGREE_RAD;
 /// Samples a second of the plan in the new log.
 const RATE_HZ: f64 = 100.0;
 
+/// Whether a file is a plan that can be joined.
+///
+/// # Errors
+///
+/// [`JoinFailure`]
+pub fn check_plan(path: &Path) -> Result<(), JoinFailure> {
+    read_plan(path).map(|_| ())
+}
+
+fn read_plan(path: &Path) -> Result<Plan, JoinFailure> {
+    let plan = Plan::read(path)?;
+    let [from_s, to_s] = plan.span_s();
+    if to_s - from_s > LONGEST_S {
+        return Err(JoinFailure::TooLong { plan: path.to_owned(), duration_s: to_s - from_s });
+    }
+    Ok(plan)
+}
+
 /// Adds the plan at the time at which its command was sent.
 ///
 /// # Errors
@@ -98,7 +116,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     if inputs.read.cylinders.is_some() {
         return Err(JoinFailure::Cylinders);
     }
-    let plan = Plan::read(&inputs.plan)?;
+    let plan = read_plan(&inputs.plan)?;
     let files = LogFiles::open(&inputs.logs)?;
     let log = files.scan()?;
     // The measurement is enough if the caller says when the plan began.
@@ -113,9 +131,6 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     // A missing plan is the reason for the join, no doubt.
     let mut remarks = run.remarks.clone().without(Code::PlanIsCommand).without(Code::OneSide);
     let [from_s, to_s] = plan.span_s();
-    if to_s - from_s > LONGEST_S {
-        return Err(JoinFailure::TooLong { plan: inputs.plan.clone(), duration_s: to_s - from_s });
-    }
     let found = match inputs.at_s {
         None => Some(plan.place(&run.planned, &inputs.plan, &topic, &mut remarks)?),
         Some(_) => None,

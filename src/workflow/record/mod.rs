@@ -2,6 +2,7 @@
 
 mod document;
 mod output;
+mod senders;
 
 use std::{
     path::{Path, PathBuf},
@@ -14,6 +15,7 @@ use std::{
 use thiserror::Error;
 
 pub use document::Recorded;
+pub use senders::Senders;
 
 use crate::{
     log::{CsvError, CsvOptions, JsonLines, LogWriter, TableStream, WriteError},
@@ -89,6 +91,12 @@ pub enum RecordError {
     /// Nothing came.
     #[error("no line came: send a header and rows (CSV), or an object a line (JSON)")]
     Nothing,
+    /// Only words came.
+    #[error("no line with numbers came, only {lines} of words: send the time and a position of each joint")]
+    NoNumbers {
+        /// Lines without a number.
+        lines: u64,
+    },
 }
 
 /// Writes the lines that come, each without its end; `None` is a moment without one. Ends with them.
@@ -105,7 +113,7 @@ pub fn run(
     for line in lines {
         match line {
             Some(line) => recording.line(&line)?,
-            None => recording.settle(false)?,
+            None => recording.pause()?,
         }
         told(&recording.progress);
     }
@@ -126,6 +134,8 @@ struct Recording<'a> {
     counter: Arc<AtomicU64>,
     part_from: Progress,
     unread: u64,
+    /// Lines of words before the first object with numbers.
+    words: u64,
     progress: Progress,
 }
 
@@ -143,15 +153,25 @@ impl<'a> Recording<'a> {
             counter: Arc::default(),
             part_from: progress,
             unread: 0,
+            words: 0,
             progress,
         }
     }
 
     fn line(&mut self, line: &[u8]) -> Result<(), RecordError> {
         self.progress.lines += 1;
-        if self.progress.lines == 1 && JsonLines::is_object(line) {
-            let named = self.inputs.options.columns.values().flatten().map(|(_, column)| column.clone());
-            self.objects = Some(JsonLines::expecting(named.filter(|column| is_key(column))));
+        let settled = self.open.is_some() || !self.closed.is_empty();
+        if self.objects.is_none() && !settled && JsonLines::is_object(line) && is_words(&self.first) {
+            self.words += std::mem::take(&mut self.first_lines) as u64;
+            self.first.clear();
+            let options = &self.inputs.options;
+            let named = options.columns.values().flatten().map(|(_, column)| column.clone());
+            let named = named.filter(|column| is_key(column));
+            self.objects = Some(JsonLines::expecting(named, options.time.clone()));
+        }
+        if self.objects.is_some() && !settled && self.first_lines == 0 && !JsonLines::has_number(line) {
+            self.words += 1;
+            return Ok(());
         }
         let text = match &mut self.objects {
             Some(objects) if self.open.is_none() => {
@@ -180,13 +200,23 @@ impl<'a> Recording<'a> {
         self.write(&text)
     }
 
+    /// A moment without a line: what is kept back for the next one is written.
+    fn pause(&mut self) -> Result<(), RecordError> {
+        self.settle(false)?;
+        let rest = self.objects.as_mut().filter(|_| self.open.is_some()).map(JsonLines::rest);
+        self.write(&rest.unwrap_or_default().into_bytes())
+    }
+
     /// Tells the columns by the lines so far, at the latest at the end; until then more of them may help.
     fn settle(&mut self, last: bool) -> Result<(), RecordError> {
         if self.open.is_some() || self.first_lines < 3 && !last {
             return Ok(());
         }
         let name = self.inputs.output.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if let Some(objects) = &self.objects {
+        if let Some(objects) = &mut self.objects {
+            if objects.is_growing() && !last && self.first_lines < ONE_SIDED {
+                return Ok(());
+            }
             self.first = objects.table().into_bytes();
         }
         let one_sided = |stream: &TableStream| {
@@ -225,7 +255,7 @@ impl<'a> Recording<'a> {
     }
 
     fn write(&mut self, text: &[u8]) -> Result<(), RecordError> {
-        let Some((stream, log)) = &mut self.open else { return Ok(()) };
+        let Some((stream, log)) = self.open.as_mut().filter(|_| !text.is_empty()) else { return Ok(()) };
         stream.write(text, log)?;
         self.progress.rows = stream.rows() + self.closed.iter().map(TableStream::rows).sum::<u64>();
         self.progress.bytes = self.counter.load(Ordering::Relaxed);
@@ -271,9 +301,13 @@ impl<'a> Recording<'a> {
         if self.progress.lines == 0 {
             return Err(RecordError::Nothing);
         }
+        if self.objects.is_some() && self.first_lines == 0 {
+            return Err(RecordError::NoNumbers { lines: self.words });
+        }
         // A last header without rows is no part.
         if self.closed.is_empty() || self.first_lines > 1 {
             self.settle(true)?;
+            self.pause()?;
         }
         if let Some((stream, log)) = self.open.take() {
             log.finish()?;
@@ -282,6 +316,8 @@ impl<'a> Recording<'a> {
         let Some(last) = self.closed.last() else { return Err(RecordError::Nothing) };
         let mut remarks = Remarks::default();
         self.closed.iter().for_each(|stream| remarks.extend(stream.remarks()));
+        let message = "lines of words before the first with numbers; left out";
+        remarks.add(Code::UndecodableMessage, self.words, message);
         remarks.add(Code::UndecodableMessage, self.unread, "lines that are no JSON object; left out");
         if let Some((keys, lines)) = self.objects.as_ref().and_then(JsonLines::late) {
             let message = format!(
@@ -290,8 +326,24 @@ impl<'a> Recording<'a> {
             );
             remarks.add(Code::NotSupported, lines, message);
         }
+        let old = (self.parts.len() + 1..).map(|number| part_name(&self.inputs.output, number));
+        let old: Vec<PathBuf> = old.take_while(|path| self.inputs.replace && path.exists()).collect();
+        if let Some(first) = old.first() {
+            let message = format!(
+                "parts of an earlier recording that are still beside this one, from {} on; remove them, or a pattern such                  as {} reads both as one run",
+                first.display(),
+                part_pattern(&self.inputs.output)
+            );
+            remarks.add(Code::OtherFile, old.len() as u64, message);
+        }
         Ok(Recorded::new(&self.parts, &self.progress, last.understood(), remarks))
     }
+}
+
+/// Whether no cell of the lines is a number, whatever separates them.
+fn is_words(lines: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(lines);
+    text.split([',', ';', '\t', ' ', '\n']).all(|cell| cell.trim().parse::<f64>().is_err())
 }
 
 /// Whether a column as a caller names it is a key, and no number of a column or sum of several.
@@ -301,13 +353,19 @@ fn is_key(column: &str) -> bool {
 
 /// `run.mcap`, `run-2.mcap`, `run-3.mcap`.
 fn part_name(output: &Path, number: usize) -> PathBuf {
-    if number == 1 {
-        return output.to_owned();
-    }
+    if number == 1 { output.to_owned() } else { with_ending(output, &format!("-{number}")) }
+}
+
+/// `run*.mcap`.
+fn part_pattern(output: &Path) -> String {
+    with_ending(output, "*").display().to_string()
+}
+
+fn with_ending(output: &Path, more: &str) -> PathBuf {
     let stem = output.file_stem().unwrap_or_default().to_string_lossy();
     let ending =
         output.extension().map(|ending| format!(".{}", ending.to_string_lossy())).unwrap_or_default();
-    output.with_file_name(format!("{stem}-{number}{ending}"))
+    output.with_file_name(format!("{stem}{more}{ending}"))
 }
 
 #[cfg(test)]

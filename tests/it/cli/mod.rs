@@ -23,6 +23,8 @@ mod output;
 mod pasted;
 mod plan;
 mod record;
+#[cfg(unix)]
+mod record_senders;
 mod recorders;
 #[cfg(feature = "cloud")]
 mod remote;

@@ -15,14 +15,14 @@ use serde_json::Value;
 use super::csv::{moves, report, trace};
 use crate::support::{command, run_args as hydrotrace, said};
 
-fn start(folder: &Path, args: &[&str]) -> Child {
+pub(super) fn start(folder: &Path, args: &[&str]) -> Child {
     let mut recorder = command(folder);
     recorder.args([&["record", "-o", "run.mcap"], args].concat());
     recorder.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
 /// Feeds a text and ends its input.
-fn recorded(folder: &Path, text: &str, args: &[&str]) -> (i32, String, String) {
+pub(super) fn recorded(folder: &Path, text: &str, args: &[&str]) -> (i32, String, String) {
     let mut recorder = start(folder, args);
     // A recorder that refuses its first lines hears no more.
     let _ = recorder.stdin.take().unwrap().write_all(text.as_bytes());

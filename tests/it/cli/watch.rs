@@ -166,6 +166,19 @@ fn a_log_that_is_still_being_written_is_reported_when_it_is_whole() {
 }
 
 #[test]
+fn a_log_that_links_lead_to_is_reported_once() {
+    let folder = empty();
+    let at = |name: &str| folder.path().join(name);
+    fs::copy(sample("task-1-run.mcap"), at("m.mcap")).unwrap();
+    for link in ["logs/a.mcap", "logs/b.mcap"] {
+        std::os::unix::fs::symlink(at("m.mcap"), at(link)).unwrap();
+    }
+    said(&run_line(folder.path(), ONCE));
+    let pages = fs::read_dir(at("out/pages")).unwrap().map(|entry| entry.unwrap().path());
+    assert_eq!(pages.filter(|page| page.extension().is_some_and(|ending| ending == "json")).count(), 1);
+}
+
+#[test]
 fn a_pipe_that_is_named_as_a_log_is_none() {
     let folder = empty();
     let pipe = folder.path().join("logs/pipe.csv");
