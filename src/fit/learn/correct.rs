@@ -9,7 +9,10 @@ use super::{
     answer::Answer,
     oscillation::Character,
 };
-use crate::math::lowpass;
+use crate::{math::lowpass, units::DEGREE_RAD};
+
+/// Corrections below this are none, rad.
+pub(super) const NONE_RAD: f64 = 1e-3 * DEGREE_RAD;
 
 /// A correction acts this much later than the lag says, s.
 const BEYOND_LAG_S: f64 = 0.05;
@@ -202,6 +205,11 @@ pub(super) fn model_weight(manner: &Manner, unexplained_rad: &[f64], error_rad: 
 /// Fades a correction out where it must be none.
 pub(super) fn faded(correction_rad: &mut [f64], fade: &[f64]) {
     correction_rad.iter_mut().zip(fade).for_each(|(correction, fade)| *correction *= fade);
+}
+
+/// Largest distance from zero.
+pub(super) fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 pub(super) fn rms(values: &[f64]) -> f64 {

@@ -6,7 +6,10 @@ use super::{
     super::{FitError, JointFit, Model, model::STEP_S},
     JointStep, Learning, Room, Step, Trial,
     answer::Answer,
-    correct::{Aim, CALM_MODEL_HZ, Manner, Workspace, faded, first, inverted, rms, unexplained_rad},
+    correct::{
+        Aim, CALM_MODEL_HZ, Manner, NONE_RAD, Workspace, faded, first, inverted, largest, rms,
+        unexplained_rad,
+    },
     oscillation::{Character, Oscillation},
     shape::{Wanted, shaped},
     stalled::stalled,
@@ -45,9 +48,6 @@ const FOLLOWS: f64 = 0.5;
 
 /// Share of the error of a slow joint that its model may leave.
 const EXPLAINED: f64 = 0.2;
-
-/// Corrections below this are none, rad.
-pub(super) const NONE_RAD: f64 = 1e-3 * DEGREE_RAD;
 
 /// One joint with its runs.
 pub(super) struct Joint<'a> {
@@ -243,11 +243,6 @@ fn motion(mut angle_rad: Vec<f64>) -> f64 {
         *angle -= mean_rad;
     }
     rms(&angle_rad)
-}
-
-/// Largest distance from zero.
-pub(super) fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// Whether the same was sent.

@@ -2,10 +2,7 @@
 
 use std::ops::Range;
 
-use super::{
-    correct::rms,
-    joint::{NONE_RAD, largest},
-};
+use super::correct::{NONE_RAD, largest, rms};
 use crate::units::DEGREE_RAD;
 
 /// A correction has grown that is larger by this share of it and by this, rad.
@@ -96,6 +93,6 @@ mod tests {
 
     #[test]
     fn runs_that_end_before_the_stretch_tell_nothing() {
-        assert_eq!(stalled(&[vec![0.0; 4]], &[vec![1.0; 4]], &[2..6]), []);
+        assert_eq!(stalled(&[vec![0.0; 4]], &[vec![1.0; 4]], std::slice::from_ref(&(2..6))), []);
     }
 }

@@ -21,8 +21,9 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
     let stays = replanned.request.is_none().then(|| Sentence::finding(stays.to_owned()));
     let verdict = learning::kept(replanned).map(Sentence::Advice);
     let margin = format!(
-        "Expected peaks include the error that the model left unexplained after held-out starts. 90 % of starts stay below \
-         the predicted peak times {:.2}, or below the error that 90 % of held-out starts left unexplained.",
+        "Expected peaks include the error that the model left unexplained after held-out starts, and 2 % of what the command \
+         changes; with two runs or more, what differed from run to run. 90 % of starts stay below the predicted peak times {:.2}, \
+         or above it by no more than nine of ten of those errors.",
         replanned.fit.peak_margin
     );
     let mut document = Document::titled(format!("Next run of {title}"))

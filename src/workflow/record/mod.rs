@@ -330,7 +330,8 @@ impl<'a> Recording<'a> {
         let old: Vec<PathBuf> = old.take_while(|path| self.inputs.replace && path.exists()).collect();
         if let Some(first) = old.first() {
             let message = format!(
-                "parts of an earlier recording that are still beside this one, from {} on; remove them, or a pattern such                  as {} reads both as one run",
+                "parts of an earlier recording that are still beside this one, from {} on; remove them, or a pattern such as \
+                 {} reads both as one run",
                 first.display(),
                 part_pattern(&self.inputs.output)
             );

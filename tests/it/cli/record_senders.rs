@@ -62,8 +62,8 @@ fn words_before_the_first_numbers_are_told_and_end_nothing() {
 fn a_second_sender_is_told_and_not_mixed_in() {
     let folder = tempfile::tempdir().unwrap();
     let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-    let recorder = start(folder.path(), &["--udp", &free.to_string(), "--seconds", "4"]);
-    sleep(Duration::from_millis(1000));
+    let recorder = start(folder.path(), &["--udp", &free.to_string(), "--seconds", "6"]);
+    sleep(Duration::from_secs(2));
     let [one, other, beside] =
         ["127.0.0.1:0", "127.0.0.2:0", "127.0.0.1:0"].map(|from| UdpSocket::bind(from).unwrap());
     let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
