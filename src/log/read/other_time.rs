@@ -31,8 +31,9 @@ const MOST_STEPS: f64 = 1e6;
 /// Shifts between these are what machines do, s.
 const USUAL_S: [f64; 2] = [-0.1, 1.0];
 
-/// A lag that leaves less than what a shift leaves by this factor is the reason: filters of set values lag by seconds.
-const LAGS: f64 = 1.25;
+/// A lag that leaves less than what a shift leaves by this factor is the reason: filters of set values lag by seconds. Clocks that differ
+/// shift all joints alike, and a lag leaves much more of them.
+const LAGS: f64 = 1.1;
 
 /// Lags that are tried, by the shift, and how many equal filters make them.
 const LAGS_BY_SHIFT: [f64; 5] = [0.8, 0.9, 1.0, 1.1, 1.2];
