@@ -49,8 +49,8 @@ pub struct JointCommand {
     /// rests differ.
     #[serde(default)]
     pub shifted_rad: f64,
-    /// By how much more of a correction gained nothing in some motion, rad: the smaller one is taken again there. Zero if it did
-    /// nowhere.
+    /// By how much more of a correction gained nothing in some motion, rad: the smaller one is taken again there, unless the
+    /// command of a whole run is kept. Zero if it did nowhere.
     #[serde(default)]
     pub stalled_rad: f64,
     /// Predicted root mean square error of the plan sent as it is, rad; null if the fit does not know the joint.
