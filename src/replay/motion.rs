@@ -129,7 +129,8 @@ impl Speed<'_> {
     fn is_motion(&self, motion: &Motion, rules: &Rules) -> bool {
         let (first, last) = (motion.samples.start, motion.samples.end - 1);
         let travel_rad = f64::from(motion.direction) * (self.position_rad[last] - self.position_rad[first]);
-        motion.end_s - motion.start_s >= rules.min_motion_s && travel_rad >= self.min_travel
+        let steps = self.deviation_rad_s.is_none() && travel_rad >= rules.step_travels * self.min_travel;
+        travel_rad >= self.min_travel && (steps || motion.end_s - motion.start_s >= rules.min_motion_s)
     }
 
     /// Tells openings and reversals, which need the motion before.
@@ -220,6 +221,15 @@ mod tests {
         let found = motions(&speed, std::slice::from_ref(&(0..150)));
         assert_eq!(found.iter().map(Motion::starts).collect::<Vec<_>>(), [false, true]);
         assert_eq!(found.iter().map(Motion::stops).collect::<Vec<_>>(), [true, false]);
+    }
+
+    #[test]
+    fn a_plan_that_steps_moves_however_short_it_takes() {
+        let of = |travel_deg: f64| {
+            let speed = speeds(&[(50, 0.0), (5, 20.0 * travel_deg), (50, 0.0)]);
+            motions(&speed, std::slice::from_ref(&(0..105))).len()
+        };
+        assert_eq!((of(0.3), of(2.0)), (0, 1));
     }
 
     #[test]

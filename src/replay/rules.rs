@@ -62,6 +62,9 @@ pub struct Rules {
     pub planned_window_s: f64,
     /// Shortest motion, s.
     pub min_motion_s: f64,
+    /// A plan that travels so many times the least travel moves, however short it takes: set values may step.
+    #[serde(default = "step_travels")]
+    pub step_travels: f64,
     /// Net travel of a measured motion, at least, in standard deviations of the angle.
     pub min_travel_sigmas: f64,
     /// Net travel of a measured motion, at least, in encoder steps.
@@ -123,6 +126,11 @@ pub struct Rules {
     pub significance: f64,
 }
 
+/// Also of reports that were written before there was a rule.
+const fn step_travels() -> f64 {
+    10.0
+}
+
 impl Default for Rules {
     fn default() -> Self {
         Self {
@@ -135,6 +143,7 @@ impl Default for Rules {
             window_points: 7,
             planned_window_s: 0.03,
             min_motion_s: 0.12,
+            step_travels: step_travels(),
             min_travel_sigmas: 5.0,
             min_travel_lsbs: 2.0,
             min_rest_s: 0.20,

@@ -86,7 +86,9 @@ impl<'a> Signals<'a> {
             measured_stop: sizes.stop_speed.max(rules.stop_sigmas * usual),
             window_s,
         };
-        let (planned, measured) = (planned.motions(rules), measured.motions(rules));
+        let (mut planned, measured) = (planned.motions(rules), measured.motions(rules));
+        let on_plan = |at: usize| (pair.planned[at] - smooth_rad[at]).abs() < sizes.displacement;
+        begin_at_rest(&mut planned, &measured, on_plan);
         Self {
             noise,
             sample_interval_s,
@@ -101,6 +103,15 @@ impl<'a> Signals<'a> {
             planned,
             measured,
         }
+    }
+}
+
+/// A log may begin where its plan does: a plan that moves when a segment opens has just left rest if the joint is still on
+/// it and stands.
+fn begin_at_rest(planned: &mut [Motion], measured: &[Motion], on_plan: impl Fn(usize) -> bool) {
+    for motion in planned.iter_mut().filter(|motion| motion.opens) {
+        let stands = !measured.iter().any(|seen| seen.opens && seen.segment == motion.segment);
+        motion.opens = !(stands && on_plan(motion.segment.start));
     }
 }
 

@@ -81,3 +81,57 @@ fn starts_are_found_at_the_promised_rate_and_sharp_onsets_to_30_ms() {
         assert!(score.delay_coverage >= 0.95, "{score:?}");
     }
 }
+
+#[test]
+fn a_set_value_that_steps_is_a_start_at_the_step_at_any_rate() {
+    for rate_hz in [10.0, 20.0, 50.0, 100.0, 500.0, 1000.0] {
+        let t_s: Vec<f64> = (0..(12.0 * rate_hz) as usize).map(|k| k as f64 / rate_hz).collect();
+        let steps = |t: f64| {
+            if t < 1.9995 {
+                0.0
+            } else if t < 6.9995 {
+                8.0
+            } else {
+                -3.0
+            }
+        };
+        // Leaves 0.25 s after the step, at 8 degrees per second.
+        let follows = |t: f64| {
+            let (out, back) = ((t - 2.25).clamp(0.0, 1.0), (t - 7.25).clamp(0.0, 1.375));
+            8.0 * (out - back)
+        };
+        let in_rad = |of: &dyn Fn(f64) -> f64| t_s.iter().map(|&t| of(t) * DEGREE_RAD).collect::<Vec<_>>();
+        let pair =
+            recorded(t_s.clone(), in_rad(&steps), in_rad(&follows), std::iter::once(0..t_s.len()).collect());
+        let found = of(&Pair { planned_interval_s: 1.0 / rate_hz, ..pair });
+        let starts: Vec<_> = found.transitions.iter().map(|t| (t.direction, t.planned_onset_s)).collect();
+        assert_eq!(starts.len(), 2, "{rate_hz} Hz: {starts:?}");
+        for (transition, (direction, at_s, peak)) in
+            found.transitions.iter().zip([(1, 2.0, 8.0), (-1, 7.0, 11.0)])
+        {
+            assert_eq!(transition.direction, direction);
+            assert!((transition.planned_onset_s - at_s).abs() < 1e-9, "{rate_hz} Hz: {starts:?}");
+            assert!((transition.peak_error - peak * DEGREE_RAD).abs() < 1e-9, "{rate_hz} Hz");
+            let [low_s, high_s] = transition.onset_delay_interval_s.unwrap();
+            assert!(low_s <= 0.25 && 0.25 <= high_s, "{rate_hz} Hz: {low_s} to {high_s}");
+            assert!(transition.settling_time_s.is_some(), "{rate_hz} Hz");
+        }
+        assert_eq!(found.joints[0].unplanned_starts, 0, "{rate_hz} Hz");
+    }
+}
+
+#[test]
+fn a_log_that_begins_with_its_plan_shows_the_first_start() {
+    for (off_deg, starts) in [(0.0, 1), (0.3, 0)] {
+        let t_s: Vec<f64> = (0..600).map(|k| 0.01 * f64::from(k)).collect();
+        let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 0.0)).collect();
+        let measured: Vec<f64> = t_s.iter().map(|&t| ramp(t, 0.3) + off_deg * DEGREE_RAD).collect();
+        let found = of(&recorded(t_s, planned, measured, std::iter::once(0..600).collect()));
+        assert_eq!(found.joints[0].starts, starts, "off by {off_deg} deg");
+        if let Some(start) = found.transitions.first() {
+            assert!(start.planned_onset_s.abs() < 0.011, "{}", start.planned_onset_s);
+            assert!((start.onset_delay_s.unwrap() - 0.3).abs() < 0.04, "{:?}", start.onset_delay_s);
+            assert_eq!(found.joints[0].unplanned_starts, 0);
+        }
+    }
+}

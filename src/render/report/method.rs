@@ -45,12 +45,13 @@ pub(super) fn method(report: &Report) -> Option<Section> {
             "start",
             format!(
                 "a plan starts above {} {speed} and rests below {}; a joint starts above {} {speed} and rests below {}, by its noise; \
-                 it travels at least {}",
+                 it travels at least {}; a set value that steps by {} starts with the step",
                 deg_or_mm(sizes.start_speed),
                 deg_or_mm(sizes.stop_speed),
                 range(&|j| joints[j].thresholds.measured_start, &deg_or_mm),
                 range(&|j| joints[j].thresholds.measured_stop, &deg_or_mm),
                 position(kind, sizes.min_travel),
+                position(kind, rules.step_travels * sizes.min_travel),
             ),
         ),
         fact(

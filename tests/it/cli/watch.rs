@@ -152,12 +152,14 @@ fn a_log_that_is_still_being_written_is_reported_when_it_is_whole() {
     );
     let metadata =
         "rosbag2_bagfile_information:\n  storage_identifier: mcap\n  relative_file_paths: [bag_0.mcap]\n";
+    // What was put there while it was looked at is reported twice.
+    let mut other = || (0..2).map(|_| next(&mut lines)).find(|next| *next != line).unwrap();
     put(metadata.as_bytes(), &bag.join("metadata.yaml"));
-    assert!(next(&mut lines).contains("M01 bag: "));
+    assert!(other().contains("M01 bag: "));
     // What changes is reported again, in the place of what was.
     put(&small_log("M00", 1, 3, [0.2, 0.2]), &log);
-    let line = next(&mut lines);
-    assert!(line.starts_with("2026-03-02"), "{line}");
+    let changed = other();
+    assert!(changed.starts_with("2026-03-02"), "{changed}");
     put(b"no log", &log);
     assert!(next(&mut lines).starts_with("run.mcap: FAILED: "));
     assert_eq!(interrupted(watch, &mut lines).0, 3);
