@@ -3,7 +3,7 @@
 use super::{
     method::method,
     steps::replanned,
-    tables::{mostly_lag, verdicts},
+    tables::{mostly_lag, stray, verdicts},
     tool, why,
 };
 use crate::{
@@ -31,6 +31,7 @@ pub(crate) fn answer(report: &Report, explain: bool) -> Document {
     facts.push(worst(replay));
     facts.extend(late(report));
     facts.extend(starts(replay));
+    facts.extend(astray(replay));
     facts.extend(whole(replay));
     facts.extend(verdicts(report).iter().map(|verdict| fact("limit", verdict.to_string())));
     facts.extend(doubts(report));
@@ -91,6 +92,17 @@ fn starts(replay: &Replay) -> Option<Fact> {
         _ => format!(", half of them more than {} ms late", ms(median(delays.clone()))),
     };
     Some(fact("starts", format!("{} of {all} timed{late}{never}", delays.len())))
+}
+
+/// Joints of which only one moves, itself or its plan.
+fn astray(replay: &Replay) -> Option<Fact> {
+    let astray = replay.joints.iter().filter(|joint| joint.plan_moves != joint.moves);
+    let found: Vec<String> = astray.filter_map(|joint| stray(replay, joint)).collect();
+    let more = match found.len() {
+        0 | 1 => String::new(),
+        all => format!(" And {} more.", counted(all - 1, "such joint")),
+    };
+    Some(fact("joint", format!("{}{more}", found.first()?)))
 }
 
 fn whole(replay: &Replay) -> Option<Fact> {

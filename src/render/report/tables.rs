@@ -128,27 +128,27 @@ fn findings(report: &Report) -> Vec<String> {
             path.samples
         ));
     }
-    for joint in &replay.joints {
-        match (joint.plan_moves, joint.moves) {
-            (false, false) if joint.unplanned_starts > 0 => lines.push(format!(
-                "The plan of {} rests; the joint is shaken by the others: {} of less than {}, unplanned.",
-                joint.name,
-                counted(joint.unplanned_starts, "start"),
-                position(joint.kind, replay.rules.sizes(joint.kind).moves_travel)
-            )),
-            (false, false) => lines.push(format!("{} does not move, and neither does its plan.", joint.name)),
-            (true, false) => {
-                lines.push(format!(
-                    "{} does not move although its plan does ({}).",
-                    joint.name,
-                    counted(joint.starts, "planned start")
-                ));
-            }
-            (false, true) => lines.push(format!("{} moves although its plan rests.", joint.name)),
-            (true, true) => {}
-        }
-    }
+    lines.extend(replay.joints.iter().filter_map(|joint| stray(replay, joint)));
     lines
+}
+
+/// A joint that moves without its plan, or rests where it should not or as its plan does; `None` if both move.
+pub(super) fn stray(replay: &Replay, joint: &JointReplay) -> Option<String> {
+    let name = &joint.name;
+    match (joint.plan_moves, joint.moves) {
+        (false, false) if joint.unplanned_starts > 0 => Some(format!(
+            "The plan of {name} rests; the joint is shaken by the others: {} of less than {}, unplanned.",
+            counted(joint.unplanned_starts, "start"),
+            position(joint.kind, replay.rules.sizes(joint.kind).moves_travel)
+        )),
+        (false, false) => Some(format!("{name} does not move, and neither does its plan.")),
+        (true, false) => Some(format!(
+            "{name} does not move although its plan does ({}).",
+            counted(joint.starts, "planned start")
+        )),
+        (false, true) => Some(format!("{name} moves although its plan rests.")),
+        (true, true) => None,
+    }
 }
 
 /// What the lag explains of a run whose error is mostly that.

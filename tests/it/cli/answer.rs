@@ -94,3 +94,24 @@ fn how_the_numbers_are_made_is_said_on_request() {
     let run = run_args(root(), &["sample-logs/task-1-run.mcap", "--explain"]);
     assert!(stdout(&run).contains("\nHOW\n"));
 }
+
+#[test]
+fn a_joint_that_alone_moves_or_alone_rests_is_named() {
+    let folder = scratch();
+    let mut table =
+        "time_s,boom_set_deg,boom_act_deg,arm_set_deg,arm_act_deg,slew_set_deg,slew_act_deg\n".to_owned();
+    for t_s in (0..600).map(|k| 0.02 * f64::from(k)) {
+        let [on, late] = [2.0, 2.2].map(|from_s: f64| 5.0 * (t_s - from_s).clamp(0.0, 3.0));
+        table += &format!("{t_s:.2},{on:.4},{late:.4},{on:.4},1,7,{late:.4}\n");
+    }
+    std::fs::write(folder.path().join("run.csv"), table).unwrap();
+    let (code, text, error) = said(&run_line(folder.path(), "run.csv"));
+    assert!(code == 0 || code == 3, "{code} {error}");
+    let line = text.lines().find(|line| line.starts_with("joint ")).unwrap_or_else(|| panic!("{text}"));
+    assert!(
+        line.ends_with(
+            "arm does not move although its plan does (one planned start). And one such joint more."
+        ),
+        "{line}"
+    );
+}
