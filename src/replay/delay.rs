@@ -11,9 +11,6 @@ use crate::series::{Pair, local_quadratic};
 /// Of the standard normal distribution, 97.5 %.
 const NORMAL_975: f64 = 1.959_963_984_540_054;
 
-/// A plan that covers so much of a motion between two samples steps.
-const STEP_SHARE: f64 = 0.9;
-
 /// The two onsets of a transition.
 pub(super) struct Delay {
     pub(super) method: OnsetMethod,
@@ -66,6 +63,10 @@ pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion) -
         return motion.start_s;
     }
     let (t_s, angle_rad) = (&pair.t_s, &pair.planned);
+    // A set value that steps holds until it does: nothing is asked for between the two samples.
+    if let Some(at) = motion.step(angle_rad) {
+        return t_s[at];
+    }
     let last = motion.segment.end - 1;
     // A plan without speeds is not smoothed here: that would blur its start.
     let speed_rad_s = |i: usize| match &pair.planned_velocity {
@@ -77,12 +78,6 @@ pub(super) fn planned_onset_s(pair: &Pair, signals: &Signals, motion: &Motion) -
     let Some(mut above) = motion.samples.clone().find(|&i| faster(i)) else { return motion.start_s };
     while above > motion.segment.start && faster(above - 1) {
         above -= 1;
-    }
-    // A set value that steps holds until it does: nothing is asked for between the two samples.
-    let travel = |from: usize, to: usize| along(motion, angle_rad[to] - angle_rad[from]);
-    let whole = travel(motion.samples.start, motion.samples.end - 1);
-    if above < last && travel(above, above + 1) >= STEP_SHARE * whole {
-        return t_s[above + 1];
     }
     if above == motion.segment.start {
         return motion.start_s;

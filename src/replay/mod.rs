@@ -43,7 +43,7 @@ pub use outcome::{
 pub use peak_motion::peak_motion;
 pub use profile::{Profiles, STRETCHES};
 pub use rules::{Rules, Sizes};
-pub use signals::{planned_starts, speeds};
+pub use signals::{planned_starts, planned_step, speeds};
 pub use spectrum::{COHERENT, Response, Spectrum, spectrum};
 pub use tool::{
     ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst, pose_replay, tool_replay,

@@ -48,10 +48,23 @@ pub(super) struct Motion {
     pub(super) reversed: bool,
 }
 
+/// A plan that covers so much of a motion between two samples steps.
+const STEP_SHARE: f64 = 0.9;
+
 impl Motion {
     /// Whether its beginning was seen.
     pub(super) fn starts(&self) -> bool {
         !self.opens
+    }
+
+    /// The first sample with the new value of a set value that steps.
+    pub(super) fn step(&self, position: &[f64]) -> Option<usize> {
+        let (first, last) = (self.samples.start, self.samples.end - 1);
+        // The sample beside what was smoothed may hold the old value or the new one.
+        let around = first.max(self.segment.start + 1)..(last + 2).min(self.segment.end);
+        let travel = |from: usize, to: usize| f64::from(self.direction) * (position[to] - position[from]);
+        let whole = travel(first.saturating_sub(1).max(self.segment.start), around.end - 1);
+        around.into_iter().find(|&to| whole > 0.0 && travel(to - 1, to) >= STEP_SHARE * whole)
     }
 
     /// Whether it ends in a rest that was seen.

@@ -117,6 +117,20 @@ fn begin_at_rest(planned: &mut [Motion], measured: &[Motion], on_plan: impl Fn(u
 
 /// When a plan leaves rest, by its own samples, s.
 pub fn planned_starts(planned: &Track, rules: &Rules) -> Vec<f64> {
+    planned_motions(planned, rules).iter().filter(|m| m.starts()).map(|m| m.start_s).collect()
+}
+
+/// The first motion of a plan that is one step from sample to sample: when, s, and how far.
+pub fn planned_step(planned: &Track, rules: &Rules) -> Option<(f64, f64)> {
+    let (t_s, position) = (planned.t_s(), planned.position());
+    planned_motions(planned, rules).iter().find_map(|motion| {
+        let at = motion.step(position)?;
+        let sudden = t_s[at] - t_s[at - 1] <= rules.min_motion_s;
+        sudden.then_some((t_s[at], (position[at] - position[at - 1]).abs()))
+    })
+}
+
+fn planned_motions(planned: &Track, rules: &Rules) -> Vec<Motion> {
     let (t_s, segments) = (planned.t_s(), planned.segments());
     let sizes = *rules.sizes(planned.kind());
     let given = planned.velocity().map(Cow::Borrowed);
@@ -130,7 +144,7 @@ pub fn planned_starts(planned: &Track, rules: &Rules) -> Vec<f64> {
         min_travel: sizes.min_travel,
         sizes,
     };
-    speed.motions(rules).iter().filter(|m| m.starts()).map(|m| m.start_s).collect()
+    speed.motions(rules)
 }
 
 /// Planned and measured speed at the instants of a pair, fitted within half a window, s, of each: what

@@ -200,7 +200,7 @@ fn of_plan(track: &Track, remarks: &mut Remarks) {
     let (name, unit) = (track.name(), track.kind().unit());
     let message = format!(
         "steps of the plan of {name} within one sample, the largest of {most:.3} {unit} at {at_s:.2} s: the plan itself \
-         jumps, which no joint can follow at once: the error begins with the step"
+         jumps, which no joint can follow at once, so its error begins with the step"
     );
     remarks.add(Code::PlanJumps, count, message);
 }

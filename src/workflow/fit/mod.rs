@@ -15,6 +15,7 @@ use crate::{
     fit::{Fit, FitError, HeldOut, Observation, fit_and_held_out},
     log::{ReadOptions, Recording, SignalRole, SourceInfo},
     remark::{Code, Remarks},
+    replay::{Rules, planned_step},
     series::{Series, Track, moving_s},
     workflow::carried::Carried,
 };
@@ -136,8 +137,12 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
     let torques = observed.iter().map(torques).find(|torques| !torques.is_empty()).unwrap_or_default();
     let sound = |one: &Recording| !one.remarks.as_slice().iter().any(|remark| remark.code.spoils_runs());
     let carried: Vec<Carried> = observed.iter().map(Carried::of).collect();
+    let rules = Rules::default();
+    let follows =
+        |one: &Recording| one.planned.tracks.iter().all(|track| planned_step(track, &rules).is_none());
     let again = |k: &usize| {
-        !carried[*k].identifies() && sound(&observed[*k]) && carried[*k].broken(&observed[*k]).is_none()
+        let (carried, one) = (&carried[*k], &observed[*k]);
+        !carried.identifies() && sound(one) && follows(one) && carried.broken(one).is_none()
     };
     let again: Vec<usize> = (0..observed.len()).filter(again).collect();
     let with_task = again.iter().rfind(|k| carried[**k].task().is_some());

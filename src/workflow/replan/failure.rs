@@ -111,6 +111,24 @@ pub enum ReplanFailure {
         /// How so.
         why: String,
     },
+    /// A plan that no joint can follow, whatever is sent.
+    #[error(
+        "{}: the plan of {joint} steps by {size} at {at_s:.2} s: no joint follows a step, and a correction would only \
+         move it before its time, so no command is made. Give the joint ramps that it can follow: `hydrotrace plan` makes \
+         some, or set those of the controller and log its ramped set value as the plan. `hydrotrace report` tells delay, \
+         overshoot and settling of steps, and `hydrotrace fit` the fastest speed for the ramps",
+        path.display()
+    )]
+    Steps {
+        /// The log.
+        path: PathBuf,
+        /// The first joint that steps.
+        joint: String,
+        /// How far, with its unit.
+        size: String,
+        /// When, s.
+        at_s: f64,
+    },
     /// What was measured has little to do with the plan.
     #[error(
         "{}: half of the joints or more do not follow their plan, the error of each is more than half of its motion, so \

@@ -19,7 +19,10 @@ mod shape;
 mod unclear;
 mod warp;
 
-use std::{ops::ControlFlow, path::PathBuf};
+use std::{
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+};
 
 pub use checks::{Check, Checks, Finding, JointTrust, Level, Reason, Verdict};
 pub use command::{Commanded, JointCommand};
@@ -39,11 +42,11 @@ use crate::{
     math::range,
     plan::{PlanEvaluation, Setup},
     remark::{Code, Remarks},
-    replay::Rules,
+    replay::{Rules, planned_step},
     series::{Series, Track},
     task::{Ceilings, Objective, Objectives},
     threads,
-    units::DEGREE_RAD,
+    units::{DEGREE_RAD, Degrees},
     workflow::{carried::rest::PLAN_LEAD_S, plan::Shaping},
 };
 use command::{Subject, commanded};
@@ -136,6 +139,7 @@ pub fn run(
         }
     }
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
+    steps(path, &newest.planned, &inputs.rules)?;
     let last = Last::of(path, newest, inputs)?;
     let mut history = History::of(&inputs.logs, &observed, &last.plan, &inputs.rules)?;
     let (first, changed) = history.without_another_machine(&mut |from, to| {
@@ -284,6 +288,15 @@ pub(super) struct Candidate {
     pub(super) command: Option<Commanded>,
     pub(super) predicted: Predicted,
     pub(super) responses: Vec<Response>,
+}
+
+/// No correction helps where a plan steps.
+fn steps(path: &Path, plan: &Series, rules: &Rules) -> Result<(), ReplanFailure> {
+    let mut turning = plan.tracks.iter().filter(|track| track.turns());
+    let found = turning.find_map(|track| Some((track, planned_step(track, rules)?)));
+    let Some((track, (at_s, size))) = found else { return Ok(()) };
+    let (joint, size) = (track.name().to_owned(), Degrees(size).to_string());
+    Err(ReplanFailure::Steps { path: path.to_owned(), joint, size, at_s })
 }
 
 impl Candidate {

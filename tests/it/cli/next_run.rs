@@ -1,9 +1,9 @@
 //! `replan` over several runs: what older ones still tell, and what holds for the next line.
 
-use std::fs;
+use std::{fmt::Write as _, fs};
 
 use super::replan::{check, with_run};
-use crate::support::{clean, json, run_line, sample, stderr, stdout};
+use crate::support::{clean, json, run_line, said, sample, scratch, stderr, stdout};
 
 #[test]
 fn a_task_that_begins_elsewhere_is_refused_and_bounds_hold_for_the_next_line() {
@@ -104,4 +104,32 @@ fn a_command_that_takes_the_tool_a_metre_off_its_plan_is_not_to_be_sent() {
     assert!(
         stdout(&run_line(folder, "replan slow.mcap --keep-plan")).contains("send less of it (--gain 0.5)")
     );
+}
+
+/// Set values of a PLC that go from target to target, and a joint that follows them at 8 deg/s, 0.25 s late.
+#[test]
+fn a_plan_that_steps_is_reported_and_fitted_and_no_command_is_made_of_it() {
+    let folder = scratch();
+    let mut table = "time_s,boom_set_deg,boom_act_deg\n".to_owned();
+    let targets = [(0.0, 0.0), (2.0, 12.0), (7.0, -5.0), (12.0, 6.0), (17.0, 0.0)];
+    let set = |t_s: f64| targets.iter().rev().find(|(at_s, _)| t_s >= *at_s).map_or(0.0, |(_, set)| *set);
+    let mut measured: f64 = 0.0;
+    for t_s in (0..1100).map(|k| 0.02 * f64::from(k)) {
+        measured += (2.0 * (set(t_s - 0.25) - measured)).clamp(-8.0, 8.0) * 0.02;
+        writeln!(table, "{t_s:.2},{},{measured:.4}", set(t_s)).unwrap();
+    }
+    fs::write(folder.path().join("run.csv"), table).unwrap();
+    let said = |line: &str| said(&run_line(folder.path(), line));
+    let (_, text, _) = said("report run.csv");
+    assert!(text.contains("boom  "), "{text}");
+    let (code, text, error) = said("fit run.csv -o limits.toml");
+    assert!(code == 0 || code == 3, "{error}");
+    assert!(text.contains("8.0 (") && !text.contains("replan run.csv"), "{text}");
+    let (code, _, error) = said("replan run.csv --limits limits.toml -o next.mcap");
+    assert_eq!(code, 1, "{error}");
+    assert!(
+        error.contains("the plan of boom steps by 12.00 deg at 2.00 s: no joint follows a step"),
+        "{error}"
+    );
+    assert!(!folder.path().join("next.mcap").exists());
 }
