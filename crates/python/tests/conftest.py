@@ -26,7 +26,7 @@ def write_run(path, machine, day, dead_time_s):
         number, within = divmod(t_s - 2.0, 8.0)
         share = min(max(within / 2.0, 0.0), 1.0) if t_s >= 2.0 else 0.0
         smooth = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
-        up = int(number) % 2 == 0
+        up = number < 0 or int(number) % 2 == 0
         return (0.3 + 0.1 * joint) * (smooth if up else 1.0 - smooth)
 
     with ht.LogWriter(path, ["boom", "stick"]) as log:
