@@ -37,7 +37,7 @@ const STANDS_OUT: f64 = 3.0;
 /// Joints that tell what is usual, at least; of steps, which a day that all share makes in all.
 const FEWEST_JOINTS: usize = 10;
 const FEWEST_OF_STEPS: usize = 4;
-/// A step that is a smaller share of the level is of no concern.
+/// A step, or what a trend makes from the first run to the last, that is a smaller share of the level is of no concern.
 const RELEVANT: f64 = 0.02;
 
 /// The trends of all joints of a fleet.
@@ -85,8 +85,8 @@ pub struct JointTrend {
     pub p_value: f64,
     /// The same, corrected for the number of machines, joints and metrics (false-discovery rate).
     pub q_value: f64,
-    /// Whether a change is found, as a trend or as a step: q below the false-discovery rate, and three robust standard
-    /// deviations or more from what is usual where ten joints or more tell that.
+    /// Whether a change is found, as a trend or as a step: q below the false-discovery rate, 2 % of the level or more, and three
+    /// robust standard deviations or more from what is usual where ten joints or more tell that.
     pub found: bool,
     /// Whether what is found is a step, which leaves less of the levels unexplained than the trend does.
     #[serde(default)]
@@ -214,11 +214,13 @@ fn judge(trends: &mut [JointTrend]) {
     for (k, trend) in trends.iter_mut().enumerate() {
         trend.q_value = q_trend[k];
         let usual = tell[k] && trend.stands_out.is_some_and(|out| out < STANDS_OUT);
-        let drifts = trend.q_value < MOST_FALSE && !usual;
-        let least = usual_steps.get(&(trend.metric, trend.unit.clone())).copied().unwrap_or_default();
+        let least = RELEVANT * trend.level.abs();
+        let drifts =
+            trend.q_value < MOST_FALSE && !usual && (trend.slope_per_day * trend.days).abs() >= least;
+        let usual_step = usual_steps.get(&(trend.metric, trend.unit.clone())).copied().unwrap_or_default();
         if let Some(step) = &mut trend.step {
             step.q_value = q_step[k];
-            let least = (STANDS_OUT * least).max(RELEVANT * trend.level.abs());
+            let least = (STANDS_OUT * usual_step).max(least);
             let steps = step.q_value < MOST_FALSE && step.change.abs() >= least;
             trend.is_step = steps && (!drifts || step.left < 1.0);
             if trend.is_step {
@@ -369,10 +371,14 @@ mod tests {
         assert!(found[0].found && found[0].is_step, "{found:?}");
         assert_eq!(found[0].since.as_deref(), Some("1970-01-07T00:00:00Z"));
         assert!((step.change - 3.0).abs() < 0.2 && (found[0].growth_per_day() - step.change).abs() < 1e-12);
-        let (runs, values) = super::tests::values(2.0);
+        let (runs, mut values) = super::tests::values(2.0);
         let mut drifts = vec![joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap()];
         judge(&mut drifts);
         assert!(drifts[0].found && !drifts[0].is_step, "{drifts:?}");
+        values.values_mut().flat_map(BTreeMap::values_mut).for_each(|value| *value += 2000.0);
+        let mut drifts = vec![joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap()];
+        judge(&mut drifts);
+        assert!(drifts[0].q_value < 0.01 && !drifts[0].found, "of no concern: {drifts:?}");
     }
 
     #[test]
