@@ -12,7 +12,7 @@ use super::{
     tracking::{at_standstill, samples, tracking_error},
     transition::transition,
 };
-use crate::series::Pair;
+use crate::{math::range, series::Pair};
 
 /// What is found in one pair, before joints are compared.
 pub(super) struct Joint<'a> {
@@ -66,13 +66,17 @@ pub(super) fn joint<'a>(pair: &'a Pair, rules: &Rules) -> Option<Joint<'a>> {
         || signals.measured.iter().any(|m| travel_rad(&pair.measured, m) >= signals.sizes.moves_travel);
     // What does not move has no lag, however well its noise fits.
     let lag = if moves { lag } else { Lag::default() };
+    let travels = |segment: &std::ops::Range<usize>| {
+        let [lowest, highest] = range(pair.planned[segment.clone()].iter().copied());
+        highest - lowest >= signals.sizes.moves_travel
+    };
     let blocks = blocks(pair, &signals.planned_rad_s, &signals.planned, lag.shift_s);
     let count = |answer: Answer| transitions.iter().filter(|t| t.answer == answer).count();
     let replay = JointReplay {
         name: pair.name.clone(),
         kind: pair.kind,
         moves,
-        plan_moves: !signals.planned.is_empty(),
+        plan_moves: !signals.planned.is_empty() || pair.segments.iter().any(travels),
         tracking_error: tracking,
         standstill_error: tracking_error(standing),
         path_error: None,

@@ -242,12 +242,12 @@ mod tests {
             let speed = speeds(&[(50, 0.0), (5, 20.0 * travel_deg), (50, 0.0)]);
             motions(&speed, std::slice::from_ref(&(0..105))).len()
         };
-        assert_eq!((of(0.3), of(2.0)), (0, 1));
+        assert_eq!((of(0.15), of(2.0)), (0, 1));
     }
 
     #[test]
     fn a_twitch_and_a_creep_are_no_motion() {
-        let twitch = speeds(&[(50, 0.0), (8, 5.0), (50, 0.0)]);
+        let twitch = speeds(&[(50, 0.0), (8, 2.0), (50, 0.0)]);
         let creep = speeds(&[(50, 0.0), (20, 0.2), (50, 0.0)]);
         assert!(motions(&twitch, std::slice::from_ref(&(0..108))).is_empty());
         assert!(motions(&creep, std::slice::from_ref(&(0..120))).is_empty());

@@ -128,7 +128,7 @@ pub struct Rules {
 
 /// Also of reports that were written before there was a rule.
 const fn step_travels() -> f64 {
-    10.0
+    4.0
 }
 
 impl Default for Rules {
