@@ -19,6 +19,7 @@ mod elapsed;
 mod encoding;
 mod error;
 mod expression;
+mod given;
 mod grouping;
 mod head;
 mod label;
@@ -49,7 +50,7 @@ pub use error::CsvError;
 pub use objects::JsonLines;
 pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
 pub use run::CsvRun;
-pub(in crate::log) use run::{ORIGIN, TIME_OF_ORIGIN, UNUSED_OF_ORIGIN};
+pub(in crate::log) use run::{GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNUSED_OF_ORIGIN};
 pub use stream::TableStream;
 pub use time::{UNDATED_NS, is_dated};
 pub use understood::{ColumnRead, TimeRead, Understood};
@@ -175,6 +176,7 @@ impl Form {
         let (units, kinds) = si::to_si(head, labels, &layout, options, &mut cells, &mut remarks)?;
         let layout_added = (&*layout, self.added());
         let understood = Understood::new(name, *dialect, head, time, layout_added, &cells, &units);
-        Ok((CsvRun::new((layout.into_owned(), kinds), cells, understood, remarks), units))
+        let run = CsvRun::new((layout.into_owned(), kinds), cells, understood, remarks);
+        Ok((run.given(options.given()), units))
     }
 }

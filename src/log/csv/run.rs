@@ -23,6 +23,9 @@ const NAMED: usize = 20;
 /// Its entry of columns that were not used.
 pub(in crate::log) const UNUSED_OF_ORIGIN: &str = "not used";
 
+/// What its entries of options that were given begin with; a number and the option follow.
+pub(in crate::log) const GIVEN_OF_ORIGIN: &str = "option ";
+
 /// A run as a CSV file gave it: SI units, one row an instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CsvRun {
@@ -34,6 +37,8 @@ pub struct CsvRun {
     /// `[joints]`
     kinds: Vec<JointKind>,
     cells: Cells,
+    /// Options that were given to read it.
+    given: Vec<(&'static str, Option<String>)>,
 }
 
 impl CsvRun {
@@ -50,7 +55,13 @@ impl CsvRun {
         understood: Understood,
         remarks: Remarks,
     ) -> Self {
-        Self { understood, remarks, layout, kinds, cells }
+        Self { understood, remarks, layout, kinds, cells, given: Vec::new() }
+    }
+
+    /// Notes the options that it was read with.
+    pub(super) fn given(mut self, given: Vec<(&'static str, Option<String>)>) -> Self {
+        self.given = given;
+        self
     }
 
     /// Writes the run as an MCAP log of ROS 2 messages. A row gives a message of plan, measurement
@@ -88,6 +99,11 @@ impl CsvRun {
             };
             origin.insert(UNUSED_OF_ORIGIN.to_owned(), unused[..unused.len().min(NAMED)].join(", ") + &more);
         }
+        // Numbered, because an option may be given several times, and in the order of the line.
+        let given = self.given.iter().enumerate().map(|(at, (option, value))| {
+            (format!("{GIVEN_OF_ORIGIN}{at:02} {option}"), value.clone().unwrap_or_default())
+        });
+        origin.extend(given);
         log.metadata(ORIGIN, &origin)?;
         let kinds =
             joint_kind::entries(layout.joints.iter().map(String::as_str).zip(self.kinds.iter().copied()));

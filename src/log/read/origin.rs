@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     log::{
-        csv::{ORIGIN, TIME_OF_ORIGIN, UNUSED_OF_ORIGIN},
+        csv::{GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNUSED_OF_ORIGIN},
         write::Topics,
     },
     series::Series,
@@ -52,7 +52,20 @@ impl<'a> Imported<'a> {
             str::to_owned,
         );
         let (file, columns) = (shell_argument(file), shell_word(&columns));
-        format!("hydrotrace import {file} {option} {columns} -o run.mcap")
+        format!("hydrotrace import {file}{} {option} {columns} -o run.mcap", self.given_but(option))
+    }
+
+    /// The options that it was imported with, but for this one, as they follow a word of a line.
+    fn given_but(&self, option: &str) -> String {
+        let given = self.origin.iter().filter_map(|(key, value)| {
+            let (_, given) = key.strip_prefix(GIVEN_OF_ORIGIN)?.split_once(' ')?;
+            (given != option).then_some((given, value))
+        });
+        let words = given.map(|(given, value)| match value.as_str() {
+            "" => format!(" {given}"),
+            value => format!(" {given} {}", shell_word(value)),
+        });
+        words.collect()
     }
 }
 

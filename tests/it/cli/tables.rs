@@ -69,6 +69,11 @@ fn what_a_table_lacks_is_told_in_its_columns_and_by_the_line_that_names_them() {
     assert!(code == 1 && text.contains(&paste), "{text}");
     hydrotrace(folder, &paste);
     assert!(said(&hydrotrace(folder, "report run.mcap")).1.contains("p1, p2 of a.csv"));
+    // What was told once need not be told again.
+    let told = "--time t --time-unit ms --separator comma --measured boom=boom_act_deg";
+    hydrotrace(folder, &format!("import a.csv {told} -o told.mcap"));
+    let (_, _, text) = said(&hydrotrace(folder, "report told.mcap"));
+    assert!(text.contains(&format!("import a.csv {told} --planned boom=COLUMN -o run.mcap")), "{text}");
     // From another folder, too.
     fs::create_dir(folder.join("sub")).unwrap();
     fs::rename(folder.join("a.csv"), folder.join("sub/a.csv")).unwrap();
