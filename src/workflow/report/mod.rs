@@ -37,7 +37,7 @@ use super::{
 use crate::{
     arm::ArmError,
     input_file,
-    log::{LogError, ReadOptions, Recording, SignalRole, read_recording},
+    log::{LogError, ReadOptions, Recording, SignalRole, TimeRange, read_recording},
     remark::{Code, Remarks},
     replay::{Profiles, Replay, Rules, Transition},
     series::{Broken, Pair, PosePair},
@@ -143,7 +143,14 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     };
     let explained = |ready: Ready| ready.why(&pairs, &replay).map_err(|error| error.to_string());
     let why = model.map(|model| model.and_then(explained));
-    remark_cut(broken.as_ref(), &replay, &mut remarks);
+    match broken {
+        Some(Broken::Cut { begins: false, at_s, .. }) => remark_cut(at_s, &replay, &mut remarks),
+        // Where the caller wants a part, its end is no news.
+        _ if inputs.stretches_s.is_empty() && inputs.read.range == TimeRange::default() => {
+            remark_unfinished(&pairs, &replay, &mut remarks);
+        }
+        _ => {}
+    }
     let gates = inputs.gates.judge(&replay, tool.found());
     let front = front(&carried, &mut remarks);
     let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -190,8 +197,7 @@ fn stretches(pairs: Vec<Pair>, stretches_s: &BTreeMap<String, [f64; 2]>) -> Vec<
 }
 
 /// Starts whose window ends with the plan, in motion: their errors may have become larger.
-fn remark_cut(broken: Option<&Broken>, replay: &Replay, remarks: &mut Remarks) {
-    let Some(Broken::Cut { begins: false, at_s, .. }) = broken else { return };
+fn remark_cut(at_s: f64, replay: &Replay, remarks: &mut Remarks) {
     let cut = |start: &&Transition| start.window_s[1] >= at_s - start.time_resolution_s;
     let starts: Vec<&Transition> = replay.transitions.iter().filter(cut).collect();
     if let Some(last) = starts.iter().max_by(|a, b| a.planned_onset_s.total_cmp(&b.planned_onset_s)) {
@@ -201,6 +207,30 @@ fn remark_cut(broken: Option<&Broken>, replay: &Replay, remarks: &mut Remarks) {
             last.joint,
             last.planned_onset_s,
             at_s - last.planned_onset_s
+        );
+        remarks.add(Code::Unmatched, starts.len() as u64, message);
+    }
+}
+
+/// Starts whose error is largest where the samples end, at a gap or with the log, before the window does: it may have
+/// become larger.
+fn remark_unfinished(pairs: &[Pair], replay: &Replay, remarks: &mut Remarks) {
+    let unfinished = |start: &&Transition| {
+        let of_joint = |pair: &&Pair| pair.name == start.joint;
+        let ends = |pair: &Pair| pair.spans_s().any(|[_, to_s]| to_s == start.window_s[1]);
+        let full_s = start.planned_onset_s + replay.rules.transition_window_s;
+        let peak_s = start.planned_onset_s + start.time_to_peak_s;
+        start.peak_error > replay.rules.sizes(start.joint_kind).settle_band
+            && start.window_s[1] < full_s
+            && peak_s >= start.window_s[1] - start.time_resolution_s
+            && pairs.iter().find(of_joint).is_some_and(ends)
+    };
+    let starts: Vec<&Transition> = replay.transitions.iter().filter(unfinished).collect();
+    if let Some(first) = starts.iter().min_by(|a, b| a.planned_onset_s.total_cmp(&b.planned_onset_s)) {
+        let message = format!(
+            "starts whose error still grows where the samples end, at a gap or with the log, the first one {} at {:.2} s: \
+             their peak error is that much at least",
+            first.joint, first.planned_onset_s
         );
         remarks.add(Code::Unmatched, starts.len() as u64, message);
     }

@@ -67,6 +67,33 @@ fn a_start_at_the_cut_end_of_a_log_is_not_unanswered() {
 }
 
 #[test]
+fn a_peak_that_a_gap_cuts_short_is_told_to_be_at_least_that() {
+    let folder = scratch();
+    // Half a second of growing error after the start at 2 s, then nothing for three seconds.
+    let row = |k: i32| {
+        let t_s = f64::from(k) * 0.02;
+        let plan = 20.0 * (t_s - 2.0).clamp(0.0, 2.0);
+        let measured = 20.0 * (t_s - 2.3).clamp(0.0, 2.0) * 0.5;
+        format!("{t_s:.2},{plan:.4},{measured:.4}\n")
+    };
+    let table = |until: i32| {
+        let rows: String = (0..400).filter(|k| *k < until || *k > 275).map(row).collect();
+        format!("t,boom_set_deg,boom_act_deg\n{rows}")
+    };
+    for (name, until, says) in [("gap.csv", 126, true), ("whole.csv", 400, false)] {
+        fs::write(folder.path().join(name), table(until)).unwrap();
+        let found = json(folder.path(), &format!("report {name}"));
+        assert_eq!(
+            found["remarks"].to_string().contains("at a gap or with the log, the first one boom at 2.0"),
+            says,
+            "{name} {found:#}"
+        );
+    }
+    let found = json(folder.path(), "report whole.csv --to 2.5");
+    assert!(!found["remarks"].to_string().contains("still grows"), "{found:#}");
+}
+
+#[test]
 fn lengths_and_angles_of_one_joint_are_not_compared_and_not_joined() {
     let folder = with(&["task-1-run.mcap"]);
     let hydraulics = sample("arm/hydraulics.toml").display().to_string();
