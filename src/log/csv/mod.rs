@@ -46,6 +46,7 @@ mod unit;
 mod within;
 mod word;
 
+pub use again::other_header;
 pub use error::CsvError;
 pub use objects::JsonLines;
 pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};

@@ -2,10 +2,11 @@
 
 mod document;
 mod output;
+mod parts;
 mod senders;
 
 use std::{
-    path::{Path, PathBuf},
+    path::PathBuf,
     sync::{
         Arc,
         atomic::{AtomicU64, Ordering},
@@ -18,10 +19,11 @@ pub use document::Recorded;
 pub use senders::Senders;
 
 use crate::{
-    log::{CsvError, CsvOptions, JsonLines, LogWriter, TableStream, WriteError},
+    log::{CsvError, CsvOptions, JsonLines, LogWriter, TableStream, WriteError, other_header},
     remark::{Code, Remarks},
 };
 use output::Synced;
+use parts::{part_name, part_pattern};
 
 /// Lines after which the columns are settled, and after which it is given up to settle them.
 const FIRST_LINES: usize = 10;
@@ -136,6 +138,8 @@ struct Recording<'a> {
     unread: u64,
     /// Lines of words before the first object with numbers.
     words: u64,
+    /// Lines before another header, whose own columns cannot be told.
+    untold: u64,
     progress: Progress,
 }
 
@@ -154,12 +158,17 @@ impl<'a> Recording<'a> {
             part_from: progress,
             unread: 0,
             words: 0,
+            untold: 0,
             progress,
         }
     }
 
     fn line(&mut self, line: &[u8]) -> Result<(), RecordError> {
         self.progress.lines += 1;
+        self.take(line)
+    }
+
+    fn take(&mut self, line: &[u8]) -> Result<(), RecordError> {
         let settled = self.open.is_some() || !self.closed.is_empty();
         if self.objects.is_none() && !settled && JsonLines::is_object(line) && is_words(&self.first) {
             self.words += std::mem::take(&mut self.first_lines) as u64;
@@ -218,6 +227,8 @@ impl<'a> Recording<'a> {
                 return Ok(());
             }
             self.first = objects.table().into_bytes();
+        } else if let Some(at) = other_header(&self.first) {
+            return self.settle_each(at);
         }
         let one_sided = |stream: &TableStream| {
             stream.remarks().as_slice().iter().any(|remark| remark.code == Code::OneSide)
@@ -252,6 +263,24 @@ impl<'a> Recording<'a> {
             }
             Err(error) => Err(error.into()),
         }
+    }
+
+    /// Another header came before the columns of the first one were settled: each has the rows below it.
+    fn settle_each(&mut self, at: usize) -> Result<(), RecordError> {
+        let later = self.first.split_off(at);
+        let rows = self.first_lines.saturating_sub(later.split_inclusive(|byte| *byte == b'\n').count());
+        match self.settle(true) {
+            Err(RecordError::Csv(_)) => {
+                self.untold += rows as u64;
+                self.first.clear();
+            }
+            settled => settled?,
+        }
+        self.first_lines = 0;
+        later
+            .split(|byte| *byte == b'\n')
+            .filter(|line| !line.is_empty())
+            .try_for_each(|line| self.take(line))
     }
 
     fn write(&mut self, text: &[u8]) -> Result<(), RecordError> {
@@ -305,10 +334,10 @@ impl<'a> Recording<'a> {
             return Err(RecordError::NoNumbers { lines: self.words });
         }
         // A last header without rows is no part.
-        if self.closed.is_empty() || self.first_lines > 1 {
+        while self.open.is_none() && (self.closed.is_empty() || self.first_lines > 1) {
             self.settle(true)?;
-            self.pause()?;
         }
+        self.pause()?;
         if let Some((stream, log)) = self.open.take() {
             log.finish()?;
             self.closed.push(stream);
@@ -318,6 +347,8 @@ impl<'a> Recording<'a> {
         self.closed.iter().for_each(|stream| remarks.extend(stream.remarks()));
         let message = "lines of words before the first with numbers; left out";
         remarks.add(Code::UndecodableMessage, self.words, message);
+        let message = "lines before a header with other columns, whose own columns cannot be told; left out";
+        remarks.add(Code::UndecodableMessage, self.untold, message);
         remarks.add(Code::UndecodableMessage, self.unread, "lines that are no JSON object; left out");
         if let Some((keys, lines)) = self.objects.as_ref().and_then(JsonLines::late) {
             let message = format!(
@@ -350,32 +381,4 @@ fn is_words(lines: &[u8]) -> bool {
 /// Whether a column as a caller names it is a key, and no number of a column or sum of several.
 fn is_key(column: &str) -> bool {
     !column.starts_with('#') && column.chars().all(|c| c.is_alphanumeric() || "_. ".contains(c))
-}
-
-/// `run.mcap`, `run-2.mcap`, `run-3.mcap`.
-fn part_name(output: &Path, number: usize) -> PathBuf {
-    if number == 1 { output.to_owned() } else { with_ending(output, &format!("-{number}")) }
-}
-
-/// `run*.mcap`.
-fn part_pattern(output: &Path) -> String {
-    with_ending(output, "*").display().to_string()
-}
-
-fn with_ending(output: &Path, more: &str) -> PathBuf {
-    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
-    let ending =
-        output.extension().map(|ending| format!(".{}", ending.to_string_lossy())).unwrap_or_default();
-    output.with_file_name(format!("{stem}{more}{ending}"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_are_numbered_from_the_second_on() {
-        let name = |number| part_name(Path::new("a/run.mcap"), number);
-        assert_eq!([name(1), name(2)], [Path::new("a/run.mcap"), Path::new("a/run-2.mcap")]);
-    }
 }

@@ -212,6 +212,31 @@ fn a_header_with_other_columns_begins_a_part_and_the_same_one_does_not() {
 }
 
 #[test]
+fn a_header_that_changes_before_the_columns_are_settled_loses_no_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let [one, two] =
+        ["t_s,boom_set_deg,boom_act_deg", "t_s,boom_set_deg,boom_act_deg,arm_set_deg,arm_act_deg"];
+    let rows = |range: std::ops::Range<u32>, more: &str| -> String {
+        range.map(|k| format!("{},1,2{more}\n", f64::from(k) * 0.01)).collect()
+    };
+    for before in [1, 4, 8] {
+        let text = format!("{one}\n{}{two}\n{}", rows(0..before, ""), rows(before..before + 200, ",3,4"));
+        let (code, out, error) = recorded(folder.path(), &text, &["--force"]);
+        let said = format!("{} rows of {} lines", before + 200, before + 202);
+        assert!(code == 3 && out.starts_with(&said), "{before}: {code} {out}{error}");
+        assert!(out.contains("report run.mcap run-2.mcap"), "{out}");
+    }
+    let text = format!("a,b_set_deg,b\n{}{one}\n{}", "x,1\n0,1,2\n", rows(0..200, ""));
+    let text = text.replace("a,b_set_deg,b", "note,boom_set_deg,x");
+    let (code, out, error) = recorded(folder.path(), &text, &["--force"]);
+    assert!(code == 3 && out.contains("cannot be told"), "{code} {out}{error}");
+    // A header alone, and a third one at once.
+    let text = format!("{one}\n{}{two}\n{one},note\n{}", rows(0..4, ""), rows(4..9, ",x"));
+    let (code, out, error) = recorded(folder.path(), &text, &["--force"]);
+    assert!(code == 3 && out.starts_with("9 rows of 12 lines"), "{code} {out}{error}");
+}
+
+#[test]
 fn a_guess_is_a_remark_of_a_recording_too_and_a_number_that_is_none_loses_no_line() {
     let folder = tempfile::tempdir().unwrap();
     let text = trace("t,boom_set_mm,boom_act_mm", 1000.0, ",", 1000.0);
