@@ -225,6 +225,19 @@ impl Track {
         track.clone().with_velocity(velocity).ok().or(Some(track))
     }
 
+    /// The samples of a range; `None` where there are none.
+    pub(crate) fn part(&self, range: Range<usize>) -> Option<Self> {
+        let starts = self.segments().iter().map(|segment| segment.start);
+        let cuts: Vec<usize> = starts
+            .filter(|cut| range.start < *cut && *cut < range.end)
+            .map(|cut| cut - range.start)
+            .collect();
+        let [t_s, position] = [self.t_s(), self.position()].map(|all| all.get(range.clone()));
+        let part = Self::of(self.kind, self.name(), t_s?, position?.to_vec(), &cuts).ok()?;
+        let velocity = self.velocity.as_ref().and_then(|all| all.get(range).map(<[f64]>::to_vec));
+        Some(Self { velocity, ..part })
+    }
+
     /// Which segment sample `i` lies in.
     pub(super) fn segment_of(&self, i: usize) -> usize {
         self.segments().partition_point(|s| s.start <= i)

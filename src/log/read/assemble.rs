@@ -14,7 +14,7 @@ use super::{
     select_topics::{Candidate, Choice, named},
     spoilt,
     time_base::time_base,
-    trajectories, unlike,
+    trajectories, unlike, unset,
     window::nothing_in,
 };
 use crate::{
@@ -121,6 +121,8 @@ pub(super) fn assemble(
     for (_, series) in &mut *sides {
         quality::unwrap_turns(series, &options.continuous, &mut remarks);
     }
+    let [(_, plan), (_, joints)] = &mut *sides;
+    unset::of_sides(plan, joints, &mut remarks);
     held::of_sides(choice, sides, &mut remarks);
     spoilt::of_sides(sides[0].1, sides[1].1, &mut remarks);
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);

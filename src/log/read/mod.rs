@@ -28,6 +28,7 @@ mod time_base;
 mod topics;
 mod trajectories;
 mod unlike;
+mod unset;
 mod window;
 
 use std::path::{Path, PathBuf};
