@@ -36,11 +36,27 @@ pub(super) fn verdict(checks: &Checks) -> String {
         checks.at(level).map(|check| short(level, &check.finding)).collect::<Vec<_>>().join("; ")
     };
     match checks.verdict {
+        Verdict::Send if changes_little(checks) => format!(
+            "It may be sent, all {} checks are good; but hardly less error is expected than last time.",
+            checks.list.len()
+        ),
         Verdict::Send => format!("Yes, send it: all {} checks are good.", checks.list.len()),
         Verdict::HalfFirst => format!("Send half of the correction first: {}.", why(Level::Caution)),
         Verdict::CheckFirst => format!("Look first: {}.", why(Level::Caution)),
         Verdict::DoNotSend => format!("Do not send it: {}.", why(Level::Stop)),
     }
+}
+
+/// Less is no reason to send another command.
+const WORTH_SENDING: f64 = 0.98;
+
+fn changes_little(checks: &Checks) -> bool {
+    checks.list.iter().any(|check| match check.finding {
+        Finding::Outlook { last_mean_peak_rad: Some(last_rad), expected } => {
+            expected.mean_peak_rad > WORTH_SENDING * last_rad
+        }
+        _ => false,
+    })
 }
 
 /// What speaks against sending, in a few words.
