@@ -44,6 +44,12 @@ pub enum LogError {
         "{columns:?} are columns of a table, not a topic: name them when it is imported, and give the log: {fix}"
     )]
     ColumnsNamed { columns: String, fix: String },
+    /// An option would convert a second time.
+    #[error(
+        "{option} would convert {header:?} of {file} a second time: it was read in {unit}; leave {option} out, and where \
+         the header is wrong, put that right"
+    )]
+    ConvertedBefore { option: &'static str, header: String, unit: String, file: String },
     /// A topic that the caller asked for holds no joint angles in that field.
     #[error(
         "topic {topic:?} ({type_name}) has no joint angles{}{}; it has {present}",

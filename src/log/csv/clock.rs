@@ -12,8 +12,10 @@ use super::{
     unit::{ARCHIVE_DAY, EXCEL_DAY, FILETIME, Measure, Unit, parse_unit},
 };
 use crate::{
-    math::median,
+    math::{median, range},
     remark::{Code, Remarks},
+    text::shell_word,
+    units::NS_PER_S,
 };
 
 /// Finds the time among the columns.
@@ -45,8 +47,10 @@ pub(super) fn choose(
     }
     look.join_day_and_time(&mut usable);
     look.join_parts(&mut usable);
-    // What resolves the rows is better than what does not, then what has a date.
-    usable.sort_by_key(|found| (!found.resolves, !found.absolute));
+    // What resolves the rows is better than what does not, then the source's clock than the receiver's, then what has
+    // a date.
+    usable.sort_by_key(|found| (!found.resolves, look.is_of_receipt(found), !found.absolute));
+    look.remark_other(&usable, remarks);
     match (usable.into_iter().next(), failure) {
         (Some(best), _) if best.resolves => Ok(best.tell(head, remarks)),
         (Some(best), _) => {
@@ -58,6 +62,17 @@ pub(super) fn choose(
         (None, Some(error)) => Err(error),
         (None, None) => Err(CsvError::NoTime { why: String::new(), present: present(&head.names) }),
     }
+}
+
+/// The times of a column by itself; `None` if it holds none.
+pub(super) fn of_column(
+    head: &Head,
+    labels: &[Label],
+    dialect: Dialect,
+    options: &CsvOptions,
+    column: usize,
+) -> Option<TimeSource> {
+    Some(Look { head, labels, dialect, options }.column(column).ok()?.source)
 }
 
 /// A column of times.
@@ -80,6 +95,8 @@ impl Found {
     }
 }
 
+/// Two clocks go apart by so much at least, s: below, they are written with fewer digits.
+const LEAST_APART_S: f64 = 0.02;
 const NS_PER_SECOND: i64 = 1_000_000_000;
 
 struct Look<'a> {
@@ -95,18 +112,7 @@ impl Look<'_> {
     }
 
     fn found(&self, source: TimeSource, doubt: Option<String>) -> Found {
-        let ns: Vec<i64> = self
-            .head
-            .sample
-            .iter()
-            .filter_map(|row| {
-                source.ns(
-                    0,
-                    |column| row.get(column).map_or(&[][..], Vec::as_slice),
-                    self.dialect.decimal_comma,
-                )
-            })
-            .collect();
+        let ns: Vec<i64> = self.ns(&source).flatten().collect();
         let steps = ns.windows(2).filter(|w| w[0] != w[1]).count();
         Found {
             resolves: !ns.is_empty() && 2 * steps + 1 >= ns.len(),
@@ -178,6 +184,53 @@ impl Look<'_> {
                 .filter_map(value)
                 .all(|value| (MILLIONTHS[0]..MILLIONTHS[1]).contains(&value))
             && (0..self.labels.len()).any(dated)
+    }
+
+    fn ns<'a>(&'a self, source: &'a TimeSource) -> impl Iterator<Item = Option<i64>> + 'a {
+        self.head.sample.iter().map(move |row| {
+            source.ns(0, |column| row.get(column).map_or(&[][..], Vec::as_slice), self.dialect.decimal_comma)
+        })
+    }
+
+    /// Whether a time is that of who received or wrote the row, not of who measured.
+    fn is_of_receipt(&self, found: &Found) -> bool {
+        const RECEIPT: [&str; 9] =
+            ["receive", "received", "recv", "receipt", "rx", "server", "servertimestamp", "arrival", "log"];
+        let says = |column: &usize| {
+            let words = &self.labels[*column].words;
+            words.iter().any(|word| RECEIPT.contains(&word.as_str())) || self.head.names[*column] == "%time"
+        };
+        found.source.columns().iter().any(says)
+    }
+
+    /// Remarks on another clock that goes otherwise than the best one.
+    fn remark_other(&self, usable: &[Found], remarks: &mut Remarks) {
+        let Some((best, others)) = usable.split_first().filter(|(best, _)| best.resolves) else { return };
+        let header = |found: &Found| {
+            found.source.columns().first().map_or(String::new(), |column| self.head.names[*column].clone())
+        };
+        let others = others.iter().filter(|other| {
+            let apart =
+                |other: &Found| other.source.columns().iter().all(|c| !best.source.columns().contains(c));
+            other.resolves && apart(other) && !self.is_of_receipt(other)
+        });
+        for other in others {
+            let both = self.ns(&best.source).zip(self.ns(&other.source));
+            let off: Vec<f64> =
+                both.filter_map(|(a, b)| Some((b?.checked_sub(a?)?) as f64 / NS_PER_S)).collect();
+            let [least, most] = range(off.iter().copied());
+            let ns: Vec<f64> = self.ns(&best.source).flatten().map(|ns| ns as f64 / NS_PER_S).collect();
+            if most - least > LEAST_APART_S.max(2.0 * typical_step(&ns)) {
+                let message = format!(
+                    "times are read from {:?}; {:?} goes {:.3} s away from it and back: --time {} reads that one",
+                    header(best),
+                    header(other),
+                    most - least,
+                    shell_word(&header(other))
+                );
+                remarks.add(Code::Guessed, 1, message);
+            }
+        }
     }
 
     /// The column that is the index of a data frame, which has no name of its own, where it rises as a time does. Whole

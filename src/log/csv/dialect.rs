@@ -17,6 +17,17 @@ pub(super) struct Dialect {
     pub(super) width: usize,
 }
 
+impl Dialect {
+    /// How a table of this dialect is read after its rows were written anew with [`writer`](super::rows::writer).
+    pub(super) fn rewritten(self, options: &CsvOptions) -> CsvOptions {
+        let separator = match self.separator {
+            Separator::Space => Separator::Byte(b'\t'),
+            byte => byte,
+        };
+        CsvOptions { separator: Some(separator), decimal_comma: Some(self.decimal_comma), ..options.clone() }
+    }
+}
+
 /// Bytes and rows that are looked at.
 const HEAD_BYTES: usize = 1 << 18;
 const HEAD_ROWS: usize = 200;

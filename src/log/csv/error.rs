@@ -73,7 +73,9 @@ pub enum CsvError {
     NoJoint { what: String, joint: String, nearest: Option<String>, present: String },
     /// There is no time.
     #[error(
-        "no column looks like a time{why}; the columns are {present}; say --time COLUMN, or --rate HZ if there is none"
+        "no column looks like a time{why}; the columns are {present}; {}",
+        if why.is_empty() { "say --time COLUMN, or --rate HZ if there is none" }
+        else { "rows of one instant may be of several joints: call the column that names the joint \"joint\"; or say --time COLUMN" }
     )]
     NoTime { why: String, present: String },
     /// A column of time that does not say its unit.
@@ -159,10 +161,12 @@ pub enum CsvError {
 
 impl CsvError {
     /// The option that is missing most likely, and what an import with it does.
-    pub(in crate::log) const fn missing_option(&self) -> Option<(&'static str, &'static str)> {
+    pub(in crate::log) fn missing_option(&self) -> Option<(&'static str, &'static str)> {
         match self {
             Self::AngleUnit { .. } => Some(("--degrees", "reads it if its angles are in degrees")),
-            Self::NoTime { .. } => Some(("--rate HZ", "reads it if a row comes HZ times a second")),
+            Self::NoTime { why, .. } if why.is_empty() => {
+                Some(("--rate HZ", "reads it if a row comes HZ times a second"))
+            }
             _ => None,
         }
     }

@@ -128,7 +128,13 @@ fn grouped(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks)
                 found.contains(&Groups::Decimal) && found.iter().all(|one| *one != Groups::WithDecimals);
             if found.contains(&Groups::Perhaps) {
                 let short = found.contains(&Groups::Short);
-                let millimetres = label(name, None).unit.is_some_and(|unit| unit.name == "mm");
+                // No cylinder is ten metres long.
+                let below_ten = |cell: &[u8]| {
+                    let digits = cell.trim_ascii().strip_prefix(b"-").unwrap_or(cell.trim_ascii());
+                    digits.iter().position(|byte| *byte == mark).is_none_or(|at| at < 2)
+                };
+                let millimetres = label(name, None).unit.is_some_and(|unit| unit.name == "mm")
+                    && cells(column).all(below_ten);
                 // All columns must allow it.
                 let allowed = (short || millimetres) && !found.contains(&Groups::Long);
                 perhaps = Some(perhaps.unwrap_or(true) && allowed);
@@ -197,6 +203,7 @@ mod tests {
             "t;q [mm]\n0,000;1,380\n0,010;1,381\n",
             "t,q [deg]\n0,1.380\n1,1.381\n",
             "t;q [mm]\n0;1.380\n1;1.38\n",
+            "t;q [mm]\n0;12,000\n20;12,003\n",
             "t;q\n0;it's 1\n1;2\n",
         ] {
             assert_eq!(of(text), (text.to_owned(), 0));

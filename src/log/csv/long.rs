@@ -9,6 +9,7 @@ use super::{
     CsvOptions,
     dialect::{Dialect, detect},
     head::{Head, read_head},
+    keys::Changes,
     label::label,
     number::{Looks, looks, number},
     rows::{Rows, cell_text, writer},
@@ -17,7 +18,7 @@ use super::{
 use crate::remark::{Code, Remarks};
 
 /// Headers of columns that say of what a row is.
-pub(super) const NAMES: [&str; 27] = [
+pub(super) const NAMES: [&str; 38] = [
     "joint",
     "joint_name",
     "joint name",
@@ -43,18 +44,32 @@ pub(super) const NAMES: [&str; 27] = [
     "topic",
     "metric",
     "parameter",
+    "tag name",
+    "tag_name",
+    "tagpath",
+    "tag_path",
+    "symbol",
+    "link",
+    "motor",
+    "actuator",
+    "cylinder",
+    "joint_id",
+    "axis_id",
     "关节",
     "变量",
 ];
 
 /// First words of headers of columns that say only that they hold the value.
-const VALUES: [&str; 6] = ["value", "values", "val", "wert", "varvalue", "值"];
+const VALUES: [&str; 8] = ["value", "values", "val", "wert", "varvalue", "floatvalue", "intvalue", "值"];
 
 /// Stands between cells that are kept, and in none that is a number.
 const END: u8 = b'\n';
 
 /// More signals than these are no joints.
 const MOST_NAMES: usize = 512;
+
+/// Names that a remark lists.
+const SHOWN: usize = 8;
 
 /// Cells by filled cells of a table that is worth making.
 const MOST_EMPTY: usize = 64;
@@ -68,15 +83,19 @@ struct Long {
     values: Vec<usize>,
     /// Whether the names alone say what the values are.
     bare: bool,
+    /// Whether rows of the names come in turns, and hold values that jump with them.
+    interleaved: bool,
+    /// Whether that alone tells the column of names.
+    guessed: bool,
 }
 
-/// The text of a long table with a row an instant; `None` if it is no long table.
+/// The text of a long table with a row an instant, and how that is read; `None` if it is no long table.
 pub(super) fn widened(
     file: &str,
     text: &[u8],
     options: &CsvOptions,
     remarks: &mut Remarks,
-) -> Option<Vec<u8>> {
+) -> Option<(Vec<u8>, CsvOptions)> {
     let dialect = detect(file, text, options).ok()?;
     let head = read_head(text, dialect, &mut Remarks::default());
     let long = Long::of(dialect, head, options)?;
@@ -88,10 +107,19 @@ pub(super) fn widened(
         let cells = gathered.row(row).map(|[from, to]| gathered.text.get(from..to).unwrap_or_default());
         wide.write_record(time.iter().map(Vec::as_slice).chain(cells)).ok()?;
     }
+    if long.guessed {
+        let header = &long.head.names[*long.names.first()?];
+        let shown: Vec<String> = gathered.ids.iter().take(SHOWN).flatten().map(|id| cell_text(id)).collect();
+        let message = format!(
+            "column {header:?} says of which joint a row is, because values jump with it: {}",
+            shown.join(", ")
+        );
+        remarks.add(Code::Guessed, 1, message);
+    }
     let message = "values of a signal at an instant that it has another value at, left out: is the table of several runs \
                    or machines?";
     remarks.add(Code::DuplicateStamp, gathered.twice, message);
-    wide.into_inner().ok()
+    Some((wide.into_inner().ok()?, dialect.rewritten(options)))
 }
 
 /// Cells of some columns of a row.
@@ -124,15 +152,35 @@ impl Long {
         }
         let plain = |column: &usize| head.names[*column].trim_matches(['_', ' ']).to_lowercase();
         let all = 0..head.names.len();
-        let names: Vec<usize> =
+        let named: Vec<usize> =
             all.clone().filter(|column| NAMES.contains(&plain(column).as_str())).collect();
         let timely = |column: &usize| match &options.time {
             Some(time) => time.eq_ignore_ascii_case(&head.names[*column]),
             None => label(&head.names[*column], None).is_time,
         };
         let times: Vec<usize> =
-            all.clone().filter(|column| !names.contains(column) && timely(column)).collect();
-        if names.is_empty() || times.is_empty() {
+            all.clone().filter(|column| !named.contains(column) && timely(column)).collect();
+        if times.is_empty() {
+            return None;
+        }
+        let says_value = |column: &usize| {
+            let header = plain(column);
+            words(&header).first().is_some_and(|word| VALUES.contains(&word.text))
+        };
+        let position = |column: &usize| {
+            let label = label(&head.names[*column], None);
+            label.role.is_some() || label.is_joint || says_value(column)
+        };
+        let other = |column: &usize| !named.contains(column) && !times.contains(column);
+        let positions: Vec<usize> = all.clone().filter(|column| other(column) && position(column)).collect();
+        let changes =
+            Changes { head: &head, decimal_comma: dialect.decimal_comma, times: &times, values: &positions };
+        let guess = || changes.key(all.clone().filter(|column| other(column) && !position(column)));
+        let found = if named.is_empty() { guess() } else { None };
+        let interleaved = named.iter().any(|&column| changes.is_interleaved(column)) || found.is_some();
+        let guessed = found.is_some();
+        let names = if guessed { found.into_iter().collect() } else { named };
+        if names.is_empty() {
             return None;
         }
         let numeric = |column: &usize| {
@@ -149,14 +197,19 @@ impl Long {
         };
         let rest = all.filter(|column| !names.contains(column) && !times.contains(column) && numeric(column));
         let rest: Vec<usize> = rest.collect();
-        let says_value = |column: &&usize| {
-            let header = plain(column);
-            words(&header).first().is_some_and(|word| VALUES.contains(&word.text))
-        };
-        let values: Vec<usize> = rest.iter().filter(says_value).copied().collect();
+        let values: Vec<usize> = rest.iter().filter(|column| says_value(column)).copied().collect();
         let bare = !values.is_empty();
         let values = if bare { values } else { rest };
-        (!values.is_empty()).then_some(Self { dialect, head, times, names, values, bare })
+        (!values.is_empty()).then_some(Self {
+            dialect,
+            head,
+            times,
+            names,
+            values,
+            bare,
+            interleaved,
+            guessed,
+        })
     }
 
     /// `None` if the rows are not of several signals at each instant.
@@ -193,7 +246,7 @@ impl Long {
         // A column of words beside rows with times of their own is a note.
         let shared = 2 * found.len() >= 3 * times.len();
         let sparse = times.len().saturating_mul(ids.len()) > MOST_EMPTY * found.len();
-        if ids.len() < 2 || !(shared || self.bare) || sparse {
+        if ids.len() < 2 || !(shared || self.bare || self.interleaved) || sparse {
             return None;
         }
         let width = ids.len() * self.values.len();
@@ -266,7 +319,7 @@ mod tests {
     use super::*;
 
     fn wide(text: &str) -> Option<String> {
-        let wide = widened("a.csv", text.as_bytes(), &CsvOptions::default(), &mut Remarks::default())?;
+        let (wide, _) = widened("a.csv", text.as_bytes(), &CsvOptions::default(), &mut Remarks::default())?;
         Some(String::from_utf8(wide).unwrap())
     }
 
@@ -278,6 +331,25 @@ mod tests {
         assert_eq!(wide(text).as_deref(), Some(expected));
         let text = "t;axis;set [mm]\n0,0;1;1,5\n0,0;2;2,5\n0,1;1;3,5\n";
         assert_eq!(wide(text).as_deref(), Some("t;axis 1 set [mm];axis 2 set [mm]\n0,0;1,5;2,5\n0,1;3,5;\n"));
+    }
+
+    #[test]
+    fn a_column_that_the_values_jump_with_tells_joints_apart_whatever_it_is_called() {
+        let rows = |row: &dyn Fn(u32, &str, f64) -> String| -> String {
+            (0..20).map(|k| row(k, "a", 10.0 + f64::from(k)) + &row(k, "b", 90.0 + f64::from(k))).collect()
+        };
+        let headers =
+            |text: String| wide(&text).map(|text| text.lines().next().unwrap_or_default().to_owned());
+        let expected = Some("t,a set_deg,a act_deg,b set_deg,b act_deg".to_owned());
+        // At the same instants, or each at its own.
+        let same = rows(&|k, of, q| format!("{k},{of},{q},{q}\n"));
+        assert_eq!(headers(format!("t,vin,set_deg,act_deg\n{same}")), expected);
+        let own = rows(&|k, of, q| format!("{k}.{},{of},{q},{q}\n", if of == "a" { 1 } else { 6 }));
+        assert_eq!(headers(format!("t,vin,set_deg,act_deg\n{own}")), expected);
+        assert_eq!(headers(format!("t,joint,set_deg,act_deg\n{own}")), expected);
+        // A life bit comes in turns, too.
+        let bit: String = (0..40).map(|k| format!("{k},{},{},{}\n", k % 2, 10 + k, 9 + k)).collect();
+        assert_eq!(headers(format!("t,life,boom_set_deg,boom_act_deg\n{bit}")), None);
     }
 
     #[test]

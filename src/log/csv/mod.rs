@@ -22,6 +22,8 @@ mod expression;
 mod given;
 mod grouping;
 mod head;
+mod judged;
+mod keys;
 mod label;
 mod layout;
 mod letter;
@@ -51,7 +53,7 @@ pub use error::CsvError;
 pub use objects::JsonLines;
 pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
 pub use run::CsvRun;
-pub(in crate::log) use run::{GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNUSED_OF_ORIGIN};
+pub(in crate::log) use run::{GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN};
 pub use stream::TableStream;
 pub use time::{UNDATED_NS, is_dated};
 pub use understood::{ColumnRead, TimeRead, Understood};
@@ -104,11 +106,19 @@ pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<
     let text = text::of_bytes(name, bytes)?;
     let text = objects::as_table(&text).map_or(text, Cow::Owned);
     let text = only::of_one(name, text, options)?;
+    let text = judged::without_bad(name, text, options, &mut remarks);
     let text = behind::without_units(name, text, options);
     let text = grouping::plain(name, text, options, &mut remarks);
-    let text = clocks::joined(name, &text, options).map_or(text, Cow::Owned);
-    let text = long::widened(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
-    Form::of(name, &text, options, &mut remarks)?.read(name, &text, remarks).map(|(run, _)| run)
+    let (text, form) = match clocks::joined(name, &text, options, &mut remarks) {
+        Some((joined, form)) => (Cow::Owned(joined), form),
+        None => (text, options.clone()),
+    };
+    let (text, form) = match long::widened(name, &text, &form, &mut remarks) {
+        Some((wide, form)) => (Cow::Owned(wide), form),
+        None => (text, form),
+    };
+    let (run, _) = Form::of(name, &text, &form, &mut remarks)?.read(name, &text, remarks)?;
+    Ok(run.given(options.given()))
 }
 
 /// How the rows of a table are read.
@@ -177,7 +187,6 @@ impl Form {
         let (units, kinds) = si::to_si(head, labels, &layout, options, &mut cells, &mut remarks)?;
         let layout_added = (&*layout, self.added());
         let understood = Understood::new(name, *dialect, head, time, layout_added, &cells, &units);
-        let run = CsvRun::new((layout.into_owned(), kinds), cells, understood, remarks);
-        Ok((run.given(options.given()), units))
+        Ok((CsvRun::new((layout.into_owned(), kinds), cells, understood, remarks), units))
     }
 }

@@ -10,6 +10,9 @@ use serde_json::{Map, Value};
 
 use super::{label::label, long::NAMES, number::number};
 
+/// Keys of lists of the names of joints.
+const LISTS: [&str; 5] = ["name", "names", "joint_names", "joints", "joint"];
+
 /// Keys and cells of an object.
 type Cells = Vec<(String, String)>;
 
@@ -230,9 +233,7 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
 fn cells(line: &[u8]) -> Option<Cells> {
     let object: Map<String, Value> = parsed(line)?;
     let mut cells = Vec::new();
-    for (key, value) in &object {
-        flatten(key, value, &mut cells);
-    }
+    flatten_object("", &object, None, &mut cells);
     Some(cells)
 }
 
@@ -264,15 +265,44 @@ fn without_nan(text: &[u8]) -> Vec<u8> {
     kept
 }
 
-fn flatten(key: &str, value: &Value, cells: &mut Cells) {
-    match value {
-        Value::Object(inner) => {
-            for (name, value) in inner {
-                flatten(&format!("{key}_{name}"), value, cells);
+/// The names of joints that an object lists, for the lists beside them and in objects within.
+fn listed(object: &Map<String, Value>) -> Option<Vec<&str>> {
+    let lists = object.iter().filter(|(key, _)| LISTS.contains(&key.to_lowercase().as_str()));
+    let mut found = lists
+        .filter_map(|(_, value)| value.as_array()?.iter().map(Value::as_str).collect::<Option<Vec<&str>>>());
+    found.find(|names| !names.is_empty() && names.iter().collect::<BTreeSet<_>>().len() == names.len())
+}
+
+/// Adds the cells of the values of an object; `before` stands before its keys, `names` are those of the object it is in.
+fn flatten_object(before: &str, object: &Map<String, Value>, names: Option<&[&str]>, cells: &mut Cells) {
+    let own = listed(object);
+    let names = own.as_deref().or(names);
+    for (key, value) in object {
+        let path = if before.is_empty() { key.clone() } else { format!("{before}_{key}") };
+        let of_joints = value.as_array().zip(names).filter(|(list, names)| {
+            list.len() == names.len() && list.iter().all(|value| value.is_number() || value.is_null())
+        });
+        match of_joints {
+            Some((list, names)) => {
+                names
+                    .iter()
+                    .zip(list)
+                    .for_each(|(name, value)| flatten(&format!("{name} {path}"), value, None, cells));
             }
+            // Names are no values.
+            None if own.is_some() && LISTS.contains(&key.to_lowercase().as_str()) => {}
+            None => flatten(&path, value, names, cells),
         }
+    }
+}
+
+fn flatten(key: &str, value: &Value, names: Option<&[&str]>, cells: &mut Cells) {
+    match value {
+        Value::Object(inner) => flatten_object(key, inner, names, cells),
         Value::Array(list) => {
-            (1..).zip(list).for_each(|(number, value)| flatten(&format!("{key}_{number}"), value, cells));
+            (1..)
+                .zip(list)
+                .for_each(|(number, value)| flatten(&format!("{key}_{number}"), value, names, cells));
         }
         Value::String(text) => cells.push((key.to_owned(), text.clone())),
         Value::Null => cells.push((key.to_owned(), String::new())),
@@ -311,6 +341,20 @@ mod tests {
         assert_eq!((lines.row(b"t,1,2"), lines.row(b"{broken")), (None, None));
         assert_eq!(lines.late(), Some(("new".to_owned(), 1)));
         assert!(JsonLines::is_object(b" {\"a\":1}") && !JsonLines::is_object(b"a,b"));
+    }
+
+    #[test]
+    fn a_list_of_names_names_the_lists_beside_it_in_whatever_order() {
+        let mut lines = JsonLines::default();
+        assert!(
+            lines.gather(br#"{"t": 0, "name": ["a", "b"], "set": [1, 2], "in": {"act": [3, 4], "x": [5]}}"#)
+        );
+        assert!(
+            lines.gather(br#"{"t": 1, "name": ["b", "a"], "set": [2, 1], "in": {"act": [4, 3], "x": [5]}}"#)
+        );
+        let header = "\"a in_act\",\"b in_act\",\"in_x_1\",\"a set\",\"b set\",\"t\"\n";
+        let row = |t: u32| format!("\"3\",\"4\",\"5\",\"1\",\"2\",\"{t}\"\n");
+        assert_eq!(lines.table(), format!("{header}{}{}", row(0), row(1)));
     }
 
     #[test]

@@ -23,6 +23,8 @@ const NAMED: usize = 20;
 /// Its entry of columns that were not used.
 pub(in crate::log) const UNUSED_OF_ORIGIN: &str = "not used";
 
+/// What its entries of units begin with that the table or its reader stated.
+pub(in crate::log) const UNIT_OF_ORIGIN: &str = "unit of ";
 /// What its entries of options that were given begin with; a number and the option follow.
 pub(in crate::log) const GIVEN_OF_ORIGIN: &str = "option ";
 
@@ -89,6 +91,13 @@ impl CsvRun {
             understood.columns.iter().map(|c| (format!("{} of {}", c.becomes, c.joint), c.header.clone()));
         let time = format!("{} ({})", understood.time.columns.join(", "), understood.time.form);
         let mut origin: BTreeMap<String, String> = columns.collect();
+        let stated = understood
+            .columns
+            .iter()
+            .filter(|column| ["file", "option"].contains(&column.unit_from.as_str()));
+        origin.extend(stated.map(|c| {
+            (format!("{UNIT_OF_ORIGIN}{} of {}", c.becomes, c.joint), c.unit.clone().unwrap_or_default())
+        }));
         origin.extend([("file".to_owned(), understood.file.clone()), (TIME_OF_ORIGIN.to_owned(), time)]);
         let unused = &understood.unused;
         if !unused.is_empty() {

@@ -50,11 +50,28 @@ pub(super) fn to_si(
             Some(length) => length.of(one.quantity, stated(one.column)),
             None => angle(one, stated(one.column), fallback, head, cells, options)?,
         };
-        if from == "guess" && lengths[one.joint].is_none() {
-            guessed.push(&head.names[one.column]);
-        }
-        scale(cells, one.column, unit.factor);
+        let (unit, from) = match lengths[one.joint] {
+            None if from == "guess" => match by_partner(one, unit, layout, &stated, cells) {
+                Some(other) => {
+                    let header = &head.names[one.column];
+                    let message = format!(
+                        "column {header:?} says no unit, and is taken as {}: its range is that of the other side of {} so",
+                        other.name, layout.joints[one.joint]
+                    );
+                    remarks.add(Code::Guessed, 1, message);
+                    (other, from)
+                }
+                None => {
+                    guessed.push(&head.names[one.column]);
+                    (unit, from)
+                }
+            },
+            _ => (unit, from),
+        };
         settled.push(Settled { column: one.column, unit: Some(unit), from });
+    }
+    for Settled { column, unit, .. } in &settled {
+        scale(cells, *column, unit.map_or(1.0, |unit| unit.factor));
     }
     if let Some(first) = guessed.first() {
         let unit = fallback.map_or(RADIAN, |(unit, _)| unit).name;
@@ -187,6 +204,37 @@ fn angle(
     let speed = one.quantity == Quantity::Velocity;
     let speed = speed.then(|| parse_unit(if angle == DEGREE { "deg/s" } else { "rad/s" })).flatten();
     Ok((speed.unwrap_or(angle), from))
+}
+
+/// Degrees by radians, as ranges of plan and measurement show it.
+const DEGREES_A_RADIAN: [f64; 2] = [40.0, 80.0];
+
+/// The other unit of angles for positions that are guessed to be in one, if their range is then that of the other side,
+/// whose unit is stated.
+fn by_partner(
+    one: &Use,
+    guess: Unit,
+    layout: &Layout,
+    stated: &impl Fn(usize) -> Option<Unit>,
+    cells: &Cells,
+) -> Option<Unit> {
+    let partner = layout.uses.iter().find(|other| {
+        let beside = other.joint == one.joint && other.role != one.role && other.quantity == one.quantity;
+        beside && one.quantity == Quantity::Position && stated(other.column).is_some()
+    })?;
+    let unit = stated(partner.column).filter(|unit| unit.measure == Measure::Angle)?;
+    let span = |column: usize| {
+        let values = cells.columns.get(&column).map_or(&[][..], |column| &column.values);
+        let [least, most] = crate::math::range(values.iter().copied().filter(|value| value.is_finite()));
+        most - least
+    };
+    let ratio = span(one.column) * guess.factor / (span(partner.column) * unit.factor);
+    let within = |ratio: f64| (DEGREES_A_RADIAN[0]..DEGREES_A_RADIAN[1]).contains(&ratio);
+    match guess {
+        DEGREE if within(ratio.recip()) => Some(RADIAN),
+        RADIAN if within(ratio) => Some(DEGREE),
+        _ => None,
+    }
 }
 
 /// What columns are in that say nothing: what the caller says, what the kind of file is known to

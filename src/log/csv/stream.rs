@@ -77,6 +77,7 @@ impl TableStream {
         };
         let form = Form::of(name, &text, options, &mut remarks)?;
         let (run, units) = form.read(name, &text, remarks)?;
+        let run = run.given(options.given());
         let guessed =
             |column: &usize| units.iter().any(|unit| unit.column == *column && unit.from == "guess");
         let positions = form.layout.uses.iter().filter(|one| one.quantity == Quantity::Position);

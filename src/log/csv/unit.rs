@@ -64,6 +64,9 @@ const SCALED: [Unit; 10] = [
 /// The name of a scale that no program is known to write.
 const ODD: &str = "another unit";
 
+/// A unit that is not all that a header says.
+pub(super) const ANOTHER: Unit = unit(ODD, Measure::Other, 1.0);
+
 /// Units of other quantities, and, from a place on, counts of what only the machine's maker knows.
 const FIRST_COUNT: usize = 16;
 const OTHERS: [&str; 27] = [
@@ -97,12 +100,16 @@ const OTHERS: [&str; 27] = [
 ];
 
 /// Spellings, in lower case and with `deg` for the degree sign.
-const UNITS: [(&[&str], Unit); 32] = [
+const UNITS: [(&[&str], Unit); 38] = [
     (&["rad", "radian", "radians", "弧度"], RADIAN),
-    (&["deg", "degree", "degrees", "grad", "grados", "gradi", "degrés", "度"], DEGREE),
+    (&["deg", "degree", "degrees", "grad", "grd", "grados", "gradi", "degrés", "度"], DEGREE),
     (&["mrad"], unit("mrad", Measure::Angle, 1e-3)),
-    (&["mdeg"], unit("mdeg", Measure::Angle, 1e-3 * DEGREE_RAD)),
-    (&["rev", "turn", "turns"], unit("rev", Measure::Angle, TAU)),
+    (&["mdeg", "millideg"], unit("mdeg", Measure::Angle, 1e-3 * DEGREE_RAD)),
+    (&["ddeg", "decideg", "zehntelgrad"], unit("0.1 deg", Measure::Angle, 0.1 * DEGREE_RAD)),
+    (&["cdeg", "centideg"], unit("0.01 deg", Measure::Angle, 0.01 * DEGREE_RAD)),
+    (&["urad", "µrad", "μrad"], unit("urad", Measure::Angle, 1e-6)),
+    (&["arcsec"], unit("arcsec", Measure::Angle, DEGREE_RAD / 3600.0)),
+    (&["rev", "turn", "turns", "umdr"], unit("rev", Measure::Angle, TAU)),
     (&["gon"], unit("gon", Measure::Angle, TAU / 400.0)),
     (&["arcmin"], unit("arcmin", Measure::Angle, DEGREE_RAD / 60.0)),
     (&["rad/s", "rad_s", "rads", "rad/sec", "rad s^-1"], unit("rad/s", Measure::AngularSpeed, 1.0)),
@@ -115,6 +122,8 @@ const UNITS: [(&[&str], Unit); 32] = [
     (&["mm", "毫米", "millimetre", "millimetres", "millimeter", "millimeters"], MILLIMETRE),
     (&["cm", "centimetre", "centimetres", "centimeter", "centimeters"], CENTIMETRE),
     (&["m", "metre", "metres", "meter", "meters"], METRE),
+    (&["dm"], unit("dm", Measure::Length, 0.1)),
+    (&["um", "µm", "μm"], unit("um", Measure::Length, 1e-6)),
     (&["in", "inch", "inches"], unit("in", Measure::Length, 0.0254)),
     (&["mm/s", "mm_s", "mm/sec"], unit("mm/s", Measure::LinearSpeed, 1e-3)),
     (&["cm/s", "cm_s", "cm/sec"], unit("cm/s", Measure::LinearSpeed, 1e-2)),
@@ -163,7 +172,7 @@ pub(super) fn parse_unit(text: &str) -> Option<Unit> {
     let other = || OTHERS.iter().find(|other| **other == text).map(|name| unit(name, Measure::Other, 1.0));
     // Values that are so many times the unit.
     let times = || {
-        let (name, number) = text.split_once(['*', 'x'])?;
+        let (name, number) = text.split_once(['*', 'x', '·', '×', ':', '/'])?;
         scale_of((&format!("1/{}", number.trim()), name.trim()))
     };
     known.or_else(other).or_else(|| scaled(&text)).or_else(times)
@@ -171,8 +180,21 @@ pub(super) fn parse_unit(text: &str) -> Option<Unit> {
 
 /// A unit behind a number or a fraction of one; one that no program is known to write is another unit.
 fn scaled(text: &str) -> Option<Unit> {
+    if let Some((power, name)) = power_of_ten(text) {
+        return scale_of((&power, name));
+    }
     let name = text.find(|c: char| !(c.is_ascii_digit() || ".,/".contains(c))).filter(|at| *at > 0)?;
     scale_of(text.split_at(name))
+}
+
+/// A power of ten before a unit, `1e-3 rad` or `10^-3 rad`, as a number, and the unit.
+fn power_of_ten(text: &str) -> Option<(String, &str)> {
+    let behind = text.strip_prefix("1e").or_else(|| text.strip_prefix("10^"))?;
+    let ends = behind.find(|c: char| !(c.is_ascii_digit() || "+-".contains(c)))?;
+    let power: i32 = behind.get(..ends)?.parse().ok()?;
+    (-9..=9)
+        .contains(&power)
+        .then(|| (10_f64.powi(power).to_string(), behind.get(ends..).unwrap_or_default()))
 }
 
 /// The unit that a number and a unit's name make.
@@ -227,6 +249,13 @@ mod tests {
             ("[100ns]", "100 ns"),
             ("[deg*10]", "0.1 deg"),
             ("mm x 100", "0.01 mm"),
+            ("[deg·10]", "0.1 deg"),
+            ("deg × 100", "0.01 deg"),
+            ("deg/10", "0.1 deg"),
+            ("[1e-3 deg]", "mdeg"),
+            ("[1E-03 rad]", "mrad"),
+            ("10^-3 rad", "mrad"),
+            ("1e-2 mm", "0.01 mm"),
             ("1 mm", "mm"),
             ("[7 mm]", "another unit"),
             ("[counts]", "counts"),

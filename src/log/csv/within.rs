@@ -2,7 +2,7 @@
 
 use super::{
     Quantity,
-    unit::{Unit, parse_unit},
+    unit::{ANOTHER, Unit, parse_unit},
     word::{Meaning, Word},
 };
 
@@ -12,6 +12,10 @@ const UNITS: [&str; 8] = ["deg", "degree", "degrees", "mdeg", "rad", "mrad", "mm
 /// Words behind a unit that make it one a second.
 const PER_SECOND: [&[&str]; 5] = [&["s"], &["sec"], &["per", "s"], &["per", "sec"], &["per", "second"]];
 
+/// Numbers and words that make another unit of one.
+const SCALES: [&str; 3] = ["10", "100", "1000"];
+const PARTS: [&str; 3] = ["tenth", "hundredth", "zehntel"];
+
 /// Takes a unit out of the words; the first of them names the joint, and of two units neither is meant.
 pub(super) fn take_unit(words: &mut Vec<Word<'_>>) -> Option<Unit> {
     let whole = |at: usize| words[at].apart && words.get(at + 1).is_none_or(|next| next.apart);
@@ -19,6 +23,14 @@ pub(super) fn take_unit(words: &mut Vec<Word<'_>>) -> Option<Unit> {
     let mut found = (1..words.len()).filter(|&at| whole(at) && UNITS.iter().any(|unit| is(at, unit)));
     let (at, None) = (found.next()?, found.next()) else { return None };
     let unit = parse_unit(words[at].text)?;
+    // What counts the joints of an arm is no scale: a scale stands behind a joint that has a name.
+    let named = words[..at].iter().any(|word| word.meaning == Meaning::Name && word.text.len() > 2);
+    let scale = |word: &Word<'_>| SCALES.contains(&word.text);
+    let power = words.get(at + 1).is_some_and(|next| next.text == "e")
+        && words.get(at + 2).is_some_and(|next| next.text.bytes().all(|b| b.is_ascii_digit()));
+    if named && (words[at + 1..].iter().any(scale) || power || PARTS.contains(&words[at - 1].text)) {
+        return Some(ANOTHER);
+    }
     let follow = |behind: &&&[&str]| {
         behind.iter().zip(at + 1..).all(|(one, at)| at < words.len() && whole(at) && is(at, one))
     };
@@ -58,6 +70,11 @@ mod tests {
         assert_eq!(said("angle_rad_1"), (Some("rad"), "angle 1".into()));
         assert_eq!(said("j1 rad per sec actual"), (Some("rad/s"), "j 1 actual".into()));
         assert_eq!(said("boom_mm_s_act"), (Some("mm/s"), "boom act".into()));
+        for header in ["boom set [deg] Faktor 10", "boom_set_deg_e2", "boom_tenth_mm_set", "boom_set_deg_10"]
+        {
+            assert_eq!(said(header).0, Some("another unit"), "{header}");
+        }
+        assert_eq!(said("joint_deg_10").0, Some("deg"));
         for header in [
             "vorn_rad_ist",
             "rad_1_ist",

@@ -8,6 +8,7 @@ use super::{
     cylinders::Kinds,
     held,
     joints::{add_new, keep_joints},
+    origin::Imported,
     overlap, poses, quality,
     recording::{Command, Recording, SourceInfo},
     samples::{Axis, Reading, Samples, samples},
@@ -69,6 +70,9 @@ pub(super) fn assemble(
     let mut assembly =
         Assembly::new(extracted, (base, options.range), (kinds, laid_onto), chosen, &mut remarks);
     let mut pending: Vec<&Candidate> = choice.planned.iter().chain(beside.iter().map(|(_, c)| c)).collect();
+    if let Some(table) = Imported::of(&assembly.extracted.metadata) {
+        table.convert(options)?;
+    }
     let degrees = options.measured_in_degrees;
     let mut measured = assembly.series(&choice.measured, &pending, degrees, None, &mut remarks);
     pending.drain(..choice.planned.len());

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     log::{
-        csv::{GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNUSED_OF_ORIGIN},
+        csv::{GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN},
+        error::LogError,
+        options::ReadOptions,
         write::Topics,
     },
     series::Series,
@@ -30,8 +32,30 @@ impl<'a> Imported<'a> {
 
     /// The joints and columns that it has positions of.
     fn positions(&self) -> impl Iterator<Item = (&'a str, &'a str)> {
-        let joint = |key: &'a str| key.split_once(" position of ").map(|(_, joint)| joint);
+        let joint = |key: &'a str| {
+            let (side, joint) = key.split_once(" position of ")?;
+            (!side.starts_with(UNIT_OF_ORIGIN)).then_some(joint)
+        };
         self.origin.iter().filter_map(move |(key, column)| Some((joint(key)?, column.as_str())))
+    }
+
+    /// An error where an option would convert positions to rad that were when the table was read.
+    pub(super) fn convert(&self, options: &ReadOptions) -> Result<(), LogError> {
+        let sides = [
+            ("planned", "--planned-degrees", options.planned_in_degrees),
+            ("measured", "--measured-degrees", options.measured_in_degrees),
+        ];
+        for (side, option, _) in sides.into_iter().filter(|(.., given)| *given) {
+            let stated = format!("{UNIT_OF_ORIGIN}{side} position of ");
+            let found = self.origin.iter().find_map(|(key, unit)| Some((key.strip_prefix(&stated)?, unit)));
+            if let Some((joint, unit)) = found {
+                let header =
+                    self.origin.get(&format!("{side} position of {joint}")).cloned().unwrap_or_default();
+                let (file, unit) = (self.file.to_owned(), unit.clone());
+                return Err(LogError::ConvertedBefore { option, header, unit, file });
+            }
+        }
+        Ok(())
     }
 
     /// Its columns, in use or not.

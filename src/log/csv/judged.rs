@@ -1,0 +1,83 @@
+//! Rows that the recorder itself calls bad, as historians do beside each value.
+
+use std::borrow::Cow;
+
+use ::csv::ByteRecord;
+
+use super::{
+    CsvOptions,
+    dialect::detect,
+    head::read_head,
+    rows::{Rows, cell_text, writer},
+};
+use crate::remark::{Code, Remarks};
+
+/// Headers of columns that say how good a row is.
+const JUDGES: [&str; 8] =
+    ["quality", "status", "statuscode", "status_code", "opc_quality", "opcquality", "validity", "qualität"];
+/// What they say of a good row, and of a bad one.
+const GOOD: [&str; 4] = ["good", "ok", "valid", "gut"];
+const BAD: [&str; 6] = ["bad", "invalid", "error", "fault", "schlecht", "badwaitingforinitialdata"];
+
+/// The table without the rows that a column of its own calls bad.
+pub(super) fn without_bad<'a>(
+    file: &str,
+    text: Cow<'a, [u8]>,
+    options: &CsvOptions,
+    remarks: &mut Remarks,
+) -> Cow<'a, [u8]> {
+    match kept(file, &text, options, remarks) {
+        Some(kept) => Cow::Owned(kept),
+        None => text,
+    }
+}
+
+fn kept(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Option<Vec<u8>> {
+    let dialect = detect(file, text, options).ok()?;
+    let head = read_head(text, dialect, &mut Remarks::default());
+    let judges = |name: &String| JUDGES.contains(&name.trim_matches(['_', ' ']).to_lowercase().as_str());
+    let column = head.names.iter().position(judges)?;
+    let says = |cell: &[u8], words: &[&str]| words.contains(&cell_text(cell).to_lowercase().as_str());
+    let sample = || head.sample.iter().filter_map(|row| row.get(column));
+    if !sample().any(|cell| says(cell, &GOOD)) {
+        return None;
+    }
+    let (mut kept, mut bad) = (writer(dialect.separator), 0);
+    let mut rows = Rows::new(text, dialect.separator);
+    let mut record = ByteRecord::new();
+    while let Some(line) = rows.next(&mut record) {
+        if line >= head.first_line && record.get(column).is_some_and(|cell| says(cell, &BAD)) {
+            bad += 1;
+        } else {
+            kept.write_byte_record(&record).ok()?;
+        }
+    }
+    let header = &head.names[column];
+    remarks.add(Code::NotFinite, bad, format!("rows that column {header:?} calls bad; left out"));
+    if bad == 0 { None } else { kept.into_inner().ok() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_are_called_bad_are_left_out_and_counted() {
+        let of = |text: &str| {
+            let mut remarks = Remarks::default();
+            let kept = without_bad(
+                "a.csv",
+                Cow::Owned(text.as_bytes().to_vec()),
+                &CsvOptions::default(),
+                &mut remarks,
+            );
+            let counts = remarks.as_slice().iter().map(|remark| remark.count).sum::<u64>();
+            (String::from_utf8(kept.into_owned()).unwrap(), counts)
+        };
+        let text = "t,q,Quality\n0,1,Good\n1,0,Bad\n2,1,Good\n3,0,bad\n";
+        assert_eq!(of(text), ("t,q,Quality\n0,1,Good\n2,1,Good\n".into(), 2));
+        for text in ["t,q,status\n0,1,run\n1,0,error\n", "t,q,quality\n0,1,good\n", "t,q\n0,1\n"] {
+            assert_eq!(of(text), (text.to_owned(), 0));
+        }
+    }
+}
