@@ -9,65 +9,26 @@ use crate::units::Degrees;
 /// Why a description is refused, or a pose not reached.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ArmError {
     /// The text is not of its language.
     #[error("{file} cannot be read: {reason}")]
-    Syntax {
-        /// File, or what stands for it.
-        file: String,
-        /// The parser's words, with line where it gives one.
-        reason: String,
-    },
+    Syntax { file: String, reason: String },
     /// More text or deeper nesting than any arm needs.
     #[error("{file}: {found} {quantity}, at most {limit} are read")]
-    TooLarge {
-        /// File, or what stands for it.
-        file: String,
-        /// What is counted.
-        quantity: &'static str,
-        /// How many there are.
-        found: usize,
-        /// How many are allowed.
-        limit: usize,
-    },
+    TooLarge { file: String, quantity: &'static str, found: usize, limit: usize },
     /// An element that contradicts another one or makes no sense.
     #[error("{file}: {element}: found {found}, expected {expected}")]
-    Unexpected {
-        /// File, or what stands for it.
-        file: String,
-        /// The element, as a person would look for it.
-        element: String,
-        /// What it says.
-        found: String,
-        /// What it may say.
-        expected: String,
-    },
+    Unexpected { file: String, element: String, found: String, expected: String },
     /// The end of the chain is not given and could be any of these links.
     #[error("{file}: the tool could be any of {}; name one", tools.join(", "))]
-    SeveralTools {
-        /// File, or what stands for it.
-        file: String,
-        /// The link at which the chain branches, and links without children.
-        tools: Vec<String>,
-    },
+    SeveralTools { file: String, tools: Vec<String> },
     /// Joints between base and tool whose positions are not known.
     #[error("{file}: the link {tool} cannot be placed without the positions of {}", joints.join(", "))]
-    JointsMissing {
-        /// File, or what stands for it.
-        file: String,
-        /// The link that is the tool.
-        tool: String,
-        /// Joints on the way to it.
-        joints: Vec<String>,
-    },
+    JointsMissing { file: String, tool: String, joints: Vec<String> },
     /// No posture within the limits has the tool there; what the nearest attempt leaves.
     #[error("the tool pose is out of reach by {distance_m:.4} m and {}", Degrees(*angle_rad))]
-    Unreachable {
-        /// Remaining distance, m.
-        distance_m: f64,
-        /// Remaining rotation, rad.
-        angle_rad: f64,
-    },
+    Unreachable { distance_m: f64, angle_rad: f64 },
 }
 
 /// Speaks for one file.

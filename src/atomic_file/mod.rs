@@ -20,45 +20,23 @@ pub(crate) use temporary::Temporary;
 /// Why a file did not appear.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum AtomicError {
     /// The target is a directory, or names no file.
     #[error("{} is a folder; give the name of a file", path.display())]
-    NotAFile {
-        /// The target.
-        path: PathBuf,
-    },
+    NotAFile { path: PathBuf },
     /// The directory of the target does not exist.
     #[error("cannot write {}: there is no folder {}; make it first", path.display(), folder.display())]
-    NoFolder {
-        /// The target.
-        path: PathBuf,
-        /// Where it would be.
-        folder: PathBuf,
-    },
+    NoFolder { path: PathBuf, folder: PathBuf },
     /// The target was read, so it is an input.
     #[error("{} is an input of this command, and is not written over; give the output another name", path.display())]
-    Input {
-        /// The target.
-        path: PathBuf,
-    },
+    Input { path: PathBuf },
     /// The target is worth more than to be replaced in passing.
     #[error("{} is {what}; give the output another name, or replace it with --force", path.display())]
-    Kept {
-        /// The target.
-        path: PathBuf,
-        /// What it is.
-        what: String,
-    },
+    Kept { path: PathBuf, what: String },
     /// The file system refused.
     #[error("cannot {action} {}", path.display())]
-    Io {
-        /// What was tried.
-        action: &'static str,
-        /// With which file.
-        path: PathBuf,
-        /// Why it failed.
-        source: io::Error,
-    },
+    Io { action: &'static str, path: PathBuf, source: io::Error },
 }
 
 /// An output that remembers why the file system refused it, whatever a writer on top makes of that.

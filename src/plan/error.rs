@@ -7,23 +7,18 @@ use crate::{arm::ArmError, moea::MoeaError, spline::SplineError, units::Degrees}
 /// Why a task does not fit its arm, or cannot be searched.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum PlanError {
     /// Task and arm do not name the same joints.
     #[error(
         "the task's joints are {task}, those of the arm are {arm}; name every joint of the arm in the task"
     )]
-    JointsDiffer {
-        /// Joints of the task.
-        task: String,
-        /// Joints of the arm.
-        arm: String,
-    },
+    JointsDiffer { task: String, arm: String },
     /// A key point given by the tool that no posture within the joint ranges reaches.
     #[error("key point {point} cannot be reached")]
     Unreachable {
         /// Number of the key point, from 1.
         point: usize,
-        /// By how much.
         source: ArmError,
     },
     /// A key point outside a joint's range: no timing helps.
@@ -34,44 +29,23 @@ pub enum PlanError {
     PointOutside {
         /// Number of the key point, from 1.
         point: usize,
-        /// Name of the joint.
         joint: String,
-        /// Its angle there, rad.
         found_rad: f64,
-        /// Lowest angle allowed, rad.
         lowest_rad: f64,
-        /// Highest angle allowed, rad.
         highest_rad: f64,
     },
     /// A speed, acceleration or jerk at an end that is beyond the joint's limit.
     #[error("the {end} asks {joint} for a {quantity} of {share:.2} times its limit")]
-    EndOutside {
-        /// Start or end.
-        end: &'static str,
-        /// Name of the joint.
-        joint: String,
-        /// Speed, acceleration or jerk.
-        quantity: &'static str,
-        /// What is asked as a multiple of the limit.
-        share: f64,
-    },
+    EndOutside { end: &'static str, joint: String, quantity: &'static str, share: f64 },
     /// Two joints as one, or a payload beyond what numbers hold.
     #[error("a payload of {payload_kg} kg is no mass")]
-    Payload {
-        /// The payload, kg.
-        payload_kg: f64,
-    },
+    Payload { payload_kg: f64 },
     /// Key points, dwells or times that make no spline.
     #[error("the key points and times make no plan")]
     Spline(#[from] SplineError),
     /// A number of times other than that of the key points.
     #[error("{found} times for {expected} key points; give each key point's arrival, dwells counted, from 0")]
-    Times {
-        /// Times given.
-        found: usize,
-        /// Key points.
-        expected: usize,
-    },
+    Times { found: usize, expected: usize },
     /// A free point that the motion cannot pass.
     #[error(
         "free point {point}, of {angles} angles for {joints} joints at {t_s} s, is not on the way between two key points"
@@ -79,11 +53,8 @@ pub enum PlanError {
     Via {
         /// Number of the free point, from 1.
         point: usize,
-        /// When it should be passed, s.
         t_s: f64,
-        /// Angles given.
         angles: usize,
-        /// Joints of the arm.
         joints: usize,
     },
     /// Settings of the search.

@@ -61,31 +61,17 @@ pub struct Table {
 /// Why a table was not written or read.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum DatasetError {
     /// The file system said no.
     #[error("cannot read {}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    File { path: PathBuf, source: std::io::Error },
     /// What is there is no table of such columns.
     #[error("{} is no table of this dataset: {reason}", path.display())]
-    Form {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
+    Form { path: PathBuf, reason: String },
     /// The Parquet library said no.
     #[error("cannot make the Parquet table {name}")]
-    Encode {
-        /// The table.
-        name: &'static str,
-        /// Why.
-        source: ParquetError,
-    },
+    Encode { name: &'static str, source: ParquetError },
 }
 
 impl Column {

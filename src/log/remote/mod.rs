@@ -16,37 +16,23 @@ use super::file::ReadAt;
 /// Why an address leads to no log.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum RemoteError {
     /// The program was built without the feature.
     #[error(
         "this build reads no object stores, and {address} lies in one; build it with `--features cloud`, mount the \
          store, or copy the logs"
     )]
-    NotBuilt {
-        /// The address as given.
-        address: String,
-    },
+    NotBuilt { address: String },
     /// It is no address of a store.
     #[error(
         "{address:?} is no address of logs: {reason}; expected s3://BUCKET/PATH, gs://BUCKET/PATH, az://CONTAINER/PATH \
          or https://HOST/PATH, with * for any signs of a name and ** for any folders"
     )]
-    Address {
-        /// The address as given.
-        address: String,
-        /// What is wrong with it.
-        reason: String,
-    },
+    Address { address: String, reason: String },
     /// The store did not answer, or said no.
     #[error("cannot {action} {address}: {reason}")]
-    Store {
-        /// What was to be done.
-        action: &'static str,
-        /// The address.
-        address: String,
-        /// Why.
-        reason: String,
-    },
+    Store { action: &'static str, address: String, reason: String },
 }
 
 /// A log in a store, not read yet.

@@ -73,50 +73,26 @@ pub(super) struct Definition {
 pub(super) enum SchemaError {
     /// The text is of a kind that is not read.
     #[error("schema encoding {encoding:?} of {name:?} is not one of ros2msg, ros2idl, ros1msg")]
-    Encoding {
-        /// The encoding found.
-        encoding: String,
-        /// The schema's name.
-        name: String,
-    },
+    Encoding { encoding: String, name: String },
     /// A line that is no field.
     #[error("schema line {line} is no field: {text:?}")]
     Line {
         /// Line in the schema text, from 1.
         line: usize,
-        /// The text found.
         text: String,
     },
     /// A word where another was expected.
     #[error("schema has {found:?} where {expected} was expected")]
-    Unexpected {
-        /// The word found; empty at the end of the text.
-        found: String,
-        /// The text expected.
-        expected: &'static str,
-    },
+    Unexpected { found: String, expected: &'static str },
     /// A type that the text does not define.
     #[error("type {name:?} is used in {within:?} but not defined")]
-    Undefined {
-        /// The type.
-        name: String,
-        /// The struct that uses it.
-        within: String,
-    },
+    Undefined { name: String, within: String },
     /// More text than any message type has.
     #[error("schema {name:?} of {bytes} bytes is longer than {MAX_TEXT} bytes")]
-    TooLong {
-        /// The schema's name.
-        name: String,
-        /// Length of its text.
-        bytes: usize,
-    },
+    TooLong { name: String, bytes: usize },
     /// No struct at all.
     #[error("schema {name:?} has no text")]
-    Empty {
-        /// The schema's name.
-        name: String,
-    },
+    Empty { name: String },
 }
 
 /// Longest schema text, bytes; the longest of ROS 2 have some ten thousand.

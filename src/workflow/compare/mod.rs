@@ -58,15 +58,11 @@ pub struct Inputs {
 /// Why nothing was compared.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum CompareFailure {
     /// One of the runs cannot be analysed.
     #[error("{} cannot be compared", path.display())]
-    Run {
-        /// Its log.
-        path: PathBuf,
-        /// Why.
-        source: ReportFailure,
-    },
+    Run { path: PathBuf, source: ReportFailure },
     /// A side without a run.
     #[error("found no run {0} the change, expected at least one")]
     NoRun(Side),
@@ -76,24 +72,12 @@ pub enum CompareFailure {
          cylinders into angles, --slides names joints that slide",
         kinds[0].unit(), logs[0].display(), kinds[1].unit(), logs[1].display()
     )]
-    MixedKinds {
-        /// The joint.
-        joint: String,
-        /// How it moves by the first log, and by another.
-        kinds: [JointKind; 2],
-        /// The logs.
-        logs: Box<[PathBuf; 2]>,
-    },
+    MixedKinds { joint: String, kinds: [JointKind; 2], logs: Box<[PathBuf; 2]> },
     /// The runs are of different arms, or name their joints differently.
     #[error(
         "the runs have no joint in common: {before} before, {after} after; --joints names joints of topics that name none"
     )]
-    NoCommonJoint {
-        /// Joints of the first run before.
-        before: String,
-        /// Joints of the first run after.
-        after: String,
-    },
+    NoCommonJoint { before: String, after: String },
 }
 
 /// A joint must move in the same way in all runs.

@@ -13,6 +13,7 @@ use crate::{
 /// Why a scan or an answer failed. A log that cannot be read is no failure: it is a row with its error.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum FleetFailure {
     /// A table of the dataset.
     #[error(transparent)]
@@ -22,45 +23,24 @@ pub enum FleetFailure {
     Atomic(#[from] AtomicError),
     /// The file system said no.
     #[error("cannot {action} {}", path.display())]
-    File {
-        /// What was to be done.
-        action: &'static str,
-        /// The file or folder.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    File { action: &'static str, path: PathBuf, source: std::io::Error },
     /// Another scan writes to the dataset.
     #[error("another scan is writing to {}; wait for its end", path.display())]
-    Locked {
-        /// The dataset.
-        path: PathBuf,
-    },
+    Locked { path: PathBuf },
     /// No dataset.
     #[error("{} holds no dataset; `hydrotrace fleet scan LOGS --into {}` makes one", path.display(), path.display())]
-    NoDataset {
-        /// The folder.
-        path: PathBuf,
-    },
+    NoDataset { path: PathBuf },
     /// A source that leads to no log.
     #[error(
         "found no log in {text:?}, expected a log, a folder with .mcap or .db3 files, a pattern (with **/*.csv at its end for tables) or a list of logs (.txt)"
     )]
-    NoLogs {
-        /// The source as given.
-        text: String,
-    },
+    NoLogs { text: String },
     /// A source in an object store.
     #[error(transparent)]
     Remote(#[from] RemoteError),
     /// A table of machines.
     #[error("{} is no table of machines: {reason}; expected the header `path,machine` and a row for each", path.display())]
-    Machines {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
+    Machines { path: PathBuf, reason: String },
     /// Nothing is known of what was done.
     #[error(
         "{} holds no note{}; give --machine and --at, or note what was done: `hydrotrace fleet note {} --machine {} \
@@ -70,22 +50,10 @@ pub enum FleetFailure {
         shell_argument(dataset),
         machine.as_deref().map_or("MACHINE".to_owned(), shell_word)
     )]
-    NoNote {
-        /// Of which machine; none for all.
-        machine: Option<String>,
-        /// The dataset.
-        dataset: PathBuf,
-    },
+    NoNote { machine: Option<String>, dataset: PathBuf },
     /// A machine that the dataset does not hold.
     #[error("no machine {machine:?}{}; the dataset has {present}", crate::suggest::suggestion(nearest.as_deref()))]
-    NoMachine {
-        /// The machine as given.
-        machine: String,
-        /// The machine that it may be.
-        nearest: Option<String>,
-        /// Those that there are.
-        present: String,
-    },
+    NoMachine { machine: String, nearest: Option<String>, present: String },
 }
 
 impl FleetFailure {

@@ -69,6 +69,7 @@ pub struct Progress {
 
 /// Why a recording ended, or never began.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum RecordError {
     /// The lines are not understood.
     #[error(transparent)]
@@ -78,27 +79,16 @@ pub enum RecordError {
     Write(#[from] WriteError),
     /// There is a file already.
     #[error("{} is there already; a recording replaces it with --force only", path.display())]
-    Exists {
-        /// Which.
-        path: PathBuf,
-    },
+    Exists { path: PathBuf },
     /// The file cannot be made.
     #[error("cannot create {}", path.display())]
-    Create {
-        /// Which.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    Create { path: PathBuf, source: std::io::Error },
     /// Nothing came.
     #[error("no line came: send a header and rows (CSV), or an object a line (JSON)")]
     Nothing,
     /// Only words came.
     #[error("no line with numbers came, only {lines} of words: send the time and a position of each joint")]
-    NoNumbers {
-        /// Lines without a number.
-        lines: u64,
-    },
+    NoNumbers { lines: u64 },
 }
 
 /// Writes the lines that come, each without its end; `None` is a moment without one. Ends with them.

@@ -16,6 +16,7 @@ use crate::{
 /// Why there is no plan for the next run.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ReplanFailure {
     /// No run.
     #[error("found no log, expected at least one run to learn from")]
@@ -40,29 +41,16 @@ pub enum ReplanFailure {
     Track(#[from] SignalError),
     /// The plan never moves.
     #[error("the plan in {} never moves; give the log of a run in which it does", path.display())]
-    AtRest {
-        /// The log.
-        path: PathBuf,
-    },
+    AtRest { path: PathBuf },
     /// Plan or command begin or end in motion, or are silent in it.
     #[error("the {what} in {} {}", path.display(), Said(broken))]
-    Broken {
-        /// The log.
-        path: PathBuf,
-        /// Plan or command.
-        what: &'static str,
-        /// Where it is broken.
-        broken: Broken,
-    },
+    Broken { path: PathBuf, what: &'static str, broken: Broken },
     /// No task to plan.
     #[error(
         "{} holds no task, and only the plan may change; name the task with --task, or leave out --no-precompensation",
         path.display()
     )]
-    NoTask {
-        /// The log.
-        path: PathBuf,
-    },
+    NoTask { path: PathBuf },
     /// A task that begins elsewhere.
     #[error(
         "the plan in {} begins {} beside the first key point of the task ({joint}): the arm would jump there; give the task of \
@@ -71,9 +59,7 @@ pub enum ReplanFailure {
         Degrees(*far)
     )]
     OtherStart {
-        /// The log.
         path: PathBuf,
-        /// The joint that is farthest away.
         joint: String,
         /// By how much, rad.
         far: f64,
@@ -83,34 +69,15 @@ pub enum ReplanFailure {
         "the task is for the joints {task}, the plan in {} for {log}: give the task of this arm, or leave out --task",
         path.display()
     )]
-    OtherArm {
-        /// The log.
-        path: PathBuf,
-        /// Joints of the task.
-        task: String,
-        /// Joints of the log's plan.
-        log: String,
-    },
+    OtherArm { path: PathBuf, task: String, log: String },
     /// No joint predicted well enough for a command.
     #[error(
         "no joint is predicted well enough for a command: the best held-out R2 is {best:.2}, {least} is needed; {why}"
     )]
-    Unpredictable {
-        /// The best found.
-        best: f64,
-        /// The least for commands.
-        least: f64,
-        /// What may be the reason.
-        why: Unclear,
-    },
+    Unpredictable { best: f64, least: f64, why: Unclear },
     /// A run that is none of its plan.
     #[error("{}: {why}. No command is made from such a run", path.display())]
-    Spoilt {
-        /// The log.
-        path: PathBuf,
-        /// How so.
-        why: String,
-    },
+    Spoilt { path: PathBuf, why: String },
     /// A plan that no joint can follow, whatever is sent.
     #[error(
         "{}: the plan of {joint} steps by {size} at {at_s:.2} s: no joint follows a step, and a correction would only \
@@ -119,26 +86,14 @@ pub enum ReplanFailure {
          overshoot and settling of steps, and `hydrotrace fit` the fastest speed for the ramps",
         path.display()
     )]
-    Steps {
-        /// The log.
-        path: PathBuf,
-        /// The first joint that steps.
-        joint: String,
-        /// How far, with its unit.
-        size: String,
-        /// When, s.
-        at_s: f64,
-    },
+    Steps { path: PathBuf, joint: String, size: String, at_s: f64 },
     /// What was measured has little to do with the plan.
     #[error(
         "{}: half of the joints or more do not follow their plan, the error of each is more than half of its motion, so \
          no command is made; `hydrotrace report` of the log says where sign, zero, unit or name look wrong",
         path.display()
     )]
-    Astray {
-        /// The log.
-        path: PathBuf,
-    },
+    Astray { path: PathBuf },
 }
 
 /// Where a plan or command is broken, what that means, and what to give.

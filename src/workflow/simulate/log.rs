@@ -28,18 +28,14 @@ use crate::{
 /// Why nothing was simulated.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum SimulateFailure {
     /// The plan's log.
     #[error(transparent)]
     Log(#[from] LogError),
     /// The task within the log.
     #[error("{} holds a broken task", path.display())]
-    Task {
-        /// The log.
-        path: PathBuf,
-        /// Why.
-        source: TaskError,
-    },
+    Task { path: PathBuf, source: TaskError },
     /// The task's arm.
     #[error(transparent)]
     Arm(#[from] PlanFailure),
@@ -52,14 +48,7 @@ pub enum SimulateFailure {
          `plan`, `replan --task` or `excite --task`",
         path.display()
     )]
-    NoArm {
-        /// The plan's log.
-        path: PathBuf,
-        /// Its joints.
-        found: String,
-        /// Those of the sample arm.
-        sample: String,
-    },
+    NoArm { path: PathBuf, found: String, sample: String },
     /// The machine.
     #[error(transparent)]
     Plant(#[from] PlantError),

@@ -9,6 +9,7 @@ use crate::{atomic_file::AtomicError, workflow::fleet::FleetFailure};
 /// Why watching ended. A log that cannot be analysed is no failure: it is a run with its error.
 #[derive(Debug, Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what each field is")]
 pub enum WatchFailure {
     /// The reports would lie among the logs.
     #[error(
@@ -16,10 +17,7 @@ pub enum WatchFailure {
          elsewhere",
         path.display()
     )]
-    Itself {
-        /// The folder.
-        path: PathBuf,
-    },
+    Itself { path: PathBuf },
     /// The dataset, or a source that leads nowhere.
     #[error(transparent)]
     Fleet(#[from] FleetFailure),
@@ -28,20 +26,10 @@ pub enum WatchFailure {
     Atomic(#[from] AtomicError),
     /// The file system said no.
     #[error("cannot {action} {}", path.display())]
-    File {
-        /// What was to be done.
-        action: &'static str,
-        /// The file or folder.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    File { action: &'static str, path: PathBuf, source: std::io::Error },
     /// Another process writes the pages.
     #[error("another `hydrotrace watch` is writing to {}; give this one another folder with --into", path.display())]
-    Locked {
-        /// The folder of the dataset.
-        path: PathBuf,
-    },
+    Locked { path: PathBuf },
 }
 
 impl WatchFailure {
