@@ -4,9 +4,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{
     model::Model,
+    model::STEP_S,
     parameters::{DEAD_TIME, Priors, SHARED, STICTION, Shown},
     robust::{cost, inefficiency, scale, weight},
-    run::{Run, Sample},
+    run::{ASKED_OVER_S, Run, Sample, steps_in},
     simulate::{LANES, Start, simulate, simulate_lanes},
 };
 use crate::units::DEGREE_RAD;
@@ -139,6 +140,14 @@ impl Workspace {
     pub(super) fn simulate(&mut self, model: &Model, run: &Run, integral_rad_s: f64) {
         let start = Start { integral_rad_s, ..run.start };
         simulate(model, &run.sent, start, &mut self.wanted, &mut self.angle_rad);
+    }
+
+    /// Fastest growing and shrinking of the angle in the run simulated last, rad/s, over a tenth of a second.
+    pub(super) fn fastest(&self) -> [f64; 2] {
+        let steps = steps_in(ASKED_OVER_S).max(1);
+        let later = self.angle_rad.get(steps..).unwrap_or_default();
+        let speeds = later.iter().zip(&self.angle_rad).map(|(b, a)| (b - a) / (steps as f64 * STEP_S));
+        speeds.fold([0.0; 2], |[up, down], speed| [up.max(speed), down.max(-speed)])
     }
 
     /// Predicted angle at a sample of the run simulated last, rad.

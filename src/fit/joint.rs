@@ -7,7 +7,7 @@ use super::{
     estimate::{Estimate, Part, Problem, Workspace},
     integral,
     interval::{Knowledge, discrepancy},
-    outcome::{JointFit, LEAST_SHARP_SKILL},
+    outcome::JointFit,
     parameters::{ASYMMETRY, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
     run::Run,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
@@ -94,8 +94,11 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     let skill = skill(&Problem { runs: &held_out, ..problem.clone() }, &x, FOLD_ROUNDS, &mut workspace);
     let samples = runs.iter().map(|run| run.samples.len()).sum();
     let left = Oscillation::of(&problem.longest_left_rad(&found.x, &mut workspace));
-    let least_r2 = if knowledge.sharp { LEAST_SHARP_SKILL } else { 0.0 };
-    knowledge.holds = left.character == Character::Calm && skill.held_out_r2 >= least_r2;
+    knowledge.judge(
+        left.character == Character::Calm,
+        skill.held_out_r2,
+        skill.unexplained_share(found.scale_rad),
+    );
     let nothing = skill.explains_nothing();
     let skill = if nothing { skill.without_model(&held_out) } else { skill };
     let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);

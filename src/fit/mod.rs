@@ -38,7 +38,9 @@ pub use excite::{Excitation, JointRoom, Ramp, excite};
 pub use held_out::HeldOut;
 pub use learn::{Character, JointStep, Learning, Learnt, Oscillation, Room, Stalled, Step, Trial, learn};
 pub use model::{Model, STEP_S};
-pub use outcome::{Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LeftOut};
+pub use outcome::{
+    Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LEAST_SMOOTH_SKILL, LeftOut, MOST_UNEXPLAINED,
+};
 pub use predict::predict;
 pub use run::{Observation, SPARSEST_S};
 pub use start_error::{PredictedStart, StartErrorPredictor};

@@ -11,6 +11,12 @@ pub const LEAST_SKILL: f64 = 0.3;
 /// model's structure is predicted to 0.3 % of their square.
 pub const LEAST_SHARP_SKILL: f64 = 0.99;
 
+/// The same where none is.
+pub const LEAST_SMOOTH_SKILL: f64 = 0.8;
+
+/// Peak of sharp starts that a model leaves unexplained, by their measured peak, above which it does not hold.
+pub const MOST_UNEXPLAINED: f64 = 0.075;
+
 /// A machine as its logs show it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]

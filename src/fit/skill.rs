@@ -14,6 +14,9 @@ const MARGIN: f64 = 1.2;
 /// is stuck.
 const WORST_R2: f64 = -1.0;
 
+/// The largest of some hundreds of residuals by their scale.
+const PEAK_BY_SCALE: f64 = 5.0;
+
 /// Fewest starts that make a margin.
 const STARTS: usize = 10;
 
@@ -93,6 +96,16 @@ impl Skill {
     pub(super) fn without_model(self, runs: &[Run]) -> Self {
         let measured = |of_run: Vec<(f64, f64)>| of_run.into_iter().map(|error| (error.0, 0.0)).collect();
         Self::of(runs, self.errors.into_iter().map(measured).collect())
+    }
+
+    /// Peak that the model leaves unexplained beyond what residuals of this scale make of one, by the measured one, in the
+    /// mean over starts; `None` without any.
+    pub(super) fn unexplained_share(&self, scale_rad: f64) -> Option<f64> {
+        let starts = || self.starts.iter().flatten();
+        let measured_rad: f64 = starts().map(|start| start.measured_rad).sum();
+        let unexplained_rad: f64 =
+            starts().map(|start| (start.unexplained_rad - PEAK_BY_SCALE * scale_rad).max(0.0)).sum();
+        (measured_rad > 0.0).then(|| unexplained_rad / measured_rad)
     }
 
     /// Whether the model is farther off than the mean of the error by all that can be told.

@@ -32,6 +32,10 @@ const INVERTED_HZ: f64 = 4.0;
 const ROUNDS: usize = 100;
 const SHARE: f64 = 0.3;
 
+/// What is left of an error counts with this share of a correction as large as the error itself, and with more of a larger
+/// one: where the model is at its limits, corrections grow and gain little.
+const WORTH: f64 = 0.05;
+
 /// Share of a first measured error that is corrected.
 const FIRST_GAIN: f64 = 0.9;
 
@@ -127,6 +131,7 @@ pub(super) fn inverted(
     let inner_hz = if manner.calm() { aim.calm_hz } else { INVERTED_HZ };
     let mut correction_rad = vec![0.0; planned.len()];
     let mut best = (f64::INFINITY, correction_rad.clone());
+    let mut unaided_rad = None;
     for _ in 0..=ROUNDS {
         let response = workspace.corrected(model, planned, &correction_rad);
         let error_rad: Vec<f64> = (planned.iter().zip(response).enumerate())
@@ -134,7 +139,9 @@ pub(super) fn inverted(
                 planned.0 + aim.offset_rad - response - disturbance_rad.map_or(0.0, |d| d[k])
             })
             .collect();
-        let left = rms(&error_rad);
+        let error = rms(&error_rad);
+        let unaided_rad = unaided_rad.get_or_insert(error).max(f64::MIN_POSITIVE);
+        let left = error + WORTH * rms(&correction_rad).powi(2) / unaided_rad;
         if left < best.0 {
             best = (left, correction_rad.clone());
         }

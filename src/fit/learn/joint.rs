@@ -29,6 +29,9 @@ const FINISHED_HZ: f64 = 1.2;
 
 const FINISHED_BY_CUT_OFF: f64 = 2.0;
 
+/// The same of a correction that is kept: it was finished when it was sent.
+const KEPT_HZ: f64 = 8.0;
+
 /// Errors are compared below this, Hz.
 const COMPARED_HZ: f64 = 1.5;
 
@@ -45,6 +48,9 @@ const FAST_HZ: f64 = 1.5;
 /// A joint whose error is more than this share of its motion does not follow its plan: what it does is no error to be
 /// corrected. Smaller errors than that of the lesser cap are.
 const FOLLOWS: f64 = 0.5;
+
+/// Errors that differ from run to run by this share of them tell nothing of what a correction gained.
+const DIFFERS: f64 = 0.3;
 
 /// Share of the error of a slow joint that its model may leave.
 const EXPLAINED: f64 = 0.2;
@@ -131,6 +137,9 @@ impl<'a> Joint<'a> {
         let manner = Manner::new(&fit.model, character, frequency_hz, most_rad);
         made.cut_off_hz = manner.cut_off_hz;
         made.spread_rad = self.spread_rad(&fit.model);
+        // Where runs differ by themselves, a larger correction that gained nothing tells of no limit.
+        let spread_rad = made.spread_rad.unwrap_or(0.0);
+        made.stalled.retain(|held| spread_rad < DIFFERS * held.error_rad);
         let fade = fade(self.planned.len(), free);
         let (step, wanted_rad) = if let Some((from, kept)) = kept {
             (Step::Kept { from }, kept)
@@ -142,13 +151,12 @@ impl<'a> Joint<'a> {
             faded(&mut wanted_rad, &fade);
             (step, wanted_rad)
         };
-        made.step = step;
-        let wanted = Wanted {
-            correction_rad: &wanted_rad,
-            cut_off_hz: FINISHED_HZ.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz),
-            most_rad,
-            share: settings.share,
+        let cut_off_hz = match step {
+            Step::Kept { .. } => KEPT_HZ,
+            _ => FINISHED_HZ.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz),
         };
+        made.step = step;
+        let wanted = Wanted { correction_rad: &wanted_rad, cut_off_hz, most_rad, share: settings.share };
         made.correction = shaped(wanted, free, room(self.name).as_ref());
         made
     }

@@ -19,6 +19,13 @@ const RINGS_ABOVE: f64 = 0.3;
 /// Next maximum above which it goes on by itself.
 const HUNTS_ABOVE: f64 = 0.8;
 
+/// Highest line of the spectrum by the frequency that the autocorrelation repeats itself with.
+const AGREES: [f64; 2] = [0.75, 1.35];
+
+/// A peak has so many times the power of what is slower by this factor.
+const STANDS_OUT: f64 = 1.5;
+const SLOWER: f64 = 0.7;
+
 /// Frequencies at which a peak is looked for, Hz.
 const PEAK_HZ: [f64; 2] = [0.4, 4.0];
 
@@ -65,23 +72,32 @@ impl Oscillation {
         for speed in &mut speed_rad_s {
             *speed -= mean;
         }
-        let [first_minimum, next_maximum] = turns(&speed_rad_s);
-        let rings = first_minimum < RINGS_BELOW && next_maximum > RINGS_ABOVE;
+        let Turns { first_minimum, next_maximum, period_s } = turns(&speed_rad_s);
+        let (frequency_hz, stands_out) = peak_hz(&speed_rad_s);
+        let agrees = stands_out && (AGREES[0]..AGREES[1]).contains(&(frequency_hz * period_s));
+        let rings = first_minimum < RINGS_BELOW && next_maximum > RINGS_ABOVE && agrees;
         let character = match (rings, next_maximum > HUNTS_ABOVE) {
             (true, true) => Character::Hunts,
             (true, false) => Character::Rings,
             (false, _) => Character::Calm,
         };
-        Self { first_minimum, next_maximum, frequency_hz: peak_hz(&speed_rad_s), character }
+        Self { first_minimum, next_maximum, frequency_hz, character }
     }
 }
 
-/// First minimum of the autocorrelation and the maximum after it.
+/// First minimum of an autocorrelation, and the maximum after it with its lag.
+#[derive(Default)]
+struct Turns {
+    first_minimum: f64,
+    next_maximum: f64,
+    period_s: f64,
+}
+
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few hundred steps")]
-fn turns(values: &[f64]) -> [f64; 2] {
+fn turns(values: &[f64]) -> Turns {
     let power: f64 = values.iter().map(|x| x * x).sum();
     if power <= 0.0 {
-        return [0.0; 2];
+        return Turns::default();
     }
     let most = ((LONGEST_S / STEP_S) as usize).min(values.len() / 2);
     let correlation =
@@ -91,13 +107,15 @@ fn turns(values: &[f64]) -> [f64; 2] {
         (from + 1..all.len().saturating_sub(1))
             .find(|&k| way * all[k] >= way * all[k - 1] && way * all[k] > way * all[k + 1])
     };
-    let Some(minimum) = turn(0, -1.0) else { return [0.0; 2] };
-    [all[minimum], turn(minimum, 1.0).map_or(0.0, |maximum| all[maximum].max(0.0))]
+    let Some(minimum) = turn(0, -1.0) else { return Turns::default() };
+    let (maximum, lag) = turn(minimum, 1.0).map_or((0.0, 0), |maximum| (all[maximum].max(0.0), maximum));
+    Turns { first_minimum: all[minimum], next_maximum: maximum, period_s: lag as f64 * STEP_S }
 }
 
-/// Frequency of the highest line of the spectrum, under a Hann window.
+/// Frequency of the highest line of the spectrum, under a Hann window, and whether it stands above what is slower: of a slow
+/// error the slowest line is the highest.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "two hundred lines")]
-fn peak_hz(values: &[f64]) -> f64 {
+fn peak_hz(values: &[f64]) -> (f64, bool) {
     let last = values.len().saturating_sub(1).max(1) as f64;
     let windowed: Vec<f64> = values
         .iter()
@@ -114,11 +132,12 @@ fn peak_hz(values: &[f64]) -> f64 {
         one * one + two * two - turn * one * two
     };
     let lines = ((PEAK_HZ[1] - PEAK_HZ[0]) / PEAK_STEP_HZ).round() as u32;
-    (0..=lines)
+    let (peak_hz, most) = (0..=lines)
         .map(|line| PEAK_HZ[0] + PEAK_STEP_HZ * f64::from(line))
         .map(|frequency_hz| (frequency_hz, power(frequency_hz)))
         .max_by(|a, b| a.1.total_cmp(&b.1))
-        .map_or(PEAK_HZ[0], |(frequency_hz, _)| frequency_hz)
+        .unwrap_or((PEAK_HZ[0], 0.0));
+    (peak_hz, most > STANDS_OUT * power(SLOWER * peak_hz))
 }
 
 #[cfg(test)]

@@ -194,7 +194,7 @@ fn owned(labels: &[Label], times: &[usize]) -> Option<Vec<Vec<usize>>> {
         };
         (roles.len() == times.len() && told).then(|| times.iter().map(of).collect::<Vec<_>>())
     };
-    let found = if !joints(0..first) { behind() } else { None };
+    let found = if joints(0..first) { None } else { behind() };
     found.or_else(|| if joints(last..labels.len()) { None } else { before() }).or_else(by_side)
 }
 

@@ -22,7 +22,7 @@ impl Dialect {
     pub(super) fn rewritten(self, options: &CsvOptions) -> CsvOptions {
         let separator = match self.separator {
             Separator::Space => Separator::Byte(b'\t'),
-            byte => byte,
+            byte @ Separator::Byte(_) => byte,
         };
         CsvOptions { separator: Some(separator), decimal_comma: Some(self.decimal_comma), ..options.clone() }
     }

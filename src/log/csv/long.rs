@@ -348,7 +348,8 @@ mod tests {
         assert_eq!(headers(format!("t,vin,set_deg,act_deg\n{own}")), expected);
         assert_eq!(headers(format!("t,joint,set_deg,act_deg\n{own}")), expected);
         // A life bit comes in turns, too.
-        let bit: String = (0..40).map(|k| format!("{k},{},{},{}\n", k % 2, 10 + k, 9 + k)).collect();
+        let row = |k: u32| format!("{k},{},{},{}\n", k % 2, 10 + k, 9 + k);
+        let bit: String = (0..40).map(row).collect();
         assert_eq!(headers(format!("t,life,boom_set_deg,boom_act_deg\n{bit}")), None);
     }
 

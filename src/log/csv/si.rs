@@ -50,24 +50,18 @@ pub(super) fn to_si(
             Some(length) => length.of(one.quantity, stated(one.column)),
             None => angle(one, stated(one.column), fallback, head, cells, options)?,
         };
-        let (unit, from) = match lengths[one.joint] {
-            None if from == "guess" => match by_partner(one, unit, layout, &stated, cells) {
-                Some(other) => {
-                    let header = &head.names[one.column];
-                    let message = format!(
-                        "column {header:?} says no unit, and is taken as {}: its range is that of the other side of {} so",
-                        other.name, layout.joints[one.joint]
-                    );
-                    remarks.add(Code::Guessed, 1, message);
-                    (other, from)
-                }
-                None => {
-                    guessed.push(&head.names[one.column]);
-                    (unit, from)
-                }
-            },
-            _ => (unit, from),
-        };
+        let is_guess = from == "guess" && lengths[one.joint].is_none();
+        let other = if is_guess { by_partner(one, unit, layout, &stated, cells) } else { None };
+        if let Some(other) = other {
+            let message = format!(
+                "column {:?} says no unit, and is taken as {}: its range is that of the other side of {} so",
+                head.names[one.column], other.name, layout.joints[one.joint]
+            );
+            remarks.add(Code::Guessed, 1, message);
+        } else if is_guess {
+            guessed.push(&head.names[one.column]);
+        }
+        let unit = other.unwrap_or(unit);
         settled.push(Settled { column: one.column, unit: Some(unit), from });
     }
     for Settled { column, unit, .. } in &settled {

@@ -252,7 +252,7 @@ mod tests {
             ("[deg·10]", "0.1 deg"),
             ("deg × 100", "0.01 deg"),
             ("deg/10", "0.1 deg"),
-            ("[1e-3 deg]", "mdeg"),
+            ("[1e-3 deg]", "0.001 deg"),
             ("[1E-03 rad]", "mrad"),
             ("10^-3 rad", "mrad"),
             ("1e-2 mm", "0.01 mm"),

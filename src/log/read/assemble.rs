@@ -70,9 +70,7 @@ pub(super) fn assemble(
     let mut assembly =
         Assembly::new(extracted, (base, options.range), (kinds, laid_onto), chosen, &mut remarks);
     let mut pending: Vec<&Candidate> = choice.planned.iter().chain(beside.iter().map(|(_, c)| c)).collect();
-    if let Some(table) = Imported::of(&assembly.extracted.metadata) {
-        table.convert(options)?;
-    }
+    Imported::check(&assembly.extracted.metadata, options)?;
     let degrees = options.measured_in_degrees;
     let mut measured = assembly.series(&choice.measured, &pending, degrees, None, &mut remarks);
     pending.drain(..choice.planned.len());
@@ -122,13 +120,10 @@ pub(super) fn assemble(
     assembly.kinds.check([&planned, &measured], &mut remarks)?;
     let sides = &mut [("planned", &mut planned), ("measured", &mut measured)];
     assembly.kinds.convert(JointKind::Turns, sides, &mut remarks)?;
-    for (_, series) in &mut *sides {
-        quality::unwrap_turns(series, &options.continuous, &mut remarks);
-    }
-    let [(_, plan), (_, joints)] = &mut *sides;
-    unset::of_sides(plan, joints, &mut remarks);
+    quality::unwrap_sides(sides, &options.continuous, &mut remarks);
+    unset::of_sides(sides, &mut remarks);
     held::of_sides(choice, sides, &mut remarks);
-    spoilt::of_sides(sides[0].1, sides[1].1, &mut remarks);
+    spoilt::of_sides(sides[0].1, sides[1].1, command.as_ref(), &mut remarks);
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);

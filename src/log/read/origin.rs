@@ -39,19 +39,23 @@ impl<'a> Imported<'a> {
         self.origin.iter().filter_map(move |(key, column)| Some((joint(key)?, column.as_str())))
     }
 
-    /// An error where an option would convert positions to rad that were when the table was read.
-    pub(super) fn convert(&self, options: &ReadOptions) -> Result<(), LogError> {
+    /// An error where an option would convert positions of an imported log to rad that were when its table was read.
+    pub(super) fn check(
+        metadata: &BTreeMap<String, BTreeMap<String, String>>,
+        options: &ReadOptions,
+    ) -> Result<(), LogError> {
+        let Some(table) = Imported::of(metadata) else { return Ok(()) };
         let sides = [
             ("planned", "--planned-degrees", options.planned_in_degrees),
             ("measured", "--measured-degrees", options.measured_in_degrees),
         ];
         for (side, option, _) in sides.into_iter().filter(|(.., given)| *given) {
             let stated = format!("{UNIT_OF_ORIGIN}{side} position of ");
-            let found = self.origin.iter().find_map(|(key, unit)| Some((key.strip_prefix(&stated)?, unit)));
+            let found = table.origin.iter().find_map(|(key, unit)| Some((key.strip_prefix(&stated)?, unit)));
             if let Some((joint, unit)) = found {
                 let header =
-                    self.origin.get(&format!("{side} position of {joint}")).cloned().unwrap_or_default();
-                let (file, unit) = (self.file.to_owned(), unit.clone());
+                    table.origin.get(&format!("{side} position of {joint}")).cloned().unwrap_or_default();
+                let (file, unit) = (table.file.to_owned(), unit.clone());
                 return Err(LogError::ConvertedBefore { option, header, unit, file });
             }
         }

@@ -133,6 +133,17 @@ fn scaling(factors: &[(f64, u64)]) -> (u64, u64) {
     (samples(&|factor| factor <= 0.0), samples(&|factor| factor > 0.0 && factor < full - 1e-6))
 }
 
+/// As [`unwrap_turns`], of plan and measurement.
+pub(super) fn unwrap_sides(
+    sides: &mut [(&str, &mut Series); 2],
+    continuous: &[String],
+    remarks: &mut Remarks,
+) {
+    for (_, side) in sides {
+        unwrap_turns(side, continuous, remarks);
+    }
+}
+
 /// Undoes full turns of joints declared continuous; remarks on them elsewhere.
 pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: &mut Remarks) {
     for track in series.tracks.iter_mut().filter(|track| track.turns()) {

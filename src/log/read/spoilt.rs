@@ -1,20 +1,32 @@
 //! Finds what makes a run no answer to its plan: the machine was stopped, or moved at another time.
 
-use super::{other_time, stopped};
+use super::{other_time, recording::Command, stopped};
 use crate::{
     remark::{Code, Remarks},
     series::Series,
 };
 
-/// Remarks the first that holds: a stop of a run that was in time, another time, a stop of one that was not.
-pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+/// Remarks the first that holds: a stop of a run that was in time, another time, a stop of one that was not. What was
+/// sent may run ahead of the plan, and the joints with it: they are at another time if they are so by the command, too.
+pub(super) fn of_sides(
+    planned: &Series,
+    measured: &Series,
+    command: Option<&Command>,
+    remarks: &mut Remarks,
+) {
     let stops = stopped::stops(planned, measured);
     let stop = |stop: &stopped::Stop| (Code::Stopped, stop.message.clone());
     let in_time = stops.iter().find(|stop| stop.in_time).map(stop);
     let found = in_time
-        .or_else(|| other_time::message(planned, measured).map(|message| (Code::OtherTime, message)))
+        .or_else(|| other_time(planned, measured, command).map(|message| (Code::OtherTime, message)))
         .or_else(|| stops.first().map(stop));
     if let Some((code, message)) = found {
         remarks.add(code, 1, message);
     }
+}
+
+fn other_time(planned: &Series, measured: &Series, command: Option<&Command>) -> Option<String> {
+    let message = other_time::message(planned, measured)?;
+    let by_command = |command: &Command| other_time::message(&command.series, measured).is_some();
+    command.is_none_or(by_command).then_some(message)
 }

@@ -12,7 +12,8 @@ const NEAR: f64 = 0.2;
 
 /// Leaves out what is no plan: zeros at its beginning while the joint stands where it then begins, and, of such a plan,
 /// those at its end.
-pub(super) fn of_sides(planned: &mut Series, measured: &Series, remarks: &mut Remarks) {
+pub(super) fn of_sides(sides: &mut [(&str, &mut Series); 2], remarks: &mut Remarks) {
+    let [(_, planned), (_, measured)] = sides;
     let (mut count, mut names) = (0, Vec::new());
     for plan in &mut planned.tracks {
         let Some(joint) = measured.track(plan.name()) else { continue };
@@ -67,7 +68,8 @@ mod tests {
         let left = |plan: &dyn Fn(f64) -> f64, joint: &dyn Fn(f64) -> f64| {
             let mut planned = Series { tracks: vec![track(plan)] };
             let mut remarks = Remarks::default();
-            of_sides(&mut planned, &Series { tracks: vec![track(joint)] }, &mut remarks);
+            let mut measured = Series { tracks: vec![track(joint)] };
+            of_sides(&mut [("", &mut planned), ("", &mut measured)], &mut remarks);
             (planned.tracks[0].len(), remarks.as_slice().len())
         };
         let joint = |t_s: f64| ramp(t_s - 0.1);

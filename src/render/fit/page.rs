@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::tables::{document, left_out_line, machine};
 use crate::{
-    fit::{Fit, HeldOut, JointFit, LEAST_SHARP_SKILL},
+    fit::{Fit, HeldOut, JointFit, LEAST_SHARP_SKILL, LEAST_SMOOTH_SKILL},
     render::{
         kit::{
             self, Id, Section, clean, counted,
@@ -85,8 +85,8 @@ fn doubt(joint: &JointFit) -> String {
     let JointFit { name, held_out_r2, .. } = joint;
     if joint.trusted() {
         format!(
-            "The model does not hold for {name} (R2 {held_out_r2:.2}): what it leaves unexplained rings, or starts are sharp \
-             and the R2 is below {LEAST_SHARP_SKILL}. Its numbers have no intervals."
+            "The model does not hold for {name} (R2 {held_out_r2:.2}): what it leaves unexplained rings or is large, or the R2 \
+             is below {LEAST_SMOOTH_SKILL}, or below {LEAST_SHARP_SKILL} where starts are sharp. Its numbers have no intervals."
         )
     } else {
         format!(

@@ -2,7 +2,10 @@
 
 use super::Shown;
 use crate::{
-    fit::{Estimated, Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LeftOut},
+    fit::{
+        Estimated, Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LEAST_SMOOTH_SKILL, LeftOut,
+        MOST_UNEXPLAINED,
+    },
     render::kit::{Document, Id, Section, Sentence, Table, counted, deg, optional, some_of},
     units::degrees_from_radians,
     workflow::fit::{Fitted, torque::JointTorque},
@@ -176,7 +179,7 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         "A run does not belong to its plan, as the remarks say: the numbers are of that, too, not of the machine alone.".into()
     }));
     if open.is_empty() && fit.joints.iter().all(|joint| joint.model_holds) {
-        lines.push("The logs identify every number above.".into());
+        lines.push("The logs identify every number above, if the machine has the model's form.".into());
     } else if !open.is_empty() {
         lines.push(format!("The logs do not identify: {}.", open.join("; ")));
         lines.extend(open.iter().any(|open| open.starts_with("speed")).then(|| {
@@ -192,8 +195,10 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
     };
     lines.extend(of(&|joint| !joint.model_holds).map(|joints| {
         format!(
-            "The model does not hold for {joints}: what it leaves unexplained rings, or its held-out R2 is below 0, or below \
-             {LEAST_SHARP_SKILL} where starts are sharp. Numbers of these joints have no intervals."
+            "The model does not hold for {joints}: what it leaves unexplained rings, or is more than {:.1} % of the peaks of sharp \
+             starts, or its held-out R2 is below {LEAST_SMOOTH_SKILL}, or below {LEAST_SHARP_SKILL} where starts are sharp. \
+             Numbers of these joints have no intervals.",
+            100.0 * MOST_UNEXPLAINED
         )
     }));
     lines.extend(of(&|joint| joint.model_holds && joint.model.edge_rad_s > 0.0).map(|joints| {

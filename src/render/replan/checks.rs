@@ -132,7 +132,7 @@ fn words(level: Level, finding: &Finding) -> String {
             deg(*measured_mean_peak_rad),
             match level {
                 Level::Good => "",
-                Level::Caution => ", so the next step is smaller",
+                Level::Caution => ", which is more",
                 Level::Stop => ": find out what changed on the machine",
             }
         ),
@@ -172,6 +172,7 @@ fn words(level: Level, finding: &Finding) -> String {
 fn because(reasons: &[Reason]) -> String {
     let one = |reason: &Reason| match reason {
         Reason::FirstCommand => "no correction of this plan was sent before",
+        Reason::MachineChanged => "the machine has changed since the last command was made",
         Reason::BrokenPromise => "the last correction did not keep its promise",
     };
     reasons.iter().map(one).collect::<Vec<_>>().join(", and ")

@@ -49,7 +49,12 @@ fn repeats(replanned: &Replanned) -> Option<&'static str> {
     }
     let Decision::Keep { because, .. } = &replanned.past.decision else { return None };
     let failed = matches!(because, KeepReason::Failed { .. });
-    let told = error > 0.0 && !matches!(because, KeepReason::ExpectedWorse { .. });
+    let surprised = replanned.past.runs.last().is_some_and(|run| {
+        run.promised
+            .zip(run.mean_peak_rad)
+            .is_some_and(|(promised, came)| came > promised.mean_peak_margin_rad)
+    });
+    let told = error > 0.0 && !surprised && !matches!(because, KeepReason::ExpectedWorse { .. });
     told.then_some(match (spread >= MOSTLY * MOSTLY * error, failed) {
         (true, _) => " What is left comes differently from run to run.",
         (false, false) => " What is left comes again in every run, faster than corrections are.",
@@ -92,9 +97,11 @@ pub(super) fn runs(replanned: &Replanned) -> Option<Section> {
 /// What a broken promise costs.
 fn distrust(replanned: &Replanned) -> Option<String> {
     let (trust, last) = (replanned.past.trust, replanned.past.runs.last()?);
-    (trust < 1.0).then(|| {
+    let sends = replanned.past.decision == Decision::Send;
+    (sends && trust < 1.0).then(|| {
         format!(
-            "{} came above what nine runs of ten should stay below: {:.0} % of the usual step is taken.",
+            "{} came above what nine runs of ten should stay below, or the machine changes from run to run: {:.0} % of the usual \
+             step is taken.",
             last.log,
             100.0 * trust
         )

@@ -14,6 +14,9 @@ use crate::{
 const CHANGED: f64 = 2.0;
 const CHANGED_RAD: f64 = 0.1 * DEGREE_RAD;
 
+/// Commands that differ by less than this share of their corrections are the same.
+const SAME: f64 = 0.05;
+
 /// A mean peak above the best so far by this factor is looked at.
 const GROWN: f64 = 1.1;
 
@@ -37,6 +40,8 @@ impl History {
         for run in 1..self.runs.len() {
             if let Some(sign) = self.sign(first, run, fits) {
                 said = Some(self.said(run, &sign));
+                self.changes += 1;
+                self.unsteady_rad = self.unsteady_rad.max(self.differed_rad(first, run, &sign));
                 first = match sign {
                     // Of what came between the two nobody knows.
                     Sign::Pair(before) => first.max(before + 1),
@@ -50,8 +55,18 @@ impl History {
         self.runs.drain(..first);
         self.series.drain(..first);
         self.places.drain(..first);
-        self.changed = true;
+        self.corrections_rad.drain(..first.min(self.corrections_rad.len()));
         (self.places.first().copied().unwrap_or_default(), said)
+    }
+
+    /// By how much the mean peak of a run differs from what the run before the change had, rad.
+    fn differed_rad(&self, first: usize, run: usize, sign: &Sign) -> f64 {
+        let peak = |k: usize| self.runs.get(k).and_then(|run| run.mean_peak_rad);
+        let before = match sign {
+            Sign::Pair(before) => peak(*before),
+            Sign::Model { .. } => (first..run).filter_map(peak).reduce(f64::min),
+        };
+        peak(run).zip(before).map_or(0.0, |(now, before)| (now - before).abs())
     }
 
     /// What tells that the machine changed before a run, since the first of these.
@@ -60,7 +75,9 @@ impl History {
         let now_rad = peak(run)?;
         let same = |k: &usize| {
             let both = self.series.get(*k).zip(self.series.get(run));
-            both.is_some_and(|((a, _), (b, _))| within(a, b, NONE_RAD))
+            let corrected = |k: usize| self.corrections_rad.get(k).copied().unwrap_or(0.0);
+            let most_rad = NONE_RAD.max(SAME * corrected(*k).min(corrected(run)));
+            both.is_some_and(|((a, _), (b, _))| within(a, b, most_rad))
         };
         let differs = |k: &usize| {
             peak(*k).is_some_and(|before_rad| exceeds(before_rad, now_rad) || exceeds(now_rad, before_rad))

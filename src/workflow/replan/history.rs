@@ -12,7 +12,7 @@ use crate::{
     fit::Trial,
     log::Recording,
     replay::{Rules, replay},
-    series::{Series, align, bridged, moving_s},
+    series::{Series, Track, align, bridged, moving_s},
     workflow::carried::{Carried, Promise, rest::PLAN_LEAD_S},
 };
 
@@ -27,6 +27,9 @@ const WORSE: f64 = 1.1;
 
 /// So many corrections that gained nothing are enough.
 const FAILURES: usize = 2;
+
+/// A machine that changed so often changes from run to run.
+const OFTEN: usize = 2;
 
 /// Share of the usual gain that is left however much a command broke its promise.
 const LEAST_TRUST: f64 = 0.5;
@@ -87,13 +90,18 @@ pub enum KeepReason {
 }
 
 /// Runs of one plan on its clock.
+#[derive(Default)]
 pub(super) struct History {
     pub(super) series: Vec<(Series, Series)>,
     /// Places of their logs among all.
     pub(super) places: Vec<usize>,
     pub(super) runs: Vec<PastRun>,
-    /// Whether runs were left out because the machine changed.
-    pub(super) changed: bool,
+    /// How often runs were left out because the machine changed.
+    pub(super) changes: usize,
+    /// Largest difference of mean peaks by which that was told, rad.
+    pub(super) unsteady_rad: f64,
+    /// Largest correction of each run, rad.
+    pub(super) corrections_rad: Vec<f64>,
 }
 
 impl History {
@@ -104,7 +112,7 @@ impl History {
         plan: &Series,
         rules: &Rules,
     ) -> Result<Self, ReplanFailure> {
-        let mut history = Self { series: Vec::new(), runs: Vec::new(), places: Vec::new(), changed: false };
+        let mut history = Self::default();
         let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
         for (place, (path, recording)) in paths.iter().zip(recordings).enumerate() {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
@@ -129,6 +137,7 @@ impl History {
                 mean_peak_rad: (count > 0.0).then(|| sum / count),
                 promised: Carried::of(recording).promise(),
             });
+            history.corrections_rad.push(farthest(&sent, plan));
             history.series.push((sent, measured));
             history.places.push(place);
         }
@@ -152,7 +161,14 @@ impl History {
 
     /// Whether the only run is the first of a machine that has changed: what was sent in it was made for another one.
     pub(super) fn anew(&self) -> bool {
-        self.changed && self.runs.len() == 1
+        self.changes > 0 && self.runs.len() == 1
+    }
+
+    /// What is to be expected beside all else of a machine that changed, rad: in the mean, where it did more than once, and
+    /// what nine runs of ten stay below.
+    pub(super) fn unsteady_rad(&self) -> [f64; 2] {
+        let again = self.changes >= OFTEN;
+        [if again { 0.5 * self.unsteady_rad } else { 0.0 }, self.unsteady_rad]
     }
 
     /// Share of the usual gain, by what the newest command promised: less than one where more came than nine runs of ten
@@ -160,7 +176,8 @@ impl History {
     pub(super) fn trust(&self) -> f64 {
         let of = |run: &PastRun| Some(run.promised?.mean_peak_margin_rad / run.mean_peak_rad?);
         let ratio = self.runs.last().filter(|run| run.corrected && !self.anew()).and_then(of).unwrap_or(1.0);
-        if ratio.is_finite() { ratio.clamp(LEAST_TRUST, 1.0) } else { 1.0 }
+        let most = if self.changes >= OFTEN { LEAST_TRUST } else { 1.0 };
+        if ratio.is_finite() { ratio.clamp(LEAST_TRUST, most) } else { most }
     }
 
     /// Mean peak of each run that has one, rad, by its index.
@@ -208,6 +225,20 @@ impl History {
     }
 }
 
+/// Largest distance of what was sent from the plan, rad.
+fn farthest(sent: &Series, plan: &Series) -> f64 {
+    let of = |track: &Track| {
+        let planned = plan.track(track.name())?;
+        let apart = track
+            .t_s()
+            .iter()
+            .zip(track.position())
+            .map(|(t_s, q)| (q - planned.held_at(*t_s).position).abs());
+        Some(apart.fold(0.0, f64::max))
+    };
+    sent.tracks.iter().filter_map(of).fold(0.0, f64::max)
+}
+
 fn best(peaks: &[(usize, f64)]) -> Option<(usize, f64)> {
     peaks.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1))
 }
@@ -224,7 +255,7 @@ pub(super) mod tests {
             promised: None,
         };
         let runs = peaks.iter().enumerate().map(run).collect();
-        History { series: Vec::new(), runs, places: Vec::new(), changed: false }
+        History { runs, ..History::default() }
     }
 
     #[test]

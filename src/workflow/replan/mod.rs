@@ -149,6 +149,15 @@ pub fn run(
     let (fit, fitted_to, mut remarks) = machine(inputs, &inputs.logs[first..], &observed[first..])?;
     if let Some(message) = &changed {
         remarks.add(Code::MachineChanged, 1, message);
+        if history.changes > 1 {
+            let message = format!(
+                "the machine changed {} times between these runs, by up to {} of mean peak error: it may again, so half of \
+                 the usual step is taken, and more error is expected",
+                history.changes,
+                Degrees(history.unsteady_rad)
+            );
+            remarks.add(Code::MachineChanged, history.changes as u64, message);
+        }
     }
     for message in &last.elsewhere {
         remarks.add(Code::OtherFile, 1, message);
@@ -363,6 +372,7 @@ impl Maker<'_> {
         let spread_rad =
             |name: &str| command.as_ref()?.joints.iter().find(|joint| joint.name == name)?.spread_rad;
         let (predicted, responses) = promised(fit, &plan, sent, base, spread_rad, &inputs.rules)?;
+        let predicted = if kept { predicted.unsteady(history.unsteady_rad()) } else { predicted };
         Ok(Candidate { new, plan, points_hz, command, predicted, responses })
     }
 

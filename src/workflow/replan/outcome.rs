@@ -153,7 +153,7 @@ pub struct Past {
 }
 
 /// Share of a correction that is careful.
-const CAREFUL: f64 = 0.5;
+pub(super) const CAREFUL: f64 = 0.5;
 
 impl Past {
     /// Whether no more of a correction was asked for than of a first one is wise.

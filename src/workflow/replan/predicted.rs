@@ -29,6 +29,32 @@ pub struct Predicted {
     pub transitions: Vec<PredictedTransition>,
 }
 
+impl Predicted {
+    /// With what a machine that changes adds to each peak, rad: in the mean, and what nine of ten stay below.
+    pub(super) fn unsteady(mut self, [mean_rad, most_rad]: [f64; 2]) -> Self {
+        for one in &mut self.transitions {
+            one.expected_peak_rad = one.expected_peak_rad.hypot(mean_rad);
+            one.peak_margin_rad += most_rad;
+        }
+        let kinds = [self.starts, self.reversals];
+        Self::of(self.transitions, kinds)
+    }
+
+    fn of(transitions: Vec<PredictedTransition>, [starts, reversals]: [usize; 2]) -> Self {
+        let count = transitions.len().max(1) as f64;
+        let sum = |of: fn(&PredictedTransition) -> f64| transitions.iter().map(of).sum::<f64>();
+        Self {
+            mean_peak_rad: sum(|t| t.expected_peak_rad) / count,
+            worst_peak_rad: transitions.iter().map(|t| t.expected_peak_rad).fold(0.0, f64::max),
+            mean_peak_margin_rad: sum(|t| t.peak_margin_rad) / count,
+            sum_of_peaks_rad: sum(|t| t.expected_peak_rad),
+            starts,
+            reversals,
+            transitions,
+        }
+    }
+}
+
 /// One start or reversal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -168,16 +194,7 @@ fn summary(left: &dyn Fn(&str) -> Left, margin: f64, pairs: &[Pair], rules: &Rul
         }
     };
     let transitions: Vec<PredictedTransition> = found.transitions.iter().map(transition).collect();
-    let count = transitions.len().max(1) as f64;
-    let sum = |of: fn(&PredictedTransition) -> f64| transitions.iter().map(of).sum::<f64>();
     let of_kind = |kind| transitions.iter().filter(|t| t.kind == kind).count();
-    Predicted {
-        mean_peak_rad: sum(|t| t.expected_peak_rad) / count,
-        worst_peak_rad: transitions.iter().map(|t| t.expected_peak_rad).fold(0.0, f64::max),
-        mean_peak_margin_rad: sum(|t| t.peak_margin_rad) / count,
-        sum_of_peaks_rad: sum(|t| t.expected_peak_rad),
-        starts: of_kind(Kind::Start),
-        reversals: of_kind(Kind::Reversal),
-        transitions,
-    }
+    let kinds = [of_kind(Kind::Start), of_kind(Kind::Reversal)];
+    Predicted::of(transitions, kinds)
 }

@@ -217,7 +217,7 @@ fn remark_cut(at_s: f64, replay: &Replay, remarks: &mut Remarks) {
 fn remark_unfinished(pairs: &[Pair], replay: &Replay, remarks: &mut Remarks) {
     let unfinished = |start: &&Transition| {
         let of_joint = |pair: &&Pair| pair.name == start.joint;
-        let ends = |pair: &Pair| pair.spans_s().any(|[_, to_s]| to_s == start.window_s[1]);
+        let ends = |pair: &Pair| pair.spans_s().any(|[_, to_s]| (to_s - start.window_s[1]).abs() < 1e-9);
         let full_s = start.planned_onset_s + replay.rules.transition_window_s;
         let peak_s = start.planned_onset_s + start.time_to_peak_s;
         start.peak_error > replay.rules.sizes(start.joint_kind).settle_band

@@ -276,7 +276,10 @@ fn a_unit_that_an_option_spoils_is_told_by_that_option() {
         ("--planned-degrees", "--planned-degrees does that to a plan in radians: drop it"),
         ("--measured-degrees", "--measured-degrees does that to a measurement in radians: drop it"),
     ] {
-        let (code, text, _) = said(&hydrotrace(folder.path(), &format!("report a.mcap {option}")));
+        let (code, _, error) = said(&hydrotrace(folder.path(), &format!("report a.mcap {option}")));
+        assert!(code == 1 && error.contains("a second time: it was read in deg"), "{option}: {error}");
+        let recorded = crate::support::sample("panel-install.mcap").display().to_string();
+        let (code, text, _) = said(&hydrotrace(folder.path(), &format!("report {recorded} {option}")));
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(code == 3 && text.contains(hint), "{option}: {text}");
     }

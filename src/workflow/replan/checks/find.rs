@@ -1,6 +1,6 @@
 //! The checks one by one.
 
-use super::super::MOVES_RAD;
+use super::super::{MOVES_RAD, outcome::CAREFUL};
 use super::{Check, Finding, JointTrust, Level, Reason, Replanned};
 use crate::{
     fit::{Character, LEAST_SKILL, Step},
@@ -11,7 +11,7 @@ use crate::{
     units::DEGREE_RAD,
     workflow::{
         plan::MarginEntry,
-        replan::{Commanded, JointCommand},
+        replan::{Commanded, Decision, JointCommand},
     },
 };
 
@@ -224,11 +224,16 @@ fn gain(replanned: &Replanned, command: Option<&Commanded>) -> Option<Check> {
     let first = |step: &Step| matches!(step, Step::Model | Step::First { .. });
     let reason = |reason, holds: bool| holds.then_some(reason);
     let is_first = command?.joints.iter().filter(|joint| joint.applied()).any(|joint| first(&joint.step));
-    let reasons: Vec<Reason> =
-        [reason(Reason::FirstCommand, is_first), reason(Reason::BrokenPromise, past.trust < 1.0)]
-            .into_iter()
-            .flatten()
-            .collect();
-    let level = caution(!past.careful() && !reasons.is_empty());
-    Some(Check { level, finding: Finding::Gain { gain: past.gain, reasons } })
+    let sends = past.decision == Decision::Send;
+    let corrected = past.runs.iter().any(|run| run.corrected);
+    let reasons = [
+        reason(Reason::FirstCommand, is_first && !corrected),
+        reason(Reason::MachineChanged, changed(replanned)),
+        reason(Reason::BrokenPromise, sends && past.trust < 1.0),
+    ];
+    let reasons: Vec<Reason> = reasons.into_iter().flatten().collect();
+    // A correction that is kept is sent whole.
+    let gain = if sends { past.gain * past.trust } else { past.gain };
+    let level = caution(gain > CAREFUL && !reasons.is_empty());
+    Some(Check { level, finding: Finding::Gain { gain, reasons } })
 }

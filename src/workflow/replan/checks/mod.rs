@@ -164,6 +164,8 @@ pub enum Reason {
     FirstCommand,
     /// More error came than the last command promised.
     BrokenPromise,
+    /// The machine changed since the last command was made.
+    MachineChanged,
 }
 
 impl Checks {
