@@ -177,11 +177,18 @@ fn unit_before_index(header: &str) -> Option<String> {
     (of_joint && counts).then(|| format!("{name}[{index}] [{}]", unit.name))
 }
 
+/// What has states of all joints.
+const OF_ALL: [&str; 4] = ["joint", "joints", "controller", "robot"];
+
 /// How many words are those of a topic, which names no joint: `/joint_states/boom/position`.
 fn topic(words: &[Word<'_>]) -> usize {
     let states =
         |word: &Word<'_>| ["state", "states"].iter().any(|state| word.text.eq_ignore_ascii_case(state));
-    let at = words.windows(2).rposition(|two| states(&two[0]) && two[1].slashed);
+    // What is the state of one joint names that joint: `/axes/boom/state/values/actual`.
+    let of_all = |at: usize| at == 0 || OF_ALL.iter().any(|one| words[at - 1].text.eq_ignore_ascii_case(one));
+    let at = (0..words.len().saturating_sub(1))
+        .rev()
+        .find(|&at| states(&words[at]) && words[at + 1].slashed && of_all(at));
     at.map_or(0, |at| at + 1)
 }
 

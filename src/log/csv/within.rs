@@ -70,8 +70,7 @@ mod tests {
         assert_eq!(said("angle_rad_1"), (Some("rad"), "angle 1".into()));
         assert_eq!(said("j1 rad per sec actual"), (Some("rad/s"), "j 1 actual".into()));
         assert_eq!(said("boom_mm_s_act"), (Some("mm/s"), "boom act".into()));
-        for header in ["boom set [deg] Faktor 10", "boom_set_deg_e2", "boom_tenth_mm_set", "boom_set_deg_10"]
-        {
+        for header in ["boom set [deg] x10", "boom_set_deg_e2", "boom_tenth_mm_set", "boom_set_deg_10"] {
             assert_eq!(said(header).0, Some("another unit"), "{header}");
         }
         assert_eq!(said("joint_deg_10").0, Some("deg"));

@@ -61,8 +61,7 @@ pub(super) fn assemble(
     let beside: Vec<Option<(&WantedSignal, Candidate)>> = beside.collect::<Result<_, _>>()?;
     let beside: Vec<(&WantedSignal, Candidate)> = beside.into_iter().flatten().collect();
 
-    let delays_ns = measured_stamps(&extracted, choice).filter(|_| base == TimeBase::Header);
-    let delays_ns = delays_ns.and_then(Stamps::delays_ns);
+    let delays_ns = delays_ns(&extracted, choice, base, &mut remarks);
     // Trajectories are laid onto the stamps of the measurement.
     let laid = |c: &&Candidate| matches!(extracted.sources[c.source].content, Content::Plans(_));
     let laid_onto = choice.planned.iter().find(laid).and(choice.measured.first()).map(|c| c.source);
@@ -304,7 +303,7 @@ impl Assembly {
             let reading = trajectories::Reading {
                 base: self.base,
                 epoch_ns: self.epoch_ns,
-                measured: measured_stamps(&self.extracted, choice),
+                measured: stamps(&self.extracted, &choice.measured),
                 degrees,
                 topic: self.topic(candidate),
             };
@@ -375,8 +374,21 @@ impl Assembly {
     }
 }
 
-fn measured_stamps<'a>(extracted: &'a Extracted, choice: &Choice) -> Option<&'a Stamps> {
-    match &extracted.sources[choice.measured.first()?.source].content {
+/// How late the measurement was received, least, median and most, ns, if its stamps are what counts.
+fn delays_ns(
+    extracted: &Extracted,
+    choice: &Choice,
+    base: TimeBase,
+    remarks: &mut Remarks,
+) -> Option<[i64; 3]> {
+    let of = |side: &[Candidate]| stamps(extracted, side).and_then(Stamps::delays_ns);
+    let sides = [&choice.planned, &choice.measured].map(|side| of(side).filter(|_| base == TimeBase::Header));
+    quality::of_delays(sides, remarks);
+    sides[1]
+}
+
+fn stamps<'a>(extracted: &'a Extracted, side: &[Candidate]) -> Option<&'a Stamps> {
+    match &extracted.sources[side.first()?.source].content {
         Content::Table(table) => Some(&table.stamps),
         _ => None,
     }

@@ -47,6 +47,25 @@ pub(super) fn of_clock(topic: &str, base: TimeBase, clock: &Clock, remarks: &mut
     );
 }
 
+/// The recorder receives plan and measurement later than their stamps by amounts that differ by more than this, ns, where
+/// they are stamped by two clocks.
+const TWO_CLOCKS_NS: i64 = 50_000_000;
+
+/// Remarks on plan and measurement that are stamped by two clocks; delays from stamp to receipt: least, median, most, ns.
+pub(super) fn of_delays([planned_ns, measured_ns]: [Option<[i64; 3]>; 2], remarks: &mut Remarks) {
+    let (Some([_, planned_ns, _]), Some([_, measured_ns, _])) = (planned_ns, measured_ns) else { return };
+    let ms = |ns: i64| ns as f64 / 1e6;
+    if planned_ns.abs_diff(measured_ns) > TWO_CLOCKS_NS.unsigned_abs() {
+        let message = format!(
+            "the recorder was {:.0} ms behind the stamps of the plan, and {:.0} ms behind those of the measurement: where that \
+             is two clocks, delays are off by the difference; --time log goes by the recorder's clock for both",
+            ms(planned_ns),
+            ms(measured_ns)
+        );
+        remarks.add(Code::Guessed, 1, message);
+    }
+}
+
 pub(super) fn of_table(topic: &str, table: &Table, remarks: &mut Remarks) {
     let positions = |field: &&Field| !field.is_velocity && field.role != Role::Beside;
     for (k, field) in table.fields.iter().enumerate().filter(|(_, field)| positions(field)) {

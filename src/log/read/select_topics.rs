@@ -129,9 +129,10 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
         };
         return Err(LogError::NoCommonJoint { planned: list(&planned), measured: list(&measured) });
     };
-    // Several controllers each plan joints of their own: all of one kind are used.
+    // Several controllers each plan joints of their own: all of one kind are used, and others of joints that are measured.
     let explicit = !options.planned.is_empty();
-    let planned = cover(planned.iter().filter(|c| explicit || c.rank == first.rank), None, Some(first));
+    let serves = |c: &&Candidate| explicit || c.rank == first.rank || c.rank < COMMAND && common(c);
+    let planned = cover(planned.iter().filter(serves), None, Some(first));
     let wanted: BTreeSet<&String> = planned.iter().flat_map(|c| &c.joints).collect();
     // The message that holds the plan holds the measurement of the same instant, if any does.
     let mut ordered: Vec<&Candidate> = measured.iter().collect();

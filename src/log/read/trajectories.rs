@@ -10,7 +10,7 @@ use crate::{
     },
     remark::{Code, Remarks},
     series::{JointKind, PlannedPoint, PlannedTrajectory, Series, Track, plan_tracks},
-    units::{radians_from_degrees, seconds_since},
+    units::{NS_PER_S, radians_from_degrees, seconds_since},
 };
 
 /// How the numbers of trajectories are to be read.
@@ -47,6 +47,9 @@ pub(super) fn planned(
     series.tracks
 }
 
+/// A trajectory that was over so long before it was received is stamped by another clock.
+const OVER_NS: i64 = 2_000_000_000;
+
 fn trajectories(
     plans: &Plans,
     reading: &Reading<'_>,
@@ -60,9 +63,20 @@ fn trajectories(
     let mut out: Vec<PlannedTrajectory> = Vec::new();
     let mut previous_end_s = 0.0;
     for raw in &plans.trajectories {
+        let lasts_ns = raw.points.last().map_or(0, |last| last.since_start_ns);
+        let late_ns = raw.log_ns.saturating_sub(delay_ns).saturating_sub(raw.header_ns);
+        let is_over = late_ns > lasts_ns.saturating_add(OVER_NS);
+        if raw.header_ns != 0 && base == TimeBase::Header && is_over {
+            let message = format!(
+                "trajectories of {topic} whose stamp has them over before they were received, by {:.1} s: another clock; they \
+                 start when received",
+                late_ns as f64 / NS_PER_S
+            );
+            remarks.add(Code::UnusableStamp, 1, message);
+        }
         let start_s = if raw.place > 0 && raw.header_ns == 0 {
             previous_end_s
-        } else if raw.header_ns != 0 && base == TimeBase::Header {
+        } else if raw.header_ns != 0 && base == TimeBase::Header && !is_over {
             seconds_since(epoch_ns, raw.header_ns)
         } else {
             let received_ns = if base == TimeBase::Publish { raw.publish_ns } else { raw.log_ns };
