@@ -16,6 +16,25 @@ fn the_plan_is_found_by_name_and_commands_are_no_measurement() {
 }
 
 #[test]
+fn joints_that_topics_of_another_kind_plan_belong_to_the_run_too() {
+    let mut log = plain_log();
+    let kind = cdr::Kind::LittleEndian;
+    let channel = log.channel(file::Channel::cdr("/grip/joint_states", "sensor_msgs/msg/JointState"));
+    for k in 0..SAMPLES {
+        log.send(channel, stamp(k), encode::joint_state(kind, stamp(k), &["c"], &[1e-3 * k as f64], &[]));
+    }
+    let channel =
+        log.channel(file::Channel::cdr("/grip/joint_trajectory", "trajectory_msgs/msg/JointTrajectory"));
+    let points = [encode::Point::at(&[0.2])];
+    log.send(channel, stamp(1), encode::trajectory(kind, stamp(1), &["c"], &points));
+    let recording = read(&log);
+    let mut planned = joints(&recording.planned);
+    planned.sort_unstable();
+    assert_eq!(planned, ["a", "b", "c"]);
+    assert!(joints(&recording.measured).contains(&"c"));
+}
+
+#[test]
 fn joints_are_kept_in_the_order_of_the_caller() {
     let recording = read_with(&plain_log(), &options(&[], &[], &["b", "a"]));
     assert_eq!((joints(&recording.planned), joints(&recording.measured)), (vec!["b", "a"], vec!["b", "a"]));

@@ -33,6 +33,19 @@ fn nan_is_dropped_for_its_joint_alone() {
 }
 
 #[test]
+fn plan_and_measurement_that_two_clocks_stamped_are_told() {
+    for (late_ms, told) in [(20, 0), (250, 1)] {
+        let mut log = plain_log();
+        log.messages
+            .iter_mut()
+            .filter(|message| message.channel == 0)
+            .for_each(|message| message.log_ns += late_ms * 1_000_000);
+        let recording = read(&log);
+        assert_eq!(count(&recording.remarks, Code::Guessed), told, "{late_ms} ms: {:?}", recording.remarks);
+    }
+}
+
+#[test]
 fn arrays_of_another_length_than_the_names_are_left_out() {
     let recording =
         read(&log_of(|k| (NAMES.to_vec(), if k % 10 == 0 { vec![0.0; 3] } else { measurement(k) })));

@@ -77,6 +77,24 @@ fn a_stamp_of_zero_starts_on_receipt_and_is_said() {
 }
 
 #[test]
+fn a_trajectory_that_another_clock_stamped_starts_on_receipt() {
+    let sent = |at_ns, header_ns| {
+        let given = points(&[(0.0, 0.0, None, None), (2.0, 1.0, None, None)]);
+        read(&log_of(&[(at_ns, header_ns, &NAMES, given)], cdr::Kind::LittleEndian))
+    };
+    // Simulated time, and a clock that is an hour behind.
+    for header_ns in [5_000_000_000, stamp(50) - 3_600_000_000_000] {
+        let recording = sent(stamp(50), header_ns);
+        assert_plan(&recording, 2.0, 0.5);
+        assert_eq!(count(&recording.remarks, Code::UnusableStamp), 1, "{:?}", recording.remarks);
+    }
+    // What was received late, while it ran, was not.
+    let recording = sent(stamp(90), stamp(50));
+    assert_plan(&recording, 2.0, 0.5);
+    assert!(recording.remarks.is_empty(), "{:?}", recording.remarks);
+}
+
+#[test]
 fn a_newer_plan_replaces_and_an_empty_one_cancels() {
     let long = points(&[(0.0, 0.0, None, None), (4.0, 4.0, None, None)]);
     let back = points(&[(1.0, 0.0, None, None)]);
