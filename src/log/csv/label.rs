@@ -178,7 +178,8 @@ fn unit_before_index(header: &str) -> Option<String> {
 }
 
 /// What has states of all joints.
-const OF_ALL: [&str; 4] = ["joint", "joints", "controller", "robot"];
+const OF_ALL: [&str; 9] =
+    ["joint", "joints", "controller", "robot", "motor", "motors", "axis", "axes", "actuator"];
 
 /// How many words are those of a topic, which names no joint: `/joint_states/boom/position`.
 fn topic(words: &[Word<'_>]) -> usize {
