@@ -12,7 +12,7 @@ pub(super) struct ColumnArgs {
     #[arg(long, value_name = "FILE", help_heading = "Columns")]
     map: Option<PathBuf>,
 
-    /// Rows with this value in this column alone, such as one machine of several; * takes all of them for one machine's
+    /// Read only the rows with VALUE in COLUMN, such as those of one machine of several; VALUE * reads all rows as of one machine
     #[arg(long, value_name = "COLUMN=VALUE", value_parser = pair, help_heading = "Columns")]
     only: Option<(String, String)>,
 

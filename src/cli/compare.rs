@@ -85,7 +85,7 @@ struct FormatArgs {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Limits (exit code 4 if not kept)")]
 struct GateArgs {
-    /// Limits with nothing to judge are kept: without it they are not
+    /// Count a limit as kept where the run has nothing to judge it by; without this it counts as not kept
     #[arg(long)]
     allow_empty: bool,
 

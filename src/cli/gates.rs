@@ -48,7 +48,7 @@ impl clap::Args for GateArgs {
         let allow_empty = Arg::new(ALLOW_EMPTY)
             .long(ALLOW_EMPTY)
             .help_heading(HEADING)
-            .help("Limits with nothing to judge are kept: without it they are not")
+            .help("Count a limit as kept where the run has nothing to judge it by; without this it counts as not kept")
             .action(ArgAction::SetTrue);
         command.args(options().map(option)).arg(allow_empty)
     }

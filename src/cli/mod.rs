@@ -127,7 +127,7 @@ struct Args {
     #[command(subcommand)]
     command: Command,
 
-    /// Let an output replace a recording or a command that is there
+    /// Write the output even where it replaces a recording or a command
     #[arg(long, global = true)]
     force: bool,
 

@@ -23,7 +23,7 @@ pub(super) struct ReadArgs {
     #[arg(long, value_name = "TOPIC[:FIELD]", value_parser = selector)]
     measured: Vec<Selector>,
 
-    /// Joints to use, in this order; also the names of joints whose topic has no names
+    /// Joints to use, in this order; for a topic without names of joints, the names of its joints in their order
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     joints: Vec<String>,
 
@@ -47,7 +47,7 @@ pub(super) struct ReadArgs {
     #[arg(long)]
     measured_degrees: bool,
 
-    /// The measurement is stamped so much later than it was taken (a slow recorder or bus): it is taken off
+    /// By how much the stamps of the measurement are later than its samples were taken (slow recorder or bus); they are moved back by that
     #[arg(long = "measured-delay-ms", value_name = "MS", value_parser = number::delay_ns, allow_negative_numbers = true)]
     measured_delay_ns: Option<i64>,
 
@@ -63,12 +63,12 @@ pub(super) struct ReadArgs {
     #[arg(long, value_name = "FILE")]
     hydraulics: Option<PathBuf>,
 
-    /// What joints with a cylinder become [default: angles]
+    /// What joints with a cylinder are read as [default: angles]
     #[arg(long = "as", value_enum, value_name = "WHAT", requires = "hydraulics")]
     joints_as: Option<JointsAs>,
 }
 
-/// What joints with a cylinder become.
+/// What joints with a cylinder are read as.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum JointsAs {
     /// Angles of the joints

@@ -36,7 +36,7 @@ const MOST: [usize; 2] = [15, 60];
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Logs of one run: MCAP files (parts of a split bag count as one) or ROS 2 bag directories
+    /// Logs of one run: MCAP files (parts of a split bag count as one), ROS bags or tables (CSV, Parquet)
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
 
@@ -54,7 +54,7 @@ pub(super) struct Args {
     #[arg(long)]
     why: bool,
 
-    /// The same by the machine of FILE, which `fit` wrote; a page shows that machine too
+    /// Say so by the machine in FILE, which `fit` wrote, in place of a model fitted to this run; a page shows that machine too
     #[arg(long, value_name = "FILE")]
     limits: Option<PathBuf>,
 

@@ -18,3 +18,14 @@ pub struct Estimated {
     #[serde(default)]
     pub upper_bound: Option<f64>,
 }
+
+impl Estimated {
+    /// The same where another model explains the data as well, with another value: the interval holds both, and where that
+    /// one lies outside, the data do not decide.
+    pub(super) fn or(self, other: f64) -> Self {
+        let Some([low, high]) = self.interval else { return self };
+        let identified = self.identified && (low..=high).contains(&other);
+        let upper_bound = self.upper_bound.map(|bound| bound.max(other));
+        Self { interval: Some([low.min(other), high.max(other)]), identified, upper_bound, ..self }
+    }
+}

@@ -38,6 +38,8 @@ pub(super) mod discrepancy {
     pub(in crate::fit) const SMOOTH_INTEGRAL_GAIN: f64 = 0.50;
     /// Of the feed-forward, which valves with play and friction that falls with speed stand in for.
     pub(in crate::fit) const FEED_FORWARD: f64 = 0.14;
+    /// Of a filter of set values.
+    pub(in crate::fit) const FILTER: f64 = 0.25;
     /// Of the ratio of gains.
     pub(in crate::fit) const GAIN: f64 = 0.10;
 }
@@ -156,11 +158,14 @@ impl Knowledge {
         Estimated { identified: found.identified && self.sharp, upper_bound, ..found }
     }
 
-    /// Wanted speed by sent speed; one that may be none is not identified.
+    /// Wanted speed by sent speed; one that may be none is not identified. A filter of set values that is longer than what
+    /// is fed forward makes up for is as good without any.
     pub(super) fn feed_forward(&self, problem: &Problem, x: &[f64]) -> Estimated {
         let part = (FEED_FORWARD, problem.priors.of(FEED_FORWARD).deviation);
-        let found = self.positive(problem.model(x).feed_forward, &[part], discrepancy::FEED_FORWARD);
-        let sure = found.interval.is_some_and(|[low, _]| low >= LEAST_FEED_FORWARD);
+        let model = problem.model(x);
+        let found = self.positive(model.feed_forward, &[part], discrepancy::FEED_FORWARD);
+        let leads = model.filter_s * model.position_gain_1_s < model.feed_forward;
+        let sure = leads && found.interval.is_some_and(|[low, _]| low >= LEAST_FEED_FORWARD);
         Estimated { identified: found.identified && sure, ..found }
     }
 
@@ -181,7 +186,7 @@ impl Knowledge {
     /// tell apart; and the same by the position gain, an error.
     pub(super) fn dead_band(&self, problem: &Problem, x: &[f64]) -> [Estimated; 2] {
         let model = problem.model(x);
-        let whole_rad_s = model.dead_band_rad_s + model.hysteresis_rad_s + model.stiction_rad_s;
+        let whole_rad_s = model.leaves_rest_rad_s();
         let part = |i: usize, share: f64| (i, share * problem.priors.of(i).deviation);
         let band = part(DEAD_BAND, model.dead_band_rad_s / whole_rad_s);
         let stiction = part(STICTION, model.stiction_rad_s / whole_rad_s);

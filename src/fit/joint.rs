@@ -5,10 +5,11 @@ use super::{
     censor::{ASKED, seen},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
+    filter::Filter,
     integral,
     interval::{Knowledge, discrepancy},
     outcome::JointFit,
-    parameters::{ASYMMETRY, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
+    parameters::{ASYMMETRY, FILTER, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
     run::Run,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
     telling::{of, telling},
@@ -52,7 +53,7 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     let mut problem = Problem {
         runs: &some,
         priors: &priors,
-        shown: Shown { limits: asked_for(runs, limits), edge: false, integral: true },
+        shown: Shown { limits: asked_for(runs, limits), edge: false, filter: false, integral: true },
         part: Part::All,
         inefficiency: INEFFICIENCY,
     };
@@ -75,6 +76,15 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     if let Some(edged) = edge(&problem, &found, &mut workspace) {
         problem.shown.edge = true;
         found = edged;
+    }
+    let mut rival = None;
+    match Filter::of(&problem, &found, &mut workspace) {
+        Filter::Shown(filtered) => {
+            problem.shown.filter = true;
+            found = filtered;
+        }
+        Filter::Possible(model) => rival = Some(model),
+        Filter::None => {}
     }
     if some.len() < runs.len() {
         problem.runs = runs;
@@ -102,6 +112,10 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     let nothing = skill.explains_nothing();
     let skill = if nothing { skill.without_model(&held_out) } else { skill };
     let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
+    let joint = match rival {
+        Some(rival) => joint.or(&rival),
+        None => joint,
+    };
     let joint = if nothing { joint.without_model() } else { joint };
     let ratios = skill.starts.iter().flatten().filter_map(HeldOutStart::ratio).collect();
     let runs = held_out.iter().zip(&skill.errors).zip(&skill.starts);
@@ -143,6 +157,11 @@ fn report(
     if !problem.shown.integral {
         integral = Estimated { value: Some(0.0), ..Estimated::default() };
     }
+    let filter = if problem.shown.filter {
+        one(FILTER, model.filter_s, discrepancy::FILTER)
+    } else {
+        Estimated { value: Some(0.0), ..Estimated::default() }
+    };
     let [dead_band_rad_s, dead_band_error_rad] = knowledge.dead_band(problem, &found.x);
     JointFit {
         name: name.to_owned(),
@@ -159,6 +178,7 @@ fn report(
         position_gain_1_s: knowledge.position_gain(problem, &found.x),
         integral_gain_1_s2: integral,
         feed_forward: knowledge.feed_forward(problem, &found.x),
+        set_value_filter_s: filter,
         gain_ratio: one(ASYMMETRY, model.asymmetry.exp(), discrepancy::GAIN),
         speed_limit_growing_rad_s: limit(0),
         speed_limit_shrinking_rad_s: limit(1),

@@ -15,6 +15,7 @@ mod error;
 mod estimate;
 mod estimated;
 mod excite;
+mod filter;
 mod held_out;
 mod integral;
 mod interval;

@@ -9,7 +9,7 @@ pub const STEP_S: f64 = 0.01;
 
 /// A joint with its valve, its position loop and its sensor, from sent to measured angle.
 ///
-/// The loop wants a speed w = `feed_forward` * sent speed + `position_gain` * error + integral, which
+/// A filter of first order takes the set values, angle and speed, with a time constant `filter`. The loop wants a speed w = `feed_forward` * sent speed + `position_gain` * error + integral, which
 /// arrives after the dead time; the spool follows it with a play of ±`hysteresis`. What is left beyond the dead band,
 /// b, gives the speed b² / (b + `edge`). Scaled by exp(±`asymmetry` / 2) for growing and shrinking angles and by the
 /// pose, and clipped to the speed limits, it is approached with a time constant, within the acceleration limits.
@@ -63,6 +63,9 @@ pub struct Model {
     /// speed grows in proportion.
     #[serde(default)]
     pub edge_rad_s: f64,
+    /// Time constant of a filter of the set values before the loop, s; 0 without one.
+    #[serde(default)]
+    pub filter_s: f64,
     /// Full width of the play before the sensor, rad.
     pub backlash_rad: f64,
 }
@@ -88,6 +91,7 @@ impl Model {
         acceleration_limit_rad_s2: [None; 2],
         hysteresis_rad_s: 0.0,
         edge_rad_s: 0.0,
+        filter_s: 0.0,
         backlash_rad: 0.0,
     };
 
@@ -107,6 +111,7 @@ impl Model {
             ("stiction_rad_s", self.stiction_rad_s),
             ("hysteresis_rad_s", self.hysteresis_rad_s),
             ("edge_rad_s", self.edge_rad_s),
+            ("filter_s", self.filter_s),
             ("backlash_rad", self.backlash_rad),
         ];
         let limits = [
@@ -138,8 +143,13 @@ impl Model {
         }
     }
 
-    /// What passes between a change of the sent speed and half of its effect, s: dead time, time
-    /// constant and half a step of the loop.
+    /// What must be wanted before the joint leaves rest: dead band, hysteresis and stiction, rad/s.
+    pub(super) fn leaves_rest_rad_s(&self) -> f64 {
+        self.dead_band_rad_s + self.hysteresis_rad_s + self.stiction_rad_s
+    }
+
+    /// What passes between a change of the speed that the loop wants and half of its effect, s: dead time, time
+    /// constant and half a step of the loop. A filter of set values comes before that.
     pub fn lag_s(&self) -> f64 {
         self.dead_time_s + self.time_constant_s + 0.5 * STEP_S
     }

@@ -82,6 +82,9 @@ pub struct JointFit {
     pub integral_gain_1_s2: Estimated,
     /// Wanted speed per sent speed.
     pub feed_forward: Estimated,
+    /// Time constant of a filter of the set values before the loop, s; 0 where the data show none.
+    #[serde(default)]
+    pub set_value_filter_s: Estimated,
     /// Gain for growing angles by that for shrinking ones.
     pub gain_ratio: Estimated,
     /// Largest speed of growing angles, rad/s.
@@ -135,12 +138,27 @@ impl JointFit {
             position_gain_1_s: none,
             integral_gain_1_s2: none,
             feed_forward: none,
+            set_value_filter_s: none,
             gain_ratio: none,
             speed_limit_growing_rad_s: reached(self.speed_limit_growing_rad_s),
             speed_limit_shrinking_rad_s: reached(self.speed_limit_shrinking_rad_s),
             acceleration_limit_growing_rad_s2: reached(self.acceleration_limit_growing_rad_s2),
             acceleration_limit_shrinking_rad_s2: reached(self.acceleration_limit_shrinking_rad_s2),
             model: Model { pose_rad: self.model.pose_rad, ..Model::FOLLOWS },
+            ..self
+        }
+    }
+
+    /// The same where another model explains the data as well.
+    pub(super) fn or(self, other: &Model) -> Self {
+        let band_rad_s = other.leaves_rest_rad_s();
+        Self {
+            lag_s: self.lag_s.or(other.lag_s()),
+            dead_band_rad_s: self.dead_band_rad_s.or(band_rad_s),
+            dead_band_error_rad: self.dead_band_error_rad.or(band_rad_s / other.position_gain_1_s),
+            position_gain_1_s: self.position_gain_1_s.or(other.position_gain_1_s),
+            integral_gain_1_s2: self.integral_gain_1_s2.or(other.integral_gain_1_s2),
+            feed_forward: self.feed_forward.or(other.feed_forward),
             ..self
         }
     }

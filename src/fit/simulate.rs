@@ -88,6 +88,7 @@ fn lanes<const N: usize>(
     let approach = of(|m| -(-STEP_S / m.time_constant_s.max(1e-4)).exp_m1());
     let hysteresis = of(|m| m.hysteresis_rad_s);
     let edge = of(|m| m.edge_rad_s);
+    let passes = of(|m| if m.filter_s > 0.0 { -(-STEP_S / m.filter_s).exp_m1() } else { 1.0 });
     let half_play = of(|m| 0.5 * m.backlash_rad);
     let delay = of(|m| m.dead_time_s / STEP_S);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few hundred steps")]
@@ -96,16 +97,19 @@ fn lanes<const N: usize>(
     let mut angle: [f64; N] = std::array::from_fn(|i| start[i].angle_rad - offset[i]);
     let (mut seen, mut speed) = (angle, start.map(|start| start.speed_rad_s));
     let mut spool = [0.0; N];
+    let mut set = [sent.first().copied().unwrap_or_default(); N];
     let mut integral = start.map(|start| start.integral_rad_s);
     for (k, &(sent_rad, sent_rad_s)) in sent.iter().enumerate() {
         let moves = sent_rad_s.abs() > 0.0;
         let mut wants = [0.0; N];
         for i in 0..N {
             seen[i] = within(seen[i], angle[i] - half_play[i], angle[i] + half_play[i]);
-            let error_rad = sent_rad - seen[i];
+            set[i].0 = filtered(set[i].0, sent_rad, passes[i]);
+            set[i].1 = filtered(set[i].1, sent_rad_s, passes[i]);
+            let error_rad = set[i].0 - seen[i];
             let grows = moves || error_rad.abs() >= FREEZE_RAD;
             integral[i] += if grows { integral_step[i] * error_rad } else { 0.0 };
-            wants[i] = feed_forward[i] * sent_rad_s + position_gain[i] * error_rad + integral[i];
+            wants[i] = feed_forward[i] * set[i].1 + position_gain[i] * error_rad + integral[i];
         }
         wanted.extend_from_slice(&wants);
         measured_rad.extend((0..N).map(|i| seen[i] + offset[i]));
@@ -139,6 +143,12 @@ fn lanes<const N: usize>(
             angle[i] += 0.5 * STEP_S * (before + speed[i]);
         }
     }
+}
+
+/// A value on its way to another, of which a share passes; the other itself where all does.
+#[inline]
+fn filtered(before: f64, to: f64, passes: f64) -> f64 {
+    if passes < 1.0 { before + passes * (to - before) } else { to }
 }
 
 /// A number held between two; without the care for what is no number of [`f64::clamp`] two instructions.

@@ -47,7 +47,7 @@ pub struct ReadOptions {
 pub struct Cylinders {
     /// The file that describes them.
     pub file: PathBuf,
-    /// What joints with a cylinder become: angles, or lengths of the cylinder as the log has them.
+    /// What joints with a cylinder are read as: angles, or lengths of the cylinder as the log has them.
     pub into: JointKind,
 }
 

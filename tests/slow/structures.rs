@@ -1,6 +1,7 @@
 //! Fits to machines of other structure: their intervals hold the truth, or the model is said not to hold.
 
 use hydrotrace::{
+    arm::Arm,
     fit::Excitation,
     plant::{Parameters, Plant},
 };
@@ -10,13 +11,23 @@ use crate::support::{
     recovery::{QUANTITIES, middle_rad},
 };
 
+/// Set values that pass a filter before a loop that feeds them forward.
+const FILTERED: [(&str, &str); 3] = [
+    ("filtered", "base = 'default'\n[control]\nset_value_filter_s = 0.1\n"),
+    ("slowly filtered", "base = 'default'\n[control]\nset_value_filter_s = 0.25\nfeed_forward = 0.7\n"),
+    ("filtered and late", "base = 'lag-limited'\n[control]\nset_value_filter_s = 0.15\n"),
+];
+
 #[test]
 #[ignore = "minutes; in release by .ci/run"]
 fn intervals_hold_nine_in_ten_truths_on_every_structure() {
     let mut short = Vec::new();
-    for preset in Parameters::preset_names() {
+    let filtered =
+        FILTERED.map(|(name, text)| (name, Parameters::parse(&format!("title = '{name}'\n{text}")).unwrap()));
+    let presets = Parameters::preset_names().map(|name| (name, Parameters::preset(name).unwrap()));
+    for (preset, parameters) in presets.chain(filtered) {
         let (mut claimed, mut covered) = (0, 0);
-        let plant = Plant::preset(preset).unwrap();
+        let plant = Plant::new(&Arm::sample().unwrap(), parameters).unwrap();
         for (name, job) in [("excite", excitation(&Excitation::minimal())), ("task 1", task(1))] {
             let truth = plant.truth(&middle_rad(&job.plan), 0.0).unwrap();
             let fit = fitted(&[(&job.plan, &run(&plant, &job.plan, &job, 1))]);

@@ -256,7 +256,7 @@ pub(super) struct GateArgs {
     #[arg(long, value_name = "MM", value_parser = millimetres)]
     max_drift_peak_mm: Option<f64>,
 
-    /// Limits with nothing to judge are kept: without it they are not
+    /// Count a limit as kept where the run has nothing to judge it by; without this it counts as not kept
     #[arg(long)]
     allow_empty: bool,
 

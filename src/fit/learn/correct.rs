@@ -60,7 +60,12 @@ impl Manner {
             Character::Calm => CALM_HZ,
             Character::Rings | Character::Hunts => CALM_HZ.min(OF_OSCILLATION * frequency_hz),
         };
-        Self { character, cut_off_hz, ahead: steps_in(model.lag_s() + BEYOND_LAG_S), most_rad }
+        Self {
+            character,
+            cut_off_hz,
+            ahead: steps_in(model.filter_s + model.lag_s() + BEYOND_LAG_S),
+            most_rad,
+        }
     }
 
     fn calm(&self) -> bool {

@@ -51,6 +51,9 @@ const LIMITS: [(&str, Shown); 2] = [
     ),
 ];
 
+const FILTER: Shown =
+    Shown { name: "filter of set values", of: |j| j.set_value_filter_s, scale: |s| s * 1e3, decimals: 0 };
+
 /// Share of the full signal to each side.
 const VALVE: [Shown; 2] = [
     Shown {
@@ -207,10 +210,20 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
              wide-open valve."
         )
     }));
+    let filtered = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.filter_s > 0.0);
+    let filters: Vec<String> =
+        filtered.map(|joint| format!("{} {}", joint.name, FILTER.cell(joint))).collect();
+    lines.extend((!filters.is_empty()).then(|| {
+        format!(
+            "The controller filters what it is sent before its loop takes it; time constants, ms: {}. Lags are those of loop \
+             and valve, after that.",
+            filters.join(", ")
+        )
+    }));
     lines.extend(of(&|joint| joint.model_holds && !joint.feed_forward.identified).map(|joints| {
         format!(
             "The logs show no sure feed-forward of {joints}. Without one a filter of set values acts as a lower gain, more \
-             lag and another dead band: no log of angles tells them apart."
+             lag and another dead band: logs of angles hardly tell them apart."
         )
     }));
     lines.extend(left_out_line(fit));

@@ -29,6 +29,7 @@ const MODEL: Model = Model {
     acceleration_limit_rad_s2: [None, None],
     hysteresis_rad_s: 0.1 * DEGREE_RAD,
     edge_rad_s: 0.0,
+    filter_s: 0.0,
     backlash_rad: 0.05 * DEGREE_RAD,
 };
 
@@ -104,6 +105,23 @@ fn edges_that_open_gradually_are_found_where_they_are_and_nowhere_else() {
         assert!(plain.edge_rad_s <= 0.0, "{seed}: {plain:?}");
         assert!((found.edge_rad_s / edged.edge_rad_s).ln().abs() < 0.3, "{seed}: {found:?}");
         assert!((found.feed_forward / edged.feed_forward).ln().abs() < 0.1, "{seed}: {found:?}");
+    }
+}
+
+#[test]
+fn a_filter_of_set_values_is_found_where_it_is_and_nowhere_else() {
+    let plan = trial(&["J"]);
+    for (seed, filter_s) in [(1, 0.12), (2, 0.25), (3, 0.4)] {
+        let filtered = Model { filter_s, ..MODEL };
+        let [plain, found] = [&MODEL, &filtered].map(|model| {
+            let fit = fitted(&[(&plan, &measured_of(model, &plan, seed, |_| false))]);
+            fit.joints[0].clone()
+        });
+        assert!(plain.set_value_filter_s.value.unwrap() <= 0.0, "{seed}: {plain:?}");
+        let [low_s, high_s] = found.set_value_filter_s.interval.unwrap();
+        assert!((low_s..high_s).contains(&filter_s) && high_s < 3.0 * low_s, "{seed}: {found:?}");
+        assert!((found.model.feed_forward / MODEL.feed_forward).ln().abs() < 0.1, "{seed}: {found:?}");
+        assert!((found.lag_s.value.unwrap() / MODEL.lag_s()).ln().abs() < 0.1, "{seed}: {found:?}");
     }
 }
 

@@ -163,13 +163,20 @@ fn promise(replanned: &Replanned) -> Option<Check> {
     let level = match measured_mean_peak_rad {
         came if came <= bound_rad => Level::Good,
         // What was promised of the machine before it changed is no reason against what was learnt since, nor is too much of a promise
-        // against a command that served the machine well.
-        came if came <= OTHER_MACHINE * bound_rad || changed(replanned) => Level::Caution,
+        // against a command that served the machine well, or against one that is returned to.
+        came if came <= OTHER_MACHINE * bound_rad || changed(replanned) || returns(replanned) => {
+            Level::Caution
+        }
         came if best_before_rad.is_finite() && came <= HELPED * best_before_rad => Level::Caution,
         _ => Level::Stop,
     };
     let finding = Finding::Promise { log: run.log.clone(), promised, measured_mean_peak_rad };
     Some(Check { level, finding })
+}
+
+/// Whether what is sent is the command of an earlier run, not of the newest.
+fn returns(replanned: &Replanned) -> bool {
+    matches!(replanned.past.decision, Decision::Keep { run, .. } if run + 1 < replanned.past.runs.len())
 }
 
 fn changed(replanned: &Replanned) -> bool {

@@ -1,0 +1,73 @@
+//! Whether the controller filters its set values before the loop takes them: what is asked for then comes late, and the loop
+//! itself is faster than that.
+
+use super::{
+    estimate::{Estimate, Problem, Workspace},
+    model::Model,
+    parameters::{DEAD_TIME, FEED_FORWARD, FILTER, LIMITS},
+};
+
+/// The cost, a logarithm of likelihood, must fall by this.
+const GAIN: f64 = 30.0;
+
+/// A filter that costs no more than this explains the data as well as none.
+const AS_GOOD: f64 = 2.0;
+
+/// A shorter filter is the valve's lag by another name, s.
+const SHORTEST_S: f64 = 0.06;
+
+/// A loop whose gain is larger than this by its lag rings: one that is calm has another structure, for which a filter
+/// would stand in.
+const RINGS: f64 = 0.8;
+
+/// Rounds of a descent with a filter.
+const ROUNDS: usize = 30;
+
+/// Dead time where a descent starts, s.
+const DEAD_TIME_S: f64 = 0.08;
+
+/// Filter, s, and feed-forward where the others start: without a filter a loop looks slower than it is, or faster, and one
+/// without feed-forward looks as if it had some.
+const STARTS: [[f64; 2]; 2] = [[0.25, 0.9], [0.15, 0.05]];
+
+/// What a filter of the set values makes of an estimate without one.
+pub(super) enum Filter {
+    /// The data show it.
+    Shown(Estimate),
+    /// They do not tell it from none.
+    Possible(Model),
+    /// They explain it worse than none.
+    None,
+}
+
+impl Filter {
+    pub(super) fn of(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Self {
+        let mut other = problem.clone();
+        other.shown.filter = true;
+        let place = |i: usize, value: f64| problem.priors.of(i).place(value);
+        let anew = STARTS.map(|[filter_s, feed_forward]| {
+            let mut x = found.x.clone();
+            x[..LIMITS].fill(0.0);
+            x[FEED_FORWARD] = place(FEED_FORWARD, feed_forward);
+            x[FILTER] = place(FILTER, filter_s);
+            x
+        });
+        let before = problem.cost_at(&found.x, found.scale_rad, workspace);
+        let descent = |mut x: Vec<f64>| {
+            x[DEAD_TIME] = place(DEAD_TIME, DEAD_TIME_S);
+            let made = other.descend(x, ROUNDS, workspace);
+            (before - other.cost_at(&made.x, found.scale_rad, workspace), made)
+        };
+        let all = std::iter::once(found.x.clone()).chain(anew).map(descent);
+        let best = all.max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((gained, best)) = best else { return Self::None };
+        let model = other.model(&best.x);
+        match gained {
+            _ if model.filter_s < SHORTEST_S => Self::None,
+            _ if model.position_gain_1_s * model.lag_s() > RINGS => Self::None,
+            GAIN.. => Self::Shown(best),
+            _ if gained > -AS_GOOD => Self::Possible(model),
+            _ => Self::None,
+        }
+    }
+}
