@@ -13,6 +13,7 @@ mod held;
 mod indexed;
 mod joints;
 pub(super) mod lines;
+mod lost;
 pub(super) mod origin;
 mod other_time;
 mod overlap;

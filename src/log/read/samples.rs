@@ -2,7 +2,10 @@
 
 use std::{f64::consts::TAU, sync::Arc};
 
-use super::quality::Gaps;
+use super::{
+    lost::{drop_lost, may_be_lost},
+    quality::Gaps,
+};
 use crate::{
     log::source::Table,
     remark::{Code, Remarks},
@@ -50,10 +53,11 @@ impl Axis {
         self.rows.get(i).copied().unwrap_or(i)
     }
 
-    /// Whether the values of a column are finite, and none of them a spike if they are positions.
+    /// Whether the values of a column are finite, and none of them a spike or lost if they are positions.
     fn is_sound(&self, values: &[f64], positions: bool) -> bool {
         let spiked = || (0..values.len()).any(|k| is_spike(k, values.len(), |i| self.t_s[i], |i| values[i]));
-        positions && is_calm(values, self.shortest_s) || all_finite(values) && !(positions && spiked())
+        let calm = || is_calm(values, self.shortest_s) || all_finite(values) && !spiked();
+        if positions { !may_be_lost(values) && calm() } else { all_finite(values) }
     }
 
     /// The axis without the samples that are missing in a column: times, cuts and jumps.
@@ -113,7 +117,7 @@ pub(super) fn samples(
 ) -> Vec<Samples> {
     let mut found = Vec::new();
     let mut gap = Gaps::default();
-    let mut spikes = 0;
+    let (mut spikes, mut lost) = (0, 0);
     let velocity_field = table.fields[field].velocity.filter(|_| positions);
     for (joint, name) in table.joints.clone().into_iter().enumerate() {
         let mut column =
@@ -130,6 +134,7 @@ pub(super) fn samples(
             kept.dedup_by(|later, earlier| axis.t_s[*later] <= axis.t_s[*earlier]);
             if positions {
                 spikes += drop_spikes(&mut kept, &axis.t_s, at);
+                lost += drop_lost(&mut kept, &axis.t_s, at);
             }
             let (t_s, cuts, jumps) = axis.kept(&kept);
             gap.note(&t_s, &cuts, &jumps);
@@ -143,6 +148,11 @@ pub(super) fn samples(
     let message =
         format!("values of {topic} that no joint can have (a jump there and back at once), dropped");
     remarks.add(Code::Implausible, spikes, message);
+    let message = format!(
+        "values of {topic} that are exactly 0 once, between values that agree and are not near it: readings that were \
+         lost; dropped"
+    );
+    remarks.add(Code::Implausible, lost, message);
     found
 }
 
