@@ -4,7 +4,11 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::csv::CsvError;
+use super::{
+    csv::CsvError,
+    import_line::Given,
+    options::{ReadOptions, TimeBase},
+};
 use crate::{arm::ArmError, suggest::suggestion, text::shell_argument};
 
 /// Why a log cannot be read or written; doubts about parts of it are remarks.
@@ -20,13 +24,11 @@ pub enum LogError {
     NotMcap { path: PathBuf, found: String, fix: &'static str },
     /// A table that does not say all that is needed.
     #[error(
-        "{} is a table that leaves something open; `hydrotrace import {}{}{} -o run.mcap` {}, and \
-         the log that it writes is read as any other",
-        path.display(), shell_argument(path), source.missing_option().map_or("", |_| " "),
-        source.missing_option().map_or("", |(option, _)| option),
-        source.missing_option().map_or("takes options for that", |(_, meaning)| meaning)
+        "{} is a table that leaves something open; `{}` {}, and the log that it writes is read as any other{}",
+        path.display(), given.line(path, source.missing_option().map(|(option, _)| option)),
+        source.missing_option().map_or("takes options for that", |(_, meaning)| meaning), given.rest()
     )]
-    Table { path: PathBuf, source: Box<CsvError> },
+    Table { path: PathBuf, source: Box<CsvError>, given: Given },
     /// A file of another form that cannot be read.
     #[error("cannot read {}: {reason}", path.display())]
     Form { path: PathBuf, reason: String },
@@ -91,11 +93,11 @@ pub enum LogError {
     NoCommonJoint { planned: String, measured: String },
     /// Plan and measurement are of different times.
     #[error(
-        "the plan covers {:.2} to {:.2} s, the measurement {:.2} to {:.2} s: they have no time in common; \
-         if their clocks differ, try --time log",
-        planned_s[0], planned_s[1], measured_s[0], measured_s[1]
+        "the plan covers {:.2} to {:.2} s, the measurement {:.2} to {:.2} s: they have no time in common; {}",
+        planned_s[0], planned_s[1], measured_s[0], measured_s[1],
+        if *by_receipt { "give a plan and a measurement of one run" } else { "if their clocks differ, try --time log" }
     )]
-    NoOverlap { planned_s: [f64; 2], measured_s: [f64; 2] },
+    NoOverlap { planned_s: [f64; 2], measured_s: [f64; 2], by_receipt: bool },
     /// The range that the caller asked for holds nothing.
     #[error(
         "nothing of {topic} lies {range}: it spans {spans_s:.2} s; --from and --to count in seconds from the first \
@@ -128,7 +130,7 @@ pub enum LogError {
     #[error("joint {joint:?} is named twice; a joint counts once")]
     JointTwice { joint: String },
     /// A clock that the caller asked for.
-    #[error("the {clock} time of topic {topic:?} is zero or stands still; try --time log or leave it out")]
+    #[error("the {clock} time of topic {topic:?} is zero or stands still; {}", other_clock(clock))]
     NoClock { clock: &'static str, topic: String },
     /// A log that is to get a plan has one.
     #[error("{} has a plan in {topic} already: `hydrotrace report` it as it is, or give the log as the recorder left it", path.display())]
@@ -180,11 +182,25 @@ impl LogError {
         )
     }
 
+    /// With the options that the caller gave to read it, for the line to type next.
+    #[must_use]
+    pub fn given(mut self, options: &ReadOptions) -> Self {
+        if let Self::Table { given, .. } = &mut self {
+            *given = Given::of(options);
+        }
+        self
+    }
+
     /// Wraps an I/O failure; use with `map_err`.
     pub(super) fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::File { action, path, source }
     }
+}
+
+/// What to do where a clock does not run that was asked for.
+fn other_clock(clock: &str) -> &'static str {
+    if clock == TimeBase::Log.name() { "leave --time out" } else { "try --time log or leave it out" }
 }
 
 /// What to do where a page or a text was named among the logs, as after an option that takes no file.

@@ -20,6 +20,7 @@ mod file;
 mod files;
 mod flat;
 mod foreign;
+mod import_line;
 mod input;
 mod joined;
 mod joint_kind;

@@ -14,6 +14,7 @@ use super::{
     error::LogError,
     file::{Blocks, ChannelRecord, MessageRecord, Opcode, records},
     files::{LogFiles, ScannedLog, file_name},
+    import_line::Given,
     schema::{Definition, plain_name},
     source::spec_for,
 };
@@ -77,7 +78,8 @@ pub(super) fn run(
 /// [`LogError`] if it is no log; [`CsvError`] within says what its fields lack and which option gives it.
 pub fn read_messages(path: &Path, options: &CsvOptions) -> Result<CsvRun, LogError> {
     let files = LogFiles::open(&[path.to_owned()])?;
-    let fault = |source| LogError::Table { path: path.to_owned(), source: Box::new(source) };
+    let fault =
+        |source| LogError::Table { path: path.to_owned(), source: Box::new(source), given: Given::default() };
     run(&files.scan()?, &file_name(path), options, false)
         .unwrap_or_else(|| {
             Err(CsvError::NoJoints { present: "none whose words are those of a joint".to_owned() })

@@ -7,6 +7,7 @@ use crate::{
         csv::{CsvOptions, read_csv_bytes},
         error::LogError,
         file::Source,
+        import_line::Given,
     },
     remark::Remarks,
 };
@@ -14,7 +15,8 @@ use crate::{
 /// The log that a table becomes if nobody says more about it than the file itself.
 pub(super) fn log(path: &Path, text: &[u8], remarks: &mut Remarks) -> Result<Source, LogError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let fault = |source| LogError::Table { path: path.to_owned(), source: Box::new(source) };
+    let fault =
+        |source| LogError::Table { path: path.to_owned(), source: Box::new(source), given: Given::default() };
     let run = read_csv_bytes(&name, text, &CsvOptions::default()).map_err(fault)?;
     remarks.extend(run.remarks.clone());
     Ok(run.write(Vec::new()).map_err(|error| fault(error.into()))?.into())

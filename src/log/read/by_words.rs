@@ -7,6 +7,7 @@ use crate::{
         error::LogError,
         files::{ScannedFile, ScannedLog, file_name},
         flat,
+        import_line::Given,
         options::ReadOptions,
     },
     remark::{Code, Remarks},
@@ -45,7 +46,8 @@ pub(super) fn recording(
     match run(false) {
         Some(Ok(run)) => recorded(log, &run, false, &options).ok_or(error),
         Some(Err(source @ (CsvError::AngleUnit { .. } | CsvError::Counts { .. }))) => {
-            Err(LogError::Table { path: first.path.to_owned(), source: Box::new(source) })
+            let (path, source) = (first.path.to_owned(), Box::new(source));
+            Err(LogError::Table { path, source, given: Given::of(&options) })
         }
         _ => Err(error),
     }

@@ -72,7 +72,8 @@ use {
 /// # Ok::<(), hydrotrace::log::LogError>(())
 /// ```
 pub fn read_recording(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, LogError> {
-    LogFiles::open(paths)?.scan()?.read(options)
+    let files = LogFiles::open(paths).map_err(|error| error.given(options))?;
+    files.scan()?.read(options)
 }
 
 /// As [`read_recording`] with [`Sides::Plan`].
@@ -90,7 +91,7 @@ pub fn read_plan(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, 
 ///
 /// [`LogError`] if a file cannot be opened or is no log.
 pub fn survey(paths: &[PathBuf], options: &ReadOptions) -> Result<Survey, LogError> {
-    LogFiles::open(paths)?.survey(options)
+    LogFiles::open(paths).map_err(|error| error.given(options))?.survey(options)
 }
 
 /// As [`survey`] of one file in memory, for fuzzing.

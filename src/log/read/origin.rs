@@ -8,11 +8,12 @@ use crate::{
     log::{
         csv::{GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN},
         error::LogError,
+        import_line::{Given, line},
         options::ReadOptions,
         write::Topics,
     },
     series::Series,
-    text::{shell_argument, shell_word},
+    text::shell_word,
 };
 
 /// What a log that was imported tells of its table.
@@ -62,6 +63,12 @@ impl<'a> Imported<'a> {
         Ok(())
     }
 
+    /// Whether it has a column of this name.
+    pub(super) fn has(&self, column: &str) -> bool {
+        let unused = self.origin.get(UNUSED_OF_ORIGIN).map_or("", String::as_str);
+        self.positions().any(|(_, used)| used == column) || unused.split(", ").any(|one| one == column)
+    }
+
     /// Its columns, in use or not.
     pub(super) fn columns(&self) -> String {
         let used: Vec<&str> = self.positions().map(|(_, column)| column).collect();
@@ -70,28 +77,30 @@ impl<'a> Imported<'a> {
         format!("{} of {}{unused}", used.join(", "), self.file)
     }
 
-    /// The line that imports it with columns of this option, which are to be filled in if they are not given.
-    /// `path` is where the log was read from: the table itself, if it has its name.
-    pub(super) fn import_line(&self, path: &Path, option: &str, columns: Option<&str>) -> String {
+    /// The line that imports it again with what is given now, and with columns of an option that lacks them, which are to
+    /// be filled in. `path` is where the log was read from: the table itself, if it has its name.
+    pub(super) fn import_line(&self, path: &Path, lacking: Option<&str>, given: &Given) -> String {
         let own = path.file_name().is_some_and(|name| name == self.file);
         let file = if own { path } else { Path::new(self.file) };
-        let columns = columns.map_or_else(
-            || self.positions().map(|(joint, _)| format!("{joint}=COLUMN")).collect::<Vec<_>>().join(","),
-            str::to_owned,
+        let columns =
+            self.positions().map(|(joint, _)| format!("{joint}=COLUMN")).collect::<Vec<_>>().join(",");
+        let mut words = self.given_but(|option| given.has(option) || lacking == Some(option));
+        words.extend(
+            given.words().filter(|word| lacking.is_none_or(|option| !word.starts_with(option))).cloned(),
         );
-        let (file, columns) = (shell_argument(file), shell_word(&columns));
-        format!("hydrotrace import {file}{} {option} {columns} -o run.mcap", self.given_but(option))
+        words.extend(lacking.map(|option| format!("{option} {}", shell_word(&columns))));
+        line(file, &words.iter().map(String::as_str).collect::<Vec<_>>(), path)
     }
 
-    /// The options that it was imported with, but for this one, as they follow a word of a line.
-    fn given_but(&self, option: &str) -> String {
+    /// The options that it was imported with, but for some.
+    fn given_but(&self, but: impl Fn(&str) -> bool) -> Vec<String> {
         let given = self.origin.iter().filter_map(|(key, value)| {
             let (_, given) = key.strip_prefix(GIVEN_OF_ORIGIN)?.split_once(' ')?;
-            (given != option).then_some((given, value))
+            (!but(given)).then_some((given, value))
         });
         let words = given.map(|(given, value)| match value.as_str() {
-            "" => format!(" {given}"),
-            value => format!(" {given} {}", shell_word(value)),
+            "" => given.to_owned(),
+            value => format!("{given} {}", shell_word(value)),
         });
         words.collect()
     }

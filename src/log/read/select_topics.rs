@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::{
     content::{Content, Extracted, TopicCount},
     frames,
-    topics::{fields_of, lacks_positions, missing, not_there},
+    topics::{columns_named, fields_of, lacks_positions, missing, not_there},
 };
 use crate::{
     log::{
@@ -77,6 +77,9 @@ pub(super) fn is_measured(topic: &str) -> bool {
 
 /// Chooses the topics of the sides that are wanted.
 pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
+    if let Some(error) = columns_named(extracted, options) {
+        return Err(error);
+    }
     let plan = || choose_one(extracted, options, Role::Planned);
     let measurement = || choose_one(extracted, options, Role::Measured);
     let lacks = |error: &LogError| match error {
@@ -92,7 +95,7 @@ pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Cho
         (Sides::MeasurementAtLeast, Some(PLANNED)) => measurement(),
         (Sides::Any, Some(PLANNED)) => measurement().map_err(|error| match error {
             LogError::Missing { .. } => {
-                missing(extracted, "planned, commanded or measured", "--planned or --measured")
+                missing(extracted, options, "planned, commanded or measured", "--planned or --measured")
             }
             other => other,
         }),
@@ -107,10 +110,10 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
     let planned = candidates(extracted, &options.planned, Role::Planned)?;
     let measured = candidates(extracted, &options.measured, Role::Measured)?;
     if planned.is_empty() {
-        return Err(missing(extracted, PLANNED, "--planned"));
+        return Err(missing(extracted, options, PLANNED, "--planned"));
     }
     if measured.is_empty() {
-        return Err(missing(extracted, MEASURED, "--measured"));
+        return Err(missing(extracted, options, MEASURED, "--measured"));
     }
     let measured_joints: BTreeSet<&String> = measured.iter().flat_map(|c| &c.joints).collect();
     let common = |c: &&Candidate| c.joints.iter().any(|joint| measured_joints.contains(joint));
@@ -160,7 +163,7 @@ fn choose_one(extracted: &Extracted, options: &ReadOptions, role: Role) -> Resul
     };
     let found = candidates(extracted, asked, role)?;
     let Some(first) = found.first() else {
-        return Err(missing(extracted, side, flag));
+        return Err(missing(extracted, options, side, flag));
     };
     let (mut planned, mut measured) = (Vec::new(), Vec::new());
     if role == Role::Measured {
@@ -286,7 +289,7 @@ fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<V
 /// The candidate of a selector.
 pub(super) fn named(extracted: &Extracted, selector: &Selector, role: Role) -> Result<Candidate, LogError> {
     let topic = extracted.topics.iter().position(|t| t.topic == selector.topic);
-    let topic = topic.ok_or_else(|| not_there(extracted, selector, role))?;
+    let topic = topic.ok_or_else(|| not_there(extracted, selector))?;
     frames::check_selector(extracted, topic, selector)?;
     let sources = (0..extracted.sources.len()).filter(|&s| extracted.sources[s].topic == topic);
     let fitting = sources.flat_map(|s| of_source(extracted, s, role, selector.field.as_deref()));

@@ -10,8 +10,9 @@ use super::{
 use crate::{
     log::{
         error::LogError,
-        options::Selector,
-        source::{Form, Role, Table},
+        import_line::Given,
+        options::{ReadOptions, Selector},
+        source::{Form, Table},
     },
     suggest::nearest,
     units::NS_PER_S,
@@ -109,30 +110,41 @@ fn topic_info<'a>(
 }
 
 /// What a log lacks, and how to say where it is: of a table by its columns, which is for `import`.
-pub(super) fn missing(extracted: &Extracted, missing: &'static str, flag: &str) -> LogError {
+pub(super) fn missing(
+    extracted: &Extracted,
+    options: &ReadOptions,
+    missing: &'static str,
+    flag: &str,
+) -> LogError {
     let (present, fix) = match Imported::of(&extracted.metadata) {
         Some(table) if flag.contains(' ') => {
             (table.columns(), format!("{flag} JOINT=COLUMN,... of `hydrotrace import`"))
         }
-        Some(table) => (table.columns(), table.import_line(&extracted.path, flag, None)),
+        Some(table) => (table.columns(), table.import_line(&extracted.path, Some(flag), &Given::of(options))),
         None => (present(extracted), format!("{flag} TOPIC[:FIELD]")),
     };
     LogError::Missing { missing, present, fix }
 }
 
-/// Of a topic that is not in the log, or of columns of the table that the log is made of.
-pub(super) fn not_there(extracted: &Extracted, selector: &Selector, role: Role) -> LogError {
+/// Of columns of the table that the log is made of, named as if they were topics; `None` if there are none.
+pub(super) fn columns_named(extracted: &Extracted, options: &ReadOptions) -> Option<LogError> {
+    let table = Imported::of(&extracted.metadata)?;
+    let is_topic = |one: &Selector| extracted.topics.iter().any(|topic| topic.topic == one.topic);
+    let named = options.planned.iter().chain(&options.measured);
+    let columns: Vec<String> = named
+        .filter(|one| (one.topic.contains('=') || table.has(&one.to_string())) && !is_topic(one))
+        .map(ToString::to_string)
+        .collect();
+    let fix = || table.import_line(&extracted.path, None, &Given::of(options));
+    (!columns.is_empty()).then(|| LogError::ColumnsNamed { fix: fix(), columns: columns.join(", ") })
+}
+
+/// Of a topic that is not in the log.
+pub(super) fn not_there(extracted: &Extracted, selector: &Selector) -> LogError {
     let topic = selector.topic.clone();
-    match Imported::of(&extracted.metadata).filter(|_| topic.contains('=')) {
-        Some(table) => {
-            let option = if matches!(role, Role::Measured) { "--measured" } else { "--planned" };
-            let fix = table.import_line(&extracted.path, option, Some(&topic));
-            LogError::ColumnsNamed { fix, columns: topic }
-        }
-        None => LogError::NoTopic {
-            nearest: nearest(&topic, extracted.topics.iter().map(|t| t.topic.as_str())),
-            present: present(extracted),
-            topic,
-        },
+    LogError::NoTopic {
+        nearest: nearest(&topic, extracted.topics.iter().map(|t| t.topic.as_str())),
+        present: present(extracted),
+        topic,
     }
 }

@@ -64,7 +64,9 @@ pub(in crate::workflow) fn reported(
     threads::alone(|| {
         let names: Vec<PathBuf> = logs.iter().map(|log| log.name().to_owned()).collect();
         let files = input_files(&logs);
-        let recording = LogFiles::of(logs)?.scan()?.read(&inputs.read_options()?)?;
+        let read = inputs.read_options()?;
+        let files_of_run = LogFiles::of(logs).map_err(|error| error.given(&read))?;
+        let recording = files_of_run.scan()?.read(&read)?;
         let found = report(recording, &Inputs { logs: names, ..inputs.clone() })?;
         let findings = Findings::of(&found, files);
         Ok((found, findings))

@@ -37,7 +37,7 @@ use super::{
 use crate::{
     arm::ArmError,
     input_file,
-    log::{LogError, ReadOptions, Recording, SignalRole, TimeRange, read_recording},
+    log::{LogError, ReadOptions, Recording, SignalRole, TimeBase, TimeRange, read_recording},
     remark::{Code, Remarks},
     replay::{Profiles, Replay, Rules, Transition},
     series::{Broken, Pair, PosePair},
@@ -119,11 +119,12 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     let broken = carried.broken(&recording);
     let model = inputs.delay_model.ready(&recording);
     let sides = [&recording.planned, &recording.measured];
+    let by_receipt = recording.source.time_base == TimeBase::Log;
     let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
     let (alignment, pairs) = aligned(taken(&mut recording), &inputs.rules, &mut remarks);
     let pairs = stretches(pairs, &inputs.stretches_s);
     if pairs.is_empty() {
-        return Err(LogError::NoOverlap { planned_s, measured_s }.into());
+        return Err(LogError::NoOverlap { planned_s, measured_s, by_receipt }.into());
     }
     let Analysis { alignment, pairs, replay } = Analysis::of(alignment, pairs, &inputs.rules);
     let arm = match tool::arm(&recording, &carried, inputs, &pairs) {

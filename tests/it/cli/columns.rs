@@ -106,7 +106,7 @@ fn a_table_is_reported_as_it_is() {
     fs::write(folder.path().join("b.csv"), "t,boom_act_rad\n0,1\n1,2\n2,2\n3,2\n").unwrap();
     let (code, _, error) = said(&hydrotrace(folder.path(), &["report", "b.csv"]));
     assert!(
-        code == 1 && error.contains("hydrotrace import b.csv --planned boom=COLUMN -o run.mcap"),
+        code == 1 && error.contains("hydrotrace import b.csv --planned boom=COLUMN -o b.mcap"),
         "{code} {error}"
     );
 }

@@ -240,10 +240,7 @@ fn a_table_that_lacks_a_unit_gets_a_command_that_reads_it() {
     )
     .unwrap();
     let (code, _, error) = said(&hydrotrace(folder.path(), &["report", "a.csv"]));
-    assert!(
-        code == 1 && error.contains("`hydrotrace import a.csv --degrees -o run.mcap` reads it"),
-        "{error}"
-    );
+    assert!(code == 1 && error.contains("`hydrotrace import a.csv --degrees -o a.mcap` reads it"), "{error}");
     let (code, text, error) =
         said(&hydrotrace(folder.path(), &["import", "a.csv", "--degrees", "-o", "run.mcap"]));
     assert_eq!(code, 0, "{text}{error}");

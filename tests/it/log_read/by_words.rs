@@ -354,7 +354,7 @@ fn angles_in_degrees_are_asked_for_with_the_line_that_reads_them() {
     });
     let said = error(&log, &ReadOptions::default());
     assert!(
-        said.contains("hydrotrace import ") && said.contains("run.mcap --degrees -o run.mcap`"),
+        said.contains("hydrotrace import ") && said.contains("run.mcap --degrees -o run-2.mcap`"),
         "{said}"
     );
 }
