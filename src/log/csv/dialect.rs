@@ -4,6 +4,7 @@ use ::csv::ByteRecord;
 
 use super::{
     CsvError, CsvOptions, Separator,
+    grouping::is_decimal_comma,
     number::{Looks, looks},
     rows::Rows,
 };
@@ -75,12 +76,21 @@ pub(super) fn detect(file: &str, text: &[u8], options: &CsvOptions) -> Result<Di
     if best.numbers == 0 {
         return Err(none("no cell is a number"));
     }
-    let comma = best.commas > best.points && best.separator != Separator::Byte(b',');
+    // Between commas a number with a comma stands in quotes: one that sets no thousands apart is decimal.
+    let quoted = || best.points == 0 && has_decimal_comma(head(text), best.separator);
+    let comma = best.commas > best.points && (best.separator != Separator::Byte(b',') || quoted());
     Ok(Dialect {
         separator: best.separator,
         decimal_comma: options.decimal_comma.unwrap_or(comma),
         width: best.width,
     })
+}
+
+/// Whether a cell of the head has a comma that can only be a decimal one.
+fn has_decimal_comma(head: &[u8], separator: Separator) -> bool {
+    let mut rows = Rows::new(head, separator);
+    let mut record = ByteRecord::new();
+    (0..HEAD_ROWS).any(|_| rows.next(&mut record).is_some() && record.iter().any(is_decimal_comma))
 }
 
 /// The head of a file as one separator would cut it.
@@ -162,6 +172,9 @@ mod tests {
         assert_eq!(found("t\ta\tb\n0,0\t1,5\t2\n0,1\t1,6\t2\n"), ("tab".into(), true, 3));
         assert_eq!(found("t a b\n0,0 1,5 2,5\n0,1 1,6 2,5\n"), ("space".into(), true, 3));
         assert_eq!(found("t, a, b\n0.0, 1.5, 2\n0.1, 1.6, 2\n"), ("comma".into(), false, 3));
+        assert_eq!(found("t,a,b\n\"0,0\",\"1,5\",2\n\"0,1\",\"1,6\",2\n"), ("comma".into(), true, 3));
+        assert_eq!(found("t,a,b\n1,\"1,500\",2\n2,\"1,600\",2\n"), ("comma".into(), false, 3));
+        assert_eq!(found("t,a,b\n0.5,\"1,5\",2\n1.5,\"1,6\",2\n"), ("comma".into(), false, 3));
         assert_eq!(
             found("t;a\n15.06.2025 15:06:40,020;1,5\n15.06.2025 15:06:40,040;1,5\n"),
             ("semicolon".into(), true, 2)

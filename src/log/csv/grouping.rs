@@ -113,6 +113,11 @@ fn groups(cell: &[u8], mark: u8) -> Option<Groups> {
     })
 }
 
+/// Whether a cell is a number with a comma that sets no thousands apart.
+pub(super) fn is_decimal_comma(cell: &[u8]) -> bool {
+    memchr::memchr(b',', cell).is_some() && groups(cell, b',') == Some(Groups::Decimal)
+}
+
 /// The mark that sets thousands apart, if one does. `1.380` may be either: it is thousands where the column has whole
 /// numbers below a thousand, too, or is in millimetres, and no number of the file says otherwise.
 fn grouped(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Option<(Dialect, u8)> {
