@@ -38,9 +38,16 @@ pub(super) fn log_of(path: &Path, source: Source, remarks: &mut Remarks) -> Resu
         bytes if bytes.starts_with(SQLITE) => sqlite::log(path, &source, remarks),
         #[cfg(feature = "parquet")]
         bytes if bytes.starts_with(PARQUET) => {
-            let text = parquet::table(&source)
-                .map_err(|error| LogError::Form { path: path.to_owned(), reason: error.to_string() })?;
-            table::log(path, &text, remarks)
+            let text = |nested| {
+                parquet::table(&source, nested)
+                    .map_err(|error| LogError::Form { path: path.to_owned(), reason: error.to_string() })
+            };
+            let plain = text(false)?;
+            // What says nothing of joints by its own names may do so within its values.
+            table::log(path, &plain, remarks).or_else(|error| match text(true)? {
+                nested if nested == plain => Err(error),
+                nested => table::log(path, &nested, remarks),
+            })
         }
         bytes if is_table(&packed::name_within(path), bytes) => {
             let text = source.whole().map_err(LogError::file("read", path))?;
@@ -56,20 +63,34 @@ pub(super) fn log_of(path: &Path, source: Source, remarks: &mut Remarks) -> Resu
 ///
 /// [`CsvError`], which says what the file lacks and which option gives it.
 pub fn read_csv(path: &Path, options: &CsvOptions) -> Result<CsvRun, CsvError> {
-    let bytes = table_text(path).map_err(|source| CsvError::File { path: path.to_owned(), source })?;
+    let fault = |source| CsvError::File { path: path.to_owned(), source };
+    // A table may be packed whole.
+    let source = Source::open(path).and_then(packed::unpacked).map_err(fault)?;
+    let plain = table_text(&source, false).map_err(fault)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    read_csv_bytes(&name, &bytes, options)
+    read_csv_bytes(&name, &plain.text, options).or_else(|error| {
+        let nested =
+            if plain.may_nest { table_text(&source, true).map_err(fault)? } else { return Err(error) };
+        if nested.text == plain.text { Err(error) } else { read_csv_bytes(&name, &nested.text, options) }
+    })
 }
 
-/// The text of a table, packed or not, in text or in Parquet.
-fn table_text(path: &Path) -> io::Result<Vec<u8>> {
-    // A table may be packed whole.
-    let source = packed::unpacked(Source::open(path)?)?;
-    let mut start = Vec::new();
-    source.read(LOOKED_AT, &mut start)?;
+/// The text of a table, and whether its values may hold others.
+struct TableText {
+    text: Vec<u8>,
+    may_nest: bool,
+}
+
+#[cfg_attr(not(feature = "parquet"), expect(unused_variables, reason = "text has no values within others"))]
+fn table_text(source: &Source, nested: bool) -> io::Result<TableText> {
     #[cfg(feature = "parquet")]
-    if start.starts_with(PARQUET) {
-        return parquet::table(&source).map_err(io::Error::other);
+    {
+        let mut start = Vec::new();
+        source.read(LOOKED_AT, &mut start)?;
+        if start.starts_with(PARQUET) {
+            let text = parquet::table(source, nested).map_err(io::Error::other)?;
+            return Ok(TableText { text, may_nest: true });
+        }
     }
-    source.whole()
+    Ok(TableText { text: source.whole()?, may_nest: false })
 }

@@ -7,18 +7,21 @@ use std::{
 };
 
 use ::parquet::{
+    basic::ConvertedType,
     errors::{ParquetError, Result},
     file::reader::{FileReader, SerializedFileReader},
     record::Field,
+    schema::types::Type,
 };
 use bytes::Bytes;
 
 use crate::log::file::Source;
 
-/// The rows below the names of their columns; a cell that is no number, text or instant is empty.
-pub(super) fn table(source: &Source) -> Result<Vec<u8>> {
+/// The rows below the names of their columns; a cell that is no number, text or instant is empty. `nested`: values within
+/// others are columns, too.
+pub(super) fn table(source: &Source, nested: bool) -> Result<Vec<u8>> {
     let bytes = source.whole()?;
-    guarded(move || rows(bytes))
+    guarded(move || rows(bytes, nested))
         .unwrap_or_else(|| Err(ParquetError::General("the file is broken".to_owned())))
 }
 
@@ -37,7 +40,7 @@ pub(in crate::log) fn guarded<T>(read: impl FnOnce() -> T + UnwindSafe) -> Optio
 /// More rows or bytes than this for each byte of the file are no table of a run.
 const MOST_TIMES: i64 = 1000;
 
-fn rows(bytes: Vec<u8>) -> Result<Vec<u8>> {
+fn rows(bytes: Vec<u8>, nested: bool) -> Result<Vec<u8>> {
     let most = i64::try_from(bytes.len()).unwrap_or(i64::MAX).saturating_mul(MOST_TIMES);
     let reader = SerializedFileReader::new(Bytes::from(bytes))?;
     let groups = reader.metadata().row_groups().iter();
@@ -49,49 +52,85 @@ fn rows(bytes: Vec<u8>) -> Result<Vec<u8>> {
     }
     let mut writer = ::csv::Writer::from_writer(Vec::new());
     let fields = reader.metadata().file_metadata().schema().get_fields();
-    let names: Vec<&str> = fields.iter().map(|field| field.name()).collect();
-    let mut widths: Option<Vec<Option<usize>>> = None;
+    let mut columns: Vec<Vec<Leaf>> = fields.iter().map(|field| leaves(field, nested)).collect();
+    let mut headed = false;
     let mut cell = Vec::new();
     for row in reader.get_row_iter(None)? {
         let row = row?;
-        if widths.is_none() {
-            let found: Vec<Option<usize>> = row.get_column_iter().map(|(_, field)| width(field)).collect();
-            writer.write_record(headers(&names, &found)).map_err(other)?;
-            widths = Some(found);
+        if !headed {
+            for ((_, field), leaves) in row.get_column_iter().zip(&mut columns) {
+                leaves.iter_mut().for_each(|leaf| leaf.width = width(leaf.of(field)));
+            }
+            writer.write_record(columns.iter().flatten().flat_map(Leaf::headers)).map_err(other)?;
+            headed = true;
         }
-        for ((_, field), width) in row.get_column_iter().zip(widths.iter().flatten()) {
-            let elements = match field {
-                Field::ListInternal(list) => list.elements(),
-                one => std::slice::from_ref(one),
-            };
-            for at in 0..width.unwrap_or(1) {
-                cell.clear();
-                elements.get(at).map_or(Ok(()), |element| put(element, &mut cell))?;
-                writer.write_field(&cell).map_err(other)?;
+        for ((_, field), leaves) in row.get_column_iter().zip(&columns) {
+            for leaf in leaves {
+                let elements = match leaf.of(field) {
+                    Field::ListInternal(list) => list.elements(),
+                    one => std::slice::from_ref(one),
+                };
+                for at in 0..leaf.width.unwrap_or(1) {
+                    cell.clear();
+                    elements.get(at).map_or(Ok(()), |element| put(element, &mut cell))?;
+                    writer.write_field(&cell).map_err(other)?;
+                }
             }
         }
         writer.write_record(None::<&[u8]>).map_err(other)?;
     }
-    if widths.is_none() {
-        writer.write_record(&names).map_err(other)?;
+    if !headed {
+        writer.write_record(columns.iter().flatten().map(|leaf| &leaf.name)).map_err(other)?;
     }
     writer.into_inner().map_err(|error| other(error.into_error()))
 }
 
-/// Elements of a list are columns of their own, as many as the first row has.
+/// A value of each row that holds no others by name.
+struct Leaf {
+    /// Of a value within another, behind the name of that one and a point.
+    name: String,
+    /// The places in those that it is within, from the outermost on.
+    path: Vec<usize>,
+    /// Elements of a list are columns of their own, as many as the first row has.
+    width: Option<usize>,
+}
+
+impl Leaf {
+    /// Its value in the outermost one.
+    fn of<'a>(&self, field: &'a Field) -> &'a Field {
+        self.path.iter().fold(field, |field, at| match field {
+            Field::Group(row) => row.get_column_iter().nth(*at).map_or(&Field::Null, |(_, field)| field),
+            _ => &Field::Null,
+        })
+    }
+
+    fn headers(&self) -> Vec<String> {
+        let Some(width) = self.width else { return vec![self.name.clone()] };
+        (0..width).map(|at| format!("{}[{at}]", self.name)).collect()
+    }
+}
+
+/// The values of a column; `nested`: those within its values, too.
+fn leaves(of: &Type, nested: bool) -> Vec<Leaf> {
+    let info = of.get_basic_info();
+    let plain = info.logical_type_ref().is_none() && info.converted_type() == ConvertedType::NONE;
+    if !(nested && of.is_group() && plain) {
+        return vec![Leaf { name: of.name().to_owned(), path: Vec::new(), width: None }];
+    }
+    let within = of.get_fields().iter().enumerate().flat_map(|(at, field)| {
+        leaves(field, nested).into_iter().map(move |mut leaf| {
+            leaf.path.insert(0, at);
+            leaf
+        })
+    });
+    within.map(|leaf| Leaf { name: format!("{}.{}", of.name(), leaf.name), ..leaf }).collect()
+}
+
 fn width(field: &Field) -> Option<usize> {
     match field {
         Field::ListInternal(list) => Some(list.len()),
         _ => None,
     }
-}
-
-fn headers(names: &[&str], widths: &[Option<usize>]) -> Vec<String> {
-    let of = |(name, width): (&&str, &Option<usize>)| match *width {
-        Some(width) => (0..width).map(|at| format!("{name}[{at}]")).collect(),
-        None => vec![(*name).to_owned()],
-    };
-    names.iter().zip(widths).flat_map(of).collect()
 }
 
 /// Instants become ns since 1970.
@@ -144,7 +183,29 @@ mod tests {
         put(&[0.0, 0.5], None);
         put(&[1.0, 2.0, 3.0], Some((&[1, 1, 1], &[0, 1, 0])));
         group.close().unwrap();
-        let text = rows(writer.into_inner().unwrap()).unwrap();
+        let text = rows(writer.into_inner().unwrap(), true).unwrap();
         assert_eq!(String::from_utf8(text).unwrap(), "t,action[0],action[1]\n0,1,2\n0.5,3,\n");
+    }
+
+    #[test]
+    fn values_within_others_are_columns_where_they_are_asked_for() {
+        let schema = "message run { required double t; optional group boom { required double set; required group \
+                      state { optional double act; } } }";
+        let schema = Arc::new(parse_message_type(schema).unwrap());
+        let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::default()).unwrap();
+        let mut group = writer.next_row_group().unwrap();
+        for (values, depth) in
+            [(&[0.0, 0.5][..], None), (&[1.0][..], Some([0, 1])), (&[2.0][..], Some([0, 2]))]
+        {
+            let mut column = group.next_column().unwrap().unwrap();
+            let depth = depth.as_ref().map(<[i16; 2]>::as_slice);
+            column.typed::<DoubleType>().write_batch(values, depth, None).unwrap();
+            column.close().unwrap();
+        }
+        group.close().unwrap();
+        let bytes = writer.into_inner().unwrap();
+        let of = |nested| String::from_utf8(rows(bytes.clone(), nested).unwrap()).unwrap();
+        assert_eq!(of(false), "t,boom\n0,\n0.5,\n");
+        assert_eq!(of(true), "t,boom.set,boom.state.act\n0,,\n0.5,1,2\n");
     }
 }
