@@ -43,7 +43,7 @@ pub(super) fn choose(
         }
     }
     if usable.is_empty() && failure.is_none() {
-        usable.extend(look.index());
+        usable.extend(look.index().or_else(|| look.by_unit()));
     }
     look.join_day_and_time(&mut usable);
     look.join_parts(&mut usable);
@@ -251,6 +251,23 @@ impl Look<'_> {
             let said = "has no name, and rises from row to row as a time does; else say --time or --rate";
             Found { doubt: Some(found.doubt.unwrap_or_else(|| said.to_owned())), ..found }
         })
+    }
+
+    /// The only column in a unit of time, if it rises as a time does.
+    fn by_unit(&self) -> Option<Found> {
+        let in_time = |column: &usize| {
+            let label = &self.labels[*column];
+            let alone = |other: &Label| std::ptr::eq(label, other) || other.key != label.key;
+            let is_joint = label.is_joint && !(label.is_weak && self.labels.iter().all(alone));
+            !is_joint && label.stated.is_some_and(|unit| unit.measure == Measure::Time)
+        };
+        let mut columns = (0..self.labels.len()).filter(in_time);
+        let (Some(column), None) = (columns.next(), columns.next()) else { return None };
+        let found = self.column(column).ok()?;
+        let ns: Vec<i64> = self.ns(&found.source).collect::<Option<_>>()?;
+        let rises = ns.windows(2).all(|two| two[0] < two[1]);
+        let said = "is the only one in a unit of time, and rises from row to row; else say --time or --rate";
+        rises.then(|| Found { doubt: Some(said.to_owned()), ..found })
     }
 
     /// Seconds in one column and what is beyond them in another are one time: `sec` and `nanosec`, a time of day and `ms`.

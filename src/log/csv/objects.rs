@@ -231,10 +231,25 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
 }
 
 fn cells(line: &[u8]) -> Option<Cells> {
-    let object: Map<String, Value> = parsed(line)?;
+    let object = published(parsed(line)?);
     let mut cells = Vec::new();
     flatten_object("", &object, None, &mut cells);
     Some(cells)
+}
+
+/// A message that a bridge published, with its topic; other objects as they are.
+fn published(mut object: Map<String, Value>) -> Map<String, Value> {
+    let is_published = object.get("op").is_some_and(|op| op == "publish") && object.contains_key("topic");
+    match object.remove("msg") {
+        Some(Value::Object(mut message)) if is_published && !message.contains_key("topic") => {
+            message.extend(object.remove("topic").map(|topic| ("topic".to_owned(), topic)));
+            message
+        }
+        other => {
+            object.extend(other.map(|value| ("msg".to_owned(), value)));
+            object
+        }
+    }
 }
 
 fn parsed<T: DeserializeOwned>(text: &[u8]) -> Option<T> {

@@ -129,9 +129,9 @@ const UNITS: [(&[&str], Unit); 38] = [
     (&["cm/s", "cm_s", "cm/sec"], unit("cm/s", Measure::LinearSpeed, 1e-2)),
     (&["m/s", "m_s", "m/sec"], unit("m/s", Measure::LinearSpeed, 1.0)),
     (&["s", "秒", "sec", "secs", "seconds", "second"], unit("s", Measure::Time, 1e9)),
-    (&["ms", "毫秒", "msec", "milliseconds", "millis"], unit("ms", Measure::Time, 1e6)),
-    (&["us", "µs", "μs", "usec", "microseconds", "micros"], unit("us", Measure::Time, 1e3)),
-    (&["ns", "nsec", "nanosec", "nanoseconds", "nanos"], unit("ns", Measure::Time, 1.0)),
+    (&["ms", "毫秒", "msec", "msecs", "milliseconds", "millis"], unit("ms", Measure::Time, 1e6)),
+    (&["us", "µs", "μs", "usec", "usecs", "microseconds", "micros"], unit("us", Measure::Time, 1e3)),
+    (&["ns", "nsec", "nsecs", "nanosec", "nanoseconds", "nanos"], unit("ns", Measure::Time, 1.0)),
     (&["min", "minute", "minutes"], unit("min", Measure::Time, 60e9)),
     (&["h", "hr", "hrs", "hour", "hours"], unit("h", Measure::Time, 3600e9)),
     (&["filetime", "100 ns since 1601"], FILETIME),
@@ -213,7 +213,8 @@ fn scale_of((number, name): (&str, &str)) -> Option<Unit> {
 
 /// The unit that ends a name, as in `q1_deg` or `J1_planned_rad_s`, and the name without it.
 pub(super) fn split_suffix(name: &str) -> Option<(&str, Unit)> {
-    const SUFFIXES: [&str; 40] = [
+    const SUFFIXES: [&str; 51] = [
+        "millideg", "centideg", "decideg", "cdeg", "ddeg", "urad", "µrad", "μrad", "um", "µm", "μm",
         "0.1deg", "0.01deg", "0.001deg", "0.1mm", "0.01mm", "rad_s", "deg_s", "mrad_s", "mm_s", "cm_s",
         "m_s", "rad", "deg", "mrad", "mdeg", "mm", "cm", "m", "ms", "us", "ns", "s", "bar", "mbar", "pa",
         "°", "min", "minutes", "h", "hours", "sec", "msec", "usec", "nsec", "nanosec", "gon", "pct",
@@ -278,6 +279,8 @@ mod tests {
         assert_eq!(split("boom_set_mm"), Some(("boom_set", "mm")));
         assert_eq!(split("boom_measured_m_s"), Some(("boom_measured", "m/s")));
         assert_eq!(split("boom_PV_0.1deg"), Some(("boom_PV", "0.1 deg")));
+        assert_eq!(split("boom_set_centideg"), Some(("boom_set", "0.01 deg")));
+        assert_eq!(split("boom_set_µrad"), Some(("boom_set", "urad")));
         assert_eq!(split("axes"), None);
         assert_eq!(split("İ_deg").map(|(stem, _)| stem), Some("İ"));
     }
