@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::file::Span;
+use super::{csv::is_rule, file::Span};
 
 /// As much of a file as tells what it is if it is no log.
 pub(super) const LOOKED_AT: Span = Span { start: 0, end: 4096 };
@@ -44,8 +44,10 @@ pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
     // An object a line, the last of which may be cut.
     let objects =
         lines.len() > 1 && lines.iter().take(2).all(|line| line.starts_with('{') && line.ends_with('}'));
+    let printed = || lines.windows(2).any(|two| is_rule(two[1].trim().as_bytes()) && two[0].contains('|'));
     named
         || objects
+        || printed()
         || [';', ',', '\t'].into_iter().any(|one| alike(one, &lines) || below(one))
         || spaced(&lines[last..])
 }
@@ -74,6 +76,7 @@ mod tests {
         assert!(is("a.txt", b"# t  q1  q2\n0 1.5 2\n1  1.5 2\n2 1.5  -2e-3\n3 1 1\n"));
         assert!(is("a.txt", b"\xff\xfet\0;\0"));
         assert!(is("a.txt", b"{\"t\": 0, \"q\": 1}\n{\"t\": 1}\n{\"t\":"));
+        assert!(is("a.txt", b" t | q\n---+---\n 0 | 1\n") && is("a.md", b"# Run\n\n| t | q |\n|--:|--:|\n"));
         assert!(is("run.lvm", b"LabVIEW Measurement\n"));
         for text in [
             &b"{\n  \"a\": [\n    1,\n    2,\n    3\n  ]\n}\n"[..],

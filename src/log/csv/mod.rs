@@ -27,7 +27,9 @@ mod keys;
 mod label;
 mod layout;
 mod letter;
+mod levels;
 mod long;
+mod lvm;
 mod map;
 mod name;
 mod number;
@@ -35,9 +37,11 @@ mod objects;
 mod only;
 mod options;
 mod pairing;
+mod printed;
 mod read;
 mod rows;
 mod run;
+mod scope;
 mod settle;
 mod si;
 mod stream;
@@ -52,6 +56,7 @@ pub use again::other_header;
 pub use error::CsvError;
 pub use objects::JsonLines;
 pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
+pub(in crate::log) use printed::is_rule;
 pub use run::CsvRun;
 pub(in crate::log) use run::{GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN};
 pub use stream::TableStream;
@@ -102,9 +107,25 @@ pub(in crate::log) fn says_side(part: &str) -> bool {
 ///
 /// [`CsvError`]
 pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<CsvRun, CsvError> {
-    let mut remarks = Remarks::default();
     let text = text::of_bytes(name, bytes)?;
-    let text = objects::as_table(&text).map_or(text, Cow::Owned);
+    let text = objects::as_table(&text).or_else(|| printed::as_table(&text)).map_or(text, Cow::Owned);
+    read_table(name, Cow::Borrowed(&text), options, Remarks::default()).or_else(|error| {
+        // What cannot be read as it stands may be a table of another form.
+        let mut remarks = Remarks::default();
+        let other = lvm::as_table(&text)
+            .or_else(|| scope::as_table(&text, &mut remarks))
+            .or_else(|| levels::joined(name, &text, options));
+        other.map_or(Err(error), |text| read_table(name, Cow::Owned(text), options, remarks))
+    })
+}
+
+/// Reads the text of a table.
+fn read_table(
+    name: &str,
+    text: Cow<'_, [u8]>,
+    options: &CsvOptions,
+    mut remarks: Remarks,
+) -> Result<CsvRun, CsvError> {
     let text = only::of_one(name, text, options)?;
     let text = judged::without_bad(name, text, options, &mut remarks);
     let text = behind::without_units(name, text, options);

@@ -11,6 +11,7 @@ mod cylinders;
 mod figures;
 mod fleet;
 mod fleet_dates;
+mod forms;
 #[cfg(unix)]
 mod historians;
 mod hostile;

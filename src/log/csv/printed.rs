@@ -1,0 +1,82 @@
+//! Tables as databases print them and Markdown has them, with bars between cells and a rule below the header.
+
+use super::{Separator, rows::writer};
+
+/// The rows of a printed table, separated by tabs; `None` unless the text is one.
+pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
+    let lines: Vec<&[u8]> = text.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii).collect();
+    // The first rule may stand above the header, too.
+    let rule = (1..lines.len()).find(|&at| is_rule(lines[at]) && bars(lines[at - 1]) > 0)?;
+    let header = lines[rule - 1];
+    let below = lines[rule + 1..].iter().take_while(|line| bars(line) > 0 || is_rule(line));
+    let rows: Vec<&[u8]> = below.copied().filter(|line| !is_rule(line)).collect();
+    let after = lines.get(rule + 1..)?.iter().skip_while(|line| bars(line) > 0 || is_rule(line));
+    let several = after.clone().any(|line| is_rule(line));
+    let one = bars(lines[rule]) == bars(header) && rows.iter().all(|row| bars(row) == bars(header));
+    if rows.is_empty() || several || !one {
+        return None;
+    }
+    let mut out = writer(Separator::Byte(b'\t'));
+    for row in std::iter::once(header).chain(rows) {
+        out.write_record(cells(row)).ok()?;
+    }
+    out.into_inner().ok()
+}
+
+/// Whether a line is a rule between rows: `----+----`, `+---+---+` or `|---:|:---|`.
+pub(in crate::log) fn is_rule(line: &[u8]) -> bool {
+    const LEAST: usize = 3;
+    let count = |mark: u8| line.iter().filter(|byte| **byte == mark).count();
+    line.iter().all(|byte| b"-+|: ".contains(byte)) && count(b'-') >= LEAST && count(b'|') + count(b'+') > 0
+}
+
+/// The number of bars between cells, without those at the ends.
+fn bars(line: &[u8]) -> usize {
+    let marks: &[u8] = if is_rule(line) { b"|+" } else { b"|" };
+    inner(line, marks).iter().filter(|byte| marks.contains(byte)).count()
+}
+
+/// A line without the marks at its ends.
+fn inner<'a>(line: &'a [u8], marks: &[u8]) -> &'a [u8] {
+    let line = line.trim_ascii();
+    let line = line.split_first().filter(|(first, _)| marks.contains(first)).map_or(line, |(_, rest)| rest);
+    line.split_last().filter(|(last, _)| marks.contains(last)).map_or(line, |(_, rest)| rest)
+}
+
+fn cells(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    inner(line, b"|").split(|byte| *byte == b'|').map(<[u8]>::trim_ascii)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Option<String> {
+        as_table(text.as_bytes()).map(|text| String::from_utf8(text).unwrap())
+    }
+
+    #[test]
+    fn tables_of_databases_and_of_markdown_are_rows_of_cells() {
+        for text in [
+            " t  | plan | meas \n----+------+------\n  0 |  1.5 | 2\n  1 |      | 3\n(2 rows)\n\n",
+            "+----+------+------+\n| t  | plan | meas |\n+----+------+------+\n| 0 | 1.5 | 2 |\n| 1 | | 3 |\n+----+------+------+\n2 rows in set\n",
+            "# Run 7\n\nof May\n\n| t | plan | meas |\n|--:|:----:|------|\n| 0 | 1.5 | 2 |\n| 1 | | 3 |\n\nThe end.\n",
+        ] {
+            assert_eq!(of(text).as_deref(), Some("t\tplan\tmeas\n0\t1.5\t2\n1\t\t3\n"), "{text}");
+        }
+    }
+
+    #[test]
+    fn other_texts_two_tables_and_rows_of_other_widths_are_left() {
+        for text in [
+            "t|q\n0|1\n1|2\n",
+            "a\n---\nb\n",
+            "t | q\n--+--\n0 | 1\n1 | 2 | 3\n",
+            "t | q\n--+--\n",
+            "t | q\n--+--\n0 | 1\n\nt | r\n--+--\n0 | 1\n",
+            "",
+        ] {
+            assert_eq!(of(text), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Recordings of a controller's oscilloscope: above the numbers stand rows of properties, in which a key stands before
+//! each signal, or before the signals of a clock, and below it the times of that clock.
+
+use super::{
+    Separator,
+    label::label,
+    number::number,
+    rows::{cell_text, writer},
+    unit::{Measure, parse_unit},
+};
+use crate::{
+    math::median,
+    remark::{Code, Remarks},
+};
+
+/// Rows of properties that there are at least, unless a key comes again in a row.
+const LEAST: usize = 3;
+/// Steps that differ by less are the same.
+const ALIKE: f64 = 0.01;
+
+/// A row of properties: the key, and the cells.
+struct Property<'a> {
+    key: String,
+    cells: Vec<&'a [u8]>,
+}
+
+/// The same numbers below one header; `None` unless the text is such a recording.
+pub(super) fn as_table(text: &[u8], remarks: &mut Remarks) -> Option<Vec<u8>> {
+    b"\t;,".iter().find_map(|separator| table(text, *separator, remarks))
+}
+
+fn table(text: &[u8], separator: u8, remarks: &mut Remarks) -> Option<Vec<u8>> {
+    let lines: Vec<Vec<&[u8]>> = text
+        .split(|byte| *byte == b'\n')
+        .map(|line| line.split(|byte| *byte == separator).map(<[u8]>::trim_ascii).collect())
+        .collect();
+    let blank = |row: &[&[u8]]| row.iter().all(|cell| cell.is_empty());
+    let numeric = |row: &[&[u8]]| {
+        row.len() > 2 && !blank(row) && row.iter().all(|cell| cell.is_empty() || is_number(cell))
+    };
+    let first = lines.iter().position(|row| numeric(row))?;
+    let end = lines[..first].iter().rposition(|row| !blank(row))? + 1;
+    let start = lines[..end].iter().rposition(|row| blank(row)).map_or(0, |at| at + 1);
+    let properties: Vec<Property<'_>> =
+        lines[start..end].iter().map(|row| Property { key: cell_text(row[0]), cells: row.clone() }).collect();
+    let (clocks, width) = clocks(&properties)?;
+    let names = names(&properties, &clocks, width, remarks);
+    let rows = lines[first..].iter().filter(|row| numeric(row) && row.len() <= width + 1);
+    let rows: Vec<&Vec<&[u8]>> = rows.collect();
+    let time = time(&properties, &clocks, &rows);
+    let header = (0..width).map(|at| if clocks.contains(&at) { time.clone() } else { names[at].clone() });
+    let mut out = writer(Separator::Byte(b'\t'));
+    out.write_record(header.map(String::into_bytes)).ok()?;
+    for row in rows {
+        let cells = row.iter().copied().chain(std::iter::repeat(&[][..])).take(width);
+        out.write_record(cells).ok()?;
+    }
+    out.into_inner().ok()
+}
+
+fn is_number(cell: &[u8]) -> bool {
+    number(cell, false).is_some() || number(cell, true).is_some()
+}
+
+/// The columns of times, at which all rows have their key, and how many columns there are.
+fn clocks(properties: &[Property<'_>]) -> Option<(Vec<usize>, usize)> {
+    let at = |one: &Property<'_>| -> Vec<usize> {
+        let same = |at: &usize| cell_text(one.cells[*at]) == one.key;
+        (0..one.cells.len()).filter(same).collect()
+    };
+    let first = properties.first()?;
+    let clocks = at(first);
+    let width = properties.iter().map(|one| one.cells.len()).max()?;
+    // Some end each row with a separator.
+    let trailing = properties.iter().all(|one| one.cells.len() < width || one.cells[width - 1].is_empty());
+    let width = if trailing { width - 1 } else { width };
+    let keyed = properties.iter().all(|one| !one.key.is_empty() && at(one) == clocks);
+    let distinct =
+        properties.iter().enumerate().all(|(k, one)| properties[..k].iter().all(|b| b.key != one.key));
+    let counts =
+        |one: &Property<'_>| (1..width).all(|at| one.cells.get(at).is_some_and(|cell| is_number(cell)));
+    let enough = clocks.len() > 1 || properties.len() >= LEAST && properties.iter().any(counts);
+    let owns = clocks.windows(2).all(|two| two[1] > two[0] + 1) && clocks.last()? + 1 < width;
+    (keyed && distinct && enough && owns).then_some((clocks, width))
+}
+
+/// The names of the columns, by the row whose cells say most of joints, with their units.
+fn names(properties: &[Property<'_>], clocks: &[usize], width: usize, remarks: &mut Remarks) -> Vec<String> {
+    let of = |one: &Property<'_>| -> Vec<String> {
+        (0..width).map(|at| one.cells.get(at).map_or_else(String::new, |cell| cell_text(cell))).collect()
+    };
+    let signals = || (0..width).filter(|at| !clocks.contains(at));
+    let said = |one: &&Property<'_>| {
+        let all = of(one);
+        signals().filter(|at| label(&all[*at], None).is_joint).count()
+    };
+    // The first of those that say as much.
+    let best = properties.iter().rev().max_by_key(said);
+    let mut names = best.map(of).unwrap_or_default();
+    let scaled = properties.iter().filter(|one| {
+        let word = one.key.to_lowercase();
+        let plain = if word.contains("offset") { 0.0 } else { 1.0 };
+        let other = |at: usize| {
+            let value = one.cells.get(at).and_then(|cell| number(cell, false));
+            value.is_some_and(|value| value.to_bits() != f64::to_bits(plain))
+        };
+        ["scalefactor", "offset"].contains(&word.as_str()) && signals().any(other)
+    });
+    for one in scaled {
+        let message = format!(
+            "row {:?} above the numbers gives other values than none; the numbers are read as they stand",
+            one.key
+        );
+        remarks.add(Code::Guessed, 1, message);
+    }
+    if let Some(units) = properties.iter().find(|one| one.key.eq_ignore_ascii_case("unit")).map(of) {
+        for at in signals().filter(|at| parse_unit(&units[*at]).is_some()) {
+            names[at] = format!("{} [{}]", names[at], units[at].trim_matches(['(', ')', '[', ']']));
+        }
+    }
+    names
+}
+
+/// The header of times: in the unit that a key gives for the time between samples, if they are so far apart.
+fn time(properties: &[Property<'_>], clocks: &[usize], rows: &[&Vec<&[u8]>]) -> String {
+    const PLAIN: &str = "Time";
+    let stated = properties.iter().find_map(|one| {
+        let (_, unit) = one.key.strip_suffix([']', ')'])?.rsplit_once(['[', '('])?;
+        let measure = parse_unit(unit)?.measure;
+        (measure == Measure::Time).then_some((unit, one))
+    });
+    let Some((unit, sampled)) = stated else { return PLAIN.to_owned() };
+    let value = |cell: &[u8]| number(cell, false).or_else(|| number(cell, true));
+    let alike = |clock: &usize| {
+        let times: Vec<f64> = rows.iter().filter_map(|row| value(row.get(*clock)?)).collect();
+        let steps: Vec<f64> =
+            times.windows(2).map(|two| two[1] - two[0]).filter(|step| *step > 0.0).collect();
+        let said = sampled.cells.get(clock + 1).and_then(|cell| value(cell));
+        said.is_some_and(|said| !steps.is_empty() && (median(steps) / said - 1.0).abs() < ALIKE)
+    };
+    if clocks.iter().all(alike) { format!("{PLAIN} [{unit}]") } else { PLAIN.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Option<(String, usize)> {
+        let mut remarks = Remarks::default();
+        let table = as_table(text.as_bytes(), &mut remarks)?;
+        Some((String::from_utf8(table).unwrap(), remarks.as_slice().len()))
+    }
+
+    #[test]
+    fn signals_with_properties_are_a_table_with_a_clock_each() {
+        let above = "Name;New Project\nFile;a.csv\nStart;133500000000000000;Monday\n\n";
+        let text = format!(
+            "{above}Name;a;Name;b\nPath;boom.set;Path;boom.act\nSampleTime[ms];20;SampleTime[ms];40\n\
+             ScaleFactor;1;ScaleFactor;2\nUnit;deg;Unit;(None)\n\n0;1,5;0;2\n20;2,5;40;3\n40;3,5\nEOF\n"
+        );
+        let table =
+            "Time [ms]\tboom.set [deg]\tTime [ms]\tboom.act\n0\t1,5\t0\t2\n20\t2,5\t40\t3\n40\t3,5\t\t\n";
+        assert_eq!(of(&text), Some((table.to_owned(), 1)));
+        let one = "Name\tboom.set\tboom.act\t\nType\tREAL\tREAL\t\nSampleTime[ms]\t20\t20\t\n0\t1\t2\t\n2\t1\t2\t\n";
+        assert_eq!(of(one), Some(("Time\tboom.set\tboom.act\n0\t1\t2\n2\t1\t2\n".to_owned(), 0)));
+    }
+
+    #[test]
+    fn other_tables_are_left() {
+        for text in [
+            "t;q;r\n0;1;2\n",
+            "a;1;b\nt;q;r\n0;1;2\n",
+            "t;q;t;r\nt;q;s;r\n0;1;0;2\n",
+            "Name;a;Name;b\n",
+            "",
+            "Name;a;Name\n0;1;2\n",
+        ] {
+            assert_eq!(of(text), None, "{text}");
+        }
+    }
+}

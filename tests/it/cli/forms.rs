@@ -1,0 +1,226 @@
+//! Tables as other programs lay them out: printed ones, headers of several rows, oscilloscopes of controllers, measurements of
+//! a laboratory. The same numbers give the same report.
+
+use std::{fmt::Write as _, fs, path::Path};
+
+use crate::support::{run_line as hydrotrace, said};
+
+/// Planned and measured angle, deg, of a joint that starts at 1 s and follows 0.1 s later.
+fn moves(t_s: f64) -> [f64; 2] {
+    let at =
+        |t_s: f64| 12.0 + 10.0 * (1.0 - ((t_s - 1.0).clamp(0.0, 2.0) / 2.0 * std::f64::consts::PI).cos());
+    [at(t_s), at(t_s - 0.1)]
+}
+
+/// Rows at 50 Hz of a time, a planned and a measured angle.
+fn rows(row: impl Fn(f64, f64, f64) -> String) -> String {
+    let times = (0..250).map(|k| f64::from(k) * 0.02);
+    times.map(|t_s| row(t_s, moves(t_s)[0], moves(t_s)[1])).collect()
+}
+
+fn comma(text: &str) -> String {
+    text.replace('.', ",")
+}
+
+/// Reports a file; exit code, the lines of the run, and what is wrong.
+fn report(file: &str, text: &str) -> (i32, String, String) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join(file), text).unwrap();
+    said(&hydrotrace(folder.path(), &format!("report {file}")))
+}
+
+/// Each file is read as a plain table with the same numbers is.
+fn all_alike(files: &[(&str, String)]) {
+    let plain =
+        "t_s,boom_set_deg,boom_act_deg\n".to_owned() + &rows(|t, p, m| format!("{t:.2},{p:.4},{m:.4}\n"));
+    let (code, text, error) = report("plain.csv", &plain);
+    assert_eq!(code, 0, "{text}{error}");
+    let worst = |text: &str| text.lines().find(|line| line.starts_with("Worst start")).map(str::to_owned);
+    let expected = worst(&text).unwrap();
+    assert!(expected.contains(" boom at 1."), "{expected}");
+    for (file, text) in files {
+        let (code, said, error) = report(file, text);
+        let start: String = text.chars().take(300).collect();
+        assert!(code == 0 || code == 3, "{file} {code} {error}\n{start}");
+        assert_eq!(worst(&said).as_ref(), Some(&expected), "{file}\n{start}\n{said}");
+        assert_eq!(code, i32::from(said.contains("guessed x")) * 3, "{file}\n{said}");
+    }
+}
+
+#[test]
+fn printed_tables_and_quoted_decimal_commas_are_tables() {
+    let bars = |t: f64, p: f64, m: f64| format!("| {t:.2} | {p:.4} | {m:.4} |\n");
+    let open = |t: f64, p: f64, m: f64| format!(" {t:6.2} | {p:10.4} | {m:10.4}\n");
+    let quoted =
+        |t: f64, p: f64, m: f64| comma(&format!("\"{t:.2}\";\"{p:.4}\";\"{m:.4}\"\n")).replace(';', ",");
+    let rule = "+------+--------------+--------------+\n";
+    let names = "| t_s | boom_set_deg | boom_act_deg |\n";
+    all_alike(&[
+        (
+            "psql.txt",
+            " t_s | boom_set_deg | boom_act_deg \n-----+--------------+-----\n".to_owned()
+                + &rows(open)
+                + "(250 rows)\n\n",
+        ),
+        ("mysql.txt", format!("{rule}{names}{rule}{}{rule}250 rows in set (0.00 sec)\n", rows(bars))),
+        ("run.md", format!("# Run 7\n\nOf May.\n\n{names}|----:|:---:|---|\n{}\nThe end.\n", rows(bars))),
+        ("quoted.csv", "t_s,boom_set_deg,boom_act_deg\n".to_owned() + &rows(quoted)),
+        (
+            "preamble.csv",
+            "Logger;7\nRate;50;Hz;of;all;channels\nOffsets;0,0\n\nt_s;boom_set_deg;boom_act_deg\n".to_owned()
+                + &rows(|t, p, m| comma(&format!("{t:.2};{p:.4};{m:.4}\n"))),
+        ),
+    ]);
+}
+
+#[test]
+fn headers_of_several_rows_are_names_in_full() {
+    let two = rows(|t, p, m| format!("{t:.2},{p:.4},{m:.4},{:.4},{:.4}\n", 0.5 * p, 0.5 * m));
+    let one = rows(|t, p, m| format!("{t:.2},{p:.4},{m:.4}\n"));
+    all_alike(&[
+        ("frame.csv", format!(",boom,boom,arm,arm\n,set_deg,act_deg,set_deg,act_deg\n{two}")),
+        ("index.csv", format!(",boom,boom,arm,arm\n,set_deg,act_deg,set_deg,act_deg\nt_s,,,,\n{two}")),
+        ("named.csv", format!("joint,boom,boom\nsignal,set_deg,act_deg\nt_s,,\n{one}")),
+        ("turned.csv", format!("signal,set_deg,act_deg\njoint,boom,boom\nt_s,,\n{one}")),
+        ("merged.csv", format!("t_s,boom,,arm,\n,set_deg,act_deg,set_deg,act_deg\n{two}")),
+    ]);
+}
+
+#[test]
+fn recordings_of_an_oscilloscope_have_a_clock_for_each_signal() {
+    let head = |separator: &str| {
+        let text = "Name;Project\nFile;a.csv\nStarttime of export;134171640000000000;Monday\n\n\
+             Name;MAIN.boom.SetPos;Name;MAIN.boom.ActPos\nSymbolComment;;SymbolComment;\n\
+             Data-Type;REAL64;Data-Type;REAL64\nSampleTime[ms];20;SampleTime[ms];20\nPort;851;Port;851\n\
+             Offset;0;Offset;0\nScaleFactor;1;ScaleFactor;1\nUnit;deg;Unit;deg\n\n";
+        text.replace(';', separator)
+    };
+    let late = |t: f64, p: f64, m: f64| comma(&format!("{:.0}\t{p:.4}\t{:.0}\t{m:.4}\n", 1e3 * t, 1e3 * t));
+    let text = format!("{}{}EOF\n", head("\t"), rows(late));
+    let (code, found, error) = report("scope.csv", &text);
+    assert_eq!(code, 0, "{found}{error}");
+    assert!(found.contains("MAIN.boom.SetPos [deg]") && found.contains("Time [ms] (counts ms)"), "{found}");
+    let scaled = text.replace("ScaleFactor\t1\tScaleFactor\t1", "ScaleFactor\t1\tScaleFactor\t2");
+    let (code, found, error) = report("scope.csv", &scaled);
+    assert!(code == 3 && found.contains("ScaleFactor"), "{found}{error}");
+}
+
+#[test]
+fn measurements_of_a_laboratory_have_one_clock_many_or_none() {
+    let head = |columns: &str| {
+        format!(
+            "LabVIEW Measurement\t\nWriter_Version\t2\nReader_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\n\
+             Multi_Headings\tNo\nX_Columns\t{columns}\nTime_Pref\tAbsolute\n***End_of_Header***\t\n\t\n\
+             Channels\t2\t\t\t\nSamples\t250\t250\t\t\nDate\t2026/03/05\t2026/03/05\nTime\t12:00:00.5\t12:00:00.5\n\
+             Y_Unit_Label\tdeg\tdeg\nX_Dimension\tTime\tTime\nX0\t0.0E+0\t0.0E+0\nDelta_X\t0.020\t0.020\n\
+             ***End_of_Header***\t\t\t\n"
+        )
+    };
+    all_alike(&[
+        (
+            "multi.lvm",
+            head("Multi")
+                + "X_Value\tboom set\tX_Value\tboom act\tComment\n"
+                + &rows(|t, p, m| format!("{t:.6}\t{p:.4}\t{t:.6}\t{m:.4}\n")),
+        ),
+        (
+            "one.lvm",
+            head("One")
+                + "X_Value\tboom set\tboom act\tComment\n"
+                + &rows(|t, p, m| format!("{t:.6}\t{p:.4}\t{m:.4}\n")),
+        ),
+        (
+            "none.lvm",
+            head("No")
+                + "X_Value\tboom set\tboom act\tComment\n"
+                + &rows(|_, p, m| format!("\t{p:.4}\t{m:.4}\n")),
+        ),
+    ]);
+}
+
+#[test]
+fn the_only_column_in_a_unit_of_time_is_the_time_and_units_have_prefixes() {
+    let row = |t: f64, p: f64, m: f64| format!("{:.0},{:.0},{:.0}\n", 1e3 * t, 1e3 * p, 1e3 * m);
+    for (header, code, column) in [
+        ("tick_ms,boom_set_mdeg,boom_act_mdeg", 3, "tick_ms"),
+        ("t_ms,boom_set_millideg,boom_act_millideg", 0, "t_ms"),
+    ] {
+        let (found, text, error) = report("a.csv", &(format!("{header}\n") + &rows(row)));
+        assert_eq!(found, code, "{header} {text}{error}");
+        assert!(text.contains(&format!("{column} (counts ms)")) && text.contains("boom at 1.0"), "{text}");
+        assert_eq!(text.contains("is the only one in a unit of time"), code == 3, "{text}");
+    }
+    let (code, _, error) = report("a.csv", &(format!("tick_ms,age_ms,boom_set_deg\n{}", rows(row))));
+    assert!(code == 1 && error.contains("no column looks like a time"), "{code} {error}");
+}
+
+#[test]
+fn readings_that_were_lost_are_left_out_and_told() {
+    let text = |lost: &dyn Fn(f64) -> bool| {
+        let row = |t: f64, p: f64, m: f64| format!("{t:.2},{p:.4},{:.4}\n", if lost(t) { 0.0 } else { m });
+        "t_s,boom_set_deg,boom_act_deg\n".to_owned() + &rows(row)
+    };
+    let at = |t: f64, at: f64| (t - at).abs() < 0.001;
+    let (code, found, error) = report("a.csv", &text(&|t| at(t, 0.5) || at(t, 4.0)));
+    let told = "implausible x2  values of /joint_states that are exactly 0 once";
+    assert!(code == 3 && found.contains(told) && found.contains("248 samples"), "{found}{error}");
+    // Two in turn are no single reading.
+    let (_, found, _) = report("a.csv", &text(&|t| at(t, 0.5) || at(t, 0.52)));
+    assert!(!found.contains("exactly 0 once"), "{found}");
+}
+
+/// Messages of a bridge, which are objects around a message.
+#[test]
+fn messages_of_a_bridge_are_read_without_what_is_around_them() {
+    for (seconds, parts, count) in [("sec", "nanosec", ""), ("secs", "nsecs", "\"seq\": 7, ")] {
+        let mut text = String::new();
+        for k in 0..250_u32 {
+            let values = moves(f64::from(k) * 0.02).map(f64::to_radians);
+            for (topic, angle) in ["/planned_joint_states", "/joint_states"].into_iter().zip(values) {
+                writeln!(
+                    text,
+                    "{{\"op\": \"publish\", \"topic\": \"{topic}\", \"msg\": {{\"header\": {{{count}\"stamp\": {{\"{seconds}\": {}, \
+                     \"{parts}\": {}}}, \"frame_id\": \"\"}}, \"name\": [\"boom\", \"arm\"], \"position\": [{angle}, {angle}], \
+                     \"velocity\": []}}}}",
+                    1_772_700_000 + k / 50,
+                    k % 50 * 20_000_000
+                )
+                .unwrap();
+            }
+        }
+        let (code, found, error) = report("a.jsonl", &text);
+        assert_eq!(code, 3, "{found}{error}");
+        let clock = format!("header_stamp_{seconds}, header_stamp_{parts} (counts s, and ns beside)");
+        assert!(
+            found.contains(&clock) && found.contains("2 joints") && !found.contains("clock-jump"),
+            "{found}"
+        );
+    }
+}
+
+#[test]
+fn the_line_that_imports_a_table_repeats_what_was_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder: &Path = folder.path();
+    let text = "t_s,p1,m1\n".to_owned() + &rows(|t, p, m| format!("{t:.2},{p:.4},{m:.4}\n"));
+    fs::write(folder.join("a.csv"), text).unwrap();
+    let line = |options: &str| {
+        let (code, _, error) = said(&hydrotrace(folder, &format!("report a.csv {options}")));
+        assert_eq!(code, 1, "{error}");
+        error
+    };
+    let error = line("--planned boom=p1 --measured boom=m1 --planned-degrees --measured-degrees");
+    let paste = "import a.csv --planned boom=p1 --measured boom=m1 --degrees -o a.mcap";
+    assert!(error.contains(&format!("`hydrotrace {paste}`")), "{error}");
+    let (code, _, error) = said(&hydrotrace(folder, paste));
+    assert_eq!(code, 0, "{error}");
+    let error = line("--planned p1 --time log --joints boom");
+    assert!(error.contains("--planned JOINT=p1 -o a.mcap` takes options for that"), "{error}");
+    assert!(error.contains("with the other options of this line"), "{error}");
+    // Columns of a log that was made of a table are for its import, too.
+    let (code, _, error) = said(&hydrotrace(folder, "report a.mcap --planned boom=m1 --measured boom=p1"));
+    let again = "hydrotrace import a.csv --degrees --planned boom=m1 --measured boom=p1 -o a-2.mcap";
+    assert!(code == 1 && error.contains(again), "{error}");
+    let (code, _, error) = said(&hydrotrace(folder, "report a.mcap --measured p1"));
+    assert!(code == 1 && error.contains("--measured JOINT=p1") && !error.contains("no topic"), "{error}");
+}
