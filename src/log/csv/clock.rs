@@ -97,6 +97,8 @@ impl Found {
 
 /// Two clocks go apart by so much at least, s: below, they are written with fewer digits.
 const LEAST_APART_S: f64 = 0.02;
+/// Fewer rows may rise by chance.
+const LEAST_ROWS: usize = 12;
 const NS_PER_SECOND: i64 = 1_000_000_000;
 
 struct Look<'a> {
@@ -265,7 +267,7 @@ impl Look<'_> {
         let (Some(column), None) = (columns.next(), columns.next()) else { return None };
         let found = self.column(column).ok()?;
         let ns: Vec<i64> = self.ns(&found.source).collect::<Option<_>>()?;
-        let rises = ns.windows(2).all(|two| two[0] < two[1]);
+        let rises = ns.len() >= LEAST_ROWS && ns.windows(2).all(|two| two[0] < two[1]);
         let said = "is the only one in a unit of time, and rises from row to row; else say --time or --rate";
         rises.then(|| Found { doubt: Some(said.to_owned()), ..found })
     }

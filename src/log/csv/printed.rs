@@ -1,19 +1,29 @@
 //! Tables as databases print them and Markdown has them, with bars between cells and a rule below the header.
 
-use super::{Separator, rows::writer};
+use super::{
+    Separator,
+    number::{Looks, looks},
+    rows::writer,
+};
 
 /// The rows of a printed table, separated by tabs; `None` unless the text is one.
 pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
+    const LOOKED_AT: usize = 100;
+    if !text.split(|byte| *byte == b'\n').take(LOOKED_AT).any(|line| is_rule(line.trim_ascii())) {
+        return None;
+    }
     let lines: Vec<&[u8]> = text.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii).collect();
     // The first rule may stand above the header, too.
     let rule = (1..lines.len()).find(|&at| is_rule(lines[at]) && bars(lines[at - 1]) > 0)?;
     let header = lines[rule - 1];
+    let above = lines[..rule - 1].iter().any(|line| bars(line) > 0 && !is_rule(line));
+    let named = cells(header).all(|cell| matches!(looks(cell), Looks::Text | Looks::Empty));
     let below = lines[rule + 1..].iter().take_while(|line| bars(line) > 0 || is_rule(line));
     let rows: Vec<&[u8]> = below.copied().filter(|line| !is_rule(line)).collect();
     let after = lines.get(rule + 1..)?.iter().skip_while(|line| bars(line) > 0 || is_rule(line));
     let several = after.clone().any(|line| is_rule(line));
     let one = bars(lines[rule]) == bars(header) && rows.iter().all(|row| bars(row) == bars(header));
-    if rows.is_empty() || several || !one {
+    if rows.is_empty() || several || above || !named || !one {
         return None;
     }
     let mut out = writer(Separator::Byte(b'\t'));
@@ -70,6 +80,8 @@ mod tests {
     fn other_texts_two_tables_and_rows_of_other_widths_are_left() {
         for text in [
             "t|q\n0|1\n1|2\n",
+            "t|q|r\n0|1|2\n-|-|-\n1|2|3\n",
+            "0|1|2\n-|-|-\n1|2|3\n",
             "a\n---\nb\n",
             "t | q\n--+--\n0 | 1\n1 | 2 | 3\n",
             "t | q\n--+--\n",

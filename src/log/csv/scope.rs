@@ -45,17 +45,24 @@ fn table(text: &[u8], separator: u8, remarks: &mut Remarks) -> Option<Vec<u8>> {
         lines[start..end].iter().map(|row| Property { key: cell_text(row[0]), cells: row.clone() }).collect();
     let (clocks, width) = clocks(&properties)?;
     let names = names(&properties, &clocks, width, remarks);
-    let rows = lines[first..].iter().filter(|row| numeric(row) && row.len() <= width + 1);
-    let rows: Vec<&Vec<&[u8]>> = rows.collect();
+    // A word may end the file.
+    let last = lines.iter().rposition(|row| !blank(row)).filter(|last| !row_has_number(&lines[*last]));
+    let rows: Vec<&Vec<&[u8]>> =
+        lines[first..last.unwrap_or(lines.len())].iter().filter(|row| !blank(row)).collect();
     let time = time(&properties, &clocks, &rows);
     let header = (0..width).map(|at| if clocks.contains(&at) { time.clone() } else { names[at].clone() });
     let mut out = writer(Separator::Byte(b'\t'));
     out.write_record(header.map(String::into_bytes)).ok()?;
     for row in rows {
-        let cells = row.iter().copied().chain(std::iter::repeat(&[][..])).take(width);
-        out.write_record(cells).ok()?;
+        let beyond = row.iter().skip(width).any(|cell| !cell.is_empty());
+        let length = if beyond { row.len() } else { width };
+        out.write_record(row.iter().copied().chain(std::iter::repeat(&[][..])).take(length)).ok()?;
     }
     out.into_inner().ok()
+}
+
+fn row_has_number(row: &[&[u8]]) -> bool {
+    row.iter().any(|cell| is_number(cell))
 }
 
 fn is_number(cell: &[u8]) -> bool {
