@@ -4,7 +4,6 @@ use ::csv::ByteRecord;
 
 use super::{
     CsvError, CsvOptions, Separator,
-    grouping::is_decimal_comma,
     number::{Looks, looks},
     rows::Rows,
 };
@@ -82,20 +81,6 @@ pub(super) fn detect(file: &str, text: &[u8], options: &CsvOptions) -> Result<Di
         decimal_comma: options.decimal_comma.unwrap_or(comma),
         width: best.width,
     })
-}
-
-/// Whether commas separate cells, and numbers in quotes have a comma that sets no thousands apart: a decimal one.
-pub(super) fn has_quoted_commas(file: &str, text: &[u8], options: &CsvOptions) -> bool {
-    const COMMA: Separator = Separator::Byte(b',');
-    let open = options.decimal_comma.is_none();
-    if !open || detect(file, text, options).ok().is_none_or(|dialect| dialect.separator != COMMA) {
-        return false;
-    }
-    let points = Trial::new(head(text), COMMA, None).points;
-    let mut rows = Rows::new(head(text), COMMA);
-    let mut record = ByteRecord::new();
-    let mut decimal = || rows.next(&mut record).is_some() && record.iter().any(is_decimal_comma);
-    points == 0 && (0..HEAD_ROWS).any(|_| decimal())
 }
 
 /// The head of a file as one separator would cut it.
@@ -181,20 +166,6 @@ mod tests {
             found("t;a\n15.06.2025 15:06:40,020;1,5\n15.06.2025 15:06:40,040;1,5\n"),
             ("semicolon".into(), true, 2)
         );
-    }
-
-    #[test]
-    fn a_comma_in_quotes_is_a_decimal_mark_where_it_sets_no_thousands_apart() {
-        let quoted = |text: &str| has_quoted_commas("a.csv", text.as_bytes(), &CsvOptions::default());
-        assert!(quoted("t,a,b\n\"0,0\",\"1,5\",2\n\"0,1\",\"1,6\",2\n"));
-        for text in [
-            "t,a,b\n1,\"1,500\",2\n2,\"1,600\",2\n",
-            "t,a,b\n0.5,\"1,5\",2\n1.5,\"1,6\",2\n",
-            "t;a;b\n0,0;1,5;2\n0,1;1,6;2\n",
-            "t,a,b\n0,1,2\n",
-        ] {
-            assert!(!quoted(text), "{text}");
-        }
     }
 
     #[test]

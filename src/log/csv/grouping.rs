@@ -5,10 +5,11 @@ use std::borrow::Cow;
 use ::csv::ByteRecord;
 
 use super::{
-    CsvOptions,
+    CsvOptions, Separator,
     dialect::{Dialect, detect},
     head::read_head,
     label::label,
+    number::{Looks, looks},
     rows::{Rows, writer},
 };
 use crate::remark::{Code, Remarks};
@@ -113,9 +114,16 @@ fn groups(cell: &[u8], mark: u8) -> Option<Groups> {
     })
 }
 
-/// Whether a cell is a number with a comma that sets no thousands apart.
-pub(super) fn is_decimal_comma(cell: &[u8]) -> bool {
-    memchr::memchr(b',', cell).is_some() && groups(cell, b',') == Some(Groups::Decimal)
+/// Whether commas separate cells, and numbers in quotes have a comma that sets no thousands apart: a decimal one.
+pub(super) fn has_quoted_commas(file: &str, text: &[u8], options: &CsvOptions) -> bool {
+    let dialect = detect(file, text, options).ok();
+    let Some(dialect) = dialect.filter(|one| one.separator == Separator::Byte(b',')) else { return false };
+    let head = read_head(text, dialect, &mut Remarks::default());
+    let cells = || head.sample.iter().flatten();
+    let decimal =
+        |cell: &Vec<u8>| memchr::memchr(b',', cell).is_some() && groups(cell, b',') == Some(Groups::Decimal);
+    let open = options.decimal_comma.is_none();
+    open && cells().any(decimal) && !cells().any(|cell| looks(cell) == Looks::Point)
 }
 
 /// The mark that sets thousands apart, if one does. `1.380` may be either: it is thousands where the column has whole
@@ -212,6 +220,20 @@ mod tests {
             "t;q\n0;it's 1\n1;2\n",
         ] {
             assert_eq!(of(text), (text.to_owned(), 0));
+        }
+    }
+
+    #[test]
+    fn a_comma_in_quotes_is_a_decimal_mark_where_it_sets_no_thousands_apart() {
+        let quoted = |text: &str| has_quoted_commas("a.csv", text.as_bytes(), &CsvOptions::default());
+        assert!(quoted("t,a,b\n\"0,0\",\"1,5\",2\n\"0,1\",\"1,6\",2\n"));
+        for text in [
+            "t,a,b\n1,\"1,500\",2\n2,\"1,600\",2\n",
+            "t,a,b\n0.5,\"1,5\",2\n1.5,\"1,6\",2\n",
+            "t;a;b\n0,0;1,5;2\n0,1;1,6;2\n",
+            "t,a,b\n0,1,2\n",
+        ] {
+            assert!(!quoted(text), "{text}");
         }
     }
 }

@@ -112,7 +112,7 @@ pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<
     read_table(name, Cow::Borrowed(&text), options, Remarks::default()).or_else(|error| {
         // What cannot be read as it stands may be a table of another form.
         let mut remarks = Remarks::default();
-        if dialect::has_quoted_commas(name, &text, options) {
+        if grouping::has_quoted_commas(name, &text, options) {
             let comma = CsvOptions { decimal_comma: Some(true), ..options.clone() };
             let run = read_table(name, Cow::Borrowed(&text), &comma, remarks);
             return run.map(|run| run.given(options.given())).or(Err(error));
