@@ -20,8 +20,9 @@ impl Given {
             planned, measured, joints, time_base, range, slides, continuous, cylinders, ..
         } = options;
         let sides = [("--planned", planned), ("--measured", measured)];
-        let columns = sides.map(|(option, all)| valued(option, all.iter().filter_map(column).collect()));
-        let slide = valued("--slides", slides.iter().map(|joint| format!("{joint}=m")).collect());
+        let columns =
+            sides.map(|(option, all)| valued(option, &all.iter().filter_map(column).collect::<Vec<_>>()));
+        let slide = valued("--slides", &slides.iter().map(|joint| format!("{joint}=m")).collect::<Vec<_>>());
         let [first, second] = [options.planned_in_degrees, options.measured_in_degrees];
         let degrees = (first && second).then(|| "--degrees".to_owned());
         let of_log = planned.iter().chain(measured).any(|one| column(one).is_none());
@@ -57,7 +58,7 @@ impl Given {
     }
 }
 
-fn valued(option: &str, values: Vec<String>) -> Option<String> {
+fn valued(option: &str, values: &[String]) -> Option<String> {
     (!values.is_empty()).then(|| format!("{option} {}", shell_word(&values.join(","))))
 }
 
@@ -73,8 +74,14 @@ fn column(named: &Selector) -> Option<String> {
 
 /// The line that imports a table with options; the name of its output is that of the table, unless the caller's log has it.
 pub(super) fn line(table: &Path, options: &[&str], log: &Path) -> String {
-    let options: String = options.iter().map(|option| format!(" {option}")).collect();
-    format!("hydrotrace import {}{options} -o {}", shell_argument(table), shell_argument(output(table, log)))
+    let (table, output) = (shell_argument(table), shell_argument(output(table, log)));
+    ["hydrotrace import", &table]
+        .iter()
+        .chain(options)
+        .chain(&["-o", &output])
+        .copied()
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 fn output(table: &Path, log: &Path) -> String {

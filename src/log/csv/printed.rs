@@ -36,8 +36,10 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
 /// Whether a line is a rule between rows: `----+----`, `+---+---+` or `|---:|:---|`.
 pub(in crate::log) fn is_rule(line: &[u8]) -> bool {
     const LEAST: usize = 3;
-    let count = |mark: u8| line.iter().filter(|byte| **byte == mark).count();
-    line.iter().all(|byte| b"-+|: ".contains(byte)) && count(b'-') >= LEAST && count(b'|') + count(b'+') > 0
+    let dashes = memchr::memchr_iter(b'-', line).count();
+    line.iter().all(|byte| b"-+|: ".contains(byte))
+        && dashes >= LEAST
+        && memchr::memchr2(b'|', b'+', line).is_some()
 }
 
 /// The number of bars between cells, without those at the ends.

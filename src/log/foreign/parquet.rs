@@ -59,7 +59,9 @@ fn rows(bytes: Vec<u8>, nested: bool) -> Result<Vec<u8>> {
         let row = row?;
         if !headed {
             for ((_, field), leaves) in row.get_column_iter().zip(&mut columns) {
-                leaves.iter_mut().for_each(|leaf| leaf.width = width(leaf.of(field)));
+                for leaf in leaves {
+                    leaf.width = width(leaf.of(field));
+                }
             }
             writer.write_record(columns.iter().flatten().flat_map(Leaf::headers)).map_err(other)?;
             headed = true;

@@ -54,7 +54,7 @@ mod tests {
 
     /// How many of the values of a joint at 50 Hz are dropped.
     fn dropped(value: impl Fn(usize) -> f64) -> u64 {
-        let t_s: Vec<f64> = (0..100).map(|k| k as f64 * 0.02).collect();
+        let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.02).collect();
         let mut kept: Vec<usize> = (0..100).collect();
         let lost = drop_lost(&mut kept, &t_s, &value);
         assert_eq!(lost, 100 - kept.len() as u64);
