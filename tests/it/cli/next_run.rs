@@ -133,3 +133,22 @@ fn a_plan_that_steps_is_reported_and_fitted_and_no_command_is_made_of_it() {
     );
     assert!(!folder.path().join("next.mcap").exists());
 }
+
+#[test]
+fn a_command_that_is_returned_to_is_not_stopped_for_what_a_later_one_promised() {
+    let folder = with_run();
+    let folder = folder.path();
+    let worn = "title = 'worn'\nbase = 'default'\n[encoder]\nbacklash_deg = 0.6\n";
+    fs::write(folder.join("worn.toml"), worn).unwrap();
+    clean(folder, "replan run.mcap --keep-plan -o next-1.mcap");
+    clean(folder, "simulate next-1.mcap -o run-2.mcap --seed 7");
+    clean(folder, "replan run.mcap run-2.mcap --keep-plan -o next-2.mcap");
+    clean(folder, "simulate next-2.mcap -o run-3.mcap --plant worn.toml");
+    let kept = json(folder, "replan run.mcap run-2.mcap run-3.mcap --keep-plan");
+    assert_eq!(kept["decision"]["what"], "keep", "{}", kept["decision"]);
+    assert_eq!(kept["decision"]["run"], 1, "{}", kept["decision"]);
+    let promise = check(&kept, "promise");
+    let [came, bound] = [&promise["measured_mean_peak_rad"], &promise["promised"]["mean_peak_margin_rad"]];
+    assert!(came.as_f64() > bound.as_f64().map(|bound| 2.0 * bound), "{promise}");
+    assert_eq!((&promise["level"], &kept["checks"]["verdict"]), (&"caution".into(), &"check_first".into()));
+}

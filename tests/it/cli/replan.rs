@@ -193,25 +193,6 @@ fn a_log_without_a_task_asks_for_a_look_at_the_limits_and_a_promise_is_held_to_w
     assert_eq!(check(&second, "gain")["reasons"], serde_json::json!([]));
 }
 
-#[test]
-fn a_command_that_is_returned_to_is_not_stopped_for_what_a_later_one_promised() {
-    let folder = with_run();
-    let folder = folder.path();
-    let worn = "title = 'worn'\nbase = 'default'\n[encoder]\nbacklash_deg = 0.6\n";
-    fs::write(folder.join("worn.toml"), worn).unwrap();
-    clean(folder, "replan run.mcap --keep-plan -o next-1.mcap");
-    clean(folder, "simulate next-1.mcap -o run-2.mcap --seed 7");
-    clean(folder, "replan run.mcap run-2.mcap --keep-plan -o next-2.mcap");
-    clean(folder, "simulate next-2.mcap -o run-3.mcap --plant worn.toml");
-    let kept = json(folder, "replan run.mcap run-2.mcap run-3.mcap --keep-plan");
-    assert_eq!(kept["decision"]["what"], "keep", "{}", kept["decision"]);
-    assert_eq!(kept["decision"]["run"], 1, "{}", kept["decision"]);
-    let promise = check(&kept, "promise");
-    let [came, bound] = [&promise["measured_mean_peak_rad"], &promise["promised"]["mean_peak_margin_rad"]];
-    assert!(came.as_f64() > bound.as_f64().map(|bound| 2.0 * bound), "{promise}");
-    assert_eq!((&promise["level"], &kept["checks"]["verdict"]), (&"caution".into(), &"check_first".into()));
-}
-
 /// The export of a log: its columns, and its rows of cells.
 fn exported(folder: &Path, log: &str) -> (Vec<String>, Vec<Vec<String>>) {
     let run = run_line(folder, &format!("export {log} -o rows.csv --force"));
