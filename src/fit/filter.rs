@@ -8,7 +8,7 @@ use super::{
 };
 
 /// The cost, a logarithm of likelihood, must fall by this.
-const GAIN: f64 = 30.0;
+const GAIN: f64 = 20.0;
 
 /// A filter that costs no more than this explains the data as well as none.
 const AS_GOOD: f64 = 2.0;
