@@ -22,7 +22,7 @@ pub struct Estimated {
 impl Estimated {
     /// The same where another model explains the data as well, with another value: the interval holds both, and where that
     /// one lies outside, the data do not decide.
-    pub(super) fn or(self, other: f64) -> Self {
+    pub(super) fn with_rival(self, other: f64) -> Self {
         let Some([low, high]) = self.interval else { return self };
         let identified = self.identified && (low..=high).contains(&other);
         let upper_bound = self.upper_bound.map(|bound| bound.max(other));

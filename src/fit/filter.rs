@@ -34,9 +34,9 @@ const STARTS: [[f64; 2]; 2] = [[0.25, 0.9], [0.15, 0.05]];
 pub(super) enum Filter {
     /// The data show it.
     Shown(Estimate),
-    /// They do not tell it from none.
+    /// They hardly tell it from none.
     Possible(Model),
-    /// They explain it worse than none.
+    /// It explains them worse than none, or what it explains has another cause.
     None,
 }
 
@@ -62,12 +62,14 @@ impl Filter {
         let best = all.max_by(|a, b| a.0.total_cmp(&b.0));
         let Some((gained, best)) = best else { return Self::None };
         let model = other.model(&best.x);
-        match gained {
-            _ if model.filter_s < SHORTEST_S => Self::None,
-            _ if model.position_gain_1_s * model.lag_s() > RINGS => Self::None,
-            GAIN.. => Self::Shown(best),
-            _ if gained > -AS_GOOD => Self::Possible(model),
-            _ => Self::None,
+        let stands_in =
+            model.set_value_filter_s < SHORTEST_S || model.position_gain_1_s * model.lag_s() > RINGS;
+        if stands_in || gained < -AS_GOOD {
+            Self::None
+        } else if gained < GAIN {
+            Self::Possible(model)
+        } else {
+            Self::Shown(best)
         }
     }
 }

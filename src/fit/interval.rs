@@ -164,7 +164,7 @@ impl Knowledge {
         let part = (FEED_FORWARD, problem.priors.of(FEED_FORWARD).deviation);
         let model = problem.model(x);
         let found = self.positive(model.feed_forward, &[part], discrepancy::FEED_FORWARD);
-        let leads = model.filter_s * model.position_gain_1_s < model.feed_forward;
+        let leads = model.set_value_filter_s * model.position_gain_1_s < model.feed_forward;
         let sure = leads && found.interval.is_some_and(|[low, _]| low >= LEAST_FEED_FORWARD);
         Estimated { identified: found.identified && sure, ..found }
     }

@@ -113,7 +113,7 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     let skill = if nothing { skill.without_model(&held_out) } else { skill };
     let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
     let joint = match rival {
-        Some(rival) => joint.or(&rival),
+        Some(rival) => joint.with_rival(&rival),
         None => joint,
     };
     let joint = if nothing { joint.without_model() } else { joint };
@@ -158,7 +158,7 @@ fn report(
         integral = Estimated { value: Some(0.0), ..Estimated::default() };
     }
     let filter = if problem.shown.filter {
-        one(FILTER, model.filter_s, discrepancy::FILTER)
+        one(FILTER, model.set_value_filter_s, discrepancy::FILTER)
     } else {
         Estimated { value: Some(0.0), ..Estimated::default() }
     };

@@ -65,7 +65,7 @@ pub struct Model {
     pub edge_rad_s: f64,
     /// Time constant of a filter of the set values before the loop, s; 0 without one.
     #[serde(default)]
-    pub filter_s: f64,
+    pub set_value_filter_s: f64,
     /// Full width of the play before the sensor, rad.
     pub backlash_rad: f64,
 }
@@ -91,7 +91,7 @@ impl Model {
         acceleration_limit_rad_s2: [None; 2],
         hysteresis_rad_s: 0.0,
         edge_rad_s: 0.0,
-        filter_s: 0.0,
+        set_value_filter_s: 0.0,
         backlash_rad: 0.0,
     };
 
@@ -111,7 +111,7 @@ impl Model {
             ("stiction_rad_s", self.stiction_rad_s),
             ("hysteresis_rad_s", self.hysteresis_rad_s),
             ("edge_rad_s", self.edge_rad_s),
-            ("filter_s", self.filter_s),
+            ("set_value_filter_s", self.set_value_filter_s),
             ("backlash_rad", self.backlash_rad),
         ];
         let limits = [

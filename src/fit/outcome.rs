@@ -150,15 +150,15 @@ impl JointFit {
     }
 
     /// The same where another model explains the data as well.
-    pub(super) fn or(self, other: &Model) -> Self {
+    pub(super) fn with_rival(self, other: &Model) -> Self {
         let band_rad_s = other.leaves_rest_rad_s();
         Self {
-            lag_s: self.lag_s.or(other.lag_s()),
-            dead_band_rad_s: self.dead_band_rad_s.or(band_rad_s),
-            dead_band_error_rad: self.dead_band_error_rad.or(band_rad_s / other.position_gain_1_s),
-            position_gain_1_s: self.position_gain_1_s.or(other.position_gain_1_s),
-            integral_gain_1_s2: self.integral_gain_1_s2.or(other.integral_gain_1_s2),
-            feed_forward: self.feed_forward.or(other.feed_forward),
+            lag_s: self.lag_s.with_rival(other.lag_s()),
+            dead_band_rad_s: self.dead_band_rad_s.with_rival(band_rad_s),
+            dead_band_error_rad: self.dead_band_error_rad.with_rival(band_rad_s / other.position_gain_1_s),
+            position_gain_1_s: self.position_gain_1_s.with_rival(other.position_gain_1_s),
+            integral_gain_1_s2: self.integral_gain_1_s2.with_rival(other.integral_gain_1_s2),
+            feed_forward: self.feed_forward.with_rival(other.feed_forward),
             ..self
         }
     }

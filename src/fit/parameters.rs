@@ -147,7 +147,7 @@ impl Priors {
             acceleration_limit_rad_s2: [limit(2), limit(3)],
             hysteresis_rad_s: value(HYSTERESIS),
             edge_rad_s: if shown.edge { value(EDGE) } else { 0.0 },
-            filter_s: if shown.filter { value(FILTER) } else { 0.0 },
+            set_value_filter_s: if shown.filter { value(FILTER) } else { 0.0 },
             backlash_rad: BACKLASH_RAD,
         }
     }

@@ -88,7 +88,8 @@ fn lanes<const N: usize>(
     let approach = of(|m| -(-STEP_S / m.time_constant_s.max(1e-4)).exp_m1());
     let hysteresis = of(|m| m.hysteresis_rad_s);
     let edge = of(|m| m.edge_rad_s);
-    let passes = of(|m| if m.filter_s > 0.0 { -(-STEP_S / m.filter_s).exp_m1() } else { 1.0 });
+    let passes =
+        of(|m| if m.set_value_filter_s > 0.0 { -(-STEP_S / m.set_value_filter_s).exp_m1() } else { 1.0 });
     let half_play = of(|m| 0.5 * m.backlash_rad);
     let delay = of(|m| m.dead_time_s / STEP_S);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few hundred steps")]

@@ -109,19 +109,22 @@ pub(in crate::log) fn says_side(part: &str) -> bool {
 pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<CsvRun, CsvError> {
     let text = text::of_bytes(name, bytes)?;
     let text = objects::as_table(&text).or_else(|| printed::as_table(&text)).map_or(text, Cow::Owned);
-    read_table(name, Cow::Borrowed(&text), options, Remarks::default()).or_else(|error| {
-        // What cannot be read as it stands may be a table of another form.
-        let mut remarks = Remarks::default();
-        if grouping::has_quoted_commas(name, &text, options) {
-            let comma = CsvOptions { decimal_comma: Some(true), ..options.clone() };
-            let run = read_table(name, Cow::Borrowed(&text), &comma, remarks);
-            return run.map(|run| run.given(options.given())).or(Err(error));
-        }
-        let other = lvm::as_table(&text)
-            .or_else(|| scope::as_table(&text, &mut remarks))
-            .or_else(|| levels::joined(name, &text, options));
-        other.map_or(Err(error), |text| read_table(name, Cow::Owned(text), options, remarks))
-    })
+    read_table(name, Cow::Borrowed(&text), options, Remarks::default())
+        .or_else(|error| of_other_form(name, &text, options).unwrap_or(Err(error)))
+}
+
+/// What cannot be read as it stands, as a table of another form; `None` if it is of none.
+fn of_other_form(name: &str, text: &[u8], options: &CsvOptions) -> Option<Result<CsvRun, CsvError>> {
+    let mut remarks = Remarks::default();
+    if grouping::has_quoted_commas(name, text, options) {
+        let comma = CsvOptions { decimal_comma: Some(true), ..options.clone() };
+        let run = read_table(name, Cow::Borrowed(text), &comma, remarks).ok()?;
+        return Some(Ok(run.given(options.given())));
+    }
+    let table = lvm::as_table(text)
+        .or_else(|| scope::as_table(text, &mut remarks))
+        .or_else(|| levels::joined(name, text, options))?;
+    Some(read_table(name, Cow::Owned(table), options, remarks))
 }
 
 /// Reads the text of a table.

@@ -37,18 +37,13 @@ pub(super) fn log_of(path: &Path, source: Source, remarks: &mut Remarks) -> Resu
         #[cfg(feature = "sqlite")]
         bytes if bytes.starts_with(SQLITE) => sqlite::log(path, &source, remarks),
         #[cfg(feature = "parquet")]
-        bytes if bytes.starts_with(PARQUET) => {
-            let text = |nested| {
+        bytes if bytes.starts_with(PARQUET) => plain_or_nested(
+            |nested| {
                 parquet::table(&source, nested)
                     .map_err(|error| LogError::Form { path: path.to_owned(), reason: error.to_string() })
-            };
-            let plain = text(false)?;
-            // What says nothing of joints by its own names may do so within its values.
-            table::log(path, &plain, remarks).or_else(|error| match text(true)? {
-                nested if nested == plain => Err(error),
-                nested => table::log(path, &nested, remarks),
-            })
-        }
+            },
+            |text| table::log(path, text, remarks),
+        ),
         bytes if is_table(&packed::name_within(path), bytes) => {
             let text = source.whole().map_err(LogError::file("read", path))?;
             table::log(path, &text, remarks)
@@ -66,31 +61,35 @@ pub fn read_csv(path: &Path, options: &CsvOptions) -> Result<CsvRun, CsvError> {
     let fault = |source| CsvError::File { path: path.to_owned(), source };
     // A table may be packed whole.
     let source = Source::open(path).and_then(packed::unpacked).map_err(fault)?;
-    let plain = table_text(&source, false).map_err(fault)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    read_csv_bytes(&name, &plain.text, options).or_else(|error| {
-        let nested =
-            if plain.may_nest { table_text(&source, true).map_err(fault)? } else { return Err(error) };
-        if nested.text == plain.text { Err(error) } else { read_csv_bytes(&name, &nested.text, options) }
+    plain_or_nested(
+        |nested| table_text(&source, nested).map_err(fault),
+        |text| read_csv_bytes(&name, text, options),
+    )
+}
+
+/// What is read of a table's text; where that fails, of one in which values within its values are columns, too.
+fn plain_or_nested<T, E>(
+    text: impl Fn(bool) -> Result<Vec<u8>, E>,
+    mut read: impl FnMut(&[u8]) -> Result<T, E>,
+) -> Result<T, E> {
+    let plain = text(false)?;
+    read(&plain).or_else(|error| {
+        let nested = text(true)?;
+        if nested == plain { Err(error) } else { read(&nested) }
     })
 }
 
-/// The text of a table, and whether its values may hold others.
-struct TableText {
-    text: Vec<u8>,
-    may_nest: bool,
-}
-
+/// The text of a table in text or in Parquet; `nested`: of values within others, too.
 #[cfg_attr(not(feature = "parquet"), expect(unused_variables, reason = "text has no values within others"))]
-fn table_text(source: &Source, nested: bool) -> io::Result<TableText> {
+fn table_text(source: &Source, nested: bool) -> io::Result<Vec<u8>> {
     #[cfg(feature = "parquet")]
     {
         let mut start = Vec::new();
         source.read(LOOKED_AT, &mut start)?;
         if start.starts_with(PARQUET) {
-            let text = parquet::table(source, nested).map_err(io::Error::other)?;
-            return Ok(TableText { text, may_nest: true });
+            return parquet::table(source, nested).map_err(io::Error::other);
         }
     }
-    Ok(TableText { text: source.whole()?, may_nest: false })
+    source.whole()
 }

@@ -210,7 +210,8 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
              wide-open valve."
         )
     }));
-    let filtered = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.filter_s > 0.0);
+    let filtered =
+        fit.joints.iter().filter(|joint| joint.model_holds && joint.model.set_value_filter_s > 0.0);
     let filters: Vec<String> =
         filtered.map(|joint| format!("{} {}", joint.name, FILTER.cell(joint))).collect();
     lines.extend((!filters.is_empty()).then(|| {

@@ -29,7 +29,7 @@ const MODEL: Model = Model {
     acceleration_limit_rad_s2: [None, None],
     hysteresis_rad_s: 0.1 * DEGREE_RAD,
     edge_rad_s: 0.0,
-    filter_s: 0.0,
+    set_value_filter_s: 0.0,
     backlash_rad: 0.05 * DEGREE_RAD,
 };
 
@@ -112,7 +112,7 @@ fn edges_that_open_gradually_are_found_where_they_are_and_nowhere_else() {
 fn a_filter_of_set_values_is_found_where_it_is_and_nowhere_else() {
     let plan = trial(&["J"]);
     for (seed, filter_s) in [(1, 0.12), (2, 0.25), (3, 0.4)] {
-        let filtered = Model { filter_s, ..MODEL };
+        let filtered = Model { set_value_filter_s: filter_s, ..MODEL };
         let [plain, found] = [&MODEL, &filtered].map(|model| {
             let fit = fitted(&[(&plan, &measured_of(model, &plan, seed, |_| false))]);
             fit.joints[0].clone()
