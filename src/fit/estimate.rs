@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{
     model::Model,
     model::STEP_S,
-    parameters::{DEAD_TIME, Priors, SHARED, STICTION, Shown},
+    parameters::{Priors, SHARED, STICTION, Shown},
     robust::{cost, inefficiency, scale, weight},
     run::{ASKED_OVER_S, Run, Sample, steps_in},
     simulate::{LANES, Start, simulate, simulate_lanes},
@@ -338,17 +338,16 @@ impl Problem<'_> {
         normal
     }
 
-    /// The best of descents from several dead times.
-    pub(super) fn search(&self, dead_times_s: &[f64], x: &[f64], workspace: &mut Workspace) -> Estimate {
-        let from = |dead_time_s: f64| {
-            let mut x = x.to_vec();
-            x[DEAD_TIME] = self.priors.of(DEAD_TIME).place(dead_time_s);
-            x
-        };
+    /// The best of short descents from several places, once it has come down.
+    pub(super) fn search(
+        &self,
+        from: impl IntoIterator<Item = Vec<f64>>,
+        workspace: &mut Workspace,
+    ) -> Estimate {
         let mut best: Option<(f64, Estimate)> = None;
         let mut common_rad = None;
-        for &dead_time_s in dead_times_s {
-            let found = self.descend(from(dead_time_s), 8, workspace);
+        for x in from {
+            let found = self.descend(x, 8, workspace);
             // Costs compare at one scale only.
             let scale_rad = *common_rad.get_or_insert(found.scale_rad);
             let cost = self.cost_at(&found.x, scale_rad, workspace);
@@ -356,7 +355,7 @@ impl Problem<'_> {
                 best = Some((cost, found));
             }
         }
-        let x = best.map_or_else(|| x.to_vec(), |(_, found)| found.x);
+        let x = best.map_or_else(|| vec![0.0; SHARED + self.runs.len()], |(_, found)| found.x);
         self.descend(x, 30, workspace)
     }
 }

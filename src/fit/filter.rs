@@ -20,9 +20,6 @@ const SHORTEST_S: f64 = 0.06;
 /// would stand in.
 const RINGS: f64 = 0.8;
 
-/// Rounds of a descent with a filter.
-const ROUNDS: usize = 30;
-
 /// Dead time where a descent starts, s.
 const DEAD_TIME_S: f64 = 0.08;
 
@@ -45,22 +42,19 @@ impl Filter {
         let mut other = problem.clone();
         other.shown.filter = true;
         let place = |i: usize, value: f64| problem.priors.of(i).place(value);
+        let mut start = found.x.clone();
+        start[DEAD_TIME] = place(DEAD_TIME, DEAD_TIME_S);
         let anew = STARTS.map(|[filter_s, feed_forward]| {
-            let mut x = found.x.clone();
+            let mut x = start.clone();
             x[..LIMITS].fill(0.0);
+            x[DEAD_TIME] = start[DEAD_TIME];
             x[FEED_FORWARD] = place(FEED_FORWARD, feed_forward);
             x[FILTER] = place(FILTER, filter_s);
             x
         });
+        let best = other.search(std::iter::once(start).chain(anew), workspace);
         let before = problem.cost_at(&found.x, found.scale_rad, workspace);
-        let descent = |mut x: Vec<f64>| {
-            x[DEAD_TIME] = place(DEAD_TIME, DEAD_TIME_S);
-            let made = other.descend(x, ROUNDS, workspace);
-            (before - other.cost_at(&made.x, found.scale_rad, workspace), made)
-        };
-        let all = std::iter::once(found.x.clone()).chain(anew).map(descent);
-        let best = all.max_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((gained, best)) = best else { return Self::None };
+        let gained = before - other.cost_at(&best.x, found.scale_rad, workspace);
         let model = other.model(&best.x);
         let stands_in =
             model.set_value_filter_s < SHORTEST_S || model.position_gain_1_s * model.lag_s() > RINGS;

@@ -18,14 +18,15 @@ use crate::units::DEGREE_RAD;
 /// Normal quantile of a two-sided 95 % interval.
 pub(super) const QUANTILE: f64 = 1.96;
 
-/// Model error as deviations of logarithms; no log narrows them.
+/// Model error as deviations of logarithms; no log narrows them. Pairs: of a joint as it is, and behind a filter of set
+/// values, whose form is not known: what one of second order or a moving mean delays beyond one of first order goes to them.
 pub(super) mod discrepancy {
     /// Of the lag.
-    pub(in crate::fit) const LAG: f64 = 0.11;
+    pub(in crate::fit) const LAG: [f64; 2] = [0.11, 0.25];
     /// Of the lag where no start is sharp.
     pub(in crate::fit) const SMOOTH_LAG: f64 = 0.50;
     /// Of the dead band.
-    pub(in crate::fit) const DEAD_BAND: f64 = 0.24;
+    pub(in crate::fit) const DEAD_BAND: [f64; 2] = [0.24, 0.65];
     /// Of the largest speeds of growing and of shrinking angles, and of the largest accelerations.
     pub(in crate::fit) const LIMIT: [f64; 4] = [0.12, 0.12, 0.75, 0.75];
     /// Of the position gain.
@@ -37,8 +38,8 @@ pub(super) mod discrepancy {
     /// Of the integral gain where no start is sharp.
     pub(in crate::fit) const SMOOTH_INTEGRAL_GAIN: f64 = 0.50;
     /// Of the feed-forward, which valves with play and friction that falls with speed stand in for.
-    pub(in crate::fit) const FEED_FORWARD: f64 = 0.14;
-    /// Of a filter of set values.
+    pub(in crate::fit) const FEED_FORWARD: [f64; 2] = [0.14, 0.25];
+    /// Of the time constant of a filter of set values.
     pub(in crate::fit) const FILTER: f64 = 0.25;
     /// Of the ratio of gains.
     pub(in crate::fit) const GAIN: f64 = 0.10;
@@ -80,6 +81,11 @@ const MOST_DOUBT: f64 = 2.5;
 const SMOOTH_SKILL: [f64; 2] = [0.98, LEAST_SMOOTH_SKILL];
 /// Times the usual discrepancy between the two.
 const SMOOTH_DOUBT: f64 = 1.3;
+
+/// The discrepancy of a joint as it is, or that behind a filter of set values.
+fn behind(problem: &Problem, [plain, filtered]: [f64; 2]) -> f64 {
+    if problem.shown.filter { filtered } else { plain }
+}
 
 impl Knowledge {
     /// Around an estimate of a problem.
@@ -151,7 +157,7 @@ impl Knowledge {
         let lag_s = model.lag_s();
         let part = |i: usize, value: f64| (i, problem.priors.of(i).deviation * value / lag_s);
         let parts = [part(DEAD_TIME, model.dead_time_s), part(TIME_CONSTANT, model.time_constant_s)];
-        let missed = self.missed(discrepancy::LAG, discrepancy::SMOOTH_LAG);
+        let missed = self.missed(behind(problem, discrepancy::LAG), discrepancy::SMOOTH_LAG);
         let found = self.unfiltered(problem, x, self.positive(lag_s, &parts, missed));
         // Within the lag a smooth start does not leave the dead band: its delay is the band's, and bounds the lag.
         let upper_bound = found.interval.map(|[_, most_s]| most_s).filter(|_| !self.sharp);
@@ -163,7 +169,8 @@ impl Knowledge {
     pub(super) fn feed_forward(&self, problem: &Problem, x: &[f64]) -> Estimated {
         let part = (FEED_FORWARD, problem.priors.of(FEED_FORWARD).deviation);
         let model = problem.model(x);
-        let found = self.positive(model.feed_forward, &[part], discrepancy::FEED_FORWARD);
+        let missed = behind(problem, discrepancy::FEED_FORWARD);
+        let found = self.positive(model.feed_forward, &[part], missed);
         let leads = model.set_value_filter_s * model.position_gain_1_s < model.feed_forward;
         let sure = leads && found.interval.is_some_and(|[low, _]| low >= LEAST_FEED_FORWARD);
         Estimated { identified: found.identified && sure, ..found }
@@ -192,12 +199,11 @@ impl Knowledge {
         let stiction = part(STICTION, model.stiction_rad_s / whole_rad_s);
         let play = part(HYSTERESIS, model.hysteresis_rad_s / whole_rad_s);
         let gain = part(POSITION_GAIN, -1.0);
+        let missed = behind(problem, discrepancy::DEAD_BAND);
         [
             (whole_rad_s, &[band, stiction, play][..]),
             (whole_rad_s / model.position_gain_1_s, &[band, stiction, play, gain]),
         ]
-        .map(|(value, parts)| {
-            self.unfiltered(problem, x, self.positive(value, parts, discrepancy::DEAD_BAND))
-        })
+        .map(|(value, parts)| self.unfiltered(problem, x, self.positive(value, parts, missed)))
     }
 }

@@ -9,7 +9,7 @@ use super::{
     integral,
     interval::{Knowledge, discrepancy},
     outcome::JointFit,
-    parameters::{ASYMMETRY, FILTER, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
+    parameters::{ASYMMETRY, DEAD_TIME, FILTER, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
     run::Run,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
     telling::{of, telling},
@@ -58,7 +58,12 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
         inefficiency: INEFFICIENCY,
     };
     let mut workspace = Workspace::default();
-    let mut found = problem.search(&DEAD_TIMES_S, &vec![0.0; SHARED + some.len()], &mut workspace);
+    let from = DEAD_TIMES_S.map(|dead_time_s| {
+        let mut x = vec![0.0; SHARED + some.len()];
+        x[DEAD_TIME] = priors.of(DEAD_TIME).place(dead_time_s);
+        x
+    });
+    let mut found = problem.search(from, &mut workspace);
     // What goes may have stood in for what stays.
     for _ in 0..2 {
         problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);

@@ -125,6 +125,40 @@ fn a_filter_of_set_values_is_found_where_it_is_and_nowhere_else() {
     }
 }
 
+/// A plan as a moving mean over 0.3 s makes it.
+fn averaged(plan: &Series) -> Series {
+    let mean = |values: &[f64]| -> Vec<f64> {
+        let before = |k: usize| (0..30).map(move |back| values[k.saturating_sub(back)]);
+        (0..values.len()).map(|k| before(k).sum::<f64>() / 30.0).collect()
+    };
+    let track = |sent: &Track| {
+        let track = Track::new(sent.name(), sent.t_s().to_vec(), mean(sent.position()), &[]).unwrap();
+        track.with_velocity(mean(sent.velocity().unwrap())).unwrap()
+    };
+    Series { tracks: plan.tracks.iter().map(track).collect() }
+}
+
+#[test]
+fn intervals_behind_a_filter_of_another_form_hold_the_truth_or_nothing_is_claimed() {
+    let plan = trial(&["J"]);
+    let quick = Model { dead_time_s: 0.06, time_constant_s: 0.05, ..MODEL };
+    for seed in 1..=3 {
+        let measured = measured_of(&quick, &averaged(&plan), seed, |_| false);
+        let joint = &fitted(&[(&plan, &measured)]).joints[0];
+        assert!(joint.model.set_value_filter_s > 0.0, "{seed}: {joint:?}");
+        for (found, truth) in [
+            (joint.lag_s, quick.lag_s()),
+            (joint.position_gain_1_s, quick.position_gain_1_s),
+            (joint.feed_forward, quick.feed_forward),
+            (joint.dead_band_rad_s, quick.dead_band_rad_s + quick.hysteresis_rad_s + quick.stiction_rad_s),
+        ] {
+            let holds = found.interval.is_some_and(|[low, high]| (low..=high).contains(&truth));
+            assert!(holds || !found.identified, "{seed}: {truth} {found:?}");
+        }
+        assert!(joint.lag_s.identified, "{seed}: {joint:?}");
+    }
+}
+
 /// Four strokes of 6 s with long rests between them.
 fn strokes() -> Series {
     let stroke = |t_s: f64| {
