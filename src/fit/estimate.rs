@@ -1,10 +1,9 @@
 //! Levenberg-Marquardt over all runs of a joint, with Huber's weights and priors.
 
-use nalgebra::{DMatrix, DVector};
-
 use super::{
     model::Model,
     model::STEP_S,
+    normal::{Normal, Row, WIDTH},
     parameters::{Priors, SHARED, STICTION, Shown},
     robust::{cost, inefficiency, scale, weight},
     run::{ASKED_OVER_S, Run, Sample, steps_in},
@@ -64,68 +63,6 @@ pub(super) struct Estimate {
 pub(super) struct Workspace {
     wanted: Vec<f64>,
     angle_rad: Vec<f64>,
-}
-
-/// Weighted normal equations of the data, in scales; integrals, which move their run alone, are eliminated one by one.
-#[derive(Debug, Clone)]
-pub(super) struct Normal {
-    /// Of the shared parameters that move.
-    shared: DMatrix<f64>,
-    slope: DVector<f64>,
-    /// Run by run: the products of its integral with the shared parameters, its own square, its slope.
-    runs: Vec<(DVector<f64>, f64, f64)>,
-}
-
-impl Normal {
-    /// With the priors, for data whose cost is divided by their inefficiency.
-    fn with_priors(mut self, inefficiency: f64, x: &[f64], free: &[usize]) -> Self {
-        self.shared /= inefficiency;
-        self.slope /= inefficiency;
-        for (k, &i) in free.iter().enumerate() {
-            self.shared[(k, k)] += 1.0;
-            self.slope[k] += x[i];
-        }
-        for ((cross, square, slope), x) in self.runs.iter_mut().zip(x.iter().skip(SHARED)) {
-            *cross /= inefficiency;
-            *square = *square / inefficiency + 1.0;
-            *slope = *slope / inefficiency + x;
-        }
-        self
-    }
-
-    /// The shared parameters' part once the integrals are eliminated, each diagonal lifted by `damping`.
-    fn reduced(&self, damping: f64) -> (DMatrix<f64>, DVector<f64>) {
-        let (mut shared, mut slope) = (self.shared.clone(), self.slope.clone());
-        for k in 0..slope.len() {
-            shared[(k, k)] += damping * self.shared[(k, k)];
-        }
-        for (cross, square, own) in &self.runs {
-            let lifted = (1.0 + damping) * square;
-            shared.ger(-1.0 / lifted, cross, cross, 1.0);
-            slope.axpy(-own / lifted, cross, 1.0);
-        }
-        (shared, slope)
-    }
-
-    /// The step of all parameters that move: the shared ones, then the integrals.
-    fn step(&self, damping: f64) -> Option<Vec<f64>> {
-        let (shared, slope) = self.reduced(damping);
-        let step = shared.cholesky()?.solve(&slope);
-        let own = self
-            .runs
-            .iter()
-            .map(|(cross, square, own)| (own - cross.dot(&step)) / ((1.0 + damping) * square));
-        let step: Vec<f64> = step.iter().copied().chain(own).collect();
-        step.iter().all(|s| s.is_finite()).then_some(step)
-    }
-
-    /// Covariance of the shared parameters with data and priors.
-    pub(super) fn covariance(self, inefficiency: f64, x: &[f64], free: &[usize]) -> DMatrix<f64> {
-        let (information, _) = self.with_priors(inefficiency, x, free).reduced(0.0);
-        // Information of at least the priors has an inverse.
-        let size = information.nrows();
-        information.cholesky().map_or_else(|| DMatrix::identity(size, size), |cholesky| cholesky.inverse())
-    }
 }
 
 impl Workspace {
@@ -211,8 +148,8 @@ impl Problem<'_> {
         (0..SHARED).filter(|&i| self.shown.has(i)).collect()
     }
 
-    /// Slopes of a run's residuals in scales, a column a parameter: those of `free`, then its integral. `residuals_rad` are those at `x`.
-    fn slopes(
+    /// Residuals of a run and their slopes, in scales and weighted, a row a sample; `residuals_rad` are those at `x`.
+    fn rows(
         &self,
         x: &[f64],
         free: &[usize],
@@ -220,15 +157,14 @@ impl Problem<'_> {
         residuals_rad: &[f64],
         scale_rad: f64,
         workspace: &mut Workspace,
-    ) -> DMatrix<f64> {
+    ) -> Vec<Row> {
         let run = &self.runs[r];
-        let counted = || run.samples.iter().filter(|sample| self.part.has(sample));
-        let mut slopes = DMatrix::zeros(counted().count(), free.len() + 1);
+        let counted: Vec<&Sample> = run.samples.iter().filter(|sample| self.part.has(sample)).collect();
+        let mut rows = vec![[0.0; WIDTH]; counted.len()];
         // No log of angles tells stiction from dead band: it stays as known beforehand, no better.
         let moving = free.iter().copied().enumerate().filter(|(_, i)| *i != STICTION);
         let columns: Vec<(usize, usize)> = moving.chain([(free.len(), SHARED)]).collect();
         let own: [f64; SHARED + 1] = std::array::from_fn(|i| x[if i < SHARED { i } else { SHARED + r }]);
-        let share = 1.0 / (DIFFERENCE * scale_rad);
         for group in columns.chunks(LANES) {
             let lane = |lane: usize| {
                 let mut x = own;
@@ -241,18 +177,25 @@ impl Problem<'_> {
             let (models, starts) =
                 (lanes.each_ref().map(|lane| &lane.0), lanes.each_ref().map(|lane| lane.1));
             simulate_lanes(models, &run.sent, starts, wanted, angle_rad);
-            for ((row, sample), residual_rad) in counted().enumerate().zip(residuals_rad) {
+            for ((row, sample), residual_rad) in rows.iter_mut().zip(&counted).zip(residuals_rad) {
                 let Some(at) = angle_rad.get(LANES * sample.step..LANES * (sample.step + 2)) else {
                     continue;
                 };
                 let before_rad = sample.measured_rad - residual_rad;
                 for (place, (column, _)) in group.iter().enumerate() {
                     let (here, next) = (at[place], at[LANES + place]);
-                    slopes[(row, *column)] = (before_rad - here - sample.part * (next - here)) * share;
+                    row[*column] = (before_rad - here - sample.part * (next - here)) / DIFFERENCE;
                 }
             }
         }
-        slopes
+        for (row, residual_rad) in rows.iter_mut().zip(residuals_rad) {
+            row[free.len() + 1] = *residual_rad;
+            let share = weight(residual_rad / scale_rad).sqrt() / scale_rad;
+            for value in row {
+                *value *= share;
+            }
+        }
+        rows
     }
 
     /// From `x` downhill for at most so many rounds.
@@ -313,27 +256,12 @@ impl Problem<'_> {
         scale_rad: f64,
         workspace: &mut Workspace,
     ) -> Normal {
-        let own = free.len();
-        let mut normal =
-            Normal { shared: DMatrix::zeros(own, own), slope: DVector::zeros(own), runs: Vec::new() };
+        let mut normal = Normal::of(free.len());
         let mut first = 0;
         for r in 0..self.runs.len() {
-            let mut slopes = self.slopes(x, free, r, &residuals_rad[first..], scale_rad, workspace);
-            let residuals = DVector::from_column_slice(&residuals_rad[first..first + slopes.nrows()]);
-            first += slopes.nrows();
-            let roots = residuals.map(|r| weight(r / scale_rad).sqrt());
-            for mut column in slopes.column_iter_mut() {
-                column.component_mul_assign(&roots);
-            }
-            let slope = slopes.tr_mul(&(residuals / scale_rad).component_mul(&roots));
-            let square = slopes.tr_mul(&slopes);
-            normal.shared += square.view((0, 0), (own, own));
-            normal.slope += slope.rows(0, own);
-            normal.runs.push((
-                square.view((0, own), (own, 1)).column(0).into_owned(),
-                square[(own, own)],
-                slope[own],
-            ));
+            let rows = self.rows(x, free, r, &residuals_rad[first..], scale_rad, workspace);
+            first += rows.len();
+            normal.add(&rows);
         }
         normal
     }

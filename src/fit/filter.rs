@@ -4,16 +4,16 @@
 use super::{
     estimate::{Estimate, Problem, Workspace},
     model::Model,
-    parameters::{DEAD_TIME, FEED_FORWARD, FILTER, LIMITS},
+    parameters::{DEAD_TIME, FEED_FORWARD, FILTER, LIMITS, SET_VALUE_DELAY},
 };
 
 /// The cost, a logarithm of likelihood, must fall by this.
-const GAIN: f64 = 20.0;
+const GAIN: f64 = 12.0;
 
 /// A filter that costs no more than this explains the data as well as none.
 const AS_GOOD: f64 = 2.0;
 
-/// A shorter filter is the valve's lag by another name, s.
+/// Set values that come less late show the valve's lag by another name, s.
 const SHORTEST_S: f64 = 0.06;
 
 /// A loop whose gain is larger than this by its lag rings: one that is calm has another structure, for which a filter
@@ -23,9 +23,9 @@ const RINGS: f64 = 0.8;
 /// Dead time where a descent starts, s.
 const DEAD_TIME_S: f64 = 0.08;
 
-/// Filter, s, and feed-forward where the others start: without a filter a loop looks slower than it is, or faster, and one
+/// Filter, s, delay, s, and feed-forward where the others start: without a filter a loop looks slower than it is, or faster, and one
 /// without feed-forward looks as if it had some.
-const STARTS: [[f64; 2]; 2] = [[0.25, 0.9], [0.15, 0.05]];
+const STARTS: [[f64; 3]; 2] = [[0.1, 0.15, 0.9], [0.15, 0.05, 0.05]];
 
 /// What a filter of the set values makes of an estimate without one.
 pub(super) enum Filter {
@@ -44,20 +44,27 @@ impl Filter {
         let place = |i: usize, value: f64| problem.priors.of(i).place(value);
         let mut start = found.x.clone();
         start[DEAD_TIME] = place(DEAD_TIME, DEAD_TIME_S);
-        let anew = STARTS.map(|[filter_s, feed_forward]| {
+        let anew = STARTS.map(|[filter_s, delay_s, feed_forward]| {
             let mut x = start.clone();
             x[..LIMITS].fill(0.0);
             x[DEAD_TIME] = start[DEAD_TIME];
             x[FEED_FORWARD] = place(FEED_FORWARD, feed_forward);
             x[FILTER] = place(FILTER, filter_s);
+            x[SET_VALUE_DELAY] = place(SET_VALUE_DELAY, delay_s);
             x
         });
         let best = other.search(std::iter::once(start).chain(anew), workspace);
         let before = problem.cost_at(&found.x, found.scale_rad, workspace);
         let gained = before - other.cost_at(&best.x, found.scale_rad, workspace);
         let model = other.model(&best.x);
+        eprintln!(
+            "gained {gained} {} {} {}",
+            model.set_value_filter_s,
+            model.set_value_delay_s,
+            model.position_gain_1_s * model.lag_s()
+        );
         let stands_in =
-            model.set_value_filter_s < SHORTEST_S || model.position_gain_1_s * model.lag_s() > RINGS;
+            model.set_values_late_s() < SHORTEST_S || model.position_gain_1_s * model.lag_s() > RINGS;
         if stands_in || gained < -AS_GOOD {
             Self::None
         } else if gained < GAIN {

@@ -9,7 +9,9 @@ use super::{
     integral,
     interval::{Knowledge, discrepancy},
     outcome::JointFit,
-    parameters::{ASYMMETRY, DEAD_TIME, FILTER, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
+    parameters::{
+        ASYMMETRY, DEAD_TIME, FILTER, INTEGRAL_GAIN, LIMITS, Priors, SET_VALUE_DELAY, SHARED, Shown,
+    },
     run::Run,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
     telling::{of, telling},
@@ -162,10 +164,12 @@ fn report(
     if !problem.shown.integral {
         integral = Estimated { value: Some(0.0), ..Estimated::default() };
     }
-    let filter = if problem.shown.filter {
-        one(FILTER, model.set_value_filter_s, discrepancy::FILTER)
-    } else {
-        Estimated { value: Some(0.0), ..Estimated::default() }
+    let before_loop = |i: usize, value_s: f64| {
+        if problem.shown.filter {
+            one(i, value_s, discrepancy::FILTER)
+        } else {
+            Estimated { value: Some(0.0), ..Estimated::default() }
+        }
     };
     let [dead_band_rad_s, dead_band_error_rad] = knowledge.dead_band(problem, &found.x);
     JointFit {
@@ -183,7 +187,8 @@ fn report(
         position_gain_1_s: knowledge.position_gain(problem, &found.x),
         integral_gain_1_s2: integral,
         feed_forward: knowledge.feed_forward(problem, &found.x),
-        set_value_filter_s: filter,
+        set_value_filter_s: before_loop(FILTER, model.set_value_filter_s),
+        set_value_delay_s: before_loop(SET_VALUE_DELAY, model.set_value_delay_s),
         gain_ratio: one(ASYMMETRY, model.asymmetry.exp(), discrepancy::GAIN),
         speed_limit_growing_rad_s: limit(0),
         speed_limit_shrinking_rad_s: limit(1),

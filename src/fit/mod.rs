@@ -22,6 +22,7 @@ mod interval;
 mod joint;
 mod learn;
 mod model;
+mod normal;
 mod outcome;
 mod parameters;
 mod predict;

@@ -9,8 +9,8 @@ pub const STEP_S: f64 = 0.01;
 
 /// A joint with its valve, its position loop and its sensor, from sent to measured angle.
 ///
-/// A filter of first order takes the set values, angle and speed, with a time constant `filter`. The loop wants a speed w = `feed_forward` * sent speed + `position_gain` * error + integral, which
-/// arrives after the dead time; the spool follows it with a play of ±`hysteresis`. What is left beyond the dead band,
+/// The set values, angle and speed, come late by a `delay` and pass a filter of first order. The loop wants a speed
+/// w = `feed_forward` * sent speed + `position_gain` * error + integral, which arrives after the dead time; the spool follows it with a play of ±`hysteresis`. What is left beyond the dead band,
 /// b, gives the speed b² / (b + `edge`). Scaled by exp(±`asymmetry` / 2) for growing and shrinking angles and by the
 /// pose, and clipped to the speed limits, it is approached with a time constant, within the acceleration limits.
 /// Speeds, gains and dead band are as the joint shows them: a loop gain that no log can tell apart is in all of them.
@@ -66,6 +66,9 @@ pub struct Model {
     /// Time constant of a filter of the set values before the loop, s; 0 without one.
     #[serde(default)]
     pub set_value_filter_s: f64,
+    /// Delay of the set values before the loop, or of the stamps of measured angles, s.
+    #[serde(default)]
+    pub set_value_delay_s: f64,
     /// Full width of the play before the sensor, rad.
     pub backlash_rad: f64,
 }
@@ -92,6 +95,7 @@ impl Model {
         hysteresis_rad_s: 0.0,
         edge_rad_s: 0.0,
         set_value_filter_s: 0.0,
+        set_value_delay_s: 0.0,
         backlash_rad: 0.0,
     };
 
@@ -112,6 +116,7 @@ impl Model {
             ("hysteresis_rad_s", self.hysteresis_rad_s),
             ("edge_rad_s", self.edge_rad_s),
             ("set_value_filter_s", self.set_value_filter_s),
+            ("set_value_delay_s", self.set_value_delay_s),
             ("backlash_rad", self.backlash_rad),
         ];
         let limits = [
@@ -148,8 +153,13 @@ impl Model {
         self.dead_band_rad_s + self.hysteresis_rad_s + self.stiction_rad_s
     }
 
+    /// How late the loop asks for what is sent, s.
+    pub fn set_values_late_s(&self) -> f64 {
+        self.set_value_delay_s + self.set_value_filter_s
+    }
+
     /// What passes between a change of the speed that the loop wants and half of its effect, s: dead time, time
-    /// constant and half a step of the loop. A filter of set values comes before that.
+    /// constant and half a step of the loop. What delays set values comes before that.
     pub fn lag_s(&self) -> f64 {
         self.dead_time_s + self.time_constant_s + 0.5 * STEP_S
     }

@@ -85,6 +85,9 @@ pub struct JointFit {
     /// Time constant of a filter of the set values before the loop, s; 0 where the data show none.
     #[serde(default)]
     pub set_value_filter_s: Estimated,
+    /// Delay of the set values before the loop, or of the stamps of measured angles, s; 0 where the data show none.
+    #[serde(default)]
+    pub set_value_delay_s: Estimated,
     /// Gain for growing angles by that for shrinking ones.
     pub gain_ratio: Estimated,
     /// Largest speed of growing angles, rad/s.
@@ -139,6 +142,7 @@ impl JointFit {
             integral_gain_1_s2: none,
             feed_forward: none,
             set_value_filter_s: none,
+            set_value_delay_s: none,
             gain_ratio: none,
             speed_limit_growing_rad_s: reached(self.speed_limit_growing_rad_s),
             speed_limit_shrinking_rad_s: reached(self.speed_limit_shrinking_rad_s),

@@ -7,7 +7,7 @@ use super::model::Model;
 use crate::units::DEGREE_RAD;
 
 /// Number of parameters that all runs share.
-pub(super) const SHARED: usize = 20;
+pub(super) const SHARED: usize = 21;
 
 pub(super) const DEAD_TIME: usize = 0;
 pub(super) const TIME_CONSTANT: usize = 1;
@@ -27,6 +27,7 @@ pub(super) const HYSTERESIS: usize = 13;
 pub(super) const LIMITS: usize = 14;
 pub(super) const EDGE: usize = LIMITS + 4;
 pub(super) const FILTER: usize = EDGE + 1;
+pub(super) const SET_VALUE_DELAY: usize = FILTER + 1;
 
 /// Width of the play between joint and sensor that every model has, rad: a free one stands in for the lag of smooth runs.
 const BACKLASH_RAD: f64 = 0.05 * DEGREE_RAD;
@@ -71,6 +72,7 @@ const PRIORS: [Prior; SHARED] = [
     positive(1.0, 1.5),
     positive(2.0 * DEGREE_RAD, 1.0),
     positive(0.1, 0.8),
+    positive(0.05, 1.0),
 ];
 
 /// Parts that a model has only where the data show them.
@@ -80,7 +82,7 @@ pub(super) struct Shown {
     pub(super) limits: [bool; 4],
     /// Edges of the valve that open gradually.
     pub(super) edge: bool,
-    /// A filter of the set values.
+    /// A filter and a delay of the set values.
     pub(super) filter: bool,
     /// Integral action of the position loop.
     pub(super) integral: bool,
@@ -91,7 +93,7 @@ impl Shown {
     pub(super) fn has(self, parameter: usize) -> bool {
         match parameter {
             EDGE => self.edge,
-            FILTER => self.filter,
+            FILTER | SET_VALUE_DELAY => self.filter,
             INTEGRAL_GAIN => self.integral,
             LIMITS.. => self.limits.get(parameter - LIMITS).is_none_or(|shown| *shown),
             _ => true,
@@ -148,6 +150,7 @@ impl Priors {
             hysteresis_rad_s: value(HYSTERESIS),
             edge_rad_s: if shown.edge { value(EDGE) } else { 0.0 },
             set_value_filter_s: if shown.filter { value(FILTER) } else { 0.0 },
+            set_value_delay_s: if shown.filter { value(SET_VALUE_DELAY) } else { 0.0 },
             backlash_rad: BACKLASH_RAD,
         }
     }

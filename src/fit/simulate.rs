@@ -45,6 +45,7 @@ pub(super) fn simulate(
     measured_rad: &mut Vec<f64>,
 ) {
     lanes([model], sent, [start], wanted, measured_rad);
+    delay([model], measured_rad);
 }
 
 /// Models that are simulated side by side: chains of dependent operations of one leave a processor idle.
@@ -60,6 +61,7 @@ pub(super) fn simulate_lanes(
     measured_rad: &mut Vec<f64>,
 ) {
     lanes(models, sent, start, wanted, measured_rad);
+    delay(models, measured_rad);
 }
 
 #[inline(always)]
@@ -115,13 +117,15 @@ fn lanes<const N: usize>(
         wanted.extend_from_slice(&wants);
         measured_rad.extend((0..N).map(|i| seen[i] + offset[i]));
         // What arrives beyond the dead band.
-        let mut target: [f64; N] = std::array::from_fn(|i| {
+        let mut target = [0.0; N];
+        for i in 0..N {
             let late = k.saturating_sub(whole[i]);
             let (new, old) = (wanted[late * N + i], wanted[late.saturating_sub(1) * N + i]);
             let arrived = new + part[i] * (old - new);
             spool[i] = within(spool[i], arrived - hysteresis[i], arrived + hysteresis[i]);
-            within(spool[i] - up[i], 0.0, f64::INFINITY) + within(spool[i] - down[i], f64::NEG_INFINITY, 0.0)
-        });
+            target[i] = within(spool[i] - up[i], 0.0, f64::INFINITY)
+                + within(spool[i] - down[i], f64::NEG_INFINITY, 0.0);
+        }
         if target.iter().any(|beyond| *beyond != 0.0) {
             for i in 0..N {
                 let way = target[i].signum();
@@ -142,6 +146,20 @@ fn lanes<const N: usize>(
             let before = speed[i];
             speed[i] += within(approach[i] * (target[i] - speed[i]), least[i], most[i]);
             angle[i] += 0.5 * STEP_S * (before + speed[i]);
+        }
+    }
+}
+
+/// Lets angles come late by the delay of the set values: a loop does the same a while later. The first are those of the start.
+fn delay<const N: usize>(models: [&Model; N], measured_rad: &mut [f64]) {
+    for (lane, model) in models.iter().enumerate().filter(|(_, model)| model.set_value_delay_s > 0.0) {
+        let steps = model.set_value_delay_s / STEP_S;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few hundred steps")]
+        let (whole, part) = (steps as usize, steps.fract());
+        for k in (0..measured_rad.len() / N).rev() {
+            let late = k.saturating_sub(whole);
+            let (new, old) = (measured_rad[late * N + lane], measured_rad[late.saturating_sub(1) * N + lane]);
+            measured_rad[k * N + lane] = new + part * (old - new);
         }
     }
 }

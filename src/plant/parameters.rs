@@ -52,6 +52,9 @@ pub struct Cycle {
     /// Each comes late by a random time of up to this, none before an earlier one, s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub set_value_jitter_s: f64,
+    /// All come late by this, s.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub set_value_delay_s: f64,
 }
 
 /// Structures that a machine lacks stay out of its JSON, as if there were none.

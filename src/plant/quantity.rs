@@ -67,7 +67,7 @@ const fn optional_shared(
 }
 
 /// All of them, in the order of the file.
-pub(super) const QUANTITIES: [Quantity; 50] = [
+pub(super) const QUANTITIES: [Quantity; 51] = [
     shared(("supply", "pressure_pa"), (1e5, 1e8), 0.0, |p| &mut p.supply.pressure_pa),
     shared(("supply", "return_pressure_pa"), (0.0, 1e8), 0.0, |p| &mut p.supply.return_pressure_pa),
     shared(("supply", "flow_m3_s"), (1e-7, 1.0), 0.2, |p| &mut p.supply.flow_m3_s),
@@ -112,6 +112,7 @@ pub(super) const QUANTITIES: [Quantity; 50] = [
     optional(("control", "set_value_filter_s"), 10.0, |p| &mut p.control.set_value_filter_s),
     optional_shared(("control", "set_value_period_s"), 1.0, |p| &mut p.cycle.set_value_period_s),
     optional_shared(("control", "set_value_jitter_s"), 1.0, |p| &mut p.cycle.set_value_jitter_s),
+    optional_shared(("control", "set_value_delay_s"), 1.0, |p| &mut p.cycle.set_value_delay_s),
     optional(("control", "speed_gain"), 100.0, |p| &mut p.control.speed_gain),
     optional(("control", "speed_integral_gain_1_s"), 1000.0, |p| &mut p.control.speed_integral_gain_1_s),
     degrees(optional(("control", "window_deg"), 10.0, |p| &mut p.control.window_rad)),

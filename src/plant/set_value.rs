@@ -10,9 +10,10 @@ const REST_RAD_S: f64 = 1e-6;
 
 /// The instant of the command, s, that is the newest which has arrived by each period of the loop.
 pub(super) fn instants_s(cycle: &Cycle, periods: usize, seed: u64) -> Vec<f64> {
-    let turns_s = (0..=periods).map(|period| period as f64 * cycle.period_s);
+    let turn_s = |period| period as f64 * cycle.period_s - cycle.set_value_delay_s;
+    let turns_s = (0..=periods).map(turn_s);
     if cycle.set_value_period_s <= 0.0 && cycle.set_value_jitter_s <= 0.0 {
-        return turns_s.collect();
+        return turns_s.map(|t_s: f64| t_s.max(0.0)).collect();
     }
     let every_s = if cycle.set_value_period_s > 0.0 { cycle.set_value_period_s } else { cycle.period_s };
     let mut rng = stream(seed, Stream::SetValues);
@@ -64,6 +65,13 @@ mod tests {
     #[test]
     fn set_values_are_held_between_messages() {
         assert_eq!(instants_s(&cycle(0.02, 0.0), 5, 1), [0.0, 0.0, 0.02, 0.02, 0.04, 0.04]);
+    }
+
+    #[test]
+    fn delayed_set_values_begin_with_the_first() {
+        let delayed = |every_s| Cycle { set_value_delay_s: 0.02, ..cycle(every_s, 0.0) };
+        assert_eq!(instants_s(&delayed(0.0), 4, 1), [0.0, 0.0, 0.0, 0.01, 0.02]);
+        assert_eq!(instants_s(&delayed(0.02), 5, 1), [0.0, 0.0, 0.0, 0.0, 0.02, 0.02]);
     }
 
     #[test]

@@ -11,10 +11,15 @@ use crate::support::{
     recovery::{QUANTITIES, middle_rad},
 };
 
-/// Set values that pass a filter before a loop that feeds them forward.
-const FILTERED: [(&str, &str); 3] = [
+/// Set values that pass a filter before a loop that feeds them forward, or come late.
+const FILTERED: [(&str, &str); 5] = [
     ("filtered", "base = 'default'\n[control]\nset_value_filter_s = 0.1\n"),
     ("slowly filtered", "base = 'default'\n[control]\nset_value_filter_s = 0.25\nfeed_forward = 0.7\n"),
+    ("delayed", "base = 'default'\n[control]\nset_value_delay_s = 0.15\n"),
+    (
+        "filtered and delayed",
+        "base = 'default'\n[control]\nset_value_filter_s = 0.1\nset_value_delay_s = 0.08\n",
+    ),
     ("filtered and late", "base = 'lag-limited'\n[control]\nset_value_filter_s = 0.15\n"),
 ];
 

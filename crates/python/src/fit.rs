@@ -54,6 +54,7 @@ fn rows(joint: &JointFit) -> Vec<Vec<Cell>> {
         ("integral_gain_1_s2", &joint.integral_gain_1_s2),
         ("feed_forward", &joint.feed_forward),
         ("set_value_filter_s", &joint.set_value_filter_s),
+        ("set_value_delay_s", &joint.set_value_delay_s),
         ("gain_ratio", &joint.gain_ratio),
         ("speed_limit_growing_rad_s", &joint.speed_limit_growing_rad_s),
         ("speed_limit_shrinking_rad_s", &joint.speed_limit_shrinking_rad_s),

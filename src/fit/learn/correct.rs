@@ -63,7 +63,7 @@ impl Manner {
         Self {
             character,
             cut_off_hz,
-            ahead: steps_in(model.set_value_filter_s + model.lag_s() + BEYOND_LAG_S),
+            ahead: steps_in(model.set_values_late_s() + model.lag_s() + BEYOND_LAG_S),
             most_rad,
         }
     }

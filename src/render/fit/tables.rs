@@ -51,8 +51,11 @@ const LIMITS: [(&str, Shown); 2] = [
     ),
 ];
 
-const FILTER: Shown =
-    Shown { name: "filter of set values", of: |j| j.set_value_filter_s, scale: |s| s * 1e3, decimals: 0 };
+/// What lies between the log and the loop.
+const BEFORE_LOOP: [Shown; 2] = [
+    Shown { name: "filter of set values", of: |j| j.set_value_filter_s, scale: |s| s * 1e3, decimals: 0 },
+    Shown { name: "delay of set values", of: |j| j.set_value_delay_s, scale: |s| s * 1e3, decimals: 0 },
+];
 
 /// Share of the full signal to each side.
 const VALVE: [Shown; 2] = [
@@ -210,15 +213,18 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
              wide-open valve."
         )
     }));
-    let filtered =
-        fit.joints.iter().filter(|joint| joint.model_holds && joint.model.set_value_filter_s > 0.0);
-    let filters: Vec<String> =
-        filtered.map(|joint| format!("{} {}", joint.name, FILTER.cell(joint))).collect();
-    lines.extend((!filters.is_empty()).then(|| {
+    let late = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.set_values_late_s() > 0.0);
+    let late: Vec<String> = late
+        .map(|joint| {
+            let [filter, delay] = BEFORE_LOOP.map(|shown| shown.cell(joint));
+            format!("{} {filter} and {delay}", joint.name)
+        })
+        .collect();
+    lines.extend((!late.is_empty()).then(|| {
         format!(
-            "The controller filters what it is sent before its loop takes it; time constants, ms: {}. Lags are those of loop \
-             and valve, after that.",
-            filters.join(", ")
+            "What is sent reaches the loop late: through a filter, or by a delay, which late stamps of the measured angles \
+             look like. Time constant of the filter and delay, ms: {}. Lags are those of loop and valve, after that.",
+            late.join(", ")
         )
     }));
     lines.extend(of(&|joint| joint.model_holds && !joint.feed_forward.identified).map(|joints| {

@@ -159,6 +159,7 @@ fn a_fit_shows_its_numbers_intervals_and_what_was_never_reached() {
         integral_gain_1_s2: known(0.5),
         feed_forward: known(1.0),
         set_value_filter_s: known(0.0),
+        set_value_delay_s: known(0.0),
         gain_ratio: known(1.0),
         speed_limit_growing_rad_s: reached,
         speed_limit_shrinking_rad_s: reached,

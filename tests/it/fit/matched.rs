@@ -30,8 +30,12 @@ const MODEL: Model = Model {
     hysteresis_rad_s: 0.1 * DEGREE_RAD,
     edge_rad_s: 0.0,
     set_value_filter_s: 0.0,
+    set_value_delay_s: 0.0,
     backlash_rad: 0.05 * DEGREE_RAD,
 };
+
+/// The same with a valve that is quick.
+const QUICK: Model = Model { dead_time_s: 0.06, time_constant_s: 0.05, ..MODEL };
 
 fn trial(joints: &[&str]) -> Series {
     let joint = |name: &&str| JointRoom { name: (*name).to_owned(), home_rad: 1.0, range_rad: [0.5, 1.5] };
@@ -125,6 +129,20 @@ fn a_filter_of_set_values_is_found_where_it_is_and_nowhere_else() {
     }
 }
 
+#[test]
+fn set_values_that_come_late_are_told_from_a_lag_within_the_loop() {
+    let plan = trial(&["J"]);
+    for (seed, delay_s) in [(1, 0.1), (2, 0.2), (3, 0.3)] {
+        let late = Model { set_value_delay_s: delay_s, ..QUICK };
+        let joint = &fitted(&[(&plan, &measured_of(&late, &plan, seed, |_| false))]).joints[0];
+        let [low_s, high_s] = joint.set_value_delay_s.interval.unwrap();
+        assert!((low_s..high_s).contains(&delay_s) && high_s < 4.0 * low_s, "{seed}: {joint:?}");
+        let found_s = joint.lag_s.value.unwrap();
+        assert!(joint.lag_s.identified && (found_s / QUICK.lag_s()).ln().abs() < 0.15, "{seed}: {joint:?}");
+        assert!((joint.model.feed_forward / QUICK.feed_forward).ln().abs() < 0.1, "{seed}: {joint:?}");
+    }
+}
+
 /// A plan as a moving mean over 0.3 s makes it.
 fn averaged(plan: &Series) -> Series {
     let mean = |values: &[f64]| -> Vec<f64> {
@@ -141,16 +159,15 @@ fn averaged(plan: &Series) -> Series {
 #[test]
 fn intervals_behind_a_filter_of_another_form_hold_the_truth_or_nothing_is_claimed() {
     let plan = trial(&["J"]);
-    let quick = Model { dead_time_s: 0.06, time_constant_s: 0.05, ..MODEL };
     for seed in 1..=3 {
-        let measured = measured_of(&quick, &averaged(&plan), seed, |_| false);
+        let measured = measured_of(&QUICK, &averaged(&plan), seed, |_| false);
         let joint = &fitted(&[(&plan, &measured)]).joints[0];
         assert!(joint.model.set_value_filter_s > 0.0, "{seed}: {joint:?}");
         for (found, truth) in [
-            (joint.lag_s, quick.lag_s()),
-            (joint.position_gain_1_s, quick.position_gain_1_s),
-            (joint.feed_forward, quick.feed_forward),
-            (joint.dead_band_rad_s, quick.dead_band_rad_s + quick.hysteresis_rad_s + quick.stiction_rad_s),
+            (joint.lag_s, QUICK.lag_s()),
+            (joint.position_gain_1_s, QUICK.position_gain_1_s),
+            (joint.feed_forward, QUICK.feed_forward),
+            (joint.dead_band_rad_s, QUICK.dead_band_rad_s + QUICK.hysteresis_rad_s + QUICK.stiction_rad_s),
         ] {
             let holds = found.interval.is_some_and(|[low, high]| (low..=high).contains(&truth));
             assert!(holds || !found.identified, "{seed}: {truth} {found:?}");
