@@ -57,12 +57,6 @@ impl Filter {
         let before = problem.cost_at(&found.x, found.scale_rad, workspace);
         let gained = before - other.cost_at(&best.x, found.scale_rad, workspace);
         let model = other.model(&best.x);
-        eprintln!(
-            "gained {gained} {} {} {}",
-            model.set_value_filter_s,
-            model.set_value_delay_s,
-            model.position_gain_1_s * model.lag_s()
-        );
         let stands_in =
             model.set_values_late_s() < SHORTEST_S || model.position_gain_1_s * model.lag_s() > RINGS;
         if stands_in || gained < -AS_GOOD {

@@ -65,7 +65,7 @@ fn what_was_sent_to_another_machine_is_not_sent_again_though_no_command_came_twi
         json(folder, &format!("report {log}"))["promised"]["measured_mean_peak_rad"].as_f64().unwrap()
     };
     let (before, after) = (mean("run-3.mcap"), mean("run-4.mcap"));
-    assert!(after < 0.33 * before, "{before} rad, then {after}");
+    assert!(after < 0.4 * before, "{before} rad, then {after}");
 }
 
 /// A new timing is sent with the correction that it needs; its errors are small then, and bound no later correction.
