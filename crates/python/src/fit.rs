@@ -46,7 +46,7 @@ impl Fit {
 }
 
 fn rows(joint: &JointFit) -> Vec<Vec<Cell>> {
-    let quantities: [(&str, &Estimated); 12] = [
+    let quantities: [(&str, &Estimated); 13] = [
         ("lag_s", &joint.lag_s),
         ("dead_band_rad_s", &joint.dead_band_rad_s),
         ("dead_band_error_rad", &joint.dead_band_error_rad),
