@@ -9,7 +9,10 @@ use super::{
     Estimated,
     estimate::{Problem, Workspace},
     outcome::{LEAST_SHARP_SKILL, LEAST_SMOOTH_SKILL, MOST_UNEXPLAINED},
-    parameters::{DEAD_BAND, DEAD_TIME, FEED_FORWARD, HYSTERESIS, POSITION_GAIN, STICTION, TIME_CONSTANT},
+    parameters::{
+        DEAD_BAND, DEAD_TIME, FEED_FORWARD, FILTER, HYSTERESIS, POSITION_GAIN, SET_VALUE_DELAY, STICTION,
+        TIME_CONSTANT,
+    },
     robust::inefficiency,
     run::ASKED_OVER_S,
 };
@@ -39,8 +42,8 @@ pub(super) mod discrepancy {
     pub(in crate::fit) const SMOOTH_INTEGRAL_GAIN: f64 = 0.50;
     /// Of the feed-forward, which valves with play and friction that falls with speed stand in for.
     pub(in crate::fit) const FEED_FORWARD: [f64; 2] = [0.14, 0.25];
-    /// Of the time constant of a filter of set values.
-    pub(in crate::fit) const FILTER: f64 = 0.25;
+    /// Of how late set values come, for a part of which the lag of the loop stands in.
+    pub(in crate::fit) const SET_VALUES_LATE: f64 = 0.38;
     /// Of the ratio of gains.
     pub(in crate::fit) const GAIN: f64 = 0.10;
 }
@@ -162,6 +165,18 @@ impl Knowledge {
         // Within the lag a smooth start does not leave the dead band: its delay is the band's, and bounds the lag.
         let upper_bound = found.interval.map(|[_, most_s]| most_s).filter(|_| !self.sharp);
         Estimated { identified: found.identified && self.sharp, upper_bound, ..found }
+    }
+
+    /// How late the loop asks for what is sent: neither filter nor delay alone is known.
+    pub(super) fn set_values_late(&self, problem: &Problem, x: &[f64]) -> Estimated {
+        let model = problem.model(x);
+        let late_s = model.set_values_late_s();
+        if late_s <= 0.0 {
+            return Estimated { value: Some(0.0), ..Estimated::default() };
+        }
+        let part = |i: usize, value_s: f64| (i, problem.priors.of(i).deviation * value_s / late_s);
+        let parts = [part(FILTER, model.set_value_filter_s), part(SET_VALUE_DELAY, model.set_value_delay_s)];
+        self.positive(late_s, &parts, discrepancy::SET_VALUES_LATE)
     }
 
     /// Wanted speed by sent speed; one that may be none is not identified. A filter of set values that is longer than what

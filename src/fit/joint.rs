@@ -9,9 +9,7 @@ use super::{
     integral,
     interval::{Knowledge, discrepancy},
     outcome::JointFit,
-    parameters::{
-        ASYMMETRY, DEAD_TIME, FILTER, INTEGRAL_GAIN, LIMITS, Priors, SET_VALUE_DELAY, SHARED, Shown,
-    },
+    parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
     run::Run,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
     telling::{of, telling},
@@ -164,13 +162,6 @@ fn report(
     if !problem.shown.integral {
         integral = Estimated { value: Some(0.0), ..Estimated::default() };
     }
-    let before_loop = |i: usize, value_s: f64| {
-        if problem.shown.filter {
-            one(i, value_s, discrepancy::FILTER)
-        } else {
-            Estimated { value: Some(0.0), ..Estimated::default() }
-        }
-    };
     let [dead_band_rad_s, dead_band_error_rad] = knowledge.dead_band(problem, &found.x);
     JointFit {
         name: name.to_owned(),
@@ -187,8 +178,7 @@ fn report(
         position_gain_1_s: knowledge.position_gain(problem, &found.x),
         integral_gain_1_s2: integral,
         feed_forward: knowledge.feed_forward(problem, &found.x),
-        set_value_filter_s: before_loop(FILTER, model.set_value_filter_s),
-        set_value_delay_s: before_loop(SET_VALUE_DELAY, model.set_value_delay_s),
+        set_values_late_s: knowledge.set_values_late(problem, &found.x),
         gain_ratio: one(ASYMMETRY, model.asymmetry.exp(), discrepancy::GAIN),
         speed_limit_growing_rad_s: limit(0),
         speed_limit_shrinking_rad_s: limit(1),

@@ -82,12 +82,10 @@ pub struct JointFit {
     pub integral_gain_1_s2: Estimated,
     /// Wanted speed per sent speed.
     pub feed_forward: Estimated,
-    /// Time constant of a filter of the set values before the loop, s; 0 where the data show none.
+    /// How late the loop asks for what is sent, through a filter of first order and by a delay, s; 0 where the data show
+    /// none. Late stamps of measured angles look like it. Logs of angles hardly tell the two parts apart.
     #[serde(default)]
-    pub set_value_filter_s: Estimated,
-    /// Delay of the set values before the loop, or of the stamps of measured angles, s; 0 where the data show none.
-    #[serde(default)]
-    pub set_value_delay_s: Estimated,
+    pub set_values_late_s: Estimated,
     /// Gain for growing angles by that for shrinking ones.
     pub gain_ratio: Estimated,
     /// Largest speed of growing angles, rad/s.
@@ -141,8 +139,7 @@ impl JointFit {
             position_gain_1_s: none,
             integral_gain_1_s2: none,
             feed_forward: none,
-            set_value_filter_s: none,
-            set_value_delay_s: none,
+            set_values_late_s: none,
             gain_ratio: none,
             speed_limit_growing_rad_s: reached(self.speed_limit_growing_rad_s),
             speed_limit_shrinking_rad_s: reached(self.speed_limit_shrinking_rad_s),

@@ -46,15 +46,14 @@ impl Fit {
 }
 
 fn rows(joint: &JointFit) -> Vec<Vec<Cell>> {
-    let quantities: [(&str, &Estimated); 13] = [
+    let quantities: [(&str, &Estimated); 12] = [
         ("lag_s", &joint.lag_s),
         ("dead_band_rad_s", &joint.dead_band_rad_s),
         ("dead_band_error_rad", &joint.dead_band_error_rad),
         ("position_gain_1_s", &joint.position_gain_1_s),
         ("integral_gain_1_s2", &joint.integral_gain_1_s2),
         ("feed_forward", &joint.feed_forward),
-        ("set_value_filter_s", &joint.set_value_filter_s),
-        ("set_value_delay_s", &joint.set_value_delay_s),
+        ("set_values_late_s", &joint.set_values_late_s),
         ("gain_ratio", &joint.gain_ratio),
         ("speed_limit_growing_rad_s", &joint.speed_limit_growing_rad_s),
         ("speed_limit_shrinking_rad_s", &joint.speed_limit_shrinking_rad_s),

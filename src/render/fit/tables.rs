@@ -51,11 +51,8 @@ const LIMITS: [(&str, Shown); 2] = [
     ),
 ];
 
-/// What lies between the log and the loop.
-const BEFORE_LOOP: [Shown; 2] = [
-    Shown { name: "filter of set values", of: |j| j.set_value_filter_s, scale: |s| s * 1e3, decimals: 0 },
-    Shown { name: "delay of set values", of: |j| j.set_value_delay_s, scale: |s| s * 1e3, decimals: 0 },
-];
+const LATE: Shown =
+    Shown { name: "set values late", of: |j| j.set_values_late_s, scale: |s| s * 1e3, decimals: 0 };
 
 /// Share of the full signal to each side.
 const VALVE: [Shown; 2] = [
@@ -214,16 +211,11 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         )
     }));
     let late = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.set_values_late_s() > 0.0);
-    let late: Vec<String> = late
-        .map(|joint| {
-            let [filter, delay] = BEFORE_LOOP.map(|shown| shown.cell(joint));
-            format!("{} {filter} and {delay}", joint.name)
-        })
-        .collect();
+    let late: Vec<String> = late.map(|joint| format!("{} {}", joint.name, LATE.cell(joint))).collect();
     lines.extend((!late.is_empty()).then(|| {
         format!(
-            "What is sent reaches the loop late: through a filter, or by a delay, which late stamps of the measured angles \
-             look like. Time constant of the filter and delay, ms: {}. Lags are those of loop and valve, after that.",
+            "Loops answer as if what is sent reached them late, ms: {}. A filter of set values does so, a delay on the way, or \
+             late stamps of the measured angles. Lags are those of loop and valve, after that.",
             late.join(", ")
         )
     }));
