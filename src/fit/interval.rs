@@ -21,8 +21,8 @@ use crate::units::DEGREE_RAD;
 /// Normal quantile of a two-sided 95 % interval.
 pub(super) const QUANTILE: f64 = 1.96;
 
-/// Model error as deviations of logarithms; no log narrows them. Pairs: of a joint as it is, and behind a filter of set
-/// values, whose form is not known: what one of second order or a moving mean delays beyond one of first order goes to them.
+/// Model error as deviations of logarithms; no log narrows them. Pairs: of a joint as it is, and behind late set
+/// values, whose filter is of a form not known: what one of second order or a moving mean delays beyond one of first order goes to them.
 pub(super) mod discrepancy {
     /// Of the lag.
     pub(in crate::fit) const LAG: [f64; 2] = [0.11, 0.25];
@@ -85,9 +85,9 @@ const SMOOTH_SKILL: [f64; 2] = [0.98, LEAST_SMOOTH_SKILL];
 /// Times the usual discrepancy between the two.
 const SMOOTH_DOUBT: f64 = 1.3;
 
-/// The discrepancy of a joint as it is, or that behind a filter of set values.
-fn behind(problem: &Problem, [plain, filtered]: [f64; 2]) -> f64 {
-    if problem.shown.filter { filtered } else { plain }
+/// The discrepancy of a joint as it is, or that behind late set values.
+fn behind(problem: &Problem, [plain, late]: [f64; 2]) -> f64 {
+    if problem.shown.late { late } else { plain }
 }
 
 impl Knowledge {

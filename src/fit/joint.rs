@@ -5,12 +5,12 @@ use super::{
     censor::{ASKED, seen},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
-    filter::Filter,
     integral,
     interval::{Knowledge, discrepancy},
     outcome::JointFit,
     parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
     run::Run,
+    set_values::SetValues,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
     telling::{of, telling},
 };
@@ -53,7 +53,7 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     let mut problem = Problem {
         runs: &some,
         priors: &priors,
-        shown: Shown { limits: asked_for(runs, limits), edge: false, filter: false, integral: true },
+        shown: Shown { limits: asked_for(runs, limits), edge: false, late: false, integral: true },
         part: Part::All,
         inefficiency: INEFFICIENCY,
     };
@@ -83,13 +83,13 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
         found = edged;
     }
     let mut rival = None;
-    match Filter::of(&problem, &found, &mut workspace) {
-        Filter::Shown(filtered) => {
-            problem.shown.filter = true;
-            found = filtered;
+    match SetValues::of(&problem, &found, &mut workspace) {
+        SetValues::Late(late) => {
+            problem.shown.late = true;
+            found = late;
         }
-        Filter::Possible(model) => rival = Some(model),
-        Filter::None => {}
+        SetValues::MayBeLate(model) => rival = Some(model),
+        SetValues::Prompt => {}
     }
     if some.len() < runs.len() {
         problem.runs = runs;

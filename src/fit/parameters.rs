@@ -82,8 +82,8 @@ pub(super) struct Shown {
     pub(super) limits: [bool; 4],
     /// Edges of the valve that open gradually.
     pub(super) edge: bool,
-    /// A filter and a delay of the set values.
-    pub(super) filter: bool,
+    /// Set values that come late, by a filter and a delay.
+    pub(super) late: bool,
     /// Integral action of the position loop.
     pub(super) integral: bool,
 }
@@ -93,7 +93,7 @@ impl Shown {
     pub(super) fn has(self, parameter: usize) -> bool {
         match parameter {
             EDGE => self.edge,
-            FILTER | SET_VALUE_DELAY => self.filter,
+            FILTER | SET_VALUE_DELAY => self.late,
             INTEGRAL_GAIN => self.integral,
             LIMITS.. => self.limits.get(parameter - LIMITS).is_none_or(|shown| *shown),
             _ => true,
@@ -149,8 +149,8 @@ impl Priors {
             acceleration_limit_rad_s2: [limit(2), limit(3)],
             hysteresis_rad_s: value(HYSTERESIS),
             edge_rad_s: if shown.edge { value(EDGE) } else { 0.0 },
-            set_value_filter_s: if shown.filter { value(FILTER) } else { 0.0 },
-            set_value_delay_s: if shown.filter { value(SET_VALUE_DELAY) } else { 0.0 },
+            set_value_filter_s: if shown.late { value(FILTER) } else { 0.0 },
+            set_value_delay_s: if shown.late { value(SET_VALUE_DELAY) } else { 0.0 },
             backlash_rad: BACKLASH_RAD,
         }
     }

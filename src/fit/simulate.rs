@@ -45,7 +45,7 @@ pub(super) fn simulate(
     measured_rad: &mut Vec<f64>,
 ) {
     lanes([model], sent, [start], wanted, measured_rad);
-    delay([model], measured_rad);
+    come_late([model], measured_rad);
 }
 
 /// Models that are simulated side by side: chains of dependent operations of one leave a processor idle.
@@ -61,7 +61,7 @@ pub(super) fn simulate_lanes(
     measured_rad: &mut Vec<f64>,
 ) {
     lanes(models, sent, start, wanted, measured_rad);
-    delay(models, measured_rad);
+    come_late(models, measured_rad);
 }
 
 #[inline(always)]
@@ -151,7 +151,7 @@ fn lanes<const N: usize>(
 }
 
 /// Lets angles come late by the delay of the set values: a loop does the same a while later. The first are those of the start.
-fn delay<const N: usize>(models: [&Model; N], measured_rad: &mut [f64]) {
+fn come_late<const N: usize>(models: [&Model; N], measured_rad: &mut [f64]) {
     for (lane, model) in models.iter().enumerate().filter(|(_, model)| model.set_value_delay_s > 0.0) {
         let steps = model.set_value_delay_s / STEP_S;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few hundred steps")]

@@ -1,5 +1,4 @@
-//! Whether the controller filters its set values before the loop takes them: what is asked for then comes late, and the loop
-//! itself is faster than that.
+//! Whether set values reach the loop late, through a filter or by a delay: the loop itself is then faster than it looks.
 
 use super::{
     estimate::{Estimate, Problem, Workspace},
@@ -10,44 +9,44 @@ use super::{
 /// The cost, a logarithm of likelihood, must fall by this.
 const GAIN: f64 = 12.0;
 
-/// A filter that costs no more than this explains the data as well as none.
+/// Late set values that cost no more than this explain the data as well as prompt ones.
 const AS_GOOD: f64 = 2.0;
 
 /// Set values that come less late show the valve's lag by another name, s.
 const SHORTEST_S: f64 = 0.06;
 
-/// A loop whose gain is larger than this by its lag rings: one that is calm has another structure, for which a filter
+/// A loop whose gain is larger than this by its lag rings: one that is calm has another structure, for which late set values
 /// would stand in.
 const RINGS: f64 = 0.8;
 
 /// Dead time where a descent starts, s.
 const DEAD_TIME_S: f64 = 0.08;
 
-/// Filter, s, delay, s, and feed-forward where the others start: without a filter a loop looks slower than it is, or faster, and one
-/// without feed-forward looks as if it had some.
+/// Filter, s, delay, s, and feed-forward where the others start: taken for prompt ones, late set values make a loop look slower than
+/// it is, or faster, and one without feed-forward as if it had some.
 const STARTS: [[f64; 3]; 2] = [[0.1, 0.15, 0.9], [0.15, 0.05, 0.05]];
 
-/// What a filter of the set values makes of an estimate without one.
-pub(super) enum Filter {
-    /// The data show it.
-    Shown(Estimate),
-    /// They hardly tell it from none.
-    Possible(Model),
-    /// It explains them worse than none, or what it explains has another cause.
-    None,
+/// What late set values make of an estimate with prompt ones.
+pub(super) enum SetValues {
+    /// The data show them.
+    Late(Estimate),
+    /// They hardly tell them from prompt ones.
+    MayBeLate(Model),
+    /// Late ones explain the data worse, or what they explain has another cause.
+    Prompt,
 }
 
-impl Filter {
+impl SetValues {
     pub(super) fn of(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Self {
         let mut other = problem.clone();
-        other.shown.filter = true;
+        other.shown.late = true;
         let place = |i: usize, value: f64| problem.priors.of(i).place(value);
         let mut start = found.x.clone();
         start[DEAD_TIME] = place(DEAD_TIME, DEAD_TIME_S);
         let anew = STARTS.map(|[filter_s, delay_s, feed_forward]| {
             let mut x = start.clone();
             x[..LIMITS].fill(0.0);
-            x[DEAD_TIME] = start[DEAD_TIME];
+            x[DEAD_TIME] = place(DEAD_TIME, DEAD_TIME_S);
             x[FEED_FORWARD] = place(FEED_FORWARD, feed_forward);
             x[FILTER] = place(FILTER, filter_s);
             x[SET_VALUE_DELAY] = place(SET_VALUE_DELAY, delay_s);
@@ -60,11 +59,11 @@ impl Filter {
         let stands_in =
             model.set_values_late_s() < SHORTEST_S || model.position_gain_1_s * model.lag_s() > RINGS;
         if stands_in || gained < -AS_GOOD {
-            Self::None
+            Self::Prompt
         } else if gained < GAIN {
-            Self::Possible(model)
+            Self::MayBeLate(model)
         } else {
-            Self::Shown(best)
+            Self::Late(best)
         }
     }
 }
