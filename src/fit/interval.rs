@@ -162,8 +162,10 @@ impl Knowledge {
         let parts = [part(DEAD_TIME, model.dead_time_s), part(TIME_CONSTANT, model.time_constant_s)];
         let missed = self.missed(behind(problem, discrepancy::LAG), discrepancy::SMOOTH_LAG);
         let found = self.unfiltered(problem, x, self.positive(lag_s, &parts, missed));
-        // Within the lag a smooth start does not leave the dead band: its delay is the band's, and bounds the lag.
-        let upper_bound = found.interval.map(|[_, most_s]| most_s).filter(|_| !self.sharp);
+        // Within the lag a smooth start does not leave the dead band: its delay is the band's, and bounds the lag; but where
+        // set values come late, which of it was lag is not known.
+        let bounds = !self.sharp && !problem.shown.late;
+        let upper_bound = found.interval.map(|[_, most_s]| most_s).filter(|_| bounds);
         Estimated { identified: found.identified && self.sharp, upper_bound, ..found }
     }
 

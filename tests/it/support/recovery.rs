@@ -96,7 +96,7 @@ pub(crate) fn middle_rad(plan: &Series) -> Vec<f64> {
 pub(crate) fn recover(seeds: std::ops::Range<u64>, job: &Job) -> (Vec<Column>, Vec<f64>) {
     let base = Parameters::preset("default").unwrap();
     let mut columns: Vec<Column> = QUANTITIES.iter().map(|_| Column::default()).collect();
-    let mut skills = Vec::new();
+    let (mut skills, mut late) = (Vec::new(), 0);
     for seed in seeds {
         let plant = Plant::new(&Arm::sample().unwrap(), base.random(seed)).unwrap();
         let truth = plant.truth(&middle_rad(&job.plan), 0.0).unwrap();
@@ -108,6 +108,7 @@ pub(crate) fn recover(seeds: std::ops::Range<u64>, job: &Job) -> (Vec<Column>, V
         });
         let fit = fitted(&[(&job.plan, &measured)]);
         for joint in &fit.joints {
+            late += usize::from(joint.set_values_late_s.identified);
             let truth = truth.joints.iter().find(|truth| truth.name == joint.name).unwrap();
             skills.push(joint.held_out_r2);
             for (column, (_, found, truth_of)) in columns.iter_mut().zip(QUANTITIES) {
@@ -115,6 +116,12 @@ pub(crate) fn recover(seeds: std::ops::Range<u64>, job: &Job) -> (Vec<Column>, V
             }
         }
     }
+    // Their set values are prompt.
+    assert!(
+        100 * late <= skills.len(),
+        "set values of {late} of {} joints are said to be late",
+        skills.len()
+    );
     (columns, skills)
 }
 
