@@ -237,3 +237,54 @@ fn an_address_where_nobody_listens_is_an_error_that_names_it() {
     assert_eq!(code, Some(1), "{said}");
     assert!(said.contains(&url) && said.contains("start one there"), "{said}");
 }
+
+/// The messages of the blueprint that is exported with a sample log.
+#[cfg(feature = "viewer")]
+fn blueprint(name: &str) -> Vec<rerun::log::LogMsg> {
+    use rerun::external::re_log_encoding::Decoder;
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("run.rbl");
+    let log = sample(name);
+    let arguments = ["export".as_ref(), log.as_os_str(), "--rerun-blueprint".as_ref(), file.as_os_str()];
+    let run = command(root()).args(arguments).output().unwrap();
+    assert!(matches!(run.status.code(), Some(0 | 3)), "{}", String::from_utf8_lossy(&run.stderr));
+    let bytes = std::fs::read(file).unwrap();
+    Decoder::decode_eager(std::io::Cursor::new(bytes)).unwrap().map(Result::unwrap).collect()
+}
+
+#[cfg(feature = "viewer")]
+#[test]
+fn a_blueprint_is_of_the_application_that_rerun_names_after_the_file() {
+    use rerun::{StoreKind, log::LogMsg};
+    let messages = blueprint("pressures-run.mcap");
+    for message in &messages {
+        let id = message.store_id();
+        assert_eq!((id.kind(), id.application_id().as_str()), (StoreKind::Blueprint, "pressures-run"));
+    }
+    let active = |message: &LogMsg| matches!(message, LogMsg::BlueprintActivationCommand(command) if command.make_active);
+    assert!(active(messages.last().unwrap()), "what comes before it is whole");
+}
+
+#[cfg(feature = "viewer")]
+#[test]
+fn views_of_a_blueprint_are_of_what_the_log_holds() {
+    let seen = |name: &str| -> Vec<String> {
+        let text = |message| match message {
+            rerun::log::LogMsg::ArrowMsg(_, message) => Some(format!("{:?}", message.batch)),
+            _ => None,
+        };
+        blueprint(name).into_iter().filter_map(text).collect()
+    };
+    let has = |texts: &[String], word: &str| texts.iter().any(|text| text.contains(word));
+    let pressures = seen("pressures-run.mcap");
+    for word in [
+        "+ /planned/joint_states/position",
+        "+ /joint_states/velocity",
+        "control_msgs.msg.DynamicJointState:message",
+        ".interface_values[5].values[1]",
+    ] {
+        assert!(has(&pressures, word), "{word}");
+    }
+    assert!(!has(&pressures, "effort") && !has(&pressures, "\"3D\""), "{pressures:?}");
+    assert!(!has(&seen("panel-install.mcap"), "+ /joint_states/velocity"));
+}
