@@ -196,7 +196,7 @@ pub(super) fn file_name(path: &Path) -> String {
 }
 
 /// First bytes of other forms, what they are, and how to make a log or a table of them.
-const OTHERS: [(&[u8], &str); 11] = [
+const OTHERS: [(&[u8], &str); 9] = [
     (
         b"#ROS",
         "it is a ROS 1 bag: `pip install rosbags`, then `rosbags-convert --src X.bag --dst X --dst-storage mcap`",
@@ -207,8 +207,6 @@ const OTHERS: [(&[u8], &str); 11] = [
     ),
     (b"MDF ", "it is an MF4 recording: `pip install asammdf`, then `asammdf` exports its channels as CSV"),
     (b"ULog", "it is a PX4 ULog: `pip install pyulog`, then `ulog2csv` makes CSV of it"),
-    (b"header:\n", ECHO),
-    (b"---\n", ECHO),
     (b"PK\x03\x04", "it is a spreadsheet or an archive: save the sheet as CSV, or unpack the archive"),
     (
         b"MATLAB 5.0 MAT-file",
@@ -221,9 +219,6 @@ const OTHERS: [(&[u8], &str); 11] = [
     ),
     (b"RRF2", "it is a Rerun recording: give the log that it was made of"),
 ];
-
-const ECHO: &str =
-    "it looks like the text of `ros2 topic echo`: record the topics with `ros2 bag record` instead";
 
 fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
     let start: Vec<String> = bytes.iter().take(8).map(|byte| format!("{byte:02X}")).collect();

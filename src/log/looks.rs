@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use super::{csv::is_rule, file::Span};
+use super::{
+    csv::{begins_with_message, is_rule},
+    file::Span,
+};
 
 /// As much of a file as tells what it is if it is no log.
 pub(super) const LOOKED_AT: Span = Span { start: 0, end: 4096 };
@@ -48,6 +51,7 @@ pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
     named
         || objects
         || printed()
+        || begins_with_message(&text)
         || [';', ',', '\t'].into_iter().any(|one| alike(one, &lines) || below(one))
         || spaced(&lines[last..])
 }

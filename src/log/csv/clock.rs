@@ -291,28 +291,32 @@ impl Look<'_> {
             };
             (!self.labels[*column].is_joint && cells.peek().is_some() && cells.all(within)).then_some(unit)
         };
-        let parts = (0..self.labels.len()).filter_map(|column| Some((column, part(&column)?)));
-        // The finest counts: others may say the same less finely.
-        let Some((part, unit)) = parts.min_by(|a, b| a.1.factor.total_cmp(&b.1.factor)) else { return };
-        let seconds = |source: &TimeSource| {
-            let source = match source {
+        let columns = 0..self.labels.len();
+        let parts: Vec<_> = columns.filter_map(|column| Some((column, part(&column)?))).collect();
+        let seconds = |found: &Found| {
+            let source = match &found.source {
                 // Counted in seconds, whatever its steps look like.
                 TimeSource::Number { column, .. } if says_seconds(*column) => {
                     TimeSource::Number { column: *column, unit: parse_unit("s")? }
                 }
                 other => other.clone(),
             };
-            let comma = self.dialect.decimal_comma;
-            let whole = self.head.sample.iter().all(|row| {
-                let cell = |column: usize| row.get(column).map_or(&[][..], Vec::as_slice);
-                source.ns(0, cell, comma).is_none_or(|ns| ns % NS_PER_SECOND == 0)
-            });
-            (whole && !source.columns().contains(&part)).then_some(source)
+            let whole = self.ns(&source).flatten().all(|ns| ns % NS_PER_SECOND == 0);
+            whole.then_some(source)
         };
-        if let Some(whole) = usable.iter().find_map(|found| seconds(&found.source)) {
-            let joined = self.found(TimeSource::WithPart { whole: Box::new(whole), part, unit }, None);
-            usable.insert(0, joined);
-        }
+        // What stands before the unit: a message has more stamps than one.
+        let stem = |column: usize| self.head.names[column].trim_end_matches(char::is_alphabetic);
+        let wholes: Vec<_> = usable.iter().filter_map(seconds).collect();
+        let pairs = wholes.iter().flat_map(|whole| parts.iter().map(move |part| (whole, *part)));
+        let joined = pairs.filter_map(|(whole, (part, unit))| {
+            let columns = whole.columns();
+            let of_another = columns.iter().all(|column| stem(*column) != stem(part));
+            let found = self.found(TimeSource::WithPart { whole: Box::new(whole.clone()), part, unit }, None);
+            // The finest counts: others may say the same less finely.
+            (!columns.contains(&part)).then_some(((!found.resolves, of_another, unit.factor), found))
+        });
+        let best = joined.min_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
+        usable.splice(0..0, best.map(|(_, found)| found));
     }
 
     /// A day in one column and a time of day in another are one time.

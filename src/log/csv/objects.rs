@@ -58,9 +58,14 @@ impl JsonLines {
 
     /// Takes in one of the first lines; `false` if it is no object.
     pub fn gather(&mut self, line: &[u8]) -> bool {
-        let Some(cells) = cells(line) else { return false };
-        self.gathered.push(cells);
+        let Some(object) = parsed(line) else { return false };
+        self.gather_object(object);
         true
+    }
+
+    /// The same of an object.
+    pub(super) fn gather_object(&mut self, object: Map<String, Value>) {
+        self.gathered.push(cells_of(object));
     }
 
     /// Whether the last line that was gathered is of a joint, or has a key, that none before it was of: others may follow.
@@ -220,21 +225,24 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
         }
         b'[' => {
             let objects: Vec<Map<String, Value>> = parsed(text)?;
-            for object in &objects {
-                let line = serde_json::to_vec(object).ok()?;
-                lines.gather(&line);
+            let some = !objects.is_empty();
+            for object in objects {
+                lines.gather_object(object);
             }
-            (!objects.is_empty()).then(|| lines.table().into_bytes())
+            some.then(|| lines.table().into_bytes())
         }
         _ => None,
     }
 }
 
 fn cells(line: &[u8]) -> Option<Cells> {
-    let object = published(parsed(line)?);
+    parsed(line).map(cells_of)
+}
+
+fn cells_of(object: Map<String, Value>) -> Cells {
     let mut cells = Vec::new();
-    flatten_object("", &object, None, &mut cells);
-    Some(cells)
+    flatten_object("", &published(object), None, &mut cells);
+    cells
 }
 
 /// A message that a bridge published, with its topic; other objects as they are.

@@ -257,7 +257,48 @@ fn a_table_that_lacks_a_unit_gets_a_command_that_reads_it() {
     fs::write(folder.path().join("d.csv"), errors).unwrap();
     let (_, text, error) = said(&hydrotrace(folder.path(), &["import", "d.csv", "-o", "d.mcap"]));
     assert!(text.contains("say --planned B=measured+err,A=measured+err if the error"), "{text}{error}");
-    fs::write(folder.path().join("b.txt"), "header:\n  stamp:\n    sec: 1\nposition:\n- 0.5\n---\n").unwrap();
-    let (code, _, error) = said(&hydrotrace(folder.path(), &["report", "b.txt"]));
-    assert!(code == 1 && error.contains("ros2 bag record"), "{error}");
+}
+
+/// The run as `ros2 topic echo` and `rostopic echo` print the state of a controller: lists a line a number, or in brackets.
+fn echoed(in_brackets: bool) -> String {
+    let list = |values: [f64; 2]| match (in_brackets, values.map(|q| format!("{:e}", q.to_radians()))) {
+        (true, [a, b]) => format!(" [{a}, {b}]"),
+        (false, [a, b]) => format!("\n  - {a}\n  - {b}"),
+    };
+    let [sec, nanosec] = if in_brackets { ["secs", "nsecs"] } else { ["sec", "nanosec"] };
+    let message = |k: u32| {
+        let [a_planned, a_measured, b_planned, b_measured] = row(k);
+        let (planned, measured) = (list([a_planned, b_planned]), list([a_measured, b_measured]));
+        let (s, ns) = (1_790_000_000 + k / 50, k % 50 * 20_000_000);
+        let since = format!("\n  time_from_start:\n    {sec}: 0\n    {nanosec}: 0\n");
+        format!(
+            "header:\n  stamp:\n    {sec}: {s}\n    {nanosec}: {ns}\n  frame_id: ''\njoint_names:\n- boom\n- 'arm'\n\
+             desired:\n  positions:{planned}\n  velocities: []{since}actual:\n  positions:{measured}{since}---\n"
+        )
+    };
+    (0..500).map(message).collect()
+}
+
+#[test]
+fn a_topic_that_was_echoed_into_a_file_is_a_log() {
+    let lost = "A message was lost!!!\n\ttotal count change:1\n\ttotal count: 1---\n";
+    for text in
+        [echoed(false), echoed(true), format!("{lost}{}", echoed(false)), echoed(false) + "header:\n  st"]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("state.txt"), &text).unwrap();
+        let log: Value = report(folder.path(), "state.txt");
+        let joints = log["joints"].as_array().unwrap();
+        assert_eq!(
+            joints.iter().map(|joint| &joint["name"]).collect::<Vec<_>>(),
+            ["boom", "arm"],
+            "{text:.100}"
+        );
+        let duration_s = log["source"]["duration_s"].as_f64().unwrap();
+        assert!((duration_s - 9.98).abs() < 1e-6, "{duration_s} s");
+        for joint in joints {
+            let peak = joint["tracking_error"]["peak"].as_f64().unwrap();
+            assert!((peak - 0.026).abs() < 0.001, "{text:.100}: {peak}");
+        }
+    }
 }
