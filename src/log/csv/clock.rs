@@ -43,7 +43,7 @@ pub(super) fn choose(
         }
     }
     if usable.is_empty() && failure.is_none() {
-        usable.extend(look.index().or_else(|| look.by_unit()));
+        usable.extend(look.index().or_else(|| look.by_unit()).or_else(|| look.unnamed_stamp()));
     }
     look.join_day_and_time(&mut usable);
     look.join_parts(&mut usable);
@@ -76,10 +76,10 @@ pub(super) fn of_column(
 }
 
 /// A column of times.
-struct Found {
-    source: TimeSource,
+pub(super) struct Found {
+    pub(super) source: TimeSource,
     /// Whether most rows have a stamp of their own.
-    resolves: bool,
+    pub(super) resolves: bool,
     absolute: bool,
     /// The guesses.
     doubt: Option<String>,
@@ -99,21 +99,23 @@ impl Found {
 const LEAST_APART_S: f64 = 0.02;
 /// Fewer rows may rise by chance.
 const LEAST_ROWS: usize = 12;
-const NS_PER_SECOND: i64 = 1_000_000_000;
+/// Seconds from 2001 to 2103, since 1970.
+pub(super) const SINCE_1970_S: [f64; 2] = [1.0e9, 4.2e9];
 
-struct Look<'a> {
-    head: &'a Head,
-    labels: &'a [Label],
-    dialect: Dialect,
+/// A table in which times are looked for.
+pub(super) struct Look<'a> {
+    pub(super) head: &'a Head,
+    pub(super) labels: &'a [Label],
+    pub(super) dialect: Dialect,
     options: &'a CsvOptions,
 }
 
 impl Look<'_> {
-    fn cells(&self, column: usize) -> impl Iterator<Item = &[u8]> + Clone {
+    pub(super) fn cells(&self, column: usize) -> impl Iterator<Item = &[u8]> + Clone {
         self.head.sample.iter().map(move |row| row.get(column).map_or(&[][..], Vec::as_slice))
     }
 
-    fn found(&self, source: TimeSource, doubt: Option<String>) -> Found {
+    pub(super) fn found(&self, source: TimeSource, doubt: Option<String>) -> Found {
         let ns: Vec<i64> = self.ns(&source).flatten().collect();
         let steps = ns.windows(2).filter(|w| w[0] != w[1]).count();
         Found {
@@ -188,7 +190,7 @@ impl Look<'_> {
             && (0..self.labels.len()).any(dated)
     }
 
-    fn ns<'a>(&'a self, source: &'a TimeSource) -> impl Iterator<Item = Option<i64>> + 'a {
+    pub(super) fn ns<'a>(&'a self, source: &'a TimeSource) -> impl Iterator<Item = Option<i64>> + 'a {
         self.head.sample.iter().map(move |row| {
             source.ns(0, |column| row.get(column).map_or(&[][..], Vec::as_slice), self.dialect.decimal_comma)
         })
@@ -272,53 +274,6 @@ impl Look<'_> {
         rises.then(|| Found { doubt: Some(said.to_owned()), ..found })
     }
 
-    /// Seconds in one column and what is beyond them in another are one time: `sec` and `nanosec`, a time of day and `ms`.
-    fn join_parts(&self, usable: &mut Vec<Found>) {
-        let last_word = |column: usize| self.labels[column].words.last().map_or("", String::as_str);
-        let says_seconds =
-            |column: usize| ["s", "sec", "secs", "second", "seconds"].contains(&last_word(column));
-        let part = |column: &usize| {
-            let name = self.head.names[*column].to_lowercase();
-            let spelt = name.rsplit(|c: char| !c.is_alphabetic()).next().filter(|word| !word.is_empty());
-            let unit = match spelt? {
-                "millitm" => parse_unit("ms"),
-                word => parse_unit(word).filter(|unit| unit.measure == Measure::Time && unit.factor < 1e9),
-            }?;
-            let mut cells = self.cells(*column).filter(|cell| !cell.trim_ascii().is_empty()).peekable();
-            let within = |cell: &[u8]| {
-                let whole = cell.trim_ascii().iter().all(u8::is_ascii_digit);
-                whole && number(cell, false).is_some_and(|value| value * unit.factor < 1e9)
-            };
-            (!self.labels[*column].is_joint && cells.peek().is_some() && cells.all(within)).then_some(unit)
-        };
-        let columns = 0..self.labels.len();
-        let parts: Vec<_> = columns.filter_map(|column| Some((column, part(&column)?))).collect();
-        let seconds = |found: &Found| {
-            let source = match &found.source {
-                // Counted in seconds, whatever its steps look like.
-                TimeSource::Number { column, .. } if says_seconds(*column) => {
-                    TimeSource::Number { column: *column, unit: parse_unit("s")? }
-                }
-                other => other.clone(),
-            };
-            let whole = self.ns(&source).flatten().all(|ns| ns % NS_PER_SECOND == 0);
-            whole.then_some(source)
-        };
-        // What stands before the unit: a message has more stamps than one.
-        let stem = |column: usize| self.head.names[column].trim_end_matches(char::is_alphabetic);
-        let wholes: Vec<_> = usable.iter().filter_map(seconds).collect();
-        let pairs = wholes.iter().flat_map(|whole| parts.iter().map(move |part| (whole, *part)));
-        let joined = pairs.filter_map(|(whole, (part, unit))| {
-            let columns = whole.columns();
-            let of_another = columns.iter().all(|column| stem(*column) != stem(part));
-            let found = self.found(TimeSource::WithPart { whole: Box::new(whole.clone()), part, unit }, None);
-            // The finest counts: others may say the same less finely.
-            (!columns.contains(&part)).then_some(((!found.resolves, of_another, unit.factor), found))
-        });
-        let best = joined.min_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(std::cmp::Ordering::Equal));
-        usable.splice(0..0, best.map(|(_, found)| found));
-    }
-
     /// A day in one column and a time of day in another are one time.
     fn join_day_and_time(&self, usable: &mut Vec<Found>) {
         let of = |part: Part| {
@@ -346,7 +301,6 @@ const SINCE_1899_DAYS: [f64; 2] = [36_526.0, 73_051.0];
 /// The unit of a column that names none: by its size if it counts from 1970, or else the one in
 /// which the rows come at 2 to 2000 Hz.
 fn guess_unit(first: f64, step: f64, whole: bool) -> (Option<Unit>, Option<String>) {
-    const SINCE_1970_S: [f64; 2] = [1.0e9, 4.2e9];
     // From 1995 to 2130.
     const SINCE_1601: [f64; 2] = [1.243e17, 1.67e17];
     if whole && (SINCE_1601[0]..SINCE_1601[1]).contains(&first) {

@@ -45,6 +45,7 @@ mod run;
 mod scope;
 mod settle;
 mod si;
+mod stamp;
 mod stream;
 mod text;
 mod time;

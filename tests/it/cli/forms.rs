@@ -224,3 +224,19 @@ fn the_line_that_imports_a_table_repeats_what_was_given() {
     let (code, _, error) = said(&hydrotrace(folder, "report a.mcap --measured p1"));
     assert!(code == 1 && error.contains("--measured JOINT=p1") && !error.contains("no topic"), "{error}");
 }
+
+#[test]
+fn a_stamp_in_the_first_columns_of_a_table_without_names_is_its_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = |t: f64, p: f64, m: f64| {
+        let ns = (t * 1e9).round();
+        let (s, beyond) = (1_772_700_000.0 + (ns / 1e9).floor(), ns % 1e9);
+        format!("{s},{beyond},,boom,{:.6},{:.6}\n", p.to_radians(), m.to_radians())
+    };
+    fs::write(folder.path().join("a.csv"), rows(row)).unwrap();
+    let line = "import a.csv --planned boom=column_5 --measured boom=column_6 --radians -o a.mcap";
+    let (code, found, error) = said(&hydrotrace(folder.path(), line));
+    assert!(code == 3 && found.contains("one joint, 4.98 s at 50.0 Hz"), "{found}{error}");
+    assert!(found.contains("column_1 and column_2: counts s, and ns beside"), "{found}");
+    assert!(found.contains("which is how `ros2 topic echo --csv` writes stamps"), "{found}");
+}

@@ -96,7 +96,6 @@ fn files_that_are_no_log_say_what_they_are() {
         (b"PK\x03\x04\x14\0\x06\0", "50 4B 03 04 14 00 06 00", "save the sheet as CSV"),
         (b"MATLAB 5.0 MAT-file, Platform", "4D 41 54 4C 41 42 20 35", "writetable"),
         (b"TDSm\x0e\0\0\0", "54 44 53 6D 0E 00 00 00", "npTDMS"),
-        (b"header:\n  stamp:\n", "68 65 61 64 65 72 3A 0A", "ros2 bag record"),
         (b"time;a;b\n0;1;2\n", "74 69 6D 65 3B 61 3B 62", "give an .mcap recording"),
     ] {
         let message = read_bytes(bytes, &ReadOptions::default()).unwrap_err().to_string();
