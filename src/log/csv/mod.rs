@@ -13,7 +13,7 @@ mod clocks;
 mod column;
 mod date;
 mod dialect;
-mod documents;
+mod echoed;
 mod efforts;
 mod elapsed;
 #[cfg(feature = "encodings")]
@@ -55,7 +55,7 @@ mod within;
 mod word;
 
 pub use again::other_header;
-pub(in crate::log) use documents::begins as begins_with_message;
+pub(in crate::log) use echoed::begins as begins_with_message;
 pub use error::CsvError;
 pub use objects::JsonLines;
 pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
@@ -112,7 +112,7 @@ pub(in crate::log) fn says_side(part: &str) -> bool {
 pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<CsvRun, CsvError> {
     let text = text::of_bytes(name, bytes)?;
     let table =
-        objects::as_table(&text).or_else(|| documents::as_table(&text)).or_else(|| printed::as_table(&text));
+        objects::as_table(&text).or_else(|| echoed::as_table(&text)).or_else(|| printed::as_table(&text));
     let text = table.map_or(text, Cow::Owned);
     read_table(name, Cow::Borrowed(&text), options, Remarks::default())
         .or_else(|error| of_other_form(name, &text, options).unwrap_or(Err(error)))
