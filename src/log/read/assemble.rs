@@ -27,7 +27,7 @@ use crate::{
         range::TimeRange,
         source::{AXES, Role, Stamps},
     },
-    remark::Remarks,
+    remark::{Code, Remarks},
     series::{Clock, JointKind, Series, Signal, continuous_clock},
     units::seconds_since,
 };
@@ -43,7 +43,7 @@ pub(super) fn assemble(
     let alone = (choice.planned.is_empty() || choice.measured.is_empty()).then(|| remarks.clone());
     let (base, base_why) = time_base(&extracted, choice, options.time_base, &mut remarks)?;
     overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?;
-    let plan_is_command = remark_choice(choice, options, &extracted.metadata, &mut remarks);
+    let plan_is_command = remark_choice(choice, options, &extracted.tables, &mut remarks);
     let sliding = &mut kinds.sliding;
     sliding.extend(options.description.as_deref().map(sliding_joints).unwrap_or_default());
     // Where they are the arm's, joints called x, y and z are no pose.
@@ -69,7 +69,7 @@ pub(super) fn assemble(
     let mut assembly =
         Assembly::new(extracted, (base, options.range), (kinds, laid_onto), chosen, &mut remarks);
     let mut pending: Vec<&Candidate> = choice.planned.iter().chain(beside.iter().map(|(_, c)| c)).collect();
-    Imported::check(&assembly.extracted.metadata, options)?;
+    Imported::check(&assembly.extracted.tables, options)?;
     let degrees = options.measured_in_degrees;
     let mut measured = assembly.series(&choice.measured, &pending, degrees, None, &mut remarks);
     pending.drain(..choice.planned.len());
@@ -129,7 +129,8 @@ pub(super) fn assemble(
     let mut source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
     source.measured_delay_s = Some(delay_s).filter(|delay_s| *delay_s != 0.0);
     let Extracted { attachments, metadata, .. } = assembly.extracted;
-    let remarks = alone.unwrap_or(remarks);
+    // Where both sides are there, a table that lacks one is no doubt.
+    let remarks = alone.unwrap_or_else(|| remarks.without(Code::OneSide));
     Ok(Recording {
         planned,
         measured,

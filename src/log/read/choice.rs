@@ -12,7 +12,7 @@ use crate::{
 pub(super) fn remark_choice(
     choice: &Choice,
     options: &ReadOptions,
-    metadata: &BTreeMap<String, BTreeMap<String, String>>,
+    tables: &[BTreeMap<String, String>],
     remarks: &mut Remarks,
 ) -> bool {
     for rival in &choice.rivals {
@@ -24,7 +24,7 @@ pub(super) fn remark_choice(
     // A table that is read as it is was doubted column by column.
     let told = remarks.as_slice().iter().any(|remark| remark.code == Code::PlanIsCommand);
     if let ([first, ..], false) = (commanded.as_slice(), told) {
-        let (sent, fix) = match Imported::of(metadata) {
+        let (sent, fix) = match Imported::of(tables) {
             Some(table) => (
                 format!("the command in {}", table.file),
                 "or import its columns with --planned JOINT=COLUMN,...",

@@ -155,6 +155,8 @@ pub(super) struct Extracted {
     pub(super) description: Option<(usize, String)>,
     pub(super) attachments: Vec<Attachment>,
     pub(super) metadata: BTreeMap<String, BTreeMap<String, String>>,
+    /// What each imported log among the files tells of its table.
+    pub(super) tables: Vec<BTreeMap<String, String>>,
     pub(super) remarks: Remarks,
 }
 

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     log::{
         channel::{Channel, Definitions},
-        csv::joint_in,
+        csv::{ORIGIN, joint_in},
         file::Held,
         files::{ScannedFile, ScannedLog, count},
         options::{ReadOptions, Selector},
@@ -47,6 +47,7 @@ pub(super) fn extract(log: &ScannedLog<'_>, options: &ReadOptions) -> Extracted 
             files: out.files,
             attachments: out.attachments,
             metadata: out.metadata,
+            tables: out.tables,
             remarks: before,
             ..Extracted::default()
         };
@@ -184,6 +185,9 @@ fn describe(file: &ScannedFile<'_>, out: &mut Extracted) {
         }
     }
     for one in &layout.metadata {
+        if one.name == ORIGIN && !out.tables.contains(&one.entries) {
+            out.tables.push(one.entries.clone());
+        }
         out.metadata.entry(one.name.clone()).or_default().extend(one.entries.clone());
     }
 }

@@ -198,11 +198,12 @@ fn assembled(mut extracted: Extracted, options: &ReadOptions) -> Result<Recordin
             topic.joint_fields
         );
     }
+    let tables = extracted.tables.clone();
     let mut recording = assemble(extracted, &choice, options, kinds)?;
     let Recording { planned, measured, metadata, source, remarks, .. } = &mut recording;
     recovered::remark(metadata, remarks);
     let topics = [&source.planned_topic, &source.measured_topic];
-    source.origin = Origin::of(metadata, topics, [planned, measured]);
+    source.origin = Origin::of(&tables, topics, [planned, measured]);
     ::log::info!("planned {}:{}", source.planned_topic, source.planned_field);
     ::log::info!("measured {}:{}", source.measured_topic, source.measured_field);
     ::log::info!("chosen: {}", source.why);

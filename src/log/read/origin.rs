@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     log::{
-        csv::{GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN},
+        csv::{GIVEN_OF_ORIGIN, TIME_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN},
         error::LogError,
         import_line::{Given, line},
         options::ReadOptions,
@@ -25,9 +25,13 @@ pub(super) struct Imported<'a> {
 }
 
 impl<'a> Imported<'a> {
-    /// `None` of a log that was recorded.
-    pub(super) fn of(metadata: &'a BTreeMap<String, BTreeMap<String, String>>) -> Option<Self> {
-        let origin = metadata.get(ORIGIN)?;
+    /// `None` of a log that was recorded, or of several tables, of which none is the one.
+    pub(super) fn of(tables: &'a [BTreeMap<String, String>]) -> Option<Self> {
+        let [origin] = tables else { return None };
+        Self::one(origin)
+    }
+
+    fn one(origin: &'a BTreeMap<String, String>) -> Option<Self> {
         Some(Self { file: origin.get("file")?, origin })
     }
 
@@ -41,22 +45,22 @@ impl<'a> Imported<'a> {
     }
 
     /// An error where an option would convert positions of an imported log to rad that were when its table was read.
-    pub(super) fn check(
-        metadata: &BTreeMap<String, BTreeMap<String, String>>,
-        options: &ReadOptions,
-    ) -> Result<(), LogError> {
-        let Some(table) = Imported::of(metadata) else { return Ok(()) };
+    pub(super) fn check(tables: &[BTreeMap<String, String>], options: &ReadOptions) -> Result<(), LogError> {
+        tables.iter().filter_map(Imported::one).try_for_each(|table| table.check_one(options))
+    }
+
+    fn check_one(&self, options: &ReadOptions) -> Result<(), LogError> {
         let sides = [
             ("planned", "--planned-degrees", options.planned_in_degrees),
             ("measured", "--measured-degrees", options.measured_in_degrees),
         ];
         for (side, option, _) in sides.into_iter().filter(|(.., given)| *given) {
             let stated = format!("{UNIT_OF_ORIGIN}{side} position of ");
-            let found = table.origin.iter().find_map(|(key, unit)| Some((key.strip_prefix(&stated)?, unit)));
+            let found = self.origin.iter().find_map(|(key, unit)| Some((key.strip_prefix(&stated)?, unit)));
             if let Some((joint, unit)) = found {
                 let header =
-                    table.origin.get(&format!("{side} position of {joint}")).cloned().unwrap_or_default();
-                let (file, unit) = (table.file.to_owned(), unit.clone());
+                    self.origin.get(&format!("{side} position of {joint}")).cloned().unwrap_or_default();
+                let (file, unit) = (self.file.to_owned(), unit.clone());
                 return Err(LogError::ConvertedBefore { option, header, unit, file });
             }
         }
@@ -112,40 +116,60 @@ impl<'a> Imported<'a> {
 pub struct Origin {
     /// Name of the file that had them.
     pub file: String,
+    /// Name of the file of the measurement, where that is another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measured_file: Option<String>,
     /// Headers of the plan, by joint; none if the plan is from elsewhere.
     pub planned: Vec<String>,
     /// Headers of the measurement, by joint; none if it is from elsewhere.
     pub measured: Vec<String>,
-    /// Column of the time, and its form.
+    /// Column of the time, and its form; of several tables, those of each that differ.
     pub time: String,
 }
 
 impl Origin {
     /// `None` of a log that was recorded, or of which other topics are read.
     pub(super) fn of(
-        metadata: &BTreeMap<String, BTreeMap<String, String>>,
+        tables: &[BTreeMap<String, String>],
         topics: [&String; 2],
         series: [&Series; 2],
     ) -> Option<Self> {
-        let origin = metadata.get(ORIGIN)?;
-        let known = Topics::default();
-        let of = |side: usize| {
-            let (topic, series) = (topics[side], series[side]);
-            let becomes = [
-                (&known.planned, "planned position"),
-                (&known.measured, "measured position"),
-                (&known.command, "command position"),
-            ];
-            let becomes = becomes.iter().find(|(one, _)| **one == *topic).map(|(_, becomes)| becomes);
-            let header = |joint: &str| {
-                origin.get(&format!("{} of {joint}", becomes?)).filter(|one| !one.is_empty()).cloned()
-            };
-            series.tracks.iter().filter_map(|track| header(track.name())).collect::<Vec<_>>()
+        let [planned, measured] = [0, 1].map(|side| {
+            let of = |table| (table, headers(table, topics[side], series[side]));
+            tables.iter().map(of).find(|(_, headers)| !headers.is_empty())
+        });
+        let used: Vec<_> = [&planned, &measured].into_iter().flatten().map(|(table, _)| *table).collect();
+        let text = |key: &str| {
+            let mut texts: Vec<String> = used
+                .iter()
+                .filter_map(|table| table.get(key))
+                .filter(|text| !text.is_empty())
+                .cloned()
+                .collect();
+            texts.dedup();
+            texts
         };
-        let planned = of(0);
-        let measured = of(1);
-        let text = |key: &str| origin.get(key).cloned().unwrap_or_default();
-        let any = !planned.is_empty() || !measured.is_empty();
-        any.then(|| Self { file: text("file"), planned, measured, time: text(TIME_OF_ORIGIN) })
+        let mut files = text("file").into_iter();
+        Some(Self {
+            file: used.first().and_then(|_| files.next())?,
+            measured_file: files.next(),
+            planned: planned.map_or_else(Vec::new, |(_, headers)| headers),
+            measured: measured.map_or_else(Vec::new, |(_, headers)| headers),
+            time: text(TIME_OF_ORIGIN).join("; "),
+        })
     }
+}
+
+/// The headers that became the positions of a topic of ours.
+fn headers(table: &BTreeMap<String, String>, topic: &String, series: &Series) -> Vec<String> {
+    let known = Topics::default();
+    let becomes = [
+        (&known.planned, "planned position"),
+        (&known.measured, "measured position"),
+        (&known.command, "command position"),
+    ];
+    let becomes = becomes.iter().find(|(one, _)| *one == topic).map(|(_, becomes)| becomes);
+    let header =
+        |joint: &str| table.get(&format!("{} of {joint}", becomes?)).filter(|one| !one.is_empty()).cloned();
+    series.tracks.iter().filter_map(|track| header(track.name())).collect()
 }

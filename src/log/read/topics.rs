@@ -116,11 +116,15 @@ pub(super) fn missing(
     missing: &'static str,
     flag: &str,
 ) -> LogError {
-    let (present, fix) = match Imported::of(&extracted.metadata) {
+    let (present, fix) = match Imported::of(&extracted.tables) {
         Some(table) if flag.contains(' ') => {
             (table.columns(), format!("{flag} JOINT=COLUMN,... of `hydrotrace import`"))
         }
-        Some(table) => (table.columns(), table.import_line(&extracted.path, Some(flag), &Given::of(options))),
+        Some(table) => {
+            let line = table.import_line(&extracted.path, Some(flag), &Given::of(options));
+            let own = "; or, if they are in a file of their own with the same zero of time, give both files";
+            (table.columns(), line + own)
+        }
         None => (present(extracted), format!("{flag} TOPIC[:FIELD]")),
     };
     LogError::Missing { missing, present, fix }
@@ -128,7 +132,7 @@ pub(super) fn missing(
 
 /// Of columns of the table that the log is made of, named as if they were topics; `None` if there are none.
 pub(super) fn columns_named(extracted: &Extracted, options: &ReadOptions) -> Option<LogError> {
-    let table = Imported::of(&extracted.metadata)?;
+    let table = Imported::of(&extracted.tables)?;
     let is_topic = |one: &Selector| extracted.topics.iter().any(|topic| topic.topic == one.topic);
     let named = options.planned.iter().chain(&options.measured);
     let columns: Vec<String> = named

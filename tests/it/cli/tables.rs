@@ -203,6 +203,15 @@ fn a_plan_in_a_file_of_its_own_fits_whatever_the_order_of_the_files() {
         .map(|words| said(&hydrotrace(folder.path(), words)));
     assert_eq!(runs[0].0, 0, "{}", runs[0].2);
     assert_eq!(runs[0], runs[1]);
+    let text = said(&hydrotrace(folder.path(), "report plan.mcap measured.mcap")).1;
+    for line in ["planned   J1_ref_deg, J2_ref_deg of a.csv\n", "measured  J1_act_deg, J2_act_deg of b.csv\n"]
+    {
+        assert!(text.contains(line), "{text}");
+    }
+    let tables = said(&hydrotrace(folder.path(), "report a.csv b.csv"));
+    assert!(tables.0 == 0 && !tables.1.contains("one-side"), "{}", tables.1);
+    let (code, _, text) = said(&hydrotrace(folder.path(), "report b.csv"));
+    assert!(code == 1 && text.contains("give both files"), "{text}");
 }
 
 #[test]
