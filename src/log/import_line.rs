@@ -72,7 +72,8 @@ fn column(named: &Selector) -> Option<String> {
     }
 }
 
-/// The line that imports a table with options; the name of its output is that of the table, unless the caller's log has it.
+/// The line that imports a table with options; the name of its output is that of the table, with a number where
+/// a file has it already.
 pub(super) fn line(table: &Path, options: &[&str], log: &Path) -> String {
     let (table, output) = (shell_argument(table), shell_argument(output(table, log)));
     ["hydrotrace import", &table]
@@ -90,8 +91,9 @@ fn output(table: &Path, log: &Path) -> String {
         table.extension().is_some_and(|ending| PACKED.iter().any(|one| ending.eq_ignore_ascii_case(one)));
     let inner = if packed { table.with_extension("") } else { table.to_owned() };
     let stem = inner.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let name = format!("{stem}.mcap");
-    if log.file_name().is_some_and(|taken| *taken == *name) { format!("{stem}-2.mcap") } else { name }
+    let names = std::iter::once(format!("{stem}.mcap")).chain((2..).map(|k| format!("{stem}-{k}.mcap")));
+    let taken = |name: &str| log.file_name().is_some_and(|log| *log == *name) || Path::new(name).exists();
+    names.take(100).find(|name| !taken(name)).unwrap_or(format!("{stem}-new.mcap"))
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ pub fn worth(path: &Path) -> Option<String> {
             match topics.contains(&ours.command) {
                 _ if metadata.contains(TRUTH) || plan() => None,
                 true if metadata.contains(PROVENANCE) => Some("a log with a command".to_owned()),
-                _ => Some("a log that was recorded".to_owned()),
+                _ => Some("a log that was recorded or imported".to_owned()),
             }
         }
         Contents::Recording(what) => Some(what.to_owned()),

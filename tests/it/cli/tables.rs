@@ -65,21 +65,20 @@ fn what_a_table_lacks_is_told_in_its_columns_and_by_the_line_that_names_them() {
     }
     let columns = "--planned arm=p2,boom=p1";
     let (code, _, text) = said(&hydrotrace(folder, &format!("report a.csv {columns}")));
-    let paste = format!("import a.csv {columns} -o a.mcap");
+    let paste = format!("import a.csv {columns} -o a-2.mcap");
     assert!(code == 1 && text.contains(&paste), "{text}");
-    fs::remove_file(folder.join("a.mcap")).unwrap();
     hydrotrace(folder, &paste);
-    assert!(said(&hydrotrace(folder, "report a.mcap")).1.contains("p1, p2 of a.csv"));
+    assert!(said(&hydrotrace(folder, "report a-2.mcap")).1.contains("p1, p2 of a.csv"));
     // What was told once need not be told again.
     let told = "--time t --time-unit ms --separator comma --measured boom=boom_act_deg";
     hydrotrace(folder, &format!("import a.csv {told} -o told.mcap"));
     let (_, _, text) = said(&hydrotrace(folder, "report told.mcap"));
-    assert!(text.contains(&format!("import a.csv {told} --planned boom=COLUMN -o a.mcap")), "{text}");
+    assert!(text.contains(&format!("import a.csv {told} --planned boom=COLUMN -o a-3.mcap")), "{text}");
     // From another folder, too.
     fs::create_dir(folder.join("sub")).unwrap();
     fs::rename(folder.join("a.csv"), folder.join("sub/a.csv")).unwrap();
     let (_, _, text) = said(&hydrotrace(folder, &format!("report sub/a.csv {columns}")));
-    assert!(text.contains(&format!("hydrotrace import sub/a.csv {columns} -o a.mcap")), "{text}");
+    assert!(text.contains(&format!("hydrotrace import sub/a.csv {columns} -o a-3.mcap")), "{text}");
 }
 
 #[test]
