@@ -5,6 +5,7 @@ use super::{
     motion::Motion,
     onset::{Onset, Search, onset},
     signals::Signals,
+    stairs,
 };
 use crate::series::{Pair, local_quadratic};
 
@@ -54,7 +55,20 @@ pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, ru
     onset_of(pair, &search, rules).unwrap_or(at_crossing)
 }
 
-/// When the speed of the plan passes the threshold.
+/// When the speed of the plan passes the threshold, and how well that is known.
+pub(super) fn planned_onset(pair: &Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> Onset {
+    let rounded = || {
+        let step =
+            signals.planned_step.filter(|_| !motion.reversal && motion.step(&pair.planned).is_none())?;
+        stairs::onset(pair, motion, step, signals.sizes.stop_speed, rules)
+    };
+    rounded().unwrap_or_else(|| {
+        let at_s = planned_onset_s(pair, signals, motion);
+        Onset { at_s, interval_s: [at_s, at_s] }
+    })
+}
+
+/// When the speed of a plan that is not rounded passes the threshold.
 ///
 /// Between a sample at rest and the first one above the threshold the plan is taken to
 /// accelerate evenly, which its travel and its speed then date.
@@ -97,10 +111,11 @@ fn along(motion: &Motion, value: f64) -> f64 {
 pub(super) fn delay(
     pair: &Pair,
     signals: &Signals,
-    (planned, planned_s): (&Motion, f64),
+    (planned, asked): (&Motion, Onset),
     measured: Option<(&Motion, Onset)>,
     rules: &Rules,
 ) -> Delay {
+    let planned_s = asked.at_s;
     let Some((motion, onset)) = measured else {
         return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     };
@@ -108,14 +123,15 @@ pub(super) fn delay(
     if motion.reversal {
         return reversal(pair, signals, (planned, planned_s), motion, blind_s, rules);
     }
+    let (early_s, late_s) = (planned_s - asked.interval_s[0], asked.interval_s[1] - planned_s);
     let onset = unshaken(pair, signals, motion, onset, planned_s, rules).unwrap_or(onset);
     Delay {
         method: OnsetMethod::Fit,
         planned_s,
         measured_s: Some(onset.at_s),
         interval_s: Some([
-            onset.interval_s[0].min(onset.at_s) - planned_s - blind_s,
-            onset.interval_s[1].max(onset.at_s) - planned_s + blind_s,
+            onset.at_s - planned_s - (onset.at_s - onset.interval_s[0]).max(0.0).hypot(late_s) - blind_s,
+            onset.at_s - planned_s + (onset.interval_s[1] - onset.at_s).max(0.0).hypot(early_s) + blind_s,
         ]),
     }
 }

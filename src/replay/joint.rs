@@ -3,7 +3,7 @@
 use super::{
     Answer, JointReplay, Rules, Stop, Transition,
     answer::rise,
-    delay::{measured_onset, planned_onset_s},
+    delay::{measured_onset, planned_onset},
     lag::{Lag, Speeds, lag},
     lag_share::{Block, blocks, lag_share},
     motion::Motion,
@@ -42,7 +42,8 @@ pub(super) fn joint<'a>(pair: &'a Pair, rules: &Rules) -> Option<Joint<'a>> {
     let lag = lag(&speeds, &signals.planned, signals.sample_interval_s, rules);
 
     let planned: Vec<&Motion> = signals.planned.iter().filter(|m| m.starts()).collect();
-    let starts_s: Vec<f64> = planned.iter().map(|m| planned_onset_s(pair, &signals, m)).collect();
+    let asked: Vec<Onset> = planned.iter().map(|m| planned_onset(pair, &signals, m, rules)).collect();
+    let starts_s: Vec<f64> = asked.iter().map(|onset| onset.at_s).collect();
     let closes_s = |k: usize| pair.t_s[planned[k].segment.end - 1];
     let until_s = |k: usize| starts_s.get(k + 1).map_or(closes_s(k), |next_s| closes_s(k).min(*next_s));
     let untils_s: Vec<f64> = (0..planned.len()).map(until_s).collect();
@@ -56,7 +57,7 @@ pub(super) fn joint<'a>(pair: &'a Pair, rules: &Rules) -> Option<Joint<'a>> {
     let transitions: Vec<Transition> = (0..planned.len())
         .map(|k| {
             let answer = answers[k].and_then(|answer: usize| measured.get(answer).copied());
-            let found = transition(pair, &signals, (planned[k], starts_s[k], untils_s[k]), answer, rules);
+            let found = transition(pair, &signals, (planned[k], asked[k], untils_s[k]), answer, rules);
             Transition { index: k + 1, ..found }
         })
         .collect();

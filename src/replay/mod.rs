@@ -24,6 +24,7 @@ mod profile;
 mod rules;
 mod signals;
 mod spectrum;
+mod stairs;
 mod tool;
 mod tracking;
 mod transition;

@@ -10,9 +10,11 @@ pub(super) struct Speed<'a> {
     /// Angle, free of noise as far as possible, rad.
     pub(super) position_rad: &'a [f64],
     pub(super) velocity_rad_s: &'a [f64],
-    /// Standard deviation of each velocity, rad/s; `None` for a plan, which has no noise.
+    /// Standard deviation of each velocity, rad/s; `None` for what has no noise.
     pub(super) deviation_rad_s: Option<&'a [f64]>,
     pub(super) segments: &'a [Range<usize>],
+    /// Whether it is a plan, which may step.
+    pub(super) is_plan: bool,
     /// Net travel of a motion, at least.
     pub(super) min_travel: f64,
     /// Thresholds of a joint of this kind.
@@ -142,7 +144,7 @@ impl Speed<'_> {
     fn is_motion(&self, motion: &Motion, rules: &Rules) -> bool {
         let (first, last) = (motion.samples.start, motion.samples.end - 1);
         let travel_rad = f64::from(motion.direction) * (self.position_rad[last] - self.position_rad[first]);
-        let steps = self.deviation_rad_s.is_none() && travel_rad >= rules.step_travels * self.min_travel;
+        let steps = self.is_plan && travel_rad >= rules.step_travels * self.min_travel;
         travel_rad >= self.min_travel && (steps || motion.end_s - motion.start_s >= rules.min_motion_s)
     }
 
@@ -198,6 +200,7 @@ mod tests {
             position_rad: &position_rad,
             velocity_rad_s: &velocity_rad_s,
             deviation_rad_s: None,
+            is_plan: true,
             segments,
             min_travel: rules.turning.min_travel,
             sizes: rules.turning,

@@ -51,7 +51,7 @@ fn drift(t_s: &[f64], position: &[f64]) -> Option<f64> {
 
 /// How a joint leaves rest, as travel over time since the departure.
 #[derive(Clone, Copy)]
-enum Rise {
+pub(super) enum Rise {
     /// Constant acceleration for this long, then constant speed, s.
     Ramp(f64),
     /// A power of time: constant acceleration, constant jerk, constant snap.
@@ -59,11 +59,11 @@ enum Rise {
 }
 
 /// From a breakaway with a jump of speed to the gentle start of a spline at rest.
-const RISES: [Rise; 6] =
+pub(super) const RISES: [Rise; 6] =
     [Rise::Ramp(0.03), Rise::Ramp(0.08), Rise::Ramp(0.16), Rise::Power(2), Rise::Power(3), Rise::Power(4)];
 
 impl Rise {
-    fn travel(self, since_s: f64) -> f64 {
+    pub(super) fn travel(self, since_s: f64) -> f64 {
         match self {
             Rise::Ramp(ramp_s) if since_s >= ramp_s => since_s - 0.5 * ramp_s,
             Rise::Ramp(ramp_s) => 0.5 * since_s * since_s / ramp_s,
@@ -75,7 +75,7 @@ impl Rise {
     }
 
     /// How long after the departure a rise of this scale passes a speed; `None` if never.
-    fn passes_s(self, scale: f64, speed_rad_s: f64) -> Option<f64> {
+    pub(super) fn passes_s(self, scale: f64, speed_rad_s: f64) -> Option<f64> {
         let unit = speed_rad_s / scale;
         match self {
             Rise::Ramp(ramp_s) => (unit <= 1.0).then_some(unit * ramp_s),
@@ -149,29 +149,32 @@ pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &
     let best = all.iter().min_by(|a, b| a.squares.total_cmp(&b.squares))?;
     let freedom = ((t.len() as f64 - 4.0).max(1.0) / best.redundancy(&t, &x)).max(1.0);
     let variance = (best.squares / freedom).max(f64::MIN_POSITIVE);
-    let mut onsets: Vec<(f64, f64)> = all
+    let likely = all
         .iter()
-        .filter_map(|fit| {
-            let at_s = fit.onset_s(stop_speed)?;
-            Some((at_s, (0.5 * (best.squares - fit.squares) / variance).exp()))
-        })
-        .collect();
-    onsets.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let total: f64 = onsets.iter().map(|(_, weight)| weight).sum();
-    let quantile = |p: f64| {
-        let mut sum = 0.0;
-        let passed = onsets.iter().find(|(_, weight)| {
-            sum += weight;
-            sum >= p * total
-        });
-        passed.map_or(0.0, |(at_s, _)| *at_s)
-    };
+        .filter_map(|fit| Some((fit.onset_s(stop_speed)?, 0.5 * (fit.squares - best.squares) / variance)));
+    let [low_s, at_s, high_s] = quantiles(likely.collect(), [0.025, 0.5, 0.975])?;
     // Departures are tried at steps; the shapes between the ones tried are not.
     let step_s = rules.onset_step_s;
     Some(Onset {
-        at_s: crossing_s + quantile(0.5),
-        interval_s: [crossing_s + quantile(0.025) - step_s, crossing_s + quantile(0.975) + step_s],
+        at_s: crossing_s + at_s,
+        interval_s: [crossing_s + low_s - step_s, crossing_s + high_s + step_s],
     })
+}
+
+/// Quantiles of instants, each with minus the logarithm of its likelihood; `None` if there are none.
+pub(super) fn quantiles<const N: usize>(mut likely: Vec<(f64, f64)>, shares: [f64; N]) -> Option<[f64; N]> {
+    let best = likely.iter().map(|(_, unlikely)| *unlikely).min_by(f64::total_cmp)?;
+    likely.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let weight = |unlikely: f64| (best - unlikely).exp();
+    let total: f64 = likely.iter().map(|(_, unlikely)| weight(*unlikely)).sum();
+    Some(shares.map(|share| {
+        let mut sum = 0.0;
+        let passed = likely.iter().find(|(_, unlikely)| {
+            sum += weight(*unlikely);
+            sum >= share * total
+        });
+        passed.map_or(0.0, |(at_s, _)| *at_s)
+    }))
 }
 
 /// The best rest level and scale of a rise that begins at `t0`.

@@ -185,6 +185,7 @@ mod tests {
             measured: t_s.iter().map(|&t| angle(t - late_s) + off_rad).collect(),
             segments: std::iter::once(0..t_s.len()).collect(),
             planned_interval_s: 0.01,
+            planned_step: None,
             matched: t_s.len(),
             unmatched: 0,
             t_s: t_s.into(),

@@ -65,6 +65,7 @@ mod tests {
             planned_velocity: None,
             segments: std::iter::once(0..n).collect(),
             planned_interval_s: 0.01,
+            planned_step: None,
             matched: n,
             unmatched: 0,
             t_s: t_s.into(),

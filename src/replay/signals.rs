@@ -22,6 +22,8 @@ const ENOUGH: usize = 200_000;
 pub(super) struct Signals<'a> {
     pub(super) noise: Noise,
     pub(super) sample_interval_s: f64,
+    /// Step of a plan that is rounded so much that its starts are blurred.
+    pub(super) planned_step: Option<f64>,
     pub(super) thresholds: Thresholds,
     pub(super) planned_rad_s: Cow<'a, [f64]>,
     /// Measured angle, smoothed, rad.
@@ -55,7 +57,32 @@ impl<'a> Signals<'a> {
             peaks.take(t_s, window_s, (segment, i), &fit);
         });
         let given = pair.planned_velocity.as_deref().map(Cow::Borrowed);
-        let planned_rad_s = given.unwrap_or_else(|| slopes(t_s, &pair.planned, segments, rules).into());
+        let interval_s = sample_interval_s.max(pair.planned_interval_s);
+        // A finer step is passed within a sample even at the slowest start.
+        let blurs = |step: &f64| given.is_none() && 0.5 * step > sizes.stop_speed * interval_s;
+        let planned_step = pair.planned_step.filter(blurs);
+        let planned_sigma = planned_step.unwrap_or(0.0) / 12.0_f64.sqrt();
+        let planned_window_s = match planned_step {
+            Some(_) => rules.window_s(pair.kind, interval_s, planned_sigma),
+            None => rules.planned_window_s,
+        };
+        let mut planned_deviation = planned_step.map(|_| column());
+        let planned_rad_s = given.unwrap_or_else(|| {
+            let mut velocity = column();
+            each_local_quadratic(
+                t_s,
+                &pair.planned,
+                segments,
+                (planned_window_s, PLAN_POINTS),
+                |_, i, fit| {
+                    velocity[i] = fit.velocity;
+                    if let Some(deviation) = &mut planned_deviation {
+                        deviation[i] = fit.velocity_gain_per_s * planned_sigma;
+                    }
+                },
+            );
+            velocity.into()
+        });
 
         let min_travel = sizes
             .min_travel
@@ -65,23 +92,27 @@ impl<'a> Signals<'a> {
             t_s,
             position_rad: &pair.planned,
             velocity_rad_s: &planned_rad_s,
-            deviation_rad_s: None,
+            deviation_rad_s: planned_deviation.as_deref(),
+            is_plan: true,
             segments,
-            min_travel: sizes.min_travel,
+            min_travel: sizes.min_travel.max(rules.min_travel_lsbs * planned_step.unwrap_or(0.0)),
             sizes,
         };
         let measured = Speed {
             position_rad: &smooth_rad,
             velocity_rad_s: &measured_rad_s,
             deviation_rad_s: Some(&deviation_rad_s),
+            is_plan: false,
             min_travel,
             ..planned
         };
         let stride = deviation_rad_s.len() / ENOUGH + 1;
-        let usual = median(deviation_rad_s.iter().step_by(stride).copied().collect());
+        let usual_of = |deviation: &[f64]| median(deviation.iter().step_by(stride).copied().collect());
+        let usual = usual_of(&deviation_rad_s);
+        let planned_usual = planned_deviation.as_deref().map_or(0.0, usual_of);
         let thresholds = Thresholds {
-            planned_start: sizes.start_speed,
-            planned_stop: sizes.stop_speed,
+            planned_start: sizes.start_speed.max(rules.start_sigmas * planned_usual),
+            planned_stop: sizes.stop_speed.max(rules.stop_sigmas * planned_usual),
             measured_start: sizes.start_speed.max(rules.start_sigmas * usual),
             measured_stop: sizes.stop_speed.max(rules.stop_sigmas * usual),
             window_s,
@@ -92,6 +123,7 @@ impl<'a> Signals<'a> {
         Self {
             noise,
             sample_interval_s,
+            planned_step,
             thresholds,
             planned_rad_s,
             measured_rad: smooth_rad,
@@ -140,6 +172,7 @@ fn planned_motions(planned: &Track, rules: &Rules) -> Vec<Motion> {
         position_rad: planned.position(),
         velocity_rad_s: &velocity_rad_s,
         deviation_rad_s: None,
+        is_plan: true,
         segments,
         min_travel: sizes.min_travel,
         sizes,

@@ -11,17 +11,17 @@ use super::{
 };
 use crate::{math::median, series::Pair};
 
-/// Measures the answer to a planned motion that starts at `starts_s`. `until_s` is where the window may not pass: the
+/// Measures the answer to a planned motion that starts at `asked`. `until_s` is where the window may not pass: the
 /// next planned start or the end of the segment.
 pub(super) fn transition(
     pair: &Pair,
     signals: &Signals,
-    (planned, starts_s, until_s): (&Motion, f64, f64),
+    (planned, asked, until_s): (&Motion, Onset, f64),
     measured: Option<(&Motion, Onset)>,
     rules: &Rules,
 ) -> Transition {
     let Delay { method, planned_s, measured_s, interval_s } =
-        delay(pair, signals, (planned, starts_s), measured, rules);
+        delay(pair, signals, (planned, asked), measured, rules);
     let end_s = until_s.min(planned_s + rules.transition_window_s);
     let times = &pair.t_s[planned.segment.clone()];
     let first = planned.segment.start + times.partition_point(|&t| t < planned_s);

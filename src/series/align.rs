@@ -2,7 +2,7 @@
 
 use std::{ops::Range, sync::Arc};
 
-use super::{JointKind, Track};
+use super::{JointKind, Track, rounding::rounding};
 
 /// Planned and measured position of one joint at the same instants, in the joint\'s unit: rad or m.
 ///
@@ -26,6 +26,8 @@ pub struct Pair {
     pub segments: Vec<Range<usize>>,
     /// Median time between samples of the plan itself, s: its starts are known no better.
     pub planned_interval_s: f64,
+    /// Step that the plan is rounded to, where it shows one: its starts are known no better than it travels half of it.
+    pub planned_step: Option<f64>,
     /// Measured samples for which there is a plan: n.
     pub matched: usize,
     /// Measured samples without a plan, left out.
@@ -80,6 +82,7 @@ pub fn align(planned: &Track, measured: &Track) -> Option<Pair> {
         measured: Vec::with_capacity(n),
         segments: Vec::new(),
         planned_interval_s: planned.sample_interval_s(),
+        planned_step: rounding(planned),
         matched: 0,
         unmatched: 0,
     };

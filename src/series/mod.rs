@@ -10,6 +10,7 @@ mod derivative;
 mod locate;
 mod noise;
 mod pose;
+mod rounding;
 mod signal;
 mod track;
 mod trajectory;

@@ -32,6 +32,7 @@ pub(crate) fn recorded(
         measured,
         segments,
         planned_interval_s: 0.01,
+        planned_step: None,
         matched: t_s.len(),
         unmatched: 0,
         t_s: t_s.into(),

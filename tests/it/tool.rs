@@ -46,6 +46,7 @@ fn pair(name: &str, kind: JointKind, planned: impl Fn(f64) -> f64, measured: imp
         measured: t_s.iter().map(|t| measured(*t)).collect(),
         segments: std::iter::once(0..t_s.len()).collect(),
         planned_interval_s: 0.01,
+        planned_step: None,
         matched: t_s.len(),
         unmatched: 0,
         t_s: t_s.into(),

@@ -123,6 +123,7 @@ fn off_path(path: &ToolPath, rules: &Rules) -> Option<PathError> {
         measured: path.measured_m.iter().map(|at| at[k]).collect(),
         segments: path.segments.clone(),
         planned_interval_s: 0.0,
+        planned_step: None,
         matched: path.t_s.len(),
         unmatched: 0,
     });

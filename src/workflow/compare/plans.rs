@@ -103,6 +103,7 @@ mod tests {
             planned,
             segments: vec![0..300, 300..800],
             planned_interval_s: 0.01,
+            planned_step: None,
             matched: 800,
             unmatched: 0,
             t_s: t_s.into(),

@@ -158,6 +158,7 @@ mod tests {
             measured: position(&|t| if follows { creep(t) + ramp(t) } else { 0.0 }),
             segments: std::iter::once(0..t_s.len()).collect(),
             planned_interval_s: 0.01,
+            planned_step: None,
             matched: t_s.len(),
             unmatched: 0,
             t_s: t_s.into(),

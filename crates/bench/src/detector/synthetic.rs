@@ -90,6 +90,7 @@ pub fn synthetic_run(seed: u64, sensing: &Sensing) -> SyntheticRun {
         measured: t_s.iter().map(|&t| state(&motions, t - sensing.delay_s).0).map(sense).collect(),
         segments: std::iter::once(0..n).collect(),
         planned_interval_s: 1.0 / sensing.rate_hz,
+        planned_step: None,
         matched: n,
         unmatched: 0,
         t_s: t_s.into(),

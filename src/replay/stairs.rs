@@ -1,0 +1,166 @@
+//! When a plan that was rounded left rest: between two of its values the plan itself passes the middle, and rises through
+//! these middles say when they began, although the first step of the stairs shows later.
+
+use std::ops::Range;
+
+use super::{
+    Rules,
+    motion::Motion,
+    onset::{Onset, RISES, Rise, quantiles},
+};
+use crate::series::Pair;
+
+/// So many middles are fitted: farther up no rise has the shape of its start.
+const MOST: usize = 6;
+/// A change below this share of a step is none.
+const NONE: f64 = 0.01;
+/// What a rise of another shape lies off a middle by, in steps.
+const SHAPE: f64 = 0.03;
+/// A rest lies within half a step of its value; so much more is let pass, in steps.
+const OFF_REST: f64 = 0.55;
+
+/// The onset of a motion of a plan in steps, by a threshold of speed. `None` of a ramp, whose first samples
+/// are equally far apart: its start lies between two of them.
+pub(super) fn onset(
+    pair: &Pair,
+    motion: &Motion,
+    step: f64,
+    stop_speed: f64,
+    rules: &Rules,
+) -> Option<Onset> {
+    let middles = middles(pair, motion, step)?;
+    let first_s = middles[0].t_s;
+    let rest_s = rules.onset_rest_share * (motion.rest_before_s + (first_s - motion.start_s).max(0.0));
+    let steps = (rest_s / rules.onset_step_s).clamp(0.0, 2000.0).floor();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped above")]
+    let departures = (0..=steps as usize).map(|k| first_s - k as f64 * rules.onset_step_s);
+    let each = departures.flat_map(|t0_s| RISES.map(|rise| (t0_s, rise)));
+    let likely = each.filter_map(|(t0_s, rise)| fit(&middles, (t0_s, rise), step, stop_speed));
+    let [low_s, at_s, high_s] = quantiles(likely.collect(), [0.025, 0.5, 0.975])?;
+    Some(Onset { at_s, interval_s: [low_s - rules.onset_step_s, high_s + rules.onset_step_s] })
+}
+
+/// Times and travels from the value at rest at which the plan passes between two values, the first ones.
+fn middles(pair: &Pair, motion: &Motion, step: f64) -> Option<Vec<Middle>> {
+    let (t_s, x) = (&pair.t_s, &pair.planned);
+    let change = |i: usize| f64::from(motion.direction) * (x[i] - x[i - 1]);
+    let inside: Range<usize> = motion.samples.start.max(motion.segment.start + 1)..motion.segment.end;
+    // A smoothed speed is seen before the first step or after it.
+    let seen = inside.clone().find(|i| change(*i) > NONE * step)?;
+    let back = (motion.segment.start + 1..=seen).rev().take_while(|i| change(*i) >= -NONE * step);
+    let window =
+        back.take_while(|i| t_s[seen] - t_s[*i] <= t_s[seen] - motion.start_s + motion.rest_before_s);
+    let first = window.filter(|i| change(*i) > NONE * step).last().unwrap_or(seen);
+    let (rest, mut middles, mut even) = (x[first - 1], Vec::new(), true);
+    let mut at = first;
+    while at < inside.end && middles.len() < MOST {
+        if change(at) <= NONE * step {
+            even = false;
+            at += 1;
+            continue;
+        }
+        // A plan of fewer samples than the measurement climbs a step in several of them.
+        let from = at;
+        let risen = |to: usize| f64::from(motion.direction) * (x[to] - x[from - 1]);
+        while at + 1 < inside.end && risen(at) < (1.0 - NONE) * step && change(at + 1) > NONE * step {
+            at += 1;
+        }
+        even &= (change(at) - change(first)).abs() <= NONE * step;
+        let travel = f64::from(motion.direction) * (0.5 * (x[from - 1] + x[at]) - rest);
+        let (t_s, between_s) = (0.5 * (t_s[from - 1] + t_s[at]), t_s[at] - t_s[from - 1]);
+        middles.push(Middle { t_s, travel, between_s, weight: 1.0 });
+        at += 1;
+    }
+    weigh(&mut middles, step);
+    (!even && middles.len() > 1).then_some(middles)
+}
+
+/// Where a plan passes the middle between two of its values.
+#[derive(Clone, Copy)]
+struct Middle {
+    t_s: f64,
+    /// From the value at rest.
+    travel: f64,
+    /// Time between the two samples around it, s.
+    between_s: f64,
+    /// Inverse variance of the travel, in steps.
+    weight: f64,
+}
+
+/// Weighs each middle by the travel in the time in which it is not seen.
+fn weigh(middles: &mut [Middle], step: f64) {
+    let slopes: Vec<f64> = (0..middles.len())
+        .map(|k| {
+            let (a, b) = (middles[k.saturating_sub(1)], middles[(k + 1).min(middles.len() - 1)]);
+            (b.travel - a.travel) / step / (b.t_s - a.t_s)
+        })
+        .collect();
+    for (middle, slope_s) in middles.iter_mut().zip(slopes) {
+        middle.weight = 1.0 / (SHAPE * SHAPE + (slope_s * middle.between_s).powi(2) / 12.0);
+    }
+}
+
+/// When a rise from a departure on, of the best rest level and scale, passes the speed, and minus the logarithm of its
+/// likelihood; `None` if it never does, or its rest would have been another value.
+fn fit(middles: &[Middle], (t0_s, rise): (f64, Rise), step: f64, stop_speed: f64) -> Option<(f64, f64)> {
+    let risen = || middles.iter().map(|m| (rise.travel((m.t_s - t0_s).max(0.0)), m.travel, m.weight));
+    let all = risen().map(|(.., w)| w).sum::<f64>();
+    let mean_f = risen().map(|(f, _, w)| w * f).sum::<f64>() / all;
+    let mean_x = risen().map(|(_, x, w)| w * x).sum::<f64>() / all;
+    let spread = risen().map(|(f, _, w)| w * (f - mean_f).powi(2)).sum::<f64>();
+    let scale = risen().map(|(f, x, w)| w * (f - mean_f) * (x - mean_x)).sum::<f64>() / spread;
+    let level = mean_x - scale * mean_f;
+    if !(scale > 0.0 && scale.is_finite()) || level.abs() > OFF_REST * step {
+        return None;
+    }
+    let squares = risen().map(|(f, x, w)| w * (x - level - scale * f).powi(2)).sum::<f64>();
+    Some((t0_s + rise.passes_s(scale, stop_speed)?, 0.5 * squares / (step * step)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::joint::joint;
+    use super::*;
+    use crate::{
+        series::{Track, align},
+        units::DEGREE_RAD,
+    };
+
+    /// Six motions of a plan rounded to a step, and of a joint that follows 0.18 s later.
+    fn run(step_deg: f64, every_s: f64, takes_s: f64) -> Pair {
+        let t_s: Vec<f64> = (0..).map(|k| f64::from(k) * every_s).take_while(|t_s| *t_s < 32.0).collect();
+        let at_deg = |t_s: f64| -> f64 {
+            let motion = |k: i32| {
+                let s = ((t_s - 1.5 - 5.003 * f64::from(k)) / takes_s).clamp(0.0, 1.0);
+                let sign = if k % 2 == 0 { 12.0 } else { -12.0 };
+                sign * s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s)
+            };
+            10.0 + (0..6).map(motion).sum::<f64>()
+        };
+        let rounded = |x: f64| (x / step_deg).round() * step_deg * DEGREE_RAD;
+        let planned = t_s.iter().map(|t_s| rounded(at_deg(*t_s))).collect();
+        let late = |(k, t_s): (usize, &f64)| {
+            (at_deg(t_s - 0.18) + 0.004 * ((k * 7919 % 101) as f64 / 50.0 - 1.0)) * DEGREE_RAD
+        };
+        let measured = t_s.iter().enumerate().map(late).collect();
+        let track = |position| Track::new("a", t_s.clone(), position, &[]).unwrap();
+        align(&track(planned), &track(measured)).unwrap()
+    }
+
+    #[test]
+    fn the_delay_after_a_rounded_plan_is_known_as_well_as_its_interval_says() {
+        for (step_deg, every_s, takes_s) in
+            [(0.1, 0.01, 2.5), (0.1, 0.05, 2.5), (0.1, 0.01, 4.0), (0.02, 0.01, 2.5)]
+        {
+            let pair = run(step_deg, every_s, takes_s);
+            let found = joint(&pair, &Rules::default()).unwrap();
+            let of = format!("{step_deg} deg, {every_s} s, {takes_s} s");
+            assert_eq!(found.transitions.len(), 6, "{of}");
+            let delays: Vec<f64> = found.transitions.iter().filter_map(|t| t.onset_delay_s).collect();
+            let held = found.transitions.iter().filter_map(|t| t.onset_delay_interval_s);
+            let held = held.filter(|[low_s, high_s]| (*low_s..=*high_s).contains(&0.18)).count();
+            let mean_s = delays.iter().sum::<f64>() / 6.0;
+            assert!(held == 6 && (mean_s - 0.18).abs() < 0.06, "{of}: {held} held, {mean_s} s");
+        }
+    }
+}
