@@ -14,7 +14,11 @@ pub(super) fn of_sides(
     command: Option<&Command>,
     remarks: &mut Remarks,
 ) {
-    let stops = stopped::stops(planned, measured);
+    let mut stops = stopped::stops(planned, measured);
+    // What was sent must go on, too.
+    if command.is_some_and(|command| stopped::stops(&command.series, measured).is_empty()) {
+        stops.clear();
+    }
     let stop = |stop: &stopped::Stop| (Code::Stopped, stop.message.clone());
     let in_time = stops.iter().find(|stop| stop.in_time).map(stop);
     let found = in_time

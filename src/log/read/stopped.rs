@@ -16,6 +16,11 @@ const MOVES: [f64; 2] = [3.0 * DEGREE_RAD, 0.03];
 /// Share of that within a step with which a plan is on its way.
 const WAY: f64 = 0.3;
 
+/// A joint that was stopped stays farther off than so many times what it is off at other rests, and than this share of a
+/// motion that is worth a remark.
+const USUAL: f64 = 4.0;
+const OFF: f64 = 0.2;
+
 /// For so long after a stop a plan may go on, and before a start: machines lag, s.
 const LAGS_S: f64 = 1.0;
 
@@ -42,13 +47,20 @@ pub(super) fn stops(planned: &Series, measured: &Series) -> Vec<Stop> {
             let missed = travel(plan, [from_s + LAGS_S, to_s - LAGS_S]) - travel(came, [from_s, to_s]);
             missed > least(plan.kind(), MOVES)
         };
-        let names: Vec<&str> = joints.iter().filter(goes_on).map(|(plan, _)| plan.name()).collect();
         let for_good = to_s + STEP_S > last_s;
         // One that stands where its plan rests may be late.
-        let on_its_way = joints.iter().any(|(plan, _)| {
-            travel(plan, [from_s - STEP_S, from_s + STEP_S]) > WAY * least(plan.kind(), MOVES)
-        });
-        if names.is_empty() || !for_good && !on_its_way {
+        let moves = |[a_s, b_s]: [f64; 2]| {
+            joints.iter().any(|(plan, _)| travel(plan, [a_s, b_s]) > WAY * least(plan.kind(), MOVES))
+        };
+        let on_its_way = moves([from_s - STEP_S, from_s + STEP_S]);
+        let passed_by = |joint: &&(&Track, &Track)| {
+            on_its_way
+                && to_s >= from_s + LAGS_S
+                && if for_good { stays_off(joint, [from_s, last_s]) } else { passes(joint, [from_s, to_s]) }
+        };
+        let way = |joint: &&(&Track, &Track)| goes_on(joint) && (for_good || on_its_way) || passed_by(joint);
+        let names: Vec<&str> = joints.iter().filter(way).map(|(plan, _)| plan.name()).collect();
+        if names.is_empty() {
             continue;
         }
         let until = if for_good { " on".to_owned() } else { format!(" until {to_s:.1} s") };
@@ -67,6 +79,28 @@ fn least(kind: JointKind, of: [f64; 2]) -> f64 {
         JointKind::Turns => of[0],
         JointKind::Slides => of[1],
     }
+}
+
+/// Whether a plan goes far while its joint stands, and never rests meanwhile; the joint had gone along with it.
+fn passes((plan, came): &(&Track, &Track), [from_s, to_s]: [f64; 2]) -> bool {
+    let moves = least(plan.kind(), MOVES);
+    let steps = (0..).map(|k| from_s + STEP_S * f64::from(k)).take_while(|at_s| at_s + STEP_S <= to_s);
+    let went = |track: &Track| track.held_at(from_s).position - track.held_at(from_s - LAGS_S).position;
+    travel(plan, [from_s, to_s]) - travel(came, [from_s, to_s]) > moves
+        && went(plan) * went(came) > 0.0
+        && steps.into_iter().all(|at_s| travel(plan, [at_s, at_s + STEP_S]) > 0.5 * WAY * moves)
+}
+
+/// Whether a joint that stands until the end of its log stays farther off its plan's end than it does elsewhere where the
+/// plan rests.
+fn stays_off((plan, came): &(&Track, &Track), [from_s, last_s]: [f64; 2]) -> bool {
+    let off = |at_s: f64| (plan.held_at(at_s).position - came.held_at(at_s).position).abs();
+    let rests = |at_s: f64| travel(plan, [at_s - LAGS_S, at_s]) <= least(plan.kind(), STANDS);
+    let first_s = came.t_s().first().copied().unwrap_or(from_s);
+    let before = (2..).map(|k| first_s + STEP_S * f64::from(k)).take_while(|at_s| *at_s < from_s - LAGS_S);
+    let usual = before.filter(|at_s| rests(*at_s)).map(off).fold(0.0, f64::max);
+    off(last_s) > (USUAL * usual).max(OFF * least(plan.kind(), MOVES))
+        && travel(plan, [from_s, last_s]) > 0.5 * off(last_s)
 }
 
 /// Stretches in which all joints stand, s; a hole in the first one's samples ends one.
@@ -158,7 +192,11 @@ mod tests {
         assert!(matches!(&held[..], [one] if one.contains(" until 10.0 s")), "{held:?}");
         assert_eq!(said(f64::INFINITY, 30.0), Vec::<String>::new());
         assert_eq!(said(f64::INFINITY, 9.0), Vec::<String>::new(), "a log that ends early");
-        assert_eq!(said(16.9, 30.0), Vec::<String>::new(), "almost at the end");
+        let late = said(16.0, 30.0);
+        assert!(matches!(&late[..], [one] if one.contains(" on, though")), "{late:?}");
+        assert_eq!(said(16.98, 30.0), Vec::<String>::new(), "almost at the end");
+        let paused = of_course(30.0, |t| if t < 6.0 { t - 0.2 } else { (t - 1.7).max(5.8) });
+        assert!(matches!(&paused[..], [one] if one.contains(" until 7.")), "{paused:?}");
         assert_eq!(said(0.0, 30.0), Vec::<String>::new(), "it never moved");
         assert_eq!(of_course(30.0, |t| t.min(10.0) - 3.0), Vec::<String>::new(), "it was late before");
     }
