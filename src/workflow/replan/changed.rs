@@ -1,9 +1,6 @@
 //! Whether the machine changed between two runs: then what the older ones taught is no guide.
 
-use super::{
-    history::{History, NONE_RAD, PastRun},
-    samples::within,
-};
+use super::history::{History, PastRun};
 use crate::{
     fit::{Fit, JointFit, predict},
     series::{Series, Track},
@@ -14,19 +11,22 @@ use crate::{
 const CHANGED: f64 = 2.0;
 const CHANGED_RAD: f64 = 0.1 * DEGREE_RAD;
 
-/// Commands that differ by less than this share of their corrections are the same.
-const SAME: f64 = 0.05;
+/// So do those that differ by this factor where the same was sent once more and gave the same to a share.
+const CHANGED_TWICE: f64 = 1.3;
+const AGAIN: f64 = 0.1;
 
-/// A mean peak above the best so far by this factor is looked at.
+/// A mean peak above the best so far by this factor is looked at, and one above what nine runs of ten should stay below by
+/// that factor.
 const GROWN: f64 = 1.1;
+const BROKEN: f64 = 2.0;
 
 /// Fits the logs from one place to before another; `None` if they cannot be fitted.
 pub(super) type Fits<'a> = &'a mut dyn FnMut(usize, usize) -> Option<Fit>;
 
 /// What tells of a change.
 enum Sign {
-    /// The same was sent in an earlier run (by index).
-    Pair(usize),
+    /// The same was sent in an earlier run (by index); the runs from another one on are of the machine as it is now.
+    Pair(usize, usize),
     /// A joint moved otherwise than the earlier runs have it: what they miss of it, root mean square, rad, what the new run
     /// misses of itself, and what they miss of the newest of them.
     Model { joint: String, missed_rad: f64, own_rad: f64, before_rad: f64 },
@@ -43,8 +43,7 @@ impl History {
                 self.changes += 1;
                 self.unsteady_rad = self.unsteady_rad.max(self.differed_rad(first, run, &sign));
                 first = match sign {
-                    // Of what came between the two nobody knows.
-                    Sign::Pair(before) => first.max(before + 1),
+                    Sign::Pair(_, from) => first.max(from),
                     Sign::Model { .. } => run,
                 };
             }
@@ -63,7 +62,7 @@ impl History {
     fn differed_rad(&self, first: usize, run: usize, sign: &Sign) -> f64 {
         let peak = |k: usize| self.runs.get(k).and_then(|run| run.mean_peak_rad);
         let before = match sign {
-            Sign::Pair(before) => peak(*before),
+            Sign::Pair(before, _) => peak(*before),
             Sign::Model { .. } => (first..run).filter_map(peak).reduce(f64::min),
         };
         peak(run).zip(before).map_or(0.0, |(now, before)| (now - before).abs())
@@ -73,22 +72,28 @@ impl History {
     fn sign(&self, first: usize, run: usize, fits: Fits) -> Option<Sign> {
         let peak = |k: usize| self.runs.get(k)?.mean_peak_rad;
         let now_rad = peak(run)?;
-        let same = |k: &usize| {
-            let both = self.series.get(*k).zip(self.series.get(run));
-            let corrected = |k: usize| self.corrections_rad.get(k).copied().unwrap_or(0.0);
-            let most_rad = NONE_RAD.max(SAME * corrected(*k).min(corrected(run)));
-            both.is_some_and(|((a, _), (b, _))| within(a, b, most_rad))
-        };
+        let same = |k: &usize| self.same(*k, run);
         let differs = |k: &usize| {
             peak(*k).is_some_and(|before_rad| exceeds(before_rad, now_rad) || exceeds(now_rad, before_rad))
         };
         if let Some(before) = (first..run).rev().find(|k| differs(k) && same(k)) {
-            return Some(Sign::Pair(before));
+            // Of what came between the two nobody knows.
+            return Some(Sign::Pair(before, before + 1));
+        }
+        // Less of a difference is told by two runs that agree against one.
+        let apart =
+            |k: &usize| peak(*k).map_or(0.0, |before_rad| (now_rad / before_rad).max(before_rad / now_rad));
+        let agrees = |k: &usize| apart(k) < 1.0 + AGAIN && same(k);
+        if let Some(again) = (first..run).rev().find(agrees)
+            && let Some(before) = (first..again).rev().find(|k| apart(k) > CHANGED_TWICE && same(k))
+        {
+            return Some(Sign::Pair(before, again));
         }
         let best_rad = (first..run).filter_map(peak).reduce(f64::min)?;
         let promised_rad = self.runs[run].promised.map(|promised| promised.mean_peak_margin_rad);
-        let surprises = now_rad > GROWN * best_rad.max(promised_rad.unwrap_or(best_rad));
-        if !surprises {
+        let grown = now_rad > GROWN * best_rad.max(promised_rad.unwrap_or(best_rad));
+        let broken = promised_rad.is_some_and(|promised_rad| now_rad > BROKEN * promised_rad);
+        if !grown && !broken {
             return None;
         }
         let place = |k: usize| self.places.get(k).copied();
@@ -112,12 +117,12 @@ impl History {
         let of = |run: &PastRun| format!("{} in {}", Degrees(run.mean_peak_rad.unwrap_or_default()), run.log);
         let log = |k: usize| &self.runs[k].log;
         match sign {
-            Sign::Pair(before) => format!(
+            Sign::Pair(before, from) => format!(
                 "the same was sent twice and gave a mean peak error of {}, then of {}: the machine has changed in between, and \
                  logs up to {} are left out",
                 of(&self.runs[*before]),
                 of(&self.runs[run]),
-                log(*before)
+                log(from - 1)
             ),
             Sign::Model { joint, missed_rad, own_rad, before_rad } => format!(
                 "{joint} moved otherwise in {} than runs before it have it: the model of those misses it by {} (root mean square), \
@@ -170,6 +175,7 @@ mod tests {
         assert_eq!(of(&[1.0, 1.2, 1.3, 1.3], &[0.01, 0.002, 0.001, 0.02]), (6, true, 1));
         assert_eq!(of(&[1.0, 1.2, 1.0], &[0.04, 0.01, 0.01]), (2, true, 2), "it was mended");
         assert_eq!(of(&[1.0, 1.2, 1.0], &[0.01, 0.04, 0.018]), (0, false, 3));
+        assert_eq!(of(&[1.0, 1.2, 1.0, 1.0], &[0.01, 0.04, 0.018, 0.0175]), (4, true, 2), "and again");
         assert_eq!(of(&[1.0, 1.2, 1.3], &[0.01, 0.04, 0.09]), (0, false, 3), "other commands");
     }
 }

@@ -19,6 +19,9 @@ use crate::{
 /// A correction below this is none, rad.
 pub(super) const NONE_RAD: f64 = 1e-3;
 
+/// Commands that differ by less than this share of their corrections are the same.
+const SAME: f64 = 0.05;
+
 /// A run whose mean peak is not below this share of the best before it was not worth its correction.
 const WORTH: f64 = 0.9;
 
@@ -185,6 +188,20 @@ impl History {
         self.runs.iter().enumerate().filter_map(|(k, run)| Some((k, run.mean_peak_rad?))).collect()
     }
 
+    /// The run with the least mean peak, rad; of what was sent again, the last time counts.
+    fn best(&self) -> Option<(usize, f64)> {
+        let again = |k: usize| (k + 1..self.runs.len()).any(|later| self.same(k, later));
+        best(&self.peaks_rad().into_iter().filter(|(k, _)| !again(*k)).collect::<Vec<_>>())
+    }
+
+    /// Whether the same was sent in two runs, but for a share of what they corrected.
+    pub(super) fn same(&self, one: usize, other: usize) -> bool {
+        let corrected = |k: usize| self.corrections_rad.get(k).copied().unwrap_or(0.0);
+        let most_rad = NONE_RAD.max(SAME * corrected(one).min(corrected(other)));
+        let both = self.series.get(one).zip(self.series.get(other));
+        both.is_some_and(|((a, _), (b, _))| within(a, b, most_rad))
+    }
+
     /// Corrections that were not worth it.
     fn failures(&self, peaks_rad: &[(usize, f64)]) -> usize {
         let failed = |k: &usize| {
@@ -207,14 +224,14 @@ impl History {
             (corrections >= FAILURES).then_some(KeepReason::Failed { corrections })
         };
         let Some(because) = because else { return Decision::Send };
-        let (run, best_rad) = if *last_rad < best_before.1 { (*last, *last_rad) } else { best_before };
+        let (run, best_rad) = self.best().unwrap_or((*last, *last_rad));
         Decision::Keep { run, because, best_rad, last_rad: *last_rad }
     }
 
     /// What to keep in place of a correction whose mean peak is expected to be clearly above that of the best run.
     pub(super) fn better_than(&self, expected_rad: f64) -> Option<Decision> {
         let peaks = self.peaks_rad();
-        let (last, (run, best_rad)) = (peaks.last()?, best(&peaks)?);
+        let (last, (run, best_rad)) = (peaks.last()?, self.best()?);
         let because = KeepReason::ExpectedWorse { expected_rad };
         (expected_rad > WORSE * best_rad).then_some(Decision::Keep {
             run,

@@ -159,6 +159,10 @@ pub fn run(
             remarks.add(Code::MachineChanged, history.changes as u64, message);
         }
     }
+    // The fit is to what was sent, but the next command is to follow the plan.
+    let doubts = observed.iter().flat_map(|run| run.remarks.as_slice());
+    let sent = doubts.filter(|remark| remark.code == Code::PlanIsCommand);
+    sent.for_each(|remark| remarks.add(remark.code, remark.count, remark.message.clone()));
     for message in &last.elsewhere {
         remarks.add(Code::OtherFile, 1, message);
     }
@@ -197,11 +201,10 @@ pub fn run(
     let mut maker =
         Maker { inputs, precompensates, fit: &fit, setup, last: &last, history: &history, decision };
     let made = threads::mapped(&options, || (), |(), (new, plan)| maker.candidate(new.clone(), plan.clone()));
-    let made: Vec<Candidate> = made.into_iter().collect::<Result<_, _>>()?;
-    let mut chosen = choose(made).ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
+    let mut chosen = choose(made.into_iter().collect::<Result<_, _>>()?)
+        .ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
     // What is kept is no other correction, whatever is expected of it.
-    let sends = maker.decision == Decision::Send;
-    if let Some(keep) = chosen.kept_instead(&history).filter(|_| sends) {
+    if let Some(keep) = chosen.kept_instead(&history).filter(|_| maker.decision == Decision::Send) {
         maker.decision = keep;
         chosen = maker.candidate(None, last.plan.clone())?;
     }
@@ -211,8 +214,8 @@ pub fn run(
     }
     let past =
         outcome::Past { gain: inputs.learning.gain, trust: history.trust(), runs: history.runs, decision };
-    let delay_known = newest.source.measured_delay_s.is_some();
-    outcome::replanned((fit, fitted_to), (last, delay_known), before, past, search, chosen, remarks)
+    let last = (last, newest.source.measured_delay_s.is_some());
+    outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)
 }
 
 /// The machine: fitted, or from a file; with the names of the logs behind it.
