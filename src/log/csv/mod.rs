@@ -85,6 +85,11 @@ pub(in crate::log) fn joint_in(name: &str) -> String {
     label::label(name, None).joint
 }
 
+/// Whether a name ends in the unit deg.
+pub(in crate::log) fn in_degrees(name: &str) -> bool {
+    unit::split_suffix(name).is_some_and(|(_, found)| unit::parse_unit("deg") == Some(found))
+}
+
 /// What a header says if it is one of a joint by its words: of its position or speed, planned, measured or sent.
 pub(in crate::log) fn of_joint(name: &str) -> Option<OfJoint> {
     let label = label::label(name, None);

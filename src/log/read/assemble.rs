@@ -21,6 +21,7 @@ use super::{
 use crate::{
     arm::sliding_joints,
     log::{
+        csv::in_degrees,
         error::LogError,
         joint_kind,
         options::{ReadOptions, SignalRole, TimeBase, WantedSignal},
@@ -254,6 +255,14 @@ impl Assembly {
         &self.extracted.topic_of(candidate.source).topic
     }
 
+    /// Whether a field, or the topic of one that has no name of its own, ends in the unit deg.
+    fn says_degrees(&self, candidate: &Candidate) -> bool {
+        let Content::Table(table) = &self.extracted.sources[candidate.source].content else { return false };
+        let field = candidate.field.and_then(|at| table.fields.get(at)).map_or("", |field| &field.path);
+        let lone = field.rsplit('.').next() == Some("data");
+        in_degrees(if lone { self.topic(candidate) } else { field })
+    }
+
     /// The samples of a field; moved out of the table unless it is `pending`.
     fn samples(
         &mut self,
@@ -288,6 +297,7 @@ impl Assembly {
         for (place, candidate) in chosen.iter().enumerate() {
             let pending: Vec<&Candidate> =
                 chosen[place + 1..].iter().chain(pending.iter().copied()).collect();
+            let degrees = degrees || self.says_degrees(candidate);
             let found = self.samples(candidate, true, &pending, remarks);
             let tracks = found.into_iter().filter_map(|one| {
                 let kind = self.kinds.of(candidate.source, &one.name);
