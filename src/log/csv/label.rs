@@ -1,10 +1,13 @@
 //! Reads role, quantity, joint and unit from the header of a column.
 
+use std::borrow::Cow;
+
 use super::{
     Quantity, Role,
     letter::{Lettered, lettered},
     name::joint_name,
-    unit::{METRE, Measure, UNITLESS, Unit, parse_unit, split_suffix},
+    scale::{in_header, is_unclear},
+    unit::{ANOTHER, METRE, Measure, UNITLESS, Unit, parse_unit, split_suffix},
     within::take_unit,
     word::{Meaning, Word, words},
 };
@@ -63,7 +66,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let header = header.strip_prefix("field.").unwrap_or(header);
     let indexed = unit_before_index(header);
     let header = indexed.as_deref().unwrap_or(header);
-    let (name, stated) = without_unit(header);
+    let (name, stated) = parted(header);
+    let name = &*name;
     let mut unit = stated.or_else(|| below.and_then(parse_unit));
     if let Some((joint, role)) = own(name).filter(|_| unit.is_some()) {
         let speeds = [Measure::AngularSpeed, Measure::LinearSpeed];
@@ -198,6 +202,15 @@ fn own(name: &str) -> Option<(&str, Role)> {
     found.filter(|(joint, _)| !joint.is_empty())
 }
 
+/// The header without its unit, and the unit.
+fn parted(header: &str) -> (Cow<'_, str>, Option<Unit>) {
+    if let Some((name, unit)) = in_header(header) {
+        return (Cow::Owned(name), Some(unit));
+    }
+    let (name, unit) = without_unit(header);
+    (Cow::Borrowed(name), unit)
+}
+
 /// The header before its unit, and the unit.
 fn without_unit(header: &str) -> (&str, Option<Unit>) {
     for (open, close) in [('[', ']'), ('(', ')'), ('（', '）')] {
@@ -206,6 +219,9 @@ fn without_unit(header: &str) -> (&str, Option<Unit>) {
         };
         if let Some(unit) = parse_unit(inner.1) {
             return (inner.0.trim_end(), Some(unit));
+        }
+        if is_unclear(inner.1) {
+            return (inner.0.trim_end(), Some(ANOTHER));
         }
     }
     let known = |at: usize| {

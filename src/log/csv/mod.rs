@@ -42,6 +42,7 @@ mod printed;
 mod read;
 mod rows;
 mod run;
+mod scale;
 mod scope;
 mod settle;
 mod si;
