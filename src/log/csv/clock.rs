@@ -34,22 +34,28 @@ pub(super) fn choose(
         let column = find(name, "--time", &head.names)?;
         return Ok(look.column(column)?.tell(head, remarks));
     }
-    let mut usable: Vec<Found> = Vec::new();
+    let (mut usable, mut unsteady) = (Vec::new(), Vec::new());
     let mut failure = None;
     for column in (0..labels.len()).filter(|&column| labels[column].is_time) {
+        let is_span = look.is_span(column);
         match look.column(column) {
-            Ok(found) => usable.push(found),
-            Err(error) => failure = failure.or(Some(error)),
+            Ok(found) if is_span && !(found.steady && found.resolves) => {}
+            Ok(found) => if found.steady { &mut usable } else { &mut unsteady }.push(found),
+            Err(error) => failure = failure.or(Some(error).filter(|_| !is_span)),
         }
     }
     if usable.is_empty() && failure.is_none() {
         usable.extend(look.index().or_else(|| look.by_unit()).or_else(|| look.unnamed_stamp()));
     }
+    if usable.is_empty() {
+        usable = unsteady;
+    }
     look.join_day_and_time(&mut usable);
     look.join_parts(&mut usable);
-    // What resolves the rows is better than what does not, then the source's clock than the receiver's, then what has
-    // a date.
-    usable.sort_by_key(|found| (!found.resolves, look.is_of_receipt(found), !found.absolute));
+    // What resolves the rows is better than what does not, then an instant than a span, then the source's clock than the
+    // receiver's, then what has a date.
+    let spans = |found: &Found| found.source.columns().iter().any(|column| look.is_span(*column));
+    usable.sort_by_key(|found| (!found.resolves, spans(found), look.is_of_receipt(found), !found.absolute));
     look.remark_other(&usable, remarks);
     match (usable.into_iter().next(), failure) {
         (Some(best), _) if best.resolves => Ok(best.tell(head, remarks)),
@@ -71,8 +77,8 @@ pub(super) fn of_column(
     dialect: Dialect,
     options: &CsvOptions,
     column: usize,
-) -> Option<TimeSource> {
-    Some(Look { head, labels, dialect, options }.column(column).ok()?.source)
+) -> Option<Found> {
+    Look { head, labels, dialect, options }.column(column).ok()
 }
 
 /// A column of times.
@@ -80,6 +86,8 @@ pub(super) struct Found {
     pub(super) source: TimeSource,
     /// Whether most rows have a stamp of their own.
     pub(super) resolves: bool,
+    /// Whether it rises from row to row, or falls, more often than what only measures something does.
+    pub(super) steady: bool,
     absolute: bool,
     /// The guesses.
     doubt: Option<String>,
@@ -117,9 +125,11 @@ impl Look<'_> {
 
     pub(super) fn found(&self, source: TimeSource, doubt: Option<String>) -> Found {
         let ns: Vec<i64> = self.ns(&source).flatten().collect();
-        let steps = ns.windows(2).filter(|w| w[0] != w[1]).count();
+        let count = |is: fn(&i64, &i64) -> bool| ns.windows(2).filter(|w| is(&w[0], &w[1])).count();
+        let (rises, falls) = (count(i64::lt), count(i64::gt));
         Found {
-            resolves: !ns.is_empty() && 2 * steps + 1 >= ns.len(),
+            resolves: !ns.is_empty() && 2 * (rises + falls) + 1 >= ns.len(),
+            steady: ns.len() < LEAST_ROWS || 4 * rises.min(falls) <= rises + falls,
             absolute: ns.first().is_some_and(|first| *first >= FIRST_ABSOLUTE_NS),
             source,
             doubt,
@@ -196,6 +206,30 @@ impl Look<'_> {
         })
     }
 
+    /// Whether a column is named as how long something took, which is no instant.
+    fn is_span(&self, column: usize) -> bool {
+        const SPANS: [&str; 17] = [
+            "exec",
+            "execution",
+            "cycle",
+            "scan",
+            "task",
+            "loop",
+            "jitter",
+            "latency",
+            "period",
+            "interval",
+            "dt",
+            "delta",
+            "age",
+            "processing",
+            "compute",
+            "zyklus",
+            "laufzeit",
+        ];
+        self.labels[column].words.iter().any(|word| SPANS.contains(&word.as_str()))
+    }
+
     /// Whether a time is that of who received or wrote the row, not of who measured.
     fn is_of_receipt(&self, found: &Found) -> bool {
         const RECEIPT: [&str; 9] =
@@ -257,7 +291,7 @@ impl Look<'_> {
         })
     }
 
-    /// The only column in a unit of time, if it rises as a time does.
+    /// The only column in a unit of time that rises as a time does, or the only one that is called no span.
     fn by_unit(&self) -> Option<Found> {
         let in_time = |column: &usize| {
             let label = &self.labels[*column];
@@ -265,13 +299,18 @@ impl Look<'_> {
             let is_joint = label.is_joint && !(label.is_weak && self.labels.iter().all(alone));
             !is_joint && label.stated.is_some_and(|unit| unit.measure == Measure::Time)
         };
-        let mut columns = (0..self.labels.len()).filter(in_time);
-        let (Some(column), None) = (columns.next(), columns.next()) else { return None };
-        let found = self.column(column).ok()?;
-        let ns: Vec<i64> = self.ns(&found.source).collect::<Option<_>>()?;
-        let rises = ns.len() >= LEAST_ROWS && ns.windows(2).all(|two| two[0] < two[1]);
-        let said = "is the only one in a unit of time, and rises from row to row; else say --time or --rate";
-        rises.then(|| Found { doubt: Some(said.to_owned()), ..found })
+        let rises = |column: usize| {
+            let found = self.column(column).ok()?;
+            let ns: Vec<i64> = self.ns(&found.source).collect::<Option<_>>()?;
+            (ns.len() >= LEAST_ROWS && ns.windows(2).all(|two| two[0] < two[1])).then_some((column, found))
+        };
+        let mut all: Vec<_> = (0..self.labels.len()).filter(in_time).filter_map(rises).collect();
+        if all.len() > 1 {
+            all.retain(|(column, _)| !self.is_span(*column));
+        }
+        let (Some((_, found)), true) = (all.pop(), all.is_empty()) else { return None };
+        let said = "is the only one in a unit of time that rises from row to row; else say --time or --rate";
+        Some(Found { doubt: Some(said.to_owned()), ..found })
     }
 
     /// A day in one column and a time of day in another are one time.

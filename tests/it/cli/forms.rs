@@ -150,8 +150,23 @@ fn the_only_column_in_a_unit_of_time_is_the_time_and_units_have_prefixes() {
         assert!(text.contains(&format!("{column} (counts ms)")) && text.contains("boom at 1.0"), "{text}");
         assert_eq!(text.contains("is the only one in a unit of time"), code == 3, "{text}");
     }
-    let (code, _, error) = report("a.csv", &(format!("tick_ms,age_ms,boom_set_deg\n{}", rows(row))));
+    let two = |t: f64, p: f64, _: f64| format!("{:.0},{:.0},{p:.3}\n", 1e3 * t, 1e3 * t + 1.0);
+    let (code, _, error) = report("a.csv", &(format!("tick_ms,up_ms,boom_set_deg\n{}", rows(two))));
     assert!(code == 1 && error.contains("no column looks like a time"), "{code} {error}");
+}
+
+#[test]
+fn how_long_a_cycle_took_is_no_clock() {
+    // Goes up and down, and stands.
+    for took in [|t: f64| 400.0 + 30.0 * (1e3 * t).sin(), |_| 400.0] {
+        let row = |t: f64, p: f64, m: f64| format!("{:.0},{:.0},{p:.4},{m:.4}\n", 1e3 * t, took(t));
+        for names in ["tick_ms,exec_time_us", "uptime_ms,cycle time [us]", "time_ms,loop_time_us"] {
+            let text = format!("{names},boom_set_deg,boom_act_deg\n{}", rows(row));
+            let (code, text, error) = report("a.csv", &text);
+            let clock = format!("{} (counts ms)", names.split(',').next().unwrap());
+            assert!(code != 1 && text.contains(&clock) && text.contains(" boom at 1."), "{text}{error}");
+        }
+    }
 }
 
 #[test]
