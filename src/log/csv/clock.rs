@@ -5,14 +5,15 @@ use super::{
     column::{find, present},
     date::{DateForm, Part},
     dialect::Dialect,
+    guess::{SINCE_1899_DAYS, guess_unit, typical_step},
     head::Head,
     label::Label,
     number::{nanoseconds, number},
     time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
-    unit::{ARCHIVE_DAY, EXCEL_DAY, FILETIME, Measure, Unit, parse_unit},
+    unit::{ARCHIVE_DAY, Measure, parse_unit},
 };
 use crate::{
-    math::{median, range},
+    math::range,
     remark::{Code, Remarks},
     text::shell_word,
     units::NS_PER_S,
@@ -105,10 +106,10 @@ impl Found {
 
 /// Two clocks go apart by so much at least, s: below, they are written with fewer digits.
 const LEAST_APART_S: f64 = 0.02;
+/// Steps that thousandths tell well enough; days and minutes have more digits.
+const FINEST_OF_THOUSANDTHS: f64 = 0.01;
 /// Fewer rows may rise by chance.
 const LEAST_ROWS: usize = 12;
-/// Seconds from 2001 to 2103, since 1970.
-pub(super) const SINCE_1970_S: [f64; 2] = [1.0e9, 4.2e9];
 
 /// A table in which times are looked for.
 pub(super) struct Look<'a> {
@@ -173,7 +174,7 @@ impl Look<'_> {
         // Stamps of 19 digits are nanoseconds; times 1000 they fit no i64.
         let huge = milli.is_empty() && self.cells(column).any(|cell| nanoseconds(cell, comma, 1).is_some());
         let step = match typical_step(&values) {
-            0.0 => typical_step(&fine),
+            step if step < FINEST_OF_THOUSANDTHS => typical_step(&fine),
             step => step,
         };
         let (unit, doubt) = if huge && fine.first().is_none_or(|first| *first > 1e18) {
@@ -325,68 +326,5 @@ impl Look<'_> {
             let joined = self.found(TimeSource::DayAndTime { day, time }, None);
             usable.insert(0, joined);
         }
-    }
-}
-
-/// The step between most neighbours that do not stand; 0 if all do.
-fn typical_step(values: &[f64]) -> f64 {
-    let steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0).collect();
-    if steps.is_empty() { 0.0 } else { median(steps) }
-}
-
-/// From 2000 to 2100.
-const SINCE_1899_DAYS: [f64; 2] = [36_526.0, 73_051.0];
-
-/// The unit of a column that names none: by its size if it counts from 1970, or else the one in
-/// which the rows come at 2 to 2000 Hz.
-fn guess_unit(first: f64, step: f64, whole: bool) -> (Option<Unit>, Option<String>) {
-    // From 1995 to 2130.
-    const SINCE_1601: [f64; 2] = [1.243e17, 1.67e17];
-    if whole && (SINCE_1601[0]..SINCE_1601[1]).contains(&first) {
-        return (Some(FILETIME), None);
-    }
-    if !whole && (SINCE_1899_DAYS[0]..SINCE_1899_DAYS[1]).contains(&first) && step < 1e-4 {
-        return (Some(EXCEL_DAY), None);
-    }
-    for (name, per_second) in [("s", 1.0), ("ms", 1e3), ("us", 1e6)] {
-        let (size, step_s) = (first / per_second, step / per_second);
-        if (SINCE_1970_S[0]..SINCE_1970_S[1]).contains(&size) && step_s <= 10.0 {
-            return (parse_unit(name), None);
-        }
-    }
-    for (name, least, most) in [("s", 0.000_5, 0.5), ("ms", 0.5, 500.0), ("us", 500.0, 5e5), ("ns", 5e5, 5e8)]
-    {
-        if (least..most).contains(&step) {
-            let sure = name == "s" && !whole;
-            let doubt = format!("says no unit; steps of {step} are taken as {name}, else say --time-unit");
-            return (parse_unit(name), (!sure).then_some(doubt));
-        }
-    }
-    (None, None)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn guess(first: f64, step: f64, whole: bool) -> (&'static str, bool) {
-        let (unit, doubt) = guess_unit(first, step, whole);
-        (unit.map_or("none", |unit| unit.name), doubt.is_some())
-    }
-
-    #[test]
-    fn a_unit_is_told_by_size_or_by_step() {
-        assert_eq!(guess(1.75e9, 0.02, false), ("s", false));
-        assert_eq!(guess(1.75e12, 20.0, true), ("ms", false));
-        assert_eq!(guess(1.75e15, 20_000.0, true), ("us", false));
-        assert_eq!(guess(12.3, 0.008, false), ("s", false));
-        assert_eq!(guess(0.0, 20.0, true), ("ms", true));
-        assert_eq!(guess(0.0, 2e4, true), ("us", true));
-        assert_eq!(guess(0.0, 2e7, true), ("ns", true));
-        assert_eq!(guess(1.3393e17, 1e5, true), ("100 ns since 1601", false));
-        assert_eq!(guess(45_811.375, 1.157e-7, false), ("days since 1899-12-30", false));
-        assert_eq!(guess(45_811.375, 0.01, false), ("s", false));
-        assert_eq!(guess(0.0, 0.0, true), ("none", false));
-        assert_eq!(guess(0.0, 1e10, true), ("none", false));
     }
 }

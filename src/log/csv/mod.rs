@@ -22,6 +22,7 @@ mod error;
 mod expression;
 mod given;
 mod grouping;
+mod guess;
 mod head;
 mod judged;
 mod keys;
