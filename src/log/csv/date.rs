@@ -25,7 +25,7 @@ pub(super) enum Part {
 }
 
 /// Tried in this order: of two that fit, the first is meant more often.
-const FORMS: [(&str, &str, Part); 25] = [
+const FORMS: [(&str, &str, Part); 33] = [
     ("%Y-%m-%d %H:%M:%S%.f%#z", "yyyy-mm-dd hh:mm:ss with zone", Part::Zoned),
     ("%Y-%m-%d %H:%M:%S%.f", "yyyy-mm-dd hh:mm:ss", Part::Local),
     ("%Y/%m/%d %H:%M:%S%.f", "yyyy/mm/dd hh:mm:ss", Part::Local),
@@ -36,6 +36,9 @@ const FORMS: [(&str, &str, Part); 25] = [
     ("%Y%m%d%H%M%S%.f", "yyyymmddhhmmss", Part::Local),
     ("%d.%m.%Y %H:%M:%S%.f", "dd.mm.yyyy hh:mm:ss", Part::Local),
     ("%d.%m.%y %H:%M:%S%.f", "dd.mm.yy hh:mm:ss", Part::Local),
+    ("%a %b %d %H:%M:%S%.f %Y", "day mon dd hh:mm:ss yyyy", Part::Local),
+    ("%d-%b-%Y %I:%M:%S%.f %p", "dd-mon-yyyy hh:mm:ss am/pm", Part::Local),
+    ("%d-%b-%y %I:%M:%S%.f %p", "dd-mon-yy hh:mm:ss am/pm", Part::Local),
     ("%d-%b-%Y %H:%M:%S%.f", "dd-mon-yyyy hh:mm:ss", Part::Local),
     ("%d-%b-%y %H:%M:%S%.f", "dd-mon-yy hh:mm:ss", Part::Local),
     ("%d-%m-%Y %H:%M:%S%.f", "dd-mm-yyyy hh:mm:ss", Part::Local),
@@ -43,6 +46,11 @@ const FORMS: [(&str, &str, Part); 25] = [
     ("%m/%d/%Y %I:%M:%S%.f %p", "mm/dd/yyyy hh:mm:ss am/pm", Part::Local),
     ("%d/%m/%Y %H:%M:%S%.f", "dd/mm/yyyy hh:mm:ss", Part::Local),
     ("%m/%d/%Y %H:%M:%S%.f", "mm/dd/yyyy hh:mm:ss", Part::Local),
+    ("%d/%m/%y %I:%M:%S%.f %p", "dd/mm/yy hh:mm:ss am/pm", Part::Local),
+    ("%m/%d/%y %I:%M:%S%.f %p", "mm/dd/yy hh:mm:ss am/pm", Part::Local),
+    ("%d/%m/%y %H:%M:%S%.f", "dd/mm/yy hh:mm:ss", Part::Local),
+    ("%m/%d/%y %H:%M:%S%.f", "mm/dd/yy hh:mm:ss", Part::Local),
+    ("%y/%m/%d %H:%M:%S%.f", "yy/mm/dd hh:mm:ss", Part::Local),
     ("%H:%M:%S%.f", "hh:mm:ss", Part::TimeOfDay),
     ("%I:%M:%S%.f %p", "hh:mm:ss am/pm", Part::TimeOfDay),
     ("%Y-%m-%d", "yyyy-mm-dd", Part::Day),
@@ -97,11 +105,18 @@ impl DateForm {
     }
 }
 
+/// Whether a text begins as `Sat Aug 31` does.
+fn begins_with_day(text: &str) -> bool {
+    const DAYS: [&str; 7] = ["Mon ", "Tue ", "Wed ", "Thu ", "Fri ", "Sat ", "Sun "];
+    DAYS.iter().any(|day| text.starts_with(day))
+}
+
 /// The same text with a blank between date and time and a point before the fraction, which some
 /// write as a comma, a semicolon or a third colon.
 fn plain(text: &str) -> Option<String> {
     const LONGEST: usize = 48;
-    if text.len() > LONGEST || !text.starts_with(|c: char| c.is_ascii_digit()) {
+    let begins = text.starts_with(|c: char| c.is_ascii_digit()) || begins_with_day(text);
+    if text.len() > LONGEST || !begins {
         return None;
     }
     let mut colons = 0;
@@ -153,6 +168,12 @@ mod tests {
             "20250615T150640.020Z",
             "15.06.25 15:06:40.020",
             "15-Jun-2025 15:06:40.020",
+            "15-Jun-2025 03:06:40.020 PM",
+            "15-Jun-25 3:06:40.020 pm",
+            "15/06/25 15:06:40.020",
+            "06/15/25 15:06:40.020",
+            "06/15/25 03:06:40.020 PM",
+            "Sun Jun 15 15:06:40.020 2025",
             "15-JUN-25 15:06:40,020",
             "20250615150640020",
             "20250615150640.02",
@@ -180,6 +201,8 @@ mod tests {
             "99.99.2025 10:00:00",
             "25:00:00",
             "zwei",
+            "Sun Jun 16 15:06:40 2025",
+            "15/13/25 15:06:40",
         ] {
             assert!(DateForm::fitting(&std::iter::once(text.as_bytes())).is_empty(), "{text}");
         }
