@@ -111,6 +111,16 @@ fn begins_with_day(text: &str) -> bool {
     DAYS.iter().any(|day| text.starts_with(day))
 }
 
+/// Whether a text has a time of day beside the name of a month, as `31-Aug-2024 10:59:50` does.
+pub(super) fn names_month(text: &str) -> bool {
+    const MONTHS: [&str; 12] =
+        ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
+    let is_month = |word: &str| MONTHS.iter().any(|month| word.eq_ignore_ascii_case(month));
+    text.contains(':')
+        && text.split(|c: char| !c.is_alphabetic()).any(is_month)
+        && !DateForm::fitting(&std::iter::once(text.as_bytes())).is_empty()
+}
+
 /// The same text with a blank between date and time and a point before the fraction, which some
 /// write as a comma, a semicolon or a third colon.
 fn plain(text: &str) -> Option<String> {
