@@ -141,6 +141,7 @@ pub(super) fn looks(cell: &[u8]) -> Looks {
             }
             let dated = cell.len() >= 8
                 && cell[0].is_ascii_digit()
+                && (has(b':') || !has(b';'))
                 && cell.iter().all(|byte| byte.is_ascii_digit() || b" -:./,;TZ+APMUC".contains(byte));
             let named = || std::str::from_utf8(cell).is_ok_and(names_month);
             if dated || named() { Looks::Date } else { Looks::Text }
@@ -217,5 +218,6 @@ mod tests {
         assert_eq!(looks("-1.5\u{b0}".as_bytes()), Looks::Point);
         assert_eq!(looks(b"20 mm"), Looks::Whole);
         assert_eq!(looks(b"joint 1"), Looks::Text);
+        assert_eq!(looks(b"000;900;1.150"), Looks::Text);
     }
 }
