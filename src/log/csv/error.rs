@@ -75,7 +75,7 @@ pub enum CsvError {
     #[error(
         "no column looks like a time{why}; the columns are {present}; {}",
         if why.is_empty() { "say --time COLUMN, or --rate HZ if there is none" }
-        else { "rows of one instant may be of several joints: call the column that names the joint \"joint\"; or say --time COLUMN" }
+        else { "rows of one instant may be of several joints: call the column that names the joint \"joint\"; else say --rate HZ if a row comes HZ times a second, or --time COLUMN" }
     )]
     NoTime { why: String, present: String },
     /// A column of time that does not say its unit.
@@ -164,9 +164,7 @@ impl CsvError {
     pub(in crate::log) fn missing_option(&self) -> Option<(&'static str, &'static str)> {
         match self {
             Self::AngleUnit { .. } => Some(("--degrees", "reads it if its angles are in degrees")),
-            Self::NoTime { why, .. } if why.is_empty() => {
-                Some(("--rate HZ", "reads it if a row comes HZ times a second"))
-            }
+            Self::NoTime { .. } => Some(("--rate HZ", "reads it if a row comes HZ times a second")),
             _ => None,
         }
     }

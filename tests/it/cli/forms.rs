@@ -255,3 +255,12 @@ fn a_stamp_in_the_first_columns_of_a_table_without_names_is_its_time() {
     assert!(found.contains("column_1 and column_2: counts s, and ns beside"), "{found}");
     assert!(found.contains("which is how `ros2 topic echo --csv` writes stamps"), "{found}");
 }
+
+#[test]
+fn whole_seconds_of_many_rows_each_are_refused_with_the_rate_as_the_way_out() {
+    let row = |t: f64, p: f64, m: f64| format!("10:59:{:02.0},{p:.4},{m:.4}\n", t.floor());
+    let text = format!("time,boom_set_deg,boom_act_deg\n{}", rows(row));
+    let (code, _, error) = report("a.csv", &text);
+    let says = |part: &str| error.contains(part);
+    assert!(code == 1 && says("import a.csv --rate HZ") && says("or --time COLUMN"), "{code} {error}");
+}
