@@ -85,19 +85,24 @@ pub enum CsvError {
     TimeUnit { column: String, step: f64 },
     /// Angles without a unit, too large for radians.
     #[error(
-        "column {column:?} says no unit and reaches {}, too far for radians; say --degrees, --radians, or \
-         --slides JOINT=mm of a joint that slides",
-        reach.round()
+        "column {column:?} {says} and reaches {}, too far for radians; say --degrees, --radians, or \
+         --slides JOINT=mm of a joint that slides{}",
+        reach.round(),
+        if says.contains("known") {
+            "; or what one is with --planned JOINT=FACTOR*COLUMN,... --measured JOINT=FACTOR*COLUMN,... --degrees"
+        } else {
+            ""
+        }
     )]
-    AngleUnit { column: String, reach: f64 },
+    AngleUnit { column: String, says: String, reach: f64 },
     /// Numbers without a unit, too large for degrees, too.
     #[error(
-        "column {column:?} says no unit and reaches {}, too far for degrees, too: is it in steps of an encoder? Say what \
+        "column {column:?} {says} and reaches {}, too far for degrees, too: is it in steps of an encoder? Say what \
          one is with --planned JOINT=FACTOR*COLUMN,... --measured JOINT=FACTOR*COLUMN,... --degrees, or --slides \
          JOINT=mm of a joint that slides",
         reach.round()
     )]
-    Counts { column: String, reach: f64 },
+    Counts { column: String, says: String, reach: f64 },
     /// A recording cannot look at what is to come.
     #[error(
         "column {column:?} says no unit, and a recording cannot tell by what is to come; say --degrees, --radians, \

@@ -20,6 +20,8 @@ pub(super) struct Label {
     pub(super) unit: Option<Unit>,
     /// The unit that it ends with, even where that is read as a word.
     pub(super) stated: Option<Unit>,
+    /// What it has in square brackets at its end where that is no known unit and no other known word: `U` of `boom [U]`.
+    pub(super) unknown: Option<String>,
     /// Its words in lower case.
     pub(super) words: Vec<String>,
     /// The joint as other columns of it would also write it: lower case.
@@ -78,6 +80,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
             quantity: Some(quantity),
             unit,
             stated: unit,
+            unknown: None,
             words: vec![joint.to_lowercase()],
             key: joint.to_owned(),
             joint: joint.to_owned(),
@@ -156,8 +159,22 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let unit = if turns { Some(UNITLESS) } else { unit };
     let strong = strong && !turns;
     let stated = stated.or(unit);
+    let unknown = if unit.is_none() { unknown_unit(header) } else { None };
     let words = words.iter().map(|word| word.text.to_lowercase()).collect();
-    Label { role, quantity, unit, stated, words, key, joint, is_time, is_joint, is_weak: !strong, lettered }
+    Label {
+        role,
+        quantity,
+        unit,
+        stated,
+        unknown,
+        words,
+        key,
+        joint,
+        is_time,
+        is_joint,
+        is_weak: !strong,
+        lettered,
+    }
 }
 
 /// `current_position` is measured now, and so is a current in degrees: it is no electric one.
@@ -200,6 +217,13 @@ fn topic(words: &[Word<'_>]) -> usize {
 fn own(name: &str) -> Option<(&str, Role)> {
     let found = OWN.iter().find_map(|(ending, role)| Some((name.strip_suffix(ending)?, *role)));
     found.filter(|(joint, _)| !joint.is_empty())
+}
+
+/// What stands in square brackets at the end of a header, if it may be a unit.
+fn unknown_unit(header: &str) -> Option<String> {
+    let (before, inner) = header.strip_suffix(']')?.rsplit_once('[')?;
+    let names = words(inner).iter().all(|word| word.meaning == Meaning::Name);
+    (!before.is_empty() && names && inner.contains(char::is_alphabetic)).then(|| inner.trim().to_owned())
 }
 
 /// The header without its unit, and the unit.
@@ -314,6 +338,15 @@ mod tests {
     fn a_unit_of_time_behind_a_joint_is_a_word() {
         let label = label("Boom Ms", None);
         assert_eq!((label.joint.as_str(), label.role, label.unit), ("Boom", Some(Role::Measured), None));
+    }
+
+    #[test]
+    fn a_unit_that_is_not_known_is_kept_as_such() {
+        let unknown = |header: &str| label(header, None).unknown;
+        assert_eq!(unknown("boom_set [U]").as_deref(), Some("U"));
+        for header in ["boom_set [deg]", "q[0]", "boom [ist]", "boom_set", "[U]"] {
+            assert_eq!(unknown(header), None, "{header}");
+        }
     }
 
     #[test]
