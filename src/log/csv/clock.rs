@@ -145,6 +145,8 @@ impl Look<'_> {
             let other = forms.get(1).filter(|other| other.name.len() == form.name.len());
             let doubt =
                 other.map(|other| format!("is read as {}; {} would fit as well", form.name, other.name));
+            let counts = "has whole ms behind the seconds, without zeros before: only so does it rise";
+            let doubt = doubt.or_else(|| form.counts_ms.then(|| counts.to_owned()));
             return Ok(self.found(TimeSource::Date { column, form: form.clone() }, doubt));
         }
         let given = self.options.time_unit.as_deref().and_then(parse_unit);

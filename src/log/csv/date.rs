@@ -11,6 +11,8 @@ pub(super) struct DateForm {
     /// For a person, such as "dd.mm.yyyy hh:mm:ss".
     pub(super) name: &'static str,
     part: Part,
+    /// Whether what stands behind the seconds counts ms, without zeros before: `10:00:00:5`.
+    pub(super) counts_ms: bool,
 }
 
 /// The part of an instant that a text gives.
@@ -68,13 +70,27 @@ impl DateForm {
             items: StrftimeItems::new(pattern).collect(),
             name,
             part: *part,
+            counts_ms: false,
         });
         known
             .filter(|form| {
                 let mut cells = cells.clone().filter(|cell| !cell.trim_ascii().is_empty()).peekable();
                 cells.peek().is_some() && cells.all(|cell| form.ns(cell).is_some())
             })
+            .map(|form| form.counting(cells))
             .collect()
+    }
+
+    /// The form that counts ms behind the seconds, where only that makes the cells rise.
+    fn counting<'a>(self, cells: &(impl Iterator<Item = &'a [u8]> + Clone)) -> Self {
+        let counts = Self { counts_ms: true, ..self.clone() };
+        let rises = |form: &Self| {
+            let filled = cells.clone().filter(|cell| !cell.trim_ascii().is_empty());
+            let mut ns = filled.map(|cell| form.ns(cell));
+            let mut before = ns.next().flatten();
+            before.is_some() && ns.all(|next| next >= std::mem::replace(&mut before, next))
+        };
+        if !rises(&self) && rises(&counts) { counts } else { self }
     }
 
     pub(super) fn part(&self) -> Part {
@@ -87,7 +103,8 @@ impl DateForm {
         let text = std::str::from_utf8(cell).ok()?.trim();
         let parsed = || {
             let mut parsed = Parsed::new();
-            parse(&mut parsed, &plain(text)?, self.items.iter()).ok()?;
+            let plain = if self.counts_ms { padded(&plain(text)?)? } else { plain(text)? };
+            parse(&mut parsed, &plain, self.items.iter()).ok()?;
             Some(parsed)
         };
         match self.part {
@@ -148,6 +165,16 @@ fn plain(text: &str) -> Option<String> {
     Some(plain.strip_suffix(" UTC").map(|time| format!("{time}Z")).unwrap_or(plain))
 }
 
+/// With three digits behind the seconds; `None` if there are more.
+fn padded(plain: &str) -> Option<String> {
+    let Some(at) = plain.rfind('.').filter(|at| plain[*at..].find(':').is_none()) else {
+        return Some(plain.to_owned());
+    };
+    let (whole, behind) = plain.split_at(at + 1);
+    let digits = behind.find(|c: char| !c.is_ascii_digit()).unwrap_or(behind.len());
+    (digits <= 3).then(|| format!("{whole}{:0>3}{}", &behind[..digits], &behind[digits..]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,6 +217,21 @@ mod tests {
         ] {
             assert_eq!(ns(text).0, NOON_NS, "{text}");
         }
+    }
+
+    #[test]
+    fn ms_without_zeros_before_are_told_by_that_only_they_rise() {
+        let ms = |cells: &[&'static str]| {
+            let cells = || cells.iter().map(|cell| cell.as_bytes());
+            let form = DateForm::fitting(&cells()).remove(0);
+            let ms = cells().map(|cell| form.ns(cell).unwrap() % 1_000_000_000 / 1_000_000);
+            (form.counts_ms, ms.collect::<Vec<_>>())
+        };
+        let rising = ["12.03.2024 10:00:00:0", "12.03.2024 10:00:00:5", "12.03.2024 10:00:00:10"];
+        assert_eq!(ms(&rising), (true, vec![0, 5, 10]));
+        assert_eq!(ms(&["10:00:00.98", "10:00:00.100", "10:00:01"]), (true, vec![98, 100, 0]));
+        assert_eq!(ms(&["10:00:00.1", "10:00:00.15", "10:00:00.2"]), (false, vec![100, 150, 200]));
+        assert_eq!(ms(&["23:59:59.98", "00:00:00.1"]), (false, vec![980, 100]));
     }
 
     #[test]
