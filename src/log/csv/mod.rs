@@ -11,6 +11,7 @@ mod by_meaning;
 mod clock;
 mod clocks;
 mod column;
+mod dataset;
 mod date;
 mod dialect;
 mod echoed;
@@ -114,8 +115,10 @@ pub(in crate::log) fn says_side(part: &str) -> bool {
 /// [`CsvError`]
 pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<CsvRun, CsvError> {
     let text = text::of_bytes(name, bytes)?;
-    let table =
-        objects::as_table(&text).or_else(|| echoed::as_table(&text)).or_else(|| printed::as_table(&text));
+    let table = objects::as_table(&text)
+        .or_else(|| echoed::as_table(&text))
+        .or_else(|| printed::as_table(&text))
+        .or_else(|| dataset::as_table(&text));
     let text = table.map_or(text, Cow::Owned);
     read_table(name, Cow::Borrowed(&text), options, Remarks::default())
         .or_else(|error| of_other_form(name, &text, options, &error).unwrap_or(Err(error)))
