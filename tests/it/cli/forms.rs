@@ -230,7 +230,7 @@ fn the_line_that_imports_a_table_repeats_what_was_given() {
     let (code, _, error) = said(&hydrotrace(folder, paste));
     assert_eq!(code, 0, "{error}");
     let error = line("--planned p1 --time log --joints boom");
-    assert!(error.contains("--planned JOINT=p1 -o a.mcap` takes options for that"), "{error}");
+    assert!(error.contains("--planned JOINT=p1 -o a-2.mcap` takes options for that"), "{error}");
     assert!(error.contains("with the other options of this line"), "{error}");
     // Columns of a log that was made of a table are for its import, too.
     let (code, _, error) = said(&hydrotrace(folder, "report a.mcap --planned boom=m1 --measured boom=p1"));
