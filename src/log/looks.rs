@@ -47,9 +47,12 @@ pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
     // An object a line, the last of which may be cut.
     let objects =
         lines.len() > 1 && lines.iter().take(2).all(|line| line.starts_with('{') && line.ends_with('}'));
+    // Or all of them in a list.
+    let list = text.trim_start().strip_prefix('[').is_some_and(|rest| rest.trim_start().starts_with('{'));
     let printed = || lines.windows(2).any(|two| is_rule(two[1].trim().as_bytes()) && two[0].contains('|'));
     named
         || objects
+        || list
         || printed()
         || begins_with_message(&text)
         || [';', ',', '\t'].into_iter().any(|one| alike(one, &lines) || below(one))
@@ -80,6 +83,7 @@ mod tests {
         assert!(is("a.txt", b"# t  q1  q2\n0 1.5 2\n1  1.5 2\n2 1.5  -2e-3\n3 1 1\n"));
         assert!(is("a.txt", b"\xff\xfet\0;\0"));
         assert!(is("a.txt", b"{\"t\": 0, \"q\": 1}\n{\"t\": 1}\n{\"t\":"));
+        assert!(is("a.json", b"[{\"t\": 0, \"q\": 1},{\"t\": 1") && is("a.json", b"[\n {\n  \"t\": 0,\n"));
         assert!(is("a.txt", b" t | q\n---+---\n 0 | 1\n") && is("a.md", b"# Run\n\n| t | q |\n|--:|--:|\n"));
         assert!(is("run.lvm", b"LabVIEW Measurement\n"));
         for text in [

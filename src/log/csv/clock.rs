@@ -5,14 +5,15 @@ use super::{
     column::{find, present},
     date::{DateForm, Part},
     dialect::Dialect,
+    guess::{SINCE_1899_DAYS, guess_unit, typical_step},
     head::Head,
     label::Label,
     number::{nanoseconds, number},
     time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
-    unit::{ARCHIVE_DAY, EXCEL_DAY, FILETIME, Measure, Unit, parse_unit},
+    unit::{ARCHIVE_DAY, Measure, parse_unit},
 };
 use crate::{
-    math::{median, range},
+    math::range,
     remark::{Code, Remarks},
     text::shell_word,
     units::NS_PER_S,
@@ -34,22 +35,28 @@ pub(super) fn choose(
         let column = find(name, "--time", &head.names)?;
         return Ok(look.column(column)?.tell(head, remarks));
     }
-    let mut usable: Vec<Found> = Vec::new();
+    let (mut usable, mut unsteady) = (Vec::new(), Vec::new());
     let mut failure = None;
     for column in (0..labels.len()).filter(|&column| labels[column].is_time) {
+        let is_span = look.is_span(column);
         match look.column(column) {
-            Ok(found) => usable.push(found),
-            Err(error) => failure = failure.or(Some(error)),
+            Ok(found) if is_span && !(found.steady && found.resolves) => {}
+            Ok(found) => if found.steady { &mut usable } else { &mut unsteady }.push(found),
+            Err(error) => failure = failure.or(Some(error).filter(|_| !is_span)),
         }
     }
     if usable.is_empty() && failure.is_none() {
         usable.extend(look.index().or_else(|| look.by_unit()).or_else(|| look.unnamed_stamp()));
     }
+    if usable.is_empty() {
+        usable = unsteady;
+    }
     look.join_day_and_time(&mut usable);
     look.join_parts(&mut usable);
-    // What resolves the rows is better than what does not, then the source's clock than the receiver's, then what has
-    // a date.
-    usable.sort_by_key(|found| (!found.resolves, look.is_of_receipt(found), !found.absolute));
+    // What resolves the rows is better than what does not, then an instant than a span, then the source's clock than the
+    // receiver's, then what has a date.
+    let spans = |found: &Found| found.source.columns().iter().any(|column| look.is_span(*column));
+    usable.sort_by_key(|found| (!found.resolves, spans(found), look.is_of_receipt(found), !found.absolute));
     look.remark_other(&usable, remarks);
     match (usable.into_iter().next(), failure) {
         (Some(best), _) if best.resolves => Ok(best.tell(head, remarks)),
@@ -71,8 +78,8 @@ pub(super) fn of_column(
     dialect: Dialect,
     options: &CsvOptions,
     column: usize,
-) -> Option<TimeSource> {
-    Some(Look { head, labels, dialect, options }.column(column).ok()?.source)
+) -> Option<Found> {
+    Look { head, labels, dialect, options }.column(column).ok()
 }
 
 /// A column of times.
@@ -80,6 +87,8 @@ pub(super) struct Found {
     pub(super) source: TimeSource,
     /// Whether most rows have a stamp of their own.
     pub(super) resolves: bool,
+    /// Whether it rises from row to row, or falls, more often than what only measures something does.
+    pub(super) steady: bool,
     absolute: bool,
     /// The guesses.
     doubt: Option<String>,
@@ -97,10 +106,10 @@ impl Found {
 
 /// Two clocks go apart by so much at least, s: below, they are written with fewer digits.
 const LEAST_APART_S: f64 = 0.02;
+/// Steps that thousandths tell well enough; days and minutes have more digits.
+const FINEST_OF_THOUSANDTHS: f64 = 0.01;
 /// Fewer rows may rise by chance.
 const LEAST_ROWS: usize = 12;
-/// Seconds from 2001 to 2103, since 1970.
-pub(super) const SINCE_1970_S: [f64; 2] = [1.0e9, 4.2e9];
 
 /// A table in which times are looked for.
 pub(super) struct Look<'a> {
@@ -117,9 +126,11 @@ impl Look<'_> {
 
     pub(super) fn found(&self, source: TimeSource, doubt: Option<String>) -> Found {
         let ns: Vec<i64> = self.ns(&source).flatten().collect();
-        let steps = ns.windows(2).filter(|w| w[0] != w[1]).count();
+        let count = |is: fn(&i64, &i64) -> bool| ns.windows(2).filter(|w| is(&w[0], &w[1])).count();
+        let (rises, falls) = (count(i64::lt), count(i64::gt));
         Found {
-            resolves: !ns.is_empty() && 2 * steps + 1 >= ns.len(),
+            resolves: !ns.is_empty() && 2 * (rises + falls) + 1 >= ns.len(),
+            steady: ns.len() < LEAST_ROWS || 4 * rises.min(falls) <= rises + falls,
             absolute: ns.first().is_some_and(|first| *first >= FIRST_ABSOLUTE_NS),
             source,
             doubt,
@@ -134,6 +145,8 @@ impl Look<'_> {
             let other = forms.get(1).filter(|other| other.name.len() == form.name.len());
             let doubt =
                 other.map(|other| format!("is read as {}; {} would fit as well", form.name, other.name));
+            let counts = "has whole ms behind the seconds, without zeros before: only so does it rise";
+            let doubt = doubt.or_else(|| form.counts_ms.then(|| counts.to_owned()));
             return Ok(self.found(TimeSource::Date { column, form: form.clone() }, doubt));
         }
         let given = self.options.time_unit.as_deref().and_then(parse_unit);
@@ -163,7 +176,7 @@ impl Look<'_> {
         // Stamps of 19 digits are nanoseconds; times 1000 they fit no i64.
         let huge = milli.is_empty() && self.cells(column).any(|cell| nanoseconds(cell, comma, 1).is_some());
         let step = match typical_step(&values) {
-            0.0 => typical_step(&fine),
+            step if step < FINEST_OF_THOUSANDTHS => typical_step(&fine),
             step => step,
         };
         let (unit, doubt) = if huge && fine.first().is_none_or(|first| *first > 1e18) {
@@ -194,6 +207,30 @@ impl Look<'_> {
         self.head.sample.iter().map(move |row| {
             source.ns(0, |column| row.get(column).map_or(&[][..], Vec::as_slice), self.dialect.decimal_comma)
         })
+    }
+
+    /// Whether a column is named as how long something took, which is no instant.
+    fn is_span(&self, column: usize) -> bool {
+        const SPANS: [&str; 17] = [
+            "exec",
+            "execution",
+            "cycle",
+            "scan",
+            "task",
+            "loop",
+            "jitter",
+            "latency",
+            "period",
+            "interval",
+            "dt",
+            "delta",
+            "age",
+            "processing",
+            "compute",
+            "zyklus",
+            "laufzeit",
+        ];
+        self.labels[column].words.iter().any(|word| SPANS.contains(&word.as_str()))
     }
 
     /// Whether a time is that of who received or wrote the row, not of who measured.
@@ -257,7 +294,7 @@ impl Look<'_> {
         })
     }
 
-    /// The only column in a unit of time, if it rises as a time does.
+    /// The only column in a unit of time that rises as a time does, or the only one that is called no span.
     fn by_unit(&self) -> Option<Found> {
         let in_time = |column: &usize| {
             let label = &self.labels[*column];
@@ -265,13 +302,18 @@ impl Look<'_> {
             let is_joint = label.is_joint && !(label.is_weak && self.labels.iter().all(alone));
             !is_joint && label.stated.is_some_and(|unit| unit.measure == Measure::Time)
         };
-        let mut columns = (0..self.labels.len()).filter(in_time);
-        let (Some(column), None) = (columns.next(), columns.next()) else { return None };
-        let found = self.column(column).ok()?;
-        let ns: Vec<i64> = self.ns(&found.source).collect::<Option<_>>()?;
-        let rises = ns.len() >= LEAST_ROWS && ns.windows(2).all(|two| two[0] < two[1]);
-        let said = "is the only one in a unit of time, and rises from row to row; else say --time or --rate";
-        rises.then(|| Found { doubt: Some(said.to_owned()), ..found })
+        let rises = |column: usize| {
+            let found = self.column(column).ok()?;
+            let ns: Vec<i64> = self.ns(&found.source).collect::<Option<_>>()?;
+            (ns.len() >= LEAST_ROWS && ns.windows(2).all(|two| two[0] < two[1])).then_some((column, found))
+        };
+        let mut all: Vec<_> = (0..self.labels.len()).filter(in_time).filter_map(rises).collect();
+        if all.len() > 1 {
+            all.retain(|(column, _)| !self.is_span(*column));
+        }
+        let (Some((_, found)), true) = (all.pop(), all.is_empty()) else { return None };
+        let said = "is the only one in a unit of time that rises from row to row; else say --time or --rate";
+        Some(Found { doubt: Some(said.to_owned()), ..found })
     }
 
     /// A day in one column and a time of day in another are one time.
@@ -286,68 +328,5 @@ impl Look<'_> {
             let joined = self.found(TimeSource::DayAndTime { day, time }, None);
             usable.insert(0, joined);
         }
-    }
-}
-
-/// The step between most neighbours that do not stand; 0 if all do.
-fn typical_step(values: &[f64]) -> f64 {
-    let steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0).collect();
-    if steps.is_empty() { 0.0 } else { median(steps) }
-}
-
-/// From 2000 to 2100.
-const SINCE_1899_DAYS: [f64; 2] = [36_526.0, 73_051.0];
-
-/// The unit of a column that names none: by its size if it counts from 1970, or else the one in
-/// which the rows come at 2 to 2000 Hz.
-fn guess_unit(first: f64, step: f64, whole: bool) -> (Option<Unit>, Option<String>) {
-    // From 1995 to 2130.
-    const SINCE_1601: [f64; 2] = [1.243e17, 1.67e17];
-    if whole && (SINCE_1601[0]..SINCE_1601[1]).contains(&first) {
-        return (Some(FILETIME), None);
-    }
-    if !whole && (SINCE_1899_DAYS[0]..SINCE_1899_DAYS[1]).contains(&first) && step < 1e-4 {
-        return (Some(EXCEL_DAY), None);
-    }
-    for (name, per_second) in [("s", 1.0), ("ms", 1e3), ("us", 1e6)] {
-        let (size, step_s) = (first / per_second, step / per_second);
-        if (SINCE_1970_S[0]..SINCE_1970_S[1]).contains(&size) && step_s <= 10.0 {
-            return (parse_unit(name), None);
-        }
-    }
-    for (name, least, most) in [("s", 0.000_5, 0.5), ("ms", 0.5, 500.0), ("us", 500.0, 5e5), ("ns", 5e5, 5e8)]
-    {
-        if (least..most).contains(&step) {
-            let sure = name == "s" && !whole;
-            let doubt = format!("says no unit; steps of {step} are taken as {name}, else say --time-unit");
-            return (parse_unit(name), (!sure).then_some(doubt));
-        }
-    }
-    (None, None)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn guess(first: f64, step: f64, whole: bool) -> (&'static str, bool) {
-        let (unit, doubt) = guess_unit(first, step, whole);
-        (unit.map_or("none", |unit| unit.name), doubt.is_some())
-    }
-
-    #[test]
-    fn a_unit_is_told_by_size_or_by_step() {
-        assert_eq!(guess(1.75e9, 0.02, false), ("s", false));
-        assert_eq!(guess(1.75e12, 20.0, true), ("ms", false));
-        assert_eq!(guess(1.75e15, 20_000.0, true), ("us", false));
-        assert_eq!(guess(12.3, 0.008, false), ("s", false));
-        assert_eq!(guess(0.0, 20.0, true), ("ms", true));
-        assert_eq!(guess(0.0, 2e4, true), ("us", true));
-        assert_eq!(guess(0.0, 2e7, true), ("ns", true));
-        assert_eq!(guess(1.3393e17, 1e5, true), ("100 ns since 1601", false));
-        assert_eq!(guess(45_811.375, 1.157e-7, false), ("days since 1899-12-30", false));
-        assert_eq!(guess(45_811.375, 0.01, false), ("s", false));
-        assert_eq!(guess(0.0, 0.0, true), ("none", false));
-        assert_eq!(guess(0.0, 1e10, true), ("none", false));
     }
 }

@@ -145,13 +145,15 @@ fn groups(head: &Head, dialect: Dialect, options: &CsvOptions) -> Option<Vec<Gro
     let below = |column: usize| head.units.as_ref().and_then(|units| units.get(column)).map(String::as_str);
     let labels: Vec<Label> =
         head.names.iter().enumerate().map(|(column, name)| label(name, below(column))).collect();
-    let times: Vec<usize> = (0..labels.len()).filter(|column| labels[*column].is_time).collect();
+    let of = |time: &usize| clock::of_column(head, &labels, dialect, options, *time);
+    // What goes up and down is no clock.
+    let is_clock = |column: &usize| labels[*column].is_time && of(column).is_none_or(|found| found.steady);
+    let times: Vec<usize> = (0..labels.len()).filter(is_clock).collect();
     if !head.named || times.len() < 2 {
         return None;
     }
     let columns = owned(&labels, &times)?;
-    let source = |time: &usize| clock::of_column(head, &labels, dialect, options, *time);
-    let sources: Vec<TimeSource> = times.iter().map(source).collect::<Option<_>>()?;
+    let sources: Vec<TimeSource> = times.iter().map(|time| Some(of(time)?.source)).collect::<Option<_>>()?;
     let numbers = |source: &TimeSource| matches!(source, TimeSource::Number { .. });
     let one_form = sources.iter().all(numbers) || sources.iter().all(|source| alike(source, &sources[0]));
     let ns = |row: &Vec<Vec<u8>>, source: &TimeSource| {

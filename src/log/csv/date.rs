@@ -11,6 +11,8 @@ pub(super) struct DateForm {
     /// For a person, such as "dd.mm.yyyy hh:mm:ss".
     pub(super) name: &'static str,
     part: Part,
+    /// Whether what stands behind the seconds counts ms, without zeros before: `10:00:00:5`.
+    pub(super) counts_ms: bool,
 }
 
 /// The part of an instant that a text gives.
@@ -25,7 +27,7 @@ pub(super) enum Part {
 }
 
 /// Tried in this order: of two that fit, the first is meant more often.
-const FORMS: [(&str, &str, Part); 25] = [
+const FORMS: [(&str, &str, Part); 33] = [
     ("%Y-%m-%d %H:%M:%S%.f%#z", "yyyy-mm-dd hh:mm:ss with zone", Part::Zoned),
     ("%Y-%m-%d %H:%M:%S%.f", "yyyy-mm-dd hh:mm:ss", Part::Local),
     ("%Y/%m/%d %H:%M:%S%.f", "yyyy/mm/dd hh:mm:ss", Part::Local),
@@ -36,6 +38,9 @@ const FORMS: [(&str, &str, Part); 25] = [
     ("%Y%m%d%H%M%S%.f", "yyyymmddhhmmss", Part::Local),
     ("%d.%m.%Y %H:%M:%S%.f", "dd.mm.yyyy hh:mm:ss", Part::Local),
     ("%d.%m.%y %H:%M:%S%.f", "dd.mm.yy hh:mm:ss", Part::Local),
+    ("%a %b %d %H:%M:%S%.f %Y", "day mon dd hh:mm:ss yyyy", Part::Local),
+    ("%d-%b-%Y %I:%M:%S%.f %p", "dd-mon-yyyy hh:mm:ss am/pm", Part::Local),
+    ("%d-%b-%y %I:%M:%S%.f %p", "dd-mon-yy hh:mm:ss am/pm", Part::Local),
     ("%d-%b-%Y %H:%M:%S%.f", "dd-mon-yyyy hh:mm:ss", Part::Local),
     ("%d-%b-%y %H:%M:%S%.f", "dd-mon-yy hh:mm:ss", Part::Local),
     ("%d-%m-%Y %H:%M:%S%.f", "dd-mm-yyyy hh:mm:ss", Part::Local),
@@ -43,6 +48,11 @@ const FORMS: [(&str, &str, Part); 25] = [
     ("%m/%d/%Y %I:%M:%S%.f %p", "mm/dd/yyyy hh:mm:ss am/pm", Part::Local),
     ("%d/%m/%Y %H:%M:%S%.f", "dd/mm/yyyy hh:mm:ss", Part::Local),
     ("%m/%d/%Y %H:%M:%S%.f", "mm/dd/yyyy hh:mm:ss", Part::Local),
+    ("%d/%m/%y %I:%M:%S%.f %p", "dd/mm/yy hh:mm:ss am/pm", Part::Local),
+    ("%m/%d/%y %I:%M:%S%.f %p", "mm/dd/yy hh:mm:ss am/pm", Part::Local),
+    ("%d/%m/%y %H:%M:%S%.f", "dd/mm/yy hh:mm:ss", Part::Local),
+    ("%m/%d/%y %H:%M:%S%.f", "mm/dd/yy hh:mm:ss", Part::Local),
+    ("%y/%m/%d %H:%M:%S%.f", "yy/mm/dd hh:mm:ss", Part::Local),
     ("%H:%M:%S%.f", "hh:mm:ss", Part::TimeOfDay),
     ("%I:%M:%S%.f %p", "hh:mm:ss am/pm", Part::TimeOfDay),
     ("%Y-%m-%d", "yyyy-mm-dd", Part::Day),
@@ -60,13 +70,27 @@ impl DateForm {
             items: StrftimeItems::new(pattern).collect(),
             name,
             part: *part,
+            counts_ms: false,
         });
         known
             .filter(|form| {
                 let mut cells = cells.clone().filter(|cell| !cell.trim_ascii().is_empty()).peekable();
                 cells.peek().is_some() && cells.all(|cell| form.ns(cell).is_some())
             })
+            .map(|form| form.counting(cells))
             .collect()
+    }
+
+    /// The form that counts ms behind the seconds, where only that makes the cells rise.
+    fn counting<'a>(self, cells: &(impl Iterator<Item = &'a [u8]> + Clone)) -> Self {
+        let counts = Self { counts_ms: true, ..self.clone() };
+        let rises = |form: &Self| {
+            let filled = cells.clone().filter(|cell| !cell.trim_ascii().is_empty());
+            let mut ns = filled.map(|cell| form.ns(cell));
+            let mut before = ns.next().flatten();
+            before.is_some() && ns.all(|next| next >= std::mem::replace(&mut before, next))
+        };
+        if !rises(&self) && rises(&counts) { counts } else { self }
     }
 
     pub(super) fn part(&self) -> Part {
@@ -79,7 +103,8 @@ impl DateForm {
         let text = std::str::from_utf8(cell).ok()?.trim();
         let parsed = || {
             let mut parsed = Parsed::new();
-            parse(&mut parsed, &plain(text)?, self.items.iter()).ok()?;
+            let plain = if self.counts_ms { padded(&plain(text)?)? } else { plain(text)? };
+            parse(&mut parsed, &plain, self.items.iter()).ok()?;
             Some(parsed)
         };
         match self.part {
@@ -97,11 +122,28 @@ impl DateForm {
     }
 }
 
+/// Whether a text begins as `Sat Aug 31` does.
+fn begins_with_day(text: &str) -> bool {
+    const DAYS: [&str; 7] = ["Mon ", "Tue ", "Wed ", "Thu ", "Fri ", "Sat ", "Sun "];
+    DAYS.iter().any(|day| text.starts_with(day))
+}
+
+/// Whether a text has a time of day beside the name of a month, as `31-Aug-2024 10:59:50` does.
+pub(super) fn names_month(text: &str) -> bool {
+    const MONTHS: [&str; 12] =
+        ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
+    let is_month = |word: &str| MONTHS.iter().any(|month| word.eq_ignore_ascii_case(month));
+    text.contains(':')
+        && text.split(|c: char| !c.is_alphabetic()).any(is_month)
+        && !DateForm::fitting(&std::iter::once(text.as_bytes())).is_empty()
+}
+
 /// The same text with a blank between date and time and a point before the fraction, which some
 /// write as a comma, a semicolon or a third colon.
 fn plain(text: &str) -> Option<String> {
     const LONGEST: usize = 48;
-    if text.len() > LONGEST || !text.starts_with(|c: char| c.is_ascii_digit()) {
+    let begins = text.starts_with(|c: char| c.is_ascii_digit()) || begins_with_day(text);
+    if text.len() > LONGEST || !begins {
         return None;
     }
     let mut colons = 0;
@@ -121,6 +163,16 @@ fn plain(text: &str) -> Option<String> {
     });
     let plain: String = plain.collect();
     Some(plain.strip_suffix(" UTC").map(|time| format!("{time}Z")).unwrap_or(plain))
+}
+
+/// With three digits behind the seconds; `None` if there are more.
+fn padded(plain: &str) -> Option<String> {
+    let Some(at) = plain.rfind('.').filter(|at| plain[*at..].find(':').is_none()) else {
+        return Some(plain.to_owned());
+    };
+    let (whole, behind) = plain.split_at(at + 1);
+    let digits = behind.find(|c: char| !c.is_ascii_digit()).unwrap_or(behind.len());
+    (digits <= 3).then(|| format!("{whole}{:0>3}{}", &behind[..digits], &behind[digits..]))
 }
 
 #[cfg(test)]
@@ -153,12 +205,33 @@ mod tests {
             "20250615T150640.020Z",
             "15.06.25 15:06:40.020",
             "15-Jun-2025 15:06:40.020",
+            "15-Jun-2025 03:06:40.020 PM",
+            "15-Jun-25 3:06:40.020 pm",
+            "15/06/25 15:06:40.020",
+            "06/15/25 15:06:40.020",
+            "06/15/25 03:06:40.020 PM",
+            "Sun Jun 15 15:06:40.020 2025",
             "15-JUN-25 15:06:40,020",
             "20250615150640020",
             "20250615150640.02",
         ] {
             assert_eq!(ns(text).0, NOON_NS, "{text}");
         }
+    }
+
+    #[test]
+    fn ms_without_zeros_before_are_told_by_that_only_they_rise() {
+        let ms = |cells: &[&'static str]| {
+            let cells = || cells.iter().map(|cell| cell.as_bytes());
+            let form = DateForm::fitting(&cells()).remove(0);
+            let ms = cells().map(|cell| form.ns(cell).unwrap() % 1_000_000_000 / 1_000_000);
+            (form.counts_ms, ms.collect::<Vec<_>>())
+        };
+        let rising = ["12.03.2024 10:00:00:0", "12.03.2024 10:00:00:5", "12.03.2024 10:00:00:10"];
+        assert_eq!(ms(&rising), (true, vec![0, 5, 10]));
+        assert_eq!(ms(&["10:00:00.98", "10:00:00.100", "10:00:01"]), (true, vec![98, 100, 0]));
+        assert_eq!(ms(&["10:00:00.1", "10:00:00.15", "10:00:00.2"]), (false, vec![100, 150, 200]));
+        assert_eq!(ms(&["23:59:59.98", "00:00:00.1"]), (false, vec![980, 100]));
     }
 
     #[test]
@@ -180,6 +253,8 @@ mod tests {
             "99.99.2025 10:00:00",
             "25:00:00",
             "zwei",
+            "Sun Jun 16 15:06:40 2025",
+            "15/13/25 15:06:40",
         ] {
             assert!(DateForm::fitting(&std::iter::once(text.as_bytes())).is_empty(), "{text}");
         }

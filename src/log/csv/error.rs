@@ -75,7 +75,7 @@ pub enum CsvError {
     #[error(
         "no column looks like a time{why}; the columns are {present}; {}",
         if why.is_empty() { "say --time COLUMN, or --rate HZ if there is none" }
-        else { "rows of one instant may be of several joints: call the column that names the joint \"joint\"; or say --time COLUMN" }
+        else { "rows of one instant may be of several joints: call the column that names the joint \"joint\"; else say --rate HZ if a row comes HZ times a second, or --time COLUMN" }
     )]
     NoTime { why: String, present: String },
     /// A column of time that does not say its unit.
@@ -85,19 +85,24 @@ pub enum CsvError {
     TimeUnit { column: String, step: f64 },
     /// Angles without a unit, too large for radians.
     #[error(
-        "column {column:?} says no unit and reaches {}, too far for radians; say --degrees, --radians, or \
-         --slides JOINT=mm of a joint that slides",
-        reach.round()
+        "column {column:?} {says} and reaches {}, too far for radians; say --degrees, --radians, or \
+         --slides JOINT=mm of a joint that slides{}",
+        reach.round(),
+        if says.contains("known") {
+            "; or what one is with --planned JOINT=FACTOR*COLUMN,... --measured JOINT=FACTOR*COLUMN,... --degrees"
+        } else {
+            ""
+        }
     )]
-    AngleUnit { column: String, reach: f64 },
+    AngleUnit { column: String, says: String, reach: f64 },
     /// Numbers without a unit, too large for degrees, too.
     #[error(
-        "column {column:?} says no unit and reaches {}, too far for degrees, too: is it in steps of an encoder? Say what \
+        "column {column:?} {says} and reaches {}, too far for degrees, too: is it in steps of an encoder? Say what \
          one is with --planned JOINT=FACTOR*COLUMN,... --measured JOINT=FACTOR*COLUMN,... --degrees, or --slides \
          JOINT=mm of a joint that slides",
         reach.round()
     )]
-    Counts { column: String, reach: f64 },
+    Counts { column: String, says: String, reach: f64 },
     /// A recording cannot look at what is to come.
     #[error(
         "column {column:?} says no unit, and a recording cannot tell by what is to come; say --degrees, --radians, \
@@ -164,9 +169,7 @@ impl CsvError {
     pub(in crate::log) fn missing_option(&self) -> Option<(&'static str, &'static str)> {
         match self {
             Self::AngleUnit { .. } => Some(("--degrees", "reads it if its angles are in degrees")),
-            Self::NoTime { why, .. } if why.is_empty() => {
-                Some(("--rate HZ", "reads it if a row comes HZ times a second"))
-            }
+            Self::NoTime { .. } => Some(("--rate HZ", "reads it if a row comes HZ times a second")),
             _ => None,
         }
     }

@@ -33,8 +33,8 @@ pub(super) fn plain<'a>(
     remarks: &mut Remarks,
 ) -> Cow<'a, [u8]> {
     let text = without_marks(&text).map_or(text, Cow::Owned);
-    let Some((dialect, mark)) = grouped(file, &text, options, remarks) else { return text };
-    without_groups(&text, dialect, mark).map_or(text, Cow::Owned)
+    let Some((dialect, mark, columns)) = grouped(file, &text, options, remarks) else { return text };
+    without_groups(&text, dialect, mark, &columns).map_or(text, Cow::Owned)
 }
 
 /// Without marks that can only set thousands apart, between a digit and three others; `None` if there are none.
@@ -78,8 +78,10 @@ enum Groups {
     /// A whole number of at most three digits, and of more.
     Short,
     Long,
-    /// Otherwise.
+    /// With the mark otherwise.
     Decimal,
+    /// With the other mark alone.
+    Other,
 }
 
 fn groups(cell: &[u8], mark: u8) -> Option<Groups> {
@@ -96,7 +98,7 @@ fn groups(cell: &[u8], mark: u8) -> Option<Groups> {
     };
     if !whole.contains(&mark) {
         return Some(match decimals {
-            Some(_) => Groups::Decimal,
+            Some(_) => Groups::Other,
             None if whole.len() > 3 => Groups::Long,
             None => Groups::Short,
         });
@@ -127,18 +129,26 @@ pub(super) fn has_quoted_commas(file: &str, text: &[u8], options: &CsvOptions) -
 }
 
 /// The mark that sets thousands apart, if one does. `1.380` may be either: it is thousands where the column has whole
-/// numbers below a thousand, too, or is in millimetres, and no number of the file says otherwise.
-fn grouped(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Option<(Dialect, u8)> {
+/// numbers below a thousand, too, or is in millimetres, and no number of the file says otherwise. With the columns that may
+/// have it.
+fn grouped(
+    file: &str,
+    text: &[u8],
+    options: &CsvOptions,
+    remarks: &mut Remarks,
+) -> Option<(Dialect, u8, Vec<bool>)> {
     let dialect = detect(file, text, options).ok()?;
     let head = read_head(text, dialect, &mut Remarks::default());
     let cells = |column: usize| head.sample.iter().filter_map(move |row| row.get(column)).map(Vec::as_slice);
     for mark in [b',', b'.'] {
         let (mut certain, mut perhaps, mut decimal) = (false, None, false);
+        let mut columns = Vec::new();
         for (column, name) in head.names.iter().enumerate() {
             let found: Vec<Groups> = cells(column).filter_map(|cell| groups(cell, mark)).collect();
             certain |= found.contains(&Groups::WithDecimals);
-            decimal |=
-                found.contains(&Groups::Decimal) && found.iter().all(|one| *one != Groups::WithDecimals);
+            columns.push(!found.contains(&Groups::Decimal));
+            let has_decimals = found.contains(&Groups::Decimal) || found.contains(&Groups::Other);
+            decimal |= has_decimals && !found.contains(&Groups::WithDecimals);
             if found.contains(&Groups::Perhaps) {
                 let short = found.contains(&Groups::Short);
                 // No cylinder is ten metres long.
@@ -154,7 +164,7 @@ fn grouped(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks)
             }
         }
         if certain && options.decimal_comma != Some(mark == b',') {
-            return Some((dialect, mark));
+            return Some((dialect, mark, columns));
         }
         if perhaps == Some(true) && !decimal && options.decimal_comma.is_none() {
             let mark_name = if mark == b',' { "commas" } else { "points" };
@@ -165,20 +175,21 @@ fn grouped(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks)
                 if mark == b',' { "comma" } else { "point" }
             );
             remarks.add(Code::Guessed, 1, message);
-            return Some((dialect, mark));
+            return Some((dialect, mark, columns));
         }
     }
     None
 }
 
-/// The same table with each cell of grouped digits without the mark.
-fn without_groups(text: &[u8], dialect: Dialect, mark: u8) -> Option<Vec<u8>> {
+/// The same table with each cell of grouped digits without the mark, in columns that may have it.
+fn without_groups(text: &[u8], dialect: Dialect, mark: u8, columns: &[bool]) -> Option<Vec<u8>> {
     let mut plain = writer(dialect.separator);
     let mut rows = Rows::new(text, dialect.separator);
     let mut record = ByteRecord::new();
     while rows.next(&mut record).is_some() {
-        let cells = record.iter().map(|cell| match groups(cell, mark) {
-            Some(Groups::WithDecimals | Groups::Perhaps) => {
+        let may = |at: usize| columns.get(at).copied().unwrap_or(false);
+        let cells = record.iter().enumerate().map(|(at, cell)| match groups(cell, mark) {
+            Some(Groups::WithDecimals | Groups::Perhaps) if may(at) => {
                 Cow::Owned(cell.iter().copied().filter(|byte| *byte != mark).collect::<Vec<u8>>())
             }
             _ => Cow::Borrowed(cell),
@@ -205,6 +216,8 @@ mod tests {
             ("t,q\n0,1180.5\n1,-1180.5\n".into(), 0)
         );
         assert_eq!(of("t,q\n0.0,\"1,480.0\"\n0.5,\"980.5\"\n"), ("t,q\n0.0,1480.0\n0.5,980.5\n".into(), 0));
+        let mixed = "t,q\n0.010,\"1.150,00\"\n10.010,\"1.150,00\"\n";
+        assert_eq!(of(mixed), ("t,q\n0.010,\"1150,00\"\n10.010,\"1150,00\"\n".into(), 0));
         assert_eq!(of("t;q\n0;999\n1;1.000\n2;1.001\n"), ("t;q\n0;999\n1;1000\n2;1001\n".into(), 1));
         assert_eq!(of("t;q [mm]\n0;1,380\n1;1,381\n"), ("t;q [mm]\n0;1380\n1;1381\n".into(), 1));
     }

@@ -19,6 +19,10 @@ const JUDGES: [&str; 8] =
 const GOOD: [&str; 4] = ["good", "ok", "valid", "gut"];
 const BAD: [&str; 6] = ["bad", "invalid", "error", "fault", "schlecht", "badwaitingforinitialdata"];
 
+/// In the quality of OPC, 0 to 255, good begins with 192, and below 64 all is bad.
+const OPC_GOOD: &str = "192";
+const OPC_BELOW_IS_BAD: u8 = 64;
+
 /// The table without the rows that a column of its own calls bad.
 pub(super) fn without_bad<'a>(
     file: &str,
@@ -39,14 +43,21 @@ fn kept(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) ->
     let column = head.names.iter().position(judges)?;
     let says = |cell: &[u8], words: &[&str]| words.contains(&cell_text(cell).to_lowercase().as_str());
     let sample = || head.sample.iter().filter_map(|row| row.get(column));
-    if !sample().any(|cell| says(cell, &GOOD)) {
+    let opc = |cell: &[u8]| cell_text(cell).parse::<u8>().ok();
+    let is_opc = head.names[column].to_lowercase().contains("qualit")
+        && sample().any(|cell| says(cell, &[OPC_GOOD]))
+        && sample().all(|cell| opc(cell).is_some());
+    if !is_opc && !sample().any(|cell| says(cell, &GOOD)) {
         return None;
     }
+    let is_bad = |cell: &[u8]| {
+        if is_opc { opc(cell).is_some_and(|of| of < OPC_BELOW_IS_BAD) } else { says(cell, &BAD) }
+    };
     let (mut kept, mut bad) = (writer(dialect.separator), 0);
     let mut rows = Rows::new(text, dialect.separator);
     let mut record = ByteRecord::new();
     while let Some(line) = rows.next(&mut record) {
-        if line >= head.first_line && record.get(column).is_some_and(|cell| says(cell, &BAD)) {
+        if line >= head.first_line && record.get(column).is_some_and(is_bad) {
             bad += 1;
         } else {
             kept.write_byte_record(&record).ok()?;
@@ -76,6 +87,11 @@ mod tests {
         };
         let text = "t,q,Quality\n0,1,Good\n1,0,Bad\n2,1,Good\n3,0,bad\n";
         assert_eq!(of(text), ("t,q,Quality\n0,1,Good\n2,1,Good\n".into(), 2));
+        let opc = "t,q,Quality\n0,1,192\n1,0,0\n2,1,216\n3,2,64\n";
+        assert_eq!(of(opc), ("t,q,Quality\n0,1,192\n2,1,216\n3,2,64\n".into(), 1));
+        for text in ["t,q,status\n0,1,192\n1,0,0\n", "t,q,quality\n0,1,1\n1,0,0\n"] {
+            assert_eq!(of(text), (text.to_owned(), 0));
+        }
         for text in ["t,q,status\n0,1,run\n1,0,error\n", "t,q,quality\n0,1,good\n", "t,q\n0,1\n"] {
             assert_eq!(of(text), (text.to_owned(), 0));
         }

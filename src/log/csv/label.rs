@@ -1,10 +1,13 @@
 //! Reads role, quantity, joint and unit from the header of a column.
 
+use std::borrow::Cow;
+
 use super::{
     Quantity, Role,
     letter::{Lettered, lettered},
     name::joint_name,
-    unit::{METRE, Measure, UNITLESS, Unit, parse_unit, split_suffix},
+    scale::{in_header, is_unclear},
+    unit::{ANOTHER, METRE, Measure, UNITLESS, Unit, parse_unit, split_suffix},
     within::take_unit,
     word::{Meaning, Word, words},
 };
@@ -17,6 +20,8 @@ pub(super) struct Label {
     pub(super) unit: Option<Unit>,
     /// The unit that it ends with, even where that is read as a word.
     pub(super) stated: Option<Unit>,
+    /// What it has in square brackets at its end where that is no known unit and no other known word: `U` of `boom [U]`.
+    pub(super) unknown: Option<String>,
     /// Its words in lower case.
     pub(super) words: Vec<String>,
     /// The joint as other columns of it would also write it: lower case.
@@ -63,7 +68,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let header = header.strip_prefix("field.").unwrap_or(header);
     let indexed = unit_before_index(header);
     let header = indexed.as_deref().unwrap_or(header);
-    let (name, stated) = without_unit(header);
+    let (name, stated) = parted(header);
+    let name = &*name;
     let mut unit = stated.or_else(|| below.and_then(parse_unit));
     if let Some((joint, role)) = own(name).filter(|_| unit.is_some()) {
         let speeds = [Measure::AngularSpeed, Measure::LinearSpeed];
@@ -74,6 +80,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
             quantity: Some(quantity),
             unit,
             stated: unit,
+            unknown: None,
             words: vec![joint.to_lowercase()],
             key: joint.to_owned(),
             joint: joint.to_owned(),
@@ -152,8 +159,22 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let unit = if turns { Some(UNITLESS) } else { unit };
     let strong = strong && !turns;
     let stated = stated.or(unit);
+    let unknown = if unit.is_none() { unknown_unit(header) } else { None };
     let words = words.iter().map(|word| word.text.to_lowercase()).collect();
-    Label { role, quantity, unit, stated, words, key, joint, is_time, is_joint, is_weak: !strong, lettered }
+    Label {
+        role,
+        quantity,
+        unit,
+        stated,
+        unknown,
+        words,
+        key,
+        joint,
+        is_time,
+        is_joint,
+        is_weak: !strong,
+        lettered,
+    }
 }
 
 /// `current_position` is measured now, and so is a current in degrees: it is no electric one.
@@ -198,6 +219,22 @@ fn own(name: &str) -> Option<(&str, Role)> {
     found.filter(|(joint, _)| !joint.is_empty())
 }
 
+/// What stands in square brackets at the end of a header, if it may be a unit.
+fn unknown_unit(header: &str) -> Option<String> {
+    let (before, inner) = header.strip_suffix(']')?.rsplit_once('[')?;
+    let names = words(inner).iter().all(|word| word.meaning == Meaning::Name);
+    (!before.is_empty() && names && inner.contains(char::is_alphabetic)).then(|| inner.trim().to_owned())
+}
+
+/// The header without its unit, and the unit.
+fn parted(header: &str) -> (Cow<'_, str>, Option<Unit>) {
+    if let Some((name, unit)) = in_header(header) {
+        return (Cow::Owned(name), Some(unit));
+    }
+    let (name, unit) = without_unit(header);
+    (Cow::Borrowed(name), unit)
+}
+
 /// The header before its unit, and the unit.
 fn without_unit(header: &str) -> (&str, Option<Unit>) {
     for (open, close) in [('[', ']'), ('(', ')'), ('（', '）')] {
@@ -206,6 +243,9 @@ fn without_unit(header: &str) -> (&str, Option<Unit>) {
         };
         if let Some(unit) = parse_unit(inner.1) {
             return (inner.0.trim_end(), Some(unit));
+        }
+        if is_unclear(inner.1) {
+            return (inner.0.trim_end(), Some(ANOTHER));
         }
     }
     let known = |at: usize| {
@@ -298,6 +338,15 @@ mod tests {
     fn a_unit_of_time_behind_a_joint_is_a_word() {
         let label = label("Boom Ms", None);
         assert_eq!((label.joint.as_str(), label.role, label.unit), ("Boom", Some(Role::Measured), None));
+    }
+
+    #[test]
+    fn a_unit_that_is_not_known_is_kept_as_such() {
+        let unknown = |header: &str| label(header, None).unknown;
+        assert_eq!(unknown("boom_set [U]").as_deref(), Some("U"));
+        for header in ["boom_set [deg]", "q[0]", "boom [ist]", "boom_set", "[U]"] {
+            assert_eq!(unknown(header), None, "{header}");
+        }
     }
 
     #[test]

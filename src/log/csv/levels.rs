@@ -21,17 +21,24 @@ pub(super) fn joined(file: &str, text: &[u8], options: &CsvOptions) -> Option<Ve
     let mut rows = Rows::new(text, dialect.separator);
     let mut record = ::csv::ByteRecord::new();
     let mut levels: Vec<(u64, Vec<String>)> = Vec::new();
+    // The rows above a first row of numbers that has a word, too.
+    let mut noted = None;
     let first_line = loop {
         let line = rows.next(&mut record)?;
         let cells: Vec<String> = record.iter().map(cell_text).collect();
         let words = cells.iter().filter(|cell| looks(cell.as_bytes()) == Looks::Text).count();
         let empty = cells.iter().filter(|cell| cell.is_empty()).count();
         if cells.len() != dialect.width || words > 0 && words + empty < cells.len() {
+            let note = words == 1 && words + empty + 1 < cells.len();
+            noted = note.then(|| (line, std::mem::take(&mut levels)));
             levels.clear();
         } else if words > 0 {
             levels.push((line, cells));
+            noted = None;
         } else {
-            break line;
+            let (first, above) = noted.filter(|_| levels.is_empty()).unwrap_or((line, levels));
+            levels = above;
+            break first;
         }
     };
     let levels = &levels[levels.len().saturating_sub(MOST)..];
@@ -136,6 +143,9 @@ mod tests {
         assert_eq!(of(&one), Some(format!("\n\nt,boom set,boom act,boom a,boom b\n{ROWS}")));
         let units = format!("t,boom set,boom act,c,d_s\n[s],deg,deg,-,s\nraw,raw,raw,raw,raw\n{ROWS}");
         assert_eq!(of(&units), Some(format!("\n\nt [s],boom set [deg],boom act [deg],c,d_s\n{ROWS}")));
+        let noted = "descriptor,x,a_set,a_act,b\nunit,s,deg,deg,deg\nstart,0,1,2,3\n,1,1,2,3\n";
+        let expected = "\ndescriptor,x [s],a_set [deg],a_act [deg],b [deg]\nstart,0,1,2,3\n,1,1,2,3\n";
+        assert_eq!(of(noted).as_deref(), Some(expected));
         let below = format!("Log;7\n\nt,boom,boom,arm,arm\n\n,set,act,set,act\n{ROWS}");
         assert!(
             of(&below).is_some_and(|text| text.lines().count() == below.lines().count()),

@@ -7,6 +7,7 @@ use ::csv::ByteRecord;
 
 use super::{
     CsvOptions,
+    date::{DateForm, Part},
     dialect::{Dialect, detect},
     head::{Head, read_head},
     keys::Changes,
@@ -282,6 +283,11 @@ impl Long {
                 time.iter().map(|cell| cell.strip_suffix(b"Z").unwrap_or(cell).to_vec()).collect()
             };
             rows.sort_by_cached_key(|(_, time)| plain(time));
+        } else if self.times.len() == 1
+            && let Some(form) = DateForm::fitting(&rows.iter().map(|(_, time)| time[0].as_slice())).first()
+            && form.part() == Part::Local
+        {
+            rows.sort_by_cached_key(|(_, time)| form.ns(&time[0]));
         }
         rows
     }

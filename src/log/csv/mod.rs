@@ -11,6 +11,7 @@ mod by_meaning;
 mod clock;
 mod clocks;
 mod column;
+mod dataset;
 mod date;
 mod dialect;
 mod echoed;
@@ -22,6 +23,7 @@ mod error;
 mod expression;
 mod given;
 mod grouping;
+mod guess;
 mod head;
 mod judged;
 mod keys;
@@ -32,6 +34,7 @@ mod levels;
 mod long;
 mod lvm;
 mod map;
+mod marks;
 mod name;
 mod number;
 mod objects;
@@ -42,6 +45,7 @@ mod printed;
 mod read;
 mod rows;
 mod run;
+mod scale;
 mod scope;
 mod settle;
 mod si;
@@ -116,20 +120,31 @@ pub(in crate::log) fn says_side(part: &str) -> bool {
 /// [`CsvError`]
 pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<CsvRun, CsvError> {
     let text = text::of_bytes(name, bytes)?;
-    let table =
-        objects::as_table(&text).or_else(|| echoed::as_table(&text)).or_else(|| printed::as_table(&text));
+    let table = objects::as_table(&text)
+        .or_else(|| echoed::as_table(&text))
+        .or_else(|| printed::as_table(&text))
+        .or_else(|| dataset::as_table(&text));
     let text = table.map_or(text, Cow::Owned);
     read_table(name, Cow::Borrowed(&text), options, Remarks::default())
-        .or_else(|error| of_other_form(name, &text, options).unwrap_or(Err(error)))
+        .or_else(|error| of_other_form(name, &text, options, &error).unwrap_or(Err(error)))
 }
 
 /// What cannot be read as it stands, as a table of another form; `None` if it is of none.
-fn of_other_form(name: &str, text: &[u8], options: &CsvOptions) -> Option<Result<CsvRun, CsvError>> {
+fn of_other_form(
+    name: &str,
+    text: &[u8],
+    options: &CsvOptions,
+    error: &CsvError,
+) -> Option<Result<CsvRun, CsvError>> {
     let mut remarks = Remarks::default();
     if grouping::has_quoted_commas(name, text, options) {
         let comma = CsvOptions { decimal_comma: Some(true), ..options.clone() };
         let run = read_table(name, Cow::Borrowed(text), &comma, remarks).ok()?;
         return Some(Ok(run.given(options.given())));
+    }
+    if let Some((plain, form)) = marks::by_column(name, text, options, error, &mut remarks) {
+        let run = read_table(name, Cow::Owned(plain), &form, remarks);
+        return Some(run.map(|run| run.given(options.given())));
     }
     let table = lvm::as_table(text)
         .or_else(|| scope::as_table(text, &mut remarks))

@@ -1,6 +1,7 @@
 //! Numbers as files write them, with a decimal point or a decimal comma.
 
 use super::{
+    date::names_month,
     elapsed::elapsed_ns,
     rows::cell_text,
     unit::{Unit, parse_unit},
@@ -140,8 +141,10 @@ pub(super) fn looks(cell: &[u8]) -> Looks {
             }
             let dated = cell.len() >= 8
                 && cell[0].is_ascii_digit()
+                && (has(b':') || !has(b';'))
                 && cell.iter().all(|byte| byte.is_ascii_digit() || b" -:./,;TZ+APMUC".contains(byte));
-            if dated { Looks::Date } else { Looks::Text }
+            let named = || std::str::from_utf8(cell).is_ok_and(names_month);
+            if dated || named() { Looks::Date } else { Looks::Text }
         }
     }
 }
@@ -206,11 +209,15 @@ mod tests {
     fn dates_are_told_from_words() {
         assert_eq!(looks(b"15.06.2025 15:06:40,020"), Looks::Date);
         assert_eq!(looks(b"2025-06-15T15:06:40Z"), Looks::Date);
+        assert_eq!(looks(b"31-Aug-2024 10:59:50.010"), Looks::Date);
+        assert_eq!(looks(b"Sat Aug 31 10:59:50 2024"), Looks::Date);
+        assert_eq!(looks(b"arm: may 1"), Looks::Text);
         assert_eq!(looks(b"standstill"), Looks::Text);
         assert_eq!(looks(b"1,25"), Looks::Comma);
         assert_eq!(looks(b"T#1s10ms"), Looks::Date);
         assert_eq!(looks("-1.5\u{b0}".as_bytes()), Looks::Point);
         assert_eq!(looks(b"20 mm"), Looks::Whole);
         assert_eq!(looks(b"joint 1"), Looks::Text);
+        assert_eq!(looks(b"000;900;1.150"), Looks::Text);
     }
 }

@@ -44,6 +44,10 @@ fn table(text: &[u8], separator: u8, remarks: &mut Remarks) -> Option<Vec<u8>> {
     let properties: Vec<Property<'_>> =
         lines[start..end].iter().map(|row| Property { key: cell_text(row[0]), cells: row.clone() }).collect();
     let (clocks, width) = clocks(&properties)?;
+    // Below the first key stands a time: a word before a row of another table is none.
+    if !lines[first..].iter().any(|row| row.first().is_some_and(|cell| is_number(cell))) {
+        return None;
+    }
     let names = names(&properties, &clocks, width, remarks);
     // A word may end the file.
     let last = lines.iter().rposition(|row| !blank(row)).filter(|last| !row_has_number(&lines[*last]));

@@ -44,11 +44,11 @@ pub(super) fn to_si(
     };
     let fallback = fallback(head, options, layout.uses.iter().filter(turns).map(|one| stated(one.column)));
     let mut settled = Vec::new();
-    let mut guessed: Vec<&str> = Vec::new();
+    let mut guessed: Vec<usize> = Vec::new();
     for one in &layout.uses {
         let (unit, from) = match lengths[one.joint] {
             Some(length) => length.of(one.quantity, stated(one.column)),
-            None => angle(one, stated(one.column), fallback, head, cells, options)?,
+            None => angle(one, labels.get(one.column), fallback, head, cells, options)?,
         };
         let is_guess = from == "guess" && lengths[one.joint].is_none();
         let other = if is_guess { by_partner(one, unit, layout, &stated, cells) } else { None };
@@ -59,7 +59,7 @@ pub(super) fn to_si(
             );
             remarks.add(Code::Guessed, 1, message);
         } else if is_guess {
-            guessed.push(&head.names[one.column]);
+            guessed.push(one.column);
         }
         let unit = other.unwrap_or(unit);
         settled.push(Settled { column: one.column, unit: Some(unit), from });
@@ -67,13 +67,7 @@ pub(super) fn to_si(
     for Settled { column, unit, .. } in &settled {
         scale(cells, *column, unit.map_or(1.0, |unit| unit.factor));
     }
-    if let Some(first) = guessed.first() {
-        let unit = fallback.map_or(RADIAN, |(unit, _)| unit).name;
-        let message = format!(
-            "columns that say no unit, such as {first:?}, taken as {unit}; else import with --degrees or --radians"
-        );
-        remarks.add(Code::Guessed, guessed.len() as u64, message);
-    }
+    remark_guessed(&guessed, labels, head, fallback.map_or(RADIAN, |(unit, _)| unit), remarks);
     for one in &layout.interfaces {
         let unit = stated(one.column).filter(|_| one.name.ends_with("_pa"));
         match unit {
@@ -161,7 +155,7 @@ fn lengths(
 /// The unit of a column of a joint that turns, and who says so.
 fn angle(
     one: &Use,
-    stated: Option<Unit>,
+    label: Option<&Label>,
     fallback: Option<(Unit, &'static str)>,
     head: &Head,
     cells: &Cells,
@@ -172,7 +166,7 @@ fn angle(
         Quantity::Velocity => (Measure::AngularSpeed, "speed of a joint"),
     };
     let named = options.columns.contains_key(&(one.role, one.quantity));
-    let (angle, from) = match (stated, fallback) {
+    let (angle, from) = match (label.and_then(|label| label.unit), fallback) {
         (Some(unit), _) if unit.measure == wanted => return Ok((unit, "file")),
         // The caller names the column and the unit: that holds against a header.
         (_, Some((unit, "option"))) if named => (unit, "option"),
@@ -186,10 +180,11 @@ fn angle(
             if one.quantity == Quantity::Position && reach > FARTHEST_RAD {
                 let column = head.names[one.column].clone();
                 let counts = reach > FARTHEST_DEG;
+                let says = says_no_unit(label);
                 return Err(if counts {
-                    CsvError::Counts { column, reach }
+                    CsvError::Counts { column, says, reach }
                 } else {
-                    CsvError::AngleUnit { column, reach }
+                    CsvError::AngleUnit { column, says, reach }
                 });
             }
             (RADIAN, "guess")
@@ -198,6 +193,37 @@ fn angle(
     let speed = one.quantity == Quantity::Velocity;
     let speed = speed.then(|| parse_unit(if angle == DEGREE { "deg/s" } else { "rad/s" })).flatten();
     Ok((speed.unwrap_or(angle), from))
+}
+
+/// Remarks on columns whose unit was guessed: those that say none, and those that say one that is not known.
+fn remark_guessed(columns: &[usize], labels: &[Label], head: &Head, unit: Unit, remarks: &mut Remarks) {
+    let unknown = |column: &&usize| labels.get(**column).and_then(|label| label.unknown.as_ref());
+    let (known, plain): (Vec<&usize>, _) = columns.iter().partition(|column| unknown(column).is_some());
+    for (columns, scale) in [
+        (plain, ""),
+        (
+            known,
+            ", or say what one is with --planned JOINT=FACTOR*COLUMN,... --measured JOINT=FACTOR*COLUMN,...",
+        ),
+    ] {
+        let Some(first) = columns.first() else { continue };
+        let message = format!(
+            "columns that say no unit{}, such as {:?}, taken as {}; else import with --degrees or --radians{scale}",
+            unknown(first)
+                .map_or_else(String::new, |unknown| format!(" that is known ({unknown:?} is none)")),
+            head.names[**first],
+            unit.name
+        );
+        remarks.add(Code::Guessed, columns.len() as u64, message);
+    }
+}
+
+/// That a header says no unit, or none that is known.
+fn says_no_unit(label: Option<&Label>) -> String {
+    label.and_then(|label| label.unknown.as_ref()).map_or_else(
+        || "says no unit".to_owned(),
+        |unknown| format!("says no unit that is known ({unknown:?} is none)"),
+    )
 }
 
 /// Degrees by radians, as ranges of plan and measurement show it.

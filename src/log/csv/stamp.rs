@@ -1,7 +1,8 @@
 //! Times in two columns: seconds, and what is beyond them.
 
 use super::{
-    clock::{Found, Look, SINCE_1970_S},
+    clock::{Found, Look},
+    guess::SINCE_1970_S,
     number::number,
     time::TimeSource,
     unit::{Measure, parse_unit},

@@ -1,9 +1,10 @@
 //! Units as people write them into a header, and what they are in SI.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use serde::Serialize;
 
+use super::scale::in_words;
 use crate::units::DEGREE_RAD;
 
 /// The quantity that a unit measures.
@@ -48,10 +49,11 @@ pub(super) const EXCEL_DAY: Unit = unit("days since 1899-12-30", Measure::Time, 
 pub(super) const ARCHIVE_DAY: Unit = unit("millionths of days since 1899-12-30", Measure::Time, 86_400e3);
 
 /// Units before which a number stands, as `[10 ms]` or `0.1mm`.
-const SCALED: [Unit; 10] = [
+const SCALED: [Unit; 11] = [
     unit("0.1 deg", Measure::Angle, 0.1 * DEGREE_RAD),
     unit("0.01 deg", Measure::Angle, 0.01 * DEGREE_RAD),
     unit("0.001 deg", Measure::Angle, 0.001 * DEGREE_RAD),
+    unit("pi rad", Measure::Angle, PI),
     unit("0.1 mm", Measure::Length, 1e-4),
     unit("0.01 mm", Measure::Length, 1e-5),
     unit("0.1 s", Measure::Time, 1e8),
@@ -175,7 +177,7 @@ pub(super) fn parse_unit(text: &str) -> Option<Unit> {
         let (name, number) = text.split_once(['*', 'x', '·', '×', ':', '/'])?;
         scale_of((&format!("1/{}", number.trim()), name.trim()))
     };
-    known.or_else(other).or_else(|| scaled(&text)).or_else(times)
+    known.or_else(other).or_else(|| scaled(&text)).or_else(times).or_else(|| in_words(&text))
 }
 
 /// A unit behind a number or a fraction of one; one that no program is known to write is another unit.
@@ -201,8 +203,11 @@ fn power_of_ten(text: &str) -> Option<(String, &str)> {
 fn scale_of((number, name): (&str, &str)) -> Option<Unit> {
     let (above, below) = number.split_once('/').unwrap_or((number, "1"));
     let [above, below] = [above, below].map(|text| text.replace(',', ".").parse::<f64>().ok());
-    let factor = above? / below?;
-    let name = name.trim_start_matches([' ', '*', 'x', '·']);
+    scale_by(above? / below?, name.trim_start_matches([' ', '*', 'x', '·']))
+}
+
+/// So many of a unit by its name in lower case; what no program is known to write is another unit.
+pub(super) fn scale_by(factor: f64, name: &str) -> Option<Unit> {
     let (_, base) = UNITS.iter().find(|(spellings, _)| spellings.contains(&name))?;
     let alike =
         |one: &&Unit| one.measure == base.measure && (one.factor / (factor * base.factor) - 1.0).abs() < 1e-9;

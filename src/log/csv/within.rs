@@ -12,9 +12,8 @@ const UNITS: [&str; 8] = ["deg", "degree", "degrees", "mdeg", "rad", "mrad", "mm
 /// Words behind a unit that make it one a second.
 const PER_SECOND: [&[&str]; 5] = [&["s"], &["sec"], &["per", "s"], &["per", "sec"], &["per", "second"]];
 
-/// Numbers and words that make another unit of one.
+/// Numbers that make another unit of one.
 const SCALES: [&str; 3] = ["10", "100", "1000"];
-const PARTS: [&str; 3] = ["tenth", "hundredth", "zehntel"];
 
 /// Takes a unit out of the words; the first of them names the joint, and of two units neither is meant.
 pub(super) fn take_unit(words: &mut Vec<Word<'_>>) -> Option<Unit> {
@@ -28,7 +27,7 @@ pub(super) fn take_unit(words: &mut Vec<Word<'_>>) -> Option<Unit> {
     let scale = |word: &Word<'_>| SCALES.contains(&word.text);
     let power = words.get(at + 1).is_some_and(|next| next.text == "e")
         && words.get(at + 2).is_some_and(|next| next.text.bytes().all(|b| b.is_ascii_digit()));
-    if named && (words[at + 1..].iter().any(scale) || power || PARTS.contains(&words[at - 1].text)) {
+    if named && (words[at + 1..].iter().any(scale) || power) {
         return Some(ANOTHER);
     }
     let follow = |behind: &&&[&str]| {
@@ -70,7 +69,7 @@ mod tests {
         assert_eq!(said("angle_rad_1"), (Some("rad"), "angle 1".into()));
         assert_eq!(said("j1 rad per sec actual"), (Some("rad/s"), "j 1 actual".into()));
         assert_eq!(said("boom_mm_s_act"), (Some("mm/s"), "boom act".into()));
-        for header in ["boom set [deg] x10", "boom_set_deg_e2", "boom_tenth_mm_set", "boom_set_deg_10"] {
+        for header in ["boom set [deg] x10", "boom_set_deg_e2", "boom_set_deg_10"] {
             assert_eq!(said(header).0, Some("another unit"), "{header}");
         }
         assert_eq!(said("joint_deg_10").0, Some("deg"));

@@ -83,6 +83,19 @@ fn a_plan_may_be_a_sum_and_a_map_keeps_how_a_file_was_read() {
 }
 
 #[test]
+fn a_unit_that_is_not_known_is_told_and_a_factor_says_what_it_is() {
+    let turns = trace("t_s,boom_set [U],boom_act [U]", 1.0, ",", 1.0 / std::f64::consts::TAU);
+    let (code, out, error) = import(&turns, &[]);
+    assert!(code == 3 && out.contains("no unit that is known (\"U\" is none)"), "{out}{error}");
+    let factor = ["--planned", "boom=360*boom_set [U]", "--measured", "boom=360*boom_act [U]", "--degrees"];
+    let (code, out, error) = import(&turns, &factor);
+    assert_eq!(code, 0, "{out}{error}");
+    let far = trace("t_s,boom_set [U],boom_act [U]", 1.0, ",", 60.0);
+    let (code, _, error) = import(far, &[]);
+    assert!(code == 1 && error.contains("(\"U\" is none)") && error.contains("FACTOR*COLUMN"), "{error}");
+}
+
+#[test]
 fn a_ragged_first_row_is_counted_and_the_header_kept() {
     let text = trace("t_s,q_set_1,q_act_1", 1.0, ",", 1.0).replacen('\n', "\n0\n", 1);
     let (code, out, error) = import(text, &["--radians"]);

@@ -150,8 +150,23 @@ fn the_only_column_in_a_unit_of_time_is_the_time_and_units_have_prefixes() {
         assert!(text.contains(&format!("{column} (counts ms)")) && text.contains("boom at 1.0"), "{text}");
         assert_eq!(text.contains("is the only one in a unit of time"), code == 3, "{text}");
     }
-    let (code, _, error) = report("a.csv", &(format!("tick_ms,age_ms,boom_set_deg\n{}", rows(row))));
+    let two = |t: f64, p: f64, _: f64| format!("{:.0},{:.0},{p:.3}\n", 1e3 * t, 1e3 * t + 1.0);
+    let (code, _, error) = report("a.csv", &(format!("tick_ms,up_ms,boom_set_deg\n{}", rows(two))));
     assert!(code == 1 && error.contains("no column looks like a time"), "{code} {error}");
+}
+
+#[test]
+fn how_long_a_cycle_took_is_no_clock() {
+    // Goes up and down, and stands.
+    for took in [|t: f64| 400.0 + 30.0 * (1e3 * t).sin(), |_| 400.0] {
+        let row = |t: f64, p: f64, m: f64| format!("{:.0},{:.0},{p:.4},{m:.4}\n", 1e3 * t, took(t));
+        for names in ["tick_ms,exec_time_us", "uptime_ms,cycle time [us]", "time_ms,loop_time_us"] {
+            let text = format!("{names},boom_set_deg,boom_act_deg\n{}", rows(row));
+            let (code, text, error) = report("a.csv", &text);
+            let clock = format!("{} (counts ms)", names.split(',').next().unwrap());
+            assert!(code != 1 && text.contains(&clock) && text.contains(" boom at 1."), "{text}{error}");
+        }
+    }
 }
 
 #[test]
@@ -215,7 +230,7 @@ fn the_line_that_imports_a_table_repeats_what_was_given() {
     let (code, _, error) = said(&hydrotrace(folder, paste));
     assert_eq!(code, 0, "{error}");
     let error = line("--planned p1 --time log --joints boom");
-    assert!(error.contains("--planned JOINT=p1 -o a.mcap` takes options for that"), "{error}");
+    assert!(error.contains("--planned JOINT=p1 -o a-2.mcap` takes options for that"), "{error}");
     assert!(error.contains("with the other options of this line"), "{error}");
     // Columns of a log that was made of a table are for its import, too.
     let (code, _, error) = said(&hydrotrace(folder, "report a.mcap --planned boom=m1 --measured boom=p1"));
@@ -239,4 +254,13 @@ fn a_stamp_in_the_first_columns_of_a_table_without_names_is_its_time() {
     assert!(code == 3 && found.contains("one joint, 4.98 s at 50.0 Hz"), "{found}{error}");
     assert!(found.contains("column_1 and column_2: counts s, and ns beside"), "{found}");
     assert!(found.contains("which is how `ros2 topic echo --csv` writes stamps"), "{found}");
+}
+
+#[test]
+fn whole_seconds_of_many_rows_each_are_refused_with_the_rate_as_the_way_out() {
+    let row = |t: f64, p: f64, m: f64| format!("10:59:{:02.0},{p:.4},{m:.4}\n", t.floor());
+    let text = format!("time,boom_set_deg,boom_act_deg\n{}", rows(row));
+    let (code, _, error) = report("a.csv", &text);
+    let says = |part: &str| error.contains(part);
+    assert!(code == 1 && says("import a.csv --rate HZ") && says("or --time COLUMN"), "{code} {error}");
 }

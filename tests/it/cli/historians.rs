@@ -117,6 +117,15 @@ fn a_long_table_may_have_words_beside_each_value_and_each_signal_a_clock() {
         format!("{t:.2},boom_set_deg,{plan:.4},Good,deg\n{t:.2},boom_act_deg,{came:.4},Good,deg")
     });
     assert_peak("long.csv", &long, &[]);
+    let stamp = |k: u32| format!("31-Aug-2024 10:59:{:02}.{:03}", 50 + k / 50 % 10, k % 50 * 20);
+    let named = |tag: &str, k: u32, value: f64| format!("{tag},{},{value:.3}", stamp(k));
+    let turns = table("Tag,Timestamp,Value", |k, [plan, came]| {
+        [named("BOOM_PV", k, came), named("BOOM_SP", k, plan)].join("\n")
+    });
+    assert_peak("turns.csv", &turns, &["--degrees"]);
+    let block = |tag: &str, side: usize| table("", |k, both| named(tag, k, both[side]));
+    let blocks = format!("Tag,Timestamp,Value{}{}", block("BOOM_SP", 0), block("BOOM_PV", 1).trim_start());
+    assert_peak("blocks.csv", &blocks, &["--degrees"]);
     let clocks = table("t_set_s,boom_set_deg,t_act_s,boom_act_deg", |k, [plan, _]| {
         // The second channel was begun a quarter of a second later.
         let [_, came] = moves(f64::from(k) * 0.02 + 0.25).map(f64::to_degrees);
