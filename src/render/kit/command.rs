@@ -11,8 +11,17 @@ pub(crate) fn command(words: &[&str]) -> String {
 pub(crate) const READERS: [&str; 9] =
     ["answer", "compare", "export", "fit", "info", "replan", "report", "view", "watch"];
 
+/// Of these, those on the joints: they hold for the recorder's log, too.
+const OF_JOINTS: [&str; 2] = ["--continuous", "--slides"];
+
 /// A command with the options on what to read, where its verb takes them.
 pub(crate) fn reading(line: &str, options: &[String]) -> String {
-    let reads = line.split(' ').nth(1).is_some_and(|verb| READERS.contains(&verb));
-    if options.is_empty() || !reads { line.to_owned() } else { format!("{line} {}", options.join(" ")) }
+    let verb = line.split(' ').nth(1).unwrap_or_default();
+    let of_joints = |option: &&String| OF_JOINTS.iter().any(|one| option.starts_with(one));
+    let taken: Vec<&str> = match verb {
+        "join" => options.iter().filter(of_joints).map(String::as_str).collect(),
+        _ if READERS.contains(&verb) => options.iter().map(String::as_str).collect(),
+        _ => Vec::new(),
+    };
+    [line].into_iter().chain(taken).collect::<Vec<_>>().join(" ")
 }
