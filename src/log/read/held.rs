@@ -38,7 +38,7 @@ fn of_side(side: &str, series: &mut Series, until_s: f64, remarks: &mut Remarks)
         series.tracks.iter().map(|track| is_written_on_change(track, &series.tracks)).collect();
     let (mut silences, mut names) = (0, Vec::new());
     for (track, _) in series.tracks.iter_mut().zip(on_change).filter(|(_, on_change)| *on_change) {
-        if let Some((held, count)) = held(track, until_s) {
+        if let Some((held, count)) = held(track, until_s, side == "measurement") {
             silences += count;
             names.push(track.name().to_owned());
             *track = held;
@@ -71,15 +71,25 @@ fn is_written_on_change(track: &Track, all: &[Track]) -> bool {
     REPEATS * repeats <= track.len() && beside.iter().all(near)
 }
 
-/// The track with two samples more in each silence, and how many silences there are.
-fn held(track: &Track, until_s: f64) -> Option<(Track, u64)> {
+/// Samples in a silence, at most.
+const MOST: f64 = 1e5;
+
+/// The track with two samples more in each silence, or, `dense`, as many as elsewhere, and how many silences there are.
+fn held(track: &Track, until_s: f64, dense: bool) -> Option<(Track, u64)> {
     let step_s = track.sample_interval_s();
     let (mut t_s, mut position) = (Vec::new(), Vec::new());
     let mut silences = 0;
     let mut hold = |from: f64, to_s: f64, q: f64, t_s: &mut Vec<f64>, position: &mut Vec<f64>| {
         if to_s - from > 3.0 * step_s {
-            t_s.extend([from + step_s, to_s - step_s]);
-            position.extend([q, q]);
+            t_s.push(from + step_s);
+            // Plans are looked at where a measurement is.
+            let each_s = step_s.max((to_s - from) / MOST);
+            let more = (1..)
+                .map(|k| from + step_s + each_s * f64::from(k))
+                .take_while(|at_s| *at_s < to_s - 1.5 * step_s);
+            t_s.extend(more.take_while(|_| dense));
+            t_s.push(to_s - step_s);
+            position.resize(t_s.len(), q);
             silences += 1;
         }
     };
@@ -132,6 +142,15 @@ mod tests {
             let found = held.tracks[0].at(t).unwrap().position;
             assert!((found - moves(t)).abs() < 1e-9, "{t}: {found}");
         }
+    }
+
+    #[test]
+    fn a_measurement_beside_it_that_is_written_so_has_a_sample_wherever_the_plan_may_start() {
+        let changes = |k: usize, q: &[f64]| k == 0 || (q[k] - q[k - 1]).abs() > 0.0;
+        let (mut plan, mut measured) = (series(changes), series(changes));
+        of_both(&mut plan, &mut measured, &mut Remarks::default());
+        assert!(measured.tracks[0].t_s().windows(2).all(|two| two[1] - two[0] < 0.035));
+        assert!(plan.tracks[0].len() < 400);
     }
 
     #[test]
