@@ -1,7 +1,9 @@
 //! Reading: from the files of a run to plan, measurement and other signals.
 
 mod assemble;
+mod beside;
 mod by_words;
+mod candidates;
 mod choice;
 mod content;
 mod cylinders;

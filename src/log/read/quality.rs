@@ -83,7 +83,7 @@ pub(super) fn of_table(topic: &str, table: &Table, remarks: &mut Remarks) {
     }
     remarks.add(
         Code::JointsChange,
-        table.layout_changes,
+        table.list_changes(),
         format!("changes of order or set of the joints within {topic}; joined by name"),
     );
     remarks.add(

@@ -93,7 +93,8 @@ fn topic_info<'a>(
                 for (k, field) in table.fields.iter().enumerate() {
                     let filled = || (0..table.joints.len()).any(|j| !table.column(k, j).is_empty());
                     // That a frame is there is known of those that nobody named, too.
-                    if !field.is_velocity && (table.form == Form::Poses || filled()) {
+                    let told = info.joint_fields.contains(&field.path);
+                    if !field.is_velocity && !told && (table.form == Form::Poses || filled()) {
                         info.joint_fields.push(field.path.clone());
                     }
                 }
