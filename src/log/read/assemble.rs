@@ -17,14 +17,12 @@ use super::{
     select_topics::Choice,
     spoilt,
     time_base::time_base,
-    trajectories, unlike, unset,
+    trajectories, turns, unlike, unset,
     window::nothing_in,
 };
 use crate::{
-    arm::sliding_joints,
     log::{
         error::LogError,
-        joint_kind,
         options::{ReadOptions, SignalRole, TimeBase},
         range::TimeRange,
         source::{AXES, Stamps},
@@ -46,13 +44,9 @@ pub(super) fn assemble(
     let (base, base_why) = time_base(&extracted, choice, options.time_base, &mut remarks)?;
     overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?;
     let plan_is_command = remark_choice(choice, options, &extracted.tables, &mut remarks);
-    let sliding = &mut kinds.sliding;
-    sliding.extend(options.description.as_deref().map(sliding_joints).unwrap_or_default());
     // Where they are the arm's, joints called x, y and z are no pose.
-    let axes_slide = sliding.contains(AXES[0]);
-    sliding.extend(joint_kind::sliding(&extracted.metadata));
-    sliding.extend(options.slides.iter().cloned());
-    sliding.extend(
+    let axes_slide = kinds.learn_sliding(options, &extracted.metadata);
+    kinds.sliding.extend(
         choice.of_poses(&extracted).then(|| AXES[..3].iter().map(ToString::to_string)).into_iter().flatten(),
     );
     let beside = beside::of(&extracted, options, base)?;
@@ -83,19 +77,11 @@ pub(super) fn assemble(
             assembly.add_axis(candidate, &mut doubts);
         }
         if wanted.role == SignalRole::Command {
-            let mut series =
-                assembly.series(found, &pending, degrees, Some((choice, &measured)), &mut doubts);
-            match keep_joints(&mut series, &options.joints) {
-                Err(error) if wanted.topic.is_some() => return Err(error),
-                Err(_) => continue,
-                Ok(()) => {}
+            let run = (choice, &measured);
+            match assembly.command(found, &pending, options, run, &mut doubts) {
+                Err(LogError::NoJoint { .. }) if wanted.topic.is_none() => {}
+                sent => command = Some(sent?),
             }
-            let sides = &mut [("commanded", &mut series)];
-            assembly.kinds.convert(JointKind::Turns, sides, &mut doubts)?;
-            quality::unwrap_turns(sides[0].1, &options.continuous, &mut doubts);
-            assembly.kinds.convert(JointKind::Slides, sides, &mut doubts)?;
-            let topic = found.first().map(|c| assembly.topic(c).to_owned()).unwrap_or_default();
-            command = Some(Command { topic, series });
         } else {
             let signals_of = |c| assembly.signals(c, wanted.role, &pending, &mut doubts);
             let kept = |signal: &Signal| {
@@ -119,7 +105,10 @@ pub(super) fn assemble(
     assembly.kinds.check([&planned, &measured], &mut remarks)?;
     let sides = &mut [("planned", &mut planned), ("measured", &mut measured)];
     assembly.kinds.convert(JointKind::Turns, sides, &mut remarks)?;
-    quality::unwrap_sides(sides, &options.continuous, &mut remarks);
+    turns::unwrap_sides(sides, &options.continuous, &mut remarks);
+    if let Some(command) = &mut command {
+        turns::bring_to_turn(sides[0].1, &mut command.series, &options.continuous);
+    }
     unset::of_sides(sides, &mut remarks);
     held::of_sides(choice, sides, &mut remarks);
     spoilt::of_sides(sides[0].1, sides[1].1, command.as_ref(), &mut remarks);
@@ -300,6 +289,24 @@ impl Assembly {
             add_new(&mut series, tracks);
         }
         series
+    }
+
+    fn command(
+        &mut self,
+        found: &[Candidate],
+        pending: &[&Candidate],
+        options: &ReadOptions,
+        run: (&Choice, &Series),
+        doubts: &mut Remarks,
+    ) -> Result<Command, LogError> {
+        let mut series = self.series(found, pending, options.planned_in_degrees, Some(run), doubts);
+        keep_joints(&mut series, &options.joints)?;
+        let sides = &mut [("commanded", &mut series)];
+        self.kinds.convert(JointKind::Turns, sides, doubts)?;
+        turns::unwrap_turns(sides[0].1, &options.continuous, doubts);
+        self.kinds.convert(JointKind::Slides, sides, doubts)?;
+        let topic = found.first().map(|c| self.topic(c).to_owned()).unwrap_or_default();
+        Ok(Command { topic, series })
     }
 
     fn signals(

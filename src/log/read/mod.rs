@@ -30,6 +30,7 @@ mod stopped;
 mod time_base;
 mod topics;
 mod trajectories;
+mod turns;
 mod unlike;
 mod unset;
 mod window;
@@ -43,6 +44,7 @@ use super::{
     recovered,
 };
 use crate::{
+    arm::continuous_joints,
     remark::{Code, Remarks},
     units::NS_PER_S,
 };
@@ -188,6 +190,7 @@ fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, L
 fn assembled(mut extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
     let mut options = options.clone();
     options.description = options.description.or_else(|| description::of(&extracted));
+    options.continuous.extend(options.description.as_deref().map(continuous_joints).unwrap_or_default());
     let kinds = Kinds::of_names(&mut extracted, &mut options)?;
     let options = &options;
     let choice = choose(&extracted, options)?;

@@ -93,6 +93,16 @@ fn a_wrap_is_undone_for_joints_declared_continuous_only() {
     let recording = read_with(&log_of(wrapped), &told);
     assert_eq!(count(&recording.remarks, Code::Wrapped), 0);
     assert!((recording.measured.tracks[0].position()[49] - 9.8).abs() < 1e-9);
+    let described = ReadOptions {
+        description: Some(
+            "<robot name='r'><link name='base'/><link name='tower'/><joint name='a' type='continuous'>\
+             <parent link='base'/><child link='tower'/></joint></robot>"
+                .into(),
+        ),
+        ..ReadOptions::default()
+    };
+    let of_urdf = read_with(&log_of(wrapped), &described);
+    assert_eq!((of_urdf.measured, of_urdf.remarks), (recording.measured, recording.remarks));
 }
 
 #[test]
