@@ -79,6 +79,12 @@ pub enum LogError {
          {present}"
     )]
     FramesApart { planned: Box<str>, measured: Box<str>, present: Box<str> },
+    /// Poses of plan and measurement name different frames.
+    #[error(
+        "{apart}: poses are compared in one frame; choose topics of one frame, or, if these are one frame by two names, \
+         name both topics with --planned and --measured"
+    )]
+    PosesApart { apart: String },
     /// The log holds no plan, or no measurement.
     #[error("found no {missing} joint angles; the log has {present}; name them with {fix}")]
     Missing { missing: &'static str, present: String, fix: String },

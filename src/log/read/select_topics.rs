@@ -22,6 +22,8 @@ pub(super) struct Choice {
     pub(super) why: String,
     /// Topics of another namespace that measure the same joints as well, and were not chosen.
     pub(super) rivals: Vec<String>,
+    /// What to remark on poses that name different frames.
+    pub(super) frames_apart: Option<String>,
 }
 
 impl Choice {
@@ -113,10 +115,12 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
         return Err(LogError::SameField { field: p.topic.clone() });
     }
     let source = |c: &Candidate| c.source;
-    frames::check_sides(extracted, planned.iter().map(source), measured.iter().map(source))?;
+    let both_named = !options.planned.is_empty() && !options.measured.is_empty();
+    let [plan, came] = [&planned, &measured].map(|side| side.iter().map(source));
+    let frames_apart = frames::check_sides(extracted, plan, came, both_named)?;
     let why = why(extracted, options, &planned, &measured);
     let rivals = rivals(&all_measured, &measured, &wanted);
-    Ok(Choice { planned, measured, why, rivals })
+    Ok(Choice { planned, measured, why, rivals, frames_apart })
 }
 
 /// One side alone.
@@ -137,7 +141,7 @@ fn choose_one(extracted: &Extracted, options: &ReadOptions, role: Role) -> Resul
         planned = cover(alike, None, Some(first));
     }
     let why = why(extracted, options, &planned, &measured);
-    Ok(Choice { planned, measured, why, rivals: Vec::new() })
+    Ok(Choice { planned, measured, why, rivals: Vec::new(), frames_apart: None })
 }
 
 /// Leading words of their namespaces that two topics share: two of `/arm_right/joint_states` and

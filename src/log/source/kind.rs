@@ -212,6 +212,10 @@ impl Builder<'_> {
         self.spec.form = Form::Poses;
         self.interface("pose", None, role);
         self.pose(group, paths);
+        self.want("header.frame_id", slot::PARENT);
+        if !group.is_empty() {
+            self.want(&format!("{group}.header.frame_id"), slot::PARENT);
+        }
     }
 
     fn pose(&mut self, group: &str, [position, orientation]: [&str; 2]) {

@@ -37,6 +37,8 @@ pub(in crate::log) struct Table {
     pub(in crate::log) length_mismatch: Vec<u64>,
     /// Messages and columns left out because there are too many joints.
     pub(in crate::log) too_many: u64,
+    /// The frames that poses are told in; empty where messages name none.
+    pub(in crate::log) told_in: Vec<String>,
     /// Rows that are to come, where that is known: room for them is made once.
     pub(in crate::log) expected: usize,
     message: Message,
@@ -100,6 +102,7 @@ impl Table {
             not_finite: vec![0; fields.len()],
             length_mismatch: vec![0; fields.len()],
             too_many: 0,
+            told_in: Vec::new(),
             expected: 0,
             message: Message {
                 values: vec![Vec::new(); fields.len()],
