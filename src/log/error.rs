@@ -94,7 +94,9 @@ pub enum LogError {
     /// Planned and measured joints have no name in common.
     #[error(
         "planned joints ({planned}) and measured joints ({measured}) have no name in common; \
-         choose other topics with --planned and --measured, or name the joints with --joints"
+         choose other topics with --planned and --measured, or give a topic that carries no names those of its joints \
+         with --joints; columns of other names are paired by `hydrotrace import LOG -o run.mcap --planned \
+         JOINT=COLUMN,... --measured JOINT=COLUMN,...`"
     )]
     NoCommonJoint { planned: String, measured: String },
     /// Plan and measurement are of different times.

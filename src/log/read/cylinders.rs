@@ -70,6 +70,11 @@ impl Kinds {
         Ok(Self { sliding: BTreeSet::new(), renamed, conversion })
     }
 
+    /// A joint of a source has another name in the log.
+    pub(super) fn call(&mut self, source: usize, joint: &str, name: String) {
+        self.renamed.entry((source, joint.to_owned())).or_insert(name);
+    }
+
     /// Learns from the URDF, the log and the caller which joints slide; whether joints of the arm are called as the axes
     /// of a pose are.
     pub(super) fn learn_sliding(

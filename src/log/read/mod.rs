@@ -21,6 +21,7 @@ mod other_time;
 mod overlap;
 mod parallel;
 mod poses;
+mod prefixed;
 mod quality;
 pub(super) mod recording;
 mod samples;
@@ -191,9 +192,14 @@ fn assembled(mut extracted: Extracted, options: &ReadOptions) -> Result<Recordin
     let mut options = options.clone();
     options.description = options.description.or_else(|| description::of(&extracted));
     options.continuous.extend(options.description.as_deref().map(continuous_joints).unwrap_or_default());
-    let kinds = Kinds::of_names(&mut extracted, &mut options)?;
+    let mut kinds = Kinds::of_names(&mut extracted, &mut options)?;
+    let choice = match choose(&extracted, &options) {
+        Err(LogError::NoCommonJoint { .. }) if prefixed::pair(&mut extracted, &mut options, &mut kinds)? => {
+            choose(&extracted, &options)?
+        }
+        choice => choice?,
+    };
     let options = &options;
-    let choice = choose(&extracted, options)?;
     for topic in topic_infos(&extracted) {
         ::log::debug!(
             "topic {} ({}): {} messages, joint positions in {:?}",
