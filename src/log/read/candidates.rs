@@ -10,7 +10,7 @@ use super::{
 use crate::{
     log::{
         error::LogError,
-        options::Selector,
+        options::{ReadOptions, Selector},
         source::{Form, Role, is_field},
     },
     suggest::nearest,
@@ -39,6 +39,8 @@ const POSE: u32 = 10;
 
 const PLAN_WORDS: [&str; 8] =
     ["planned", "plan", "desired", "reference", "ref", "target", "setpoint", "goal"];
+/// Word of a topic that is neither plan nor measurement.
+const ERROR: &str = "error";
 const COMMAND_WORDS: [&str; 3] = ["command", "commands", "cmd"];
 
 fn has_word(topic: &str, words: &[&str]) -> bool {
@@ -48,6 +50,53 @@ fn has_word(topic: &str, words: &[&str]) -> bool {
 /// Whether a topic is a measurement by its name, if it holds joints at all.
 pub(super) fn is_measured(topic: &str) -> bool {
     !has_word(topic, &PLAN_WORDS) && !has_word(topic, &COMMAND_WORDS)
+}
+
+/// All that could serve as plan and as measurement, best first. What the caller names as one side is not the other; where
+/// names tell nothing of the other, it is the only other topic of these joints: then with what to remark.
+pub(super) fn of_sides(
+    extracted: &Extracted,
+    options: &ReadOptions,
+) -> Result<([Vec<Candidate>; 2], Option<String>), LogError> {
+    let mut planned = candidates(extracted, &options.planned, Role::Planned)?;
+    let mut measured = candidates(extracted, &options.measured, Role::Measured)?;
+    let (named, other, role, side, flag) = match (options.planned.is_empty(), options.measured.is_empty()) {
+        (false, true) => (&planned, &mut measured, Role::Measured, "measurement", "--measured"),
+        (true, false) => (&measured, &mut planned, Role::Planned, "plan", "--planned"),
+        _ => return Ok(([planned, measured], None)),
+    };
+    let same = |a: &Candidate, b: &Candidate| (a.source, a.field) == (b.source, b.field);
+    other.retain(|one| !named.iter().any(|named| same(named, one)));
+    let mut doubt = None;
+    if other.is_empty() {
+        *other = only_other(extracted, named, role);
+        doubt = other.first().map(|one| {
+            format!(
+                "{} is taken as the {side}: it is the only other topic of these joints; {flag} names another",
+                one.topic
+            )
+        });
+    }
+    Ok(([planned, measured], doubt))
+}
+
+/// The candidates of the only topic, beside those named, that has joints of theirs; none where there are several.
+fn only_other(extracted: &Extracted, named: &[Candidate], role: Role) -> Vec<Candidate> {
+    let is_either = |c: &Candidate| match (&extracted.sources[c.source].content, c.field) {
+        (Content::Table(table), Some(field)) => table.fields[field].role == Role::Either,
+        _ => false,
+    };
+    let fits = |c: &Candidate| {
+        let common = named.iter().flat_map(|one| &one.joints).any(|joint| c.joints.contains(joint));
+        let other = named.iter().all(|one| one.topic != c.topic);
+        common && other && is_either(c) && !has_word(&c.topic, &[ERROR])
+    };
+    let all = (0..extracted.sources.len()).flat_map(|source| of_source(extracted, source, role, None));
+    let mut found: Vec<Candidate> = all.filter(fits).collect();
+    if found.iter().any(|c| c.topic != found[0].topic) {
+        found.clear();
+    }
+    found
 }
 
 /// All that could serve in a role, best first; those the caller named, if any.
@@ -183,7 +232,7 @@ fn rank(topic: &TopicCount, form: Form, field: Role, role: Role) -> u32 {
             _ => 3,
         },
         (Role::Measured, Role::Either) if is_measured(&topic.topic) && !array => {
-            if has_word(&topic.topic, &["error"]) { ONLY_IF_NAMED } else { 2 }
+            if has_word(&topic.topic, &[ERROR]) { ONLY_IF_NAMED } else { 2 }
         }
         _ => ONLY_IF_NAMED,
     }

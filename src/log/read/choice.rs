@@ -19,8 +19,8 @@ pub(super) fn remark_choice(
         let message = format!("{rival} measures the same joints and was not used; choose with --measured");
         remarks.add(Code::Ambiguous, 1, message);
     }
-    if let Some(message) = &choice.frames_apart {
-        remarks.add(Code::UnlikePlan, 1, message.as_str());
+    for (code, message) in &choice.doubts {
+        remarks.add(*code, 1, message.as_str());
     }
     let commanded: Vec<&str> =
         if options.planned.is_empty() { choice.commanded().collect() } else { Vec::new() };

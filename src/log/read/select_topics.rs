@@ -3,15 +3,18 @@
 use std::collections::BTreeSet;
 
 use super::{
-    candidates::{COMMAND, Candidate, candidates},
+    candidates::{COMMAND, Candidate, candidates, of_sides},
     content::{Content, Extracted},
     frames,
     topics::{columns_named, missing},
 };
-use crate::log::{
-    error::LogError,
-    options::{ReadOptions, Sides},
-    source::{Form, Role},
+use crate::{
+    log::{
+        error::LogError,
+        options::{ReadOptions, Sides},
+        source::{Form, Role},
+    },
+    remark::Code,
 };
 
 /// The chosen topics and fields.
@@ -22,8 +25,7 @@ pub(super) struct Choice {
     pub(super) why: String,
     /// Topics of another namespace that measure the same joints as well, and were not chosen.
     pub(super) rivals: Vec<String>,
-    /// What to remark on poses that name different frames.
-    pub(super) frames_apart: Option<String>,
+    pub(super) doubts: Vec<(Code, String)>,
 }
 
 impl Choice {
@@ -73,8 +75,7 @@ const PLANNED: &str = "planned";
 pub(super) const MEASURED: &str = "measured";
 
 fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
-    let planned = candidates(extracted, &options.planned, Role::Planned)?;
-    let measured = candidates(extracted, &options.measured, Role::Measured)?;
+    let ([planned, measured], guess) = of_sides(extracted, options)?;
     if planned.is_empty() {
         return Err(missing(extracted, options, PLANNED, "--planned"));
     }
@@ -120,7 +121,9 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
     let frames_apart = frames::check_sides(extracted, plan, came, both_named)?;
     let why = why(extracted, options, &planned, &measured);
     let rivals = rivals(&all_measured, &measured, &wanted);
-    Ok(Choice { planned, measured, why, rivals, frames_apart })
+    let guess = guess.map(|guess| (Code::Guessed, guess));
+    let doubts = frames_apart.map(|apart| (Code::UnlikePlan, apart)).into_iter().chain(guess).collect();
+    Ok(Choice { planned, measured, why, rivals, doubts })
 }
 
 /// One side alone.
@@ -141,7 +144,7 @@ fn choose_one(extracted: &Extracted, options: &ReadOptions, role: Role) -> Resul
         planned = cover(alike, None, Some(first));
     }
     let why = why(extracted, options, &planned, &measured);
-    Ok(Choice { planned, measured, why, rivals: Vec::new(), frames_apart: None })
+    Ok(Choice { planned, measured, why, rivals: Vec::new(), doubts: Vec::new() })
 }
 
 /// Leading words of their namespaces that two topics share: two of `/arm_right/joint_states` and

@@ -87,6 +87,30 @@ fn errors_name_what_was_found_expected_and_how_to_mend_it() {
 }
 
 #[test]
+fn of_two_topics_whose_names_tell_nothing_the_other_is_the_other_side() {
+    let mut log = Log::default();
+    add_joint_state(&mut log, "/arm/generator", plan);
+    add_joint_state(&mut log, "/arm/encoders", measurement);
+    for (named, guesses) in [
+        (options(&["/arm/generator"], &[], &[]), vec![]),
+        (options(&[], &["/arm/encoders"], &[]), vec![Code::Guessed]),
+        (options(&["/arm/generator"], &["/arm/encoders"], &[]), vec![]),
+    ] {
+        let recording = read_with(&log, &named);
+        assert_values(&recording.planned, plan);
+        assert_values(&recording.measured, measurement);
+        assert_eq!(codes(&recording.remarks), guesses);
+    }
+    add_joint_state(&mut log, "/arm/other", measurement);
+    let found = error(&log, &options(&[], &["/arm/encoders"], &[]));
+    assert!(found.starts_with("found no planned joint angles"), "{found}");
+    log.channels.truncate(1);
+    log.messages.retain(|message| message.channel == 0);
+    let found = error(&log, &options(&["/arm/generator"], &[], &[]));
+    assert!(found.starts_with("found no measured joint angles"), "{found}");
+}
+
+#[test]
 fn joints_with_a_prefix_on_one_side_are_paired_and_that_is_said() {
     let mut log = Log::default();
     add_joint_state(&mut log, "/planned/joint_states", plan);
