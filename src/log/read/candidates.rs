@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::{
     content::{Content, Extracted, TopicCount},
     frames,
-    topics::{fields_of, lacks_positions, not_there},
+    topics::{fields_of, lacking, not_there},
 };
 use crate::{
     log::{
@@ -158,8 +158,7 @@ pub(super) fn named(
         nearest: selector.field.as_ref().and_then(near),
         field: selector.field.as_deref().map(Box::from),
         present: match fields.as_slice() {
-            [] if lacks_positions(extracted, topic) => "joints without positions, at most speeds".to_owned(),
-            [] => "none".to_owned(),
+            [] => lacking(extracted, topic).unwrap_or("none").to_owned(),
             fields => fields.join(", "),
         },
     })
@@ -180,7 +179,7 @@ fn of_source(extracted: &Extracted, source: usize, role: Role, field: Option<&st
         Content::Plans(plans) => {
             let joints: BTreeSet<&String> = plans.trajectories.iter().flat_map(|t| &t.joints).collect();
             let joints: Vec<String> = joints.into_iter().cloned().collect();
-            if role != Role::Planned || joints.is_empty() {
+            if role != Role::Planned || joints.is_empty() || plans.fault().is_some() {
                 return Vec::new();
             }
             let rank = if topic.type_name.ends_with("JointTrajectory") { 3 } else { 6 };

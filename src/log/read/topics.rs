@@ -24,7 +24,7 @@ pub(super) fn present(extracted: &Extracted) -> String {
     let describe = |index: usize| {
         let topic = &extracted.topics[index];
         let messages = if topic.messages == 1 { "message" } else { "messages" };
-        let lacks = if lacks_positions(extracted, index) { ", without positions" } else { "" };
+        let lacks = lacking(extracted, index).map_or(String::new(), |lacks| format!(", of {lacks}"));
         format!("{} ({}, {} {messages}{lacks})", topic.topic, topic.type_name, topic.messages)
     };
     let listed: Vec<String> = if with_joints.is_empty() {
@@ -35,19 +35,21 @@ pub(super) fn present(extracted: &Extracted) -> String {
     if listed.is_empty() { "no topics at all".to_owned() } else { listed.join(", ") }
 }
 
-/// Whether the messages of a topic name joints and never give a position, as where only speeds are recorded.
-pub(super) fn lacks_positions(extracted: &Extracted, topic: usize) -> bool {
-    let sources = extracted.sources.iter().filter(|source| source.topic == topic);
-    let mut tables = sources.filter_map(|source| match &source.content {
-        Content::Table(table) => Some(table),
-        _ => None,
-    });
+/// What the messages of a topic have that name joints and never tell where they are; `None` if they do.
+pub(super) fn lacking(extracted: &Extracted, topic: usize) -> Option<&'static str> {
     let lacks = |table: &Table| {
         let positions = table.fields.iter().enumerate().filter(|(_, field)| !field.is_velocity);
         let columns = positions.flat_map(|(k, _)| &table.columns[k]);
         !table.joints.is_empty() && !columns.flatten().any(|value| value.is_finite())
     };
-    tables.clone().next().is_some() && tables.all(|table| lacks(table))
+    let sources = extracted.sources.iter().filter(|source| source.topic == topic);
+    let mut found = sources.filter_map(|source| match &source.content {
+        Content::Table(table) => Some(lacks(table).then_some("joints without positions, at most speeds")),
+        Content::Plans(plans) => Some(plans.fault()),
+        _ => None,
+    });
+    let first = found.next()?;
+    first.filter(|_| found.all(|lacks| lacks.is_some()))
 }
 
 /// Fields of a topic that hold numbers by joint.
@@ -102,7 +104,9 @@ fn topic_info<'a>(
             Content::Plans(plans) => {
                 let joints: BTreeSet<&String> = plans.trajectories.iter().flat_map(|t| &t.joints).collect();
                 info.joints.extend(joints.into_iter().cloned());
-                info.joint_fields.push("points.positions".to_owned());
+                if plans.fault().is_none() {
+                    info.joint_fields.push("points.positions".to_owned());
+                }
             }
             Content::Versioned(_) | Content::Poses(_) => {}
         }

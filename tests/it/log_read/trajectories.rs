@@ -135,6 +135,29 @@ fn trajectories_that_do_not_fit_are_skipped_and_counted() {
 }
 
 #[test]
+fn where_no_trajectory_can_be_used_the_reason_is_said() {
+    let without_position = |mut points: Vec<Point>| {
+        points.iter_mut().for_each(|point| point.position.clear());
+        points
+    };
+    let speeds = without_position(points(&[(0.0, 0.0, Some(0.1), None), (2.0, 0.0, Some(0.2), None)]));
+    let at_once = points(&[(0.0, 0.0, None, None), (0.0, 1.0, None, None)]);
+    for (given, reason) in [
+        (speeds, "points without positions, at most speeds"),
+        (at_once, "points whose times from the start are all 0 s"),
+    ] {
+        let log = log_of(&[(stamp(50), stamp(50), &NAMES, given)], cdr::Kind::LittleEndian);
+        let found = error(&log, &ReadOptions::default());
+        assert!(
+            found.contains(&format!("{TOPIC} (trajectory_msgs/msg/JointTrajectory, 1 message, of {reason})")),
+            "{found}"
+        );
+        let found = error(&log, &options(&[TOPIC], &[], &[]));
+        assert!(found.ends_with(&format!("it has {reason}")), "{found}");
+    }
+}
+
+#[test]
 fn a_planned_joint_that_no_topic_measures_is_said() {
     let given = vec![Point::at(&[0.0, 0.0, 0.0])];
     let recording =
