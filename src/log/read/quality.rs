@@ -9,7 +9,7 @@ use crate::{
         source::{Field, MAX_JOINTS, Role, Table},
     },
     math::quantile,
-    remark::{Code, Remarks},
+    remark::{Code, Remark, Remarks},
     series::{Clock, Series, Track},
     units::{DEGREE_RAD, NS_PER_S},
 };
@@ -134,9 +134,17 @@ impl Gaps {
         remarks.add(
             Code::Gap,
             self.count,
-            format!("gaps in {topic}, the longest {longest_s:.2} s after {at_s:.2} s; nothing is computed across them"),
+            format!("{GAPS}{topic}, the longest {longest_s:.2} s after {at_s:.2} s; nothing is computed across them"),
         );
     }
+}
+
+const GAPS: &str = "gaps in ";
+
+/// Whether a remark is of the gaps of a topic.
+pub(super) fn is_of_gaps(remark: &Remark, topic: &str) -> bool {
+    let of = remark.message.strip_prefix(GAPS).and_then(|rest| rest.strip_prefix(topic));
+    remark.code == Code::Gap && of.is_some_and(|rest| rest.starts_with(','))
 }
 
 /// Numbers of samples paused and slowed; 0 where the field is never filled.
