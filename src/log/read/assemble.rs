@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{
     beside,
-    candidates::Candidate,
+    candidates::{Candidate, is_shown},
     choice::remark_choice,
     content::{Content, Extracted},
     cylinders::Kinds,
@@ -282,6 +282,7 @@ impl Assembly {
                 measured: stamps(&self.extracted, &choice.measured),
                 degrees,
                 topic: self.topic(candidate),
+                shown: is_shown(&self.extracted.topic_of(candidate.source).type_name),
             };
             let kind = |joint: &str| self.kinds.of(candidate.source, joint);
             let measured = self.kinds.alike(measured, kind);

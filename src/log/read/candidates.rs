@@ -32,6 +32,8 @@ pub(super) struct Candidate {
 
 /// Rank of a plan by a name that says command.
 pub(super) const COMMAND: u32 = 8;
+/// Rank of trajectories that a planner shows, which need not be those that are executed, nor at once.
+const SHOWN: u32 = 7;
 /// Rank of fields that are used only if the caller names them.
 const ONLY_IF_NAMED: u32 = 99;
 /// Rank of poses of a tool, which count where there are no joints.
@@ -182,7 +184,11 @@ fn of_source(extracted: &Extracted, source: usize, role: Role, field: Option<&st
             if role != Role::Planned || joints.is_empty() || plans.fault().is_some() {
                 return Vec::new();
             }
-            let rank = if topic.type_name.ends_with("JointTrajectory") { 3 } else { 6 };
+            let rank = match topic.type_name.as_str() {
+                name if is_shown(name) => SHOWN,
+                name if name.ends_with("JointTrajectory") => 3,
+                _ => 6,
+            };
             vec![candidate(None, rank, joints, plans.trajectories.len())]
         }
         Content::Table(table) => {
@@ -199,6 +205,11 @@ fn of_source(extracted: &Extracted, source: usize, role: Role, field: Option<&st
                 .collect()
         }
     }
+}
+
+/// Whether messages of a type are trajectories that a planner shows.
+pub(super) fn is_shown(type_name: &str) -> bool {
+    type_name.ends_with("DisplayTrajectory")
 }
 
 /// How well a field fits a role, 1 best, [`ONLY_IF_NAMED`] worst.

@@ -21,6 +21,8 @@ pub(super) struct Reading<'a> {
     pub(super) measured: Option<&'a Stamps>,
     pub(super) degrees: bool,
     pub(super) topic: &'a str,
+    /// Whether they are what a planner shows, and not what it sends.
+    pub(super) shown: bool,
 }
 
 /// The plan of every measured joint.
@@ -80,14 +82,18 @@ fn trajectories(
             seconds_since(epoch_ns, raw.header_ns)
         } else {
             let received_ns = if base == TimeBase::Publish { raw.publish_ns } else { raw.log_ns };
-            remarks.add(
-                Code::StartOnReceipt,
-                1,
+            let message = if reading.shown {
                 format!(
-                    "trajectories of {topic} start when received; that is known to about {:.0} ms",
-                    (spread_ns as f64 / 1e6).max(1.0)
-                ),
-            );
+                    "trajectories of {topic} are what a planner shows, not what it sends: they are taken to start when \
+                     received, and when they were executed is not known, so that delays and lags may be off by any time"
+                )
+            } else {
+                let known_ms = (spread_ns as f64 / 1e6).max(1.0);
+                format!(
+                    "trajectories of {topic} start when received; that is known to about {known_ms:.0} ms"
+                )
+            };
+            remarks.add(Code::StartOnReceipt, 1, message);
             seconds_since(epoch_ns, received_ns.saturating_sub(delay_ns))
         };
         if let Some(fault) = raw.fault() {

@@ -181,5 +181,14 @@ fn a_displayed_plan_of_several_parts_is_read_in_every_encoding() {
         assert_plan(&recording, 2.0, 0.5);
         assert_plan(&recording, 4.0, 1.5);
         assert_eq!(codes(&recording.remarks), [Code::StartOnReceipt], "{kind:?} {:?}", recording.remarks);
+        let message = &recording.remarks.as_slice()[0].message;
+        assert!(message.contains("when they were executed is not known"), "{message}");
+        // What was sent counts more.
+        let channel = log.channel(Channel::cdr(TOPIC, "trajectory_msgs/msg/JointTrajectory"));
+        let sent = points(&[(0.0, 0.0, None, None), (2.0, 1.0, None, None)]);
+        log.send(channel, stamp(80), trajectory(kind, 0, &NAMES, &sent));
+        let recording = read(&log);
+        assert_plan(&recording, 2.6, 0.5);
+        assert_eq!(recording.source.planned_topic, TOPIC);
     }
 }
