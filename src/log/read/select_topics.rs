@@ -222,7 +222,7 @@ fn why(
             format!("plan from {}, joined for what was sent on {}", list(planned), sent.join(", "))
         }
         (true, Some(1)) => format!("plan from {}, by its name", list(planned)),
-        (true, _) if planned.iter().all(|c| c.field.is_none()) => {
+        (true, Some(_)) if planned.iter().all(|c| c.field.is_none()) => {
             format!("plan sampled from the trajectory messages of {}", list(planned))
         }
         _ => format!("plan from {}", list(planned)),

@@ -91,6 +91,7 @@ pub(in crate::log) fn spec_for(
         "sensor_msgs/JointState" => builder.position("position", "velocity", Role::Either),
         "std_msgs/Float64MultiArray" => builder.position("data", "", Role::Either),
         "trajectory_msgs/JointTrajectory" => builder.plans("", None),
+        "moveit_msgs/RobotTrajectory" => builder.plans("joint_trajectory.", None),
         "moveit_msgs/DisplayTrajectory" => builder.plans("trajectory.joint_trajectory.", Some("trajectory")),
         "foxglove/JointStates" | "foxglove_msgs/JointStates" => {
             builder.spec.form = Form::Groups;

@@ -2,7 +2,7 @@
 
 use super::{
     cdr::KINDS,
-    encode::{Point, display, trajectory},
+    encode::{Point, display, robot_trajectory, trajectory},
     file::Channel,
     *,
 };
@@ -166,6 +166,29 @@ fn a_planned_joint_that_no_topic_measures_is_said() {
         recording.remarks.as_slice().iter().filter(|r| r.code == Code::UnpairedJoint).collect();
     assert_eq!(unpaired.len(), 1, "{:?}", recording.remarks);
     assert!(unpaired[0].message.contains("boom"), "{unpaired:?}");
+}
+
+#[test]
+fn trajectories_of_moveit_are_read_where_the_file_does_not_describe_them() {
+    let there = points(&[(0.0, 0.0, None, None), (2.0, 1.0, None, None)]);
+    let kind = cdr::Kind::LittleEndian;
+    let parts: &[(i64, &[&str], Vec<Point>)] = &[(stamp(50), &NAMES, there)];
+    for (type_name, data) in [
+        ("moveit_msgs/msg/RobotTrajectory", robot_trajectory(kind, &parts[0])),
+        ("moveit_msgs/msg/DisplayTrajectory", display(kind, parts)),
+    ] {
+        for described in [true, false] {
+            let mut log = log_of(&[], kind);
+            log.channels.pop();
+            let channel = Channel::cdr("/plan_to_run", type_name);
+            let channel = if described { channel } else { channel.with_schema("ros2msg", "") };
+            let channel = log.channel(channel);
+            log.send(channel, stamp(40), data.clone());
+            let recording = read(&log);
+            assert_plan(&recording, 2.0, 0.5);
+            assert!(recording.remarks.is_empty(), "{type_name} {:?}", recording.remarks);
+        }
+    }
 }
 
 #[test]
