@@ -113,8 +113,8 @@ pub enum LogError {
     )]
     NothingInRange { topic: String, range: String, spans_s: f64 },
     /// Only the summaries of the files were read.
-    #[error("only the index was read, not the messages; `hydrotrace info --check` reads all of them")]
-    NotLookedAt,
+    #[error("only the index was read, not the messages; `hydrotrace info --check {logs}` reads all of them")]
+    NotLookedAt { logs: String },
     /// Plan and measurement are in no messages that a program could draw as they are.
     #[error(
         "the messages of {topics} cannot be drawn as they are; `hydrotrace export LOG -o run.csv` and \

@@ -9,6 +9,7 @@ use super::{
 };
 use crate::{
     log::{
+        channel::unread,
         error::LogError,
         options::{ReadOptions, Selector},
         source::{Form, Role, is_field},
@@ -152,6 +153,8 @@ pub(super) fn named(
         return Ok(fitting);
     }
     let TopicCount { topic: name, type_name, .. } = &extracted.topics[topic];
+    let unreadable =
+        unread(&extracted.topics[topic].encoding).or_else(|| extracted.topics[topic].problem.clone());
     let fields = fields_of(extracted, topic);
     let near = |field: &String| nearest(field, fields.iter().map(String::as_str)).map(String::into_boxed_str);
     Err(LogError::NoField {
@@ -160,7 +163,10 @@ pub(super) fn named(
         nearest: selector.field.as_ref().and_then(near),
         field: selector.field.as_deref().map(Box::from),
         present: match fields.as_slice() {
-            [] => lacking(extracted, topic).unwrap_or("none").to_owned(),
+            [] => match lacking(extracted, topic) {
+                Some(lacks) => lacks.to_owned(),
+                None => unreadable.map_or("none".to_owned(), |why| format!("none that can be read: {why}")),
+            },
             fields => fields.join(", "),
         },
     })

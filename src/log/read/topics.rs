@@ -9,6 +9,7 @@ use super::{
 };
 use crate::{
     log::{
+        channel::unread,
         error::LogError,
         import_line::Given,
         options::{ReadOptions, Selector},
@@ -18,21 +19,32 @@ use crate::{
     units::NS_PER_S,
 };
 
-/// Topics with joints, for messages; all topics if there is none.
+/// Topics with joints, or such as may hold some and cannot be read, for messages; all topics if there is none.
 pub(super) fn present(extracted: &Extracted) -> String {
-    let with_joints: BTreeSet<usize> = extracted.sources.iter().map(|s| s.topic).collect();
+    let mut listed: BTreeSet<usize> = extracted.sources.iter().map(|s| s.topic).collect();
+    listed.extend((0..extracted.topics.len()).filter(|topic| unreadable(extracted, *topic).is_some()));
     let describe = |index: usize| {
         let topic = &extracted.topics[index];
         let messages = if topic.messages == 1 { "message" } else { "messages" };
-        let lacks = lacking(extracted, index).map_or(String::new(), |lacks| format!(", of {lacks}"));
-        format!("{} ({}, {} {messages}{lacks})", topic.topic, topic.type_name, topic.messages)
+        let known = if topic.type_name.is_empty() { "no type" } else { &topic.type_name };
+        let lacks = lacking(extracted, index).map(|lacks| format!("of {lacks}"));
+        let lacks =
+            lacks.or_else(|| unreadable(extracted, index)).map_or(String::new(), |why| format!(", {why}"));
+        format!("{} ({known}, {} {messages}{lacks})", topic.topic, topic.messages)
     };
-    let listed: Vec<String> = if with_joints.is_empty() {
+    let listed: Vec<String> = if listed.is_empty() {
         (0..extracted.topics.len()).map(describe).collect()
     } else {
-        with_joints.into_iter().map(describe).collect()
+        listed.into_iter().map(describe).collect()
     };
     if listed.is_empty() { "no topics at all".to_owned() } else { listed.join(", ") }
+}
+
+/// Why the messages of a topic cannot be read that may hold joints.
+pub(super) fn unreadable(extracted: &Extracted, topic: usize) -> Option<String> {
+    let topic = &extracted.topics[topic];
+    let of_no_type = || unread(&topic.encoding).filter(|_| topic.type_name.is_empty());
+    topic.problem.clone().or_else(of_no_type)
 }
 
 /// What the messages of a topic have that name joints and never tell where they are; `None` if they do.

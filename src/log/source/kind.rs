@@ -109,6 +109,10 @@ pub(in crate::log) fn spec_for(
             builder.interface("position", speeds.then_some("velocity"), Role::Measured);
         }
         "geometry_msgs/PoseStamped" => builder.poses("", ["pose.position", "pose.orientation"], Role::Either),
+        "foxglove/PoseInFrame" | "foxglove_msgs/PoseInFrame" => {
+            builder.poses("", ["pose.position", "pose.orientation"], Role::Either);
+            builder.want("frame_id", slot::PARENT);
+        }
         "geometry_msgs/TransformStamped" => {
             builder.poses("", ["transform.translation", "transform.rotation"], Role::Either);
         }
