@@ -181,8 +181,16 @@ impl Remarks {
 
     /// All but those of one kind.
     #[must_use]
-    pub fn without(self, code: Code) -> Self {
-        self.list.into_iter().filter(|remark| remark.code != code).collect::<Vec<_>>().into()
+    pub fn without(mut self, code: Code) -> Self {
+        self.retain(|remark| remark.code != code);
+        self
+    }
+
+    /// Keeps those that still hold.
+    pub fn retain(&mut self, holds: impl FnMut(&Remark) -> bool) {
+        let mut list = Vec::from(std::mem::take(self));
+        list.retain(holds);
+        *self = list.into();
     }
 
     /// The remarks, in order of first appearance.

@@ -34,7 +34,7 @@ pub use linkage::Linkage;
 pub use rods::{Rod, Rods, names_a_cylinder, names_a_stroke};
 pub use serial::Kinematics;
 pub use shape::{Mesh, Shape, Solid, quaternion_xyzw};
-pub use urdf::sliding_joints;
+pub use urdf::{continuous_joints, sliding_joints};
 
 /// Place and orientation of a frame in another; lengths in m.
 pub type Pose = nalgebra::IsometryMatrix3<f64>;

@@ -45,20 +45,23 @@ impl Chain {
 
 /// Names of the joints of a URDF that slide; none if the text is no URDF.
 pub fn sliding_joints(text: &str) -> BTreeSet<String> {
+    joints_of(text, JointKind::Prismatic).map(|joint| joint.name).collect()
+}
+
+/// Names of the joints of a URDF that turn without end stops; none if the text is no URDF.
+pub fn continuous_joints(text: &str) -> BTreeSet<String> {
+    joints_of(text, JointKind::Continuous).map(|joint| joint.name).collect()
+}
+
+fn joints_of(text: &str, kind: JointKind) -> impl Iterator<Item = robot::Joint> {
     let joints = parsed(text, &Witness("URDF")).map(|robot| robot.joints).unwrap_or_default();
-    let slides = |joint: &robot::Joint| joint.kind == JointKind::Prismatic;
-    joints.into_iter().filter(slides).map(|joint| joint.name).collect()
+    joints.into_iter().filter(move |joint| joint.kind == kind)
 }
 
 /// Limits, rad, of the joints of a URDF that turn between stops; none if the text is no URDF.
 pub(super) fn turning_ranges(text: &str) -> BTreeMap<String, (f64, f64)> {
-    let joints = parsed(text, &Witness("URDF")).map(|robot| robot.joints).unwrap_or_default();
-    let turns = |joint: &robot::Joint| joint.kind == JointKind::Revolute;
-    joints
-        .into_iter()
-        .filter(turns)
-        .map(|joint| (joint.name, (joint.limit.lower, joint.limit.upper)))
-        .collect()
+    let range = |joint: robot::Joint| (joint.name, (joint.limit.lower, joint.limit.upper));
+    joints_of(text, JointKind::Revolute).map(range).collect()
 }
 
 pub(super) fn parsed(text: &str, at: &Witness<'_>) -> Result<Robot, ArmError> {

@@ -155,15 +155,24 @@ type Reader = (Option<(Arc<Spec>, Decoder)>, Option<String>);
 /// The fields that the caller named, and whether speeds are wanted.
 type Wanted<'a> = (&'a [(Role, &'a Selector)], bool);
 
+/// What is said of messages of an encoding that is not read; `None` of one that is.
+pub(super) fn unread(encoding: &str) -> Option<String> {
+    let read = matches!(encoding, "cdr" | "ros1" | "json" | "protobuf");
+    (!read).then(|| {
+        format!(
+            "its messages are encoded as {encoding:?}, which is not read; cdr, ros1, json and protobuf are"
+        )
+    })
+}
+
 fn reader(schema: &OwnedSchema, encoding: &str, selectors: Wanted<'_>, steps_left: &mut usize) -> Reader {
     match encoding {
         "cdr" | "ros1" => cdr(schema, selectors, steps_left),
         "json" => tree(schema, selectors, |spec| Ok(Tree::json(&spec.wants))),
         "protobuf" => tree(schema, selectors, |spec| Tree::protobuf(&schema.name, &schema.data, &spec.wants)),
         other => {
-            let problem = spec_for(&schema.name, None, selectors)
-                .map(|_| format!("its messages are encoded as {other:?}, which is not read"));
-            (None, problem)
+            let matters = spec_for(&schema.name, None, selectors).is_some();
+            (None, unread(other).filter(|_| matters))
         }
     }
 }

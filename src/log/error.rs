@@ -79,6 +79,12 @@ pub enum LogError {
          {present}"
     )]
     FramesApart { planned: Box<str>, measured: Box<str>, present: Box<str> },
+    /// Poses of plan and measurement name different frames.
+    #[error(
+        "{apart}: poses are compared in one frame; choose topics of one frame, or, if these are one frame by two names, \
+         name both topics with --planned and --measured"
+    )]
+    PosesApart { apart: String },
     /// The log holds no plan, or no measurement.
     #[error("found no {missing} joint angles; the log has {present}; name them with {fix}")]
     Missing { missing: &'static str, present: String, fix: String },
@@ -88,7 +94,9 @@ pub enum LogError {
     /// Planned and measured joints have no name in common.
     #[error(
         "planned joints ({planned}) and measured joints ({measured}) have no name in common; \
-         choose other topics with --planned and --measured, or name the joints with --joints"
+         choose other topics with --planned and --measured, or give a topic that carries no names those of its joints \
+         with --joints; columns of other names are paired by `hydrotrace import LOG -o run.mcap --planned \
+         JOINT=COLUMN,... --measured JOINT=COLUMN,...`"
     )]
     NoCommonJoint { planned: String, measured: String },
     /// Plan and measurement are of different times.
@@ -105,8 +113,8 @@ pub enum LogError {
     )]
     NothingInRange { topic: String, range: String, spans_s: f64 },
     /// Only the summaries of the files were read.
-    #[error("only the index was read, not the messages; `hydrotrace info --check` reads all of them")]
-    NotLookedAt,
+    #[error("only the index was read, not the messages; `hydrotrace info --check {logs}` reads all of them")]
+    NotLookedAt { logs: String },
     /// Plan and measurement are in no messages that a program could draw as they are.
     #[error(
         "the messages of {topics} cannot be drawn as they are; `hydrotrace export LOG -o run.csv` and \

@@ -32,7 +32,7 @@ pub struct ReadOptions {
     pub measured_velocities: bool,
     /// Joints that slide, whose positions are in m; those that the log's URDF calls prismatic do anyway.
     pub slides: Vec<String>,
-    /// Joints without end stops, whose angle may wrap by a full turn.
+    /// Joints without end stops, whose angle may wrap by a full turn; those that the log's URDF calls continuous may anyway.
     pub continuous: Vec<String>,
     /// What becomes of joints that cylinders turn.
     pub cylinders: Option<Cylinders>,

@@ -18,6 +18,7 @@ use super::{
     schema::{Definition, plain_name},
     source::spec_for,
 };
+use crate::remark::Code;
 use leaves::Leaves;
 use message::Message;
 pub(in crate::log) use rows::LONE;
@@ -67,8 +68,16 @@ pub(super) fn run(
     options: &CsvOptions,
     lone: bool,
 ) -> Option<Result<CsvRun, CsvError>> {
-    let text = text(log, lone)?;
-    Some(read_csv_bytes(name, &text, options))
+    let stamped = rows(log, lone, true)?;
+    // By the stamps of the messages if all topics have such that move; else by when they were published.
+    let rows = if stamped.run() { stamped } else { rows(log, lone, false)? };
+    let not_finite = rows.not_finite;
+    let run = read_csv_bytes(name, &rows.table()?, options);
+    Some(run.map(|mut run| {
+        let message = "values of joints in messages that are NaN or infinite, dropped";
+        run.remarks.add(Code::NotFinite, not_finite, message);
+        run
+    }))
 }
 
 /// Reads the messages of a log or of a bag as a table, by the words of their fields and by what the options say.
@@ -85,12 +94,6 @@ pub fn read_messages(path: &Path, options: &CsvOptions) -> Result<CsvRun, LogErr
             Err(CsvError::NoJoints { present: "none whose words are those of a joint".to_owned() })
         })
         .map_err(fault)
-}
-
-/// The table, by the stamps of the messages if all of its topics have such that move; else by when they were published.
-fn text(log: &ScannedLog<'_>, lone: bool) -> Option<Vec<u8>> {
-    let stamped = rows(log, lone, true)?;
-    if stamped.run() { stamped } else { rows(log, lone, false)? }.table()
 }
 
 fn rows(log: &ScannedLog<'_>, lone: bool, stamped: bool) -> Option<Rows> {

@@ -24,6 +24,8 @@ pub(super) struct Rows {
     cells: usize,
     /// By column.
     stamps: Vec<Stamps>,
+    /// Numbers of joints that are NaN or infinite.
+    pub(super) not_finite: u64,
 }
 
 /// Stamps of the numbers of a column.
@@ -54,7 +56,7 @@ impl Rows {
         if !self.columns.contains_key(topic) {
             self.columns.insert(topic.to_owned(), BTreeMap::new());
         }
-        let Self { lone, names, columns, seen, rows, cells: count, stamps } = self;
+        let Self { lone, names, columns, seen, rows, cells: count, stamps, not_finite } = self;
         let columns = columns.get_mut(topic)?;
         for (path, value) in cells {
             let path = match path.strip_prefix("data") {
@@ -74,7 +76,11 @@ impl Rows {
                 columns.insert(path.to_owned(), column);
                 column
             });
-            let Some(column) = column.filter(|_| value.is_finite()) else { continue };
+            let Some(column) = column else { continue };
+            if !value.is_finite() {
+                *not_finite += 1;
+                continue;
+            }
             stamps.get_mut(column)?.add(stamp_ns);
             let row = rows.entry(stamp_ns.unwrap_or(published_ns)).or_default();
             if row.iter().all(|(known, _)| *known != column) {

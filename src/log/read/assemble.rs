@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{
+    beside,
+    candidates::{Candidate, is_shown},
     choice::remark_choice,
     content::{Content, Extracted},
     cylinders::Kinds,
@@ -12,21 +14,19 @@ use super::{
     overlap, poses, quality,
     recording::{Command, Recording, SourceInfo},
     samples::{Axis, Reading, Samples, samples},
-    select_topics::{Candidate, Choice, named},
+    select_topics::Choice,
     spoilt,
     time_base::time_base,
-    trajectories, unlike, unset,
+    trajectories, turns, unlike, unset,
     window::nothing_in,
 };
 use crate::{
-    arm::sliding_joints,
     log::{
         csv::in_degrees,
         error::LogError,
-        joint_kind,
-        options::{ReadOptions, SignalRole, TimeBase, WantedSignal},
+        options::{ReadOptions, SignalRole, TimeBase},
         range::TimeRange,
-        source::{AXES, Role, Stamps},
+        source::{AXES, Stamps},
     },
     remark::{Code, Remarks},
     series::{Clock, JointKind, Series, Signal, continuous_clock},
@@ -45,22 +45,12 @@ pub(super) fn assemble(
     let (base, base_why) = time_base(&extracted, choice, options.time_base, &mut remarks)?;
     overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?;
     let plan_is_command = remark_choice(choice, options, &extracted.tables, &mut remarks);
-    let sliding = &mut kinds.sliding;
-    sliding.extend(options.description.as_deref().map(sliding_joints).unwrap_or_default());
     // Where they are the arm's, joints called x, y and z are no pose.
-    let axes_slide = sliding.contains(AXES[0]);
-    sliding.extend(joint_kind::sliding(&extracted.metadata));
-    sliding.extend(options.slides.iter().cloned());
-    sliding.extend(
+    let axes_slide = kinds.learn_sliding(options, &extracted.metadata);
+    kinds.sliding.extend(
         choice.of_poses(&extracted).then(|| AXES[..3].iter().map(ToString::to_string)).into_iter().flatten(),
     );
-    // Those that are not there, where none was named, are no fault.
-    let beside = options.signals.iter().map(|wanted| match candidate(&extracted, wanted, base) {
-        Err(error) if wanted.topic.is_some() => Err(error),
-        other => Ok(other.ok().map(|candidate| (wanted, candidate))),
-    });
-    let beside: Vec<Option<(&WantedSignal, Candidate)>> = beside.collect::<Result<_, _>>()?;
-    let beside: Vec<(&WantedSignal, Candidate)> = beside.into_iter().flatten().collect();
+    let beside = beside::of(&extracted, options, base)?;
 
     let delays_ns = delays_ns(&extracted, choice, base, &mut remarks);
     // Trajectories are laid onto the stamps of the measurement.
@@ -69,7 +59,8 @@ pub(super) fn assemble(
     let chosen = choice.measured.iter().chain(&choice.planned);
     let mut assembly =
         Assembly::new(extracted, (base, options.range), (kinds, laid_onto), chosen, &mut remarks);
-    let mut pending: Vec<&Candidate> = choice.planned.iter().chain(beside.iter().map(|(_, c)| c)).collect();
+    let mut pending: Vec<&Candidate> =
+        choice.planned.iter().chain(beside.iter().flat_map(|(_, found)| found)).collect();
     Imported::check(&assembly.extracted.tables, options)?;
     let degrees = options.measured_in_degrees;
     let mut measured = assembly.series(&choice.measured, &pending, degrees, None, &mut remarks);
@@ -79,30 +70,25 @@ pub(super) fn assemble(
         assembly.series(&choice.planned, &pending, degrees, Some((choice, &measured)), &mut remarks);
     let mut command = None;
     let mut signals = BTreeMap::new();
-    for (wanted, candidate) in &beside {
-        pending.remove(0);
+    for (wanted, found) in &beside {
+        pending.drain(..found.len());
         // Doubts about signals are not doubts about the run.
         let mut doubts = Remarks::default();
-        assembly.add_axis(candidate, &mut doubts);
+        for candidate in found {
+            assembly.add_axis(candidate, &mut doubts);
+        }
         if wanted.role == SignalRole::Command {
-            let sent = std::slice::from_ref(candidate);
-            let mut series = assembly.series(sent, &pending, degrees, Some((choice, &measured)), &mut doubts);
-            match keep_joints(&mut series, &options.joints) {
-                Err(error) if wanted.topic.is_some() => return Err(error),
-                Err(_) => continue,
-                Ok(()) => {}
+            let run = (choice, &measured);
+            match assembly.command(found, &pending, options, run, &mut doubts) {
+                Err(LogError::NoJoint { .. }) if wanted.topic.is_none() => {}
+                sent => command = Some(sent?),
             }
-            let sides = &mut [("commanded", &mut series)];
-            assembly.kinds.convert(JointKind::Turns, sides, &mut doubts)?;
-            quality::unwrap_turns(sides[0].1, &options.continuous, &mut doubts);
-            assembly.kinds.convert(JointKind::Slides, sides, &mut doubts)?;
-            command = Some(Command { topic: assembly.topic(candidate).to_owned(), series });
         } else {
-            let found = assembly.signals(candidate, wanted.role, &pending, &mut doubts);
+            let signals_of = |c| assembly.signals(c, wanted.role, &pending, &mut doubts);
             let kept = |signal: &Signal| {
                 options.joints.is_empty() || options.joints.iter().any(|j| j == signal.name())
             };
-            signals.insert(wanted.role, found.into_iter().filter(kept).collect());
+            signals.insert(wanted.role, found.iter().flat_map(signals_of).filter(kept).collect());
         }
     }
     for (series, chosen) in [(&planned, &choice.planned), (&measured, &choice.measured)] {
@@ -120,7 +106,10 @@ pub(super) fn assemble(
     assembly.kinds.check([&planned, &measured], &mut remarks)?;
     let sides = &mut [("planned", &mut planned), ("measured", &mut measured)];
     assembly.kinds.convert(JointKind::Turns, sides, &mut remarks)?;
-    quality::unwrap_sides(sides, &options.continuous, &mut remarks);
+    turns::unwrap_sides(sides, &options.continuous, &mut remarks);
+    if let Some(command) = &mut command {
+        turns::bring_to_turn(sides[0].1, &mut command.series, &options.continuous);
+    }
     unset::of_sides(sides, &mut remarks);
     held::of_sides(choice, sides, &mut remarks);
     spoilt::of_sides(sides[0].1, sides[1].1, command.as_ref(), &mut remarks);
@@ -145,20 +134,6 @@ pub(super) fn assemble(
         metadata,
         description: options.description.clone(),
     })
-}
-
-/// Where a signal is, on a clock that runs.
-fn candidate(extracted: &Extracted, wanted: &WantedSignal, base: TimeBase) -> Result<Candidate, LogError> {
-    let role = if wanted.role == SignalRole::Command { Role::Planned } else { Role::Beside };
-    let candidate = named(extracted, &wanted.selector(), role)?;
-    if let Content::Table(table) = &extracted.sources[candidate.source].content
-        && !table.stamps.runs(base)
-    {
-        let topic = extracted.topic_of(candidate.source).topic.clone();
-        return Err(LogError::NoClock { clock: base.name(), topic });
-    }
-    overlap::check(extracted, [&candidate], base)?;
-    Ok(candidate)
 }
 
 /// The content of the files, and the time axes of the tables that are used.
@@ -317,6 +292,7 @@ impl Assembly {
                 measured: stamps(&self.extracted, &choice.measured),
                 degrees,
                 topic: self.topic(candidate),
+                shown: is_shown(&self.extracted.topic_of(candidate.source).type_name),
             };
             let kind = |joint: &str| self.kinds.of(candidate.source, joint);
             let measured = self.kinds.alike(measured, kind);
@@ -324,6 +300,24 @@ impl Assembly {
             add_new(&mut series, tracks);
         }
         series
+    }
+
+    fn command(
+        &mut self,
+        found: &[Candidate],
+        pending: &[&Candidate],
+        options: &ReadOptions,
+        run: (&Choice, &Series),
+        doubts: &mut Remarks,
+    ) -> Result<Command, LogError> {
+        let mut series = self.series(found, pending, options.planned_in_degrees, Some(run), doubts);
+        keep_joints(&mut series, &options.joints)?;
+        let sides = &mut [("commanded", &mut series)];
+        self.kinds.convert(JointKind::Turns, sides, doubts)?;
+        turns::unwrap_turns(sides[0].1, &options.continuous, doubts);
+        self.kinds.convert(JointKind::Slides, sides, doubts)?;
+        let topic = found.first().map(|c| self.topic(c).to_owned()).unwrap_or_default();
+        Ok(Command { topic, series })
     }
 
     fn signals(
@@ -349,8 +343,12 @@ impl Assembly {
         [measured, planned]: [&Series; 2],
     ) -> SourceInfo {
         let join = |all: &[Candidate], text: &dyn Fn(&Candidate) -> String| {
-            let mut list: Vec<String> = all.iter().map(text).collect();
-            list.dedup();
+            let mut list: Vec<String> = Vec::new();
+            for one in all.iter().map(text) {
+                if !list.contains(&one) {
+                    list.push(one);
+                }
+            }
             list.join(", ")
         };
         let name = |c: &Candidate| self.topic(c).to_owned();
@@ -362,8 +360,11 @@ impl Assembly {
         let last_s = tracks().filter_map(|t| t.t_s().last()).copied().fold(0.0, f64::max);
         let first_s = tracks().filter_map(|t| t.t_s().first()).copied().fold(f64::INFINITY, f64::min);
         let cut = self.range.cuts();
-        let messages = |c: &Candidate| match self.axes.get(&c.source) {
+        let topic = |c: &Candidate| self.extracted.sources[c.source].topic;
+        let messages = |(place, c): (usize, &Candidate)| match self.axes.get(&c.source) {
             Some(axis) if cut => axis.len() as u64,
+            // Several publishers have one topic.
+            _ if choice.measured[..place].iter().any(|before| topic(before) == topic(c)) => 0,
             _ => self.extracted.topic_of(c.source).messages,
         };
         SourceInfo {
@@ -374,7 +375,7 @@ impl Assembly {
             why: choice.why.clone(),
             time_base: self.base,
             time_base_why,
-            messages: choice.measured.iter().map(messages).sum(),
+            messages: choice.measured.iter().enumerate().map(messages).sum(),
             epoch_ns: self.epoch_ns,
             duration_s: if cut { last_s - first_s.min(last_s) } else { last_s },
             recorder_delay_s: delays_ns

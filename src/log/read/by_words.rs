@@ -9,6 +9,7 @@ use crate::{
         flat,
         import_line::Given,
         options::ReadOptions,
+        write::Topics,
     },
     remark::{Code, Remarks},
 };
@@ -87,6 +88,12 @@ fn recorded(log: &ScannedLog<'_>, run: &CsvRun, beside: bool, options: &ReadOpti
     files.push(ScannedFile::of(log.files.first()?.path, &source).ok()?);
     let log = ScannedLog { files, ordered: true, remarks };
     let mut found = super::recording(extract(&log, options), options).ok()?;
+    // A row that tells of some joints has no number of the others; those that are none were counted as they were read.
+    let Topics { planned, measured, command, .. } = Topics::default();
+    let own = |message: &str| {
+        [&planned, &measured, &command].iter().any(|topic| message.contains(&format!(" {topic}:")))
+    };
+    found.remarks.retain(|remark| remark.code != Code::NotFinite || !own(&remark.message));
     if let Some(origin) = &mut found.source.origin {
         TIME.clone_into(&mut origin.time);
         for header in origin.measured.iter_mut().filter(|_| beside) {

@@ -19,6 +19,9 @@ pub(super) fn remark_choice(
         let message = format!("{rival} measures the same joints and was not used; choose with --measured");
         remarks.add(Code::Ambiguous, 1, message);
     }
+    for (code, message) in &choice.doubts {
+        remarks.add(*code, 1, message.as_str());
+    }
     let commanded: Vec<&str> =
         if options.planned.is_empty() { choice.commanded().collect() } else { Vec::new() };
     // A table that is read as it is was doubted column by column.

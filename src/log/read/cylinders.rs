@@ -7,9 +7,9 @@ use std::{
 
 use super::content::{Content, Extracted};
 use crate::{
-    arm::{Rod, Rods, names_a_cylinder, names_a_stroke},
+    arm::{Rod, Rods, names_a_cylinder, names_a_stroke, sliding_joints},
     input_file,
-    log::{error::LogError, options::ReadOptions},
+    log::{error::LogError, joint_kind, options::ReadOptions, source::AXES},
     remark::{Code, Remarks},
     series::{JointKind, Series, Track},
     units::{DEGREE_RAD, Degrees},
@@ -68,6 +68,25 @@ impl Kinds {
         }
         let conversion = Some(Conversion { rods, into: wanted.into, file });
         Ok(Self { sliding: BTreeSet::new(), renamed, conversion })
+    }
+
+    /// A joint of a source has another name in the log.
+    pub(super) fn call(&mut self, source: usize, joint: &str, name: String) {
+        self.renamed.entry((source, joint.to_owned())).or_insert(name);
+    }
+
+    /// Learns from the URDF, the log and the caller which joints slide; whether joints of the arm are called as the axes
+    /// of a pose are.
+    pub(super) fn learn_sliding(
+        &mut self,
+        options: &ReadOptions,
+        metadata: &BTreeMap<String, BTreeMap<String, String>>,
+    ) -> bool {
+        self.sliding.extend(options.description.as_deref().map(sliding_joints).unwrap_or_default());
+        let axes_slide = self.sliding.contains(AXES[0]);
+        self.sliding.extend(joint_kind::sliding(metadata));
+        self.sliding.extend(options.slides.iter().cloned());
+        axes_slide
     }
 
     /// How a joint of a source moves.

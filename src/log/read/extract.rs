@@ -3,11 +3,11 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use super::{
+    candidates::is_measured,
     content::{Content, Extracted, Route, Source, TopicCount},
     description, overlap,
     parallel::read_blocks,
     recording::{Attachment, FileInfo},
-    select_topics::is_measured,
     window::{Window, may_be_of_run},
 };
 use crate::{
@@ -17,7 +17,7 @@ use crate::{
         file::Held,
         files::{ScannedFile, ScannedLog, count},
         options::{ReadOptions, Selector},
-        source::{Role, Spec, Versioned},
+        source::{Role, Rows, Spec, Table, Versioned},
     },
     remark::Code,
 };
@@ -282,7 +282,25 @@ fn finish(out: &mut Extracted) {
             sources.push(Source { topic: half.topic, content, parts: Vec::new() });
         }
     }
-    out.sources = poses_as_tables(sources, out);
+    out.sources = by_publisher(poses_as_tables(sources, out));
+}
+
+/// Tables of topics on which several publishers each send joints of their own become one for each.
+fn by_publisher(sources: Vec<Source>) -> Vec<Source> {
+    let apart = |mut source: Source| {
+        let Content::Table(table) = &mut source.content else { return vec![source] };
+        let tables = table.apart();
+        if tables.is_empty() {
+            return vec![source];
+        }
+        let of = |(table, rows): (Table, Rows)| Source {
+            topic: source.topic,
+            content: Content::Table(Box::new(table)),
+            parts: source.parts.iter().map(|(file, row)| (*file, rows.before(*row))).collect(),
+        };
+        tables.into_iter().map(of).collect()
+    };
+    sources.into_iter().flat_map(apart).collect()
 }
 
 /// Turns poses into tables; what has none is left out.

@@ -48,20 +48,43 @@ pub(super) fn check_selector(
     })
 }
 
-/// Rejects sources whose transforms are not told in one frame: their difference would be that of the frames.
+/// Rejects sources whose poses are not told in one frame: their difference would be that of the frames. Where the caller
+/// named both sides, two names may be one frame: what to remark.
 pub(super) fn check_sides(
     extracted: &Extracted,
     mut planned: impl Iterator<Item = usize>,
     mut measured: impl Iterator<Item = usize>,
-) -> Result<(), LogError> {
-    let of = |source: usize| Some((source, transform(&extracted.sources[source].content)?));
-    let (Some((source, plan)), Some((_, came))) = (planned.find_map(of), measured.find_map(of)) else {
-        return Ok(());
+    both_named: bool,
+) -> Result<Option<String>, LogError> {
+    let of = |source: usize| Some((source, told_in(&extracted.sources[source].content)?));
+    let (Some((plan, a)), Some((came, b))) = (planned.find_map(of), measured.find_map(of)) else {
+        return Ok(None);
     };
-    let [a, b] = [plan, came].map(|path| path.split_once(IN).map(|(_, parent)| parent));
-    if a == b {
-        return Ok(());
+    if a.iter().any(|frame| b.contains(frame)) {
+        return Ok(None);
     }
-    let present = of_topic(extracted, extracted.sources[source].topic).join(", ").into();
-    Err(LogError::FramesApart { planned: plan.into(), measured: came.into(), present })
+    let path = |source: usize| transform(&extracted.sources[source].content).map(Box::from);
+    if let (Some(planned), Some(measured)) = (path(plan), path(came)) {
+        let present = of_topic(extracted, extracted.sources[plan].topic).join(", ").into();
+        return Err(LogError::FramesApart { planned, measured, present });
+    }
+    let told = |source: usize, frames: &[&str]| {
+        format!("{} are told in {}", extracted.topic_of(source).topic, frames.join(" and "))
+    };
+    let apart = format!("the poses of {}, those of {}", told(plan, &a), told(came, &b));
+    if both_named {
+        return Ok(Some(format!(
+            "{apart}: where these are not one frame by two names, errors are those of the frames"
+        )));
+    }
+    Err(LogError::PosesApart { apart })
+}
+
+/// The frames that poses are told in; `None` where they name none.
+fn told_in(content: &Content) -> Option<Vec<&str>> {
+    if let Some(path) = transform(content) {
+        return path.split_once(IN).map(|(_, parent)| vec![parent]);
+    }
+    let Content::Table(table) = content else { return None };
+    (!table.told_in.is_empty()).then(|| table.told_in.iter().map(String::as_str).collect())
 }

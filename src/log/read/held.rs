@@ -1,7 +1,7 @@
 //! Plans that are written only where they change, as historians and subscriptions write them: between two values the
 //! first one holds.
 
-use super::select_topics::Choice;
+use super::{quality::is_of_gaps, select_topics::Choice};
 use crate::{
     remark::{Code, Remarks},
     series::{Series, Track},
@@ -22,18 +22,26 @@ pub(super) fn of_sides(choice: &Choice, sides: &mut [(&str, &mut Series); 2], re
     let [(_, planned), (_, measured)] = sides;
     // Trajectories say themselves how they go on.
     if choice.planned.iter().all(|candidate| candidate.field.is_some()) {
-        of_both(planned, measured, remarks);
+        let topics = [&choice.planned, &choice.measured];
+        let topics =
+            topics.map(|side| side.iter().map(|candidate| candidate.topic.as_str()).collect::<Vec<_>>());
+        of_both([planned, measured], &topics, remarks);
     }
 }
 
-fn of_both(planned: &mut Series, measured: &mut Series, remarks: &mut Remarks) {
+fn of_both([planned, measured]: [&mut Series; 2], topics: &[Vec<&str>; 2], remarks: &mut Remarks) {
     let Some([_, until_s]) = measured.span_s() else { return };
-    if of_side("plan", planned, until_s, remarks) {
-        of_side("measurement", measured, until_s, remarks);
+    if of_side(("plan", &topics[0]), planned, until_s, remarks) {
+        of_side(("measurement", &topics[1]), measured, until_s, remarks);
     }
 }
 
-fn of_side(side: &str, series: &mut Series, until_s: f64, remarks: &mut Remarks) -> bool {
+fn of_side(
+    (side, topics): (&str, &[&str]),
+    series: &mut Series,
+    until_s: f64,
+    remarks: &mut Remarks,
+) -> bool {
     let on_change: Vec<bool> =
         series.tracks.iter().map(|track| is_written_on_change(track, &series.tracks)).collect();
     let (mut silences, mut names) = (0, Vec::new());
@@ -43,6 +51,10 @@ fn of_side(side: &str, series: &mut Series, until_s: f64, remarks: &mut Remarks)
             names.push(track.name().to_owned());
             *track = held;
         }
+    }
+    if names.len() == series.tracks.len() {
+        // What is held is no gap.
+        remarks.retain(|remark| !topics.iter().any(|topic| is_of_gaps(remark, topic)));
     }
     let message = format!(
         "silences of the {side} of {}, which hardly has a value twice in a row: it is written only where it changes, and \
@@ -107,6 +119,7 @@ fn held(track: &Track, until_s: f64, dense: bool) -> Option<(Track, u64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::log::read::quality::Gaps;
 
     /// Two moves with a rest of 6 s between, and rests around, sampled at 50 Hz.
     fn moves(t: f64) -> f64 {
@@ -126,17 +139,22 @@ mod tests {
         Series { tracks: vec![Track::new("J", of(&t_s), of(&q), &cuts).unwrap()] }
     }
 
-    fn told(mut plan: Series) -> (Series, u64) {
-        let mut remarks = Remarks::default();
-        of_both(&mut plan, &mut series(|_, _| true), &mut remarks);
-        (plan, remarks.as_slice().iter().map(|remark| remark.count).sum())
+    /// The plan, how many of its silences are held, and whether gaps are told of.
+    fn told(mut plan: Series) -> (Series, u64, bool) {
+        let (mut remarks, mut gaps) = (Remarks::default(), Gaps::default());
+        let cuts: Vec<usize> = plan.tracks[0].segments().iter().skip(1).map(|part| part.start).collect();
+        gaps.note(plan.tracks[0].t_s(), &cuts, &[]);
+        gaps.remark("/plan", &mut remarks);
+        of_both([&mut plan, &mut series(|_, _| true)], &[vec!["/plan"], vec!["/joints"]], &mut remarks);
+        let of = |code: Code| remarks.as_slice().iter().filter(move |remark| remark.code == code);
+        (plan, of(Code::Guessed).map(|remark| remark.count).sum(), of(Code::Gap).next().is_some())
     }
 
     #[test]
     fn a_plan_that_is_written_where_it_changes_is_held_in_between() {
         let changes = |k: usize, q: &[f64]| k == 0 || (q[k] - q[k - 1]).abs() > 0.0;
-        let (held, silences) = told(series(changes));
-        assert_eq!((silences, held.tracks[0].segments().len()), (3, 1));
+        let (held, silences, gaps) = told(series(changes));
+        assert_eq!((silences, held.tracks[0].segments().len(), gaps), (3, 1, false));
         for k in 0..999 {
             let t = f64::from(k) * 0.02;
             let found = held.tracks[0].at(t).unwrap().position;
@@ -159,7 +177,7 @@ mod tests {
         let moved =
             |k: usize, q: &[f64]| !(230..280).contains(&k) && (k == 0 || (q[k] - q[k - 1]).abs() > 0.0);
         for plan in [lost(225..275), lost(400..500), series(moved)] {
-            assert_eq!(told(plan.clone()), (plan, 0));
+            assert_eq!(told(plan.clone()), (plan, 0, true));
         }
     }
 }

@@ -11,6 +11,7 @@ use crate::{
         files::{LogFiles, file_name},
         source::{Form, Spec},
     },
+    text::shell_argument,
     units::NS_PER_S,
 };
 
@@ -32,6 +33,7 @@ impl LogFiles {
             attachments.extend(summary.attachments.iter().cloned());
             add_topics(summary, &mut topics);
         }
+        let logs = self.sources().map(|(path, _)| shell_argument(path)).collect::<Vec<_>>().join(" ");
         let ends = topics.values().filter(|topic: &&Counted| topic.log_ns[0] <= topic.log_ns[1]);
         let begins_ns = ends.clone().map(|topic| topic.log_ns[0]).min().unwrap_or(0);
         let ends_ns = ends.map(|topic| topic.log_ns[1]).max().unwrap_or(0);
@@ -40,7 +42,7 @@ impl LogFiles {
             topics: topics.into_values().map(Counted::info).collect(),
             attachments,
             duration_s: ends_ns.saturating_sub(begins_ns) as f64 / NS_PER_S,
-            recording: Err(LogError::NotLookedAt),
+            recording: Err(LogError::NotLookedAt { logs }),
             remarks: self.remarks().clone(),
         })
     }

@@ -1,7 +1,9 @@
 //! Reading: from the files of a run to plan, measurement and other signals.
 
 mod assemble;
+mod beside;
 mod by_words;
+mod candidates;
 mod choice;
 mod content;
 mod cylinders;
@@ -19,6 +21,7 @@ mod other_time;
 mod overlap;
 mod parallel;
 mod poses;
+mod prefixed;
 mod quality;
 pub(super) mod recording;
 mod samples;
@@ -28,6 +31,7 @@ mod stopped;
 mod time_base;
 mod topics;
 mod trajectories;
+mod turns;
 mod unlike;
 mod unset;
 mod window;
@@ -41,6 +45,7 @@ use super::{
     recovered,
 };
 use crate::{
+    arm::continuous_joints,
     remark::{Code, Remarks},
     units::NS_PER_S,
 };
@@ -186,9 +191,15 @@ fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, L
 fn assembled(mut extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
     let mut options = options.clone();
     options.description = options.description.or_else(|| description::of(&extracted));
-    let kinds = Kinds::of_names(&mut extracted, &mut options)?;
+    options.continuous.extend(options.description.as_deref().map(continuous_joints).unwrap_or_default());
+    let mut kinds = Kinds::of_names(&mut extracted, &mut options)?;
+    let choice = match choose(&extracted, &options) {
+        Err(LogError::NoCommonJoint { .. }) if prefixed::pair(&mut extracted, &mut options, &mut kinds)? => {
+            choose(&extracted, &options)?
+        }
+        choice => choice?,
+    };
     let options = &options;
-    let choice = choose(&extracted, options)?;
     for topic in topic_infos(&extracted) {
         ::log::debug!(
             "topic {} ({}): {} messages, joint positions in {:?}",

@@ -1,8 +1,8 @@
 //! Orders the files of one run and rejects files whose samples overlap.
 
 use super::{
+    candidates::Candidate,
     content::{Content, Extracted, Source},
-    select_topics::Candidate,
 };
 use crate::{
     log::{error::LogError, file::Layout, options::TimeBase, source::Table},

@@ -1,15 +1,15 @@
 //! Remarks on data that look wrong.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
-use super::frozen::frozen;
+use super::{frozen::frozen, turns::turns};
 use crate::{
     log::{
         options::{ReadOptions, TimeBase},
         source::{Field, MAX_JOINTS, Role, Table},
     },
     math::quantile,
-    remark::{Code, Remarks},
+    remark::{Code, Remark, Remarks},
     series::{Clock, Series, Track},
     units::{DEGREE_RAD, NS_PER_S},
 };
@@ -83,7 +83,7 @@ pub(super) fn of_table(topic: &str, table: &Table, remarks: &mut Remarks) {
     }
     remarks.add(
         Code::JointsChange,
-        table.layout_changes,
+        table.list_changes(),
         format!("changes of order or set of the joints within {topic}; joined by name"),
     );
     remarks.add(
@@ -134,9 +134,17 @@ impl Gaps {
         remarks.add(
             Code::Gap,
             self.count,
-            format!("gaps in {topic}, the longest {longest_s:.2} s after {at_s:.2} s; nothing is computed across them"),
+            format!("{GAPS}{topic}, the longest {longest_s:.2} s after {at_s:.2} s; nothing is computed across them"),
         );
     }
+}
+
+const GAPS: &str = "gaps in ";
+
+/// Whether a remark is of the gaps of a topic.
+pub(super) fn is_of_gaps(remark: &Remark, topic: &str) -> bool {
+    let of = remark.message.strip_prefix(GAPS).and_then(|rest| rest.strip_prefix(topic));
+    remark.code == Code::Gap && of.is_some_and(|rest| rest.starts_with(','))
 }
 
 /// Numbers of samples paused and slowed; 0 where the field is never filled.
@@ -150,62 +158,6 @@ fn scaling(factors: &[(f64, u64)]) -> (u64, u64) {
         factors.iter().filter(|(factor, _)| of(*factor)).map(|(_, samples)| samples).sum()
     };
     (samples(&|factor| factor <= 0.0), samples(&|factor| factor > 0.0 && factor < full - 1e-6))
-}
-
-/// As [`unwrap_turns`], of plan and measurement.
-pub(super) fn unwrap_sides(
-    sides: &mut [(&str, &mut Series); 2],
-    continuous: &[String],
-    remarks: &mut Remarks,
-) {
-    for (_, side) in sides {
-        unwrap_turns(side, continuous, remarks);
-    }
-}
-
-/// Undoes full turns of joints declared continuous; remarks on them elsewhere.
-pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: &mut Remarks) {
-    for track in series.tracks.iter_mut().filter(|track| track.turns()) {
-        let turns = turns(track);
-        if turns == 0 {
-            continue;
-        }
-        let name = track.name().to_owned();
-        if continuous.contains(&name) {
-            if let Some(unwrapped) = unwrapped(track) {
-                *track = unwrapped;
-            }
-        } else {
-            remarks.add(
-                Code::Wrapped,
-                turns,
-                format!(
-                    "steps of a full turn in {name}; if the joint has no end stops, say --continuous {name}"
-                ),
-            );
-        }
-    }
-}
-
-/// Number of steps between neighbouring samples of about a full turn.
-fn turns(track: &Track) -> u64 {
-    let steps = track.position().windows(2).map(|w| (w[1] - w[0]).abs());
-    // Without a branch on any step, so that the compiler takes several at once.
-    steps.map(|step| u64::from((step > PI) & ((step - TAU).abs() < 1.0))).sum()
-}
-
-fn unwrapped(track: &Track) -> Option<Track> {
-    let mut turns_rad = 0.0;
-    let mut previous: Option<f64> = None;
-    let position = track.position().iter().map(|&q| {
-        if let Some(before) = previous {
-            turns_rad -= TAU * ((q - before) / TAU).round();
-        }
-        previous = Some(q);
-        q + turns_rad
-    });
-    let cuts: Vec<usize> = track.segments().iter().skip(1).map(|s| s.start).collect();
-    Track::new(track.name(), track.t_s(), position.collect(), &cuts).ok()
 }
 
 pub(super) fn of_pairs(planned: &Series, measured: &Series, options: &ReadOptions, remarks: &mut Remarks) {
@@ -384,16 +336,5 @@ mod tests {
         let frozen = |t: f64| if (1.0..2.0).contains(&t) { 0.1 } else { 0.1 * t };
         assert_eq!(codes(track(|t| 0.1 * t), track(frozen)), [Code::FrozenSensor]);
         assert_eq!(codes(track(|_| 0.0), track(|_| 0.0)), []);
-    }
-
-    #[test]
-    fn a_full_turn_is_undone_only_for_a_joint_declared_continuous() {
-        let wrapped = |t: f64| (t * 2.0 + PI).rem_euclid(TAU) - PI;
-        let mut series = Series { tracks: vec![track(wrapped)] };
-        let mut remarks = Remarks::default();
-        unwrap_turns(&mut series, &[], &mut remarks);
-        assert_eq!(remarks.as_slice()[0].code, Code::Wrapped);
-        unwrap_turns(&mut series, &["a".into()], &mut remarks);
-        assert!((series.tracks[0].position()[499] - 2.0 * 4.99).abs() < 1e-9);
     }
 }

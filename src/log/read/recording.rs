@@ -175,7 +175,7 @@ pub struct Survey {
 impl Survey {
     /// Whether the messages were read, not the index alone.
     pub fn is_checked(&self) -> bool {
-        !matches!(self.recording, Err(LogError::NotLookedAt))
+        !matches!(self.recording, Err(LogError::NotLookedAt { .. }))
     }
 
     /// The joints that a report would cover.

@@ -3,32 +3,19 @@
 use std::collections::BTreeSet;
 
 use super::{
-    content::{Content, Extracted, TopicCount},
+    candidates::{COMMAND, Candidate, candidates, of_sides},
+    content::{Content, Extracted},
     frames,
-    topics::{columns_named, fields_of, lacks_positions, missing, not_there},
+    topics::{columns_named, missing},
 };
 use crate::{
     log::{
         error::LogError,
-        options::{ReadOptions, Selector, Sides},
-        source::{Form, Role, is_field},
+        options::{ReadOptions, Sides},
+        source::{Form, Role},
     },
-    suggest::nearest,
+    remark::Code,
 };
-
-/// A topic and field that could serve.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Candidate {
-    /// Index into the sources.
-    pub(super) source: usize,
-    /// Field of the table; `None` for whole trajectories.
-    pub(super) field: Option<usize>,
-    /// How well its type and name fit, 0 best.
-    rank: u32,
-    pub(super) joints: Vec<String>,
-    messages: usize,
-    topic: String,
-}
 
 /// The chosen topics and fields.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,6 +25,7 @@ pub(super) struct Choice {
     pub(super) why: String,
     /// Topics of another namespace that measure the same joints as well, and were not chosen.
     pub(super) rivals: Vec<String>,
+    pub(super) doubts: Vec<(Code, String)>,
 }
 
 impl Choice {
@@ -53,26 +41,6 @@ impl Choice {
         let sent = |c: &&Candidate| c.rank == COMMAND;
         self.planned.iter().filter(sent).map(|c| c.topic.as_str())
     }
-}
-
-/// Rank of a plan by a name that says command.
-const COMMAND: u32 = 8;
-/// Rank of fields that are used only if the caller names them.
-const ONLY_IF_NAMED: u32 = 99;
-/// Rank of poses of a tool, which count where there are no joints.
-const POSE: u32 = 10;
-
-const PLAN_WORDS: [&str; 8] =
-    ["planned", "plan", "desired", "reference", "ref", "target", "setpoint", "goal"];
-const COMMAND_WORDS: [&str; 3] = ["command", "commands", "cmd"];
-
-fn has_word(topic: &str, words: &[&str]) -> bool {
-    topic.to_ascii_lowercase().split(['/', '_', '-', '.']).any(|word| words.contains(&word))
-}
-
-/// Whether a topic is a measurement by its name, if it holds joints at all.
-pub(super) fn is_measured(topic: &str) -> bool {
-    !has_word(topic, &PLAN_WORDS) && !has_word(topic, &COMMAND_WORDS)
 }
 
 /// Chooses the topics of the sides that are wanted.
@@ -107,8 +75,7 @@ const PLANNED: &str = "planned";
 pub(super) const MEASURED: &str = "measured";
 
 fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, LogError> {
-    let planned = candidates(extracted, &options.planned, Role::Planned)?;
-    let measured = candidates(extracted, &options.measured, Role::Measured)?;
+    let ([planned, measured], guess) = of_sides(extracted, options)?;
     if planned.is_empty() {
         return Err(missing(extracted, options, PLANNED, "--planned"));
     }
@@ -149,10 +116,14 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
         return Err(LogError::SameField { field: p.topic.clone() });
     }
     let source = |c: &Candidate| c.source;
-    frames::check_sides(extracted, planned.iter().map(source), measured.iter().map(source))?;
+    let both_named = !options.planned.is_empty() && !options.measured.is_empty();
+    let [plan, came] = [&planned, &measured].map(|side| side.iter().map(source));
+    let frames_apart = frames::check_sides(extracted, plan, came, both_named)?;
     let why = why(extracted, options, &planned, &measured);
     let rivals = rivals(&all_measured, &measured, &wanted);
-    Ok(Choice { planned, measured, why, rivals })
+    let guess = guess.map(|guess| (Code::Guessed, guess));
+    let doubts = frames_apart.map(|apart| (Code::UnlikePlan, apart)).into_iter().chain(guess).collect();
+    Ok(Choice { planned, measured, why, rivals, doubts })
 }
 
 /// One side alone.
@@ -173,7 +144,7 @@ fn choose_one(extracted: &Extracted, options: &ReadOptions, role: Role) -> Resul
         planned = cover(alike, None, Some(first));
     }
     let why = why(extracted, options, &planned, &measured);
-    Ok(Choice { planned, measured, why, rivals: Vec::new() })
+    Ok(Choice { planned, measured, why, rivals: Vec::new(), doubts: Vec::new() })
 }
 
 /// Leading words of their namespaces that two topics share: two of `/arm_right/joint_states` and
@@ -235,7 +206,12 @@ fn why(
     measured: &[Candidate],
 ) -> String {
     let topic = |c: &Candidate| extracted.topics[extracted.sources[c.source].topic].topic.as_str();
-    let list = |all: &[Candidate]| all.iter().map(topic).collect::<Vec<_>>().join(", ");
+    let list = |all: &[Candidate]| {
+        let first = |(place, c): (usize, &Candidate)| {
+            (!all[..place].iter().any(|before| topic(before) == topic(c))).then_some(topic(c))
+        };
+        all.iter().enumerate().filter_map(first).collect::<Vec<_>>().join(", ")
+    };
     let same =
         planned.len() == measured.len() && planned.iter().zip(measured).all(|(p, m)| p.source == m.source);
     let given = |c: &Candidate| options.planned.iter().any(|named| named.topic == topic(c));
@@ -246,7 +222,7 @@ fn why(
             format!("plan from {}, joined for what was sent on {}", list(planned), sent.join(", "))
         }
         (true, Some(1)) => format!("plan from {}, by its name", list(planned)),
-        (true, Some(3 | 6)) if planned.iter().all(|c| c.field.is_none()) => {
+        (true, Some(_)) if planned.iter().all(|c| c.field.is_none()) => {
             format!("plan sampled from the trajectory messages of {}", list(planned))
         }
         _ => format!("plan from {}", list(planned)),
@@ -255,134 +231,5 @@ fn why(
         (false, _) => format!("{plan}; measurement as given"),
         (true, true) => format!("{plan}; each message holds plan and measurement of the same instant"),
         (true, false) => format!("{plan}; measurement from {}", list(measured)),
-    }
-}
-
-/// All that could serve in a role, best first; those the caller named, if any.
-fn candidates(extracted: &Extracted, named: &[Selector], role: Role) -> Result<Vec<Candidate>, LogError> {
-    let sent = extracted.sent().filter(|_| role == Role::Planned);
-    if named.is_empty() {
-        let mut found = Vec::new();
-        let is_sent = |source: usize| sent.is_some_and(|sent| sent.is_on(&extracted.topic_of(source).topic));
-        for source in (0..extracted.sources.len()).filter(|source| !is_sent(*source)) {
-            found.extend(
-                of_source(extracted, source, role, None).into_iter().filter(|c| c.rank < ONLY_IF_NAMED),
-            );
-        }
-        found.sort_by(|a, b| {
-            (a.rank, b.messages, &a.topic, a.source, a.field)
-                .cmp(&(b.rank, a.messages, &b.topic, b.source, b.field))
-        });
-        return Ok(found);
-    }
-    let mut meant: Vec<Selector> = Vec::new();
-    for selector in named {
-        let plan = sent.and_then(|sent| sent.plan_behind(selector));
-        let selector = plan.unwrap_or_else(|| selector.clone());
-        if !meant.contains(&selector) {
-            meant.push(selector);
-        }
-    }
-    meant.iter().map(|selector| self::named(extracted, selector, role)).collect()
-}
-
-/// The candidate of a selector.
-pub(super) fn named(extracted: &Extracted, selector: &Selector, role: Role) -> Result<Candidate, LogError> {
-    let topic = extracted.topics.iter().position(|t| t.topic == selector.topic);
-    let topic = topic.ok_or_else(|| not_there(extracted, selector))?;
-    frames::check_selector(extracted, topic, selector)?;
-    let sources = (0..extracted.sources.len()).filter(|&s| extracted.sources[s].topic == topic);
-    let fitting = sources.flat_map(|s| of_source(extracted, s, role, selector.field.as_deref()));
-    fitting.min_by_key(|c| (c.rank, c.field)).ok_or_else(|| {
-        let TopicCount { topic: name, type_name, .. } = &extracted.topics[topic];
-        let fields = fields_of(extracted, topic);
-        let near =
-            |field: &String| nearest(field, fields.iter().map(String::as_str)).map(String::into_boxed_str);
-        LogError::NoField {
-            topic: name.clone(),
-            type_name: type_name.as_str().into(),
-            nearest: selector.field.as_ref().and_then(near),
-            field: selector.field.as_deref().map(Box::from),
-            present: match fields.as_slice() {
-                [] if lacks_positions(extracted, topic) => {
-                    "joints without positions, at most speeds".to_owned()
-                }
-                [] => "none".to_owned(),
-                fields => fields.join(", "),
-            },
-        }
-    })
-}
-
-fn of_source(extracted: &Extracted, source: usize, role: Role, field: Option<&str>) -> Vec<Candidate> {
-    let topic = &extracted.topics[extracted.sources[source].topic];
-    let candidate = |field, rank, joints, messages| Candidate {
-        source,
-        field,
-        rank,
-        joints,
-        messages,
-        topic: topic.topic.clone(),
-    };
-    match &extracted.sources[source].content {
-        Content::Versioned(_) | Content::Poses(_) => Vec::new(),
-        Content::Plans(plans) => {
-            let joints: BTreeSet<&String> = plans.trajectories.iter().flat_map(|t| &t.joints).collect();
-            let joints: Vec<String> = joints.into_iter().cloned().collect();
-            if role != Role::Planned || joints.is_empty() {
-                return Vec::new();
-            }
-            let rank = if topic.type_name.ends_with("JointTrajectory") { 3 } else { 6 };
-            vec![candidate(None, rank, joints, plans.trajectories.len())]
-        }
-        Content::Table(table) => {
-            let positions = table.fields.iter().enumerate().filter(|(_, f)| !f.is_velocity);
-            positions
-                .filter(|(_, f)| field.is_none_or(|path| is_field(&f.path, path)))
-                .filter_map(|(k, f)| {
-                    let filled = |j: &usize| table.column(k, *j).iter().any(|v| v.is_finite());
-                    let joints: Vec<String> =
-                        (0..table.joints.len()).filter(filled).map(|j| table.joints[j].clone()).collect();
-                    let rank = rank(topic, table.form, f.role, role);
-                    (!joints.is_empty()).then(|| candidate(Some(k), rank, joints, table.len()))
-                })
-                .collect()
-        }
-    }
-}
-
-/// How well a field fits a role, 1 best, [`ONLY_IF_NAMED`] worst.
-fn rank(topic: &TopicCount, form: Form, field: Role, role: Role) -> u32 {
-    let feedback = topic.type_name.contains("Feedback");
-    let array = topic.type_name.ends_with("Float64MultiArray");
-    let (plan, command) = (has_word(&topic.topic, &PLAN_WORDS), has_word(&topic.topic, &COMMAND_WORDS));
-    if form == Form::Poses {
-        return match (role, field) {
-            (Role::Planned, Role::Either) if plan => POSE,
-            (Role::Planned, Role::Planned) => POSE + 1,
-            (Role::Measured, Role::Either) if is_measured(&topic.topic) => POSE,
-            _ => ONLY_IF_NAMED,
-        };
-    }
-    match (role, field) {
-        (Role::Planned, Role::Planned) => match form {
-            _ if feedback => 4,
-            Form::Versioned => 5,
-            // Of two topics of one controller the newer name is the one that is always filled.
-            _ => 2,
-        },
-        (Role::Planned, Role::Either) if plan && !array => 1,
-        (Role::Planned, Role::Either) if plan => 7,
-        (Role::Planned, Role::Either) if command => COMMAND,
-        (Role::Measured, Role::Measured) => match form {
-            _ if feedback => 6,
-            Form::Versioned => 5,
-            Form::Interfaces => 4,
-            _ => 3,
-        },
-        (Role::Measured, Role::Either) if is_measured(&topic.topic) && !array => {
-            if has_word(&topic.topic, &["error"]) { ONLY_IF_NAMED } else { 2 }
-        }
-        _ => ONLY_IF_NAMED,
     }
 }

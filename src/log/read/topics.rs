@@ -9,6 +9,7 @@ use super::{
 };
 use crate::{
     log::{
+        channel::unread,
         error::LogError,
         import_line::Given,
         options::{ReadOptions, Selector},
@@ -18,36 +19,49 @@ use crate::{
     units::NS_PER_S,
 };
 
-/// Topics with joints, for messages; all topics if there is none.
+/// Topics with joints, or such as may hold some and cannot be read, for messages; all topics if there is none.
 pub(super) fn present(extracted: &Extracted) -> String {
-    let with_joints: BTreeSet<usize> = extracted.sources.iter().map(|s| s.topic).collect();
+    let mut listed: BTreeSet<usize> = extracted.sources.iter().map(|s| s.topic).collect();
+    listed.extend((0..extracted.topics.len()).filter(|topic| unreadable(extracted, *topic).is_some()));
     let describe = |index: usize| {
         let topic = &extracted.topics[index];
         let messages = if topic.messages == 1 { "message" } else { "messages" };
-        let lacks = if lacks_positions(extracted, index) { ", without positions" } else { "" };
-        format!("{} ({}, {} {messages}{lacks})", topic.topic, topic.type_name, topic.messages)
+        let known = if topic.type_name.is_empty() { "no type" } else { &topic.type_name };
+        let lacks = lacking(extracted, index).map(|lacks| format!("of {lacks}"));
+        let lacks =
+            lacks.or_else(|| unreadable(extracted, index)).map_or(String::new(), |why| format!(", {why}"));
+        format!("{} ({known}, {} {messages}{lacks})", topic.topic, topic.messages)
     };
-    let listed: Vec<String> = if with_joints.is_empty() {
+    let listed: Vec<String> = if listed.is_empty() {
         (0..extracted.topics.len()).map(describe).collect()
     } else {
-        with_joints.into_iter().map(describe).collect()
+        listed.into_iter().map(describe).collect()
     };
     if listed.is_empty() { "no topics at all".to_owned() } else { listed.join(", ") }
 }
 
-/// Whether the messages of a topic name joints and never give a position, as where only speeds are recorded.
-pub(super) fn lacks_positions(extracted: &Extracted, topic: usize) -> bool {
-    let sources = extracted.sources.iter().filter(|source| source.topic == topic);
-    let mut tables = sources.filter_map(|source| match &source.content {
-        Content::Table(table) => Some(table),
-        _ => None,
-    });
+/// Why the messages of a topic cannot be read that may hold joints.
+pub(super) fn unreadable(extracted: &Extracted, topic: usize) -> Option<String> {
+    let topic = &extracted.topics[topic];
+    let of_no_type = || unread(&topic.encoding).filter(|_| topic.type_name.is_empty());
+    topic.problem.clone().or_else(of_no_type)
+}
+
+/// What the messages of a topic have that name joints and never tell where they are; `None` if they do.
+pub(super) fn lacking(extracted: &Extracted, topic: usize) -> Option<&'static str> {
     let lacks = |table: &Table| {
         let positions = table.fields.iter().enumerate().filter(|(_, field)| !field.is_velocity);
         let columns = positions.flat_map(|(k, _)| &table.columns[k]);
         !table.joints.is_empty() && !columns.flatten().any(|value| value.is_finite())
     };
-    tables.clone().next().is_some() && tables.all(|table| lacks(table))
+    let sources = extracted.sources.iter().filter(|source| source.topic == topic);
+    let mut found = sources.filter_map(|source| match &source.content {
+        Content::Table(table) => Some(lacks(table).then_some("joints without positions, at most speeds")),
+        Content::Plans(plans) => Some(plans.fault()),
+        _ => None,
+    });
+    let first = found.next()?;
+    first.filter(|_| found.all(|lacks| lacks.is_some()))
 }
 
 /// Fields of a topic that hold numbers by joint.
@@ -93,7 +107,8 @@ fn topic_info<'a>(
                 for (k, field) in table.fields.iter().enumerate() {
                     let filled = || (0..table.joints.len()).any(|j| !table.column(k, j).is_empty());
                     // That a frame is there is known of those that nobody named, too.
-                    if !field.is_velocity && (table.form == Form::Poses || filled()) {
+                    let told = info.joint_fields.contains(&field.path);
+                    if !field.is_velocity && !told && (table.form == Form::Poses || filled()) {
                         info.joint_fields.push(field.path.clone());
                     }
                 }
@@ -101,7 +116,9 @@ fn topic_info<'a>(
             Content::Plans(plans) => {
                 let joints: BTreeSet<&String> = plans.trajectories.iter().flat_map(|t| &t.joints).collect();
                 info.joints.extend(joints.into_iter().cloned());
-                info.joint_fields.push("points.positions".to_owned());
+                if plans.fault().is_none() {
+                    info.joint_fields.push("points.positions".to_owned());
+                }
             }
             Content::Versioned(_) | Content::Poses(_) => {}
         }

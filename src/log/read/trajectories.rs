@@ -21,6 +21,8 @@ pub(super) struct Reading<'a> {
     pub(super) measured: Option<&'a Stamps>,
     pub(super) degrees: bool,
     pub(super) topic: &'a str,
+    /// Whether they are what a planner shows, and not what it sends.
+    pub(super) shown: bool,
 }
 
 /// The plan of every measured joint.
@@ -80,27 +82,28 @@ fn trajectories(
             seconds_since(epoch_ns, raw.header_ns)
         } else {
             let received_ns = if base == TimeBase::Publish { raw.publish_ns } else { raw.log_ns };
-            remarks.add(
-                Code::StartOnReceipt,
-                1,
+            let message = if reading.shown {
                 format!(
-                    "trajectories of {topic} start when received; that is known to about {:.0} ms",
-                    (spread_ns as f64 / 1e6).max(1.0)
-                ),
-            );
+                    "trajectories of {topic} are what a planner shows, not what it sends: they are taken to start when \
+                     received, and when they were executed is not known, so that delays and lags may be off by any time"
+                )
+            } else {
+                let known_ms = (spread_ns as f64 / 1e6).max(1.0);
+                format!(
+                    "trajectories of {topic} start when received; that is known to about {known_ms:.0} ms"
+                )
+            };
+            remarks.add(Code::StartOnReceipt, 1, message);
             seconds_since(epoch_ns, received_ns.saturating_sub(delay_ns))
         };
-        match trajectory(raw, start_s, reading.degrees, &kind) {
-            Some(one) => {
-                previous_end_s = one.joints.iter().filter_map(|(_, p)| p.last()).map(|p| p.t_s).fold(start_s, f64::max);
-                out.push(one);
-            }
-            None => remarks.add(
-                Code::LengthMismatch,
-                1,
-                format!("trajectories of {topic} whose points do not fit their joints or whose times do not increase, skipped"),
-            ),
+        if let Some(fault) = raw.fault() {
+            remarks.add(Code::LengthMismatch, 1, format!("trajectories of {topic} with {fault}, skipped"));
+            continue;
         }
+        let one = trajectory(raw, start_s, reading.degrees, &kind);
+        let ends_s = one.joints.iter().filter_map(|(_, points)| points.last()).map(|point| point.t_s);
+        previous_end_s = ends_s.fold(start_s, f64::max);
+        out.push(one);
     }
     out
 }
@@ -110,21 +113,11 @@ fn trajectory(
     start_s: f64,
     degrees: bool,
     kind: &impl Fn(&str) -> JointKind,
-) -> Option<PlannedTrajectory> {
-    let n = raw.joints.len();
-    let fits =
-        |values: &[f64]| values.is_empty() || values.len() == n && values.iter().all(|v| v.is_finite());
-    let sound = raw.points.iter().all(|p| {
-        p.positions.len() == n && [&p.positions, &p.velocities, &p.accelerations].iter().all(|v| fits(v))
-    });
-    let increasing = raw.points.windows(2).all(|w| w[0].since_start_ns < w[1].since_start_ns);
-    if !sound || !increasing || raw.points.first().is_some_and(|p| p.since_start_ns < 0) {
-        return None;
-    }
+) -> PlannedTrajectory {
     if raw.points.is_empty() {
-        return Some(PlannedTrajectory { start_s, joints: Vec::new() });
+        return PlannedTrajectory { start_s, joints: Vec::new() };
     }
-    let joints = (0..n).map(|j| {
+    let joints = (0..raw.joints.len()).map(|j| {
         let degrees = degrees && kind(&raw.joints[j]) == JointKind::Turns;
         let unit = |value: f64| if degrees { radians_from_degrees(value) } else { value };
         let points = raw.points.iter().map(|p| PlannedPoint {
@@ -135,5 +128,5 @@ fn trajectory(
         });
         (raw.joints[j].clone(), points.collect())
     });
-    Some(PlannedTrajectory { start_s, joints: joints.collect() })
+    PlannedTrajectory { start_s, joints: joints.collect() }
 }

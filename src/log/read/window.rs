@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
+    candidates::Candidate,
     content::{Extracted, Route},
-    select_topics::Candidate,
 };
 use crate::{
     log::{

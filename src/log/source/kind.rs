@@ -91,6 +91,7 @@ pub(in crate::log) fn spec_for(
         "sensor_msgs/JointState" => builder.position("position", "velocity", Role::Either),
         "std_msgs/Float64MultiArray" => builder.position("data", "", Role::Either),
         "trajectory_msgs/JointTrajectory" => builder.plans("", None),
+        "moveit_msgs/RobotTrajectory" => builder.plans("joint_trajectory.", None),
         "moveit_msgs/DisplayTrajectory" => builder.plans("trajectory.joint_trajectory.", Some("trajectory")),
         "foxglove/JointStates" | "foxglove_msgs/JointStates" => {
             builder.spec.form = Form::Groups;
@@ -108,6 +109,10 @@ pub(in crate::log) fn spec_for(
             builder.interface("position", speeds.then_some("velocity"), Role::Measured);
         }
         "geometry_msgs/PoseStamped" => builder.poses("", ["pose.position", "pose.orientation"], Role::Either),
+        "foxglove/PoseInFrame" | "foxglove_msgs/PoseInFrame" => {
+            builder.poses("", ["pose.position", "pose.orientation"], Role::Either);
+            builder.want("frame_id", slot::PARENT);
+        }
         "geometry_msgs/TransformStamped" => {
             builder.poses("", ["transform.translation", "transform.rotation"], Role::Either);
         }
@@ -212,6 +217,10 @@ impl Builder<'_> {
         self.spec.form = Form::Poses;
         self.interface("pose", None, role);
         self.pose(group, paths);
+        self.want("header.frame_id", slot::PARENT);
+        if !group.is_empty() {
+            self.want(&format!("{group}.header.frame_id"), slot::PARENT);
+        }
     }
 
     fn pose(&mut self, group: &str, [position, orientation]: [&str; 2]) {

@@ -9,7 +9,7 @@ mod versioned;
 pub(super) use kind::{Field, Form, Role, Spec, spec_for};
 pub(super) use plans::{Plans, RawTrajectory};
 pub(super) use poses::{AXES, IN, Poses, is_field, unit};
-pub(super) use table::{MAX_JOINTS, Stamps, Table};
+pub(super) use table::{MAX_JOINTS, Rows, Stamps, Table};
 pub(super) use versioned::Versioned;
 
 /// Slots of fields that every form shares.

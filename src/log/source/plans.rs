@@ -25,6 +25,32 @@ pub(in crate::log) struct RawPoint {
     pub(in crate::log) accelerations: Vec<f64>,
 }
 
+impl RawTrajectory {
+    /// Why its points are none of its joints at times that increase; one without points is sound, and means "stop".
+    pub(in crate::log) fn fault(&self) -> Option<&'static str> {
+        let joints = self.joints.len();
+        let points = || self.points.iter();
+        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+        let fits = |values: &[f64]| values.is_empty() || values.len() == joints;
+        let lists = |point: &RawPoint| [&point.velocities, &point.accelerations].map(|list| fits(list));
+        let since_ns: Vec<i64> = points().map(|point| point.since_start_ns).collect();
+        if joints > 0 && !self.points.is_empty() && points().all(|point| point.positions.is_empty()) {
+            Some("points without positions, at most speeds")
+        } else if points().any(|point| point.positions.len() != joints || lists(point) != [true; 2]) {
+            Some("points that are not as long as their list of joints")
+        } else if !points().all(|p| [&p.positions, &p.velocities, &p.accelerations].iter().all(|l| finite(l)))
+        {
+            Some("points that are not finite")
+        } else if since_ns.len() > 1 && since_ns.iter().all(|ns| *ns == 0) {
+            Some("points whose times from the start are all 0 s")
+        } else if since_ns.first().is_some_and(|ns| *ns < 0) || since_ns.windows(2).any(|w| w[0] >= w[1]) {
+            Some("points whose times from the start do not increase from 0 s on")
+        } else {
+            None
+        }
+    }
+}
+
 /// All trajectories of a topic.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(in crate::log) struct Plans {
@@ -47,6 +73,14 @@ impl Plans {
 
     pub(in crate::log) fn append(&mut self, other: &mut Self) {
         self.trajectories.append(&mut other.trajectories);
+    }
+
+    /// What the first trajectory with points has, where none of them can be used.
+    pub(in crate::log) fn fault(&self) -> Option<&'static str> {
+        let mut faults =
+            self.trajectories.iter().filter(|one| !one.points.is_empty()).map(RawTrajectory::fault);
+        let first = faults.next()??;
+        faults.all(|fault| fault.is_some()).then_some(first)
     }
 
     fn current(&mut self) -> &mut RawTrajectory {

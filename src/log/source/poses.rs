@@ -23,8 +23,10 @@ pub(in crate::log) struct Poses {
     pub(in crate::log) untimed: u64,
     message: Vec<Row>,
     stamp: (f64, f64),
-    /// Frame and parent of the pose being read.
+    /// Frame and parent of the pose being read, where poses say which frame they are of.
     names: [String; 2],
+    /// The frames that the others are told in, each once.
+    told_in: Vec<String>,
 }
 
 /// A frame that poses are of; samples are kept of those in a role.
@@ -96,6 +98,15 @@ impl Poses {
         let own = |row: Row| Some(Row { frame: Some(places[row.frame?]?), ..row });
         self.rows.extend(rows.filter_map(own));
         self.untimed += std::mem::take(&mut other.untimed);
+        other.told_in.drain(..).for_each(|frame| self.tell_in(frame.as_bytes()));
+    }
+
+    fn tell_in(&mut self, frame: &[u8]) {
+        let frame = frame.strip_prefix(b"/").unwrap_or(frame);
+        let known = self.told_in.iter().any(|known| known.as_bytes() == frame);
+        if !known && !frame.is_empty() && self.told_in.len() < MAX_FRAMES {
+            self.told_in.push(String::from_utf8_lossy(frame).into_owned());
+        }
     }
 
     /// The poses as samples, a table a frame, the components in place of joints; empty for frames that nobody named. A
@@ -112,6 +123,7 @@ impl Poses {
                 rows.push(row);
             }
             let mut table = Table::new(Form::Poses, &[field], &[], None);
+            table.told_in.clone_from(&self.told_in);
             let mut before = [0.0; 4];
             for row in rows {
                 let [x, y, z, orientation @ ..] = row.values;
@@ -179,7 +191,9 @@ impl Sink for Poses {
     }
 
     fn text(&mut self, slot: Slot, text: &[u8]) {
-        if let Some(name) = [slot::CHILD, slot::PARENT].iter().position(|own| *own == slot) {
+        if !self.framed && slot == slot::PARENT {
+            self.tell_in(text);
+        } else if let Some(name) = [slot::CHILD, slot::PARENT].iter().position(|own| *own == slot) {
             String::from_utf8_lossy(text).trim_start_matches('/').clone_into(&mut self.names[name]);
         }
     }

@@ -125,12 +125,13 @@ pub fn charts(inputs: &Inputs, programs: &[For]) -> Result<Charts, ChartsFailure
     let lines = LogFiles::open(&inputs.logs).map_err(|error| error.given(&read))?.lines(&read);
     let mut lines = lines.map_err(|error| only_by_words(inputs).unwrap_or(error.into()))?;
     let mut remarks = Remarks::default();
-    let recording = match std::mem::replace(&mut lines.recording, Err(LogError::NotLookedAt)) {
-        Ok(recording) => Some(recording),
-        // What the caller named must be there.
-        Err(error) if inputs.command.is_some() => return Err(error.into()),
-        Err(_) => None,
-    };
+    let recording =
+        match std::mem::replace(&mut lines.recording, Err(LogError::NotLookedAt { logs: String::new() })) {
+            Ok(recording) => Some(recording),
+            // What the caller named must be there.
+            Err(error) if inputs.command.is_some() => return Err(error.into()),
+            Err(_) => None,
+        };
     let worst = recording.as_ref().and_then(|recording| worst(recording, lines.begins_ns));
     if let Some(recording) = &recording {
         remarks.extend(recording.remarks.clone().without(Code::PlanIsCommand));

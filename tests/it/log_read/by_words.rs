@@ -130,17 +130,28 @@ fn a_topic_for_each_joint_gives_it_the_name() {
     log.messages.sort_by_key(|message| message.log_ns);
     assert_both(&log, ["boom", "stick"]);
 
+    assert_both(&numbers(0, None), ["boom", "stick"]);
+    // Other instants of each topic are no numbers that lack.
+    assert_eq!(count(&read(&numbers(1, None)).remarks, Code::NotFinite), 0);
+    let lacks = read(&numbers(1, Some(7)));
+    assert_eq!(count(&lacks.remarks, Code::NotFinite), 4, "{:?}", lacks.remarks);
+}
+
+/// A topic for each number, each so much later than the one before; at one place no number.
+fn numbers(later_ns: i64, none_at: Option<i64>) -> Log {
     let mut numbers = Log::default();
     let topics = ["/boom/setpoint", "/boom/angle", "/stick/setpoint", "/stick/angle"];
     for (at, topic) in topics.into_iter().enumerate() {
-        let value = move |k: i64| if at % 2 == 0 { plan(k)[at / 2] } else { measurement(k)[at / 2] };
+        let of = move |k: i64| if at % 2 == 0 { plan(k)[at / 2] } else { measurement(k)[at / 2] };
+        let value = |k| if none_at == Some(k) { f64::NAN } else { of(k) };
         let channel = numbers
             .channel(Channel::cdr(topic, "std_msgs/msg/Float64").with_schema("ros2msg", "float64 data\n"));
         for k in 0..SAMPLES {
-            numbers.send(channel, stamp(k), Cdr::message(cdr::Kind::LittleEndian, |cdr| cdr.f64(value(k))));
+            let at_ns = stamp(k) + at as i64 * later_ns;
+            numbers.send(channel, at_ns, Cdr::message(cdr::Kind::LittleEndian, |cdr| cdr.f64(value(k))));
         }
     }
-    assert_both(&numbers, ["boom", "stick"]);
+    numbers
 }
 
 #[test]

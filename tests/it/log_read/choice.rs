@@ -87,6 +87,50 @@ fn errors_name_what_was_found_expected_and_how_to_mend_it() {
 }
 
 #[test]
+fn of_two_topics_whose_names_tell_nothing_the_other_is_the_other_side() {
+    let mut log = Log::default();
+    add_joint_state(&mut log, "/arm/generator", plan);
+    add_joint_state(&mut log, "/arm/encoders", measurement);
+    for (named, guesses) in [
+        (options(&["/arm/generator"], &[], &[]), vec![]),
+        (options(&[], &["/arm/encoders"], &[]), vec![Code::Guessed]),
+        (options(&["/arm/generator"], &["/arm/encoders"], &[]), vec![]),
+    ] {
+        let recording = read_with(&log, &named);
+        assert_values(&recording.planned, plan);
+        assert_values(&recording.measured, measurement);
+        assert_eq!(codes(&recording.remarks), guesses);
+    }
+    add_joint_state(&mut log, "/arm/other", measurement);
+    let found = error(&log, &options(&[], &["/arm/encoders"], &[]));
+    assert!(found.starts_with("found no planned joint angles"), "{found}");
+    log.channels.truncate(1);
+    log.messages.retain(|message| message.channel == 0);
+    let found = error(&log, &options(&["/arm/generator"], &[], &[]));
+    assert!(found.starts_with("found no measured joint angles"), "{found}");
+}
+
+#[test]
+fn joints_with_a_prefix_on_one_side_are_paired_and_that_is_said() {
+    let mut log = Log::default();
+    add_joint_state(&mut log, "/planned/joint_states", plan);
+    let channel = log.channel(file::Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
+    for k in 0..SAMPLES {
+        let names = ["ex1/a", "ex1_b_joint"];
+        let data = encode::joint_state(cdr::Kind::LittleEndian, stamp(k), &names, &measurement(k), &[]);
+        log.send(channel, stamp(k), data);
+    }
+    for names in [&[][..], &["a", "b"], &["ex1/a", "ex1_b_joint"]] {
+        let recording = read_with(&log, &options(&[], &[], names));
+        assert_values(&recording.planned, plan);
+        assert_values(&recording.measured, measurement);
+        let remarks = recording.remarks.as_slice();
+        assert_eq!(codes(&recording.remarks), [Code::Guessed]);
+        assert!(remarks[0].message.contains("a with ex1/a, b with ex1_b_joint"), "{remarks:?}");
+    }
+}
+
+#[test]
 fn files_that_are_no_log_say_what_they_are() {
     for (bytes, found, fix) in [
         (&b""[..], "nothing", "the file is empty"),

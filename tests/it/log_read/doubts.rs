@@ -92,7 +92,19 @@ fn a_wrap_is_undone_for_joints_declared_continuous_only() {
     let told = ReadOptions { continuous: vec!["a".into()], ..ReadOptions::default() };
     let recording = read_with(&log_of(wrapped), &told);
     assert_eq!(count(&recording.remarks, Code::Wrapped), 0);
-    assert!((recording.measured.tracks[0].position()[49] - 9.8).abs() < 1e-9);
+    let q = recording.measured.tracks[0].position();
+    // At the turn of the plan for most of the run.
+    assert!((q[49] - q[0] - 9.8).abs() < 1e-9 && (q[0] + std::f64::consts::TAU).abs() < 1e-9);
+    let described = ReadOptions {
+        description: Some(
+            "<robot name='r'><link name='base'/><link name='tower'/><joint name='a' type='continuous'>\
+             <parent link='base'/><child link='tower'/></joint></robot>"
+                .into(),
+        ),
+        ..ReadOptions::default()
+    };
+    let of_urdf = read_with(&log_of(wrapped), &described);
+    assert_eq!((of_urdf.measured, of_urdf.remarks), (recording.measured, recording.remarks));
 }
 
 #[test]
@@ -147,6 +159,21 @@ fn messages_that_do_not_fit_are_skipped_and_the_first_is_explained() {
         "{:?}",
         recording.remarks
     );
+}
+
+#[test]
+fn where_joints_lie_in_an_encoding_that_is_not_read_the_error_says_so() {
+    for (type_name, named) in [("", "no type"), ("foxglove.JointStates", "foxglove.JointStates")] {
+        let mut log = Log::default();
+        let channel = Channel::cdr("/arm", type_name).with_schema("", "").encoded("cbor");
+        let channel = log.channel(channel);
+        log.send(channel, stamp(0), vec![0; 9]);
+        let why = "its messages are encoded as \"cbor\", which is not read";
+        let found = error(&log, &ReadOptions::default());
+        assert!(found.contains(&format!("/arm ({named}, 1 message, {why}")), "{found}");
+        let found = error(&log, &options(&["/arm:q_des"], &["/arm:q"], &[]));
+        assert!(found.contains(why), "{found}");
+    }
 }
 
 #[test]

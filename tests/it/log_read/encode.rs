@@ -91,19 +91,23 @@ pub(crate) fn trajectory(kind: Kind, ns: i64, names: &[&str], points: &[Point]) 
 }
 
 /// `moveit_msgs/DisplayTrajectory` of several trajectories.
+pub(crate) fn robot_trajectory(kind: Kind, trajectory: &(i64, &[&str], Vec<Point>)) -> Vec<u8> {
+    Cdr::message(kind, |cdr| robot_fields(cdr, trajectory))
+}
+
+fn robot_fields(cdr: &mut Cdr, (ns, names, points): &(i64, &[&str], Vec<Point>)) {
+    cdr.record(|cdr| trajectory_fields(cdr, *ns, names, points));
+    cdr.record(|cdr| {
+        cdr.header(0);
+        cdr.texts(&["floating"]);
+        cdr.list(&[()], |cdr, ()| multi_dof(cdr));
+    });
+}
+
 pub(crate) fn display(kind: Kind, trajectories: &[(i64, &[&str], Vec<Point>)]) -> Vec<u8> {
     Cdr::message(kind, |cdr| {
         cdr.text("arm");
-        cdr.list(trajectories, |cdr, (ns, names, points)| {
-            cdr.record(|cdr| {
-                cdr.record(|cdr| trajectory_fields(cdr, *ns, names, points));
-                cdr.record(|cdr| {
-                    cdr.header(0);
-                    cdr.texts(&["floating"]);
-                    cdr.list(&[()], |cdr, ()| multi_dof(cdr));
-                });
-            });
-        });
+        cdr.list(trajectories, |cdr, trajectory| cdr.record(|cdr| robot_fields(cdr, trajectory)));
         cdr.record(|cdr| {
             cdr.record(|cdr| {
                 cdr.header(0);

@@ -75,6 +75,8 @@ fn the_summary_of_a_large_bag_tells_what_is_in_it() {
     assert!(survey.topics.iter().all(|topic| (topic.rate_hz - 50.0).abs() < 1e-6), "{:?}", survey.topics);
     assert_eq!(survey.topics[1].joint_fields, ["position"]);
     assert!((survey.duration_s - 799.0 * 0.02).abs() < 1e-9 && !survey.is_checked());
+    let why = survey.recording.unwrap_err().to_string();
+    assert!(why.contains("`hydrotrace info --check bag.mcap`"), "{why}");
 }
 
 #[test]

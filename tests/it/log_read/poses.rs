@@ -153,6 +153,39 @@ fn stamped_poses_are_found_by_their_names() {
     assert_truth(&reported(&log, ReadOptions::default()).unwrap());
 }
 
+#[test]
+fn poses_of_different_frames_are_not_subtracted_without_a_word() {
+    let log_of = |frames: [&str; 2]| {
+        let mut log = Log::default();
+        let ids = ["/planned/tool_pose", "/tool_pose"].map(|topic| log.channel(stamped(topic)));
+        for k in 0..INSTANTS {
+            for ((id, frame), pose) in ids.into_iter().zip(frames).zip([planned(k), measured(k)]) {
+                let message = Cdr::message(Kind::LittleEndian, |cdr| {
+                    cdr.record(|cdr| {
+                        cdr.time(stamp(k));
+                        cdr.text(frame);
+                    });
+                    numbers(cdr, &pose);
+                });
+                log.send(id, stamp(k), message);
+            }
+        }
+        log
+    };
+    let apart =
+        "the poses of /planned/tool_pose are told in world, those of /tool_pose are told in base_link: ";
+    let log = log_of(["world", "base_link"]);
+    let found = reported(&log, ReadOptions::default()).unwrap_err();
+    assert!(found.starts_with(apart), "{found}");
+    let both = options(&["/planned/tool_pose"], &["/tool_pose"], &[]);
+    let remarks = reported(&log, both).unwrap().remarks;
+    assert_eq!(codes(&remarks), [Code::UnlikePlan]);
+    assert!(remarks.as_slice()[0].message.starts_with(apart), "{remarks:?}");
+    for same in [["world", "/world"], ["world", ""], ["", "base_link"]] {
+        assert_truth(&reported(&log_of(same), ReadOptions::default()).unwrap());
+    }
+}
+
 /// The delay is of all that was measured, orientations included.
 #[test]
 fn a_known_delay_is_taken_off_a_pose_too() {

@@ -32,6 +32,52 @@ fn joints_are_joined_by_name_whatever_their_order_and_subset() {
     assert_eq!(count(&recording.remarks, Code::JointsChange), 49);
 }
 
+/// A log of a plan, and of two publishers that send a joint each on one topic, the second `late_ns` after the first and
+/// stamped `stamped_ns` after it.
+fn two_publishers(late_ns: i64, stamped_ns: i64) -> Log {
+    let mut log = Log::default();
+    add_joint_state(&mut log, "/planned/joint_states", plan);
+    let channel = log.channel(Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
+    for k in 0..SAMPLES {
+        for (j, after_ns, own_ns) in [(0, 0, stamp(k)), (1, late_ns, stamp(k) + stamped_ns)] {
+            let data = encode::joint_state(
+                cdr::Kind::LittleEndian,
+                own_ns,
+                &NAMES[j..=j],
+                &measurement(k)[j..=j],
+                &[],
+            );
+            log.send(channel, stamp(k) + after_ns, data);
+        }
+    }
+    log.messages.sort_by_key(|message| message.log_ns);
+    log
+}
+
+#[test]
+fn two_publishers_of_one_topic_are_each_judged_by_themselves() {
+    for (late_ns, stamped_ns) in
+        [(25_000_000, 0), (25_000_000, 1_300_000), (9_000_000, 0), (3_000_000, 2_000_000)]
+    {
+        let log = two_publishers(late_ns, stamped_ns);
+        for options in [ReadOptions::default(), options(&[], &["/joint_states"], &[])] {
+            let recording = read_with(&log, &options);
+            assert!(recording.remarks.is_empty(), "{late_ns} {stamped_ns}: {:?}", recording.remarks);
+            assert_eq!(recording.source.time_base, hydrotrace::log::TimeBase::Header);
+            assert_eq!(
+                (recording.source.measured_topic.as_str(), recording.source.messages),
+                ("/joint_states", 100)
+            );
+            for (j, name) in NAMES.into_iter().enumerate() {
+                let track = recording.measured.track(name).unwrap();
+                assert_eq!(track.len() as i64, SAMPLES, "{late_ns} {stamped_ns} {name}");
+                assert!((0..SAMPLES).all(|k| track.position()[k as usize] == measurement(k)[j]));
+                assert!((track.t_s()[0] - j as f64 * stamped_ns as f64 * 1e-9).abs() < 1e-9, "{name}");
+            }
+        }
+    }
+}
+
 #[test]
 fn joint_states_in_every_encoding_with_velocities() {
     for kind in KINDS {

@@ -2,7 +2,7 @@
 
 use super::{
     cdr::KINDS,
-    encode::{Point, display, trajectory},
+    encode::{Point, display, robot_trajectory, trajectory},
     file::Channel,
     *,
 };
@@ -135,6 +135,29 @@ fn trajectories_that_do_not_fit_are_skipped_and_counted() {
 }
 
 #[test]
+fn where_no_trajectory_can_be_used_the_reason_is_said() {
+    let without_position = |mut points: Vec<Point>| {
+        points.iter_mut().for_each(|point| point.position.clear());
+        points
+    };
+    let speeds = without_position(points(&[(0.0, 0.0, Some(0.1), None), (2.0, 0.0, Some(0.2), None)]));
+    let at_once = points(&[(0.0, 0.0, None, None), (0.0, 1.0, None, None)]);
+    for (given, reason) in [
+        (speeds, "points without positions, at most speeds"),
+        (at_once, "points whose times from the start are all 0 s"),
+    ] {
+        let log = log_of(&[(stamp(50), stamp(50), &NAMES, given)], cdr::Kind::LittleEndian);
+        let found = error(&log, &ReadOptions::default());
+        assert!(
+            found.contains(&format!("{TOPIC} (trajectory_msgs/msg/JointTrajectory, 1 message, of {reason})")),
+            "{found}"
+        );
+        let found = error(&log, &options(&[TOPIC], &[], &[]));
+        assert!(found.ends_with(&format!("it has {reason}")), "{found}");
+    }
+}
+
+#[test]
 fn a_planned_joint_that_no_topic_measures_is_said() {
     let given = vec![Point::at(&[0.0, 0.0, 0.0])];
     let recording =
@@ -143,6 +166,29 @@ fn a_planned_joint_that_no_topic_measures_is_said() {
         recording.remarks.as_slice().iter().filter(|r| r.code == Code::UnpairedJoint).collect();
     assert_eq!(unpaired.len(), 1, "{:?}", recording.remarks);
     assert!(unpaired[0].message.contains("boom"), "{unpaired:?}");
+}
+
+#[test]
+fn trajectories_of_moveit_are_read_where_the_file_does_not_describe_them() {
+    let there = points(&[(0.0, 0.0, None, None), (2.0, 1.0, None, None)]);
+    let kind = cdr::Kind::LittleEndian;
+    let parts: &[(i64, &[&str], Vec<Point>)] = &[(stamp(50), &NAMES, there)];
+    for (type_name, data) in [
+        ("moveit_msgs/msg/RobotTrajectory", robot_trajectory(kind, &parts[0])),
+        ("moveit_msgs/msg/DisplayTrajectory", display(kind, parts)),
+    ] {
+        for described in [true, false] {
+            let mut log = log_of(&[], kind);
+            log.channels.pop();
+            let channel = Channel::cdr("/plan_to_run", type_name);
+            let channel = if described { channel } else { channel.with_schema("ros2msg", "") };
+            let channel = log.channel(channel);
+            log.send(channel, stamp(40), data.clone());
+            let recording = read(&log);
+            assert_plan(&recording, 2.0, 0.5);
+            assert!(recording.remarks.is_empty(), "{type_name} {:?}", recording.remarks);
+        }
+    }
 }
 
 #[test]
@@ -158,5 +204,14 @@ fn a_displayed_plan_of_several_parts_is_read_in_every_encoding() {
         assert_plan(&recording, 2.0, 0.5);
         assert_plan(&recording, 4.0, 1.5);
         assert_eq!(codes(&recording.remarks), [Code::StartOnReceipt], "{kind:?} {:?}", recording.remarks);
+        let message = &recording.remarks.as_slice()[0].message;
+        assert!(message.contains("when they were executed is not known"), "{message}");
+        // What was sent counts more.
+        let channel = log.channel(Channel::cdr(TOPIC, "trajectory_msgs/msg/JointTrajectory"));
+        let sent = points(&[(0.0, 0.0, None, None), (2.0, 1.0, None, None)]);
+        log.send(channel, stamp(80), trajectory(kind, 0, &NAMES, &sent));
+        let recording = read(&log);
+        assert_plan(&recording, 2.6, 0.5);
+        assert_eq!(recording.source.planned_topic, TOPIC);
     }
 }

@@ -94,6 +94,28 @@ fn transforms_in_json_are_read_alike() {
 }
 
 #[test]
+fn poses_of_foxglove_in_a_frame_are_read_as_stamped_ones() {
+    let mut log = Log::default();
+    let named = |topic| channel(topic, "foxglove.PoseInFrame", "", &[]);
+    let ids = ["/planned/tool", "/tool"]
+        .map(|topic| log.channel(named(topic).with_schema("jsonschema", "{}").encoded("json")));
+    for k in 0..INSTANTS {
+        for (id, [x, y, z, qx, qy, qz, qw]) in ids.into_iter().zip([planned(k), measured(k)]) {
+            let message = json!({
+                "timestamp": {"sec": stamp(k) / 1_000_000_000, "nsec": stamp(k) % 1_000_000_000},
+                "frame_id": "base",
+                "pose": {
+                    "position": {"x": x, "y": y, "z": z},
+                    "orientation": {"x": qx, "y": qy, "z": qz, "w": qw},
+                },
+            });
+            log.send(id, stamp(k), message.to_string().into_bytes());
+        }
+    }
+    assert_truth(&reported(&log, ReadOptions::default()).unwrap());
+}
+
+#[test]
 fn what_a_topic_of_transforms_lacks_is_said_with_what_it_has() {
     let log = log_of("/tf");
     let said = |plan: &str, came: &str| error(&log, &options(&[plan], &[came], &[]));

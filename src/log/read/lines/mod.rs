@@ -153,7 +153,7 @@ pub(super) fn of(
         begins_ns: times().map(|topic| topic.first_log_ns).min().unwrap_or(0),
         trajectories: roles.trajectories(extracted),
         unsteady: Vec::new(),
-        recording: Err(LogError::NotLookedAt),
+        recording: Err(LogError::NotLookedAt { logs: String::new() }),
     };
     for topic in times() {
         match plain_name(&topic.type_name.replace('.', "/")).as_str() {

@@ -5,8 +5,9 @@ use crate::log::{
     LogError,
     options::{ReadOptions, Selector, Sides, SignalRole},
     read::{
+        candidates::Candidate,
         content::{Content, Extracted},
-        select_topics::{Candidate, Choice, choose},
+        select_topics::{Choice, choose},
     },
     source::{Form, is_field},
 };

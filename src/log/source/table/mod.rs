@@ -3,15 +3,18 @@
 use std::collections::BTreeMap;
 
 mod alike;
+mod lists;
 mod message;
 mod places;
 mod stamps;
 
+pub(in crate::log) use lists::Rows;
 pub(in crate::log) use stamps::Stamps;
 pub(super) use stamps::stamp_ns;
 
 use super::{Field, Form};
 use alike::Alike;
+use lists::Lists;
 use message::{Message, Names};
 use places::InterfacePlaces;
 
@@ -32,16 +35,15 @@ pub(in crate::log) struct Table {
     pub(in crate::log) not_finite: Vec<u64>,
     /// Messages whose array is not as long as the list of names, by field.
     pub(in crate::log) length_mismatch: Vec<u64>,
-    /// Messages whose list of joints differs from the one before.
-    pub(in crate::log) layout_changes: u64,
     /// Messages and columns left out because there are too many joints.
     pub(in crate::log) too_many: u64,
+    /// The frames that poses are told in; empty where messages name none.
+    pub(in crate::log) told_in: Vec<String>,
     /// Rows that are to come, where that is known: room for them is made once.
     pub(in crate::log) expected: usize,
     message: Message,
     layout: Layout,
-    /// The names of the first message that had some.
-    first_names: Vec<String>,
+    lists: Lists,
     /// Names to use where messages carry none.
     default_joints: Vec<String>,
     /// Name to use for one number without one.
@@ -99,8 +101,8 @@ impl Table {
             speed_scaling: Vec::new(),
             not_finite: vec![0; fields.len()],
             length_mismatch: vec![0; fields.len()],
-            layout_changes: 0,
             too_many: 0,
+            told_in: Vec::new(),
             expected: 0,
             message: Message {
                 values: vec![Vec::new(); fields.len()],
@@ -108,7 +110,7 @@ impl Table {
                 ..Message::default()
             },
             layout: Layout::default(),
-            first_names: Vec::new(),
+            lists: Lists::default(),
             default_joints: joints.to_vec(),
             alone: alone.map(str::to_owned),
             interfaces: InterfacePlaces::default(),
@@ -210,12 +212,10 @@ impl Table {
         for (mine, theirs) in self.length_mismatch.iter_mut().zip(&other.length_mismatch) {
             *mine += theirs;
         }
-        self.layout_changes += other.layout_changes;
+        self.lists.append(&other.lists, rows, &joints);
         self.too_many += other.too_many;
         self.interfaces.append(&mut other.interfaces);
-        if !other.first_names.is_empty() {
-            let changed = !self.layout.names.is_empty() && self.layout.names != other.first_names;
-            self.layout_changes += u64::from(changed);
+        if !other.layout.names.is_empty() {
             self.layout.names = std::mem::take(&mut other.layout.names);
         }
         other.reset();
@@ -288,10 +288,6 @@ impl Table {
     }
 
     fn set_layout(&mut self, names: Vec<String>) {
-        self.layout_changes += u64::from(!self.layout.names.is_empty());
-        if self.first_names.is_empty() {
-            self.first_names.clone_from(&names);
-        }
         self.layout.places.clear();
         let new = names.iter().filter(|name| !self.index.contains_key(*name)).count();
         self.layout.too_many = names.len() > MAX_JOINTS || self.joints.len() + new > MAX_JOINTS;
@@ -309,5 +305,6 @@ impl Table {
             }
         }
         self.layout.names = names;
+        self.lists.begin(self.stamps.len(), &self.layout.places);
     }
 }

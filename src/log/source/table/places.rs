@@ -33,7 +33,7 @@ impl Table {
     /// Joints by their place in a message; `None` if messages differ in them.
     pub(in crate::log) fn joint_places(&self) -> Option<Vec<String>> {
         let names = &self.layout.names;
-        if self.layout_changes > 0 || self.too_many > 0 {
+        if self.lists.apart || self.lists.changes() > 0 || self.too_many > 0 {
             return None;
         }
         let named = |(place, name): (usize, &String)| {

@@ -1,6 +1,6 @@
 //! When messages were sampled, published and received.
 
-use super::make_room;
+use super::{lists::Rows, make_room};
 use crate::{log::options::TimeBase, math::median};
 
 /// The three clocks of every message of a topic, in the order of the file.
@@ -69,6 +69,12 @@ impl Stamps {
             self.publish_ns.extend_from_slice(other.of(TimeBase::Publish));
         }
         self.log_ns.extend_from_slice(&other.log_ns);
+    }
+
+    /// Those of some of the rows.
+    pub(super) fn of_rows(&self, rows: &Rows) -> Self {
+        let Self { header_ns, publish_ns, log_ns } = self;
+        Self { header_ns: rows.of(header_ns), publish_ns: rows.of(publish_ns), log_ns: rows.of(log_ns) }
     }
 
     /// From here on publish times have a place of their own.

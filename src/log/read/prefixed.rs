@@ -1,0 +1,129 @@
+//! Joints of plan and measurement that are called alike but for what stands before or after, such as `boom`,
+//! `ex1/boom` and `ex1_boom_joint`.
+
+use std::collections::BTreeMap;
+
+use super::{
+    candidates::{Candidate, candidates},
+    content::{Content, Extracted},
+    cylinders::Kinds,
+};
+use crate::{
+    log::{error::LogError, options::ReadOptions, source::Role},
+    remark::Code,
+};
+
+/// A word that says nothing of which joint it is.
+const JOINT: &str = "joint";
+
+/// Calls measured joints as the plan does, where no name is common to both and each of one side pairs with exactly one
+/// of the other; whether that was so.
+pub(super) fn pair(
+    extracted: &mut Extracted,
+    options: &mut ReadOptions,
+    kinds: &mut Kinds,
+) -> Result<bool, LogError> {
+    let planned = best(candidates(extracted, &options.planned, Role::Planned)?);
+    let measured = best(candidates(extracted, &options.measured, Role::Measured)?);
+    let Some(names) = pairs(&joints(&planned), &joints(&measured)) else { return Ok(false) };
+    for source in measured.iter().map(|candidate| candidate.source) {
+        let Content::Table(table) = &mut extracted.sources[source].content else { continue };
+        for joint in &mut table.joints {
+            if let Some(name) = names.get(joint) {
+                kinds.call(source, name, std::mem::replace(joint, name.clone()));
+            }
+        }
+    }
+    let called = |joint: &mut String| names.get(joint).into_iter().for_each(|name| joint.clone_from(name));
+    options.joints.iter_mut().for_each(called);
+    let more = options.continuous.iter().filter_map(|joint| names.get(joint).cloned());
+    options.continuous.extend(more.collect::<Vec<_>>());
+    let told: Vec<String> = names.iter().map(|(came, plan)| format!("{plan} with {came}")).collect();
+    let message = format!(
+        "plan and measurement have no name of a joint in common; paired by the last part of their names: {}; other \
+         topics are named with --planned and --measured",
+        told.join(", ")
+    );
+    extracted.remarks.add(Code::Guessed, told.len() as u64, message);
+    Ok(true)
+}
+
+/// Those that fit as well as the first.
+fn best(mut all: Vec<Candidate>) -> Vec<Candidate> {
+    let rank = all.first().map(|first| first.rank);
+    all.retain(|candidate| Some(candidate.rank) == rank);
+    all
+}
+
+fn joints(all: &[Candidate]) -> Vec<&str> {
+    let mut names: Vec<&str> =
+        all.iter().flat_map(|candidate| &candidate.joints).map(String::as_str).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// The planned name of each measured joint; `None` unless each of the shorter list pairs with one, and only that with it.
+fn pairs(planned: &[&str], measured: &[&str]) -> Option<BTreeMap<String, String>> {
+    let [plan, came] =
+        [planned, measured].map(|names| names.iter().map(|name| words(name)).collect::<Vec<_>>());
+    let mut names = BTreeMap::new();
+    for (k, plan) in plan.iter().enumerate() {
+        let alike: Vec<usize> = (0..came.len()).filter(|m| ends_alike(plan, &came[*m])).collect();
+        let one = match alike[..] {
+            [] => continue,
+            [one] => one,
+            _ => return None,
+        };
+        if names.insert(measured[one].to_owned(), planned[k].to_owned()).is_some() {
+            return None;
+        }
+    }
+    (!names.is_empty() && names.len() == planned.len().min(measured.len())).then_some(names)
+}
+
+fn words(name: &str) -> Vec<String> {
+    let words = name.split(['/', '_', '-', '.', ':']).filter(|word| !word.is_empty());
+    words.map(str::to_ascii_lowercase).filter(|word| word != JOINT).collect()
+}
+
+fn ends_alike(a: &[String], b: &[String]) -> bool {
+    !a.is_empty() && !b.is_empty() && (a.ends_with(b) || b.ends_with(a))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_pair_by_their_last_part_if_each_has_one_partner() {
+        let found = |planned: &[&str], measured: &[&str]| {
+            pairs(planned, measured).map(|names| names.into_iter().collect::<Vec<_>>())
+        };
+        let two =
+            |a: [&str; 2], b: [&str; 2]| Some(vec![(a[0].into(), a[1].into()), (b[0].into(), b[1].into())]);
+        assert_eq!(
+            found(&["boom", "stick"], &["ex1/boom", "ex1/stick"]),
+            two(["ex1/boom", "boom"], ["ex1/stick", "stick"])
+        );
+        assert_eq!(
+            found(&["a/Boom", "a/stick"], &["boom", "grip", "stick_joint"]),
+            two(["boom", "a/Boom"], ["stick_joint", "a/stick"])
+        );
+        assert_eq!(
+            found(&["joint_1", "joint_2"], &["ex1_joint_1", "ex1_joint_2"]),
+            two(["ex1_joint_1", "joint_1"], ["ex1_joint_2", "joint_2"])
+        );
+        // Which of two is meant, one without a partner on either side, parts of words, and names that are no words.
+        for [planned, measured] in [
+            [&["boom"][..], &["left/boom", "right/boom"]],
+            [&["left/boom", "right/boom"], &["boom"]],
+            [&["boom", "tilt"], &["ex1/boom", "ex1/grip"]],
+            [&["arm"], &["forearm"]],
+            [&["joint"], &["ex1/joint"]],
+            [&[], &["boom"]],
+        ] {
+            assert_eq!(found(planned, measured), None, "{planned:?} {measured:?}");
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Full turns of joints without end stops, which a sensor counts or not: they are no motion and no error.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::{
+    math::median,
+    remark::{Code, Remarks},
+    series::{JointKind, Series, Track},
+};
+
+/// Instants at which the sides are compared, evenly spread over the measurement.
+const INSTANTS: usize = 1000;
+
+/// Undoes full turns of joints declared continuous, within plan and measurement and between them.
+pub(super) fn unwrap_sides(
+    sides: &mut [(&str, &mut Series); 2],
+    continuous: &[String],
+    remarks: &mut Remarks,
+) {
+    for (_, side) in &mut *sides {
+        unwrap_turns(side, continuous, remarks);
+    }
+    let [(_, planned), (_, measured)] = sides;
+    bring_to_turn(planned, measured, continuous);
+}
+
+/// Undoes full turns of joints declared continuous; remarks on them elsewhere.
+pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: &mut Remarks) {
+    for track in series.tracks.iter_mut().filter(|track| track.turns()) {
+        let turns = turns(track);
+        if turns == 0 {
+            continue;
+        }
+        let name = track.name().to_owned();
+        if continuous.contains(&name) {
+            if let Some(unwrapped) = unwrapped(track) {
+                *track = unwrapped;
+            }
+        } else {
+            remarks.add(
+                Code::Wrapped,
+                turns,
+                format!(
+                    "steps of a full turn in {name}; if the joint has no end stops, say --continuous {name}"
+                ),
+            );
+        }
+    }
+}
+
+/// Moves joints declared continuous by whole turns to where the plan has them for most of the run.
+pub(super) fn bring_to_turn(planned: &Series, series: &mut Series, continuous: &[String]) {
+    for track in series.tracks.iter_mut().filter(|track| track.turns()) {
+        let Some(plan) = planned.track(track.name()).filter(|plan| plan.turns()) else { continue };
+        if !continuous.iter().any(|name| name == track.name()) {
+            continue;
+        }
+        let step = track.len().div_ceil(INSTANTS).max(1);
+        let samples = track.t_s().iter().zip(track.position()).step_by(step);
+        let apart: Vec<f64> = samples.filter_map(|(t_s, q)| Some(q - plan.at(*t_s)?.position)).collect();
+        let turns = if apart.is_empty() { 0.0 } else { (median(apart) / TAU).round() };
+        if turns != 0.0
+            && let Some(moved) = track.mapped(JointKind::Turns, |q| Some((q - turns * TAU, 1.0)))
+        {
+            *track = moved;
+        }
+    }
+}
+
+/// Number of steps between neighbouring samples of about a full turn.
+pub(super) fn turns(track: &Track) -> u64 {
+    let steps = track.position().windows(2).map(|w| (w[1] - w[0]).abs());
+    // Without a branch on any step, so that the compiler takes several at once.
+    steps.map(|step| u64::from((step > PI) & ((step - TAU).abs() < 1.0))).sum()
+}
+
+fn unwrapped(track: &Track) -> Option<Track> {
+    let mut turns_rad = 0.0;
+    let mut previous: Option<f64> = None;
+    let position = track.position().iter().map(|&q| {
+        if let Some(before) = previous {
+            turns_rad -= TAU * ((q - before) / TAU).round();
+        }
+        previous = Some(q);
+        q + turns_rad
+    });
+    let cuts: Vec<usize> = track.segments().iter().skip(1).map(|s| s.start).collect();
+    Track::new(track.name(), track.t_s(), position.collect(), &cuts).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn series(position: impl Fn(f64) -> f64) -> Series {
+        let t_s: Vec<f64> = (0..500).map(|k| f64::from(k) * 0.01).collect();
+        let q = t_s.iter().map(|&t| position(t)).collect();
+        Series { tracks: vec![Track::new("a", t_s, q, &[]).unwrap()] }
+    }
+
+    #[test]
+    fn a_full_turn_is_undone_only_for_a_joint_declared_continuous() {
+        let mut series = series(|t| (t * 2.0 + PI).rem_euclid(TAU) - PI);
+        let mut remarks = Remarks::default();
+        unwrap_turns(&mut series, &[], &mut remarks);
+        assert_eq!(remarks.as_slice()[0].code, Code::Wrapped);
+        unwrap_turns(&mut series, &["a".into()], &mut remarks);
+        assert!((series.tracks[0].position()[499] - 2.0 * 4.99).abs() < 1e-9);
+    }
+
+    #[test]
+    fn whole_turns_between_plan_and_measurement_are_no_error_of_a_joint_declared_continuous() {
+        let plan = |t: f64| 0.5 * t - 0.4;
+        let near_half_turn = |t: f64| PI + 0.01 * (40.0 * t).sin();
+        let to_half_turn = |q: f64| (q + PI).rem_euclid(TAU) - PI;
+        let cases: [[Series; 2]; 3] = [
+            // An encoder that counts from 0 to a full turn, one that was set to zero after three turns, and rest at the wrap.
+            [series(plan), series(|t| plan(t).rem_euclid(TAU))],
+            [series(plan), series(|t| plan(t) + 3.0 * TAU)],
+            [series(|_| -PI + 0.001), series(|t| to_half_turn(near_half_turn(t)))],
+        ];
+        for [mut planned, mut measured] in cases {
+            let before = measured.clone();
+            let mut off = |continuous: &[String], measured: &mut Series| {
+                let sides = &mut [("planned", &mut planned), ("measured", measured)];
+                unwrap_sides(sides, continuous, &mut Remarks::default());
+                let both = planned.tracks[0].position().iter().zip(measured.tracks[0].position());
+                both.map(|(plan, came)| (plan - came).abs()).fold(0.0, f64::max)
+            };
+            assert!(off(&[], &mut measured) > 6.0);
+            assert_eq!(measured, before);
+            assert!(off(&["a".into()], &mut measured) < 0.02);
+        }
+    }
+}
