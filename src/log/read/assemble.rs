@@ -22,7 +22,6 @@ use super::{
 };
 use crate::{
     log::{
-        csv::in_degrees,
         error::LogError,
         options::{ReadOptions, SignalRole, TimeBase},
         range::TimeRange,
@@ -230,14 +229,6 @@ impl Assembly {
         &self.extracted.topic_of(candidate.source).topic
     }
 
-    /// Whether a field, or the topic of one that has no name of its own, ends in the unit deg.
-    fn says_degrees(&self, candidate: &Candidate) -> bool {
-        let Content::Table(table) = &self.extracted.sources[candidate.source].content else { return false };
-        let field = candidate.field.and_then(|at| table.fields.get(at)).map_or("", |field| &field.path);
-        let lone = field.rsplit('.').next() == Some("data");
-        in_degrees(if lone { self.topic(candidate) } else { field })
-    }
-
     /// The samples of a field; moved out of the table unless it is `pending`.
     fn samples(
         &mut self,
@@ -272,7 +263,7 @@ impl Assembly {
         for (place, candidate) in chosen.iter().enumerate() {
             let pending: Vec<&Candidate> =
                 chosen[place + 1..].iter().chain(pending.iter().copied()).collect();
-            let degrees = degrees || self.says_degrees(candidate);
+            let degrees = degrees || self.extracted.says_degrees(candidate.source, candidate.field);
             let found = self.samples(candidate, true, &pending, remarks);
             let tracks = found.into_iter().filter_map(|one| {
                 let kind = self.kinds.of(candidate.source, &one.name);

@@ -6,6 +6,7 @@ use super::recording::{Attachment, FileInfo};
 use crate::{
     log::{
         channel::Decoder,
+        csv::in_degrees,
         decode::LayoutCache,
         file::MessageRecord,
         joined::{self, Sent},
@@ -164,6 +165,14 @@ impl Extracted {
     /// What was sent, where a plan was put beside it.
     pub(super) fn sent(&self) -> Option<Sent<'_>> {
         joined::sent(&self.metadata, self.topics.iter().map(|t| t.topic.as_str()))
+    }
+
+    /// Whether a field, or the topic of one that has no name of its own, ends in the unit deg.
+    pub(super) fn says_degrees(&self, source: usize, field: Option<usize>) -> bool {
+        let Content::Table(table) = &self.sources[source].content else { return false };
+        let field = field.and_then(|at| table.fields.get(at)).map_or("", |field| &field.path);
+        let lone = field.rsplit('.').next() == Some("data");
+        in_degrees(if lone { &self.topic_of(source).topic } else { field })
     }
 
     /// The topic of a source.

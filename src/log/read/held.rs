@@ -166,7 +166,7 @@ mod tests {
     fn a_measurement_beside_it_that_is_written_so_has_a_sample_wherever_the_plan_may_start() {
         let changes = |k: usize, q: &[f64]| k == 0 || (q[k] - q[k - 1]).abs() > 0.0;
         let (mut plan, mut measured) = (series(changes), series(changes));
-        of_both(&mut plan, &mut measured, &mut Remarks::default());
+        of_both([&mut plan, &mut measured], &[vec!["/plan"], vec!["/joints"]], &mut Remarks::default());
         assert!(measured.tracks[0].t_s().windows(2).all(|two| two[1] - two[0] < 0.035));
         assert!(plan.tracks[0].len() < 400);
     }

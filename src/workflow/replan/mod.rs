@@ -177,11 +177,8 @@ pub fn run(
             let why = Unclear::of(inputs.logs.len(), newest, &inputs.rules);
             return Err(ReplanFailure::Unpredictable { best, least: crate::fit::LEAST_SKILL, why });
         }
-        remarks.add(
-            Code::PoorFit,
-            1,
-            "no joint is predicted well enough for a command: only the plan changes",
-        );
+        let message = "no joint is predicted well enough for a command: only the plan changes";
+        remarks.add(Code::PoorFit, 1, message);
     }
     let precompensates = inputs.precompensate && known;
     let before =
