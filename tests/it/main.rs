@@ -35,6 +35,7 @@ mod one_pass;
 mod plan;
 mod plant;
 mod replay;
+mod rounded;
 mod sample_logs;
 mod spline;
 mod support;

@@ -8,7 +8,7 @@ use super::{
     dialect::{Dialect, head},
     number::{Looks, looks},
     rows::{Rows, cell_text},
-    unit::parse_unit,
+    scale::unit_named,
 };
 use crate::remark::{Code, Remarks};
 
@@ -167,7 +167,7 @@ fn described(cells: &[String]) -> Option<(String, Vec<String>)> {
 fn is_units(cells: &[String]) -> bool {
     let stated = |cell: &String| !cell.is_empty() && cell != "-";
     cells.iter().any(stated)
-        && cells.iter().filter(|cell| stated(cell)).all(|cell| parse_unit(cell).is_some())
+        && cells.iter().filter(|cell| stated(cell)).all(|cell| unit_named(cell).is_some())
 }
 
 /// A header that is written as the last comment above the numbers.

@@ -6,8 +6,8 @@ use super::{
     Quantity, Role,
     letter::{Lettered, lettered},
     name::joint_name,
-    scale::{in_header, is_unclear},
-    unit::{ANOTHER, METRE, Measure, UNITLESS, Unit, parse_unit, split_suffix},
+    scale::{in_header, is_unclear, unit_named},
+    unit::{ANOTHER, METRE, Measure, UNITLESS, Unit, split_suffix},
     within::take_unit,
     word::{Meaning, Word, words},
 };
@@ -70,7 +70,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let header = indexed.as_deref().unwrap_or(header);
     let (name, stated) = parted(header);
     let name = &*name;
-    let mut unit = stated.or_else(|| below.and_then(parse_unit));
+    let mut unit = stated.or_else(|| below.and_then(unit_named));
     if let Some((joint, role)) = own(name).filter(|_| unit.is_some()) {
         let speeds = [Measure::AngularSpeed, Measure::LinearSpeed];
         let speed = unit.is_some_and(|unit| speeds.contains(&unit.measure));
@@ -94,7 +94,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let bare = name.trim_matches(|c: char| !c.is_alphanumeric());
     let named = TIMES.iter().any(|time| bare.eq_ignore_ascii_case(time));
     if named {
-        unit = unit.or_else(|| parse_unit(bare));
+        unit = unit.or_else(|| unit_named(bare));
     }
     let is_time_unit = unit.is_some_and(|unit| unit.measure == Measure::Time);
     // Of `t_set_s` the letter is the time, too.
@@ -105,7 +105,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         |words: &[Word<'_>]| named || t(words) || words.iter().any(|word| word.meaning == Meaning::Time);
     if is_time_unit && stated.is_some() && !header.ends_with([']', ')']) && !timely(&words) {
         // `Boom Ms` is measured, not in ms.
-        (unit, words) = (below.and_then(parse_unit), self::words(header));
+        (unit, words) = (below.and_then(unit_named), self::words(header));
     }
     let timely = timely(&words);
     // `Zeit_hh_mm_ss` is in no millimetres.
@@ -241,7 +241,7 @@ fn without_unit(header: &str) -> (&str, Option<Unit>) {
         let Some(inner) = header.strip_suffix(close).and_then(|rest| rest.rsplit_once(open)) else {
             continue;
         };
-        if let Some(unit) = parse_unit(inner.1) {
+        if let Some(unit) = unit_named(inner.1) {
             return (inner.0.trim_end(), Some(unit));
         }
         if is_unclear(inner.1) {
@@ -250,7 +250,7 @@ fn without_unit(header: &str) -> (&str, Option<Unit>) {
     }
     let known = |at: usize| {
         let rest = header.get(at + 1..)?;
-        parse_unit(rest).filter(|unit| unit.measure != Measure::Other).map(|unit| (&header[..at], unit))
+        unit_named(rest).filter(|unit| unit.measure != Measure::Other).map(|unit| (&header[..at], unit))
     };
     let separated =
         header.match_indices([' ', ',', '/']).filter(|(at, _)| *at > 0).find_map(|(at, _)| known(at));

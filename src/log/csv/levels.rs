@@ -8,7 +8,7 @@ use super::{
     label::label,
     number::{Looks, looks},
     rows::{Rows, cell_text, writer},
-    unit::parse_unit,
+    scale::unit_named,
 };
 
 /// Rows that a header may have.
@@ -109,7 +109,7 @@ fn described(levels: &[&[String]], differ: impl Fn(&[String]) -> bool) -> Option
     let at = levels.iter().rposition(|row| row.iter().all(|cell| !cell.is_empty()) && differ(row))?;
     let (names, below) = (levels[at], &levels[at + 1..]);
     let unit = |column: usize| {
-        below.iter().find_map(|row| row.get(column).filter(|cell| parse_unit(cell).is_some()))
+        below.iter().find_map(|row| row.get(column).filter(|cell| unit_named(cell).is_some()))
     };
     let with_unit = |(column, name): (usize, &String)| match unit(column) {
         Some(unit) if label(name, None).stated.is_none() => {

@@ -4,7 +4,7 @@ use super::{
     Separator,
     number::{nanoseconds, number},
     rows::{cell_text, writer},
-    unit::parse_unit,
+    scale::unit_named,
 };
 
 const END: &[u8] = b"***End_of_Header***";
@@ -85,7 +85,7 @@ impl Segment {
         let names = names.map(|name| match name.as_str() {
             "X_Value" if of_time => "X_Value [s]".to_owned(),
             "X_Value" => name,
-            _ => match channels.next().filter(|unit| parse_unit(unit).is_some()) {
+            _ => match channels.next().filter(|unit| unit_named(unit).is_some()) {
                 Some(unit) => format!("{name} [{unit}]"),
                 None => name,
             },

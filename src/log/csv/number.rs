@@ -1,11 +1,6 @@
 //! Numbers as files write them, with a decimal point or a decimal comma.
 
-use super::{
-    date::names_month,
-    elapsed::elapsed_ns,
-    rows::cell_text,
-    unit::{Unit, parse_unit},
-};
+use super::{date::names_month, elapsed::elapsed_ns, rows::cell_text, scale::unit_named, unit::Unit};
 use crate::units::whole_ns;
 
 /// A number near zero without an exponent has some 345 characters, and `export` writes those.
@@ -106,7 +101,7 @@ pub(super) fn with_unit(cell: &[u8]) -> Option<(&[u8], Unit)> {
     let end = cell.iter().rposition(u8::is_ascii_digit)? + 1;
     let (digits, behind) = cell.split_at(end);
     let plain = |digits: &[u8]| number(digits, false).is_some() || number(digits, true).is_some();
-    let unit = parse_unit(&cell_text(behind)).filter(|_| !behind.is_empty())?;
+    let unit = unit_named(&cell_text(behind)).filter(|_| !behind.is_empty())?;
     plain(digits).then_some((digits, unit))
 }
 

@@ -73,8 +73,13 @@ fn scaled_at(text: &str, tokens: &[(usize, &str)], at: usize) -> Option<(usize, 
     Some((end, if more { ANOTHER } else { unit }))
 }
 
+/// The unit that a text names, in words of a scale too.
+pub(super) fn unit_named(text: &str) -> Option<Unit> {
+    parse_unit(text).or_else(|| in_words(&text.to_lowercase()))
+}
+
 /// The unit that a text in lower case is, if it is words of a scale and a unit.
-pub(super) fn in_words(text: &str) -> Option<Unit> {
+fn in_words(text: &str) -> Option<Unit> {
     let tokens = tokens(text);
     scaled_at(text, &tokens, 0).filter(|(end, _)| end + 1 == tokens.len()).map(|(_, unit)| unit)
 }

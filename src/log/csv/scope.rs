@@ -6,7 +6,8 @@ use super::{
     label::label,
     number::number,
     rows::{cell_text, writer},
-    unit::{Measure, parse_unit},
+    scale::unit_named,
+    unit::Measure,
 };
 use crate::{
     math::median,
@@ -125,7 +126,7 @@ fn names(properties: &[Property<'_>], clocks: &[usize], width: usize, remarks: &
         remarks.add(Code::Guessed, 1, message);
     }
     if let Some(units) = properties.iter().find(|one| one.key.eq_ignore_ascii_case("unit")).map(of) {
-        for at in signals().filter(|at| parse_unit(&units[*at]).is_some()) {
+        for at in signals().filter(|at| unit_named(&units[*at]).is_some()) {
             names[at] = format!("{} [{}]", names[at], units[at].trim_matches(['(', ')', '[', ']']));
         }
     }
@@ -137,7 +138,7 @@ fn time(properties: &[Property<'_>], clocks: &[usize], rows: &[&Vec<&[u8]>]) -> 
     const PLAIN: &str = "Time";
     let stated = properties.iter().find_map(|one| {
         let (_, unit) = one.key.strip_suffix([']', ')'])?.rsplit_once(['[', '('])?;
-        let measure = parse_unit(unit)?.measure;
+        let measure = unit_named(unit)?.measure;
         (measure == Measure::Time).then_some((unit, one))
     });
     let Some((unit, sampled)) = stated else { return PLAIN.to_owned() };

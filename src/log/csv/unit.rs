@@ -4,7 +4,6 @@ use std::f64::consts::{PI, TAU};
 
 use serde::Serialize;
 
-use super::scale::in_words;
 use crate::units::DEGREE_RAD;
 
 /// The quantity that a unit measures.
@@ -177,7 +176,7 @@ pub(super) fn parse_unit(text: &str) -> Option<Unit> {
         let (name, number) = text.split_once(['*', 'x', '·', '×', ':', '/'])?;
         scale_of((&format!("1/{}", number.trim()), name.trim()))
     };
-    known.or_else(other).or_else(|| scaled(&text)).or_else(times).or_else(|| in_words(&text))
+    known.or_else(other).or_else(|| scaled(&text)).or_else(times)
 }
 
 /// A unit behind a number or a fraction of one; one that no program is known to write is another unit.

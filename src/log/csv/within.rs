@@ -2,7 +2,8 @@
 
 use super::{
     Quantity,
-    unit::{ANOTHER, Unit, parse_unit},
+    scale::unit_named,
+    unit::{ANOTHER, Unit},
     word::{Meaning, Word},
 };
 
@@ -21,7 +22,7 @@ pub(super) fn take_unit(words: &mut Vec<Word<'_>>) -> Option<Unit> {
     let is = |at: usize, one: &str| words[at].text.eq_ignore_ascii_case(one);
     let mut found = (1..words.len()).filter(|&at| whole(at) && UNITS.iter().any(|unit| is(at, unit)));
     let (at, None) = (found.next()?, found.next()) else { return None };
-    let unit = parse_unit(words[at].text)?;
+    let unit = unit_named(words[at].text)?;
     // What counts the joints of an arm is no scale: a scale stands behind a joint that has a name.
     let named = words[..at].iter().any(|word| word.meaning == Meaning::Name && word.text.len() > 2);
     let scale = |word: &Word<'_>| SCALES.contains(&word.text);

@@ -13,6 +13,7 @@ use super::{
     origin::Imported,
     overlap, poses, quality,
     recording::{Command, Recording, SourceInfo},
+    repeated,
     samples::{Axis, Reading, Samples, samples},
     select_topics::Choice,
     spoilt,
@@ -110,6 +111,7 @@ pub(super) fn assemble(
         turns::bring_to_turn(sides[0].1, &mut command.series, &options.continuous);
     }
     unset::of_sides(sides, &mut remarks);
+    repeated::of_measured(sides[1].1, &mut remarks);
     held::of_sides(choice, sides, &mut remarks);
     spoilt::of_sides(sides[0].1, sides[1].1, command.as_ref(), &mut remarks);
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);

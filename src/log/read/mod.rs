@@ -24,6 +24,7 @@ mod poses;
 mod prefixed;
 mod quality;
 pub(super) mod recording;
+mod repeated;
 mod samples;
 mod select_topics;
 mod spoilt;

@@ -162,6 +162,10 @@ const FASTEST: f64 = 200.0;
 /// neighbours that are calm by comparison.
 const FAST: f64 = 20.0;
 const FAR: f64 = 0.5;
+/// Less so, where more neighbours are as calm, on either side: noise is not.
+const LESS: f64 = 0.25;
+const NEAR: f64 = 0.05;
+const NEIGHBOURS: usize = 8;
 /// Steps of the neighbours by the sample's own.
 const CALM: f64 = 0.1;
 /// Larger than any position, in radians, degrees or metres.
@@ -185,19 +189,21 @@ fn is_spike(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usize) -
     let faster = |speed: f64| there.abs() > speed * before_s && back.abs() > speed * after_s;
     let least = there.abs().min(back.abs());
     let step = |i: usize| (at(i + 1) - at(i)).abs();
-    let alone = || {
+    let alone = |neighbours: usize| {
         let calm = |step: f64| step < CALM * least;
         calm((at(k + 1) - at(k - 1)).abs())
-            && (k < 2 || calm(step(k - 2)))
-            && (k + 2 >= n || calm(step(k + 1)))
+            && (k.saturating_sub(neighbours + 1)..k - 1).all(|i| calm(step(i)))
+            && (k + 1..(k + 1 + neighbours).min(n - 1)).all(|i| calm(step(i)))
     };
-    (faster(FASTEST) || least > FAR && faster(FAST) && alone()) && !turn()
+    let far = least > FAR && faster(FAST) && alone(1);
+    let near = || least > NEAR && faster(LESS * FAST) && n > 2 * NEIGHBOURS && alone(NEIGHBOURS);
+    (faster(FASTEST) || far || near()) && !turn()
 }
 
 /// Whether no value is a spike or no number because none is large and no step is: a quick look that spares the closer
 /// one. It has no branch on any value, so that the compiler takes several at once.
 fn is_calm(values: &[f64], shortest_s: f64) -> bool {
-    let step = FAR.min(FASTEST * shortest_s);
+    let step = NEAR.min(FASTEST * shortest_s);
     let near = |value: f64| value.abs() <= LARGEST;
     let pairs = values.iter().zip(values.get(1..).unwrap_or_default());
     pairs.fold(values.last().is_none_or(|last| near(*last)), |calm, (here, next)| {
@@ -227,4 +233,31 @@ fn cuts(t_s: &[f64], jumps: &[usize]) -> Vec<usize> {
     cuts.sort_unstable();
     cuts.dedup();
     cuts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How many of the values of a joint at 100 Hz are dropped.
+    fn dropped(value: impl Fn(usize) -> f64) -> u64 {
+        let t_s: Vec<f64> = (0..200).map(|k| f64::from(k) * 0.01).collect();
+        drop_spikes(&mut (0..200).collect(), &t_s, value)
+    }
+
+    #[test]
+    fn single_values_far_from_calm_neighbours_are_dropped_and_noise_is_not() {
+        // Five degrees at 10 deg/s, with noise of an encoder.
+        let moving = |k: usize| 0.2 + 0.0018 * k as f64 + 1e-4 * (k * 7919 % 13) as f64;
+        let spike = |k: usize| if k % 60 == 30 { 0.09 } else { 0.0 };
+        assert_eq!((dropped(moving), dropped(|k| moving(k) + spike(k))), (0, 3));
+        let noise = |k: usize| 0.1 * ((k * 7919 + k * k * 31) % 101) as f64 / 101.0;
+        assert_eq!(dropped(noise), 0);
+        assert_eq!(dropped(|k| if k >= 100 { 0.5 } else { 0.2 }), 0, "a step");
+        assert_eq!(
+            dropped(|k| 0.2 + 0.09 * f64::from(u8::from((100..102).contains(&k)))),
+            0,
+            "of two samples"
+        );
+    }
 }

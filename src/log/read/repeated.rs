@@ -1,0 +1,96 @@
+//! Measurements of a sensor that is slower than its log: each value is written again until the next one comes.
+
+use crate::{
+    remark::{Code, Remarks},
+    series::{Series, Track, split_at_gaps},
+};
+
+/// Values that tell, at least, and how often each is written, at least: twice is no harm.
+const CHANGES: usize = 30;
+const LEAST: usize = 3;
+/// Share of the values that are written so often, or a multiple of it where two are equal.
+const MOST: f64 = 0.95;
+/// From so many rows on a value may be written once more or less: sensor and log have clocks of their own.
+const UNEVEN: usize = 5;
+/// Rows that are looked at first.
+const HEAD: usize = 4000;
+
+/// Keeps of each value that is written again its first row; it says no more of when it was measured.
+pub(super) fn of_measured(measured: &mut Series, remarks: &mut Remarks) {
+    let (mut dropped, mut names) = (0, Vec::new());
+    for track in &mut measured.tracks {
+        let Some(fresh) = fresh(track) else { continue };
+        dropped += track.len() - fresh.len();
+        names.push(track.name().to_owned());
+        *track = fresh;
+    }
+    let message = format!(
+        "measured values of {} that only repeat the one before, in step with a sensor that is slower than the log: left out, \
+         and the rows between its values are not judged",
+        names.join(", ")
+    );
+    remarks.add(Code::Guessed, dropped as u64, message);
+}
+
+/// The track without rows that repeat; `None` if its values do not come in even steps of rows.
+fn fresh(track: &Track) -> Option<Track> {
+    let (t_s, q) = (track.t_s(), track.position());
+    // Most logs tell by their first rows.
+    let head = q.get(..HEAD.min(q.len())).unwrap_or_default();
+    let changed = head.windows(2).filter(|two| two[0] != two[1]).count();
+    if changed >= CHANGES && LEAST * changed > head.len() {
+        return None;
+    }
+    let changes: Vec<usize> = (1..q.len()).filter(|&i| q[i] != q[i - 1]).collect();
+    if changes.len() < CHANGES || LEAST * changes.len() > q.len() {
+        return None;
+    }
+    let mut rows: Vec<usize> = changes.windows(2).map(|two| two[1] - two[0]).collect();
+    let tenth = rows.len() / 10;
+    let every = *rows.select_nth_unstable(tenth).1;
+    let off = |rows: &usize| (rows % every).min(every - rows % every);
+    let even = rows.iter().filter(|rows| off(rows) <= usize::from(every >= UNEVEN)).count();
+    if every < LEAST || (even as f64) < MOST * rows.len() as f64 {
+        return None;
+    }
+    // Where it stands, equal values come as often.
+    let (mut kept, mut next) = (Vec::new(), 0);
+    for i in 0..q.len() {
+        if i == 0 || q[i] != q[i - 1] || i >= next && i + 1 < q.len() && q[i] == q[i + 1] {
+            kept.push(i);
+            next = i + every;
+        }
+    }
+    let of = |values: &[f64]| kept.iter().map(|&i| values[i]).collect::<Vec<f64>>();
+    let t_s = of(t_s);
+    let cuts = split_at_gaps(&t_s);
+    let fresh = Track::of(track.kind(), track.name(), t_s, of(q), &cuts).ok()?;
+    match track.velocity() {
+        Some(velocity) => fresh.with_velocity(of(velocity)).ok(),
+        None => Some(fresh),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How many of 2000 rows at 100 Hz are kept of what a joint has, read at times.
+    fn kept(read_s: impl Fn(usize) -> f64, step: f64) -> usize {
+        let t_s: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.01).collect();
+        let at = |k: usize| (0.3 * (0.7 * read_s(k)).sin() / step).round() * step;
+        let track = Track::new("a", t_s, (0..2000).map(at).collect(), &[]).unwrap();
+        let mut series = Series { tracks: vec![track] };
+        of_measured(&mut series, &mut Remarks::default());
+        series.tracks[0].len()
+    }
+
+    #[test]
+    fn a_slow_sensor_is_read_when_it_has_a_value_and_an_encoder_of_few_steps_always() {
+        assert_eq!(kept(|k| 0.1 * (k / 10) as f64, 1e-9), 200);
+        let uneven = kept(|k| 0.095 * (k as f64 * 0.01 / 0.095).floor(), 1e-9);
+        assert!((200..225).contains(&uneven), "{uneven}");
+        assert_eq!(kept(|k| 0.01 * k as f64, 2e-3), 2000);
+        assert_eq!(kept(|k| 0.02 * (k / 2) as f64, 1e-9), 2000, "twice each");
+    }
+}

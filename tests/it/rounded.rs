@@ -1,0 +1,47 @@
+//! Starts after plans that were rounded when they were written.
+
+use std::slice::from_ref;
+
+use hydrotrace::{
+    replay::{Rules, replay},
+    series::{Pair, Track, align},
+    units::DEGREE_RAD,
+};
+
+/// Six motions of a plan rounded to a step, and of a joint that follows 0.18 s later.
+fn run(step_deg: f64, every_s: f64, takes_s: f64) -> Pair {
+    let t_s: Vec<f64> = (0..).map(|k| f64::from(k) * every_s).take_while(|t_s| *t_s < 32.0).collect();
+    let at_deg = |t_s: f64| -> f64 {
+        let motion = |k: i32| {
+            let s = ((t_s - 1.5 - 5.003 * f64::from(k)) / takes_s).clamp(0.0, 1.0);
+            let sign = if k % 2 == 0 { 12.0 } else { -12.0 };
+            sign * s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s)
+        };
+        10.0 + (0..6).map(motion).sum::<f64>()
+    };
+    let rounded = |x: f64| (x / step_deg).round() * step_deg * DEGREE_RAD;
+    let planned = t_s.iter().map(|t_s| rounded(at_deg(*t_s))).collect();
+    let late = |(k, t_s): (usize, &f64)| {
+        (at_deg(t_s - 0.18) + 0.004 * ((k * 7919 % 101) as f64 / 50.0 - 1.0)) * DEGREE_RAD
+    };
+    let measured = t_s.iter().enumerate().map(late).collect();
+    let track = |position| Track::new("a", t_s.clone(), position, &[]).unwrap();
+    align(&track(planned), &track(measured)).unwrap()
+}
+
+#[test]
+fn the_delay_after_a_rounded_plan_is_known_as_well_as_its_interval_says() {
+    for (step_deg, every_s, takes_s) in
+        [(0.1, 0.01, 2.5), (0.1, 0.05, 2.5), (0.1, 0.01, 4.0), (0.02, 0.01, 2.5)]
+    {
+        let pair = run(step_deg, every_s, takes_s);
+        let found = replay(from_ref(&pair), &Rules::default());
+        let of = format!("{step_deg} deg, {every_s} s, {takes_s} s");
+        assert_eq!(found.transitions.len(), 6, "{of}");
+        let delays: Vec<f64> = found.transitions.iter().filter_map(|t| t.onset_delay_s).collect();
+        let held = found.transitions.iter().filter_map(|t| t.onset_delay_interval_s);
+        let held = held.filter(|[low_s, high_s]| (*low_s..=*high_s).contains(&0.18)).count();
+        let mean_s = delays.iter().sum::<f64>() / 6.0;
+        assert!(held == 6 && (mean_s - 0.18).abs() < 0.06, "{of}: {held} held, {mean_s} s");
+    }
+}
