@@ -18,7 +18,7 @@ pub enum Contents {
         /// Names of its metadata.
         metadata: BTreeSet<String>,
     },
-    /// A recording of another format, and which.
+    /// A recording of another format, or what belongs to one, and which.
     Recording(&'static str),
     /// Rows of cells, and the first line.
     Table(String),
@@ -29,11 +29,12 @@ pub enum Contents {
 }
 
 /// Formats of recordings by their first bytes.
-const RECORDINGS: [(&[u8], &str); 4] = [
+const RECORDINGS: [(&[u8], &str); 5] = [
     (b"SQLite format 3\0", "a database, as ROS 2 bags are"),
     (b"#ROSBAG", "a ROS 1 bag"),
     (b"MDF     ", "an MF4 recording"),
     (b"ULog", "a ULog recording"),
+    (b"rosbag2_bagfile_information", "the description of a ROS 2 bag"),
 ];
 
 /// What a file holds. Its name is not remembered as that of an input.
@@ -58,6 +59,9 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
     let start = String::from_utf8_lossy(&bytes);
     if ["<!doctype html", "<html"].iter().any(|tag| begins(&start, tag)) {
         return Ok(Contents::Page(start.into_owned()));
+    }
+    if start.contains("<robot ") {
+        return Ok(Contents::Recording("a robot description"));
     }
     if is_table(path, &bytes) {
         let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();

@@ -10,7 +10,7 @@ use hydrotrace::{
 
 /// Six motions of a plan rounded to a step, and of a joint that follows 0.18 s later.
 fn run(step_deg: f64, every_s: f64, takes_s: f64) -> Pair {
-    let t_s: Vec<f64> = (0..).map(|k| f64::from(k) * every_s).take_while(|t_s| *t_s < 32.0).collect();
+    let t_s: Vec<f64> = (0..3200).map(|k| f64::from(k) * every_s).filter(|t_s| *t_s < 32.0).collect();
     let at_deg = |t_s: f64| -> f64 {
         let motion = |k: i32| {
             let s = ((t_s - 1.5 - 5.003 * f64::from(k)) / takes_s).clamp(0.0, 1.0);

@@ -32,16 +32,20 @@ pub(super) fn of_measured(measured: &mut Series, remarks: &mut Remarks) {
     remarks.add(Code::Guessed, dropped as u64, message);
 }
 
+fn differ(a: f64, b: f64) -> bool {
+    (a - b).abs() > 0.0
+}
+
 /// The track without rows that repeat; `None` if its values do not come in even steps of rows.
 fn fresh(track: &Track) -> Option<Track> {
     let (t_s, q) = (track.t_s(), track.position());
     // Most logs tell by their first rows.
     let head = q.get(..HEAD.min(q.len())).unwrap_or_default();
-    let changed = head.windows(2).filter(|two| two[0] != two[1]).count();
+    let changed = head.windows(2).filter(|two| differ(two[0], two[1])).count();
     if changed >= CHANGES && LEAST * changed > head.len() {
         return None;
     }
-    let changes: Vec<usize> = (1..q.len()).filter(|&i| q[i] != q[i - 1]).collect();
+    let changes: Vec<usize> = (1..q.len()).filter(|&i| differ(q[i], q[i - 1])).collect();
     if changes.len() < CHANGES || LEAST * changes.len() > q.len() {
         return None;
     }
@@ -56,7 +60,7 @@ fn fresh(track: &Track) -> Option<Track> {
     // Where it stands, equal values come as often.
     let (mut kept, mut next) = (Vec::new(), 0);
     for i in 0..q.len() {
-        if i == 0 || q[i] != q[i - 1] || i >= next && i + 1 < q.len() && q[i] == q[i + 1] {
+        if i == 0 || differ(q[i], q[i - 1]) || i >= next && i + 1 < q.len() && !differ(q[i], q[i + 1]) {
             kept.push(i);
             next = i + every;
         }

@@ -133,8 +133,9 @@ pub(super) fn samples(
             // Far from the epoch neighbouring nanoseconds are the same second.
             kept.dedup_by(|later, earlier| axis.t_s[*later] <= axis.t_s[*earlier]);
             if positions {
-                spikes += drop_spikes(&mut kept, &axis.t_s, at);
+                // A zero is a reading that was lost before it is a jump.
                 lost += drop_lost(&mut kept, &axis.t_s, at);
+                spikes += drop_spikes(&mut kept, &axis.t_s, at);
             }
             let (t_s, cuts, jumps) = axis.kept(&kept);
             gap.note(&t_s, &cuts, &jumps);

@@ -98,7 +98,9 @@ fn recordings_and_commands_are_replaced_only_by_force() {
     assert!(matches!(made.0, 0 | 3), "{made:?}");
     fs::copy(sample("panel-install.mcap"), path.join("recorded.mcap")).unwrap();
     fs::write(path.join("old.db3"), b"SQLite format 3\0and so on").unwrap();
-    for output in ["recorded.mcap", "next.mcap", "old.db3", "trace.csv"] {
+    fs::write(path.join("metadata.yaml"), "rosbag2_bagfile_information:\n  version: 5\n").unwrap();
+    fs::write(path.join("other.urdf"), "<?xml version=\"1.0\"?>\n<robot name=\"other\"/>\n").unwrap();
+    for output in ["recorded.mcap", "next.mcap", "old.db3", "trace.csv", "metadata.yaml", "other.urdf"] {
         let before = fs::read(path.join(output)).unwrap();
         let (code, text, error) = said(&run_line(path, &format!("report run.mcap --json -o {output}")));
         assert_eq!((code, text.as_str()), (1, ""), "{output}: {error}");
