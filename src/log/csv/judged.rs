@@ -44,7 +44,7 @@ fn kept(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) ->
     let says = |cell: &[u8], words: &[&str]| words.contains(&cell_text(cell).to_lowercase().as_str());
     let sample = || head.sample.iter().filter_map(|row| row.get(column));
     let opc = |cell: &[u8]| cell_text(cell).parse::<u8>().ok();
-    let is_opc = head.names[column].to_lowercase().contains("qualit")
+    let is_opc = head.names[column].to_lowercase().contains("quali")
         && sample().any(|cell| says(cell, &[OPC_GOOD]))
         && sample().all(|cell| opc(cell).is_some());
     if !is_opc && !sample().any(|cell| says(cell, &GOOD)) {
