@@ -78,7 +78,11 @@ fn no_file_that_was_read_is_written_over_whatever_its_name() {
             let (code, text, error) = said(&run_line(path, &format!("{line} -o {output}{force}")));
             assert_eq!(text, "", "{line} -o {output}{force}");
             // Of a log the name alone may be enough to refuse it, before anything is read.
-            let why = if code == 2 { "is an MCAP log" } else { "is an input of this command" };
+            let why = match code {
+                2 => "is an MCAP log",
+                _ if force.is_empty() && output == "bag/metadata.yaml" => "is the description of a ROS 2 bag",
+                _ => "is an input of this command",
+            };
             assert!((1..=2).contains(&code) && error.contains(why), "{line} -o {output}{force}: {error}");
             assert!(fs::read(path.join(output)).unwrap() == before, "{line} -o {output}");
             assert_eq!(
