@@ -1,8 +1,6 @@
 //! When a plan that was rounded left rest: between two of its values the plan itself passes the middle, and rises through
 //! these middles say when they began, although the first step of the stairs shows later.
 
-use std::ops::Range;
-
 use super::{
     Rules,
     motion::Motion,
@@ -19,8 +17,8 @@ const SHAPE: f64 = 0.03;
 /// A rest lies within half a step of its value; so much more is let pass, in steps.
 const OFF_REST: f64 = 0.55;
 
-/// The onset of a motion of a plan in steps, by a threshold of speed. `None` of a ramp, whose first samples
-/// are equally far apart: its start lies between two of them.
+/// The onset of a motion of a plan in steps, by a threshold of speed. `None` where the first
+/// samples are equally far apart, or each farther than the one before: the start then lies beside the first that moves.
 pub(super) fn onset(
     pair: &Pair,
     motion: &Motion,
@@ -40,39 +38,52 @@ pub(super) fn onset(
     Some(Onset { at_s, interval_s: [low_s - rules.onset_step_s, high_s + rules.onset_step_s] })
 }
 
-/// Times and travels from the value at rest at which the plan passes between two values, the first ones.
+/// The change of a plan to a sample from the one before, along a motion.
+fn change(pair: &Pair, motion: &Motion, at: usize) -> f64 {
+    f64::from(motion.direction) * (pair.planned[at] - pair.planned[at - 1])
+}
+
+/// The first sample whose value is not that at rest: a smoothed speed is seen before it or after.
+fn first(pair: &Pair, motion: &Motion, step: f64) -> Option<usize> {
+    let segment = motion.segment.start + 1..motion.segment.end;
+    let moves = |at: &usize| change(pair, motion, *at) > NONE * step;
+    let seen = (motion.samples.start.max(segment.start)..segment.end).find(moves)?;
+    let rests_s = motion.start_s - motion.rest_before_s;
+    let back = (segment.start..=seen).rev().take_while(|&at| pair.t_s[at] >= rests_s);
+    back.take_while(|&at| change(pair, motion, at) >= -NONE * step).filter(moves).last().or(Some(seen))
+}
+
+/// Where the plan passes between two values, the first ones.
 fn middles(pair: &Pair, motion: &Motion, step: f64) -> Option<Vec<Middle>> {
-    let (t_s, x) = (&pair.t_s, &pair.planned);
-    let change = |i: usize| f64::from(motion.direction) * (x[i] - x[i - 1]);
-    let inside: Range<usize> = motion.samples.start.max(motion.segment.start + 1)..motion.segment.end;
-    // A smoothed speed is seen before the first step or after it.
-    let seen = inside.clone().find(|i| change(*i) > NONE * step)?;
-    let back = (motion.segment.start + 1..=seen).rev().take_while(|i| change(*i) >= -NONE * step);
-    let window =
-        back.take_while(|i| t_s[seen] - t_s[*i] <= t_s[seen] - motion.start_s + motion.rest_before_s);
-    let first = window.filter(|i| change(*i) > NONE * step).last().unwrap_or(seen);
-    let (rest, mut middles, mut even) = (x[first - 1], Vec::new(), true);
+    let (t_s, x, end) = (&pair.t_s, &pair.planned, motion.segment.end);
+    let first = first(pair, motion, step)?;
+    let (mut middles, mut heights, mut stands) = (Vec::new(), Vec::new(), false);
     let mut at = first;
-    while at < inside.end && middles.len() < MOST {
-        if change(at) <= NONE * step {
-            even = false;
+    while at < end && middles.len() < MOST {
+        if change(pair, motion, at) <= NONE * step {
+            stands = true;
             at += 1;
             continue;
         }
         // A plan of fewer samples than the measurement climbs a step in several of them.
-        let from = at;
-        let risen = |to: usize| f64::from(motion.direction) * (x[to] - x[from - 1]);
-        while at + 1 < inside.end && risen(at) < (1.0 - NONE) * step && change(at + 1) > NONE * step {
+        let from = at - 1;
+        let height = |to: usize| f64::from(motion.direction) * (x[to] - x[from]);
+        while at + 1 < end && height(at) < (1.0 - NONE) * step && change(pair, motion, at + 1) > NONE * step {
             at += 1;
         }
-        even &= (change(at) - change(first)).abs() <= NONE * step;
-        let travel = f64::from(motion.direction) * (0.5 * (x[from - 1] + x[at]) - rest);
-        let (t_s, between_s) = (0.5 * (t_s[from - 1] + t_s[at]), t_s[at] - t_s[from - 1]);
-        middles.push(Middle { t_s, travel, between_s, weight: 1.0 });
+        heights.push(height(at));
+        middles.push(Middle {
+            t_s: 0.5 * (t_s[from] + t_s[at]),
+            travel: f64::from(motion.direction) * (0.5 * (x[from] + x[at]) - x[first - 1]),
+            between_s: t_s[at] - t_s[from],
+            weight: 1.0,
+        });
         at += 1;
     }
+    let even = heights.windows(2).all(|two| (two[1] - two[0]).abs() <= NONE * step);
+    let rises = heights.windows(2).all(|two| two[1] - two[0] > NONE * step);
     weigh(&mut middles, step);
-    (!even && middles.len() > 1).then_some(middles)
+    (middles.len() > 1 && (stands || !even && !rises)).then_some(middles)
 }
 
 /// Where a plan passes the middle between two of its values.

@@ -10,16 +10,51 @@ const LEAST: usize = 20;
 /// A multiple lies so near to one, in steps.
 const NEAR: f64 = 0.05;
 
-/// The step that all positions of a plan lie apart by, in its unit; `None` where they do not lie on one, or change too
-/// seldom to tell.
+/// Share of the changes, and how many, at least, that rounding shows in.
+const SHOWN: f64 = 0.01;
+const LEAST_SHOWN: usize = 3;
+/// A change of so many steps between rows that stand is one of a plan that is held, not rounded.
+const JUMP: i64 = 3;
+/// Rows that stand for longer are a rest.
+const REST: usize = 5;
+
+/// The step that a plan is rounded to, in its unit; `None` where its positions do not lie on one, change too seldom to
+/// tell, or do so as no rounding makes them: ramps and even accelerations lie on steps, too.
 pub(super) fn rounding(plan: &Track) -> Option<f64> {
     let x = plan.position();
-    let pairs = plan.segments().iter().flat_map(|s| (s.start + 1..s.end).map(|i| (x[i] - x[i - 1]).abs()));
-    let moved: Vec<f64> = pairs.filter(|step| *step > DUST).take(MOST).collect();
+    let changes = || plan.segments().iter().flat_map(|s| (s.start + 1..s.end).map(|i| x[i] - x[i - 1]));
+    let moved: Vec<f64> = changes().map(f64::abs).filter(|step| *step > DUST).take(MOST).collect();
     let step = moved.iter().copied().min_by(f64::total_cmp)?;
     let multiple = |one: &&f64| (*one / step - (*one / step).round()).abs() < NEAR;
     let multiples = moved.iter().filter(multiple).count();
-    (moved.len() >= LEAST && 20 * multiples >= 19 * moved.len()).then_some(step)
+    if moved.len() < LEAST || 20 * multiples < 19 * moved.len() {
+        return None;
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "a jump of more steps is one, too")]
+    let steps: Vec<i64> = changes().map(|change| (change / step).round() as i64).collect();
+    let shown = shown(&steps);
+    (shown >= LEAST_SHOWN && shown as f64 >= SHOWN * moved.len() as f64).then_some(step)
+}
+
+/// How often changes in steps show that they were rounded: one step between rows that stand, or a speed that dips.
+fn shown(steps: &[i64]) -> usize {
+    let alone = |two: &[i64]| two[0] == 0 && two[2] == 0;
+    let lone = steps.windows(3).filter(|near| near[1].abs() == 1 && alone(near)).count();
+    let jumps = steps.windows(3).filter(|near| near[1].abs() >= JUMP && alone(near)).count();
+    let (mut dips, mut fell, mut stands) = (0, false, 0);
+    for two in steps.windows(2) {
+        let [before, now] = [two[0].abs(), two[1].abs()];
+        stands = if now == 0 { stands + 1 } else { 0 };
+        let turned = two[0] * two[1] < 0;
+        if turned || stands > REST {
+            fell = false;
+        } else if now < before {
+            fell = true;
+        } else if now > before && fell {
+            (dips, fell) = (dips + 1, false);
+        }
+    }
+    if jumps > lone { 0 } else { dips + lone }
 }
 
 #[cfg(test)]
@@ -39,5 +74,24 @@ mod tests {
             assert!((found / step - 1.0).abs() < 1e-3, "{found} for {step}");
         }
         assert_eq!(rounding(&plan(|x| x)), None);
+    }
+
+    #[test]
+    fn even_accelerations_and_held_values_lie_on_steps_and_are_not_rounded() {
+        // Three motions that accelerate, cruise and slow down evenly, 10 times a second, at rest between.
+        let at = |t_s: f64| {
+            let one = |from_s: f64| {
+                let t = (t_s - from_s).clamp(0.0, 3.0);
+                let slows = (t - 2.5).max(0.0);
+                0.5 * t.min(0.5) * t.min(0.5) + 0.5 * (t - 0.5).max(0.0) - 0.5 * slows * slows
+            };
+            0.3 * (one(1.0) + one(6.0) - one(11.0))
+        };
+        let track = |every_s: f64, held_s: f64| {
+            let t_s: Vec<f64> = (0..).map(|k| f64::from(k) * every_s).take(1500).collect();
+            let q = t_s.iter().map(|t| at(((t + 1e-9) / held_s).floor() * held_s)).collect();
+            rounding(&Track::new("a", t_s, q, &[]).unwrap())
+        };
+        assert_eq!((track(0.1, 0.1), track(0.05, 0.05), track(0.01, 0.05)), (None, None, None));
     }
 }

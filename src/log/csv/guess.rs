@@ -16,6 +16,8 @@ pub(super) const SINCE_1899_DAYS: [f64; 2] = [36_526.0, 73_051.0];
 
 /// Arms are recorded at up to 2000 Hz.
 const FASTEST_S: f64 = 0.000_5;
+/// Shorter steps are none of seconds: fractions of days, as one program writes dates, come so.
+const NO_CLOCK_S: f64 = 1e-5;
 /// Steps of some minutes or hours, too, where they are round as steps of clocks are.
 const SHORT_S: f64 = 0.002;
 
@@ -46,6 +48,9 @@ pub(super) fn guess_unit(first: f64, step: f64, whole: bool) -> (Option<Unit>, O
     if !whole && step > 0.0 && step < SHORT_S {
         let round =
             [("s", 1.0), ("min", 60.0), ("h", 3600.0)].into_iter().find(|(_, per)| is_round(step * per));
+        if round.is_none() && step < NO_CLOCK_S {
+            return (None, None);
+        }
         let (name, per) = round.unwrap_or(("s", 1.0));
         let doubt = format!(
             "says no unit; steps of {step:.3e} are taken as {name}, so that {:.0} rows come a second; else say --time-unit \
@@ -87,6 +92,7 @@ mod tests {
         assert_eq!(guess(0.0, 0.000_166_7, false), ("min", true));
         assert_eq!(guess(0.0, 0.001_666_7, false), ("min", true));
         assert_eq!(guess(0.0, 2.777_8e-6, false), ("h", true));
+        assert_eq!(guess(739_323.4, 1.157e-7, false), ("none", false));
         assert_eq!(guess(0.0, 20.0, true), ("ms", true));
         assert_eq!(guess(0.0, 2e4, true), ("us", true));
         assert_eq!(guess(0.0, 2e7, true), ("ns", true));

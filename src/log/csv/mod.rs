@@ -73,7 +73,8 @@ pub use understood::{ColumnRead, TimeRead, Understood};
 use std::borrow::Cow;
 
 use super::write::Role;
-use crate::remark::Remarks;
+use crate::{remark::Remarks, series::JointKind};
+use unit::Measure;
 
 /// The quantity of a joint that a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -89,9 +90,13 @@ pub(in crate::log) fn joint_in(name: &str) -> String {
     label::label(name, None).joint
 }
 
-/// Whether a name ends in the unit deg.
-pub(in crate::log) fn in_degrees(name: &str) -> bool {
-    unit::split_suffix(name).is_some_and(|(_, found)| unit::parse_unit("deg") == Some(found))
+/// SI value of one of the unit that ends a name, where positions of such a joint are told in it; else 1.
+pub(in crate::log) fn scale_in(name: &str, kind: JointKind) -> f64 {
+    let measure = match kind {
+        JointKind::Turns => Measure::Angle,
+        JointKind::Slides => Measure::Length,
+    };
+    unit::split_suffix(name).filter(|(_, unit)| unit.measure == measure).map_or(1.0, |(_, unit)| unit.factor)
 }
 
 /// What a header says if it is one of a joint by its words: of its position or speed, planned, measured or sent.

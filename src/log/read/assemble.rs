@@ -30,7 +30,7 @@ use crate::{
     },
     remark::{Code, Remarks},
     series::{Clock, JointKind, Series, Signal, continuous_clock},
-    units::seconds_since,
+    units::{DEGREE_RAD, seconds_since},
 };
 
 pub(super) fn assemble(
@@ -265,11 +265,11 @@ impl Assembly {
         for (place, candidate) in chosen.iter().enumerate() {
             let pending: Vec<&Candidate> =
                 chosen[place + 1..].iter().chain(pending.iter().copied()).collect();
-            let degrees = degrees || self.extracted.says_degrees(candidate.source, candidate.field);
             let found = self.samples(candidate, true, &pending, remarks);
             let tracks = found.into_iter().filter_map(|one| {
                 let kind = self.kinds.of(candidate.source, &one.name);
-                one.into_track(kind, degrees)
+                let scale = || self.extracted.scale(candidate.source, candidate.field, kind);
+                one.into_track(kind, if degrees && kind == JointKind::Turns { DEGREE_RAD } else { scale() })
             });
             add_new(&mut series, tracks.collect());
         }

@@ -6,13 +6,14 @@ use super::recording::{Attachment, FileInfo};
 use crate::{
     log::{
         channel::Decoder,
-        csv::in_degrees,
+        csv::scale_in,
         decode::LayoutCache,
         file::MessageRecord,
         joined::{self, Sent},
         source::{Form, Plans, Poses, Spec, Table, Versioned},
     },
     remark::Remarks,
+    series::JointKind,
 };
 
 /// Counts of a topic, whether it is read or not.
@@ -167,12 +168,13 @@ impl Extracted {
         joined::sent(&self.metadata, self.topics.iter().map(|t| t.topic.as_str()))
     }
 
-    /// Whether a field, or the topic of one that has no name of its own, ends in the unit deg.
-    pub(super) fn says_degrees(&self, source: usize, field: Option<usize>) -> bool {
-        let Content::Table(table) = &self.sources[source].content else { return false };
+    /// SI value of one unit of a joint, by the unit that ends the name of a field, or of the topic of one that has no name
+    /// of its own; 1 where that says none.
+    pub(super) fn scale(&self, source: usize, field: Option<usize>, kind: JointKind) -> f64 {
+        let Content::Table(table) = &self.sources[source].content else { return 1.0 };
         let field = field.and_then(|at| table.fields.get(at)).map_or("", |field| &field.path);
         let lone = field.rsplit('.').next() == Some("data");
-        in_degrees(if lone { &self.topic_of(source).topic } else { field })
+        scale_in(if lone { &self.topic_of(source).topic } else { field }, kind)
     }
 
     /// The topic of a source.

@@ -31,22 +31,23 @@ pub(super) fn of_sides(choice: &Choice, sides: &mut [(&str, &mut Series); 2], re
 
 fn of_both([planned, measured]: [&mut Series; 2], topics: &[Vec<&str>; 2], remarks: &mut Remarks) {
     let Some([_, until_s]) = measured.span_s() else { return };
-    if of_side(("plan", &topics[0]), planned, until_s, remarks) {
-        of_side(("measurement", &topics[1]), measured, until_s, remarks);
+    if of_side(("plan", &topics[0]), planned, (until_s, false), remarks) {
+        // Plans are looked at where a measurement is.
+        of_side(("measurement", &topics[1]), measured, (until_s, true), remarks);
     }
 }
 
 fn of_side(
     (side, topics): (&str, &[&str]),
     series: &mut Series,
-    until_s: f64,
+    (until_s, dense): (f64, bool),
     remarks: &mut Remarks,
 ) -> bool {
     let on_change: Vec<bool> =
         series.tracks.iter().map(|track| is_written_on_change(track, &series.tracks)).collect();
     let (mut silences, mut names) = (0, Vec::new());
     for (track, _) in series.tracks.iter_mut().zip(on_change).filter(|(_, on_change)| *on_change) {
-        if let Some((held, count)) = held(track, until_s, side == "measurement") {
+        if let Some((held, count)) = held(track, until_s, dense) {
             silences += count;
             names.push(track.name().to_owned());
             *track = held;
@@ -94,7 +95,6 @@ fn held(track: &Track, until_s: f64, dense: bool) -> Option<(Track, u64)> {
     let mut hold = |from: f64, to_s: f64, q: f64, t_s: &mut Vec<f64>, position: &mut Vec<f64>| {
         if to_s - from > 3.0 * step_s {
             t_s.push(from + step_s);
-            // Plans are looked at where a measurement is.
             let each_s = step_s.max((to_s - from) / MOST);
             let more = (1..)
                 .map(|k| from + step_s + each_s * f64::from(k))

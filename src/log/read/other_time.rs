@@ -56,25 +56,24 @@ pub(super) fn message(planned: &Series, measured: &Series) -> Option<String> {
     if !as_it_is.is_finite() || as_it_is < FAR {
         return None;
     }
-    let shift_s = shift_s(&joints);
-    let left = apart(&|t_s| t_s - shift_s) / as_it_is;
+    let late_s = shift_s(&joints);
+    let left = apart(&|t_s| t_s - late_s) / as_it_is;
     // What leaves more may be joints that lead each by itself, which is no clock unless all of them do.
-    let all_before =
-        || joints.len() > 1 && (0..joints.len()).all(|k| self::shift_s(&joints[k..=k]) < USUAL_S[0]);
-    if shift_s < USUAL_S[0] && (left < LEFT[0] || left < LEFT_BY_ALL && all_before()) {
+    let all_before = || joints.len() > 1 && (0..joints.len()).all(|k| shift_s(&joints[k..=k]) < USUAL_S[0]);
+    if late_s < USUAL_S[0] && (left < LEFT[0] || left < LEFT_BY_ALL && all_before()) {
         return Some(format!(
             "the joints move {:.2} s before their plan, which no machine does: the clocks of plan and measurement differ. \
              --measured-delay-ms={:.0} puts one onto the other, but takes the lag of the machine off, too",
-            -shift_s,
-            1e3 * shift_s
+            -late_s,
+            1e3 * late_s
         ));
     }
-    if shift_s > USUAL_S[1] && left < LEFT[1] && delay_s(&joints, shift_s) > USUAL_S[1] {
+    if late_s > USUAL_S[1] && left < LEFT[1] && delay_s(&joints, late_s) > USUAL_S[1] {
         return Some(format!(
-            "the joints move {shift_s:.2} s after their plan, all of them, more than machines lag: the clocks of plan and \
+            "the joints move {late_s:.2} s after their plan, all of them, more than machines lag: the clocks of plan and \
              measurement differ, or the plan was stamped before it was started. --measured-delay-ms={:.0} puts one onto \
              the other, but takes the lag of the machine off, too",
-            1e3 * shift_s
+            1e3 * late_s
         ));
     }
     let pace = Pace::of(&joints)?;

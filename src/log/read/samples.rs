@@ -10,7 +10,7 @@ use crate::{
     log::source::Table,
     remark::{Code, Remarks},
     series::{Clock, Instants, JointKind, Quantity, Signal, Track, all_finite, split_at_gaps},
-    units::{radians_from_degrees, seconds_since},
+    units::seconds_since,
 };
 
 /// The time axis that all joints of a table share.
@@ -55,7 +55,8 @@ impl Axis {
 
     /// Whether the values of a column are finite, and none of them a spike or lost if they are positions.
     fn is_sound(&self, values: &[f64], positions: bool) -> bool {
-        let spiked = || (0..values.len()).any(|k| is_spike(k, values.len(), |i| self.t_s[i], |i| values[i]));
+        let (n, t_s, at) = (values.len(), |i: usize| self.t_s[i], |i: usize| values[i]);
+        let spiked = || (0..n).any(|k| is_spike(k, n, t_s, at) || may_be_spike(k, n, t_s, at));
         let calm = || is_calm(values, self.shortest_s) || all_finite(values) && !spiked();
         if positions { !may_be_lost(values) && calm() } else { all_finite(values) }
     }
@@ -82,11 +83,10 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// As the track of a joint; velocities that do not agree with the positions are left out.
-    pub(super) fn into_track(mut self, kind: JointKind, degrees: bool) -> Option<Track> {
-        if degrees && kind == JointKind::Turns {
-            let all = self.values.iter_mut().chain(&mut self.velocity);
-            all.for_each(|value| *value = radians_from_degrees(*value));
+    /// As the track of a joint, of values in units of so much; velocities that do not agree with the positions are left out.
+    pub(super) fn into_track(mut self, kind: JointKind, scale: f64) -> Option<Track> {
+        if (scale - 1.0).abs() > 0.0 {
+            self.values.iter_mut().chain(&mut self.velocity).for_each(|value| *value *= scale);
         }
         let track = Track::on(&self.instants, kind, self.name, self.values).ok()?;
         Some(track.with_velocity_that_agrees(self.velocity))
@@ -163,48 +163,61 @@ const FASTEST: f64 = 200.0;
 /// neighbours that are calm by comparison.
 const FAST: f64 = 20.0;
 const FAR: f64 = 0.5;
-/// Less so, where more neighbours are as calm, on either side: noise is not.
-const LESS: f64 = 0.25;
-const NEAR: f64 = 0.05;
+/// Less so, where more neighbours are as calm, on either side: noise is not. An encoder of few steps may flicker by some
+/// of them.
+const LESS_FAST: f64 = 5.0;
+const LESS_FAR: f64 = 0.05;
 const NEIGHBOURS: usize = 8;
+const STEPS: f64 = 10.0;
 /// Steps of the neighbours by the sample's own.
 const CALM: f64 = 0.1;
 /// Larger than any position, in radians, degrees or metres.
 const LARGEST: f64 = 1e6;
 
-/// Whether sample `k` of `n` is no position of a joint: too large, or off both its neighbours faster than any
-/// joint moves. A full turn there and back is a joint without end stops.
-fn is_spike(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usize) -> f64) -> bool {
-    if at(k).abs() > LARGEST {
-        return true;
-    }
+/// How far a sample is from both its neighbours on one side, and how fast; `None` at the ends, on the way, or by a full
+/// turn, which is a joint without end stops.
+fn off(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usize) -> f64) -> Option<[f64; 2]> {
     if k == 0 || k + 1 >= n {
-        return false;
+        return None;
     }
     let (there, back) = (at(k) - at(k - 1), at(k + 1) - at(k));
-    if there * back >= 0.0 {
-        return false;
-    }
-    let (before_s, after_s) = (t_s(k) - t_s(k - 1), t_s(k + 1) - t_s(k));
     let turn = || [TAU, 360.0].iter().any(|turn| (there.abs() - turn).abs() < 0.1 * turn);
-    let faster = |speed: f64| there.abs() > speed * before_s && back.abs() > speed * after_s;
-    let least = there.abs().min(back.abs());
-    let step = |i: usize| (at(i + 1) - at(i)).abs();
-    let alone = |neighbours: usize| {
-        let calm = |step: f64| step < CALM * least;
-        calm((at(k + 1) - at(k - 1)).abs())
-            && (k.saturating_sub(neighbours + 1)..k - 1).all(|i| calm(step(i)))
-            && (k + 1..(k + 1 + neighbours).min(n - 1)).all(|i| calm(step(i)))
-    };
-    let far = least > FAR && faster(FAST) && alone(1);
-    let near = || least > NEAR && faster(LESS * FAST) && n > 2 * NEIGHBOURS && alone(NEIGHBOURS);
-    (faster(FASTEST) || far || near()) && !turn()
+    if there * back >= 0.0 || turn() {
+        return None;
+    }
+    let speed = (there.abs() / (t_s(k) - t_s(k - 1))).min(back.abs() / (t_s(k + 1) - t_s(k)));
+    Some([there.abs().min(back.abs()), speed])
+}
+
+/// Whether so many neighbours on either side of a sample are calm by how far it is off.
+fn is_alone(k: usize, n: usize, neighbours: usize, far: f64, at: impl Fn(usize) -> f64) -> bool {
+    let calm = |a: usize, b: usize| (at(b) - at(a)).abs() < CALM * far;
+    calm(k - 1, k + 1)
+        && (k.saturating_sub(neighbours + 1)..k - 1).all(|i| calm(i, i + 1))
+        && (k + 1..(k + 1 + neighbours).min(n - 1)).all(|i| calm(i, i + 1))
+}
+
+/// Whether sample `k` of `n` is no position of a joint: too large, or off both its neighbours faster than any
+/// joint moves.
+fn is_spike(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usize) -> f64) -> bool {
+    at(k).abs() > LARGEST
+        || off(k, n, t_s, &at).is_some_and(|[far, speed]| {
+            speed > FASTEST || far > FAR && speed > FAST && is_alone(k, n, 1, far, at)
+        })
+}
+
+/// Whether it may be one: less far off, between more neighbours that are calm.
+fn may_be_spike(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usize) -> f64) -> bool {
+    n > 2 * NEIGHBOURS
+        && off(k, n, t_s, &at).is_some_and(|[far, speed]| {
+            far > LESS_FAR && speed > LESS_FAST && is_alone(k, n, NEIGHBOURS, far, at)
+        })
 }
 
 /// Whether no value is a spike or no number because none is large and no step is: a quick look that spares the closer
 /// one. It has no branch on any value, so that the compiler takes several at once.
 fn is_calm(values: &[f64], shortest_s: f64) -> bool {
-    let step = NEAR.min(FASTEST * shortest_s);
+    let step = LESS_FAR.min(FASTEST * shortest_s);
     let near = |value: f64| value.abs() <= LARGEST;
     let pairs = values.iter().zip(values.get(1..).unwrap_or_default());
     pairs.fold(values.last().is_none_or(|last| near(*last)), |calm, (here, next)| {
@@ -214,8 +227,18 @@ fn is_calm(values: &[f64], shortest_s: f64) -> bool {
 
 /// Drops samples that no joint can have; returns how many.
 fn drop_spikes(kept: &mut Vec<usize>, t_s: &[f64], at: impl Fn(usize) -> f64) -> u64 {
-    let spike = |k: usize| is_spike(k, kept.len(), |k| t_s[kept[k]], |k| at(kept[k]));
-    let spikes: Vec<usize> = (0..kept.len()).filter(|&k| spike(k)).collect();
+    let (n, t_s, value) = (kept.len(), |k: usize| t_s[kept[k]], |k: usize| at(kept[k]));
+    let mut spikes: Vec<usize> = (0..n).filter(|&k| is_spike(k, n, t_s, value)).collect();
+    let maybe: Vec<usize> = (0..n).filter(|&k| may_be_spike(k, n, t_s, value)).collect();
+    if !maybe.is_empty() {
+        let beside = |k: usize| maybe.binary_search(&k).is_ok() || maybe.binary_search(&(k + 1)).is_ok();
+        let steps = (0..n - 1).filter(|&k| !beside(k)).map(|k| (value(k + 1) - value(k)).abs());
+        let smallest = steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
+        let far = |k: &usize| (value(*k) - value(k - 1)).abs() > STEPS * smallest;
+        spikes.extend(maybe.iter().copied().filter(far));
+        spikes.sort_unstable();
+        spikes.dedup();
+    }
     let mut k = 0;
     kept.retain(|_| {
         k += 1;
@@ -254,6 +277,8 @@ mod tests {
         assert_eq!((dropped(moving), dropped(|k| moving(k) + spike(k))), (0, 3));
         let noise = |k: usize| 0.1 * ((k * 7919 + k * k * 31) % 101) as f64 / 101.0;
         assert_eq!(dropped(noise), 0);
+        let flickers = |k: usize| 0.1 * (k / 90) as f64 + if k == 30 { 0.1 } else { 0.0 };
+        assert_eq!(dropped(flickers), 0, "an encoder of few steps");
         assert_eq!(dropped(|k| if k >= 100 { 0.5 } else { 0.2 }), 0, "a step");
         assert_eq!(
             dropped(|k| 0.2 + 0.09 * f64::from(u8::from((100..102).contains(&k)))),
