@@ -43,23 +43,18 @@ pub(super) fn stops(planned: &Series, measured: &Series) -> Vec<Stop> {
     }
     let mut found = Vec::new();
     for [from_s, to_s] in standing(&joints, [first_s, last_s]) {
-        let goes_on = |(plan, came): &&(&Track, &Track)| {
-            let missed = travel(plan, [from_s + LAGS_S, to_s - LAGS_S]) - travel(came, [from_s, to_s]);
-            missed > least(plan.kind(), MOVES)
-        };
         let for_good = to_s + STEP_S > last_s;
         // One that stands where its plan rests may be late.
-        let moves = |[a_s, b_s]: [f64; 2]| {
-            joints.iter().any(|(plan, _)| travel(plan, [a_s, b_s]) > WAY * least(plan.kind(), MOVES))
+        let on_its_way = joints.iter().any(|(plan, _)| {
+            travel(plan, [from_s - STEP_S, from_s + STEP_S]) > WAY * least(plan.kind(), MOVES)
+        });
+        let left_behind = |joint: &&(&Track, &Track)| match (for_good, on_its_way) {
+            (true, true) => goes_on(joint, [from_s, to_s]) || stays_off(joint, [from_s, last_s]),
+            (false, true) => goes_on(joint, [from_s, to_s]) || passes(joint, [from_s, to_s]),
+            (true, false) => goes_on(joint, [from_s, to_s]),
+            (false, false) => false,
         };
-        let on_its_way = moves([from_s - STEP_S, from_s + STEP_S]);
-        let passed_by = |joint: &&(&Track, &Track)| {
-            on_its_way
-                && to_s >= from_s + LAGS_S
-                && if for_good { stays_off(joint, [from_s, last_s]) } else { passes(joint, [from_s, to_s]) }
-        };
-        let way = |joint: &&(&Track, &Track)| goes_on(joint) && (for_good || on_its_way) || passed_by(joint);
-        let names: Vec<&str> = joints.iter().filter(way).map(|(plan, _)| plan.name()).collect();
+        let names: Vec<&str> = joints.iter().filter(left_behind).map(|(plan, _)| plan.name()).collect();
         if names.is_empty() {
             continue;
         }
@@ -81,12 +76,19 @@ fn least(kind: JointKind, of: [f64; 2]) -> f64 {
     }
 }
 
+/// Whether a plan goes far while its joint stands, by more than machines lag at either end.
+fn goes_on((plan, came): &(&Track, &Track), [from_s, to_s]: [f64; 2]) -> bool {
+    let missed = travel(plan, [from_s + LAGS_S, to_s - LAGS_S]) - travel(came, [from_s, to_s]);
+    missed > least(plan.kind(), MOVES)
+}
+
 /// Whether a plan goes far while its joint stands, and never rests meanwhile; the joint had gone along with it.
 fn passes((plan, came): &(&Track, &Track), [from_s, to_s]: [f64; 2]) -> bool {
     let moves = least(plan.kind(), MOVES);
     let steps = (0..).map(|k| from_s + STEP_S * f64::from(k)).take_while(|at_s| at_s + STEP_S <= to_s);
     let went = |track: &Track| track.held_at(from_s).position - track.held_at(from_s - LAGS_S).position;
-    travel(plan, [from_s, to_s]) - travel(came, [from_s, to_s]) > moves
+    to_s >= from_s + LAGS_S
+        && travel(plan, [from_s, to_s]) - travel(came, [from_s, to_s]) > moves
         && went(plan) * went(came) > 0.0
         && steps.into_iter().all(|at_s| travel(plan, [at_s, at_s + STEP_S]) > 0.5 * WAY * moves)
 }
@@ -99,7 +101,8 @@ fn stays_off((plan, came): &(&Track, &Track), [from_s, last_s]: [f64; 2]) -> boo
     let first_s = came.t_s().first().copied().unwrap_or(from_s);
     let before = (2..).map(|k| first_s + STEP_S * f64::from(k)).take_while(|at_s| *at_s < from_s - LAGS_S);
     let usual = before.filter(|at_s| rests(*at_s)).map(off).fold(0.0, f64::max);
-    off(last_s) > (USUAL * usual).max(OFF * least(plan.kind(), MOVES))
+    last_s >= from_s + LAGS_S
+        && off(last_s) > (USUAL * usual).max(OFF * least(plan.kind(), MOVES))
         && travel(plan, [from_s, last_s]) > 0.5 * off(last_s)
 }
 
