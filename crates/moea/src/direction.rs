@@ -174,11 +174,16 @@ fn fitting(objectives: usize, wanted: usize) -> Result<Vec<f64>, MoeaError> {
 pub(super) fn neighbours(directions: &[f64], m: usize, near: usize) -> Vec<usize> {
     let all: Vec<&[f64]> = directions.chunks_exact(m.max(1)).collect();
     let mut flat = Vec::with_capacity(all.len() * near);
+    let by_distance = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+    let near = near.min(all.len());
     for own in &all {
-        let apart = |j: usize| all[j].iter().zip(*own).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-        let mut order: Vec<usize> = (0..all.len()).collect();
-        order.sort_by(|&a, &b| apart(a).total_cmp(&apart(b)));
-        flat.extend_from_slice(&order[..near.min(order.len())]);
+        let apart = |other: &&[f64]| other.iter().zip(*own).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        let mut order: Vec<(f64, usize)> = all.iter().map(apart).zip(0..).collect();
+        if near < order.len() {
+            order.select_nth_unstable_by(near, by_distance);
+        }
+        order[..near].sort_unstable_by(by_distance);
+        flat.extend(order[..near].iter().map(|(_, other)| other));
     }
     flat
 }

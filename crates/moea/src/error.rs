@@ -12,8 +12,10 @@ pub enum MoeaError {
     /// Nothing to minimise.
     #[error("the problem has no objectives")]
     NoObjectives,
-    /// A bound is not a finite number, or lower and upper are swapped.
-    #[error("variable {index} cannot lie between {lower} and {upper}")]
+    /// A bound is no number of at most 1e300, or lower and upper are swapped.
+    #[error(
+        "variable {index} cannot lie between {lower:e} and {upper:e}; bounds are numbers of at most 1e300, the lower first"
+    )]
     Bounds {
         /// Index of the variable.
         index: usize,
@@ -32,7 +34,7 @@ pub enum MoeaError {
     },
     /// No whole number lies within the bounds of an integer, or they are too large.
     #[error(
-        "variable {index} is an integer, of which none is between {lower} and {upper} or one exceeds 1e15"
+        "variable {index} is an integer, of which none is between {lower:e} and {upper:e} or one exceeds 1e15"
     )]
     Integer {
         /// Index of the variable.
@@ -123,14 +125,16 @@ pub enum MoeaError {
         constraints: Option<usize>,
     },
     /// Values told again, or before anybody asked.
-    #[error("after {evaluations} evaluations values were told of members that were not asked for")]
+    #[error(
+        "after {evaluations} evaluations values were told of members that were not asked for; call `ask` before each `tell`"
+    )]
     NotAsked {
         /// Evaluations told so far.
         evaluations: u64,
     },
     /// A record is of another run.
     #[error(
-        "after {evaluation} evaluations the record is of a run with other settings, or of another version"
+        "after {evaluation} evaluations the record is of a run with other settings (with a budget, its length is one), or of another version"
     )]
     Record {
         /// Evaluations that agree.

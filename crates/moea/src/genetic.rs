@@ -16,12 +16,17 @@ pub(super) struct Streams {
 }
 
 /// An algorithm as the engine drives it.
-pub(super) trait Method {
+pub(super) trait Method: Send {
     /// Takes the evaluated first population; may reorder it.
     fn begin(&mut self, population: &mut Population, streams: &mut Streams);
 
     /// Children per step for a population of `n`.
     fn batch(&self, n: usize) -> usize;
+
+    /// Steps of a generation of a population of `n`.
+    fn steps(&self, _: usize) -> usize {
+        1
+    }
 
     /// Writes at most `wanted` children, not evaluated, into the empty `children`.
     fn breed(

@@ -47,6 +47,22 @@ pub trait Mating: Send {
     }
 }
 
+impl<M: Mating + ?Sized> Mating for Box<M> {
+    fn pair(
+        &mut self,
+        context: &MatingContext<'_>,
+        children: usize,
+        rng: &mut Random,
+        pairs: &mut Vec<Pair>,
+    ) {
+        (**self).pair(context, children, rng, pairs);
+    }
+
+    fn reserved(&self) -> usize {
+        (**self).reserved()
+    }
+}
+
 /// Every member in random order is a first parent; its mate is any member.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Permutation {

@@ -19,6 +19,9 @@ use super::{
 /// Weight of the distance aside from the direction.
 const PENALTY: f64 = 5.0;
 
+/// Least span of an objective, as a share of the range that it was ever seen in.
+const LEAST_SPAN: f64 = 1e-3;
+
 /// State of a run; member i belongs to direction i.
 pub(super) struct Decomposition {
     m: usize,
@@ -72,12 +75,15 @@ impl Decomposition {
     }
 
     /// Spans to the intercepts, as NSGA-III finds them: the range of the population alone would
-    /// shrink with it.
+    /// shrink with it. None is less than a share of what was ever seen: without niches a population that lost an
+    /// objective's extent would never find it again.
     fn learn_span(&mut self, population: &Population) {
         self.feasibility.split(population);
         self.sorting.sort(population, &self.feasibility.feasible);
         self.normalizer.update(population, &self.feasibility.feasible, self.sorting.front(0));
-        self.span.copy_from_slice(self.normalizer.span());
+        let known = self.normalizer.span().iter().zip(self.normalizer.seen());
+        self.span.clear();
+        self.span.extend(known.map(|(span, seen)| span.max(LEAST_SPAN * seen)));
     }
 
     /// Distance along direction `j` and, penalised, aside from it.
@@ -107,6 +113,10 @@ impl Method for Decomposition {
 
     fn batch(&self, _: usize) -> usize {
         1
+    }
+
+    fn steps(&self, n: usize) -> usize {
+        n
     }
 
     fn breed(

@@ -55,8 +55,12 @@ pub const ALGORITHMS: [NamedAlgorithm; 13] = [
 ];
 
 impl NamedAlgorithm {
-    /// The algorithm of a name, in any case.
+    /// The algorithm of a name or title, in any case and with any marks between its letters and digits: `nsga3-fo`, `NSGA-III`.
     pub fn find(name: &str) -> Option<Self> {
-        ALGORITHMS.into_iter().find(|named| named.name.eq_ignore_ascii_case(name))
+        let bare = |text: &str| -> String {
+            text.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
+        };
+        let wanted = bare(name);
+        ALGORITHMS.into_iter().find(|named| [named.name, named.title].iter().any(|own| bare(own) == wanted))
     }
 }

@@ -126,6 +126,11 @@ impl Normalizer {
         }
     }
 
+    /// Ranges that the objectives of feasible members were ever seen in, `[m]`.
+    pub(super) fn seen(&self) -> impl Iterator<Item = f64> {
+        self.worst.iter().zip(&self.ideal).map(|(worst, ideal)| worst - ideal)
+    }
+
     /// What one unit of each normalised objective is worth, `[m]`.
     pub(super) fn span(&self) -> &[f64] {
         &self.span

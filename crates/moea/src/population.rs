@@ -77,25 +77,30 @@ impl Population {
         self.violation(i) <= 0.0
     }
 
+    /// Variables of all members, `[n][variables]` in one slice.
+    pub fn all_x(&self) -> &[f64] {
+        &self.x
+    }
+
     /// Objectives of all members, `[n][objectives]` in one slice.
     pub fn all_f(&self) -> &[f64] {
         &self.f
     }
 
-    /// Feasible members of which only the objectives are known, `[n][objectives]` in one slice.
+    /// Feasible members of which only the objectives are known, `[n][objectives]` in one slice. Zeros lose their sign.
     pub fn from_objectives(f: &[f64], objectives: usize) -> Self {
         let n = f.len() / objectives.max(1);
-        let f = f[..n * objectives].to_vec();
+        let f = f[..n * objectives].iter().map(|f| f + 0.0).collect();
         Self { variables: 0, objectives, x: Vec::new(), f, violation: vec![0.0; n], fingerprint: vec![0; n] }
     }
 
     /// Adds a member that has been evaluated: `x` `[variables]`, `f` `[objectives]`. One of another
-    /// shape is left out.
+    /// shape is left out; a violation that is no number is infinite, and zeros of objectives lose their sign.
     pub fn push(&mut self, x: &[f64], f: &[f64], violation: f64) {
         if x.len() == self.variables && f.len() == self.objectives {
             self.x.extend_from_slice(x);
-            self.f.extend_from_slice(f);
-            self.violation.push(violation);
+            self.f.extend(f.iter().map(|f| f + 0.0));
+            self.violation.push(if violation.is_nan() { f64::INFINITY } else { violation });
             self.fingerprint.push(fingerprint(x));
         }
     }

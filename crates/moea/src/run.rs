@@ -1,6 +1,6 @@
 //! A run step by step: members are asked for and their values told.
 
-use std::cell::Cell;
+use std::{cell::Cell, fmt};
 
 use super::{
     MoeaError, Outcome, Progress, Record, Settings, Variables,
@@ -48,6 +48,17 @@ pub struct Run {
     scales: Option<Scales>,
     /// Whether somebody asked since values were told.
     asked: Cell<bool>,
+}
+
+impl fmt::Debug for Run {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Progress { generation, evaluations, .. } = self.progress();
+        write!(
+            f,
+            "Run {{ generation: {generation}, evaluations: {evaluations}, is_over: {} }}",
+            self.is_over()
+        )
+    }
 }
 
 impl Run {

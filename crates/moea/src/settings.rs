@@ -48,9 +48,9 @@ impl Algorithm {
 /// When a run ends, if no observer ends it before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Budget {
-    /// After exactly this many evaluations.
+    /// After exactly this many evaluations, one at least.
     Evaluations(u64),
-    /// After this many generations, the first population included.
+    /// After this many generations, the first population included, which there always is.
     Generations(u64),
     /// Only when the observer says so.
     Observer,
@@ -73,9 +73,10 @@ pub struct Settings {
     pub operators: Operators,
     /// Seed of every random number drawn.
     pub seed: u64,
-    /// Members the archive of non-dominated solutions holds at most; 0 for no archive.
+    /// Members the archive of feasible, non-dominated solutions holds at most, but one an objective at least; 0 for no
+    /// archive.
     pub archive: usize,
-    /// First members; the rest are drawn at random. Values outside the bounds are moved to them, those of
+    /// First members, as many as the population has at most; the rest are drawn at random. Values outside the bounds are moved to them, those of
     /// integers to the nearest.
     pub initial: Vec<Vec<f64>>,
 }

@@ -80,7 +80,7 @@ impl State {
         pending.clear();
         let batch = method.batch(self.n);
         let room = usize::try_from(self.counted.most - self.counted.evaluations).unwrap_or(usize::MAX);
-        if self.step < self.n / batch && room > 0 {
+        if self.step < method.steps(self.n) && room > 0 {
             method.breed(population, self.counted.share(self.n), batch.min(room), pending, streams);
         }
         !pending.is_empty()

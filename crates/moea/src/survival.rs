@@ -83,6 +83,19 @@ pub trait Survival: Send {
     );
 }
 
+impl<S: Survival + ?Sized> Survival for Box<S> {
+    fn select(
+        &mut self,
+        merged: &Population,
+        keep: usize,
+        rng: &mut Random,
+        chosen: &mut Vec<usize>,
+        ranking: &mut Ranking,
+    ) {
+        (**self).select(merged, keep, rng, chosen, ranking);
+    }
+}
+
 /// Feasible members of a population, and the others by growing violation.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Feasibility {

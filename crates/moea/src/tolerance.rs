@@ -27,6 +27,8 @@ use super::{Population, Progress, indicator::igd_plus};
 pub struct Tolerance {
     least: f64,
     period: u64,
+    /// Generation watched last.
+    generation: u64,
     /// Front of the comparison before, `[n][objectives]`.
     before: Vec<f64>,
     /// Least and largest value of each objective of the feasible members so far, `[objectives]`.
@@ -37,12 +39,19 @@ impl Tolerance {
     /// Ends a run that gains no more than `least` (a share of the front's range) within `period`
     /// generations.
     pub fn new(least: f64, period: u64) -> Self {
-        Self { least, period: period.max(1), before: Vec::new(), seen: Vec::new() }
+        Self { least, period: period.max(1), generation: 0, before: Vec::new(), seen: Vec::new() }
     }
 
-    /// Breaks if the run has gained too little.
+    /// Breaks if the run has gained too little. A generation that is watched again tells nothing new, and an earlier one,
+    /// or another number of objectives, is of another run, watched from its start.
     pub fn watch(&mut self, progress: &Progress<'_>) -> ControlFlow<()> {
         let population = progress.population;
+        if progress.generation < self.generation || population.objectives() != self.seen.len() {
+            (self.before, self.seen) = (Vec::new(), Vec::new());
+        } else if progress.generation == self.generation {
+            return ControlFlow::Continue(());
+        }
+        self.generation = progress.generation;
         self.see(population);
         if !progress.generation.is_multiple_of(self.period) {
             return ControlFlow::Continue(());

@@ -34,6 +34,18 @@ impl Variables {
     }
 }
 
+impl From<Vec<Bounds>> for Variables {
+    fn from(bounds: Vec<Bounds>) -> Self {
+        Self::new(bounds, Vec::new())
+    }
+}
+
+impl<const N: usize> From<[Bounds; N]> for Variables {
+    fn from(bounds: [Bounds; N]) -> Self {
+        bounds.to_vec().into()
+    }
+}
+
 impl From<&[Bounds]> for Variables {
     fn from(bounds: &[Bounds]) -> Self {
         Self::new(bounds.to_vec(), Vec::new())
@@ -51,6 +63,9 @@ impl From<&Vec<Bounds>> for Variables {
         bounds.as_slice().into()
     }
 }
+
+/// Largest size of a bound: sums and spreads of values within are numbers.
+const FARTHEST: f64 = 1e300;
 
 /// Largest size of an integer: all below are numbers, and so are their halves.
 const LARGEST: f64 = 1e15;
@@ -80,7 +95,7 @@ impl Space {
         whole.resize(bounds.len(), false);
         for (index, (bounds, whole)) in bounds.iter_mut().zip(&whole).enumerate() {
             let (lower, upper) = *bounds;
-            if !(lower.is_finite() && upper.is_finite() && lower <= upper && (upper - lower).is_finite()) {
+            if !(lower.abs() <= FARTHEST && upper.abs() <= FARTHEST && lower <= upper) {
                 return Err(MoeaError::Bounds { index, lower, upper });
             }
             if *whole {

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use moea::{
-    ALGORITHMS, Budget, Crowding, Directions, Settings, Tournament, benchmark::Benchmark, optimise,
-    optimise_with, silent,
+    ALGORITHMS, Budget, Crowding, Directions, Mating, MatingContext, Pair, Random, Settings, Survival,
+    Tournament, benchmark::Benchmark, optimise, optimise_with, silent,
 };
 
 #[test]
@@ -25,6 +25,23 @@ fn members_gather_where_own_directions_point() {
     assert!(own > 0.8 && usual < 0.3, "{own} {usual}");
 }
 
+/// Leaves half of the slots of a population of twenty.
+struct Half;
+impl Mating for Half {
+    fn pair(
+        &mut self,
+        context: &MatingContext<'_>,
+        children: usize,
+        rng: &mut Random,
+        pairs: &mut Vec<Pair>,
+    ) {
+        Tournament::default().pair(context, children, rng, pairs);
+    }
+    fn reserved(&self) -> usize {
+        10
+    }
+}
+
 #[test]
 fn a_wanted_population_is_kept_where_no_directions_need_members() {
     let problem = Benchmark::named("DTLZ2", 3).unwrap();
@@ -41,10 +58,19 @@ fn a_wanted_population_is_kept_where_no_directions_need_members() {
             assert_eq!(members(settings), want, "{} {wanted}", named.name);
         }
     }
-    // A mating and a survival of the caller's.
+    // A mating and a survival of the caller's, chosen as it runs.
     let settings = Settings { budget: Budget::Generations(2), population: Some(20), ..Settings::default() };
-    let run = optimise_with(&problem, &settings, Tournament::default(), Crowding::default(), silent);
+    let run = optimise_with(
+        &problem,
+        &settings,
+        Box::new(Tournament::default()) as Box<dyn Mating>,
+        Box::new(Crowding::default()) as Box<dyn Survival>,
+        silent,
+    );
     assert_eq!(run.unwrap().population.len(), 20);
+    // Slots that a mating reserves are not filled.
+    let run = optimise_with(&problem, &settings, Half, Crowding::default(), silent).unwrap();
+    assert_eq!(run.evaluations, 30);
 }
 
 #[test]

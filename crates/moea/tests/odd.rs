@@ -123,6 +123,10 @@ fn populations_archives_and_sorting_take_any_number() {
     sorting.sort(&one, &[0, 1, usize::MAX]);
     assert_eq!((sorting.count(), sorting.front(0), sorting.front(9)), (1, &[0][..], &[][..]));
     assert!(Population::from_objectives(&[1.0], usize::MAX).is_empty());
+    assert_eq!(Population::from_objectives(&[-0.0, 2.0, 0.0, 1.0], 2).front(), [1], "zero has no sign");
+    let mut nan = Population::with_capacity(0, 1, 1);
+    nan.push(&[], &[-0.0], -NAN);
+    assert!(nan.violation(0) == INF && nan.f(0)[0].is_sign_positive());
     let mut archive = Archive::new(usize::MAX, usize::MAX, 0);
     archive.extend(&one);
     assert!(archive.into_population().is_empty());
@@ -136,7 +140,9 @@ fn indicators_take_any_number() {
     for set in sets {
         for reference in [&[][..], &[1.0], &[NAN, 1.0], &[1.0, 1.0], &[1.0; 3], &[1e300; 3], &[1.0; 7]] {
             let volume = hypervolume(set, reference);
-            assert!(volume >= 0.0, "{set:?} {reference:?}: {volume}");
+            let fits =
+                reference.iter().all(|r| r.is_finite()) && set.len().is_multiple_of(reference.len().max(1));
+            assert!(volume >= 0.0 || !fits, "{set:?} {reference:?}: {volume}");
             for contribution in contributions(set, reference) {
                 assert!(contribution >= 0.0, "{set:?} {reference:?}: {contribution}");
             }

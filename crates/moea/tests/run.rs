@@ -53,14 +53,14 @@ fn a_run_that_asks_finds_what_optimise_finds_and_is_taken_up_from_its_record() {
             let settings =
                 Settings { algorithm: named.algorithm, budget, archive: 40, ..Settings::default() };
             let want = optimise(&problem, &settings, silent).unwrap();
-            let mut run = Run::new(&problem.bounds(), 3, &settings).unwrap();
+            let mut run = Run::new(problem.bounds(), 3, &settings).unwrap();
             for _ in 0..3 {
                 tell(&problem, &mut run);
             }
             let written = serde_json::to_string(run.record()).unwrap();
             let made = run.progress().evaluations;
             let read: Record = serde_json::from_str(&written).unwrap();
-            let mut run = Run::resume(&problem.bounds(), 3, &settings, &read).unwrap();
+            let mut run = Run::resume(problem.bounds(), 3, &settings, &read).unwrap();
             assert_eq!(run.progress().evaluations, made);
             while !run.is_over() {
                 tell(&problem, &mut run);
@@ -75,7 +75,7 @@ fn a_run_that_asks_finds_what_optimise_finds_and_is_taken_up_from_its_record() {
 fn values_and_records_that_do_not_fit_are_refused_and_change_nothing() {
     let problem = problem();
     let settings = Settings { budget: Budget::Generations(3), ..Settings::default() };
-    let mut run = Run::new(&problem.bounds(), 3, &settings).unwrap();
+    let mut run = Run::new(problem.bounds(), 3, &settings).unwrap();
     let asked: Vec<Vec<f64>> = run.ask().iter().map(|x| x.to_vec()).collect();
     let refused = MoeaError::Told { objectives: 3, violations: 92, members: 92, wanted: 276 };
     assert_eq!(run.tell(&[0.0; 3], &[0.0; 92]), Err(refused));
@@ -83,14 +83,14 @@ fn values_and_records_that_do_not_fit_are_refused_and_change_nothing() {
     assert!(run.progress().population.is_empty());
     tell(&problem, &mut run);
     tell(&problem, &mut run);
-    let resumed = |settings: &Settings| Run::resume(&problem.bounds(), 3, settings, run.record()).map(|_| ());
+    let resumed = |settings: &Settings| Run::resume(problem.bounds(), 3, settings, run.record()).map(|_| ());
     assert_eq!(resumed(&settings), Ok(()));
     assert_eq!(resumed(&Settings { seed: 2, ..settings.clone() }), Err(MoeaError::Record { evaluation: 0 }));
     let shorter = Settings { budget: Budget::Generations(1), ..settings.clone() };
     assert_eq!(resumed(&shorter), Err(MoeaError::Record { evaluation: 92 }));
     // Other mating, other children.
     let mut other =
-        Run::with(&problem.bounds(), 3, &settings, Tournament::default(), moea::Crowding::default()).unwrap();
+        Run::with(problem.bounds(), 3, &settings, Tournament::default(), moea::Crowding::default()).unwrap();
     assert_eq!(other.replay(run.record()), Err(MoeaError::Record { evaluation: 92 }));
 }
 
@@ -98,7 +98,7 @@ fn values_and_records_that_do_not_fit_are_refused_and_change_nothing() {
 fn values_are_told_once_and_of_members_that_were_asked_for() {
     // NSGA-III breeds as many as there are members: the same values fit again.
     let settings = Settings { algorithm: moea::Algorithm::Nsga3, ..Settings::default() };
-    let mut run = Run::new(&problem().bounds(), 3, &settings).unwrap();
+    let mut run = Run::new(problem().bounds(), 3, &settings).unwrap();
     let (objectives, violations) = ([1.0; 276], [0.0; 92]);
     assert_eq!(run.tell(&objectives, &violations), Err(MoeaError::NotAsked { evaluations: 0 }));
     assert_eq!(run.ask().len(), 92);
@@ -112,12 +112,12 @@ fn values_are_told_once_and_of_members_that_were_asked_for() {
 fn a_record_is_of_a_new_run_with_the_same_settings_to_its_last_value() {
     let problem = problem();
     let settings = Settings { budget: Budget::Generations(4), ..Settings::default() };
-    let mut run = Run::new(&problem.bounds(), 3, &settings).unwrap();
+    let mut run = Run::new(problem.bounds(), 3, &settings).unwrap();
     tell(&problem, &mut run);
     // The first members are the same by any algorithm, those that they breed are not.
     let other = Settings { algorithm: moea::Algorithm::Nsga2, ..settings.clone() };
     let refused = Err(MoeaError::Record { evaluation: 92 });
-    assert_eq!(Run::resume(&problem.bounds(), 3, &other, run.record()).map(|_| ()), refused);
+    assert_eq!(Run::resume(problem.bounds(), 3, &other, run.record()).map(|_| ()), refused);
     // Nor is a run that was told already told again.
     let record = run.record().clone();
     assert_eq!(run.replay(&record), refused);
@@ -173,13 +173,13 @@ fn constraints_told_one_by_one_are_those_of_optimise_and_are_taken_up_from_a_rec
         let budget = Budget::Evaluations(1500);
         let settings = Settings { algorithm: named.algorithm, budget, ..Settings::default() };
         let want = optimise(&Sliver, &settings, silent).unwrap();
-        let mut run = Run::new(&Sliver.bounds(), 2, &settings).unwrap();
+        let mut run = Run::new(Sliver.bounds(), 2, &settings).unwrap();
         for _ in 0..2 {
             tell_each(&mut run);
         }
         let written = serde_json::to_string(run.record()).unwrap();
         let read: Record = serde_json::from_str(&written).unwrap();
-        let mut run = Run::resume(&Sliver.bounds(), 2, &settings, &read).unwrap();
+        let mut run = Run::resume(Sliver.bounds(), 2, &settings, &read).unwrap();
         while !run.is_over() {
             tell_each(&mut run);
         }
@@ -189,7 +189,7 @@ fn constraints_told_one_by_one_are_those_of_optimise_and_are_taken_up_from_a_rec
 
 #[test]
 fn the_number_of_constraints_does_not_change_in_a_run() {
-    let mut run = Run::new(&Sliver.bounds(), 2, &Settings::default()).unwrap();
+    let mut run = Run::new(Sliver.bounds(), 2, &Settings::default()).unwrap();
     assert_eq!(run.ask().len(), 100);
     let part = MoeaError::ToldEach { violations: 150, members: 100, constraints: None };
     assert_eq!(run.tell_each(&[0.5; 200], &[0.0; 150]), Err(part));

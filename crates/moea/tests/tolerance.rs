@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use moea::{
-    Bounds, Budget, Problem, Settings, Tolerance, benchmark::Benchmark, compare::Reference, optimise, silent,
+    Bounds, Budget, NamedAlgorithm, Problem, Run, Settings, Tolerance, benchmark::Benchmark,
+    compare::Reference, optimise, silent,
 };
 
 #[test]
@@ -18,6 +19,35 @@ fn a_run_ends_early_with_nearly_the_quality_of_a_long_one() {
         let [short, long] = [&ended, &long].map(|run| reference.measure(&run.population).hypervolume);
         assert!(ended.evaluations < 50_000, "{name}: {}", ended.evaluations);
         assert!(short > 0.97 * long, "{name}: {short} {long}");
+    }
+}
+
+#[test]
+fn a_tolerance_compares_each_generation_once_and_starts_anew_with_a_new_run() {
+    let problem = Benchmark::named("DTLZ2", 3).unwrap();
+    for algorithm in ["moead", "nsga3-fo"] {
+        let algorithm = NamedAlgorithm::find(algorithm).unwrap().algorithm;
+        let settings = Settings { algorithm, ..Settings::default() };
+        let mut tolerance = Tolerance::new(1e-3, 20);
+        let ends = |tolerance: &mut Tolerance| {
+            optimise(&problem, &settings, |progress| tolerance.watch(progress)).unwrap().evaluations
+        };
+        let once = ends(&mut tolerance);
+        assert_eq!(ends(&mut tolerance), once, "used again");
+        let mut run = Run::new(problem.bounds(), 3, &settings).unwrap();
+        let mut f = [0.0; 3];
+        while tolerance.watch(&run.progress()).is_continue() {
+            let told: Vec<f64> = run
+                .ask()
+                .into_iter()
+                .flat_map(|x| {
+                    problem.evaluate(x, &mut f, &mut Vec::default());
+                    f
+                })
+                .collect();
+            run.tell(&told, &vec![0.0; told.len() / 3]).unwrap();
+        }
+        assert_eq!(run.into_outcome().evaluations, once, "by a run");
     }
 }
 

@@ -21,7 +21,7 @@ fn directions(m: usize, count: usize) -> Vec<f64> {
     das_dennis(m, p).unwrap_or_default()
 }
 
-/// At most about `count` points of the front, spread over it, `[n][m]`.
+/// At most about `count` points of the front, spread over it, `[n][m]`; of WFG1 and WFG2 as many as their grid has.
 pub(super) fn points(problem: &Benchmark, count: usize) -> Vec<f64> {
     let (m, count) = (problem.objectives, count.clamp(1, MOST));
     match (problem.family, problem.number) {
