@@ -20,6 +20,11 @@ pub(crate) fn spreadsheet_cell(text: &str) -> Cow<'_, str> {
     start.chars().chain(text.chars().map(harmless)).collect::<String>().into()
 }
 
+/// The text of a cell that [`spreadsheet_cell`] wrote.
+pub(crate) fn of_spreadsheet_cell(cell: &str) -> &str {
+    cell.strip_prefix('\'').filter(|text| text.starts_with(['=', '+', '-', '@'])).unwrap_or(cell)
+}
+
 /// A path as an argument in a POSIX shell: quoted if it holds anything but plain characters. A name that starts with a
 /// dash would be taken for an option.
 pub(crate) fn shell_argument(path: impl AsRef<Path>) -> String {
@@ -61,6 +66,7 @@ mod tests {
             ("a\u{1b}]0;x\u{7}", "a\u{fffd}]0;x\u{fffd}"),
         ] {
             assert_eq!(spreadsheet_cell(text), cell);
+            assert!(of_spreadsheet_cell(cell) == text || text.contains('\u{1b}'), "{cell}");
         }
     }
 

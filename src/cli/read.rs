@@ -6,7 +6,7 @@ use clap::{ValueEnum, builder::PossibleValue};
 
 use super::number;
 use crate::{
-    log::{Cylinders, ReadOptions, Selector, SignalRole, TimeBase, TimeRange, WantedSignal},
+    log::{Cylinders, LengthUnit, ReadOptions, Selector, SignalRole, TimeBase, TimeRange, WantedSignal},
     render::kit::word,
     series::JointKind,
 };
@@ -51,9 +51,9 @@ pub(super) struct ReadArgs {
     #[arg(long = "measured-delay-ms", value_name = "MS", value_parser = number::delay_ns, allow_negative_numbers = true)]
     measured_delay_ns: Option<i64>,
 
-    /// Joints that slide: their positions are lengths in m
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
-    slides: Vec<String>,
+    /// Joints that slide: their positions are lengths in m, or in the unit behind the name: m, cm or mm
+    #[arg(long, value_name = "NAME[=UNIT],...", value_delimiter = ',', value_parser = slides)]
+    slides: Vec<(String, LengthUnit)>,
 
     /// Joints without end stops, whose angles wrap at full turns
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
@@ -103,7 +103,7 @@ impl ReadArgs {
             planned_in_degrees: self.planned_degrees,
             measured_in_degrees: self.measured_degrees,
             measured_delay_ns: self.measured_delay_ns.unwrap_or_default(),
-            slides: self.slides.clone(),
+            slides: self.slides.iter().cloned().collect(),
             continuous: self.continuous.clone(),
             cylinders: self.hydraulics.clone().map(|file| Cylinders {
                 file,
@@ -115,6 +115,20 @@ impl ReadArgs {
             ..ReadOptions::default()
         }
     }
+}
+
+/// `NAME`, of a joint in m, or `NAME=UNIT`.
+fn slides(text: &str) -> Result<(String, LengthUnit), String> {
+    let (joint, unit) = text.split_once('=').unwrap_or((text, "m"));
+    LengthUnit::parse(unit.trim()).map(|unit| (joint.trim().to_owned(), unit)).ok_or_else(|| {
+        format!("{text:?} is neither NAME nor NAME=UNIT with m, cm or mm, such as telescope=mm")
+    })
+}
+
+/// As [`slides`] reads it.
+fn length((joint, unit): &(String, LengthUnit)) -> String {
+    let unit = Some(unit.name()).filter(|_| *unit != LengthUnit::Metres);
+    unit.map_or_else(|| joint.clone(), |unit| format!("{joint}={unit}"))
 }
 
 impl ReadArgs {
@@ -135,7 +149,7 @@ impl ReadArgs {
             ("--from", end(self.from)),
             ("--to", end(self.to)),
             ("--measured-delay-ms", self.measured_delay_ns.map(|ns| (ns as f64 / 1e6).to_string())),
-            ("--slides", all(&self.slides)),
+            ("--slides", all(&self.slides.iter().map(length).collect::<Vec<_>>())),
             ("--continuous", all(&self.continuous)),
             ("--hydraulics", self.hydraulics.as_ref().map(|file| file.to_string_lossy().into_owned())),
             ("--as", named(self.joints_as.and_then(|what| what.to_possible_value()))),
@@ -207,7 +221,7 @@ mod tests {
     }
 
     const EVERY: &str = "--planned /a:b --measured /c --joints x,y --time publish --from 1.5 --to 9 \
-                         --measured-delay-ms=-2 --slides y --continuous x --hydraulics h.toml --as cylinders \
+                         --measured-delay-ms=-2 --slides y,z=mm --continuous x --hydraulics h.toml --as cylinders \
                          --planned-degrees --measured-degrees --command /d --valve /e";
 
     /// An option that is added and not typed again would be lost from the next command.

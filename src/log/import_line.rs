@@ -22,7 +22,10 @@ impl Given {
         let sides = [("--planned", planned), ("--measured", measured)];
         let columns =
             sides.map(|(option, all)| valued(option, &all.iter().filter_map(column).collect::<Vec<_>>()));
-        let slide = valued("--slides", &slides.iter().map(|joint| format!("{joint}=m")).collect::<Vec<_>>());
+        let slide = valued(
+            "--slides",
+            &slides.iter().map(|(joint, unit)| format!("{joint}={}", unit.name())).collect::<Vec<_>>(),
+        );
         let [first, second] = [options.planned_in_degrees, options.measured_in_degrees];
         let degrees = (first && second).then(|| "--degrees".to_owned());
         let of_log = planned.iter().chain(measured).any(|one| column(one).is_none());
@@ -99,7 +102,9 @@ fn output(table: &Path, log: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::options::TimeBase;
+    use std::collections::BTreeMap;
+
+    use crate::log::{csv::LengthUnit, options::TimeBase};
 
     #[test]
     fn a_line_repeats_what_import_takes_and_its_output_has_the_name_of_the_table() {
@@ -117,7 +122,7 @@ mod tests {
         let options = ReadOptions {
             planned: named(&["a=p1", "b=p2"]),
             measured: named(&["raw 1"]),
-            slides: vec!["a".to_owned()],
+            slides: BTreeMap::from([("a".to_owned(), LengthUnit::Metres)]),
             planned_in_degrees: true,
             measured_in_degrees: true,
             ..ReadOptions::default()

@@ -1,10 +1,10 @@
 //! Options of reading a log.
 
-use std::path::PathBuf;
+use std::{collections::BTreeMap, path::PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{range::TimeRange, write::Topics};
+use super::{csv::LengthUnit, range::TimeRange, write::Topics};
 use crate::series::{JointKind, Quantity};
 
 /// Topics, joints, clock and units, where the log alone does not determine them.
@@ -30,8 +30,8 @@ pub struct ReadOptions {
     pub measured_delay_ns: i64,
     /// Whether to read the speeds that come with measured positions, too.
     pub measured_velocities: bool,
-    /// Joints that slide, whose positions are in m; those that the log's URDF calls prismatic do anyway.
-    pub slides: Vec<String>,
+    /// Joints that slide, and the unit of their positions; those that the log's URDF calls prismatic do anyway, in m.
+    pub slides: BTreeMap<String, LengthUnit>,
     /// Joints without end stops, whose angle may wrap by a full turn; those that the log's URDF calls continuous may anyway.
     pub continuous: Vec<String>,
     /// What becomes of joints that cylinders turn.

@@ -1,6 +1,6 @@
 //! Options as callers give them: those of the command line for reading, as keywords; days and instants.
 
-use hydrotrace::log::{ReadOptions, Selector, SignalRole, TimeBase, WantedSignal};
+use hydrotrace::log::{LengthUnit, ReadOptions, Selector, SignalRole, TimeBase, WantedSignal};
 use pyo3::{
     exceptions::{PyTypeError, PyValueError},
     prelude::*,
@@ -29,7 +29,15 @@ pub(crate) fn read_options(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Rea
             "measured" => read.measured = selectors(&value)?,
             "joints" => read.joints = texts(&value)?,
             "time" => read.time_base = Some(clock(&value.extract::<String>()?)?),
-            "slides" => read.slides = texts(&value)?,
+            "slides" => {
+                for text in texts(&value)? {
+                    let (joint, unit) = text.split_once('=').unwrap_or((&text, "m"));
+                    let unit = LengthUnit::parse(unit).ok_or_else(|| {
+                        PyTypeError::new_err(format!("slides: {text:?} is no joint, nor joint=mm, =cm or =m"))
+                    })?;
+                    read.slides.insert(joint.to_owned(), unit);
+                }
+            }
             "continuous" => read.continuous = texts(&value)?,
             "planned_degrees" => read.planned_in_degrees = value.extract()?,
             "measured_degrees" => read.measured_in_degrees = value.extract()?,

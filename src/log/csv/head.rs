@@ -10,7 +10,10 @@ use super::{
     rows::{Rows, cell_text},
     scale::unit_named,
 };
-use crate::remark::{Code, Remarks};
+use crate::{
+    remark::{Code, Remarks},
+    text::of_spreadsheet_cell,
+};
 
 /// The names of the columns and the first rows below them.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -123,6 +126,7 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) ->
     found.is_short = is_short && found.sample.iter().all(holds);
     found.names.resize(dialect.width, String::new());
     for (name, number) in found.names.iter_mut().zip(numbered(dialect.width)) {
+        *name = of_spreadsheet_cell(name).to_owned();
         if name.is_empty() {
             *name = number;
         }

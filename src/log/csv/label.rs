@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::{
     Quantity, Role,
     letter::{Lettered, lettered},
-    name::joint_name,
+    name::{NAMELESS, joint_name},
     scale::{in_header, is_unclear, unit_named},
     unit::{ANOTHER, METRE, Measure, UNITLESS, Unit, split_suffix},
     within::take_unit,
@@ -141,8 +141,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let long = matches!(measure, Some(Measure::Length | Measure::LinearSpeed));
     let fits = long || matches!(measure, None | Some(Measure::Angle | Measure::AngularSpeed));
     let strong = quantity.is_some() && !long || means(Meaning::Joint);
-    let words = &words[topic(&words)..];
-    let joint = joint_name(words);
+    let (of_topic, words) = words.split_at(topic(&words));
+    let joint = Some(joint_name(words)).filter(|joint| joint != NAMELESS).unwrap_or_else(|| owner(of_topic));
     // Of a tool, not of a joint; such a position is told like that of a joint that slides.
     let place =
         role.is_some() && measure == Some(Measure::Length) && PLACE.contains(&joint.to_lowercase().as_str());
@@ -154,7 +154,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let letters = if stated == Some(METRE) { whole.get(topic(&whole)..).unwrap_or_default() } else { words };
     let lettered = role.is_none().then(|| lettered(letters)).flatten();
     let key = joint.to_lowercase();
-    // A quaternion has no unit; that it is meant shows where plan and measurement have it.
+    // A quaternion has no unit.
     let turns = unit.is_none() && QUATERNION.contains(&key.as_str());
     let unit = if turns { Some(UNITLESS) } else { unit };
     let strong = strong && !turns;
@@ -212,6 +212,15 @@ fn topic(words: &[Word<'_>]) -> usize {
         .rev()
         .find(|&at| states(&words[at]) && words[at + 1].slashed && of_all(at));
     at.map_or(0, |at| at + 1)
+}
+
+/// The joint whose controller has a topic: `/boom_controller/state/set_point`.
+fn owner(topic: &[Word<'_>]) -> String {
+    let says = |word: &Word<'_>| {
+        let known = OF_ALL.iter().chain(&["state", "states"]);
+        known.into_iter().all(|of_all| !word.text.eq_ignore_ascii_case(of_all))
+    };
+    joint_name(&topic[..topic.iter().rposition(says).map_or(0, |at| at + 1)])
 }
 
 fn own(name: &str) -> Option<(&str, Role)> {
@@ -290,6 +299,8 @@ mod tests {
             (plan, position, "joint_2".into(), None)
         );
         assert_eq!(said("/joint_states/position[2]").2, "joint_2");
+        assert_eq!(said("/arm/boom_controller/state/set_point"), (plan, None, "arm/boom".into(), None));
+        assert_eq!(said("/joint_controller/state/set_point").2, "joint");
         assert_eq!(said("joint_target_deg[0]"), (plan, position, "joint_0".into(), Some("deg")));
         assert_eq!(said("GVL.fActPos[3]"), (real, position, "GVL_3".into(), None));
         assert_eq!(

@@ -5,8 +5,11 @@ use super::word::{Meaning, Word};
 /// Words that say nothing behind one that says a role.
 const FILLERS: [&str; 4] = ["value", "values", "point", "state"];
 
+/// The joint of a header that names none.
+pub(super) const NAMELESS: &str = "joint";
+
 /// What is left of the words once role and quantity are gone; `joint_3` where that is a number,
-/// `joint` where nothing is left.
+/// [`NAMELESS`] where nothing is left.
 pub(super) fn joint_name(words: &[Word<'_>]) -> String {
     let mut name = String::new();
     let mut gap = false;
@@ -30,7 +33,7 @@ pub(super) fn joint_name(words: &[Word<'_>]) -> String {
         gap = false;
     }
     if name.is_empty() {
-        return "joint".to_owned();
+        return NAMELESS.to_owned();
     }
     if name.chars().all(|c| c.is_ascii_digit()) { format!("joint_{name}") } else { name }
 }

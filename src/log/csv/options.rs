@@ -80,11 +80,21 @@ impl LengthUnit {
         }
     }
 
-    pub(super) const fn name(self) -> &'static str {
+    /// Its name.
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Millimetres => "mm",
             Self::Centimetres => "cm",
             Self::Metres => "m",
+        }
+    }
+
+    /// How many metres it is.
+    pub(in crate::log) const fn metres(self) -> f64 {
+        match self {
+            Self::Millimetres => 1e-3,
+            Self::Centimetres => 1e-2,
+            Self::Metres => 1.0,
         }
     }
 }

@@ -46,7 +46,7 @@ pub(super) fn assemble(
     overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?;
     let plan_is_command = remark_choice(choice, options, &extracted.tables, &mut remarks);
     // Where they are the arm's, joints called x, y and z are no pose.
-    let axes_slide = kinds.learn_sliding(options, &extracted.metadata);
+    let axes_slide = kinds.learn_sliding(options, &extracted);
     kinds.sliding.extend(
         choice.of_poses(&extracted).then(|| AXES[..3].iter().map(ToString::to_string)).into_iter().flatten(),
     );
@@ -111,7 +111,7 @@ pub(super) fn assemble(
         turns::bring_to_turn(sides[0].1, &mut command.series, &options.continuous);
     }
     unset::of_sides(sides, &mut remarks);
-    repeated::of_measured(sides[1].1, &mut remarks);
+    repeated::of_sides(sides, &mut remarks);
     held::of_sides(choice, sides, &mut remarks);
     spoilt::of_sides(sides[0].1, sides[1].1, command.as_ref(), &mut remarks);
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);
@@ -268,7 +268,9 @@ impl Assembly {
             let found = self.samples(candidate, true, &pending, remarks);
             let tracks = found.into_iter().filter_map(|one| {
                 let kind = self.kinds.of(candidate.source, &one.name);
-                let scale = || self.extracted.scale(candidate.source, candidate.field, kind);
+                let given = self.kinds.unit_m(candidate.source, &one.name);
+                let scale =
+                    || given.unwrap_or_else(|| self.extracted.scale(candidate.source, candidate.field, kind));
                 one.into_track(kind, if degrees && kind == JointKind::Turns { DEGREE_RAD } else { scale() })
             });
             add_new(&mut series, tracks.collect());
@@ -282,15 +284,16 @@ impl Assembly {
             let reading = trajectories::Reading {
                 base: self.base,
                 epoch_ns: self.epoch_ns,
-                measured: stamps(&self.extracted, &choice.measured),
+                measured: choice.measured.first().and_then(|c| self.extracted.stamps(c.source)),
                 degrees,
                 topic: self.topic(candidate),
                 shown: is_shown(&self.extracted.topic_of(candidate.source).type_name),
             };
             let kind = |joint: &str| self.kinds.of(candidate.source, joint);
+            let unit_m = |joint: &str| self.kinds.unit_m(candidate.source, joint).unwrap_or(1.0);
             let measured = self.kinds.alike(measured, kind);
-            let tracks = trajectories::planned(plans, &reading, kind, &measured, remarks);
-            add_new(&mut series, tracks);
+            let read_as = |joint: &str| (kind(joint), unit_m(joint));
+            add_new(&mut series, trajectories::planned(plans, &reading, read_as, &measured, remarks));
         }
         series
     }
@@ -356,7 +359,6 @@ impl Assembly {
         let topic = |c: &Candidate| self.extracted.sources[c.source].topic;
         let messages = |(place, c): (usize, &Candidate)| match self.axes.get(&c.source) {
             Some(axis) if cut => axis.len() as u64,
-            // Several publishers have one topic.
             _ if choice.measured[..place].iter().any(|before| topic(before) == topic(c)) => 0,
             _ => self.extracted.topic_of(c.source).messages,
         };
@@ -386,15 +388,8 @@ fn delays_ns(
     base: TimeBase,
     remarks: &mut Remarks,
 ) -> Option<[i64; 3]> {
-    let of = |side: &[Candidate]| stamps(extracted, side).and_then(Stamps::delays_ns);
+    let of = |side: &[Candidate]| extracted.stamps(side.first()?.source).and_then(Stamps::delays_ns);
     let sides = [&choice.planned, &choice.measured].map(|side| of(side).filter(|_| base == TimeBase::Header));
     quality::of_delays(sides, remarks);
     sides[1]
-}
-
-fn stamps<'a>(extracted: &'a Extracted, side: &[Candidate]) -> Option<&'a Stamps> {
-    match &extracted.sources[side.first()?.source].content {
-        Content::Table(table) => Some(&table.stamps),
-        _ => None,
-    }
 }

@@ -10,7 +10,7 @@ use crate::{
         decode::LayoutCache,
         file::MessageRecord,
         joined::{self, Sent},
-        source::{Form, Plans, Poses, Spec, Table, Versioned},
+        source::{Form, Plans, Poses, Spec, Stamps, Table, Versioned},
     },
     remark::Remarks,
     series::JointKind,
@@ -175,6 +175,14 @@ impl Extracted {
         let field = field.and_then(|at| table.fields.get(at)).map_or("", |field| &field.path);
         let lone = field.rsplit('.').next() == Some("data");
         scale_in(if lone { &self.topic_of(source).topic } else { field }, kind)
+    }
+
+    /// The stamps of a source that is a table.
+    pub(super) fn stamps(&self, source: usize) -> Option<&Stamps> {
+        match &self.sources[source].content {
+            Content::Table(table) => Some(&table.stamps),
+            _ => None,
+        }
     }
 
     /// The topic of a source.

@@ -5,11 +5,20 @@ use std::{
     collections::{BTreeMap, BTreeSet},
 };
 
-use super::content::{Content, Extracted};
+use super::{
+    content::{Content, Extracted},
+    origin::joints_with_unit,
+};
 use crate::{
     arm::{Rod, Rods, names_a_cylinder, names_a_stroke, sliding_joints},
     input_file,
-    log::{error::LogError, joint_kind, options::ReadOptions, source::AXES},
+    log::{
+        csv::LengthUnit,
+        error::LogError,
+        joint_kind::{self, doubt_cylinders},
+        options::ReadOptions,
+        source::AXES,
+    },
     remark::{Code, Remarks},
     series::{JointKind, Series, Track},
     units::{DEGREE_RAD, Degrees},
@@ -28,6 +37,12 @@ pub(super) struct Kinds {
     /// Names in the log of joints that have others here, by source and name.
     renamed: BTreeMap<(usize, String), String>,
     conversion: Option<Conversion>,
+    /// Whether a URDF says how joints move.
+    told: bool,
+    /// Joints whose columns had a unit in the table that was imported.
+    stated: BTreeSet<String>,
+    /// Joints that the caller says to slide, and the unit.
+    slides: BTreeMap<String, LengthUnit>,
 }
 
 struct Conversion {
@@ -67,7 +82,7 @@ impl Kinds {
             *name = rods.meant(name).unwrap_or(name).to_owned();
         }
         let conversion = Some(Conversion { rods, into: wanted.into, file });
-        Ok(Self { sliding: BTreeSet::new(), renamed, conversion })
+        Ok(Self { renamed, conversion, ..Self::default() })
     }
 
     /// A joint of a source has another name in the log.
@@ -77,15 +92,14 @@ impl Kinds {
 
     /// Learns from the URDF, the log and the caller which joints slide; whether joints of the arm are called as the axes
     /// of a pose are.
-    pub(super) fn learn_sliding(
-        &mut self,
-        options: &ReadOptions,
-        metadata: &BTreeMap<String, BTreeMap<String, String>>,
-    ) -> bool {
+    pub(super) fn learn_sliding(&mut self, options: &ReadOptions, extracted: &Extracted) -> bool {
+        self.told = options.description.is_some();
+        self.slides.clone_from(&options.slides);
+        self.stated = extracted.tables.iter().flat_map(joints_with_unit).map(str::to_owned).collect();
         self.sliding.extend(options.description.as_deref().map(sliding_joints).unwrap_or_default());
         let axes_slide = self.sliding.contains(AXES[0]);
-        self.sliding.extend(joint_kind::sliding(metadata));
-        self.sliding.extend(options.slides.iter().cloned());
+        self.sliding.extend(joint_kind::sliding(&extracted.metadata));
+        self.sliding.extend(options.slides.keys().cloned());
         axes_slide
     }
 
@@ -96,10 +110,31 @@ impl Kinds {
         if slides || self.sliding.contains(joint) { JointKind::Slides } else { JointKind::Turns }
     }
 
+    /// The unit that the caller says of lengths of a joint of a source, m.
+    pub(super) fn unit_m(&self, source: usize, joint: &str) -> Option<f64> {
+        let named = || self.slides.get(self.renamed.get(&(source, joint.to_owned()))?);
+        self.slides.get(joint).or_else(named).map(|unit| unit.metres())
+    }
+
     /// Says of a run what stays as it is although it was to be converted.
     pub(super) fn check(&self, sides: [&Series; 2], remarks: &mut Remarks) -> Result<(), LogError> {
-        let Some(Conversion { rods, into, file }) = &self.conversion else { return Ok(()) };
         let tracks = || sides.into_iter().flat_map(|side| &side.tracks);
+        let here = |name: &String| {
+            tracks().any(|track| track.name() == name) || self.renamed.values().any(|own| own == name)
+        };
+        for name in self.slides.keys().filter(|name| !here(name)) {
+            remarks.add(
+                Code::UnpairedJoint,
+                1,
+                format!("joint {name} that --slides names is not among those read"),
+            );
+        }
+        let Some(Conversion { rods, into, file }) = &self.conversion else {
+            let turning =
+                tracks().filter(|track| !self.told && track.turns() && !self.stated.contains(track.name()));
+            doubt_cylinders(turning.map(Track::name), remarks);
+            return Ok(());
+        };
         let mut found = tracks().filter_map(|track| Some((track, rods.of(track.name())?))).peekable();
         if found.peek().is_none() {
             let present: BTreeSet<&str> = tracks().map(Track::name).collect();
@@ -199,7 +234,7 @@ fn hint(joint: &str, into: JointKind, found: [f64; 2], expected: [f64; 2]) -> St
         return "are they degrees? then say --planned-degrees and --measured-degrees".to_owned();
     }
     if within(found.map(|mm| 1e-3 * mm)) {
-        return "they fit as mm: write them in m, or --slides NAME=mm of `hydrotrace import`".to_owned();
+        return "they fit as mm: then say --slides NAME=mm".to_owned();
     }
     let fits = found[1] - found[0] < expected[1] - expected[0];
     if fits && (found[0] < expected[0] || found[1] > MOST_EXTENDED * found[0]) {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     log::{
-        csv::{GIVEN_OF_ORIGIN, TIME_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN},
+        csv::{GIVEN_OF_ORIGIN, LengthUnit, TIME_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN},
         error::LogError,
         import_line::{Given, line},
         options::ReadOptions,
@@ -16,12 +16,19 @@ use crate::{
     text::shell_word,
 };
 
+const SIDES: [&str; 2] = ["planned", "measured"];
+
 /// What a log that was imported tells of its table.
 pub(super) struct Imported<'a> {
     /// Its name.
     pub(super) file: &'a str,
     /// What became of which column.
     origin: &'a BTreeMap<String, String>,
+}
+
+/// The joints of an imported table whose columns had a unit.
+pub(super) fn joints_with_unit(origin: &BTreeMap<String, String>) -> impl Iterator<Item = &str> {
+    origin.keys().filter_map(|key| Some(key.strip_prefix(UNIT_OF_ORIGIN)?.split_once(" position of ")?.1))
 }
 
 impl<'a> Imported<'a> {
@@ -54,9 +61,16 @@ impl<'a> Imported<'a> {
             ("planned", "--planned-degrees", options.planned_in_degrees),
             ("measured", "--measured-degrees", options.measured_in_degrees),
         ];
-        for (side, option, _) in sides.into_iter().filter(|(.., given)| *given) {
-            let stated = format!("{UNIT_OF_ORIGIN}{side} position of ");
-            let found = self.origin.iter().find_map(|(key, unit)| Some((key.strip_prefix(&stated)?, unit)));
+        let sides =
+            sides.into_iter().filter(|(.., given)| *given).map(|(side, option, _)| (side, option, ""));
+        let lengths = options.slides.iter().filter(|(_, unit)| **unit != LengthUnit::Metres);
+        let lengths = lengths.flat_map(|(joint, _)| SIDES.map(|side| (side, "--slides", joint.as_str())));
+        for (side, option, of) in sides.chain(lengths) {
+            let stated = format!("{UNIT_OF_ORIGIN}{side} position of {of}");
+            let found = self.origin.iter().find_map(|(key, unit)| {
+                let rest = key.strip_prefix(&stated)?;
+                (of.is_empty() || rest.is_empty()).then(|| (format!("{of}{rest}"), unit))
+            });
             if let Some((joint, unit)) = found {
                 let header =
                     self.origin.get(&format!("{side} position of {joint}")).cloned().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Measurements of a sensor that is slower than its log: each value is written again until the next one comes.
+//! Values that are slower than their log, of a sensor or of a planner: each is written again until the next one comes.
 
 use crate::{
     remark::{Code, Remarks},
@@ -15,18 +15,23 @@ const UNEVEN: usize = 5;
 /// Rows that are looked at first.
 const HEAD: usize = 4000;
 
-/// Keeps of each value that is written again its first row; it says no more of when it was measured.
-pub(super) fn of_measured(measured: &mut Series, remarks: &mut Remarks) {
+/// Keeps of each value that is written again its first row; it says no more of when it was measured or planned.
+pub(super) fn of_sides([(_, planned), (_, measured)]: &mut [(&str, &mut Series); 2], remarks: &mut Remarks) {
+    of_side(planned, "planned", "its planner", "interpolated", remarks);
+    of_side(measured, "measured", "a sensor", "not judged", remarks);
+}
+
+fn of_side(series: &mut Series, side: &str, source: &str, between: &str, remarks: &mut Remarks) {
     let (mut dropped, mut names) = (0, Vec::new());
-    for track in &mut measured.tracks {
+    for track in &mut series.tracks {
         let Some(fresh) = fresh(track) else { continue };
         dropped += track.len() - fresh.len();
         names.push(track.name().to_owned());
         *track = fresh;
     }
     let message = format!(
-        "measured values of {} that only repeat the one before, in step with a sensor that is slower than the log: left out, \
-         and the rows between its values are not judged",
+        "{side} values of {} that only repeat the one before, in step with {source}, which is slower than the log: left out, \
+         and the rows between its values are {between}",
         names.join(", ")
     );
     remarks.add(Code::Guessed, dropped as u64, message);
@@ -65,6 +70,13 @@ fn fresh(track: &Track) -> Option<Track> {
             next = i + every;
         }
     }
+    // A rest goes on to the end.
+    if let [.., before, last] = kept[..]
+        && last + 1 < q.len()
+        && !differ(q[before], q[q.len() - 1])
+    {
+        kept.push(q.len() - 1);
+    }
     let of = |values: &[f64]| kept.iter().map(|&i| values[i]).collect::<Vec<f64>>();
     let t_s = of(t_s);
     let cuts = split_at_gaps(&t_s);
@@ -85,8 +97,22 @@ mod tests {
         let at = |k: usize| (0.3 * (0.7 * read_s(k)).sin() / step).round() * step;
         let track = Track::new("a", t_s, (0..2000).map(at).collect(), &[]).unwrap();
         let mut series = Series { tracks: vec![track] };
-        of_measured(&mut series, &mut Remarks::default());
+        of_side(&mut series, "measured", "a sensor", "not judged", &mut Remarks::default());
         series.tracks[0].len()
+    }
+
+    #[test]
+    fn a_plan_that_is_held_keeps_its_rest_to_the_end() {
+        let t_s: Vec<f64> = (0..1203).map(|k| f64::from(k) * 0.01).collect();
+        let at = |k: usize| (0.05 * (k / 5) as f64).min(8.0);
+        let track = Track::new("a", t_s, (0..1203).map(at).collect(), &[]).unwrap();
+        let (mut planned, mut measured) = (Series { tracks: vec![track] }, Series::default());
+        let mut remarks = Remarks::default();
+        of_sides(&mut [("planned", &mut planned), ("measured", &mut measured)], &mut remarks);
+        let kept = &planned.tracks[0];
+        assert_eq!((kept.len(), kept.t_s().last()), (242, Some(&12.02)));
+        let said = &remarks.as_slice()[0].message;
+        assert!(said.starts_with("planned values of a") && said.ends_with("are interpolated"), "{said}");
     }
 
     #[test]

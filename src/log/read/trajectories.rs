@@ -25,11 +25,11 @@ pub(super) struct Reading<'a> {
     pub(super) shown: bool,
 }
 
-/// The plan of every measured joint.
+/// The plan of every measured joint; `kind` says how a joint moves, and what its numbers are multiplied with.
 pub(super) fn planned(
     plans: &Plans,
     reading: &Reading<'_>,
-    kind: impl Fn(&str) -> JointKind,
+    kind: impl Fn(&str) -> (JointKind, f64),
     measured: &Series,
     remarks: &mut Remarks,
 ) -> Vec<Track> {
@@ -55,7 +55,7 @@ const OVER_NS: i64 = 2_000_000_000;
 fn trajectories(
     plans: &Plans,
     reading: &Reading<'_>,
-    kind: impl Fn(&str) -> JointKind,
+    kind: impl Fn(&str) -> (JointKind, f64),
     remarks: &mut Remarks,
 ) -> Vec<PlannedTrajectory> {
     let Reading { base, epoch_ns, topic, .. } = *reading;
@@ -112,14 +112,15 @@ fn trajectory(
     raw: &RawTrajectory,
     start_s: f64,
     degrees: bool,
-    kind: &impl Fn(&str) -> JointKind,
+    kind: &impl Fn(&str) -> (JointKind, f64),
 ) -> PlannedTrajectory {
     if raw.points.is_empty() {
         return PlannedTrajectory { start_s, joints: Vec::new() };
     }
     let joints = (0..raw.joints.len()).map(|j| {
-        let degrees = degrees && kind(&raw.joints[j]) == JointKind::Turns;
-        let unit = |value: f64| if degrees { radians_from_degrees(value) } else { value };
+        let (kind, factor) = kind(&raw.joints[j]);
+        let degrees = degrees && kind == JointKind::Turns;
+        let unit = |value: f64| if degrees { radians_from_degrees(value) } else { factor * value };
         let points = raw.points.iter().map(|p| PlannedPoint {
             t_s: start_s + seconds_since(0, p.since_start_ns),
             position: unit(p.positions[j]),

@@ -142,7 +142,7 @@ pub fn charts(inputs: &Inputs, programs: &[For]) -> Result<Charts, ChartsFailure
             let track = recording.measured.track(joint).or_else(|| recording.planned.track(joint));
             track.map(Track::kind)
         };
-        let asked = inputs.read.slides.iter().any(|name| name == joint);
+        let asked = inputs.read.slides.contains_key(joint);
         let found = recording.as_ref().and_then(track);
         found.unwrap_or(if asked { JointKind::Slides } else { JointKind::Turns })
     };

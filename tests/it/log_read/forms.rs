@@ -259,9 +259,21 @@ fn a_log_of_speeds_alone_says_so() {
 
 #[test]
 fn joints_that_slide_are_named_by_option_or_by_an_imported_table() {
-    let found = read_with(&plain_log(), &ReadOptions { slides: vec!["b".into()], ..ReadOptions::default() });
+    let found = read_with(
+        &plain_log(),
+        &ReadOptions {
+            slides: [("b".to_owned(), hydrotrace::log::LengthUnit::Metres)].into(),
+            ..ReadOptions::default()
+        },
+    );
     let units = |series: &Series| series.tracks.iter().map(|track| track.kind().unit()).collect::<Vec<_>>();
     assert_eq!((units(&found.planned), units(&found.measured)), (vec!["rad", "m"], vec!["rad", "m"]));
+    let in_mm = ReadOptions {
+        slides: [("b".to_owned(), hydrotrace::log::LengthUnit::Millimetres)].into(),
+        ..ReadOptions::default()
+    };
+    let b = |series: &Series| series.tracks[1].position()[9];
+    assert!((1e3 * b(&read_with(&plain_log(), &in_mm).planned) - b(&found.planned)).abs() < 1e-12);
     let mut text = "time_s,boom set [mm],boom act [mm],a_set_deg,a_act_deg\n".to_owned();
     for k in 0..SAMPLES {
         text += &format!("{},{},{},{},{}\n", k as f64 * 0.02, 10 * k, 10 * k - 1, k, k);
@@ -270,6 +282,26 @@ fn joints_that_slide_are_named_by_option_or_by_an_imported_table() {
     assert_eq!(joints(&found.planned), ["boom", "a"]);
     assert_eq!(units(&found.measured), ["m", "rad"]);
     assert!((found.planned.tracks[0].position()[3] - 0.03).abs() < 1e-12);
+    let again = ReadOptions {
+        slides: [("boom".to_owned(), hydrotrace::log::LengthUnit::Millimetres)].into(),
+        ..ReadOptions::default()
+    };
+    let error = read_file("a.csv", text.as_bytes(), &again).unwrap_err().to_string();
+    assert!(error.contains("--slides would convert \"boom set [mm]\""), "{error}");
+    // What is called a cylinder and is told no unit is doubted, and what the caller says settles it.
+    let bare = text.replace("boom set [mm],boom act [mm]", "boom_cylinder_set,boom_cylinder_act");
+    let said = |slides: &[(&str, hydrotrace::log::LengthUnit)]| {
+        let slides = slides.iter().map(|(joint, unit)| ((*joint).to_owned(), *unit)).collect();
+        let found = read_file("a.csv", bare.as_bytes(), &ReadOptions { slides, ..ReadOptions::default() });
+        let found = found.unwrap();
+        let doubt = |remark: &&hydrotrace::remark::Remark| remark.message.contains("--slides");
+        (units(&found.planned)[0], found.remarks.as_slice().iter().find(doubt).map(|one| one.message.clone()))
+    };
+    let (unit, doubt) = said(&[]);
+    assert!(unit == "rad" && doubt.is_some_and(|doubt| doubt.contains("say --slides boom_cylinder")));
+    let mm = hydrotrace::log::LengthUnit::Millimetres;
+    assert_eq!(said(&[("boom_cylinder", mm)]), ("m", None));
+    assert!(said(&[("boom_cylinder", mm), ("bucket", mm)]).1.is_some_and(|doubt| doubt.contains("bucket")));
 }
 
 #[test]
