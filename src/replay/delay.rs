@@ -62,7 +62,22 @@ pub(super) fn planned_onset(pair: &Pair, signals: &Signals, motion: &Motion, rul
             signals.planned_step.filter(|_| !motion.reversal && motion.step(&pair.planned).is_none())?;
         stairs::onset(pair, motion, step, signals.sizes.stop_speed, rules)
     };
-    rounded().unwrap_or_else(|| {
+    let noisy = || {
+        let window_s = signals.noisy_plan_s?;
+        if motion.reversal || motion.step(&pair.planned).is_some() {
+            return None;
+        }
+        let search = Search {
+            segment: motion.segment.clone(),
+            direction: motion.direction,
+            crossing_s: motion.start_s,
+            rest_s: motion.rest_before_s,
+            window_s,
+            stop_speed: signals.sizes.stop_speed,
+        };
+        onset(&pair.t_s, &pair.planned, &search, rules)
+    };
+    rounded().or_else(noisy).unwrap_or_else(|| {
         let at_s = planned_onset_s(pair, signals, motion);
         Onset { at_s, interval_s: [at_s, at_s] }
     })

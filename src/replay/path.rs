@@ -37,6 +37,7 @@ pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError
     let zeros = || vec![0.0; pairs.len() + 1];
     let mut sums = Sums { squares: zeros(), peaks: zeros(), timed: zeros() };
     // Less than the step, so that jitter around it loses no stamps.
+    let window_s = rules.path_window_s.max(0.0);
     let step_s = 0.75 / rules.path_rate_hz;
     let mut cursors = vec![Cursor::default(); pairs.len()];
     let (mut last_s, mut last_places) = (f64::NEG_INFINITY, Vec::new());
@@ -63,11 +64,11 @@ pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError
                 path.measured_rad[j].push(measured);
             }
         }
-        while judged < path.t_s.len() && t_s - path.t_s[judged] > rules.path_window_s {
-            while path.t_s[judged] - path.t_s[first] > rules.path_window_s {
+        while judged < path.t_s.len() && t_s - path.t_s[judged] > window_s {
+            while path.t_s[judged] - path.t_s[first] > window_s {
                 first += 1;
             }
-            while end < path.t_s.len() && path.t_s[end] - path.t_s[judged] <= rules.path_window_s {
+            while end < path.t_s.len() && path.t_s[end] - path.t_s[judged] <= window_s {
                 end += 1;
             }
             sums.add(&path, judged, nearest(&path, judged, first, end));

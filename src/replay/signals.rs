@@ -9,11 +9,14 @@ use super::{
 };
 use crate::{
     math::median,
-    series::{Noise, Pair, Track, each_local_quadratic, noise},
+    series::{Noise, Pair, Track, each_local_quadratic, noise, white},
 };
 
 /// Fewest samples in the velocity fit to a plan that gives no speeds.
 const PLAN_POINTS: usize = 5;
+
+/// A plan has samples of its own where these are no farther apart, in sample intervals of the measurement.
+const AS_DENSE: f64 = 1.5;
 
 /// More deviations than this make their median no better; longer signals are thinned evenly.
 const ENOUGH: usize = 200_000;
@@ -24,6 +27,8 @@ pub(super) struct Signals<'a> {
     pub(super) sample_interval_s: f64,
     /// Step of a plan that is rounded so much that its starts are blurred.
     pub(super) planned_step: Option<f64>,
+    /// Half window of the fit to a plan that is measured itself, with so much noise that its starts are blurred, s.
+    pub(super) noisy_plan_s: Option<f64>,
     pub(super) thresholds: Thresholds,
     pub(super) planned_rad_s: Cow<'a, [f64]>,
     /// Measured angle, smoothed, rad.
@@ -61,12 +66,13 @@ impl<'a> Signals<'a> {
         // A finer step is passed within a sample even at the slowest start.
         let blurs = |step: &f64| given.is_none() && 0.5 * step > sizes.stop_speed * interval_s;
         let planned_step = pair.planned_step.filter(blurs);
-        let planned_sigma = planned_step.unwrap_or(0.0) / 12.0_f64.sqrt();
-        let planned_window_s = match planned_step {
-            Some(_) => rules.window_s(pair.kind, interval_s, planned_sigma),
-            None => rules.planned_window_s,
-        };
-        let mut planned_deviation = planned_step.map(|_| column());
+        let noise_of_plan = || plan_noise(pair, (&sizes, sample_interval_s), rules);
+        let planned_noise = if given.is_none() && planned_step.is_none() { noise_of_plan() } else { None };
+        let planned_sigma = planned_step.map(|step| step / 12.0_f64.sqrt()).or(planned_noise);
+        let planned_window_s = planned_sigma
+            .map_or(rules.planned_window_s, |sigma| rules.window_s(pair.kind, interval_s, sigma));
+        let mut planned_deviation = planned_sigma.map(|_| column());
+        let planned_sigma = planned_sigma.unwrap_or(0.0);
         let planned_rad_s = given.unwrap_or_else(|| {
             let mut velocity = column();
             each_local_quadratic(
@@ -124,6 +130,7 @@ impl<'a> Signals<'a> {
             noise,
             sample_interval_s,
             planned_step,
+            noisy_plan_s: planned_noise.map(|_| planned_window_s),
             thresholds,
             planned_rad_s,
             measured_rad: smooth_rad,
@@ -136,6 +143,18 @@ impl<'a> Signals<'a> {
             measured,
         }
     }
+}
+
+/// Noise of a plan that gives no speeds, such as a set value that was measured itself, if it makes starts of its own;
+/// between samples of a coarser plan there is none.
+fn plan_noise(pair: &Pair, (sizes, sample_interval_s): (&Sizes, f64), rules: &Rules) -> Option<f64> {
+    if pair.planned_interval_s > AS_DENSE * sample_interval_s {
+        return None;
+    }
+    let sigma = white(&pair.t_s, &pair.planned, &pair.segments);
+    let half_s = rules.planned_window_s.max(0.5 * (PLAN_POINTS - 1) as f64 * sample_interval_s);
+    let speed = sigma * (1.5 * sample_interval_s / half_s.powi(3)).sqrt();
+    (rules.start_sigmas * speed > sizes.start_speed).then_some(sigma)
 }
 
 /// A log may begin where its plan does: a plan that moves when a segment opens has just left rest if the joint is still on

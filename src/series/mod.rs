@@ -20,6 +20,7 @@ pub use align::{Pair, align};
 pub use clock::{Clock, continuous_clock};
 pub use derivative::{LocalFit, each_local_quadratic, local_quadratic};
 pub use locate::{Located, locate};
+pub(crate) use noise::white;
 pub use noise::{Noise, noise};
 pub use pose::{PosePair, PoseSample};
 pub(crate) use signal::{Instants, all_finite};

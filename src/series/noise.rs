@@ -29,9 +29,13 @@ const ENOUGH: usize = 200_000;
 pub fn noise(t_s: &[f64], position: &[f64], segments: &[Range<usize>]) -> Noise {
     let lsb = lsb(position, segments);
     let floor = lsb.map_or(0.0, |lsb| lsb / 12.0_f64.sqrt());
+    Noise { sigma: white(t_s, position, segments).max(floor), lsb }
+}
+
+/// Standard deviation of white noise alone: a plan at one speed has equal changes, which are no steps of a sensor.
+pub(crate) fn white(t_s: &[f64], position: &[f64], segments: &[Range<usize>]) -> f64 {
     let curvature = second_differences(t_s, position, segments);
-    let sigma = if curvature.is_empty() { 0.0 } else { SIGMA_PER_MAD * mad(&curvature) / 6.0_f64.sqrt() };
-    Noise { sigma: sigma.max(floor), lsb }
+    if curvature.is_empty() { 0.0 } else { SIGMA_PER_MAD * mad(&curvature) / 6.0_f64.sqrt() }
 }
 
 fn second_differences(t_s: &[f64], x: &[f64], segments: &[Range<usize>]) -> Vec<f64> {

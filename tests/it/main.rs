@@ -36,6 +36,7 @@ mod plan;
 mod plant;
 mod replay;
 mod rounded;
+mod rules;
 mod sample_logs;
 mod spline;
 mod support;

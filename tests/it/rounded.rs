@@ -1,6 +1,8 @@
-//! Starts after plans that were rounded when they were written.
+//! Starts after plans that were rounded when they were written, or measured themselves.
 
 use std::slice::from_ref;
+
+use rand_distr::{Distribution as _, StandardNormal};
 
 use hydrotrace::{
     replay::{Rules, replay},
@@ -10,6 +12,11 @@ use hydrotrace::{
 
 /// Six motions of a plan rounded to a step, and of a joint that follows 0.18 s later.
 fn run(step_deg: f64, every_s: f64, takes_s: f64) -> Pair {
+    run_of(|x, _| (x / step_deg).round() * step_deg, every_s, takes_s)
+}
+
+/// Six motions of a plan as it was written, by its values and their numbers, and of a joint that follows 0.18 s later.
+fn run_of(written: impl Fn(f64, usize) -> f64, every_s: f64, takes_s: f64) -> Pair {
     let t_s: Vec<f64> = (0..3200).map(|k| f64::from(k) * every_s).filter(|t_s| *t_s < 32.0).collect();
     let at_deg = |t_s: f64| -> f64 {
         let motion = |k: i32| {
@@ -19,8 +26,7 @@ fn run(step_deg: f64, every_s: f64, takes_s: f64) -> Pair {
         };
         10.0 + (0..6).map(motion).sum::<f64>()
     };
-    let rounded = |x: f64| (x / step_deg).round() * step_deg * DEGREE_RAD;
-    let planned = t_s.iter().map(|t_s| rounded(at_deg(*t_s))).collect();
+    let planned = t_s.iter().enumerate().map(|(k, t_s)| written(at_deg(*t_s), k) * DEGREE_RAD).collect();
     let late = |(k, t_s): (usize, &f64)| {
         (at_deg(t_s - 0.18) + 0.004 * ((k * 7919 % 101) as f64 / 50.0 - 1.0)) * DEGREE_RAD
     };
@@ -43,5 +49,21 @@ fn the_delay_after_a_rounded_plan_is_known_as_well_as_its_interval_says() {
         let held = held.filter(|[low_s, high_s]| (*low_s..=*high_s).contains(&0.18)).count();
         let mean_s = delays.iter().sum::<f64>() / 6.0;
         assert!(held == 6 && (mean_s - 0.18).abs() < 0.06, "{of}: {held} held, {mean_s} s");
+    }
+}
+
+#[test]
+fn the_delay_after_a_plan_that_was_measured_is_known_as_well_as_its_interval_says() {
+    let mut rng = hydrotrace::rng::stream(5, hydrotrace::rng::Stream::SensorNoise);
+    let white: Vec<f64> = (0..3200).map(|_| StandardNormal.sample(&mut rng)).collect();
+    for noise_deg in [0.002, 0.005, 0.01] {
+        let pair = run_of(|x, k| x + noise_deg * white[k], 0.01, 2.5);
+        let found = replay(from_ref(&pair), &Rules::default());
+        assert_eq!(found.transitions.len(), 6, "{noise_deg} deg");
+        let held = found.transitions.iter().filter_map(|t| t.onset_delay_interval_s);
+        let held = held.filter(|[low_s, high_s]| (*low_s..=*high_s).contains(&0.18)).count();
+        let off_s = found.transitions.iter().filter_map(|t| Some((t.onset_delay_s? - 0.18).abs()));
+        let off_s = off_s.fold(0.0, f64::max);
+        assert!(held == 6 && off_s < 0.1, "{noise_deg} deg: {held} held, {off_s} s off at most");
     }
 }
