@@ -109,12 +109,13 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
                 usual where ten joints or more tell that. A step is a level that changes between two runs and stays; it \
                 stands in place of a trend where it explains the levels better.";
     section = section.with(Sentence::note(note));
-    if drift.too_few > 0 {
-        let few =
-            format!("{} with fewer than five runs of one plan, not judged.", counted(drift.too_few, "trend"));
-        section = section.with(Sentence::note(few));
-    }
+    section = section.with_all(not_judged(drift.too_few));
     Document::default().with(section).remarked(&drift.remarks)
+}
+
+fn not_judged(too_few: usize) -> Option<Sentence> {
+    let few = || format!("{} with fewer than five runs of one plan, not judged.", counted(too_few, "trend"));
+    (too_few > 0).then(|| Sentence::note(few()))
 }
 
 /// The q of what is found, or of the trend.
@@ -214,7 +215,8 @@ fn effects<'a>(effects: impl Iterator<Item = &'a JointEffect>) -> Table {
 
 /// The limits, each with what was found.
 pub(crate) fn gate(gated: &Gated) -> Document {
-    Document::default().with(Section::plain(Id::SUMMARY, gate_verdicts(gated))).remarked(&gated.remarks)
+    let section = Section::plain(Id::SUMMARY, gate_verdicts(gated)).with_all(not_judged(gated.too_few));
+    Document::default().with(section).remarked(&gated.remarks)
 }
 
 /// The limits as verdicts.

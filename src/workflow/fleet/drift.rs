@@ -11,16 +11,15 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     failure::FleetFailure,
+    found::judge,
     history::{By, Event, Filter, History, Run, Scatters, Values, date, days},
+    joint_trend::{JointTrend, Level, MOST_FALSE},
     map::{Map, maps},
-    stepped::{LevelStep, best_step},
+    stepped::best_step,
 };
 use crate::{
     document::PROGRAM,
-    math::{
-        SIGMA_PER_MAD, begins, column_levels, false_discovery, mad, median, row_weights, step_scatter,
-        theil_sen, trend, weighted_median,
-    },
+    math::{begins, column_levels, median, row_weights, step_scatter, theil_sen, trend, weighted_median},
     remark::Remarks,
 };
 
@@ -28,17 +27,6 @@ use crate::{
 const FORMAT: &str = "hydrotrace.fleet-drift.v1";
 /// Runs of one plan, at least: fewer cannot prove a trend.
 pub(super) const FEWEST_RUNS: usize = 5;
-/// False discoveries among what is found, at most.
-pub(super) const MOST_FALSE: f64 = 0.05;
-
-/// Robust standard deviations of the fleet's slopes that a slope must stand out by to be found: less than that many
-/// healthy joints change by, in a season or with other work.
-const STANDS_OUT: f64 = 3.0;
-/// Joints that tell what is usual, at least; of steps, which a day that all share makes in all.
-const FEWEST_JOINTS: usize = 10;
-const FEWEST_OF_STEPS: usize = 4;
-/// A step, or what a trend makes from the first run to the last, that is a smaller share of the level is of no concern.
-const RELEVANT: f64 = 0.02;
 
 /// The trends of all joints of a fleet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -65,73 +53,6 @@ pub struct Drift {
     pub remarks: Remarks,
 }
 
-/// The trend of one metric of one joint.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct JointTrend {
-    /// The machine.
-    pub machine: String,
-    /// The joint.
-    pub joint: String,
-    /// What was measured.
-    pub metric: By,
-    /// Its unit: "s" of delays and lags, else that of the joint, "rad" or "m".
-    pub unit: String,
-    /// Change a day, median over the starts of each start's Theil-Sen slope, weighted by one over the square of its scatter.
-    pub slope_per_day: f64,
-    /// Its 95 % interval, by Kendall's test on the levels of the runs.
-    pub interval_95: [f64; 2],
-    /// Two-sided probability of such an order of runs by chance.
-    pub p_value: f64,
-    /// The same, corrected for the number of machines, joints and metrics (false-discovery rate).
-    pub q_value: f64,
-    /// Whether a change is found, as a trend or as a step: q below the false-discovery rate, 2 % of the level or more, and three
-    /// robust standard deviations or more from what is usual where ten joints or more tell that.
-    pub found: bool,
-    /// Whether what is found is a step, which leaves less of the levels unexplained than the trend does.
-    #[serde(default)]
-    pub is_step: bool,
-    /// The step that explains the levels best; null for fewer than six runs.
-    #[serde(default)]
-    pub step: Option<LevelStep>,
-    /// The slope in robust standard deviations of the slopes of this metric in all joints; null where these are equal.
-    pub stands_out: Option<f64>,
-    /// When the level begins to change, UTC: of a step the first run after it, else the first run if it changes all the time.
-    pub since: Option<String>,
-    /// Starts that were followed from run to run.
-    pub starts: usize,
-    /// Runs with such starts.
-    pub runs: usize,
-    /// From the first run to the last, days.
-    pub days: f64,
-    /// Median over the starts at the level of the first three runs.
-    pub level: f64,
-    /// The level of each run, in the order of time; only of trends that are found.
-    pub levels: Vec<Level>,
-}
-
-impl JointTrend {
-    /// Growth a day: of a step that from the last run before it to the first run after it, taken as a day at least.
-    pub fn growth_per_day(&self) -> f64 {
-        let step = self.step.as_ref().filter(|_| self.is_step);
-        step.map_or(self.slope_per_day, |step| step.change / step.days.max(1.0))
-    }
-}
-
-/// What the starts of a joint were like in one run, each start's own level taken off and their median put back.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct Level {
-    /// When the run began, days since 1970.
-    pub at_days: f64,
-    /// In the unit of the trend.
-    pub value: f64,
-    /// The log of the run.
-    pub log: String,
-    /// The page that lies beside the log under its name, where there is one: `run.html` beside `run.mcap`.
-    pub page: Option<String>,
-}
-
 /// The starts that enough runs have, as rows by run, with what each row says; and those runs. A start that scatters on
 /// all machines says little, however quiet it was on this one.
 pub(super) fn matrix(
@@ -146,7 +67,7 @@ pub(super) fn matrix(
     let row = |of_runs: &BTreeMap<usize, f64>| {
         runs.iter().map(|run| of_runs.get(run).copied().unwrap_or(f64::NAN)).collect()
     };
-    let rows = often().map(row).collect();
+    let rows: Vec<Vec<f64>> = often().map(row).collect();
     let events = values.iter().filter(|(_, of_runs)| of_runs.len() >= fewest);
     let scatter = |(event, of_runs): (&Event, &BTreeMap<usize, f64>)| {
         let own = step_scatter(of_runs.values().copied());
@@ -154,16 +75,18 @@ pub(super) fn matrix(
         own.into_iter().chain(usual).reduce(f64::max)
     };
     let scatters: Vec<Option<f64>> = events.map(scatter).collect();
-    (runs, rows, row_weights(&scatters))
+    let weights = row_weights(&scatters);
+    (runs, rows, weights)
 }
 
-/// The trends of what the filter lets through; `by`: of one metric only.
+/// The trends of what the filter lets through, judged against the whole fleet; `by`: of one metric only.
 ///
 /// # Errors
 ///
 /// [`FleetFailure`] if there is no dataset, or no such machine in it.
 pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFailure> {
-    let history = History::read(root, filter, false)?;
+    let history = History::read(root, filter, true)?;
+    let wanted = |machine: &str| filter.machine.as_ref().is_none_or(|own| own == machine);
     let scatters: BTreeMap<By, Scatters> = by.iter().map(|by| (*by, history.scatters(*by))).collect();
     let none = Scatters::new();
     let mut trends = Vec::new();
@@ -174,7 +97,7 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
         }
         let scatters = (axis.joint.as_str(), scatters.get(metric).unwrap_or(&none));
         match joint_trend(&history.runs, values, scatters) {
-            None => too_few += 1,
+            None => too_few += usize::from(wanted(&axis.machine)),
             Some(found) => trends.push(JointTrend {
                 machine: axis.machine.clone(),
                 joint: axis.joint.clone(),
@@ -185,6 +108,7 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
         }
     }
     judge(&mut trends);
+    trends.retain(|trend| wanted(&trend.machine));
     trends.sort_by(|a, b| {
         let out = |trend: &JointTrend| trend.stands_out.unwrap_or(0.0);
         let by_size = out(b).total_cmp(&out(a));
@@ -193,81 +117,14 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
     Ok(Drift {
         format: FORMAT.to_owned(),
         program: PROGRAM.to_owned(),
-        runs: history.runs.len(),
-        machines: history.machines().len(),
+        runs: history.runs.iter().filter(|run| wanted(&run.machine)).count(),
+        machines: history.machines().into_iter().filter(|machine| wanted(machine)).count(),
         false_discovery_rate: MOST_FALSE,
         trends,
-        maps: maps(&history, by),
+        maps: maps(&history, by, wanted),
         too_few,
         remarks: history.remarks,
     })
-}
-
-/// Which trends and steps are found. Both are tests of the same data, so they are corrected for together.
-fn judge(trends: &mut [JointTrend]) {
-    let tell = stand_out(trends);
-    let usual_steps = usual_steps(trends);
-    let p_trend = trends.iter().map(|trend| trend.p_value);
-    let p_step = trends.iter().map(|trend| trend.step.as_ref().map_or(1.0, |step| step.p_value));
-    let q = false_discovery(&p_trend.chain(p_step).collect::<Vec<f64>>());
-    let (q_trend, q_step) = q.split_at(trends.len());
-    for (k, trend) in trends.iter_mut().enumerate() {
-        trend.q_value = q_trend[k];
-        let usual = tell[k] && trend.stands_out.is_some_and(|out| out < STANDS_OUT);
-        let least = RELEVANT * trend.level.abs();
-        let drifts =
-            trend.q_value < MOST_FALSE && !usual && (trend.slope_per_day * trend.days).abs() >= least;
-        let usual_step = usual_steps.get(&(trend.metric, trend.unit.clone())).copied().unwrap_or_default();
-        if let Some(step) = &mut trend.step {
-            step.q_value = q_step[k];
-            let least = (STANDS_OUT * usual_step).max(least);
-            let steps = step.q_value < MOST_FALSE && step.change.abs() >= least;
-            trend.is_step = steps && (!drifts || step.left < 1.0);
-            if trend.is_step {
-                trend.since.clone_from(&step.by);
-            }
-        }
-        trend.found = drifts || trend.is_step;
-        if trend.found {
-            trend.levels.iter_mut().for_each(|level| level.page = page_beside(&level.log));
-        } else {
-            trend.levels.clear();
-        }
-    }
-}
-
-/// What the best steps of a metric are like in most joints, as a robust standard deviation, where enough joints tell that.
-fn usual_steps(trends: &[JointTrend]) -> BTreeMap<(By, String), f64> {
-    let mut sizes: BTreeMap<(By, String), Vec<f64>> = BTreeMap::new();
-    for trend in trends {
-        let size = trend.step.as_ref().map_or(0.0, |step| step.change.abs());
-        sizes.entry((trend.metric, trend.unit.clone())).or_default().push(size);
-    }
-    let enough = sizes.into_iter().filter(|(_, sizes)| sizes.len() >= FEWEST_OF_STEPS);
-    enough.map(|(key, sizes)| (key, SIGMA_PER_MAD * median(sizes))).collect()
-}
-
-fn page_beside(log: &str) -> Option<String> {
-    let page = Path::new(log).with_extension("html").canonicalize().ok()?;
-    page.is_file().then(|| page.to_str().map(str::to_owned))?
-}
-
-/// Says by how much each slope differs from what is usual for its metric; gives whether enough joints tell that.
-fn stand_out(trends: &mut [JointTrend]) -> Vec<bool> {
-    let key = |trend: &JointTrend| (trend.metric, trend.unit.clone());
-    let mut slopes: BTreeMap<_, Vec<f64>> = BTreeMap::new();
-    for trend in trends.iter() {
-        slopes.entry(key(trend)).or_default().push(trend.slope_per_day);
-    }
-    let usual = |own: Vec<f64>| (own.len() >= FEWEST_JOINTS, SIGMA_PER_MAD * mad(&own), median(own));
-    let usual: BTreeMap<_, (bool, f64, f64)> =
-        slopes.into_iter().map(|(key, own)| (key, usual(own))).collect();
-    let judge = |trend: &mut JointTrend| {
-        let (tells, spread, middle) = usual.get(&key(trend)).copied().unwrap_or_default();
-        trend.stands_out = (spread > 0.0).then(|| (trend.slope_per_day - middle).abs() / spread);
-        tells
-    };
-    trends.iter_mut().map(judge).collect()
 }
 
 /// The trend without its names; `None` for too few runs.

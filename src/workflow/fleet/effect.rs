@@ -9,9 +9,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    drift::{MOST_FALSE, matrix},
+    drift::matrix,
     failure::FleetFailure,
     history::{Axis, By, Filter, History, Scatters, Values, date, days},
+    joint_trend::MOST_FALSE,
 };
 use crate::{
     document::PROGRAM,

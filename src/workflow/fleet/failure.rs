@@ -54,6 +54,9 @@ pub enum FleetFailure {
     /// A machine that the dataset does not hold.
     #[error("no machine {machine:?}{}; the dataset has {present}", crate::suggest::suggestion(nearest.as_deref()))]
     NoMachine { machine: String, nearest: Option<String>, present: String },
+    /// A joint that the dataset does not hold.
+    #[error("no joint {joint:?}{}; the dataset has {present}", crate::suggest::suggestion(nearest.as_deref()))]
+    NoJoint { joint: String, nearest: Option<String>, present: String },
 }
 
 impl FleetFailure {

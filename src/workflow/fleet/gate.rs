@@ -5,9 +5,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    drift::{Drift, JointTrend, drift},
+    drift::{Drift, drift},
     failure::FleetFailure,
     history::{By, Filter},
+    joint_trend::JointTrend,
 };
 use crate::{document::PROGRAM, remark::Remarks};
 
@@ -37,6 +38,9 @@ pub struct Gated {
     pub gates: Vec<GateResult>,
     /// Whether every limit is kept; if not, the exit code is 4.
     pub gates_kept: bool,
+    /// Machines, joints and metrics with too few runs of one plan to be judged.
+    #[serde(default)]
+    pub too_few: usize,
     /// Doubts about the data.
     #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
@@ -80,6 +84,7 @@ pub fn gate(
         program: PROGRAM.to_owned(),
         gates_kept: gates.iter().all(|gate| gate.kept),
         gates,
+        too_few: found.too_few,
         remarks: found.remarks,
     })
 }
@@ -168,6 +173,7 @@ mod tests {
             program: PROGRAM.into(),
             gates: vec![judged(&limit(), &found(&[(0.02, true)]), false)],
             gates_kept: false,
+            too_few: 3,
             remarks: Remarks::default(),
         };
         is_written_and_read(&document, "fleet-gate.v1.schema.json", "hydrotrace fleet gate, version 1");

@@ -7,8 +7,11 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
+pub(super) use super::once::Run;
 use super::{
+    dated::began_ns,
     failure::FleetFailure,
+    once::{Logged, is_gone, one_a_run},
     store::{is_unfinished, parts},
     tables::{self, Name},
 };
@@ -20,6 +23,7 @@ use crate::{
     },
     math::{median, step_scatter},
     remark::{Code, Remarks},
+    replay::Answer,
     suggest::nearest,
     units::SECONDS_PER_DAY,
 };
@@ -40,16 +44,6 @@ pub enum By {
 impl By {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Peak, Self::Delay, Self::Lag];
-}
-
-/// One run.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Run {
-    pub(super) id: String,
-    pub(super) machine: String,
-    pub(super) log: String,
-    /// Microseconds since 1970.
-    pub(super) started_us: i64,
 }
 
 /// Days since 1970.
@@ -105,6 +99,12 @@ pub struct Filter {
     pub since_us: Option<i64>,
 }
 
+/// What a start that its joint never answers counts as: the longest time that an answer is looked for, s.
+const UNANSWERED_S: f64 = 4.0;
+
+/// Stamps and name of a run that say dates so far apart are not of one clock, days.
+const OTHER_DATE_DAYS: f64 = 180.0;
+
 /// A planned start that lies farther than this from where it lies in most runs, counted from the first start of its
 /// run, is another start, s.
 const SAME_START_S: f64 = 0.3;
@@ -119,11 +119,26 @@ impl History {
         let mut history = Self::default();
         let message = "a scan was ended before its last step; `hydrotrace fleet scan` finishes it";
         history.remarks.add(Code::NotClosed, u64::from(is_unfinished(root)), message);
-        let mut rows = Vec::new();
+        let (mut runs, mut starts, mut lags) = (Vec::new(), Vec::new(), Vec::new());
         for part in &found {
-            rows.extend(read(root, &part.path(Name::Runs), Name::Runs, &RUN)?);
+            for (name, columns, rows) in [
+                (Name::Runs, &RUN[..], &mut runs),
+                (Name::Transitions, &START[..], &mut starts),
+                (Name::Joints, &LAG[..], &mut lags),
+            ] {
+                let path = part.path(name);
+                if name == Name::Runs || root.join(&path).exists() {
+                    rows.extend(read(root, &path, name, columns)?);
+                }
+            }
         }
-        history.take_runs(rows);
+        let mut joints: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for row in &lags {
+            if let (Some(run), Some(joint)) = (row[0].as_text(), row[2].as_text()) {
+                joints.entry(run.to_owned()).or_default().insert(joint.to_owned());
+            }
+        }
+        history.take_runs(runs, &joints);
         let mut spoilt = BTreeSet::new();
         for path in found.iter().map(|part| part.path(Name::Remarks)).filter(|path| root.join(path).exists())
         {
@@ -145,16 +160,8 @@ impl History {
             .retain(|run| wanted(run) && filter.since_us.is_none_or(|since_us| run.started_us >= since_us));
         let index: BTreeMap<String, usize> =
             history.runs.iter().enumerate().map(|(k, run)| (run.id.clone(), k)).collect();
-        let (mut starts, mut lags) = (Vec::new(), Vec::new());
-        for part in &found {
-            for (name, columns, rows) in
-                [(Name::Transitions, &START[..], &mut starts), (Name::Joints, &LAG[..], &mut lags)]
-            {
-                let path = part.path(name);
-                if root.join(&path).exists() {
-                    rows.extend(read(root, &path, name, columns)?);
-                }
-            }
+        if let Some(joint) = &filter.joint {
+            check_joint(joint, joints.values().flatten().map(String::as_str).collect())?;
         }
         let joint =
             |row: &Vec<Cell>| filter.joint.as_ref().is_none_or(|joint| row[2].as_text() == Some(joint));
@@ -165,30 +172,29 @@ impl History {
         Ok(history)
     }
 
-    fn take_runs(&mut self, rows: Vec<Vec<Cell>>) {
-        let mut runs: Vec<(Run, String)> = Vec::new();
+    fn take_runs(&mut self, rows: Vec<Vec<Cell>>, joints: &BTreeMap<String, BTreeSet<String>>) {
+        let mut logged = Vec::new();
         let (mut failed, mut unnamed) = (0, 0);
         for row in rows {
-            let text = |k: usize| row.get(k).and_then(Cell::as_text).map(str::to_owned);
-            match (text(5).is_some(), text(1), row.get(2).and_then(Cell::as_whole)) {
-                (true, ..) => failed += 1,
-                (false, Some(machine), started_us) => {
-                    let started_us = started_us.unwrap_or(UNDATED_NS / 1000);
+            let text = |k: usize| row[k].as_text().map(str::to_owned);
+            match (text(5).is_some(), text(1)) {
+                (true, _) => failed += 1,
+                (false, Some(machine)) => {
+                    let started_us = row[2].as_whole().unwrap_or(UNDATED_NS / 1000);
                     let log = text(3).unwrap_or_default();
-                    let run = Run { id: text(0).unwrap_or_default(), machine, log, started_us };
-                    runs.push((run, text(4).unwrap_or_default()));
+                    logged.push(Logged {
+                        content: text(4).unwrap_or_default(),
+                        duration_s: row[6].as_real().unwrap_or_default(),
+                        errors: [row[8].as_real(), row[9].as_real()],
+                        plan_is_command: row[7].is_set(),
+                        is_gone: is_gone(&log),
+                        run: Run { id: text(0).unwrap_or_default(), machine, log, started_us },
+                    });
                 }
-                _ => unnamed += 1,
+                (false, None) => unnamed += 1,
             }
         }
-        runs.sort_by(|(a, _), (b, _)| (a.started_us, &a.log).cmp(&(b.started_us, &b.log)));
-        // The same content under two names is one run.
-        let all = runs.len();
-        let mut seen = BTreeSet::new();
-        runs.retain(|(_, content)| content.is_empty() || seen.insert(content.clone()));
-        self.runs = runs.into_iter().map(|(run, _)| run).collect();
-        let repeated = (all - self.runs.len()) as u64;
-        self.remarks.add(Code::SameRun, repeated, "logs with the content of another one; left out");
+        self.runs = one_a_run(logged, joints, &mut self.remarks);
         self.remarks.add(Code::UnreadableLog, failed, "logs that could not be analysed; left out");
         self.remarks.add(Code::UnknownMachine, unnamed, "runs that name no machine; left out");
     }
@@ -213,6 +219,19 @@ impl History {
             self.remarks.add(Code::Undated, count, message);
         }
         self.runs.retain(|run| !undated(run));
+        let off = |run: &&Run| {
+            let named = began_ns(&run.log, UNDATED_NS).map(|ns| ns as f64 / 1e9 / SECONDS_PER_DAY);
+            named.is_some_and(|named| (named - days(run)).abs() > OTHER_DATE_DAYS)
+        };
+        if let Some(first) = self.runs.iter().find(off) {
+            let message = format!(
+                "runs whose stamps say another half of a year than their names, as {} ({}): the stamps count; was the clock set?",
+                first.log.rsplit('/').next().unwrap_or_default(),
+                date(days(first)).unwrap_or_default()
+            );
+            let count = self.runs.iter().filter(off).count() as u64;
+            self.remarks.add(Code::UnusableStamp, count, message);
+        }
     }
 
     fn check(&self, machine: &str) -> Result<(), FleetFailure> {
@@ -256,7 +275,9 @@ impl History {
             let (joint, event) = key;
             let unit = row[3].as_text().unwrap_or("rad").to_owned();
             let axis = Axis { machine: self.runs[run].machine.clone(), joint, unit };
-            for (by, value) in [(By::Peak, row[6].as_real()), (By::Delay, row[7].as_real())] {
+            let unanswered = row[8].as_text() == Some(Answer::Never.name());
+            let delay_s = row[7].as_real().or(unanswered.then_some(UNANSWERED_S));
+            for (by, value) in [(By::Peak, row[6].as_real()), (By::Delay, delay_s)] {
                 let Some(value) = value else { continue };
                 self.values
                     .entry((axis.clone(), by))
@@ -313,9 +334,38 @@ impl History {
     }
 }
 
-const RUN: [&str; 6] = ["run_id", "machine", "started_at", "log_uri", "log_sha256", "error"];
-const START: [&str; 8] =
-    ["run_id", "plan_id", "joint", "unit", "event_index", "planned_onset_s", "peak_error", "onset_delay_s"];
+fn check_joint(joint: &str, present: BTreeSet<&str>) -> Result<(), FleetFailure> {
+    if present.contains(joint) {
+        return Ok(());
+    }
+    let nearest = nearest(joint, present.iter().copied());
+    let present = present.into_iter().collect::<Vec<_>>().join(", ");
+    Err(FleetFailure::NoJoint { joint: joint.to_owned(), nearest, present })
+}
+
+const RUN: [&str; 10] = [
+    "run_id",
+    "machine",
+    "started_at",
+    "log_uri",
+    "log_sha256",
+    "error",
+    "duration_s",
+    "plan_is_command",
+    "rms",
+    "peak",
+];
+const START: [&str; 9] = [
+    "run_id",
+    "plan_id",
+    "joint",
+    "unit",
+    "event_index",
+    "planned_onset_s",
+    "peak_error",
+    "onset_delay_s",
+    "answer",
+];
 const REMARK: [&str; 2] = ["run_id", "code"];
 const LAG: [&str; 5] = ["run_id", "plan_id", "joint", "unit", "lag_s"];
 

@@ -18,7 +18,7 @@ pub enum MachineFrom {
     Above(usize),
     /// In the topic of the measurement: its first part.
     Topic,
-    /// In a table: the row with the longest text that occurs in the path of the log.
+    /// In a table: the row with the longest text that occurs in the path of the log, not within a word or number.
     Map(Vec<(String, String)>),
 }
 
@@ -60,12 +60,23 @@ impl MachineFrom {
                 .find(|part| !part.is_empty())
                 .map(str::to_owned),
             Self::Map(rows) => {
-                let fitting = rows.iter().filter(|(part, _)| text.contains(part.as_str()));
+                let fitting = rows.iter().filter(|(part, _)| occurs(part, &text));
                 fitting.max_by_key(|(part, _)| part.len()).map(|(_, machine)| machine.clone())
             }
         };
         named.map(|name| name.trim().to_owned()).filter(|name| !name.is_empty())
     }
+}
+
+/// Whether a text has a part that no letter or digit goes on, on either side: `M1` is not in `M12`.
+fn occurs(part: &str, text: &str) -> bool {
+    let alone = |one: Option<char>, other: Option<char>| {
+        !(one.is_some_and(char::is_alphanumeric) && other.is_some_and(char::is_alphanumeric))
+    };
+    text.match_indices(part).any(|(at, _)| {
+        let (before, after) = (text[..at].chars().next_back(), text[at + part.len()..].chars().next());
+        alone(before, part.chars().next()) && alone(part.chars().next_back(), after)
+    })
 }
 
 fn table(path: &Path) -> Result<Vec<(String, String)>, FleetFailure> {
@@ -104,7 +115,11 @@ mod tests {
         assert_eq!((of("path:arm"), of("path:99"), of("log"), of("topic")), (None, None, None, None));
         let folder = tempfile::tempdir().unwrap();
         let map = folder.path().join("map.csv");
-        std::fs::write(&map, "path, machine\nsite=north, all\nmachine=M07, seven\nM08,eight\n").unwrap();
+        std::fs::write(
+            &map,
+            "path, machine\nsite=north, all\nmachine=M07, seven\nM08,eight\nmachine=M07/2026-03-0,no\n",
+        )
+        .unwrap();
         assert_eq!(of(&map.to_string_lossy()).as_deref(), Some("seven"));
         std::fs::write(&map, "log,arm\na,b\n").unwrap();
         assert!(matches!(MachineFrom::parse(&map.to_string_lossy()), Err(FleetFailure::Machines { .. })));

@@ -50,18 +50,21 @@ pub struct Cell {
     pub starts: usize,
 }
 
-/// The maps of these metrics; none of what no two runs tell.
-pub(super) fn maps(history: &History, by: &[By]) -> Vec<Map> {
-    by.iter().filter_map(|metric| map(history, *metric)).collect()
+/// The maps of these metrics and of the machines that are wanted, against all; none of what no two runs tell.
+pub(super) fn maps(history: &History, by: &[By], wanted: impl Fn(&str) -> bool) -> Vec<Map> {
+    by.iter().filter_map(|metric| map(history, *metric, &wanted)).collect()
 }
 
-fn map(history: &History, metric: By) -> Option<Map> {
+fn map(history: &History, metric: By, wanted: impl Fn(&str) -> bool) -> Option<Map> {
     #[expect(clippy::cast_possible_truncation, reason = "days of runs are few")]
     let day = |run: &usize| history.runs.get(*run).map(|run| days(run).floor() as i64);
     let usual = history.usual(metric);
     // Starts by machine, day and joint.
     let mut shares: BTreeMap<(&str, i64, &str), Vec<f64>> = BTreeMap::new();
     for ((axis, _), values) in history.values.iter().filter(|((_, by), _)| *by == metric) {
+        if !wanted(&axis.machine) {
+            continue;
+        }
         for (event, of) in values {
             let usual = usual.get(&(axis.joint.as_str(), event)).copied().filter(|usual| *usual > 0.0);
             let Some(usual) = usual else { continue };
@@ -137,7 +140,7 @@ mod tests {
     #[test]
     fn a_machine_that_became_worse_stands_first_with_its_joint_from_that_day_on() {
         let history = history(5, 10, 6);
-        let maps = maps(&history, &[By::Peak, By::Delay]);
+        let maps = maps(&history, &[By::Peak, By::Delay], |_| true);
         assert_eq!(maps.len(), 1);
         let map = &maps[0];
         assert_eq!((map.columns.len(), map.days_a_column, map.machines.len()), (10, 1, 5));
@@ -157,9 +160,9 @@ mod tests {
 
     #[test]
     fn a_year_is_shown_in_columns_of_days_and_many_machines_as_the_worst() {
-        let maps = maps(&history(201, 2, 0), &[By::Peak]);
+        let maps = maps(&history(201, 2, 0), &[By::Peak], |_| true);
         assert_eq!((maps[0].machines.len(), maps[0].left_out), (200, 1));
-        let year = &super::maps(&history(2, 365, 300), &[By::Peak])[0];
+        let year = &super::maps(&history(2, 365, 300), &[By::Peak], |_| true)[0];
         assert_eq!((year.days_a_column, year.columns.len()), (12, 31));
         assert_eq!(year.machines[0].machine, "M1");
     }

@@ -116,7 +116,7 @@ pub fn worst(root: &Path, filter: &Filter, by: By) -> Result<Worst, FleetFailure
         by,
         runs: history.runs.len(),
         machines: history.machines().len(),
-        map: maps(&history, &[by]).pop(),
+        map: maps(&history, &[by], wanted).pop(),
         joints,
         remarks: history.remarks,
     })

@@ -1,0 +1,112 @@
+//! Which changes of a fleet's joints are found: those that chance does not make, that matter, and that other machines do
+//! not share.
+
+use std::{collections::BTreeMap, path::Path};
+
+use super::joint_trend::{JointTrend, MOST_FALSE};
+use crate::math::{SIGMA_PER_MAD, false_discovery, mad, median};
+
+/// Robust standard deviations of the fleet's changes that a change must stand out by to be found: less than that many
+/// healthy joints change by, in a season or with other work.
+const STANDS_OUT: f64 = 3.0;
+/// Joints that tell what is usual, at least; of steps, those of other machines.
+const FEWEST_JOINTS: usize = 10;
+const FEWEST_OF_STEPS: usize = 4;
+/// Half of a 95 % interval, in standard deviations.
+const SIGMAS_OF_95: f64 = 1.96;
+/// Runs before a step, and after it, that tell how others changed then, at least.
+const FEWEST_OF_A_SIDE: usize = 3;
+/// A step, or what a trend makes from the first run to the last, that is a smaller share of the level is of no concern.
+const RELEVANT: f64 = 0.02;
+
+/// Which trends and steps are found. Both are tests of the same data, so they are corrected for together.
+pub(super) fn judge(trends: &mut [JointTrend]) {
+    let tell = stand_out(trends);
+    let p_trend = trends.iter().map(|trend| trend.p_value);
+    let p_step = trends.iter().map(|trend| trend.step.as_ref().map_or(1.0, |step| step.p_value));
+    let q = false_discovery(&p_trend.chain(p_step).collect::<Vec<f64>>());
+    let (q_trend, q_step) = q.split_at(trends.len());
+    let steps = |(own, q): (&JointTrend, &f64)| {
+        if *q < MOST_FALSE { elsewhere(trends, own) } else { None }
+    };
+    let elsewhere: Vec<Option<(f64, f64)>> = trends.iter().zip(q_step).map(steps).collect();
+    for (k, trend) in trends.iter_mut().enumerate() {
+        trend.q_value = q_trend[k];
+        let usual = tell[k] && trend.stands_out.is_some_and(|out| out < STANDS_OUT);
+        let least = RELEVANT * trend.level.abs();
+        let drifts =
+            trend.q_value < MOST_FALSE && !usual && (trend.slope_per_day * trend.days).abs() >= least;
+        if let Some(step) = &mut trend.step {
+            step.q_value = q_step[k];
+            let told = elsewhere[k].is_some();
+            let (middle, spread) = elsewhere[k].unwrap_or_default();
+            // Both are known so well only.
+            let own = (step.interval_95[1] - step.interval_95[0]) / (2.0 * SIGMAS_OF_95);
+            let least = (STANDS_OUT * if told { spread.hypot(own) } else { 0.0 }).max(least);
+            let steps = step.q_value < MOST_FALSE && (step.change - middle).abs() >= least;
+            trend.is_step = steps && (!drifts || step.left < 1.0);
+            if trend.is_step {
+                trend.since.clone_from(&step.by);
+            }
+        }
+        trend.found = drifts || trend.is_step;
+        if trend.found {
+            trend.levels.iter_mut().for_each(|level| level.page = page_beside(&level.log));
+        } else {
+            trend.levels.clear();
+        }
+    }
+}
+
+/// By how much the joints of other machines changed when this one steps: the middle, and the spread as a robust standard
+/// deviation. `None` where too few tell that. What one machine's joints share is its own.
+fn elsewhere(trends: &[JointTrend], own: &JointTrend) -> Option<(f64, f64)> {
+    let step = own.step.as_ref()?;
+    let at_days = own.levels.get(step.runs_before)?.at_days;
+    let change = |other: &JointTrend| {
+        let side = |after: bool| -> Vec<f64> {
+            let levels = other.levels.iter().filter(|level| (level.at_days >= at_days) == after);
+            levels.map(|level| level.value).collect()
+        };
+        let [before, after] = [side(false), side(true)];
+        let enough = before.len().min(after.len()) >= FEWEST_OF_A_SIDE;
+        enough.then(|| mean(&after) - mean(&before))
+    };
+    let alike = |other: &&JointTrend| {
+        other.machine != own.machine && (other.metric, &other.unit) == (own.metric, &own.unit)
+    };
+    // The same joint elsewhere tells more: a cold day makes more of a fast joint.
+    let same = |other: &&JointTrend| alike(other) && other.joint == own.joint;
+    let same: Vec<f64> = trends.iter().filter(same).filter_map(change).collect();
+    let told = Some(same).filter(|same| same.len() >= FEWEST_OF_STEPS);
+    let changes = told.unwrap_or_else(|| trends.iter().filter(alike).filter_map(change).collect());
+    let enough = changes.len() >= FEWEST_OF_STEPS;
+    enough.then(|| (median(changes.clone()), SIGMA_PER_MAD * mad(&changes)))
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn page_beside(log: &str) -> Option<String> {
+    let page = Path::new(log).with_extension("html").canonicalize().ok()?;
+    page.is_file().then(|| page.to_str().map(str::to_owned))?
+}
+
+/// Says by how much each slope differs from what is usual for its metric; gives whether enough joints tell that.
+fn stand_out(trends: &mut [JointTrend]) -> Vec<bool> {
+    let key = |trend: &JointTrend| (trend.metric, trend.unit.clone());
+    let mut slopes: BTreeMap<_, Vec<f64>> = BTreeMap::new();
+    for trend in trends.iter() {
+        slopes.entry(key(trend)).or_default().push(trend.slope_per_day);
+    }
+    let usual = |own: Vec<f64>| (own.len() >= FEWEST_JOINTS, SIGMA_PER_MAD * mad(&own), median(own));
+    let usual: BTreeMap<_, (bool, f64, f64)> =
+        slopes.into_iter().map(|(key, own)| (key, usual(own))).collect();
+    let judge = |trend: &mut JointTrend| {
+        let (tells, spread, middle) = usual.get(&key(trend)).copied().unwrap_or_default();
+        trend.stands_out = (spread > 0.0).then(|| (trend.slope_per_day - middle).abs() / spread);
+        tells
+    };
+    trends.iter_mut().map(judge).collect()
+}
