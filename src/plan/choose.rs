@@ -108,6 +108,14 @@ impl Choice {
     }
 }
 
+impl Choice {
+    /// The same rule at a plan that is above ceilings, which another shape is to keep to.
+    #[must_use]
+    pub fn above(self, timing: Timing, ceilings: &Ceilings) -> Self {
+        Self { timing, within: 0, horizon_s: None, ceilings: within_reach(ceilings), ..self }
+    }
+}
+
 /// Why no plan can be chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoChoice {
@@ -124,7 +132,7 @@ pub enum NoChoice {
 pub const HORIZON: f64 = 2.0;
 /// Evaluations of the last descent at most.
 const LAST: u64 = 600;
-/// Times that the fastest plan is quickened as it is.
+/// Times that the fastest plan is quickened and descends from there.
 const QUICKENED: usize = 3;
 /// Distance that descents keep from ceilings, as a share of them.
 const ROUNDING: f64 = 1e-6;
@@ -210,7 +218,8 @@ pub fn choose(
     if rule == Rule::Best(Objective::Duration) {
         // Where a descent stands at a kink, all times alike may still be shorter, and it goes on from there.
         for _ in 0..QUICKENED {
-            let Some(quicker) = exact::quickened(setup, &timing).filter(|quicker| excess(quicker) <= 1.0)
+            let Some(quicker) =
+                exact::quickest(setup, Some(&timing)).filter(|quicker| excess(quicker) <= 1.0)
             else {
                 break;
             };

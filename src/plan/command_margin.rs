@@ -141,7 +141,7 @@ impl Setup {
         };
         let mut polynomial = powers[..=degree].to_vec();
         let [low, high] = limits.range_rad;
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let (middle, half) = limits.range().unwrap_or((0.0, f64::INFINITY));
         for angle_rad in bounds(&polynomial) {
             let end = if angle_rad < middle { low } else { high };
             let allowed = if half.is_finite() { end } else { half };

@@ -59,6 +59,16 @@ fn keeps(margins: &[Margin]) -> bool {
     !margins.iter().any(Margin::broken)
 }
 
+/// Times that a plan is quickened, each by up to a tenth.
+const QUICKENED: usize = 40;
+
+/// The same motion in the least time that keeps its limits; `None` where that gains next to nothing.
+pub(super) fn quickest(setup: &Setup, timing: Option<&Timing>) -> Option<Timing> {
+    std::iter::successors(quickened(setup, timing?), |quicker| quickened(setup, quicker))
+        .take(QUICKENED)
+        .last()
+}
+
 /// The same motion in less time, as far as it keeps its limits; `None` where that gains next to nothing.
 pub(super) fn quickened(setup: &Setup, timing: &Timing) -> Option<Timing> {
     const HALVINGS: usize = 12;
@@ -69,11 +79,21 @@ pub(super) fn quickened(setup: &Setup, timing: &Timing) -> Option<Timing> {
         scaled.iter().all(|s| *s >= least_s).then_some(scaled)
     };
     let (mut broken, mut kept) = (0.9, 1.0);
+    let keeps = |by: f64, evaluator: &mut Evaluator| {
+        scaled(by).is_some_and(|interval_s| setup.keeps(&interval_s, evaluator))
+    };
+    if keeps(broken, &mut evaluator) {
+        kept = broken;
+    }
     for _ in 0..HALVINGS {
+        if kept <= broken {
+            break;
+        }
         let middle = 0.5 * (broken + kept);
-        match scaled(middle) {
-            Some(interval_s) if setup.keeps(&interval_s, &mut evaluator) => kept = middle,
-            _ => broken = middle,
+        if keeps(middle, &mut evaluator) {
+            kept = middle;
+        } else {
+            broken = middle;
         }
     }
     let interval_s = scaled(kept).filter(|_| kept < 1.0 - 1e-4)?;

@@ -6,22 +6,23 @@ use crate::{
     spline::{Extremum, Motion, Quantity},
 };
 
-/// Groups of instants a segment is scanned by; the peak is then looked at closer.
-const PIECES: usize = 64;
+/// Groups of instants that a segment is scanned by at least, and each piece of its spline; the peak is then looked at closer.
+const GROUPS: usize = 64;
+const EACH: usize = 8;
 /// How often the instants about a peak are looked at closer, each time by a factor of four or more.
 const CLOSER: usize = 3;
 
 impl Setup {
     /// Margins of the limits that the plan has, joint by joint and then those of the arm: angles,
     /// speeds, accelerations and jerks from exact extrema; torques, rods, flow and tool by a search
-    /// among 512 instants a segment and then about the largest.
+    /// among 512 instants a segment, or 64 a piece of its spline if those are more, and then about the largest.
     ///
     /// `evaluator` must be of this setup; what it evaluated before is lost.
     pub fn margins(&self, motion: &Motion, evaluator: &mut Evaluator) -> Vec<Margin> {
         let joints = self.joint_count();
         evaluator.motion.clone_from(motion);
         let mut margins = Vec::new();
-        evaluator.mesh.scan(self, motion, PIECES);
+        evaluator.mesh.scan(self, motion, GROUPS, EACH);
         let mut tops: Vec<(usize, f64)> = Vec::new();
         for row in 0..joints * LOADED + 2 {
             tops.push(top(evaluator.mesh.row(row)));
@@ -30,7 +31,8 @@ impl Setup {
             .iter()
             .map(|&(i, share)| {
                 let segment = evaluator.mesh.segment_of(i);
-                let step_s = motion.segments()[segment].spline.duration_s() / (PIECES * LANES - 1) as f64;
+                let steps = evaluator.mesh.segment[segment].len() - 1;
+                let step_s = motion.segments()[segment].spline.duration_s() / steps as f64;
                 (segment, evaluator.mesh.t_s[i], step_s, share)
             })
             .collect();
@@ -55,9 +57,8 @@ impl Setup {
     fn of_splines(&self, motion: &Motion, joint: usize, margins: &mut Vec<Margin>) {
         let limits = &self.limits[joint];
         let [low, high] = limits.range_rad;
-        if low.is_finite() && high.is_finite() {
+        if let Some((middle, half)) = limits.range() {
             let found = motion.extrema(joint, Quantity::Position);
-            let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
             let outer = |at: Extremum| (at.value - middle).abs() / half;
             let up = outer(found.greatest) >= outer(found.least);
             let (at, allowed) = if up { (found.greatest, high) } else { (found.least, low) };

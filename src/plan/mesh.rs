@@ -87,12 +87,14 @@ impl Mesh {
         self.fill(setup, motion);
     }
 
-    /// Looks at `pieces * LANES` even steps of every segment, ends included; integrals are void.
-    pub(super) fn scan(&mut self, setup: &Setup, motion: &Motion, pieces: usize) {
+    /// Looks at `least * LANES` even steps of every segment, or `each * LANES` a piece of its spline if those are more, ends
+    /// included; integrals are void.
+    pub(super) fn scan(&mut self, setup: &Setup, motion: &Motion, least: usize, each: usize) {
         self.t_s.clear();
         self.segment.clear();
         for segment in motion.segments() {
-            let (first, count) = (self.t_s.len(), pieces * LANES);
+            let groups = least.max(each * segment.spline.pieces());
+            let (first, count) = (self.t_s.len(), groups * LANES);
             let step_s = segment.spline.duration_s() / (count - 1) as f64;
             self.t_s.extend((0..count).map(|i| segment.start_s + step_s * i as f64));
             self.segment.push(first..self.t_s.len());

@@ -16,16 +16,32 @@ impl Setup {
     /// Points a second of a motion's trajectory: 25, or as many more, up to 400, as it takes that no curve of a controller through
     /// them breaks a limit of what is sent by more than [`BETWEEN`]. 25 where the motion breaks one itself: no points mend that.
     pub fn points_hz(&self, motion: &Motion) -> f64 {
-        let keeps = |hz: &f64| {
-            let found = self.through_points(&states(motion, 1.0 / hz), 1.0 / hz);
-            found.iter().all(|(_, margin)| margin.share <= 1.0 + BETWEEN)
-        };
-        let [least, more @ ..] = &POINTS_HZ;
+        let [least, .., most] = POINTS_HZ;
         let broken = |margin: &Margin| margin.share > 1.0 + BETWEEN && !margin.limit.is_load();
-        if keeps(least) || self.margins(motion, &mut Evaluator::new(self)).iter().any(broken) {
-            return *least;
+        let keeps = |hz: &f64| self.between(motion, *hz).is_none();
+        if !keeps(&least) && self.margins(motion, &mut Evaluator::new(self)).iter().any(broken) {
+            return least;
         }
-        more.iter().copied().find(keeps).unwrap_or(*least)
+        POINTS_HZ.into_iter().find(keeps).unwrap_or(most)
+    }
+
+    /// The limit that the curve of a controller breaks most, by more than [`BETWEEN`], through points that a motion passes so
+    /// often; `None` if none does.
+    pub fn between(&self, motion: &Motion, points_hz: f64) -> Option<(Interpolation, Margin)> {
+        let step_s = 1.0 / points_hz;
+        let points = states(motion, step_s);
+        // The last step ends with the motion.
+        let whole = points.first().map_or(0, Vec::len).saturating_sub(2);
+        let rest_s = motion.duration_s() - whole as f64 * step_s;
+        let part = |of: std::ops::RangeFrom<usize>, most: usize| -> Vec<Vec<State>> {
+            points.iter().map(|joint| joint[of.clone()].iter().copied().take(most).collect()).collect()
+        };
+        let mut found = self.through_points(&part(whole.., 2), rest_s);
+        if whole > 0 {
+            found.extend(self.through_points(&part(0.., whole + 1), step_s));
+        }
+        found.retain(|(_, margin)| margin.share > 1.0 + BETWEEN);
+        found.into_iter().max_by(|a, b| a.1.share.total_cmp(&b.1.share))
     }
 
     /// Margins of curves through points, by all that a controller may make of them.

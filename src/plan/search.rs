@@ -162,25 +162,25 @@ pub fn search(
         thinned(setup, &evolved, search.front)
     };
     front.sort_by(|a, b| a.objectives[Objective::Duration].total_cmp(&b.objectives[Objective::Duration]));
-    let (front, more) = exact::kept_front(setup, &front, search.front);
+    let (mut front, more) = exact::kept_front(setup, &front, search.front);
     evaluations += more;
+    let nearest = front.is_empty().then(|| {
+        let members = (0..outcome.population.len()).map(|i| timing(&outcome.population, i));
+        nearest(setup, least_broken(members.chain(initial))?)
+    });
+    let nearest = nearest.flatten();
+    // The descent to it may end where all limits hold.
+    front.extend(nearest.clone().filter(|end| setup.keeps(&end.interval_s, &mut Evaluator::new(setup))));
+    if search.seeded {
+        front.splice(0..0, exact::quickest(setup, front.first()));
+    }
     let _ = observer(&Progress {
         phase: Phase::Polish,
         evaluations,
         generation: outcome.generations,
         population: &population(setup, &front),
     });
-    let nearest = front.is_empty().then(|| {
-        let members = (0..outcome.population.len()).map(|i| timing(&outcome.population, i));
-        nearest(setup, least_broken(members.chain(initial))?)
-    });
-    Ok(Found {
-        front,
-        nearest: nearest.flatten(),
-        evaluations,
-        generations: outcome.generations,
-        fastest_converged,
-    })
+    Ok(Found { front, nearest, evaluations, generations: outcome.generations, fastest_converged })
 }
 
 /// The plan that breaks its limits least, near one that breaks them.

@@ -237,10 +237,8 @@ fn largest(values: &[f64]) -> f64 {
 /// Middle of what a limit allows, and how far from it.
 fn allowance(setup: &Setup, joint: usize, quantity: Quantity) -> (f64, f64) {
     let limit = &setup.limits[joint];
-    let [low, high] = limit.range_rad;
     match quantity {
-        Quantity::Position if low.is_finite() && high.is_finite() => (0.5 * (low + high), 0.5 * (high - low)),
-        Quantity::Position => (0.0, f64::INFINITY),
+        Quantity::Position => limit.range().unwrap_or((0.0, f64::INFINITY)),
         Quantity::Velocity => (0.0, limit.speed_rad_s),
         Quantity::Acceleration => (0.0, limit.acceleration_rad_s2),
         Quantity::Jerk => (0.0, limit.jerk_rad_s3),

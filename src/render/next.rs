@@ -14,15 +14,17 @@ fn step(section: Section, aim: &str, words: &[&str]) -> Section {
 
 /// After `plan`; `of_sample_arm`: whether the machines that `simulate` knows by name have its joints.
 pub(crate) fn plan_written(log: &Path, of_sample_arm: bool) -> Section {
+    // The run has another name than the plan.
+    let run = if log.file_name().is_some_and(|name| name == "run.mcap") { "run-2.mcap" } else { "run.mcap" };
     let log = argument(log);
     if of_sample_arm {
         let aim = "To run it on a simulated machine:";
-        return step(written(&log), aim, &["simulate", &log, "-o", "run.mcap"]);
+        return step(written(&log), aim, &["simulate", &log, "-o", run]);
     }
     let aim = "To send it as a table, where the trajectory in it is not what the controller takes:";
     let sent = step(written(&log), aim, &["export", &log, "-o", "plan.csv"]);
     let aim = "After the run, to put the plan into the recorder's log:";
-    step(sent, aim, &["join", "RUN.mcap", "--plan", &log, "-o", "run.mcap"])
+    step(sent, aim, &["join", "RUN.mcap", "--plan", &log, "-o", run])
 }
 
 /// After `fit`; `logs` are the runs of the plan to plan again.

@@ -20,19 +20,23 @@ pub enum SplineError {
     #[error("{quantity} {index} is not a number below 1e12 in magnitude: {value}")]
     NotFinite { quantity: &'static str, index: usize, value: f64 },
     /// The time to move between two key points is none, or too short to be told from none.
-    #[error("no time to move to key point {index}: leaving at {leave_s} s, arriving at {arrive_s} s")]
+    #[error("no time to move to key point {}: leaving at {leave_s} s, arriving at {arrive_s} s", index + 1)]
     NotIncreasing { index: usize, leave_s: f64, arrive_s: f64 },
     /// Intervals so unequal that rounding hides the solution.
     #[error("intervals are too unequal: rounding would grow {inverse:.1e} times")]
     IllConditioned { inverse: f64 },
     /// Dwells are not at distinct key points in ascending order.
-    #[error("dwell {index} is at key point {point}: dwells ascend and lie within the {points} key points")]
+    #[error("dwell {} is at key point {}: dwells ascend and lie within the {points} key points", index + 1, point + 1)]
     BadDwell { index: usize, point: usize, points: usize },
     /// A rest of negative length.
-    #[error("the dwell at key point {point} lasts {length_s} s")]
+    #[error("the dwell at key point {} lasts {length_s} s", point + 1)]
     NegativeDwell { point: usize, length_s: f64 },
     /// The trajectory begins or ends with a dwell, but not at rest.
-    #[error("a dwell at key point {point}, where joint {joint} is not at rest")]
+    #[error(
+        "a dwell at key point {}, where joint {} is to move: give it no speed and acceleration there, or no dwell",
+        point + 1,
+        joint + 1
+    )]
     MovingDwell { point: usize, joint: usize },
 }
 

@@ -14,7 +14,6 @@ use super::{
 use crate::{
     moea::NamedAlgorithm,
     plan::PlanEvaluation,
-    remark::Remarks,
     render::{
         kit::Document,
         next,
@@ -27,7 +26,7 @@ use crate::{
             Carried,
             plan_log::{PlanLog, Planned as Steps},
         },
-        plan::{Course, Options, PlanDocument, PlanFailure, PlanRequest, Planned, run},
+        plan::{Course, Options, PlanDocument, PlanFailure, PlanRequest, Planned, Shaping, run},
     },
 };
 
@@ -69,13 +68,20 @@ impl Args {
         let document = PlanDocument::evaluated(title, &joints, &evaluation, true);
         self.write_log(request, &document, BTreeMap::new())?;
         let course = Course::of(request, &evaluation)?;
+        let remarks = request.doubts(&evaluation).map_err(PlanFailure::from)?;
+        let above = request.above(&evaluation);
         let result = match target.form {
             Form::Json => document.json(),
-            Form::Html => judged_page(title, &joints, &course, request.setup.arm().chain.tool_name()),
-            _ => target.text(&self.noted(request, judged_document(title, &joints, &evaluation))),
+            Form::Html => {
+                judged_page(title, &joints, (&course, &above), request.setup.arm().chain.tool_name())
+            }
+            _ => {
+                let judged = judged_document(title, &joints, &evaluation, &above);
+                target.text(&self.noted(request, judged).remarked(&remarks))
+            }
         };
         self.figures.write(console, target, || motion_figures(&joints, &course))?;
-        let outcome = console.finish(target, &result, &Remarks::default(), &[])?;
+        let outcome = console.finish(target, &result, &remarks, &[])?;
         Ok(if evaluation.broken().is_empty() { outcome } else { Outcome::LimitBroken })
     }
 
@@ -144,7 +150,7 @@ impl Args {
         console: &mut Console<'_>,
     ) -> Result<CliError, CliError> {
         let joints = request.setup.joint_names();
-        let (evaluation, lines) = match &failure {
+        let (evaluation, mut lines) = match &failure {
             PlanFailure::Infeasible(nearest) => {
                 (nearest, broken_lines(&joints, request.task.interval_s[1], nearest))
             }
@@ -153,6 +159,12 @@ impl Args {
             }
             _ => return Ok(failure.into()),
         };
+        if matches!(failure, PlanFailure::Ceilings { .. }) && self.options().shape == Shaping::Timing {
+            lines.push(
+                "with --shape free the curve between the key points is sought, too: it may keep them"
+                    .to_owned(),
+            );
+        }
         if self.form() == Form::Json {
             let document = PlanDocument::evaluated(&request.task.title, &joints, evaluation, false);
             console.print(&document.json())?;

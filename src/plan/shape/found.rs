@@ -170,7 +170,7 @@ fn start<'a>(setup: &'a Setup, interval_s: &[f64], pieces: usize) -> Option<(Fra
         key: (0..points.len()).collect(),
         bounds: limits
             .map(|limits| Bounds {
-                range_rad: limits.range_rad,
+                range_rad: limits.judged_rad,
                 most: [limits.speed_rad_s, limits.acceleration_rad_s2, limits.jerk_rad_s3],
             })
             .collect(),

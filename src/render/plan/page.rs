@@ -46,9 +46,14 @@ pub(crate) fn page(
 }
 
 /// One plan that was given, as one page.
-pub(crate) fn judged_page(title: &str, joints: &[String], course: &Course, tool: &str) -> String {
+pub(crate) fn judged_page(
+    title: &str,
+    joints: &[String],
+    (course, above): (&Course, &[(Objective, f64)]),
+    tool: &str,
+) -> String {
     let evaluation = &course.evaluation;
-    let mut document = judged_document(title, joints, evaluation);
+    let mut document = judged_document(title, joints, evaluation, above);
     document.facts = vec![fact("joints", joints.join(", "))];
     let mut plots = Plots::default();
     let chapters = [

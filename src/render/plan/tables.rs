@@ -50,8 +50,15 @@ pub(crate) fn document(
         )
     });
     let rules: Vec<&str> = Rule::all().filter(|rule| *rule != Rule::Weights).map(Rule::name).collect();
-    let another =
-        format!("To choose another plan: --choose {}; --weights; or ceilings in the task.", rules.join(", "));
+    let curve = if planned.shaped.is_none() && planned.no_shape.is_none() {
+        " With --shape free the curve between the key points is sought, too: it is faster, or smoother."
+    } else {
+        ""
+    };
+    let another = format!(
+        "To choose another plan: --choose {}; --weights; or ceilings in the task.{curve}",
+        rules.join(", ")
+    );
     let mut document = Document::titled(title)
         .with(Section::plain(Id::SUMMARY, [Sentence::finding(searched)]))
         .with(Section::new(Id::OTHER, "Plans", [plans(rows)]).with_all(longer))
@@ -71,11 +78,25 @@ pub(crate) fn document(
 }
 
 /// One given plan, for people.
-pub(crate) fn judged_document(title: &str, joints: &[String], evaluation: &PlanEvaluation) -> Document {
+///
+/// `above`: ceilings of the task that it is above, by what share.
+pub(crate) fn judged_document(
+    title: &str,
+    joints: &[String],
+    evaluation: &PlanEvaluation,
+    above: &[(Objective, f64)],
+) -> Document {
     let work =
         format!("All joints together turn over {:.0} J of work, driving and braking.", evaluation.energy_j);
     let given = Section::plain(Id::SUMMARY, [plans([row("given", evaluation, joints)])]);
-    let mut document = Document::titled(title).with(given.with(Sentence::finding(work)));
+    let above = above.iter().map(|(objective, share)| {
+        let ceiling = objective.row().ceiling;
+        Sentence::finding(format!(
+            "It is {:.1} % above {ceiling}, to which a search would keep.",
+            100.0 * share
+        ))
+    });
+    let mut document = Document::titled(title).with(given.with(Sentence::finding(work)).with_all(above));
     document.sections.extend(margins(evaluation, joints));
     document
 }

@@ -6,6 +6,7 @@ mod convergence;
 mod course;
 mod degrees;
 mod document;
+mod doubts;
 mod failure;
 mod request;
 mod shaped;
@@ -16,7 +17,7 @@ use crate::{
         bought, choose, ends, near, search,
     },
     remark::{Code, Remarks},
-    task::{Objective, Objectives, Weights},
+    task::{Ceilings, Objective, Objectives, Weights},
 };
 use convergence::Growth;
 pub use convergence::Step;
@@ -137,7 +138,19 @@ pub fn run(
     let choice = match choose(setup, &found.front, &task.ceilings, (rule, weights)) {
         Ok(choice) => choice,
         Err(NoChoice::Ceilings { nearest }) => {
-            return Err(PlanFailure::Ceilings { nearest: Box::new(evaluation(&nearest)?) });
+            let none =
+                || evaluation(&nearest).map(|nearest| PlanFailure::Ceilings { nearest: Box::new(nearest) });
+            let (Shaping::Free(_), Ok(free)) =
+                (options.shape, choose(setup, &found.front, &Ceilings::NONE, (rule, weights)))
+            else {
+                return Err(none()?);
+            };
+            // What times alone do not keep another shape may.
+            let above = free.above((*nearest).clone(), &task.ceilings);
+            if Made::of(setup, task, &above, options.shape)?.shaped.is_none() {
+                return Err(none()?);
+            }
+            above
         }
         Err(NoChoice::Empty) => return Err(PlanError::Times { found: 0, expected: 1 }.into()),
     };
@@ -176,6 +189,7 @@ pub fn run(
     let near = around.map(|(within_s, choice)| Ok((within_s, made(&choice)?.plan)));
     let near = near.collect::<Result<_, PlanError>>()?;
     let Made { plan: chosen, shaped, no_shape } = made(&choice)?;
+    remarks.extend(request.doubts(&chosen)?);
     let of_degrees = if options.degrees { degrees(request, options, (&choice, &chosen)) } else { Vec::new() };
     Ok(Planned {
         degree: task.degree,
@@ -185,13 +199,14 @@ pub fn run(
         ends,
         best,
         chosen,
-        shaped,
         no_shape,
         evaluations: found.evaluations + choice.evaluations,
         generations: found.generations,
         fastest_converged: found.fastest_converged,
         hypervolume,
-        bought: bought(setup, &choice.timing),
+        // Of times alone: what more of it buys a free shape is not known without shaping it anew.
+        bought: if shaped.is_none() { bought(setup, &choice.timing) } else { Vec::new() },
+        shaped,
         near,
         convergence: growth.steps(reference, found.evaluations, hypervolume),
         choice,

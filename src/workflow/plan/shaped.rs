@@ -1,8 +1,8 @@
 //! The plan of a choice, in the shape asked for.
 
 use crate::{
-    plan::{Choice, NoShape, PlanError, PlanEvaluation, Setup, Shape, shape},
-    task::Task,
+    plan::{Choice, NoShape, PlanError, PlanEvaluation, Rule, Setup, Shape, shape, smoother},
+    task::{Objective, Task},
 };
 
 /// Whether the chosen plan keeps the shape that its times give it.
@@ -46,7 +46,7 @@ impl Made {
         let timing = PlanEvaluation::of(setup, &setup.times_s(&choice.timing.interval_s))?;
         Ok(match shaping {
             Shaping::Timing => Self { plan: timing, shaped: None, no_shape: None },
-            Shaping::Free(pieces) => match shape(setup, choice, &task.ceilings, pieces) {
+            Shaping::Free(pieces) => match of_choice(setup, task, choice, pieces) {
                 Ok(Shape { evaluation, pieces, .. }) => {
                     Self { plan: evaluation, shaped: Some(Shaped { timing, pieces }), no_shape: None }
                 }
@@ -54,4 +54,13 @@ impl Made {
             },
         })
     }
+}
+
+/// The smoothest shape keeps the time of its choice, unless that is above a ceiling.
+fn of_choice(setup: &Setup, task: &Task, choice: &Choice, pieces: Option<usize>) -> Result<Shape, NoShape> {
+    let above = !choice.timing.objectives.within(&task.ceilings);
+    if above && choice.rule == Rule::Best(Objective::RmsJerk) {
+        return smoother(setup, &choice.timing, &task.ceilings, pieces);
+    }
+    shape(setup, choice, &task.ceilings, pieces)
 }

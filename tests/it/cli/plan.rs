@@ -135,7 +135,36 @@ fn wrong_tasks_and_times_name_file_line_and_remedy() {
     assert!(stderr(&short).contains("3 times for 7 key points"), "{}", stderr(&short));
     let back = plan(&[SIMULATION, "--times", "0,2,1,3,4,5,6"], "2");
     assert_eq!(back.status.code(), Some(1));
-    assert!(stderr(&back).contains("key point 2"), "{}", stderr(&back));
+    assert!(stderr(&back).contains("key point 3"), "{}", stderr(&back));
+}
+
+#[test]
+fn a_given_plan_above_a_ceiling_and_a_controllers_curve_beyond_a_limit_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let task = edited(folder.path(), TASK_1, "max_duration_s = 40.0", "max_duration_s = 30.0");
+    let times = ["--times", "0,8,14,22,30,36"];
+    let long = plan(&[&[task.to_str().unwrap()], &times[..]].concat(), "2");
+    assert_eq!(long.status.code(), Some(0), "{}", stderr(&long));
+    assert!(stdout(&long).contains("It is 20.0 % above max_duration_s"), "{}", stdout(&long));
+    assert!(!stdout(&plan(&[&[TASK_1], &times[..]].concat(), "2")).contains("above"));
+    // Of degree five the jerk leaps from rest, which no points show a controller.
+    let degree = fs::read_to_string(root().join(TASK_1)).unwrap();
+    let degree = degree.lines().find(|line| line.starts_with("degree")).unwrap();
+    let leaps = edited(folder.path(), TASK_1, degree, "degree = 5");
+    let (log, task) = (folder.path().join("plan.mcap"), leaps.to_str().unwrap());
+    let options =
+        ["--evaluations", "3000", "--choose", "fastest", "--shape", "free", "-o", log.to_str().unwrap()];
+    let run = plan(&[&[task], &options[..]].concat(), "2");
+    assert_eq!(run.status.code(), Some(3), "{}", stderr(&run));
+    assert!(stdout(&run).contains("a controller's quintic comes to"), "{}", stdout(&run));
+    // Faster than times alone can be.
+    let soon = edited(folder.path(), TASK_1, "max_duration_s = 40.0", "max_duration_s = 11.3");
+    let soon = [soon.to_str().unwrap(), "--evaluations", "3000", "--choose", "fastest"];
+    let alone = plan(&soon, "2");
+    assert_eq!(alone.status.code(), Some(1));
+    assert!(stderr(&alone).contains("--shape free"), "{}", stderr(&alone));
+    let free = plan(&[&soon[..], &["--shape", "free", "--json"]].concat(), "2");
+    assert!(json(&free)["chosen"]["duration_s"].as_f64().unwrap() <= 11.3);
 }
 
 #[test]

@@ -356,13 +356,13 @@ fn errors_name_the_place_in_the_whole_motion() {
     let dwell = Dwell { point: 2, length_s: 2.0 };
     assert_eq!(
         make(&[dwell], &[0.0, 1.0, 2.0, 3.5]),
-        "no time to move to key point 3: leaving at 4 s, arriving at 3.5 s"
+        "no time to move to key point 4: leaving at 4 s, arriving at 3.5 s"
     );
     assert_eq!(make(&[], &[0.0, 1.0, 2.0]), "3 values of time, 4 expected");
     assert_eq!(make(&[], &[0.0, f64::NAN, 2.0, 3.0]), "time 1 is not a number below 1e12 in magnitude: NaN");
     assert_eq!(
         make(&[dwell, dwell], &[0.0, 1.0, 2.0, 5.0]),
-        "dwell 1 is at key point 2: dwells ascend and lie within the 4 key points"
+        "dwell 2 is at key point 3: dwells ascend and lie within the 4 key points"
     );
     assert_eq!(KeyPoints::new(1, vec![0.0]).unwrap_err(), SplineError::TooFewPoints { points: 1 });
     assert_eq!(KeyPoints::new(0, vec![]).unwrap_err(), SplineError::NoJoints);

@@ -1,0 +1,64 @@
+//! What a plan that keeps its limits leaves to be doubted.
+
+use super::PlanRequest;
+use crate::{
+    plan::{BETWEEN, Interpolation, Limit, PlanError, PlanEvaluation},
+    remark::{Code, Remarks},
+    task::Objective,
+};
+
+impl PlanRequest {
+    /// Remarks on a plan of the task: what a controller's curve breaks through the points of its trajectory.
+    ///
+    /// # Errors
+    ///
+    /// [`PlanError`] of a plan of another task.
+    pub fn doubts(&self, plan: &PlanEvaluation) -> Result<Remarks, PlanError> {
+        let (setup, mut remarks) = (&self.setup, Remarks::default());
+        let motion = setup.motion_through(&plan.times_s, &plan.via)?;
+        let points_hz = setup.points_hz(&motion);
+        let own = |limit: Limit, joint| {
+            let own = plan.margins.iter().find(|margin| (margin.limit, margin.joint) == (limit, joint));
+            own.map_or(0.0, |own| own.share)
+        };
+        let between = setup.between(&motion, points_hz);
+        // What the plan breaks itself is told with its limits.
+        if let Some((how, margin)) = between.filter(|(_, m)| own(m.limit, m.joint) <= 1.0 + BETWEEN) {
+            let curve = match how {
+                Interpolation::Linear => "straight line",
+                Interpolation::Cubic => "cubic",
+                Interpolation::Quintic => "quintic",
+            };
+            let names = setup.joint_names();
+            let of = margin.joint.and_then(|joint| names.get(joint)).map(|name| format!(" of {name}"));
+            let message = format!(
+                "through the points of its trajectory, {points_hz:.0} a second, a controller's {curve} comes to {:.0} % of the \
+                 largest {}{} at {:.2} s, where the plan keeps it: send it as a stream, or look at what yours interpolates",
+                100.0 * margin.share,
+                words(margin.limit),
+                of.unwrap_or_default(),
+                margin.t_s
+            );
+            remarks.add(Code::BeyondLimit, 1, message);
+        }
+        Ok(remarks)
+    }
+
+    /// Ceilings that a plan is above, and by what share.
+    pub fn above(&self, plan: &PlanEvaluation) -> Vec<(Objective, f64)> {
+        let above = |&k: &Objective| (k, plan.objectives[k] / self.task.ceilings[k] - 1.0);
+        Objective::OF_PLAN.iter().map(above).filter(|(_, share)| *share > BETWEEN).collect()
+    }
+}
+
+/// `RodSpeed` as words.
+fn words(limit: Limit) -> String {
+    let mut words = String::new();
+    for c in format!("{limit:?}").chars() {
+        if c.is_uppercase() && !words.is_empty() {
+            words.push(' ');
+        }
+        words.extend(c.to_lowercase());
+    }
+    words
+}
