@@ -4,7 +4,7 @@ use std::{collections::BTreeSet, fs::File, path::Path};
 
 use super::{
     channel::Definitions,
-    file::{Source, scan},
+    file::{Source, Span, scan},
     looks::{LOOKED_AT, is_table},
 };
 
@@ -37,6 +37,14 @@ const RECORDINGS: [(&[u8], &str); 5] = [
     (b"rosbag2_bagfile_information", "the description of a ROS 2 bag"),
 ];
 
+const PARQUET: &[u8] = b"PAR1";
+/// Bytes of its end that are looked at.
+const FOOTER: u64 = 1 << 16;
+/// What the end of a Parquet table holds that this program wrote.
+const OWN_PARQUET: &[u8] = concat!("hydrotrace ", env!("CARGO_PKG_VERSION_MAJOR"), ".").as_bytes();
+/// Endings of texts with headings and documents, which are no tables.
+const TEXTS: [&str; 4] = ["md", "markdown", "json", "svg"];
+
 /// What a file holds. Its name is not remembered as that of an input.
 ///
 /// # Errors
@@ -48,6 +56,16 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
     source.read(LOOKED_AT, &mut bytes)?;
     if let Some((_, what)) = RECORDINGS.iter().find(|(start, _)| bytes.starts_with(start)) {
         return Ok(Contents::Recording(what));
+    }
+    if bytes.starts_with(PARQUET) {
+        let end = source.length();
+        source.read(Span { start: end.saturating_sub(FOOTER), end }, &mut bytes)?;
+        let own = bytes.windows(OWN_PARQUET.len()).any(|part| part == OWN_PARQUET);
+        return Ok(if own {
+            Contents::Other
+        } else {
+            Contents::Recording("a Parquet table of another program")
+        });
     }
     if let Some(layout) = scan(&source) {
         let channels = Definitions::gather(&layout, &source, false).channels;
@@ -63,14 +81,19 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
     if start.contains("<robot ") {
         return Ok(Contents::Recording("a robot description"));
     }
-    if is_table(path, &bytes) {
+    let is_text = path.extension().is_some_and(|end| TEXTS.iter().any(|one| end.eq_ignore_ascii_case(one)));
+    if !is_text && is_table(path, &bytes) {
         let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         return Ok(Contents::Table(String::from_utf8_lossy(line).into_owned()));
     }
     Ok(Contents::Other)
 }
 
-/// Whether a text begins with a tag, in letters of any case.
+/// Whether a text begins with a tag, in letters of any case, behind a mark of its encoding and comments.
 fn begins(text: &str, tag: &str) -> bool {
-    text.trim_start().get(..tag.len()).is_some_and(|start| start.eq_ignore_ascii_case(tag))
+    let mut text = text.trim_start_matches('\u{feff}').trim_start();
+    while let Some((_, rest)) = text.strip_prefix("<!--").and_then(|text| text.split_once("-->")) {
+        text = rest.trim_start();
+    }
+    text.get(..tag.len()).is_some_and(|start| start.eq_ignore_ascii_case(tag))
 }

@@ -91,7 +91,7 @@ fn pairs(comparison: &Comparison, most: usize) -> Option<Section> {
     });
     let table = Table::of(columns, rows.collect::<Vec<_>>());
     let more = (worst.len() > most).then(|| {
-        Sentence::note(format!("and {} more that did better (--all lists them)", worst.len() - most))
+        Sentence::note(format!("and {} more that did no worse (--all lists them)", worst.len() - most))
     });
     (!worst.is_empty()).then(|| {
         Section::new(Id::TRANSITIONS, "Transitions, worst change of peak first", [table]).with_all(more)

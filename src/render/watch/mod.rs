@@ -8,20 +8,27 @@ use super::{
     kit::{Document, Id, NONE, Section, Sentence, counted, ms, optional},
     metric::position,
 };
-use crate::workflow::watch::{Run, RunJoint, Verdict, Watched};
+use crate::{
+    text::harmless,
+    workflow::watch::{Run, RunJoint, Verdict, Watched},
+};
 
-/// A log that was reported, in a line.
+/// A log that was reported, in a line, whatever is in its name.
 pub(crate) fn line(run: &Run) -> String {
+    said(run).chars().map(harmless).chain(['\n']).collect()
+}
+
+fn said(run: &Run) -> String {
     let name = match &run.machine {
         Some(machine) => format!("{machine} {}", run.name()),
         None => run.name().to_owned(),
     };
     let Some(page) = &run.page else {
-        return format!("{name}: FAILED: {}\n", run.error.as_deref().unwrap_or_default().replace('\n', " "));
+        return format!("{name}: FAILED: {}", run.error.as_deref().unwrap_or_default().replace('\n', " "));
     };
     let remarks =
         if run.remarks > 0 { format!(", {}", counted(run.remarks, "remark")) } else { String::new() };
-    format!("{}  {name}: {}, {}{remarks}  {page}\n", began(run), found(run), verdict(run.verdict))
+    format!("{}  {name}: {}, {}{remarks}  {page}", began(run), found(run), verdict(run.verdict))
 }
 
 /// When a run began.

@@ -7,7 +7,8 @@ use super::{PROVENANCE, TRUTH};
 use crate::log::{Contents, Topics, contents};
 
 /// How the tables begin that the program writes; others are records.
-const OWN_TABLES: [&str; 2] = ["stamp_ns,time_s", "run,joint,"];
+const OWN_TABLES: [&str; 4] =
+    ["stamp_ns,time_s", "run,joint,", "machine,joint,metric,unit,", "machine,at,joint,metric,unit,"];
 /// What the head of a page holds that the program wrote.
 const OWN_PAGE: &str = "<meta name=\"generator\" content=\"hydrotrace ";
 
@@ -28,8 +29,16 @@ pub fn worth(path: &Path) -> Option<String> {
         Contents::Table(_) => Some("a table that this program did not write".to_owned()),
         Contents::Page(head) if head.contains(OWN_PAGE) => None,
         Contents::Page(_) => Some("a page that this program did not write".to_owned()),
+        Contents::Other if is_page(path) => Some("no page that this program wrote".to_owned()),
         Contents::Other => None,
     }
+}
+
+/// Whether a file is called a page; an empty one is none.
+fn is_page(path: &Path) -> bool {
+    let named =
+        path.extension().is_some_and(|end| ["html", "htm"].iter().any(|one| end.eq_ignore_ascii_case(one)));
+    named && std::fs::metadata(path).is_ok_and(|file| file.len() > 0)
 }
 
 /// Whether no topic is of a run or a command.

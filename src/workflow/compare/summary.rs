@@ -123,7 +123,11 @@ fn summary(
         .iter()
         .filter(within)
         .filter(|_| comparable)
-        .filter_map(|pair| Some([pair.planned_onset_before_s, change(pair).before?, change(pair).after?]))
+        .filter_map(|pair| {
+            // Of both runs alike, so that the same events are found whichever comes first.
+            let at_s = 0.5 * (pair.planned_onset_before_s + pair.planned_onset_after_s);
+            Some([at_s, change(pair).before?, change(pair).after?])
+        })
         .collect();
     found.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut events: Vec<Vec<f64>> = Vec::new();

@@ -331,6 +331,11 @@ impl<'a> Recording<'a> {
         if let Some((stream, log)) = self.open.take() {
             log.finish()?;
             self.closed.push(stream);
+            // A last part that nothing came for is none.
+            let empty = self.parts.len() > 1 && self.progress.rows == self.part_from.rows;
+            if let Some(path) = self.parts.pop_if(|_| empty) {
+                std::fs::remove_file(&path).map_err(|source| RecordError::Create { path, source })?;
+            }
         }
         let Some(last) = self.closed.last() else { return Err(RecordError::Nothing) };
         let mut remarks = Remarks::default();

@@ -117,6 +117,13 @@ fn a_recording_comes_in_parts() {
     let written: Value = serde_json::from_str(&out).unwrap();
     crate::support::hold_to_schema(&written, "record.v1");
     assert_eq!((code, &written["logs"]), (0, &serde_json::json!(["run.mcap", "run-2.mcap"])));
+    // A part that is just full is the last one.
+    let whole: String = text.lines().take(3001).flat_map(|line| [line, "\n"]).collect();
+    let full = tempfile::tempdir().unwrap();
+    let (_, out, error) = recorded(full.path(), &whole, &["--part-minutes", "1", "--json"]);
+    let written: Value = serde_json::from_str(&out).expect(&error);
+    assert_eq!(written["logs"], serde_json::json!(["run.mcap"]), "{written}");
+    assert!(!full.path().join("run-2.mcap").exists());
     let both = said(&hydrotrace(folder.path(), &["report", "run.mcap", "run-2.mcap", "--json"])).1;
     let both: Value = serde_json::from_str(&both).unwrap();
     assert!((both["source"]["duration_s"].as_f64().unwrap() - 4499.0 * 0.02).abs() < 1e-6);
