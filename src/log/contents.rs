@@ -42,8 +42,8 @@ const PARQUET: &[u8] = b"PAR1";
 const FOOTER: u64 = 1 << 16;
 /// What the end of a Parquet table holds that this program wrote.
 const OWN_PARQUET: &[u8] = concat!("hydrotrace ", env!("CARGO_PKG_VERSION_MAJOR"), ".").as_bytes();
-/// Endings of texts with headings and documents, which are no tables.
-const TEXTS: [&str; 4] = ["md", "markdown", "json", "svg"];
+/// What texts with headings, documents and figures begin with: they are no tables.
+const TEXTS: [&str; 3] = ["# ", "{\n  \"format\": \"hydrotrace.", "<svg"];
 
 /// What a file holds. Its name is not remembered as that of an input.
 ///
@@ -81,8 +81,9 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
     if start.contains("<robot ") {
         return Ok(Contents::Recording("a robot description"));
     }
-    let is_text = path.extension().is_some_and(|end| TEXTS.iter().any(|one| end.eq_ignore_ascii_case(one)));
-    if !is_text && is_table(path, &bytes) {
+    let is_text = || TEXTS.iter().any(|text| start.starts_with(text));
+    let of_words = path.extension().is_some_and(|end| !end.eq_ignore_ascii_case("csv"));
+    if !(of_words && is_text()) && is_table(path, &bytes) {
         let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         return Ok(Contents::Table(String::from_utf8_lossy(line).into_owned()));
     }

@@ -218,8 +218,7 @@ pub fn choose(
     if rule == Rule::Best(Objective::Duration) {
         // Where a descent stands at a kink, all times alike may still be shorter, and it goes on from there.
         for _ in 0..QUICKENED {
-            let Some(quicker) =
-                exact::quickest(setup, Some(&timing)).filter(|quicker| excess(quicker) <= 1.0)
+            let Some(quicker) = exact::quickest(setup, Some(&timing), |quicker| excess(quicker) <= 1.0)
             else {
                 break;
             };

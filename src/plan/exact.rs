@@ -62,11 +62,14 @@ fn keeps(margins: &[Margin]) -> bool {
 /// Times that a plan is quickened, each by up to a tenth.
 const QUICKENED: usize = 40;
 
-/// The same motion in the least time that keeps its limits; `None` where that gains next to nothing.
-pub(super) fn quickest(setup: &Setup, timing: Option<&Timing>) -> Option<Timing> {
-    std::iter::successors(quickened(setup, timing?), |quicker| quickened(setup, quicker))
-        .take(QUICKENED)
-        .last()
+/// The same motion in the least time that keeps its limits and a condition; `None` where that gains next to nothing.
+pub(super) fn quickest(
+    setup: &Setup,
+    timing: Option<&Timing>,
+    keeps: impl Fn(&Timing) -> bool,
+) -> Option<Timing> {
+    let quicker = std::iter::successors(quickened(setup, timing?), |quicker| quickened(setup, quicker));
+    quicker.take(QUICKENED).take_while(keeps).last()
 }
 
 /// The same motion in less time, as far as it keeps its limits; `None` where that gains next to nothing.

@@ -60,7 +60,11 @@ impl Setup {
         if let Some((middle, half)) = limits.range() {
             let found = motion.extrema(joint, Quantity::Position);
             let outer = |at: Extremum| (at.value - middle).abs() / half;
-            let up = outer(found.greatest) >= outer(found.least);
+            // Where there is no end, none is come near to.
+            let up = match (low.is_finite(), high.is_finite()) {
+                (true, true) => outer(found.greatest) >= outer(found.least),
+                (_, bounded) => bounded,
+            };
             let (at, allowed) = if up { (found.greatest, high) } else { (found.least, low) };
             margins.push(Margin {
                 limit: Limit::Position,

@@ -1,6 +1,6 @@
 //! How many points a trajectory needs, so that a controller keeps between them what the plan keeps.
 
-use super::{Evaluator, Interpolation, Margin, Setup};
+use super::{Evaluator, Interpolation, Limit, Margin, Setup};
 use crate::{
     math::State,
     spline::{Motion, Quantity, Samples},
@@ -11,6 +11,9 @@ pub const POINTS_HZ: [f64; 5] = [25.0, 50.0, 100.0, 200.0, 400.0];
 
 /// Share by which a curve through points may lie beyond a limit that the plan lies at.
 pub const BETWEEN: f64 = 1e-3;
+
+/// A last step that is a smaller share of a whole one tells no jerk.
+const SHORT: f64 = 0.25;
 
 impl Setup {
     /// Points a second of a motion's trajectory: 25, or as many more, up to 400, as it takes that no curve of a controller through
@@ -37,6 +40,11 @@ impl Setup {
             points.iter().map(|joint| joint[of.clone()].iter().copied().take(most).collect()).collect()
         };
         let mut found = self.through_points(&part(whole.., 2), rest_s);
+        for (_, margin) in &mut found {
+            margin.t_s += whole as f64 * step_s;
+        }
+        // By the cube of so short a time rounding alone makes a jerk.
+        found.retain(|(_, margin)| margin.limit != Limit::Jerk || rest_s > SHORT * step_s);
         if whole > 0 {
             found.extend(self.through_points(&part(0.., whole + 1), step_s));
         }

@@ -170,9 +170,12 @@ pub fn search(
     });
     let nearest = nearest.flatten();
     // The descent to it may end where all limits hold.
-    front.extend(nearest.clone().filter(|end| setup.keeps(&end.interval_s, &mut Evaluator::new(setup))));
+    let keeps =
+        |end: &Timing| end.violation <= 0.0 && setup.keeps(&end.interval_s, &mut Evaluator::new(setup));
+    front.extend(nearest.clone().filter(keeps));
     if search.seeded {
-        front.splice(0..0, exact::quickest(setup, front.first()));
+        front.splice(0..0, exact::quickest(setup, front.first(), |_| true));
+        front.truncate(search.front.max(1));
     }
     let _ = observer(&Progress {
         phase: Phase::Polish,

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     math::median,
-    series::{Noise, Pair, Track, each_local_quadratic, noise, white},
+    series::{Noise, Pair, Track, each_local_quadratic, is_sensed, noise, white},
 };
 
 /// Fewest samples in the velocity fit to a plan that gives no speeds.
@@ -148,7 +148,8 @@ impl<'a> Signals<'a> {
 /// Noise of a plan that gives no speeds, such as a set value that was measured itself, if it makes starts of its own;
 /// between samples of a coarser plan there is none.
 fn plan_noise(pair: &Pair, (sizes, sample_interval_s): (&Sizes, f64), rules: &Rules) -> Option<f64> {
-    if pair.planned_interval_s > AS_DENSE * sample_interval_s {
+    let dense = pair.planned_interval_s <= AS_DENSE * sample_interval_s;
+    if !dense || !is_sensed(&pair.planned, &pair.segments) {
         return None;
     }
     let sigma = white(&pair.t_s, &pair.planned, &pair.segments);

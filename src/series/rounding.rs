@@ -20,7 +20,7 @@ const REST: usize = 5;
 
 /// The step that a plan is rounded to, in its unit; `None` where its positions do not lie on one, change too seldom to
 /// tell, or do so as no rounding makes them: ramps and even accelerations lie on steps, too.
-pub(super) fn rounding(plan: &Track) -> Option<f64> {
+pub(crate) fn rounding(plan: &Track) -> Option<f64> {
     let x = plan.position();
     let changes = || plan.segments().iter().flat_map(|s| (s.start + 1..s.end).map(|i| x[i] - x[i - 1]));
     let moved: Vec<f64> = changes().map(f64::abs).filter(|step| *step > DUST).take(MOST).collect();

@@ -32,6 +32,8 @@ pub(super) struct Label {
     pub(super) is_joint: bool,
     /// Only a role or a length says that this may be a joint: it needs a partner.
     pub(super) is_weak: bool,
+    /// The joint whose controller has its topic, where it names none itself; else empty.
+    pub(super) owner: String,
     /// What it is if a letter says so.
     pub(super) lettered: Option<Lettered>,
 }
@@ -80,14 +82,11 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
             quantity: Some(quantity),
             unit,
             stated: unit,
-            unknown: None,
             words: vec![joint.to_lowercase()],
             key: joint.to_owned(),
             joint: joint.to_owned(),
-            is_time: false,
             is_joint: true,
-            is_weak: false,
-            lettered: None,
+            ..Label::default()
         };
     }
     let mut words = words(name);
@@ -142,7 +141,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let fits = long || matches!(measure, None | Some(Measure::Angle | Measure::AngularSpeed));
     let strong = quantity.is_some() && !long || means(Meaning::Joint);
     let (of_topic, words) = words.split_at(topic(&words));
-    let joint = Some(joint_name(words)).filter(|joint| joint != NAMELESS).unwrap_or_else(|| owner(of_topic));
+    let joint = joint_name(words);
+    let owner = if joint == NAMELESS { owner(of_topic) } else { String::new() };
     // Of a tool, not of a joint; such a position is told like that of a joint that slides.
     let place =
         role.is_some() && measure == Some(Measure::Length) && PLACE.contains(&joint.to_lowercase().as_str());
@@ -173,6 +173,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         is_time,
         is_joint,
         is_weak: !strong,
+        owner,
         lettered,
     }
 }
@@ -299,8 +300,9 @@ mod tests {
             (plan, position, "joint_2".into(), None)
         );
         assert_eq!(said("/joint_states/position[2]").2, "joint_2");
-        assert_eq!(said("/arm/boom_controller/state/set_point"), (plan, None, "arm/boom".into(), None));
-        assert_eq!(said("/joint_controller/state/set_point").2, "joint");
+        let owned = |header: &str| (said(header).2, label(header, None).owner);
+        assert_eq!(owned("/arm/boom_controller/state/set_point"), ("joint".into(), "arm/boom".into()));
+        assert_eq!(owned("/joint_controller/state/set_point"), ("joint".into(), "joint".into()));
         assert_eq!(said("joint_target_deg[0]"), (plan, position, "joint_0".into(), Some("deg")));
         assert_eq!(said("GVL.fActPos[3]"), (real, position, "GVL_3".into(), None));
         assert_eq!(

@@ -11,6 +11,7 @@ const GAINS: [&str; 3] = ["p", "i", "d"];
 /// `J1_actual_rad` are of one joint. Names that differ in case alone are of one where no two say the same of it.
 pub(super) fn settle(labels: &mut [Label]) {
     leave_out_gains(labels);
+    name_by_owners(labels);
     let says = |label: &Label| {
         let quantity = label.quantity.unwrap_or(Quantity::Position);
         (label.key.to_lowercase(), label.role.unwrap_or(Role::Measured), quantity)
@@ -36,6 +37,21 @@ pub(super) fn settle(labels: &mut [Label]) {
             }
         } else if one {
             labels[at].key = lower;
+        }
+    }
+}
+
+/// Where several columns say the same of a joint without a name, each is of the joint whose controller has its topic.
+fn name_by_owners(labels: &mut [Label]) {
+    let nameless = |label: &&Label| label.is_joint && !label.owner.is_empty();
+    let mut owners: BTreeMap<_, BTreeSet<String>> = BTreeMap::new();
+    for label in labels.iter().filter(nameless) {
+        owners.entry((label.role, label.quantity)).or_default().insert(label.owner.clone());
+    }
+    if owners.values().any(|owners| owners.len() > 1) {
+        for label in labels.iter_mut().filter(|label| label.is_joint && !label.owner.is_empty()) {
+            label.key = label.owner.to_lowercase();
+            label.joint.clone_from(&label.owner);
         }
     }
 }

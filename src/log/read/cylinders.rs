@@ -113,7 +113,9 @@ impl Kinds {
     /// The unit that the caller says of lengths of a joint of a source, m.
     pub(super) fn unit_m(&self, source: usize, joint: &str) -> Option<f64> {
         let named = || self.slides.get(self.renamed.get(&(source, joint.to_owned()))?);
-        self.slides.get(joint).or_else(named).map(|unit| unit.metres())
+        let given = self.slides.get(joint).or_else(named);
+        // Metres are what is meant where nothing else says a unit, as the name of a field may.
+        given.filter(|unit| **unit != LengthUnit::Metres).map(|unit| unit.metres())
     }
 
     /// Says of a run what stays as it is although it was to be converted.

@@ -2,7 +2,7 @@
 
 use crate::{
     remark::{Code, Remarks},
-    series::{Series, Track, split_at_gaps},
+    series::{Series, Track, rounding, split_at_gaps},
 };
 
 /// Values that tell, at least, and how often each is written, at least: twice is no harm.
@@ -12,19 +12,24 @@ const LEAST: usize = 3;
 const MOST: f64 = 0.95;
 /// From so many rows on a value may be written once more or less: sensor and log have clocks of their own.
 const UNEVEN: usize = 5;
+const PLANNED: &str = "planned";
+/// Longest time for which a sample of a plan is held, s.
+const LONGEST_S: f64 = 0.2;
 /// Rows that are looked at first.
 const HEAD: usize = 4000;
 
 /// Keeps of each value that is written again its first row; it says no more of when it was measured or planned.
 pub(super) fn of_sides([(_, planned), (_, measured)]: &mut [(&str, &mut Series); 2], remarks: &mut Remarks) {
-    of_side(planned, "planned", "its planner", "interpolated", remarks);
+    of_side(planned, PLANNED, "its planner", "interpolated", remarks);
     of_side(measured, "measured", "a sensor", "not judged", remarks);
 }
 
 fn of_side(series: &mut Series, side: &str, source: &str, between: &str, remarks: &mut Remarks) {
     let (mut dropped, mut names) = (0, Vec::new());
     for track in &mut series.tracks {
-        let Some(fresh) = fresh(track) else { continue };
+        let Some(fresh) = fresh(track).filter(|fresh| side != PLANNED || is_sampled(track, fresh)) else {
+            continue;
+        };
         dropped += track.len() - fresh.len();
         names.push(track.name().to_owned());
         *track = fresh;
@@ -35,6 +40,12 @@ fn of_side(series: &mut Series, side: &str, source: &str, between: &str, remarks
         names.join(", ")
     );
     remarks.add(Code::Guessed, dropped as u64, message);
+}
+
+/// Whether a plan that is held has samples of a motion: set values that step from one to the next are held longer, and those
+/// that are rounded change when the plan passes from one to the next.
+fn is_sampled(plan: &Track, fresh: &Track) -> bool {
+    fresh.sample_interval_s() <= LONGEST_S && rounding(plan).is_none()
 }
 
 fn differ(a: f64, b: f64) -> bool {
@@ -113,6 +124,16 @@ mod tests {
         assert_eq!((kept.len(), kept.t_s().last()), (242, Some(&12.02)));
         let said = &remarks.as_slice()[0].message;
         assert!(said.starts_with("planned values of a") && said.ends_with("are interpolated"), "{said}");
+        // A staircase of set values, and a plan in steps of 0.1 deg, are as they are.
+        let steps: [fn(usize) -> f64; 2] =
+            [|k| 0.05 * (k / 100) as f64, |k| (1.7e-4 * k as f64 / 1.7e-3).round() * 1.7e-3];
+        for at in steps {
+            let t_s: Vec<f64> = (0..4000).map(|k| f64::from(k) * 0.01).collect();
+            let track = Track::new("a", t_s, (0..4000).map(at).collect(), &[]).unwrap();
+            let (mut planned, mut measured) = (Series { tracks: vec![track] }, Series::default());
+            of_sides(&mut [("planned", &mut planned), ("measured", &mut measured)], &mut Remarks::default());
+            assert_eq!(planned.tracks[0].len(), 4000);
+        }
     }
 
     #[test]

@@ -52,7 +52,9 @@ impl Aim {
             _ => Pace::Sought,
         };
         let mut ceilings = if pace == Pace::Sought { choice.ceilings } else { Ceilings::NONE };
-        if choice.rule == Rule::Best(Objective::RmsPower) {
+        // Of a plan above a ceiling the jerk says nothing: a faster one has more.
+        let above = |k: &Objective| chosen[*k] > choice.ceilings[*k] * (1.0 + SLOWED);
+        if choice.rule == Rule::Best(Objective::RmsPower) && !Objective::OF_PLAN.iter().any(above) {
             // The least power has jerk that nothing but its limits holds.
             let jerk = ceilings[Objective::RmsJerk].min(chosen[Objective::RmsJerk]);
             ceilings = ceilings.with(Objective::RmsJerk, jerk);

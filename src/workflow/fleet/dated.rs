@@ -7,6 +7,7 @@ use chrono::{NaiveDate, NaiveDateTime};
 use crate::{
     log::is_dated,
     remark::{Code, Remark},
+    units::SECONDS_PER_DAY,
 };
 
 /// Names of the log and of so many folders above it are looked at.
@@ -24,6 +25,18 @@ pub(in crate::workflow) fn began_ns(uri: &str, epoch_ns: i64) -> Option<i64> {
     }
     let mut names = uri.trim_end_matches('/').rsplit('/').take(NAMES);
     names.find_map(date_in)?.and_utc().timestamp_nanos_opt()
+}
+
+/// Stamps and name of a run that say dates so far apart are not of one clock, days.
+const OTHER_DATE_DAYS: f64 = 180.0;
+
+/// Whether the name of a log, or of its folder, says a date far from that of its stamps, microseconds since 1970: folders
+/// farther up may be of a delivery, or a number.
+pub(super) fn is_named_otherwise(uri: &str, started_us: i64) -> bool {
+    let mut names = uri.trim_end_matches('/').rsplit('/').take(2);
+    let named = names.find_map(date_in).map(|date| date.and_utc().timestamp_micros());
+    let apart_s = named.map(|named_us| named_us.abs_diff(started_us) as f64 / 1e6);
+    apart_s.is_some_and(|apart_s| apart_s > OTHER_DATE_DAYS * SECONDS_PER_DAY)
 }
 
 /// The doubt about a run without one.
@@ -98,6 +111,18 @@ fn separator<'a>(text: &'a [u8], some: &[u8]) -> (u8, &'a [u8]) {
 mod tests {
     use super::*;
     use crate::log::UNDATED_NS;
+
+    #[test]
+    fn a_clock_that_is_a_year_off_is_told_by_the_name() {
+        let day_us = 1_772_352_000_000_000; // 2026-03-01
+        for (uri, off) in [
+            ("/logs/M1/2025-03-01/run.csv", true),
+            ("/logs/M1/run_2026-02-27.csv", false),
+            ("/logs/delivery_2024-01-05/M1/run.csv", false),
+        ] {
+            assert_eq!(is_named_otherwise(uri, day_us), off, "{uri}");
+        }
+    }
 
     #[test]
     fn names_tell_the_date_that_stamps_do_not() {

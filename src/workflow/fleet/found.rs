@@ -43,7 +43,8 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
             // Both are known so well only.
             let own = (step.interval_95[1] - step.interval_95[0]) / (2.0 * SIGMAS_OF_95);
             let least = (STANDS_OUT * if told { spread.hypot(own) } else { 0.0 }).max(least);
-            let steps = step.q_value < MOST_FALSE && (step.change - middle).abs() >= least;
+            let matters = step.change.abs() >= RELEVANT * trend.level.abs();
+            let steps = step.q_value < MOST_FALSE && matters && (step.change - middle).abs() >= least;
             trend.is_step = steps && (!drifts || step.left < 1.0);
             if trend.is_step {
                 trend.since.clone_from(&step.by);

@@ -3,13 +3,14 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
+    time::SystemTime,
 };
 
 use serde::{Deserialize, Serialize};
 
 pub(super) use super::once::Run;
 use super::{
-    dated::began_ns,
+    dated::is_named_otherwise,
     failure::FleetFailure,
     once::{Logged, is_gone, one_a_run},
     store::{is_unfinished, parts},
@@ -102,8 +103,8 @@ pub struct Filter {
 /// What a start that its joint never answers counts as: the longest time that an answer is looked for, s.
 const UNANSWERED_S: f64 = 4.0;
 
-/// Stamps and name of a run that say dates so far apart are not of one clock, days.
-const OTHER_DATE_DAYS: f64 = 180.0;
+/// In so many runs at least, and in more than answer it since, a start has to be unanswered to count.
+const FEWEST_UNANSWERED: usize = 3;
 
 /// A planned start that lies farther than this from where it lies in most runs, counted from the first start of its
 /// run, is another start, s.
@@ -119,7 +120,7 @@ impl History {
         let mut history = Self::default();
         let message = "a scan was ended before its last step; `hydrotrace fleet scan` finishes it";
         history.remarks.add(Code::NotClosed, u64::from(is_unfinished(root)), message);
-        let (mut runs, mut starts, mut lags) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut runs, mut starts, mut lags, mut scanned) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for part in &found {
             for (name, columns, rows) in [
                 (Name::Runs, &RUN[..], &mut runs),
@@ -131,6 +132,8 @@ impl History {
                     rows.extend(read(root, &path, name, columns)?);
                 }
             }
+            let file = std::fs::metadata(root.join(part.path(Name::Runs)));
+            scanned.resize(runs.len(), file.and_then(|file| file.modified()).ok());
         }
         let mut joints: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
         for row in &lags {
@@ -138,7 +141,7 @@ impl History {
                 joints.entry(run.to_owned()).or_default().insert(joint.to_owned());
             }
         }
-        history.take_runs(runs, &joints);
+        history.take_runs(runs.into_iter().zip(scanned), &joints);
         let mut spoilt = BTreeSet::new();
         for path in found.iter().map(|part| part.path(Name::Remarks)).filter(|path| root.join(path).exists())
         {
@@ -172,10 +175,14 @@ impl History {
         Ok(history)
     }
 
-    fn take_runs(&mut self, rows: Vec<Vec<Cell>>, joints: &BTreeMap<String, BTreeSet<String>>) {
+    fn take_runs(
+        &mut self,
+        rows: impl Iterator<Item = (Vec<Cell>, Option<SystemTime>)>,
+        joints: &BTreeMap<String, BTreeSet<String>>,
+    ) {
         let mut logged = Vec::new();
         let (mut failed, mut unnamed) = (0, 0);
-        for row in rows {
+        for (row, scanned) in rows {
             let text = |k: usize| row[k].as_text().map(str::to_owned);
             match (text(5).is_some(), text(1)) {
                 (true, _) => failed += 1,
@@ -188,6 +195,7 @@ impl History {
                         errors: [row[8].as_real(), row[9].as_real()],
                         plan_is_command: row[7].is_set(),
                         is_gone: is_gone(&log),
+                        scanned,
                         run: Run { id: text(0).unwrap_or_default(), machine, log, started_us },
                     });
                 }
@@ -219,15 +227,12 @@ impl History {
             self.remarks.add(Code::Undated, count, message);
         }
         self.runs.retain(|run| !undated(run));
-        let off = |run: &&Run| {
-            let named = began_ns(&run.log, UNDATED_NS).map(|ns| ns as f64 / 1e9 / SECONDS_PER_DAY);
-            named.is_some_and(|named| (named - days(run)).abs() > OTHER_DATE_DAYS)
-        };
+        let off = |run: &&Run| is_named_otherwise(&run.log, run.started_us);
         if let Some(first) = self.runs.iter().find(off) {
+            let (log, at) = (first.log.rsplit('/').next(), date(days(first)).unwrap_or_default());
             let message = format!(
-                "runs whose stamps say another half of a year than their names, as {} ({}): the stamps count; was the clock set?",
-                first.log.rsplit('/').next().unwrap_or_default(),
-                date(days(first)).unwrap_or_default()
+                "runs whose stamps say another half of a year than their names, as {} ({at}): was the clock set?",
+                log.unwrap_or_default()
             );
             let count = self.runs.iter().filter(off).count() as u64;
             self.remarks.add(Code::UnusableStamp, count, message);
@@ -264,6 +269,7 @@ impl History {
         }
         let usual: BTreeMap<(String, Event), f64> =
             behind.into_iter().map(|(key, values)| (key, median(values))).collect();
+        let mut never: BTreeMap<Axis, BTreeMap<Event, Vec<usize>>> = BTreeMap::new();
         for row in rows {
             let Some((run, event, joint, at_s)) = known(row) else { continue };
             let key = (joint, event);
@@ -275,9 +281,10 @@ impl History {
             let (joint, event) = key;
             let unit = row[3].as_text().unwrap_or("rad").to_owned();
             let axis = Axis { machine: self.runs[run].machine.clone(), joint, unit };
-            let unanswered = row[8].as_text() == Some(Answer::Never.name());
-            let delay_s = row[7].as_real().or(unanswered.then_some(UNANSWERED_S));
-            for (by, value) in [(By::Peak, row[6].as_real()), (By::Delay, delay_s)] {
+            if row[7].as_real().is_none() && row[8].as_text() == Some(Answer::Never.name()) {
+                never.entry(axis.clone()).or_default().entry(event.clone()).or_default().push(run);
+            }
+            for (by, value) in [(By::Peak, row[6].as_real()), (By::Delay, row[7].as_real())] {
                 let Some(value) = value else { continue };
                 self.values
                     .entry((axis.clone(), by))
@@ -287,6 +294,24 @@ impl History {
                     .insert(run, value);
             }
         }
+        self.take_unanswered(never);
+    }
+
+    /// A joint that answers no more counts as late by all the time that is looked; once is no delay: it would be most of a mean.
+    fn take_unanswered(&mut self, never: BTreeMap<Axis, BTreeMap<Event, Vec<usize>>>) {
+        for (axis, events) in never {
+            let delays = self.values.entry((axis, By::Delay)).or_default();
+            for (event, runs) in events {
+                let of_runs = delays.entry(event).or_default();
+                let first = runs.iter().copied().min().unwrap_or_default();
+                let answered = of_runs.range(first..).count();
+                if runs.len() >= FEWEST_UNANSWERED && runs.len() > answered {
+                    of_runs.extend(runs.into_iter().map(|run| (run, UNANSWERED_S)));
+                }
+            }
+            delays.retain(|_, of_runs| !of_runs.is_empty());
+        }
+        self.values.retain(|_, values| !values.is_empty());
     }
 
     fn take_lags(&mut self, rows: &[Vec<Cell>], index: &BTreeMap<String, usize>) {

@@ -3,10 +3,12 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
+    time::SystemTime,
 };
 
+use super::dated::began_ns;
 use crate::{
-    log::is_dated,
+    log::{UNDATED_NS, is_dated},
     remark::{Code, Remarks},
 };
 
@@ -41,6 +43,8 @@ pub(super) struct Logged {
     pub(super) plan_is_command: bool,
     /// Whether the log is no longer there.
     pub(super) is_gone: bool,
+    /// When it was scanned.
+    pub(super) scanned: Option<SystemTime>,
 }
 
 /// Whether a log that was on a disk is there no more.
@@ -49,7 +53,7 @@ pub(super) fn is_gone(log: &str) -> bool {
     path.is_absolute() && !path.exists()
 }
 
-/// Of logs with the same content, and then of those of one run, one each; rows come as they were scanned, and go by time.
+/// Of logs with the same content, and then of those of one run, one each, in order of time.
 ///
 /// A log with a plan is kept before one without, one that is there before one that is not, then the one scanned first.
 pub(super) fn one_a_run(
@@ -57,50 +61,90 @@ pub(super) fn one_a_run(
     joints: &BTreeMap<String, BTreeSet<String>>,
     remarks: &mut Remarks,
 ) -> Vec<Run> {
-    let mut rows: Vec<(usize, Logged)> = rows.into_iter().enumerate().collect();
-    rows.sort_by_key(|(place, row)| (row.is_gone, *place));
-    let of_content = kept(rows, |row, before| !row.content.is_empty() && row.content == before.content);
+    let mut rows = rows;
+    let by_scan =
+        |a: &Logged, b: &Logged| (a.is_gone, a.scanned, &a.run.log).cmp(&(b.is_gone, b.scanned, &b.run.log));
+    rows.sort_by(by_scan);
+    let content = |row: &Logged| (!row.content.is_empty()).then(|| (row.content.clone(), 0));
+    let of_content = kept(rows, content, |_, _| true);
     say("logs with the content of another one", &of_content, remarks);
     let mut rows = of_content.kept;
-    rows.sort_by_key(|(place, row)| (row.plan_is_command, row.is_gone, *place));
+    rows.sort_by(|a, b| a.plan_is_command.cmp(&b.plan_is_command).then_with(|| by_scan(a, b)));
     let none = BTreeSet::new();
     let of = |row: &Logged| joints.get(&row.run.id).unwrap_or(&none);
-    let of_run = kept(rows, |row, before| {
-        row.run.machine == before.run.machine
-            && is_dated(row.run.started_us.saturating_mul(1000))
-            && row.run.started_us.abs_diff(before.run.started_us) <= SAME_BEGIN_US.unsigned_abs()
+    let begins = |row: &Logged| {
+        let dated = is_dated(row.run.started_us.saturating_mul(1000));
+        dated.then(|| (row.run.machine.clone(), row.run.started_us))
+    };
+    let of_run = kept(rows, begins, |row, before| {
+        let stamped = is_stamped(&row.run) && is_stamped(&before.run);
+        (stamped || are_beside(row, before))
             && (row.duration_s - before.duration_s).abs() <= SAME_DURATION_S
             && (row.plan_is_command != before.plan_is_command || alike(row.errors, before.errors))
             && of(row) == of(before)
     });
     say("logs of a run that another log is of, too", &of_run, remarks);
-    let mut runs: Vec<Run> = of_run.kept.into_iter().map(|(_, row)| row.run).collect();
+    let mut runs: Vec<Run> = of_run.kept.into_iter().map(|row| row.run).collect();
     runs.sort_by(|a, b| (a.started_us, &a.log).cmp(&(b.started_us, &b.log)));
     runs
+}
+
+/// Whether a run begins by its stamps: a date without a time of day, as names have it, is that of many runs.
+fn is_stamped(run: &Run) -> bool {
+    began_ns(&run.log, UNDATED_NS) != Some(run.started_us.saturating_mul(1000))
+}
+
+/// Whether logs lie beside one another under one name, or one that a recording with a plan has.
+fn are_beside(row: &Logged, before: &Logged) -> bool {
+    let [one, other] = [row, before].map(|row| Path::new(&row.run.log));
+    let stems = one.file_stem().zip(other.file_stem());
+    let alike = stems.is_some_and(|(a, b)| {
+        let (a, b) = (a.to_string_lossy(), b.to_string_lossy());
+        let with_plan = row.plan_is_command != before.plan_is_command;
+        a == b || with_plan && (a.starts_with(&*b) || b.starts_with(&*a))
+    });
+    alike && one.parent() == other.parent()
 }
 
 /// Whether errors are the same but for the digits that a table has.
 fn alike(one: [Option<f64>; 2], other: [Option<f64>; 2]) -> bool {
     one.into_iter().zip(other).all(|pair| match pair {
         (Some(a), Some(b)) => (a - b).abs() <= SAME_ERROR * a.abs().max(b.abs()),
-        (a, b) => a == b,
+        // Of joints that turn and that slide there is no common one.
+        _ => false,
     })
 }
 
 struct Kept {
-    kept: Vec<(usize, Logged)>,
+    kept: Vec<Logged>,
     /// Those that are left out, each with the one that stays.
     out: Vec<[String; 2]>,
 }
 
-/// The first of all that are the same.
-fn kept(rows: Vec<(usize, Logged)>, same: impl Fn(&Logged, &Logged) -> bool) -> Kept {
+/// The first of all that are the same: of one name, and of instants within [`SAME_BEGIN_US`].
+fn kept(
+    rows: Vec<Logged>,
+    key: impl Fn(&Logged) -> Option<(String, i64)>,
+    same: impl Fn(&Logged, &Logged) -> bool,
+) -> Kept {
     let mut found = Kept { kept: Vec::new(), out: Vec::new() };
-    for (place, row) in rows {
-        match found.kept.iter().find(|(_, before)| same(&row, before)) {
-            Some((_, before)) => found.out.push([row.run.log, before.run.log.clone()]),
-            None => found.kept.push((place, row)),
+    let mut places: BTreeMap<(String, i64), Vec<usize>> = BTreeMap::new();
+    for row in rows {
+        let key = key(&row);
+        let near = key.iter().flat_map(|(name, at_us)| {
+            let until = (name.clone(), at_us.saturating_add(SAME_BEGIN_US));
+            places.range((name.clone(), at_us.saturating_sub(SAME_BEGIN_US))..=until).flat_map(|(_, own)| own)
+        });
+        let before = near.map(|place| &found.kept[*place]).find(|before| same(&row, before));
+        if let Some(before) = before {
+            let out = [row.run.log.clone(), before.run.log.clone()];
+            found.out.push(out);
+            continue;
         }
+        if let Some(key) = key {
+            places.entry(key).or_default().push(found.kept.len());
+        }
+        found.kept.push(row);
     }
     found
 }
@@ -129,6 +173,7 @@ mod tests {
             errors: [Some(0.01), Some(0.03)],
             plan_is_command: false,
             is_gone: false,
+            scanned: None,
         }
     }
 
@@ -145,10 +190,14 @@ mod tests {
     #[test]
     fn a_copy_steals_no_history_and_a_renamed_folder_has_its_new_name() {
         let day = 1_772_000_000;
-        let rows = || vec![logged("M3/a", day, "x"), logged("A/a", day, "x"), logged("M3/b", day + 60, "y")];
+        let rows = || {
+            let mut copy = logged("A/a", day, "x");
+            copy.scanned = Some(SystemTime::UNIX_EPOCH);
+            vec![copy, logged("M3/a", day, "x"), logged("M3/b", day + 60, "y")]
+        };
         assert_eq!(logs(rows()), (vec!["M3/a".into(), "M3/b".into()], 1));
         let mut gone = rows();
-        gone[0].is_gone = true;
+        gone[1].is_gone = true;
         assert_eq!(logs(gone), (vec!["A/a".into(), "M3/b".into()], 1));
     }
 
@@ -158,6 +207,12 @@ mod tests {
         let mut live = logged("M3/run", day, "x");
         live.plan_is_command = true;
         let with_plan = logged("M3/run-with-plan", day, "y");
+        let named = |log: &str| {
+            let log = format!("M3/2026-02-25/{log}");
+            // Midnight, as the name says.
+            logged(&log, began_ns(&log, UNDATED_NS).unwrap() / 1_000_000_000, &log)
+        };
+        assert_eq!(logs(vec![named("1"), named("2")]).1, 0, "a date is that of many runs");
         assert_eq!(logs(vec![live.clone(), with_plan.clone()]), (vec!["M3/run-with-plan".into()], 1));
         // Of other joints, of another machine, later, longer, of other errors, or without a date: other runs.
         let mut longer = logged("M3/longer", day, "z");

@@ -135,22 +135,16 @@ pub fn run(
     };
     let weights = options.weights.or(task.weights);
     let rule = options.rule.unwrap_or(if weights.is_some() { Rule::Weights } else { Rule::Ideal });
+    let mut first = None;
     let choice = match choose(setup, &found.front, &task.ceilings, (rule, weights)) {
         Ok(choice) => choice,
         Err(NoChoice::Ceilings { nearest }) => {
-            let none =
-                || evaluation(&nearest).map(|nearest| PlanFailure::Ceilings { nearest: Box::new(nearest) });
-            let (Shaping::Free(_), Ok(free)) =
-                (options.shape, choose(setup, &found.front, &Ceilings::NONE, (rule, weights)))
+            let Some((choice, made)) = reshaped(request, options, &found.front, (rule, weights), &nearest)?
             else {
-                return Err(none()?);
+                return Err(PlanFailure::Ceilings { nearest: Box::new(evaluation(&nearest)?) });
             };
-            // What times alone do not keep another shape may.
-            let above = free.above((*nearest).clone(), &task.ceilings);
-            if Made::of(setup, task, &above, options.shape)?.shaped.is_none() {
-                return Err(none()?);
-            }
-            above
+            first = Some(made);
+            choice
         }
         Err(NoChoice::Empty) => return Err(PlanError::Times { found: 0, expected: 1 }.into()),
     };
@@ -188,7 +182,7 @@ pub fn run(
     let around = around.unwrap_or_default().into_iter();
     let near = around.map(|(within_s, choice)| Ok((within_s, made(&choice)?.plan)));
     let near = near.collect::<Result<_, PlanError>>()?;
-    let Made { plan: chosen, shaped, no_shape } = made(&choice)?;
+    let Made { plan: chosen, shaped, no_shape } = first.map_or_else(|| made(&choice), Ok)?;
     remarks.extend(request.doubts(&chosen)?);
     let of_degrees = if options.degrees { degrees(request, options, (&choice, &chosen)) } else { Vec::new() };
     Ok(Planned {
@@ -204,7 +198,6 @@ pub fn run(
         generations: found.generations,
         fastest_converged: found.fastest_converged,
         hypervolume,
-        // Of times alone: what more of it buys a free shape is not known without shaping it anew.
         bought: if shaped.is_none() { bought(setup, &choice.timing) } else { Vec::new() },
         shaped,
         near,
@@ -213,4 +206,21 @@ pub fn run(
         front: found.front,
         remarks,
     })
+}
+
+/// A plan in a free shape within ceilings that times alone do not keep; `None` if none is asked for or found.
+fn reshaped(
+    request: &PlanRequest,
+    options: &Options,
+    front: &[Timing],
+    rule: (Rule, Option<Weights>),
+    nearest: &Timing,
+) -> Result<Option<(Choice, Made)>, PlanError> {
+    let PlanRequest { task, setup, .. } = request;
+    let (Shaping::Free(_), Ok(free)) = (options.shape, choose(setup, front, &Ceilings::NONE, rule)) else {
+        return Ok(None);
+    };
+    let choice = free.above(nearest.clone(), &task.ceilings);
+    let made = Made::of(setup, task, &choice, options.shape)?;
+    Ok(made.shaped.is_some().then_some((choice, made)))
 }
