@@ -81,7 +81,10 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
     if start.contains("<robot ") {
         return Ok(Contents::Recording("a robot description"));
     }
-    let is_text = || TEXTS.iter().any(|text| start.starts_with(text));
+    // Of words a printed table has its own marks.
+    let named = |end: &std::ffi::OsStr| ["md", "markdown"].iter().any(|one| end.eq_ignore_ascii_case(one));
+    let of_marks = path.extension().is_some_and(named) && !start.trim_start().starts_with('|');
+    let is_text = || of_marks || TEXTS.iter().any(|text| start.starts_with(text));
     let of_words = path.extension().is_some_and(|end| !end.eq_ignore_ascii_case("csv"));
     if !(of_words && is_text()) && is_table(path, &bytes) {
         let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();

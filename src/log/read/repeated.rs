@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn a_plan_that_is_held_keeps_its_rest_to_the_end() {
         let t_s: Vec<f64> = (0..1203).map(|k| f64::from(k) * 0.01).collect();
-        let at = |k: usize| (0.05 * (k / 5) as f64).min(8.0);
+        let at = |k: usize| 1.0 - (0.4 * (0.05 * (k / 5) as f64).min(8.0)).cos();
         let track = Track::new("a", t_s, (0..1203).map(at).collect(), &[]).unwrap();
         let (mut planned, mut measured) = (Series { tracks: vec![track] }, Series::default());
         let mut remarks = Remarks::default();
