@@ -119,8 +119,8 @@ impl ReadArgs {
 
 /// `NAME`, of a joint in m, or `NAME=UNIT`.
 fn slides(text: &str) -> Result<(String, LengthUnit), String> {
-    let (joint, unit) = text.split_once('=').unwrap_or((text, "m"));
-    LengthUnit::parse(unit.trim()).map(|unit| (joint.trim().to_owned(), unit)).ok_or_else(|| {
+    let found = LengthUnit::of_joint(text);
+    found.ok_or_else(|| {
         format!("{text:?} is neither NAME nor NAME=UNIT with m, cm or mm, such as telescope=mm")
     })
 }

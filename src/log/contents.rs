@@ -42,8 +42,8 @@ const PARQUET: &[u8] = b"PAR1";
 const FOOTER: u64 = 1 << 16;
 /// What the end of a Parquet table holds that this program wrote.
 const OWN_PARQUET: &[u8] = concat!("hydrotrace ", env!("CARGO_PKG_VERSION_MAJOR"), ".").as_bytes();
-/// What texts with headings, documents and figures begin with: they are no tables.
-const TEXTS: [&str; 3] = ["# ", "{\n  \"format\": \"hydrotrace.", "<svg"];
+/// What documents and figures begin with that this program wrote.
+const OWN_TEXTS: [&str; 2] = ["{\n  \"format\": \"hydrotrace.", "<svg"];
 
 /// What a file holds. Its name is not remembered as that of an input.
 ///
@@ -81,16 +81,19 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
     if start.contains("<robot ") {
         return Ok(Contents::Recording("a robot description"));
     }
-    // Of words a printed table has its own marks.
-    let named = |end: &std::ffi::OsStr| ["md", "markdown"].iter().any(|one| end.eq_ignore_ascii_case(one));
-    let of_marks = path.extension().is_some_and(named) && !start.trim_start().starts_with('|');
-    let is_text = || of_marks || TEXTS.iter().any(|text| start.starts_with(text));
-    let of_words = path.extension().is_some_and(|end| !end.eq_ignore_ascii_case("csv"));
-    if !(of_words && is_text()) && is_table(path, &bytes) {
+    if !is_text(path, &start) && is_table(path, &bytes) {
         let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         return Ok(Contents::Table(String::from_utf8_lossy(line).into_owned()));
     }
     Ok(Contents::Other)
+}
+
+/// Whether a file holds words or a document, which tables of cells are not told from by their separators alone: Markdown that
+/// does not begin with a printed table, and what this program writes.
+fn is_text(path: &Path, start: &str) -> bool {
+    let named = |one: &str| path.extension().is_some_and(|end| end.eq_ignore_ascii_case(one));
+    let words = (named("md") || named("markdown")) && !start.trim_start().starts_with('|');
+    words || OWN_TEXTS.iter().any(|text| start.starts_with(text))
 }
 
 /// Whether a text begins with a tag, in letters of any case, behind a mark of its encoding and comments.

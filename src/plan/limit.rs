@@ -29,6 +29,21 @@ pub enum Limit {
 }
 
 impl Limit {
+    /// What people call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Speed => "speed",
+            Self::Acceleration => "acceleration",
+            Self::Jerk => "jerk",
+            Self::Torque => "torque",
+            Self::RodSpeed => "rod speed",
+            Self::RodForce => "rod force",
+            Self::PumpFlow => "pump flow",
+            Self::ToolSpeed => "tool speed",
+        }
+    }
+
     /// Whether it is of what a motion takes, which no command has of itself.
     pub fn is_load(self) -> bool {
         matches!(self, Self::Torque | Self::RodForce)

@@ -44,40 +44,31 @@ pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, ru
     if motion.reversal {
         return at_crossing;
     }
-    let search = Search {
+    onset_of(pair, &search(signals, motion, window_s), rules).unwrap_or(at_crossing)
+}
+
+/// Where the onset of a motion is looked for: about where it passes the stop threshold.
+fn search(signals: &Signals, motion: &Motion, window_s: f64) -> Search {
+    Search {
         segment: motion.segment.clone(),
         direction: motion.direction,
-        crossing_s,
+        crossing_s: motion.start_s,
         rest_s: motion.rest_before_s,
         window_s,
         stop_speed: signals.sizes.stop_speed,
-    };
-    onset_of(pair, &search, rules).unwrap_or(at_crossing)
+    }
 }
 
 /// When the speed of the plan passes the threshold, and how well that is known.
 pub(super) fn planned_onset(pair: &Pair, signals: &Signals, motion: &Motion, rules: &Rules) -> Onset {
-    let rounded = || {
-        let step =
-            signals.planned_step.filter(|_| !motion.reversal && motion.step(&pair.planned).is_none())?;
-        stairs::onset(pair, motion, step, signals.sizes.stop_speed, rules)
-    };
+    let blurred = !motion.reversal && motion.step(&pair.planned).is_none();
+    let rounded = || stairs::onset(pair, motion, signals.planned_step?, signals.sizes.stop_speed, rules);
     let noisy = || {
-        let window_s = signals.noisy_plan_s?;
-        if motion.reversal || motion.step(&pair.planned).is_some() {
-            return None;
-        }
-        let search = Search {
-            segment: motion.segment.clone(),
-            direction: motion.direction,
-            crossing_s: motion.start_s,
-            rest_s: motion.rest_before_s,
-            window_s,
-            stop_speed: signals.sizes.stop_speed,
-        };
+        let search = search(signals, motion, signals.noisy_plan_s?);
         onset(&pair.t_s, &pair.planned, &search, rules)
     };
-    rounded().or_else(noisy).unwrap_or_else(|| {
+    let found = if blurred { rounded().or_else(noisy) } else { None };
+    found.unwrap_or_else(|| {
         let at_s = planned_onset_s(pair, signals, motion);
         Onset { at_s, interval_s: [at_s, at_s] }
     })

@@ -31,11 +31,10 @@ pub(crate) fn read_options(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Rea
             "time" => read.time_base = Some(clock(&value.extract::<String>()?)?),
             "slides" => {
                 for text in texts(&value)? {
-                    let (joint, unit) = text.split_once('=').unwrap_or((&text, "m"));
-                    let unit = LengthUnit::parse(unit).ok_or_else(|| {
+                    let (joint, unit) = LengthUnit::of_joint(&text).ok_or_else(|| {
                         PyTypeError::new_err(format!("slides: {text:?} is no joint, nor joint=mm, =cm or =m"))
                     })?;
-                    read.slides.insert(joint.to_owned(), unit);
+                    read.slides.insert(joint, unit);
                 }
             }
             "continuous" => read.continuous = texts(&value)?,

@@ -80,6 +80,12 @@ impl LengthUnit {
         }
     }
 
+    /// Reads `JOINT=UNIT`, or `JOINT` alone for m; `None` for another unit.
+    pub fn of_joint(text: &str) -> Option<(String, Self)> {
+        let (joint, unit) = text.split_once('=').unwrap_or((text, "m"));
+        Some((joint.trim().to_owned(), Self::parse(unit.trim())?))
+    }
+
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {

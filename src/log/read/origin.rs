@@ -57,28 +57,36 @@ impl<'a> Imported<'a> {
     }
 
     fn check_one(&self, options: &ReadOptions) -> Result<(), LogError> {
-        let sides = [
-            ("planned", "--planned-degrees", options.planned_in_degrees),
-            ("measured", "--measured-degrees", options.measured_in_degrees),
+        let degrees = [
+            ("--planned-degrees", options.planned_in_degrees),
+            ("--measured-degrees", options.measured_in_degrees),
         ];
-        let sides =
-            sides.into_iter().filter(|(.., given)| *given).map(|(side, option, _)| (side, option, ""));
-        let lengths = options.slides.iter().filter(|(_, unit)| **unit != LengthUnit::Metres);
-        let lengths = lengths.flat_map(|(joint, _)| SIDES.map(|side| (side, "--slides", joint.as_str())));
-        for (side, option, of) in sides.chain(lengths) {
-            let stated = format!("{UNIT_OF_ORIGIN}{side} position of {of}");
-            let found = self.origin.iter().find_map(|(key, unit)| {
-                let rest = key.strip_prefix(&stated)?;
-                (of.is_empty() || rest.is_empty()).then(|| (format!("{of}{rest}"), unit))
-            });
-            if let Some((joint, unit)) = found {
-                let header =
-                    self.origin.get(&format!("{side} position of {joint}")).cloned().unwrap_or_default();
-                let (file, unit) = (self.file.to_owned(), unit.clone());
-                return Err(LogError::ConvertedBefore { option, header, unit, file });
-            }
+        for ((option, given), side) in degrees.into_iter().zip(SIDES) {
+            let mut stated = self.stated(side).filter(|_| given);
+            stated
+                .next()
+                .map_or(Ok(()), |(joint, unit)| Err(self.converted_before(option, (side, joint), unit)))?;
+        }
+        let in_metres =
+            |joint: &str| options.slides.get(joint).is_none_or(|unit| *unit == LengthUnit::Metres);
+        for side in SIDES {
+            let mut stated = self.stated(side).filter(|(joint, _)| !in_metres(joint));
+            stated.next().map_or(Ok(()), |(joint, unit)| {
+                Err(self.converted_before("--slides", (side, joint), unit))
+            })?;
         }
         Ok(())
+    }
+
+    /// The joints whose positions on a side had a unit, and which.
+    fn stated(&self, side: &str) -> impl Iterator<Item = (&'a str, &'a str)> + use<'a> {
+        let begins = format!("{UNIT_OF_ORIGIN}{side} position of ");
+        self.origin.iter().filter_map(move |(key, unit)| Some((key.strip_prefix(&begins)?, unit.as_str())))
+    }
+
+    fn converted_before(&self, option: &'static str, (side, joint): (&str, &str), unit: &str) -> LogError {
+        let header = self.origin.get(&format!("{side} position of {joint}")).cloned().unwrap_or_default();
+        LogError::ConvertedBefore { option, header, unit: unit.to_owned(), file: self.file.to_owned() }
     }
 
     /// Whether it has a column of this name.

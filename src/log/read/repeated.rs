@@ -12,7 +12,6 @@ const LEAST: usize = 3;
 const MOST: f64 = 0.95;
 /// From so many rows on a value may be written once more or less: sensor and log have clocks of their own.
 const UNEVEN: usize = 5;
-const PLANNED: &str = "planned";
 /// Longest time for which a sample of a plan is held, s.
 const LONGEST_S: f64 = 0.2;
 /// Rows that are looked at first.
@@ -20,16 +19,20 @@ const HEAD: usize = 4000;
 
 /// Keeps of each value that is written again its first row; it says no more of when it was measured or planned.
 pub(super) fn of_sides([(_, planned), (_, measured)]: &mut [(&str, &mut Series); 2], remarks: &mut Remarks) {
-    of_side(planned, PLANNED, "its planner", "interpolated", remarks);
-    of_side(measured, "measured", "a sensor", "not judged", remarks);
+    of_side(planned, is_sampled, ["planned", "its planner", "interpolated"], remarks);
+    of_side(measured, |_, _| true, ["measured", "a sensor", "not judged"], remarks);
 }
 
-fn of_side(series: &mut Series, side: &str, source: &str, between: &str, remarks: &mut Remarks) {
+/// `is_so`: whether what is left of a track, the second, is what there was of it.
+fn of_side(
+    series: &mut Series,
+    is_so: impl Fn(&Track, &Track) -> bool,
+    [side, source, between]: [&str; 3],
+    remarks: &mut Remarks,
+) {
     let (mut dropped, mut names) = (0, Vec::new());
     for track in &mut series.tracks {
-        let Some(fresh) = fresh(track).filter(|fresh| side != PLANNED || is_sampled(track, fresh)) else {
-            continue;
-        };
+        let Some(fresh) = fresh(track).filter(|fresh| is_so(track, fresh)) else { continue };
         dropped += track.len() - fresh.len();
         names.push(track.name().to_owned());
         *track = fresh;
@@ -108,7 +111,7 @@ mod tests {
         let at = |k: usize| (0.3 * (0.7 * read_s(k)).sin() / step).round() * step;
         let track = Track::new("a", t_s, (0..2000).map(at).collect(), &[]).unwrap();
         let mut series = Series { tracks: vec![track] };
-        of_side(&mut series, "measured", "a sensor", "not judged", &mut Remarks::default());
+        of_side(&mut series, |_, _| true, ["measured", "a sensor", "not judged"], &mut Remarks::default());
         series.tracks[0].len()
     }
 

@@ -19,21 +19,6 @@ pub(crate) use tables::{broken_lines, ceiling_lines, document, judged_document};
 
 use crate::{plan::Limit, units::degrees_from_radians};
 
-/// What people call a limited quantity.
-pub(super) fn name(limit: Limit) -> &'static str {
-    match limit {
-        Limit::Position => "position",
-        Limit::Speed => "speed",
-        Limit::Acceleration => "acceleration",
-        Limit::Jerk => "jerk",
-        Limit::Torque => "torque",
-        Limit::RodSpeed => "rod speed",
-        Limit::RodForce => "rod force",
-        Limit::PumpFlow => "pump flow",
-        Limit::ToolSpeed => "tool speed",
-    }
-}
-
 /// A value of a limited quantity as people read it, with its unit.
 pub(super) fn shown(limit: Limit, value: f64) -> String {
     match limit {

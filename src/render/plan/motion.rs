@@ -68,7 +68,7 @@ fn used(joint: usize, course: &Course) -> String {
     let each = own
         .iter()
         .take(2)
-        .map(|margin| format!("{:.0} % of its {}", 100.0 * margin.share, super::name(margin.limit)));
+        .map(|margin| format!("{:.0} % of its {}", 100.0 * margin.share, margin.limit.name()));
     let each: Vec<String> = each.collect();
     if each.is_empty() { String::new() } else { format!("uses {}", each.join(", ")) }
 }

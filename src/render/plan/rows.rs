@@ -1,6 +1,5 @@
 //! A plan in a row of a table, and its limits.
 
-use super::name;
 use crate::{
     plan::{Limit, Margin, PlanEvaluation},
     render::kit::{Column, NONE, Table},
@@ -60,7 +59,7 @@ pub(super) fn nearest(evaluation: &PlanEvaluation) -> Vec<&Margin> {
 /// `J3 speed`, `pump flow`.
 pub(super) fn subject(margin: &Margin, joints: &[String]) -> String {
     match margin.joint.and_then(|joint| joints.get(joint)) {
-        Some(joint) => format!("{joint} {}", name(margin.limit)),
-        None => name(margin.limit).to_owned(),
+        Some(joint) => format!("{joint} {}", margin.limit.name()),
+        None => margin.limit.name().to_owned(),
     }
 }

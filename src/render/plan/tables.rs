@@ -211,8 +211,8 @@ fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
         found.map_or(NONE.to_owned(), |margin| percent(margin.share))
     };
     let together = |limit: Limit| match share(limit, None) {
-        none if none == NONE => format!("no limit on {}", super::name(limit)),
-        percent => format!("{} {percent} %", super::name(limit)),
+        none if none == NONE => format!("no limit on {}", limit.name()),
+        percent => format!("{} {percent} %", limit.name()),
     };
     let rows = joints.iter().enumerate().map(|(j, joint)| {
         let of = |values: &[f64]| values.get(j).copied().unwrap_or(f64::NAN);

@@ -119,7 +119,7 @@ fn words(level: Level, finding: &Finding) -> String {
             format!("{start}: speed {} deg/s{acceleration}.", deg(*speed_rad_s))
         }
         Finding::Limits { broken, between, nearest, unlimited } => {
-            let none: Vec<&str> = unlimited.iter().map(|limit| plan::name(*limit)).collect();
+            let none: Vec<&str> = unlimited.iter().map(|limit| limit.name()).collect();
             let none =
                 if none.is_empty() { String::new() } else { format!(" No limit: {}.", none.join(", ")) };
             limits([*broken, *between], nearest) + &none
@@ -186,7 +186,7 @@ fn limits([broken, between]: [usize; 2], nearest: &[MarginEntry]) -> String {
     let joint = worst.joint.as_ref().map_or(String::new(), |name| format!("{name} "));
     let worst = format!(
         "{joint}{}: {} used, {} of {} at {:.1} s",
-        plan::name(worst.limit),
+        worst.limit.name(),
         share(worst.share),
         plan::shown(worst.limit, worst.value.abs()),
         plan::shown(worst.limit, worst.allowed.abs()),
@@ -194,7 +194,7 @@ fn limits([broken, between]: [usize; 2], nearest: &[MarginEntry]) -> String {
     );
     let mut kinds: Vec<Limit> = nearest.iter().map(|margin| margin.limit).collect();
     kinds.sort_unstable();
-    let kinds: Vec<&str> = kinds.into_iter().map(plan::name).collect();
+    let kinds: Vec<&str> = kinds.into_iter().map(Limit::name).collect();
     match (broken, between) {
         (0, 0) => format!("All kept ({}). The nearest is {worst}.", kinds.join(", ")),
         (0, between) => format!(

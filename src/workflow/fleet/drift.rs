@@ -12,9 +12,10 @@ use serde::{Deserialize, Serialize};
 use super::{
     failure::FleetFailure,
     found::judge,
-    history::{By, Event, Filter, History, Run, Scatters, Values, date, days},
+    history::{By, Event, Filter, History, Scatters, Values},
     joint_trend::{JointTrend, Level, MOST_FALSE},
     map::{Map, maps},
+    run::{Run, date, days},
     stepped::best_step,
 };
 use crate::{

@@ -11,8 +11,9 @@ use serde::{Deserialize, Serialize};
 use super::{
     drift::matrix,
     failure::FleetFailure,
-    history::{Axis, By, Filter, History, Scatters, Values, date, days},
+    history::{Axis, By, Filter, History, Scatters, Values},
     joint_trend::MOST_FALSE,
+    run::{date, days},
 };
 use crate::{
     document::PROGRAM,
@@ -226,7 +227,7 @@ mod tests {
     use super::*;
     use crate::{
         schema::is_written_and_read,
-        workflow::fleet::history::{Event, Run},
+        workflow::fleet::{history::Event, run::Run},
     };
 
     /// Six machines over ten days; all get better by 1 on day five, the first one by 4.

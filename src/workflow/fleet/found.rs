@@ -38,13 +38,12 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
             trend.q_value < MOST_FALSE && !usual && (trend.slope_per_day * trend.days).abs() >= least;
         if let Some(step) = &mut trend.step {
             step.q_value = q_step[k];
-            let told = elsewhere[k].is_some();
-            let (middle, spread) = elsewhere[k].unwrap_or_default();
-            // Both are known so well only.
+            // What others changed by and what this one did are known so well only.
             let own = (step.interval_95[1] - step.interval_95[0]) / (2.0 * SIGMAS_OF_95);
-            let least = (STANDS_OUT * if told { spread.hypot(own) } else { 0.0 }).max(least);
-            let matters = step.change.abs() >= RELEVANT * trend.level.abs();
-            let steps = step.q_value < MOST_FALSE && matters && (step.change - middle).abs() >= least;
+            let beyond = elsewhere[k].is_none_or(|(middle, spread)| {
+                (step.change - middle).abs() >= least.max(STANDS_OUT * spread.hypot(own))
+            });
+            let steps = step.q_value < MOST_FALSE && step.change.abs() >= least && beyond;
             trend.is_step = steps && (!drifts || step.left < 1.0);
             if trend.is_step {
                 trend.since.clone_from(&step.by);
@@ -79,10 +78,10 @@ fn elsewhere(trends: &[JointTrend], own: &JointTrend) -> Option<(f64, f64)> {
     // The same joint elsewhere tells more: a cold day makes more of a fast joint.
     let same = |other: &&JointTrend| alike(other) && other.joint == own.joint;
     let same: Vec<f64> = trends.iter().filter(same).filter_map(change).collect();
-    let told = Some(same).filter(|same| same.len() >= FEWEST_OF_STEPS);
-    let changes = told.unwrap_or_else(|| trends.iter().filter(alike).filter_map(change).collect());
-    let enough = changes.len() >= FEWEST_OF_STEPS;
-    enough.then(|| (median(changes.clone()), SIGMA_PER_MAD * mad(&changes)))
+    let tell = |changes: &Vec<f64>| changes.len() >= FEWEST_OF_STEPS;
+    let all = || trends.iter().filter(alike).filter_map(change).collect();
+    let changes = Some(same).filter(tell).or_else(|| Some(all()).filter(tell))?;
+    Some((median(changes.clone()), SIGMA_PER_MAD * mad(&changes)))
 }
 
 fn mean(values: &[f64]) -> f64 {

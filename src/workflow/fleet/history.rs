@@ -8,11 +8,11 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-pub(super) use super::once::Run;
 use super::{
     dated::is_named_otherwise,
     failure::FleetFailure,
     once::{Logged, is_gone, one_a_run},
+    run::{Run, date, days},
     store::{is_unfinished, parts},
     tables::{self, Name},
 };
@@ -24,9 +24,8 @@ use crate::{
     },
     math::{median, step_scatter},
     remark::{Code, Remarks},
-    replay::Answer,
+    replay::{Answer, Rules},
     suggest::nearest,
-    units::SECONDS_PER_DAY,
 };
 
 /// A metric that machines are judged by.
@@ -45,18 +44,6 @@ pub enum By {
 impl By {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Peak, Self::Delay, Self::Lag];
-}
-
-/// Days since 1970.
-pub(super) fn days(run: &Run) -> f64 {
-    run.started_us as f64 / 1e6 / SECONDS_PER_DAY
-}
-
-/// An instant as people and machines read it.
-pub(super) fn date(days: f64) -> Option<String> {
-    #[expect(clippy::cast_possible_truncation, reason = "days of runs are few")]
-    let us = (days * SECONDS_PER_DAY).round() as i64;
-    chrono::DateTime::from_timestamp(us, 0).map(|at| at.format("%Y-%m-%dT%H:%M:%SZ").to_string())
 }
 
 /// A joint of a machine.
@@ -99,9 +86,6 @@ pub struct Filter {
     /// Runs that began then or later only, microseconds since 1970.
     pub since_us: Option<i64>,
 }
-
-/// What a start that its joint never answers counts as: the longest time that an answer is looked for, s.
-const UNANSWERED_S: f64 = 4.0;
 
 /// In so many runs at least, and in more than answer it since, a start has to be unanswered to count.
 const FEWEST_UNANSWERED: usize = 3;
@@ -299,6 +283,7 @@ impl History {
 
     /// A joint that answers no more counts as late by all the time that is looked; once is no delay: it would be most of a mean.
     fn take_unanswered(&mut self, never: BTreeMap<Axis, BTreeMap<Event, Vec<usize>>>) {
+        let late_s = Rules::default().transition_window_s;
         for (axis, events) in never {
             let delays = self.values.entry((axis, By::Delay)).or_default();
             for (event, runs) in events {
@@ -306,7 +291,7 @@ impl History {
                 let first = runs.iter().copied().min().unwrap_or_default();
                 let answered = of_runs.range(first..).count();
                 if runs.len() >= FEWEST_UNANSWERED && runs.len() > answered {
-                    of_runs.extend(runs.into_iter().map(|run| (run, UNANSWERED_S)));
+                    of_runs.extend(runs.into_iter().map(|run| (run, late_s)));
                 }
             }
             delays.retain(|_, of_runs| !of_runs.is_empty());

@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::history::{By, History, date, days};
+use super::{
+    history::{By, History},
+    run::{date, days},
+};
 use crate::math::median;
 
 /// Columns, at most.
@@ -110,7 +113,10 @@ fn newest(row: &MapRow) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::workflow::fleet::history::{Axis, Event, Run};
+    use crate::workflow::fleet::{
+        history::{Axis, Event},
+        run::Run,
+    };
 
     /// Machines that run once a day; the last one has half as much again from day `from` on.
     fn history(machines: usize, days: usize, from: usize) -> History {

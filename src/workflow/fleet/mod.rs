@@ -21,6 +21,7 @@ mod machine;
 mod map;
 mod note;
 mod once;
+mod run;
 mod scan;
 mod sources;
 mod stepped;

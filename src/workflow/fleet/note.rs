@@ -8,7 +8,8 @@ use super::{
     arrange::place_of,
     effect::{Effect, effect},
     failure::FleetFailure,
-    history::{By, Filter, History, date},
+    history::{By, Filter, History},
+    run::date,
     store::{Part, Store, parts},
     tables::Name,
 };

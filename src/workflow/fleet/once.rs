@@ -6,7 +6,7 @@ use std::{
     time::SystemTime,
 };
 
-use super::dated::began_ns;
+use super::{dated::began_ns, run::Run};
 use crate::{
     log::{UNDATED_NS, is_dated},
     remark::{Code, Remarks},
@@ -16,16 +16,6 @@ use crate::{
 const SAME_BEGIN_US: i64 = 50_000;
 /// How much longer one log of a run may last than another: what a recorder goes on for, s.
 const SAME_DURATION_S: f64 = 1.0;
-
-/// One run.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Run {
-    pub(super) id: String,
-    pub(super) machine: String,
-    pub(super) log: String,
-    /// Microseconds since 1970.
-    pub(super) started_us: i64,
-}
 
 /// Shares by which the errors of one run differ between a table and a log.
 const SAME_ERROR: f64 = 0.01;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::history::date;
+use super::run::date;
 use crate::math::{step, theil_sen};
 
 /// A level that changes between two runs and stays.

@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     failure::FleetFailure,
-    history::{By, Filter, History, date, days},
+    history::{By, Filter, History},
     map::{Map, maps},
+    run::{date, days},
 };
 use crate::{
     document::PROGRAM,

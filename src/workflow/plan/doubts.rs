@@ -7,6 +7,9 @@ use crate::{
     task::Objective,
 };
 
+/// Share by which a plan has to be above a ceiling to be told: less is not seen in what is printed.
+const ABOVE: f64 = 1e-3;
+
 impl PlanRequest {
     /// Remarks on a plan of the task: what a controller's curve breaks through the points of its trajectory.
     ///
@@ -35,7 +38,7 @@ impl PlanRequest {
                 "through the points of its trajectory, {points_hz:.0} a second, a controller's {curve} comes to {:.0} % of the \
                  largest {}{} at {:.2} s, where the plan keeps it: send it as a stream, or look at what yours interpolates",
                 100.0 * margin.share,
-                words(margin.limit),
+                margin.limit.name(),
                 of.unwrap_or_default(),
                 margin.t_s
             );
@@ -47,18 +50,6 @@ impl PlanRequest {
     /// Ceilings that a plan is above, and by what share.
     pub fn above(&self, plan: &PlanEvaluation) -> Vec<(Objective, f64)> {
         let above = |&k: &Objective| (k, plan.objectives[k] / self.task.ceilings[k] - 1.0);
-        Objective::OF_PLAN.iter().map(above).filter(|(_, share)| *share > BETWEEN).collect()
+        Objective::OF_PLAN.iter().map(above).filter(|(_, share)| *share > ABOVE).collect()
     }
-}
-
-/// `RodSpeed` as words.
-fn words(limit: Limit) -> String {
-    let mut words = String::new();
-    for c in format!("{limit:?}").chars() {
-        if c.is_uppercase() && !words.is_empty() {
-            words.push(' ');
-        }
-        words.extend(c.to_lowercase());
-    }
-    words
 }
