@@ -3,7 +3,6 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
-    time::SystemTime,
 };
 
 use serde::{Deserialize, Serialize};
@@ -13,6 +12,7 @@ use super::{
     failure::FleetFailure,
     once::{Logged, is_gone, one_a_run},
     run::{Run, date, days},
+    sources::changed_ns,
     store::{is_unfinished, parts},
     tables::{self, Name},
 };
@@ -104,7 +104,7 @@ impl History {
         let mut history = Self::default();
         let message = "a scan was ended before its last step; `hydrotrace fleet scan` finishes it";
         history.remarks.add(Code::NotClosed, u64::from(is_unfinished(root)), message);
-        let (mut runs, mut starts, mut lags, mut scanned) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut runs, mut starts, mut lags) = (Vec::new(), Vec::new(), Vec::new());
         for part in &found {
             for (name, columns, rows) in [
                 (Name::Runs, &RUN[..], &mut runs),
@@ -116,8 +116,6 @@ impl History {
                     rows.extend(read(root, &path, name, columns)?);
                 }
             }
-            let file = std::fs::metadata(root.join(part.path(Name::Runs)));
-            scanned.resize(runs.len(), file.and_then(|file| file.modified()).ok());
         }
         let mut joints: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
         for row in &lags {
@@ -125,7 +123,7 @@ impl History {
                 joints.entry(run.to_owned()).or_default().insert(joint.to_owned());
             }
         }
-        history.take_runs(runs.into_iter().zip(scanned), &joints);
+        history.take_runs(runs, &joints);
         let mut spoilt = BTreeSet::new();
         for path in found.iter().map(|part| part.path(Name::Remarks)).filter(|path| root.join(path).exists())
         {
@@ -159,14 +157,10 @@ impl History {
         Ok(history)
     }
 
-    fn take_runs(
-        &mut self,
-        rows: impl Iterator<Item = (Vec<Cell>, Option<SystemTime>)>,
-        joints: &BTreeMap<String, BTreeSet<String>>,
-    ) {
+    fn take_runs(&mut self, rows: Vec<Vec<Cell>>, joints: &BTreeMap<String, BTreeSet<String>>) {
         let mut logged = Vec::new();
         let (mut failed, mut unnamed) = (0, 0);
-        for (row, scanned) in rows {
+        for row in rows {
             let text = |k: usize| row[k].as_text().map(str::to_owned);
             match (text(5).is_some(), text(1)) {
                 (true, _) => failed += 1,
@@ -179,7 +173,7 @@ impl History {
                         errors: [row[8].as_real(), row[9].as_real()],
                         plan_is_command: row[7].is_set(),
                         is_gone: is_gone(&log),
-                        scanned,
+                        changed_ns: row[10].as_text().and_then(changed_ns),
                         run: Run { id: text(0).unwrap_or_default(), machine, log, started_us },
                     });
                 }
@@ -353,7 +347,7 @@ fn check_joint(joint: &str, present: BTreeSet<&str>) -> Result<(), FleetFailure>
     Err(FleetFailure::NoJoint { joint: joint.to_owned(), nearest, present })
 }
 
-const RUN: [&str; 10] = [
+const RUN: [&str; 11] = [
     "run_id",
     "machine",
     "started_at",
@@ -364,6 +358,7 @@ const RUN: [&str; 10] = [
     "plan_is_command",
     "rms",
     "peak",
+    "log_etag",
 ];
 const START: [&str; 9] = [
     "run_id",

@@ -3,7 +3,6 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
-    time::SystemTime,
 };
 
 use super::{dated::began_ns, run::Run};
@@ -33,8 +32,8 @@ pub(super) struct Logged {
     pub(super) plan_is_command: bool,
     /// Whether the log is no longer there.
     pub(super) is_gone: bool,
-    /// When it was scanned.
-    pub(super) scanned: Option<SystemTime>,
+    /// When its file was changed last, ns since 1970, where it lies on a disk: a copy is no older.
+    pub(super) changed_ns: Option<u128>,
 }
 
 /// Whether a log that was on a disk is there no more.
@@ -45,21 +44,21 @@ pub(super) fn is_gone(log: &str) -> bool {
 
 /// Of logs with the same content, and then of those of one run, one each, in order of time.
 ///
-/// A log with a plan is kept before one without, one that is there before one that is not, then the one scanned first.
+/// A log with a plan is kept before one without, one that is there before one that is not, then the older file.
 pub(super) fn one_a_run(
-    rows: Vec<Logged>,
+    mut rows: Vec<Logged>,
     joints: &BTreeMap<String, BTreeSet<String>>,
     remarks: &mut Remarks,
 ) -> Vec<Run> {
-    let mut rows = rows;
-    let by_scan =
-        |a: &Logged, b: &Logged| (a.is_gone, a.scanned, &a.run.log).cmp(&(b.is_gone, b.scanned, &b.run.log));
-    rows.sort_by(by_scan);
+    let by_age = |a: &Logged, b: &Logged| {
+        (a.is_gone, a.changed_ns, &a.run.log).cmp(&(b.is_gone, b.changed_ns, &b.run.log))
+    };
+    rows.sort_by(by_age);
     let content = |row: &Logged| (!row.content.is_empty()).then(|| (row.content.clone(), 0));
     let of_content = kept(rows, content, |_, _| true);
     say("logs with the content of another one", &of_content, remarks);
     let mut rows = of_content.kept;
-    rows.sort_by(|a, b| a.plan_is_command.cmp(&b.plan_is_command).then_with(|| by_scan(a, b)));
+    rows.sort_by(|a, b| a.plan_is_command.cmp(&b.plan_is_command).then_with(|| by_age(a, b)));
     let none = BTreeSet::new();
     let of = |row: &Logged| joints.get(&row.run.id).unwrap_or(&none);
     let begins = |row: &Logged| {
@@ -140,13 +139,11 @@ fn kept(
 }
 
 fn say(what: &str, found: &Kept, remarks: &mut Remarks) {
-    let end = |log: &str| {
-        let parts: Vec<&str> = log.rsplit('/').take(2).collect();
-        parts.into_iter().rev().collect::<Vec<_>>().join("/")
-    };
-    let example = found.out.first();
-    let example =
-        example.map_or_else(String::new, |[out, stays]| format!(", as {} of {}", end(out), end(stays)));
+    let example = found.out.first().map_or_else(String::new, |[out, stays]| {
+        let shared = out.split('/').zip(stays.split('/')).take_while(|(a, b)| a == b).count();
+        let own = |log: &str| log.split('/').skip(shared).collect::<Vec<_>>().join("/");
+        format!(", as {} of {}", own(out), own(stays))
+    });
     remarks.add(Code::SameRun, found.out.len() as u64, format!("{what}{example}; left out"));
 }
 
@@ -163,7 +160,7 @@ mod tests {
             errors: [Some(0.01), Some(0.03)],
             plan_is_command: false,
             is_gone: false,
-            scanned: None,
+            changed_ns: None,
         }
     }
 
@@ -182,7 +179,7 @@ mod tests {
         let day = 1_772_000_000;
         let rows = || {
             let mut copy = logged("A/a", day, "x");
-            copy.scanned = Some(SystemTime::UNIX_EPOCH);
+            copy.changed_ns = Some(1);
             vec![copy, logged("M3/a", day, "x"), logged("M3/b", day + 60, "y")]
         };
         assert_eq!(logs(rows()), (vec!["M3/a".into(), "M3/b".into()], 1));

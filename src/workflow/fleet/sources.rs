@@ -235,6 +235,12 @@ fn tag(is: &Metadata) -> (u64, String) {
     (is.len(), format!("{:x}-{:x}", is.len(), changed.map_or(0, |since| since.as_nanos())))
 }
 
+/// When the file of a tag was changed last, ns since 1970; `None` of an object in a store, or a bag.
+pub(super) fn changed_ns(etag: &str) -> Option<u128> {
+    let (_, changed) = etag.split_once('-')?;
+    u128::from_str_radix(changed, 16).ok()
+}
+
 /// Whether a path fits a pattern: `*` stands for any signs of a name, `?` for one, `**` for any folders or none.
 fn matches(pattern: &str, path: &str) -> bool {
     fn all(patterns: &[&str], names: &[&str]) -> bool {

@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use super::{Options, PlanRequest, shaped::Made};
+use super::{Options, PlanRequest, shaped::chosen};
 use crate::{
-    plan::{Choice, PlanEvaluation, Setup, choose, search},
+    plan::{Choice, PlanEvaluation, Setup, search},
     task::Task,
 };
 
@@ -41,10 +41,10 @@ pub(super) fn degrees(
         let task = Task { degree, ..request.task.clone() };
         let setup = Setup::new(&task, request.setup.arm().clone()).ok()?;
         let found = search(&setup, &options.search, |_| ControlFlow::Continue(())).ok()?;
-        let choice = choose(&setup, &found.front, &task.ceilings, (own.rule, own.weights)).ok()?;
-        let chosen = Made::of(&setup, &task, &choice, options.shape).ok()?.plan;
-        let better = own.gain(&here.objectives, &chosen.objectives);
-        Some((chosen, better))
+        let rule = (own.rule, own.weights);
+        let (_, made) = chosen(&setup, &task, options.shape, (&found.front, rule)).ok()?;
+        let better = own.gain(&here.objectives, &made.plan.objectives);
+        Some((made.plan, better))
     };
     others.map(|degree| OfDegree { degree, chosen: plan(degree) }).collect()
 }

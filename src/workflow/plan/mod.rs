@@ -13,11 +13,11 @@ mod shaped;
 
 use crate::{
     plan::{
-        Choice, NoChoice, NoShape, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Timing,
-        bought, choose, ends, near, search,
+        Choice, NoShape, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Timing, bought, ends,
+        near, search,
     },
     remark::{Code, Remarks},
-    task::{Ceilings, Objective, Objectives, Weights},
+    task::{Objective, Objectives, Weights},
 };
 use convergence::Growth;
 pub use convergence::Step;
@@ -27,7 +27,7 @@ use degrees::degrees;
 pub use document::{ChosenPlan, MarginEntry, PlanDocument, PlanEntry};
 pub use failure::PlanFailure;
 pub use request::{PlanRequest, SAMPLE_TASK, TaskFiles};
-use shaped::Made;
+use shaped::{Made, chosen};
 pub use shaped::{Shaped, Shaping};
 
 /// How to plan.
@@ -135,19 +135,7 @@ pub fn run(
     };
     let weights = options.weights.or(task.weights);
     let rule = options.rule.unwrap_or(if weights.is_some() { Rule::Weights } else { Rule::Ideal });
-    let mut first = None;
-    let choice = match choose(setup, &found.front, &task.ceilings, (rule, weights)) {
-        Ok(choice) => choice,
-        Err(NoChoice::Ceilings { nearest }) => {
-            let Some((choice, made)) = reshaped(request, options, &found.front, (rule, weights), &nearest)?
-            else {
-                return Err(PlanFailure::Ceilings { nearest: Box::new(evaluation(&nearest)?) });
-            };
-            first = Some(made);
-            choice
-        }
-        Err(NoChoice::Empty) => return Err(PlanError::Times { found: 0, expected: 1 }.into()),
-    };
+    let (choice, own) = chosen(setup, task, options.shape, (&found.front, (rule, weights)))?;
     let mut remarks = Remarks::default();
     let weightless = setup.arm().chain.weightless();
     if !weightless.is_empty() && setup.payload_kg().iter().all(|mass_kg| *mass_kg <= 0.0) {
@@ -182,7 +170,7 @@ pub fn run(
     let around = around.unwrap_or_default().into_iter();
     let near = around.map(|(within_s, choice)| Ok((within_s, made(&choice)?.plan)));
     let near = near.collect::<Result<_, PlanError>>()?;
-    let Made { plan: chosen, shaped, no_shape } = first.map_or_else(|| made(&choice), Ok)?;
+    let Made { plan: chosen, shaped, no_shape } = own;
     remarks.extend(request.doubts(&chosen)?);
     let of_degrees = if options.degrees { degrees(request, options, (&choice, &chosen)) } else { Vec::new() };
     Ok(Planned {
@@ -206,21 +194,4 @@ pub fn run(
         front: found.front,
         remarks,
     })
-}
-
-/// A plan in a free shape within ceilings that times alone do not keep; `None` if none is asked for or found.
-fn reshaped(
-    request: &PlanRequest,
-    options: &Options,
-    front: &[Timing],
-    rule: (Rule, Option<Weights>),
-    nearest: &Timing,
-) -> Result<Option<(Choice, Made)>, PlanError> {
-    let PlanRequest { task, setup, .. } = request;
-    let (Shaping::Free(_), Ok(free)) = (options.shape, choose(setup, front, &Ceilings::NONE, rule)) else {
-        return Ok(None);
-    };
-    let choice = free.above(nearest.clone(), &task.ceilings);
-    let made = Made::of(setup, task, &choice, options.shape)?;
-    Ok(made.shaped.is_some().then_some((choice, made)))
 }

@@ -1,8 +1,12 @@
 //! The plan of a choice, in the shape asked for.
 
+use super::failure::PlanFailure;
 use crate::{
-    plan::{Choice, NoShape, PlanError, PlanEvaluation, Rule, Setup, Shape, shape, smoother},
-    task::{Objective, Task},
+    plan::{
+        Choice, NoChoice, NoShape, PlanError, PlanEvaluation, Rule, Setup, Shape, Timing, choose, shape,
+        smoother,
+    },
+    task::{Ceilings, Objective, Task, Weights},
 };
 
 /// Whether the chosen plan keeps the shape that its times give it.
@@ -54,6 +58,38 @@ impl Made {
             },
         })
     }
+}
+
+/// The plan that a rule chooses from a front, in the shape asked for. A free shape may keep a ceiling that times alone are above.
+///
+/// # Errors
+///
+/// [`PlanFailure`] if no plan keeps to the ceilings, with what comes nearest, or the front is empty.
+pub(super) fn chosen(
+    setup: &Setup,
+    task: &Task,
+    shaping: Shaping,
+    (front, rule): (&[Timing], (Rule, Option<Weights>)),
+) -> Result<(Choice, Made), PlanFailure> {
+    let nearest = match choose(setup, front, &task.ceilings, rule) {
+        Ok(choice) => {
+            let made = Made::of(setup, task, &choice, shaping)?;
+            return Ok((choice, made));
+        }
+        Err(NoChoice::Ceilings { nearest }) => *nearest,
+        Err(NoChoice::Empty) => return Err(PlanError::Times { found: 0, expected: 1 }.into()),
+    };
+    let times_s = setup.times_s(&nearest.interval_s);
+    if shaping != Shaping::Timing
+        && let Ok(free) = choose(setup, front, &Ceilings::NONE, rule)
+    {
+        let choice = free.above(nearest, &task.ceilings);
+        let made = Made::of(setup, task, &choice, shaping)?;
+        if made.shaped.is_some() {
+            return Ok((choice, made));
+        }
+    }
+    Err(PlanFailure::Ceilings { nearest: Box::new(PlanEvaluation::of(setup, &times_s)?) })
 }
 
 /// The smoothest shape keeps the time of its choice, unless that is above a ceiling.

@@ -5,7 +5,7 @@ use super::sources;
 /// Lines of the longest file; of half the files of `src` at most; of `src` and of all Rust together.
 const LONGEST: usize = 400;
 const MEDIAN: usize = 125;
-const LIBRARY: usize = 90_745;
+const LIBRARY: usize = 90_750;
 const ALL: usize = 129_640;
 
 const FOLDERS: [&str; 6] = ["src", "crates", "tests", "benches", "examples", "fuzz"];
