@@ -237,17 +237,18 @@ fn dispatched(task: &Task<'_>, samples: &Samples, weights_s: &[f64], lanes: &mut
         let weights = weights_s[first..].first_chunk().copied().unwrap_or([0.0; LANES]);
         let mut flow_m3_s = [0.0; LANES];
         for (j, (sin, cos)) in lanes.dynamics.sin_cos().enumerate().take(joints) {
-            let (torque, speed) = (&lanes.torque_n_m[j], &speed_rad_s[j]);
+            let (torque, speed) = (lanes.torque_n_m[j], speed_rad_s[j]);
             let [per_torque, per_extend, per_retract] = task.reciprocals[j];
             let mut rows = [[0.0; LANES]; LOADED];
-            let own_w = &mut power_w[j * count + first..][..LANES];
+            // Arrays of their own, which share no memory: the loop over lanes is one of vectors.
+            let (mut power, mut squared, mut total) = ([0.0; LANES], lanes.squared_power[j], lanes.power);
             for l in 0..LANES {
-                let power = speed[l] * torque[l];
-                own_w[l] = power;
-                lanes.squared_power[j][l] += weights[l] * power * power;
-                lanes.power[l] += weights[l] * power.abs();
+                power[l] = speed[l] * torque[l];
+                squared[l] += weights[l] * power[l] * power[l];
+                total[l] += weights[l] * power[l].abs();
                 rows[0][l] = torque[l].abs() * per_torque;
             }
+            (lanes.squared_power[j], lanes.power) = (squared, total);
             if let Some(cylinder) = &task.cylinders[j] {
                 for l in 0..LANES {
                     let found = cylinder.actuation((sin[l], cos[l]), speed[l], torque[l]);
@@ -257,15 +258,21 @@ fn dispatched(task: &Task<'_>, samples: &Samples, weights_s: &[f64], lanes: &mut
                     rows[2][l] = found.force_share;
                 }
             }
+            put(power_w, j * count + first, &power);
             for (row, values) in rows.iter().enumerate() {
-                if let Some(to) = shares[(j * LOADED + row) * count + first..].first_chunk_mut() {
-                    *to = *values;
-                }
+                put(shares, (j * LOADED + row) * count + first, values);
             }
         }
-        for (share, flow) in shares[joints * LOADED * count + first..].iter_mut().zip(flow_m3_s) {
-            *share = flow / task.pump_flow_m3_s;
-        }
+        put(shares, joints * LOADED * count + first, &flow_m3_s.map(|flow| flow / task.pump_flow_m3_s));
         first += LANES;
+    }
+}
+
+/// One group of values from a place on.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
+fn put(to: &mut [f64], first: usize, values: &[f64; LANES]) {
+    if let Some(to) = to[first..].first_chunk_mut() {
+        *to = *values;
     }
 }

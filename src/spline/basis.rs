@@ -45,7 +45,8 @@ pub(super) fn raise<const L: usize>(
 }
 
 /// The row of degree `DEGREE`.
-#[inline]
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 pub(super) fn row<const DEGREE: usize, const L: usize>(
     knots: &Knots,
     piece: usize,

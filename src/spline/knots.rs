@@ -1,5 +1,7 @@
 //! Degrees and where each puts its knots.
 
+use multiversion::multiversion;
+
 /// Degree of the spline; each has as many coefficients as conditions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Degree {
@@ -68,13 +70,7 @@ impl Knots {
                 *knot = *t;
             }
         }
-        for width in 1..=p {
-            let row = &mut self.reciprocals[(width - 1) * count..][..count - width];
-            for ((reciprocal, low), high) in row.iter_mut().zip(&self.u).zip(&self.u[width..]) {
-                // Infinite where both ends are repeated knots; no span straddles those.
-                *reciprocal = 1.0 / (high - low);
-            }
-        }
+        invert(&self.u, &mut self.reciprocals);
     }
 
     /// 1 / (u[i + width] - u[i]), 1/s, at `i` and after.
@@ -100,5 +96,16 @@ impl Knots {
     pub(super) fn piece(&self, t_s: f64) -> usize {
         let breaks = self.breaks();
         breaks[1..breaks.len() - 1].partition_point(|knot| *knot <= t_s)
+    }
+}
+
+/// One over the difference of knots, `[width - 1][i]`, by the widest vector unit of the processor.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "x86_64+sse4.1"))]
+fn invert(u: &[f64], reciprocals: &mut [f64]) {
+    for (row, width) in reciprocals.chunks_exact_mut(u.len()).zip(1..) {
+        for ((reciprocal, low), high) in row.iter_mut().zip(u).zip(&u[width..]) {
+            // Infinite where both ends are repeated knots; no span straddles those.
+            *reciprocal = 1.0 / (high - low);
+        }
     }
 }

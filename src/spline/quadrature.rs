@@ -1,5 +1,7 @@
 //! Integrals over time by Gauss-Legendre quadrature on every polynomial piece.
 
+use multiversion::multiversion;
+
 use super::{Spline, basis};
 
 /// Number of nodes on every piece; n nodes integrate degree 2n - 1 exactly.
@@ -65,15 +67,12 @@ impl Spline {
     /// `[joint]`.
     #[inline]
     pub fn add_squared_jerk(&self, integral: &mut [f64]) {
-        match self.knots.degree {
-            5 => self.add_squared_jerk_by::<2, 3>(&THREE, integral),
-            6 => self.add_squared_jerk_by::<3, 4>(&FOUR, integral),
-            _ => self.add_squared_jerk_by::<4, 5>(&FIVE, integral),
-        }
+        dispatched(self, integral);
     }
 
     /// By a rule of `L` nodes for jerk of degree `DEGREE`.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
     fn add_squared_jerk_by<const DEGREE: usize, const L: usize>(&self, rule: &Rule<L>, integral: &mut [f64]) {
         let stride = self.knots.controls() - 3;
         for (piece, ends) in self.knots.breaks().windows(2).enumerate() {
@@ -97,6 +96,16 @@ impl Spline {
         for value in rms_rad_s3 {
             *value = (*value / duration_s).sqrt();
         }
+    }
+}
+
+/// Integrals of jerk squared by the widest vector unit of the processor; the result does not depend on which.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "x86_64+sse4.1"))]
+fn dispatched(spline: &Spline, integral: &mut [f64]) {
+    match spline.knots.degree {
+        5 => spline.add_squared_jerk_by::<2, 3>(&THREE, integral),
+        6 => spline.add_squared_jerk_by::<3, 4>(&FOUR, integral),
+        _ => spline.add_squared_jerk_by::<4, 5>(&FIVE, integral),
     }
 }
 

@@ -93,16 +93,23 @@ impl Band {
     /// Solves for one joint: `control` holds the known control points at both ends and the
     /// key points between them, and the control points afterwards.
     pub(super) fn solve(&self, control: &mut [f64]) {
-        let (half, width) = (self.half, 2 * self.half + 1);
-        let rows = || self.rows.chunks_exact(width).zip(&self.reciprocal_pivots).enumerate();
+        // The width as a constant lets the compiler unroll.
+        match self.half {
+            2 => self.solve_of::<2>(control),
+            _ => self.solve_of::<3>(control),
+        }
+    }
+
+    fn solve_of<const HALF: usize>(&self, control: &mut [f64]) {
+        let rows = || self.rows.chunks_exact(2 * HALF + 1).zip(&self.reciprocal_pivots).enumerate();
         for (r, (row, _)) in rows() {
-            let known: f64 = row[..half].iter().zip(&control[r + 1..][..half]).map(|(a, x)| a * x).sum();
-            control[r + 1 + half] -= known;
+            let known: f64 = row[..HALF].iter().zip(&control[r + 1..][..HALF]).map(|(a, x)| a * x).sum();
+            control[r + 1 + HALF] -= known;
         }
         for (r, (row, reciprocal)) in rows().rev() {
             let known: f64 =
-                row[half + 1..].iter().zip(&control[r + 2 + half..][..half]).map(|(a, x)| a * x).sum();
-            control[r + 1 + half] = (control[r + 1 + half] - known) * reciprocal;
+                row[HALF + 1..].iter().zip(&control[r + 2 + HALF..][..HALF]).map(|(a, x)| a * x).sum();
+            control[r + 1 + HALF] = (control[r + 1 + HALF] - known) * reciprocal;
         }
     }
 }
