@@ -87,6 +87,11 @@ pub fn keep(worth: Worth) {
     let _ = WORTH.set(worth);
 }
 
+/// Whether outputs of this process spare what is worth more.
+pub(crate) fn is_keeping() -> bool {
+    WORTH.get().is_some()
+}
+
 /// Whether a file may appear at `target`, before any work is done for it. [`write_atomically`] asks again.
 ///
 /// # Errors

@@ -75,6 +75,12 @@ impl Args {
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         spare_for_log(Some(&self.output), from_ref(&self.file))?;
+        if let Some(map) = self.save_map.as_deref().filter(|map| *map == self.output) {
+            let name = map.display();
+            return Err(CliError::Usage(format!(
+                "--output and --save-map both name {name}; give each its own"
+            )));
+        }
         let imported = run(&self.request()?)?;
         let target = Target::stdout(self.json);
         let result = if self.json {

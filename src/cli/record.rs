@@ -1,14 +1,7 @@
 //! `record`
 
 use std::{
-    io::BufRead,
-    net::UdpSocket,
     path::{Path, PathBuf},
-    sync::{
-        Arc, Mutex, PoisonError,
-        mpsc::{Receiver, RecvTimeoutError, sync_channel},
-    },
-    thread,
     time::{Duration, Instant},
 };
 
@@ -18,16 +11,18 @@ use super::{
     CliError, Outcome, Run,
     columns::ColumnArgs,
     console::{Console, Target, progress, spare_for_log},
+    lines::Lines,
     number::seconds,
     report,
 };
 use crate::{
+    atomic_file::is_keeping,
     document::pretty,
     log::ReadOptions,
     render::record as words,
     workflow::{
         join,
-        record::{Inputs, Part, Progress, Senders, run},
+        record::{Inputs, Part, Progress, run},
     },
 };
 
@@ -40,11 +35,6 @@ Examples:
 A header and rows (CSV) or an object a line (JSON) come on standard input or by UDP, a packet being one or more whole
 lines. Columns are understood as by `import`, from the first lines; a unit is not guessed. Each second what came is
 put on the disk. The recording ends with its input, after --seconds, or with Ctrl-C.";
-
-/// Lines wait for the disk up to this many.
-const WAITING: usize = 1 << 16;
-/// The longest packet.
-const PACKET: usize = 1 << 16;
 
 /// Write what a controller sends, line by line, to a log
 #[derive(Debug, clap::Args)]
@@ -93,90 +83,6 @@ struct Report {
     args: report::Args,
 }
 
-/// Lines from a thread that waits for them, a moment without one each tenth of a second, until they end.
-struct Lines {
-    from: Receiver<Vec<u8>>,
-    until: Option<Instant>,
-    /// Lines that are still taken after the end: those that wait.
-    left: usize,
-}
-
-impl Iterator for Lines {
-    type Item = Option<Vec<u8>>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        if super::interrupt::is_asked() || self.until.is_some_and(|until| Instant::now() >= until) {
-            self.left = self.left.checked_sub(1)?;
-            return self.from.try_recv().ok().map(Some);
-        }
-        match self.from.recv_timeout(Duration::from_millis(100)) {
-            Ok(line) => Some(Some(line)),
-            Err(RecvTimeoutError::Timeout) => Some(None),
-            Err(RecvTimeoutError::Disconnected) => None,
-        }
-    }
-}
-
-/// Lines, those in UTF-16 behind its byte order mark as UTF-8.
-fn lines_of(mut input: impl BufRead + 'static) -> Box<dyn Iterator<Item = Vec<u8>>> {
-    let unit: fn([u8; 2]) -> u16 = match input.fill_buf() {
-        Ok([0xff, 0xfe, ..]) => u16::from_le_bytes,
-        Ok([0xfe, 0xff, ..]) => u16::from_be_bytes,
-        _ => return Box::new(input.split(b'\n').map_while(Result::ok)),
-    };
-    let mut next = move || {
-        let mut pair = [0; 2];
-        input.read_exact(&mut pair).ok().map(|()| unit(pair))
-    };
-    next();
-    Box::new(std::iter::from_fn(move || {
-        let first = next()?;
-        let end = u16::from(b'\n');
-        let rest = std::iter::from_fn(&mut next).take_while(|unit| *unit != end);
-        let line: Vec<u16> =
-            if first == end { Vec::new() } else { std::iter::once(first).chain(rest).collect() };
-        Some(String::from_utf16_lossy(&line).into_bytes())
-    }))
-}
-
-/// Sends each line on; ends with its input or with the one who listens.
-fn listen(udp: Option<&str>, senders: &Arc<Mutex<Senders>>) -> Result<Receiver<Vec<u8>>, CliError> {
-    let (send, from) = sync_channel(WAITING);
-    match udp {
-        Some(address) => {
-            let failed = CliError::step(format!("cannot listen at {address}"));
-            let socket = UdpSocket::bind(address).map_err(|error| failed(error.into()))?;
-            let (senders, begun) = (senders.clone(), Instant::now());
-            thread::spawn(move || {
-                let mut packet = vec![0; PACKET];
-                while let Ok((length, sender)) = socket.recv_from(&mut packet) {
-                    let mut senders = senders.lock().unwrap_or_else(PoisonError::into_inner);
-                    if !senders.takes(sender, begun.elapsed().as_secs_f64()) {
-                        continue;
-                    }
-                    drop(senders);
-                    let lines = packet[..length].split(|byte| *byte == b'\n');
-                    for line in lines.filter(|line| !line.trim_ascii().is_empty()) {
-                        if send.send(line.to_vec()).is_err() {
-                            return;
-                        }
-                    }
-                }
-            });
-        }
-        None => {
-            thread::spawn(move || {
-                for line in lines_of(std::io::stdin().lock()) {
-                    if !line.trim_ascii().is_empty() && send.send(line).is_err() {
-                        return;
-                    }
-                }
-            });
-        }
-    }
-    Ok(from)
-}
-
 impl Args {
     fn inputs(&self, replace: bool) -> Result<Inputs, CliError> {
         let bytes = self.part_mb.map(|mb| Part::Bytes(u64::from(mb) << 20));
@@ -193,19 +99,21 @@ impl Args {
 
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
-        let inputs: Vec<PathBuf> = self.plan.iter().cloned().collect();
+        let input = self.udp.is_none().then(|| PathBuf::from("/dev/stdin"));
+        let inputs: Vec<PathBuf> = self.plan.iter().cloned().chain(input).collect();
         spare_for_log(Some(&self.output), &inputs)?;
         // What is wrong with it should not show after an hour.
         self.plan.as_deref().map(join::check_plan).transpose()?;
-        let request = self.inputs(self.output.exists())?;
-        let senders = Arc::default();
+        let request = self.inputs(self.output.exists() || !is_keeping())?;
         super::interrupt::ask_only();
-        let until = self.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
-        let lines = Lines { from: listen(self.udp.as_deref(), &senders)?, until, left: WAITING };
+        // An end that no clock reaches is none.
+        let length = self.seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+        let until = length.and_then(|length| Instant::now().checked_add(length));
+        let mut lines = Lines::of(self.udp.as_deref(), until)?;
         let bar = progress(None, "{spinner} {elapsed}  {msg}");
         bar.enable_steady_tick(Duration::from_millis(200));
         let mut shown = Instant::now();
-        let recorded = run(&request, lines, |now: &Progress| {
+        let recorded = run(&request, &mut lines, |now: &Progress| {
             if shown.elapsed() > Duration::from_millis(500) {
                 shown = Instant::now();
                 bar.set_message(words::progress(now));
@@ -213,9 +121,17 @@ impl Run for Args {
         });
         bar.finish_and_clear();
         let mut recorded = recorded?;
-        recorded.remarks.extend(senders.lock().unwrap_or_else(PoisonError::into_inner).remarks());
-        let joined = self.plan.as_deref().map(|plan| self.join(plan, &recorded.logs)).transpose()?;
+        recorded.remarks.extend(lines.remarks());
         let target = Target::stdout(self.json);
+        let joined = match self.plan.as_deref().map(|plan| self.join(plan, &recorded.logs)).transpose() {
+            Ok(joined) => joined,
+            Err(error) => {
+                // What was recorded is there all the same.
+                let result = target.text(&words::document(&recorded, None));
+                console.finish(&target, &result, &recorded.remarks, &[])?;
+                return Err(error);
+            }
+        };
         let result = if self.json {
             pretty(&recorded)
         } else {

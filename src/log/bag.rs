@@ -48,7 +48,7 @@ fn directory(path: &Path, remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogErro
     let entries = std::fs::read_dir(path).map_err(LogError::file("read", path))?;
     let entries: Vec<PathBuf> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
     let ending = |ending: &&str| {
-        let named = |path: &&PathBuf| path.to_string_lossy().ends_with(*ending);
+        let named = |path: &&PathBuf| path.to_string_lossy().to_lowercase().ends_with(*ending);
         entries.iter().filter(named).cloned().collect::<Vec<PathBuf>>()
     };
     let mut found = ENDINGS.iter().map(ending).find(|found| !found.is_empty()).unwrap_or_default();

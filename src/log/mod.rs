@@ -39,7 +39,8 @@ pub use bag::recording_files;
 pub use contents::{Contents, contents};
 pub use csv::{
     AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, JsonLines, LengthUnit, Quantity, Separator,
-    TableStream, TimeRead, UNDATED_NS, Understood, is_dated, other_header, read_csv_bytes,
+    TableStream, TimeRead, UNDATED_NS, Understood, is_aside, is_dated, is_header, other_header,
+    read_csv_bytes,
 };
 #[cfg(feature = "parquet")]
 pub(crate) use ending::{Ending, ending};

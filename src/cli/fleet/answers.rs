@@ -174,7 +174,7 @@ pub(super) struct DriftArgs {
     #[arg(long, value_name = "MACHINE")]
     machine: Option<String>,
 
-    /// One metric only; fewer trends are corrected for
+    /// One metric only; fewer trends are corrected for [default: peak error and dead time]
     #[arg(long, value_enum)]
     by: Option<Metric>,
 
@@ -207,7 +207,7 @@ pub(super) struct EffectArgs {
     #[arg(long, value_name = "DATE", value_parser = date, requires = "machine")]
     at: Option<i64>,
 
-    /// One metric only; fewer effects are corrected for
+    /// One metric only; fewer effects are corrected for [default: peak error and dead time]
     #[arg(long, value_enum)]
     by: Option<Metric>,
 

@@ -4,20 +4,48 @@ use ::csv::ByteRecord;
 
 use super::{
     head::{Head, are_names},
+    label::label,
     rows::cell_text,
 };
 
-/// Whether a row below the header is another header: names alone, one of them known, and not the same ones.
+/// Whether a row below the header is another header: names alone, one of them known or a time, and not the same ones.
 pub(super) fn is_another_header(head: &Head, record: &ByteRecord) -> bool {
     // Nearly all rows begin with a number.
     let begins = record.as_slice().trim_ascii_start().first();
-    if !head.named || begins.is_none_or(|byte| byte.is_ascii_digit() || b"+-.,".contains(byte)) {
+    if !head.named || begins.is_none_or(|byte| begins_number(*byte)) {
         return false;
     }
     let cells: Vec<String> = record.iter().map(cell_text).collect();
     are_names(&cells)
-        && cells.iter().any(|cell| !cell.is_empty() && head.written.contains(cell))
+        && (is_known(&cells, &head.written) || has_time(&cells))
         && trimmed(&cells) != trimmed(&head.written)
+}
+
+fn begins_number(byte: u8) -> bool {
+    byte.is_ascii_digit() || b"+-.,".contains(&byte)
+}
+
+fn is_known(cells: &[String], head: &[String]) -> bool {
+    cells.iter().any(|cell| !cell.is_empty() && head.contains(cell))
+}
+
+/// Whether names are those of a table: a time among two others at least.
+fn has_time(cells: &[String]) -> bool {
+    cells.len() > 2 && cells.iter().any(|cell| label(cell, None).is_time)
+}
+
+/// Whether a line has names alone, as a header has.
+pub fn is_header(line: &[u8]) -> bool {
+    are_names(&cells(line))
+}
+
+/// Whether a line below rows of numbers is one of words that are no header of theirs: none of its cells is known.
+pub fn is_aside(above: &[u8], line: &[u8]) -> bool {
+    let own = cells(line);
+    let lines = || above.split(|byte| *byte == b'\n');
+    let known = |above: &[u8]| is_known(&own, &cells(above));
+    let is_row = |above: &[u8]| above.trim_ascii_start().first().is_some_and(|byte| begins_number(*byte));
+    are_names(&own) && !has_time(&own) && lines().any(is_row) && !lines().any(known)
 }
 
 /// Without the empty cells that separators at the end make.
@@ -27,22 +55,22 @@ fn trimmed(cells: &[String]) -> &[String] {
 }
 
 /// Where another header begins in the first lines of a table, bytes: names alone below a row of numbers, one of them
-/// known from above, and not the same ones.
+/// known from above or a time, and not the same ones.
 pub fn other_header(lines: &[u8]) -> Option<usize> {
     let mut heads: Vec<Vec<String>> = Vec::new();
     let (mut at, mut has_rows) = (0, false);
     for line in lines.split_inclusive(|byte| *byte == b'\n') {
         let cells = cells(line);
         if are_names(&cells) {
-            let known = |head: &Vec<String>| cells.iter().any(|cell| !cell.is_empty() && head.contains(cell));
+            let known = |head: &Vec<String>| is_known(&cells, head);
             let same = |head: &Vec<String>| trimmed(head) == trimmed(&cells);
             if !has_rows {
                 heads.push(cells);
-            } else if heads.iter().any(known) && !heads.iter().any(same) {
+            } else if (heads.iter().any(known) || has_time(&cells)) && !heads.iter().any(same) {
                 return Some(at);
             }
         } else {
-            has_rows |= line.trim_ascii_start().first().is_some_and(u8::is_ascii_digit);
+            has_rows |= line.trim_ascii_start().first().is_some_and(|byte| begins_number(*byte));
         }
         at += line.len();
     }

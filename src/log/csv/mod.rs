@@ -58,14 +58,16 @@ mod unit;
 mod within;
 mod word;
 
-pub use again::other_header;
+pub use again::{is_aside, is_header, other_header};
 pub(in crate::log) use echoed::begins as begins_with_message;
 pub use error::CsvError;
 pub use objects::JsonLines;
 pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
 pub(in crate::log) use printed::is_rule;
 pub use run::CsvRun;
-pub(in crate::log) use run::{GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN};
+pub(in crate::log) use run::{
+    GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNDATED_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN,
+};
 pub use stream::TableStream;
 pub use time::{UNDATED_NS, is_dated};
 pub use understood::{ColumnRead, TimeRead, Understood};

@@ -162,8 +162,8 @@ fn such(example: Option<&(String, u64)>) -> String {
 const NEIGHBOURS: usize = 3;
 
 /// How the last cells of the rows end, to tell a number that was cut from one that is short.
-#[derive(Default)]
-struct Ends {
+#[derive(Debug, Clone, Default)]
+pub(super) struct Ends {
     rows: u64,
     /// Fewest digits behind the decimal mark in all rows but the last.
     fewest: Option<usize>,
@@ -185,7 +185,7 @@ struct End {
 }
 
 impl Ends {
-    fn note(&mut self, cell: &[u8], decimal_comma: bool) {
+    pub(super) fn note(&mut self, cell: &[u8], decimal_comma: bool) {
         let cell = cell.trim_ascii();
         let mark = if decimal_comma { b',' } else { b'.' };
         if self.rows > 0 {
@@ -204,7 +204,7 @@ impl Ends {
         self.rows += 1;
     }
 
-    fn is_cut(&self) -> bool {
+    pub(super) fn is_cut(&self) -> bool {
         let [first, second, before] = self.beside;
         let short = self.fewest.is_some_and(|fewest| self.last.digits < fewest);
         let step = |a: End, b: End| (a.value - b.value).abs();

@@ -17,6 +17,9 @@ pub(in crate::log) const ORIGIN: &str = "hydrotrace.import";
 /// Its entry on the time.
 pub(in crate::log) const TIME_OF_ORIGIN: &str = "time";
 
+/// Its entry where the times say no date, but count from a fixed instant.
+pub(in crate::log) const UNDATED_OF_ORIGIN: &str = "no date";
+
 /// Columns that are named of those that were not used.
 const NAMED: usize = 20;
 
@@ -99,6 +102,9 @@ impl CsvRun {
             (format!("{UNIT_OF_ORIGIN}{} of {}", c.becomes, c.joint), c.unit.clone().unwrap_or_default())
         }));
         origin.extend([("file".to_owned(), understood.file.clone()), (TIME_OF_ORIGIN.to_owned(), time)]);
+        if !understood.time.absolute {
+            origin.insert(UNDATED_OF_ORIGIN.to_owned(), String::new());
+        }
         let unused = &understood.unused;
         if !unused.is_empty() {
             let more = if unused.len() > NAMED {

@@ -8,17 +8,21 @@ use super::{
     CsvError, CsvOptions, CsvRun, Form, Quantity, Understood,
     again::is_another_header,
     expression,
+    number::number,
     only::{self, Only},
-    read::{Cells, Column},
+    read::{Cells, Column, Ends},
     rows::Rows,
     si::{self, Settled},
     text,
-    time::TimeSource,
+    time::{FIRST_ABSOLUTE_NS, TimeSource},
 };
 use crate::{
     log::{LogWriter, WriteError, WriteOptions},
     remark::{Code, Remarks},
 };
+
+/// Stamps of messages end with 31 bits of seconds.
+const LAST_NS: i64 = i32::MAX as i64 * 1_000_000_000;
 
 /// So many rows in turn that are behind the latest say that the clock was set back.
 const SET_BACK: u32 = 8;
@@ -45,6 +49,7 @@ pub struct TableStream {
     day_ns: i64,
     before_ns: i64,
     counts: Counts,
+    ends: Ends,
     /// A header with other columns came: what is below it is not read.
     over: bool,
 }
@@ -52,6 +57,8 @@ pub struct TableStream {
 /// Rows that are not as they should be.
 #[derive(Debug, Clone, Copy, Default)]
 struct Counts {
+    above: u64,
+    cut: u64,
     ragged: u64,
     unstamped: u64,
     bad_cells: u64,
@@ -98,6 +105,7 @@ impl TableStream {
             day_ns: 0,
             before_ns: i64::MIN,
             counts: Counts::default(),
+            ends: Ends::default(),
             over: false,
         })
     }
@@ -138,6 +146,25 @@ impl TableStream {
         self.run.write_rows(log)
     }
 
+    /// As [`TableStream::write`] of a last line without its end: one that breaks off in a number is left out.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError`] if the log takes no more.
+    pub fn write_rest<W: Write>(&mut self, line: &[u8], log: &mut LogWriter<W>) -> Result<(), WriteError> {
+        let mut record = ByteRecord::new();
+        let mut ends = self.ends.clone();
+        while Rows::new(line, self.form.dialect.separator).next(&mut record).is_some() {
+            ends.note(record.iter().next_back().unwrap_or_default(), self.form.dialect.decimal_comma);
+            break;
+        }
+        if record.len() >= self.form.dialect.width && ends.is_cut() {
+            self.counts.cut += 1;
+            return Ok(());
+        }
+        self.write(line, log)
+    }
+
     fn cells(&mut self, lines: &[u8]) -> Cells {
         let mut rows = Rows::new(lines, self.form.dialect.separator);
         let mut record = ByteRecord::new();
@@ -147,6 +174,8 @@ impl TableStream {
         while let Some(line) = rows.next(&mut record) {
             if line >= first_line {
                 self.row(&record, line, &mut cells);
+            } else {
+                self.counts.above += u64::from(is_numbers(&record));
             }
         }
         self.counts.bad_cells += cells.columns.values().map(Column::bad).sum::<u64>();
@@ -180,6 +209,11 @@ impl TableStream {
             return;
         };
         let ns = self.settled(ns);
+        if !(0..=LAST_NS).contains(&ns) {
+            self.counts.unstamped += 1;
+            return;
+        }
+        self.ends.note(record.iter().next_back().unwrap_or_default(), dialect.decimal_comma);
         cells.stamp_ns.push(ns);
         cells.received_ns.push(self.received(ns));
         for (&at, column) in &mut cells.columns {
@@ -192,7 +226,9 @@ impl TableStream {
         self.day_ns += TimeSource::DAY_NS * i64::from(self.form.time.next_day(self.before_ns, ns));
         self.before_ns = ns;
         let mut one = [ns.saturating_add(self.day_ns)];
-        self.form.time.count_from(self.run.understood.time.absolute, &mut one);
+        // A clock that counted from its start may be set on the way.
+        let absolute = self.run.understood.time.absolute || ns >= FIRST_ABSOLUTE_NS;
+        self.form.time.count_from(absolute, &mut one);
         one[0]
     }
 
@@ -220,7 +256,7 @@ impl TableStream {
     /// Doubts so far.
     pub fn remarks(&self) -> Remarks {
         let mut remarks = self.run.remarks.clone();
-        let Counts { ragged, unstamped, bad_cells, others, late, set_back } = self.counts;
+        let Counts { above, cut, ragged, unstamped, bad_cells, others, late, set_back } = self.counts;
         let width = self.form.dialect.width;
         if let Some(only) = self.only.as_ref().filter(|_| self.form.options.only.is_none()) {
             remarks.add(
@@ -237,8 +273,16 @@ impl TableStream {
                 self.rows
             ),
         );
+        let message = "rows above the header, whose columns cannot be told; left out";
+        remarks.add(Code::UndecodableMessage, above, message);
+        let message = "last row, which breaks off in a number: its sender was stopped there; left out";
+        remarks.add(Code::NotClosed, cut, message);
         remarks.add(Code::LengthMismatch, ragged, format!("lines that have not {width} cells; left out"));
-        remarks.add(Code::NotFinite, unstamped, "lines without a time, such as a header again; left out");
+        remarks.add(
+            Code::NotFinite,
+            unstamped,
+            "lines without a time, such as a header again, or with one that no log holds; left out",
+        );
         remarks.add(Code::NotFinite, bad_cells, "cells that are no number; left empty");
         remarks.add(Code::Reordered, late, "rows earlier than the row before");
         remarks.add(
@@ -248,6 +292,11 @@ impl TableStream {
         );
         remarks
     }
+}
+
+/// Whether a row begins with numbers.
+fn is_numbers(record: &ByteRecord) -> bool {
+    record.iter().take(2).all(|cell| number(cell, false).is_some())
 }
 
 #[cfg(test)]

@@ -11,10 +11,10 @@ use crate::units::{NS_PER_S, whole_ns};
 /// so that equal files give equal logs and files with one zero of time fit together.
 pub const UNDATED_NS: i64 = 1_760_000_000_000_000_000;
 
-/// Whether a log that begins at an instant, ns since 1970, says when it was recorded: stamps of the day after
-/// [`UNDATED_NS`] count from there.
+/// Whether a log that begins at an instant, ns since 1970, says when it was recorded: stamps before 1973 count from
+/// something else, and those of the day after [`UNDATED_NS`] from there.
 pub fn is_dated(epoch_ns: i64) -> bool {
-    !(UNDATED_NS..UNDATED_NS + TimeSource::DAY_NS).contains(&epoch_ns)
+    epoch_ns >= FIRST_ABSOLUTE_NS && !(UNDATED_NS..UNDATED_NS + TimeSource::DAY_NS).contains(&epoch_ns)
 }
 
 /// Stamps before this one, ns since 1970, count from something else.

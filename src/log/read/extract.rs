@@ -160,7 +160,9 @@ fn alone(topic: &str, options: &ReadOptions) -> Option<String> {
 
 fn describe(file: &ScannedFile<'_>, out: &mut Extracted) {
     let ScannedFile { path, source, layout } = file;
-    let bytes = source.length();
+    // Of a packed file or a table, what was read is another than the file.
+    let of_file = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file);
+    let bytes = of_file.map_or_else(|| source.length(), |file| file.len());
     file.remark_damage(&mut out.remarks);
     ::log::info!("opened {}: {bytes} bytes in {} blocks", path.display(), layout.blocks.len());
     out.files.push(FileInfo {

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     log::{
-        csv::{GIVEN_OF_ORIGIN, LengthUnit, TIME_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN},
+        csv::{
+            GIVEN_OF_ORIGIN, LengthUnit, TIME_OF_ORIGIN, UNDATED_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN,
+        },
         error::LogError,
         import_line::{Given, line},
         options::ReadOptions,
@@ -147,6 +149,9 @@ pub struct Origin {
     pub measured: Vec<String>,
     /// Column of the time, and its form; of several tables, those of each that differ.
     pub time: String,
+    /// Whether its times say no date, but count from a fixed instant.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub undated: bool,
 }
 
 impl Origin {
@@ -178,6 +183,7 @@ impl Origin {
             planned: planned.map_or_else(Vec::new, |(_, headers)| headers),
             measured: measured.map_or_else(Vec::new, |(_, headers)| headers),
             time: text(TIME_OF_ORIGIN).join("; "),
+            undated: used.iter().any(|table| table.contains_key(UNDATED_OF_ORIGIN)),
         })
     }
 }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::origin::Origin;
 use crate::{
     log::{
+        csv::is_dated,
         error::LogError,
         options::{SignalRole, TimeBase},
     },
@@ -71,6 +72,14 @@ pub struct SourceInfo {
     /// What the caller had taken off the measurement's stamps, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measured_delay_s: Option<f64>,
+}
+
+impl SourceInfo {
+    /// When the run began, ns since 1970; `None` where its stamps say no date.
+    pub fn began_ns(&self) -> Option<i64> {
+        let undated = self.origin.as_ref().is_some_and(|origin| origin.undated);
+        Some(self.epoch_ns).filter(|epoch_ns| !undated && is_dated(*epoch_ns))
+    }
 }
 
 /// A topic of the log.

@@ -5,7 +5,6 @@ use std::ops::RangeInclusive;
 use chrono::{NaiveDate, NaiveDateTime};
 
 use crate::{
-    log::is_dated,
     remark::{Code, Remark},
     units::SECONDS_PER_DAY,
 };
@@ -15,16 +14,13 @@ const NAMES: usize = 4;
 /// Years of a recording.
 const YEARS: RangeInclusive<i32> = 1990..=2099;
 
-/// When a run began, ns since 1970; `None` of one whose stamps count from zero and whose name holds no date.
+/// When a run began, ns since 1970, as its stamps say if they say a date; `None` of one whose name holds none either.
 ///
 /// A date is `2026-03-06` or `20260306`, with `-`, `_`, `.` or nothing between its parts, or `06.03.2026`; a time of day may
 /// follow as `08-15`, `0815` or `081530`. The log's own name counts before those of its folders.
-pub(in crate::workflow) fn began_ns(uri: &str, epoch_ns: i64) -> Option<i64> {
-    if is_dated(epoch_ns) {
-        return Some(epoch_ns);
-    }
-    let mut names = uri.trim_end_matches('/').rsplit('/').take(NAMES);
-    names.find_map(date_in)?.and_utc().timestamp_nanos_opt()
+pub(in crate::workflow) fn began_ns(uri: &str, stamped_ns: Option<i64>) -> Option<i64> {
+    let named = || uri.trim_end_matches('/').rsplit('/').take(NAMES).find_map(date_in);
+    stamped_ns.or_else(|| named()?.and_utc().timestamp_nanos_opt())
 }
 
 /// Stamps and name of a run that say dates so far apart are not of one clock, days.
@@ -110,7 +106,6 @@ fn separator<'a>(text: &'a [u8], some: &[u8]) -> (u8, &'a [u8]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::log::UNDATED_NS;
 
     #[test]
     fn a_clock_that_is_a_year_off_is_told_by_the_name() {
@@ -138,7 +133,7 @@ mod tests {
             ("M7/06.03.2026/run_08-15.csv", "2026-03-06 00:00:00"),
             ("06.03.2026_0815.csv", "2026-03-06 08:15:00"),
         ] {
-            let ns = began_ns(uri, UNDATED_NS + 5).unwrap();
+            let ns = began_ns(uri, None).unwrap();
             let at = chrono::DateTime::from_timestamp_nanos(ns).format("%Y-%m-%d %H:%M:%S").to_string();
             assert_eq!(at, found, "{uri}");
         }
@@ -154,8 +149,11 @@ mod tests {
             "1234-05-06",
             "",
         ] {
-            assert_eq!(began_ns(uri, UNDATED_NS), None, "{uri}");
+            assert_eq!(began_ns(uri, None), None, "{uri}");
         }
-        assert_eq!(began_ns("2026-03-06.csv", 1_700_000_000_000_000_000), Some(1_700_000_000_000_000_000));
+        assert_eq!(
+            began_ns("2026-03-06.csv", Some(1_700_000_000_000_000_000)),
+            Some(1_700_000_000_000_000_000)
+        );
     }
 }

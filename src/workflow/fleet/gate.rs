@@ -77,7 +77,9 @@ pub fn gate(
     gates: &[Gate],
     empty_is_kept: bool,
 ) -> Result<Gated, FleetFailure> {
-    let found = drift(root, filter, &By::ALL)?;
+    // What is judged beside it makes every finding less sure.
+    let by: Vec<By> = By::ALL.into_iter().filter(|by| gates.iter().any(|gate| gate.metric == *by)).collect();
+    let found = drift(root, filter, &by)?;
     let gates: Vec<GateResult> = gates.iter().map(|gate| judged(gate, &found, empty_is_kept)).collect();
     Ok(Gated {
         format: FORMAT.to_owned(),

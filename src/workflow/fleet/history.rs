@@ -20,7 +20,6 @@ use crate::{
     log::{
         UNDATED_NS,
         dataset::{Cell, read_table},
-        is_dated,
     },
     math::{median, step_scatter},
     remark::{Code, Remarks},
@@ -95,8 +94,18 @@ const FEWEST_UNANSWERED: usize = 3;
 const SAME_START_S: f64 = 0.3;
 
 impl History {
-    /// Reads what the filter lets through; machines other than the one asked for are read if `others` says so.
+    /// Reads the dated runs that the filter lets through; machines other than the one asked for are read if `others`
+    /// says so.
     pub(super) fn read(root: &Path, filter: &Filter, others: bool) -> Result<Self, FleetFailure> {
+        Self::read_if(root, filter, others, true)
+    }
+
+    /// Reads all runs that the filter lets through, of other machines too; of those without a date none began since one.
+    pub(super) fn read_all(root: &Path, filter: &Filter) -> Result<Self, FleetFailure> {
+        Self::read_if(root, filter, true, filter.since_us.is_some())
+    }
+
+    fn read_if(root: &Path, filter: &Filter, others: bool, dated: bool) -> Result<Self, FleetFailure> {
         let found = parts(root, Name::Runs)?;
         if found.is_empty() {
             return Err(FleetFailure::NoDataset { path: root.to_owned() });
@@ -139,7 +148,10 @@ impl History {
         }
         let wanted =
             |run: &Run| others || filter.machine.as_ref().is_none_or(|machine| *machine == run.machine);
-        history.leave_out_undated();
+        if dated {
+            history.leave_out_undated();
+        }
+        history.doubt_dates();
         history
             .runs
             .retain(|run| wanted(run) && filter.since_us.is_none_or(|since_us| run.started_us >= since_us));
@@ -195,17 +207,20 @@ impl History {
 
     /// A run that nobody knows the time of has no place in a history.
     fn leave_out_undated(&mut self) {
-        let undated = |run: &Run| !is_dated(run.started_us.saturating_mul(1000));
-        let count = self.runs.iter().filter(|run| undated(run)).count() as u64;
-        if let Some(first) = self.runs.iter().find(|run| undated(run)) {
+        let count = self.runs.iter().filter(|run| !run.is_dated()).count() as u64;
+        if let Some(first) = self.runs.iter().find(|run| !run.is_dated()) {
             let message = format!(
                 "runs that say no date, neither in their stamps nor in their names (2026-03-06, 06.03.2026), as {}; left out",
                 first.log.rsplit('/').next().unwrap_or_default()
             );
             self.remarks.add(Code::Undated, count, message);
         }
-        self.runs.retain(|run| !undated(run));
-        let off = |run: &&Run| is_named_otherwise(&run.log, run.started_us);
+        self.runs.retain(Run::is_dated);
+    }
+
+    /// Says which dates cannot be right.
+    fn doubt_dates(&mut self) {
+        let off = |run: &&Run| run.is_dated() && is_named_otherwise(&run.log, run.started_us);
         if let Some(first) = self.runs.iter().find(off) {
             let (log, at) = (first.log.rsplit('/').next(), date(days(first)).unwrap_or_default());
             let message = format!(

@@ -60,7 +60,8 @@ pub(super) fn maps(history: &History, by: &[By], wanted: impl Fn(&str) -> bool) 
 
 fn map(history: &History, metric: By, wanted: impl Fn(&str) -> bool) -> Option<Map> {
     #[expect(clippy::cast_possible_truncation, reason = "days of runs are few")]
-    let day = |run: &usize| history.runs.get(*run).map(|run| days(run).floor() as i64);
+    let day =
+        |run: &usize| history.runs.get(*run).filter(|run| run.is_dated()).map(|run| days(run).floor() as i64);
     let usual = history.usual(metric);
     // Starts by machine, day and joint.
     let mut shares: BTreeMap<(&str, i64, &str), Vec<f64>> = BTreeMap::new();
@@ -125,7 +126,7 @@ mod tests {
             for machine in 0..machines {
                 let run = history.runs.len();
                 let name = format!("M{machine}");
-                let started_us = i64::try_from(day).unwrap() * 86_400_000_000;
+                let started_us = i64::try_from(20_454 + day).unwrap() * 86_400_000_000;
                 let id = run.to_string();
                 history.runs.push(Run { log: id.clone(), id, machine: name.clone(), started_us });
                 for joint in ["boom", "stick"] {
@@ -150,7 +151,7 @@ mod tests {
         assert_eq!(maps.len(), 1);
         let map = &maps[0];
         assert_eq!((map.columns.len(), map.days_a_column, map.machines.len()), (10, 1, 5));
-        assert_eq!(map.columns[9], "1970-01-10T00:00:00Z");
+        assert_eq!(map.columns[9], "2026-01-10T00:00:00Z");
         let worst = &map.machines[0];
         assert_eq!(worst.machine, "M4");
         for (day, cell) in worst.cells.iter().enumerate() {

@@ -6,10 +6,7 @@ use std::{
 };
 
 use super::{dated::began_ns, run::Run};
-use crate::{
-    log::{UNDATED_NS, is_dated},
-    remark::{Code, Remarks},
-};
+use crate::remark::{Code, Remarks};
 
 /// Runs of one machine and the same joints that begin within this of one another and last as long are one run, µs.
 const SAME_BEGIN_US: i64 = 50_000;
@@ -61,10 +58,7 @@ pub(super) fn one_a_run(
     rows.sort_by(|a, b| a.plan_is_command.cmp(&b.plan_is_command).then_with(|| by_age(a, b)));
     let none = BTreeSet::new();
     let of = |row: &Logged| joints.get(&row.run.id).unwrap_or(&none);
-    let begins = |row: &Logged| {
-        let dated = is_dated(row.run.started_us.saturating_mul(1000));
-        dated.then(|| (row.run.machine.clone(), row.run.started_us))
-    };
+    let begins = |row: &Logged| row.run.is_dated().then(|| (row.run.machine.clone(), row.run.started_us));
     let of_run = kept(rows, begins, |row, before| {
         let stamped = is_stamped(&row.run) && is_stamped(&before.run);
         (stamped || are_beside(row, before))
@@ -80,7 +74,7 @@ pub(super) fn one_a_run(
 
 /// Whether a run begins by its stamps: a date without a time of day, as names have it, is that of many runs.
 fn is_stamped(run: &Run) -> bool {
-    began_ns(&run.log, UNDATED_NS) != Some(run.started_us.saturating_mul(1000))
+    began_ns(&run.log, None) != Some(run.started_us.saturating_mul(1000))
 }
 
 /// Whether logs lie beside one another under one name, or one that a recording with a plan has.
@@ -197,7 +191,7 @@ mod tests {
         let named = |log: &str| {
             let log = format!("M3/2026-02-25/{log}");
             // Midnight, as the name says.
-            logged(&log, began_ns(&log, UNDATED_NS).unwrap() / 1_000_000_000, &log)
+            logged(&log, began_ns(&log, None).unwrap() / 1_000_000_000, &log)
         };
         assert_eq!(logs(vec![named("1"), named("2")]).1, 0, "a date is that of many runs");
         assert_eq!(logs(vec![live.clone(), with_plan.clone()]), (vec!["M3/run-with-plan".into()], 1));

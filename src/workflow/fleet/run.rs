@@ -1,6 +1,6 @@
 //! One run, and when it began.
 
-use crate::units::SECONDS_PER_DAY;
+use crate::{log::is_dated, units::SECONDS_PER_DAY};
 
 /// One run.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,6 +10,13 @@ pub(super) struct Run {
     pub(super) log: String,
     /// Microseconds since 1970.
     pub(super) started_us: i64,
+}
+
+impl Run {
+    /// Whether anybody knows when it began.
+    pub(super) fn is_dated(&self) -> bool {
+        is_dated(self.started_us.saturating_mul(1000))
+    }
 }
 
 /// Days since 1970.

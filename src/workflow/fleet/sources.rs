@@ -62,6 +62,8 @@ struct Found {
 impl Found {
     fn is_log(&self, name: &str) -> bool {
         let tables = TABLES.iter().filter(|_| self.tables);
+        // Disks of controllers write capitals.
+        let name = name.to_lowercase();
         ENDINGS.iter().chain(tables).any(|ending| name.ends_with(ending))
     }
 
@@ -104,7 +106,8 @@ pub(in crate::workflow) fn sources_now(texts: &[String]) -> Result<Vec<Source>, 
 /// Adds the logs of one source; a relative path counts from `base`.
 fn add(text: &str, base: &Path, found: &mut Found) -> Result<(), FleetFailure> {
     let others = found.tables;
-    found.tables |= TABLES.iter().any(|ending| text.ends_with(ending));
+    let lower = text.to_lowercase();
+    found.tables |= TABLES.iter().any(|ending| lower.ends_with(ending));
     let done = add_asked(text, base, found);
     found.tables = others;
     done

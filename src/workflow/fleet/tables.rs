@@ -210,7 +210,7 @@ pub fn analysed(log: &Log, found: &Findings) -> Rows {
     let concentration = whole.concentration.as_ref();
     let is_command = report.remarks.iter().any(|remark| remark.code == Code::PlanIsCommand);
     let verdict = concentration.and_then(|c| serde_json::to_string(&c.verdict).ok());
-    let began_ns = began_ns(&log.uri, report.source.epoch_ns);
+    let began_ns = began_ns(&log.uri, report.source.began_ns());
     let run = vec![
         Cell::from(found.run_id.as_str()),
         Cell::from(log.machine.as_deref()),

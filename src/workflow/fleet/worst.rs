@@ -14,6 +14,7 @@ use crate::{
     document::PROGRAM,
     math::{median, quantile},
     remark::Remarks,
+    replay::Rules,
 };
 
 /// What the format is called.
@@ -33,7 +34,7 @@ pub struct Worst {
     pub runs: usize,
     /// Machines that they are of.
     pub machines: usize,
-    /// Joints that turn and joints that slide are ranked apart, the former first; then by the median.
+    /// By the median, of joints that turn and joints that slide by the error band of settling: 0.1 deg counts as much as 2 mm.
     pub joints: Vec<WorstJoint>,
     /// How the machines did over the days.
     pub map: Option<Map>,
@@ -60,7 +61,7 @@ pub struct WorstJoint {
     pub largest: f64,
     /// The log of the largest.
     pub log: String,
-    /// When the run of the largest began, UTC.
+    /// When the run of the largest began, UTC; null where neither its stamps nor its name say.
     pub at: Option<String>,
     /// Against the median of all machines at the same starts: larger by this share; null where none is shared.
     pub above_fleet: Option<f64>,
@@ -76,7 +77,7 @@ pub struct WorstJoint {
 ///
 /// [`FleetFailure`] if there is no dataset, or no such machine in it.
 pub fn worst(root: &Path, filter: &Filter, by: By) -> Result<Worst, FleetFailure> {
-    let history = History::read(root, filter, true)?;
+    let history = History::read_all(root, filter)?;
     let usual = history.usual(by);
     let mut joints = Vec::new();
     let wanted = |machine: &str| filter.machine.as_ref().is_none_or(|wanted| wanted == machine);
@@ -104,13 +105,20 @@ pub fn worst(root: &Path, filter: &Filter, by: By) -> Result<Worst, FleetFailure
             p95: quantile(all.clone(), 0.95),
             largest: *largest,
             log: run.map(|run| run.log.clone()).unwrap_or_default(),
-            at: run.and_then(|run| date(days(run))),
+            at: run.filter(|run| run.is_dated()).and_then(|run| date(days(run))),
             above_fleet: (!shares.is_empty()).then(|| median(shares)),
             starts: all.len(),
             runs: runs.len(),
         });
     }
-    joints.sort_by(|a, b| b.unit.cmp(&a.unit).then(b.median.total_cmp(&a.median)));
+    // Joints that turn and joints that slide have no unit in common.
+    let rules = Rules::default();
+    let bands = |joint: &WorstJoint| match joint.unit.as_str() {
+        "rad" => joint.median / rules.turning.settle_band,
+        "m" => joint.median / rules.sliding.settle_band,
+        _ => joint.median,
+    };
+    joints.sort_by(|a, b| bands(b).total_cmp(&bands(a)));
     Ok(Worst {
         format: FORMAT.to_owned(),
         program: PROGRAM.to_owned(),

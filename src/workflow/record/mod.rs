@@ -1,9 +1,12 @@
 //! `record`: lines that a controller sends become a log as they come.
 
 mod document;
+mod doubts;
 mod output;
 mod parts;
 mod senders;
+mod settle;
+mod unsaved;
 
 use std::{
     path::PathBuf,
@@ -19,18 +22,18 @@ pub use document::Recorded;
 pub use senders::Senders;
 
 use crate::{
-    log::{CsvError, CsvOptions, JsonLines, LogWriter, TableStream, WriteError, other_header},
-    remark::{Code, Remarks},
+    atomic_file::may_write,
+    log::{CsvError, CsvOptions, JsonLines, LogWriter, TableStream, WriteError},
 };
 use output::Synced;
-use parts::{part_name, part_pattern};
+use parts::part_name;
+use unsaved::Unsaved;
 
-/// Lines after which the columns are settled, and after which it is given up to settle them.
+/// Lines after which the columns are settled.
 const FIRST_LINES: usize = 10;
-const MOST_LINES: usize = 200;
 
-/// So many objects are waited for while none has a key of the other side.
-const ONE_SIDED: usize = 300;
+/// What some programs begin a text in UTF-8 with.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Where the log goes, and what the caller says of the lines.
 #[derive(Debug, Clone, Default)]
@@ -41,8 +44,21 @@ pub struct Inputs {
     pub options: CsvOptions,
     /// Where a part ends; `None`: nowhere.
     pub part: Option<Part>,
-    /// Whether a file that is there is replaced.
+    /// Whether files that are there are replaced; those that were read never are.
     pub replace: bool,
+}
+
+/// What comes, or does not.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Came {
+    /// A line, without its end.
+    Line(Vec<u8>),
+    /// What came last, without an end of the line.
+    Rest(Vec<u8>),
+    /// A moment without a line.
+    Pause,
+    /// A line that is longer than any row, and was left out.
+    TooLong,
 }
 
 /// Where a part ends.
@@ -77,6 +93,9 @@ pub enum RecordError {
     /// The log cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The log cannot be written any more.
+    #[error("cannot go on writing {}, after {rows} rows", path.display())]
+    Stopped { path: PathBuf, rows: u64, source: WriteError },
     /// There is a file already.
     #[error("{} is there already; a recording replaces it with --force only", path.display())]
     Exists { path: PathBuf },
@@ -91,22 +110,19 @@ pub enum RecordError {
     NoNumbers { lines: u64 },
 }
 
-/// Writes the lines that come, each without its end; `None` is a moment without one. Ends with them.
+/// Writes the lines that come. Ends with them.
 ///
 /// # Errors
 ///
 /// [`RecordError`]; what was written before stays readable.
 pub fn run(
     inputs: &Inputs,
-    lines: impl Iterator<Item = Option<Vec<u8>>>,
+    lines: impl Iterator<Item = Came>,
     mut told: impl FnMut(&Progress),
 ) -> Result<Recorded, RecordError> {
     let mut recording = Recording::new(inputs);
-    for line in lines {
-        match line {
-            Some(line) => recording.line(&line)?,
-            None => recording.pause()?,
-        }
+    for came in lines {
+        recording.came(came).map_err(|error| recording.stopped(error))?;
         told(&recording.progress);
     }
     recording.end()
@@ -128,8 +144,19 @@ struct Recording<'a> {
     unread: u64,
     /// Lines of words before the first object with numbers.
     words: u64,
+    /// Lines of words among rows.
+    asides: u64,
     /// Lines before another header, whose own columns cannot be told.
     untold: u64,
+    /// Lines that were longer than any row.
+    too_long: u64,
+    /// Whether the columns of the last header cannot be told: rows are left out until the next one.
+    lost: bool,
+    /// Parts of other recordings among the names, which were stepped over.
+    taken: Vec<PathBuf>,
+    /// The number of the last part.
+    number: usize,
+    since: Unsaved,
     progress: Progress,
 }
 
@@ -148,14 +175,49 @@ impl<'a> Recording<'a> {
             part_from: progress,
             unread: 0,
             words: 0,
+            asides: 0,
             untold: 0,
+            too_long: 0,
+            lost: false,
+            taken: Vec::new(),
+            number: 0,
+            since: Unsaved::new(),
             progress,
         }
     }
 
-    fn line(&mut self, line: &[u8]) -> Result<(), RecordError> {
+    fn came(&mut self, came: Came) -> Result<(), RecordError> {
+        match came {
+            Came::Line(line) => self.line(&line, false),
+            Came::Rest(line) => self.line(&line, true),
+            Came::Pause => self.pause(),
+            Came::TooLong => {
+                self.progress.lines += 1;
+                self.too_long += 1;
+                Ok(())
+            }
+        }
+    }
+
+    fn line(&mut self, line: &[u8], rest: bool) -> Result<(), RecordError> {
         self.progress.lines += 1;
-        self.take(line)
+        let mark = if self.progress.lines == 1 { line.strip_prefix(BYTE_ORDER_MARK) } else { None };
+        let line = mark.unwrap_or(line);
+        let open = self.open.as_mut().filter(|_| rest && self.objects.is_none());
+        let Some((stream, log)) = open else { return self.take(line) };
+        stream.write_rest(line, log)?;
+        self.progress.rows = stream.rows() + self.closed.iter().map(TableStream::rows).sum::<u64>();
+        Ok(())
+    }
+
+    /// Where the disk was the reason, which log it was.
+    fn stopped(&self, error: RecordError) -> RecordError {
+        match (error, self.parts.last()) {
+            (RecordError::Write(source), Some(path)) => {
+                RecordError::Stopped { path: path.clone(), rows: self.progress.rows, source }
+            }
+            (error, _) => error,
+        }
     }
 
     fn take(&mut self, line: &[u8]) -> Result<(), RecordError> {
@@ -192,6 +254,9 @@ impl<'a> Recording<'a> {
             None => [line, b"\n"].concat(),
         };
         if self.open.is_none() {
+            if self.objects.is_none() && self.steps_over(&text) {
+                return Ok(());
+            }
             self.first.extend(text);
             self.first_lines += 1;
             return if self.first_lines >= FIRST_LINES { self.settle(false) } else { Ok(()) };
@@ -203,74 +268,8 @@ impl<'a> Recording<'a> {
     fn pause(&mut self) -> Result<(), RecordError> {
         self.settle(false)?;
         let rest = self.objects.as_mut().filter(|_| self.open.is_some()).map(JsonLines::rest);
-        self.write(&rest.unwrap_or_default().into_bytes())
-    }
-
-    /// Tells the columns by the lines so far, at the latest at the end; until then more of them may help.
-    fn settle(&mut self, last: bool) -> Result<(), RecordError> {
-        if self.open.is_some() || self.first_lines < 3 && !last {
-            return Ok(());
-        }
-        let name = self.inputs.output.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if let Some(objects) = &mut self.objects {
-            if objects.is_growing() && !last && self.first_lines < ONE_SIDED {
-                return Ok(());
-            }
-            self.first = objects.table().into_bytes();
-        } else if let Some(at) = other_header(&self.first) {
-            return self.settle_each(at);
-        }
-        let one_sided = |stream: &TableStream| {
-            stream.remarks().as_slice().iter().any(|remark| remark.code == Code::OneSide)
-        };
-        match TableStream::begin(&name, &self.first, &self.inputs.options) {
-            // The other side's sensor may not send yet; rows that wait are lost if the power is.
-            Ok(stream)
-                if self.objects.is_some() && !last && self.first_lines < ONE_SIDED && one_sided(&stream) =>
-            {
-                Ok(())
-            }
-            Ok(stream) => {
-                if let Some(objects) = &mut self.objects {
-                    objects.settle();
-                }
-                self.progress.joints = stream.understood().joints.len();
-                let log = stream.log(self.next_part()?)?;
-                self.open = Some((stream, log));
-                let first = std::mem::take(&mut self.first);
-                self.write(&first)
-            }
-            Err(CsvError::NoJoints { .. } | CsvError::NoPair { .. })
-                if self.objects.is_some() && !last && self.first_lines < ONE_SIDED =>
-            {
-                Ok(())
-            }
-            // Rows that are yet to come may settle it; an option that is missing will be missing then.
-            Err(CsvError::NoTable { .. } | CsvError::NoTime { .. } | CsvError::TimeUnit { .. })
-                if !last && self.first_lines < MOST_LINES =>
-            {
-                Ok(())
-            }
-            Err(error) => Err(error.into()),
-        }
-    }
-
-    /// Another header came before the columns of the first one were settled: each has the rows below it.
-    fn settle_each(&mut self, at: usize) -> Result<(), RecordError> {
-        let later = self.first.split_off(at);
-        let rows = self.first_lines.saturating_sub(later.split_inclusive(|byte| *byte == b'\n').count());
-        match self.settle(true) {
-            Err(RecordError::Csv(_)) => {
-                self.untold += rows as u64;
-                self.first.clear();
-            }
-            settled => settled?,
-        }
-        self.first_lines = 0;
-        later
-            .split(|byte| *byte == b'\n')
-            .filter(|line| !line.is_empty())
-            .try_for_each(|line| self.take(line))
+        self.write(&rest.unwrap_or_default().into_bytes())?;
+        self.save()
     }
 
     fn write(&mut self, text: &[u8]) -> Result<(), RecordError> {
@@ -288,6 +287,9 @@ impl<'a> Recording<'a> {
             }
         };
         let is_over = stream.is_over();
+        if self.since.is_due(self.progress) {
+            log.flush()?;
+        }
         if (ends || is_over)
             && let Some((stream, log)) = self.open.take()
         {
@@ -305,15 +307,34 @@ impl<'a> Recording<'a> {
         Ok(())
     }
 
+    /// What came is put on the disk, however the clock of its rows goes.
+    fn save(&mut self) -> Result<(), RecordError> {
+        let due = self.since.is_due(self.progress);
+        if let Some((_, log)) = self.open.as_mut().filter(|_| due) {
+            log.flush()?;
+        }
+        Ok(())
+    }
+
+    /// The next name that is free, or may be replaced: a recording that runs does not end for one that is taken.
     fn next_part(&mut self) -> Result<Synced, RecordError> {
-        let path = part_name(&self.inputs.output, self.parts.len() + 1);
-        let file = Synced::create(&path, self.inputs.replace).map_err(|source| match source.kind() {
-            std::io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.clone() },
-            _ => RecordError::Create { path: path.clone(), source },
-        })?;
-        self.parts.push(path);
-        self.counter = file.counter();
-        Ok(file)
+        loop {
+            self.number += 1;
+            let path = part_name(&self.inputs.output, self.number);
+            let is_first = self.number == 1;
+            let spared = !is_first && path.exists() && (!self.inputs.replace || may_write(&path).is_err());
+            if spared {
+                self.taken.push(path);
+                continue;
+            }
+            let file = Synced::create(&path, self.inputs.replace).map_err(|source| match source.kind() {
+                std::io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.clone() },
+                _ => RecordError::Create { path: path.clone(), source },
+            })?;
+            self.parts.push(path);
+            self.counter = file.counter();
+            return Ok(file);
+        }
     }
 
     fn end(mut self) -> Result<Recorded, RecordError> {
@@ -324,12 +345,12 @@ impl<'a> Recording<'a> {
             return Err(RecordError::NoNumbers { lines: self.words });
         }
         // A last header without rows is no part.
-        while self.open.is_none() && (self.closed.is_empty() || self.first_lines > 1) {
+        while self.open.is_none() && !self.lost && (self.closed.is_empty() || self.first_lines > 1) {
             self.settle(true)?;
         }
-        self.pause()?;
+        self.pause().map_err(|error| self.stopped(error))?;
         if let Some((stream, log)) = self.open.take() {
-            log.finish()?;
+            log.finish().map_err(|error| self.stopped(error.into()))?;
             self.closed.push(stream);
             // A last part that nothing came for is none.
             let empty = self.parts.len() > 1 && self.progress.rows == self.part_from.rows;
@@ -338,32 +359,7 @@ impl<'a> Recording<'a> {
             }
         }
         let Some(last) = self.closed.last() else { return Err(RecordError::Nothing) };
-        let mut remarks = Remarks::default();
-        self.closed.iter().for_each(|stream| remarks.extend(stream.remarks()));
-        let message = "lines of words before the first with numbers; left out";
-        remarks.add(Code::UndecodableMessage, self.words, message);
-        let message = "lines before a header with other columns, whose own columns cannot be told; left out";
-        remarks.add(Code::UndecodableMessage, self.untold, message);
-        remarks.add(Code::UndecodableMessage, self.unread, "lines that are no JSON object; left out");
-        if let Some((keys, lines)) = self.objects.as_ref().and_then(JsonLines::late) {
-            let message = format!(
-                "lines with keys that came after the columns were settled, and were left out: {keys}; name them before, as \
-                 --measured JOINT=KEY, or begin when they are sent"
-            );
-            remarks.add(Code::NotSupported, lines, message);
-        }
-        let old = (self.parts.len() + 1..).map(|number| part_name(&self.inputs.output, number));
-        let old: Vec<PathBuf> = old.take_while(|path| self.inputs.replace && path.exists()).collect();
-        if let Some(first) = old.first() {
-            let message = format!(
-                "parts of an earlier recording that are still beside this one, from {} on; remove them, or a pattern such as \
-                 {} reads both as one run",
-                first.display(),
-                part_pattern(&self.inputs.output)
-            );
-            remarks.add(Code::OtherFile, old.len() as u64, message);
-        }
-        Ok(Recorded::new(&self.parts, &self.progress, last.understood(), remarks))
+        Ok(Recorded::new(&self.parts, &self.progress, last.understood(), self.remarks()))
     }
 }
 

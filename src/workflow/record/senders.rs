@@ -19,6 +19,8 @@ pub struct Senders {
     ports: BTreeSet<u16>,
     others: BTreeSet<SocketAddr>,
     refused: u64,
+    /// Where another one went on after the first was silent.
+    followed: u64,
 }
 
 impl Senders {
@@ -33,6 +35,7 @@ impl Senders {
             }
             return false;
         }
+        self.followed += u64::from(from != now && self.lasts);
         if self.ports.len() >= MOST_PORTS {
             self.ports.clear();
         }
@@ -52,6 +55,9 @@ impl Senders {
             );
             remarks.add(Code::Ambiguous, self.refused, message);
         }
+        let message = "changes of the sender after a silence: another port of the same host goes on; one program that was begun \
+                       anew, or two";
+        remarks.add(Code::Ambiguous, self.followed, message);
         remarks
     }
 }

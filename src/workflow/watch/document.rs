@@ -135,7 +135,7 @@ impl Run {
             largest_delay_s: replay.longest_delay_s(&joint.name),
         };
         let joints: Vec<RunJoint> = replay.joints.iter().map(joint).collect();
-        let started = began_ns(&log.uri, report.source.epoch_ns).map(DateTime::from_timestamp_nanos);
+        let started = began_ns(&log.uri, report.source.began_ns()).map(DateTime::from_timestamp_nanos);
         Self {
             page: Some(page),
             started_at: started.map(|at| at.format("%Y-%m-%dT%H:%M:%SZ").to_string()),

@@ -54,6 +54,28 @@ fn tables_that_count_from_zero_have_the_dates_of_their_names_and_those_without_a
 }
 
 #[test]
+fn times_before_zero_and_of_long_running_controllers_are_no_dates() {
+    let folder = tempfile::tempdir().unwrap();
+    let logs = folder.path().join("logs/M07");
+    fs::create_dir_all(&logs).unwrap();
+    for (name, from_s) in [("before", -2.0), ("long", 259_200.0)] {
+        let shifted = table(3).lines().fold(String::new(), |all, row| {
+            let (t_s, rest) = row.split_once(',').unwrap();
+            let t_s = t_s.parse::<f64>().map_or(t_s.to_owned(), |t_s| format!("{:.2}", t_s + from_s));
+            all + &format!("{t_s},{rest}\n")
+        });
+        fs::write(logs.join(format!("{name}.csv")), shifted).unwrap();
+        // The same through an import.
+        run_line(folder.path(), &format!("import logs/M07/{name}.csv -o logs/M07/{name}.mcap"));
+    }
+    run_line(folder.path(), "fleet scan logs/*/*.csv logs/*/*.mcap --into data --machine-from path:1");
+    let undated = cells(&folder.path().join("data"), "remarks", "code");
+    assert_eq!(undated.iter().filter(|code| *code == "undated").count(), 4, "{undated:?}");
+    let worst = json(folder.path(), "fleet worst data --by delay");
+    assert!(worst["joints"][0]["at"].is_null() && worst["joints"][0]["runs"] == 4, "{worst}");
+}
+
+#[test]
 fn a_level_that_changes_at_once_is_told_and_breaks_a_limit() {
     let folder = tempfile::tempdir().unwrap();
     for machine in ["M1", "M2", "M3"] {

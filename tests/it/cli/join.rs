@@ -89,7 +89,8 @@ fn field(folder: &Path, name: &str, later_s: &[f64], gain: f64) -> PathBuf {
     let mut from_s = 0.0;
     for &later_s in later_s {
         let mut t_s = from_s;
-        while t_s < later_s {
+        // Not once more at that very instant, by rounding.
+        while t_s < later_s - 1e-6 {
             let still = angles(&sent, 0.0);
             log.controller_state(START_NS + ns(t_s), &state(&still, &still)).unwrap();
             t_s += 0.02;

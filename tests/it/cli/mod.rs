@@ -26,6 +26,7 @@ mod plan;
 mod record;
 #[cfg(unix)]
 mod record_senders;
+mod record_taken;
 mod recorders;
 #[cfg(feature = "cloud")]
 mod remote;

@@ -1,0 +1,54 @@
+//! What a recording doubts of what came.
+
+use std::path::PathBuf;
+
+use super::{
+    Recording,
+    parts::{part_name, part_pattern},
+};
+use crate::{
+    log::JsonLines,
+    remark::{Code, Remarks},
+};
+
+impl Recording<'_> {
+    /// Doubts about all that came.
+    pub(super) fn remarks(&self) -> Remarks {
+        let mut remarks = Remarks::default();
+        self.closed.iter().for_each(|stream| remarks.extend(stream.remarks()));
+        remarks.add(Code::UndecodableMessage, self.asides, "lines of words among the rows; left out");
+        let message = "lines of words before the first with numbers; left out";
+        remarks.add(Code::UndecodableMessage, self.words, message);
+        let message = "lines before a header with other columns, whose own columns cannot be told; left out";
+        remarks.add(Code::UndecodableMessage, self.untold, message);
+        remarks.add(Code::UndecodableMessage, self.unread, "lines that are no JSON object; left out");
+        if let Some((keys, lines)) = self.objects.as_ref().and_then(JsonLines::late) {
+            let message = format!(
+                "lines with keys that came after the columns were settled, and were left out: {keys}; name them before, as \
+                 --measured JOINT=KEY, or begin when they are sent"
+            );
+            remarks.add(Code::NotSupported, lines, message);
+        }
+        remarks.add(Code::UndecodableMessage, self.too_long, "lines longer than any row; left out");
+        if let Some(first) = self.taken.first() {
+            let message = format!(
+                "names of parts that were taken, from {} on, and were stepped over; a pattern such as {} reads both as one run",
+                first.display(),
+                part_pattern(&self.inputs.output)
+            );
+            remarks.add(Code::OtherFile, self.taken.len() as u64, message);
+        }
+        let old = (self.number + 1..).map(|number| part_name(&self.inputs.output, number));
+        let old: Vec<PathBuf> = old.take_while(|path| self.inputs.replace && path.exists()).collect();
+        if let Some(first) = old.first() {
+            let message = format!(
+                "parts of an earlier recording that are still beside this one, from {} on; remove them, or a pattern such as \
+                 {} reads both as one run",
+                first.display(),
+                part_pattern(&self.inputs.output)
+            );
+            remarks.add(Code::OtherFile, old.len() as u64, message);
+        }
+        remarks
+    }
+}

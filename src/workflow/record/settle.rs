@@ -1,0 +1,109 @@
+//! What the columns are, told by the first lines.
+
+use super::{RecordError, Recording};
+use crate::{
+    log::{CsvError, TableStream, is_aside, is_header, other_header},
+    remark::Code,
+};
+
+/// What a person is told of in place of a file.
+const WHAT_CAME: &str = "what came";
+
+/// Lines after which it is given up to settle the columns.
+const MOST_LINES: usize = 200;
+
+/// So many objects are waited for while none has a key of the other side.
+const ONE_SIDED: usize = 300;
+
+impl Recording<'_> {
+    /// Tells the columns by the lines so far, at the latest at the end; until then more of them may help.
+    pub(super) fn settle(&mut self, last: bool) -> Result<(), RecordError> {
+        if self.open.is_some() || self.lost || self.first_lines < 3 && !last {
+            return Ok(());
+        }
+        let name = self.inputs.output.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if let Some(objects) = &mut self.objects {
+            if objects.is_growing() && !last && self.first_lines < ONE_SIDED {
+                return Ok(());
+            }
+            self.first = objects.table().into_bytes();
+        } else if let Some(at) = other_header(&self.first) {
+            return self.settle_each(at);
+        }
+        let one_sided = |stream: &TableStream| {
+            stream.remarks().as_slice().iter().any(|remark| remark.code == Code::OneSide)
+        };
+        match TableStream::begin(&name, &self.first, &self.inputs.options) {
+            // The other side's sensor may not send yet; rows that wait are lost if the power is.
+            Ok(stream)
+                if self.objects.is_some() && !last && self.first_lines < ONE_SIDED && one_sided(&stream) =>
+            {
+                Ok(())
+            }
+            Ok(stream) => {
+                if let Some(objects) = &mut self.objects {
+                    objects.settle();
+                }
+                self.progress.joints = stream.understood().joints.len();
+                let log = stream.log(self.next_part()?)?;
+                self.open = Some((stream, log));
+                let first = std::mem::take(&mut self.first);
+                self.write(&first)
+            }
+            Err(CsvError::NoJoints { .. } | CsvError::NoPair { .. })
+                if self.objects.is_some() && !last && self.first_lines < ONE_SIDED =>
+            {
+                Ok(())
+            }
+            // Rows that are yet to come may settle it; an option that is missing will be missing then.
+            Err(CsvError::NoTable { .. } | CsvError::NoTime { .. } | CsvError::TimeUnit { .. })
+                if !last && self.first_lines < MOST_LINES =>
+            {
+                Ok(())
+            }
+            // What was recorded stays a run; rows of a header that says nothing are left out until the next one.
+            Err(_) if !self.closed.is_empty() => {
+                self.untold += self.first_lines as u64;
+                (self.first_lines, self.lost) = (0, true);
+                self.first.clear();
+                Ok(())
+            }
+            // There is no file of that name yet: what is wrong is what came.
+            Err(error) => Err(TableStream::begin(WHAT_CAME, &self.first, &self.inputs.options)
+                .err()
+                .unwrap_or(error)
+                .into()),
+        }
+    }
+
+    /// Whether a line before the columns are settled is none of their table: words among rows, or rows of a header that says
+    /// nothing.
+    pub(super) fn steps_over(&mut self, line: &[u8]) -> bool {
+        if self.lost && !is_header(line) {
+            self.untold += 1;
+            return true;
+        }
+        self.lost = false;
+        let aside = is_aside(&self.first, line);
+        self.asides += u64::from(aside);
+        aside
+    }
+
+    /// Another header came before the columns of the first one were settled: each has the rows below it.
+    fn settle_each(&mut self, at: usize) -> Result<(), RecordError> {
+        let later = self.first.split_off(at);
+        let rows = self.first_lines.saturating_sub(later.split_inclusive(|byte| *byte == b'\n').count());
+        match self.settle(true) {
+            Err(RecordError::Csv(_)) => {
+                self.untold += rows as u64;
+                self.first.clear();
+            }
+            settled => settled?,
+        }
+        self.first_lines = 0;
+        later
+            .split(|byte| *byte == b'\n')
+            .filter(|line| !line.is_empty())
+            .try_for_each(|line| self.take(line))
+    }
+}
