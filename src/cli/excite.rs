@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::{
     CliError, Outcome, Run,
     console::{Console, spare_for_log, write_file},
-    number::degrees,
+    number::speed_deg_s,
 };
 use crate::{
     fit::{Excitation, JointRoom},
@@ -43,7 +43,7 @@ pub(super) struct Args {
     full: bool,
 
     /// Largest speed of a joint; below the machine's own limit, that limit stays unknown
-    #[arg(long, value_name = "DEG/S", value_parser = degrees, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG/S", value_parser = speed_deg_s, allow_negative_numbers = true)]
     max_speed_deg_s: Option<f64>,
 }
 

@@ -9,6 +9,7 @@ use super::{
 };
 use crate::{
     atomic_file::may_write,
+    fit::JointFit,
     render::{fit as words, next},
     workflow::fit::{FitDocument, Fitted, Inputs, LimitsFile, run},
 };
@@ -77,7 +78,8 @@ impl Run for Args {
         let target = Target::new(Form::of(&[(self.json, Form::Json)], self.document()), self.document())?;
         let again: Vec<&PathBuf> = fitted.again.iter().filter_map(|place| self.logs.get(*place)).collect();
         let next = self.output.as_deref().filter(|_| self.document().is_none());
-        let next = next.map(|path| next::limits_written(path, &again).reading(&self.sent.words()));
+        let trusted = fitted.fit.joints.iter().any(JointFit::trusted);
+        let next = next.map(|path| next::limits_written(path, &again, trusted).reading(&self.sent.words()));
         if let Some(file) = &self.html {
             write_file(file, words::page(&fitted, next.as_ref()).as_bytes())?;
         }

@@ -19,6 +19,11 @@ pub(super) fn degrees(text: &str) -> Result<f64, String> {
     not_negative(text, "angle in degrees").map(radians_from_degrees)
 }
 
+/// Degrees a second above zero, as radians a second.
+pub(super) fn speed_deg_s(text: &str) -> Result<f64, String> {
+    within(text, [0.1, 1000.0], "a speed from 0.1 to 1000 deg/s").map(radians_from_degrees)
+}
+
 /// Millimetres, as metres.
 pub(super) fn millimetres(text: &str) -> Result<f64, String> {
     not_negative(text, "length in millimetres").map(|mm| mm / 1e3)

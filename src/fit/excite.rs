@@ -32,6 +32,10 @@ pub struct Ramp {
 
 /// Strokes shorter than this show nothing, rad.
 const LEAST_RAD: f64 = DEGREE_RAD;
+/// A stroke takes this long to its speed, and from it, s.
+const RAMP_S: f64 = 0.12;
+/// Between points of a trajectory, s.
+const POINT_S: f64 = 0.04;
 /// Angles as close as this are one, rad.
 const ROUNDED_RAD: f64 = 1e-9;
 
@@ -52,7 +56,7 @@ impl Excitation {
         Self::at(&[(3.0, 6.0), (60.0, 10.0)])
     }
 
-    /// Strokes at five speeds: a minute a joint.
+    /// Strokes at five speeds: a minute a joint, the fastest far beyond most machines.
     pub fn full() -> Self {
         Self::at(&[(1.0, 4.0), (3.0, 6.0), (8.0, 8.0), (18.0, 10.0), (60.0, 10.0)])
     }
@@ -100,7 +104,7 @@ pub fn excite(joints: &[JointRoom], excitation: &Excitation) -> Result<Series, F
         strokes.push(joint_strokes(joint, excitation)?);
     }
     let own: Vec<usize> = strokes.iter().map(Vec::len).collect();
-    let rest = steps_in(excitation.rest_s);
+    let rest = steps_in(excitation.rest_s).next_multiple_of(steps_in(POINT_S));
     let total = 2 * rest + own.iter().sum::<usize>() + 1;
     let t_s: Vec<f64> = (0..total).map(|k| k as f64 * STEP_S).collect();
     let mut before = rest;
@@ -164,16 +168,132 @@ fn joint_strokes(joint: &JointRoom, excitation: &Excitation) -> Result<Vec<(f64,
     Ok(states)
 }
 
-/// One ramp and the rest after it.
+/// One stroke and the rest after it. Its speed grows and falls evenly, in times that are those of the points of a trajectory:
+/// the cubic curve through them, which controllers follow, is the stroke itself.
 fn stroke(from: f64, goal: f64, speed_rad_s: f64, excitation: &Excitation, states: &mut Vec<(f64, f64)>) {
     let way = goal - from;
-    let sent_s = way.abs() / speed_rad_s;
+    let cruise_s = (way.abs() / speed_rad_s - RAMP_S).max(0.0);
+    let cruise_s = (cruise_s / POINT_S - 1e-6).ceil().max(0.0) * POINT_S;
+    let (end_s, top_rad_s) = (2.0 * RAMP_S + cruise_s, way / (RAMP_S + cruise_s));
     let needed_s = way.abs() / speed_rad_s.min(excitation.assumed_speed_rad_s);
-    let steps = steps_in(needed_s + excitation.dwell_s);
+    let steps = steps_in(needed_s.max(end_s) + excitation.dwell_s).next_multiple_of(steps_in(POINT_S));
     for k in 0..steps {
         let t_s = k as f64 * STEP_S;
-        let moving = t_s < sent_s;
-        let position = if moving { from + way.signum() * speed_rad_s * t_s } else { goal };
-        states.push((position, if moving { way.signum() * speed_rad_s } else { 0.0 }));
+        let left_s = (end_s - t_s).max(0.0);
+        let position = if t_s < RAMP_S {
+            from + top_rad_s * t_s * t_s / (2.0 * RAMP_S)
+        } else if left_s > RAMP_S {
+            from + top_rad_s * (t_s - 0.5 * RAMP_S)
+        } else {
+            goal - top_rad_s * left_s * left_s / (2.0 * RAMP_S)
+        };
+        states.push((position, top_rad_s * t_s.min(left_s).min(RAMP_S) / RAMP_S));
+    }
+}
+
+/// Fewest strokes of a joint in an identification run, how many times faster the fastest are than the slowest, and how long
+/// it rests between them, s.
+const STROKES: usize = 6;
+const FASTER: f64 = 4.0;
+const RESTS_S: f64 = 0.3;
+/// Between samples a joint that moves goes farther than this, rad.
+const MOVES_RAD: f64 = 1e-5;
+
+/// Whether a plan is an identification run, whoever recorded it: joint after joint goes to and fro from where it starts, some
+/// strokes much faster than others.
+pub fn is_excitation(plan: &Series) -> bool {
+    let moving: Vec<Vec<[f64; 3]>> = plan.tracks.iter().map(strokes).filter(|own| !own.is_empty()).collect();
+    let mut spans: Vec<[f64; 2]> =
+        moving.iter().filter_map(|own| Some([own.first()?[0], own.last()?[1]])).collect();
+    spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    !moving.is_empty()
+        && moving.iter().all(|own| goes_to_and_fro(own))
+        && spans.windows(2).all(|two| two[0][1] <= two[1][0])
+}
+
+/// Start and end of each motion of a joint, s, and how far it goes, rad.
+fn strokes(track: &Track) -> Vec<[f64; 3]> {
+    let mut found: Vec<[f64; 3]> = Vec::new();
+    for (t, at) in track.t_s().windows(2).zip(track.position().windows(2)) {
+        let way = at[1] - at[0];
+        if way.abs() < MOVES_RAD {
+            continue;
+        }
+        match found.last_mut().filter(|last| t[0] - last[1] < RESTS_S) {
+            Some(last) => (last[1], last[2]) = (t[1], last[2] + way),
+            None => found.push([t[0], t[1], way]),
+        }
+    }
+    found
+}
+
+fn goes_to_and_fro(strokes: &[[f64; 3]]) -> bool {
+    let speeds = || strokes.iter().map(|[from_s, to_s, way]| way.abs() / (to_s - from_s));
+    let (slowest, fastest) = (speeds().fold(f64::INFINITY, f64::min), speeds().fold(0.0, f64::max));
+    let ends_rad = strokes.iter().map(|stroke| stroke[2]).sum::<f64>();
+    strokes.len() >= STROKES && fastest > FASTER * slowest && ends_rad.abs() < 0.1 * DEGREE_RAD
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(excitation: &Excitation) -> Series {
+        let joint = |name: &str, home: f64, low: f64, high: f64| JointRoom {
+            name: name.into(),
+            home_rad: home * DEGREE_RAD,
+            range_rad: [low * DEGREE_RAD, high * DEGREE_RAD],
+        };
+        excite(&[joint("boom", 40.0, 30.0, 50.0), joint("bucket", 12.0, 0.0, 20.0)], excitation).unwrap()
+    }
+
+    /// The largest angle, and speed, of the cubic curve through points of a trajectory, 25 a second.
+    fn followed(track: &Track) -> ([f64; 2], f64) {
+        let (mut angles, mut fastest) = ([f64::INFINITY, f64::NEG_INFINITY], 0.0_f64);
+        let points: Vec<f64> =
+            (0..).map(|k| 0.04 * f64::from(k)).take_while(|t| *t < track.t_s()[track.len() - 1]).collect();
+        for two in points.windows(2) {
+            let [a, b] = [two[0], two[1]].map(|t| track.held_at(t));
+            let h = two[1] - two[0];
+            for k in 0..=20 {
+                let s = f64::from(k) / 20.0;
+                let (s2, s3) = (s * s, s * s * s);
+                let at = (2.0 * s3 - 3.0 * s2 + 1.0) * a.position
+                    + (s3 - 2.0 * s2 + s) * h * a.velocity
+                    + (3.0 * s2 - 2.0 * s3) * b.position
+                    + (s3 - s2) * h * b.velocity;
+                let speed = (6.0 * s2 - 6.0 * s) / h * (a.position - b.position)
+                    + (3.0 * s2 - 4.0 * s + 1.0) * a.velocity
+                    + (3.0 * s2 - 2.0 * s) * b.velocity;
+                angles = [angles[0].min(at), angles[1].max(at)];
+                fastest = fastest.max(speed.abs());
+            }
+        }
+        (angles, fastest)
+    }
+
+    #[test]
+    fn what_a_controller_makes_of_the_points_keeps_the_range_and_the_speed() {
+        for excitation in [Excitation::minimal(), Excitation::full()] {
+            let run = run(&excitation);
+            for (track, [low, high]) in run.tracks.iter().zip([[30.0, 50.0], [0.0, 20.0]]) {
+                let (angles, fastest) = followed(track);
+                assert!(
+                    angles[0] > low * DEGREE_RAD - 1e-6 && angles[1] < high * DEGREE_RAD + 1e-6,
+                    "{angles:?}"
+                );
+                assert!(fastest < 60.0 * DEGREE_RAD + 1e-6 && fastest > 45.0 * DEGREE_RAD, "{fastest}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_identification_run_is_known_by_what_it_does() {
+        assert!(is_excitation(&run(&Excitation::minimal())) && is_excitation(&run(&Excitation::full())));
+        let t_s: Vec<f64> = (0..4000).map(|k| 0.01 * f64::from(k)).collect();
+        let wave = |speed: f64| t_s.iter().map(|t| 0.2 * (speed * t).sin()).collect::<Vec<f64>>();
+        let both = ["a", "b"].map(|name| Track::new(name, t_s.clone(), wave(0.5), &[]).unwrap());
+        assert!(!is_excitation(&Series { tracks: both.to_vec() }));
+        assert!(!is_excitation(&Series { tracks: Vec::new() }));
     }
 }

@@ -11,7 +11,7 @@ use super::{
     parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
     run::Run,
     set_values::SetValues,
-    skill::{HeldOutStart, Skill, skill, unexplained_rad},
+    skill::{HeldOutStart, Skill, sent_rad, skill, unexplained_rad},
     telling::{of, telling},
 };
 use crate::{math::range, units::DEGREE_RAD};
@@ -39,6 +39,9 @@ const ROUNDS: usize = 4;
 
 /// Rounds of the fits that leave a part out.
 const FOLD_ROUNDS: usize = 3;
+
+/// A joint that moves by a smaller share of what it is sent stands.
+const STANDS: f64 = 0.02;
 
 /// Statistical inefficiency until it is measured: correlated residuals per effective sample.
 const INEFFICIENCY: f64 = 50.0;
@@ -114,7 +117,7 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
         skill.held_out_r2,
         skill.unexplained_share(found.scale_rad),
     );
-    let nothing = skill.explains_nothing();
+    let nothing = skill.explains_nothing() || stands(runs);
     let skill = if nothing { skill.without_model(&held_out) } else { skill };
     let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
     let joint = match rival {
@@ -126,6 +129,22 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     let runs = held_out.iter().zip(&skill.errors).zip(&skill.starts);
     let stretches = runs.map(|((run, errors), starts)| HeldOut::of(name, run, errors, starts)).collect();
     (joint, ratios, stretches)
+}
+
+/// Whether the joint stands though it is sent elsewhere: what a model then predicts is the plan, not the joint.
+fn stands(runs: &[Run]) -> bool {
+    let motion_rad2 =
+        |values: &dyn Fn(&Run) -> Vec<f64>| -> f64 { runs.iter().map(|run| spread(&values(run))).sum() };
+    let measured_rad2 = motion_rad2(&|run| run.samples.iter().map(|sample| sample.measured_rad).collect());
+    let sent_rad2 = motion_rad2(&|run| run.samples.iter().map(|sample| sent_rad(run, sample)).collect());
+    measured_rad2 < STANDS * STANDS * sent_rad2
+}
+
+/// Mean squared distance from the mean.
+fn spread(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count
 }
 
 /// Limits that were asked for far enough to show; looking for others costs time.

@@ -36,7 +36,7 @@ mod valve;
 
 pub use error::FitError;
 pub use estimated::Estimated;
-pub use excite::{Excitation, JointRoom, Ramp, excite};
+pub use excite::{Excitation, JointRoom, Ramp, excite, is_excitation};
 pub use held_out::HeldOut;
 pub use learn::{Character, JointStep, Learning, Learnt, Oscillation, Room, Stalled, Step, Trial, learn};
 pub use model::{Model, STEP_S};
@@ -62,6 +62,24 @@ const LEAST_TRAVEL_RAD: f64 = 0.5 * DEGREE_RAD;
 /// [`FitError::NothingMoves`] if no joint can be fitted.
 pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
     fit_and_held_out(logs).map(|(fit, _)| fit)
+}
+
+impl Fit {
+    /// The same, with what its models leave unexplained in these runs, which they were not fitted to: strokes faster than a
+    /// machine leave more than a plan does, and a plan elsewhere less than this one.
+    #[must_use]
+    pub fn held_against(mut self, logs: &[Observation]) -> Self {
+        let mut workspace = estimate::Workspace::default();
+        for joint in &mut self.joints {
+            let of_log = |log: &Observation| {
+                Some(runs(log.sent.track(&joint.name)?, log.measured.track(&joint.name)?))
+            };
+            let runs: Vec<Run> = logs.iter().filter_map(of_log).flatten().collect();
+            let found = skill::unexplained_by(&joint.model, &runs, &mut workspace);
+            joint.unexplained_peak_rad = found.or(joint.unexplained_peak_rad);
+        }
+        self
+    }
 }
 
 /// The same, with prediction beside measurement where it was held out of the fit: 450 s of each joint's motion at most.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{model::STEP_S, simulate::Start};
 use crate::{
-    series::{Series, Signal, Track, align, local_quadratic},
+    series::{Series, Signal, Track, align, local_quadratic, noise},
     units::DEGREE_RAD,
 };
 
@@ -148,6 +148,7 @@ pub(super) fn sparse_s(sent: &Track, measured: &Track, least_rad: f64) -> Option
 pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
     let Some(pair) = align(sent, measured) else { return Vec::new() };
     let fits = local_quadratic(&pair.t_s, &pair.measured, &pair.segments, SPEED_WINDOW_S, 5);
+    let sigma_rad = noise(&pair.t_s, &pair.measured, &pair.segments).sigma;
     let mut runs = Vec::new();
     for segment in &pair.segments {
         let (from_s, to_s) = (pair.t_s[segment.start], pair.t_s[segment.end - 1]);
@@ -188,6 +189,10 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
                 (fits[i].velocity - fits[i.saturating_sub(10).max(first)].velocity) / span_s
             };
             let sharpest = [1.0, -1.0].map(|way| extreme(&|i| way * rise(i)));
+            let interval_s = (pair.t_s[last - 1] - pair.t_s[first]) / (last - first) as f64;
+            let [by_speed, by_rise] = made_by_noise(sigma_rad, interval_s);
+            let fastest = fastest.map(|speed| (speed - by_speed).max(0.0));
+            let sharpest = sharpest.map(|rise| (rise - by_rise).max(0.0));
             let sent = whole[steps.clone()].to_vec();
             runs.push(Run {
                 log: 0,
@@ -202,6 +207,18 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
         }
     }
     runs
+}
+
+/// Deviations of noise in the largest of many speeds.
+const DEVIATIONS: f64 = 3.0;
+
+/// What noise of positions makes of the largest speed, rad/s, and of the largest acceleration, rad/s², where there is none.
+fn made_by_noise(sigma_rad: f64, interval_s: f64) -> [f64; 2] {
+    let both_rad = DEVIATIONS * std::f64::consts::SQRT_2 * sigma_rad;
+    let interval_s = interval_s.max(f64::MIN_POSITIVE);
+    let within = (2.0 * SPEED_WINDOW_S / interval_s).max(5.0);
+    let of_slope = (3.0 / within).sqrt() / SPEED_WINDOW_S;
+    [both_rad / REACHED_OVER_S, both_rad * of_slope / (10.0 * interval_s).max(STEP_S)]
 }
 
 /// Largest mean speeds for growing and shrinking angles, rad/s: over a time in which noise averages out.

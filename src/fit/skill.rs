@@ -1,6 +1,7 @@
 //! Prediction error of a model on held-out data.
 
 use super::{
+    Model,
     estimate::{Part, Problem, Workspace},
     parameters::{Priors, SHARED},
     run::{FOLDS, Run, Sample},
@@ -16,6 +17,9 @@ const WORST_R2: f64 = -1.0;
 
 /// The largest of some hundreds of residuals by their scale.
 const PEAK_BY_SCALE: f64 = 5.0;
+
+/// Fewest starts of other runs that say how far a model holds for them.
+const FEWEST: usize = 3;
 
 /// Fewest starts that make a margin.
 const STARTS: usize = 10;
@@ -115,7 +119,7 @@ impl Skill {
 }
 
 /// Sent angle at a sample, rad.
-fn sent_rad(run: &Run, sample: &Sample) -> f64 {
+pub(super) fn sent_rad(run: &Run, sample: &Sample) -> f64 {
     match run.sent.get(sample.step..sample.step + 2) {
         Some([a, b]) => a.0 + sample.part * (b.0 - a.0),
         _ => f64::NAN,
@@ -144,6 +148,20 @@ pub(super) fn unexplained_rad(starts: &[Vec<HeldOutStart>]) -> Option<[f64; 2]> 
     let peaks: Vec<f64> = starts.iter().flatten().map(|start| start.unexplained_rad).collect();
     let mean = peaks.iter().sum::<f64>() / peaks.len() as f64;
     (!peaks.is_empty()).then(|| [mean, quantile(peaks, 0.9)])
+}
+
+/// The same of a model that was fitted to other runs than these; `None` with fewer than [`FEWEST`] starts.
+pub(super) fn unexplained_by(model: &Model, runs: &[Run], workspace: &mut Workspace) -> Option<[f64; 2]> {
+    let mut all = Vec::new();
+    for run in runs {
+        workspace.simulate(model, run, 0.0);
+        let error = |sample: &Sample| {
+            let sent_rad = sent_rad(run, sample);
+            (sent_rad - sample.measured_rad, sent_rad - workspace.at(sample))
+        };
+        all.push(starts(run, &run.samples.iter().map(error).collect::<Vec<_>>()));
+    }
+    (all.iter().map(Vec::len).sum::<usize>() >= FEWEST).then(|| unexplained_rad(&all))?
 }
 
 /// Factor on predicted peaks: 90 % of the measured ones stay below.

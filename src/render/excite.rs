@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use super::kit::{Document, Id, NONE, Section, Sentence, Table, counted};
-use crate::{units::degrees_from_radians, workflow::excite::Excited};
+use crate::{fit::JointRoom, units::degrees_from_radians, workflow::excite::Excited};
+
+/// Speed above which most hydraulic joints do not follow, deg/s.
+const FAST_DEG_S: f64 = 30.0;
 
 /// An identification run, for people.
 pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
@@ -43,12 +46,38 @@ pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
             short.join(", ")
         ))
     });
+    let fastest = |joint: &JointRoom| {
+        let speeds =
+            excited.command.track(&joint.name).and_then(|track| track.velocity()).unwrap_or_default();
+        speeds.iter().fold(0.0, |most: f64, speed| most.max(speed.abs()))
+    };
+    let fastest_rad_s = excited.joints.iter().map(fastest).fold(0.0, f64::max);
+    let fast = (degrees_from_radians(fastest_rad_s) > FAST_DEG_S).then(|| {
+        Sentence::advice(
+            "The fast strokes exceed the speed of most machines, to show the limits; --max-speed-deg-s slows them.",
+        )
+    });
+    let beyond: Vec<String> = excited
+        .beyond
+        .iter()
+        .map(|(joint, [sent, allowed])| format!("{joint} {} of {} deg/s", number(*sent), number(*allowed)))
+        .collect();
+    let beyond = (!beyond.is_empty()).then(|| {
+        Sentence::advice(format!(
+            "Limits of the task that they exceed: {}. If the machine must keep them, send no joint faster: \
+             --max-speed-deg-s.",
+            beyond.join(", ")
+        ))
+    });
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(what)])
         .with_all(short)
         .with(Table::new(&["joint"], &numbers, rows))
         .with(Sentence::advice(
-            "The arm must stand at home when the run starts. The fast strokes exceed the speed of most machines, to show \
-             the limits; --max-speed-deg-s slows them. Obstacles are not known: keep the area clear.",
-        ));
+            "The arm must stand at home when the run starts. A joint that answers late, or whose loop integrates, runs past \
+             the ends that are sent, by 5 deg and more: leave room between them and the stops. Obstacles are not known: \
+             keep the area clear.",
+        ))
+        .with_all(fast)
+        .with_all(beyond);
     Document::titled(title).with(section)
 }

@@ -1,8 +1,8 @@
 //! Metrics as columns and cells: degrees for joints that turn, millimetres for joints that slide, milliseconds.
 
-use super::kit::{Align, Column, Table, deg, ms, optional, share};
+use super::kit::{Align, Column, Sentence, Table, deg, ms, optional, share};
 use crate::{
-    replay::{Dimension, Metric, Read},
+    replay::{Dimension, Metric, Read, Rules},
     series::JointKind::{self, Slides, Turns},
     units::degrees_from_radians,
 };
@@ -49,6 +49,14 @@ pub(super) fn with_unit(dimension: Dimension, kind: JointKind, value: f64) -> St
 /// A position and its unit.
 pub(super) fn position(kind: JointKind, value: f64) -> String {
     with_unit(Dimension::Position, kind, value)
+}
+
+/// How joints that turn and joints that slide are told apart from worse ones, where there are both.
+pub(super) fn weighed(rules: &Rules, kinds: impl Iterator<Item = JointKind>) -> Option<Sentence> {
+    let seen: Vec<JointKind> = kinds.collect();
+    let [turns, slides] = [Turns, Slides].map(|kind| position(kind, rules.sizes(kind).settle_band));
+    let mixed = [Turns, Slides].iter().all(|kind| seen.contains(kind));
+    mixed.then(|| Sentence::note(format!("To tell the worst, {turns} counts as much as {slides}.")))
 }
 
 /// A position, speed or acceleration in degrees or millimetres.

@@ -27,11 +27,15 @@ pub(crate) fn plan_written(log: &Path, of_sample_arm: bool) -> Section {
     step(sent, aim, &["join", "RUN.mcap", "--plan", &log, "-o", run])
 }
 
-/// After `fit`; `logs` are the runs of the plan to plan again.
-pub(crate) fn limits_written(limits: &Path, logs: &[&PathBuf]) -> Section {
+/// After `fit`; `logs` are the runs of the plan to plan again, and `trusted` says that a command can be made for a joint.
+pub(crate) fn limits_written(limits: &Path, logs: &[&PathBuf], trusted: bool) -> Section {
     let limits = argument(limits);
     let logs: Vec<String> = logs.iter().map(argument).collect();
     let logs = if logs.is_empty() { "RUN.mcap".to_owned() } else { logs.join(" ") };
+    if !trusted {
+        let aim = "No joint is predicted well enough for a command. To see how each followed its plan:";
+        return step(written(&limits), aim, &["report", &logs]);
+    }
     let aim = "To plan the next run, with half of the correction at first:";
     step(written(&limits), aim, &["replan", &logs, "--limits", &limits, "--gain", "0.5", "-o", "next.mcap"])
 }

@@ -7,7 +7,7 @@ use crate::{
             Block, Column, Document, Fact, Id, NONE, Section, Sentence, Table, counted, fact, optional,
             percent, probability, signed,
         },
-        metric::{Units, number, position, unit},
+        metric::{Units, number, position, unit, weighed},
         source::{measured, planned},
     },
     replay::{Answer, Dimension, Keyed, Metric, PEAK_ERROR, ToolReplay, Transition},
@@ -58,7 +58,10 @@ fn run_facts(comparison: &Comparison) -> Vec<Fact> {
 
 fn pairs(comparison: &Comparison, most: usize) -> Option<Section> {
     let mut worst: Vec<&TransitionPair> = comparison.pairs.iter().collect();
-    let growth = |pair: &TransitionPair| pair.changes.get(PEAK_ERROR).difference.unwrap_or(f64::NEG_INFINITY);
+    let growth = |pair: &TransitionPair| {
+        let band = comparison.rules.sizes(pair.joint_kind).settle_band;
+        pair.changes.get(PEAK_ERROR).difference.map_or(f64::NEG_INFINITY, |change| change / band)
+    };
     worst.sort_by(|a, b| growth(b).total_cmp(&growth(a)));
     let units = Units::of(worst.iter().map(|pair| pair.joint_kind));
     let mut columns: Vec<Column> = ["joint", "kind", "dir"].map(Column::words).into();
@@ -93,8 +96,10 @@ fn pairs(comparison: &Comparison, most: usize) -> Option<Section> {
     let more = (worst.len() > most).then(|| {
         Sentence::note(format!("and {} more that did no worse (--all lists them)", worst.len() - most))
     });
+    let mixed = weighed(&comparison.rules, worst.iter().map(|pair| pair.joint_kind));
     (!worst.is_empty()).then(|| {
-        Section::new(Id::TRANSITIONS, "Transitions, worst change of peak first", [table]).with_all(more)
+        let title = "Transitions, worst change of peak first";
+        Section::new(Id::TRANSITIONS, title, [table]).with_all(more.into_iter().chain(mixed))
     })
 }
 

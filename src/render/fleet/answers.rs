@@ -2,7 +2,12 @@
 
 use super::{day, name, shown, shown_change, shown_unit};
 use crate::{
-    render::kit::{Document, Id, NONE, Section, Sentence, Table, counted, percent, probability},
+    render::{
+        kit::{Document, Id, NONE, Section, Sentence, Table, counted, percent, probability},
+        metric::weighed,
+    },
+    replay::Rules,
+    series::JointKind,
     workflow::fleet::{Drift, Effect, GateResult, Gated, JointEffect, JointTrend, LevelStep, Worst},
 };
 
@@ -36,6 +41,12 @@ pub(crate) fn worst(worst: &Worst, most: usize) -> Document {
     let table = Table::new(&["machine", "joint", "unit"], &numbers, rows);
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(of)]).with(table);
     let section = section.with_all(more(worst.joints.len(), most));
+    let kinds = worst.joints.iter().filter_map(|joint| match joint.unit.as_str() {
+        "rad" => Some(JointKind::Turns),
+        "m" => Some(JointKind::Slides),
+        _ => None,
+    });
+    let section = section.with_all(weighed(&Rules::default(), kinds));
     let note =
         "Against fleet: by how much starts are worse than the same starts of the same plan on all machines.";
     Document::default().with(section.with(Sentence::note(note))).remarked(&worst.remarks)

@@ -25,6 +25,7 @@ pub use document::{Block, Document, Fact, Id, Section, Sentence, fact};
 pub use markdown::markdown;
 pub use number::{
     NONE, counted, deg, mm, ms, optional, percent, probability, share, short, signed, significant, some_of,
+    starts_of,
 };
 pub use table::{Align, Column, Table};
 pub use terminal::text;

@@ -64,6 +64,12 @@ pub fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("one {noun}") } else { format!("{count} {noun}s") }
 }
 
+/// Planned starts of a joint, with the reversals among them.
+pub fn starts_of(starts: usize, reversals: usize) -> String {
+    let also = if reversals > 0 { " and reversals" } else { "" };
+    format!("{}{also}", counted(starts, "planned start"))
+}
+
 /// Some of a number of things: `1 of 1 joint`, `3 of 6 joints`.
 pub fn some_of(some: usize, count: usize, noun: &str) -> String {
     format!("{some} of {count} {noun}{}", if count == 1 { "" } else { "s" })

@@ -9,10 +9,13 @@ use super::{
 use crate::{
     math::median,
     render::{
-        kit::{Block, Document, Fact, Id, Section, Sentence, argument, command, counted, fact, mm, ms},
+        kit::{
+            Block, Document, Fact, Id, Section, Sentence, argument, command, counted, fact, mm, ms, starts_of,
+        },
         metric::position,
     },
     replay::{Replay, Transition},
+    series::JointKind,
     workflow::report::{
         Report,
         advice::{Advice, advice},
@@ -106,7 +109,15 @@ fn astray(replay: &Replay) -> Option<Fact> {
 }
 
 fn whole(replay: &Replay) -> Option<Fact> {
-    let error = replay.whole_run.tracking_error?;
+    let Some(error) = replay.whole_run.tracking_error else {
+        // Joints that turn and joints that slide have no error in common.
+        let most = [JointKind::Turns, JointKind::Slides].map(|kind| {
+            let of = replay.joints.iter().filter(|joint| joint.kind == kind);
+            of.map(|joint| joint.tracking_error.peak).reduce(f64::max).map(|peak| position(kind, peak))
+        });
+        let most: Vec<String> = most.into_iter().flatten().collect();
+        return (!most.is_empty()).then(|| fact("error", format!("{} at most", most.join(" and "))));
+    };
     let kind = replay.kind();
     let lag = if mostly_lag(replay).is_some() { "; mostly lag" } else { "" };
     Some(fact(
@@ -140,10 +151,10 @@ fn next(report: &Report) -> (String, String) {
         Some(Advice::ClearDoubts(_)) => {
             ("To see the doubts about the data, which come first:".to_owned(), command(&["report", &joined]))
         }
-        Some(Advice::FreeJoint { joint, unanswered, starts }) => (
+        Some(Advice::FreeJoint { joint, unanswered, starts, reversals }) => (
             format!(
                 "{joint} leaves {unanswered} of {} unanswered. To see which:",
-                counted(*starts, "planned start")
+                starts_of(*starts, *reversals)
             ),
             command(&["report", &joined]),
         ),

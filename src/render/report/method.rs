@@ -7,24 +7,77 @@ use crate::{
         metric::{number, on_paper, position, unit},
         source::{why, why_clock},
     },
-    replay::Dimension,
+    replay::{Dimension, JointReplay},
+    series::JointKind,
     workflow::report::Report,
 };
 
-pub(super) fn method(report: &Report) -> Option<Section> {
-    let rules = &report.replay.rules;
-    let joints = &report.replay.joints;
-    let range = |of: &dyn Fn(usize) -> f64, show: &dyn Fn(f64) -> String| {
-        let [least, most] = math::range((0..joints.len()).map(of)).map(show);
-        if least == most { least } else { format!("{least} to {most}") }
-    };
-    if joints.is_empty() {
-        return None;
+/// Least and greatest of a number of the joints of a kind.
+fn range(
+    report: &Report,
+    kind: JointKind,
+    of: &dyn Fn(&JointReplay) -> f64,
+    show: &dyn Fn(f64) -> String,
+) -> String {
+    let joints = report.replay.joints.iter().filter(|joint| joint.kind == kind);
+    let [least, most] = math::range(joints.map(of)).map(show);
+    if least == most { least } else { format!("{least} to {most}") }
+}
+
+fn kinds(report: &Report) -> Vec<JointKind> {
+    let has = |kind: &JointKind| report.replay.joints.iter().any(|joint| joint.kind == *kind);
+    [JointKind::Turns, JointKind::Slides].into_iter().filter(has).collect()
+}
+
+/// What holds for joints that turn, and for those that slide, where there are both.
+fn by_kind(report: &Report, words: &dyn Fn(JointKind) -> String) -> String {
+    match kinds(report).as_slice() {
+        [one] => words(*one),
+        all => {
+            let named = all.iter().map(|kind| match kind {
+                JointKind::Turns => format!("joints that turn: {}", words(JointKind::Turns)),
+                JointKind::Slides => format!("joints that slide: {}", words(JointKind::Slides)),
+            });
+            named.collect::<Vec<_>>().join(". ")
+        }
     }
-    let kind = report.replay.kind();
+}
+
+fn start(report: &Report, kind: JointKind) -> String {
+    let rules = &report.replay.rules;
     let sizes = rules.sizes(kind);
     let speed = unit(Dimension::Speed, kind);
     let deg_or_mm = |value: f64| number(Dimension::Position, kind, value);
+    format!(
+        "a plan starts above {} {speed} and rests below {}; a joint starts above {} {speed} and rests below {}, by its noise; \
+         it travels at least {}; a set value that steps by {} starts with the step",
+        deg_or_mm(sizes.start_speed),
+        deg_or_mm(sizes.stop_speed),
+        range(report, kind, &|joint| joint.thresholds.measured_start, &deg_or_mm),
+        range(report, kind, &|joint| joint.thresholds.measured_stop, &deg_or_mm),
+        position(kind, sizes.min_travel),
+        position(kind, rules.step_travels * sizes.min_travel),
+    )
+}
+
+fn speed(report: &Report, kind: JointKind) -> String {
+    format!(
+        "slope of a local quadratic over +-{} ms; noise {} {}, time resolution {} ms",
+        range(report, kind, &|joint| joint.thresholds.window_s, &ms),
+        range(report, kind, &|joint| joint.noise.sigma, &|noise| format!("{:.4}", on_paper(kind, noise))),
+        unit(Dimension::Position, kind),
+        range(report, kind, &|joint| joint.sample_interval_s, &ms),
+    )
+}
+
+pub(super) fn method(report: &Report) -> Option<Section> {
+    let rules = &report.replay.rules;
+    if report.replay.joints.is_empty() {
+        return None;
+    }
+    let settled: Vec<String> =
+        kinds(report).iter().map(|kind| position(*kind, rules.sizes(*kind).settle_band)).collect();
+    let settled = settled.join(" or ");
     let unmatched: usize = report.alignment.iter().map(|a| a.unmatched).sum();
     let matched: usize = report.alignment.iter().map(|a| a.matched).sum();
     let segments = report.alignment.iter().map(|a| a.segments).max().unwrap_or(0);
@@ -41,19 +94,7 @@ pub(super) fn method(report: &Report) -> Option<Section> {
                 }
             ),
         ),
-        fact(
-            "start",
-            format!(
-                "a plan starts above {} {speed} and rests below {}; a joint starts above {} {speed} and rests below {}, by its noise; \
-                 it travels at least {}; a set value that steps by {} starts with the step",
-                deg_or_mm(sizes.start_speed),
-                deg_or_mm(sizes.stop_speed),
-                range(&|j| joints[j].thresholds.measured_start, &deg_or_mm),
-                range(&|j| joints[j].thresholds.measured_stop, &deg_or_mm),
-                position(kind, sizes.min_travel),
-                position(kind, rules.step_travels * sizes.min_travel),
-            ),
-        ),
+        fact("start", by_kind(report, &|kind| start(report, kind))),
         fact(
             "delay",
             format!(
@@ -65,23 +106,14 @@ pub(super) fn method(report: &Report) -> Option<Section> {
                 rules.match_after_s,
             ),
         ),
-        fact(
-            "speed",
-            format!(
-                "slope of a local quadratic over +-{} ms; noise {} {}, time resolution {} ms",
-                range(&|j| joints[j].thresholds.window_s, &ms),
-                range(&|j| joints[j].noise.sigma, &|noise| format!("{:.4}", on_paper(kind, noise))),
-                unit(Dimension::Position, kind),
-                range(&|j| joints[j].sample_interval_s, &ms),
-            ),
-        ),
+        fact("speed", by_kind(report, &|kind| speed(report, kind))),
         fact(
             "window",
             format!(
                 "peak, rms and area are taken from the planned start to the next one, at most {:.0} s; an error is settled within \
                  {} for {} ms",
                 rules.transition_window_s,
-                position(kind, sizes.settle_band),
+                settled,
                 ms(rules.settle_hold_s)
             ),
         ),

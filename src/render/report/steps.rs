@@ -1,7 +1,7 @@
 //! What to do next: a sentence for each step, and the line to type.
 
 use crate::{
-    render::kit::{Sentence, argument, command, counted, ms, reading},
+    render::kit::{Sentence, argument, command, counted, ms, reading, starts_of},
     series::JointKind,
     workflow::report::{
         Report,
@@ -46,10 +46,10 @@ fn words(step: &Advice, limit: &str) -> String {
             "Clear the doubts about the data first: {} below.",
             counted(*kinds, "remark")
         ),
-        Advice::FreeJoint { joint, unanswered, starts } => format!(
+        Advice::FreeJoint { joint, unanswered, starts, reversals } => format!(
             "Find out why {joint} leaves {unanswered} of {} unanswered: enable signals, brakes, a dead band wider than \
              the command, a sensor that stands still.",
-            counted(*starts, "planned start")
+            starts_of(*starts, *reversals)
         ),
         Advice::ShiftCommand { joint, lag_s, fits } => format!(
             "The error is mostly lag, {joint} first ({} ms): speed feed-forward, or sending the command that much earlier, does \

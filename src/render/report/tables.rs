@@ -6,14 +6,13 @@ use crate::{
     render::{
         kit::{
             Column, Document, Fact, Id, Section, Sentence, counted, fact, ms, probability, share as percents,
-            spark,
+            spark, starts_of,
         },
-        metric::{Units, position, with_unit},
+        metric::{Units, position, weighed, with_unit},
         promise,
         source::{clock, measured, planned},
     },
     replay::{Answer, JOINT, JointReplay, Profiles, Replay, TRANSITION, Transition, Verdict},
-    series::JointKind,
     workflow::report::{GateResult, Report},
 };
 
@@ -144,7 +143,7 @@ pub(super) fn stray(replay: &Replay, joint: &JointReplay) -> Option<String> {
         (false, false) => Some(format!("{name} does not move, and neither does its plan.")),
         (true, false) => Some(format!(
             "{name} does not move although its plan does ({}).",
-            counted(joint.starts, "planned start")
+            starts_of(joint.starts, joint.reversals)
         )),
         (false, true) => Some(format!("{name} moves although its plan rests.")),
         (true, true) => None,
@@ -201,11 +200,7 @@ fn transitions(replay: &Replay, most: usize) -> Option<Section> {
     let more = (all.len() > most).then(|| {
         Sentence::note(format!("and {} more with smaller peaks (--all lists them)", all.len() - most))
     });
-    let kinds = [JointKind::Turns, JointKind::Slides];
-    let mixed = kinds.iter().all(|kind| replay.joints.iter().any(|joint| joint.kind == *kind)).then(|| {
-        let [turns, slides] = kinds.map(|kind| position(kind, replay.rules.sizes(kind).settle_band));
-        Sentence::note(format!("To tell the worst, {turns} counts as much as {slides}."))
-    });
+    let mixed = weighed(&replay.rules, replay.joints.iter().map(|joint| joint.kind));
     (!all.is_empty()).then(|| {
         Section::new(Id::TRANSITIONS, "Transitions, worst first", [table]).with_all(more).with_all(mixed)
     })

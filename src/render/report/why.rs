@@ -49,7 +49,7 @@ pub(super) fn phrase(start: &LateStart) -> String {
     let names = ["dead band", "lag", "limits", "unexplained"];
     let mut parts: Vec<(f64, &str)> =
         PARTS.iter().zip(names).map(|(part, name)| (part.3(start).delay_s, name)).collect();
-    parts.retain(|(delay_s, _)| *delay_s >= 0.0005);
+    parts.retain(|(delay_s, _)| delay_s.abs() >= 0.0005);
     parts.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     let words: Vec<String> =
         parts.iter().map(|(delay_s, name)| format!("{} ms {name}", ms(*delay_s))).collect();

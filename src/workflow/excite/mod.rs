@@ -64,6 +64,8 @@ pub struct Excited {
     pub command: Series,
     /// The task whose arm is driven.
     pub task: Option<TaskFiles>,
+    /// Joints that are sent faster than the task allows: what is sent, and what is allowed, rad/s.
+    pub beyond: Vec<(String, [f64; 2])>,
 }
 
 /// Writes the run.
@@ -85,9 +87,26 @@ pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
     for ramp in &mut excitation.ramps {
         ramp.speed_rad_s = ramp.speed_rad_s.min(inputs.most_rad_s);
     }
-    excitation.ramps.dedup_by(|a, b| a.speed_rad_s >= b.speed_rad_s && a.travel_rad <= b.travel_rad);
+    // Of those that are now equally fast the longest stays.
+    excitation.ramps.dedup_by(|a, b| {
+        let same = a.speed_rad_s <= b.speed_rad_s;
+        b.travel_rad = if same { b.travel_rad.max(a.travel_rad) } else { b.travel_rad };
+        same
+    });
     let command = excite(&joints, &excitation)?;
-    Ok(Excited { joints, excitation, command, task: request.map(|request| request.files) })
+    let beyond = request.as_ref().map_or_else(Vec::new, |request| beyond(&request.setup, &command));
+    Ok(Excited { joints, excitation, command, task: request.map(|request| request.files), beyond })
+}
+
+/// Joints that are sent faster than their limits of speed.
+fn beyond(setup: &Setup, command: &Series) -> Vec<(String, [f64; 2])> {
+    let sent = |(j, name): (usize, String)| {
+        let (_, [most_rad_s, ..]) = setup.joint_limits(j)?;
+        let fastest_rad_s =
+            command.track(&name)?.velocity()?.iter().fold(0.0, |most: f64, speed| most.max(speed.abs()));
+        (fastest_rad_s > most_rad_s).then_some((name, [fastest_rad_s, most_rad_s]))
+    };
+    setup.joint_names().into_iter().enumerate().filter_map(sent).collect()
 }
 
 /// Every joint about the middle of what its key points ask for, within its range.

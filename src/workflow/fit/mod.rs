@@ -12,15 +12,16 @@ pub use document::{FitDocument, LimitsFile};
 pub use failure::FitFailure;
 
 use crate::{
-    fit::{Fit, FitError, HeldOut, Observation, fit_and_held_out},
+    fit::{Fit, FitError, HeldOut, Observation, fit_and_held_out, is_excitation},
     log::{ReadOptions, Recording, SignalRole, SourceInfo},
     remark::{Code, Remarks},
     replay::{Rules, planned_step},
     series::{Series, Track, moving_s},
     workflow::carried::Carried,
 };
+pub(in crate::workflow) use observe::observation;
 use {
-    observe::{ObserveFailure, observation},
+    observe::ObserveFailure,
     torque::{JointTorque, torques},
 };
 
@@ -48,6 +49,9 @@ pub struct FittedRun {
     pub commanded: bool,
     /// Whether signals to the valves were read.
     pub valves: bool,
+    /// Whether it is an identification run.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub identifies: bool,
 }
 
 /// A fit, and what it was made from.
@@ -123,6 +127,7 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
             source: observed.source.clone(),
             commanded: observed.command.is_some(),
             valves: observed.has(SignalRole::Valve),
+            identifies: is_excitation(&observed.planned),
         });
     }
     for joint in fit.joints.iter().filter(|joint| !joint.trusted()) {
@@ -142,7 +147,11 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
         |one: &Recording| one.planned.tracks.iter().all(|track| planned_step(track, &rules).is_none());
     let again = |k: &usize| {
         let (carried, one) = (&carried[*k], &observed[*k]);
-        !carried.identifies() && sound(one) && follows(one) && carried.broken(one).is_none()
+        !carried.identifies()
+            && !is_excitation(&one.planned)
+            && sound(one)
+            && follows(one)
+            && carried.broken(one).is_none()
     };
     let again: Vec<usize> = (0..observed.len()).filter(again).collect();
     let with_task = again.iter().rfind(|k| carried[**k].task().is_some());

@@ -9,6 +9,7 @@ use crate::{
     plan::{BETWEEN, Interpolation, Limit, Margin, POINTS_HZ, Setup, SpeedRoom},
     series::{Series, Track, align},
     spline::{Motion, Quantity, Samples},
+    units::DEGREE_RAD,
 };
 
 /// Shares that are tried of a correction that breaks a limit of its joint or of the arm.
@@ -117,6 +118,16 @@ pub(super) struct Subject<'a> {
     pub(super) points_hz: f64,
 }
 
+/// Where the limits are unknown, a command leaves the range of its plan by no more than this, rad, or share of the range.
+const BEYOND: (f64, f64) = (2.0 * DEGREE_RAD, 0.1);
+
+/// The range of a plan, and a little beyond it.
+fn near(planned: &[[f64; 4]]) -> [f64; 2] {
+    let [lowest, highest] = range(planned.iter().map(|state| state[0]));
+    let beyond_rad = BEYOND.0.max(BEYOND.1 * (highest - lowest));
+    [lowest - beyond_rad, highest + beyond_rad]
+}
+
 /// A command for a plan, by its runs and a fit. Limits of the joints are kept by construction; where the limits of the arm
 /// as a whole or of rods are not, corrections are made smaller until they are.
 ///
@@ -135,15 +146,14 @@ pub(super) fn commanded(
     let names = setup.map(Setup::joint_names).unwrap_or_default();
     let taught = |narrowed: &SpeedRoom| {
         let room = |name: &str| {
-            let own = names.iter().position(|own| own == name)?;
-            let (range_rad, most) = setup.and_then(|s| s.joint_limits(own))?;
             let planned = planned.get(index(name)?)?.clone();
-            Some(Room {
-                range_rad,
-                most,
-                planned,
-                speed_rad_s: narrowed.get(own).cloned().unwrap_or_default(),
-            })
+            let Some(own) = names.iter().position(|own| own == name) else {
+                let (range_rad, most) = (near(&planned), [f64::INFINITY; 3]);
+                return Some(Room { range_rad, most, planned, speed_rad_s: Vec::new() });
+            };
+            let (range_rad, most) = setup.and_then(|s| s.joint_limits(own))?;
+            let speed_rad_s = narrowed.get(own).cloned().unwrap_or_default();
+            Some(Room { range_rad, most, planned, speed_rad_s })
         };
         learn(fit, plan, runs, settings, room)
     };

@@ -87,6 +87,13 @@ pub enum ReplanFailure {
         path.display()
     )]
     Steps { path: PathBuf, joint: String, size: String, at_s: f64 },
+    /// The run does no task.
+    #[error(
+        "{}: its plan is an identification run, which shows limits by strokes that the machine cannot follow, and no command \
+         corrects that; `hydrotrace fit` learns from it, give this command the log of a task",
+        path.display()
+    )]
+    Identifies { path: PathBuf },
     /// What was measured has little to do with the plan.
     #[error(
         "{}: half of the joints or more do not follow their plan, the error of each is more than half of its motion, so \

@@ -5,12 +5,15 @@ mod checks;
 mod command;
 #[cfg(test)]
 mod command_laws;
+mod correctable;
 mod course;
+mod dead;
 mod document;
 mod failure;
 mod history;
 mod last;
 mod limits;
+mod machine;
 mod outcome;
 mod predicted;
 mod retime;
@@ -19,10 +22,7 @@ mod shape;
 mod unclear;
 mod warp;
 
-use std::{
-    ops::ControlFlow,
-    path::{Path, PathBuf},
-};
+use std::{ops::ControlFlow, path::PathBuf};
 
 pub use checks::{Check, Checks, Finding, JointTrust, Level, Reason, Verdict};
 pub use command::{Commanded, JointCommand};
@@ -35,23 +35,26 @@ pub use outcome::{Before, Replanned, Search};
 pub use predicted::{Predicted, PredictedTransition, Response, predicted, promised};
 pub use unclear::Unclear;
 
-use super::fit::{self, LimitsFile};
+use super::fit;
 use crate::{
     fit::{Fit, JointFit, Learning, Step, Trial},
-    log::{ReadOptions, Recording},
+    log::ReadOptions,
     math::range,
     plan::{PlanEvaluation, Setup},
-    remark::{Code, Remarks},
-    replay::{Rules, planned_step},
-    series::{Series, Track},
+    remark::Code,
+    replay::Rules,
+    series::Series,
     task::{Ceilings, Objective, Objectives},
     threads,
     units::{DEGREE_RAD, Degrees},
     workflow::{carried::rest::PLAN_LEAD_S, plan::Shaping},
 };
 use command::{Subject, commanded};
+use correctable::correctable;
+use dead::without_dead;
 use history::History;
 use last::Last;
+use machine::machine;
 use samples::sampled;
 use warp::Warp;
 
@@ -127,26 +130,29 @@ pub fn run(
     inputs: &Inputs,
     observer: impl FnMut(u64) -> ControlFlow<()>,
 ) -> Result<Replanned, ReplanFailure> {
-    let path = inputs.logs.last().ok_or(ReplanFailure::NoLog)?;
     if inputs.keep_plan && !inputs.precompensate {
         return Err(ReplanFailure::NothingToChange);
     }
     let observed = fit::observed(&inputs.logs, &inputs.read).map_err(fit::FitFailure::from)?;
-    for (path, recording) in inputs.logs.iter().zip(&observed) {
+    let (inputs, observed, doubts) = without_dead(inputs, observed);
+    let (inputs, observed) = (&inputs, &observed[..]);
+    let path = inputs.logs.last().ok_or(ReplanFailure::NoLog)?;
+    for (path, recording) in inputs.logs.iter().zip(observed) {
         let remarks = recording.remarks.as_slice();
         if let Some(remark) = remarks.iter().find(|remark| remark.code.spoils_runs()) {
             return Err(ReplanFailure::Spoilt { path: path.clone(), why: remark.message.clone() });
         }
     }
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
-    steps(path, &newest.planned, &inputs.rules)?;
+    correctable(path, newest, &inputs.rules)?;
     let last = Last::of(path, newest, inputs)?;
-    let mut history = History::of(&inputs.logs, &observed, &last.plan, &inputs.rules)?;
+    let mut history = History::of(&inputs.logs, observed, &last.plan, &inputs.rules)?;
     let (first, changed) = history.without_another_machine(&mut |from, to| {
         let logs = inputs.logs.get(from..to).filter(|_| inputs.limits.is_none())?;
         Some(fit::of(logs, observed.get(from..to)?).ok()?.fit)
     });
     let (fit, fitted_to, mut remarks) = machine(inputs, &inputs.logs[first..], &observed[first..])?;
+    remarks.extend(doubts);
     if let Some(message) = &changed {
         remarks.add(Code::MachineChanged, 1, message);
         if history.changes > 1 {
@@ -181,8 +187,8 @@ pub fn run(
         remarks.add(Code::PoorFit, 1, message);
     }
     let precompensates = inputs.precompensate && known;
-    let before =
-        Before::of(newest, &last, predicted(&fit, &last.plan, &last.plan, &inputs.rules)?, &inputs.rules);
+    let sent = history.newest().map_or(&last.plan, |(sent, _)| sent);
+    let before = Before::of(newest, &last, predicted(&fit, &last.plan, sent, &inputs.rules)?, &inputs.rules);
     let search = match &last.request {
         Some(request) if !inputs.keep_plan && !learns => {
             Some(searched(inputs, &fit, &last, request, observer)?)
@@ -213,22 +219,6 @@ pub fn run(
         outcome::Past { gain: inputs.learning.gain, trust: history.trust(), runs: history.runs, decision };
     let last = (last, newest.source.measured_delay_s.is_some());
     outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)
-}
-
-/// The machine: fitted, or from a file; with the names of the logs behind it.
-fn machine(
-    inputs: &Inputs,
-    logs: &[PathBuf],
-    observed: &[Recording],
-) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
-    if let Some(path) = &inputs.limits {
-        let file = LimitsFile::read(path)?;
-        let joints = observed.iter().flat_map(|run| &run.measured.tracks).map(Track::name);
-        file.check_joints(path, joints)?;
-        return Ok((file.fit, file.logs, fit::doubts(logs, observed)));
-    }
-    let fitted = fit::of(logs, observed).map_err(fit::FitFailure::from)?;
-    Ok((fitted.fit, fitted.runs.into_iter().map(|run| run.log).collect(), fitted.remarks))
 }
 
 /// Searches other timings of the task's key points.
@@ -297,15 +287,6 @@ pub(super) struct Candidate {
     pub(super) command: Option<Commanded>,
     pub(super) predicted: Predicted,
     pub(super) responses: Vec<Response>,
-}
-
-/// No correction helps where a plan steps.
-fn steps(path: &Path, plan: &Series, rules: &Rules) -> Result<(), ReplanFailure> {
-    let mut turning = plan.tracks.iter().filter(|track| track.turns());
-    let found = turning.find_map(|track| Some((track, planned_step(track, rules)?)));
-    let Some((track, (at_s, size))) = found else { return Ok(()) };
-    let (joint, size) = (track.name().to_owned(), Degrees(size).to_string());
-    Err(ReplanFailure::Steps { path: path.to_owned(), joint, size, at_s })
 }
 
 impl Candidate {

@@ -44,7 +44,7 @@ pub struct Before {
     pub measured_worst_peak_rad: Option<f64>,
     /// Of the plan, s; from the first to the last motion where its times are not known.
     pub duration_s: f64,
-    /// Prediction for the same plan, sent as it is.
+    /// Prediction for what was sent in it.
     pub predicted: Predicted,
 }
 

@@ -20,6 +20,8 @@ pub enum Advice {
         unanswered: usize,
         /// All its planned starts, reversals included.
         starts: usize,
+        /// Its planned reversals.
+        reversals: usize,
     },
     /// The error is mostly lag.
     ShiftCommand {
@@ -80,6 +82,7 @@ pub fn advice(report: &Report) -> Vec<Advice> {
         joint: joint.name.clone(),
         unanswered: joint.unanswered_starts,
         starts: joint.starts,
+        reversals: joint.reversals,
     }));
     let worst = replay.worst_first().into_iter().next();
     let Some(worst) = worst else {

@@ -228,7 +228,9 @@ impl WhatIf<'_> {
         } else {
             Some([self.timed(&joint.model)?, self.timed(&no_limit)?])
         };
-        let lag_alone = self.timed(&with_dead_band(&no_limit, 0.0))?;
+        // Every model has a little play, which may be the machine's or stand in for its dead band.
+        let free = with_dead_band(&no_limit, 0.0);
+        let lag_alone = [self.timed(&free)?, self.timed(&Model { backlash_rad: 0.0, ..free })?];
         // What the largest dead band that is likely would do.
         let band = joint.dead_band_rad_s;
         let most = band.value.zip(band.interval).and_then(|(value, [_, high])| {
@@ -237,13 +239,20 @@ impl WhatIf<'_> {
         let lag = joint.lag_s.value.zip(joint.lag_s.interval);
         for start in starts {
             let Some(delay_s) = start.onset_delay_s else { continue };
-            let of = |what_if: &[Transition]| delay_s_of(what_if, start);
+            let of = |what_if: &[Transition]| same_start(what_if, start)?.onset_delay_s;
             let limit_s =
                 limited.as_ref().map_or(Some(0.0), |[with, without]| Some(of(with)? - of(without)?));
-            let (Some(limit_s), Some(lag_s)) = (limit_s, of(&lag_alone)) else {
+            let [with_play, without] = lag_alone.each_ref().map(|alone| same_start(alone, start));
+            let delays_s = [with_play, without].map(|alone| alone.and_then(|alone| alone.onset_delay_s));
+            let (Some(limit_s), [Some(lag_s), without_s]) = (limit_s, delays_s) else {
                 why.untimed += 1;
                 continue;
             };
+            // Limits make no start earlier, and no part of a delay is longer than all of it: another start was timed.
+            if limit_s < -2.0 * MISSED_S || lag_s > delay_s.max(0.0) + 2.0 * MISSED_S {
+                why.untimed += 1;
+                continue;
+            }
             let limitless_s = delay_s - limit_s;
             let unknown_s = half(start.onset_delay_interval_s).unwrap_or_default();
             let most_s = most.as_ref().and_then(|most| of(most));
@@ -255,9 +264,15 @@ impl WhatIf<'_> {
             // Of the instants of two starts, and of what the model misses.
             let dead_band_half_s =
                 band.interval.map(|_| MISSED_S.hypot(std::f64::consts::SQRT_2 * unknown_s));
+            // As the model knows it, with and without its play, and as well as a start of it is timed.
+            let timed_s = with_play.and_then(|alone| half(alone.onset_delay_interval_s)).unwrap_or_default();
+            let play_s = without_s.map_or(0.0, |without_s| (lag_s - without_s).max(0.0));
             let lag = Part {
                 delay_s: lag_s,
-                interval_s: lag.map(|(value, ends)| ends.map(|end| lag_s + end - value)),
+                interval_s: lag.map(|(value, ends)| {
+                    let [low_s, high_s] = ends.map(|end| (end - value).hypot(timed_s));
+                    [lag_s - low_s - play_s, lag_s + high_s]
+                }),
             };
             let known = [dead_band_half_s, half(lag.interval_s)];
             let half_s = known.into_iter().try_fold(0.0_f64, |sum, half| half.map(|half| sum.hypot(half)));
@@ -287,13 +302,12 @@ fn half(interval_s: Option<[f64; 2]>) -> Option<f64> {
     interval_s.map(|[low, high]| 0.5 * (high - low).abs())
 }
 
-/// The delay of the same start under other circumstances.
-fn delay_s_of(others: &[Transition], start: &Transition) -> Option<f64> {
+/// The same start under other circumstances.
+fn same_start<'a>(others: &'a [Transition], start: &Transition) -> Option<&'a Transition> {
     let apart = |other: &&Transition| (other.planned_onset_s - start.planned_onset_s).abs();
     others
         .iter()
         .filter(|other| other.kind == start.kind && other.direction == start.direction)
         .filter(|other| apart(other) <= SAME_START_S)
-        .min_by(|a, b| apart(a).total_cmp(&apart(b)))?
-        .onset_delay_s
+        .min_by(|a, b| apart(a).total_cmp(&apart(b)))
 }

@@ -3,7 +3,7 @@
 use hydrotrace::{
     fit::{Excitation, Observation, fit},
     plant::{JointRecord, Plant, simulate},
-    series::{Quantity, Signal},
+    series::{Quantity, Series, Signal, Track},
     units::DEGREE_RAD,
 };
 
@@ -66,4 +66,55 @@ fn signals_to_the_valves_show_the_dead_band_of_each_direction() {
         }
     }
     assert!(found >= 4, "{found}");
+}
+
+/// A smooth plan of one joint, there and back, with what came of it.
+fn there_and_back(came: impl Fn(f64, usize) -> f64) -> [Series; 2] {
+    let t_s: Vec<f64> = (0..4000).map(|k| 0.01 * f64::from(k)).collect();
+    let smooth = |s: f64| {
+        let s = s.clamp(0.0, 1.0);
+        s * s * s * (10.0 + s * (6.0 * s - 15.0))
+    };
+    let at = |t: f64| {
+        (0..4).map(|k| smooth((t - 2.0 - 8.0 * f64::from(k)) / 4.0) * [0.2, -0.2][k as usize % 2]).sum()
+    };
+    let planned: Vec<f64> = t_s.iter().map(|t| at(*t)).collect();
+    let came = planned.iter().enumerate().map(|(k, planned)| came(*planned, k)).collect();
+    [planned, came]
+        .map(|position| Series { tracks: vec![Track::new("boom", t_s.clone(), position, &[]).unwrap()] })
+}
+
+/// The same for each seed, and nearly normal.
+fn noise(k: usize) -> f64 {
+    let one = |salt: usize| ((k * 7919 + salt * 104_729) % 10_007) as f64 / 10_007.0;
+    (1..=6).map(one).sum::<f64>() - 3.0
+}
+
+#[test]
+fn of_a_joint_that_stands_no_number_is_told() {
+    for sigma_rad in [0.0, 3e-4] {
+        let [sent, measured] = there_and_back(|_, k| 0.4 + sigma_rad * noise(k));
+        let fit = fit(&[Observation { sent: &sent, measured: &measured, valve: &[] }]).unwrap();
+        let joint = fit.joint("boom").unwrap();
+        assert!(!joint.model_holds && !joint.trusted(), "{joint:?}");
+        let numbers = [
+            joint.dead_band_rad_s,
+            joint.position_gain_1_s,
+            joint.feed_forward,
+            joint.speed_limit_growing_rad_s,
+        ];
+        assert!(numbers.iter().all(|number| !number.identified), "{joint:?}");
+    }
+}
+
+#[test]
+fn noise_is_no_speed_that_was_reached() {
+    // The plan's largest speed is 1.875 times its mean of 0.05 rad/s, less over half a second.
+    let [sent, measured] = there_and_back(|planned, k| planned + 1.5e-3 * noise(k));
+    let fit = fit(&[Observation { sent: &sent, measured: &measured, valve: &[] }]).unwrap();
+    let joint = fit.joint("boom").unwrap();
+    for limit in [joint.speed_limit_growing_rad_s, joint.speed_limit_shrinking_rad_s] {
+        let reached = limit.lower_bound.unwrap();
+        assert!(reached < 0.0935 && reached > 0.07, "{reached}");
+    }
 }

@@ -1,0 +1,84 @@
+//! Runs in which a joint stood that answers in others: a valve without current says nothing of its machine.
+
+use std::path::PathBuf;
+
+use super::Inputs;
+use crate::{
+    log::Recording,
+    remark::{Code, Remarks},
+    series::{Pair, align},
+    units::DEGREE_RAD,
+};
+
+/// A joint that moves by a smaller share of its plan stands, one that moves by more than the other answers.
+const STANDS: f64 = 0.2;
+const ANSWERS: f64 = 0.5;
+/// Plans that move less are not judged, rad: root mean square about the mean.
+const LEAST_RAD: f64 = 0.5 * DEGREE_RAD;
+
+/// A run in which a joint stood.
+struct DeadRun {
+    /// Which one.
+    of: usize,
+    joint: String,
+}
+
+impl DeadRun {
+    /// Says that the run is left out.
+    fn remark(&self, logs: &[PathBuf], remarks: &mut Remarks) {
+        let name = logs.get(self.of).and_then(|path| path.file_name()).unwrap_or_default().to_string_lossy();
+        let message = format!(
+            "{name}: {} hardly moves in it although it does in other runs; nothing is learnt from this run",
+            self.joint
+        );
+        remarks.add(Code::OneSide, 1, message);
+    }
+}
+
+/// Without the runs in which a joint stood, and what that says.
+pub(super) fn without_dead(inputs: &Inputs, observed: Vec<Recording>) -> (Inputs, Vec<Recording>, Remarks) {
+    let dead = dead_runs(&observed);
+    let mut doubts = Remarks::default();
+    dead.iter().for_each(|run| run.remark(&inputs.logs, &mut doubts));
+    let stays = |k: usize| dead.iter().all(|run| run.of != k);
+    let logs = inputs.logs.iter().enumerate().filter(|(k, _)| stays(*k)).map(|(_, path)| path.clone());
+    let inputs = Inputs { logs: logs.collect(), ..inputs.clone() };
+    (
+        inputs,
+        observed.into_iter().enumerate().filter(|(k, _)| stays(*k)).map(|(_, run)| run).collect(),
+        doubts,
+    )
+}
+
+/// The runs but the newest in which a joint stood that answers in the newest and in another one.
+fn dead_runs(observed: &[Recording]) -> Vec<DeadRun> {
+    let Some((newest, others)) = observed.split_last() else { return Vec::new() };
+    let mut found: Vec<DeadRun> = Vec::new();
+    for track in newest.measured.tracks.iter().filter(|track| track.turns()) {
+        let shares: Vec<Option<f64>> = observed.iter().map(|run| share(run, track.name())).collect();
+        let answers = |share: &Option<f64>| share.is_some_and(|share| share > ANSWERS);
+        let enough =
+            shares.last().is_some_and(answers) && shares.iter().filter(|share| answers(share)).count() > 1;
+        let stood = (0..others.len()).filter(|k| enough && shares[*k].is_some_and(|share| share < STANDS));
+        for of in stood.collect::<Vec<_>>() {
+            if found.iter().all(|run| run.of != of) {
+                found.push(DeadRun { of, joint: track.name().to_owned() });
+            }
+        }
+    }
+    found
+}
+
+/// How far a joint moves by how far its plan does.
+fn share(run: &Recording, joint: &str) -> Option<f64> {
+    let pair: Pair = align(run.planned.track(joint)?, run.measured.track(joint)?)?;
+    let asked_rad = motion(&pair.planned);
+    (asked_rad > LEAST_RAD).then(|| motion(&pair.measured) / asked_rad)
+}
+
+/// Root mean square distance from the mean.
+fn motion(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
