@@ -88,7 +88,7 @@ pub fn keep(worth: Worth) {
 }
 
 /// Whether outputs of this process spare what is worth more.
-pub(crate) fn is_keeping() -> bool {
+pub fn is_keeping() -> bool {
     WORTH.get().is_some()
 }
 

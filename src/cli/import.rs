@@ -1,6 +1,9 @@
 //! `import`
 
-use std::{path::PathBuf, slice::from_ref};
+use std::{
+    path::{Path, PathBuf},
+    slice::from_ref,
+};
 
 use super::{
     CliError, Outcome, Run,
@@ -75,7 +78,7 @@ impl Args {
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         spare_for_log(Some(&self.output), from_ref(&self.file))?;
-        if let Some(map) = self.save_map.as_deref().filter(|map| *map == self.output) {
+        if let Some(map) = self.save_map.as_deref().filter(|map| is_same(map, &self.output)) {
             let name = map.display();
             return Err(CliError::Usage(format!(
                 "--output and --save-map both name {name}; give each its own"
@@ -90,4 +93,10 @@ impl Run for Args {
         };
         console.finish(&target, &result, &imported.remarks, &[])
     }
+}
+
+/// Whether two names are of one file, whether it is there or not.
+fn is_same(one: &Path, other: &Path) -> bool {
+    let place = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).ok();
+    place(one) == place(other)
 }

@@ -65,10 +65,10 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
 }
 
 impl Fit {
-    /// The same, with what its models leave unexplained in these runs, which they were not fitted to: strokes faster than a
-    /// machine leave more than a plan does, and a plan elsewhere less than this one.
+    /// The same, with what its models leave unexplained in these runs, times a factor: strokes faster than a machine leave more
+    /// than a plan does, and a plan elsewhere less than this one.
     #[must_use]
-    pub fn held_against(mut self, logs: &[Observation]) -> Self {
+    pub fn held_against(mut self, logs: &[Observation], factor: f64) -> Self {
         let mut workspace = estimate::Workspace::default();
         for joint in &mut self.joints {
             let of_log = |log: &Observation| {
@@ -76,6 +76,7 @@ impl Fit {
             };
             let runs: Vec<Run> = logs.iter().filter_map(of_log).flatten().collect();
             let found = skill::unexplained_by(&joint.model, &runs, &mut workspace);
+            let found = found.map(|peaks_rad| peaks_rad.map(|peak_rad| factor * peak_rad));
             joint.unexplained_peak_rad = found.or(joint.unexplained_peak_rad);
         }
         self

@@ -164,6 +164,11 @@ impl JointFit {
         }
     }
 
+    /// Whether it was at its largest speed.
+    pub fn is_limited(&self) -> bool {
+        self.speed_limit_growing_rad_s.identified || self.speed_limit_shrinking_rad_s.identified
+    }
+
     /// Whether the model predicts well enough to make commands from it.
     pub fn trusted(&self) -> bool {
         self.held_out_r2 >= LEAST_SKILL

@@ -16,8 +16,11 @@ pub(super) fn is_another_header(head: &Head, record: &ByteRecord) -> bool {
         return false;
     }
     let cells: Vec<String> = record.iter().map(cell_text).collect();
+    // Units may stand below the header that comes again, too.
+    let is_units = head.units.as_ref().is_some_and(|units| trimmed(&cells) == trimmed(units));
     are_names(&cells)
-        && (is_known(&cells, &head.written) || has_time(&cells))
+        && !is_units
+        && (is_known(&cells, &head.written) || begins_with_time(&cells, trimmed(&head.written).len()))
         && trimmed(&cells) != trimmed(&head.written)
 }
 
@@ -29,9 +32,20 @@ fn is_known(cells: &[String], head: &[String]) -> bool {
     cells.iter().any(|cell| !cell.is_empty() && head.contains(cell))
 }
 
-/// Whether names are those of a table: a time among two others at least.
-fn has_time(cells: &[String]) -> bool {
-    cells.len() > 2 && cells.iter().any(|cell| label(cell, None).is_time)
+/// Whether names are those of a table as wide as another one, a time first; a sentence has other signs and other lengths.
+fn begins_with_time(cells: &[String], width: usize) -> bool {
+    let is_word = |cell: &String| cell.chars().all(|c| c.is_alphanumeric() || "_[]()./".contains(c));
+    let cells = trimmed(cells);
+    cells.len() > 2
+        && cells.len() == width
+        && cells.iter().all(is_word)
+        && cells.first().is_some_and(|first| label(first, None).is_time)
+}
+
+/// Whether most cells of a line are numbers.
+fn is_row(cells: &[String]) -> bool {
+    let numbers = cells.iter().filter(|cell| cell.replace(',', ".").parse::<f64>().is_ok()).count();
+    cells.len() > 1 && 2 * numbers > cells.len()
 }
 
 /// Whether a line has names alone, as a header has.
@@ -39,13 +53,18 @@ pub fn is_header(line: &[u8]) -> bool {
     are_names(&cells(line))
 }
 
-/// Whether a line below rows of numbers is one of words that are no header of theirs: none of its cells is known.
+/// Whether a line below a header and rows of numbers is one of words that are no header of theirs: none of its cells is known.
 pub fn is_aside(above: &[u8], line: &[u8]) -> bool {
     let own = cells(line);
-    let lines = || above.split(|byte| *byte == b'\n');
-    let known = |above: &[u8]| is_known(&own, &cells(above));
-    let is_row = |above: &[u8]| above.trim_ascii_start().first().is_some_and(|byte| begins_number(*byte));
-    are_names(&own) && !has_time(&own) && lines().any(is_row) && !lines().any(known)
+    if !are_names(&own) {
+        return false;
+    }
+    let lines: Vec<Vec<String>> = above.split(|byte| *byte == b'\n').map(cells).collect();
+    let as_wide = |cells: &&Vec<String>| cells.len() == own.len();
+    let head = lines.iter().position(|cells| as_wide(&cells) && are_names(cells));
+    head.is_some_and(|head| lines[head..].iter().filter(as_wide).any(|cells| is_row(cells)))
+        && !begins_with_time(&own, own.len())
+        && !lines.iter().any(|above| is_known(&own, above))
 }
 
 /// Without the empty cells that separators at the end make.
@@ -66,11 +85,15 @@ pub fn other_header(lines: &[u8]) -> Option<usize> {
             let same = |head: &Vec<String>| trimmed(head) == trimmed(&cells);
             if !has_rows {
                 heads.push(cells);
-            } else if (heads.iter().any(known) || has_time(&cells)) && !heads.iter().any(same) {
+            } else if heads.iter().any(|head| known(head) || begins_with_time(&cells, trimmed(head).len()))
+                && !heads.iter().any(same)
+            {
                 return Some(at);
             }
         } else {
-            has_rows |= line.trim_ascii_start().first().is_some_and(|byte| begins_number(*byte));
+            let first = line.trim_ascii_start().first();
+            has_rows |= first.is_some_and(u8::is_ascii_digit)
+                || first.is_some_and(|byte| begins_number(*byte)) && is_row(&cells);
         }
         at += line.len();
     }
@@ -81,6 +104,8 @@ pub fn other_header(lines: &[u8]) -> Option<usize> {
 fn cells(line: &[u8]) -> Vec<String> {
     let line = line.trim_ascii_end();
     let pieces = |separator: u8| memchr::memchr_iter(separator, line).count();
-    let separator = [b';', b'\t', b',', b'|', b' '].into_iter().rev().max_by_key(|one| pieces(*one));
+    // Blanks stand within names, too.
+    let marks = [b';', b'\t', b',', b'|'].into_iter().rev().max_by_key(|one| pieces(*one));
+    let separator = marks.filter(|one| pieces(*one) > 0).or(Some(b' '));
     line.split(|byte| Some(*byte) == separator).map(cell_text).collect()
 }

@@ -154,11 +154,10 @@ impl TableStream {
     pub fn write_rest<W: Write>(&mut self, line: &[u8], log: &mut LogWriter<W>) -> Result<(), WriteError> {
         let mut record = ByteRecord::new();
         let mut ends = self.ends.clone();
-        while Rows::new(line, self.form.dialect.separator).next(&mut record).is_some() {
+        if Rows::new(line, self.form.dialect.separator).next(&mut record).is_some() {
             ends.note(record.iter().next_back().unwrap_or_default(), self.form.dialect.decimal_comma);
-            break;
         }
-        if record.len() >= self.form.dialect.width && ends.is_cut() {
+        if record.len() >= self.form.dialect.width && may_be_cut(&record) && ends.is_cut() {
             self.counts.cut += 1;
             return Ok(());
         }
@@ -292,6 +291,12 @@ impl TableStream {
         );
         remarks
     }
+}
+
+/// Whether a row ends with a number, or a part of one.
+fn may_be_cut(record: &ByteRecord) -> bool {
+    let last = record.iter().next_back().unwrap_or_default().trim_ascii();
+    last.iter().all(|byte| byte.is_ascii_digit() || b"+-.,eE".contains(byte))
 }
 
 /// Whether a row begins with numbers.

@@ -36,7 +36,7 @@ fn by_kind(report: &Report, words: &dyn Fn(JointKind) -> String) -> String {
         all => {
             let named = all.iter().map(|kind| match kind {
                 JointKind::Turns => format!("joints that turn: {}", words(JointKind::Turns)),
-                JointKind::Slides => format!("joints that slide: {}", words(JointKind::Slides)),
+                JointKind::Slides => format!("Joints that slide: {}", words(JointKind::Slides)),
             });
             named.collect::<Vec<_>>().join(". ")
         }

@@ -21,6 +21,11 @@ impl Recording<'_> {
         remarks.add(Code::UndecodableMessage, self.words, message);
         let message = "lines before a header with other columns, whose own columns cannot be told; left out";
         remarks.add(Code::UndecodableMessage, self.untold, message);
+        if let Some(why) = &self.why {
+            let message =
+                format!("lines of a header whose columns cannot be told, left out until the next one: {why}");
+            remarks.add(Code::UndecodableMessage, self.below, message);
+        }
         remarks.add(Code::UndecodableMessage, self.unread, "lines that are no JSON object; left out");
         if let Some((keys, lines)) = self.objects.as_ref().and_then(JsonLines::late) {
             let message = format!(

@@ -152,6 +152,9 @@ struct Recording<'a> {
     too_long: u64,
     /// Whether the columns of the last header cannot be told: rows are left out until the next one.
     lost: bool,
+    /// Lines that are left out so, and why the first of them were.
+    below: u64,
+    why: Option<String>,
     /// Parts of other recordings among the names, which were stepped over.
     taken: Vec<PathBuf>,
     /// The number of the last part.
@@ -179,6 +182,8 @@ impl<'a> Recording<'a> {
             untold: 0,
             too_long: 0,
             lost: false,
+            below: 0,
+            why: None,
             taken: Vec::new(),
             number: 0,
             since: Unsaved::new(),
@@ -203,6 +208,10 @@ impl<'a> Recording<'a> {
         self.progress.lines += 1;
         let mark = if self.progress.lines == 1 { line.strip_prefix(BYTE_ORDER_MARK) } else { None };
         let line = mark.unwrap_or(line);
+        if rest && self.objects.is_none() && self.first_lines > 0 {
+            // What is wrong with so few lines is said at the end.
+            let _ = self.settle(true);
+        }
         let open = self.open.as_mut().filter(|_| rest && self.objects.is_none());
         let Some((stream, log)) = open else { return self.take(line) };
         stream.write_rest(line, log)?;
@@ -322,15 +331,24 @@ impl<'a> Recording<'a> {
             self.number += 1;
             let path = part_name(&self.inputs.output, self.number);
             let is_first = self.number == 1;
-            let spared = !is_first && path.exists() && (!self.inputs.replace || may_write(&path).is_err());
-            if spared {
+            let spared =
+                path.exists() && (!self.inputs.replace || !path.is_file() || may_write(&path).is_err());
+            if !is_first && spared {
                 self.taken.push(path);
                 continue;
             }
-            let file = Synced::create(&path, self.inputs.replace).map_err(|source| match source.kind() {
-                std::io::ErrorKind::AlreadyExists => RecordError::Exists { path: path.clone() },
-                _ => RecordError::Create { path: path.clone(), source },
-            })?;
+            let file = match Synced::create(&path, self.inputs.replace) {
+                Ok(file) => file,
+                // A link that leads nowhere.
+                Err(error) if !is_first && error.kind() == std::io::ErrorKind::AlreadyExists => {
+                    self.taken.push(path);
+                    continue;
+                }
+                Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
+                    return Err(RecordError::Exists { path });
+                }
+                Err(source) => return Err(RecordError::Create { path, source }),
+            };
             self.parts.push(path);
             self.counter = file.counter();
             return Ok(file);

@@ -27,8 +27,16 @@ impl Synced {
             Ok(true) if replace => {
                 // Where a link leads to, so that it stays one.
                 let place = fs::canonicalize(path)?;
-                fs::remove_file(&place)?;
-                File::create_new(place)?
+                let mode = fs::metadata(&place)?.permissions();
+                match fs::remove_file(&place) {
+                    Ok(()) => {
+                        let file = File::create_new(place)?;
+                        file.set_permissions(mode)?;
+                        file
+                    }
+                    // In a folder that is another's the file itself may be ours.
+                    Err(_) => OpenOptions::new().write(true).truncate(true).open(place)?,
+                }
             }
             Ok(false) if replace => OpenOptions::new().write(true).open(path)?,
             _ => File::create_new(path)?,

@@ -62,8 +62,9 @@ impl Recording<'_> {
                 Ok(())
             }
             // What was recorded stays a run; rows of a header that says nothing are left out until the next one.
-            Err(_) if !self.closed.is_empty() => {
-                self.untold += self.first_lines as u64;
+            Err(error) if !self.closed.is_empty() => {
+                self.below += self.first_lines as u64;
+                self.why.get_or_insert(error.to_string());
                 (self.first_lines, self.lost) = (0, true);
                 self.first.clear();
                 Ok(())
@@ -80,7 +81,7 @@ impl Recording<'_> {
     /// nothing.
     pub(super) fn steps_over(&mut self, line: &[u8]) -> bool {
         if self.lost && !is_header(line) {
-            self.untold += 1;
+            self.below += 1;
             return true;
         }
         self.lost = false;

@@ -118,14 +118,17 @@ pub(super) struct Subject<'a> {
     pub(super) points_hz: f64,
 }
 
-/// Where the limits are unknown, a command leaves the range of its plan by no more than this, rad, or share of the range.
+/// Where the limits are unknown and a joint reaches its own, a command leaves the range of its plan by no more than this, rad,
+/// or share of the range.
 const BEYOND: (f64, f64) = (2.0 * DEGREE_RAD, 0.1);
 
-/// The range of a plan, and a little beyond it.
-fn near(planned: &[[f64; 4]]) -> [f64; 2] {
+/// The range of a plan, and a little beyond it; and what was sent already.
+fn near(planned: &[[f64; 4]], runs: &[Trial], name: &str) -> [f64; 2] {
     let [lowest, highest] = range(planned.iter().map(|state| state[0]));
     let beyond_rad = BEYOND.0.max(BEYOND.1 * (highest - lowest));
-    [lowest - beyond_rad, highest + beyond_rad]
+    let sent =
+        runs.iter().filter_map(|run| run.sent.track(name)).flat_map(|track| track.position().iter().copied());
+    range(sent.chain([lowest - beyond_rad, highest + beyond_rad]))
 }
 
 /// A command for a plan, by its runs and a fit. Limits of the joints are kept by construction; where the limits of the arm
@@ -148,7 +151,9 @@ pub(super) fn commanded(
         let room = |name: &str| {
             let planned = planned.get(index(name)?)?.clone();
             let Some(own) = names.iter().position(|own| own == name) else {
-                let (range_rad, most) = (near(&planned), [f64::INFINITY; 3]);
+                // A joint that only lags needs what it is sent ahead; one at its limits gains nothing by it.
+                fit.joint(name).filter(|joint| joint.is_limited())?;
+                let (range_rad, most) = (near(&planned, runs, name), [f64::INFINITY; 3]);
                 return Some(Room { range_rad, most, planned, speed_rad_s: Vec::new() });
             };
             let (range_rad, most) = setup.and_then(|s| s.joint_limits(own))?;

@@ -11,8 +11,10 @@ use crate::{
 };
 
 /// A joint that moves by a smaller share of its plan stands, one that moves by more than the other answers.
-const STANDS: f64 = 0.2;
+const STANDS: f64 = 0.03;
 const ANSWERS: f64 = 0.5;
+/// Plans whose motions differ by less, as a share, may be one.
+const ALIKE: f64 = 0.05;
 /// Plans that move less are not judged, rad: root mean square about the mean.
 const LEAST_RAD: f64 = 0.5 * DEGREE_RAD;
 
@@ -31,7 +33,7 @@ impl DeadRun {
             "{name}: {} hardly moves in it although it does in other runs; nothing is learnt from this run",
             self.joint
         );
-        remarks.add(Code::OneSide, 1, message);
+        remarks.add(Code::FrozenSensor, 1, message);
     }
 }
 
@@ -39,7 +41,9 @@ impl DeadRun {
 pub(super) fn without_dead(inputs: &Inputs, observed: Vec<Recording>) -> (Inputs, Vec<Recording>, Remarks) {
     let dead = dead_runs(&observed);
     let mut doubts = Remarks::default();
-    dead.iter().for_each(|run| run.remark(&inputs.logs, &mut doubts));
+    for run in &dead {
+        run.remark(&inputs.logs, &mut doubts);
+    }
     let stays = |k: usize| dead.iter().all(|run| run.of != k);
     let logs = inputs.logs.iter().enumerate().filter(|(k, _)| stays(*k)).map(|(_, path)| path.clone());
     let inputs = Inputs { logs: logs.collect(), ..inputs.clone() };
@@ -55,7 +59,13 @@ fn dead_runs(observed: &[Recording]) -> Vec<DeadRun> {
     let Some((newest, others)) = observed.split_last() else { return Vec::new() };
     let mut found: Vec<DeadRun> = Vec::new();
     for track in newest.measured.tracks.iter().filter(|track| track.turns()) {
-        let shares: Vec<Option<f64>> = observed.iter().map(|run| share(run, track.name())).collect();
+        let asked_rad = asked(newest, track.name());
+        let same = |run: &Recording| {
+            let own_rad = asked(run, track.name());
+            own_rad.zip(asked_rad).is_some_and(|(own, newest)| (own - newest).abs() < ALIKE * newest)
+        };
+        let shares: Vec<Option<f64>> =
+            observed.iter().map(|run| share(run, track.name()).filter(|_| same(run))).collect();
         let answers = |share: &Option<f64>| share.is_some_and(|share| share > ANSWERS);
         let enough =
             shares.last().is_some_and(answers) && shares.iter().filter(|share| answers(share)).count() > 1;
@@ -67,6 +77,12 @@ fn dead_runs(observed: &[Recording]) -> Vec<DeadRun> {
         }
     }
     found
+}
+
+/// How far the plan of a joint moves, rad.
+fn asked(run: &Recording, joint: &str) -> Option<f64> {
+    let pair: Pair = align(run.planned.track(joint)?, run.measured.track(joint)?)?;
+    Some(motion(&pair.planned))
 }
 
 /// How far a joint moves by how far its plan does.

@@ -3,6 +3,7 @@
 mod answer;
 mod carried;
 mod columns;
+mod commissioning;
 mod compare;
 mod controllers;
 mod csv;

@@ -1,0 +1,86 @@
+//! Commands for machines that nobody knows: identification runs, runs in which a valve was dead, limits that no task says.
+
+use std::{fs, path::Path};
+
+use crate::support::{clean, json, run_line, said, sample, scratch};
+
+/// Six moves between 30 and 50 deg, and a joint that follows them at `most_deg_s` at most.
+fn table(most_deg_s: f64) -> String {
+    let smooth = |s: f64| {
+        let s = s.clamp(0.0, 1.0);
+        s * s * s * (10.0 + s * (6.0 * s - 15.0))
+    };
+    let (mut text, mut at) = ("t_s,boom_planned_deg,boom_measured_deg\n".to_owned(), 30.0);
+    for k in 0..6000 {
+        let t_s = 0.01 * f64::from(k);
+        let moves = (0..6).map(|k| [20.0, -20.0][k % 2] * smooth((t_s - 2.0 - 9.0 * k as f64) / 5.0));
+        let planned = 30.0 + moves.sum::<f64>();
+        at += 0.01 * (3.0 * (planned - at)).clamp(-most_deg_s, most_deg_s);
+        text += &format!("{t_s:.2},{planned:.5},{at:.5}\n");
+    }
+    text
+}
+
+fn commanded_deg(folder: &Path, log: &str) -> [f64; 2] {
+    let (_, table, _) = said(&run_line(folder, &format!("export {log} --degrees --csv")));
+    let column =
+        table.lines().next().unwrap().split(',').position(|name| name == "boom_command_deg").unwrap();
+    let angles = table.lines().skip(1).filter_map(|row| row.split(',').nth(column)?.parse::<f64>().ok());
+    angles
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], angle| [least.min(angle), most.max(angle)])
+}
+
+#[test]
+fn a_command_without_known_limits_stays_near_the_range_of_its_plan() {
+    let folder = scratch();
+    let folder = folder.path();
+    fs::write(folder.join("slow.csv"), table(4.5)).unwrap();
+    let next = json(folder, "replan slow.csv -o next.mcap");
+    let [least, most] = commanded_deg(folder, "next.mcap");
+    assert!(least > 28.0 && most < 52.0, "{least} to {most}");
+    // That is no reason to do nothing.
+    assert!(least < 29.0 && most > 51.0, "{least} to {most}");
+    let mean = |of: &serde_json::Value| of["mean_peak_rad"].as_f64().unwrap();
+    assert!(mean(&next["after"]) < 0.8 * mean(&next["before"]["predicted"]), "{}", next["after"]);
+}
+
+#[test]
+fn an_identification_run_is_fitted_and_not_corrected_whoever_recorded_it() {
+    let folder = scratch();
+    let folder = folder.path();
+    clean(folder, "excite -o id.mcap --task task-1.toml");
+    clean(folder, "simulate id.mcap -o id-run.mcap");
+    let (_, text, _) = said(&run_line(folder, "export id-run.mcap --degrees --csv"));
+    fs::write(folder.join("id-run.csv"), text).unwrap();
+    for log in ["id-run.mcap", "id-run.csv"] {
+        let (code, out, error) = said(&run_line(folder, &format!("fit {log} -o limits.toml --force")));
+        assert!(code != 1 && out.contains("hydrotrace replan RUN.mcap --limits"), "{code} {out} {error}");
+        let (code, _, error) =
+            said(&run_line(folder, &format!("replan {log} --limits limits.toml -o next.mcap")));
+        assert!(code == 1 && error.contains("is an identification run"), "{code} {error}");
+        assert!(!folder.join("next.mcap").exists());
+    }
+}
+
+#[test]
+fn a_run_in_which_a_valve_was_dead_teaches_nothing() {
+    let folder = scratch();
+    let folder = folder.path();
+    fs::copy(sample("task-1-run.mcap"), folder.join("run-0.mcap")).unwrap();
+    let (_, text, _) = said(&run_line(folder, "export run-0.mcap --degrees --csv"));
+    let column = text.lines().next().unwrap().split(',').position(|name| name == "J3_measured_deg").unwrap();
+    let rows = text.lines().enumerate().map(|(k, row)| {
+        let mut cells: Vec<&str> = row.split(',').collect();
+        if k > 0 && !cells[column].is_empty() {
+            cells[column] = "-20.0";
+        }
+        cells.join(",") + "\n"
+    });
+    fs::write(folder.join("dead.csv"), rows.collect::<String>()).unwrap();
+    clean(folder, "simulate run-0.mcap -o run-2.mcap --seed 2");
+    let next = json(folder, "replan run-0.mcap dead.csv run-2.mcap --keep-plan");
+    assert!(next["remarks"].to_string().contains("J3 hardly moves in it"), "{}", next["remarks"]);
+    assert_eq!(next["runs"].as_array().unwrap().len(), 2, "{}", next["runs"]);
+    let step = &next["command"].as_array().unwrap()[2];
+    assert!(step["peak_correction_rad"].as_f64().unwrap() > 0.001, "{step}");
+}
