@@ -9,12 +9,15 @@ use super::{
     interval::{Knowledge, discrepancy},
     outcome::JointFit,
     parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
-    run::Run,
+    run::{Run, Sample},
     set_values::SetValues,
     skill::{HeldOutStart, Skill, sent_rad, skill, unexplained_rad},
     telling::{of, telling},
 };
-use crate::{math::range, units::DEGREE_RAD};
+use crate::{
+    math::{deviation, range},
+    units::DEGREE_RAD,
+};
 
 /// Dead times to start from, s.
 const DEAD_TIMES_S: [f64; 3] = [0.08, 0.2, 0.35];
@@ -133,18 +136,13 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
 
 /// Whether the joint stands though it is sent elsewhere: what a model then predicts is the plan, not the joint.
 fn stands(runs: &[Run]) -> bool {
-    let motion_rad2 =
-        |values: &dyn Fn(&Run) -> Vec<f64>| -> f64 { runs.iter().map(|run| spread(&values(run))).sum() };
-    let measured_rad2 = motion_rad2(&|run| run.samples.iter().map(|sample| sample.measured_rad).collect());
-    let sent_rad2 = motion_rad2(&|run| run.samples.iter().map(|sample| sent_rad(run, sample)).collect());
-    measured_rad2 < STANDS * STANDS * sent_rad2
-}
-
-/// Mean squared distance from the mean.
-fn spread(values: &[f64]) -> f64 {
-    let count = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count
+    // By run, for a joint that stands elsewhere in the next one did not move in it either.
+    let squares_rad2 = |of: &dyn Fn(&Run, &Sample) -> f64| -> f64 {
+        let own =
+            |run: &Run| deviation(&run.samples.iter().map(|sample| of(run, sample)).collect::<Vec<f64>>());
+        runs.iter().map(|run| own(run).powi(2)).sum()
+    };
+    squares_rad2(&|_, sample| sample.measured_rad) < STANDS * STANDS * squares_rad2(&sent_rad)
 }
 
 /// Limits that were asked for far enough to show; looking for others costs time.

@@ -15,6 +15,7 @@ mod error;
 mod estimate;
 mod estimated;
 mod excite;
+mod excited;
 mod held_out;
 mod integral;
 mod interval;
@@ -36,7 +37,8 @@ mod valve;
 
 pub use error::FitError;
 pub use estimated::Estimated;
-pub use excite::{Excitation, JointRoom, Ramp, excite, is_excitation};
+pub use excite::{Excitation, JointRoom, Ramp, STROKE_POINTS_HZ, excite};
+pub use excited::is_excitation;
 pub use held_out::HeldOut;
 pub use learn::{Character, JointStep, Learning, Learnt, Oscillation, Room, Stalled, Step, Trial, learn};
 pub use model::{Model, STEP_S};

@@ -57,6 +57,9 @@ const SPEED_WINDOW_S: f64 = 0.1;
 /// A speed is reached that is held so long on average, s.
 const REACHED_OVER_S: f64 = 0.5;
 
+/// Speeds so many samples apart tell an acceleration.
+const RISES_OVER: usize = 10;
+
 /// Longest stretch after a start in which its peak error is looked for, s.
 const WINDOW_S: f64 = 4.0;
 
@@ -185,8 +188,9 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
             let extreme = |of: &dyn Fn(usize) -> f64| (first..last).map(of).fold(0.0, f64::max);
             let fastest = fastest_rad_s(&pair.t_s[first..last], &pair.measured[first..last]);
             let rise = |i: usize| {
-                let span_s = (pair.t_s[i] - pair.t_s[i.saturating_sub(10).max(first)]).max(STEP_S);
-                (fits[i].velocity - fits[i.saturating_sub(10).max(first)].velocity) / span_s
+                let before = i.saturating_sub(RISES_OVER).max(first);
+                let span_s = (pair.t_s[i] - pair.t_s[before]).max(STEP_S);
+                (fits[i].velocity - fits[before].velocity) / span_s
             };
             let sharpest = [1.0, -1.0].map(|way| extreme(&|i| way * rise(i)));
             let interval_s = (pair.t_s[last - 1] - pair.t_s[first]) / (last - first) as f64;
@@ -218,7 +222,7 @@ fn made_by_noise(sigma_rad: f64, interval_s: f64) -> [f64; 2] {
     let interval_s = interval_s.max(f64::MIN_POSITIVE);
     let within = (2.0 * SPEED_WINDOW_S / interval_s).max(5.0);
     let of_slope = (3.0 / within).sqrt() / SPEED_WINDOW_S;
-    [both_rad / REACHED_OVER_S, both_rad * of_slope / (10.0 * interval_s).max(STEP_S)]
+    [both_rad / REACHED_OVER_S, both_rad * of_slope / (RISES_OVER as f64 * interval_s).max(STEP_S)]
 }
 
 /// Largest mean speeds for growing and shrinking angles, rad/s: over a time in which noise averages out.

@@ -6,6 +6,13 @@ pub fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     values.into_iter().fold(none, |[least, most], value| [least.min(value), most.max(value)])
 }
 
+/// Root mean square distance from the mean; 0 for no values.
+pub fn deviation(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / count).sqrt()
+}
+
 /// The `p` quantile of ascending values by linear interpolation between order statistics
 /// (Hyndman and Fan's type 7, as `numpy.quantile`); NaN for no values.
 pub fn quantile_sorted(ascending: &[f64], p: f64) -> f64 {
@@ -53,6 +60,14 @@ pub fn mad(values: &[f64]) -> f64 {
 #[expect(clippy::float_cmp, reason = "exact by construction")]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_deviation_is_about_the_mean() {
+        assert_eq!(
+            [deviation(&[1.0, 5.0, 3.0, 3.0]), deviation(&[7.0]), deviation(&[])],
+            [2.0_f64.sqrt(), 0.0, 0.0]
+        );
+    }
 
     #[test]
     fn quantiles_interpolate_as_numpy_does() {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::kit::{Document, Id, NONE, Section, Sentence, Table, counted};
-use crate::{fit::JointRoom, units::degrees_from_radians, workflow::excite::Excited};
+use crate::{units::degrees_from_radians, workflow::excite::Excited};
 
 /// Speed above which most hydraulic joints do not follow, deg/s.
 const FAST_DEG_S: f64 = 30.0;
@@ -46,13 +46,7 @@ pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
             short.join(", ")
         ))
     });
-    let fastest = |joint: &JointRoom| {
-        let speeds =
-            excited.command.track(&joint.name).and_then(|track| track.velocity()).unwrap_or_default();
-        speeds.iter().fold(0.0, |most: f64, speed| most.max(speed.abs()))
-    };
-    let fastest_rad_s = excited.joints.iter().map(fastest).fold(0.0, f64::max);
-    let fast = (degrees_from_radians(fastest_rad_s) > FAST_DEG_S).then(|| {
+    let fast = (degrees_from_radians(excited.fastest_rad_s()) > FAST_DEG_S).then(|| {
         Sentence::advice(
             "The fast strokes exceed the speed of most machines, to show the limits; --max-speed-deg-s slows them.",
         )

@@ -51,9 +51,7 @@ impl Replay {
     /// The transitions, the worst first. Joints that turn and joints that slide have no unit in common: peak errors are
     /// compared by the error band of settling, [`Sizes::settle_band`](super::Sizes::settle_band).
     pub fn worst_first(&self) -> Vec<&Transition> {
-        let bands = |transition: &Transition| {
-            transition.peak_error / self.rules.sizes(transition.joint_kind).settle_band
-        };
+        let bands = |transition: &Transition| self.rules.bands(transition.joint_kind, transition.peak_error);
         let mut worst: Vec<&Transition> = self.transitions.iter().collect();
         worst.sort_by(|a, b| bands(b).total_cmp(&bands(a)));
         worst

@@ -185,6 +185,11 @@ impl Rules {
         }
     }
 
+    /// An error of a joint of this kind in error bands of settling: joints that turn and joints that slide have no unit in common.
+    pub fn bands(&self, kind: JointKind, error: f64) -> f64 {
+        error / self.sizes(kind).settle_band
+    }
+
     /// Half window of the velocity fit, s: as narrow as lets a motion at the target speed pass
     /// the start threshold (an even window of n samples within h has the slope deviation
     /// sigma sqrt(1.5 dt / h³)), and as wide as holds the fewest samples.

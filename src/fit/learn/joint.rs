@@ -14,7 +14,11 @@ use super::{
     shape::{Wanted, shaped},
     stalled::stalled,
 };
-use crate::{math::lowpass, series::Track, units::DEGREE_RAD};
+use crate::{
+    math::{deviation, lowpass},
+    series::Track,
+    units::DEGREE_RAD,
+};
 
 /// Part of these over which a wanted correction fades, s.
 const FADES_S: f64 = 0.5;
@@ -235,22 +239,13 @@ fn is_astray(
         rms(&by.zip(&run.measured_rad).map(|(angle, measured)| angle - measured).collect::<Vec<f64>>())
     };
     let error_rad = missed_rad(&mut planned.iter().map(|planned| planned.0));
-    let asked_rad = motion(planned.iter().map(|planned| planned.0).collect());
+    let asked_rad = deviation(&planned.iter().map(|planned| planned.0).collect::<Vec<f64>>());
     let slow = |fit: &JointFit| {
         let left_rad = missed_rad(&mut workspace.response(&fit.model, &run.sent).iter().copied());
-        let moves = motion(run.measured_rad.clone()) > FOLLOWS * asked_rad;
+        let moves = deviation(&run.measured_rad) > FOLLOWS * asked_rad;
         fit.trusted() && moves && left_rad < EXPLAINED * error_rad
     };
     error_rad > CAP_RAD.max(FOLLOWS * asked_rad) && !fit.is_some_and(slow)
-}
-
-/// Root mean square distance from the mean, rad.
-fn motion(mut angle_rad: Vec<f64>) -> f64 {
-    let mean_rad = angle_rad.iter().sum::<f64>() / angle_rad.len().max(1) as f64;
-    for angle in &mut angle_rad {
-        *angle -= mean_rad;
-    }
-    rms(&angle_rad)
 }
 
 /// Whether the same was sent.

@@ -110,6 +110,13 @@ impl TableStream {
         })
     }
 
+    /// The same, said to come from a file of this name.
+    #[must_use]
+    pub fn named(mut self, file: String) -> Self {
+        self.run.understood.file = file;
+        self
+    }
+
     /// How rows are read; its counts are those of the first rows.
     pub fn understood(&self) -> &Understood {
         &self.run.understood

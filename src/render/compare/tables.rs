@@ -59,8 +59,8 @@ fn run_facts(comparison: &Comparison) -> Vec<Fact> {
 fn pairs(comparison: &Comparison, most: usize) -> Option<Section> {
     let mut worst: Vec<&TransitionPair> = comparison.pairs.iter().collect();
     let growth = |pair: &TransitionPair| {
-        let band = comparison.rules.sizes(pair.joint_kind).settle_band;
-        pair.changes.get(PEAK_ERROR).difference.map_or(f64::NEG_INFINITY, |change| change / band)
+        let change = pair.changes.get(PEAK_ERROR).difference.unwrap_or(f64::NEG_INFINITY);
+        comparison.rules.bands(pair.joint_kind, change)
     };
     worst.sort_by(|a, b| growth(b).total_cmp(&growth(a)));
     let units = Units::of(worst.iter().map(|pair| pair.joint_kind));

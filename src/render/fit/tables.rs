@@ -185,16 +185,13 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         lines.push("The logs identify every number above, if the machine has the model's form.".into());
     } else if !open.is_empty() {
         lines.push(format!("The logs do not identify: {}.", open.join("; ")));
-        let excited = fitted.runs.iter().any(|run| run.identifies);
-        lines.extend(open.iter().any(|open| open.starts_with("speed")).then(|| {
-            if excited {
-                return "The strokes of the identification run were not faster than these joints, which kept up with them."
-                    .into();
-            }
+        let why = if fitted.runs.iter().any(|run| run.identifies) {
+            "The strokes of the identification run were not faster than these joints, which kept up with them."
+        } else {
             "Smooth runs never reach the limits of speed. `hydrotrace excite` writes a run that does, with strokes \
              faster than the machine; it also narrows the interval of the dead band. Fit it together with these logs."
-                .into()
-        }));
+        };
+        lines.extend(open.iter().any(|open| open.starts_with("speed")).then(|| why.into()));
     }
     let of = |which: &dyn Fn(&JointFit) -> bool| {
         let joints: Vec<&str> =

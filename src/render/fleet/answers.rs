@@ -7,8 +7,9 @@ use crate::{
         metric::weighed,
     },
     replay::Rules,
-    series::JointKind,
-    workflow::fleet::{Drift, Effect, GateResult, Gated, JointEffect, JointTrend, LevelStep, Worst},
+    workflow::fleet::{
+        Drift, Effect, GateResult, Gated, JointEffect, JointTrend, LevelStep, Worst, WorstJoint,
+    },
 };
 
 fn interval(unit: &str, [low, high]: [f64; 2]) -> String {
@@ -41,11 +42,7 @@ pub(crate) fn worst(worst: &Worst, most: usize) -> Document {
     let table = Table::new(&["machine", "joint", "unit"], &numbers, rows);
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(of)]).with(table);
     let section = section.with_all(more(worst.joints.len(), most));
-    let kinds = worst.joints.iter().filter_map(|joint| match joint.unit.as_str() {
-        "rad" => Some(JointKind::Turns),
-        "m" => Some(JointKind::Slides),
-        _ => None,
-    });
+    let kinds = worst.joints.iter().filter_map(WorstJoint::kind);
     let section = section.with_all(weighed(&Rules::default(), kinds));
     let note =
         "Against fleet: by how much starts are worse than the same starts of the same plan on all machines.";

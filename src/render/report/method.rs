@@ -33,12 +33,9 @@ fn kinds(report: &Report) -> Vec<JointKind> {
 fn by_kind(report: &Report, words: &dyn Fn(JointKind) -> String) -> String {
     match kinds(report).as_slice() {
         [one] => words(*one),
-        all => {
-            let named = all.iter().map(|kind| match kind {
-                JointKind::Turns => format!("joints that turn: {}", words(JointKind::Turns)),
-                JointKind::Slides => format!("Joints that slide: {}", words(JointKind::Slides)),
-            });
-            named.collect::<Vec<_>>().join(". ")
+        _ => {
+            let named = [(JointKind::Turns, "joints that turn"), (JointKind::Slides, "Joints that slide")];
+            named.map(|(kind, name)| format!("{name}: {}", words(kind))).join(". ")
         }
     }
 }

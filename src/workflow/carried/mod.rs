@@ -22,6 +22,7 @@ pub use worth::worth;
 use super::plan::{PlanDocument, PlanEntry, PlanFailure, TaskFiles};
 use crate::{
     arm::Arm,
+    fit::is_excitation,
     input_file,
     log::{Attachment, JOINT_KINDS, LogWriter, Recording, WriteError, joint_kinds},
     plant::Truth,
@@ -106,9 +107,10 @@ impl Carried {
         Self { files: attached(ARM, task), ..self }
     }
 
-    /// Whether `excite` made the plan: no task is to be done by it.
-    pub(in crate::workflow) fn identifies(&self) -> bool {
-        self.provenance.get(MADE_BY).is_some_and(|by| by == EXCITE)
+    /// Whether a run is one of identification, as its log says or, of another recorder, its plan shows: no task is done by it.
+    pub(in crate::workflow) fn identifies(recording: &Recording) -> bool {
+        Self::of(recording).provenance.get(MADE_BY).is_some_and(|by| by == EXCITE)
+            || is_excitation(&recording.planned)
     }
 
     /// The provenance in place of what was there.

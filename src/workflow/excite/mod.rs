@@ -12,11 +12,11 @@ use super::{
     plan::{PlanFailure, PlanRequest, TaskFiles},
 };
 use crate::{
-    fit::{Excitation, FitError, JointRoom, excite},
+    fit::{Excitation, FitError, JointRoom, STROKE_POINTS_HZ, excite},
     log::WriteError,
     math::range,
-    plan::{POINTS_HZ, Setup},
-    series::Series,
+    plan::Setup,
+    series::{Series, Track},
 };
 
 /// The joints to drive.
@@ -98,12 +98,15 @@ pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
     Ok(Excited { joints, excitation, command, task: request.map(|request| request.files), beyond })
 }
 
+fn fastest_rad_s(track: &Track) -> f64 {
+    track.velocity().unwrap_or_default().iter().fold(0.0, |most, speed| most.max(speed.abs()))
+}
+
 /// Joints that are sent faster than their limits of speed.
 fn beyond(setup: &Setup, command: &Series) -> Vec<(String, [f64; 2])> {
     let sent = |(j, name): (usize, String)| {
         let (_, [most_rad_s, ..]) = setup.joint_limits(j)?;
-        let fastest_rad_s =
-            command.track(&name)?.velocity()?.iter().fold(0.0, |most: f64, speed| most.max(speed.abs()));
+        let fastest_rad_s = fastest_rad_s(command.track(&name)?);
         (fastest_rad_s > most_rad_s).then_some((name, [fastest_rad_s, most_rad_s]))
     };
     setup.joint_names().into_iter().enumerate().filter_map(sent).collect()
@@ -126,6 +129,11 @@ impl Excited {
         self.command.span_s().map_or(0.0, |[_, end_s]| end_s)
     }
 
+    /// Largest speed of any joint, rad/s.
+    pub fn fastest_rad_s(&self) -> f64 {
+        self.command.tracks.iter().map(fastest_rad_s).fold(0.0, f64::max)
+    }
+
     /// The bytes of the log.
     ///
     /// # Errors
@@ -143,7 +151,7 @@ impl Excited {
             trajectory: None,
             carried: &carried,
             rate_hz,
-            points_hz: POINTS_HZ[0],
+            points_hz: STROKE_POINTS_HZ,
         }
         .bytes()
     }

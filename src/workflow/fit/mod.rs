@@ -12,7 +12,7 @@ pub use document::{FitDocument, LimitsFile};
 pub use failure::FitFailure;
 
 use crate::{
-    fit::{Fit, FitError, HeldOut, Observation, fit_and_held_out, is_excitation},
+    fit::{Fit, FitError, HeldOut, Observation, fit_and_held_out},
     log::{ReadOptions, Recording, SignalRole, SourceInfo},
     remark::{Code, Remarks},
     replay::{Rules, planned_step},
@@ -127,7 +127,7 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
             source: observed.source.clone(),
             commanded: observed.command.is_some(),
             valves: observed.has(SignalRole::Valve),
-            identifies: is_excitation(&observed.planned),
+            identifies: Carried::identifies(observed),
         });
     }
     for joint in fit.joints.iter().filter(|joint| !joint.trusted()) {
@@ -147,11 +147,7 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
         |one: &Recording| one.planned.tracks.iter().all(|track| planned_step(track, &rules).is_none());
     let again = |k: &usize| {
         let (carried, one) = (&carried[*k], &observed[*k]);
-        !carried.identifies()
-            && !is_excitation(&one.planned)
-            && sound(one)
-            && follows(one)
-            && carried.broken(one).is_none()
+        !runs[*k].identifies && sound(one) && follows(one) && carried.broken(one).is_none()
     };
     let again: Vec<usize> = (0..observed.len()).filter(again).collect();
     let with_task = again.iter().rfind(|k| carried[**k].task().is_some());

@@ -15,6 +15,7 @@ use crate::{
     math::{median, quantile},
     remark::Remarks,
     replay::Rules,
+    series::JointKind,
 };
 
 /// What the format is called.
@@ -71,6 +72,13 @@ pub struct WorstJoint {
     pub runs: usize,
 }
 
+impl WorstJoint {
+    /// The kind of joint that values in its unit are of; `None` of times.
+    pub fn kind(&self) -> Option<JointKind> {
+        [JointKind::Turns, JointKind::Slides].into_iter().find(|kind| kind.unit() == self.unit)
+    }
+}
+
 /// Ranks what the filter lets through.
 ///
 /// # Errors
@@ -111,13 +119,9 @@ pub fn worst(root: &Path, filter: &Filter, by: By) -> Result<Worst, FleetFailure
             runs: runs.len(),
         });
     }
-    // Joints that turn and joints that slide have no unit in common.
     let rules = Rules::default();
-    let bands = |joint: &WorstJoint| match joint.unit.as_str() {
-        "rad" => joint.median / rules.turning.settle_band,
-        "m" => joint.median / rules.sliding.settle_band,
-        _ => joint.median,
-    };
+    let bands =
+        |joint: &WorstJoint| joint.kind().map_or(joint.median, |kind| rules.bands(kind, joint.median));
     joints.sort_by(|a, b| bands(b).total_cmp(&bands(a)));
     Ok(Worst {
         format: FORMAT.to_owned(),

@@ -11,22 +11,41 @@ use crate::{
     remark::{Code, Remarks},
 };
 
+/// Lines that became no rows.
+#[derive(Debug, Default)]
+pub(super) struct LeftOut {
+    /// No objects, where objects come.
+    pub(super) unread: u64,
+    /// Of words before the first object with numbers.
+    pub(super) words: u64,
+    /// Of words among rows.
+    pub(super) asides: u64,
+    /// Longer than any row.
+    pub(super) too_long: u64,
+    /// Before another header, their own columns unknown.
+    pub(super) untold: u64,
+    /// Of a header whose columns cannot be told, and why those of the first such cannot.
+    pub(super) below: u64,
+    pub(super) why: Option<String>,
+}
+
 impl Recording<'_> {
     /// Doubts about all that came.
     pub(super) fn remarks(&self) -> Remarks {
         let mut remarks = Remarks::default();
         self.closed.iter().for_each(|stream| remarks.extend(stream.remarks()));
-        remarks.add(Code::UndecodableMessage, self.asides, "lines of words among the rows; left out");
+        let LeftOut { unread, words, asides, too_long, untold, below, why } = &self.left_out;
+        remarks.add(Code::UndecodableMessage, *asides, "lines of words among the rows; left out");
         let message = "lines of words before the first with numbers; left out";
-        remarks.add(Code::UndecodableMessage, self.words, message);
+        remarks.add(Code::UndecodableMessage, *words, message);
         let message = "lines before a header with other columns, whose own columns cannot be told; left out";
-        remarks.add(Code::UndecodableMessage, self.untold, message);
-        if let Some(why) = &self.why {
+        remarks.add(Code::UndecodableMessage, *untold, message);
+        if let Some(why) = why {
             let message =
                 format!("lines of a header whose columns cannot be told, left out until the next one: {why}");
-            remarks.add(Code::UndecodableMessage, self.below, message);
+            remarks.add(Code::UndecodableMessage, *below, message);
         }
-        remarks.add(Code::UndecodableMessage, self.unread, "lines that are no JSON object; left out");
+        remarks.add(Code::UndecodableMessage, *unread, "lines that are no JSON object; left out");
         if let Some((keys, lines)) = self.objects.as_ref().and_then(JsonLines::late) {
             let message = format!(
                 "lines with keys that came after the columns were settled, and were left out: {keys}; name them before, as \
@@ -34,7 +53,7 @@ impl Recording<'_> {
             );
             remarks.add(Code::NotSupported, lines, message);
         }
-        remarks.add(Code::UndecodableMessage, self.too_long, "lines longer than any row; left out");
+        remarks.add(Code::UndecodableMessage, *too_long, "lines longer than any row; left out");
         if let Some(first) = self.taken.first() {
             let message = format!(
                 "names of parts that were taken, from {} on, and were stepped over; a pattern such as {} reads both as one run",

@@ -9,6 +9,7 @@ mod settle;
 mod unsaved;
 
 use std::{
+    io::ErrorKind,
     path::PathBuf,
     sync::{
         Arc,
@@ -25,6 +26,7 @@ use crate::{
     atomic_file::may_write,
     log::{CsvError, CsvOptions, JsonLines, LogWriter, TableStream, WriteError},
 };
+use doubts::LeftOut;
 use output::Synced;
 use parts::part_name;
 use unsaved::Unsaved;
@@ -141,25 +143,14 @@ struct Recording<'a> {
     /// Bytes of the part that is being written.
     counter: Arc<AtomicU64>,
     part_from: Progress,
-    unread: u64,
-    /// Lines of words before the first object with numbers.
-    words: u64,
-    /// Lines of words among rows.
-    asides: u64,
-    /// Lines before another header, whose own columns cannot be told.
-    untold: u64,
-    /// Lines that were longer than any row.
-    too_long: u64,
     /// Whether the columns of the last header cannot be told: rows are left out until the next one.
     lost: bool,
-    /// Lines that are left out so, and why the first of them were.
-    below: u64,
-    why: Option<String>,
+    left_out: LeftOut,
     /// Parts of other recordings among the names, which were stepped over.
     taken: Vec<PathBuf>,
     /// The number of the last part.
     number: usize,
-    since: Unsaved,
+    unsaved: Unsaved,
     progress: Progress,
 }
 
@@ -176,32 +167,31 @@ impl<'a> Recording<'a> {
             parts: Vec::new(),
             counter: Arc::default(),
             part_from: progress,
-            unread: 0,
-            words: 0,
-            asides: 0,
-            untold: 0,
-            too_long: 0,
             lost: false,
-            below: 0,
-            why: None,
+            left_out: LeftOut::default(),
             taken: Vec::new(),
             number: 0,
-            since: Unsaved::new(),
+            unsaved: Unsaved::new(),
             progress,
         }
     }
 
     fn came(&mut self, came: Came) -> Result<(), RecordError> {
         match came {
-            Came::Line(line) => self.line(&line, false),
-            Came::Rest(line) => self.line(&line, true),
-            Came::Pause => self.pause(),
+            Came::Line(line) => self.line(&line, false)?,
+            Came::Rest(line) => self.line(&line, true)?,
+            Came::Pause => self.pause()?,
             Came::TooLong => {
                 self.progress.lines += 1;
-                self.too_long += 1;
-                Ok(())
+                self.left_out.too_long += 1;
             }
         }
+        // What came is put on the disk, however the clock of its rows goes.
+        let due = self.unsaved.is_due(self.progress);
+        if let Some((_, log)) = self.open.as_mut().filter(|_| due) {
+            log.flush()?;
+        }
+        Ok(())
     }
 
     fn line(&mut self, line: &[u8], rest: bool) -> Result<(), RecordError> {
@@ -212,11 +202,11 @@ impl<'a> Recording<'a> {
             // What is wrong with so few lines is said at the end.
             let _ = self.settle(true);
         }
-        let open = self.open.as_mut().filter(|_| rest && self.objects.is_none());
-        let Some((stream, log)) = open else { return self.take(line) };
-        stream.write_rest(line, log)?;
-        self.progress.rows = stream.rows() + self.closed.iter().map(TableStream::rows).sum::<u64>();
-        Ok(())
+        if rest && self.objects.is_none() && self.open.is_some() {
+            self.write(line, true)
+        } else {
+            self.take(line)
+        }
     }
 
     /// Where the disk was the reason, which log it was.
@@ -232,7 +222,7 @@ impl<'a> Recording<'a> {
     fn take(&mut self, line: &[u8]) -> Result<(), RecordError> {
         let settled = self.open.is_some() || !self.closed.is_empty();
         if self.objects.is_none() && !settled && JsonLines::is_object(line) && is_words(&self.first) {
-            self.words += std::mem::take(&mut self.first_lines) as u64;
+            self.left_out.words += std::mem::take(&mut self.first_lines) as u64;
             self.first.clear();
             let options = &self.inputs.options;
             let named = options.columns.values().flatten().map(|(_, column)| column.clone());
@@ -240,13 +230,13 @@ impl<'a> Recording<'a> {
             self.objects = Some(JsonLines::expecting(named, options.time.clone()));
         }
         if self.objects.is_some() && !settled && self.first_lines == 0 && !JsonLines::has_number(line) {
-            self.words += 1;
+            self.left_out.words += 1;
             return Ok(());
         }
         let text = match &mut self.objects {
             Some(objects) if self.open.is_none() => {
                 if !objects.gather(line) {
-                    self.unread += 1;
+                    self.left_out.unread += 1;
                     return Ok(());
                 }
                 self.first_lines += 1;
@@ -255,7 +245,7 @@ impl<'a> Recording<'a> {
             }
             Some(objects) => {
                 let Some(text) = objects.row(line) else {
-                    self.unread += 1;
+                    self.left_out.unread += 1;
                     return Ok(());
                 };
                 text.into_bytes()
@@ -270,20 +260,24 @@ impl<'a> Recording<'a> {
             self.first_lines += 1;
             return if self.first_lines >= FIRST_LINES { self.settle(false) } else { Ok(()) };
         }
-        self.write(&text)
+        self.write(&text, false)
     }
 
     /// A moment without a line: what is kept back for the next one is written.
     fn pause(&mut self) -> Result<(), RecordError> {
         self.settle(false)?;
         let rest = self.objects.as_mut().filter(|_| self.open.is_some()).map(JsonLines::rest);
-        self.write(&rest.unwrap_or_default().into_bytes())?;
-        self.save()
+        self.write(&rest.unwrap_or_default().into_bytes(), false)
     }
 
-    fn write(&mut self, text: &[u8]) -> Result<(), RecordError> {
+    /// Writes lines, or what came last without an end.
+    fn write(&mut self, text: &[u8], rest: bool) -> Result<(), RecordError> {
         let Some((stream, log)) = self.open.as_mut().filter(|_| !text.is_empty()) else { return Ok(()) };
-        stream.write(text, log)?;
+        if rest {
+            stream.write_rest(text, log)?;
+        } else {
+            stream.write(text, log)?;
+        }
         self.progress.rows = stream.rows() + self.closed.iter().map(TableStream::rows).sum::<u64>();
         self.progress.bytes = self.counter.load(Ordering::Relaxed);
         let begun = self.part_from;
@@ -296,9 +290,6 @@ impl<'a> Recording<'a> {
             }
         };
         let is_over = stream.is_over();
-        if self.since.is_due(self.progress) {
-            log.flush()?;
-        }
         if (ends || is_over)
             && let Some((stream, log)) = self.open.take()
         {
@@ -316,38 +307,26 @@ impl<'a> Recording<'a> {
         Ok(())
     }
 
-    /// What came is put on the disk, however the clock of its rows goes.
-    fn save(&mut self) -> Result<(), RecordError> {
-        let due = self.since.is_due(self.progress);
-        if let Some((_, log)) = self.open.as_mut().filter(|_| due) {
-            log.flush()?;
-        }
-        Ok(())
-    }
-
     /// The next name that is free, or may be replaced: a recording that runs does not end for one that is taken.
     fn next_part(&mut self) -> Result<Synced, RecordError> {
         loop {
             self.number += 1;
             let path = part_name(&self.inputs.output, self.number);
             let is_first = self.number == 1;
-            let spared =
-                path.exists() && (!self.inputs.replace || !path.is_file() || may_write(&path).is_err());
-            if !is_first && spared {
-                self.taken.push(path);
-                continue;
-            }
-            let file = match Synced::create(&path, self.inputs.replace) {
+            let replaces = self.inputs.replace && path.is_file() && may_write(&path).is_ok();
+            let file = if is_first || replaces || !path.exists() {
+                Synced::create(&path, self.inputs.replace)
+            } else {
+                Err(ErrorKind::AlreadyExists.into())
+            };
+            let file = match file.map_err(|error| (error.kind(), error)) {
                 Ok(file) => file,
-                // A link that leads nowhere.
-                Err(error) if !is_first && error.kind() == std::io::ErrorKind::AlreadyExists => {
+                Err((ErrorKind::AlreadyExists, _)) if is_first => return Err(RecordError::Exists { path }),
+                Err((ErrorKind::AlreadyExists, _)) => {
                     self.taken.push(path);
                     continue;
                 }
-                Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
-                    return Err(RecordError::Exists { path });
-                }
-                Err(source) => return Err(RecordError::Create { path, source }),
+                Err((_, source)) => return Err(RecordError::Create { path, source }),
             };
             self.parts.push(path);
             self.counter = file.counter();
@@ -360,7 +339,7 @@ impl<'a> Recording<'a> {
             return Err(RecordError::Nothing);
         }
         if self.objects.is_some() && self.first_lines == 0 {
-            return Err(RecordError::NoNumbers { lines: self.words });
+            return Err(RecordError::NoNumbers { lines: self.left_out.words });
         }
         // A last header without rows is no part.
         while self.open.is_none() && !self.lost && (self.closed.is_empty() || self.first_lines > 1) {

@@ -6,7 +6,7 @@ use crate::{
     remark::Code,
 };
 
-/// What a person is told of in place of a file.
+/// What errors name in place of a file: that of the log is not there yet.
 const WHAT_CAME: &str = "what came";
 
 /// Lines after which it is given up to settle the columns.
@@ -21,7 +21,7 @@ impl Recording<'_> {
         if self.open.is_some() || self.lost || self.first_lines < 3 && !last {
             return Ok(());
         }
-        let name = self.inputs.output.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let name = self.inputs.output.file_name().unwrap_or_default().to_string_lossy();
         if let Some(objects) = &mut self.objects {
             if objects.is_growing() && !last && self.first_lines < ONE_SIDED {
                 return Ok(());
@@ -33,7 +33,7 @@ impl Recording<'_> {
         let one_sided = |stream: &TableStream| {
             stream.remarks().as_slice().iter().any(|remark| remark.code == Code::OneSide)
         };
-        match TableStream::begin(&name, &self.first, &self.inputs.options) {
+        match TableStream::begin(WHAT_CAME, &self.first, &self.inputs.options) {
             // The other side's sensor may not send yet; rows that wait are lost if the power is.
             Ok(stream)
                 if self.objects.is_some() && !last && self.first_lines < ONE_SIDED && one_sided(&stream) =>
@@ -44,11 +44,12 @@ impl Recording<'_> {
                 if let Some(objects) = &mut self.objects {
                     objects.settle();
                 }
+                let stream = stream.named(name.into_owned());
                 self.progress.joints = stream.understood().joints.len();
                 let log = stream.log(self.next_part()?)?;
                 self.open = Some((stream, log));
                 let first = std::mem::take(&mut self.first);
-                self.write(&first)
+                self.write(&first, false)
             }
             Err(CsvError::NoJoints { .. } | CsvError::NoPair { .. })
                 if self.objects.is_some() && !last && self.first_lines < ONE_SIDED =>
@@ -63,17 +64,13 @@ impl Recording<'_> {
             }
             // What was recorded stays a run; rows of a header that says nothing are left out until the next one.
             Err(error) if !self.closed.is_empty() => {
-                self.below += self.first_lines as u64;
-                self.why.get_or_insert(error.to_string());
+                self.left_out.below += self.first_lines as u64;
+                self.left_out.why.get_or_insert(error.to_string());
                 (self.first_lines, self.lost) = (0, true);
                 self.first.clear();
                 Ok(())
             }
-            // There is no file of that name yet: what is wrong is what came.
-            Err(error) => Err(TableStream::begin(WHAT_CAME, &self.first, &self.inputs.options)
-                .err()
-                .unwrap_or(error)
-                .into()),
+            Err(error) => Err(error.into()),
         }
     }
 
@@ -81,12 +78,12 @@ impl Recording<'_> {
     /// nothing.
     pub(super) fn steps_over(&mut self, line: &[u8]) -> bool {
         if self.lost && !is_header(line) {
-            self.below += 1;
+            self.left_out.below += 1;
             return true;
         }
         self.lost = false;
         let aside = is_aside(&self.first, line);
-        self.asides += u64::from(aside);
+        self.left_out.asides += u64::from(aside);
         aside
     }
 
@@ -96,7 +93,7 @@ impl Recording<'_> {
         let rows = self.first_lines.saturating_sub(later.split_inclusive(|byte| *byte == b'\n').count());
         match self.settle(true) {
             Err(RecordError::Csv(_)) => {
-                self.untold += rows as u64;
+                self.left_out.untold += rows as u64;
                 self.first.clear();
             }
             settled => settled?,

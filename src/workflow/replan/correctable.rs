@@ -4,7 +4,6 @@ use std::path::Path;
 
 use super::ReplanFailure;
 use crate::{
-    fit::is_excitation,
     log::Recording,
     replay::{Rules, planned_step},
     units::Degrees,
@@ -13,7 +12,7 @@ use crate::{
 
 /// No correction helps where a plan steps, and none is meant where strokes show what a machine cannot follow.
 pub(super) fn correctable(path: &Path, run: &Recording, rules: &Rules) -> Result<(), ReplanFailure> {
-    if Carried::of(run).identifies() || is_excitation(&run.planned) {
+    if Carried::identifies(run) {
         return Err(ReplanFailure::Identifies { path: path.to_owned() });
     }
     let mut turning = run.planned.tracks.iter().filter(|track| track.turns());

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use super::Inputs;
 use crate::{
     log::Recording,
+    math::deviation,
     remark::{Code, Remarks},
-    series::{Pair, align},
+    series::align,
     units::DEGREE_RAD,
 };
 
@@ -59,13 +60,7 @@ fn dead_runs(observed: &[Recording]) -> Vec<DeadRun> {
     let Some((newest, others)) = observed.split_last() else { return Vec::new() };
     let mut found: Vec<DeadRun> = Vec::new();
     for track in newest.measured.tracks.iter().filter(|track| track.turns()) {
-        let asked_rad = asked(newest, track.name());
-        let same = |run: &Recording| {
-            let own_rad = asked(run, track.name());
-            own_rad.zip(asked_rad).is_some_and(|(own, newest)| (own - newest).abs() < ALIKE * newest)
-        };
-        let shares: Vec<Option<f64>> =
-            observed.iter().map(|run| share(run, track.name()).filter(|_| same(run))).collect();
+        let shares: Vec<Option<f64>> = observed.iter().map(|run| share(run, newest, track.name())).collect();
         let answers = |share: &Option<f64>| share.is_some_and(|share| share > ANSWERS);
         let enough =
             shares.last().is_some_and(answers) && shares.iter().filter(|share| answers(share)).count() > 1;
@@ -79,22 +74,16 @@ fn dead_runs(observed: &[Recording]) -> Vec<DeadRun> {
     found
 }
 
-/// How far the plan of a joint moves, rad.
-fn asked(run: &Recording, joint: &str) -> Option<f64> {
-    let pair: Pair = align(run.planned.track(joint)?, run.measured.track(joint)?)?;
-    Some(motion(&pair.planned))
+/// How far a joint moves by how far its plan does, in a run of the same plan as another one's.
+fn share(run: &Recording, newest: &Recording, joint: &str) -> Option<f64> {
+    let [asked_rad, moved_rad] = motions_rad(run, joint)?;
+    let [newest_rad, _] = motions_rad(newest, joint)?;
+    let same = (asked_rad - newest_rad).abs() < ALIKE * newest_rad;
+    (same && asked_rad > LEAST_RAD).then_some(moved_rad / asked_rad)
 }
 
-/// How far a joint moves by how far its plan does.
-fn share(run: &Recording, joint: &str) -> Option<f64> {
-    let pair: Pair = align(run.planned.track(joint)?, run.measured.track(joint)?)?;
-    let asked_rad = motion(&pair.planned);
-    (asked_rad > LEAST_RAD).then(|| motion(&pair.measured) / asked_rad)
-}
-
-/// Root mean square distance from the mean.
-fn motion(values: &[f64]) -> f64 {
-    let count = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+/// How far the plan of a joint moves and how far the joint, rad.
+fn motions_rad(run: &Recording, joint: &str) -> Option<[f64; 2]> {
+    let pair = align(run.planned.track(joint)?, run.measured.track(joint)?)?;
+    Some([&pair.planned, &pair.measured].map(|angles| deviation(angles)))
 }

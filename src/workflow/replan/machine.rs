@@ -1,6 +1,6 @@
 //! The machine that the runs are of.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::{
     super::fit::{self, LimitsFile, observation},
@@ -16,11 +16,6 @@ use crate::{
 /// What runs that a model was fitted to, among others, leave unexplained is less than what the next one will.
 const SEEN: f64 = 1.25;
 
-/// Whether a log has a name.
-fn is(path: &Path, log: &str) -> bool {
-    path.file_name().is_some_and(|name| name == log)
-}
-
 /// The machine: fitted, or from a file; with the names of the logs behind it.
 pub(super) fn machine(
     inputs: &Inputs,
@@ -31,15 +26,15 @@ pub(super) fn machine(
         let file = LimitsFile::read(path)?;
         let joints = observed.iter().flat_map(|run| &run.measured.tracks).map(Track::name);
         file.check_joints(path, joints)?;
-        let own = |log: &String| logs.iter().any(|path| is(path, log));
+        let own =
+            |log: &String| logs.iter().any(|path| path.file_name().is_some_and(|name| name == log.as_str()));
         let doubts = fit::doubts(logs, observed);
         if file.logs.iter().all(own) {
             return Ok((file.fit, file.logs, doubts));
         }
         // What the models leave unexplained elsewhere, as in strokes of an identification run, is not what they leave here.
         let seen: Vec<Observation<'_>> = observed.iter().map(observation).collect();
-        let factor =
-            if logs.iter().any(|path| file.logs.iter().any(|log| is(path, log))) { SEEN } else { 1.0 };
+        let factor = if file.logs.iter().any(own) { SEEN } else { 1.0 };
         return Ok((file.fit.held_against(&seen, factor), file.logs, doubts));
     }
     let fitted = fit::of(logs, observed).map_err(fit::FitFailure::from)?;
