@@ -125,6 +125,9 @@ impl Fit {
     }
 }
 
+/// A joint that is sent this share of its largest speed may be at it: what it is late by is made up for faster.
+const NEAR: f64 = 0.8;
+
 impl JointFit {
     /// The same where no model predicts the joint: it is taken to be where it is sent, no number is known, and limits
     /// are what was reached.
@@ -164,9 +167,12 @@ impl JointFit {
         }
     }
 
-    /// Whether it was at its largest speed.
-    pub fn is_limited(&self) -> bool {
-        self.speed_limit_growing_rad_s.identified || self.speed_limit_shrinking_rad_s.identified
+    /// Whether these lowest and highest speeds, rad/s, are so near its limits that it may be at them, where those are known.
+    pub fn reaches_limits(&self, [lowest, highest]: [f64; 2]) -> bool {
+        let reaches = |limit: Estimated, speed: f64| {
+            limit.identified && limit.value.is_some_and(|most| speed > NEAR * most)
+        };
+        reaches(self.speed_limit_growing_rad_s, highest) || reaches(self.speed_limit_shrinking_rad_s, -lowest)
     }
 
     /// Whether the model predicts well enough to make commands from it.

@@ -152,7 +152,8 @@ pub(super) fn commanded(
             let planned = planned.get(index(name)?)?.clone();
             let Some(own) = names.iter().position(|own| own == name) else {
                 // A joint that only lags needs what it is sent ahead; one at its limits gains nothing by it.
-                fit.joint(name).filter(|joint| joint.is_limited())?;
+                let speeds_rad_s = range(planned.iter().map(|state| state[1]));
+                fit.joint(name).filter(|joint| joint.reaches_limits(speeds_rad_s))?;
                 let (range_rad, most) = (near(&planned, runs, name), [f64::INFINITY; 3]);
                 return Some(Room { range_rad, most, planned, speed_rad_s: Vec::new() });
             };

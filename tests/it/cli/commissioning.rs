@@ -4,21 +4,29 @@ use std::{fs, path::Path};
 
 use crate::support::{clean, json, run_line, said, sample, scratch};
 
-/// Six moves between 30 and 50 deg, and a joint that follows them at `most_deg_s` at most.
-fn table(most_deg_s: f64) -> String {
+/// A joint that follows a plan by its distance times a gain, and no faster than `most_deg_s`.
+fn followed(plan: impl Iterator<Item = (f64, f64)>, gain_1_s: f64, most_deg_s: f64) -> String {
+    let (mut text, mut now) = ("t_s,boom_planned_deg,boom_measured_deg\n".to_owned(), None);
+    for (t_s, planned) in plan {
+        let (before_s, mut at) = now.unwrap_or((t_s, planned));
+        at += (t_s - before_s) * (gain_1_s * (planned - at)).clamp(-most_deg_s, most_deg_s);
+        text += &format!("{t_s:.2},{planned:.5},{at:.5}\n");
+        now = Some((t_s, at));
+    }
+    text
+}
+
+/// Six moves between 30 and 50 deg of so many seconds each, by time.
+fn moves(takes_s: f64) -> impl Iterator<Item = (f64, f64)> {
     let smooth = |s: f64| {
         let s = s.clamp(0.0, 1.0);
         s * s * s * (10.0 + s * (6.0 * s - 15.0))
     };
-    let (mut text, mut at) = ("t_s,boom_planned_deg,boom_measured_deg\n".to_owned(), 30.0);
-    for k in 0..6000 {
+    (0..7500).map(move |k| {
         let t_s = 0.01 * f64::from(k);
-        let moves = (0..6).map(|k| [20.0, -20.0][k % 2] * smooth((t_s - 2.0 - 9.0 * k as f64) / 5.0));
-        let planned = 30.0 + moves.sum::<f64>();
-        at += 0.01 * (3.0 * (planned - at)).clamp(-most_deg_s, most_deg_s);
-        text += &format!("{t_s:.2},{planned:.5},{at:.5}\n");
-    }
-    text
+        let moves = (0..6).map(|k| [20.0, -20.0][k % 2] * smooth((t_s - 2.0 - 11.0 * k as f64) / takes_s));
+        (t_s, 30.0 + moves.sum::<f64>())
+    })
 }
 
 fn commanded_deg(folder: &Path, log: &str) -> [f64; 2] {
@@ -34,7 +42,7 @@ fn commanded_deg(folder: &Path, log: &str) -> [f64; 2] {
 fn a_command_without_known_limits_stays_near_the_range_of_its_plan() {
     let folder = scratch();
     let folder = folder.path();
-    fs::write(folder.join("slow.csv"), table(4.5)).unwrap();
+    fs::write(folder.join("slow.csv"), followed(moves(5.0), 3.0, 4.5)).unwrap();
     let next = json(folder, "replan slow.csv -o next.mcap");
     let [least, most] = commanded_deg(folder, "next.mcap");
     assert!(least > 28.0 && most < 52.0, "{least} to {most}");
@@ -42,6 +50,28 @@ fn a_command_without_known_limits_stays_near_the_range_of_its_plan() {
     assert!(least < 29.0 && most > 51.0, "{least} to {most}");
     let mean = |of: &serde_json::Value| of["mean_peak_rad"].as_f64().unwrap();
     assert!(mean(&next["after"]) < 0.8 * mean(&next["before"]["predicted"]), "{}", next["after"]);
+}
+
+/// Known limits of speed that the plan stays far from hold no command back.
+#[test]
+fn a_joint_that_only_lags_is_sent_ahead_though_its_limits_are_known() {
+    let folder = scratch();
+    let folder = folder.path();
+    clean(folder, "excite -o id.mcap --joint boom=40:25:55");
+    let (_, text, _) = said(&run_line(folder, "export id.mcap --degrees --csv"));
+    let column = |name| text.lines().next().unwrap().split(',').position(|own| own == name).unwrap();
+    let [time, angle] = ["time_s", "boom_planned_deg"].map(column);
+    let strokes = text.lines().skip(1).map(|row| {
+        let cell = |k: usize| row.split(',').nth(k).unwrap().parse::<f64>().unwrap();
+        (cell(time), cell(angle))
+    });
+    fs::write(folder.join("id.csv"), followed(strokes, 0.6, 6.0)).unwrap();
+    fs::write(folder.join("slow.csv"), followed(moves(9.0), 0.6, 6.0)).unwrap();
+    let (_, said, _) = said(&run_line(folder, "fit id.csv -o limits.toml"));
+    assert!(said.contains("boom   6.1 ("), "{said}");
+    run_line(folder, "replan slow.csv --limits limits.toml -o next.mcap");
+    let [least, most] = commanded_deg(folder, "next.mcap");
+    assert!(least < 28.0 && most > 52.0, "{least} to {most}");
 }
 
 #[test]
