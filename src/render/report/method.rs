@@ -31,13 +31,11 @@ fn kinds(report: &Report) -> Vec<JointKind> {
 
 /// What holds for joints that turn, and for those that slide, where there are both.
 fn by_kind(report: &Report, words: &dyn Fn(JointKind) -> String) -> String {
-    match kinds(report).as_slice() {
-        [one] => words(*one),
-        _ => {
-            let named = [(JointKind::Turns, "joints that turn"), (JointKind::Slides, "Joints that slide")];
-            named.map(|(kind, name)| format!("{name}: {}", words(kind))).join(". ")
-        }
+    if let [one] = kinds(report).as_slice() {
+        return words(*one);
     }
+    let named = [(JointKind::Turns, "joints that turn"), (JointKind::Slides, "Joints that slide")];
+    named.map(|(kind, name)| format!("{name}: {}", words(kind))).join(". ")
 }
 
 fn start(report: &Report, kind: JointKind) -> String {
