@@ -1,6 +1,9 @@
 //! Options as callers give them: those of the command line for reading, as keywords; days and instants.
 
-use hydrotrace::log::{LengthUnit, ReadOptions, Selector, SignalRole, TimeBase, WantedSignal};
+use hydrotrace::{
+    log::{Cylinders, LengthUnit, ReadOptions, Selector, SignalRole, TimeBase, TimeRange, WantedSignal},
+    series::JointKind,
+};
 use pyo3::{
     exceptions::{PyTypeError, PyValueError},
     prelude::*,
@@ -17,6 +20,7 @@ fn texts(value: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
 /// Options of reading: those of the command line, as keywords.
 pub(crate) fn read_options(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<ReadOptions> {
     let mut read = ReadOptions::default();
+    let (mut from_s, mut to_s, mut hydraulics, mut into) = (None, None, None, JointKind::Turns);
     let selectors = |value: &Bound<'_, PyAny>| -> PyResult<Vec<Selector>> {
         Ok(texts(value)?.iter().map(|text| Selector::parse(text)).collect())
     };
@@ -37,6 +41,29 @@ pub(crate) fn read_options(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Rea
                     read.slides.insert(joint, unit);
                 }
             }
+            "measured_delay_ms" => {
+                let ms: f64 = value.extract()?;
+                if !(-1e4..=1e4).contains(&ms) {
+                    let expected = "expected a delay from -10000 to 10000 ms";
+                    return Err(PyValueError::new_err(format!("measured_delay_ms is {ms}, {expected}")));
+                }
+                #[expect(clippy::cast_possible_truncation, reason = "bounded")]
+                let ns = (1e6 * ms).round() as i64;
+                read.measured_delay_ns = ns;
+            }
+            "from_s" => from_s = Some(value.extract()?),
+            "to_s" => to_s = Some(value.extract()?),
+            "hydraulics" => hydraulics = Some(value.extract()?),
+            "joints_as" => {
+                into = match value.extract::<String>()?.as_str() {
+                    "angles" => JointKind::Turns,
+                    "cylinders" => JointKind::Slides,
+                    other => {
+                        let expected = "expected \"angles\" or \"cylinders\"";
+                        return Err(PyValueError::new_err(format!("joints_as is {other:?}, {expected}")));
+                    }
+                }
+            }
             "continuous" => read.continuous = texts(&value)?,
             "planned_degrees" => read.planned_in_degrees = value.extract()?,
             "measured_degrees" => read.measured_in_degrees = value.extract()?,
@@ -46,11 +73,14 @@ pub(crate) fn read_options(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Rea
                 read.signals.push(WantedSignal { role, topic });
             }
             other => {
-                let known = "planned, measured, command, valve, joints, time, slides, continuous, planned_degrees, measured_degrees";
+                let known = "planned, measured, command, valve, joints, time, slides, continuous, planned_degrees, \
+                             measured_degrees, measured_delay_ms, from_s, to_s, hydraulics, joints_as";
                 return Err(PyTypeError::new_err(format!("no option {other:?}; there are {known}")));
             }
         }
     }
+    read.range = TimeRange::of_seconds(from_s, to_s);
+    read.cylinders = hydraulics.map(|file| Cylinders { file, into });
     Ok(read)
 }
 

@@ -32,10 +32,10 @@ const PREDICTED: &[Column] = &[
 ///
 /// ``limits`` is a file that ``fit`` wrote, in place of a fit to the logs; ``task`` a task file in place of the last
 /// log's. ``keep_plan`` changes the command alone. ``gain`` is the share of the correction to apply, 0 to 1;
-/// ``max_correction_rad`` bounds the difference between command and plan. The other keywords are those for reading.
+/// ``max_correction_rad`` bounds the difference between command and plan, ``max_correction_m`` that of joints that slide. The other keywords are those for reading.
 #[pyfunction]
 #[pyo3(signature = (logs, *, limits=None, task=None, keep_plan=false, precompensate=true, retime=false, gain=1.0,
-                    max_correction_rad=None, max_time_growth=0.0, max_cost_growth=0.1, evaluations=20_000, seed=1,
+                    max_correction_rad=None, max_correction_m=None, max_time_growth=0.0, max_cost_growth=0.1, evaluations=20_000, seed=1,
                     rate_hz=100.0, threads=0, **options))]
 pub(crate) fn replan(
     py: Python<'_>,
@@ -47,6 +47,7 @@ pub(crate) fn replan(
     retime: bool,
     gain: f64,
     max_correction_rad: Option<f64>,
+    max_correction_m: Option<f64>,
     max_time_growth: f64,
     max_cost_growth: f64,
     evaluations: u64,
@@ -64,7 +65,12 @@ pub(crate) fn replan(
         keep_plan,
         precompensate,
         retime,
-        learning: Learning { gain, most_rad: max_correction_rad, ..Learning::default() },
+        learning: Learning {
+            gain,
+            most_rad: max_correction_rad,
+            most_m: max_correction_m,
+            ..Learning::default()
+        },
         time_growth: max_time_growth,
         cost_growth: max_cost_growth,
         evaluations,

@@ -31,6 +31,14 @@ pub enum WriteError {
     /// A time that messages cannot hold: stamps lie in 1970 to 2038, durations within 68 years.
     #[error("{quantity} {value_ns} ns does not fit a message")]
     TimeRange { quantity: &'static str, value_ns: i64 },
+    /// A rate at which no plan is written.
+    #[error("the rate is {found} Hz; a rate from {least} to {most} Hz is expected")]
+    Rate { found: f64, least: f64, most: f64 },
+    /// A plan of more samples than a log is made for.
+    #[error(
+        "a plan of {duration_s:.0} s at {rate_hz} Hz has more than {most} samples: give a lower rate, or a shorter plan"
+    )]
+    TooLong { duration_s: f64, rate_hz: f64, most: f64 },
     /// The points of a trajectory do not follow each other.
     #[error("time from start does not increase at point {index}: {previous_ns} ns then {next_ns} ns")]
     NotIncreasing { index: usize, previous_ns: i64, next_ns: i64 },

@@ -102,7 +102,12 @@ impl LogWriter<BufWriter<File>> {
         let path = path.as_ref();
         let file =
             File::create_new(path).map_err(|source| WriteError::Create { path: path.to_owned(), source })?;
-        Self::new(BufWriter::new(file), joint_names, options)
+        let begun = Self::new(BufWriter::new(file), joint_names, options);
+        if begun.is_err() {
+            // The file is ours and empty; there may be no second try beside it.
+            let _ = std::fs::remove_file(path);
+        }
+        begun
     }
 }
 

@@ -44,7 +44,9 @@ pub(super) fn input_files(inputs: &[Input]) -> Vec<LogFile> {
                 continue;
             }
             Input::Bytes { data, .. } => digest(&mut data.as_slice()),
-            Input::Reader { reader, .. } => digest(&mut Stream { reader: reader.as_ref(), at: 0 }),
+            Input::Reader { reader, .. } => {
+                Stream::of(reader.as_ref()).and_then(|mut whole| digest(&mut whole))
+            }
         };
         files.push(named(input.name(), found.ok()));
     }
@@ -56,11 +58,21 @@ pub(super) fn input_files(inputs: &[Input]) -> Vec<LogFile> {
 struct Stream<'a> {
     reader: &'a dyn ReadAt,
     at: u64,
+    end: u64,
+}
+
+impl<'a> Stream<'a> {
+    fn of(reader: &'a dyn ReadAt) -> io::Result<Self> {
+        Ok(Self { reader, at: 0, end: reader.length()? })
+    }
 }
 
 impl Read for Stream<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        let count = self.reader.read_at(into, self.at)?;
+        // Whatever the reader says: no more than there is, and than was asked for.
+        let left = usize::try_from(self.end.saturating_sub(self.at)).unwrap_or(usize::MAX);
+        let most = into.len().min(left);
+        let count = if most > 0 { self.reader.read_at(&mut into[..most], self.at)?.min(most) } else { 0 };
         self.at += count as u64;
         Ok(count)
     }
@@ -70,7 +82,7 @@ fn log_file(path: &Path) -> LogFile {
     if remote::is_address(path) && !path.exists() {
         let digest = remote::object(&path.to_string_lossy())
             .ok()
-            .and_then(|found| digest(&mut Stream { reader: found.open().as_ref(), at: 0 }).ok());
+            .and_then(|found| digest(&mut Stream::of(found.open().as_ref()).ok()?).ok());
         return named(path, digest);
     }
     named(path, input_file::open(path).and_then(|mut file| digest(&mut file)).ok())

@@ -40,7 +40,9 @@ def _rows(table, batch, column, options):
         return _pyarrow().table(found).to_pandas()
     if library == "pyarrow":
         found = _pyarrow().table(_of_columns(table, batch, column, options, _names(batch)))
-        return found.to_batches()[0] if type(batch).__name__ == "RecordBatch" else found
+        if type(batch).__name__ != "RecordBatch":
+            return found
+        return (found.to_batches() or [_pyarrow().RecordBatch.from_pylist([], schema=found.schema)])[0]
     if isinstance(batch, dict):
         return _pyarrow().table(_of_columns(table, batch, column, options))
     if isinstance(batch, (list, tuple)):

@@ -36,6 +36,16 @@ class _ReadOptions(TypedDict, total=False):
     """The clock."""
     slides: _Texts
     """Joints that slide: positions in m."""
+    measured_delay_ms: float
+    """How late the measured stamps are."""
+    from_s: float
+    """Read from here on, seconds since the start of the log."""
+    to_s: float
+    """Read up to here."""
+    hydraulics: _Path
+    """File of the arm's cylinders: lengths in the log become angles."""
+    joints_as: Literal["angles", "cylinders"]
+    """What joints with a cylinder are read as."""
     continuous: _Texts
     """Joints without end stops, whose angles wrap."""
     planned_degrees: bool
@@ -175,6 +185,7 @@ def replan(
     retime: bool = False,
     gain: float = 1.0,
     max_correction_rad: float | None = None,
+    max_correction_m: float | None = None,
     max_time_growth: float = 0.0,
     max_cost_growth: float = 0.1,
     evaluations: int = 20_000,
