@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use super::{
     CliError, Outcome, Run,
     console::{Console, spare_for_log, write_file},
-    number::speed_deg_s,
+    number::{speed_deg_s, speed_mm_s},
 };
 use crate::{
     fit::{Excitation, JointRoom},
     render::excite as words,
+    series::JointKind,
     units::radians_from_degrees,
     workflow::excite::{Arm, Inputs, run},
 };
@@ -34,7 +35,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "FILE")]
     task: Option<PathBuf>,
 
-    /// A joint, its start and its range, degrees; repeat for every joint
+    /// A joint, its start and its range, in degrees, or mm of a joint that slides (=1500:0:3000mm); repeat for every joint
     #[arg(long = "joint", value_name = "NAME=HOME:LOW:HIGH", value_parser = room, conflicts_with = "task")]
     joints: Vec<JointRoom>,
 
@@ -42,9 +43,13 @@ pub(super) struct Args {
     #[arg(long)]
     full: bool,
 
-    /// Largest speed of a joint; below the machine's own limit, that limit stays unknown
+    /// Largest speed of a joint that turns; below the machine's own limit, that limit stays unknown
     #[arg(long, value_name = "DEG/S", value_parser = speed_deg_s, allow_negative_numbers = true)]
     max_speed_deg_s: Option<f64>,
+
+    /// The same of a joint that slides
+    #[arg(long, value_name = "MM/S", value_parser = speed_mm_s, allow_negative_numbers = true)]
+    max_speed_mm_s: Option<f64>,
 }
 
 impl Args {
@@ -55,7 +60,9 @@ impl Args {
             (None, true) => Arm::Sample,
         };
         let excitation = if self.full { Excitation::full() } else { Excitation::minimal() };
-        Inputs { arm, excitation, most_rad_s: self.max_speed_deg_s.unwrap_or(f64::INFINITY) }
+        let [most_rad_s, most_m_s] =
+            [self.max_speed_deg_s, self.max_speed_mm_s].map(|most| most.unwrap_or(f64::INFINITY));
+        Inputs { arm, excitation, most_rad_s, most_m_s }
     }
 }
 
@@ -70,14 +77,28 @@ impl Run for Args {
 }
 
 fn room(text: &str) -> Result<JointRoom, String> {
-    let wrong = || format!("{text:?} is not NAME=HOME:LOW:HIGH in degrees, such as J1=60:30:90");
-    let (name, angles) = text.rsplit_once('=').ok_or_else(wrong)?;
-    let angles: Vec<f64> =
-        angles.split(':').map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
-    match angles[..] {
+    let wrong = || {
+        format!(
+            "{text:?} is not NAME=HOME:LOW:HIGH in degrees, such as J1=60:30:90, or in mm of a joint that slides, such as \
+             mast=1500:0:3000mm"
+        )
+    };
+    let (name, positions) = text.rsplit_once('=').ok_or_else(wrong)?;
+    let (kind, positions) = match positions.strip_suffix("mm") {
+        Some(lengths) => (JointKind::Slides, lengths),
+        None => (JointKind::Turns, positions),
+    };
+    let positions: Vec<f64> =
+        positions.split(':').map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let si = |value: f64| match kind {
+        JointKind::Turns => radians_from_degrees(value),
+        JointKind::Slides => 1e-3 * value,
+    };
+    match positions[..] {
         [home, low, high] if !name.is_empty() && low <= home && home <= high && (high - low).is_finite() => {
-            let [home_rad, low_rad, high_rad] = [home, low, high].map(radians_from_degrees);
-            Ok(JointRoom { name: name.to_owned(), home_rad, range_rad: [low_rad, high_rad] })
+            let [home_rad, low_rad, high_rad] = [home, low, high].map(si);
+            let (name, range_rad) = (name.to_owned(), [low_rad, high_rad]);
+            Ok(JointRoom { name, kind, home_rad, range_rad, most_rad_s: f64::INFINITY })
         }
         _ => Err(wrong()),
     }

@@ -24,6 +24,11 @@ pub(super) fn speed_deg_s(text: &str) -> Result<f64, String> {
     within(text, [0.1, 1000.0], "a speed from 0.1 to 1000 deg/s").map(radians_from_degrees)
 }
 
+/// Millimetres a second above zero, as metres a second.
+pub(super) fn speed_mm_s(text: &str) -> Result<f64, String> {
+    within(text, [1.0, 10_000.0], "a speed from 1 to 10000 mm/s").map(|mm_s| mm_s / 1e3)
+}
+
 /// Millimetres, as metres.
 pub(super) fn millimetres(text: &str) -> Result<f64, String> {
     not_negative(text, "length in millimetres").map(|mm| mm / 1e3)

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, ffi::OsString, ops::ControlFlow, path::PathBuf}
 use super::{
     CliError, Outcome, Run,
     console::{Console, Target, progress, spare_for_file, spare_for_log, write_file},
-    number::{degrees, growth_percent, share},
+    number::{degrees, growth_percent, millimetres, share},
     plan::Free,
     read::SentArgs,
 };
@@ -89,6 +89,10 @@ struct ChangeArgs {
     #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
     max_correction_deg: Option<f64>,
 
+    /// The same of joints that slide [default: 1.25 times the largest error, at least 26]
+    #[arg(long, value_name = "MM", value_parser = millimetres, allow_negative_numbers = true)]
+    max_correction_mm: Option<f64>,
+
     /// Largest growth of the plan's duration
     #[arg(long, value_name = "PERCENT", default_value = "0", value_parser = growth_percent)]
     max_time_growth_percent: f64,
@@ -114,6 +118,9 @@ impl ChangeArgs {
         if let Some(most_rad) = self.max_correction_deg {
             words.push(format!("--max-correction-deg={}", plain(most_rad.to_degrees())));
         }
+        if let Some(most_m) = self.max_correction_mm {
+            words.push(format!("--max-correction-mm={}", plain(1e3 * most_m)));
+        }
         if self.no_precompensation {
             words.push("--no-precompensation".to_owned());
         }
@@ -131,8 +138,8 @@ impl ChangeArgs {
 impl Args {
     fn request(&self) -> Inputs {
         let change = &self.change;
-        let learning =
-            Learning { gain: change.gain, most_rad: change.max_correction_deg, ..Learning::default() };
+        let (most_rad, most_m) = (change.max_correction_deg, change.max_correction_mm);
+        let learning = Learning { gain: change.gain, most_rad, most_m, ..Learning::default() };
         Inputs {
             logs: self.logs.clone(),
             read: self.sent.options(),

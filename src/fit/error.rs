@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::units::Degrees;
+use crate::{series::JointKind, units::Degrees};
 
 /// Why there is no fit, no prediction, or no run to make a fit from.
 #[derive(Debug, Clone, Error, PartialEq)]
@@ -11,9 +11,9 @@ use crate::units::Degrees;
 pub enum FitError {
     /// No joint has enough motion.
     #[error(
-        "no joint can be fitted: of joints that turn, {shared} are both sent and measured ({logs} log(s)), of which none \
-         is sent through {} or more; give a log of a run in which such joints move",
-        Degrees(*least_travel_rad)
+        "no joint can be fitted: {shared} are both sent and measured ({logs} log(s)), of which none is sent through {} or \
+         {} or more; give a log of a run in which joints move",
+        Degrees(*least_travel_rad), JointKind::Slides.says(*least_travel_rad)
     )]
     NothingMoves { logs: usize, shared: usize, least_travel_rad: f64 },
     /// Joints move, but are not sampled often enough to show how.
@@ -43,7 +43,14 @@ pub enum FitError {
     /// A joint without room for the run.
     #[error(
         "joint {joint} starts at {} and may go from {} to {}; a stroke takes {} on one side at least: start elsewhere",
-        Degrees(*home_rad), Degrees(*lowest_rad), Degrees(*highest_rad), Degrees(*travel_rad)
+        kind.says(*home_rad), kind.says(*lowest_rad), kind.says(*highest_rad), kind.says(*travel_rad)
     )]
-    NoRoom { joint: String, home_rad: f64, lowest_rad: f64, highest_rad: f64, travel_rad: f64 },
+    NoRoom {
+        joint: String,
+        kind: JointKind,
+        home_rad: f64,
+        lowest_rad: f64,
+        highest_rad: f64,
+        travel_rad: f64,
+    },
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{FitError, model::STEP_S, run::steps_in};
 use crate::{
-    series::{Series, Track},
+    series::{JointKind, Series, Track},
     units::DEGREE_RAD,
 };
 
@@ -32,6 +32,14 @@ pub struct Ramp {
 
 /// Strokes shorter than this show nothing, rad.
 const LEAST_RAD: f64 = DEGREE_RAD;
+
+/// Of a joint that slides a centimetre stands for a degree of the strokes.
+fn scale(kind: JointKind) -> f64 {
+    match kind {
+        JointKind::Turns => 1.0,
+        JointKind::Slides => 0.01 / DEGREE_RAD,
+    }
+}
 /// A stroke takes this long to its speed, and from it, s.
 const RAMP_S: f64 = 0.12;
 /// Points a second of the trajectory that strokes are made for: the cubic curve through these is the strokes themselves.
@@ -40,15 +48,27 @@ const POINT_S: f64 = 1.0 / STROKE_POINTS_HZ;
 /// Angles as close as this are one, rad.
 const ROUNDED_RAD: f64 = 1e-9;
 
-/// One joint of the run.
+/// One joint of the run; of one that slides a radian stands for a metre.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointRoom {
     /// The joint.
     pub name: String,
+    /// Whether it turns or slides.
+    pub kind: JointKind,
     /// Where it starts and ends, rad.
     pub home_rad: f64,
     /// Lowest and highest angle, rad.
     pub range_rad: [f64; 2],
+    /// Largest speed that it is sent, rad/s; infinite for none.
+    pub most_rad_s: f64,
+}
+
+impl JointRoom {
+    /// A joint that turns, as fast as strokes are.
+    pub fn turning(name: impl Into<String>, home_rad: f64, range_rad: [f64; 2]) -> Self {
+        let (name, kind) = (name.into(), JointKind::Turns);
+        Self { name, kind, home_rad, range_rad, most_rad_s: f64::INFINITY }
+    }
 }
 
 impl Excitation {
@@ -75,6 +95,22 @@ impl Excitation {
         }
     }
 
+    /// The ramps of a joint of a kind that is sent no faster than so; of those that are then equally fast the longest stays.
+    pub fn ramps(&self, kind: JointKind, most_rad_s: f64) -> Vec<Ramp> {
+        let by = scale(kind);
+        let ramp = |ramp: &Ramp| Ramp {
+            speed_rad_s: (by * ramp.speed_rad_s).min(most_rad_s),
+            travel_rad: by * ramp.travel_rad,
+        };
+        let mut ramps: Vec<Ramp> = self.ramps.iter().map(ramp).collect();
+        ramps.dedup_by(|a, b| {
+            let same = a.speed_rad_s <= b.speed_rad_s;
+            b.travel_rad = if same { b.travel_rad.max(a.travel_rad) } else { b.travel_rad };
+            same
+        });
+        ramps
+    }
+
     fn check(&self) -> Result<(), FitError> {
         let ramps = self.ramps.iter().flat_map(|ramp| {
             [("speed_rad_s", ramp.speed_rad_s, 1e-4, 100.0), ("travel_rad", ramp.travel_rad, 1e-4, 3.0)]
@@ -97,7 +133,7 @@ impl Excitation {
 ///
 /// # Errors
 ///
-/// [`FitError::Setting`], and [`FitError::NoRoom`] for a joint that has less than a degree on either side.
+/// [`FitError::Setting`], and [`FitError::NoRoom`] for a joint that has less than a degree, or a centimetre, on either side.
 pub fn excite(joints: &[JointRoom], excitation: &Excitation) -> Result<Series, FitError> {
     excitation.check()?;
     let mut strokes = Vec::with_capacity(joints.len());
@@ -118,7 +154,7 @@ pub fn excite(joints: &[JointRoom], excitation: &Excitation) -> Result<Series, F
             velocity_rad_s[before + k] = *velocity;
         }
         before += strokes.len();
-        let track = Track::new(&joint.name, t_s.clone(), position_rad, &[])
+        let track = Track::of(joint.kind, &joint.name, t_s.clone(), position_rad, &[])
             .and_then(|track| track.with_velocity(velocity_rad_s));
         tracks.push(track.map_err(|_| no_room(joint, f64::NAN))?);
     }
@@ -128,6 +164,7 @@ pub fn excite(joints: &[JointRoom], excitation: &Excitation) -> Result<Series, F
 fn no_room(joint: &JointRoom, travel_rad: f64) -> FitError {
     FitError::NoRoom {
         joint: joint.name.clone(),
+        kind: joint.kind,
         home_rad: joint.home_rad,
         lowest_rad: joint.range_rad[0],
         highest_rad: joint.range_rad[1],
@@ -138,17 +175,19 @@ fn no_room(joint: &JointRoom, travel_rad: f64) -> FitError {
 /// Angles and speeds of one joint's part of the run.
 fn joint_strokes(joint: &JointRoom, excitation: &Excitation) -> Result<Vec<(f64, f64)>, FitError> {
     let [lowest, highest] = joint.range_rad;
+    let (ramps, least_rad) = (excitation.ramps(joint.kind, joint.most_rad_s), scale(joint.kind) * LEAST_RAD);
+    let assumed_rad_s = scale(joint.kind) * excitation.assumed_speed_rad_s;
     let inside = |angle_rad: f64| (lowest - ROUNDED_RAD..=highest + ROUNDED_RAD).contains(&angle_rad);
     let home = joint.home_rad;
     let [below, above] = [home - lowest, highest - home];
-    if below < -ROUNDED_RAD || above < -ROUNDED_RAD || below.max(above) < LEAST_RAD {
-        return Err(no_room(joint, LEAST_RAD));
+    if below < -ROUNDED_RAD || above < -ROUNDED_RAD || below.max(above) < least_rad {
+        return Err(no_room(joint, least_rad));
     }
     // To both sides, if that leaves enough.
-    let room = if below.min(above) >= LEAST_RAD { below.min(above) } else { below.max(above) };
+    let room = if below.min(above) >= least_rad { below.min(above) } else { below.max(above) };
     let mut states = Vec::new();
-    let fastest_rad_s = excitation.ramps.iter().map(|ramp| ramp.speed_rad_s).fold(0.0, f64::max);
-    for ramp in &excitation.ramps {
+    let fastest_rad_s = ramps.iter().map(|ramp| ramp.speed_rad_s).fold(0.0, f64::max);
+    for ramp in &ramps {
         let fits = inside(home + ramp.travel_rad) || inside(home - ramp.travel_rad);
         let travel_rad = if fits { ramp.travel_rad } else { ramp.travel_rad.min(room) };
         let (up, down) = ((home + travel_rad).min(highest), (home - travel_rad).max(lowest));
@@ -162,7 +201,7 @@ fn joint_strokes(joint: &JointRoom, excitation: &Excitation) -> Result<Vec<(f64,
         };
         let mut from = home;
         for goal in goals {
-            stroke(from, goal, ramp.speed_rad_s, excitation, &mut states);
+            stroke([from, goal], [ramp.speed_rad_s, assumed_rad_s], excitation.dwell_s, &mut states);
             from = goal;
         }
     }
@@ -171,13 +210,18 @@ fn joint_strokes(joint: &JointRoom, excitation: &Excitation) -> Result<Vec<(f64,
 
 /// One stroke and the rest after it. Its speed grows and falls evenly, in times that are those of the points of a trajectory:
 /// the cubic curve through them, which controllers follow, is the stroke itself.
-fn stroke(from: f64, goal: f64, speed_rad_s: f64, excitation: &Excitation, states: &mut Vec<(f64, f64)>) {
+fn stroke(
+    [from, goal]: [f64; 2],
+    [speed_rad_s, assumed_rad_s]: [f64; 2],
+    dwell_s: f64,
+    states: &mut Vec<(f64, f64)>,
+) {
     let way = goal - from;
     let cruise_s = (way.abs() / speed_rad_s - RAMP_S).max(0.0);
     let cruise_s = (cruise_s / POINT_S - 1e-6).ceil().max(0.0) * POINT_S;
     let (end_s, top_rad_s) = (2.0 * RAMP_S + cruise_s, way / (RAMP_S + cruise_s));
-    let needed_s = way.abs() / speed_rad_s.min(excitation.assumed_speed_rad_s);
-    let steps = steps_in(needed_s.max(end_s) + excitation.dwell_s).next_multiple_of(steps_in(POINT_S));
+    let needed_s = way.abs() / speed_rad_s.min(assumed_rad_s);
+    let steps = steps_in(needed_s.max(end_s) + dwell_s).next_multiple_of(steps_in(POINT_S));
     for k in 0..steps {
         let t_s = k as f64 * STEP_S;
         let left_s = (end_s - t_s).max(0.0);
@@ -197,10 +241,8 @@ pub(super) mod tests {
     use super::*;
 
     pub(in crate::fit) fn run(excitation: &Excitation) -> Series {
-        let joint = |name: &str, home: f64, low: f64, high: f64| JointRoom {
-            name: name.into(),
-            home_rad: home * DEGREE_RAD,
-            range_rad: [low * DEGREE_RAD, high * DEGREE_RAD],
+        let joint = |name: &str, home: f64, low: f64, high: f64| {
+            JointRoom::turning(name, home * DEGREE_RAD, [low, high].map(|end| end * DEGREE_RAD))
         };
         excite(&[joint("boom", 40.0, 30.0, 50.0), joint("bucket", 12.0, 0.0, 20.0)], excitation).unwrap()
     }

@@ -16,6 +16,7 @@ use super::{
 };
 use crate::{
     math::{deviation, range},
+    series::JointKind,
     units::DEGREE_RAD,
 };
 
@@ -50,7 +51,7 @@ const STANDS: f64 = 0.02;
 const INEFFICIENCY: f64 = 50.0;
 
 /// Fits one joint, whose runs are not empty; with the ratios of peaks at held-out starts, and what was held out.
-pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOut>) {
+pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOut>) {
     let reached = [0, 1, 2, 3].map(|i| runs.iter().map(|run| run.reached[i]).fold(0.0, f64::max));
     let limits = [0, 1, 2, 3].map(|i| (ABOVE[i] * reached[i]).max(LOWEST[i]));
     let pose_rad = range(runs.iter().flat_map(|run| run.sent.iter().map(|sent| sent.0)));
@@ -122,7 +123,7 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     );
     let nothing = skill.explains_nothing() || stands(runs);
     let skill = if nothing { skill.without_model(&held_out) } else { skill };
-    let joint = report(name, &problem, &found, &knowledge, reached, samples, &skill);
+    let joint = report(named, &problem, &found, &knowledge, reached, samples, &skill);
     let joint = match rival {
         Some(rival) => joint.with_rival(&rival),
         None => joint,
@@ -130,7 +131,7 @@ pub(super) fn joint(name: &str, runs: &[Run]) -> (JointFit, Vec<f64>, Vec<HeldOu
     let joint = if nothing { joint.without_model() } else { joint };
     let ratios = skill.starts.iter().flatten().filter_map(HeldOutStart::ratio).collect();
     let runs = held_out.iter().zip(&skill.errors).zip(&skill.starts);
-    let stretches = runs.map(|((run, errors), starts)| HeldOut::of(name, run, errors, starts)).collect();
+    let stretches = runs.map(|((run, errors), starts)| HeldOut::of(named.0, run, errors, starts)).collect();
     (joint, ratios, stretches)
 }
 
@@ -151,7 +152,7 @@ fn asked_for(runs: &[Run], limits: [f64; 4]) -> [bool; 4] {
 }
 
 fn report(
-    name: &str,
+    (name, kind): (&str, JointKind),
     problem: &Problem,
     found: &Estimate,
     knowledge: &Knowledge,
@@ -182,6 +183,7 @@ fn report(
     let [dead_band_rad_s, dead_band_error_rad] = knowledge.dead_band(problem, &found.x);
     JointFit {
         name: name.to_owned(),
+        kind,
         runs: problem.runs.len(),
         samples,
         residual_rad: found.scale_rad,

@@ -6,6 +6,8 @@
 //! [`learn`] turns a plan and its runs into a correction that makes the next run better; [`excite`] makes a
 //! run from which a fit can tell the limits.
 //!
+//! A joint that slides is modelled as one that turns on a lever of a metre: a radian of its numbers stands for a metre.
+//!
 //! Smooth runs never reach the limits of speed and acceleration, which then are bounds and no
 //! numbers. Discrepancies were found on simulated machines, and no hardware was at hand.
 
@@ -40,7 +42,9 @@ pub use estimated::Estimated;
 pub use excite::{Excitation, JointRoom, Ramp, STROKE_POINTS_HZ, excite};
 pub use excited::is_excitation;
 pub use held_out::HeldOut;
-pub use learn::{Character, JointStep, Learning, Learnt, Oscillation, Room, Stalled, Step, Trial, learn};
+pub use learn::{
+    AFTER_S, Character, JointStep, Learning, Learnt, Oscillation, Room, Stalled, Step, Trial, learn,
+};
 pub use model::{Model, STEP_S};
 pub use outcome::{
     Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LEAST_SMOOTH_SKILL, LeftOut, MOST_UNEXPLAINED,
@@ -49,7 +53,7 @@ pub use predict::predict;
 pub use run::{Observation, SPARSEST_S};
 pub use start_error::{PredictedStart, StartErrorPredictor};
 
-use crate::{threads, units::DEGREE_RAD};
+use crate::{series::JointKind, threads, units::DEGREE_RAD};
 use run::{Run, runs, sparse_s};
 
 /// A joint that is sent less far than this cannot be fitted, rad.
@@ -91,17 +95,19 @@ impl Fit {
 ///
 /// As [`fit`].
 pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), FitError> {
-    let mut names: Vec<&str> = Vec::new();
+    let mut names: Vec<(&str, JointKind)> = Vec::new();
     for log in logs {
         for track in &log.sent.tracks {
-            if log.measured.track(track.name()).is_some() && !names.contains(&track.name()) {
-                names.push(track.name());
+            let (name, kind) = (track.name(), track.kind());
+            if log.measured.track(name).is_some() && names.iter().all(|(other, _)| *other != name) {
+                names.push((name, kind));
             }
         }
     }
-    let of = |name: &&str| -> Vec<Run> {
+    let of = |(name, kind): &(&str, JointKind)| -> Vec<Run> {
         let of_log = |(log, seen): (usize, &Observation)| {
-            let runs = runs(seen.sent.track(name)?, seen.measured.track(name)?);
+            let both = [seen.sent.track(name)?, seen.measured.track(name)?];
+            let runs = both.iter().all(|track| track.kind() == *kind).then(|| runs(both[0], both[1]))?;
             Some(runs.into_iter().map(move |run| Run { log, ..run }))
         };
         logs.iter().enumerate().filter_map(of_log).flatten().collect()
@@ -109,18 +115,18 @@ pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), Fit
     let fitted = threads::mapped(
         &names,
         || (),
-        |(), name| {
-            let runs = of(name);
+        |(), joint| {
+            let (runs, (name, kind)) = (of(joint), *joint);
             let travel_rad: f64 = runs.iter().map(Run::travel_rad).sum();
             let moves = travel_rad >= LEAST_TRAVEL_RAD;
             let left_out =
-                LeftOut { name: (*name).to_owned(), travel_rad, least_travel_rad: LEAST_TRAVEL_RAD };
+                LeftOut { name: name.to_owned(), kind, travel_rad, least_travel_rad: LEAST_TRAVEL_RAD };
             moves
                 .then(|| {
-                    let (mut joint, ratios, held_out) = joint::joint(name, &runs);
+                    let (mut joint, ratios, held_out) = joint::joint((name, kind), &runs);
                     joint.valve_dead_band = logs.iter().find_map(|log| {
                         valve::dead_band(
-                            log.valve.iter().find(|s| s.name() == *name)?,
+                            log.valve.iter().find(|s| s.name() == name)?,
                             log.measured.track(name)?,
                         )
                     });
@@ -146,7 +152,7 @@ pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), Fit
         let sparse_s = |log: &Observation, name: &str| {
             sparse_s(log.sent.track(name)?, log.measured.track(name)?, least_travel_rad)
         };
-        let all_s = logs.iter().flat_map(|log| names.iter().filter_map(move |name| sparse_s(log, name)));
+        let all_s = logs.iter().flat_map(|log| names.iter().filter_map(move |(name, _)| sparse_s(log, name)));
         if let Some(interval_s) = all_s.reduce(f64::min) {
             return Err(FitError::TooSparse { interval_s, most_s: SPARSEST_S });
         }

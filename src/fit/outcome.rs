@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Estimated, FitError, Model};
+use crate::series::JointKind;
 
 /// Held-out skill below which no command should be made from a model.
 pub const LEAST_SKILL: f64 = 0.3;
@@ -17,7 +18,7 @@ pub const LEAST_SMOOTH_SKILL: f64 = 0.8;
 /// Peak of sharp starts that a model leaves unexplained, by their measured peak, above which it does not hold.
 pub const MOST_UNEXPLAINED: f64 = 0.075;
 
-/// A machine as its logs show it.
+/// A machine as its logs show it. Of joints that slide a radian stands for a metre.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Fit {
@@ -38,6 +39,9 @@ pub struct Fit {
 pub struct LeftOut {
     /// The joint.
     pub name: String,
+    /// Whether it turns or slides.
+    #[serde(default, skip_serializing_if = "turns")]
+    pub kind: JointKind,
     /// How far it was sent, all logs together, rad.
     pub travel_rad: f64,
     /// How far is enough, rad.
@@ -50,6 +54,9 @@ pub struct LeftOut {
 pub struct JointFit {
     /// The joint.
     pub name: String,
+    /// Whether it turns or slides; of one that slides a radian stands for a metre.
+    #[serde(default, skip_serializing_if = "turns")]
+    pub kind: JointKind,
     /// Runs without gaps or long rests.
     pub runs: usize,
     /// Samples in them.
@@ -104,12 +111,23 @@ pub struct JointFit {
     pub model: Model,
 }
 
+/// Those that turn need not say so.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn turns(kind: &JointKind) -> bool {
+    *kind == JointKind::Turns
+}
+
 /// What files say that were written before this was asked.
 const fn holds() -> bool {
     true
 }
 
 impl Fit {
+    /// The kind in whose unit means over its joints are told.
+    pub fn common_kind(&self) -> JointKind {
+        JointKind::common(self.joints.iter().map(|joint| joint.kind))
+    }
+
     /// A joint by name.
     pub fn joint(&self, name: &str) -> Option<&JointFit> {
         self.joints.iter().find(|joint| joint.name == name)

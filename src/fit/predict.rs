@@ -40,7 +40,7 @@ pub fn predict(model: &Model, sent: &Track) -> Result<Track, FitError> {
         least: -1e4,
         most: 1e4,
     };
-    Track::new(sent.name(), sent.t_s(), position_rad, &cuts).map_err(|_| not_a_number())
+    Track::of(sent.kind(), sent.name(), sent.t_s(), position_rad, &cuts).map_err(|_| not_a_number())
 }
 
 /// A command on the steps of the model, one step past its end.

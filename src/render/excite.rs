@@ -2,27 +2,55 @@
 
 use std::path::Path;
 
-use super::kit::{Document, Id, NONE, Section, Sentence, Table, counted};
-use crate::{units::degrees_from_radians, workflow::excite::Excited};
+use super::{
+    kit::{Column, Document, Id, NONE, Section, Sentence, Table, counted},
+    metric::{Units, on_paper, unit},
+};
+use crate::{
+    fit::{JointRoom, Ramp},
+    math::range,
+    replay::Dimension,
+    series::JointKind::{self, Slides, Turns},
+    units::DEGREE_RAD,
+    workflow::excite::Excited,
+};
 
-/// Speed above which most hydraulic joints do not follow, deg/s.
-const FAST_DEG_S: f64 = 30.0;
+/// Speed above which most hydraulic joints do not follow, rad/s and m/s.
+const FAST: [(JointKind, f64, &str); 2] =
+    [(Turns, 30.0 * DEGREE_RAD, "--max-speed-deg-s"), (Slides, 0.3, "--max-speed-mm-s")];
+
+/// Room that a joint needs beyond what is sent.
+const BEYOND: [(JointKind, f64); 2] = [(Turns, 5.0 * DEGREE_RAD), (Slides, 0.05)];
 
 /// An identification run, for people.
 pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
-    let number = |rad: f64| format!("{:.1}", degrees_from_radians(rad));
-    let strokes: Vec<String> = excited
-        .excitation
-        .ramps
-        .iter()
-        .map(|ramp| format!("+-{} deg at {} deg/s", number(ramp.travel_rad), number(ramp.speed_rad_s)))
-        .collect();
+    let has = |kind: JointKind| excited.joints.iter().any(|joint| joint.kind == kind);
+    let number = |kind: JointKind, si: f64| format!("{:.1}", on_paper(kind, si));
+    let with = |dimension: Dimension, kind: JointKind, si: f64| {
+        format!("{} {}", number(kind, si), unit(dimension, kind))
+    };
+    let strokes = |kind: JointKind| {
+        let most = excited.joints.iter().find(|joint| joint.kind == kind)?.most_rad_s;
+        let one = |ramp: &Ramp| {
+            let [way, speed] = [(Dimension::Position, ramp.travel_rad), (Dimension::Speed, ramp.speed_rad_s)]
+                .map(|(dimension, si)| with(dimension, kind, si));
+            format!("+-{way} at {speed}")
+        };
+        Some(excited.excitation.ramps(kind, most).iter().map(one).collect::<Vec<_>>().join("; "))
+    };
+    let strokes: Vec<String> = [Turns, Slides].into_iter().filter_map(strokes).collect();
+    let units = Units::of(excited.joints.iter().map(|joint| joint.kind));
     let rows = excited.joints.iter().map(|joint| {
         let sent = excited.command.track(&joint.name).map_or(&[][..], |track| track.position());
-        let least = sent.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = sent.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let mut row = vec![joint.name.clone(), number(joint.home_rad), number(least), number(most)];
-        row.extend(joint.range_rad.map(|end| if end.is_finite() { number(end) } else { NONE.into() }));
+        let [least, most] = range(sent.iter().copied());
+        let home = if units.mixed() {
+            with(Dimension::Position, joint.kind, joint.home_rad)
+        } else {
+            number(joint.kind, joint.home_rad)
+        };
+        let mut row = vec![joint.name.clone(), home, number(joint.kind, least), number(joint.kind, most)];
+        let end = |end: f64| if end.is_finite() { number(joint.kind, end) } else { NONE.into() };
+        row.extend(joint.range_rad.map(end));
         row
     });
     let title = format!(
@@ -31,13 +59,20 @@ pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
         excited.duration_s(),
         file.display()
     );
-    let what = format!("The joints move one after the other: {}.", strokes.join("; "));
-    let numbers = ["home deg", "sent from", "to", "allowed from", "to"];
-    let longest_rad = excited.excitation.ramps.iter().map(|ramp| ramp.travel_rad).fold(0.0, f64::max);
+    let what = format!("The joints move one after the other: {}.", strokes.join("; those that slide "));
+    let home = units.heading("home", Dimension::Position);
+    let numbers = ["sent from", "to", "allowed from", "to"].map(Column::numbers);
+    let columns = [Column::words("joint"), Column::numbers(home)].into_iter().chain(numbers);
+    let longest_rad = |joint: &JointRoom| {
+        let ramps = excited.excitation.ramps(joint.kind, joint.most_rad_s);
+        ramps.iter().map(|ramp| ramp.travel_rad).fold(0.0, f64::max)
+    };
     let short: Vec<&str> = excited
         .joints
         .iter()
-        .filter(|joint| joint.range_rad.iter().any(|end| (end - joint.home_rad).abs() < longest_rad - 1e-9))
+        .filter(|joint| {
+            joint.range_rad.iter().any(|end| (end - joint.home_rad).abs() < longest_rad(joint) - 1e-9)
+        })
         .map(|joint| joint.name.as_str())
         .collect();
     let short = (!short.is_empty()).then(|| {
@@ -46,15 +81,20 @@ pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
             short.join(", ")
         ))
     });
-    let fast = (degrees_from_radians(excited.fastest_rad_s()) > FAST_DEG_S).then(|| {
-        Sentence::advice(
-            "The fast strokes exceed the speed of most machines, to show the limits; --max-speed-deg-s slows them.",
-        )
+    let fast = FAST.into_iter().filter(|(kind, most, _)| excited.fastest(*kind) > *most);
+    let fast: Vec<&str> = fast.map(|(_, _, option)| option).collect();
+    let fast = (!fast.is_empty()).then(|| {
+        Sentence::advice(format!(
+            "The fast strokes exceed the speed of most machines, to show the limits; {} slows them.",
+            fast.join(" or ")
+        ))
     });
     let beyond: Vec<String> = excited
         .beyond
         .iter()
-        .map(|(joint, [sent, allowed])| format!("{joint} {} of {} deg/s", number(*sent), number(*allowed)))
+        .map(|(joint, [sent, allowed])| {
+            format!("{joint} {} of {} deg/s", number(Turns, *sent), number(Turns, *allowed))
+        })
         .collect();
     let beyond = (!beyond.is_empty()).then(|| {
         Sentence::advice(format!(
@@ -63,14 +103,19 @@ pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
             beyond.join(", ")
         ))
     });
+    let beyond_ends = BEYOND.into_iter().filter(|(kind, _)| has(*kind));
+    let beyond_ends: Vec<String> = beyond_ends
+        .map(|(kind, room)| format!("{:.0} {}", on_paper(kind, room), unit(Dimension::Position, kind)))
+        .collect();
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(what)])
         .with_all(short)
-        .with(Table::new(&["joint"], &numbers, rows))
-        .with(Sentence::advice(
+        .with(Table::of(columns, rows))
+        .with(Sentence::advice(format!(
             "The arm must stand at home when the run starts. A joint that answers late, or whose loop integrates, runs past \
-             the ends that are sent, by 5 deg and more: leave room between them and the stops. Obstacles are not known: \
+             the ends that are sent, by {} and more: leave room between them and the stops. Obstacles are not known: \
              keep the area clear.",
-        ))
+            beyond_ends.join(" or ")
+        )))
         .with_all(fast)
         .with_all(beyond);
     Document::titled(title).with(section)

@@ -78,6 +78,11 @@ impl Units {
         Self(kinds.all(|kind| kind == first).then_some(first))
     }
 
+    /// Whether some turn and some slide.
+    pub(super) fn mixed(self) -> bool {
+        self.0.is_none()
+    }
+
     /// `peak deg`.
     pub(super) fn heading(self, heading: &str, dimension: Dimension) -> String {
         let kind = if dimension.is_of_joint() { self.0 } else { Some(Turns) };

@@ -47,7 +47,7 @@ pub(crate) fn next_written(
     (reading, changing): (&[String], &[String]),
 ) -> Section {
     let next = argument(next);
-    after_run(written(&next), &next, logs, changing).reading(reading)
+    after_run(written(&next), &next, logs, (reading, changing)).reading(reading)
 }
 
 /// What to type before and after a run; `again` are words of `replan` that make the same command anew, and `whole` says that more
@@ -64,7 +64,7 @@ pub(crate) fn to_send(
         step(section, aim, &words)
     };
     let none = || Section::new(Id::NEXT, "Commands", std::iter::empty::<Block>());
-    let after = |next: &str| after_run(none(), next, logs, changing).reading(reading).blocks;
+    let after = |next: &str| after_run(none(), next, logs, (reading, changing)).reading(reading).blocks;
     let section = none();
     let careful = "To send half of the correction first, the careful step:";
     let section =
@@ -76,11 +76,26 @@ pub(crate) fn to_send(
     section.with_all(after(&argument(next)))
 }
 
-fn after_run(section: Section, next: &str, logs: &[PathBuf], changing: &[String]) -> Section {
+fn after_run(
+    section: Section,
+    next: &str,
+    logs: &[PathBuf],
+    (reading, changing): (&[String], &[String]),
+) -> Section {
     let last = logs.last().map_or("RUN.mcap".to_owned(), argument);
+    // Where lengths of cylinders are logged the plan is in angles all the same.
+    let of_cylinders = reading.iter().any(|option| option.starts_with("--hydraulics"))
+        && !reading.iter().any(|option| option == "--as cylinders");
+    let lengths = format!("{}-lengths.csv", next.trim_end_matches(".mcap"));
+    let (section, plan) = if of_cylinders {
+        let aim = "To send it, and to put it beside the recorder's log, as lengths of cylinders:";
+        (step(section, aim, &["export", next, "--as", "cylinders", "-o", &lengths]), lengths.as_str())
+    } else {
+        (section, next)
+    };
     let aim = "After the run, to put the plan into the recorder's log:";
     let after = unused("after", 1, logs, next);
-    let joined = step(section, aim, &["join", "RUN.mcap", "--plan", next, "-o", &after]);
+    let joined = step(section, aim, &["join", "RUN.mcap", "--plan", plan, "-o", &after]);
     let compared = step(joined, "To see whether the error became smaller:", &["compare", &last, &after]);
     let mut words: Vec<String> = vec!["replan".to_owned()];
     words.extend(logs.iter().map(argument));

@@ -3,10 +3,10 @@
 use super::{kit::counted, metric::position};
 use crate::{series::JointKind, workflow::carried::Held};
 
-/// In a sentence; `None` where nothing was measured. `of` says whose command it was, with a blank in front.
-pub(super) fn sentence(held: &Held, of: &str) -> Option<String> {
+/// In a sentence; `None` where nothing was measured. `of` says whose command it was, with a blank in front, `kind` in whose unit its mean is.
+pub(super) fn sentence(held: &Held, kind: JointKind, of: &str) -> Option<String> {
     let kept = if held.kept()? { "kept" } else { "not kept" };
-    let shown = |peak_rad: f64| position(JointKind::Turns, peak_rad);
+    let shown = |peak_rad: f64| position(kind, peak_rad);
     Some(format!(
         "The command{of} promised a mean peak of {} (below {} in nine runs of ten); {} came in {}: {kept}.",
         shown(held.promised.mean_peak_rad),

@@ -23,14 +23,19 @@ pub struct Replay {
 }
 
 impl Replay {
+    /// The kind in whose unit means over its joints are told.
+    pub fn common_kind(&self) -> JointKind {
+        JointKind::common(self.joints.iter().map(|joint| joint.kind))
+    }
+
     /// Whether the joints turn or slide: the first one's kind, for figures of all exist only if they are alike.
     pub fn kind(&self) -> JointKind {
         self.joints.first().map_or(JointKind::Turns, |joint| joint.kind)
     }
 
-    /// Peak errors of the transitions of joints that turn, rad: lengths are no angles.
-    pub fn turning_peaks_rad(&self) -> impl Iterator<Item = f64> {
-        self.transitions.iter().filter(|t| t.joint_kind == JointKind::Turns).map(|t| t.peak_error)
+    /// Peak errors of the transitions, rad; a metre of a joint that slides counts as a radian.
+    pub fn peaks_rad(&self) -> impl Iterator<Item = f64> {
+        self.transitions.iter().map(|transition| transition.peak_error)
     }
 
     /// The joints, the one with the largest error first, compared as transitions are.

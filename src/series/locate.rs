@@ -33,13 +33,15 @@ const PLACES: usize = 8;
 const ALIKE: f64 = 1.5;
 const ALIKE_SHARE: f64 = 0.01;
 
-/// Looks for `motion` in `within` by its angles, over the joints that turn in both; of equally good
+/// Looks for `motion` in `within` by its positions, over the joints of both; a metre counts as a radian. Of equally good
 /// places the first. `None` if they share no joint, the motion does not move, less than four fifths
 /// of it lie within, or one lasts three days.
 pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
-    let turns = |track: &&Track| track.turns();
-    let both = |track| Some((track, within.track(Track::name(track)).filter(turns)?));
-    let pairs: Vec<(&Track, &Track)> = motion.tracks.iter().filter(turns).filter_map(both).collect();
+    let both = |track| {
+        let other = within.track(Track::name(track))?;
+        (other.kind() == track.kind()).then_some((track, other))
+    };
+    let pairs: Vec<(&Track, &Track)> = motion.tracks.iter().filter_map(both).collect();
     let [from_s, to_s] = span_s(pairs.iter().map(|pair| pair.0))?;
     let [start_s, end_s] = span_s(pairs.iter().map(|pair| pair.1))?;
     let spread_rad = spread_rad(&pairs, from_s, to_s);

@@ -5,7 +5,10 @@ use std::{ops::Range, sync::Arc};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::math::{linear, median};
+use crate::{
+    math::{linear, median},
+    units::Degrees,
+};
 
 /// The quantity of the values of a [`Signal`], and so their unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -74,6 +77,21 @@ impl JointKind {
     /// The unit of its position in text.
     pub const fn unit(self) -> &'static str {
         self.quantity().unit()
+    }
+
+    /// The kind in whose unit means over joints are told: of lengths if all of these slide.
+    pub fn common(kinds: impl IntoIterator<Item = Self>) -> Self {
+        let mut kinds = kinds.into_iter().peekable();
+        let slides = kinds.peek().is_some() && kinds.all(|kind| kind == Self::Slides);
+        if slides { Self::Slides } else { Self::Turns }
+    }
+
+    /// A position, or a difference of two, as people read it in messages.
+    pub fn says(self, value: f64) -> String {
+        match self {
+            Self::Turns => Degrees(value).to_string(),
+            Self::Slides => format!("{:.1} mm", 1e3 * value),
+        }
     }
 }
 

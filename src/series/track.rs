@@ -18,6 +18,11 @@ impl Series {
         self.tracks.iter().find(|track| track.name() == name)
     }
 
+    /// The kind in whose unit means over its joints are told.
+    pub fn common_kind(&self) -> JointKind {
+        JointKind::common(self.tracks.iter().map(Track::kind))
+    }
+
     /// First and last sample of all joints, s; `None` without a joint.
     pub fn span_s(&self) -> Option<[f64; 2]> {
         span_s(&self.tracks)

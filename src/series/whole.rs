@@ -3,7 +3,7 @@
 use std::{borrow::Cow, fmt};
 
 use super::{JointKind, Series, SignalError, Track};
-use crate::units::{DEGREE_RAD, Degrees};
+use crate::units::DEGREE_RAD;
 
 /// Planned speed that is motion, rad/s, or m/s of joints that slide.
 const MOVES: f64 = 0.05 * DEGREE_RAD;
@@ -101,17 +101,13 @@ impl Broken {
 
 impl fmt::Display for Broken {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = |kind, value: f64| match kind {
-            JointKind::Turns => Degrees(value).to_string(),
-            JointKind::Slides => format!("{:.1} mm", 1e3 * value),
-        };
         match self {
             Self::Cut { joint, kind, begins, speed, at_s } => {
-                let (does, speed) = (if *begins { "begins" } else { "ends" }, size(*kind, *speed));
+                let (does, speed) = (if *begins { "begins" } else { "ends" }, kind.says(*speed));
                 write!(f, "{does} at {at_s:.2} s while {joint} moves at {speed} per second")
             }
             Self::Hole { joint, kind, moved, hole_s: [from_s, to_s] } => {
-                let moved = size(*kind, *moved);
+                let moved = kind.says(*moved);
                 write!(f, "is missing from {from_s:.2} s to {to_s:.2} s while {joint} moves by {moved}")
             }
         }

@@ -8,7 +8,6 @@ use hydrotrace::{
         AngleUnit, LogWriter, Passes, ReadOptions, Role, Selector, SignalRole, WantedSignal, WriteOptions,
         passes, read_recording,
     },
-    remark::Code,
     replay::Rules,
     series::{JointKind, Quantity},
     workflow::{export, fit, join, replan, report, view},
@@ -177,15 +176,4 @@ fn a_joint_that_slides_is_a_track_in_metres() {
         let columns: Vec<&str> = table.column_names().collect();
         assert!(columns.contains(&"lift_planned_m") && columns.contains(&"turn_planned_deg"), "{columns:?}");
     }
-}
-
-#[test]
-fn a_fit_leaves_out_what_slides_and_says_so() {
-    let folder = tempfile::tempdir().unwrap();
-    let run =
-        fit::observe::observe(vec![lift(folder.path(), false).into()], &ReadOptions::default()).unwrap();
-    assert!(run.measured.track("lift").is_none() && run.planned.track("turn").is_some());
-    let remark = &run.remarks.as_slice()[0];
-    assert_eq!(remark.code, Code::NotSupported);
-    assert!(remark.message.contains("lift slides (m)"), "{}", remark.message);
 }

@@ -27,6 +27,9 @@ const SHIFTED_RAD: f64 = DEGREE_RAD;
 /// The two rests agree within this share.
 const SHIFTED_ALIKE: f64 = 0.2;
 
+/// What a joint does so long after its plan belongs to the run, s.
+pub const AFTER_S: f64 = 4.0;
+
 /// Rest that is looked at on either side, s, and how much of it must have been measured.
 const AT_REST_S: f64 = 0.5;
 const LEAST_AT_REST_S: f64 = 0.2;
@@ -40,6 +43,8 @@ pub(super) struct Answer {
     pub(super) shifted_rad: f64,
     /// Whether anything was.
     seen: Vec<bool>,
+    /// What the joint is off by after the plan, as far as it was measured and for four seconds at most, rad.
+    after_rad: Vec<f64>,
 }
 
 impl Answer {
@@ -53,9 +58,13 @@ impl Answer {
             measured_rad: (0..steps).map(|k| measured.held_at(at_s(k)).position).collect(),
             seen: (0..steps).map(|k| measured.at(at_s(k)).is_some()).collect(),
             shifted_rad: 0.0,
+            after_rad: Vec::new(),
         };
         made.shift(planned);
         made.fill(planned);
+        let end_rad = planned.last().map_or(0.0, |planned| planned.0) + made.shifted_rad;
+        let after = (steps..steps + steps_in(AFTER_S)).map_while(|k| measured.at(at_s(k)));
+        made.after_rad = after.map(|state| end_rad - state.position).collect();
         Some(made)
     }
 
@@ -84,6 +93,13 @@ impl Answer {
     pub(super) fn error_rad(&self, planned: &[(f64, f64)]) -> Vec<f64> {
         let error = |(planned, measured): (&(f64, f64), &f64)| planned.0 + self.shifted_rad - measured;
         planned.iter().zip(&self.measured_rad).map(error).collect()
+    }
+
+    /// The same, and what came after the plan.
+    pub(super) fn whole_rad(&self, planned: &[(f64, f64)]) -> Vec<f64> {
+        let mut whole_rad = self.error_rad(planned);
+        whole_rad.extend_from_slice(&self.after_rad);
+        whole_rad
     }
 
     /// Where nothing was measured, the error is that before and after it: as long as the plan rests, and fading from where
@@ -168,7 +184,8 @@ mod tests {
             });
             let measured_rad = measured_rad.collect();
             let seen = (0..n).map(seen).collect();
-            let mut answer = Answer { sent: Vec::new(), measured_rad, seen, shifted_rad: 0.0 };
+            let mut answer =
+                Answer { sent: Vec::new(), measured_rad, seen, shifted_rad: 0.0, after_rad: Vec::new() };
             answer.fill(&planned);
             (answer.error_rad(&planned), answer.unseen_s(&planned))
         };
@@ -196,7 +213,8 @@ mod tests {
         let shifted = |before: f64, after: f64, seen: &dyn Fn(usize) -> bool| {
             let measured_rad = (0..n).map(|k| plan(k) + before + plan(k) * (after - before)).collect();
             let seen = (0..n).map(seen).collect();
-            let mut answer = Answer { sent: Vec::new(), measured_rad, seen, shifted_rad: 0.0 };
+            let mut answer =
+                Answer { sent: Vec::new(), measured_rad, seen, shifted_rad: 0.0, after_rad: Vec::new() };
             answer.shift(&planned);
             (answer.shifted_rad, answer.error_rad(&planned)[n / 2])
         };

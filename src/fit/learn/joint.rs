@@ -12,11 +12,11 @@ use super::{
     },
     oscillation::{Character, Oscillation},
     shape::{Wanted, shaped},
-    stalled::stalled,
+    stalled::{GAINED, stalled, trimmed, unspoilt},
 };
 use crate::{
     math::{deviation, lowpass},
-    series::Track,
+    series::{JointKind, Track},
     units::DEGREE_RAD,
 };
 
@@ -39,8 +39,9 @@ const KEPT_HZ: f64 = 8.0;
 /// Errors are compared below this, Hz.
 const COMPARED_HZ: f64 = 1.5;
 
-/// An error that is larger than the best so far by this factor has grown.
+/// An error that is larger than the best so far by this factor has grown; so has one that is larger by less, and by so much, rad.
 const GROWN: f64 = 1.1;
+const GROWN_BY: (f64, f64) = (1.04, 0.03 * DEGREE_RAD);
 
 /// Share of an error that a later run corrects: of a calm joint, of one that rings slowly, of one that rings fast
 /// or hunts.
@@ -63,6 +64,7 @@ const EXPLAINED: f64 = 0.2;
 pub(super) struct Joint<'a> {
     fit: Option<&'a JointFit>,
     name: &'a str,
+    kind: JointKind,
     pub(super) planned: Vec<(f64, f64)>,
     answers: Vec<Answer>,
     /// Whether the newest run has little to do with the plan.
@@ -84,7 +86,16 @@ impl<'a> Joint<'a> {
         let newest = fit.zip(answers.last()).filter(|_| !astray);
         let oscillation =
             newest.map(|(fit, run)| Oscillation::of(&unexplained_rad(run, &fit.model, &mut workspace)));
-        Ok(Self { fit, name: track.name(), planned, answers, astray, oscillation, workspace })
+        Ok(Self {
+            fit,
+            name: track.name(),
+            kind: track.kind(),
+            planned,
+            answers,
+            astray,
+            oscillation,
+            workspace,
+        })
     }
 
     pub(super) fn next(
@@ -97,9 +108,7 @@ impl<'a> Joint<'a> {
     ) -> JointStep {
         let errors: Vec<Vec<f64>> = self.answers.iter().map(|run| run.error_rad(&self.planned)).collect();
         let largest_rad = errors.iter().map(|error_rad| largest(error_rad)).fold(0.0, f64::max);
-        let kept = settings
-            .keep
-            .and_then(|from| Some((from, self.answers.get(from)?.correction_rad(&self.planned))));
+        let kept = settings.keep.filter(|from| *from < self.answers.len());
         let sent: Vec<Vec<f64>> = self.answers.iter().map(|run| run.correction_rad(&self.planned)).collect();
         // What the plan is off by unaided, as its first run tells; what was sent beyond that is never clipped, and does not grow
         // where a joint cannot follow.
@@ -108,7 +117,7 @@ impl<'a> Joint<'a> {
         };
         let unaided_rad = sent.iter().zip(&errors).next().map_or(0.0, unaided);
         let sent_rad = sent.iter().map(|sent| largest(sent)).fold(0.0, f64::max);
-        let most_rad = settings.most_rad.unwrap_or(
+        let most_rad = settings.most(self.kind).unwrap_or(
             CAP_RAD.max(CAP_BY_ERROR * largest_rad.max(unaided_rad)).max(sent_rad / settings.share),
         );
         let rms_error_rad: Vec<f64> = errors.iter().map(|error_rad| compared(error_rad)).collect();
@@ -145,7 +154,15 @@ impl<'a> Joint<'a> {
         let spread_rad = made.spread_rad.unwrap_or(0.0);
         made.stalled.retain(|held| spread_rad < DIFFERS * held.error_rad);
         let fade = fade(self.planned.len(), free);
-        let (step, wanted_rad) = if let Some((from, kept)) = kept {
+        let (step, wanted_rad) = if let Some(from) = kept {
+            let from = unspoilt(from, &sent, &self.whole_rad());
+            let mut kept = sent[from].clone();
+            // Also of a command that is kept as a whole, not what gained nothing on less of it.
+            for held in &made.stalled {
+                if trimmed(&errors[from][held.steps.clone()]) > GAINED * held.error_rad {
+                    kept[held.steps.clone()].copy_from_slice(&sent[held.from][held.steps.clone()]);
+                }
+            }
             (Step::Kept { from }, kept)
         } else {
             let (step, mut wanted_rad) = self.wanted(fit, &manner, &made.rms_error_rad, &fade, settings);
@@ -163,6 +180,11 @@ impl<'a> Joint<'a> {
         let wanted = Wanted { correction_rad: &wanted_rad, cut_off_hz, most_rad, share: settings.share };
         made.correction = shaped(wanted, free, room(self.name).as_ref());
         made
+    }
+
+    /// What each run was off by, also after the plan, rad.
+    fn whole_rad(&self) -> Vec<Vec<f64>> {
+        self.answers.iter().map(|run| run.whole_rad(&self.planned)).collect()
     }
 
     /// What the last run and one before it differ by though the model says that they should not, rad: one in which the same
@@ -185,7 +207,7 @@ impl<'a> Joint<'a> {
         fade: &[f64],
         settings: Learning,
     ) -> (Step, Vec<f64>) {
-        let gain = settings.gain;
+        let (gain, whole) = (settings.gain, self.whole_rad());
         let Self { planned, answers, workspace, .. } = self;
         let scaled = |mut values: Vec<f64>, by: f64| {
             for x in &mut values {
@@ -208,6 +230,11 @@ impl<'a> Joint<'a> {
             return (Step::First { model_weight }, scaled(wanted, gain));
         }
         let (from, trust) = trusted(rms_rad);
+        let sent: Vec<Vec<f64>> = answers.iter().map(|run| run.correction_rad(planned)).collect();
+        let (from, trust) = match unspoilt(from, &sent, &whole) {
+            same if same == from => (from, trust),
+            other => (other, 0.5 * trust),
+        };
         let usual = match manner.character {
             Character::Calm => GAINS[0],
             Character::Rings if manner.cut_off_hz < FAST_HZ * 0.35 => GAINS[1],
@@ -260,12 +287,15 @@ fn compared(error_rad: &[f64]) -> f64 {
     rms(&slow)
 }
 
+fn grown(now_rad: f64, best_rad: f64) -> bool {
+    now_rad > GROWN * best_rad || (now_rad > GROWN_BY.0 * best_rad && now_rad - best_rad > GROWN_BY.1)
+}
+
 /// The run to go on from, and what is left of trust in a step: half for each run that grew the error.
 fn trusted(rms_rad: &[f64]) -> (usize, f64) {
     let (mut best, mut trust) = (0, 1.0);
     for (k, now) in rms_rad.iter().enumerate().skip(1) {
-        let grown = *now > GROWN * rms_rad[best];
-        if grown {
+        if grown(*now, rms_rad[best]) {
             trust *= 0.5;
         }
         if *now < rms_rad[best] {
@@ -273,7 +303,7 @@ fn trusted(rms_rad: &[f64]) -> (usize, f64) {
         }
     }
     let last = rms_rad.len().saturating_sub(1);
-    let from = if rms_rad.get(last).is_some_and(|now| *now > GROWN * rms_rad[best]) { best } else { last };
+    let from = if rms_rad.get(last).is_some_and(|now| grown(*now, rms_rad[best])) { best } else { last };
     (from, trust)
 }
 

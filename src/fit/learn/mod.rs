@@ -10,6 +10,7 @@ mod stalled;
 
 use std::ops::Range;
 
+pub use answer::AFTER_S;
 pub use oscillation::{Character, Oscillation};
 pub use shape::Room;
 pub use stalled::Stalled;
@@ -21,7 +22,7 @@ use super::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::series::{Series, SignalError, Track};
+use crate::series::{JointKind, Series, SignalError, Track};
 use joint::Joint;
 
 /// Rest before a motion in which its correction begins, s.
@@ -38,8 +39,10 @@ const MOST_HUNTING: usize = 3;
 pub struct Learning {
     /// Share of each correction that is applied, 0 to 1: less while a machine is new.
     pub gain: f64,
-    /// Largest distance of command and plan, rad; by the largest error without one.
+    /// Largest distance of command and plan of a joint that turns, rad; by the largest error without one.
     pub most_rad: Option<f64>,
+    /// The same of a joint that slides, m.
+    pub most_m: Option<f64>,
     /// Share of the room around the plan that is used.
     pub share: f64,
     /// The run whose correction is to be kept.
@@ -51,7 +54,7 @@ pub struct Learning {
 
 impl Default for Learning {
     fn default() -> Self {
-        Self { gain: 1.0, most_rad: None, share: 0.95, keep: None, anew: false }
+        Self { gain: 1.0, most_rad: None, most_m: None, share: 0.95, keep: None, anew: false }
     }
 }
 
@@ -191,9 +194,15 @@ pub fn learn(
 }
 
 impl Learning {
+    /// Of a joint of a kind; of one that slides a radian stands for a metre.
+    fn most(&self, kind: JointKind) -> Option<f64> {
+        if kind == JointKind::Slides { self.most_m } else { self.most_rad }
+    }
+
     fn check(&self) -> Result<(), FitError> {
-        let most_rad = self.most_rad.unwrap_or_default();
-        for (key, found) in [("gain", self.gain), ("most_rad", most_rad), ("share", self.share)] {
+        let [most_rad, most_m] = [self.most_rad, self.most_m].map(Option::unwrap_or_default);
+        let all = [("gain", self.gain), ("most_rad", most_rad), ("most_m", most_m), ("share", self.share)];
+        for (key, found) in all {
             if !(0.0..=1.0).contains(&found) {
                 return Err(FitError::Setting { key, found, least: 0.0, most: 1.0 });
             }

@@ -2,18 +2,21 @@
 
 use std::ops::Range;
 
-use super::correct::{NONE_RAD, largest, rms};
-use crate::units::DEGREE_RAD;
+use super::correct::{NONE_RAD, largest};
+use crate::{math::quantile, units::DEGREE_RAD};
 
 /// A correction has grown that is larger by this share of it and by this, rad.
 const GREW: (f64, f64) = (0.2, 0.1 * DEGREE_RAD);
 
 /// An error that is above this share of another, and above this, rad, is none the smaller for it.
-const GAINED: f64 = 0.95;
+pub(super) const GAINED: f64 = 0.95;
 const MATTERS_RAD: f64 = 0.1 * DEGREE_RAD;
 
 /// Errors up to this times the least are as good.
 const AS_GOOD: f64 = 1.1;
+
+/// Root mean square error and top of it that are larger than others by these factors are no gain, whatever was gained elsewhere.
+const WORSE: [f64; 2] = [1.02, 1.1];
 
 /// A stretch of motion in which a larger correction gained nothing.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,21 +40,61 @@ fn of_stretch(sent: &[Vec<f64>], errors: &[Vec<f64>], steps: Range<usize>) -> Op
     let in_it = |all: &[Vec<f64>], of: fn(&[f64]) -> f64| -> Option<Vec<f64>> {
         all.iter().map(|values| values.get(steps.clone()).map(of)).collect()
     };
-    let (sizes, errors) = (in_it(sent, largest)?, in_it(errors, rms)?);
+    let (sizes, tops) = (in_it(sent, largest)?, in_it(errors, top)?);
+    let errors = in_it(errors, trimmed)?;
     let least_rad = errors.iter().copied().fold(f64::INFINITY, f64::min);
-    // The corrections that are larger than that of run `k` without gain.
+    let corrected = |k: usize| sizes[k] > NONE_RAD;
+    let grew = |other: usize, k: usize| sizes[other] > sizes[k] + f64::max(GREW.0 * sizes[k], GREW.1);
+    let topped = |other: usize, k: usize| tops[other] > WORSE[1] * tops[k];
+    // By how much corrections are larger than that of run `k` without gain.
     let idle = |k: usize| {
-        let (size, error) = (sizes[k], errors[k]);
-        let more = sizes.iter().zip(&errors).filter(move |(other, left)| {
-            **other > size + f64::max(GREW.0 * size, GREW.1) && **left > GAINED * error
-        });
-        more.map(|(other, _)| other - size).reduce(f64::max)
+        let more = (0..sizes.len())
+            .filter(|&other| grew(other, k) && (errors[other] > GAINED * errors[k] || topped(other, k)));
+        more.map(|other| sizes[other] - sizes[k]).reduce(f64::max)
+    };
+    let spoils = |k: usize| {
+        let worse = |other: usize| errors[other] > WORSE[0] * errors[k] || topped(other, k);
+        (0..sizes.len()).all(|other| !corrected(other) || worse(other))
+    };
+    let as_good = |k: usize| {
+        errors[k] <= AS_GOOD * least_rad || (0..sizes.len()).all(|other| !grew(other, k) || topped(other, k))
     };
     let enough = (0..sizes.len())
-        .filter(|&k| sizes[k] > NONE_RAD && errors[k] > MATTERS_RAD && errors[k] <= AS_GOOD * least_rad)
+        .filter(|&k| errors[k] > MATTERS_RAD && if corrected(k) { as_good(k) } else { spoils(k) })
         .filter_map(|k| Some((k, idle(k)?)));
     let (from, more_rad) = enough.min_by(|a, b| sizes[a.0].total_cmp(&sizes[b.0]))?;
     Some(Stalled { steps, from, more_rad, error_rad: errors[from] })
+}
+
+/// Root mean square error without the largest fiftieth of it: no spike of a sensor is.
+pub(super) fn trimmed(error_rad: &[f64]) -> f64 {
+    let mut squares: Vec<f64> = error_rad.iter().map(|error| error * error).collect();
+    let kept = squares.len() - squares.len() / 50;
+    if kept < squares.len() {
+        squares.select_nth_unstable_by(kept, f64::total_cmp);
+    }
+    (squares[..kept].iter().sum::<f64>() / kept.max(1) as f64).sqrt()
+}
+
+/// The run of which a joint is to be sent what it was sent, in place of `from`: where that left it more error over the whole run than
+/// none did, the one that left least.
+pub(super) fn unspoilt(from: usize, sent: &[Vec<f64>], errors: &[Vec<f64>]) -> usize {
+    let of: Vec<[f64; 2]> = errors.iter().map(|error| [trimmed(error), top(error)]).collect();
+    let plain = (0..of.len()).filter(|k| largest(&sent[*k]) <= NONE_RAD);
+    let Some(plain) = plain.map(|k| of[k]).reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])]) else {
+        return from;
+    };
+    let spoilt = |k: usize| of[k][0] > WORSE[0] * plain[0] || of[k][1] > WORSE[1] * plain[1];
+    if plain[1] < MATTERS_RAD || !spoilt(from) {
+        return from;
+    }
+    let others = (0..of.len()).filter(|k| !spoilt(*k));
+    others.min_by(|a, b| of[*a][0].total_cmp(&of[*b][0])).unwrap_or(from)
+}
+
+/// What an error is below for all but a twentieth of the time: no spike of a sensor is.
+fn top(error_rad: &[f64]) -> f64 {
+    quantile(error_rad.iter().map(|error| error.abs()).collect(), 0.95)
 }
 
 #[cfg(test)]
@@ -87,8 +130,24 @@ mod tests {
         assert_eq!(found(&[[0.0; 2], [2.0; 2], [4.0; 2]], &[[3.0; 2], [0.08; 2], [0.08; 2]]), []);
         // The correction is the same.
         assert_eq!(found(&[[0.0; 2], [2.0; 2], [2.1; 2]], &[[3.0; 2], [1.0; 2], [1.0; 2]]), []);
-        // A first correction that gained nothing has no smaller one beside it.
+        // A first correction that gained nothing has no smaller one beside it; one that spoils is none the better for that.
         assert_eq!(found(&[[0.0; 2], [2.0; 2]], &[[3.0; 2], [3.0; 2]]), []);
+        let spoilt = found(&[[0.0; 2], [2.0; 2], [3.0; 2]], &[[3.0; 2], [3.1, 2.0], [3.3, 1.0]]);
+        assert!(matches!(&spoilt[..], [one] if one.steps == (0..4) && one.from == 0), "{spoilt:?}");
+    }
+
+    #[test]
+    fn a_joint_that_a_correction_spoilt_is_sent_less_of_one() {
+        let all = |of: &[f64]| of.iter().map(|of| vec![of * DEGREE_RAD; 200]).collect::<Vec<_>>();
+        let sent = all(&[0.0, 1.0, 3.0]);
+        assert_eq!(unspoilt(2, &sent, &all(&[6.8, 6.5, 7.4])), 1);
+        assert_eq!(unspoilt(2, &sent, &all(&[6.8, 7.0, 7.4])), 0);
+        assert_eq!(unspoilt(2, &sent, &all(&[6.8, 6.5, 6.6])), 2);
+        assert_eq!(unspoilt(2, &all(&[1.0; 3]), &all(&[6.8, 6.5, 7.4])), 2, "none was sent as it is");
+        // A spike of a sensor spoils nothing.
+        let mut errors = all(&[1.0, 0.1, 0.05]);
+        errors[2][7] = 100.0;
+        assert_eq!(unspoilt(2, &sent, &errors), 2);
     }
 
     #[test]

@@ -3,8 +3,7 @@
 use super::quality::looks_like_degrees;
 use crate::{
     remark::{Code, Remarks},
-    series::{JointKind, Series, Track},
-    units::Degrees,
+    series::{Series, Track},
 };
 
 /// Instants at which plan and measurement are compared, evenly spread over the measurement; fewer than the least tell
@@ -58,10 +57,7 @@ fn of_joint<'a>(
         return None;
     }
     let name = planned.name();
-    let size = |value: f64| match planned.kind() {
-        JointKind::Turns => Degrees(value).to_string(),
-        JointKind::Slides => format!("{:.1} mm", 1e3 * value),
-    };
+    let size = |value: f64| planned.kind().says(value);
     let followed = |other: &&Track| {
         let found = Alike::of(&both(other, measured)).filter(|_| other.kind() == planned.kind());
         found.is_some_and(|found| {

@@ -27,7 +27,8 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     lines.push(plans(comparison));
     lines.extend(comparison.after.iter().filter_map(|run| {
         let of = if comparison.after.len() > 1 { format!(" of {}", run.log) } else { String::new() };
-        promise::sentence(run.promised.as_ref()?, &of)
+        let kind = JointKind::common(comparison.pairs.iter().map(|pair| pair.joint_kind));
+        promise::sentence(run.promised.as_ref()?, kind, &of)
     }));
     lines.into_iter().map(Sentence::Finding).chain(verdicts(comparison)).collect()
 }

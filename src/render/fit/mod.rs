@@ -7,25 +7,48 @@ pub(super) use page::fitted;
 pub(crate) use page::page;
 pub(crate) use tables::document;
 
-use crate::fit::{Estimated, JointFit};
+use super::metric::{Units, on_paper, unit};
+use crate::{
+    fit::{Estimated, JointFit},
+    replay::Dimension,
+    series::JointKind,
+};
 
 /// How a quantity is shown.
 pub(in crate::render) struct Shown {
-    /// As in tables.
-    pub(in crate::render) name: &'static str,
+    /// Above a column, without the unit.
+    heading: &'static str,
+    /// In a sentence.
+    name: &'static str,
     /// Of a joint.
-    pub(in crate::render) of: fn(&JointFit) -> Estimated,
-    /// From SI to what people read.
-    pub(in crate::render) scale: fn(f64) -> f64,
-    /// Decimals.
-    pub(in crate::render) decimals: usize,
+    of: fn(&JointFit) -> Estimated,
+    dimension: Dimension,
+    /// Of degrees; of millimetres one less.
+    decimals: usize,
 }
 
 impl Shown {
-    /// The value with its interval, a bound, or nothing.
-    pub(in crate::render) fn cell(&self, joint: &JointFit) -> String {
+    fn number(&self, kind: JointKind, si: f64) -> String {
+        let of_length = self.dimension.is_of_joint() && kind == JointKind::Slides;
+        let shown = match self.dimension {
+            Dimension::Duration => 1e3 * si,
+            Dimension::Share => 100.0 * si,
+            of_joint if of_joint.is_of_joint() => on_paper(kind, si),
+            _ => si,
+        };
+        format!("{:.*}", self.decimals - usize::from(of_length), shown)
+    }
+
+    /// The value with its interval, a bound, or nothing; with its unit where the joints of a table share none.
+    fn cell(&self, joint: &JointFit, units: Units) -> String {
+        let shown = self.alone(joint);
+        let of_joint = self.dimension.is_of_joint() && units.mixed() && shown != crate::render::kit::NONE;
+        if of_joint { format!("{shown} {}", unit(self.dimension, joint.kind)) } else { shown }
+    }
+
+    fn alone(&self, joint: &JointFit) -> String {
         let found = (self.of)(joint);
-        let number = |si: f64| format!("{:.*}", self.decimals, (self.scale)(si));
+        let number = |si: f64| self.number(joint.kind, si);
         match (found.value, found.interval, found.lower_bound) {
             (Some(value), Some([low, high]), _) if found.identified => {
                 format!("{} ({}..{})", number(value), number(low), number(high))

@@ -15,9 +15,10 @@ use crate::{
                 headed,
             },
         },
-        metric::on_paper,
+        metric::{on_paper, unit},
     },
-    series::JointKind::Turns,
+    replay::Dimension,
+    series::JointKind::{self, Slides, Turns},
     workflow::fit::Fitted,
 };
 
@@ -104,22 +105,22 @@ fn drawn(fitted: &Fitted, plots: &mut Plots) -> Markup {
              double-click for all."
         }
         div class="side" {
-            @if let Some(chart) = peaks(&fitted.held_out) { (plots.place(chart)) }
+            @for kind in [Turns, Slides] { @if let Some(chart) = peaks(fitted, kind) { (plots.place(chart)) } }
             @for chart in courses { (plots.place(chart)) }
         }
     }
 }
 
-/// Measured over predicted peaks of starts.
-fn peaks(held_out: &[HeldOut]) -> Option<Chart> {
-    let degrees = |rad: f64| rounded(on_paper(Turns, rad));
-    let starts: Vec<(String, f64, f64)> = held_out
+/// Measured over predicted peaks of starts of joints of a kind.
+fn peaks(fitted: &Fitted, kind: JointKind) -> Option<Chart> {
+    let shown = |rad: f64| rounded(on_paper(kind, rad));
+    let own = |stretch: &&HeldOut| fitted.fit.joint(&stretch.joint).is_some_and(|joint| joint.kind == kind);
+    let starts: Vec<(String, f64, f64)> = fitted
+        .held_out
         .iter()
+        .filter(own)
         .flat_map(|stretch| {
-            stretch
-                .peaks_rad
-                .iter()
-                .map(|peaks| (stretch.joint.clone(), degrees(peaks[1]), degrees(peaks[0])))
+            stretch.peaks_rad.iter().map(|peaks| (stretch.joint.clone(), shown(peaks[1]), shown(peaks[0])))
         })
         .collect();
     let [_, most] =
@@ -131,11 +132,11 @@ fn peaks(held_out: &[HeldOut]) -> Option<Chart> {
     (!starts.is_empty()).then(|| Chart {
         title: "Peak error after each start".to_owned(),
         note: "on the line: as predicted".to_owned(),
-        x_label: "Predicted (deg)".into(),
+        x_label: format!("Predicted ({})", unit(Dimension::Position, kind)).into(),
         xs: vec![starts.iter().map(|start| start.1).collect(), ends.to_vec()],
         x_range: Some(ends),
         panels: vec![Panel {
-            label: "Measured (deg)".to_owned(),
+            label: format!("Measured ({})", unit(Dimension::Position, kind)),
             series: vec![
                 series("as predicted", Role::Guide, 1, ends.to_vec(), Vec::new()),
                 series("start", Role::Point, 0, measured, names),
@@ -165,7 +166,7 @@ fn course(fitted: &Fitted, joint: &JointFit) -> Option<Chart> {
     }
     let places = envelope(&segments, &[&measured, &predicted], MOST);
     let series = |name: &str, role, values: &[f64]| {
-        Series::of(name, role, 0, at(values, &places).map(|rad| rounded(on_paper(Turns, rad))).collect())
+        Series::of(name, role, 0, at(values, &places).map(|rad| rounded(on_paper(joint.kind, rad))).collect())
     };
     Some(Chart {
         title: format!("{} in {}", joint.name, fitted.runs[log].log),
@@ -173,7 +174,7 @@ fn course(fitted: &Fitted, joint: &JointFit) -> Option<Chart> {
         x_label: "Time (s)".into(),
         xs: vec![times(&t_s, &places)],
         panels: vec![Panel {
-            label: "Error (deg)".to_owned(),
+            label: format!("Error ({})", unit(Dimension::Position, joint.kind)),
             series: vec![
                 series("predicted", Role::Planned, &predicted),
                 series("measured", Role::Measured, &measured),

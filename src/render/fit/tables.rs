@@ -6,69 +6,44 @@ use crate::{
         Estimated, Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LEAST_SMOOTH_SKILL, LeftOut,
         MOST_UNEXPLAINED,
     },
-    render::kit::{Document, Id, Section, Sentence, Table, counted, deg, optional, some_of},
-    units::degrees_from_radians,
+    render::{
+        kit::{Column, Document, Id, Section, Sentence, Table, counted, some_of},
+        metric::{Units, position},
+    },
+    replay::Dimension,
     workflow::fit::{Fitted, torque::JointTorque},
 };
 
-const LOOP: [(&str, Shown); 5] = [
-    ("lag ms", Shown { name: "lag", of: |j| j.lag_s, scale: |s| s * 1e3, decimals: 0 }),
-    (
-        "dead band deg/s",
-        Shown { name: "dead band", of: |j| j.dead_band_rad_s, scale: degrees_from_radians, decimals: 2 },
-    ),
-    (
-        "dead-band error deg",
-        Shown {
-            name: "dead-band error",
-            of: |j| j.dead_band_error_rad,
-            scale: degrees_from_radians,
-            decimals: 2,
-        },
-    ),
-    ("gain 1/s", Shown { name: "position gain", of: |j| j.position_gain_1_s, scale: |k| k, decimals: 2 }),
-    ("feed-forward", Shown { name: "feed-forward", of: |j| j.feed_forward, scale: |k| k, decimals: 2 }),
+const LOOP: [Shown; 5] = [
+    shown("lag", "lag", |j| j.lag_s, Dimension::Duration, 0),
+    shown("dead band", "dead band", |j| j.dead_band_rad_s, Dimension::Speed, 2),
+    shown("dead-band error", "dead-band error", |j| j.dead_band_error_rad, Dimension::Position, 2),
+    shown("gain 1/s", "position gain", |j| j.position_gain_1_s, Dimension::Count, 2),
+    shown("feed-forward", "feed-forward", |j| j.feed_forward, Dimension::Count, 2),
 ];
 
-const LIMITS: [(&str, Shown); 2] = [
-    (
-        "speed + deg/s",
-        Shown {
-            name: "speed limit, growing",
-            of: |j| j.speed_limit_growing_rad_s,
-            scale: degrees_from_radians,
-            decimals: 1,
-        },
-    ),
-    (
-        "speed - deg/s",
-        Shown {
-            name: "speed limit, shrinking",
-            of: |j| j.speed_limit_shrinking_rad_s,
-            scale: degrees_from_radians,
-            decimals: 1,
-        },
-    ),
+const LIMITS: [Shown; 2] = [
+    shown("speed +", "speed limit, growing", |j| j.speed_limit_growing_rad_s, Dimension::Speed, 1),
+    shown("speed -", "speed limit, shrinking", |j| j.speed_limit_shrinking_rad_s, Dimension::Speed, 1),
 ];
 
-const LATE: Shown =
-    Shown { name: "set values late", of: |j| j.set_values_late_s, scale: |s| s * 1e3, decimals: 0 };
+const LATE: Shown = shown("late", "set values late", |j| j.set_values_late_s, Dimension::Duration, 0);
 
 /// Share of the full signal to each side.
 const VALVE: [Shown; 2] = [
-    Shown {
-        name: "valve dead band, growing",
-        of: |j| valve(j, 0),
-        scale: |share| share * 100.0,
-        decimals: 1,
-    },
-    Shown {
-        name: "valve dead band, shrinking",
-        of: |j| valve(j, 1),
-        scale: |share| share * 100.0,
-        decimals: 1,
-    },
+    shown("dead band + %", "valve dead band, growing", |j| valve(j, 0), Dimension::Share, 1),
+    shown("dead band - %", "valve dead band, shrinking", |j| valve(j, 1), Dimension::Share, 1),
 ];
+
+const fn shown(
+    heading: &'static str,
+    name: &'static str,
+    of: fn(&JointFit) -> Estimated,
+    dimension: Dimension,
+    decimals: usize,
+) -> Shown {
+    Shown { heading, name, of, dimension, decimals }
+}
 
 fn valve(joint: &JointFit, side: usize) -> Estimated {
     joint.valve_dead_band.map_or(Estimated::default(), |sides| sides[side])
@@ -98,23 +73,21 @@ pub(crate) fn document(fitted: &Fitted) -> Document {
 
 /// The numbers of a fit with their intervals.
 pub(super) fn machine(fit: &Fit) -> Vec<Section> {
-    let row = |joint: &JointFit| vec![joint.name.clone(), VALVE[0].cell(joint), VALVE[1].cell(joint)];
-    let valves = Table::new(&["joint"], &["dead band + %", "dead band - %"], fit.joints.iter().map(row));
     let mut sections = vec![
-        Section::new(Id::OTHER, "Closed loop", [table(&fit.joints, &LOOP, true)]).with(Sentence::note(
+        Section::new(Id::OTHER, "Closed loop", [table(fit, &LOOP, true)]).with(Sentence::note(
             "Held-out R2: share of the tracking error that the model predicts in data it was not fitted to. Unexplained: mean \
              peak of the error that it leaves there after a start. Dead band: speed that must be commanded before the joint \
              leaves rest; dead-band error: the largest error that stays uncorrected in it. Gain: commanded speed per error; \
              feed-forward: commanded speed per speed of the plan. <= x: starts are too smooth to show the lag, and it is below. \
              A recorder that stamps the measurement late looks like a lag of that size.",
         )),
-        Section::new(Id::OTHER, "Limits", [table(&fit.joints, &LIMITS, false)]).with(Sentence::note(
-            "+ for growing, - for shrinking angles. >= x: x was reached, so the limit is higher. (x): an assumption, not \
+        Section::new(Id::OTHER, "Limits", [table(fit, &LIMITS, false)]).with(Sentence::note(
+            "+ for growing, - for shrinking angles or lengths. >= x: x was reached, so the limit is higher. (x): an assumption, not \
              measured.",
         )),
     ];
     if fit.joints.iter().any(|joint| joint.valve_dead_band.is_some()) {
-        sections.push(Section::new(Id::OTHER, "Valves", [valves]));
+        sections.push(Section::new(Id::OTHER, "Valves", [table(fit, &VALVE, false)]));
     }
     sections
 }
@@ -137,19 +110,23 @@ fn torques(torques: &[JointTorque]) -> Option<Section> {
     })
 }
 
-fn table(joints: &[JointFit], columns: &[(&'static str, Shown)], skill: bool) -> Table {
-    let mut numbers = if skill { vec!["held-out R2", "unexplained deg"] } else { Vec::new() };
-    numbers.extend(columns.iter().map(|(heading, _)| *heading));
+fn table(fit: &Fit, columns: &[Shown], skill: bool) -> Table {
+    let units = Units::of(fit.joints.iter().map(|joint| joint.kind));
+    let unexplained = units.heading("unexplained", Dimension::Position);
+    let mut numbers = if skill { vec!["held-out R2".to_owned(), unexplained] } else { Vec::new() };
+    numbers.extend(columns.iter().map(|shown| units.heading(shown.heading, shown.dimension)));
     let row = |joint: &JointFit| {
         let mut row = vec![joint.name.clone()];
         if skill {
             row.push(format!("{:.2}", joint.held_out_r2));
-            row.push(optional(joint.unexplained_peak_rad.map(|[mean, _]| mean), deg));
+            let mean = joint.unexplained_peak_rad.map(|[mean, _]| mean);
+            row.push(units.optional(Dimension::Position, joint.kind, mean));
         }
-        row.extend(columns.iter().map(|(_, shown)| shown.cell(joint)));
+        row.extend(columns.iter().map(|shown| shown.cell(joint, units)));
         row
     };
-    Table::new(&["joint"], &numbers, joints.iter().map(row))
+    let columns = std::iter::once(Column::words("joint")).chain(numbers.into_iter().map(Column::numbers));
+    Table::of(columns.collect::<Vec<_>>(), fit.joints.iter().map(row))
 }
 
 /// What the numbers are good for, and what would tell the rest.
@@ -163,7 +140,7 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         fit.margin_starts,
         fit.peak_margin
     )];
-    let all = || LOOP.iter().chain(&LIMITS).map(|(_, shown)| shown);
+    let all = || LOOP.iter().chain(&LIMITS);
     let open: Vec<String> = all()
         .filter_map(|shown| {
             let joints: Vec<&str> = fit
@@ -213,7 +190,7 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         )
     }));
     let late = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.set_values_late_s() > 0.0);
-    let late: Vec<String> = late.map(|joint| format!("{} {}", joint.name, LATE.cell(joint))).collect();
+    let late: Vec<String> = late.map(|joint| format!("{} {}", joint.name, LATE.alone(joint))).collect();
     lines.extend((!late.is_empty()).then(|| {
         format!(
             "Loops answer as if what is sent reached them late, ms: {}. A filter of set values does so, a delay on the way, or \
@@ -234,8 +211,8 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
 /// Which joints are not fitted, and why; `None` if all are.
 pub(super) fn left_out_line(fit: &Fit) -> Option<String> {
     let one = |joint: &LeftOut| {
-        let [sent, needed] = [joint.travel_rad, joint.least_travel_rad].map(deg);
-        format!("{} (its command moves {sent} deg in all, {needed} deg are needed)", joint.name)
+        let [sent, needed] = [joint.travel_rad, joint.least_travel_rad].map(|m| position(joint.kind, m));
+        format!("{} (its command moves {sent} in all, {needed} are needed)", joint.name)
     };
     let joints: Vec<String> = fit.left_out.iter().map(one).collect();
     (!joints.is_empty()).then(|| format!("Not fitted: {}.", joints.join(", ")))

@@ -20,6 +20,10 @@ pub(crate) fn reading(line: &str, options: &[String]) -> String {
     let of_joints = |option: &&String| OF_JOINTS.iter().any(|one| option.starts_with(one));
     let taken: Vec<&str> = match verb {
         "join" => options.iter().filter(of_joints).map(String::as_str).collect(),
+        // A plan of ours, whose topics are not those of the logs.
+        "export" if line.contains("--as cylinders") => {
+            options.iter().filter(|option| option.starts_with("--hydraulics")).map(String::as_str).collect()
+        }
         _ if READERS.contains(&verb) => options.iter().map(String::as_str).collect(),
         _ => Vec::new(),
     };

@@ -4,9 +4,11 @@ use crate::{
     fit::{Character, LEAST_SKILL},
     plan::Limit,
     render::{
-        kit::{Block, Check, Id, Mark, Section, Sentence, counted, deg, mm, optional, share},
+        kit::{Block, Check, Id, Mark, Section, Sentence, counted, mm, optional, share},
+        metric::position,
         plan,
     },
+    series::JointKind,
     workflow::{
         plan::MarginEntry,
         replan::{self, Checks, Finding, JointTrust, Level, Reason, Verdict},
@@ -16,16 +18,16 @@ use crate::{
 /// The section of a document.
 pub(super) const ID: Id = Id("checks");
 
-/// The verdict and every check.
-pub(super) fn section(checks: &Checks) -> Section {
-    Section::new(ID, "Safe to send?", [Block::from(Sentence::finding(verdict(checks))), list(checks)])
+/// The verdict and every check; `kind` is that in whose unit means over the joints are told.
+pub(super) fn section(checks: &Checks, kind: JointKind) -> Section {
+    Section::new(ID, "Safe to send?", [Block::from(Sentence::finding(verdict(checks))), list(checks, kind)])
 }
 
-pub(super) fn list(checks: &Checks) -> Block {
+pub(super) fn list(checks: &Checks, kind: JointKind) -> Block {
     let one = |check: &replan::Check| Check {
         mark: mark(check.level),
         name: name(&check.finding),
-        found: words(check.level, &check.finding),
+        found: words(check.level, &check.finding, kind),
     };
     Block::Checks(checks.list.iter().map(one).collect())
 }
@@ -77,6 +79,9 @@ fn short(level: Level, finding: &Finding) -> String {
         }
         Finding::Promise { .. } => "more error came than was promised".to_owned(),
         Finding::Outlook { .. } => "a larger error is expected".to_owned(),
+        Finding::Whole { .. } => {
+            "the last correction left more error over the whole run than none".to_owned()
+        }
         Finding::Leave { .. } => "it leaves the plan far".to_owned(),
         Finding::Gain { reasons, .. } => because(reasons),
     }
@@ -98,38 +103,48 @@ fn name(finding: &Finding) -> &'static str {
         Finding::Trust { .. } => "Model",
         Finding::Promise { .. } => "Last promise",
         Finding::Outlook { .. } => "Next error",
+        Finding::Whole { .. } => "Whole run",
         Finding::Leave { .. } => "Off the plan",
         Finding::Gain { .. } => "Size of step",
     }
 }
 
-fn words(level: Level, finding: &Finding) -> String {
+fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
+    let shown = |rad: f64| position(kind, rad);
     let good = level == Level::Good;
     match finding {
         Finding::Ends { .. } if good => "It begins and ends where the plan does.".to_owned(),
         Finding::Ends { start_rad, end_rad } => format!(
-            "It begins {} deg and ends {} deg away from the plan: the controller would jump.",
-            deg(*start_rad),
-            deg(*end_rad)
+            "It begins {} and ends {} away from the plan: the controller would jump.",
+            shown(*start_rad),
+            shown(*end_rad)
         ),
         Finding::Rest { speed_rad_s, acceleration_rad_s2 } => {
             let start = if good { "It ends at rest" } else { "It does not end at rest" };
             let acceleration =
-                acceleration_rad_s2.map_or(String::new(), |a| format!(", acceleration {} deg/s2", deg(a)));
-            format!("{start}: speed {} deg/s{acceleration}.", deg(*speed_rad_s))
+                acceleration_rad_s2.map_or(String::new(), |a| format!(", acceleration {}/s2", shown(a)));
+            format!("{start}: speed {}/s{acceleration}.", shown(*speed_rad_s))
         }
-        Finding::Limits { broken, between, nearest, unlimited } => {
+        Finding::Limits { broken, between, nearest, unlimited, fastest } => {
             let none: Vec<&str> = unlimited.iter().map(|limit| limit.name()).collect();
             let none =
                 if none.is_empty() { String::new() } else { format!(" No limit: {}.", none.join(", ")) };
-            limits([*broken, *between], nearest) + &none
+            let fast = fastest.as_ref().map_or(String::new(), |fast| {
+                format!(
+                    " {} is sent up to {}/s, {:.1} times as fast as its plan.",
+                    fast.joint,
+                    position(fast.kind, fast.speed_rad_s),
+                    fast.ratio
+                )
+            });
+            limits([*broken, *between], nearest) + &fast + &none
         }
         Finding::Trust { joints } => trust(joints),
         Finding::Promise { log, promised, measured_mean_peak_rad } => format!(
-            "{log} promised a mean peak error of {} deg, in nine runs of ten below {}; {} deg came{}.",
-            deg(promised.mean_peak_rad),
-            deg(promised.mean_peak_margin_rad),
-            deg(*measured_mean_peak_rad),
+            "{log} promised a mean peak error of {}, in nine runs of ten below {}; {} came{}.",
+            shown(promised.mean_peak_rad),
+            shown(promised.mean_peak_margin_rad),
+            shown(*measured_mean_peak_rad),
             match level {
                 Level::Good => "",
                 Level::Caution => ", which is more",
@@ -137,20 +152,28 @@ fn words(level: Level, finding: &Finding) -> String {
             }
         ),
         Finding::Outlook { last_mean_peak_rad, expected } => format!(
-            "Mean peak error of starts: {} deg last, {} deg expected, in nine runs of ten below {}.",
-            optional(*last_mean_peak_rad, deg),
-            deg(expected.mean_peak_rad),
-            deg(expected.mean_peak_margin_rad)
+            "Mean peak error of starts: {} last, {} expected, in nine runs of ten below {}.",
+            optional(*last_mean_peak_rad, shown),
+            shown(expected.mean_peak_rad),
+            shown(expected.mean_peak_margin_rad)
         ),
-        Finding::Leave { joint, distance_rad, t_s, tool_m } => {
+        Finding::Whole { overall } => format!(
+            "Error with rests and stops: rms {}, p95 {} in the last run; {} and {} with the plan as it is{}.",
+            shown(overall.rms_rad),
+            shown(overall.p95_rad),
+            shown(overall.plain_rms_rad),
+            shown(overall.plain_p95_rad),
+            if good { "" } else { ": the correction gains at starts and loses more elsewhere" }
+        ),
+        Finding::Leave { joint, kind, distance_rad, t_s, tool_m } => {
             let tool = tool_m.map_or(String::new(), |m| format!(", up to {} mm at the tool", mm(m)));
             let advice = match level {
                 Level::Stop => "send less of it (--gain 0.5), or a slower plan",
                 Level::Good | Level::Caution => "keep that room free",
             };
             format!(
-                "It leaves the plan by up to {} deg ({joint} at {t_s:.1} s){tool}: {advice}.",
-                deg(*distance_rad)
+                "It leaves the plan by up to {} ({joint} at {t_s:.1} s){tool}: {advice}.",
+                position(*kind, *distance_rad)
             )
         }
         Finding::Gain { gain, reasons } => {

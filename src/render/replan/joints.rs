@@ -1,14 +1,15 @@
 //! Each joint of the next run: plan, command and expected answer between its limits.
 
 use crate::{
-    render::kit::{
-        deg,
-        page::{
+    render::{
+        kit::page::{
             chart::{Chart, Panel, Role, Series, Size, at, rounded, span, times},
             envelope::envelope,
         },
+        metric::{on_paper, position, unit},
     },
-    units::degrees_from_radians,
+    replay::Dimension,
+    series::JointKind,
     workflow::replan::JointCourse,
 };
 
@@ -48,12 +49,15 @@ pub(super) fn chart(course: &JointCourse) -> Chart {
         three(&course.planned.angle_rad, &course.sent.angle_rad, answered(|drawn| &drawn.angle_rad));
     let mut speed =
         three(&course.planned.speed_rad_s, &course.sent.speed_rad_s, answered(|drawn| &drawn.speed_rad_s));
-    limit(&mut angle, &course.range_rad);
-    limit(&mut speed, &[-course.speed_limit_rad_s, course.speed_limit_rad_s]);
+    limit(&mut angle, course.kind, &course.range_rad);
+    limit(&mut speed, course.kind, &[-course.speed_limit_rad_s, course.speed_limit_rad_s]);
     let mut apart = lines.band(missed.as_deref());
     apart.push(lines.line("command", Role::Error, &moved));
     apart.extend(missed.as_deref().map(|missed| lines.line("expected", Role::Measured, missed)));
-    let panel = |label: &str, share, series| Panel { label: label.to_owned(), series, share, range: None };
+    let panel = |label: &str, dimension, share, series| {
+        let label = format!("{label} ({})", unit(dimension, course.kind));
+        Panel { label, series, share, range: None }
+    };
     let ends = course.t_s.first().zip(course.t_s.last());
     Chart {
         title: course.name.clone(),
@@ -64,9 +68,14 @@ pub(super) fn chart(course: &JointCourse) -> Chart {
             ends.map_or_else(Vec::new, |(from, to)| vec![rounded(*from), rounded(*to)]),
         ],
         panels: vec![
-            panel("Angle (deg)", 0.34, angle),
-            panel("Off plan (deg)", 0.33, apart),
-            panel("Speed (deg/s)", 0.33, speed),
+            panel(
+                if course.kind == JointKind::Turns { "Angle" } else { "Length" },
+                Dimension::Position,
+                0.34,
+                angle,
+            ),
+            panel("Off plan", Dimension::Position, 0.33, apart),
+            panel("Speed", Dimension::Speed, 0.33, speed),
         ],
         group: Some("run"),
         height: 380,
@@ -78,18 +87,21 @@ pub(super) fn chart(course: &JointCourse) -> Chart {
 /// The numbers that the lines are held to.
 fn note(course: &JointCourse, moved_rad: &[f64]) -> String {
     let most_rad = moved_rad.iter().fold(0.0_f64, |most, moved| most.max(moved.abs()));
-    let [low, high] = course.range_rad.map(|rad| format!("{:.0}", degrees_from_radians(rad)));
-    let speed = format!("{:.1}", degrees_from_radians(course.speed_limit_rad_s));
-    let range = course.range_rad.iter().all(|rad| rad.is_finite()).then(|| format!("{low} to {high} deg"));
-    let speed = course.speed_limit_rad_s.is_finite().then(|| format!("{speed} deg/s"));
+    let kind = course.kind;
+    let [low, high] = course.range_rad.map(|rad| format!("{:.0}", on_paper(kind, rad)));
+    let range = course.range_rad.iter().all(|rad| rad.is_finite());
+    let range = range.then(|| format!("{low} to {high} {}", unit(Dimension::Position, kind)));
+    let most = course.speed_limit_rad_s;
+    let speed =
+        most.is_finite().then(|| format!("{:.1} {}", on_paper(kind, most), unit(Dimension::Speed, kind)));
     let limits: Vec<String> = range.into_iter().chain(speed).collect();
     let limits = if limits.is_empty() { String::new() } else { format!("; limits {}", limits.join(", ")) };
-    format!("corrected by up to {} deg{limits}", deg(most_rad))
+    format!("corrected by up to {}{limits}", position(kind, most_rad))
 }
 
 impl Lines<'_> {
     fn line(&self, name: &str, role: Role, values: &[f64]) -> Series {
-        let y = at(values, &self.places).map(|value| rounded(degrees_from_radians(value))).collect();
+        let y = at(values, &self.places).map(|value| rounded(on_paper(self.course.kind, value))).collect();
         Series::of(name, role, 0, y)
     }
 
@@ -107,10 +119,10 @@ impl Lines<'_> {
 }
 
 /// Limits that are near enough to be seen beside the lines.
-fn limit(lines: &mut Vec<Series>, limits: &[f64; 2]) {
+fn limit(lines: &mut Vec<Series>, kind: JointKind, limits: &[f64; 2]) {
     let [low, high] = span(lines.iter().flat_map(|line| &line.y).copied());
     let room = NEAR * (high - low);
-    for limit in limits.map(degrees_from_radians) {
+    for limit in limits.map(|limit| on_paper(kind, limit)) {
         if limit > low - room && limit < high + room {
             lines.push(Series::of("limit", Role::Guide, 1, vec![rounded(limit); 2]));
         }

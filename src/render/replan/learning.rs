@@ -2,25 +2,33 @@
 
 use crate::{
     fit::Step,
-    render::kit::{Id, NONE, Section, Sentence, Table, counted, deg, optional},
+    render::{
+        kit::{Column, Id, NONE, Section, Sentence, Table, counted, optional},
+        metric::{Units, number, position, unit},
+    },
+    replay::Dimension,
+    series::JointKind,
     workflow::replan::{Decision, JointCommand, KeepReason, PastRun, Replanned},
 };
 
 /// What to keep, where nothing more is to be gained, and why.
 pub(super) fn kept(replanned: &Replanned) -> Option<String> {
     let Decision::Keep { run, because, best_rad, last_rad } = &replanned.past.decision else { return None };
-    let (best, last) = (deg(*best_rad), deg(*last_rad));
+    let shown = |rad: f64| position(replanned.plan.common_kind(), rad);
+    let (best, last) = (shown(*best_rad), shown(*last_rad));
     let kept = match replanned.past.runs.get(*run) {
-        Some(run) if run.corrected => format!("Keep the command of {}: its mean peak is {best} deg", run.log),
-        Some(run) => format!(
-            "Send the plan as it is, without a correction: its mean peak was {best} deg in {}",
-            run.log
-        ),
-        None => format!("Keep what was sent in the best run: its mean peak is {best} deg"),
+        Some(run) if run.corrected => format!("Keep the command of {}: its mean peak is {best}", run.log),
+        Some(run) => {
+            format!("Send the plan as it is, without a correction: its mean peak was {best} in {}", run.log)
+        }
+        None => format!("Keep what was sent in the best run: its mean peak is {best}"),
     };
     let why = match because {
         KeepReason::GainedLittle if last_rad > best_rad => {
-            format!(", the last run has {last} deg, which is no better.")
+            format!(", the last run has {last}, which is no better.")
+        }
+        KeepReason::GainedLittle if grown(&replanned.past.runs, *best_rad) => {
+            ", more than the best run before it had: what is sent again comes to more now, and other commands would.".to_owned()
         }
         KeepReason::GainedLittle => {
             ", which is less than a tenth better than the best run before it.".to_owned()
@@ -29,10 +37,15 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
             format!("; {} gained nothing.", counted(*corrections, "correction"))
         }
         KeepReason::ExpectedWorse { expected_rad } => {
-            format!("; another correction is expected to give {} deg.", deg(*expected_rad))
+            format!("; another correction is expected to give {}.", shown(*expected_rad))
         }
     };
     Some(kept + &why + repeats(replanned).unwrap_or_default())
+}
+
+/// Whether a run had clearly less than what is kept.
+fn grown(runs: &[PastRun], best_rad: f64) -> bool {
+    runs.iter().filter_map(|run| run.mean_peak_rad).any(|rad| 1.1 * rad < best_rad)
 }
 
 /// Share of an error from which on its spread from run to run is most of it.
@@ -71,21 +84,26 @@ pub(super) fn runs(replanned: &Replanned) -> Option<Section> {
     if runs.len() < 2 && runs.iter().all(|run| run.promised.is_none()) {
         return None;
     }
+    let kind = replanned.plan.common_kind();
+    let shown = |rad: f64| number(Dimension::Position, kind, rad);
     let row = |run: &PastRun| {
         vec![
             run.log.clone(),
             if run.corrected { "corrected" } else { "the plan" }.to_owned(),
-            optional(run.promised.map(|promised| promised.mean_peak_rad), deg),
-            optional(run.promised.map(|promised| promised.mean_peak_margin_rad), deg),
-            optional(run.mean_peak_rad, deg),
+            optional(run.promised.map(|promised| promised.mean_peak_rad), shown),
+            optional(run.promised.map(|promised| promised.mean_peak_margin_rad), shown),
+            optional(run.mean_peak_rad, shown),
         ]
     };
-    let numbers = ["promised deg", "90 % below deg", "measured deg"];
+    let units = Units::of(std::iter::once(kind));
+    let columns = ["promised", "90 % below", "measured"]
+        .map(|heading| Column::numbers(units.heading(heading, Dimension::Position)));
+    let columns = ["run", "sent"].map(Column::words).into_iter().chain(columns);
     Some(
         Section::new(
             Id::OTHER,
             "Runs of this plan",
-            [Table::new(&["run", "sent"], &numbers, runs.iter().map(row))],
+            [Table::of(columns.collect::<Vec<_>>(), runs.iter().map(row))],
         )
         .with(Sentence::note(
             "Mean peak error of starts and reversals: what its command promised, and what came.",
@@ -111,17 +129,15 @@ fn distrust(replanned: &Replanned) -> Option<String> {
 /// The command joint by joint.
 pub(super) fn command(replanned: &Replanned) -> Option<Section> {
     let command = replanned.command.as_ref()?;
-    let numbers = [
-        "held-out R2",
-        "cut-off Hz",
-        "correction deg",
-        "rms error deg",
-        "spread deg",
-        "speed ratio",
-        "acceleration ratio",
-    ];
-    let rows = command.joints.iter().map(|joint| row(replanned, joint));
-    Some(Section::new(Id::OTHER, "Command", [Table::new(&["joint", "by"], &numbers, rows)])
+    let units = Units::of(command.joints.iter().map(|joint| joint.kind));
+    let [correction, rms, spread] =
+        ["correction", "rms error", "spread"].map(|heading| units.heading(heading, Dimension::Position));
+    let fixed = ["held-out R2", "cut-off Hz", "speed ratio", "acceleration ratio"].map(str::to_owned);
+    let [skill, cut_off_hz, speed, acceleration] = fixed;
+    let numbers = [skill, cut_off_hz, correction, rms, spread, speed, acceleration].map(Column::numbers);
+    let columns: Vec<Column> = ["joint", "by"].map(Column::words).into_iter().chain(numbers).collect();
+    let rows = command.joints.iter().map(|joint| row(replanned, joint, units));
+    Some(Section::new(Id::OTHER, "Command", [Table::of(columns, rows)])
         .with(Sentence::note(
             "By: what the correction is made from. Rms error: measured in the last run, below 1.5 Hz; spread: the part of it that \
              differs between the last run and the one before, or one in which the same was sent, for no reason that the model \
@@ -141,7 +157,7 @@ fn stamped(replanned: &Replanned, joints: &[JointCommand]) -> Option<&'static st
     )
 }
 
-fn row(replanned: &Replanned, joint: &JointCommand) -> Vec<String> {
+fn row(replanned: &Replanned, joint: &JointCommand, units: Units) -> Vec<String> {
     let skill = replanned.fit.joint(&joint.name).map(|fit| format!("{:.2}", fit.held_out_r2));
     let run = |from: usize| {
         replanned.past.runs.get(from).map_or_else(|| format!("run {}", from + 1), |run| run.log.clone())
@@ -155,14 +171,15 @@ fn row(replanned: &Replanned, joint: &JointCommand) -> Vec<String> {
         Step::Astray => "does not follow".to_owned(),
         Step::None => "not corrected".to_owned(),
     };
+    let shown = |rad: Option<f64>| units.optional(Dimension::Position, joint.kind, rad);
     vec![
         joint.name.clone(),
         by,
         skill.unwrap_or_else(|| NONE.to_owned()),
         if joint.applied() { format!("{:.2}", joint.cut_off_hz) } else { NONE.to_owned() },
-        deg(joint.peak_correction_rad),
-        optional(joint.rms_error_rad.last().copied(), deg),
-        optional(joint.spread_rad, deg),
+        shown(Some(joint.peak_correction_rad)),
+        shown(joint.rms_error_rad.last().copied()),
+        shown(joint.spread_rad),
         format!("{:.2}", joint.speed_ratio),
         format!("{:.2}", joint.acceleration_ratio),
     ]
@@ -172,11 +189,13 @@ fn row(replanned: &Replanned, joint: &JointCommand) -> Vec<String> {
 fn cut_off(joints: &[JointCommand]) -> Option<String> {
     let all: Vec<&JointCommand> =
         joints.iter().filter(|joint| joint.peak_correction_rad > 0.98 * joint.most_correction_rad).collect();
+    let kind = JointKind::common(all.iter().map(|joint| joint.kind));
     let most = all.iter().map(|joint| joint.peak_correction_rad).reduce(f64::max)?;
     let names: Vec<&str> = all.iter().map(|joint| joint.name.as_str()).collect();
     Some(format!(
-        "The correction is limited to {} deg on {}; a larger --max-correction-deg would remove more of the error.",
-        deg(most),
-        names.join(", ")
+        "The correction is limited to {} on {}; a larger --max-correction-{} would remove more of the error.",
+        position(kind, most),
+        names.join(", "),
+        unit(Dimension::Position, kind)
     ))
 }

@@ -3,7 +3,12 @@
 use super::{checks, learning};
 use crate::{
     log::Topics,
-    render::kit::{Block, Document, Fact, Id, NONE, Section, Sentence, Table, deg, fact, optional, some_of},
+    render::{
+        kit::{Block, Document, Fact, Id, NONE, Section, Sentence, Table, fact, optional, some_of},
+        metric::{number, position, unit},
+    },
+    replay::Dimension,
+    series::JointKind::{self, Slides, Turns},
     task::Objective,
     units::degrees_from_radians,
     workflow::replan::{Checks, Commanded, HeldTo, Origin, Predicted, Replanned},
@@ -31,8 +36,12 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
             Id::SUMMARY,
             verdict.into_iter().chain([Sentence::finding(learnt)]).chain(stays),
         ))
-        .with(checks::section(&Checks::of(replanned)))
-        .with(Section::new(EXPECTED, "Expected", [expected(replanned)]).with(Sentence::note(margin)))
+        .with(checks::section(&Checks::of(replanned), replanned.plan.common_kind()))
+        .with(
+            Section::new(EXPECTED, "Expected", [expected(replanned)])
+                .with(Sentence::note(margin))
+                .with_all(mixed(replanned)),
+        )
         .with(Section::new(Id::OTHER, "What changes", [Block::Facts(levers(replanned))]));
     document.sections.extend(learning::runs(replanned));
     document.sections.extend(learning::command(replanned));
@@ -44,6 +53,18 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
     document.remarked(&replanned.remarks)
 }
 
+/// What a mean is over joints of both kinds.
+fn mixed(replanned: &Replanned) -> Option<Sentence> {
+    let has = |kind: JointKind| replanned.plan.tracks.iter().any(|track| track.kind() == kind);
+    (has(Turns) && has(Slides)).then(|| {
+        Sentence::note(format!(
+            "Some joints turn and some slide: here {} counts as {}, as much as a radian as a metre.",
+            position(Slides, 0.01),
+            position(Turns, 0.01)
+        ))
+    })
+}
+
 fn percent(now: f64, then: f64) -> String {
     if now > 0.0 { format!("{:+.0} %", 100.0 * (then / now - 1.0)) } else { NONE.to_owned() }
 }
@@ -51,16 +72,19 @@ fn percent(now: f64, then: f64) -> String {
 fn expected(replanned: &Replanned) -> Table {
     let (before, after) = (&replanned.before, &replanned.after);
     let now = &before.predicted;
+    let kind = replanned.plan.common_kind();
+    let shown = |rad: f64| number(Dimension::Position, kind, rad);
     let error = |name: &str, measured: Option<f64>, of: fn(&Predicted) -> f64| {
         let change = percent(measured.unwrap_or(of(now)), of(after));
-        vec![name.to_owned(), optional(measured, deg), deg(of(now)), deg(of(after)), change]
+        let name = format!("{name} {}", unit(Dimension::Position, kind));
+        vec![name, optional(measured, shown), shown(of(now)), shown(of(after)), change]
     };
     let count = |p: &Predicted| p.transitions.len();
     let mut rows = vec![
-        error("mean transition peak deg", before.measured_mean_peak_rad, |p| p.mean_peak_rad),
-        error("  90 % of starts below deg", None, |p| p.mean_peak_margin_rad),
-        error("worst transition peak deg", before.measured_worst_peak_rad, |p| p.worst_peak_rad),
-        error("sum of peaks deg", None, |p| p.sum_of_peaks_rad),
+        error("mean transition peak", before.measured_mean_peak_rad, |p| p.mean_peak_rad),
+        error("  90 % of starts below", None, |p| p.mean_peak_margin_rad),
+        error("worst transition peak", before.measured_worst_peak_rad, |p| p.worst_peak_rad),
+        error("sum of peaks", None, |p| p.sum_of_peaks_rad),
         vec![
             "starts + reversals".into(),
             before.measured_transitions.to_string(),
@@ -110,11 +134,15 @@ pub(super) fn levers(replanned: &Replanned) -> Vec<Fact> {
     let command = command.map_or("is the plan".to_owned(), |command| {
         let joints = &command.joints;
         let applied = joints.iter().filter(|joint| joint.applied());
-        let most = joints.iter().map(|joint| joint.peak_correction_rad).fold(0.0, f64::max);
+        let most = |kind: JointKind| {
+            let own = joints.iter().filter(|joint| joint.kind == kind).map(|joint| joint.peak_correction_rad);
+            own.reduce(f64::max).map(|most| position(kind, most))
+        };
+        let most: Vec<String> = [Turns, Slides].into_iter().filter_map(most).collect();
         format!(
-            "corrected on {}, by {} deg at most",
+            "corrected on {}, by {} at most",
             some_of(applied.count(), joints.len(), "joint"),
-            deg(most)
+            most.join(" and ")
         )
     });
     let ours = Topics::default();

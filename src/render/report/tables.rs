@@ -81,7 +81,7 @@ fn findings(report: &Report) -> Vec<String> {
         }
         None => lines.push("No planned start from rest was found.".to_owned()),
     }
-    lines.extend(report.promised.and_then(|held| promise::sentence(&held, "")));
+    lines.extend(report.promised.and_then(|held| promise::sentence(&held, replay.common_kind(), "")));
     lines.extend(mostly_lag(replay).map(|lag| format!("The error is mostly lag: {lag}.")));
     if let Some(c) = &replay.whole_run.concentration {
         let place = match (mostly_lag(replay), c.verdict) {

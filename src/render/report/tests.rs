@@ -145,6 +145,7 @@ fn a_fit_shows_its_numbers_intervals_and_what_was_never_reached() {
     .unwrap();
     let joint = JointFit {
         name: "boom".to_owned(),
+        kind: crate::series::JointKind::Turns,
         runs: 1,
         samples: 10,
         residual_rad: 0.0,

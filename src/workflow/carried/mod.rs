@@ -27,7 +27,7 @@ use crate::{
     log::{Attachment, JOINT_KINDS, LogWriter, Recording, WriteError, joint_kinds},
     plant::Truth,
     remark::{Code, Remarks},
-    series::Broken,
+    series::{Broken, Track},
     task::{ArmSource, Task, TaskError},
 };
 
@@ -82,9 +82,14 @@ impl Carried {
         };
         let altered = files.iter().filter(altered).map(|file| file.name.clone()).collect();
         provenance.retain(|key, _| !key.starts_with(SHA256));
-        let tracks = recording.planned.tracks.iter().chain(&recording.measured.tracks);
-        let kinds = joint_kinds(tracks.map(|track| (track.name(), track.kind())));
-        Self { files, provenance, altered, kinds }
+        let carried = Self { files, provenance, altered, ..Self::default() };
+        carried.with_kinds_of(recording.planned.tracks.iter().chain(&recording.measured.tracks))
+    }
+
+    /// With what is said of those joints that slide.
+    #[must_use]
+    pub fn with_kinds_of<'a>(self, tracks: impl Iterator<Item = &'a Track>) -> Self {
+        Self { kinds: joint_kinds(tracks.map(|track| (track.name(), track.kind()))), ..self }
     }
 
     /// Where the plan of a log is broken, unless the log holds its task, which tells the plan exactly.

@@ -15,6 +15,10 @@ use crate::{
     units::nanoseconds,
 };
 
+/// Rates of samples and of points, Hz, and how many of them a log holds at most.
+const RATES_HZ: [f64; 2] = [1.0, 10_000.0];
+const MOST_SAMPLES: f64 = 1e7;
+
 /// Where joints should be over time, from 0 on.
 #[derive(Debug, Clone, Copy)]
 pub enum Planned<'a> {
@@ -57,14 +61,29 @@ impl PlanLog<'_> {
     ///
     /// # Errors
     ///
-    /// [`WriteError`] for joint names that no log can hold.
+    /// [`WriteError`] for joint names that no log can hold, a rate that is not from 1 to 10 000 Hz, or a plan of more than ten
+    /// million samples.
     pub fn bytes(&self) -> Result<Vec<u8>, WriteError> {
+        let [least, most] = RATES_HZ;
+        for found in [self.rate_hz, self.points_hz] {
+            if !(least..=most).contains(&found) {
+                return Err(WriteError::Rate { found, least, most });
+            }
+        }
+        let (duration_s, rate_hz) = (self.plan.end_s(), self.rate_hz.max(self.points_hz));
+        if duration_s.is_nan() || duration_s * rate_hz > MOST_SAMPLES {
+            return Err(WriteError::TooLong { duration_s, rate_hz, most: MOST_SAMPLES });
+        }
         let names = self.plan.names();
         let ours = Topics::default();
         let trajectory = self.trajectory.map_or_else(|| ours.trajectory.clone(), str::to_owned);
         let options = WriteOptions { topics: Topics { trajectory, ..ours }, ..WriteOptions::default() };
         let mut log = LogWriter::new(Vec::new(), &names, options)?;
-        self.carried.begin(&mut log)?;
+        let mut carried = self.carried.clone();
+        if let Planned::Series(series) = self.plan {
+            carried = carried.with_kinds_of(series.tracks.iter());
+        }
+        carried.begin(&mut log)?;
         let mut arm = match self.arm {
             Some(chain) => ArmLog::begin(&mut log, chain, &names, START_NS, false)?,
             None => None,
@@ -83,7 +102,7 @@ impl PlanLog<'_> {
                 log.joint_sample(Role::Command, stamp_ns, point.position_rad, point.velocity_rad_s, &[])?;
             }
         }
-        self.carried.end(&mut log, START_NS)?;
+        carried.end(&mut log, START_NS)?;
         log.finish()
     }
 

@@ -16,7 +16,7 @@ use crate::{
     log::WriteError,
     math::range,
     plan::Setup,
-    series::{Series, Track},
+    series::{JointKind, Series, Track},
 };
 
 /// The joints to drive.
@@ -37,8 +37,16 @@ pub struct Inputs {
     pub arm: Arm,
     /// How to drive them.
     pub excitation: Excitation,
-    /// Largest speed that is sent, rad/s; infinite for none.
+    /// Largest speed that a joint that turns is sent, rad/s; infinite for none.
     pub most_rad_s: f64,
+    /// Largest speed that a joint that slides is sent, m/s; infinite for none.
+    pub most_m_s: f64,
+}
+
+impl Inputs {
+    fn most(&self, kind: JointKind) -> f64 {
+        if kind == JointKind::Slides { self.most_m_s } else { self.most_rad_s }
+    }
 }
 
 /// Why there is no such run.
@@ -83,16 +91,9 @@ pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
         (Arm::Joints(joints), _) => joints.clone(),
         (_, request) => request.as_ref().map_or_else(Vec::new, |request| rooms(&request.setup)),
     };
-    let mut excitation = inputs.excitation.clone();
-    for ramp in &mut excitation.ramps {
-        ramp.speed_rad_s = ramp.speed_rad_s.min(inputs.most_rad_s);
-    }
-    // Of those that are now equally fast the longest stays.
-    excitation.ramps.dedup_by(|a, b| {
-        let same = a.speed_rad_s <= b.speed_rad_s;
-        b.travel_rad = if same { b.travel_rad.max(a.travel_rad) } else { b.travel_rad };
-        same
-    });
+    let limited = |joint: JointRoom| JointRoom { most_rad_s: inputs.most(joint.kind), ..joint };
+    let joints: Vec<JointRoom> = joints.into_iter().map(limited).collect();
+    let excitation = inputs.excitation.clone();
     let command = excite(&joints, &excitation)?;
     let beyond = request.as_ref().map_or_else(Vec::new, |request| beyond(&request.setup, &command));
     Ok(Excited { joints, excitation, command, task: request.map(|request| request.files), beyond })
@@ -118,7 +119,7 @@ fn rooms(setup: &Setup) -> Vec<JointRoom> {
     let of_joint = |(j, name): (usize, String)| {
         let angles = (0..points.len()).map(|point| points.of(point)[j]);
         let [least, most] = range(angles);
-        JointRoom { name, home_rad: 0.5 * (least + most), range_rad: setup.range_rad(j) }
+        JointRoom::turning(name, 0.5 * (least + most), setup.range_rad(j))
     };
     setup.joint_names().into_iter().enumerate().map(of_joint).collect()
 }
@@ -129,9 +130,10 @@ impl Excited {
         self.command.span_s().map_or(0.0, |[_, end_s]| end_s)
     }
 
-    /// Largest speed of any joint, rad/s.
-    pub fn fastest_rad_s(&self) -> f64 {
-        self.command.tracks.iter().map(fastest_rad_s).fold(0.0, f64::max)
+    /// Largest speed of any joint of a kind, rad/s or m/s; zero without one.
+    pub fn fastest(&self, kind: JointKind) -> f64 {
+        let own = self.command.tracks.iter().filter(|track| track.kind() == kind);
+        own.map(fastest_rad_s).fold(0.0, f64::max)
     }
 
     /// The bytes of the log.

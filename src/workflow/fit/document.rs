@@ -14,7 +14,7 @@ use crate::{
 
 const FORMAT: &str = "hydrotrace.fit.v1";
 /// A fitted machine. Angles are radians, times seconds; pairs are for growing and for
-/// shrinking angles.
+/// shrinking angles. Of a joint that slides a radian stands for a metre.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FitDocument {
@@ -84,7 +84,8 @@ pub struct LimitsFile {
 const HEAD: &str = "# What a machine does with what it is sent, as `hydrotrace fit` found it in logs; for
 # `hydrotrace replan --limits`. Radians and seconds. A quantity has a value and its 95 % interval, or
 # the lower_bound that was reached; identified = false: the logs do not decide it. Pairs are for
-# growing and for shrinking angles; inf: no limit showed.
+# growing and for shrinking angles; inf: no limit showed. Of a joint of kind slides a radian
+# stands for a metre.
 ";
 
 impl LimitsFile {

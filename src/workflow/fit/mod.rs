@@ -1,6 +1,9 @@
 //! `fit`: from logs of runs to what the machine does with what it is sent.
 
-use std::path::{Path, PathBuf};
+use std::{
+    borrow::Borrow,
+    path::{Path, PathBuf},
+};
 
 use serde::{Deserialize, Serialize};
 mod document;
@@ -105,9 +108,11 @@ pub fn observed(logs: &[PathBuf], read: &ReadOptions) -> Result<Vec<Recording>, 
 /// # Errors
 ///
 /// [`FitError`] if no joint can be fitted.
-pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> {
+pub fn of(logs: &[PathBuf], observed: &[impl Borrow<Recording>]) -> Result<Fitted, FitError> {
+    let observed: Vec<&Recording> = observed.iter().map(Borrow::borrow).collect();
+    let observed = observed.as_slice();
     of_one_arm(logs, observed)?;
-    let observations: Vec<Observation<'_>> = observed.iter().map(observation).collect();
+    let observations: Vec<Observation<'_>> = observed.iter().map(|run| observation(run)).collect();
     let (fit, held_out) = fit_and_held_out(&observations)?;
     for joint in &fit.joints {
         ::log::info!(
@@ -139,14 +144,15 @@ pub fn of(logs: &[PathBuf], observed: &[Recording]) -> Result<Fitted, FitError> 
         );
         remarks.add(Code::PoorFit, 1, message);
     }
-    let torques = observed.iter().map(torques).find(|torques| !torques.is_empty()).unwrap_or_default();
+    let torques =
+        observed.iter().map(|run| torques(run)).find(|torques| !torques.is_empty()).unwrap_or_default();
     let sound = |one: &Recording| !one.remarks.as_slice().iter().any(|remark| remark.code.spoils_runs());
-    let carried: Vec<Carried> = observed.iter().map(Carried::of).collect();
+    let carried: Vec<Carried> = observed.iter().map(|run| Carried::of(run)).collect();
     let rules = Rules::default();
     let follows =
         |one: &Recording| one.planned.tracks.iter().all(|track| planned_step(track, &rules).is_none());
     let again = |k: &usize| {
-        let (carried, one) = (&carried[*k], &observed[*k]);
+        let (carried, one) = (&carried[*k], observed[*k]);
         !runs[*k].identifies && sound(one) && follows(one) && carried.broken(one).is_none()
     };
     let again: Vec<usize> = (0..observed.len()).filter(again).collect();
@@ -174,7 +180,7 @@ fn same_plan(a: &Series, b: &Series) -> bool {
 }
 
 /// What is doubtful in the logs, each named if there are several.
-pub(super) fn doubts(logs: &[PathBuf], observed: &[Recording]) -> Remarks {
+pub(super) fn doubts(logs: &[PathBuf], observed: &[&Recording]) -> Remarks {
     let mut remarks = Remarks::default();
     for (path, observed) in logs.iter().zip(observed) {
         // A machine is fitted to what was sent, whatever was planned.
@@ -188,7 +194,7 @@ pub(super) fn doubts(logs: &[PathBuf], observed: &[Recording]) -> Remarks {
 }
 
 /// Every log must share a joint with those before it: a machine is fitted, not several.
-fn of_one_arm(logs: &[PathBuf], observed: &[Recording]) -> Result<(), FitError> {
+fn of_one_arm(logs: &[PathBuf], observed: &[&Recording]) -> Result<(), FitError> {
     let mut known: Vec<&str> = Vec::new();
     for (path, observed) in logs.iter().zip(observed) {
         let own: Vec<&str> = observed.measured.tracks.iter().map(Track::name).collect();

@@ -8,8 +8,6 @@ use thiserror::Error;
 use crate::{
     fit::Observation,
     log::{Input, LogError, LogFiles, ReadOptions, Recording, SignalRole},
-    remark::Code,
-    series::Track,
 };
 
 /// Why a run cannot be fitted.
@@ -41,22 +39,7 @@ pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, Obse
     let path = inputs.first().map(|input| input.name().to_owned()).unwrap_or_default();
     let read = read.clone().wanting(&SIGNALS);
     let recording = LogFiles::of(inputs).and_then(|files| files.scan()?.read(&read));
-    let mut recording = recording.map_err(|source| ObserveFailure { path, source })?;
-    leave_out_sliding(&mut recording);
-    Ok(recording)
-}
-
-/// Leaves out what was measured of joints that slide, and says so; what is planned for them stays, for a command is of all
-/// joints.
-fn leave_out_sliding(recording: &mut Recording) {
-    for track in recording.measured.tracks.iter().filter(|track| !track.turns()) {
-        let message = format!(
-            "{} slides (m): the model of a fit is of joints that turn (rad); it is not fitted",
-            track.name()
-        );
-        recording.remarks.add(Code::NotSupported, 1, message);
-    }
-    recording.measured.tracks.retain(Track::turns);
+    recording.map_err(|source| ObserveFailure { path, source })
 }
 
 /// The same for a fit: the command if the log has one, else the plan.

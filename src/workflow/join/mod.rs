@@ -60,6 +60,13 @@ pub enum JoinFailure {
         plan.display()
     )]
     Nowhere { plan: PathBuf, topic: String },
+    /// A joint that turns in one and slides in the other.
+    #[error(
+        "{joint} is a length in one of the log and {}, and an angle in the other: say --slides of a joint that slides, or, of joints \
+         with cylinders, give the plan in lengths, as `hydrotrace export PLAN --hydraulics FILE --as cylinders -o plan.csv` makes it",
+        plan.display()
+    )]
+    OtherKind { plan: PathBuf, joint: String },
     /// Something else was sent.
     #[error(
         "what was sent on {topic} is not what {} holds: where it fits best, at {at_s:.2} s, it leaves {:.0} % of \

@@ -1,10 +1,12 @@
 //! Whether the machine changed between two runs: then what the older ones taught is no guide.
 
+use std::collections::BTreeSet;
+
 use super::history::{History, PastRun};
 use crate::{
     fit::{Fit, JointFit, predict},
     series::{Series, Track},
-    units::{DEGREE_RAD, Degrees},
+    units::DEGREE_RAD,
 };
 
 /// Errors that differ by this factor, and by so much, rad, are those of two machines.
@@ -15,97 +17,171 @@ const CHANGED_RAD: f64 = 0.1 * DEGREE_RAD;
 const CHANGED_TWICE: f64 = 1.3;
 const AGAIN: f64 = 0.1;
 
+/// Commands that differ by less are the same whatever came of them, rad.
+const SENT_AGAIN_RAD: f64 = 2e-4;
+
 /// A mean peak above the best so far by this factor is looked at, and one above what nine runs of ten should stay below by
 /// that factor.
 const GROWN: f64 = 1.1;
 const BROKEN: f64 = 2.0;
 
-/// Fits the logs from one place to before another; `None` if they cannot be fitted.
-pub(super) type Fits<'a> = &'a mut dyn FnMut(usize, usize) -> Option<Fit>;
+/// Fits the logs at these places; `None` if they cannot be fitted.
+pub(super) type Fits<'a> = &'a mut dyn FnMut(&[usize]) -> Option<Fit>;
 
 /// What tells of a change.
 enum Sign {
     /// The same was sent in an earlier run (by index); the runs from another one on are of the machine as it is now.
     Pair(usize, usize),
+    /// The same was sent in an earlier run (by index), and more came than was promised: what is sent stays a guide, older runs do not.
+    Drift(usize),
     /// A joint moved otherwise than the earlier runs have it: what they miss of it, root mean square, rad, what the new run
     /// misses of itself, and what they miss of the newest of them.
     Model { joint: String, missed_rad: f64, own_rad: f64, before_rad: f64 },
 }
 
+/// Runs of the machine as it was for a time, and the places of the logs that are of another one.
+#[derive(Clone, Default)]
+struct Era {
+    runs: Vec<usize>,
+    others: BTreeSet<usize>,
+    /// How often the machine had changed, and by how much of mean peak error, rad.
+    changes: usize,
+    unsteady_rad: f64,
+}
+
 impl History {
-    /// Leaves out the runs before the machine changed, if it did: the first log that is left, and what is to be said.
-    pub(super) fn without_another_machine(&mut self, fits: Fits) -> (usize, Option<String>) {
-        let mut first = 0;
+    /// Leaves out the runs of another machine, if it changed: the places of all logs of that, and what is to be said.
+    pub(super) fn without_another_machine(&mut self, fits: Fits) -> (BTreeSet<usize>, Option<String>) {
+        let mut now = Era { runs: (0..self.runs.len().min(1)).collect(), ..Era::default() };
+        let mut before: Vec<Era> = Vec::new();
         let mut said = None;
         for run in 1..self.runs.len() {
-            if let Some(sign) = self.sign(first, run, fits) {
-                said = Some(self.said(run, &sign));
-                self.changes += 1;
-                self.unsteady_rad = self.unsteady_rad.max(self.differed_rad(first, run, &sign));
-                first = match sign {
-                    Sign::Pair(_, from) => first.max(from),
-                    Sign::Model { .. } => run,
-                };
+            if let Some(k) = before.iter().rposition(|era| self.returns(era, &now, run, fits)) {
+                said = Some(self.said_of_return(run, &now));
+                let passed = now;
+                now = before.remove(k);
+                before.truncate(k);
+                now.others.extend(passed.runs.iter().map(|k| self.places[*k]));
+                now.runs.push(run);
+                continue;
             }
+            let Some(sign) = self.sign(&now.runs, run, fits) else {
+                now.runs.push(run);
+                continue;
+            };
+            said = Some(self.said(run, &sign));
+            self.drifts = matches!(sign, Sign::Drift(_));
+            let from = match sign {
+                Sign::Pair(_, from) => from,
+                Sign::Drift(_) | Sign::Model { .. } => run,
+            };
+            let mut next = Era {
+                runs: now.runs.iter().copied().filter(|k| *k >= from).chain([run]).collect(),
+                others: (0..self.places[from]).collect(),
+                changes: now.changes + usize::from(!self.drifts),
+                unsteady_rad: now.unsteady_rad.max(self.differed_rad(&now.runs, run, &sign)),
+            };
+            let passed = |place: &&usize| **place >= self.places[from];
+            next.others.extend(now.others.iter().filter(passed));
+            before.push(std::mem::replace(&mut now, next));
         }
-        if said.is_none() {
-            return (0, None);
+        (self.changes, self.unsteady_rad) = (now.changes, now.unsteady_rad);
+        let stays = |k: usize| now.runs.contains(&k);
+        retain(&mut self.runs, stays);
+        retain(&mut self.series, stays);
+        retain(&mut self.places, stays);
+        retain(&mut self.corrections_rad, stays);
+        (now.others, said)
+    }
+
+    /// Whether a run is of the machine as it was before it changed: what was sent then comes to the same again, or its model
+    /// has the run and that of the runs since has not.
+    fn returns(&self, era: &Era, now: &Era, run: usize, fits: Fits) -> bool {
+        let agrees = |k: &usize| self.apart(*k, run) < CHANGED_TWICE && self.same(*k, run);
+        if now.runs.iter().any(agrees) {
+            return false;
         }
-        self.runs.drain(..first);
-        self.series.drain(..first);
-        self.places.drain(..first);
-        self.corrections_rad.drain(..first.min(self.corrections_rad.len()));
-        (self.places.first().copied().unwrap_or_default(), said)
+        if era.runs.iter().any(agrees) {
+            return true;
+        }
+        let places = |runs: &[usize]| -> Vec<usize> { runs.iter().map(|k| self.places[*k]).collect() };
+        let Some((older, newer)) = fits(&places(&era.runs)).zip(fits(&places(&now.runs))) else {
+            return false;
+        };
+        let missed = |fit: &Fit, track: &Track| missed_rad(fit.joint(track.name())?, &self.series[run]);
+        let both = |track: &Track| Some([missed(&older, track)?, missed(&newer, track)?]);
+        let missed: Vec<[f64; 2]> = self.series[run].1.tracks.iter().filter_map(both).collect();
+        missed.iter().any(|[older, newer]| exceeds(*newer, *older))
+            && !missed.iter().any(|[older, newer]| exceeds(*older, *newer))
+    }
+
+    fn peak_rad(&self, run: usize) -> Option<f64> {
+        self.runs.get(run)?.mean_peak_rad
+    }
+
+    /// The mean peak of one of two runs by that of the other, at least 1; 1 where one has none.
+    fn apart(&self, one: usize, other: usize) -> f64 {
+        self.peak_rad(one).zip(self.peak_rad(other)).map_or(1.0, |(a, b)| (a / b).max(b / a))
     }
 
     /// By how much the mean peak of a run differs from what the run before the change had, rad.
-    fn differed_rad(&self, first: usize, run: usize, sign: &Sign) -> f64 {
-        let peak = |k: usize| self.runs.get(k).and_then(|run| run.mean_peak_rad);
+    fn differed_rad(&self, runs: &[usize], run: usize, sign: &Sign) -> f64 {
         let before = match sign {
-            Sign::Pair(before, _) => peak(*before),
-            Sign::Model { .. } => (first..run).filter_map(peak).reduce(f64::min),
+            Sign::Pair(before, _) | Sign::Drift(before) => self.peak_rad(*before),
+            Sign::Model { .. } => runs.iter().filter_map(|k| self.peak_rad(*k)).reduce(f64::min),
         };
-        peak(run).zip(before).map_or(0.0, |(now, before)| (now - before).abs())
+        self.peak_rad(run).zip(before).map_or(0.0, |(now, before)| (now - before).abs())
     }
 
-    /// What tells that the machine changed before a run, since the first of these.
-    fn sign(&self, first: usize, run: usize, fits: Fits) -> Option<Sign> {
-        let peak = |k: usize| self.runs.get(k)?.mean_peak_rad;
-        let now_rad = peak(run)?;
-        let same = |k: &usize| self.same(*k, run);
-        let differs = |k: &usize| {
-            peak(*k).is_some_and(|before_rad| exceeds(before_rad, now_rad) || exceeds(now_rad, before_rad))
+    /// What tells that the machine changed before a run, since these.
+    fn sign(&self, runs: &[usize], run: usize, fits: Fits) -> Option<Sign> {
+        let now_rad = self.peak_rad(run)?;
+        // What differs by less than it gained, or lost, may be why.
+        let same = |k: &usize| {
+            let differs_rad = self.peak_rad(*k).map_or(0.0, |before_rad| (now_rad - before_rad).abs());
+            self.same(*k, run) && self.differ_by(*k, run, f64::max(SENT_AGAIN_RAD, 0.5 * differs_rad))
         };
-        if let Some(before) = (first..run).rev().find(|k| differs(k) && same(k)) {
+        let differs = |k: &usize| {
+            self.peak_rad(*k)
+                .is_some_and(|before_rad| exceeds(before_rad, now_rad) || exceeds(now_rad, before_rad))
+        };
+        if let Some(before) = runs.iter().rev().copied().find(|k| differs(k) && same(k)) {
             // Of what came between the two nobody knows.
-            return Some(Sign::Pair(before, before + 1));
+            let from = runs.iter().copied().find(|k| *k > before).unwrap_or(run);
+            return Some(Sign::Pair(before, from));
         }
         // Less of a difference is told by two runs that agree against one.
-        let apart =
-            |k: &usize| peak(*k).map_or(0.0, |before_rad| (now_rad / before_rad).max(before_rad / now_rad));
-        let agrees = |k: &usize| apart(k) < 1.0 + AGAIN && same(k);
-        if let Some(again) = (first..run).rev().find(agrees)
-            && let Some(before) = (first..again).rev().find(|k| apart(k) > CHANGED_TWICE && same(k))
+        let agrees = |k: &usize| self.apart(*k, run) < 1.0 + AGAIN && same(k);
+        let apart = |k: &usize| self.apart(*k, run) > CHANGED_TWICE && same(k);
+        if let Some(again) = runs.iter().rev().copied().find(agrees)
+            && let Some(before) = runs.iter().rev().copied().find(|k| *k < again && apart(k))
         {
             return Some(Sign::Pair(before, again));
         }
-        let best_rad = (first..run).filter_map(peak).reduce(f64::min)?;
         let promised_rad = self.runs[run].promised.map(|promised| promised.mean_peak_margin_rad);
+        let drifted =
+            |k: &usize| self.peak_rad(*k).is_some_and(|rad| now_rad > CHANGED_TWICE * rad) && same(k);
+        if promised_rad.is_some_and(|most_rad| now_rad > most_rad)
+            && let Some(before) = runs.iter().rev().copied().find(drifted)
+        {
+            return Some(Sign::Drift(before));
+        }
+        let best_rad = runs.iter().filter_map(|k| self.peak_rad(*k)).reduce(f64::min)?;
         let grown = now_rad > GROWN * best_rad.max(promised_rad.unwrap_or(best_rad));
         let broken = promised_rad.is_some_and(|promised_rad| now_rad > BROKEN * promised_rad);
         if !grown && !broken {
             return None;
         }
-        let place = |k: usize| self.places.get(k).copied();
-        let older = fits(place(first)?, place(run)?)?;
-        let own = fits(place(run)?, place(run)? + 1)?;
+        let (newest, place) = (*runs.last()?, |k: &usize| self.places[*k]);
+        let older = fits(&runs.iter().map(place).collect::<Vec<_>>())?;
+        let own = fits(&[place(&run)])?;
         let joint = |track: &Track| {
             let name = track.name();
             let own = own.joint(name).filter(|joint| joint.trusted())?;
             let older = older.joint(name)?;
             let missed = |fit: &JointFit, k: usize| missed_rad(fit, self.series.get(k)?);
             let (missed_rad, own_rad, before_rad) =
-                (missed(older, run)?, missed(own, run)?, missed(older, run - 1)?);
+                (missed(older, run)?, missed(own, run)?, missed(older, newest)?);
             let sign = Sign::Model { joint: name.to_owned(), missed_rad, own_rad, before_rad };
             exceeds(missed_rad, own_rad.max(before_rad)).then_some((missed_rad, sign))
         };
@@ -113,30 +189,59 @@ impl History {
         Some(all.max_by(|a, b| a.0.total_cmp(&b.0))?.1)
     }
 
+    fn said_of_return(&self, run: usize, passed: &Era) -> String {
+        let logs: Vec<&str> = passed.runs.iter().map(|k| self.runs[*k].log.as_str()).collect();
+        format!(
+            "the machine had changed for a time and moves in {} as before: what came meanwhile, in {}, is left out",
+            self.runs[run].log,
+            logs.join(", ")
+        )
+    }
+
     fn said(&self, run: usize, sign: &Sign) -> String {
-        let of = |run: &PastRun| format!("{} in {}", Degrees(run.mean_peak_rad.unwrap_or_default()), run.log);
+        let of = |run: &PastRun| {
+            format!("{} in {}", self.kind.says(run.mean_peak_rad.unwrap_or_default()), run.log)
+        };
         let log = |k: usize| &self.runs[k].log;
         match sign {
             Sign::Pair(before, from) => format!(
                 "the same was sent twice and gave a mean peak error of {}, then of {}: the machine has changed in between, and \
-                 logs up to {} are left out",
+                 logs before {} are left out",
                 of(&self.runs[*before]),
                 of(&self.runs[run]),
-                log(from - 1)
+                log(*from)
             ),
-            Sign::Model { joint, missed_rad, own_rad, before_rad } => format!(
-                "{joint} moved otherwise in {} than runs before it have it: the model of those misses it by {} (root mean square), \
-                 where it missed {} by {} and one of this run alone misses it by {}; the machine has changed, and logs up to {} \
-                 are left out",
-                log(run),
-                Degrees(*missed_rad),
-                log(run - 1),
-                Degrees(*before_rad),
-                Degrees(*own_rad),
-                log(run - 1)
+            Sign::Drift(before) => format!(
+                "the same was sent twice and gave a mean peak error of {}, then of {}, more than nine runs of ten should have: \
+                 the machine drifts, and the next command goes on from that run alone",
+                of(&self.runs[*before]),
+                of(&self.runs[run]),
             ),
+            Sign::Model { joint, missed_rad, own_rad, before_rad } => {
+                let own = self.series[run].1.track(joint).map_or(self.kind, Track::kind);
+                format!(
+                    "{joint} moved otherwise in {} than runs before it have it: the model of those misses it by {} (root mean square), \
+                     where it missed {} by {} and one of this run alone misses it by {}; the machine has changed, and logs up to {} \
+                     are left out",
+                    log(run),
+                    own.says(*missed_rad),
+                    log(run - 1),
+                    own.says(*before_rad),
+                    own.says(*own_rad),
+                    log(run - 1)
+                )
+            }
         }
     }
+}
+
+/// Leaves those at places that stay.
+fn retain<T>(all: &mut Vec<T>, stays: impl Fn(usize) -> bool) {
+    let mut k = 0;
+    all.retain(|_| {
+        k += 1;
+        stays(k - 1)
+    });
 }
 
 /// Whether an error is of another machine than a smaller one.
@@ -155,7 +260,11 @@ fn missed_rad(fit: &JointFit, (sent, measured): &(Series, Series)) -> Option<f64
 
 #[cfg(test)]
 mod tests {
-    use super::{super::history::tests::history, *};
+    use super::{
+        super::{decision::Decision, history::tests::history},
+        *,
+    };
+    use crate::workflow::carried::Promise;
 
     #[test]
     fn a_machine_that_answers_the_same_otherwise_is_another_from_then_on() {
@@ -168,8 +277,8 @@ mod tests {
             let mut history = history(peaks);
             history.series = sent_by.iter().map(|by| (sent(*by), sent(0.0))).collect();
             history.places = (0..peaks.len()).map(|k| 2 * k).collect();
-            let (first, said) = history.without_another_machine(&mut |_, _| None);
-            (first, said.is_some(), history.runs.len())
+            let (others, said) = history.without_another_machine(&mut |_| None);
+            (others.len(), said.is_some(), history.runs.len())
         };
         assert_eq!(of(&[1.0, 1.2, 1.0], &[0.01, 0.04, 0.045]), (2, true, 2));
         assert_eq!(of(&[1.0, 1.2, 1.3, 1.3], &[0.01, 0.002, 0.001, 0.02]), (6, true, 1));
@@ -177,5 +286,21 @@ mod tests {
         assert_eq!(of(&[1.0, 1.2, 1.0], &[0.01, 0.04, 0.018]), (0, false, 3));
         assert_eq!(of(&[1.0, 1.2, 1.0, 1.0], &[0.01, 0.04, 0.018, 0.0175]), (4, true, 2), "and again");
         assert_eq!(of(&[1.0, 1.2, 1.3], &[0.01, 0.04, 0.09]), (0, false, 3), "other commands");
+        assert_eq!(of(&[1.0, 1.2, 1.2, 1.2], &[0.04, 0.01, 0.05, 0.0102]), (1, true, 3), "for one run");
+        assert_eq!(of(&[1.0, 1.2, 1.201], &[0.04, 0.002, 0.0014]), (0, false, 3), "what was gained was sent");
+        // The oil warms: what is kept comes to more each time, and no older command is better for having been sent before.
+        let kept = |promised_rad: f64, newest: f64| {
+            let mut history = history(&[0.04, 0.0101, 0.01, 0.01, newest]);
+            let by = [1.0, 1.2, 1.3, 1.4, 1.3];
+            history.series = by.iter().map(|by| (sent(*by), sent(0.0))).collect();
+            history.places = (0..5).collect();
+            history.runs[4].promised =
+                Some(Promise { mean_peak_rad: 0.01, mean_peak_margin_rad: promised_rad });
+            let (others, _) = history.without_another_machine(&mut |_| None);
+            (others.len(), history.drifts, history.anew(), history.trust(), history.decision())
+        };
+        assert_eq!(kept(0.012, 0.015), (4, true, false, 1.0, Decision::Send));
+        let (first, drifts, _, _, decision) = kept(0.02, 0.015);
+        assert!(first == 0 && !drifts && matches!(decision, Decision::Keep { run: 4, .. }), "{decision:?}");
     }
 }

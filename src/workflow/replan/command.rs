@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::ReplanFailure;
 use crate::{
-    fit::{Fit, Learning, Learnt, Oscillation, Room, STEP_S, Step, Trial, learn, predict},
+    fit::{Fit, JointFit, Learning, Learnt, Oscillation, Room, STEP_S, Step, Trial, learn, predict},
     math::{State, lowpass, range},
     plan::{BETWEEN, Interpolation, Limit, Margin, POINTS_HZ, Setup, SpeedRoom},
-    series::{Series, Track, align},
+    series::{JointKind, Series, Track, align},
     spline::{Motion, Quantity, Samples},
     units::DEGREE_RAD,
 };
@@ -27,12 +27,15 @@ const SAME_RAD: f64 = 1e-6;
 /// A kept correction below this is none, rad.
 const NONE_RAD: f64 = 1e-5;
 
-/// The command of one joint.
+/// The command of one joint; of one that slides a radian stands for a metre.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointCommand {
     /// The joint.
     pub name: String,
+    /// Whether it turns or slides.
+    #[serde(default)]
+    pub kind: JointKind,
     /// How its correction came about.
     pub step: Step,
     /// Periodicity of what the model leaves unexplained; null without a run of this plan.
@@ -93,7 +96,7 @@ pub struct Commanded {
     pub series: Series,
     /// Its accelerations, rad/s², by track and sample.
     pub acceleration_rad_s2: Vec<Vec<f64>>,
-    /// One entry a joint of the plan that turns; those that slide are sent as planned.
+    /// One entry a joint of the plan.
     pub joints: Vec<JointCommand>,
     /// Joints that hunt; with three or more nothing is corrected.
     pub hunting: usize,
@@ -151,9 +154,11 @@ pub(super) fn commanded(
         let room = |name: &str| {
             let planned = planned.get(index(name)?)?.clone();
             let Some(own) = names.iter().position(|own| own == name) else {
-                // A joint that only lags needs what it is sent ahead; one at its limits gains nothing by it.
+                // A joint that only lags needs what it is sent ahead; one at its limits gains nothing by it, and of one whose
+                // model does not hold nobody knows.
                 let speeds_rad_s = range(planned.iter().map(|state| state[1]));
-                fit.joint(name).filter(|joint| joint.reaches_limits(speeds_rad_s))?;
+                let bound = |joint: &&JointFit| !joint.model_holds || joint.reaches_limits(speeds_rad_s);
+                fit.joint(name).filter(bound)?;
                 let (range_rad, most) = (near(&planned, runs, name), [f64::INFINITY; 3]);
                 return Some(Room { range_rad, most, planned, speed_rad_s: Vec::new() });
             };
@@ -349,9 +354,6 @@ fn joints(
     for (((made, planned), (share, because)), (track, sent)) in
         learnt.joints.iter().zip(planned).zip(shares).zip(plan.tracks.iter().zip(&sent.tracks))
     {
-        if !track.turns() {
-            continue;
-        }
         let rms_rad = |sent: &Track| -> Result<Option<f64>, ReplanFailure> {
             let Some(joint) = fit.joint(&made.name) else { return Ok(None) };
             let response = predict(&joint.model, sent)?;
@@ -371,6 +373,7 @@ fn joints(
         let [least, highest] = range(sent.position().iter().copied());
         joints.push(JointCommand {
             name: made.name.clone(),
+            kind: track.kind(),
             step: made.step,
             oscillation: made.oscillation,
             cut_off_hz: made.cut_off_hz,

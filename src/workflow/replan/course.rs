@@ -3,7 +3,7 @@
 use super::Replanned;
 use crate::{
     plan::Setup,
-    series::{Track, local_quadratic},
+    series::{JointKind, Track, local_quadratic},
 };
 
 /// Half of the window in which the speed of an answer is told, s.
@@ -23,6 +23,8 @@ pub struct Drawn {
 pub struct JointCourse {
     /// The joint.
     pub name: String,
+    /// Whether it turns or slides; of one that slides a radian stands for a metre.
+    pub kind: JointKind,
     /// Instants, s.
     pub t_s: Vec<f64>,
     /// Where it should be.
@@ -37,7 +39,7 @@ pub struct JointCourse {
     pub speed_limit_rad_s: f64,
 }
 
-/// Of every joint of the plan that turns.
+/// Of every joint of the plan.
 pub fn courses(replanned: &Replanned) -> Vec<JointCourse> {
     let setup = replanned.request.as_ref().map(|request| &request.setup);
     let names = setup.map(Setup::joint_names).unwrap_or_default();
@@ -52,6 +54,7 @@ pub fn courses(replanned: &Replanned) -> Vec<JointCourse> {
             limits.unwrap_or(([f64::NEG_INFINITY, f64::INFINITY], [f64::INFINITY; 3]));
         JointCourse {
             name: name.to_owned(),
+            kind: track.kind(),
             t_s: sent.t_s().to_vec(),
             planned: drawn(track, sent.t_s()),
             sent: drawn(sent, sent.t_s()),
@@ -60,7 +63,7 @@ pub fn courses(replanned: &Replanned) -> Vec<JointCourse> {
             speed_limit_rad_s,
         }
     };
-    replanned.plan.tracks.iter().filter(|track| track.turns()).map(one).collect()
+    replanned.plan.tracks.iter().map(one).collect()
 }
 
 fn drawn(track: &Track, t_s: &[f64]) -> Drawn {

@@ -59,7 +59,7 @@ pub(super) fn without_dead(inputs: &Inputs, observed: Vec<Recording>) -> (Inputs
 fn dead_runs(observed: &[Recording]) -> Vec<DeadRun> {
     let Some((newest, others)) = observed.split_last() else { return Vec::new() };
     let mut found: Vec<DeadRun> = Vec::new();
-    for track in newest.measured.tracks.iter().filter(|track| track.turns()) {
+    for track in &newest.measured.tracks {
         let shares: Vec<Option<f64>> = observed.iter().map(|run| share(run, newest, track.name())).collect();
         let answers = |share: &Option<f64>| share.is_some_and(|share| share > ANSWERS);
         let enough =

@@ -24,6 +24,9 @@ pub enum ReplanFailure {
     /// Neither plan nor command may change.
     #[error("--keep-plan and --no-precompensation leave nothing to change; drop one of them")]
     NothingToChange,
+    /// A growth that is none.
+    #[error("{key} is {found}; a share from 0 to {most} is expected")]
+    Growth { key: &'static str, found: f64, most: f64 },
     /// The runs, or the file with limits.
     #[error(transparent)]
     Fit(#[from] FitFailure),
@@ -76,7 +79,7 @@ pub enum ReplanFailure {
     )]
     Unpredictable { best: f64, least: f64, why: Unclear },
     /// A run that is none of its plan.
-    #[error("{}: {why}. No command is made from such a run", path.display())]
+    #[error("{}: {why}. No command is made from such a run; leave it out if there are others", path.display())]
     Spoilt { path: PathBuf, why: String },
     /// A plan that no joint can follow, whatever is sent.
     #[error(
@@ -87,6 +90,13 @@ pub enum ReplanFailure {
         path.display()
     )]
     Steps { path: PathBuf, joint: String, size: String, at_s: f64 },
+    /// A joint that turns on at the end of its scale.
+    #[error(
+        "{}: the plan of {joint} goes from one end of its turn to the other at {at_s:.2} s: a joint that turns on, whose angles wrap; \
+         say so with --continuous {joint}",
+        path.display()
+    )]
+    Wraps { path: PathBuf, joint: String, at_s: f64 },
     /// The run does no task.
     #[error(
         "{}: its plan is an identification run, which shows limits by strokes that the machine cannot follow, and no command \

@@ -20,7 +20,7 @@ const SEEN: f64 = 1.25;
 pub(super) fn machine(
     inputs: &Inputs,
     logs: &[PathBuf],
-    observed: &[Recording],
+    observed: &[&Recording],
 ) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
     if let Some(path) = &inputs.limits {
         let file = LimitsFile::read(path)?;
@@ -33,7 +33,7 @@ pub(super) fn machine(
             return Ok((file.fit, file.logs, doubts));
         }
         // What the models leave unexplained elsewhere, as in strokes of an identification run, is not what they leave here.
-        let seen: Vec<Observation<'_>> = observed.iter().map(observation).collect();
+        let seen: Vec<Observation<'_>> = observed.iter().map(|run| observation(run)).collect();
         let factor = if file.logs.iter().any(own) { SEEN } else { 1.0 };
         return Ok((file.fit.held_against(&seen, factor), file.logs, doubts));
     }

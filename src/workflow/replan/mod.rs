@@ -8,6 +8,7 @@ mod command_laws;
 mod correctable;
 mod course;
 mod dead;
+mod decision;
 mod document;
 mod failure;
 mod history;
@@ -24,12 +25,13 @@ mod warp;
 
 use std::{ops::ControlFlow, path::PathBuf};
 
-pub use checks::{Check, Checks, Finding, JointTrust, Level, Reason, Verdict};
+pub use checks::{Check, Checks, Fastest, Finding, JointTrust, Level, Reason, Verdict};
 pub use command::{Commanded, JointCommand};
 pub use course::{Drawn, JointCourse, courses};
+pub use decision::{Decision, KeepReason, Overall};
 pub use document::ReplanDocument;
 pub use failure::ReplanFailure;
-pub use history::{Decision, KeepReason, PastRun};
+pub use history::PastRun;
 pub use limits::{HeldTo, Origin};
 pub use outcome::{Before, Replanned, Search};
 pub use predicted::{Predicted, PredictedTransition, Response, predicted, promised};
@@ -38,7 +40,7 @@ pub use unclear::Unclear;
 use super::fit;
 use crate::{
     fit::{Fit, JointFit, Learning, Step, Trial},
-    log::ReadOptions,
+    log::{ReadOptions, Recording},
     math::range,
     plan::{PlanEvaluation, Setup},
     remark::Code,
@@ -46,7 +48,7 @@ use crate::{
     series::Series,
     task::{Ceilings, Objective, Objectives},
     threads,
-    units::{DEGREE_RAD, Degrees},
+    units::DEGREE_RAD,
     workflow::{carried::rest::PLAN_LEAD_S, plan::Shaping},
 };
 use command::{Subject, commanded};
@@ -115,6 +117,9 @@ impl Default for Inputs {
 /// Timings of the search that are looked at with their commands.
 const CANDIDATES: usize = 6;
 
+/// Largest growth of a plan that may be asked for, as a share.
+const MOST_GROWTH: f64 = 10.0;
+
 /// A plan of a joint that travels less is to hold it, rad.
 const MOVES_RAD: f64 = 0.5 * DEGREE_RAD;
 
@@ -133,6 +138,11 @@ pub fn run(
     if inputs.keep_plan && !inputs.precompensate {
         return Err(ReplanFailure::NothingToChange);
     }
+    for (key, found) in [("time_growth", inputs.time_growth), ("cost_growth", inputs.cost_growth)] {
+        if !(0.0..=MOST_GROWTH).contains(&found) {
+            return Err(ReplanFailure::Growth { key, found, most: MOST_GROWTH });
+        }
+    }
     let observed = fit::observed(&inputs.logs, &inputs.read).map_err(fit::FitFailure::from)?;
     let (inputs, observed, doubts) = without_dead(inputs, observed);
     let (inputs, observed) = (&inputs, &observed[..]);
@@ -147,11 +157,15 @@ pub fn run(
     correctable(path, newest, &inputs.rules)?;
     let last = Last::of(path, newest, inputs)?;
     let mut history = History::of(&inputs.logs, observed, &last.plan, &inputs.rules)?;
-    let (first, changed) = history.without_another_machine(&mut |from, to| {
-        let logs = inputs.logs.get(from..to).filter(|_| inputs.limits.is_none())?;
-        Some(fit::of(logs, observed.get(from..to)?).ok()?.fit)
+    let chosen = |places: &mut dyn Iterator<Item = usize>| -> (Vec<PathBuf>, Vec<&Recording>) {
+        places.map(|k| (inputs.logs[k].clone(), &observed[k])).unzip()
+    };
+    let (others, changed) = history.without_another_machine(&mut |places| {
+        let (logs, observed) = chosen(&mut places.iter().copied());
+        inputs.limits.is_none().then(|| fit::of(&logs, &observed).ok())?.map(|fitted| fitted.fit)
     });
-    let (fit, fitted_to, mut remarks) = machine(inputs, &inputs.logs[first..], &observed[first..])?;
+    let (logs, own) = chosen(&mut (0..observed.len()).filter(|k| !others.contains(k)));
+    let (fit, fitted_to, mut remarks) = machine(inputs, &logs, &own)?;
     remarks.extend(doubts);
     if let Some(message) = &changed {
         remarks.add(Code::MachineChanged, 1, message);
@@ -160,7 +174,7 @@ pub fn run(
                 "the machine changed {} times between these runs, by up to {} of mean peak error: it may again, so half of \
                  the usual step is taken, and more error is expected",
                 history.changes,
-                Degrees(history.unsteady_rad)
+                history.kind.says(history.unsteady_rad)
             );
             remarks.add(Code::MachineChanged, history.changes as u64, message);
         }

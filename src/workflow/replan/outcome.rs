@@ -15,7 +15,6 @@ use crate::{
     replay::{Rules, replay},
     series::{Series, align},
     task::{Ceilings, Objective, Objectives},
-    units::Degrees,
     workflow::{
         carried::{
             Carried, Promise,
@@ -54,7 +53,7 @@ impl Before {
             |measured: &crate::series::Track| align(recording.planned.track(measured.name())?, measured);
         let pairs: Vec<_> = recording.measured.tracks.iter().filter_map(pair).collect();
         let found = replay(&pairs, rules);
-        let peaks = || found.turning_peaks_rad();
+        let peaks = || found.peaks_rad();
         let count = peaks().count();
         Self {
             measured_transitions: count,
@@ -205,7 +204,7 @@ pub(super) fn replanned(
                 "{} rests {} from its plan before and after all motion: its zero is shifted, or its load holds it off; no correction \
                  mends that, and none is made for it",
                 joint.name,
-                Degrees(joint.shifted_rad)
+                joint.kind.says(joint.shifted_rad)
             );
             remarks.add(Code::UnlikePlan, 1, message);
         }
@@ -213,7 +212,7 @@ pub(super) fn replanned(
             let message = format!(
                 "{} more of a correction gained nothing on {}: a limit that no file tells holds it, such as its valve or a pump that \
                  joints share; the smaller correction is as good there, and more time is what helps",
-                Degrees(joint.stalled_rad),
+                joint.kind.says(joint.stalled_rad),
                 joint.name
             );
             remarks.add(Code::BeyondLimit, 1, message);

@@ -148,7 +148,7 @@ fn changed(came: &Track, modelled_before: &Track, modelled: Track) -> Track {
     let position = (modelled.t_s().iter().zip(modelled.position()))
         .map(|(t_s, now)| now + unexplained(came, modelled_before, *t_s))
         .collect();
-    Track::new(modelled.name(), modelled.t_s(), position, &[]).unwrap_or(modelled)
+    Track::of(modelled.kind(), modelled.name(), modelled.t_s(), position, &[]).unwrap_or(modelled)
 }
 
 /// Peak error beside the modelled one, rad.

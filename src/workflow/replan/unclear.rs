@@ -4,7 +4,6 @@ use crate::{
     log::Recording,
     replay::{Rules, replay},
     series::{JointKind, align},
-    units::Degrees,
 };
 
 /// Share of a joint's RMS error from which on the noise of its sensor hides how it answers.
@@ -19,6 +18,8 @@ pub enum Unclear {
         noise_rad: f64,
         /// RMS error, rad.
         error_rad: f64,
+        /// Of the joint.
+        kind: JointKind,
     },
     /// The logs may be of different machines.
     Logs,
@@ -29,15 +30,15 @@ pub enum Unclear {
 impl Unclear {
     /// Of the newest of so many logs.
     pub(super) fn of(logs: usize, newest: &Recording, rules: &Rules) -> Self {
-        let turns = newest.measured.tracks.iter().filter(|track| track.kind() == JointKind::Turns);
+        let tracks = newest.measured.tracks.iter();
         let pairs: Vec<_> =
-            turns.filter_map(|track| align(newest.planned.track(track.name())?, track)).collect();
+            tracks.filter_map(|track| align(newest.planned.track(track.name())?, track)).collect();
         let joints = replay(&pairs, rules).joints;
-        let both = joints.iter().map(|joint| (joint.noise.sigma, joint.tracking_error.rms));
+        let both = joints.iter().map(|joint| (joint.noise.sigma, joint.tracking_error.rms, joint.kind));
         let least = both.min_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
         match least {
-            Some((noise_rad, error_rad)) if noise_rad >= HIDES * error_rad => {
-                Self::Noise { noise_rad, error_rad }
+            Some((noise_rad, error_rad, kind)) if noise_rad >= HIDES * error_rad => {
+                Self::Noise { noise_rad, error_rad, kind }
             }
             _ if logs > 1 => Self::Logs,
             _ => Self::Sent,
@@ -48,12 +49,12 @@ impl Unclear {
 impl std::fmt::Display for Unclear {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match *self {
-            Self::Noise { noise_rad, error_rad } => write!(
+            Self::Noise { noise_rad, error_rad, kind } => write!(
                 f,
                 "the measurement has {} of noise, of an RMS error of {}: mend or filter the sensor, or log a run whose error is \
                  larger than that",
-                Degrees(noise_rad),
-                Degrees(error_rad)
+                kind.says(noise_rad),
+                kind.says(error_rad)
             ),
             Self::Logs => {
                 f.write_str("was something else sent than the plan (--command), or did valves or controller change between the logs?")

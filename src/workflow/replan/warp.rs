@@ -41,7 +41,7 @@ impl Warp {
                 .iter()
                 .zip(response.position())
                 .map(|(t_s, response)| response + unexplained(measured, &modelled, self.old_s(*t_s)));
-            Track::new(name, response.t_s(), answer.collect(), &[]).ok()
+            Track::of(track.kind(), name, response.t_s(), answer.collect(), &[]).ok()
         };
         let tracks: Vec<Track> = plan.tracks.iter().filter_map(one).collect();
         (!tracks.is_empty()).then_some(Series { tracks })

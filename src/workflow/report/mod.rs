@@ -161,7 +161,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         paths: inputs.logs.clone(),
         machine: named("machine"),
         run: named("run"),
-        promised: carried.promise().map(|promise| promise.held(replay.turning_peaks_rad())),
+        promised: carried.promise().map(|promise| promise.held(replay.peaks_rad())),
         holds_task: carried.task().is_some(),
         broken,
         schedule: Schedule::of(&carried),

@@ -106,19 +106,12 @@ impl DelayModel {
             return Some(Err(format!("a fit to {span_s:.0} s takes a while; `report --why` makes it")));
         }
         let sent = recording.command.as_ref().map_or(&recording.planned, |command| &command.series);
-        let turning = |series: &Series| Series {
-            tracks: series.tracks.iter().filter(|track| track.turns()).cloned().collect(),
-        };
-        let (plan, sent, measured) =
-            (turning(&recording.planned), turning(sent), turning(&recording.measured));
-        if measured.tracks.is_empty() {
-            return Some(Err("only machines of joints that turn are fitted, and here all slide".to_owned()));
-        }
+        let (plan, sent) = (recording.planned.clone(), sent.clone());
         let fit = if let Self::Known(fit) = self {
             Ok(Fit::clone(fit))
         } else {
             let valve = recording.signals.get(&SignalRole::Valve).map_or(&[][..], Vec::as_slice);
-            fit(&[Observation { sent: &sent, measured: &measured, valve }])
+            fit(&[Observation { sent: &sent, measured: &recording.measured, valve }])
         };
         Some(fit.map(|fit| Ready { fit, plan, sent }).map_err(|error| error.to_string()))
     }
@@ -211,7 +204,7 @@ impl WhatIf<'_> {
         let seen = self.pair.t_s.iter().zip(self.noise);
         let position = seen.map(|(t_s, noise)| predicted.held_at(*t_s).position + noise).collect();
         let cuts: Vec<usize> = self.pair.segments.iter().skip(1).map(|segment| segment.start).collect();
-        let track = Track::new(&self.pair.name, self.pair.t_s.to_vec(), position, &cuts);
+        let track = Track::of(self.pair.kind, &self.pair.name, self.pair.t_s.to_vec(), position, &cuts);
         let pairs: Vec<Pair> = track.ok().and_then(|track| align(self.plan, &track)).into_iter().collect();
         Ok(replay(&pairs, self.rules).transitions)
     }

@@ -5,7 +5,7 @@ use std::{fs, path::Path};
 use crate::support::{clean, json, run_line, said, sample, scratch};
 
 /// A joint that follows a plan by its distance times a gain, and no faster than `most_deg_s`.
-fn followed(plan: impl Iterator<Item = (f64, f64)>, gain_1_s: f64, most_deg_s: f64) -> String {
+pub(super) fn followed(plan: impl Iterator<Item = (f64, f64)>, gain_1_s: f64, most_deg_s: f64) -> String {
     let (mut text, mut now) = ("t_s,boom_planned_deg,boom_measured_deg\n".to_owned(), None);
     for (t_s, planned) in plan {
         let (before_s, mut at) = now.unwrap_or((t_s, planned));
@@ -17,7 +17,7 @@ fn followed(plan: impl Iterator<Item = (f64, f64)>, gain_1_s: f64, most_deg_s: f
 }
 
 /// Six moves between 30 and 50 deg of so many seconds each, by time.
-fn moves(takes_s: f64) -> impl Iterator<Item = (f64, f64)> {
+pub(super) fn moves(takes_s: f64) -> impl Iterator<Item = (f64, f64)> {
     let smooth = |s: f64| {
         let s = s.clamp(0.0, 1.0);
         s * s * s * (10.0 + s * (6.0 * s - 15.0))

@@ -34,6 +34,7 @@ mod remote;
 mod replan;
 mod report;
 mod simulate;
+mod sliding;
 #[cfg(unix)]
 mod spared;
 mod tables;

@@ -355,7 +355,7 @@ fn of_a_run_that_was_stopped_no_command_is_made() {
 }
 
 #[test]
-fn a_joint_that_slides_is_sent_as_planned_in_metres_beside_corrected_joints() {
+fn a_joint_that_slides_is_corrected_by_metres_as_one_that_turns_is_by_radians() {
     let folder = with_run();
     let folder = folder.path();
     let (header, rows) = exported(folder, "run.mcap");
@@ -369,13 +369,13 @@ fn a_joint_that_slides_is_sent_as_planned_in_metres_beside_corrected_joints() {
     }
     fs::write(folder.join("crane.csv"), csv).unwrap();
     let document = json(folder, "replan crane.csv --keep-plan -o next.mcap");
-    assert!(
-        !page(folder, "replan crane.csv --keep-plan").contains("tele: corrected"),
-        "its metres would stand as degrees"
-    );
-    assert!(document["remarks"].to_string().contains("tele slides (m)"), "{}", document["remarks"]);
-    let corrected = document["command"].as_array().unwrap();
-    assert_eq!(corrected.iter().map(|joint| &joint["name"]).collect::<Vec<_>>(), ["boom"]);
+    let [boom, tele] = [0, 1].map(|k| &document["command"][k]);
+    assert_eq!((&boom["kind"], &tele["kind"]), (&"turns".into(), &"slides".into()));
+    let of = |joint: &Value| joint["peak_correction_rad"].as_f64().unwrap();
+    assert!((of(boom) - of(tele)).abs() < 1e-9 && of(boom) > 1e-3, "{boom} {tele}");
+    let page = page(folder, "replan crane.csv --keep-plan");
+    let mm = format!("corrected by up to {:.2} mm", 1e3 * of(tele));
+    assert!(page.contains(&mm) && page.contains("Length (mm)") && page.contains("Angle (deg)"), "{mm}");
     let compared = run_line(folder, "compare crane.csv crane.csv");
     for kind in ["that turn", "that slide"] {
         let said = format!("at transitions of joints {kind} is the same in 3 pairs");
@@ -391,7 +391,7 @@ fn a_joint_that_slides_is_sent_as_planned_in_metres_beside_corrected_joints() {
         };
         rows.iter().map(apart).fold(0.0, |most: f64, apart| most.max(apart.abs()))
     };
-    assert!(off("tele", "m") < 1e-12 && off("boom", "rad") > 1e-3);
+    assert!((off("tele", "m") - off("boom", "rad")).abs() < 1e-9 && off("boom", "rad") > 1e-3);
     let moves = |row: &Vec<String>| number(row, "tele_planned_m");
     assert!(rows.iter().map(moves).fold(0.0, f64::max) > 0.8, "it moves in metres");
 }

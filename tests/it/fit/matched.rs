@@ -38,7 +38,7 @@ const MODEL: Model = Model {
 const QUICK: Model = Model { dead_time_s: 0.06, time_constant_s: 0.05, ..MODEL };
 
 fn trial(joints: &[&str]) -> Series {
-    let joint = |name: &&str| JointRoom { name: (*name).to_owned(), home_rad: 1.0, range_rad: [0.5, 1.5] };
+    let joint = |name: &&str| JointRoom::turning(*name, 1.0, [0.5, 1.5]);
     excite(&joints.iter().map(joint).collect::<Vec<_>>(), &Excitation::minimal()).unwrap()
 }
 
@@ -345,8 +345,7 @@ fn a_command_by_the_model_alone_leaves_a_fifth_of_the_error_and_ends_where_the_p
 #[test]
 fn a_trial_stays_in_range_and_one_without_room_is_refused() {
     let joints = [("up", 0.5, [0.5, 1.5]), ("both", 1.0, [0.0, 2.0])];
-    let rooms =
-        joints.map(|(name, home_rad, range_rad)| JointRoom { name: name.to_owned(), home_rad, range_rad });
+    let rooms = joints.map(|(name, home_rad, range_rad)| JointRoom::turning(name, home_rad, range_rad));
     for excitation in [Excitation::minimal(), Excitation::full()] {
         let run = excite(&rooms, &excitation).unwrap();
         for (track, room) in run.tracks.iter().zip(&rooms) {

@@ -57,10 +57,9 @@ pub(crate) fn excitation(excitation: &Excitation) -> Job {
     let joints: Vec<JointRoom> = HOME_DEG
         .iter()
         .enumerate()
-        .map(|(j, home)| JointRoom {
-            name: format!("J{}", j + 1),
-            home_rad: home * DEGREE_RAD,
-            range_rad: [(home - 30.0) * DEGREE_RAD, (home + 30.0) * DEGREE_RAD],
+        .map(|(j, home)| {
+            let range_rad = [-30.0, 30.0].map(|by| (home + by) * DEGREE_RAD);
+            JointRoom::turning(format!("J{}", j + 1), home * DEGREE_RAD, range_rad)
         })
         .collect();
     Job { plan: excite(&joints, excitation).unwrap(), payload: Vec::new() }

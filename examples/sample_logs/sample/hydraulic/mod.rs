@@ -130,10 +130,9 @@ fn identification() -> Result<PlantLog, Box<dyn Error>> {
         .joints()
         .iter()
         .zip(HOME_DEG)
-        .map(|(joint, home_deg)| JointRoom {
-            name: joint.name.clone(),
-            home_rad: home_deg * DEGREE_RAD,
-            range_rad: [joint.limit.lower_rad, joint.limit.upper_rad],
+        .map(|(joint, home_deg)| {
+            let range_rad = [joint.limit.lower_rad, joint.limit.upper_rad];
+            JointRoom::turning(&joint.name, home_deg * DEGREE_RAD, range_rad)
         })
         .collect();
     let plan = excite(&joints, &Excitation { rest_s: RUN_LEAD_S, ..Excitation::minimal() })?;

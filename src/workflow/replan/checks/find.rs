@@ -1,7 +1,7 @@
 //! The checks one by one.
 
 use super::super::{MOVES_RAD, outcome::CAREFUL};
-use super::{Check, Finding, JointTrust, Level, Reason, Replanned};
+use super::{Check, Fastest, Finding, JointTrust, Level, Overall, Reason, Replanned};
 use crate::{
     fit::{Character, LEAST_SKILL, Step},
     math::range,
@@ -41,8 +41,13 @@ pub(super) fn all(replanned: &Replanned) -> impl Iterator<Item = Check> {
     let plan = &replanned.plan;
     let sent = command.map_or(plan, |command| &command.series);
     let always = [ends(plan, sent), rest(sent, command), limits(replanned, command), trust(replanned)];
-    let others =
-        [promise(replanned), Some(outlook(replanned)), leave(replanned, command), gain(replanned, command)];
+    let others = [
+        promise(replanned),
+        Some(outlook(replanned)),
+        whole(replanned),
+        leave(replanned, command),
+        gain(replanned, command),
+    ];
     always.into_iter().chain(others.into_iter().flatten())
 }
 
@@ -79,14 +84,9 @@ fn rest(sent: &Series, command: Option<&Commanded>) -> Check {
         (None, [.., t0, t1], [.., p0, p1]) => (p1 - p0) / (t1 - t0),
         _ => f64::NAN,
     };
-    // Joints that slide are sent as planned.
-    let turns = |track: &&Track| track.turns();
-    let speed_rad_s = most(sent.tracks.iter().filter(turns).map(speed));
+    let speed_rad_s = most(sent.tracks.iter().map(speed));
     let last = |values: &Vec<f64>| values.last().copied().unwrap_or(f64::NAN);
-    let acceleration_rad_s2 = command.map(|command| {
-        let both = command.series.tracks.iter().zip(&command.acceleration_rad_s2);
-        most(both.filter(|(track, _)| turns(track)).map(|(_, values)| last(values)))
-    });
+    let acceleration_rad_s2 = command.map(|command| most(command.acceleration_rad_s2.iter().map(last)));
     let level = within(speed_rad_s, REST[0]).max(within(acceleration_rad_s2.unwrap_or(0.0), REST[1]));
     Check { level, finding: Finding::Rest { speed_rad_s, acceleration_rad_s2 } }
 }
@@ -118,7 +118,20 @@ fn limits(replanned: &Replanned, command: Option<&Commanded>) -> Check {
     let names = replanned.request.as_ref().map_or_else(Vec::new, |request| request.setup.joint_names());
     let level = if broken > 0 { Level::Stop } else { caution(between > 0 || all.is_empty()) };
     let nearest = MarginEntry::all(&kinds, &names);
-    Check { level, finding: Finding::Limits { broken, between, nearest, unlimited } }
+    let fastest = command.filter(|_| all.is_empty()).and_then(fastest);
+    Check { level, finding: Finding::Limits { broken, between, nearest, unlimited, fastest } }
+}
+
+/// A joint that is sent faster than its plan by this factor is told where limits are unknown.
+const FASTER: f64 = 1.5;
+
+fn fastest(command: &Commanded) -> Option<Fastest> {
+    let joints = command.joints.iter().filter(|joint| joint.speed_ratio > FASTER);
+    let joint = joints.max_by(|a, b| a.speed_ratio.total_cmp(&b.speed_ratio))?;
+    let speed = command.series.track(&joint.name)?.velocity()?;
+    let (name, kind) = (joint.name.clone(), joint.kind);
+    let speed_rad_s = most(speed.iter().copied());
+    Some(Fastest { joint: name, kind, speed_rad_s, ratio: joint.speed_ratio })
 }
 
 fn trust(replanned: &Replanned) -> Check {
@@ -189,6 +202,13 @@ fn outlook(replanned: &Replanned) -> Check {
     Check { level: caution(worse), finding: Finding::Outlook { last_mean_peak_rad, expected } }
 }
 
+/// `None` unless the last run was corrected, and one was not.
+fn whole(replanned: &Replanned) -> Option<Check> {
+    let runs = &replanned.past.runs;
+    let overall = Overall::of(runs, runs.last()?)?;
+    Some(Check { level: caution(overall.is_worse()), finding: Finding::Whole { overall } })
+}
+
 /// `None` where the command is the plan.
 fn leave(replanned: &Replanned, command: Option<&Commanded>) -> Option<Check> {
     let (plan, sent) = (&replanned.plan, &command?.series);
@@ -205,7 +225,8 @@ fn leave(replanned: &Replanned, command: Option<&Commanded>) -> Option<Check> {
     let (distance_rad, track, t_s) = farthest?;
     let tool_m = tool_m(replanned, sent);
     let wide = distance_rad > WIDE.0 || tool_m.is_some_and(|tool_m| tool_m > WIDE.1);
-    let finding = Finding::Leave { joint: track.name().to_owned(), distance_rad, t_s, tool_m };
+    let finding =
+        Finding::Leave { joint: track.name().to_owned(), kind: track.kind(), distance_rad, t_s, tool_m };
     let elsewhere = tool_m.is_some_and(|tool_m| tool_m > ELSEWHERE_M);
     Some(Check { level: if elsewhere { Level::Stop } else { caution(wide) }, finding })
 }

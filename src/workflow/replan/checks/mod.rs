@@ -4,10 +4,11 @@ mod find;
 
 use serde::{Deserialize, Serialize};
 
-use super::Replanned;
+use super::{Overall, Replanned};
 use crate::{
     fit::Character,
     plan::Limit,
+    series::JointKind,
     workflow::{carried::Promise, plan::MarginEntry},
 };
 
@@ -90,6 +91,9 @@ pub enum Finding {
         nearest: Vec<MarginEntry>,
         /// Kinds that have no limit.
         unlimited: Vec<Limit>,
+        /// Without a task: the joint that is sent faster than its plan by most, if it is by half or more.
+        #[serde(default)]
+        fastest: Option<Fastest>,
     },
     /// How well each joint is predicted.
     Trust {
@@ -112,10 +116,19 @@ pub enum Finding {
         /// Expected of the next one.
         expected: Promise,
     },
+    /// Error over the whole run, starts, stops and rests, beside that of the plan as it is.
+    Whole {
+        /// Of the last run.
+        #[serde(flatten)]
+        overall: Overall,
+    },
     /// Where the command leaves its plan most.
     Leave {
         /// The joint.
         joint: String,
+        /// Whether it turns or slides.
+        #[serde(default)]
+        kind: JointKind,
         /// By how much, rad.
         distance_rad: f64,
         /// When, s.
@@ -130,6 +143,20 @@ pub enum Finding {
         /// Why half of it is wiser; empty if nothing says so.
         reasons: Vec<Reason>,
     },
+}
+
+/// A joint that is sent faster than its plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Fastest {
+    /// The joint.
+    pub joint: String,
+    /// Whether it turns or slides.
+    pub kind: JointKind,
+    /// Its largest speed, rad/s; of one that slides m/s.
+    pub speed_rad_s: f64,
+    /// The same by that of its plan.
+    pub ratio: f64,
 }
 
 /// How well one joint is predicted.

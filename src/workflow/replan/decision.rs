@@ -1,0 +1,221 @@
+//! Whether to go on with corrections, or what to keep.
+
+use serde::{Deserialize, Serialize};
+
+use super::history::{History, PastRun};
+
+/// A run whose mean peak is not below this share of the best before it was not worth its correction.
+const WORTH: f64 = 0.9;
+
+/// A mean peak up to this times the least is as good.
+const NEARLY: f64 = 1.05;
+
+/// A root mean square error, and what an error is below for 95 % of the time, up to these times those of the plan as it is are no more.
+pub(super) const OVERALL: [f64; 2] = [1.02, 1.1];
+
+/// A correction that is expected to come above the best run by this factor is not worth sending.
+const WORSE: f64 = 1.1;
+
+/// So many corrections that gained nothing are enough.
+const FAILURES: usize = 2;
+
+/// Whether to go on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(tag = "what", rename_all = "snake_case")]
+pub enum Decision {
+    /// Send the new command.
+    Send,
+    /// Keep what was sent in a run (by index): there is nothing more to gain.
+    Keep {
+        /// The run.
+        run: usize,
+        /// How that is known.
+        #[serde(default)]
+        because: KeepReason,
+        /// Its mean peak, rad.
+        best_rad: f64,
+        /// Mean peak of the last run, rad.
+        last_rad: f64,
+    },
+}
+
+/// Why nothing more is to be gained.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(tag = "why", rename_all = "snake_case")]
+pub enum KeepReason {
+    /// The last correction gained less than a tenth, or nothing.
+    #[default]
+    GainedLittle,
+    /// So many corrections brought nothing.
+    Failed {
+        /// How many.
+        corrections: usize,
+    },
+    /// The next correction is expected to do worse.
+    ExpectedWorse {
+        /// Its mean peak, rad.
+        expected_rad: f64,
+    },
+}
+
+/// Error over the whole run, starts, stops and rests: root mean square over all joints, and what that of every joint is
+/// below for 95 % of the time, rad.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Overall {
+    /// In a corrected run.
+    pub rms_rad: f64,
+    /// What the error is below for 95 % of it.
+    pub p95_rad: f64,
+    /// Of the plan as it is, the least of its runs.
+    pub plain_rms_rad: f64,
+    /// What that is below, alike.
+    pub plain_p95_rad: f64,
+}
+
+impl Overall {
+    /// Of a corrected run among others; `None` if it is not corrected, or all are.
+    pub(super) fn of(runs: &[PastRun], run: &PastRun) -> Option<Self> {
+        let least = |of: fn(&PastRun) -> f64| {
+            runs.iter().filter(|run| !run.corrected).map(of).reduce(f64::min).filter(|_| run.corrected)
+        };
+        Some(Self {
+            rms_rad: run.rms_error_rad,
+            p95_rad: run.p95_error_rad,
+            plain_rms_rad: least(|run| run.rms_error_rad)?,
+            plain_p95_rad: least(|run| run.p95_error_rad)?,
+        })
+    }
+
+    /// Whether the correction left more.
+    pub fn is_worse(&self) -> bool {
+        self.rms_rad > OVERALL[0] * self.plain_rms_rad || self.p95_rad > OVERALL[1] * self.plain_p95_rad
+    }
+}
+
+impl History {
+    /// Mean peak of each run that has one, rad, by its index.
+    pub(super) fn peaks_rad(&self) -> Vec<(usize, f64)> {
+        self.runs.iter().enumerate().filter_map(|(k, run)| Some((k, run.mean_peak_rad?))).collect()
+    }
+
+    /// The run with the least mean peak, rad, or of those that are nearly as good the one with the least error over the whole run.
+    /// Of what was sent again, the last time counts, and by what that grew all else that was sent before it would have grown.
+    fn best(&self) -> Option<(usize, f64)> {
+        let peaks_rad = self.peaks_rad();
+        let again = |k: usize| peaks_rad.iter().rev().find(|(later, _)| *later > k && self.same(k, *later));
+        let grown = peaks_rad.iter().filter_map(|(k, rad)| again(*k).map(|(later, now)| (*later, now / rad)));
+        let grown: Vec<(usize, f64)> = grown.collect();
+        let by =
+            |k: usize| grown.iter().filter(|(later, _)| *later > k).fold(1.0, |most, (_, by)| by.max(most));
+        let now = |of: fn(&PastRun) -> f64, k: usize| of(&self.runs[k]) * by(k);
+        let peak = |k: usize| now(|run| run.mean_peak_rad.unwrap_or(f64::INFINITY), k);
+        let left = peaks_rad.iter().rev().map(|(k, _)| *k);
+        let left = left.filter(|k| again(*k).is_none());
+        let left: Vec<usize> = left.collect();
+        let least_rad = left.iter().map(|k| peak(*k)).reduce(f64::min)?;
+        let best = left.into_iter().filter(|k| peak(*k) <= NEARLY * least_rad);
+        let best = best
+            .min_by(|a, b| now(|run| run.rms_error_rad, *a).total_cmp(&now(|run| run.rms_error_rad, *b)))?;
+        Some((best, self.runs[best].mean_peak_rad?))
+    }
+
+    /// Corrections that were not worth it.
+    fn failures(&self, peaks_rad: &[(usize, f64)]) -> usize {
+        let failed = |k: &usize| {
+            let (run, peak_rad) = peaks_rad[*k];
+            let worth = best(&peaks_rad[..*k]).is_none_or(|best| peak_rad < WORTH * best.1);
+            self.runs[run].corrected && !worth
+        };
+        (0..peaks_rad.len()).filter(failed).count()
+    }
+
+    /// Whether the last correction was worth it; of a plan that was sent as it is again, whether those before it were.
+    pub(super) fn decision(&self) -> Decision {
+        let peaks = self.peaks_rad();
+        let Some(((last, last_rad), before)) = peaks.split_last() else { return Decision::Send };
+        let Some(best_before) = best(before).filter(|_| before.len() > 1) else { return Decision::Send };
+        let because = if self.runs[*last].corrected {
+            (*last_rad >= WORTH * best_before.1).then_some(KeepReason::GainedLittle)
+        } else {
+            let corrections = self.failures(before);
+            (corrections >= FAILURES).then_some(KeepReason::Failed { corrections })
+        };
+        let Some(because) = because else { return Decision::Send };
+        let (run, best_rad) = self.best().unwrap_or((*last, *last_rad));
+        Decision::Keep { run, because, best_rad, last_rad: *last_rad }
+    }
+
+    /// What to keep in place of a correction whose mean peak is expected to be clearly above that of the best run.
+    pub(super) fn better_than(&self, expected_rad: f64) -> Option<Decision> {
+        let peaks = self.peaks_rad();
+        let (last, (run, best_rad)) = (peaks.last()?, self.best()?);
+        let because = KeepReason::ExpectedWorse { expected_rad };
+        (expected_rad > WORSE * best_rad).then_some(Decision::Keep {
+            run,
+            because,
+            best_rad,
+            last_rad: last.1,
+        })
+    }
+}
+
+fn best(peaks: &[(usize, f64)]) -> Option<(usize, f64)> {
+    peaks.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::history::tests::history, *};
+
+    #[test]
+    fn learning_goes_on_while_a_run_gains_a_tenth_and_then_the_best_is_kept() {
+        assert_eq!(history(&[]).decision(), Decision::Send);
+        assert_eq!(history(&[1.0]).decision(), Decision::Send);
+        assert_eq!(history(&[1.0, 1.2]).decision(), Decision::Send);
+        assert_eq!(history(&[1.0, 0.3, 0.2]).decision(), Decision::Send);
+        let because = KeepReason::GainedLittle;
+        let kept = |run, best_rad, last_rad| Decision::Keep { run, because, best_rad, last_rad };
+        assert_eq!(history(&[1.0, 0.3, 0.28]).decision(), kept(2, 0.28, 0.28));
+        assert_eq!(history(&[1.0, 0.3, 0.2, 0.4]).decision(), kept(2, 0.2, 0.4));
+    }
+
+    #[test]
+    fn after_two_corrections_that_gained_nothing_the_plan_is_kept_however_often_it_is_run() {
+        let mut history = history(&[4.19, 4.24, 4.25, 4.18]);
+        history.runs[3].corrected = false;
+        let because = KeepReason::Failed { corrections: 2 };
+        let kept = Decision::Keep { run: 3, because, best_rad: 4.18, last_rad: 4.18 };
+        assert_eq!(history.decision(), kept);
+        history.runs.remove(2);
+        assert_eq!(history.decision(), Decision::Send);
+    }
+
+    #[test]
+    fn of_two_runs_that_are_as_good_the_one_that_is_better_overall_is_kept() {
+        let mut history = history(&[2.9, 0.736, 0.746]);
+        for (run, rms) in history.runs.iter_mut().zip([2.0, 0.48, 0.39]) {
+            run.rms_error_rad = rms;
+        }
+        assert_eq!(history.decision(), kept(2, KeepReason::GainedLittle, 0.746, 0.746));
+        history.runs[2].rms_error_rad = 2.1;
+        let overall = Overall::of(&history.runs, &history.runs[2]).unwrap();
+        assert!(overall.is_worse() && history.decision() == kept(1, KeepReason::GainedLittle, 0.736, 0.746));
+        assert_eq!(Overall::of(&history.runs, &history.runs[0]), None);
+    }
+
+    fn kept(run: usize, because: KeepReason, best_rad: f64, last_rad: f64) -> Decision {
+        Decision::Keep { run, because, best_rad, last_rad }
+    }
+
+    #[test]
+    fn what_is_expected_to_be_worse_than_the_best_run_is_not_sent() {
+        assert_eq!(history(&[]).better_than(9.0), None);
+        assert_eq!(history(&[4.2, 4.3]).better_than(4.5), None);
+        let because = KeepReason::ExpectedWorse { expected_rad: 6.0 };
+        let kept = Decision::Keep { run: 0, because, best_rad: 4.2, last_rad: 4.3 };
+        assert_eq!(history(&[4.2, 4.3]).better_than(6.0), Some(kept));
+    }
+}

@@ -1,0 +1,69 @@
+//! Joints that slide from identification run to a better run: all lengths, in mm and m.
+
+use std::fs;
+
+use super::commissioning::{followed, moves};
+use crate::support::{clean, json, run_line, said, scratch};
+
+/// The columns of an export, by name.
+fn columns<const N: usize>(folder: &std::path::Path, log: &str, names: [&str; N]) -> Vec<[f64; N]> {
+    let (_, text, _) = said(&run_line(folder, &format!("export {log} --csv")));
+    let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let places = names.map(|name| {
+        header.iter().position(|own| *own == name).unwrap_or_else(|| panic!("{name} of {header:?}"))
+    });
+    let row = |row: &str| {
+        let cells: Vec<&str> = row.split(',').collect();
+        places.map(|place| cells[place].parse().unwrap())
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+/// A mast whose plan goes from 300 to 500 mm and back.
+fn mast(rows: impl Iterator<Item = (f64, f64)>) -> String {
+    let table = followed(rows, 0.6, 60.0).replace("boom", "mast").replace("_deg", "_mm");
+    assert!(table.starts_with("t_s,mast_planned_mm,mast_measured_mm\n"));
+    table
+}
+
+#[test]
+fn a_joint_that_slides_is_fitted_corrected_and_better_for_it() {
+    let folder = scratch();
+    let folder = folder.path();
+    fs::write(folder.join("run.csv"), mast(moves(9.0).map(|(t_s, at)| (t_s, 10.0 * at)))).unwrap();
+    let (_, fitted, _) = said(&run_line(folder, "fit run.csv -o limits.toml"));
+    assert!(fitted.contains("speed + mm/s") && !fitted.contains("deg"), "{fitted}");
+    let (_, next, _) = said(&run_line(folder, "replan run.csv -o next.mcap"));
+    assert!(next.contains("mean transition peak mm") && next.contains("correction mm"), "{next}");
+    assert!(!next.contains(" deg"), "{next}");
+    let sent = columns(folder, "next.mcap", ["time_s", "mast_planned_m", "mast_command_m"]);
+    let [first, last] = [sent[0], sent[sent.len() - 1]];
+    assert!((first[1] - first[2]).abs() < 1e-6 && (last[1] - last[2]).abs() < 1e-6);
+    // A recorder that knows of the command alone: the line that is printed puts the plan into its log.
+    let came = mast(sent.iter().map(|[t_s, _, sent]| (*t_s, 1e3 * sent))).replace("planned", "command");
+    fs::write(folder.join("came.csv"), came).unwrap();
+    let (code, _, error) = said(&run_line(folder, "join came.csv --plan next.mcap -o after.mcap"));
+    assert!(code != 1, "{error}");
+    let compared = json(folder, "compare run.csv after.mcap");
+    let peak =
+        compared["summaries"].as_array().unwrap().iter().find(|one| one["measure"] == "peak_error").unwrap();
+    let [before, after] = ["mean_before", "mean_after"].map(|key| peak[key].as_f64().unwrap());
+    assert!(after < 0.3 * before && before > 0.01, "{peak}");
+}
+
+#[test]
+fn an_identification_run_of_a_joint_that_slides_tells_its_speed() {
+    let folder = scratch();
+    let folder = folder.path();
+    let said_of = clean(folder, "excite -o id.mcap --joint mast=400:250:550mm --max-speed-mm-s 300");
+    assert!(said_of.contains("+-60.0 mm at 30.0 mm/s; +-100.0 mm at 300.0 mm/s"), "{said_of}");
+    let strokes = columns(folder, "id.mcap", ["time_s", "mast_planned_m"]);
+    assert!(strokes.iter().all(|[_, at]| (0.3 - 1e-9..=0.5 + 1e-9).contains(at)));
+    fs::write(folder.join("id.csv"), mast(strokes.iter().map(|[t_s, at]| (*t_s, 1e3 * at)))).unwrap();
+    let found = json(folder, "fit id.csv");
+    let joint = &found["joints"][0];
+    let limit = &joint["speed_limit_growing_rad_s"];
+    assert!(joint["kind"] == "slides" && (limit["value"].as_f64().unwrap() - 0.06).abs() < 0.003, "{limit}");
+    let (code, _, error) = said(&run_line(folder, "replan id.csv -o next.mcap"));
+    assert!(code == 1 && error.contains("is an identification run"), "{error}");
+}
