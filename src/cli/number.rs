@@ -34,6 +34,11 @@ pub(super) fn millimetres(text: &str) -> Result<f64, String> {
     not_negative(text, "length in millimetres").map(|mm| mm / 1e3)
 }
 
+/// Millimetres of a correction, as metres.
+pub(super) fn correction_mm(text: &str) -> Result<f64, String> {
+    within(text, [0.0, 1000.0], "a length from 0 to 1000 mm").map(|mm| mm / 1e3)
+}
+
 /// Milliseconds, as seconds.
 pub(super) fn milliseconds(text: &str) -> Result<f64, String> {
     not_negative(text, "time in milliseconds").map(|ms| ms / 1e3)

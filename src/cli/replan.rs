@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, ffi::OsString, ops::ControlFlow, path::PathBuf}
 use super::{
     CliError, Outcome, Run,
     console::{Console, Target, progress, spare_for_file, spare_for_log, write_file},
-    number::{degrees, growth_percent, millimetres, share},
+    number::{correction_mm, degrees, growth_percent, share},
     plan::Free,
     read::SentArgs,
 };
@@ -90,7 +90,7 @@ struct ChangeArgs {
     max_correction_deg: Option<f64>,
 
     /// The same of joints that slide [default: 1.25 times the largest error, at least 26]
-    #[arg(long, value_name = "MM", value_parser = millimetres, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", value_parser = correction_mm, allow_negative_numbers = true)]
     max_correction_mm: Option<f64>,
 
     /// Largest growth of the plan's duration

@@ -137,7 +137,7 @@ impl Run for Args {
         let report = run(&self.request(limits.map(|(_, file)| file), target.form == Form::Html))?;
         if let Some((path, file)) = limits {
             // Its joints must be those of the run.
-            file.check_joints(path, report.pairs.iter().map(|pair| pair.name.as_str()))?;
+            file.check_joints(path, report.pairs.iter().map(|pair| (pair.name.as_str(), pair.kind)))?;
         }
         let name = words::name(&report);
         let most = MOST.map(|most| if self.all { usize::MAX } else { most });

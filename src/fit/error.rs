@@ -31,6 +31,11 @@ pub enum FitError {
         "{log} has the joints {found}, the logs before it {known}: not one in common, so they are of two machines; fit them apart"
     )]
     OtherArm { log: String, found: String, known: String },
+    /// A joint that turns in one log and slides in another.
+    #[error(
+        "{joint} turns in one of the logs and slides in another, as in {log}: read all as lengths or all as angles"
+    )]
+    OtherKind { log: String, joint: String },
     /// A joint that the fit leaves out.
     #[error("the fit has no joint {joint}; it has {known}")]
     UnknownJoint { joint: String, known: String },

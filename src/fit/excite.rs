@@ -33,6 +33,9 @@ pub struct Ramp {
 /// Strokes shorter than this show nothing, rad.
 const LEAST_RAD: f64 = DEGREE_RAD;
 
+/// No joint is sent more slowly, rad/s.
+const LEAST_RAD_S: f64 = 1e-4;
+
 /// Of a joint that slides a centimetre stands for a degree of the strokes.
 fn scale(kind: JointKind) -> f64 {
     match kind {
@@ -113,7 +116,10 @@ impl Excitation {
 
     fn check(&self) -> Result<(), FitError> {
         let ramps = self.ramps.iter().flat_map(|ramp| {
-            [("speed_rad_s", ramp.speed_rad_s, 1e-4, 100.0), ("travel_rad", ramp.travel_rad, 1e-4, 3.0)]
+            [
+                ("speed_rad_s", ramp.speed_rad_s, LEAST_RAD_S, 100.0),
+                ("travel_rad", ramp.travel_rad, 1e-4, 3.0),
+            ]
         });
         let own = [
             ("dwell_s", self.dwell_s, 0.0, 60.0),
@@ -138,6 +144,10 @@ pub fn excite(joints: &[JointRoom], excitation: &Excitation) -> Result<Series, F
     excitation.check()?;
     let mut strokes = Vec::with_capacity(joints.len());
     for joint in joints {
+        if joint.most_rad_s.is_nan() || joint.most_rad_s < LEAST_RAD_S {
+            let (found, least) = (joint.most_rad_s, LEAST_RAD_S);
+            return Err(FitError::Setting { key: "most_rad_s", found, least, most: f64::INFINITY });
+        }
         strokes.push(joint_strokes(joint, excitation)?);
     }
     let own: Vec<usize> = strokes.iter().map(Vec::len).collect();

@@ -79,6 +79,14 @@ pub(crate) fn read_options(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Rea
             }
         }
     }
+    for (key, found) in [("from_s", from_s), ("to_s", to_s)] {
+        if found.is_some_and(|s: f64| !s.is_finite()) {
+            return Err(PyValueError::new_err(format!("{key} is {found:?}, expected seconds")));
+        }
+    }
+    if into == JointKind::Slides && hydraulics.is_none() {
+        return Err(PyValueError::new_err("joints_as asks for hydraulics, the file of the cylinders"));
+    }
     read.range = TimeRange::of_seconds(from_s, to_s);
     read.cylinders = hydraulics.map(|file| Cylinders { file, into });
     Ok(read)

@@ -36,6 +36,8 @@ const LEAST_AT_REST_S: f64 = 0.2;
 
 /// What was sent to one joint and what came of it, every [`STEP_S`].
 pub(super) struct Answer {
+    /// Which of all runs it is.
+    pub(super) of_run: usize,
     pub(super) sent: Vec<(f64, f64)>,
     /// Made up where nothing was measured.
     pub(super) measured_rad: Vec<f64>,
@@ -49,11 +51,18 @@ pub(super) struct Answer {
 
 impl Answer {
     /// What came of a run of a plan.
-    pub(super) fn of(trial: &Trial, name: &str, from_s: f64, planned: &[(f64, f64)]) -> Option<Self> {
+    pub(super) fn of(
+        of_run: usize,
+        trial: &Trial,
+        name: &str,
+        from_s: f64,
+        planned: &[(f64, f64)],
+    ) -> Option<Self> {
         let at_s = |k: usize| from_s + k as f64 * STEP_S;
         let (sent, measured) = (trial.sent.track(name)?, trial.measured.track(name)?);
         let steps = planned.len();
         let mut made = Self {
+            of_run,
             sent: sampled(sent, from_s, steps),
             measured_rad: (0..steps).map(|k| measured.held_at(at_s(k)).position).collect(),
             seen: (0..steps).map(|k| measured.at(at_s(k)).is_some()).collect(),
@@ -184,8 +193,14 @@ mod tests {
             });
             let measured_rad = measured_rad.collect();
             let seen = (0..n).map(seen).collect();
-            let mut answer =
-                Answer { sent: Vec::new(), measured_rad, seen, shifted_rad: 0.0, after_rad: Vec::new() };
+            let mut answer = Answer {
+                of_run: 0,
+                sent: Vec::new(),
+                measured_rad,
+                seen,
+                shifted_rad: 0.0,
+                after_rad: Vec::new(),
+            };
             answer.fill(&planned);
             (answer.error_rad(&planned), answer.unseen_s(&planned))
         };
@@ -213,8 +228,14 @@ mod tests {
         let shifted = |before: f64, after: f64, seen: &dyn Fn(usize) -> bool| {
             let measured_rad = (0..n).map(|k| plan(k) + before + plan(k) * (after - before)).collect();
             let seen = (0..n).map(seen).collect();
-            let mut answer =
-                Answer { sent: Vec::new(), measured_rad, seen, shifted_rad: 0.0, after_rad: Vec::new() };
+            let mut answer = Answer {
+                of_run: 0,
+                sent: Vec::new(),
+                measured_rad,
+                seen,
+                shifted_rad: 0.0,
+                after_rad: Vec::new(),
+            };
             answer.shift(&planned);
             (answer.shifted_rad, answer.error_rad(&planned)[n / 2])
         };

@@ -12,7 +12,7 @@ use super::{
     },
     oscillation::{Character, Oscillation},
     shape::{Wanted, shaped},
-    stalled::{GAINED, stalled, trimmed, unspoilt},
+    stalled::{stalled, trimmed, unspoilt},
 };
 use crate::{
     math::{deviation, lowpass},
@@ -78,8 +78,8 @@ impl<'a> Joint<'a> {
         let mut planned = super::super::predict::grid(track)?;
         planned.pop();
         let from_s = track.t_s().first().copied().unwrap_or_default();
-        let answer = |trial: &Trial| Answer::of(trial, track.name(), from_s, &planned);
-        let answers: Vec<Answer> = runs.iter().filter_map(answer).collect();
+        let answer = |(run, trial): (usize, &Trial)| Answer::of(run, trial, track.name(), from_s, &planned);
+        let answers: Vec<Answer> = runs.iter().enumerate().filter_map(answer).collect();
         let mut workspace = Workspace::default();
         let astray = answers.last().is_some_and(|run| is_astray(&planned, run, fit, &mut workspace));
         // What a joint does that follows another plan, or none, is no oscillation of its loop.
@@ -108,7 +108,9 @@ impl<'a> Joint<'a> {
     ) -> JointStep {
         let errors: Vec<Vec<f64>> = self.answers.iter().map(|run| run.error_rad(&self.planned)).collect();
         let largest_rad = errors.iter().map(|error_rad| largest(error_rad)).fold(0.0, f64::max);
-        let kept = settings.keep.filter(|from| *from < self.answers.len());
+        // The newest run up to the one to be kept in which the joint was measured.
+        let kept = settings.keep.filter(|_| !self.answers.is_empty());
+        let kept = kept.map(|keep| self.answers.iter().rposition(|run| run.of_run <= keep).unwrap_or(0));
         let sent: Vec<Vec<f64>> = self.answers.iter().map(|run| run.correction_rad(&self.planned)).collect();
         // What the plan is off by unaided, as its first run tells; what was sent beyond that is never clipped, and does not grow
         // where a joint cannot follow.
@@ -155,12 +157,14 @@ impl<'a> Joint<'a> {
         made.stalled.retain(|held| spread_rad < DIFFERS * held.error_rad);
         let fade = fade(self.planned.len(), free);
         let (step, wanted_rad) = if let Some(from) = kept {
-            let from = unspoilt(from, &sent, &self.whole_rad());
+            let (from, _) = unspoilt(from, &sent, &self.whole_rad());
             let mut kept = sent[from].clone();
-            // Also of a command that is kept as a whole, not what gained nothing on less of it.
+            // Also of a command that is kept as a whole, not what left more error than less of it.
             for held in &made.stalled {
-                if trimmed(&errors[from][held.steps.clone()]) > GAINED * held.error_rad {
-                    kept[held.steps.clone()].copy_from_slice(&sent[held.from][held.steps.clone()]);
+                let (steps, less) = (held.steps.clone(), &sent[held.from][held.steps.clone()]);
+                let smaller = largest(less) < largest(&kept[steps.clone()]);
+                if smaller && trimmed(&errors[from][steps.clone()]) > held.error_rad {
+                    kept[steps].copy_from_slice(less);
                 }
             }
             (Step::Kept { from }, kept)
@@ -176,7 +180,14 @@ impl<'a> Joint<'a> {
             Step::Kept { .. } => KEPT_HZ,
             _ => FINISHED_HZ.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz),
         };
-        made.step = step;
+        // Runs in which the joint was not measured count, too.
+        let of_run = |from: usize| self.answers[from].of_run;
+        made.step = match step {
+            Step::Later { from, gain } => Step::Later { from: of_run(from), gain },
+            Step::Kept { from } => Step::Kept { from: of_run(from) },
+            other => other,
+        };
+        made.stalled.iter_mut().for_each(|held| held.from = of_run(held.from));
         let wanted = Wanted { correction_rad: &wanted_rad, cut_off_hz, most_rad, share: settings.share };
         made.correction = shaped(wanted, free, room(self.name).as_ref());
         made
@@ -232,8 +243,10 @@ impl<'a> Joint<'a> {
         let (from, trust) = trusted(rms_rad);
         let sent: Vec<Vec<f64>> = answers.iter().map(|run| run.correction_rad(planned)).collect();
         let (from, trust) = match unspoilt(from, &sent, &whole) {
-            same if same == from => (from, trust),
-            other => (other, 0.5 * trust),
+            (_, 0) => (from, trust),
+            (other, 1) => (other, 0.5 * trust),
+            // Twice is enough.
+            (other, _) => return (Step::Kept { from: other }, sent[other].clone()),
         };
         let usual = match manner.character {
             Character::Calm => GAINS[0],

@@ -9,7 +9,7 @@ use crate::{math::quantile, units::DEGREE_RAD};
 const GREW: (f64, f64) = (0.2, 0.1 * DEGREE_RAD);
 
 /// An error that is above this share of another, and above this, rad, is none the smaller for it.
-pub(super) const GAINED: f64 = 0.95;
+const GAINED: f64 = 0.95;
 const MATTERS_RAD: f64 = 0.1 * DEGREE_RAD;
 
 /// Errors up to this times the least are as good.
@@ -77,19 +77,18 @@ pub(super) fn trimmed(error_rad: &[f64]) -> f64 {
 }
 
 /// The run of which a joint is to be sent what it was sent, in place of `from`: where that left it more error over the whole run than
-/// none did, the one that left least.
-pub(super) fn unspoilt(from: usize, sent: &[Vec<f64>], errors: &[Vec<f64>]) -> usize {
+/// none did, the one that left least; and how many runs were spoilt, if that one was. Errors are of equally long runs.
+pub(super) fn unspoilt(from: usize, sent: &[Vec<f64>], errors: &[Vec<f64>]) -> (usize, usize) {
     let of: Vec<[f64; 2]> = errors.iter().map(|error| [trimmed(error), top(error)]).collect();
     let plain = (0..of.len()).filter(|k| largest(&sent[*k]) <= NONE_RAD);
-    let Some(plain) = plain.map(|k| of[k]).reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])]) else {
-        return from;
-    };
-    let spoilt = |k: usize| of[k][0] > WORSE[0] * plain[0] || of[k][1] > WORSE[1] * plain[1];
-    if plain[1] < MATTERS_RAD || !spoilt(from) {
-        return from;
+    let Some(plain) = plain.min_by(|a, b| of[*a][0].total_cmp(&of[*b][0])) else { return (from, 0) };
+    let spoilt = |k: &usize| of[*k][0] > WORSE[0] * of[plain][0] || of[*k][1] > WORSE[1] * of[plain][1];
+    if of[plain][1] < MATTERS_RAD || !spoilt(&from) {
+        return (from, 0);
     }
-    let others = (0..of.len()).filter(|k| !spoilt(*k));
-    others.min_by(|a, b| of[*a][0].total_cmp(&of[*b][0])).unwrap_or(from)
+    let others = (0..of.len()).filter(|k| !spoilt(k));
+    let least = others.min_by(|a, b| of[*a][0].total_cmp(&of[*b][0])).unwrap_or(plain);
+    (least, (0..of.len()).filter(spoilt).count())
 }
 
 /// What an error is below for all but a twentieth of the time: no spike of a sensor is.
@@ -140,14 +139,14 @@ mod tests {
     fn a_joint_that_a_correction_spoilt_is_sent_less_of_one() {
         let all = |of: &[f64]| of.iter().map(|of| vec![of * DEGREE_RAD; 200]).collect::<Vec<_>>();
         let sent = all(&[0.0, 1.0, 3.0]);
-        assert_eq!(unspoilt(2, &sent, &all(&[6.8, 6.5, 7.4])), 1);
-        assert_eq!(unspoilt(2, &sent, &all(&[6.8, 7.0, 7.4])), 0);
-        assert_eq!(unspoilt(2, &sent, &all(&[6.8, 6.5, 6.6])), 2);
-        assert_eq!(unspoilt(2, &all(&[1.0; 3]), &all(&[6.8, 6.5, 7.4])), 2, "none was sent as it is");
+        assert_eq!(unspoilt(2, &sent, &all(&[6.8, 6.5, 7.4])), (1, 1));
+        assert_eq!(unspoilt(2, &sent, &all(&[6.8, 7.0, 7.4])), (0, 2));
+        assert_eq!(unspoilt(2, &sent, &all(&[6.8, 6.5, 6.6])), (2, 0));
+        assert_eq!(unspoilt(2, &all(&[1.0; 3]), &all(&[6.8, 6.5, 7.4])), (2, 0), "none was sent as it is");
         // A spike of a sensor spoils nothing.
         let mut errors = all(&[1.0, 0.1, 0.05]);
         errors[2][7] = 100.0;
-        assert_eq!(unspoilt(2, &sent, &errors), 2);
+        assert_eq!(unspoilt(2, &sent, &errors), (2, 0));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::{
         metric::{Units, number, position, unit},
     },
     replay::Dimension,
-    series::JointKind,
+    series::JointKind::{self, Slides, Turns},
     workflow::replan::{Decision, JointCommand, KeepReason, PastRun, Replanned},
 };
 
@@ -31,7 +31,7 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
             ", more than the best run before it had: what is sent again comes to more now, and other commands would.".to_owned()
         }
         KeepReason::GainedLittle => {
-            ", which is less than a tenth better than the best run before it.".to_owned()
+            ", which is no better than the best run before it by a tenth.".to_owned()
         }
         KeepReason::Failed { corrections } => {
             format!("; {} gained nothing.", counted(*corrections, "correction"))
@@ -40,7 +40,15 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
             format!("; another correction is expected to give {}.", shown(*expected_rad))
         }
     };
-    Some(kept + &why + repeats(replanned).unwrap_or_default())
+    let joints = replanned.command.iter().flat_map(|command| &command.joints);
+    let other = joints.filter(|joint| matches!(joint.step, Step::Kept { from } if from != *run));
+    let other: Vec<&str> = other.map(|joint| joint.name.as_str()).collect();
+    let but = if other.is_empty() {
+        String::new()
+    } else {
+        format!(" Not for {}: it had more error over the whole run there than before.", other.join(", "))
+    };
+    Some(kept + &why + &but + repeats(replanned).unwrap_or_default())
 }
 
 /// Whether a run had clearly less than what is kept.
@@ -144,7 +152,9 @@ pub(super) fn command(replanned: &Replanned) -> Option<Section> {
              knows. Ratios: peak speed and acceleration \
              of the command over those of the plan.",
         ))
-        .with_all(cut_off(&command.joints).map(Sentence::Advice))
+        .with_all(
+            [Turns, Slides].into_iter().filter_map(|kind| cut_off(&command.joints, kind)).map(Sentence::Advice),
+        )
         .with_all(stamped(replanned, &command.joints).map(|text| Sentence::note(text.to_owned()))))
 }
 
@@ -185,11 +195,12 @@ fn row(replanned: &Replanned, joint: &JointCommand, units: Units) -> Vec<String>
     ]
 }
 
-/// Which corrections would have been larger.
-fn cut_off(joints: &[JointCommand]) -> Option<String> {
-    let all: Vec<&JointCommand> =
-        joints.iter().filter(|joint| joint.peak_correction_rad > 0.98 * joint.most_correction_rad).collect();
-    let kind = JointKind::common(all.iter().map(|joint| joint.kind));
+/// Which corrections of joints of a kind would have been larger.
+fn cut_off(joints: &[JointCommand], kind: JointKind) -> Option<String> {
+    let all: Vec<&JointCommand> = joints
+        .iter()
+        .filter(|joint| joint.kind == kind && joint.peak_correction_rad > 0.98 * joint.most_correction_rad)
+        .collect();
     let most = all.iter().map(|joint| joint.peak_correction_rad).reduce(f64::max)?;
     let names: Vec<&str> = all.iter().map(|joint| joint.name.as_str()).collect();
     Some(format!(

@@ -10,6 +10,7 @@ use crate::{
     fit::{Fit, JointFit, LEAST_SKILL, LeftOut},
     input_file,
     remark::Remark,
+    series::JointKind,
 };
 
 const FORMAT: &str = "hydrotrace.fit.v1";
@@ -142,15 +143,19 @@ impl LimitsFile {
     ///
     /// # Errors
     ///
-    /// [`FitFailure::OtherJoints`].
+    /// [`FitFailure::OtherJoints`], and [`FitFailure::OtherKind`] if a joint turns in one and slides in the other.
     pub fn check_joints<'a>(
         &self,
         path: &Path,
-        joints: impl Iterator<Item = &'a str> + Clone,
+        joints: impl Iterator<Item = (&'a str, JointKind)> + Clone,
     ) -> Result<(), FitFailure> {
-        if joints.clone().any(|name| self.fit.joint(name).is_some()) {
-            return Ok(());
+        let mut known =
+            joints.clone().filter_map(|(name, kind)| Some((self.fit.joint(name)?, kind))).peekable();
+        if known.peek().is_some() {
+            let other = known.find(|(joint, kind)| joint.kind != *kind).map(|(joint, _)| joint.name.clone());
+            return other.map_or(Ok(()), |joint| Err(FitFailure::OtherKind { path: path.to_owned(), joint }));
         }
+        let joints = joints.map(|(name, _)| name);
         let found: Vec<&str> = self.fit.joints.iter().map(|joint| joint.name.as_str()).collect();
         let (found, expected) = (found.join(", "), joints.collect::<Vec<_>>().join(", "));
         Err(FitFailure::OtherJoints { path: path.to_owned(), found, expected })

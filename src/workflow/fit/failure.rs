@@ -30,6 +30,13 @@ pub enum FitFailure {
     /// A file of another arm.
     #[error("the limits in {} are of the joints {found}, the log has {expected}: not one in common", path.display())]
     OtherJoints { path: PathBuf, found: String, expected: String },
+    /// A joint that turns in one and slides in the other.
+    #[error(
+        "{joint} turns in one of the log and {}, and slides in the other: fit a log of lengths for lengths, of angles for angles \
+         (--slides, --hydraulics with --as)",
+        path.display()
+    )]
+    OtherKind { path: PathBuf, joint: String },
     /// Numbers in a file that no machine has.
     #[error("the limits in {} cannot be used", path.display())]
     Values { path: PathBuf, source: FitError },

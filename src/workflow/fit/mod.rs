@@ -195,14 +195,21 @@ pub(super) fn doubts(logs: &[PathBuf], observed: &[&Recording]) -> Remarks {
 
 /// Every log must share a joint with those before it: a machine is fitted, not several.
 fn of_one_arm(logs: &[PathBuf], observed: &[&Recording]) -> Result<(), FitError> {
-    let mut known: Vec<&str> = Vec::new();
+    let mut known: Vec<&Track> = Vec::new();
     for (path, observed) in logs.iter().zip(observed) {
-        let own: Vec<&str> = observed.measured.tracks.iter().map(Track::name).collect();
-        if !known.is_empty() && !own.iter().any(|name| known.contains(name)) {
-            let (found, known) = (own.join(", "), known.join(", "));
+        let own = &observed.measured.tracks;
+        let same = |a: &&Track| known.iter().find(|b| b.name() == a.name()).copied();
+        if !known.is_empty() && !own.iter().any(|track| same(&track).is_some()) {
+            let names =
+                |tracks: &[&Track]| tracks.iter().map(|track| track.name()).collect::<Vec<_>>().join(", ");
+            let (found, known) = (names(&own.iter().collect::<Vec<_>>()), names(&known));
             return Err(FitError::OtherArm { log: name(path), found, known });
         }
-        known.extend(own.into_iter().filter(|name| !known.contains(name)).collect::<Vec<_>>());
+        if let Some(track) = own.iter().find(|a| same(a).is_some_and(|b| a.kind() != b.kind())) {
+            return Err(FitError::OtherKind { log: name(path), joint: track.name().to_owned() });
+        }
+        let new: Vec<&Track> = own.iter().filter(|track| same(track).is_none()).collect();
+        known.extend(new);
     }
     Ok(())
 }

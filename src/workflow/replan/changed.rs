@@ -56,12 +56,13 @@ impl History {
         let mut before: Vec<Era> = Vec::new();
         let mut said = None;
         for run in 1..self.runs.len() {
-            if let Some(k) = before.iter().rposition(|era| self.returns(era, &now, run, fits)) {
-                said = Some(self.said_of_return(run, &now));
-                let passed = now;
-                now = before.remove(k);
-                before.truncate(k);
-                now.others.extend(passed.runs.iter().map(|k| self.places[*k]));
+            if let Some(k) = self.returned(&before, &now, run, fits) {
+                let mut eras = before.drain(k..).chain([now]).collect::<Vec<Era>>().into_iter();
+                now = eras.next().unwrap_or_default();
+                let passed: BTreeSet<usize> = eras.flat_map(|era| era.runs).collect();
+                said = Some(self.said_of_return(run, &passed));
+                now.runs.retain(|k| !passed.contains(k));
+                now.others.extend(passed.iter().map(|k| self.places[*k]));
                 now.runs.push(run);
                 continue;
             }
@@ -94,25 +95,41 @@ impl History {
         (now.others, said)
     }
 
-    /// Whether a run is of the machine as it was before it changed: what was sent then comes to the same again, or its model
-    /// has the run and that of the runs since has not.
-    fn returns(&self, era: &Era, now: &Era, run: usize, fits: Fits) -> bool {
-        let agrees = |k: &usize| self.apart(*k, run) < CHANGED_TWICE && self.same(*k, run);
-        if now.runs.iter().any(agrees) {
-            return false;
-        }
-        if era.runs.iter().any(agrees) {
-            return true;
-        }
-        let places = |runs: &[usize]| -> Vec<usize> { runs.iter().map(|k| self.places[*k]).collect() };
-        let Some((older, newer)) = fits(&places(&era.runs)).zip(fits(&places(&now.runs))) else {
-            return false;
+    /// The time before a change that a run is of again: what was sent then comes to the same, or, of the last one, its model has
+    /// the run as well as its own and that of the runs since has not.
+    fn returned(&self, before: &[Era], now: &Era, run: usize, fits: Fits) -> Option<usize> {
+        let now_rad = self.peak_rad(run)?;
+        let differed_rad = (now_rad - self.peak_rad(*now.runs.last()?)?).abs();
+        // What makes up for a change is no sign of its end.
+        let sent_again = |k: usize| {
+            self.same(k, run) && self.differ_by(k, run, f64::max(SENT_AGAIN_RAD, 0.5 * differed_rad))
         };
-        let missed = |fit: &Fit, track: &Track| missed_rad(fit.joint(track.name())?, &self.series[run]);
-        let both = |track: &Track| Some([missed(&older, track)?, missed(&newer, track)?]);
-        let missed: Vec<[f64; 2]> = self.series[run].1.tracks.iter().filter_map(both).collect();
-        missed.iter().any(|[older, newer]| exceeds(*newer, *older))
-            && !missed.iter().any(|[older, newer]| exceeds(*older, *newer))
+        let apart = |k: usize| self.peak_rad(k).map(|_| self.apart(k, run));
+        let agrees = |k: &usize| sent_again(*k) && apart(*k).is_some_and(|apart| apart < CHANGED_TWICE);
+        let contradicts = |k: &usize| sent_again(*k) && apart(*k).is_some_and(|apart| apart >= CHANGED_TWICE);
+        if now.runs.iter().any(agrees) {
+            return None;
+        }
+        if let Some(k) = before.iter().rposition(|era| era.runs.iter().any(agrees)) {
+            return Some(k);
+        }
+        let (last, era) = before.iter().enumerate().next_back()?;
+        if era.runs.iter().any(contradicts) {
+            return None;
+        }
+        let mut fitted = |runs: &[usize]| fits(&runs.iter().map(|k| self.places[*k]).collect::<Vec<_>>());
+        let (older, newer, own) = (fitted(&era.runs)?, fitted(&now.runs)?, fitted(&[run])?);
+        let newest = *era.runs.last()?;
+        let of_joint = |track: &Track| {
+            let name = track.name();
+            let missed = |fit: &Fit, k: usize| missed_rad(fit.joint(name)?, self.series.get(k)?);
+            let (older_rad, newer_rad) = (missed(&older, run)?, missed(&newer, run)?);
+            let least_rad = missed(&own, run)?.max(missed(&older, newest)?);
+            Some((exceeds(newer_rad, older_rad), exceeds(older_rad, least_rad)))
+        };
+        let found: Vec<(bool, bool)> = self.series[run].1.tracks.iter().filter_map(of_joint).collect();
+        let back = found.iter().any(|(back, _)| *back) && found.iter().all(|(_, other)| !other);
+        back.then_some(last)
     }
 
     fn peak_rad(&self, run: usize) -> Option<f64> {
@@ -189,8 +206,8 @@ impl History {
         Some(all.max_by(|a, b| a.0.total_cmp(&b.0))?.1)
     }
 
-    fn said_of_return(&self, run: usize, passed: &Era) -> String {
-        let logs: Vec<&str> = passed.runs.iter().map(|k| self.runs[*k].log.as_str()).collect();
+    fn said_of_return(&self, run: usize, passed: &BTreeSet<usize>) -> String {
+        let logs: Vec<&str> = passed.iter().map(|k| self.runs[*k].log.as_str()).collect();
         format!(
             "the machine had changed for a time and moves in {} as before: what came meanwhile, in {}, is left out",
             self.runs[run].log,
@@ -287,6 +304,16 @@ mod tests {
         assert_eq!(of(&[1.0, 1.2, 1.0, 1.0], &[0.01, 0.04, 0.018, 0.0175]), (4, true, 2), "and again");
         assert_eq!(of(&[1.0, 1.2, 1.3], &[0.01, 0.04, 0.09]), (0, false, 3), "other commands");
         assert_eq!(of(&[1.0, 1.2, 1.2, 1.2], &[0.04, 0.01, 0.05, 0.0102]), (1, true, 3), "for one run");
+        assert_eq!(
+            of(&[1.0, 1.0, 1.0, 1.0, 1.0], &[0.0114, 0.0113, 0.03, 0.03, 0.0054]),
+            (8, true, 1),
+            "another one yet"
+        );
+        assert_eq!(
+            of(&[1.0; 7], &[0.01, 0.01, 0.03, 0.03, 0.09, 0.09, 0.0101]),
+            (4, true, 3),
+            "the first again"
+        );
         assert_eq!(of(&[1.0, 1.2, 1.201], &[0.04, 0.002, 0.0014]), (0, false, 3), "what was gained was sent");
         // The oil warms: what is kept comes to more each time, and no older command is better for having been sent before.
         let kept = |promised_rad: f64, newest: f64| {

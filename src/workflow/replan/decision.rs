@@ -69,7 +69,7 @@ pub struct Overall {
     pub rms_rad: f64,
     /// What the error is below for 95 % of it.
     pub p95_rad: f64,
-    /// Of the plan as it is, the least of its runs.
+    /// Of the plan as it is, the run that had least.
     pub plain_rms_rad: f64,
     /// What that is below, alike.
     pub plain_p95_rad: f64,
@@ -78,14 +78,13 @@ pub struct Overall {
 impl Overall {
     /// Of a corrected run among others; `None` if it is not corrected, or all are.
     pub(super) fn of(runs: &[PastRun], run: &PastRun) -> Option<Self> {
-        let least = |of: fn(&PastRun) -> f64| {
-            runs.iter().filter(|run| !run.corrected).map(of).reduce(f64::min).filter(|_| run.corrected)
-        };
-        Some(Self {
+        let plain = runs.iter().filter(|run| !run.corrected);
+        let plain = plain.min_by(|a, b| a.rms_error_rad.total_cmp(&b.rms_error_rad));
+        plain.filter(|_| run.corrected).map(|plain| Self {
             rms_rad: run.rms_error_rad,
             p95_rad: run.p95_error_rad,
-            plain_rms_rad: least(|run| run.rms_error_rad)?,
-            plain_p95_rad: least(|run| run.p95_error_rad)?,
+            plain_rms_rad: plain.rms_error_rad,
+            plain_p95_rad: plain.p95_error_rad,
         })
     }
 

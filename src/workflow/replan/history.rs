@@ -39,7 +39,7 @@ pub struct PastRun {
     pub corrected: bool,
     /// Mean peak error of its starts and reversals, rad; null without any.
     pub mean_peak_rad: Option<f64>,
-    /// Root mean square error over all joints, the whole plan and what was logged of four seconds after it, rad.
+    /// Root mean square error over all joints, the whole plan and what all logs have of four seconds after it, rad.
     #[serde(default)]
     pub rms_error_rad: f64,
     /// What the error of every joint is below for 95 % of it, rad.
@@ -78,13 +78,18 @@ impl History {
     ) -> Result<Self, ReplanFailure> {
         let mut history = Self { kind: plan.common_kind(), ..Self::default() };
         let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
+        let mut after_s = AFTER_S;
         for (place, (path, recording)) in paths.iter().zip(recordings).enumerate() {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
             let Some(starts_s) = found_at_s(plan, &*bridged(&recording.planned)?, from_s - PLAN_LEAD_S)?
             else {
                 continue;
             };
-            let ended_s = end_s + rests_s(&recording.planned, plan, starts_s + end_s);
+            let rests_s = rests_s(&recording.planned, plan, starts_s + end_s);
+            let seen = recording.measured.tracks.iter().filter_map(|track| track.t_s().last());
+            let seen_s = seen.map(|t_s| t_s - starts_s - end_s).fold(f64::INFINITY, f64::min);
+            after_s = f64::min(after_s, rests_s.min(seen_s)).max(0.0);
+            let ended_s = end_s + rests_s;
             let sent = recording.command.as_ref().map_or(&recording.planned, |command| &command.series);
             let (sent, measured) = (
                 cut(&*bridged(sent)?, starts_s, starts_s + end_s)?,
@@ -96,18 +101,22 @@ impl History {
             let found = replay(&pairs, rules);
             let count = found.peaks_rad().count() as f64;
             let sum: f64 = found.peaks_rad().sum();
-            let errors_rad = errors_rad(&measured, plan);
             history.runs.push(PastRun {
                 log: path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
                 corrected: !within(&sent, plan, NONE_RAD),
                 mean_peak_rad: (count > 0.0).then(|| sum / count),
-                rms_error_rad: errors_rad[0],
-                p95_error_rad: errors_rad[1],
+                rms_error_rad: 0.0,
+                p95_error_rad: 0.0,
                 promised: Carried::of(recording).promise(),
             });
             history.corrections_rad.push(farthest(&sent, plan));
             history.series.push((sent, measured));
             history.places.push(place);
+        }
+        // Only what all logs have can be compared.
+        for (run, (_, measured)) in history.runs.iter_mut().zip(&mut history.series) {
+            *measured = cut_measured(measured, 0.0, end_s + after_s)?;
+            [run.rms_error_rad, run.p95_error_rad] = errors_rad(measured, plan);
         }
         Ok(history)
     }
@@ -184,7 +193,8 @@ fn rests_s(planned: &Series, plan: &Series, ended_s: f64) -> f64 {
         plan.tracks.iter().all(|track| {
             let end = track.position().last().copied().unwrap_or_default();
             let own = planned.track(track.name());
-            own.is_some_and(|own| (own.held_at(ended_s + after_s).position - end).abs() < NONE_RAD)
+            let at = own.and_then(|own| own.at(ended_s + after_s));
+            at.is_some_and(|state| (state.position - end).abs() < NONE_RAD)
         })
     };
     let steps = (0_u32..).map(|k| STEP_S * f64::from(k));

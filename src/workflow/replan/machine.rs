@@ -10,7 +10,6 @@ use crate::{
     fit::{Fit, Observation},
     log::Recording,
     remark::Remarks,
-    series::Track,
 };
 
 /// What runs that a model was fitted to, among others, leave unexplained is less than what the next one will.
@@ -24,7 +23,8 @@ pub(super) fn machine(
 ) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
     if let Some(path) = &inputs.limits {
         let file = LimitsFile::read(path)?;
-        let joints = observed.iter().flat_map(|run| &run.measured.tracks).map(Track::name);
+        let joints =
+            observed.iter().flat_map(|run| &run.measured.tracks).map(|track| (track.name(), track.kind()));
         file.check_joints(path, joints)?;
         let own =
             |log: &String| logs.iter().any(|path| path.file_name().is_some_and(|name| name == log.as_str()));

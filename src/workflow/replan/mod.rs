@@ -223,7 +223,13 @@ pub fn run(
     // What is kept is no other correction, whatever is expected of it.
     if let Some(keep) = chosen.kept_instead(&history).filter(|_| maker.decision == Decision::Send) {
         maker.decision = keep;
-        chosen = maker.candidate(None, last.plan.clone())?;
+        let kept = maker.candidate(None, last.plan.clone())?;
+        // Joints that the kept run spoilt are sent something else.
+        if kept.predicted.mean_peak_rad < chosen.predicted.mean_peak_rad {
+            chosen = kept;
+        } else {
+            maker.decision = Decision::Send;
+        }
     }
     let decision = maker.decision;
     if chosen.new.is_none() && chosen.astray() {
