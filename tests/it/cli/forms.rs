@@ -264,3 +264,33 @@ fn whole_seconds_of_many_rows_each_are_refused_with_the_rate_as_the_way_out() {
     let says = |part: &str| error.contains(part);
     assert!(code == 1 && says("import a.csv --rate HZ") && says("or --time COLUMN"), "{code} {error}");
 }
+
+#[test]
+fn a_parquet_table_of_another_program_is_imported_as_the_same_rows_in_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = crate::support::sample("panel-install.mcap").display().to_string();
+    for form in ["csv", "parquet"] {
+        assert_ne!(said(&hydrotrace(folder.path(), &format!("export {log} -o a.{form}"))).0, 1);
+    }
+    let mut other = fs::read(folder.path().join("a.parquet")).unwrap();
+    for at in other.len() - 2000..other.len() - 10 {
+        if &other[at..at + 10] == b"hydrotrace" {
+            other[at..at + 10].copy_from_slice(b"other prog");
+        }
+    }
+    fs::write(folder.path().join("a.parquet"), other).unwrap();
+    for options in [
+        "--slides joint_1=mm",
+        "--planned j=joint_1_measured_rad --measured j=joint_1_planned_rad",
+        "--rate 10",
+    ] {
+        let read = |form: &str| {
+            let import = format!("import a.{form} -o {form}.mcap --force {options}");
+            let (code, text, error) = said(&hydrotrace(folder.path(), &import));
+            assert_ne!(code, 1, "{import} {error}");
+            let (_, report, _) = said(&hydrotrace(folder.path(), &format!("report {form}.mcap")));
+            [text, report].map(|text| text.replace(form, "csv"))
+        };
+        assert_eq!(read("parquet"), read("csv"), "{options}");
+    }
+}
