@@ -182,7 +182,8 @@ impl Look<'_> {
         let (unit, doubt) = if huge && fine.first().is_none_or(|first| *first > 1e18) {
             (parse_unit("ns"), None)
         } else {
-            guess_unit(fine.first().copied().unwrap_or(0.0), step, whole)
+            let counts = whole && milli.windows(2).all(|two| two[1].checked_sub(two[0]) == Some(1_000));
+            guess_unit(fine.first().copied().unwrap_or(0.0), step, whole, counts)
         };
         let Some(unit) = unit else { return Err(CsvError::TimeUnit { column: name(), step }) };
         Ok(self.found(TimeSource::Number { column, unit }, doubt))
