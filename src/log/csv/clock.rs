@@ -1,26 +1,29 @@
 //! Finds the column of the time.
 
+use ::csv::ByteRecord;
+
 use super::{
     CsvError, CsvOptions,
-    column::{find, present},
+    column::{find, pasted, present},
     date::{DateForm, Part},
     dialect::Dialect,
     guess::{SINCE_1899_DAYS, guess_unit, typical_step},
     head::Head,
     label::Label,
     number::{nanoseconds, number},
+    rows::Rows,
     time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
     unit::{ARCHIVE_DAY, Measure, parse_unit},
 };
 use crate::{
     math::range,
     remark::{Code, Remarks},
-    text::shell_word,
     units::NS_PER_S,
 };
 
 /// Finds the time among the columns.
 pub(super) fn choose(
+    text: &[u8],
     head: &Head,
     labels: &[Label],
     dialect: Dialect,
@@ -57,7 +60,7 @@ pub(super) fn choose(
     // receiver's, then what has a date.
     let spans = |found: &Found| found.source.columns().iter().any(|column| look.is_span(*column));
     usable.sort_by_key(|found| (!found.resolves, spans(found), look.is_of_receipt(found), !found.absolute));
-    look.remark_other(&usable, remarks);
+    look.remark_other(text, &usable, remarks);
     match (usable.into_iter().next(), failure) {
         (Some(best), _) if best.resolves => Ok(best.tell(head, remarks)),
         (Some(best), _) => {
@@ -245,34 +248,51 @@ impl Look<'_> {
         found.source.columns().iter().any(says)
     }
 
-    /// Remarks on another clock that goes otherwise than the best one.
-    fn remark_other(&self, usable: &[Found], remarks: &mut Remarks) {
+    /// Remarks on another clock that goes otherwise than the best one, by all rows.
+    fn remark_other(&self, text: &[u8], usable: &[Found], remarks: &mut Remarks) {
         let Some((best, others)) = usable.split_first().filter(|(best, _)| best.resolves) else { return };
-        let header = |found: &Found| {
-            found.source.columns().first().map_or(String::new(), |column| self.head.names[*column].clone())
-        };
+        let column = |found: &Found| found.source.columns().first().copied().unwrap_or_default();
         let others = others.iter().filter(|other| {
             let apart =
                 |other: &Found| other.source.columns().iter().all(|c| !best.source.columns().contains(c));
             other.resolves && apart(other) && !self.is_of_receipt(other)
         });
         for other in others {
-            let both = self.ns(&best.source).zip(self.ns(&other.source));
-            let off: Vec<f64> =
-                both.filter_map(|(a, b)| Some((b?.checked_sub(a?)?) as f64 / NS_PER_S)).collect();
-            let [least, most] = range(off.iter().copied());
-            let ns: Vec<f64> = self.ns(&best.source).flatten().map(|ns| ns as f64 / NS_PER_S).collect();
-            if most - least > LEAST_APART_S.max(2.0 * typical_step(&ns)) {
+            let [own, ns] = self.both(text, [&best.source, &other.source]);
+            let off = own.iter().zip(&ns).filter_map(|(a, b)| Some(b.checked_sub(*a)? as f64 / NS_PER_S));
+            let [least, most] = range(off);
+            let s: Vec<f64> = own.iter().map(|ns| *ns as f64 / NS_PER_S).collect();
+            if most - least > LEAST_APART_S.max(2.0 * typical_step(&s)) {
+                let names = &self.head.names;
                 let message = format!(
-                    "times are read from {:?}; {:?} goes {:.3} s away from it and back: --time {} reads that one",
-                    header(best),
-                    header(other),
+                    "times are read from {:?}; {:?} goes {:.3} s away from it: --time {} reads that one",
+                    names[column(best)],
+                    names[column(other)],
                     most - least,
-                    shell_word(&header(other))
+                    pasted(column(other), names)
                 );
                 remarks.add(Code::Guessed, 1, message);
             }
         }
+    }
+
+    /// The stamps of two clocks, ns, in the rows that have both; a time of day goes on after midnight.
+    fn both(&self, text: &[u8], sources: [&TimeSource; 2]) -> [Vec<i64>; 2] {
+        let mut stamps = [Vec::new(), Vec::new()];
+        let mut rows = Rows::new(text, self.dialect.separator);
+        let mut record = ByteRecord::new();
+        while let Some(line) = rows.next(&mut record) {
+            let cell = |column: usize| record.get(column).unwrap_or_default();
+            let ns = sources.map(|source| source.ns(0, cell, self.dialect.decimal_comma));
+            if let ([Some(a), Some(b)], true) = (ns, line >= self.head.first_line) {
+                stamps[0].push(a);
+                stamps[1].push(b);
+            }
+        }
+        for (source, stamps) in sources.iter().zip(&mut stamps) {
+            source.settle(stamps);
+        }
+        stamps
     }
 
     /// The column that is the index of a data frame, which has no name of its own, where it rises as a time does. Whole

@@ -215,7 +215,7 @@ impl Form {
         settle::settle(&mut labels);
         let mut options = options.clone();
         let derived = expression::derive(&mut head, &mut labels, &mut options)?;
-        let time = clock::choose(&head, &labels, dialect, &options, remarks)?;
+        let time = clock::choose(text, &head, &labels, dialect, &options, remarks)?;
         let layout = layout::lay_out(&head, &labels, &time.columns(), &options, remarks)?;
         Ok(Self { dialect, head, labels, derived, time, layout, options })
     }

@@ -294,3 +294,12 @@ fn a_parquet_table_of_another_program_is_imported_as_the_same_rows_in_text() {
         assert_eq!(read("parquet"), read("csv"), "{options}");
     }
 }
+
+#[test]
+fn two_clocks_are_judged_by_all_rows() {
+    let row =
+        |t: f64, p: f64, m: f64| format!("{t:.2},{:.2},{p:.4},{m:.4}\n", if t < 4.5 { t } else { t - 0.3 });
+    let text = "t_a_s,stamp,boom_set_deg,boom_act_deg\n".to_owned() + &rows(row);
+    let (code, text, error) = report("a.csv", &text);
+    assert!(code == 3 && text.contains("0.300 s away"), "{text}{error}");
+}
