@@ -67,10 +67,13 @@ pub(super) fn choose(
             let columns: Vec<&str> = best.source.columns().iter().map(|&c| head.names[c].as_str()).collect();
             let why =
                 format!(" that tells the rows apart ({} repeats itself in most)", columns.join(" with "));
-            Err(CsvError::NoTime { why, present: present(&head.names) })
+            Err(CsvError::NoTime { why, present: present(&head.names), by_number: look.by_number() })
         }
         (None, Some(error)) => Err(error),
-        (None, None) => Err(CsvError::NoTime { why: String::new(), present: present(&head.names) }),
+        (None, None) => {
+            let (why, by_number) = (String::new(), look.by_number());
+            Err(CsvError::NoTime { why, present: present(&head.names), by_number })
+        }
     }
 }
 
@@ -295,6 +298,27 @@ impl Look<'_> {
         stamps
     }
 
+    /// The options that name columns of a table without names by their number; none of one with names.
+    fn by_number(&self) -> Vec<String> {
+        if self.head.named {
+            return Vec::new();
+        }
+        let columns = 0..self.labels.len();
+        // A clock stands in front; joints may rise for a while.
+        let time = columns.clone().take(2).find(|column| self.rising(*column).is_some());
+        let first = time.map_or("--rate HZ".to_owned(), |column| format!("--time '#{}'", column + 1));
+        let others = columns.filter(|column| Some(*column) != time).map(|column| column + 1);
+        let sides = ["--planned", "--measured"].into_iter().zip(others);
+        std::iter::once(first).chain(sides.map(|(side, column)| format!("{side} 'J1=#{column}'"))).collect()
+    }
+
+    /// A column that rises from row to row.
+    fn rising(&self, column: usize) -> Option<Found> {
+        let found = self.column(column).ok()?;
+        let ns: Vec<i64> = self.ns(&found.source).collect::<Option<_>>()?;
+        (ns.len() >= LEAST_ROWS && ns.windows(2).all(|two| two[0] < two[1])).then_some(found)
+    }
+
     /// The column that is the index of a data frame, which has no name of its own, where it rises as a time does. Whole
     /// numbers that are no instants count rows, perhaps every tenth of them.
     fn index(&self) -> Option<Found> {
@@ -323,11 +347,7 @@ impl Look<'_> {
             let is_joint = label.is_joint && !(label.is_weak && self.labels.iter().all(alone));
             !is_joint && label.stated.is_some_and(|unit| unit.measure == Measure::Time)
         };
-        let rises = |column: usize| {
-            let found = self.column(column).ok()?;
-            let ns: Vec<i64> = self.ns(&found.source).collect::<Option<_>>()?;
-            (ns.len() >= LEAST_ROWS && ns.windows(2).all(|two| two[0] < two[1])).then_some((column, found))
-        };
+        let rises = |column: usize| Some((column, self.rising(column)?));
         let mut all: Vec<_> = (0..self.labels.len()).filter(in_time).filter_map(rises).collect();
         if all.len() > 1 {
             all.retain(|(column, _)| !self.is_span(*column));

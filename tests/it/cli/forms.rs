@@ -303,3 +303,22 @@ fn two_clocks_are_judged_by_all_rows() {
     let (code, text, error) = report("a.csv", &text);
     assert!(code == 3 && text.contains("0.300 s away"), "{text}{error}");
 }
+
+#[test]
+fn a_table_without_names_is_told_the_line_that_names_columns_by_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let paste = |text: &str| {
+        fs::write(folder.path().join("a.csv"), text).unwrap();
+        let (code, _, error) = said(&hydrotrace(folder.path(), "report a.csv"));
+        assert_eq!(code, 1, "{error}");
+        (error.split('`').nth(1).unwrap_or_default().to_owned(), error)
+    };
+    let (line, error) = paste(&rows(|t, p, m| format!("{:.4},{t:.2},{p:.4},{m:.4}\n", p.sin())));
+    assert!(line.contains("--time '#2' --planned 'J1=#1' --measured 'J1=#3'"), "{error}");
+    assert!(error.contains("#2 rises from row to row as a time does"), "{error}");
+    let line = line.replace("J1=#3", "J1=#4").replace("J1=#1", "J1=#3").replace('\'', "");
+    let (code, text, error) = said(&hydrotrace(folder.path(), &line[11..].replace("-o", "--degrees -o")));
+    assert!(code != 1 && text.contains("one joint, 4.98 s at 50.0 Hz"), "{line} {text}{error}");
+    let (line, error) = paste(&rows(|_, p, m| format!("{p:.4},{m:.4}\n")));
+    assert!(line.contains("--rate HZ --planned 'J1=#1' --measured 'J1=#2'"), "{error}");
+}
