@@ -20,6 +20,8 @@ pub enum Contents {
     },
     /// A recording of another format, or what belongs to one, and which.
     Recording(&'static str),
+    /// Columns in Parquet, and whether this program wrote them.
+    Parquet(bool),
     /// Rows of cells, and the first line.
     Table(String),
     /// A page for browsers, and its first bytes.
@@ -61,11 +63,7 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
         let end = source.length();
         source.read(Span { start: end.saturating_sub(FOOTER), end }, &mut bytes)?;
         let own = bytes.windows(OWN_PARQUET.len()).any(|part| part == OWN_PARQUET);
-        return Ok(if own {
-            Contents::Other
-        } else {
-            Contents::Recording("a Parquet table of another program")
-        });
+        return Ok(Contents::Parquet(own));
     }
     if let Some(layout) = scan(&source) {
         let channels = Definitions::gather(&layout, &source, false).channels;

@@ -25,8 +25,7 @@ pub enum LogError {
     /// A table that does not say all that is needed.
     #[error(
         "{} is a table that leaves something open; `{}` {}, and the log that it writes is read as any other{}",
-        path.display(), given.line(path, source.missing_option().map(|(option, _)| option)),
-        source.missing_option().map_or("takes options for that", |(_, meaning)| meaning), given.rest()
+        path.display(), given.line(path, &source.missing_options().0), source.missing_options().1, given.rest()
     )]
     Table { path: PathBuf, source: Box<CsvError>, given: Given },
     /// A file of another form that cannot be read.

@@ -48,10 +48,10 @@ impl Given {
         self.words.iter().any(|word| word.split(' ').next() == Some(option))
     }
 
-    /// The line that imports a table with these options and one that is missing.
-    pub(super) fn line(&self, path: &Path, missing: Option<&str>) -> String {
-        let missing = missing.filter(|option| !self.has(option));
-        let words: Vec<&str> = missing.into_iter().chain(self.words().map(String::as_str)).collect();
+    /// The line that imports a table with these options and those that are missing.
+    pub(super) fn line(&self, path: &Path, missing: &[String]) -> String {
+        let missing = missing.iter().filter(|one| !self.has(one.split(' ').next().unwrap_or_default()));
+        let words: Vec<&str> = missing.chain(self.words()).map(String::as_str).collect();
         line(path, &words, path)
     }
 
@@ -108,9 +108,9 @@ mod tests {
 
     #[test]
     fn a_line_repeats_what_import_takes_and_its_output_has_the_name_of_the_table() {
-        let line = |options: &ReadOptions, path: &str, missing| {
-            let given = Given::of(options);
-            given.line(Path::new(path), missing) + given.rest()
+        let line = |options: &ReadOptions, path: &str, missing: Option<&str>| {
+            let (given, missing) = (Given::of(options), missing.map(str::to_owned));
+            given.line(Path::new(path), missing.as_slice()) + given.rest()
         };
         let plain = ReadOptions::default();
         assert_eq!(line(&plain, "x/a b.csv.gz", None), "hydrotrace import 'x/a b.csv.gz' -o 'a b.mcap'");

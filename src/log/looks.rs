@@ -62,7 +62,7 @@ pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
 /// Whether lines are numbers between blanks, as many in each.
 fn spaced(lines: &[&str]) -> bool {
     const LINES: usize = 3;
-    const LEAST_CELLS: usize = 3;
+    const LEAST_CELLS: usize = 2;
     let cells = |line: &&str| {
         let mut cells = line.split_whitespace().map(|cell| cell.parse::<f64>().ok());
         cells.try_fold(0, |count, number| number.map(|_| count + 1))
@@ -81,6 +81,7 @@ mod tests {
         let is = |name: &str, text: &[u8]| is_table(Path::new(name), text);
         assert!(is("a.txt", b"Trace 1\nof 3.5.2026\n\nt;a;b\n0;1,5;2\n1;1,5;2\n2;1,5;2\n3;1,5;2\n"));
         assert!(is("a.txt", b"# t  q1  q2\n0 1.5 2\n1  1.5 2\n2 1.5  -2e-3\n3 1 1\n"));
+        assert!(is("a.txt", b"1.5 2\n1.5 2\n1 2\n1.0 -2\n"));
         assert!(is("a.txt", b"\xff\xfet\0;\0"));
         assert!(is("a.txt", b"{\"t\": 0, \"q\": 1}\n{\"t\": 1}\n{\"t\":"));
         assert!(is("a.json", b"[{\"t\": 0, \"q\": 1},{\"t\": 1") && is("a.json", b"[\n {\n  \"t\": 0,\n"));

@@ -1,26 +1,29 @@
 //! Finds the column of the time.
 
+use ::csv::ByteRecord;
+
 use super::{
     CsvError, CsvOptions,
-    column::{find, present},
+    column::{find, pasted, present},
     date::{DateForm, Part},
     dialect::Dialect,
     guess::{SINCE_1899_DAYS, guess_unit, typical_step},
     head::Head,
     label::Label,
     number::{nanoseconds, number},
+    rows::Rows,
     time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
     unit::{ARCHIVE_DAY, Measure, parse_unit},
 };
 use crate::{
     math::range,
     remark::{Code, Remarks},
-    text::shell_word,
     units::NS_PER_S,
 };
 
 /// Finds the time among the columns.
 pub(super) fn choose(
+    text: &[u8],
     head: &Head,
     labels: &[Label],
     dialect: Dialect,
@@ -57,17 +60,20 @@ pub(super) fn choose(
     // receiver's, then what has a date.
     let spans = |found: &Found| found.source.columns().iter().any(|column| look.is_span(*column));
     usable.sort_by_key(|found| (!found.resolves, spans(found), look.is_of_receipt(found), !found.absolute));
-    look.remark_other(&usable, remarks);
+    look.remark_other(text, &usable, remarks);
     match (usable.into_iter().next(), failure) {
         (Some(best), _) if best.resolves => Ok(best.tell(head, remarks)),
         (Some(best), _) => {
             let columns: Vec<&str> = best.source.columns().iter().map(|&c| head.names[c].as_str()).collect();
             let why =
                 format!(" that tells the rows apart ({} repeats itself in most)", columns.join(" with "));
-            Err(CsvError::NoTime { why, present: present(&head.names) })
+            Err(CsvError::NoTime { why, present: present(&head.names), by_number: look.by_number() })
         }
         (None, Some(error)) => Err(error),
-        (None, None) => Err(CsvError::NoTime { why: String::new(), present: present(&head.names) }),
+        (None, None) => {
+            let (why, by_number) = (String::new(), look.by_number());
+            Err(CsvError::NoTime { why, present: present(&head.names), by_number })
+        }
     }
 }
 
@@ -182,7 +188,8 @@ impl Look<'_> {
         let (unit, doubt) = if huge && fine.first().is_none_or(|first| *first > 1e18) {
             (parse_unit("ns"), None)
         } else {
-            guess_unit(fine.first().copied().unwrap_or(0.0), step, whole)
+            let counts = whole && milli.windows(2).all(|two| two[1].checked_sub(two[0]) == Some(1_000));
+            guess_unit(fine.first().copied().unwrap_or(0.0), step, whole, counts)
         };
         let Some(unit) = unit else { return Err(CsvError::TimeUnit { column: name(), step }) };
         Ok(self.found(TimeSource::Number { column, unit }, doubt))
@@ -244,34 +251,72 @@ impl Look<'_> {
         found.source.columns().iter().any(says)
     }
 
-    /// Remarks on another clock that goes otherwise than the best one.
-    fn remark_other(&self, usable: &[Found], remarks: &mut Remarks) {
+    /// Remarks on another clock that goes otherwise than the best one, by all rows.
+    fn remark_other(&self, text: &[u8], usable: &[Found], remarks: &mut Remarks) {
         let Some((best, others)) = usable.split_first().filter(|(best, _)| best.resolves) else { return };
-        let header = |found: &Found| {
-            found.source.columns().first().map_or(String::new(), |column| self.head.names[*column].clone())
-        };
+        let column = |found: &Found| found.source.columns().first().copied().unwrap_or_default();
         let others = others.iter().filter(|other| {
             let apart =
                 |other: &Found| other.source.columns().iter().all(|c| !best.source.columns().contains(c));
             other.resolves && apart(other) && !self.is_of_receipt(other)
         });
         for other in others {
-            let both = self.ns(&best.source).zip(self.ns(&other.source));
-            let off: Vec<f64> =
-                both.filter_map(|(a, b)| Some((b?.checked_sub(a?)?) as f64 / NS_PER_S)).collect();
-            let [least, most] = range(off.iter().copied());
-            let ns: Vec<f64> = self.ns(&best.source).flatten().map(|ns| ns as f64 / NS_PER_S).collect();
-            if most - least > LEAST_APART_S.max(2.0 * typical_step(&ns)) {
+            let [own, ns] = self.both(text, [&best.source, &other.source]);
+            let off = own.iter().zip(&ns).filter_map(|(a, b)| Some(b.checked_sub(*a)? as f64 / NS_PER_S));
+            let [least, most] = range(off);
+            let s: Vec<f64> = own.iter().map(|ns| *ns as f64 / NS_PER_S).collect();
+            if most - least > LEAST_APART_S.max(2.0 * typical_step(&s)) {
+                let names = &self.head.names;
                 let message = format!(
-                    "times are read from {:?}; {:?} goes {:.3} s away from it and back: --time {} reads that one",
-                    header(best),
-                    header(other),
+                    "times are read from {:?}; {:?} goes {:.3} s away from it: --time {} reads that one",
+                    names[column(best)],
+                    names[column(other)],
                     most - least,
-                    shell_word(&header(other))
+                    pasted(column(other), names)
                 );
                 remarks.add(Code::Guessed, 1, message);
             }
         }
+    }
+
+    /// The stamps of two clocks, ns, in the rows that have both; a time of day goes on after midnight.
+    fn both(&self, text: &[u8], sources: [&TimeSource; 2]) -> [Vec<i64>; 2] {
+        let mut stamps = [Vec::new(), Vec::new()];
+        let mut rows = Rows::new(text, self.dialect.separator);
+        let mut record = ByteRecord::new();
+        while let Some(line) = rows.next(&mut record) {
+            let cell = |column: usize| record.get(column).unwrap_or_default();
+            let ns = sources.map(|source| source.ns(0, cell, self.dialect.decimal_comma));
+            if let ([Some(a), Some(b)], true) = (ns, line >= self.head.first_line) {
+                stamps[0].push(a);
+                stamps[1].push(b);
+            }
+        }
+        for (source, stamps) in sources.iter().zip(&mut stamps) {
+            source.settle(stamps);
+        }
+        stamps
+    }
+
+    /// The options that name columns of a table without names by their number; none of one with names.
+    fn by_number(&self) -> Vec<String> {
+        if self.head.named {
+            return Vec::new();
+        }
+        let columns = 0..self.labels.len();
+        // A clock stands in front; joints may rise for a while.
+        let time = columns.clone().take(2).find(|column| self.rising(*column).is_some());
+        let first = time.map_or("--rate HZ".to_owned(), |column| format!("--time '#{}'", column + 1));
+        let others = columns.filter(|column| Some(*column) != time).map(|column| column + 1);
+        let sides = ["--planned", "--measured"].into_iter().zip(others);
+        std::iter::once(first).chain(sides.map(|(side, column)| format!("{side} 'J1=#{column}'"))).collect()
+    }
+
+    /// A column that rises from row to row.
+    fn rising(&self, column: usize) -> Option<Found> {
+        let found = self.column(column).ok()?;
+        let ns: Vec<i64> = self.ns(&found.source).collect::<Option<_>>()?;
+        (ns.len() >= LEAST_ROWS && ns.windows(2).all(|two| two[0] < two[1])).then_some(found)
     }
 
     /// The column that is the index of a data frame, which has no name of its own, where it rises as a time does. Whole
@@ -302,11 +347,7 @@ impl Look<'_> {
             let is_joint = label.is_joint && !(label.is_weak && self.labels.iter().all(alone));
             !is_joint && label.stated.is_some_and(|unit| unit.measure == Measure::Time)
         };
-        let rises = |column: usize| {
-            let found = self.column(column).ok()?;
-            let ns: Vec<i64> = self.ns(&found.source).collect::<Option<_>>()?;
-            (ns.len() >= LEAST_ROWS && ns.windows(2).all(|two| two[0] < two[1])).then_some((column, found))
-        };
+        let rises = |column: usize| Some((column, self.rising(column)?));
         let mut all: Vec<_> = (0..self.labels.len()).filter(in_time).filter_map(rises).collect();
         if all.len() > 1 {
             all.retain(|(column, _)| !self.is_span(*column));

@@ -6,6 +6,7 @@ use ::csv::ByteRecord;
 
 use super::{
     CsvOptions, Role, clock,
+    column::{find, pasted},
     dialect::{Dialect, detect},
     head::{Head, read_head},
     label::{Label, label},
@@ -46,10 +47,10 @@ pub(super) fn joined(
     }
     let dialect = detect(file, text, options).ok()?;
     let head = read_head(text, dialect, &mut Remarks::default());
-    let groups = groups(&head, dialect, options)?;
+    let (clocks, groups) = groups(&head, dialect, options)?;
     let first = groups.first()?;
     let Some(samples) = in_order(samples(text, &head, dialect, &groups), &groups) else {
-        let names: Vec<&str> = groups.iter().map(|group| head.names[group.time].as_str()).collect();
+        let names: Vec<String> = groups.iter().map(|group| pasted(group.time, &head.names)).collect();
         let message = format!(
             "columns {} tell different times that have little in common: each row is read at the first one, unless --time \
              names another",
@@ -64,17 +65,20 @@ pub(super) fn joined(
         if raw { own() } else { in_unit(sample.ns, &first.source, dialect.decimal_comma) }
     };
     let mut out = writer(dialect.separator);
-    let columns = || groups.iter().flat_map(|group| group.columns.iter().copied());
-    let names = std::iter::once(first.time).chain(columns()).map(|column| head.names[column].as_bytes());
-    out.write_record(names).ok()?;
+    // Columns keep their numbers; those of the other times have no name and no cells.
+    let name = |(column, name): (usize, &String)| {
+        let other = clocks.contains(&column) && column != first.time;
+        if other { Vec::new() } else { name.clone().into_bytes() }
+    };
+    out.write_record(head.names.iter().enumerate().map(name)).ok()?;
     for instant in samples.chunk_by(|a, b| a.ns >= b.ns && a.group < b.group) {
         let at = instant.first().and_then(time)?;
-        let mut row = vec![at.as_slice()];
-        for (k, group) in groups.iter().enumerate() {
-            let own = instant.iter().find(|sample| sample.group == k).map(|sample| &sample.cells);
-            row.extend(
-                (1..=group.columns.len()).map(|at| own.and_then(|cells| cells.get(at)).unwrap_or_default()),
-            );
+        let mut row = vec![&[][..]; head.names.len()];
+        row[first.time] = &at;
+        for sample in instant {
+            for (cell, column) in sample.cells.iter().skip(1).zip(&groups[sample.group].columns) {
+                row[*column] = cell;
+            }
         }
         out.write_record(row).ok()?;
     }
@@ -102,7 +106,7 @@ fn samples(text: &[u8], head: &Head, dialect: Dialect, groups: &[Group]) -> Vec<
     samples
 }
 
-/// By time; `None` where the clocks share too little of it, or days turn over.
+/// By time; `None` where the clocks share too little of it, one stands, or days turn over.
 fn in_order(mut samples: Vec<Sample>, groups: &[Group]) -> Option<Vec<Sample>> {
     let mut spans: Vec<Option<[i64; 2]>> = vec![None; groups.len()];
     for sample in &samples {
@@ -117,7 +121,7 @@ fn in_order(mut samples: Vec<Sample>, groups: &[Group]) -> Option<Vec<Sample>> {
     let long = |[from, to]: [i64; 2]| to.saturating_sub(from) as f64;
     let shares =
         |a: [i64; 2], b: [i64; 2]| long([a[0].max(b[0]), a[1].min(b[1])]) >= SHARED * long(a).min(long(b));
-    if !spans.iter().all(|span| shares(*span, spans[0])) {
+    if !spans.iter().all(|span| span[0] < span[1] && shares(*span, spans[0])) {
         return None;
     }
     samples.sort_by_key(|sample| (sample.ns, sample.group));
@@ -141,7 +145,8 @@ fn in_unit(ns: i64, source: &TimeSource, comma: bool) -> Option<Vec<u8>> {
     Some(if comma { text.replace('.', ",") } else { text }.into_bytes())
 }
 
-fn groups(head: &Head, dialect: Dialect, options: &CsvOptions) -> Option<Vec<Group>> {
+/// All columns of times, and those that are of signals that are wanted.
+fn groups(head: &Head, dialect: Dialect, options: &CsvOptions) -> Option<(Vec<usize>, Vec<Group>)> {
     let below = |column: usize| head.units.as_ref().and_then(|units| units.get(column)).map(String::as_str);
     let labels: Vec<Label> =
         head.names.iter().enumerate().map(|(column, name)| label(name, below(column))).collect();
@@ -152,12 +157,20 @@ fn groups(head: &Head, dialect: Dialect, options: &CsvOptions) -> Option<Vec<Gro
     if !head.named || times.len() < 2 {
         return None;
     }
-    let columns = owned(&labels, &times)?;
-    let sources: Vec<TimeSource> = times.iter().map(|time| Some(of(time)?.source)).collect::<Option<_>>()?;
-    let numbers = |source: &TimeSource| matches!(source, TimeSource::Number { .. });
-    let one_form = sources.iter().all(numbers) || sources.iter().all(|source| alike(source, &sources[0]));
-    let ns = |row: &Vec<Vec<u8>>, source: &TimeSource| {
-        source.ns(0, |column| row.get(column).map_or(&[][..], Vec::as_slice), dialect.decimal_comma)
+    let given = options.columns.values().chain(options.interfaces.values()).flatten();
+    let found = |text: &str| find(text, "", &head.names).ok();
+    let named: BTreeSet<usize> = given
+        .flat_map(|(_, text)| {
+            std::iter::once(text.as_str()).chain(text.split(['+', '-', '*'])).filter_map(found)
+        })
+        .collect();
+    let wanted = |column: usize| labels[column].is_joint || named.contains(&column);
+    let one_name = times.iter().all(|time| head.names[*time] == head.names[times[0]]);
+    let columns = owned(&labels, &times, wanted, one_name)?;
+    let sources: Vec<Option<TimeSource>> = times.iter().map(|time| Some(of(time)?.source)).collect();
+    let ns = |row: &Vec<Vec<u8>>, source: &Option<TimeSource>| {
+        let cell = |column: usize| row.get(column).map_or(&[][..], Vec::as_slice);
+        source.as_ref()?.ns(0, cell, dialect.decimal_comma)
     };
     let differs = |row: &Vec<Vec<u8>>| {
         let first = ns(row, &sources[0]);
@@ -166,22 +179,39 @@ fn groups(head: &Head, dialect: Dialect, options: &CsvOptions) -> Option<Vec<Gro
             (a, b) => a != b,
         })
     };
-    let group = |((time, source), columns)| Group { time, source, columns };
-    (one_form && head.sample.iter().any(differs))
-        .then(|| times.into_iter().zip(sources).zip(columns).map(group).collect())
+    if !head.sample.iter().any(differs) {
+        return None;
+    }
+    // The times of signals that nobody wants add no rows.
+    let all = times.iter().copied().zip(sources).zip(columns);
+    let groups = all.filter(|(_, columns)| columns.iter().any(|column| wanted(*column)));
+    let groups: Vec<Group> = groups
+        .map(|((time, source), columns)| Some(Group { time, source: source?, columns }))
+        .collect::<Option<_>>()?;
+    let numbers = |group: &Group| matches!(group.source, TimeSource::Number { .. });
+    let one_form =
+        groups.iter().all(numbers) || groups.iter().all(|group| alike(&group.source, &groups[0].source));
+    one_form.then_some((times, groups))
 }
 
-/// The columns of each time: those behind it, those before it, or those of its side.
-fn owned(labels: &[Label], times: &[usize]) -> Option<Vec<Vec<usize>>> {
-    let joints = |range: Range<usize>| labels[range].iter().any(|label| label.is_joint);
+/// The columns of each time: those behind it, those before it, or those of its side. A time may have none that is wanted,
+/// if others do or, of times of one name, another.
+fn owned(
+    labels: &[Label],
+    times: &[usize],
+    wanted: impl Fn(usize) -> bool,
+    one_name: bool,
+) -> Option<Vec<Vec<usize>>> {
+    let wants = |mut range: Range<usize>| range.any(&wanted);
     let (first, last) = (*times.first()?, *times.last()?);
     let between = |edges: Vec<usize>| -> Option<Vec<Vec<usize>>> {
         let all: Vec<Vec<usize>> = edges
             .windows(2)
             .map(|pair| (pair[0]..pair[1]).filter(|column| !times.contains(column)).collect())
             .collect();
-        let owns = |columns: &Vec<usize>| columns.iter().any(|column| labels[*column].is_joint);
-        all.iter().all(owns).then_some(all)
+        let owners = all.iter().filter(|columns| columns.iter().any(|column| wanted(*column))).count();
+        let enough = owners > 1 || owners == 1 && one_name;
+        (enough && all.iter().all(|columns| !columns.is_empty())).then_some(all)
     };
     let behind = || between(times.iter().copied().chain([labels.len()]).collect());
     let before = || between(std::iter::once(0).chain(times.iter().map(|time| time + 1)).collect());
@@ -196,8 +226,8 @@ fn owned(labels: &[Label], times: &[usize]) -> Option<Vec<Vec<usize>>> {
         };
         (roles.len() == times.len() && told).then(|| times.iter().map(of).collect::<Vec<_>>())
     };
-    let found = if joints(0..first) { None } else { behind() };
-    found.or_else(|| if joints(last..labels.len()) { None } else { before() }).or_else(by_side)
+    let found = if wants(0..first) { None } else { behind() };
+    found.or_else(|| if wants(last..labels.len()) { None } else { before() }).or_else(by_side)
 }
 
 #[cfg(test)]
@@ -212,32 +242,53 @@ mod tests {
     #[test]
     fn signals_with_times_of_their_own_come_onto_one_clock() {
         let text = "t_set_s,boom_set_deg,t_act_s,boom_act_deg\n0.0,1,0.05,2\n0.1,3,0.1,4\n0.2,5,,\n";
-        let expected = "t_set_s,boom_set_deg,boom_act_deg\n0.0,1,\n0.05,,2\n0.1,3,4\n0.2,5,\n";
+        let expected = "t_set_s,boom_set_deg,,boom_act_deg\n0.0,1,,\n0.05,,,2\n0.1,3,,4\n0.2,5,,\n";
         assert_eq!(of(text).as_deref(), Some(expected));
     }
 
     #[test]
     fn times_may_stand_behind_their_signals_or_say_their_side_and_have_units_of_their_own() {
-        let expected = "t_set_s,boom_set_deg,boom_act_deg\n0.000000,1,\n0.050000,,2\n0.100000,3,4\n";
+        let expected = "t_set_s,boom_set_deg,,boom_act_deg\n0.000000,1,,\n0.050000,,,2\n0.100000,3,,4\n";
         let text = "t_set_s,boom_set_deg,t_act_ms,boom_act_deg\n0.0,1,50,2\n0.1,3,100,4\n";
         assert_eq!(of(text).as_deref(), Some(expected));
-        let expected = "planned_time_s,boom_planned_deg,boom_measured_deg\n0.0,1,\n0.05,,2\n0.1,3,4\n";
+        let expected = "boom_planned_deg,planned_time_s,boom_measured_deg,\n1,0.0,,\n,0.05,2,\n3,0.1,4,\n";
         let text =
             "boom_planned_deg,planned_time_s,boom_measured_deg,measured_time_s\n1,0.0,2,0.05\n3,0.1,4,0.1\n";
         assert_eq!(of(text).as_deref(), Some(expected));
         let text =
             "planned_time_s,measured_time_s,boom_planned_deg,boom_measured_deg\n0.0,0.05,1,2\n0.1,0.1,3,4\n";
+        let expected = "planned_time_s,,boom_planned_deg,boom_measured_deg\n0.0,,1,\n0.05,,,2\n0.1,,3,4\n";
         assert_eq!(of(text).as_deref(), Some(expected));
         let day = "Time;boom_set_deg;Time;boom_act_deg\n05.03.2026 09:15:00,000;1;05.03.2026 09:15:00,250;2\n\
                    05.03.2026 09:15:01,000;3;05.03.2026 09:15:01,250;4\n";
-        let rows = "05.03.2026 09:15:00,000;1;\n05.03.2026 09:15:00,250;;2\n05.03.2026 09:15:01,000;3;\n\
-                    05.03.2026 09:15:01,250;;4\n";
-        assert_eq!(of(day), Some(format!("Time;boom_set_deg;boom_act_deg\n{rows}")));
+        let rows = "05.03.2026 09:15:00,000;1;;\n05.03.2026 09:15:00,250;;;2\n05.03.2026 09:15:01,000;3;;\n\
+                    05.03.2026 09:15:01,250;;;4\n";
+        assert_eq!(of(day), Some(format!("Time;boom_set_deg;;boom_act_deg\n{rows}")));
+    }
+
+    #[test]
+    fn a_clock_of_a_signal_that_is_no_joint_leaves_the_joints_to_their_own() {
+        let text =
+            "Time,boom_set_deg,Time,boom_act_deg,Time,Current\n0.0,1,0.05,2,0.0,7\n0.1,3,0.1,4,0.01,8\n";
+        let kept = "Time,boom_set_deg,,boom_act_deg,,Current\n0.0,1,,,,\n0.05,,,2,,\n0.1,3,,4,,\n";
+        assert_eq!(of(text).as_deref(), Some(kept));
+        let text = "Time,Current,Time,boom_set_deg,boom_act_deg\n0.0,7,0.0,1,2\n0.01,8,0.1,3,4\n";
+        let kept = ",Current,Time,boom_set_deg,boom_act_deg\n,,0.0,1,2\n,,0.1,3,4\n";
+        assert_eq!(of(text).as_deref(), Some(kept));
+        // Of clocks with names of their own nobody knows.
+        assert_eq!(of(&text.replacen("Time", "log_time", 1)), None);
+        let named = CsvOptions {
+            interfaces: [("amps".to_owned(), vec![("boom".to_owned(), "#2".to_owned())])].into(),
+            ..CsvOptions::default()
+        };
+        let (both, _) = joined("a.csv", text.as_bytes(), &named, &mut Remarks::default()).unwrap();
+        assert_eq!(String::from_utf8(both).unwrap().lines().nth(2), Some("0.01,8,,,"));
     }
 
     #[test]
     fn one_clock_written_twice_or_in_parts_is_left() {
         assert_eq!(of("t_s,boom_set_deg,t_s,boom_act_deg\n0.0,1,0.0,2\n0.1,3,0.1,4\n"), None);
+        assert_eq!(of("t_s,boom_set_deg,t_run_s,boom_act_deg\n0.0,1,0.05,2\n0.1,3,0.05,4\n"), None);
         assert_eq!(of("sec,nanosec,boom_set_deg,boom_act_deg\n0,5,1,2\n0,6,3,4\n"), None);
         assert_eq!(of("t_s,boom_set_deg,boom_act_deg\n0,1,2\n1,3,4\n"), None);
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::CsvError;
-use crate::suggest::nearest;
+use crate::{suggest::nearest, text::shell_word};
 
 /// The columns of a file, for messages.
 pub(super) fn present(names: &[String]) -> String {
@@ -53,6 +53,12 @@ pub(super) fn find(name: &str, option: &str, names: &[String]) -> Result<usize, 
     })
 }
 
+/// A column as a value of an option that [`find`] finds again: by its number where others have the same header.
+pub(super) fn pasted(column: usize, names: &[String]) -> String {
+    let alone = find(&names[column], "", names).is_ok_and(|found| found == column);
+    if alone { shell_word(&names[column]) } else { shell_word(&format!("#{}", column + 1)) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -62,6 +68,7 @@ mod tests {
         let names = ["t", "q_soll", "q_ist", "q_ist"].map(str::to_owned);
         assert_eq!(find("Q_SOLL", "--planned", &names).unwrap(), 1);
         assert_eq!(find("#4", "--planned", &names).unwrap(), 3);
+        assert_eq!([pasted(1, &names), pasted(3, &names)], ["q_soll", "'#4'"]);
         assert!(matches!(
             find("q_ist", "--measured", &names),
             Err(CsvError::SameHeader { count: 2, first: 3, .. })

@@ -74,10 +74,13 @@ pub enum CsvError {
     /// There is no time.
     #[error(
         "no column looks like a time{why}; the columns are {present}; {}",
-        if why.is_empty() { "say --time COLUMN, or --rate HZ if there is none" }
-        else { "rows of one instant may be of several joints: call the column that names the joint \"joint\"; else say --rate HZ if a row comes HZ times a second, or --time COLUMN" }
+        if let Some(time) = by_number.first() {
+            let rises = time.strip_prefix("--time ").map(|column| format!(" ({} rises from row to row as a time does)", column.trim_matches('\'')));
+            format!("name columns by their number, such as {}{}", by_number.join(" "), rises.unwrap_or_default())
+        } else if why.is_empty() { "say --time COLUMN, or --rate HZ if there is none".to_owned() }
+        else { "rows of one instant may be of several joints: call the column that names the joint \"joint\"; else say --rate HZ if a row comes HZ times a second, or --time COLUMN".to_owned() }
     )]
-    NoTime { why: String, present: String },
+    NoTime { why: String, present: String, by_number: Vec<String> },
     /// A column of time that does not say its unit.
     #[error(
         "column {column:?} counts time in steps of {step}; say in what with --time-unit s|ms|us|ns|min|h, or give --rate HZ"
@@ -165,12 +168,17 @@ pub enum CsvError {
 }
 
 impl CsvError {
-    /// The option that is missing most likely, and what an import with it does.
-    pub(in crate::log) fn missing_option(&self) -> Option<(&'static str, &'static str)> {
+    /// The options that are missing most likely, and what an import with them does.
+    pub(in crate::log) fn missing_options(&self) -> (Vec<String>, &'static str) {
         match self {
-            Self::AngleUnit { .. } => Some(("--degrees", "reads it if its angles are in degrees")),
-            Self::NoTime { .. } => Some(("--rate HZ", "reads it if a row comes HZ times a second")),
-            _ => None,
+            Self::AngleUnit { .. } => (vec!["--degrees".to_owned()], "reads it if its angles are in degrees"),
+            Self::NoTime { by_number, .. } if !by_number.is_empty() => {
+                (by_number.clone(), "reads it if those columns are the right ones")
+            }
+            Self::NoTime { .. } => {
+                (vec!["--rate HZ".to_owned()], "reads it if a row comes HZ times a second")
+            }
+            _ => (Vec::new(), "takes options for that"),
         }
     }
 }

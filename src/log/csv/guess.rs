@@ -29,8 +29,8 @@ fn is_round(step_s: f64) -> bool {
 }
 
 /// The unit of a column that names none: by its size if it counts from 1970, or else the one in
-/// which the rows come at 2 to 2000 Hz; fractions may be of minutes or hours.
-pub(super) fn guess_unit(first: f64, step: f64, whole: bool) -> (Option<Unit>, Option<String>) {
+/// which the rows come at 2 to 2000 Hz; fractions may be of minutes or hours. `counts`: it rises by 1 in every row.
+pub(super) fn guess_unit(first: f64, step: f64, whole: bool, counts: bool) -> (Option<Unit>, Option<String>) {
     // From 1995 to 2130.
     const SINCE_1601: [f64; 2] = [1.243e17, 1.67e17];
     if whole && (SINCE_1601[0]..SINCE_1601[1]).contains(&first) {
@@ -65,7 +65,13 @@ pub(super) fn guess_unit(first: f64, step: f64, whole: bool) -> (Option<Unit>, O
     {
         if (least..most).contains(&step) {
             let sure = name == "s" && !whole;
-            let doubt = format!("says no unit; steps of {step} are taken as {name}, else say --time-unit");
+            let doubt = if counts {
+                "says no unit and rises by 1 in every row: it is taken as ms, at 1000 rows a second, but may count rows; then \
+                 say --rate HZ, or --time-unit if it counts another time"
+                    .to_owned()
+            } else {
+                format!("says no unit; steps of {step} are taken as {name}, else say --time-unit")
+            };
             return (parse_unit(name), (!sure).then_some(doubt));
         }
     }
@@ -77,8 +83,15 @@ mod tests {
     use super::*;
 
     fn guess(first: f64, step: f64, whole: bool) -> (&'static str, bool) {
-        let (unit, doubt) = guess_unit(first, step, whole);
+        let (unit, doubt) = guess_unit(first, step, whole, false);
         (unit.map_or("none", |unit| unit.name), doubt.is_some())
+    }
+
+    #[test]
+    fn what_rises_by_1_in_every_row_may_count_rows() {
+        let doubt = |counts| guess_unit(1101.0, 1.0, true, counts).1.unwrap();
+        assert!(doubt(true).contains("--rate HZ") && doubt(true).contains("--time-unit"), "{}", doubt(true));
+        assert!(!doubt(false).contains("--rate"), "{}", doubt(false));
     }
 
     #[test]

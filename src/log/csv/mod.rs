@@ -104,13 +104,14 @@ pub(in crate::log) fn scale_in(name: &str, kind: JointKind) -> f64 {
 /// What a header says if it is one of a joint by its words: of its position or speed, planned, measured or sent.
 pub(in crate::log) fn of_joint(name: &str) -> Option<OfJoint> {
     let label = label::label(name, None);
-    label.is_joint.then_some(OfJoint { role: label.role, alone: !label.is_weak })
+    label.is_joint.then_some(OfJoint { role: label.role, quantity: label.quantity, alone: !label.is_weak })
 }
 
 /// What a header of a joint says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::log) struct OfJoint {
     pub(in crate::log) role: Option<Role>,
+    pub(in crate::log) quantity: Option<Quantity>,
     /// Whether it says so without another column of the joint.
     pub(in crate::log) alone: bool,
 }
@@ -215,7 +216,7 @@ impl Form {
         settle::settle(&mut labels);
         let mut options = options.clone();
         let derived = expression::derive(&mut head, &mut labels, &mut options)?;
-        let time = clock::choose(&head, &labels, dialect, &options, remarks)?;
+        let time = clock::choose(text, &head, &labels, dialect, &options, remarks)?;
         let layout = layout::lay_out(&head, &labels, &time.columns(), &options, remarks)?;
         Ok(Self { dialect, head, labels, derived, time, layout, options })
     }

@@ -96,7 +96,10 @@ fn clocks(properties: &[Property<'_>]) -> Option<(Vec<usize>, usize)> {
     (keyed && distinct && enough && owns).then_some((clocks, width))
 }
 
-/// The names of the columns, by the row whose cells say most of joints, with their units.
+/// What keys say of the form of numbers, whose `REAL32` is no joint.
+const TYPES: [&str; 3] = ["data-type", "datatype", "type"];
+
+/// The names of the columns, by the row of names or else the one whose cells say most of joints, with their units.
 fn names(properties: &[Property<'_>], clocks: &[usize], width: usize, remarks: &mut Remarks) -> Vec<String> {
     let of = |one: &Property<'_>| -> Vec<String> {
         (0..width).map(|at| one.cells.get(at).map_or_else(String::new, |cell| cell_text(cell))).collect()
@@ -104,10 +107,12 @@ fn names(properties: &[Property<'_>], clocks: &[usize], width: usize, remarks: &
     let signals = || (0..width).filter(|at| !clocks.contains(at));
     let said = |one: &&Property<'_>| {
         let all = of(one);
-        signals().filter(|at| label(&all[*at], None).is_joint).count()
+        let count = signals().filter(|at| label(&all[*at], None).is_joint).count();
+        (count > 0 && one.key.eq_ignore_ascii_case("name"), count)
     };
+    let of_signal = |one: &&Property<'_>| !TYPES.iter().any(|key| one.key.eq_ignore_ascii_case(key));
     // The first of those that say as much.
-    let best = properties.iter().rev().max_by_key(said);
+    let best = properties.iter().rev().filter(of_signal).max_by_key(said);
     let mut names = best.map(of).unwrap_or_default();
     let scaled = properties.iter().filter(|one| {
         let word = one.key.to_lowercase();
@@ -174,6 +179,11 @@ mod tests {
             "Time [ms]\tboom.set [deg]\tTime [ms]\tboom.act\n0\t1,5\t0\t2\n20\t2,5\t40\t3\n40\t3,5\t\t\n";
         assert_eq!(of(&text), Some((table.to_owned(), 1)));
         let one = "Name\tboom.set\tboom.act\t\nType\tREAL\tREAL\t\nSampleTime[ms]\t20\t20\t\n0\t1\t2\t\n2\t1\t2\t\n";
+        // Types say nothing of joints, and a path less than the name.
+        let typed = one.replace("REAL\tREAL", "REAL64\tREAL32").replace("Type", "Data-Type");
+        let typed = typed.replace("SampleTime", "SymbolName\tMAIN.a.act1\tMAIN.b.act2\t\nSampleTime");
+        let typed = typed.replace("boom.act", "bit");
+        assert_eq!(of(&typed).unwrap().0.lines().next(), Some("Time\tboom.set\tbit"));
         assert_eq!(of(one), Some(("Time\tboom.set\tboom.act\n0\t1\t2\n2\t1\t2\n".to_owned(), 0)));
     }
 

@@ -119,8 +119,14 @@ impl Understood {
         let mut columns: Vec<ColumnRead> = uses.chain(interfaces).collect();
         columns.sort_by_key(|column| column.number);
         let taken = time.columns();
+        // A trailing separator, or a time of other signals, is no column.
+        let is_column = |column: usize| {
+            let cell = |row: &Vec<Vec<u8>>| row.get(column).is_some_and(|cell| !cell.trim_ascii().is_empty());
+            head.written.get(column).is_some_and(|name| !name.is_empty()) || head.sample.iter().any(cell)
+        };
         let unused = (0..head.names.len()).filter(|column| {
-            !taken.contains(column)
+            is_column(*column)
+                && !taken.contains(column)
                 && !added.contains(column)
                 && !columns.iter().any(|used| used.number == column + 1)
         });

@@ -278,8 +278,15 @@ fn finish(out: &mut Extracted) {
     }
     for half in &halves {
         if let Content::Versioned(values) = &half.content
-            && let Some(table) = by_stem.get(&stem(half)).and_then(|names| values.to_table(names))
+            && let Some(names) = by_stem.get(&stem(half))
+            && let Some((table, by_words)) = [false, true]
+                .into_iter()
+                .find_map(|by_words| Some((values.to_table(names, by_words)?, by_words)))
         {
+            let topic = &out.topics[half.topic].topic;
+            let message =
+                format!("values of {topic} are told plan or measurement by the words of their names");
+            out.remarks.add(Code::Guessed, u64::from(by_words), message);
             let content = Content::Table(Box::new(table));
             sources.push(Source { topic: half.topic, content, parts: Vec::new() });
         }

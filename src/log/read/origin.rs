@@ -40,7 +40,7 @@ impl<'a> Imported<'a> {
         Self::one(origin)
     }
 
-    fn one(origin: &'a BTreeMap<String, String>) -> Option<Self> {
+    pub(super) fn one(origin: &'a BTreeMap<String, String>) -> Option<Self> {
         Some(Self { file: origin.get("file")?, origin })
     }
 

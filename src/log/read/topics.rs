@@ -142,6 +142,17 @@ pub(super) fn missing(
             let own = "; or, if they are in a file of their own with the same zero of time, give both files";
             (table.columns(), line + own)
         }
+        // Plan and measurement may be in a table each.
+        None if extracted.tables.len() > 1 && !flag.contains(' ') => {
+            let tables: Vec<Imported<'_>> = extracted.tables.iter().filter_map(Imported::one).collect();
+            let line = |table: &Imported<'_>| {
+                format!("`{}`", table.import_line(&extracted.path, Some(flag), &Given::default()))
+            };
+            let lines = tables.iter().map(line).collect::<Vec<_>>().join(" or ");
+            let fix =
+                format!("{lines}, whichever of the tables has them, and give its log with the other table");
+            (tables.iter().map(Imported::columns).collect::<Vec<_>>().join("; "), fix)
+        }
         None => (present(extracted), format!("{flag} TOPIC[:FIELD]")),
     };
     LogError::Missing { missing, present, fix }

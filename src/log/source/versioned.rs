@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 
 use super::{Field, Form, Role, Stamps, Table, slot, table::stamp_ns};
 use crate::log::{
+    csv::{Quantity, joint_in, of_joint},
     decode::{Numbers, Sink, Slot, Texts},
     options::TimeBase,
+    write,
 };
 
 /// Either half: the lists of names by version, or the values.
@@ -60,8 +62,9 @@ impl Versioned {
     }
 
     /// The values as samples of joints: `command_interface.<joint>/position` is the plan,
-    /// `state_interface.<joint>/position` the measurement. `None` without such names.
-    pub(in crate::log) fn to_table(&self, halves: &[&Self]) -> Option<Table> {
+    /// `state_interface.<joint>/position` the measurement; `by_words`: as headers of columns say it. `None` without such names.
+    pub(in crate::log) fn to_table(&self, halves: &[&Self], by_words: bool) -> Option<Table> {
+        let of = if by_words { spelt } else { interface };
         let field = |path: &str, role, velocity, is_velocity| Field {
             path: path.into(),
             role,
@@ -77,15 +80,8 @@ impl Versioned {
         let mut known: BTreeMap<u64, Vec<(usize, String, usize)>> = BTreeMap::new();
         for (version, names) in halves.iter().flat_map(|half| &half.names) {
             let places = names.iter().enumerate().filter_map(|(place, name)| {
-                let (kind, rest) = name.split_once(['.', '/'])?;
-                let (joint, quantity) = rest.rsplit_once('/')?;
-                let field = match (kind, quantity) {
-                    ("command_interface", "position") => 0,
-                    ("command_interface", "velocity") => 1,
-                    ("state_interface", "position") => 2,
-                    _ => return None,
-                };
-                Some((place, joint.to_owned(), field))
+                let (joint, field) = of(name)?;
+                Some((place, joint, field))
             });
             known.insert(*version, places.collect());
         }
@@ -98,8 +94,33 @@ impl Versioned {
             });
             table.push_row(header, publish, log, cells);
         }
-        (table.len() > 0).then_some(table)
+        (!table.joints.is_empty()).then_some(table)
     }
+}
+
+/// The joint and the field of an interface.
+fn interface(name: &str) -> Option<(String, usize)> {
+    let (kind, rest) = name.split_once(['.', '/'])?;
+    let (joint, quantity) = rest.rsplit_once('/')?;
+    let field = match (kind, quantity) {
+        ("command_interface", "position") => 0,
+        ("command_interface", "velocity") => 1,
+        ("state_interface", "position") => 2,
+        _ => return None,
+    };
+    Some((joint.to_owned(), field))
+}
+
+/// The joint and the field that the words of a name say: `/arm_desired_position_boom_joint`.
+fn spelt(name: &str) -> Option<(String, usize)> {
+    let said = of_joint(name).filter(|said| said.alone)?;
+    let field = match (said.role?, said.quantity?) {
+        (write::Role::Planned, Quantity::Position) => 0,
+        (write::Role::Planned, Quantity::Velocity) => 1,
+        (write::Role::Measured, Quantity::Position) => 2,
+        _ => return None,
+    };
+    Some((joint_in(name), field))
 }
 
 impl Sink for Versioned {

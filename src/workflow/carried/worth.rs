@@ -25,6 +25,7 @@ pub fn worth(path: &Path) -> Option<String> {
             }
         }
         Contents::Recording(what) => Some(what.to_owned()),
+        Contents::Parquet(own) => (!own).then(|| "a Parquet table of another program".to_owned()),
         Contents::Table(head) if OWN_TABLES.iter().any(|own| head.starts_with(own)) => None,
         Contents::Table(_) => Some("a table that this program did not write".to_owned()),
         Contents::Page(head) if head.contains(OWN_PAGE) => None,

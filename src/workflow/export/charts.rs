@@ -171,9 +171,8 @@ fn opens(file: &Path, program: For) -> Result<(), ChartsFailure> {
         Contents::Recording(what) => {
             (what, "convert it to MCAP, for example with `ros2 bag convert`".to_owned())
         }
-        Contents::Table(_) => ("a table", import),
-        // Columns in Parquet are a table too; what is nothing is said where it is read.
-        _ if is_parquet(file) => ("a table", import),
+        Contents::Table(_) | Contents::Parquet(_) => ("a table", import),
+        // What is nothing is said where it is read.
         _ => return Ok(()),
     };
     let program = match program {
@@ -194,10 +193,6 @@ fn only_by_words(inputs: &Inputs) -> Option<ChartsFailure> {
 /// The line that makes a log of what other programs do not read.
 fn import(path: &Path) -> String {
     format!("make a log of it with `hydrotrace import {} -o run.mcap`", crate::text::shell_argument(path))
-}
-
-fn is_parquet(file: &Path) -> bool {
-    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
 }
 
 fn remark(lines: &Lines, remarks: &mut Remarks) {

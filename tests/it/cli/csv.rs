@@ -294,7 +294,7 @@ fn what_is_not_understood_is_an_error_that_names_the_way_out() {
             "a joint turns",
         ),
         (trace("t;J1 soll;J1 ist", 0.0, ";", 1.0), &["--degrees"], "\"t\"", "--time-unit"),
-        (headless, &[], "column_2", "--time COLUMN"),
+        (headless, &[], "column_2", "--time '#1'"),
         (good.clone(), &["--separator", "|"], "two columns", "--separator CHAR"),
         (good.clone(), &["--rate", "0"], "--rate 0", "samples a second"),
         (good.clone(), &["--time-unit", "deg"], "--time-unit deg", "s, ms, us, ns, min, h"),

@@ -264,3 +264,61 @@ fn whole_seconds_of_many_rows_each_are_refused_with_the_rate_as_the_way_out() {
     let says = |part: &str| error.contains(part);
     assert!(code == 1 && says("import a.csv --rate HZ") && says("or --time COLUMN"), "{code} {error}");
 }
+
+#[test]
+fn a_parquet_table_of_another_program_is_imported_as_the_same_rows_in_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = crate::support::sample("panel-install.mcap").display().to_string();
+    for form in ["csv", "parquet"] {
+        assert_ne!(said(&hydrotrace(folder.path(), &format!("export {log} -o a.{form}"))).0, 1);
+    }
+    let mut other = fs::read(folder.path().join("a.parquet")).unwrap();
+    for at in other.len() - 2000..other.len() - 10 {
+        if &other[at..at + 10] == b"hydrotrace" {
+            other[at..at + 10].copy_from_slice(b"other prog");
+        }
+    }
+    fs::write(folder.path().join("a.parquet"), other).unwrap();
+    for options in [
+        "--slides joint_1=mm",
+        "--planned j=joint_1_measured_rad --measured j=joint_1_planned_rad",
+        "--rate 10",
+    ] {
+        let read = |form: &str| {
+            let import = format!("import a.{form} -o {form}.mcap --force {options}");
+            let (code, text, error) = said(&hydrotrace(folder.path(), &import));
+            assert_ne!(code, 1, "{import} {error}");
+            let (_, report, _) = said(&hydrotrace(folder.path(), &format!("report {form}.mcap")));
+            [text, report].map(|text| text.replace(form, "csv"))
+        };
+        assert_eq!(read("parquet"), read("csv"), "{options}");
+    }
+}
+
+#[test]
+fn two_clocks_are_judged_by_all_rows() {
+    let row =
+        |t: f64, p: f64, m: f64| format!("{t:.2},{:.2},{p:.4},{m:.4}\n", if t < 4.5 { t } else { t - 0.3 });
+    let text = "t_a_s,stamp,boom_set_deg,boom_act_deg\n".to_owned() + &rows(row);
+    let (code, text, error) = report("a.csv", &text);
+    assert!(code == 3 && text.contains("0.300 s away"), "{text}{error}");
+}
+
+#[test]
+fn a_table_without_names_is_told_the_line_that_names_columns_by_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let paste = |text: &str| {
+        fs::write(folder.path().join("a.csv"), text).unwrap();
+        let (code, _, error) = said(&hydrotrace(folder.path(), "report a.csv"));
+        assert_eq!(code, 1, "{error}");
+        (error.split('`').nth(1).unwrap_or_default().to_owned(), error)
+    };
+    let (line, error) = paste(&rows(|t, p, m| format!("{:.4},{t:.2},{p:.4},{m:.4}\n", p.sin())));
+    assert!(line.contains("--time '#2' --planned 'J1=#1' --measured 'J1=#3'"), "{error}");
+    assert!(error.contains("#2 rises from row to row as a time does"), "{error}");
+    let line = line.replace("J1=#3", "J1=#4").replace("J1=#1", "J1=#3").replace('\'', "");
+    let (code, text, error) = said(&hydrotrace(folder.path(), &line[11..].replace("-o", "--degrees -o")));
+    assert!(code != 1 && text.contains("one joint, 4.98 s at 50.0 Hz"), "{line} {text}{error}");
+    let (line, error) = paste(&rows(|_, p, m| format!("{p:.4},{m:.4}\n")));
+    assert!(line.contains("--rate HZ --planned 'J1=#1' --measured 'J1=#2'"), "{error}");
+}

@@ -278,6 +278,25 @@ fn a_table_that_leaves_something_open_is_told_what_to_become() {
 }
 
 #[test]
+fn plan_and_measurement_in_a_table_each_are_told_the_line_that_makes_one_the_plan() {
+    let folder = tempfile::tempdir().unwrap();
+    for (file, side) in [("came.csv", 1), ("asked.csv", 0)] {
+        let row = |k: i32| format!("{:.2},{}\n", f64::from(k) * 0.02, moves(f64::from(k) * 0.02)[side]);
+        fs::write(
+            folder.path().join(file),
+            format!("t,position_deg\n{}", (0..500).map(row).collect::<String>()),
+        )
+        .unwrap();
+    }
+    let (code, _, error) = said(&hydrotrace(folder.path(), "report came.csv asked.csv"));
+    let line = error.split('`').find(|line| line.contains("import asked.csv")).unwrap_or_default();
+    assert!(code == 1 && line.ends_with("--planned joint=COLUMN -o asked.mcap"), "{error}");
+    hydrotrace(folder.path(), &line["hydrotrace ".len()..].replace("COLUMN", "position_deg"));
+    let (code, text, error) = said(&hydrotrace(folder.path(), "report came.csv asked.mcap"));
+    assert!(code == 0 && text.contains("position_deg of asked.csv"), "{text}{error}");
+}
+
+#[test]
 fn a_unit_that_an_option_spoils_is_told_by_that_option() {
     let folder = folder("t,J1_ref_deg,J1_act_deg,J2_ref_deg,J2_act_deg");
     hydrotrace(folder.path(), "import a.csv -o a.mcap");

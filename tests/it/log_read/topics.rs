@@ -170,7 +170,7 @@ fn dynamic_joint_states_yield_positions_and_other_interfaces_by_name() {
     }
 }
 
-fn send_versioned(log: &mut Log, names: usize, values: usize, k: i64) {
+fn send_versioned(log: &mut Log, (names, values): (usize, usize), k: i64, spell: fn(&str) -> String) {
     let q: [Vec<f64>; 2] = [plan(k), measurement(k)];
     let version = 1 + (k / 20) as u32;
     let mut rows = [
@@ -184,13 +184,14 @@ fn send_versioned(log: &mut Log, names: usize, values: usize, k: i64) {
     if version == 2 {
         rows.reverse();
     }
+    let spelt: Vec<String> = rows.iter().map(|(name, _)| spell(name)).collect();
     if k % 20 == 0 {
         log.send(
             names,
             stamp(k),
             cdr::Cdr::message(cdr::Kind::LittleEndian, |cdr| {
                 cdr.header(stamp(k));
-                cdr.texts(&rows.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+                cdr.texts(&spelt.iter().map(String::as_str).collect::<Vec<_>>());
                 cdr.u32(version);
             }),
         );
@@ -206,23 +207,41 @@ fn send_versioned(log: &mut Log, names: usize, values: usize, k: i64) {
     );
 }
 
-#[test]
-fn introspection_values_are_joined_to_their_names_by_version() {
+/// What is read of introspection whose names are spelt so.
+fn versioned(spell: fn(&str) -> String) -> Recording {
     let mut log = Log::default();
     let stem = "/controller_manager/introspection_data";
     let names =
         log.channel(Channel::cdr(&format!("{stem}/names"), "pal_statistics_msgs/msg/StatisticsNames"));
     let values =
         log.channel(Channel::cdr(&format!("{stem}/values"), "pal_statistics_msgs/msg/StatisticsValues"));
-    (0..SAMPLES).for_each(|k| send_versioned(&mut log, names, values, k));
-    let recording = read(&log);
-    let sorted = |mut series: Series| {
+    (0..SAMPLES).for_each(|k| send_versioned(&mut log, (names, values), k, spell));
+    let mut recording = read(&log);
+    for series in [&mut recording.planned, &mut recording.measured] {
         series.tracks.sort_by(|a, b| a.name().cmp(b.name()));
-        series
-    };
-    assert_values(&sorted(recording.planned), plan);
-    assert_values(&sorted(recording.measured), measurement);
+    }
+    recording
+}
+
+#[test]
+fn introspection_values_are_joined_to_their_names_by_version() {
+    let recording = versioned(str::to_owned);
+    assert_values(&recording.planned, plan);
+    assert_values(&recording.measured, measurement);
     assert!(recording.remarks.is_empty(), "{:?}", recording.remarks);
+}
+
+#[test]
+fn introspection_values_that_are_no_interfaces_are_told_by_the_words_of_their_names() {
+    let recording = versioned(|name| {
+        let (kind, joint) = name.split_once('.').unwrap();
+        let (joint, quantity) = joint.rsplit_once('/').unwrap_or((joint, "cpu"));
+        let side = if kind.starts_with("command") { "desired" } else { "actual" };
+        format!("/arm_control_{side}_{quantity}_{joint}_link")
+    });
+    let at = |series: &Series| series.tracks.iter().map(|track| track.position()[7]).collect::<Vec<f64>>();
+    assert_eq!([at(&recording.planned), at(&recording.measured)], [plan(7), measurement(7)]);
+    assert_eq!(count(&recording.remarks, Code::Guessed), 1, "{:?}", recording.remarks);
 }
 
 #[test]
