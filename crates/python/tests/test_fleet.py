@@ -78,6 +78,8 @@ def test_batches_keep_every_log(logs):
     of_bytes = polars.DataFrame(ht.transitions_of({"bytes": data, "path": logs}))
     assert of_bytes["peak_error"].equals(expected["peak_error"])
     assert sorted(polars.DataFrame(ht.runs_of(logs))["log_uri"]) == sorted(logs)
+    empty = ht.transitions_of(pyarrow.record_batch({"path": pyarrow.array([], pyarrow.string())}))
+    assert type(empty).__name__ == "RecordBatch" and empty.num_rows == 0 and "error" in empty.schema.names
     assert len(ht.joints_of([])) == 0 and "error" in ht.joints_of([]).columns
     with pytest.raises(ValueError, match="no column of logs among a, b"):
         ht.transitions_of({"a": [], "b": []})

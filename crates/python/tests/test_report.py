@@ -94,6 +94,16 @@ def test_a_file_object_that_fails_is_an_error_with_its_words():
         ht.report(Broken(b"1234567890" * 10))
 
 
+def test_options_of_reading_are_those_of_the_command_line(run):
+    late = ht.report(run, measured_delay_ms=50.0, from_s=2.0, to_s=20.0)
+    lags = [ht.report(run, from_s=2.0, to_s=20.0), late]
+    shift = [polars.DataFrame(found.joints)["lag_s"].median() for found in lags]
+    assert shift[0] - shift[1] == pytest.approx(0.05, abs=0.01)
+    for options in [{"measured_delay_ms": 1e9}, {"from_s": float("nan")}, {"joints_as": "cylinders"}]:
+        with pytest.raises(ValueError):
+            ht.report(run, **options)
+
+
 def test_a_report_goes_from_process_to_process(run):
     found = ht.report(run)
     again = pickle.loads(pickle.dumps(found))

@@ -17,6 +17,8 @@ def test_what_is_written_is_read_back(tmp_path):
     assert delays["boom"] == pytest.approx(0.2, abs=0.03) and delays["stick"] == pytest.approx(0.1, abs=0.03)
     with pytest.raises(ht.WriteError, match="run.mcap"):
         ht.LogWriter(path, ["boom"])
+    with pytest.raises(ht.WriteError, match="twice"):
+        ht.LogWriter(tmp_path / "other.mcap", ["boom", "boom"])
     log = ht.LogWriter(tmp_path / "other.mcap", ["boom"])
     with pytest.raises(ht.WriteError, match="position"):
         log.joint_sample("measured", 0, [1.0, 2.0])
@@ -59,6 +61,11 @@ def test_a_plan_is_a_front_and_a_log():
     assert again.mcap == found.mcap
     given = ht.plan(task, times_s=found.document["chosen"]["times_s"])
     assert len(given) == 1
+    for rate_hz in [-1.0, 0.0, float("inf"), float("nan")]:
+        with pytest.raises(ht.WriteError, match="a rate from 1 to 10000 Hz is expected"):
+            ht.plan(task, times_s=found.document["chosen"]["times_s"], rate_hz=rate_hz)
+    with pytest.raises(ht.PlanError, match="time_growth is -5"):
+        ht.replan(SAMPLES / "task-1-run.mcap", evaluations=1000, max_time_growth=-5.0)
     with pytest.raises(ht.PlanError, match="cannot read .*nothing.toml"):
         ht.plan("nothing.toml")
     with pytest.raises(ht.FitError, match="No such file"):

@@ -126,6 +126,20 @@ const MOVES_RAD: f64 = 0.5 * DEGREE_RAD;
 /// A new timing must be expected to lower the sum of all peaks by this share; otherwise the proven one stays.
 const WORTH: f64 = 0.02;
 
+impl Inputs {
+    fn check(&self) -> Result<(), ReplanFailure> {
+        if self.keep_plan && !self.precompensate {
+            return Err(ReplanFailure::NothingToChange);
+        }
+        for (key, found) in [("time_growth", self.time_growth), ("cost_growth", self.cost_growth)] {
+            if !(0.0..=MOST_GROWTH).contains(&found) {
+                return Err(ReplanFailure::Growth { key, found, most: MOST_GROWTH });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Plans again.
 ///
 /// # Errors
@@ -135,14 +149,7 @@ pub fn run(
     inputs: &Inputs,
     observer: impl FnMut(u64) -> ControlFlow<()>,
 ) -> Result<Replanned, ReplanFailure> {
-    if inputs.keep_plan && !inputs.precompensate {
-        return Err(ReplanFailure::NothingToChange);
-    }
-    for (key, found) in [("time_growth", inputs.time_growth), ("cost_growth", inputs.cost_growth)] {
-        if !(0.0..=MOST_GROWTH).contains(&found) {
-            return Err(ReplanFailure::Growth { key, found, most: MOST_GROWTH });
-        }
-    }
+    inputs.check()?;
     let observed = fit::observed(&inputs.logs, &inputs.read).map_err(fit::FitFailure::from)?;
     let (inputs, observed, doubts) = without_dead(inputs, observed);
     let (inputs, observed) = (&inputs, &observed[..]);
