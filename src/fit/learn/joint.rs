@@ -243,9 +243,8 @@ impl<'a> Joint<'a> {
         let (from, trust) = trusted(rms_rad);
         let sent: Vec<Vec<f64>> = answers.iter().map(|run| run.correction_rad(planned)).collect();
         let (from, trust) = match unspoilt(from, &sent, &whole) {
-            (_, 0) => (from, trust),
-            (other, 1) => (other, 0.5 * trust),
-            // Twice is enough.
+            // One correction may be mended by the next; twice is enough.
+            (_, 0 | 1) => (from, trust),
             (other, _) => return (Step::Kept { from: other }, sent[other].clone()),
         };
         let usual = match manner.character {

@@ -54,7 +54,9 @@ fn of_stretch(sent: &[Vec<f64>], errors: &[Vec<f64>], steps: Range<usize>) -> Op
     };
     let spoils = |k: usize| {
         let worse = |other: usize| errors[other] > WORSE[0] * errors[k] || topped(other, k);
-        (0..sizes.len()).all(|other| !corrected(other) || worse(other))
+        // One correction may be mended by the next.
+        let tried = (0..sizes.len()).filter(|other| corrected(*other));
+        tried.clone().count() > 1 && tried.clone().all(worse)
     };
     let as_good = |k: usize| {
         errors[k] <= AS_GOOD * least_rad || (0..sizes.len()).all(|other| !grew(other, k) || topped(other, k))

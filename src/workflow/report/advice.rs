@@ -4,7 +4,7 @@ use super::outcome::Report;
 use crate::{
     fit::SPARSEST_S,
     replay::{JointReplay, Transition, Verdict},
-    series::{Broken, JointKind},
+    series::Broken,
 };
 
 /// A next step, the most urgent first.
@@ -29,7 +29,7 @@ pub enum Advice {
         joint: String,
         /// Its lag, s.
         lag_s: f64,
-        /// Whether a command can be made from it: of joints that turn, sampled often enough, in a run of a whole plan.
+        /// Whether a command can be made from it: of joints sampled often enough, in a run of a whole plan.
         fits: bool,
     },
     /// The error lives in the transitions, most in those of a joint.
@@ -91,7 +91,7 @@ pub fn advice(report: &Report) -> Vec<Advice> {
     };
     let verdict = replay.whole_run.concentration.as_ref().map(|c| c.verdict);
     let sound = report.remarks.as_slice().iter().all(|remark| !remark.code.spoils_runs());
-    let tells = |joint: &JointReplay| joint.kind == JointKind::Turns && joint.sample_interval_s <= SPARSEST_S;
+    let tells = |joint: &JointReplay| joint.sample_interval_s <= SPARSEST_S;
     let could = sound && replay.joints.iter().any(tells);
     let fits = could && report.broken.is_none();
     if let Some((joint, lag_s)) = mostly_lag(report) {
