@@ -4,7 +4,7 @@ use super::outcome::Report;
 use crate::{
     fit::SPARSEST_S,
     replay::{JointReplay, Transition, Verdict},
-    series::Broken,
+    series::{Broken, JointKind},
 };
 
 /// A next step, the most urgent first.
@@ -67,6 +67,9 @@ pub enum Advice {
     Compare,
 }
 
+/// What is measured of a tool is no joint, and no command is made of it.
+const OF_TOOL: [&str; 3] = ["x", "y", "z"];
+
 /// Lags below this are not worth a step, s.
 const SMALL_LAG_S: f64 = 0.01;
 
@@ -91,7 +94,9 @@ pub fn advice(report: &Report) -> Vec<Advice> {
     };
     let verdict = replay.whole_run.concentration.as_ref().map(|c| c.verdict);
     let sound = report.remarks.as_slice().iter().all(|remark| !remark.code.spoils_runs());
-    let tells = |joint: &JointReplay| joint.sample_interval_s <= SPARSEST_S;
+    let of_tool =
+        |joint: &JointReplay| joint.kind == JointKind::Slides && OF_TOOL.contains(&joint.name.as_str());
+    let tells = |joint: &JointReplay| !of_tool(joint) && joint.sample_interval_s <= SPARSEST_S;
     let could = sound && replay.joints.iter().any(tells);
     let fits = could && report.broken.is_none();
     if let Some((joint, lag_s)) = mostly_lag(report) {
