@@ -18,7 +18,8 @@ use crate::{
 const EXAMPLES: &str = "\
 Examples:
   hydrotrace excite -o id.mcap --task task.toml
-  hydrotrace excite -o id.mcap --joint boom=40:20:60 --joint arm=90:70:110 --max-speed-deg-s 30";
+  hydrotrace excite -o id.mcap --joint boom=40:20:60 --joint arm=90:70:110 --max-speed-deg-s 30
+  hydrotrace excite -o id.mcap --joint mast=1500:0:3000mm";
 
 /// Samples a second in the log.
 const RATE_HZ: f64 = 100.0;

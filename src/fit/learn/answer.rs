@@ -35,6 +35,7 @@ const AT_REST_S: f64 = 0.5;
 const LEAST_AT_REST_S: f64 = 0.2;
 
 /// What was sent to one joint and what came of it, every [`STEP_S`].
+#[derive(Default)]
 pub(super) struct Answer {
     /// Which of all runs it is.
     pub(super) of_run: usize,
@@ -66,8 +67,7 @@ impl Answer {
             sent: sampled(sent, from_s, steps),
             measured_rad: (0..steps).map(|k| measured.held_at(at_s(k)).position).collect(),
             seen: (0..steps).map(|k| measured.at(at_s(k)).is_some()).collect(),
-            shifted_rad: 0.0,
-            after_rad: Vec::new(),
+            ..Self::default()
         };
         made.shift(planned);
         made.fill(planned);
@@ -193,14 +193,7 @@ mod tests {
             });
             let measured_rad = measured_rad.collect();
             let seen = (0..n).map(seen).collect();
-            let mut answer = Answer {
-                of_run: 0,
-                sent: Vec::new(),
-                measured_rad,
-                seen,
-                shifted_rad: 0.0,
-                after_rad: Vec::new(),
-            };
+            let mut answer = Answer { measured_rad, seen, ..Answer::default() };
             answer.fill(&planned);
             (answer.error_rad(&planned), answer.unseen_s(&planned))
         };
@@ -228,14 +221,7 @@ mod tests {
         let shifted = |before: f64, after: f64, seen: &dyn Fn(usize) -> bool| {
             let measured_rad = (0..n).map(|k| plan(k) + before + plan(k) * (after - before)).collect();
             let seen = (0..n).map(seen).collect();
-            let mut answer = Answer {
-                of_run: 0,
-                sent: Vec::new(),
-                measured_rad,
-                seen,
-                shifted_rad: 0.0,
-                after_rad: Vec::new(),
-            };
+            let mut answer = Answer { measured_rad, seen, ..Answer::default() };
             answer.shift(&planned);
             (answer.shifted_rad, answer.error_rad(&planned)[n / 2])
         };

@@ -12,7 +12,8 @@ use super::{
     },
     oscillation::{Character, Oscillation},
     shape::{Wanted, shaped},
-    stalled::{stalled, trimmed, unspoilt},
+    spoilt::{Left, unspoilt},
+    stalled::stalled,
 };
 use crate::{
     math::{deviation, lowpass},
@@ -67,6 +68,8 @@ pub(super) struct Joint<'a> {
     kind: JointKind,
     pub(super) planned: Vec<(f64, f64)>,
     answers: Vec<Answer>,
+    /// What was added to the plan in each run, rad.
+    sent: Vec<Vec<f64>>,
     /// Whether the newest run has little to do with the plan.
     astray: bool,
     pub(super) oscillation: Option<Oscillation>,
@@ -80,6 +83,7 @@ impl<'a> Joint<'a> {
         let from_s = track.t_s().first().copied().unwrap_or_default();
         let answer = |(run, trial): (usize, &Trial)| Answer::of(run, trial, track.name(), from_s, &planned);
         let answers: Vec<Answer> = runs.iter().enumerate().filter_map(answer).collect();
+        let sent = answers.iter().map(|run| run.correction_rad(&planned)).collect();
         let mut workspace = Workspace::default();
         let astray = answers.last().is_some_and(|run| is_astray(&planned, run, fit, &mut workspace));
         // What a joint does that follows another plan, or none, is no oscillation of its loop.
@@ -92,6 +96,7 @@ impl<'a> Joint<'a> {
             kind: track.kind(),
             planned,
             answers,
+            sent,
             astray,
             oscillation,
             workspace,
@@ -111,14 +116,13 @@ impl<'a> Joint<'a> {
         // The newest run up to the one to be kept in which the joint was measured.
         let kept = settings.keep.filter(|_| !self.answers.is_empty());
         let kept = kept.map(|keep| self.answers.iter().rposition(|run| run.of_run <= keep).unwrap_or(0));
-        let sent: Vec<Vec<f64>> = self.answers.iter().map(|run| run.correction_rad(&self.planned)).collect();
         // What the plan is off by unaided, as its first run tells; what was sent beyond that is never clipped, and does not grow
         // where a joint cannot follow.
         let unaided = |(sent, error): (&Vec<f64>, &Vec<f64>)| {
             largest(&sent.iter().zip(error).map(|(sent, error)| sent + error).collect::<Vec<f64>>())
         };
-        let unaided_rad = sent.iter().zip(&errors).next().map_or(0.0, unaided);
-        let sent_rad = sent.iter().map(|sent| largest(sent)).fold(0.0, f64::max);
+        let unaided_rad = self.sent.iter().zip(&errors).next().map_or(0.0, unaided);
+        let sent_rad = self.sent.iter().map(|sent| largest(sent)).fold(0.0, f64::max);
         let most_rad = settings.most(self.kind).unwrap_or(
             CAP_RAD.max(CAP_BY_ERROR * largest_rad.max(unaided_rad)).max(sent_rad / settings.share),
         );
@@ -134,7 +138,7 @@ impl<'a> Joint<'a> {
             cut_off_hz: 0.0,
             unseen_s: self.answers.last().map_or(0.0, |run| run.unseen_s(&self.planned)),
             shifted_rad: self.answers.last().map_or(0.0, |run| run.shifted_rad),
-            stalled: stalled(&sent, &errors, free),
+            stalled: stalled(&self.sent, &errors, free),
             correction: nothing,
         };
         let Some(fit) = self.fit.filter(|_| !untouched && !free.is_empty() && settings.gain > 0.0) else {
@@ -157,13 +161,13 @@ impl<'a> Joint<'a> {
         made.stalled.retain(|held| spread_rad < DIFFERS * held.error_rad);
         let fade = fade(self.planned.len(), free);
         let (step, wanted_rad) = if let Some(from) = kept {
-            let (from, _) = unspoilt(from, &sent, &self.whole_rad());
-            let mut kept = sent[from].clone();
+            let (from, _) = unspoilt(from, &self.sent, &self.whole_rad());
+            let mut kept = self.sent[from].clone();
             // Also of a command that is kept as a whole, not what left more error than less of it.
             for held in &made.stalled {
-                let (steps, less) = (held.steps.clone(), &sent[held.from][held.steps.clone()]);
+                let (steps, less) = (held.steps.clone(), &self.sent[held.from][held.steps.clone()]);
                 let smaller = largest(less) < largest(&kept[steps.clone()]);
-                if smaller && trimmed(&errors[from][steps.clone()]) > held.error_rad {
+                if smaller && Left::of(&errors[from][steps.clone()]).rms_rad > held.error_rad {
                     kept[steps].copy_from_slice(less);
                 }
             }
@@ -171,7 +175,7 @@ impl<'a> Joint<'a> {
         } else {
             let (step, mut wanted_rad) = self.wanted(fit, &manner, &made.rms_error_rad, &fade, settings);
             for held in &made.stalled {
-                wanted_rad[held.steps.clone()].copy_from_slice(&sent[held.from][held.steps.clone()]);
+                wanted_rad[held.steps.clone()].copy_from_slice(&self.sent[held.from][held.steps.clone()]);
             }
             faded(&mut wanted_rad, &fade);
             (step, wanted_rad)
@@ -219,7 +223,7 @@ impl<'a> Joint<'a> {
         settings: Learning,
     ) -> (Step, Vec<f64>) {
         let (gain, whole) = (settings.gain, self.whole_rad());
-        let Self { planned, answers, workspace, .. } = self;
+        let Self { planned, answers, sent, workspace, .. } = self;
         let scaled = |mut values: Vec<f64>, by: f64| {
             for x in &mut values {
                 *x *= by;
@@ -234,15 +238,13 @@ impl<'a> Joint<'a> {
             let by_model = inverted(&fit.model, manner, (planned, fade), aim, workspace);
             return (Step::Model, scaled(by_model, gain));
         };
-        let corrected = |run: &Answer| run.correction_rad(planned).iter().any(|d| d.abs() > NONE_RAD);
-        if answers.len() == 1 && (settings.anew || !corrected(newest)) {
+        if answers.len() == 1 && (settings.anew || largest(&sent[0]) <= NONE_RAD) {
             let (wanted, model_weight) =
                 first(&fit.model, manner, (planned, fade), newest, fit.held_out_r2, workspace);
             return (Step::First { model_weight }, scaled(wanted, gain));
         }
         let (from, trust) = trusted(rms_rad);
-        let sent: Vec<Vec<f64>> = answers.iter().map(|run| run.correction_rad(planned)).collect();
-        let (from, trust) = match unspoilt(from, &sent, &whole) {
+        let (from, trust) = match unspoilt(from, sent, &whole) {
             // One correction may be mended by the next; twice is enough.
             (_, 0 | 1) => (from, trust),
             (other, _) => return (Step::Kept { from: other }, sent[other].clone()),
@@ -253,9 +255,8 @@ impl<'a> Joint<'a> {
             Character::Rings | Character::Hunts => GAINS[2],
         };
         let gain = gain * trust * usual;
-        let run = &answers[from];
-        let mut next = run.correction_rad(planned);
-        for (next, more) in next.iter_mut().zip(manner.learnt(&run.error_rad(planned), gain)) {
+        let mut next = sent[from].clone();
+        for (next, more) in next.iter_mut().zip(manner.learnt(&answers[from].error_rad(planned), gain)) {
             *next = (*next + more).clamp(-manner.most_rad, manner.most_rad);
         }
         if manner.character != Character::Calm {

@@ -6,6 +6,7 @@ mod correct;
 mod joint;
 mod oscillation;
 mod shape;
+mod spoilt;
 mod stalled;
 
 use std::ops::Range;
@@ -13,6 +14,7 @@ use std::ops::Range;
 pub use answer::AFTER_S;
 pub use oscillation::{Character, Oscillation};
 pub use shape::Room;
+pub use spoilt::MORE_ERROR;
 pub use stalled::Stalled;
 
 use super::{

@@ -101,12 +101,11 @@ impl History {
         let now_rad = self.peak_rad(run)?;
         let differed_rad = (now_rad - self.peak_rad(*now.runs.last()?)?).abs();
         // What makes up for a change is no sign of its end.
-        let sent_again = |k: usize| {
-            self.same(k, run) && self.differ_by(k, run, f64::max(SENT_AGAIN_RAD, 0.5 * differed_rad))
-        };
-        let apart = |k: usize| self.peak_rad(k).map(|_| self.apart(k, run));
-        let agrees = |k: &usize| sent_again(*k) && apart(*k).is_some_and(|apart| apart < CHANGED_TWICE);
-        let contradicts = |k: &usize| sent_again(*k) && apart(*k).is_some_and(|apart| apart >= CHANGED_TWICE);
+        let sent_again = |k: usize| self.sent_again(k, run, differed_rad);
+        let agrees =
+            |k: &usize| sent_again(*k) && self.apart(*k, run).is_some_and(|apart| apart < CHANGED_TWICE);
+        let contradicts =
+            |k: &usize| sent_again(*k) && self.apart(*k, run).is_some_and(|apart| apart >= CHANGED_TWICE);
         if now.runs.iter().any(agrees) {
             return None;
         }
@@ -136,9 +135,14 @@ impl History {
         self.runs.get(run)?.mean_peak_rad
     }
 
-    /// The mean peak of one of two runs by that of the other, at least 1; 1 where one has none.
-    fn apart(&self, one: usize, other: usize) -> f64 {
-        self.peak_rad(one).zip(self.peak_rad(other)).map_or(1.0, |(a, b)| (a / b).max(b / a))
+    /// The mean peak of one of two runs by that of the other, at least 1; `None` where one has none.
+    fn apart(&self, one: usize, other: usize) -> Option<f64> {
+        self.peak_rad(one).zip(self.peak_rad(other)).map(|(a, b)| (a / b).max(b / a))
+    }
+
+    /// Whether the same was sent in two runs, and not something else by half of what their errors differ by: that may be why.
+    fn sent_again(&self, one: usize, other: usize, differed_rad: f64) -> bool {
+        self.same(one, other) && self.differ_by(one, other, f64::max(SENT_AGAIN_RAD, 0.5 * differed_rad))
     }
 
     /// By how much the mean peak of a run differs from what the run before the change had, rad.
@@ -153,10 +157,9 @@ impl History {
     /// What tells that the machine changed before a run, since these.
     fn sign(&self, runs: &[usize], run: usize, fits: Fits) -> Option<Sign> {
         let now_rad = self.peak_rad(run)?;
-        // What differs by less than it gained, or lost, may be why.
         let same = |k: &usize| {
             let differs_rad = self.peak_rad(*k).map_or(0.0, |before_rad| (now_rad - before_rad).abs());
-            self.same(*k, run) && self.differ_by(*k, run, f64::max(SENT_AGAIN_RAD, 0.5 * differs_rad))
+            self.sent_again(*k, run, differs_rad)
         };
         let differs = |k: &usize| {
             self.peak_rad(*k)
@@ -168,8 +171,8 @@ impl History {
             return Some(Sign::Pair(before, from));
         }
         // Less of a difference is told by two runs that agree against one.
-        let agrees = |k: &usize| self.apart(*k, run) < 1.0 + AGAIN && same(k);
-        let apart = |k: &usize| self.apart(*k, run) > CHANGED_TWICE && same(k);
+        let agrees = |k: &usize| self.apart(*k, run).is_none_or(|apart| apart < 1.0 + AGAIN) && same(k);
+        let apart = |k: &usize| self.apart(*k, run).is_some_and(|apart| apart > CHANGED_TWICE) && same(k);
         if let Some(again) = runs.iter().rev().copied().find(agrees)
             && let Some(before) = runs.iter().rev().copied().find(|k| *k < again && apart(k))
         {

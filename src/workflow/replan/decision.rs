@@ -3,15 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::history::{History, PastRun};
+use crate::fit::MORE_ERROR;
 
 /// A run whose mean peak is not below this share of the best before it was not worth its correction.
 const WORTH: f64 = 0.9;
 
 /// A mean peak up to this times the least is as good.
 const NEARLY: f64 = 1.05;
-
-/// A root mean square error, and what an error is below for 95 % of the time, up to these times those of the plan as it is are no more.
-pub(super) const OVERALL: [f64; 2] = [1.02, 1.1];
 
 /// A correction that is expected to come above the best run by this factor is not worth sending.
 const WORSE: f64 = 1.1;
@@ -90,7 +88,7 @@ impl Overall {
 
     /// Whether the correction left more.
     pub fn is_worse(&self) -> bool {
-        self.rms_rad > OVERALL[0] * self.plain_rms_rad || self.p95_rad > OVERALL[1] * self.plain_p95_rad
+        self.rms_rad > MORE_ERROR[0] * self.plain_rms_rad || self.p95_rad > MORE_ERROR[1] * self.plain_p95_rad
     }
 }
 
