@@ -118,6 +118,9 @@ pub(super) fn assemble(
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);
     let mut source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
+    if let Some(command) = &command {
+        unlike::of_command(&planned, &command.series, &source.planned_topic, &mut remarks);
+    }
     source.measured_delay_s = Some(delay_s).filter(|delay_s| *delay_s != 0.0);
     let Extracted { attachments, metadata, .. } = assembly.extracted;
     // Where both sides are there, a table that lacks one is no doubt.

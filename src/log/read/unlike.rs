@@ -4,6 +4,7 @@ use super::quality::looks_like_degrees;
 use crate::{
     remark::{Code, Remarks},
     series::{Series, Track},
+    text::shell_word,
 };
 
 /// Instants at which plan and measurement are compared, evenly spread over the measurement; fewer than the least tell
@@ -41,6 +42,25 @@ pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remark
         };
         let others = || planned.tracks.iter().filter(|other| other.name() != track.name());
         if let Some(message) = of_joint(track, came, others()) {
+            remarks.add(Code::UnlikePlan, 1, message);
+        }
+    }
+}
+
+/// Remarks joints whose command is farther from their plan than that moves: a correction is not, a signal to a valve may be.
+pub(super) fn of_command(planned: &Series, command: &Series, topic: &str, remarks: &mut Remarks) {
+    for track in &planned.tracks {
+        let own = command.track(track.name()).filter(|own| own.kind() == track.kind());
+        let Some(alike) = own.and_then(|own| Alike::of(&both(track, own))) else { continue };
+        let small = SMALL[usize::from(!track.turns())];
+        if alike.motion > 0.0 && alike.rms_error > small.max(alike.motion) {
+            let message = format!(
+                "the command of {} is {} away from its plan (root mean square), farther than the plan moves: if it is no set value \
+                 of the position, but a signal to a valve, --command {} takes the plan for what was sent",
+                track.name(),
+                track.kind().says(alike.rms_error),
+                shell_word(topic)
+            );
             remarks.add(Code::UnlikePlan, 1, message);
         }
     }
