@@ -48,8 +48,10 @@
 //!
 //! # Features
 //!
-//! `cli` (default) is the program; the library without features knows no terminal, page or plot. `encodings` reads
-//! tables of old programs, `parquet` writes tables as Parquet, `png` figures as pixels, `viewer` shows runs in Rerun.
+//! `cli` (default) is the program; the library without features knows no terminal, page or plot. It has
+//! `encodings`, which reads tables of old programs, `parquet`, which reads and writes such tables, and `sqlite`, which reads
+//! bags of that kind. Beside it, `cloud` reads logs in object stores, `png` draws figures as pixels, and `viewer` shows runs in
+//! Rerun.
 
 // Hidden: for the program, its tests and studies, without a promise.
 

@@ -44,7 +44,8 @@ pub(super) struct Args {
     #[arg(long)]
     full: bool,
 
-    /// Largest speed of a joint that turns; below the machine's own limit, that limit stays unknown
+    /// Largest speed of a joint that turns, 60 if not given; below the machine's own limit, that
+    /// limit stays unknown
     #[arg(long, value_name = "DEG/S", value_parser = speed_deg_s, allow_negative_numbers = true)]
     max_speed_deg_s: Option<f64>,
 

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::{series::JointKind, units::Degrees};
+use crate::{series::JointKind, text::shell_word, units::Degrees};
 
 /// Why there is no fit, no prediction, or no run to make a fit from.
 #[derive(Debug, Clone, Error, PartialEq)]
@@ -16,6 +16,13 @@ pub enum FitError {
         Degrees(*least_travel_rad), JointKind::Slides.says(*least_travel_rad)
     )]
     NothingMoves { logs: usize, shared: usize, least_travel_rad: f64 },
+    /// What is taken for what was sent stands, though the plan moves.
+    #[error(
+        "no joint can be fitted: in {log} the plan in {plan} moves, and {command}, what was sent, stands; if that is no set value \
+         of the position, --command {} takes the plan for what was sent",
+        shell_word(plan)
+    )]
+    CommandStands { log: String, plan: String, command: String },
     /// Joints move, but are not sampled often enough to show how.
     #[error(
         "no joint can be fitted: measured samples are {:.2} s apart, and how a joint answers shows in samples {} s apart or \

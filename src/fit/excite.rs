@@ -33,6 +33,9 @@ pub struct Ramp {
 /// Strokes shorter than this show nothing, rad.
 const LEAST_RAD: f64 = DEGREE_RAD;
 
+/// Strokes grow with their speed up to this, rad.
+const FARTHEST_RAD: f64 = 60.0 * DEGREE_RAD;
+
 /// No joint is sent more slowly, rad/s.
 const LEAST_RAD_S: f64 = 1e-4;
 
@@ -98,12 +101,20 @@ impl Excitation {
         }
     }
 
-    /// The ramps of a joint of a kind that is sent no faster than so; of those that are then equally fast the longest stays.
+    /// The ramps of a joint of a kind that is sent as fast as so at most, and once so fast where that is told; of those that are
+    /// then equally fast the longest stays.
     pub fn ramps(&self, kind: JointKind, most_rad_s: f64) -> Vec<Ramp> {
         let by = scale(kind);
-        let ramp = |ramp: &Ramp| Ramp {
-            speed_rad_s: (by * ramp.speed_rad_s).min(most_rad_s),
-            travel_rad: by * ramp.travel_rad,
+        let fastest_rad_s = by * self.ramps.iter().map(|ramp| ramp.speed_rad_s).fold(0.0, f64::max);
+        // Faster than the strokes are: the fastest is that fast, and as much longer.
+        let more = if most_rad_s.is_finite() { (most_rad_s / fastest_rad_s).max(1.0) } else { 1.0 };
+        let ramp = |ramp: &Ramp| {
+            let more = if by * ramp.speed_rad_s < fastest_rad_s { 1.0 } else { more };
+            let farthest_rad = ramp.travel_rad.max(FARTHEST_RAD);
+            Ramp {
+                speed_rad_s: (by * more * ramp.speed_rad_s).min(most_rad_s),
+                travel_rad: by * (more * ramp.travel_rad).min(farthest_rad),
+            }
         };
         let mut ramps: Vec<Ramp> = self.ramps.iter().map(ramp).collect();
         ramps.dedup_by(|a, b| {
@@ -198,12 +209,18 @@ fn joint_strokes(joint: &JointRoom, excitation: &Excitation) -> Result<Vec<(f64,
     let mut states = Vec::new();
     let fastest_rad_s = ramps.iter().map(|ramp| ramp.speed_rad_s).fold(0.0, f64::max);
     for ramp in &ramps {
-        let fits = inside(home + ramp.travel_rad) || inside(home - ramp.travel_rad);
-        let travel_rad = if fits { ramp.travel_rad } else { ramp.travel_rad.min(room) };
+        let fastest = ramp.speed_rad_s >= fastest_rad_s;
+        let sides = [home + ramp.travel_rad, home - ramp.travel_rad].map(inside);
+        let travel_rad = match sides {
+            // To one side as far as across both.
+            [true, false] | [false, true] if fastest => (2.0 * ramp.travel_rad).min(below.max(above)),
+            [false, false] => ramp.travel_rad.min(room),
+            _ => ramp.travel_rad,
+        };
         let (up, down) = ((home + travel_rad).min(highest), (home - travel_rad).max(lowest));
         let goals = match (inside(home + travel_rad), inside(home - travel_rad)) {
             // At the top speed both directions need a long stroke.
-            (true, true) if ramp.speed_rad_s >= fastest_rad_s => vec![up, down, up, home],
+            (true, true) if fastest => vec![up, down, up, home],
             (true, true) => vec![up, down, home],
             (true, false) => vec![up, home, up, home],
             (false, true) => vec![down, home, down, home],

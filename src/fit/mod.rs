@@ -11,6 +11,7 @@
 //! Smooth runs never reach the limits of speed and acceleration, which then are bounds and no
 //! numbers. Discrepancies were found on simulated machines, and no hardware was at hand.
 
+mod capped;
 mod censor;
 mod edge;
 mod error;
@@ -85,6 +86,18 @@ impl Fit {
             let found = skill::unexplained_by(&joint.model, &runs, &mut workspace);
             let found = found.map(|peaks_rad| peaks_rad.map(|peak_rad| factor * peak_rad));
             joint.unexplained_peak_rad = found.or(joint.unexplained_peak_rad);
+        }
+        self
+    }
+
+    /// The same, but what is left unexplained is that of another fit of the machine, where its mean is not above that by a factor.
+    #[must_use]
+    pub fn unless_above(mut self, other: &Self, factor: f64) -> Self {
+        for joint in &mut self.joints {
+            let known = other.joint(&joint.name).and_then(|other| other.unexplained_peak_rad);
+            let above =
+                joint.unexplained_peak_rad.zip(known).is_some_and(|(own, known)| own[0] > factor * known[0]);
+            joint.unexplained_peak_rad = if above { joint.unexplained_peak_rad } else { known };
         }
         self
     }

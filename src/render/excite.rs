@@ -77,7 +77,7 @@ pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
         .collect();
     let short = (!short.is_empty()).then(|| {
         Sentence::finding(format!(
-            "The range of {} is too near for some: these strokes go to one side only, or no farther than it allows.",
+            "The range of {} is too near for some: these strokes go to one side only, the fastest twice as far, or no farther than it allows.",
             short.join(", ")
         ))
     });

@@ -5,7 +5,10 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
 use super::super::model::STEP_S;
-use crate::math::lowpass;
+use crate::{
+    math::{lowpass, range},
+    series::Track,
+};
 
 /// Frequencies above this are noise of sensors, Hz.
 const LOOKED_AT_HZ: f64 = 3.0;
@@ -63,6 +66,14 @@ pub struct Oscillation {
 }
 
 impl Oscillation {
+    /// Of what a joint does beside its plan.
+    pub fn of_error(planned: &Track, measured: &Track) -> Self {
+        let [from_s, to_s] = range(measured.t_s().iter().copied());
+        let steps = (0..).map(|k| from_s + f64::from(k) * STEP_S).take_while(|t_s| *t_s <= to_s);
+        let error_rad = |t_s: f64| measured.held_at(t_s).position - planned.held_at(t_s).position;
+        Self::of(&steps.map(error_rad).collect::<Vec<_>>())
+    }
+
     /// Of measured less modelled angles, rad, every [`STEP_S`].
     pub(in crate::fit) fn of(unexplained_rad: &[f64]) -> Self {
         let mut smooth = unexplained_rad.to_vec();

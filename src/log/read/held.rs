@@ -1,7 +1,7 @@
 //! Plans that are written only where they change, as historians and subscriptions write them: between two values the
 //! first one holds.
 
-use super::{quality::is_of_gaps, select_topics::Choice};
+use super::{quality::is_of_gaps, recording::Command, repeated, select_topics::Choice};
 use crate::{
     remark::{Code, Remarks},
     series::{Series, Track},
@@ -26,6 +26,15 @@ pub(super) fn of_sides(choice: &Choice, sides: &mut [(&str, &mut Series); 2], re
         let topics =
             topics.map(|side| side.iter().map(|candidate| candidate.topic.as_str()).collect::<Vec<_>>());
         of_both([planned, measured], &topics, remarks);
+    }
+}
+
+/// Reads what was sent as a plan is read, whose values were written again or only where they change.
+pub(super) fn of_command(command: Option<&mut Command>, measured: &Series, remarks: &mut Remarks) {
+    let Some(Command { topic, series }) = command else { return };
+    repeated::of_command(series, remarks);
+    if let Some([_, until_s]) = measured.span_s() {
+        of_side(("command", &[topic]), series, (until_s, false), remarks);
     }
 }
 

@@ -12,15 +12,24 @@ const LEAST: usize = 3;
 const MOST: f64 = 0.95;
 /// From so many rows on a value may be written once more or less: sensor and log have clocks of their own.
 const UNEVEN: usize = 5;
-/// Longest time for which a sample of a plan is held, s.
+/// Longest time for which a sample of a plan is held, s; of what was sent, which goes from target to target only where its plan
+/// does.
 const LONGEST_S: f64 = 0.2;
+const LONGEST_SENT_S: f64 = 0.5;
 /// Rows that are looked at first.
 const HEAD: usize = 4000;
 
 /// Keeps of each value that is written again its first row; it says no more of when it was measured or planned.
 pub(super) fn of_sides([(_, planned), (_, measured)]: &mut [(&str, &mut Series); 2], remarks: &mut Remarks) {
+    let is_sampled = |plan: &Track, fresh: &Track| is_sampled(plan, fresh, LONGEST_S);
     of_side(planned, is_sampled, ["planned", "its planner", "interpolated"], remarks);
     of_side(measured, |_, _| true, ["measured", "a sensor", "not judged"], remarks);
+}
+
+/// The same of what was sent: sent again as it is logged, it would come late and in steps.
+pub(super) fn of_command(command: &mut Series, remarks: &mut Remarks) {
+    let is_sampled = |sent: &Track, fresh: &Track| is_sampled(sent, fresh, LONGEST_SENT_S);
+    of_side(command, is_sampled, ["commanded", "its sender", "interpolated"], remarks);
 }
 
 /// `is_so`: whether what is left of a track, the second, is what there was of it.
@@ -47,8 +56,8 @@ fn of_side(
 
 /// Whether a plan that is held has samples of a motion: set values that step from one to the next are held longer, and those
 /// that are rounded change when the plan passes from one to the next.
-fn is_sampled(plan: &Track, fresh: &Track) -> bool {
-    fresh.sample_interval_s() <= LONGEST_S && rounding(plan).is_none()
+fn is_sampled(plan: &Track, fresh: &Track, longest_s: f64) -> bool {
+    fresh.sample_interval_s() <= longest_s && rounding(plan).is_none()
 }
 
 fn differ(a: f64, b: f64) -> bool {
@@ -136,6 +145,24 @@ mod tests {
             let (mut planned, mut measured) = (Series { tracks: vec![track] }, Series::default());
             of_sides(&mut [("planned", &mut planned), ("measured", &mut measured)], &mut Remarks::default());
             assert_eq!(planned.tracks[0].len(), 4000);
+        }
+    }
+
+    #[test]
+    fn what_was_sent_in_steps_of_a_slow_sender_is_what_it_sampled() {
+        for held in [10, 25, 50] {
+            let t_s: Vec<f64> = (0..4000).map(|k| f64::from(k) * 0.01).collect();
+            let sent = |t_s: f64| 0.3 * (0.3 * t_s.clamp(5.0, 35.0)).sin();
+            let at = |k: usize| sent(0.01 * (k / held * held) as f64);
+            let track = Track::new("a", t_s, (0..4000).map(at).collect(), &[]).unwrap();
+            let off = |track: &Track| {
+                let one = |t_s: f64| (track.held_at(t_s).position - sent(t_s)).abs();
+                (0..4000).map(|k| one(0.01 * f64::from(k))).fold(0.0, f64::max)
+            };
+            let mut command = Series { tracks: vec![track.clone()] };
+            of_command(&mut command, &mut Remarks::default());
+            let (before, after) = (off(&track), off(&command.tracks[0]));
+            assert!(after < 0.2 * before, "{held} rows: {before} rad, {after} rad");
         }
     }
 

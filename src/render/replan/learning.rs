@@ -1,7 +1,7 @@
 //! What was learnt from run to run, and the command that follows.
 
 use crate::{
-    fit::Step,
+    fit::{AFTER_S, Step},
     render::{
         kit::{Column, Id, NONE, Section, Sentence, Table, counted, optional},
         metric::{Units, number, position, unit},
@@ -10,6 +10,9 @@ use crate::{
     series::JointKind::{self, Slides, Turns},
     workflow::replan::{Decision, JointCommand, KeepReason, PastRun, Replanned},
 };
+
+/// Less of what comes after a plan hides an overshoot, s.
+const LEAST_AFTER_S: f64 = 1.0;
 
 /// What to keep, where nothing more is to be gained, and why.
 pub(super) fn kept(replanned: &Replanned) -> Option<String> {
@@ -155,7 +158,20 @@ pub(super) fn command(replanned: &Replanned) -> Option<Section> {
         .with_all(
             [Turns, Slides].into_iter().filter_map(|kind| cut_off(&command.joints, kind)).map(Sentence::Advice),
         )
-        .with_all(stamped(replanned, &command.joints).map(|text| Sentence::note(text.to_owned()))))
+        .with_all(stamped(replanned, &command.joints).map(|text| Sentence::note(text.to_owned())))
+        .with_all(ends_early(replanned).map(Sentence::note)))
+}
+
+/// What no log shows: an overshoot after the plan.
+fn ends_early(replanned: &Replanned) -> Option<String> {
+    let shortest = replanned.past.runs.iter().min_by(|a, b| a.after_s.total_cmp(&b.after_s))?;
+    (shortest.after_s < LEAST_AFTER_S).then(|| {
+        format!(
+            "{} ends {:.1} s after the last motion of its plan: what comes later, such as an overshoot, is judged in no run. Let the \
+             arm rest and the recorder run on for {AFTER_S:.0} s.",
+            shortest.log, shortest.after_s
+        )
+    })
 }
 
 /// What a first correction hangs on that no log of one clock tells.

@@ -1,7 +1,5 @@
 //! The runs of both sides, and what they have in common.
 
-use std::path::Path;
-
 use super::{
     change::{Change, Changes},
     pair::{Run, Side, TransitionPair, Unpaired},
@@ -19,7 +17,7 @@ pub(super) struct Member<'a> {
     pub(super) side: Side,
     /// Among those of its side, from 1.
     pub(super) number: usize,
-    pub(super) path: &'a Path,
+    pub(super) log: String,
     pub(super) report: &'a Report,
     pub(super) extent: &'a Extent,
     /// How it corresponds to the first run before.
@@ -31,7 +29,7 @@ impl Member<'_> {
         let replay = &self.report.replay;
         let plans = self.matched.plans;
         Run {
-            log: self.path.file_name().unwrap_or(self.path.as_os_str()).to_string_lossy().into_owned(),
+            log: self.log.clone(),
             source: self.report.source.clone(),
             transitions: replay.transitions.iter().filter(|t| joints.contains(&t.joint)).count(),
             plan_duration_s: self.extent.plan_duration_s,

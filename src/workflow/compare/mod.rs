@@ -24,7 +24,10 @@ pub use pair::{Run, Side, TransitionPair, Unpaired};
 pub use pairing::PairedBy;
 pub use summary::{Scope, Summary, Verdict};
 
-use super::report::{self, Report, ReportFailure};
+use super::{
+    names::told_apart,
+    report::{self, Report, ReportFailure},
+};
 use crate::{
     document::PROGRAM,
     log::ReadOptions,
@@ -128,13 +131,13 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     let (extents_before, extents_after) = extents.split_at(before.len());
     let first = before.first().ok_or(CompareFailure::NoRun(Side::Before))?;
     let mut all: Vec<Member> = Vec::new();
-    for (side, reports, extents, paths) in [
-        (Side::Before, &before, extents_before, &inputs.before),
-        (Side::After, &after, extents_after, &inputs.after),
-    ] {
-        for (k, ((report, extent), path)) in reports.iter().zip(extents).zip(paths).enumerate() {
+    let mut logs = told_apart(&[&inputs.before[..], &inputs.after].concat()).into_iter();
+    for (side, reports, extents) in
+        [(Side::Before, &before, extents_before), (Side::After, &after, extents_after)]
+    {
+        for (k, ((report, extent), log)) in reports.iter().zip(extents).zip(&mut logs).enumerate() {
             let matched = matched(first, report, &joints);
-            all.push(Member { side, number: k + 1, path, report, extent, matched });
+            all.push(Member { side, number: k + 1, log, report, extent, matched });
         }
     }
     let (pairs, unpaired) = pairs(first, &all, &joints);

@@ -1,9 +1,6 @@
 //! `fit`: from logs of runs to what the machine does with what it is sent.
 
-use std::{
-    borrow::Borrow,
-    path::{Path, PathBuf},
-};
+use std::{borrow::Borrow, path::PathBuf};
 
 use serde::{Deserialize, Serialize};
 mod document;
@@ -17,10 +14,11 @@ pub use failure::FitFailure;
 use crate::{
     fit::{Fit, FitError, HeldOut, Observation, fit_and_held_out},
     log::{ReadOptions, Recording, SignalRole, SourceInfo},
+    math::range,
     remark::{Code, Remarks},
     replay::{Rules, planned_step},
     series::{Series, Track, moving_s},
-    workflow::carried::Carried,
+    workflow::{carried::Carried, names::told_apart},
 };
 pub(in crate::workflow) use observe::observation;
 use {
@@ -91,7 +89,7 @@ pub struct Fitted {
 /// ```
 pub fn run(inputs: &Inputs) -> Result<Fitted, FitFailure> {
     let observed = observed(&inputs.logs, &inputs.read)?;
-    Ok(of(&inputs.logs, &observed)?)
+    Ok(of(&told_apart(&inputs.logs), &observed)?)
 }
 
 /// Reads runs.
@@ -103,17 +101,17 @@ pub fn observed(logs: &[PathBuf], read: &ReadOptions) -> Result<Vec<Recording>, 
     logs.iter().map(|path| observe::observe(vec![path.clone().into()], read)).collect()
 }
 
-/// Fits runs that were read from these logs.
+/// Fits runs that were read from logs of these names.
 ///
 /// # Errors
 ///
 /// [`FitError`] if no joint can be fitted.
-pub fn of(logs: &[PathBuf], observed: &[impl Borrow<Recording>]) -> Result<Fitted, FitError> {
+pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted, FitError> {
     let observed: Vec<&Recording> = observed.iter().map(Borrow::borrow).collect();
     let observed = observed.as_slice();
     of_one_arm(logs, observed)?;
     let observations: Vec<Observation<'_>> = observed.iter().map(|run| observation(run)).collect();
-    let (fit, held_out) = fit_and_held_out(&observations)?;
+    let (fit, held_out) = fit_and_held_out(&observations).map_err(|error| unsent(error, logs, observed))?;
     for joint in &fit.joints {
         ::log::info!(
             "{} fitted to {} samples in {} runs; {:e} rad unexplained, held-out R2 {:.3}",
@@ -126,9 +124,9 @@ pub fn of(logs: &[PathBuf], observed: &[impl Borrow<Recording>]) -> Result<Fitte
     }
     let mut remarks = doubts(logs, observed);
     let mut runs = Vec::new();
-    for (path, observed) in logs.iter().zip(observed) {
+    for (log, observed) in logs.iter().zip(observed) {
         runs.push(FittedRun {
-            log: name(path),
+            log: log.clone(),
             source: observed.source.clone(),
             commanded: observed.command.is_some(),
             valves: observed.has(SignalRole::Valve),
@@ -166,6 +164,24 @@ pub fn of(logs: &[PathBuf], observed: &[impl Borrow<Recording>]) -> Result<Fitte
     Ok(Fitted { fit, held_out, torques, runs, again, remarks })
 }
 
+/// Names the command that stands, where that is why nothing can be fitted.
+fn unsent(error: FitError, logs: &[String], observed: &[&Recording]) -> FitError {
+    let FitError::NothingMoves { least_travel_rad, .. } = error else { return error };
+    let moves = |series: &Series| {
+        series.tracks.iter().any(|track| {
+            let [lowest, highest] = range(track.position().iter().copied());
+            highest - lowest >= least_travel_rad
+        })
+    };
+    let stands = |(log, run): (&String, &&Recording)| {
+        let command =
+            run.command.as_ref().filter(|command| !moves(&command.series) && moves(&run.planned))?;
+        let (plan, command) = (run.source.planned_topic.clone(), command.topic.clone());
+        Some(FitError::CommandStands { log: log.clone(), plan, command })
+    };
+    logs.iter().zip(observed).find_map(stands).unwrap_or(error)
+}
+
 /// Whether two plans are one, each on its own clock.
 fn same_plan(a: &Series, b: &Series) -> bool {
     const INSTANTS: u32 = 50;
@@ -180,13 +196,13 @@ fn same_plan(a: &Series, b: &Series) -> bool {
 }
 
 /// What is doubtful in the logs, each named if there are several.
-pub(super) fn doubts(logs: &[PathBuf], observed: &[&Recording]) -> Remarks {
+pub(super) fn doubts(logs: &[String], observed: &[&Recording]) -> Remarks {
     let mut remarks = Remarks::default();
-    for (path, observed) in logs.iter().zip(observed) {
+    for (log, observed) in logs.iter().zip(observed) {
         // A machine is fitted to what was sent, whatever was planned.
         for remark in observed.remarks.clone().without(Code::PlanIsCommand).as_slice() {
             let message = &remark.message;
-            let message = if logs.len() > 1 { format!("{}: {message}", name(path)) } else { message.clone() };
+            let message = if logs.len() > 1 { format!("{log}: {message}") } else { message.clone() };
             remarks.add(remark.code, remark.count, message);
         }
     }
@@ -194,27 +210,22 @@ pub(super) fn doubts(logs: &[PathBuf], observed: &[&Recording]) -> Remarks {
 }
 
 /// Every log must share a joint with those before it: a machine is fitted, not several.
-fn of_one_arm(logs: &[PathBuf], observed: &[&Recording]) -> Result<(), FitError> {
+fn of_one_arm(logs: &[String], observed: &[&Recording]) -> Result<(), FitError> {
     let mut known: Vec<&Track> = Vec::new();
-    for (path, observed) in logs.iter().zip(observed) {
+    for (log, observed) in logs.iter().zip(observed) {
         let own = &observed.measured.tracks;
         let same = |a: &&Track| known.iter().find(|b| b.name() == a.name()).copied();
         if !known.is_empty() && !own.iter().any(|track| same(&track).is_some()) {
             let names =
                 |tracks: &[&Track]| tracks.iter().map(|track| track.name()).collect::<Vec<_>>().join(", ");
             let (found, known) = (names(&own.iter().collect::<Vec<_>>()), names(&known));
-            return Err(FitError::OtherArm { log: name(path), found, known });
+            return Err(FitError::OtherArm { log: log.clone(), found, known });
         }
         if let Some(track) = own.iter().find(|a| same(a).is_some_and(|b| a.kind() != b.kind())) {
-            return Err(FitError::OtherKind { log: name(path), joint: track.name().to_owned() });
+            return Err(FitError::OtherKind { log: log.clone(), joint: track.name().to_owned() });
         }
         let new: Vec<&Track> = own.iter().filter(|track| same(track).is_none()).collect();
         known.extend(new);
     }
     Ok(())
-}
-
-/// The file's own name.
-fn name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

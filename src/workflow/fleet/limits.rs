@@ -1,7 +1,5 @@
 //! What each run tells of its machine: the numbers that a fit finds in it, as rows.
 
-use std::path::PathBuf;
-
 use super::tables::{Log, Name, Rows, remark_row};
 use crate::{
     document::explained,
@@ -29,7 +27,7 @@ const QUANTITIES: [Quantity; 7] = [
 pub(super) fn rows(log: &Log, inputs: Vec<Input>, run_id: &str, read: &ReadOptions) -> Rows {
     let fitted = threads::alone(|| {
         let observed = fit::observe::observe(inputs, read).map_err(|failure| explained(&failure))?;
-        fit::of(&[PathBuf::from(&log.uri)], &[observed]).map_err(|failure| explained(&failure))
+        fit::of(std::slice::from_ref(&log.uri), &[observed]).map_err(|failure| explained(&failure))
     });
     match fitted {
         Ok(fitted) => {

@@ -1,7 +1,5 @@
 //! Runs in which a joint stood that answers in others: a valve without current says nothing of its machine.
 
-use std::path::PathBuf;
-
 use super::Inputs;
 use crate::{
     log::Recording,
@@ -9,6 +7,7 @@ use crate::{
     remark::{Code, Remarks},
     series::align,
     units::DEGREE_RAD,
+    workflow::names::told_apart,
 };
 
 /// A joint that moves by a smaller share of its plan stands, one that moves by more than the other answers.
@@ -28,11 +27,10 @@ struct DeadRun {
 
 impl DeadRun {
     /// Says that the run is left out.
-    fn remark(&self, logs: &[PathBuf], remarks: &mut Remarks) {
-        let name = logs.get(self.of).and_then(|path| path.file_name()).unwrap_or_default().to_string_lossy();
+    fn remark(&self, logs: &[String], remarks: &mut Remarks) {
         let message = format!(
-            "{name}: {} hardly moves in it although it does in other runs; nothing is learnt from this run",
-            self.joint
+            "{}: {} hardly moves in it although it does in other runs; nothing is learnt from this run",
+            logs[self.of], self.joint
         );
         remarks.add(Code::FrozenSensor, 1, message);
     }
@@ -41,9 +39,9 @@ impl DeadRun {
 /// Without the runs in which a joint stood, and what that says.
 pub(super) fn without_dead(inputs: &Inputs, observed: Vec<Recording>) -> (Inputs, Vec<Recording>, Remarks) {
     let dead = dead_runs(&observed);
-    let mut doubts = Remarks::default();
+    let (names, mut doubts) = (told_apart(&inputs.logs), Remarks::default());
     for run in &dead {
-        run.remark(&inputs.logs, &mut doubts);
+        run.remark(&names, &mut doubts);
     }
     let stays = |k: usize| dead.iter().all(|run| run.of != k);
     let logs = inputs.logs.iter().enumerate().filter(|(k, _)| stays(*k)).map(|(_, path)| path.clone());

@@ -1,7 +1,5 @@
 //! The runs of the plan that were made so far: what was sent, what came, and whether it is worth going on.
 
-use std::path::PathBuf;
-
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -45,6 +43,9 @@ pub struct PastRun {
     /// What the error of every joint is below for 95 % of it, rad.
     #[serde(default)]
     pub p95_error_rad: f64,
+    /// How long its log goes on after the last motion of the plan while the arm is to stay there, s.
+    #[serde(default)]
+    pub after_s: f64,
     /// What was promised of it, as far as its log tells.
     pub promised: Option<Promise>,
 }
@@ -71,15 +72,16 @@ pub(super) struct History {
 impl History {
     /// Of the logs whose plan is `plan`, which lasts to `end_s`, in their order.
     pub(super) fn of(
-        paths: &[PathBuf],
+        names: &[String],
         recordings: &[Recording],
         plan: &Series,
         rules: &Rules,
     ) -> Result<Self, ReplanFailure> {
         let mut history = Self { kind: plan.common_kind(), ..Self::default() };
         let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
+        let rest_s = moving_s(plan).map_or(0.0, |[_, moving_to_s]| end_s - moving_to_s);
         let mut after_s = AFTER_S;
-        for (place, (path, recording)) in paths.iter().zip(recordings).enumerate() {
+        for (place, (log, recording)) in names.iter().zip(recordings).enumerate() {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
             let Some(starts_s) = found_at_s(plan, &*bridged(&recording.planned)?, from_s - PLAN_LEAD_S)?
             else {
@@ -102,11 +104,12 @@ impl History {
             let count = found.peaks_rad().count() as f64;
             let sum: f64 = found.peaks_rad().sum();
             history.runs.push(PastRun {
-                log: path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
+                log: log.clone(),
                 corrected: !within(&sent, plan, NONE_RAD),
                 mean_peak_rad: (count > 0.0).then(|| sum / count),
                 rms_error_rad: 0.0,
                 p95_error_rad: 0.0,
+                after_s: (rest_s + rests_s.min(seen_s)).max(0.0),
                 promised: Carried::of(recording).promise(),
             });
             history.corrections_rad.push(farthest(&sent, plan));
@@ -226,6 +229,7 @@ pub(super) mod tests {
             mean_peak_rad: Some(*peak),
             rms_error_rad: 0.5 * peak,
             p95_error_rad: *peak,
+            after_s: AFTER_S,
             promised: None,
         };
         let runs = peaks.iter().enumerate().map(run).collect();

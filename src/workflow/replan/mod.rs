@@ -24,7 +24,7 @@ mod shape;
 mod unclear;
 mod warp;
 
-use std::{ops::ControlFlow, path::PathBuf};
+use std::ops::ControlFlow;
 
 pub use checks::{Check, Checks, Fastest, Finding, JointTrust, Level, Reason, Verdict};
 pub use command::{Commanded, JointCommand};
@@ -50,7 +50,7 @@ use crate::{
     task::{Ceilings, Objective, Objectives},
     threads,
     units::DEGREE_RAD,
-    workflow::{carried::rest::PLAN_LEAD_S, plan::Shaping},
+    workflow::{carried::rest::PLAN_LEAD_S, names::told_apart, plan::Shaping},
 };
 use command::{Subject, commanded};
 use correctable::correctable;
@@ -93,9 +93,10 @@ pub fn run(
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
     correctable(path, newest, &inputs.rules)?;
     let last = Last::of(path, newest, inputs)?;
-    let mut history = History::of(&inputs.logs, observed, &last.plan, &inputs.rules)?;
-    let chosen = |places: &mut dyn Iterator<Item = usize>| -> (Vec<PathBuf>, Vec<&Recording>) {
-        places.map(|k| (inputs.logs[k].clone(), &observed[k])).unzip()
+    let names = told_apart(&inputs.logs);
+    let mut history = History::of(&names, observed, &last.plan, &inputs.rules)?;
+    let chosen = |places: &mut dyn Iterator<Item = usize>| -> (Vec<String>, Vec<&Recording>) {
+        places.map(|k| (names[k].clone(), &observed[k])).unzip()
     };
     let (others, changed) = history.without_another_machine(&mut |places| {
         let (logs, observed) = chosen(&mut places.iter().copied());

@@ -2,7 +2,7 @@
 
 use std::{fmt::Write as _, fs};
 
-use super::replan::{check, with_run};
+use super::replan::{check, table, with_run};
 use crate::support::{clean, json, run_line, said, sample, scratch, stderr, stdout};
 
 #[test]
@@ -153,4 +153,69 @@ fn a_command_that_is_returned_to_is_not_stopped_for_what_a_later_one_promised() 
     let [came, bound] = [&promise["measured_mean_peak_rad"], &promise["promised"]["mean_peak_margin_rad"]];
     assert!(came.as_f64() > bound.as_f64().map(|bound| 2.0 * bound), "{promise}");
     assert_eq!((&promise["level"], &kept["checks"]["verdict"]), (&"caution".into(), &"check_first".into()));
+}
+
+/// A fleet's recorder writes run.mcap every day.
+#[test]
+fn logs_of_one_name_are_told_apart_by_their_folders() {
+    let folder = with_run();
+    let folder = folder.path();
+    for day in ["mon", "tue", "wed"] {
+        fs::create_dir(folder.join(day)).unwrap();
+    }
+    fs::rename(folder.join("run.mcap"), folder.join("mon/run.mcap")).unwrap();
+    clean(folder, "replan mon/run.mcap --keep-plan -o next.mcap");
+    clean(folder, "simulate next.mcap -o tue/run.mcap --seed 2");
+    clean(folder, "simulate next.mcap --plant lag-limited -o wed/run.mcap --seed 3");
+    let both = "mon/run.mcap tue/run.mcap";
+    for (line, keys) in
+        [("replan", ["runs", "fitted_to"]), ("fit", ["runs", "runs"]), ("compare", ["before", "after"])]
+    {
+        let found = json(folder, &format!("{line} {both}"));
+        for (key, log) in keys.into_iter().zip(["\"mon/run.mcap\"", "\"tue/run.mcap\""]) {
+            assert!(found[key].to_string().contains(log), "{line}: {}", found[key]);
+        }
+    }
+    // Limits of one machine leave more where another was at work, though its log has the same name.
+    clean(folder, "fit mon/run.mcap -o limits.toml");
+    let left = |log: &str| {
+        let next = json(folder, &format!("replan {log} --keep-plan --limits limits.toml --retime"));
+        check(&next, "outlook")["expected"]["mean_peak_margin_rad"].as_f64().unwrap()
+    };
+    let [own, other] = ["mon/run.mcap", "wed/run.mcap"].map(left);
+    assert!(other > 1.5 * own, "{own} {other}");
+}
+
+#[test]
+fn a_log_that_ends_with_its_plan_is_told_to_hide_what_comes_after() {
+    let folder = with_run();
+    let folder = folder.path();
+    let line = |options: &str| stdout(&run_line(folder, &format!("replan run.mcap --keep-plan {options}")));
+    let duration_s = json(folder, "replan run.mcap --keep-plan")["duration_s"].as_f64().unwrap();
+    assert!(!line("").contains("is judged in no run"), "{}", line(""));
+    let cut = line(&format!("--to {}", 1.4 + duration_s));
+    assert!(cut.contains("run.mcap ends 0.") && cut.contains("is judged in no run"), "{cut}");
+}
+
+#[test]
+fn a_machine_that_oscillates_by_itself_is_refused_with_its_frequency() {
+    let folder = with_run();
+    let folder = folder.path();
+    let hunts = |joint: usize, t_s: f64, angle_rad: f64| angle_rad + 0.08 * (5.0 * t_s + joint as f64).sin();
+    table(folder, "run.mcap", "all.csv", hunts);
+    let all = fs::read_to_string(folder.join("all.csv")).unwrap();
+    // Of one joint: another one may be explained by chance.
+    let kept =
+        |name: &str| name == "time_s" || name.starts_with("J1_planned") || name.starts_with("J1_measured");
+    let kept: Vec<bool> = all.lines().next().unwrap().split(',').map(kept).collect();
+    let row = |row: &str| {
+        let cells: Vec<&str> =
+            row.split(',').zip(&kept).filter(|(_, kept)| **kept).map(|(cell, _)| cell).collect();
+        cells.join(",") + "\n"
+    };
+    fs::write(folder.join("hunts.csv"), all.lines().map(row).collect::<String>()).unwrap();
+    let run = run_line(folder, "replan hunts.csv -o next.mcap");
+    assert_eq!(run.status.code(), Some(1), "{}", stdout(&run));
+    let said = stderr(&run);
+    assert!(said.contains("J1 oscillates by itself at 0.8"), "{said}");
 }

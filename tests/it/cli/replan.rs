@@ -204,7 +204,7 @@ fn exported(folder: &Path, log: &str) -> (Vec<String>, Vec<Vec<String>>) {
 }
 
 /// The log as a table; measured angles by joint, time and angle.
-fn table(folder: &Path, log: &str, path: &str, measured: impl Fn(usize, f64, f64) -> f64) {
+pub(super) fn table(folder: &Path, log: &str, path: &str, measured: impl Fn(usize, f64, f64) -> f64) {
     let (header, rows) = exported(folder, log);
     let time = header.iter().position(|name| name == "time_s").unwrap();
     let mut csv = header.join(",") + "\n";

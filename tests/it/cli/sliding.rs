@@ -57,17 +57,21 @@ fn a_command_that_has_nothing_to_do_with_the_plan_is_doubted_and_the_line_reads_
     let folder = scratch();
     let folder = folder.path();
     let table = mast(moves(9.0).map(|(t_s, at)| (t_s, 10.0 * at)));
-    let duty = |(k, row): (u32, &str)| {
-        let signal = (75.0 + 20.0 * (0.02 * f64::from(k)).sin()).to_string();
-        format!("{row},{}\n", if k == 0 { "mast_command_mm" } else { &signal })
-    };
-    fs::write(folder.join("run.csv"), (0..).zip(table.lines()).map(duty).collect::<String>()).unwrap();
-    clean(folder, "import run.csv -o run.mcap");
-    let (code, fitted, _) = said(&run_line(folder, "fit run.mcap"));
-    assert!(code == 3 && fitted.contains("the command of mast is "), "{code} {fitted}");
-    let option = fitted.split("--command ").nth(1).unwrap().split(' ').next().unwrap();
-    let (code, fitted, _) = said(&run_line(folder, &format!("fit run.mcap --command {option}")));
-    assert!(code == 0 && fitted.contains("mast          1.00"), "{code} {fitted}");
+    // One that moves, and one that does not.
+    for (by, expected, told) in [(20.0, 3, "the command of mast is "), (0.0, 1, "what was sent, stands")] {
+        let duty = |(k, row): (u32, &str)| {
+            let signal = (75.0 + by * (0.02 * f64::from(k)).sin()).to_string();
+            format!("{row},{}\n", if k == 0 { "mast_command_mm" } else { &signal })
+        };
+        fs::write(folder.join("run.csv"), (0..).zip(table.lines()).map(duty).collect::<String>()).unwrap();
+        clean(folder, "import run.csv -o run.mcap --force");
+        let (code, fitted, error) = said(&run_line(folder, "fit run.mcap"));
+        let fitted = fitted + &error;
+        assert!(code == expected && fitted.contains(told), "{code} {fitted}");
+        let option = fitted.split("--command ").nth(1).unwrap().split(' ').next().unwrap();
+        let (code, fitted, _) = said(&run_line(folder, &format!("fit run.mcap --command {option}")));
+        assert!(code == 0 && fitted.contains("mast          1.00"), "{code} {fitted}");
+    }
 }
 
 #[test]

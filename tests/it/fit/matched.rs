@@ -96,6 +96,27 @@ fn a_model_is_found_again_from_its_own_noisy_response() {
     }
 }
 
+/// As where another joint draws on the same pump in one of two runs.
+#[test]
+fn a_limit_that_differs_from_run_to_run_has_an_interval_that_holds_both() {
+    let plan = trial(&["J"]);
+    let limits_rad_s = [0.2, 0.35];
+    let run = |limit_rad_s: f64| {
+        let model = Model { speed_limit_rad_s: [Some(limit_rad_s); 2], ..MODEL };
+        measured_of(&model, &plan, 1, |_| false)
+    };
+    let [slow, fast] = limits_rad_s.map(run);
+    let fit = fitted(&[(&plan, &slow), (&plan, &fast)]);
+    let joint = &fit.joints[0];
+    for found in [&joint.speed_limit_growing_rad_s, &joint.speed_limit_shrinking_rad_s] {
+        let [low, high] = found.interval.unwrap_or([0.0, f64::INFINITY]);
+        assert!(limits_rad_s.iter().all(|limit| (low..=high).contains(limit)), "{found:?}");
+    }
+    let alone = fitted(&[(&plan, &fast)]);
+    let [low, high] = alone.joints[0].speed_limit_growing_rad_s.interval.unwrap();
+    assert!(high < 1.7 * low, "{low} {high}");
+}
+
 #[test]
 fn edges_that_open_gradually_are_found_where_they_are_and_nowhere_else() {
     let plan = trial(&["J"]);
@@ -364,6 +385,16 @@ fn a_trial_stays_in_range_and_one_without_room_is_refused() {
     };
     let none: Result<[f64; 2], FitError> = within(1.0, [0.99, 1.01]);
     assert!(matches!(none, Err(FitError::NoRoom { .. })));
+    // To one side the fastest strokes are as long as across both, where there is room.
+    let far = |ends: [f64; 2]| ends.map(|end: f64| (end - 1.0).to_degrees().round());
+    assert_eq!(far(within(1.0, [0.0, 1.0]).unwrap()), [-20.0, 0.0]);
+    assert_eq!(far(within(1.0, [0.98, 1.3]).unwrap()), [0.0, 17.0]);
+    // Faster than usual, where that is asked for, and as much longer.
+    let room = [JointRoom { most_rad_s: 2.0, ..rooms[1].clone() }];
+    let run = excite(&room, &Excitation::minimal()).unwrap();
+    let fastest =
+        run.tracks[0].velocity().unwrap().iter().fold(0.0, |most: f64, speed| most.max(speed.abs()));
+    assert!(fastest > 1.8 && fastest <= 2.0 + 1e-9, "{fastest}");
     // A narrow joint goes as far as it may; a stroke that fits exactly is not cut by rounding.
     assert_eq!(within(1.0, [0.95, 1.05]).unwrap(), [0.95, 1.05]);
     let [low, home, high] = [23.3_f64, 33.3, 43.3].map(f64::to_radians);
