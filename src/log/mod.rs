@@ -24,6 +24,7 @@ mod import_line;
 mod input;
 mod joined;
 mod joint_kind;
+mod last_part;
 mod looks;
 mod options;
 mod range;

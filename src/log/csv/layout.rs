@@ -8,7 +8,7 @@ use super::{
     column::{find, present},
     head::Head,
     label::Label,
-    pairing::{Draft, plan_beside_measured, without_shared_words},
+    pairing::{Draft, Partners, by_last_part, plan_beside_measured, without_shared_words},
     unit::Unit,
 };
 use crate::{
@@ -86,13 +86,12 @@ pub(super) fn lay_out(
     let explicit: BTreeSet<usize> =
         drafts.iter().map(|draft| draft.column).chain(taken.iter().copied()).collect();
     let free = |column: &usize| head.named && labels[*column].is_joint && !explicit.contains(column);
+    let partners = Partners::of(labels, (0..labels.len()).filter(free).collect());
     for column in (0..labels.len()).filter(free) {
         let label = &labels[column];
         let (role, quantity) =
             (label.role.unwrap_or(Role::Measured), label.quantity.unwrap_or(Quantity::Position));
-        let partner =
-            |other: usize| free(&other) && labels[other].key == label.key && labels[other].role != label.role;
-        let paired = drafts.iter().any(|draft| draft.key == label.key) || (0..labels.len()).any(partner);
+        let paired = drafts.iter().any(|draft| draft.key == label.key) || partners.has_one(label);
         if options.columns.contains_key(&(role, quantity)) || label.is_weak && !paired {
             continue;
         }
@@ -102,6 +101,7 @@ pub(super) fn lay_out(
     plan_beside_measured(head, &mut drafts, remarks);
     drop_repeats(head, &mut drafts, remarks)?;
     without_shared_words(&mut drafts);
+    by_last_part(&mut drafts, remarks);
     let joints = joints(head, labels, &drafts, remarks)?;
     let place = |key: &str| joints.iter().position(|(known, _)| known == key);
     let uses = drafts.iter().filter_map(|draft| {

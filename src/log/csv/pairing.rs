@@ -2,8 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::{Quantity, Role, head::Head};
-use crate::remark::{Code, Remarks};
+use super::{Quantity, Role, head::Head, label::Label};
+use crate::{
+    log::last_part::{alike, pairs},
+    remark::{Code, Remarks},
+};
 
 /// What a column seems to be.
 #[derive(Debug, Clone)]
@@ -15,6 +18,33 @@ pub(super) struct Draft {
     pub(super) joint: String,
     /// Whether the caller or a word of the header says the role.
     pub(super) stated: bool,
+}
+
+/// Columns that may be of joints, among which another may be of the other side of the same one.
+pub(super) struct Partners<'a> {
+    labels: Vec<&'a Label>,
+    /// Whether some joint has both sides under one name.
+    named_alike: bool,
+}
+
+impl<'a> Partners<'a> {
+    pub(super) fn of(labels: &'a [Label], columns: Vec<usize>) -> Self {
+        let labels: Vec<&Label> = columns.into_iter().map(|column| &labels[column]).collect();
+        let both = |a: &Label, b: &Label| a.key == b.key && are_two_sides(a, b);
+        let named_alike = labels.iter().any(|a| labels.iter().any(|b| both(a, b)));
+        Self { labels, named_alike }
+    }
+
+    /// Whether one has the name of `label`, or, where no joint has both sides, the last part of it.
+    pub(super) fn has_one(&self, label: &Label) -> bool {
+        let same = |other: &Label| other.key == label.key && other.role != label.role;
+        let near = |other: &Label| are_two_sides(other, label) && alike(&other.key, &label.key);
+        self.labels.iter().any(|other| same(other) || !self.named_alike && near(other))
+    }
+}
+
+fn are_two_sides(a: &Label, b: &Label) -> bool {
+    a.role.is_some() && b.role.is_some() && a.role != b.role
 }
 
 /// A column that says neither plan nor measurement, beside a measured one of the same joint, is the plan where nothing
@@ -75,6 +105,38 @@ pub(super) fn without_shared_words(drafts: &mut [Draft]) {
             (draft.key, draft.joint) = (key, joint);
         }
     }
+}
+
+/// Where no joint has plan and measurement, names that differ only by what stands before or after are of one joint, if each
+/// of one side has exactly one such partner; the plan says what it is called.
+pub(super) fn by_last_part(drafts: &mut [Draft], remarks: &mut Remarks) {
+    let of = |measured: bool| {
+        let side = drafts.iter().filter(move |draft| {
+            draft.quantity == Quantity::Position && (draft.role == Role::Measured) == measured
+        });
+        let keys: BTreeSet<&str> = side.map(|draft| draft.key.as_str()).collect();
+        keys.into_iter().collect::<Vec<_>>()
+    };
+    let [plan, measured] = [of(false), of(true)];
+    if plan.iter().any(|key| measured.contains(key)) {
+        return;
+    }
+    let Some(names) = pairs(&plan, &measured) else { return };
+    let called = |key: &str| drafts.iter().find(|draft| draft.key == key).map(|draft| draft.joint.clone());
+    let names: Vec<(String, String, String)> =
+        names.into_iter().filter_map(|(came, plan)| Some((called(&plan)?, plan, came))).collect();
+    let told: Vec<String> = names.iter().map(|(joint, _, came)| format!("{joint} with {came}")).collect();
+    for draft in drafts.iter_mut().filter(|draft| draft.role == Role::Measured) {
+        if let Some((joint, key, _)) = names.iter().find(|(_, _, came)| *came == draft.key) {
+            (draft.key, draft.joint) = (key.clone(), joint.clone());
+        }
+    }
+    let message = format!(
+        "columns of plan and measurement have no name of a joint in common; paired by the last part of their names: {}; else \
+         say --planned JOINT=COLUMN,... and --measured JOINT=COLUMN,...",
+        told.join(", ")
+    );
+    remarks.add(Code::Guessed, told.len() as u64, message);
 }
 
 /// Parts between underscores that all names have.

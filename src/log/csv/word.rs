@@ -96,6 +96,10 @@ pub(super) fn words(header: &str) -> Vec<Word<'_>> {
         }
         push(&part[start..], start == 0, &mut words);
         words[first].slashed = slashed;
+        // Before a slash it says where a topic is, not what it holds.
+        if slashed && first > 0 && words[first - 1].text.eq_ignore_ascii_case("robot") {
+            words[first - 1].meaning = Meaning::Name;
+        }
         slashed = piece.ends_with('/');
     }
     words

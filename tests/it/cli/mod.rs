@@ -37,6 +37,7 @@ mod simulate;
 mod sliding;
 #[cfg(unix)]
 mod spared;
+mod spellings;
 mod tables;
 mod terminal;
 mod tool;

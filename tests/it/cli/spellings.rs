@@ -1,0 +1,62 @@
+//! Names, units, clocks and ends of lines as programs and controllers spell them: the same run, or a refusal that says what
+//! to do.
+
+use std::{fmt::Write as _, fs, path::Path};
+
+use super::csv::{import, moves, report, trace};
+use crate::support::{run_line as hydrotrace, said};
+
+/// Rows at 50 Hz of a time and two joints, plan first, deg.
+fn two_joints(header: &str) -> String {
+    let mut text = format!("{header}\n");
+    for k in 0..500 {
+        let [plan, came] = moves(f64::from(k) * 0.02).map(f64::to_degrees);
+        writeln!(text, "{:.2},{plan},{},{came},{}", f64::from(k) * 0.02, -plan, -came).unwrap();
+    }
+    text
+}
+
+/// Peaks of the tracking errors, rad, of an import with these options, and what it said.
+#[track_caller]
+fn peaks(folder: &Path, text: &[u8], options: &str) -> (Vec<(String, f64)>, String) {
+    fs::write(folder.join("a.csv"), text).unwrap();
+    let (code, said, error) = said(&hydrotrace(folder, &format!("import a.csv -o a.mcap --force {options}")));
+    assert!(code == 0 || code == 3, "{said}{error}");
+    let found = report(folder, "a.mcap");
+    let joints = found["joints"].as_array().unwrap_or_else(|| panic!("{said}")).iter();
+    let peak = |joint: &serde_json::Value| joint["tracking_error"]["peak"].as_f64().unwrap();
+    (joints.map(|joint| (joint["name"].as_str().unwrap().to_owned(), peak(joint))).collect(), said)
+}
+
+/// The measurement is 0.1 s late at up to 0.26 rad/s.
+#[track_caller]
+fn assert_run(text: &[u8], options: &str, names: &[&str]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let (found, said) = peaks(folder.path(), text, options);
+    assert_eq!(found.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), names, "{said}");
+    assert!(found.iter().all(|(_, peak)| (peak - 0.026).abs() < 0.001), "{found:?} {said}");
+    said
+}
+
+#[test]
+fn plan_and_measurement_are_paired_by_the_last_part_of_their_names_where_that_is_clear() {
+    for (header, names) in [
+        (
+            "t,robot/arm/joint1_set_deg,robot/arm/joint2_set_deg,joint1_act_deg,joint2_act_deg",
+            ["robot/arm/joint1", "robot/arm/joint2"],
+        ),
+        (
+            "t,/left/boom_set_deg,/left/stick_set_deg,boom_joint_act_deg,stick_joint_act_deg",
+            ["left/boom", "left/stick"],
+        ),
+    ] {
+        let said = assert_run(two_joints(header).as_bytes(), "", &names);
+        assert!(said.contains("paired by the last part of their names"), "{said}");
+    }
+    let one = trace("t,robot/arm/joint1_set_rad,joint1_act_rad", 1.0, ",", 1.0);
+    assert_run(one.as_bytes(), "", &["robot/arm/joint1"]);
+    // Which of the two is meant nobody knows.
+    let (code, _, error) =
+        import(two_joints("t,left/boom_set_deg,right/boom_set_deg,boom_act_deg,grip_act_deg"), &[]);
+    assert!(code == 1 && error.contains("no joint has both"), "{error}");
+}
