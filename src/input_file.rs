@@ -37,15 +37,30 @@ pub fn forget() {
     read().clear();
 }
 
-/// Opens a file for reading.
+/// Opens a file for reading; `-` is standard input where no file has this name.
 ///
 /// # Errors
 ///
 /// As the file system says.
 pub fn open(path: &Path) -> io::Result<File> {
-    let file = File::open(path)?;
+    let file = match File::open(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound && path == Path::new("-") => standard_input()?,
+        opened => opened?,
+    };
     note(path, &file.metadata()?);
     Ok(file)
+}
+
+#[cfg(unix)]
+fn standard_input() -> io::Result<File> {
+    use std::os::fd::AsFd as _;
+    Ok(io::stdin().as_fd().try_clone_to_owned()?.into())
+}
+
+#[cfg(windows)]
+fn standard_input() -> io::Result<File> {
+    use std::os::windows::io::AsHandle as _;
+    Ok(io::stdin().as_handle().try_clone_to_owned()?.into())
 }
 
 /// The text of a file.

@@ -47,12 +47,15 @@ const OWN_PARQUET: &[u8] = concat!("hydrotrace ", env!("CARGO_PKG_VERSION_MAJOR"
 /// What documents and figures begin with that this program wrote.
 const OWN_TEXTS: [&str; 2] = ["{\n  \"format\": \"hydrotrace.", "<svg"];
 
-/// What a file holds. Its name is not remembered as that of an input.
+/// What a file holds. Its name is not remembered as that of an input. A pipe, which is there once, is not looked into.
 ///
 /// # Errors
 ///
 /// As the file system says.
 pub fn contents(path: &Path) -> std::io::Result<Contents> {
+    if !path.metadata()?.is_file() {
+        return Ok(Contents::Other);
+    }
     let source = Source::of(File::open(path)?)?;
     let mut bytes = Vec::new();
     source.read(LOOKED_AT, &mut bytes)?;

@@ -54,6 +54,13 @@ impl Source {
         if found.is_file() {
             return Ok(Self { inner: Inner::File(file), length: found.len() });
         }
+        if is_device(&found) {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "it is a device, such as a terminal, and may never end; give a file, or pipe one: `cat FILE | hydrotrace \
+                 report -`",
+            ));
+        }
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes)?;
         Ok(bytes.into())
@@ -116,6 +123,16 @@ impl Source {
         }
         Ok(())
     }
+}
+
+#[cfg(unix)]
+fn is_device(found: &std::fs::Metadata) -> bool {
+    std::os::unix::fs::FileTypeExt::is_char_device(&found.file_type())
+}
+
+#[cfg(not(unix))]
+const fn is_device(_: &std::fs::Metadata) -> bool {
+    false
 }
 
 /// Fills `into` with `length` bytes from `start` on, or with what there is; nothing where reading fails.

@@ -85,7 +85,9 @@ fn log_file(path: &Path) -> LogFile {
             .and_then(|found| digest(&mut Stream::of(found.open().as_ref()).ok()?).ok());
         return named(path, digest);
     }
-    named(path, input_file::open(path).and_then(|mut file| digest(&mut file)).ok())
+    // What came through a pipe does not come again.
+    let file = path.is_file().then(|| input_file::open(path));
+    named(path, file.and_then(|file| digest(&mut file.ok()?).ok()))
 }
 
 fn named(path: &Path, digest: Option<(u64, String)>) -> LogFile {

@@ -23,6 +23,8 @@ mod next_run;
 mod output;
 #[cfg(unix)]
 mod pasted;
+#[cfg(unix)]
+mod pipes;
 mod plan;
 mod record;
 #[cfg(unix)]
