@@ -177,19 +177,41 @@ fn resolve(target: &Path) -> Result<Option<PathBuf>, AtomicError> {
         Ok(_) => Ok(None),
         Err(_) if target.file_name().is_none() => Err(AtomicError::NotAFile { path: target.to_owned() }),
         Err(_) => {
-            let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
+            let place = linked(target).map_err(failed("find", target))?;
+            let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty());
             match folder.filter(|folder| !folder.is_dir()) {
                 Some(folder) => {
                     Err(AtomicError::NoFolder { path: target.to_owned(), folder: folder.to_owned() })
                 }
-                None => Ok(Some(target.to_owned())),
+                None => Ok(Some(place)),
             }
         }
     }
 }
 
+/// Where symbolic links lead at whose end there is no file yet.
+fn linked(target: &Path) -> io::Result<PathBuf> {
+    const MOST_LINKS: u32 = 40;
+    let mut place = target.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&place) else { return Ok(place) };
+        place = place.parent().map_or(next.clone(), |folder| folder.join(&next));
+    }
+    Err(io::Error::other("its symbolic links lead round in a circle; remove them"))
+}
+
 fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> AtomicError {
-    move |source| AtomicError::Io { action, path: path.to_owned(), source }
+    move |source| AtomicError::Io { action, path: path.to_owned(), source: advised(source) }
+}
+
+/// With what to do where a folder or a disk takes no more.
+fn advised(error: io::Error) -> io::Error {
+    let advice = match error.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "make room, or ",
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "",
+        _ => return error,
+    };
+    io::Error::new(error.kind(), format!("{error}; {advice}give the output a name in another folder"))
 }
 
 #[cfg(test)]

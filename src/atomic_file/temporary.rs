@@ -32,9 +32,18 @@ impl Temporary {
                 }
                 // Left by a process of that number that was killed.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-                Err(error) => return Err(error),
+                Err(error) => return Err(Self::fault(&error)),
             }
         }
+    }
+
+    /// Why one takes no more: it is the folder for such that does not, not the file that is read.
+    pub(crate) fn fault(error: &io::Error) -> io::Error {
+        let folder = env::temp_dir();
+        io::Error::other(format!(
+            "a temporary file is needed in {}, which failed: {error}; set TMPDIR to a folder with room",
+            folder.display()
+        ))
     }
 
     #[cfg_attr(not(feature = "sqlite"), expect(dead_code, reason = "only SQLite opens by name"))]

@@ -58,7 +58,7 @@ pub(super) fn unpacked(source: Source) -> io::Result<Source> {
                         format!("it unpacks to more than {MOST_TIMES} times its {} bytes", source.length());
                     return Err(io::Error::new(io::ErrorKind::InvalidData, why));
                 }
-                file.write_all(&buffer[..count])?;
+                file.write_all(&buffer[..count]).map_err(|error| Temporary::fault(&error))?;
             }
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             Err(_) if length > 0 => break,

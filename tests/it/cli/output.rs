@@ -156,6 +156,47 @@ fn what_cannot_be_written_is_named() {
     assert!(code == 1 && error.contains(". is a folder"), "{error}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_link_to_a_file_that_is_not_there_yet_stays_a_link() {
+    use std::os::unix::fs::symlink;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::create_dir(path.join("far")).unwrap();
+    symlink("far/run.mcap", path.join("near")).unwrap();
+    symlink("near", path.join("nearer")).unwrap();
+    symlink("nodir/run.mcap", path.join("lost")).unwrap();
+    symlink("round", path.join("round")).unwrap();
+    let (code, _, error) = said(&hydrotrace(path, "import SAMPLES/plc-trace.csv -o nearer --force"));
+    assert!(code != 1 && path.join("far/run.mcap").is_file(), "{error}");
+    assert!(path.join("near").is_symlink() && path.join("nearer").is_symlink());
+    let (code, _, error) = said(&hydrotrace(path, "import SAMPLES/plc-trace.csv -o lost --force"));
+    assert!(code == 1 && error.contains("cannot write lost") && error.contains("no folder nodir"), "{error}");
+    let (code, _, error) = said(&hydrotrace(path, "import SAMPLES/plc-trace.csv -o round --force"));
+    assert!(code == 1 && error.contains("round") && error.contains("symbolic links"), "{error}");
+    assert!(path.join("lost").is_symlink() && path.join("round").is_symlink());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_takes_no_file_is_named_with_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let (code, _, error) = said(&hydrotrace(path, "import SAMPLES/plc-trace.csv -o /sys/x.mcap"));
+    assert!(code == 1 && error.contains("cannot write /sys/x.mcap"), "{error}");
+    assert!(error.contains("give the output a name in another folder"), "{error}");
+    let (_, _, error) = said(&hydrotrace(path, "import SAMPLES/plc-trace.csv -o /dev/full"));
+    assert!(error.contains("make room"), "{error}");
+    let table = fs::read(samples().join("plc-trace.csv")).unwrap();
+    fs::write(path.join("a.csv.zst"), zstd::encode_all(table.as_slice(), 1).unwrap()).unwrap();
+    for (line, at) in [("report a.csv.zst", "nowhere"), ("import a.csv.zst -o b.mcap", "/sys")] {
+        let (code, _, error) = said(&start(path, line).env("TMPDIR", at).output().unwrap());
+        assert!(code == 1 && error.contains("a.csv.zst") && error.contains(at), "{line}: {error}");
+        assert!(error.contains("set TMPDIR to a folder"), "{line}: {error}");
+    }
+    assert!(!path.join("b.mcap").exists());
+}
+
 #[test]
 fn the_ending_of_a_file_says_the_form_unless_an_option_does() {
     let folder = tempfile::tempdir().unwrap();
