@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{
-    csv::{begins_with_message, is_rule},
+    csv::{begins_with_message, is_rule, of_lines},
     file::Span,
 };
 
@@ -19,7 +19,8 @@ pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
     if MARKS_OF_WIDE_TEXT.iter().any(|mark| bytes.starts_with(mark)) {
         return true;
     }
-    let text = String::from_utf8_lossy(bytes);
+    let bytes = of_lines(bytes.into());
+    let text = String::from_utf8_lossy(&bytes);
     if text.trim().is_empty() || text.chars().any(|c| c.is_control() && !c.is_whitespace()) {
         return false;
     }

@@ -1,6 +1,6 @@
 //! Guesses the unit of a time that says none.
 
-use super::unit::{EXCEL_DAY, FILETIME, Unit, parse_unit};
+use super::unit::{DATENUM, EXCEL_DAY, FILETIME, Unit, parse_unit};
 use crate::math::median;
 
 /// The step between most neighbours that do not stand; 0 if all do.
@@ -13,6 +13,7 @@ pub(super) fn typical_step(values: &[f64]) -> f64 {
 pub(super) const SINCE_1970_S: [f64; 2] = [1.0e9, 4.2e9];
 /// From 2000 to 2100.
 pub(super) const SINCE_1899_DAYS: [f64; 2] = [36_526.0, 73_051.0];
+const SINCE_0_DAYS: [f64; 2] = [730_486.0, 767_011.0];
 
 /// Arms are recorded at up to 2000 Hz.
 const FASTEST_S: f64 = 0.000_5;
@@ -38,6 +39,11 @@ pub(super) fn guess_unit(first: f64, step: f64, whole: bool, counts: bool) -> (O
     }
     if !whole && (SINCE_1899_DAYS[0]..SINCE_1899_DAYS[1]).contains(&first) && step < 1e-4 {
         return (Some(EXCEL_DAY), None);
+    }
+    if !whole && (SINCE_0_DAYS[0]..SINCE_0_DAYS[1]).contains(&first) && step < 1e-4 {
+        let doubt = "says no unit; numbers of this size are taken as days since year 0, as MATLAB counts them (datenum), else \
+                     say --time-unit";
+        return (Some(DATENUM), Some(doubt.to_owned()));
     }
     for (name, per_second) in [("s", 1.0), ("ms", 1e3), ("us", 1e6)] {
         let (size, step_s) = (first / per_second, step / per_second);
@@ -105,7 +111,7 @@ mod tests {
         assert_eq!(guess(0.0, 0.000_166_7, false), ("min", true));
         assert_eq!(guess(0.0, 0.001_666_7, false), ("min", true));
         assert_eq!(guess(0.0, 2.777_8e-6, false), ("h", true));
-        assert_eq!(guess(739_323.4, 1.157e-7, false), ("none", false));
+        assert_eq!(guess(739_323.4, 1.157e-7, false), ("days since year 0", true));
         assert_eq!(guess(0.0, 20.0, true), ("ms", true));
         assert_eq!(guess(0.0, 2e4, true), ("us", true));
         assert_eq!(guess(0.0, 2e7, true), ("ns", true));

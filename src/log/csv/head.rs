@@ -8,7 +8,7 @@ use super::{
     dialect::{Dialect, head},
     number::{Looks, looks},
     rows::{Rows, cell_text},
-    scale::unit_named,
+    scale::unit_alone,
 };
 use crate::{
     remark::{Code, Remarks},
@@ -171,7 +171,7 @@ fn described(cells: &[String]) -> Option<(String, Vec<String>)> {
 fn is_units(cells: &[String]) -> bool {
     let stated = |cell: &String| !cell.is_empty() && cell != "-";
     cells.iter().any(stated)
-        && cells.iter().filter(|cell| stated(cell)).all(|cell| unit_named(cell).is_some())
+        && cells.iter().filter(|cell| stated(cell)).all(|cell| unit_alone(cell).is_some())
 }
 
 /// A header that is written as the last comment above the numbers.

@@ -6,7 +6,8 @@ use super::{
     Quantity, Role,
     letter::{Lettered, lettered},
     name::{NAMELESS, joint_name},
-    scale::{in_header, is_unclear, unit_named},
+    scale::{in_header, is_unclear, unit_alone, unit_named},
+    typed::without_type,
     unit::{ANOTHER, METRE, Measure, UNITLESS, Unit, split_suffix},
     within::take_unit,
     word::{Meaning, Word, words},
@@ -48,7 +49,7 @@ const PLACE: [&str; 3] = ["x", "y", "z"];
 const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 
 /// Headers that are a time, whatever their words mean; the second as `LabVIEW` names it.
-const TIMES: [&str; 12] = [
+const TIMES: [&str; 13] = [
     "t",
     "X_Value",
     "ts",
@@ -61,18 +62,19 @@ const TIMES: [&str; 12] = [
     "milliseconds",
     "micros",
     "duration",
+    "datenum",
 ];
 
 /// Reads a header; `below` is the cell of a row of units.
 pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let header = header.trim();
     // `rostopic echo -p` puts it before the path of every field.
-    let header = header.strip_prefix("field.").unwrap_or(header);
+    let header = without_type(header.strip_prefix("field.").unwrap_or(header));
     let indexed = unit_before_index(header);
     let header = indexed.as_deref().unwrap_or(header);
     let (name, stated) = parted(header);
     let name = &*name;
-    let mut unit = stated.or_else(|| below.and_then(unit_named));
+    let mut unit = stated.or_else(|| below.and_then(unit_alone));
     if let Some((joint, role)) = own(name).filter(|_| unit.is_some()) {
         let speeds = [Measure::AngularSpeed, Measure::LinearSpeed];
         let speed = unit.is_some_and(|unit| speeds.contains(&unit.measure));
@@ -104,7 +106,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         |words: &[Word<'_>]| named || t(words) || words.iter().any(|word| word.meaning == Meaning::Time);
     if is_time_unit && stated.is_some() && !header.ends_with([']', ')']) && !timely(&words) {
         // `Boom Ms` is measured, not in ms.
-        (unit, words) = (below.and_then(unit_named), self::words(header));
+        (unit, words) = (below.and_then(unit_alone), self::words(header));
     }
     let timely = timely(&words);
     // `Zeit_hh_mm_ss` is in no millimetres.
@@ -251,7 +253,7 @@ fn without_unit(header: &str) -> (&str, Option<Unit>) {
         let Some(inner) = header.strip_suffix(close).and_then(|rest| rest.rsplit_once(open)) else {
             continue;
         };
-        if let Some(unit) = unit_named(inner.1) {
+        if let Some(unit) = unit_alone(inner.1) {
             return (inner.0.trim_end(), Some(unit));
         }
         if is_unclear(inner.1) {
@@ -356,8 +358,8 @@ mod tests {
     #[test]
     fn a_unit_that_is_not_known_is_kept_as_such() {
         let unknown = |header: &str| label(header, None).unknown;
-        assert_eq!(unknown("boom_set [U]").as_deref(), Some("U"));
-        for header in ["boom_set [deg]", "q[0]", "boom [ist]", "boom_set", "[U]"] {
+        assert_eq!(unknown("boom_set [E]").as_deref(), Some("E"));
+        for header in ["boom_set [deg]", "q[0]", "boom [ist]", "boom_set", "[E]"] {
             assert_eq!(unknown(header), None, "{header}");
         }
     }

@@ -53,6 +53,7 @@ mod stamp;
 mod stream;
 mod text;
 mod time;
+mod typed;
 mod understood;
 mod unit;
 mod within;
@@ -69,6 +70,7 @@ pub(in crate::log) use run::{
     GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNDATED_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN,
 };
 pub use stream::TableStream;
+pub(in crate::log) use text::of_lines;
 pub use time::{UNDATED_NS, is_dated};
 pub use understood::{ColumnRead, TimeRead, Understood};
 

@@ -20,7 +20,8 @@ pub struct CsvOptions {
     pub only: Option<(String, String)>,
     /// Column of the time; `None`: found by name.
     pub time: Option<String>,
-    /// Unit of the time column: s, ms, us, ns, min, h, filetime (100 ns since 1601) or excel (days since 1899-12-30).
+    /// Unit of the time column: s, ms, us, ns, min, h, filetime (100 ns since 1601), excel (days since 1899-12-30)
+    /// or datenum (days since year 0).
     pub time_unit: Option<String>,
     /// Rows come at this rate, Hz; the file's own times are not used.
     pub rate_hz: Option<f64>,
@@ -173,7 +174,11 @@ impl CsvOptions {
         if let Some(text) = &self.time_unit
             && parse_unit(text).is_none_or(|unit| unit.measure != Measure::Time)
         {
-            return Err(bad("--time-unit", text.clone(), "s, ms, us, ns, min, h, filetime or excel"));
+            return Err(bad(
+                "--time-unit",
+                text.clone(),
+                "s, ms, us, ns, min, h, filetime, excel or datenum",
+            ));
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{
-    unit::{ANOTHER, Measure, Unit, parse_unit, scale_by},
+    unit::{ANOTHER, Measure, REVOLUTION, Unit, parse_unit, scale_by},
     word::{Meaning, words},
 };
 
@@ -76,6 +76,12 @@ fn scaled_at(text: &str, tokens: &[(usize, &str)], at: usize) -> Option<(usize, 
 /// The unit that a text names, in words of a scale too.
 pub(super) fn unit_named(text: &str) -> Option<Unit> {
     parse_unit(text).or_else(|| in_words(&text.to_lowercase()))
+}
+
+/// The same of a text that is a unit and nothing else, in brackets or below a header: there a letter is one, too.
+pub(super) fn unit_alone(text: &str) -> Option<Unit> {
+    const REVOLUTIONS: [&str; 3] = ["U", "tr", "tour"];
+    unit_named(text).or_else(|| REVOLUTIONS.contains(&text.trim()).then_some(REVOLUTION))
 }
 
 /// The unit that a text in lower case is, if it is words of a scale and a unit.

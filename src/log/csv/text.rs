@@ -46,7 +46,16 @@ pub(super) fn of_bytes<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, [u8]>,
             return Err(not_text(format!("byte {} is zero", at + 1), fix));
         }
     }
-    Ok(text)
+    Ok(of_lines(text))
+}
+
+/// Text whose lines end as on old Macs, with `\r` alone, as lines that end with `\n`; other text as it is.
+pub(in crate::log) fn of_lines(text: Cow<'_, [u8]>) -> Cow<'_, [u8]> {
+    let ends = |end: u8| memchr::memchr(end, &text).is_some();
+    if ends(b'\n') || !ends(b'\r') {
+        return text;
+    }
+    text.iter().map(|byte| if *byte == b'\r' { b'\n' } else { *byte }).collect::<Vec<u8>>().into()
 }
 
 /// Text of an old encoding as UTF-8.

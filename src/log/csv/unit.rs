@@ -36,6 +36,7 @@ pub(super) const RADIAN: Unit = unit("rad", Measure::Angle, 1.0);
 /// Of components of an orientation, which are read as angles are.
 pub(super) const UNITLESS: Unit = unit("1", Measure::Angle, 1.0);
 pub(super) const DEGREE: Unit = unit("deg", Measure::Angle, DEGREE_RAD);
+pub(super) const REVOLUTION: Unit = unit("rev", Measure::Angle, TAU);
 const MILLIMETRE: Unit = unit("mm", Measure::Length, 1e-3);
 const CENTIMETRE: Unit = unit("cm", Measure::Length, 1e-2);
 pub(super) const METRE: Unit = unit("m", Measure::Length, 1.0);
@@ -44,6 +45,8 @@ pub(super) const METRE: Unit = unit("m", Measure::Length, 1.0);
 pub(super) const FILETIME: Unit = unit("100 ns since 1601", Measure::Time, 100.0);
 /// Of spreadsheets.
 pub(super) const EXCEL_DAY: Unit = unit("days since 1899-12-30", Measure::Time, 86_400e9);
+/// Of MATLAB: day 719529 is 1970-01-01.
+pub(super) const DATENUM: Unit = unit("days since year 0", Measure::Time, 86_400e9);
 /// Of archives of Siemens, in a column `Time_ms` beside a date.
 pub(super) const ARCHIVE_DAY: Unit = unit("millionths of days since 1899-12-30", Measure::Time, 86_400e3);
 
@@ -70,7 +73,7 @@ pub(super) const ANOTHER: Unit = unit(ODD, Measure::Other, 1.0);
 
 /// Units of other quantities, and, from a place on, counts of what only the machine's maker knows.
 const FIRST_COUNT: usize = 16;
-const OTHERS: [&str; 27] = [
+const OTHERS: [&str; 30] = [
     "nm",
     "n m",
     "n*m",
@@ -98,10 +101,13 @@ const OTHERS: [&str; 27] = [
     "steps",
     "digits",
     "lsb",
+    "pu",
+    "p.u.",
+    "per unit",
 ];
 
 /// Spellings, in lower case and with `deg` for the degree sign.
-const UNITS: [(&[&str], Unit); 38] = [
+const UNITS: [(&[&str], Unit); 39] = [
     (&["rad", "radian", "radians", "弧度"], RADIAN),
     (&["deg", "degree", "degrees", "grad", "grd", "grados", "gradi", "degrés", "度"], DEGREE),
     (&["mrad"], unit("mrad", Measure::Angle, 1e-3)),
@@ -110,7 +116,7 @@ const UNITS: [(&[&str], Unit); 38] = [
     (&["cdeg", "centideg"], unit("0.01 deg", Measure::Angle, 0.01 * DEGREE_RAD)),
     (&["urad", "µrad", "μrad"], unit("urad", Measure::Angle, 1e-6)),
     (&["arcsec"], unit("arcsec", Measure::Angle, DEGREE_RAD / 3600.0)),
-    (&["rev", "turn", "turns", "umdr"], unit("rev", Measure::Angle, TAU)),
+    (&["rev", "revs", "turn", "turns", "umdr", "umdrehung", "umdrehungen", "tours"], REVOLUTION),
     (&["gon"], unit("gon", Measure::Angle, TAU / 400.0)),
     (&["arcmin"], unit("arcmin", Measure::Angle, DEGREE_RAD / 60.0)),
     (&["rad/s", "rad_s", "rads", "rad/sec", "rad s^-1"], unit("rad/s", Measure::AngularSpeed, 1.0)),
@@ -137,6 +143,7 @@ const UNITS: [(&[&str], Unit); 38] = [
     (&["h", "hr", "hrs", "hour", "hours"], unit("h", Measure::Time, 3600e9)),
     (&["filetime", "100 ns since 1601"], FILETIME),
     (&["excel", "days since 1899-12-30"], EXCEL_DAY),
+    (&["datenum", "days since year 0"], DATENUM),
     (&["pa"], unit("Pa", Measure::Pressure, 1.0)),
     (&["kpa"], unit("kPa", Measure::Pressure, 1e3)),
     (&["mpa"], unit("MPa", Measure::Pressure, 1e6)),
@@ -151,6 +158,7 @@ impl Unit {
         match self {
             FILETIME => -11_644_473_600_000_000_000,
             EXCEL_DAY | ARCHIVE_DAY => -2_209_161_600_000_000_000,
+            DATENUM => -62_167_305_600_000_000_000,
             _ => 0,
         }
     }

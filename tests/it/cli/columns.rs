@@ -84,15 +84,15 @@ fn a_plan_may_be_a_sum_and_a_map_keeps_how_a_file_was_read() {
 
 #[test]
 fn a_unit_that_is_not_known_is_told_and_a_factor_says_what_it_is() {
-    let turns = trace("t_s,boom_set [U],boom_act [U]", 1.0, ",", 1.0 / std::f64::consts::TAU);
+    let turns = trace("t_s,boom_set [E],boom_act [E]", 1.0, ",", 1.0 / std::f64::consts::TAU);
     let (code, out, error) = import(&turns, &[]);
-    assert!(code == 3 && out.contains("no unit that is known (\"U\" is none)"), "{out}{error}");
-    let factor = ["--planned", "boom=360*boom_set [U]", "--measured", "boom=360*boom_act [U]", "--degrees"];
+    assert!(code == 3 && out.contains("no unit that is known (\"E\" is none)"), "{out}{error}");
+    let factor = ["--planned", "boom=360*boom_set [E]", "--measured", "boom=360*boom_act [E]", "--degrees"];
     let (code, out, error) = import(&turns, &factor);
     assert_eq!(code, 0, "{out}{error}");
-    let far = trace("t_s,boom_set [U],boom_act [U]", 1.0, ",", 60.0);
+    let far = trace("t_s,boom_set [E],boom_act [E]", 1.0, ",", 60.0);
     let (code, _, error) = import(far, &[]);
-    assert!(code == 1 && error.contains("(\"U\" is none)") && error.contains("FACTOR*COLUMN"), "{error}");
+    assert!(code == 1 && error.contains("(\"E\" is none)") && error.contains("FACTOR*COLUMN"), "{error}");
 }
 
 #[test]

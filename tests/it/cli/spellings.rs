@@ -60,3 +60,66 @@ fn plan_and_measurement_are_paired_by_the_last_part_of_their_names_where_that_is
         import(two_joints("t,left/boom_set_deg,right/boom_set_deg,boom_act_deg,grip_act_deg"), &[]);
     assert!(code == 1 && error.contains("no joint has both"), "{error}");
 }
+
+#[test]
+fn lines_may_end_as_on_old_macs() {
+    let text = trace("t_s,boom_set_rad,boom_act_rad", 1.0, ",", 1.0).replace('\n', "\r");
+    assert_run(text.as_bytes(), "", &["boom"]);
+    let folder = tempfile::tempdir().unwrap();
+    for (name, separator) in [("a.txt", "\t"), ("b.dat", ";"), ("c.txt", " ")] {
+        let text = trace("t_s,boom_set_rad,boom_act_rad", 1.0, ",", 1.0).replace(',', separator);
+        fs::write(folder.path().join(name), text.replace('\n', "\r")).unwrap();
+        assert_eq!(report(folder.path(), name)["joints"][0]["name"], "boom", "{name}");
+    }
+}
+
+#[test]
+fn turns_are_angles_in_brackets_and_parts_of_a_rating_are_refused() {
+    let turns = |unit: &str| {
+        let header = format!("t_s,boom_set [{unit}],boom_act [{unit}]");
+        trace(&header, 1.0, ",", 1.0 / std::f64::consts::TAU)
+    };
+    for unit in ["U", "tr", "tours", "revs", "Umdrehungen"] {
+        let said = assert_run(turns(unit).as_bytes(), "", &["boom"]);
+        assert!(!said.contains("guess"), "{unit}: {said}");
+    }
+    for unit in ["pu", "p.u."] {
+        let (code, _, error) = import(turns(unit), &[]);
+        assert!(code == 1 && error.contains("is in p"), "{unit}: {error}");
+        assert!(error.contains("--planned JOINT=FACTOR*COLUMN"), "{unit}: {error}");
+    }
+}
+
+#[test]
+fn days_since_the_year_0_are_a_clock_and_told() {
+    for (name, digits) in [("t", 10), ("datenum", 10), ("Time", 9)] {
+        let mut text = format!("{name},boom_set_rad,boom_act_rad\n");
+        for k in 0..500 {
+            let [plan, came] = moves(f64::from(k) * 0.02);
+            writeln!(text, "{:.digits$},{plan},{came}", 739_323.4 + f64::from(k) * 0.02 / 86_400.0).unwrap();
+        }
+        let said = assert_run(text.as_bytes(), "", &["boom"]);
+        assert!(said.contains("counts days since year 0"), "{said}");
+        assert_eq!(said.contains("guessed x1"), name != "datenum", "{said}");
+        assert_run(text.as_bytes(), &format!("--time {name} --time-unit datenum"), &["boom"]);
+    }
+}
+
+#[test]
+fn the_type_of_a_variable_is_no_part_of_its_joint_and_no_measurement() {
+    for names in [
+        ["boom_set_REAL32", "boom_act_REAL32"],
+        ["boom_set_LREAL", "boom_act_LREAL"],
+        ["REAL_boom_set", "REAL_boom_act"],
+        ["boom_set_REAL", "boom_act_REAL"],
+        ["boom_set (REAL)", "boom_act (REAL)"],
+        ["boom_set:REAL", "boom_act:REAL"],
+        ["boom_set_INT16", "boom_act_INT16"],
+        ["boom_set_rad_F32", "boom_act_rad_F32"],
+        // In Spanish it is the measurement.
+        ["boom_consigna", "boom_REAL"],
+    ] {
+        let text = trace(&format!("t_s,{}", names.join(",")), 1.0, ",", 1.0);
+        assert_run(text.as_bytes(), "--radians", &["boom"]);
+    }
+}
