@@ -23,10 +23,7 @@ pub enum LogError {
     #[error("{} is not an MCAP file: found {found}, expected the bytes 89 4D 43 41 50 30 0D 0A; {fix}", path.display())]
     NotMcap { path: PathBuf, found: String, fix: &'static str },
     /// A table that does not say all that is needed.
-    #[error(
-        "{} is a table that leaves something open; `{}` {}, and the log that it writes is read as any other{}",
-        path.display(), given.line(path, &source.missing_options().0), source.missing_options().1, given.rest()
-    )]
+    #[error("{} {}", path.display(), of_table(path, source, given))]
     Table { path: PathBuf, source: Box<CsvError>, given: Given },
     /// A file of another form that cannot be read.
     #[error("cannot read {}: {reason}", path.display())]
@@ -203,6 +200,19 @@ impl LogError {
         let path = path.to_owned();
         move |source| Self::File { action, path, source }
     }
+}
+
+/// What is the matter with a table, and what to do where options mend it.
+fn of_table(path: &Path, source: &CsvError, given: &Given) -> String {
+    if let CsvError::AnotherHeader { .. } = source {
+        return "holds more than one table".to_owned();
+    }
+    let (missing, does) = source.missing_options();
+    format!(
+        "is a table that leaves something open; `{}` {does}, and the log that it writes is read as any other{}",
+        given.line(path, &missing),
+        given.rest()
+    )
 }
 
 /// What to do where a clock does not run that was asked for.

@@ -10,6 +10,7 @@ use super::{
     dialect::{Dialect, detect},
     head::{Head, read_head},
     label::{Label, label},
+    restarts::runs,
     rows::{Rows, writer},
     time::TimeSource,
 };
@@ -29,6 +30,8 @@ struct Group {
 
 /// The cells of a row that are of one clock.
 struct Sample {
+    /// Which run of a recorder that was started again.
+    run: usize,
     ns: i64,
     group: usize,
     cells: ByteRecord,
@@ -71,7 +74,7 @@ pub(super) fn joined(
         if other { Vec::new() } else { name.clone().into_bytes() }
     };
     out.write_record(head.names.iter().enumerate().map(name)).ok()?;
-    for instant in samples.chunk_by(|a, b| a.ns >= b.ns && a.group < b.group) {
+    for instant in samples.chunk_by(|a, b| a.run == b.run && a.ns >= b.ns && a.group < b.group) {
         let at = instant.first().and_then(time)?;
         let mut row = vec![&[][..]; head.names.len()];
         row[first.time] = &at;
@@ -99,14 +102,14 @@ fn samples(text: &[u8], head: &Head, dialect: Dialect, groups: &[Group]) -> Vec<
             if let Some(ns) = group.source.ns(0, cell, dialect.decimal_comma) {
                 let cells =
                     std::iter::once(group.time).chain(group.columns.iter().copied()).map(cell).collect();
-                samples.push(Sample { ns, group: k, cells });
+                samples.push(Sample { run: 0, ns, group: k, cells });
             }
         }
     }
     samples
 }
 
-/// By time; `None` where the clocks share too little of it, one stands, or days turn over.
+/// By run and time; `None` where the clocks share too little of it, one stands, or days turn over.
 fn in_order(mut samples: Vec<Sample>, groups: &[Group]) -> Option<Vec<Sample>> {
     let mut spans: Vec<Option<[i64; 2]>> = vec![None; groups.len()];
     for sample in &samples {
@@ -124,7 +127,9 @@ fn in_order(mut samples: Vec<Sample>, groups: &[Group]) -> Option<Vec<Sample>> {
     if !spans.iter().all(|span| span[0] < span[1] && shares(*span, spans[0])) {
         return None;
     }
-    samples.sort_by_key(|sample| (sample.ns, sample.group));
+    let runs = runs(&samples.iter().map(|sample| (sample.group, sample.ns)).collect::<Vec<_>>());
+    samples.iter_mut().zip(runs).for_each(|(sample, run)| sample.run = run);
+    samples.sort_by_key(|sample| (sample.run, sample.ns, sample.group));
     Some(samples)
 }
 

@@ -1,10 +1,10 @@
 //! Why a CSV file does not become a log.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::{log::WriteError, suggest::suggestion};
+use crate::{log::WriteError, suggest::suggestion, text::shell_argument};
 
 /// Why a CSV file does not become a log. Lines and columns count from 1.
 #[derive(Debug, Error)]
@@ -122,9 +122,10 @@ pub enum CsvError {
     /// A second header with other names.
     #[error(
         "line {line} is a header with other columns than line {first}: what is below it has another meaning; give the rows \
-         above and below it as two files"
+         above and below it as two files{}",
+        two_files(file, *line)
     )]
-    AnotherHeader { line: u64, first: u64 },
+    AnotherHeader { file: String, line: u64, first: u64 },
     /// A column in a unit of something else.
     #[error(
         "column {column:?} is in {unit}, which is no {expected}; map another column or correct its header"
@@ -181,4 +182,18 @@ impl CsvError {
             _ => (Vec::new(), "takes options for that"),
         }
     }
+}
+
+/// Lines that make two files of one that is no packed one, from a line on.
+fn two_files(file: &str, line: u64) -> String {
+    let path = Path::new(file);
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    if ["gz", "zst", "zstd"].contains(&ending.to_lowercase().as_str()) {
+        return String::new();
+    }
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let dot = if ending.is_empty() { "" } else { "." };
+    let part = |number: u32| shell_argument(format!("{stem}-{number}{dot}{ending}"));
+    let (whole, above) = (shell_argument(path), line.saturating_sub(1));
+    format!(", by `head -n {above} {whole} > {}` and `tail -n +{line} {whole} > {}`", part(1), part(2))
 }

@@ -7,6 +7,48 @@ use super::{
     number::{Looks, looks, number},
 };
 
+/// Headers of columns that say of what a row is.
+pub(super) const NAMES: [&str; 38] = [
+    "joint",
+    "joint_name",
+    "joint name",
+    "jointname",
+    "motor_name",
+    "axis_name",
+    "joints",
+    "name",
+    "signal",
+    "signals",
+    "signalname",
+    "variable",
+    "variablename",
+    "varname",
+    "tag",
+    "tagname",
+    "channel",
+    "field",
+    "axis",
+    "achse",
+    "gelenk",
+    "kanal",
+    "topic",
+    "metric",
+    "parameter",
+    "tag name",
+    "tag_name",
+    "tagpath",
+    "tag_path",
+    "symbol",
+    "link",
+    "motor",
+    "actuator",
+    "cylinder",
+    "joint_id",
+    "axis_id",
+    "关节",
+    "变量",
+];
+
 /// Rows of more joints are of none.
 const MOST: usize = 64;
 /// Such a column changes from row to row in so many of them: one that does not tells of steps or states.

@@ -10,55 +10,14 @@ use super::{
     date::{DateForm, Part},
     dialect::{Dialect, detect},
     head::{Head, read_head},
-    keys::Changes,
+    keys::{Changes, NAMES},
     label::label,
     number::{Looks, looks, number},
+    restarts::apart,
     rows::{Rows, cell_text, writer},
     word::words,
 };
 use crate::remark::{Code, Remarks};
-
-/// Headers of columns that say of what a row is.
-pub(super) const NAMES: [&str; 38] = [
-    "joint",
-    "joint_name",
-    "joint name",
-    "jointname",
-    "motor_name",
-    "axis_name",
-    "joints",
-    "name",
-    "signal",
-    "signals",
-    "signalname",
-    "variable",
-    "variablename",
-    "varname",
-    "tag",
-    "tagname",
-    "channel",
-    "field",
-    "axis",
-    "achse",
-    "gelenk",
-    "kanal",
-    "topic",
-    "metric",
-    "parameter",
-    "tag name",
-    "tag_name",
-    "tagpath",
-    "tag_path",
-    "symbol",
-    "link",
-    "motor",
-    "actuator",
-    "cylinder",
-    "joint_id",
-    "axis_id",
-    "关节",
-    "变量",
-];
 
 /// First words of headers of columns that say only that they hold the value.
 const VALUES: [&str; 8] = ["value", "values", "val", "wert", "varvalue", "floatvalue", "intvalue", "值"];
@@ -104,7 +63,7 @@ pub(super) fn widened(
     let mut wide = writer(dialect.separator);
     let names = long.times.iter().map(|&column| long.head.names[column].clone());
     wide.write_record(names.chain(long.headers(&gathered.ids))).ok()?;
-    for (row, time) in long.in_order(&gathered.times) {
+    for (row, time) in gathered.times.iter().enumerate() {
         let cells = gathered.row(row).map(|[from, to]| gathered.text.get(from..to).unwrap_or_default());
         wide.write_record(time.iter().map(Vec::as_slice).chain(cells)).ok()?;
     }
@@ -129,8 +88,8 @@ type Key = Vec<Vec<u8>>;
 /// What the rows of a long table hold.
 struct Gathered {
     ids: Vec<Key>,
-    /// Cells of the time, to the row they get.
-    times: BTreeMap<Key, usize>,
+    /// Cells of the time, `[rows]`.
+    times: Vec<Key>,
     /// The cells of the values, one after the other.
     text: Vec<u8>,
     /// Where in that each cell is, `[rows][ids x values]`; nowhere if there is none.
@@ -250,23 +209,48 @@ impl Long {
         if ids.len() < 2 || !(shared || self.bare || self.interleaved) || sparse {
             return None;
         }
+        let order = self.in_order(&times);
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(at, (row, _))| place[*row] = at);
+        for (row, _) in &mut found {
+            *row = place[*row];
+        }
+        let mut times: Vec<Key> = order.into_iter().map(|(_, time)| time.clone()).collect();
+        let (mut cells, mut twice) = self.cells(&kept, &found, [times.len(), ids.len()])?;
+        if twice > 0
+            && let Some((apart, rows)) = apart(&found)
+        {
+            (cells, twice) = self.cells(&kept, &apart, [rows.len(), ids.len()])?;
+            times = rows.into_iter().map(|row| times[row].clone()).collect();
+        }
         let width = ids.len() * self.values.len();
-        let mut cells = vec![[0; 2]; times.len().checked_mul(width)?];
-        let mut ends = memchr::memchr_iter(END, &kept);
+        Some(Gathered { ids, times, text: kept, cells, width, twice })
+    }
+
+    /// Where the values lie in the text, by row and then by name, and how many more there are than places for them.
+    fn cells(
+        &self,
+        text: &[u8],
+        found: &[(usize, usize)],
+        [rows, names]: [usize; 2],
+    ) -> Option<(Vec<[usize; 2]>, u64)> {
+        let width = names * self.values.len();
+        let mut cells = vec![[0; 2]; rows.checked_mul(width)?];
+        let mut ends = memchr::memchr_iter(END, text);
         let (mut from, mut twice) = (0, 0);
-        for (time_at, id_at) in found {
+        for (row, id_at) in found {
             for value in 0..self.values.len() {
                 let to = ends.next()?;
-                let slot = &mut cells[time_at * width + id_at * self.values.len() + value];
+                let slot = &mut cells[row * width + id_at * self.values.len() + value];
                 if slot[0] == slot[1] {
                     *slot = [from, to];
-                } else if kept.get(from..to) != kept.get(slot[0]..slot[1]) {
+                } else if text.get(from..to) != text.get(slot[0]..slot[1]) {
                     twice += 1;
                 }
                 from = to + 1;
             }
         }
-        Some(Gathered { ids, times, text: kept, cells, width, twice })
+        Some((cells, twice))
     }
 
     /// The rows in the order of their times: blocks of signals that have times of their own come one after the other.

@@ -43,6 +43,7 @@ mod options;
 mod pairing;
 mod printed;
 mod read;
+mod restarts;
 mod rows;
 mod run;
 mod scale;
@@ -243,7 +244,7 @@ impl Form {
         mut remarks: Remarks,
     ) -> Result<(CsvRun, Vec<si::Settled>), CsvError> {
         let Self { dialect, head, labels, derived, time, layout, options } = self;
-        let mut cells = read::read(text, head, *dialect, time, self.wanted(), &mut remarks)?;
+        let mut cells = read::read(name, text, head, *dialect, time, self.wanted(), &mut remarks)?;
         expression::compute(derived, &mut cells);
         let given = options.columns.contains_key(&(Role::Command, Quantity::Position));
         let stated = |column: usize| given || labels[column].unit.is_some();

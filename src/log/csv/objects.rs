@@ -8,7 +8,7 @@ use std::{
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use super::{label::label, long::NAMES, number::number};
+use super::{keys::NAMES, label::label, number::number};
 
 /// Keys of lists of the names of joints.
 const LISTS: [&str; 5] = ["name", "names", "joint_names", "joints", "joint"];

@@ -44,8 +44,9 @@ pub(super) struct Cells {
     pub(super) columns: BTreeMap<usize, Column>,
 }
 
-/// Reads the rows; `wanted` are the columns to read besides the time.
+/// Reads the rows of a file; `wanted` are the columns to read besides the time.
 pub(super) fn read(
+    file: &str,
     text: &[u8],
     head: &Head,
     dialect: Dialect,
@@ -66,7 +67,7 @@ pub(super) fn read(
             continue;
         }
         if is_another_header(head, &record) {
-            return Err(CsvError::AnotherHeader { line, first: head.line });
+            return Err(CsvError::AnotherHeader { file: file.to_owned(), line, first: head.line });
         }
         row += 1;
         let beyond = record.iter().skip(dialect.width).any(|cell| !cell.trim_ascii().is_empty());

@@ -260,6 +260,64 @@ fn a_clock_that_goes_back_splits_the_run_and_costs_no_row() {
 }
 
 #[test]
+fn a_clock_that_goes_back_splits_tables_of_other_forms_too() {
+    let row = |k: u32| {
+        let t_s = f64::from(k % 500) * 0.02;
+        (t_s, moves(t_s).map(|q| if k < 500 { q } else { 0.8 * q }))
+    };
+    let table = |header: &str, line: &dyn Fn(f64, [f64; 2]) -> String| -> String {
+        header.to_owned() + "\n" + &(0..1000).map(row).map(|(t_s, q)| line(t_s, q)).collect::<String>()
+    };
+    let long = table("t,signal,value", &|t, [asked, came]| {
+        format!("{t:.2},J1_set_deg,{asked}\n{t:.2},J1_act_deg,{came}\n")
+    });
+    let clocks = table("t_set_s,J1_set_deg,t_act_s,J1_act_deg", &|t, [asked, came]| {
+        format!("{t:.2},{asked},{:.3},{came}\n", t + 0.003)
+    });
+    let lines = table("", &|t, [asked, came]| {
+        format!("{{\"t\": {t:.2}, \"J1_set_deg\": {asked}, \"J1_act_deg\": {came}}}\n")
+    });
+    for (name, text) in
+        [("long.csv", &long[..]), ("clocks.csv", &clocks), ("lines.jsonl", lines.trim_start())]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(name), text).unwrap();
+        let (code, text, error) = said(&hydrotrace(folder.path(), &format!("report {name} --json")));
+        assert_eq!(code, 3, "{name}: {error}");
+        let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let codes: Vec<&str> =
+            report["remarks"].as_array().unwrap().iter().map(|r| r["code"].as_str().unwrap()).collect();
+        assert!(codes.iter().all(|code| *code == "clock-jump"), "{name}: {}", report["remarks"]);
+        let starts: Vec<f64> = report["transitions"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|one| one["planned_onset_s"].as_f64().unwrap())
+            .collect();
+        assert!(starts.len() == 2 && (starts[1] - starts[0] - 10.0).abs() < 0.05, "{name}: {starts:?}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn what_stands_below_another_header_is_told_by_lines_that_make_a_file_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let below = trace("t,ax1_set_deg,ax1_act_deg,ax3_set_deg,ax3_act_deg");
+    let both = trace("t,ax1_set_deg,ax1_act_deg,ax2_set_deg,ax2_act_deg") + &below;
+    fs::write(folder.path().join("a.csv"), both).unwrap();
+    let (code, _, error) = said(&hydrotrace(folder.path(), "report a.csv"));
+    assert!(code == 1 && error.contains("line 502 is a header"), "{error}");
+    let lines: Vec<&str> = error.split('`').skip(1).step_by(2).collect();
+    let [first, second] = lines[lines.len() - 2..] else { panic!("{error}") };
+    for (line, joint) in [(first, "ax2"), (second, "ax3")] {
+        let file = line.rsplit("> ").next().unwrap();
+        let (code, text, error) =
+            crate::support::pasted(folder.path(), &format!("{line} && hydrotrace report {file}"));
+        assert!(code == 0 && text.contains(joint), "{line}: {text}{error}");
+    }
+}
+
+#[test]
 fn a_table_that_leaves_something_open_is_told_what_to_become() {
     let folder = folder("t,J1_ref_deg,J1_act_deg,J2_ref_deg,J2_act_deg");
     assert_eq!(said(&hydrotrace(folder.path(), "report a.csv")).0, 0);
