@@ -1,5 +1,7 @@
 //! Files of other forms, each made a log before anything else sees it: packed files, ROS 2 bags in SQLite, tables.
 
+#[cfg(feature = "parquet")]
+mod durations;
 mod packed;
 #[cfg(feature = "parquet")]
 mod parquet;

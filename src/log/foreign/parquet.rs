@@ -15,6 +15,7 @@ use ::parquet::{
 };
 use bytes::Bytes;
 
+use super::durations::{SCHEMA, units_ns};
 use crate::log::file::Source;
 
 /// The rows below the names of their columns; a cell that is no number, text or instant is empty. `nested`: values within
@@ -51,8 +52,14 @@ fn rows(bytes: Vec<u8>, nested: bool) -> Result<Vec<u8>> {
         )));
     }
     let mut writer = ::csv::Writer::from_writer(Vec::new());
-    let fields = reader.metadata().file_metadata().schema().get_fields();
+    let file = reader.metadata().file_metadata();
+    let beside = file.key_value_metadata().into_iter().flatten().find(|one| one.key == SCHEMA);
+    let spans_ns = beside.and_then(|one| one.value.as_deref()).map(units_ns).unwrap_or_default();
+    let fields = file.schema().get_fields();
     let mut columns: Vec<Vec<Leaf>> = fields.iter().map(|field| leaves(field, nested)).collect();
+    for leaf in columns.iter_mut().flatten() {
+        leaf.unit_ns = spans_ns.get(&leaf.name).copied();
+    }
     let mut headed = false;
     let mut cell = Vec::new();
     for row in reader.get_row_iter(None)? {
@@ -74,7 +81,7 @@ fn rows(bytes: Vec<u8>, nested: bool) -> Result<Vec<u8>> {
                 };
                 for at in 0..leaf.width.unwrap_or(1) {
                     cell.clear();
-                    elements.get(at).map_or(Ok(()), |element| put(element, &mut cell))?;
+                    elements.get(at).map_or(Ok(()), |element| put(element, leaf.unit_ns, &mut cell))?;
                     writer.write_field(&cell).map_err(other)?;
                 }
             }
@@ -95,6 +102,8 @@ struct Leaf {
     path: Vec<usize>,
     /// Elements of a list are columns of their own, as many as the first row has.
     width: Option<usize>,
+    /// Nanoseconds of one, if it is a duration.
+    unit_ns: Option<i64>,
 }
 
 impl Leaf {
@@ -117,7 +126,7 @@ fn leaves(of: &Type, nested: bool) -> Vec<Leaf> {
     let info = of.get_basic_info();
     let plain = info.logical_type_ref().is_none() && info.converted_type() == ConvertedType::NONE;
     if !(nested && of.is_group() && plain) {
-        return vec![Leaf { name: of.name().to_owned(), path: Vec::new(), width: None }];
+        return vec![Leaf { name: of.name().to_owned(), path: Vec::new(), width: None, unit_ns: None }];
     }
     let within = of.get_fields().iter().enumerate().flat_map(|(at, field)| {
         leaves(field, nested).into_iter().map(move |mut leaf| {
@@ -135,9 +144,13 @@ fn width(field: &Field) -> Option<usize> {
     }
 }
 
-/// Instants become ns since 1970.
-fn put(field: &Field, cell: &mut Vec<u8>) -> std::io::Result<()> {
+/// Instants become ns since 1970, durations days and a time; `unit_ns` is that of a whole number that is one.
+fn put(field: &Field, unit_ns: Option<i64>, cell: &mut Vec<u8>) -> std::io::Result<()> {
     match field {
+        Field::Long(value) if unit_ns.is_some() => put_span(*value, unit_ns.unwrap_or(1), cell),
+        Field::TimeMillis(value) => put_span(i64::from(*value), 1_000_000, cell),
+        Field::TimeMicros(value) => put_span(*value, 1_000, cell),
+        Field::Float16(value) if value.to_f32().is_finite() => write!(cell, "{}", value.to_f32()),
         Field::Byte(value) => write!(cell, "{value}"),
         Field::Short(value) => write!(cell, "{value}"),
         Field::Int(value) => write!(cell, "{value}"),
@@ -153,6 +166,16 @@ fn put(field: &Field, cell: &mut Vec<u8>) -> std::io::Result<()> {
         Field::Str(text) => write!(cell, "{text}"),
         _ => Ok(()),
     }
+}
+
+/// As data frames write a duration into text: `0 days 00:00:00.020000000`.
+fn put_span(value: i64, unit_ns: i64, cell: &mut Vec<u8>) -> std::io::Result<()> {
+    const SECOND_NS: i64 = 1_000_000_000;
+    const DAY_S: i64 = 86_400;
+    let ns = value.saturating_mul(unit_ns);
+    let (s, ns) = (ns.div_euclid(SECOND_NS), ns.rem_euclid(SECOND_NS));
+    let (days, s) = (s.div_euclid(DAY_S), s.rem_euclid(DAY_S));
+    write!(cell, "{days} days {:02}:{:02}:{:02}.{ns:09}", s / 3600, s / 60 % 60, s % 60)
 }
 
 fn other<E: std::error::Error + Send + Sync + 'static>(error: E) -> ParquetError {

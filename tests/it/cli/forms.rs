@@ -295,6 +295,68 @@ fn a_parquet_table_of_another_program_is_imported_as_the_same_rows_in_text() {
     }
 }
 
+/// A column of whole numbers and two of half floats, as pandas, polars and pyarrow write a `timedelta` and `float16`.
+fn halves(name: &str, schema: &str, count_per_s: f64) -> Vec<u8> {
+    use parquet::{
+        data_type::{ByteArray, FixedLenByteArray, FixedLenByteArrayType, Int64Type},
+        file::{metadata::KeyValue, properties::WriterProperties, writer::SerializedFileWriter},
+        schema::parser::parse_message_type,
+    };
+    let half = |value: f64| {
+        let bits = (value as f32).to_bits();
+        let [sign, exponent, fraction] = [bits >> 31, bits >> 23 & 0xFF, bits >> 13 & 0x3FF];
+        let half = sign << 15 | exponent.saturating_sub(112) << 10 | fraction;
+        FixedLenByteArray::from(ByteArray::from((half as u16).to_le_bytes().to_vec()))
+    };
+    let text = format!(
+        "message run {{ required int64 {name}; required fixed_len_byte_array(2) boom_set_deg (FLOAT16); required \
+         fixed_len_byte_array(2) boom_act_deg (FLOAT16); }}"
+    );
+    let beside = KeyValue::new("ARROW:schema".to_owned(), schema.to_owned());
+    let properties = WriterProperties::builder().set_key_value_metadata(Some(vec![beside])).build();
+    let message = parse_message_type(&text).unwrap().into();
+    let mut writer = SerializedFileWriter::new(Vec::new(), message, properties.into()).unwrap();
+    let mut group = writer.next_row_group().unwrap();
+    let times: Vec<f64> = (0..250).map(|k| f64::from(k) * 0.02).collect();
+    let mut column = group.next_column().unwrap().unwrap();
+    let counts: Vec<i64> = times.iter().map(|t_s| (t_s * count_per_s).round() as i64).collect();
+    column.typed::<Int64Type>().write_batch(&counts, None, None).unwrap();
+    column.close().unwrap();
+    for side in 0..2 {
+        let mut column = group.next_column().unwrap().unwrap();
+        let values: Vec<FixedLenByteArray> = times.iter().map(|t_s| half(moves(*t_s)[side])).collect();
+        column.typed::<FixedLenByteArrayType>().write_batch(&values, None, None).unwrap();
+        column.close().unwrap();
+    }
+    group.close().unwrap();
+    writer.into_inner().unwrap()
+}
+
+#[test]
+fn durations_and_half_floats_of_a_parquet_table_are_times_and_numbers() {
+    // Of columns `time: duration[us]` and `__index_level_0__: duration[ns]`, beside two of half floats.
+    let us = "/////+AAAAAQAAAAAAAKAAwABgAFAAgACgAAAAABBAAMAAAACAAIAAAABAAIAAAABAAAAAMAAACAAAAAOAAAAAQAAACc////AAABAxAAAAAgAAAAB\
+              AAAAAAAAAAMAAAAYm9vbV9hY3RfZGVnAAAAAND////M////AAABAxAAAAAkAAAABAAAAAAAAAAMAAAAYm9vbV9zZXRfZGVnAAAAAAQABAAEAAAAEAA\
+              UAAgABgAHAAwAAAAQABAAAAAAAAESEAAAABwAAAAEAAAAAAAAAAQAAAB0aW1lAAAGAAgABgAGAAAAAAACAA==";
+    let ns = "//////AAAAAQAAAAAAAKAAwABgAFAAgACgAAAAABBAAMAAAACAAIAAAABAAIAAAABAAAAAMAAACIAAAARAAAAAQAAACU////AAABEhAAAAAoAA\
+              AABAAAAAAAAAARAAAAX19pbmRleF9sZXZlbF8wX18ABgAIAAYABgAAAAAAAwDQ////AAABAxAAAAAgAAAABAAAAAAAAAAMAAAAYm9vbV9hY3Rf\
+              ZGVnAAAAAMD///8QABQACAAGAAcADAAAABAAEAAAAAAAAQMQAAAAJAAAAAQAAAAAAAAADAAAAGJvb21fc2V0X2RlZwAAAAAEAAQABAAAAAAAAA\
+              A=";
+    for (name, schema, per_s) in [("time", us, 1e6), ("__index_level_0__", ns, 1e9)] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.parquet"), halves(name, schema, per_s)).unwrap();
+        let (code, text, error) = said(&hydrotrace(folder.path(), "import a.parquet -o a.mcap"));
+        assert!(code != 1 && text.contains("one joint, 4.98 s at 50.0 Hz"), "{name}: {text}{error}");
+        assert!(text.contains("time passed"), "{name}: {text}");
+        let peak =
+            crate::support::json(folder.path(), "report a.mcap")["joints"][0]["tracking_error"]["peak"]
+                .as_f64()
+                .unwrap();
+        // 0.1 s late at up to 15.7 deg/s; half floats near 32 have steps of 0.016.
+        assert!((peak.to_degrees() - 1.56).abs() < 0.05, "{name}: {peak}");
+    }
+}
+
 #[test]
 fn two_clocks_are_judged_by_all_rows() {
     let row =
