@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use ::csv::ByteRecord;
 
 use super::{
-    CsvOptions,
+    CsvOptions, Role,
     date::{DateForm, Part},
     dialect::{Dialect, detect},
     head::{Head, read_head},
@@ -15,7 +15,7 @@ use super::{
     number::{Looks, looks, number},
     restarts::apart,
     rows::{Rows, cell_text, writer},
-    word::words,
+    word::{Meaning, Word, words},
 };
 use crate::remark::{Code, Remarks};
 
@@ -82,6 +82,18 @@ pub(super) fn widened(
     Some((wide.into_inner().ok()?, dialect.rewritten(options)))
 }
 
+/// Whether the cells of a column say whether a row is planned, measured or sent, and no two of them the same.
+fn tells_sides(head: &Head, column: usize) -> bool {
+    let cells = head.sample.iter().filter_map(|row| row.get(column)).map(|cell| cell_text(cell));
+    let cells: BTreeSet<String> = cells.filter(|cell| !cell.is_empty()).collect();
+    let side = |cell: &String| match words(cell).as_slice() {
+        [Word { meaning: Meaning::Role(role), .. }] => Some(*role),
+        _ => None,
+    };
+    let sides: Option<BTreeSet<Role>> = cells.iter().map(side).collect();
+    sides.is_some_and(|sides| sides.len() > 1 && sides.len() == cells.len())
+}
+
 /// Cells of some columns of a row.
 type Key = Vec<Vec<u8>>;
 
@@ -112,8 +124,9 @@ impl Long {
         }
         let plain = |column: &usize| head.names[*column].trim_matches(['_', ' ']).to_lowercase();
         let all = 0..head.names.len();
+        let sided = |column: &usize| tells_sides(&head, *column);
         let named: Vec<usize> =
-            all.clone().filter(|column| NAMES.contains(&plain(column).as_str())).collect();
+            all.clone().filter(|column| NAMES.contains(&plain(column).as_str()) || sided(column)).collect();
         let timely = |column: &usize| match &options.time {
             Some(time) => time.eq_ignore_ascii_case(&head.names[*column]),
             None => label(&head.names[*column], None).is_time,
@@ -137,7 +150,8 @@ impl Long {
             Changes { head: &head, decimal_comma: dialect.decimal_comma, times: &times, values: &positions };
         let guess = || changes.key(all.clone().filter(|column| other(column) && !position(column)));
         let found = if named.is_empty() { guess() } else { None };
-        let interleaved = named.iter().any(|&column| changes.is_interleaved(column)) || found.is_some();
+        let in_turns = |column: &usize| sided(column) || changes.is_interleaved(*column);
+        let interleaved = named.iter().any(in_turns) || found.is_some();
         let guessed = found.is_some();
         let names = if guessed { found.into_iter().collect() } else { named };
         if names.is_empty() {

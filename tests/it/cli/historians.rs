@@ -194,6 +194,29 @@ fn objects_a_line_each_are_a_table() {
 }
 
 #[test]
+fn objects_of_one_side_each_are_a_table_and_a_map_keeps_both() {
+    let one = |t: f64, side: &str, q: f64| match side {
+        "" => String::new(),
+        side if side.starts_with('+') => {
+            format!("{{\"t_s\": {t:.3}, \"kind\": \"{}\", \"boom_deg\": {q:.4}}}\n", &side[1..])
+        }
+        side => format!("{{\"t_s\": {t:.3}, \"{side}\": {{\"boom_deg\": {q:.4}}}}}\n"),
+    };
+    for [plan, came] in [["planned", "measured"], ["+plan", "+actual"]] {
+        let lines = table("", |k, q| {
+            let t = f64::from(k) * 0.02;
+            one(t, plan, q[0]) + one(t + 0.005, came, q[1]).trim_end()
+        });
+        let folder = tempfile::tempdir().unwrap();
+        let save = ["--save-map", "arm.toml"];
+        let first = peak(folder.path(), "lines.jsonl", lines.trim_start(), &save);
+        let again = peak(folder.path(), "lines.jsonl", lines.trim_start(), &["--map", "arm.toml"]);
+        // The measurement is stamped 5 ms later than it is.
+        assert!((first - 0.0275).abs() < 0.001 && first == again, "{plan}: {first} {again}");
+    }
+}
+
+#[test]
 fn a_plan_that_is_written_only_where_it_changes_is_held() {
     let head = "time_s,boom_set_deg,boom_act_deg";
     let text = table(head, |k, [plan, came]| {
