@@ -217,6 +217,7 @@ impl Form {
         let mut labels: Vec<label::Label> =
             names.map(|(column, name)| label::label(name, below(column))).collect();
         settle::settle(&mut labels);
+        settle::leave_out_orientation(&mut labels, remarks);
         let mut options = options.clone();
         let derived = expression::derive(&mut head, &mut labels, &mut options)?;
         let time = clock::choose(text, &head, &labels, dialect, &options, remarks)?;

@@ -3,9 +3,36 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Quantity, Role, label::Label, letter::Lettered, unit::METRE};
+use crate::remark::{Code, Remarks};
 
 /// Letters behind a quantity that are gains of a controller where all three come: `position_p`.
 const GAINS: [&str; 3] = ["p", "i", "d"];
+
+/// Letters of the place of a tool, and of its orientation as some controllers tell it.
+const PLACE: [&str; 3] = ["x", "y", "z"];
+const ORIENTATION: [&str; 3] = ["a", "b", "c"];
+
+/// `A`, `B` and `C` beside `X`, `Y` and `Z` are the orientation of a tool, no joints.
+pub(super) fn leave_out_orientation(labels: &mut [Label], remarks: &mut Remarks) {
+    let is_angle = |at: &usize| {
+        let prefix = ORIENTATION.iter().find_map(|letter| labels[*at].key.strip_suffix(letter));
+        let Some(prefix) = prefix.filter(|prefix| prefix.is_empty() || prefix.ends_with(['_', '/'])) else {
+            return false;
+        };
+        let has = |letter: &str| {
+            let key = format!("{prefix}{letter}");
+            labels.iter().any(|label| label.role == labels[*at].role && label.key == key)
+        };
+        labels[*at].is_joint && PLACE.iter().chain(&ORIENTATION).all(|letter| has(letter))
+    };
+    let angles: Vec<usize> = (0..labels.len()).filter(is_angle).collect();
+    for at in &angles {
+        labels[*at].is_joint = false;
+    }
+    let message = "columns A, B and C beside X, Y and Z are taken as the orientation of a tool and left out; if they are joints, \
+                   name them with --planned JOINT=COLUMN,... and --measured JOINT=COLUMN,...";
+    remarks.add(Code::Guessed, angles.len() as u64, message);
+}
 
 /// Settles what only all headers together tell: that `q_d_1` is the plan of `q_1`, and that `J1_planned_rad` and
 /// `J1_actual_rad` are of one joint. Names that differ in case alone are of one where no two say the same of it.

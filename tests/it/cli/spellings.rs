@@ -123,3 +123,29 @@ fn the_type_of_a_variable_is_no_part_of_its_joint_and_no_measurement() {
         assert_run(text.as_bytes(), "--radians", &["boom"]);
     }
 }
+
+#[test]
+fn letters_of_an_orientation_beside_the_place_of_a_tool_are_no_joints() {
+    let pose = |header: &str| {
+        let mut text = format!("{header}\n");
+        for k in 0..500 {
+            let t_s = f64::from(k) * 0.02;
+            let [plan, came] = moves(t_s).map(f64::to_degrees);
+            let side = |q: f64| format!("{},{q},{q},{q},{},{}", 1000.0 + q, q / 2.0, q / 3.0);
+            writeln!(text, "{t_s:.2},{plan},{came},{},{}", side(plan), side(came)).unwrap();
+        }
+        text
+    };
+    let folder = tempfile::tempdir().unwrap();
+    for header in [
+        "t,A1_set_deg,A1_act_deg,RSol.X,RSol.Y,RSol.Z,RSol.A,RSol.B,RSol.C,RIst.X,RIst.Y,RIst.Z,RIst.A,RIst.B,RIst.C",
+        "t,A1_set_deg,A1_act_deg,X_set,Y_set,Z_set,A_set,B_set,C_set,X_act,Y_act,Z_act,A_act,B_act,C_act",
+    ] {
+        let (found, said) = peaks(folder.path(), pose(header).as_bytes(), "");
+        assert_eq!(found.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["A1"], "{said}");
+        assert!(said.contains("orientation"), "{said}");
+    }
+    // Alone they are joints.
+    let alone = two_joints("t,A_set_deg,B_set_deg,A_act_deg,B_act_deg");
+    assert_run(alone.as_bytes(), "", &["A", "B"]);
+}
