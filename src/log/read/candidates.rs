@@ -155,7 +155,8 @@ pub(super) fn named(
     let TopicCount { topic: name, type_name, .. } = &extracted.topics[topic];
     let unreadable =
         unread(&extracted.topics[topic].encoding).or_else(|| extracted.topics[topic].problem.clone());
-    let fields = fields_of(extracted, topic);
+    let mut fields = fields_of(extracted, topic);
+    fields.extend(extracted.topics[topic].values.iter().cloned());
     let near = |field: &String| nearest(field, fields.iter().map(String::as_str)).map(String::into_boxed_str);
     Err(LogError::NoField {
         topic: name.clone(),

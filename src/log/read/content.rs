@@ -30,6 +30,8 @@ pub(super) struct TopicCount {
     /// Why messages of it were not read, and how many.
     pub(super) problem: Option<String>,
     pub(super) unread: u64,
+    /// Names of values, any of which can be chosen.
+    pub(super) values: Vec<String>,
 }
 
 /// Samples or trajectories of one topic.

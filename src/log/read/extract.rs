@@ -1,6 +1,9 @@
 //! Reads all joint topics of a recording, in parallel over its blocks, in the order of the file.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use super::{
     candidates::is_measured,
@@ -53,7 +56,7 @@ pub(super) fn extract(log: &ScannedLog<'_>, options: &ReadOptions) -> Extracted 
         };
         read_files(&files, &selectors, options, true, &mut out);
     }
-    finish(&mut out);
+    finish(&mut out, &selectors);
     out
 }
 
@@ -243,7 +246,7 @@ fn routes(
 }
 
 /// Turns counts into remarks, and versioned values into tables.
-fn finish(out: &mut Extracted) {
+fn finish(out: &mut Extracted, selectors: &[(Role, Selector)]) {
     for topic in &out.topics {
         if let Some(problem) = &topic.problem {
             out.remarks.add(
@@ -276,20 +279,25 @@ fn finish(out: &mut Extracted) {
             by_stem.entry(stem(half)).or_default().push(versioned);
         }
     }
+    let mut known = Vec::new();
     for half in &halves {
-        if let Content::Versioned(values) = &half.content
-            && let Some(names) = by_stem.get(&stem(half))
-            && let Some((table, by_words)) = [false, true]
-                .into_iter()
-                .find_map(|by_words| Some((values.to_table(names, by_words)?, by_words)))
-        {
-            let topic = &out.topics[half.topic].topic;
+        let Content::Versioned(values) = &half.content else { continue };
+        let Some(names) = by_stem.get(&stem(half)) else { continue };
+        let topic = &out.topics[half.topic].topic;
+        let of_topic = selectors.iter().filter(|(_, selector)| selector.topic == *topic);
+        let asked: BTreeSet<&str> = of_topic.filter_map(|(_, selector)| selector.field.as_deref()).collect();
+        if let Some((table, by_words)) = values.to_table(names, &asked) {
             let message =
                 format!("values of {topic} are told plan or measurement by the words of their names");
             out.remarks.add(Code::Guessed, u64::from(by_words), message);
             let content = Content::Table(Box::new(table));
             sources.push(Source { topic: half.topic, content, parts: Vec::new() });
         }
+        known
+            .push((half.topic, names.iter().flat_map(|half| half.names()).cloned().collect::<BTreeSet<_>>()));
+    }
+    for (topic, names) in known {
+        out.topics[topic].values = names.into_iter().collect();
     }
     out.sources = by_publisher(poses_as_tables(sources, out));
 }

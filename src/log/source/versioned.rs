@@ -1,7 +1,7 @@
 //! Values whose names come in another topic, joined by a version number
 //! (`pal_statistics_msgs`, as the ROS 2 controller manager publishes its interfaces).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Field, Form, Role, Stamps, Table, slot, table::stamp_ns};
 use crate::log::{
@@ -61,32 +61,47 @@ impl Versioned {
         !self.names.is_empty()
     }
 
-    /// The values as samples of joints: `command_interface.<joint>/position` is the plan,
-    /// `state_interface.<joint>/position` the measurement; `by_words`: as headers of columns say it. `None` without such names.
-    pub(in crate::log) fn to_table(&self, halves: &[&Self], by_words: bool) -> Option<Table> {
-        let of = if by_words { spelt } else { interface };
+    /// All names that there are.
+    pub(in crate::log) fn names(&self) -> impl Iterator<Item = &String> {
+        self.names.values().flatten()
+    }
+
+    /// The values as samples of joints, and whether only words tell them: `command_interface.<joint>/position` is the plan,
+    /// `state_interface.<joint>/position` the measurement; without such names what the words say as of headers of columns.
+    /// Each of those that are `asked` for is a field of its own. `None` without any.
+    pub(in crate::log) fn to_table(&self, halves: &[&Self], asked: &BTreeSet<&str>) -> Option<(Table, bool)> {
         let field = |path: &str, role, velocity, is_velocity| Field {
             path: path.into(),
             role,
             velocity,
             is_velocity,
         };
-        let fields = [
+        let known = [
             field("command.position", Role::Planned, Some(1), false),
             field("command.velocity", Role::Planned, None, true),
             field("state.position", Role::Measured, None, false),
         ];
+        let own = asked.iter().map(|name| field(name, Role::Either, None, false));
+        let fields: Vec<Field> = known.iter().cloned().chain(own).collect();
+        let all = || halves.iter().flat_map(|half| half.names());
+        let by_words = !all().any(|name| interface(name).is_some());
+        let of = if by_words { spelt } else { interface };
+        let told = by_words && all().any(|name| spelt(name).is_some());
         let mut table = Table::new(Form::Versioned, &fields, &[], None);
-        let mut known: BTreeMap<u64, Vec<(usize, String, usize)>> = BTreeMap::new();
+        let mut places: BTreeMap<u64, Vec<(usize, String, usize)>> = BTreeMap::new();
         for (version, names) in halves.iter().flat_map(|half| &half.names) {
-            let places = names.iter().enumerate().filter_map(|(place, name)| {
-                let (joint, field) = of(name)?;
-                Some((place, joint, field))
-            });
-            known.insert(*version, places.collect());
+            let of_name = |(place, name): (usize, &String)| {
+                let own = asked.iter().position(|asked| *asked == name.as_str());
+                let own = own.map(|at| (joint_of(name), known.len() + at));
+                own.into_iter()
+                    .chain(of(name))
+                    .map(move |(joint, field)| (place, joint, field))
+                    .collect::<Vec<_>>()
+            };
+            places.insert(*version, names.iter().enumerate().flat_map(of_name).collect());
         }
         for (row, (version, values)) in self.versions.iter().zip(&self.values).enumerate() {
-            let Some(places) = known.get(version) else { continue };
+            let Some(places) = places.get(version) else { continue };
             let (header, publish, log) =
                 (self.stamps.header_ns[row], self.stamps.of(TimeBase::Publish)[row], self.stamps.log_ns[row]);
             let cells = places.iter().filter_map(|(place, joint, field)| {
@@ -94,7 +109,7 @@ impl Versioned {
             });
             table.push_row(header, publish, log, cells);
         }
-        (!table.joints.is_empty()).then_some(table)
+        (!table.joints.is_empty()).then_some((table, told))
     }
 }
 
@@ -109,6 +124,13 @@ fn interface(name: &str) -> Option<(String, usize)> {
         _ => return None,
     };
     Some((joint.to_owned(), field))
+}
+
+/// The joint of a value that was asked for, in whatever kind and quantity of interface: `out.boom/angle`.
+fn joint_of(name: &str) -> String {
+    let within = name.split_once(['.', '/']).filter(|(kind, _)| !kind.is_empty());
+    let joint = within.and_then(|(_, rest)| rest.rsplit_once('/')).map(|(joint, _)| joint.to_owned());
+    joint.unwrap_or_else(|| joint_in(name))
 }
 
 /// The joint and the field that the words of a name say: `/arm_desired_position_boom_joint`.

@@ -209,6 +209,14 @@ fn send_versioned(log: &mut Log, (names, values): (usize, usize), k: i64, spell:
 
 /// What is read of introspection whose names are spelt so.
 fn versioned(spell: fn(&str) -> String) -> Recording {
+    let mut recording = read(&introspection(spell));
+    for series in [&mut recording.planned, &mut recording.measured] {
+        series.tracks.sort_by(|a, b| a.name().cmp(b.name()));
+    }
+    recording
+}
+
+fn introspection(spell: fn(&str) -> String) -> Log {
     let mut log = Log::default();
     let stem = "/controller_manager/introspection_data";
     let names =
@@ -216,11 +224,7 @@ fn versioned(spell: fn(&str) -> String) -> Recording {
     let values =
         log.channel(Channel::cdr(&format!("{stem}/values"), "pal_statistics_msgs/msg/StatisticsValues"));
     (0..SAMPLES).for_each(|k| send_versioned(&mut log, (names, values), k, spell));
-    let mut recording = read(&log);
-    for series in [&mut recording.planned, &mut recording.measured] {
-        series.tracks.sort_by(|a, b| a.name().cmp(b.name()));
-    }
-    recording
+    log
 }
 
 #[test]
@@ -242,6 +246,32 @@ fn introspection_values_that_are_no_interfaces_are_told_by_the_words_of_their_na
     let at = |series: &Series| series.tracks.iter().map(|track| track.position()[7]).collect::<Vec<f64>>();
     assert_eq!([at(&recording.planned), at(&recording.measured)], [plan(7), measurement(7)]);
     assert_eq!(count(&recording.remarks, Code::Guessed), 1, "{:?}", recording.remarks);
+}
+
+#[test]
+fn introspection_values_are_chosen_by_their_names() {
+    let topic = "/controller_manager/introspection_data/values";
+    let named = |names: [&str; 2]| names.map(|name| format!("{topic}:{name}"));
+    let read = |log: &Log, plan: &[String], came: &[String]| {
+        let [plan, came] = [plan, came].map(|all| all.iter().map(String::as_str).collect::<Vec<_>>());
+        read_bytes(&log.bytes(mcap::WriteOptions::new()), &options(&plan, &came, &[]))
+    };
+    let at = |series: &Series| series.tracks.iter().map(|track| track.position()[7]).collect::<Vec<f64>>();
+    let plain = introspection(str::to_owned);
+    let names = named(["command_interface.b/position", "command_interface.a/position"]);
+    let recording = read(&plain, &names, &[]).unwrap();
+    assert_eq!([joints(&recording.planned), joints(&recording.measured)], [["b", "a"], ["a", "b"]]);
+    assert_eq!(at(&recording.planned), [plan(7)[1], plan(7)[0]]);
+    assert_eq!(recording.source.planned_field, "command_interface.b/position, command_interface.a/position");
+    // Names that say neither plan nor measurement.
+    let bare =
+        introspection(|name| name.replace("command_interface", "in").replace("state_interface", "out"));
+    let ins = named(["in.a/position", "in.b/position"]);
+    let outs = named(["out.a/position", "out.b/position"]);
+    let recording = read(&bare, &ins, &outs).unwrap();
+    assert_eq!([at(&recording.planned), at(&recording.measured)], [plan(7), measurement(7)]);
+    let error = read(&plain, &named(["command_interface.c/position", "x"]), &[]).unwrap_err().to_string();
+    assert!(error.contains("did you mean") && error.contains("controller_manager.cycle_time"), "{error}");
 }
 
 #[test]
