@@ -34,8 +34,8 @@ pub(super) mod discrepancy {
     pub(in crate::fit) const LIMIT: [f64; 4] = [0.12, 0.12, 0.75, 0.75];
     /// Of the position gain.
     pub(in crate::fit) const POSITION_GAIN: f64 = 0.15;
-    /// Of the position gain where no start is sharp.
-    pub(in crate::fit) const SMOOTH_POSITION_GAIN: f64 = 0.20;
+    /// Of the position gain where no start is sharp: set values that come late, which smooth runs do not show, take it for lower.
+    pub(in crate::fit) const SMOOTH_POSITION_GAIN: f64 = 0.30;
     /// Of the integral gain.
     pub(in crate::fit) const INTEGRAL_GAIN: f64 = 0.40;
     /// Of the integral gain where no start is sharp.

@@ -16,6 +16,7 @@ pub mod record;
 pub mod recover;
 pub mod replan;
 pub mod report;
+mod same_plan;
 pub mod simulate;
 #[doc(hidden)]
 pub mod view;

@@ -111,7 +111,7 @@ pub(super) fn assemble(
         turns::bring_to_turn(sides[0].1, &mut command.series, &options.continuous);
     }
     unset::of_sides(sides, &mut remarks);
-    repeated::of_sides(sides, &mut remarks);
+    repeated::of_sides(sides, plan_is_command, &mut remarks);
     held::of_sides(choice, sides, &mut remarks);
     held::of_command(command.as_mut(), sides[1].1, &mut remarks);
     spoilt::of_sides(sides[0].1, sides[1].1, command.as_ref(), &mut remarks);

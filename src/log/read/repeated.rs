@@ -19,9 +19,15 @@ const LONGEST_SENT_S: f64 = 0.5;
 /// Rows that are looked at first.
 const HEAD: usize = 4000;
 
-/// Keeps of each value that is written again its first row; it says no more of when it was measured or planned.
-pub(super) fn of_sides([(_, planned), (_, measured)]: &mut [(&str, &mut Series); 2], remarks: &mut Remarks) {
-    let is_sampled = |plan: &Track, fresh: &Track| is_sampled(plan, fresh, LONGEST_S);
+/// Keeps of each value that is written again its first row; it says no more of when it was measured or planned. `is_sent`: the plan
+/// is what was sent.
+pub(super) fn of_sides(
+    [(_, planned), (_, measured)]: &mut [(&str, &mut Series); 2],
+    is_sent: bool,
+    remarks: &mut Remarks,
+) {
+    let longest_s = if is_sent { LONGEST_SENT_S } else { LONGEST_S };
+    let is_sampled = |plan: &Track, fresh: &Track| is_sampled(plan, fresh, longest_s);
     of_side(planned, is_sampled, ["planned", "its planner", "interpolated"], remarks);
     of_side(measured, |_, _| true, ["measured", "a sensor", "not judged"], remarks);
 }
@@ -131,7 +137,7 @@ mod tests {
         let track = Track::new("a", t_s, (0..1203).map(at).collect(), &[]).unwrap();
         let (mut planned, mut measured) = (Series { tracks: vec![track] }, Series::default());
         let mut remarks = Remarks::default();
-        of_sides(&mut [("planned", &mut planned), ("measured", &mut measured)], &mut remarks);
+        of_sides(&mut [("planned", &mut planned), ("measured", &mut measured)], false, &mut remarks);
         let kept = &planned.tracks[0];
         assert_eq!((kept.len(), kept.t_s().last()), (242, Some(&12.02)));
         let said = &remarks.as_slice()[0].message;
@@ -143,7 +149,11 @@ mod tests {
             let t_s: Vec<f64> = (0..4000).map(|k| f64::from(k) * 0.01).collect();
             let track = Track::new("a", t_s, (0..4000).map(at).collect(), &[]).unwrap();
             let (mut planned, mut measured) = (Series { tracks: vec![track] }, Series::default());
-            of_sides(&mut [("planned", &mut planned), ("measured", &mut measured)], &mut Remarks::default());
+            of_sides(
+                &mut [("planned", &mut planned), ("measured", &mut measured)],
+                false,
+                &mut Remarks::default(),
+            );
             assert_eq!(planned.tracks[0].len(), 4000);
         }
     }

@@ -15,8 +15,11 @@ pub(super) fn of_sides(
     remarks: &mut Remarks,
 ) {
     let mut stops = stopped::stops(planned, measured);
-    // What was sent must go on, too.
-    if command.is_some_and(|command| stopped::stops(&command.series, measured).is_empty()) {
+    // What was sent must go on, too, or stand itself while the plan goes on.
+    if let Some(Command { series: sent, .. }) = command
+        && stopped::stops(sent, measured).is_empty()
+        && stopped::stops(planned, sent).is_empty()
+    {
         stops.clear();
     }
     let stop = |stop: &stopped::Stop| (Code::Stopped, stop.message.clone());

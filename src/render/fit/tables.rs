@@ -82,7 +82,7 @@ pub(super) fn machine(fit: &Fit) -> Vec<Section> {
              A recorder that stamps the measurement late looks like a lag of that size.",
         )),
         Section::new(Id::OTHER, "Limits", [table(fit, &LIMITS, false)]).with(Sentence::note(
-            "+ for growing, - for shrinking angles or lengths. >= x: x was reached, so the limit is higher. (x): an assumption, not \
+            "+ for growing, - for shrinking angles or lengths. >= x: x was reached, so the limit is no lower. (x): an assumption, not \
              measured.",
         )),
     ];
@@ -165,7 +165,7 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         let why = if fitted.runs.iter().any(|run| run.identifies) {
             "The strokes of the identification run were not faster than these joints, which kept up with them."
         } else {
-            "Smooth runs never reach the limits of speed. `hydrotrace excite` writes a run that does, with strokes \
+            "Smooth runs hardly reach the limits of speed. `hydrotrace excite` writes a run that does, with strokes \
              faster than the machine; it also narrows the interval of the dead band. Fit it together with these logs."
         };
         lines.extend(open.iter().any(|open| open.starts_with("speed")).then(|| why.into()));

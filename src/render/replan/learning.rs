@@ -31,11 +31,10 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
             format!(", the last run has {last}, which is no better.")
         }
         KeepReason::GainedLittle if grown(&replanned.past.runs, *best_rad) => {
-            ", more than the best run before it had: what is sent again comes to more now, and other commands would.".to_owned()
+            ", more than the best run before it had: what is sent comes to more now than it did then."
+                .to_owned()
         }
-        KeepReason::GainedLittle => {
-            ", which is no better than the best run before it by a tenth.".to_owned()
-        }
+        KeepReason::GainedLittle => ", which is no better than the best run before it by a tenth.".to_owned(),
         KeepReason::Failed { corrections } => {
             format!("; {} gained nothing.", counted(*corrections, "correction"))
         }
@@ -81,7 +80,7 @@ fn repeats(replanned: &Replanned) -> Option<&'static str> {
     let told = error > 0.0 && !surprised && !matches!(because, KeepReason::ExpectedWorse { .. });
     told.then_some(match (spread >= MOSTLY * MOSTLY * error, failed) {
         (true, _) => " What is left comes differently from run to run.",
-        (false, false) => " What is left comes again in every run, faster than corrections are.",
+        (false, false) => " What is left comes again in every run, and no correction lessens it.",
         (false, true) => {
             " What is left comes again in every run, and no correction lifts it: where a limit of speed or flow, or a pump that \
              joints share, holds them back, a slower plan or fewer joints at once help."
@@ -159,7 +158,19 @@ pub(super) fn command(replanned: &Replanned) -> Option<Section> {
             [Turns, Slides].into_iter().filter_map(|kind| cut_off(&command.joints, kind)).map(Sentence::Advice),
         )
         .with_all(stamped(replanned, &command.joints).map(|text| Sentence::note(text.to_owned())))
-        .with_all(ends_early(replanned).map(Sentence::note)))
+        .with_all(ends_early(replanned).map(Sentence::note))
+        .with_all(others(replanned).map(Sentence::note)))
+}
+
+/// Logs that no run of this plan is in.
+fn others(replanned: &Replanned) -> Option<String> {
+    let others = &replanned.past.others;
+    let said = match others.len() {
+        0 => return None,
+        1 => "holds another plan: it tells",
+        _ => "hold other plans: they tell",
+    };
+    Some(format!("{} {said} of the machine, and of no error of this plan.", others.join(", ")))
 }
 
 /// What no log shows: an overshoot after the plan.
@@ -220,7 +231,7 @@ fn cut_off(joints: &[JointCommand], kind: JointKind) -> Option<String> {
     let most = all.iter().map(|joint| joint.peak_correction_rad).reduce(f64::max)?;
     let names: Vec<&str> = all.iter().map(|joint| joint.name.as_str()).collect();
     Some(format!(
-        "The correction is limited to {} on {}; a larger --max-correction-{} would remove more of the error.",
+        "The correction is limited to {} on {}; a larger --max-correction-{} may remove more of the error.",
         position(kind, most),
         names.join(", "),
         unit(Dimension::Position, kind)

@@ -17,8 +17,8 @@ use crate::{
     math::range,
     remark::{Code, Remarks},
     replay::{Rules, planned_step},
-    series::{Series, Track, moving_s},
-    workflow::{carried::Carried, names::told_apart},
+    series::{Series, Track},
+    workflow::{carried::Carried, names::told_apart, same_plan::is_again},
 };
 pub(in crate::workflow) use observe::observation;
 use {
@@ -158,7 +158,7 @@ pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted
     let newest = with_task.or(again.last()).copied();
     let of_plan = |k: &usize| {
         newest
-            .is_some_and(|newest| *k <= newest && same_plan(&observed[*k].planned, &observed[newest].planned))
+            .is_some_and(|newest| *k <= newest && is_again(&observed[*k].planned, &observed[newest].planned))
     };
     let again: Vec<usize> = again.into_iter().filter(of_plan).collect();
     Ok(Fitted { fit, held_out, torques, runs, again, remarks })
@@ -180,19 +180,6 @@ fn unsent(error: FitError, logs: &[String], observed: &[&Recording]) -> FitError
         Some(FitError::CommandStands { log: log.clone(), plan, command })
     };
     logs.iter().zip(observed).find_map(stands).unwrap_or(error)
-}
-
-/// Whether two plans are one, each on its own clock.
-fn same_plan(a: &Series, b: &Series) -> bool {
-    const INSTANTS: u32 = 50;
-    const SAME: f64 = 2e-3;
-    let (Some(a_s), Some(b_s)) = (moving_s(a), moving_s(b)) else { return false };
-    let at = |[from_s, to_s]: [f64; 2], k: u32| from_s + (to_s - from_s) * f64::from(k) / f64::from(INSTANTS);
-    let near = |track: &Track, k: u32| {
-        let other = b.track(track.name())?;
-        Some((track.held_at(at(a_s, k)).position - other.held_at(at(b_s, k)).position).abs() < SAME)
-    };
-    a.tracks.iter().all(|track| (0..=INSTANTS).all(|k| near(track, k).unwrap_or(false)))
 }
 
 /// What is doubtful in the logs, each named if there are several.

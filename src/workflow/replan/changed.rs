@@ -20,8 +20,8 @@ const AGAIN: f64 = 0.1;
 /// Commands that differ by less are the same whatever came of them, rad.
 const SENT_AGAIN_RAD: f64 = 2e-4;
 
-/// A mean peak above the best so far by this factor is looked at, and one above what nine runs of ten should stay below by
-/// that factor.
+/// A mean peak above the best so far, and above what was expected, by this factor is looked at, and one above what nine runs of
+/// ten should stay below by that factor.
 const GROWN: f64 = 1.1;
 const BROKEN: f64 = 2.0;
 
@@ -178,7 +178,8 @@ impl History {
         {
             return Some(Sign::Pair(before, again));
         }
-        let promised_rad = self.runs[run].promised.map(|promised| promised.mean_peak_margin_rad);
+        let promised = self.runs[run].promised;
+        let promised_rad = promised.map(|promised| promised.mean_peak_margin_rad);
         let drifted =
             |k: &usize| self.peak_rad(*k).is_some_and(|rad| now_rad > CHANGED_TWICE * rad) && same(k);
         if promised_rad.is_some_and(|most_rad| now_rad > most_rad)
@@ -187,7 +188,9 @@ impl History {
             return Some(Sign::Drift(before));
         }
         let best_rad = runs.iter().filter_map(|k| self.peak_rad(*k)).reduce(f64::min)?;
-        let grown = now_rad > GROWN * best_rad.max(promised_rad.unwrap_or(best_rad));
+        // A bound that was made wide by a promise that was not kept hides a change; its middle does not.
+        let grown =
+            now_rad > GROWN * best_rad.max(promised.map_or(best_rad, |promised| promised.mean_peak_rad));
         let broken = promised_rad.is_some_and(|promised_rad| now_rad > BROKEN * promised_rad);
         if !grown && !broken {
             return None;

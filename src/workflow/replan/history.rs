@@ -2,17 +2,17 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{
-    ReplanFailure,
-    samples::{cut, cut_measured, found_at_s, within},
-};
+use super::ReplanFailure;
 use crate::{
     fit::{AFTER_S, Trial},
     log::Recording,
     math::quantile,
     replay::{Rules, replay},
     series::{JointKind, Series, Track, align, bridged, moving_s},
-    workflow::carried::{Carried, Promise, rest::PLAN_LEAD_S},
+    workflow::{
+        carried::{Carried, Promise, rest::PLAN_LEAD_S},
+        same_plan::{breaks_off_s, cut, cut_measured, found_at_s, within},
+    },
 };
 
 /// A correction below this is none, rad.
@@ -57,6 +57,8 @@ pub(super) struct History {
     /// Places of their logs among all.
     pub(super) places: Vec<usize>,
     pub(super) runs: Vec<PastRun>,
+    /// Logs of other plans, of which the machine is learnt alone.
+    pub(super) others: Vec<String>,
     /// How often runs were left out because the machine changed.
     pub(super) changes: usize,
     /// Whether the first of these runs is left because what was sent in it, as before, came to more.
@@ -85,6 +87,10 @@ impl History {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
             let Some(starts_s) = found_at_s(plan, &*bridged(&recording.planned)?, from_s - PLAN_LEAD_S)?
             else {
+                if let Some(at_s) = breaks_off_s(plan, &recording.planned)? {
+                    return Err(ReplanFailure::BreaksOff { log: log.clone(), at_s });
+                }
+                history.others.extend((!Carried::identifies(recording)).then(|| log.clone()));
                 continue;
             };
             let rests_s = rests_s(&recording.planned, plan, starts_s + end_s);

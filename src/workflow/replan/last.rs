@@ -2,10 +2,7 @@
 
 use std::path::Path;
 
-use super::{
-    Inputs, ReplanFailure,
-    samples::{cut, found_at_s, sampled},
-};
+use super::{Inputs, ReplanFailure, samples::sampled};
 use crate::{
     log::Recording,
     plan::{PlanError, PlanEvaluation, Setup, Via},
@@ -18,6 +15,7 @@ use crate::{
             rest::{COMMAND_TAIL_S, PLAN_LEAD_S},
         },
         plan::{PlanEntry, PlanRequest, Shaping},
+        same_plan::{cut, found_at_s},
     },
 };
 

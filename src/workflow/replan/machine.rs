@@ -16,7 +16,7 @@ use crate::{
 const SEEN: f64 = 1.25;
 
 /// Runs that leave so many times as much as what was held out are none of those that a model was fitted to.
-const OTHER: f64 = 1.5;
+const OTHER: f64 = 3.0;
 
 /// The machine: fitted, or from a file; with the names of the logs behind it.
 pub(super) fn machine(

@@ -173,8 +173,13 @@ pub fn run(
     if chosen.new.is_none() && chosen.astray() {
         return Err(ReplanFailure::Astray { path: path.clone() });
     }
-    let past =
-        outcome::Past { gain: inputs.learning.gain, trust: history.trust(), runs: history.runs, decision };
+    let past = outcome::Past {
+        gain: inputs.learning.gain,
+        trust: history.trust(),
+        runs: history.runs,
+        others: history.others,
+        decision,
+    };
     let last = (last, newest.source.measured_delay_s.is_some());
     outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)
 }

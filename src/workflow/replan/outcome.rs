@@ -143,6 +143,8 @@ pub struct Replanned {
 pub struct Past {
     /// In their order.
     pub runs: Vec<PastRun>,
+    /// Logs of other plans, of which the machine is learnt alone.
+    pub others: Vec<String>,
     /// Whether to go on.
     pub decision: Decision,
     /// Share of the correction that was asked for.

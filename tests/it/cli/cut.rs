@@ -36,6 +36,42 @@ fn a_plan_that_was_cut_in_its_motion_is_not_planned_again() {
     assert!(!folder.path().join("next.mcap").exists());
 }
 
+/// An operator stops the master: what it writes of the set values stands, and so does the plan, or the plan alone goes on.
+#[test]
+fn a_run_that_was_broken_off_is_none_of_its_plan_whatever_stands() {
+    let folder = with(&["task-1-run.mcap"]);
+    let folder = folder.path();
+    let (_, text, _) = said(&run_line(folder, "export task-1-run.mcap --csv"));
+    let header: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let time = header.iter().position(|name| *name == "time_s").unwrap();
+    let table = |name: &str, stands: &[&str]| {
+        let stands: Vec<bool> = header.iter().map(|name| stands.iter().any(|of| name.contains(of))).collect();
+        let mut held: Vec<&str> = Vec::new();
+        let row = |row| {
+            let now: Vec<&str> = str::split(row, ',').collect();
+            let stopped = now[time].parse::<f64>().is_ok_and(|t_s| t_s >= 12.0);
+            if !stopped {
+                held.clone_from(&now);
+            }
+            let of = |k: usize| match header[k].ends_with("_rad_s") {
+                _ if !stopped || !stands[k] => now[k],
+                true => "0",
+                false => held[k],
+            };
+            (0..now.len()).map(of).collect::<Vec<_>>().join(",") + "\n"
+        };
+        fs::write(folder.join(name), text.lines().map(row).collect::<String>()).unwrap();
+    };
+    table("plan-too.csv", &["_planned_", "_command_", "_measured_"]);
+    table("sent.csv", &["_command_", "_measured_"]);
+    for (log, told) in [("plan-too.csv", "breaks off there"), ("sent.csv", "the machine was stopped")] {
+        let line = format!("replan task-1-run.mcap {log} -o next.mcap");
+        let (code, out, error) = said(&run_line(folder, &line));
+        assert!(code == 1 && error.contains(told), "{log}: {code} {out} {error}");
+        assert!(!folder.join("next.mcap").exists());
+    }
+}
+
 #[test]
 fn a_gap_in_the_measurement_teaches_nothing() {
     let folder = with(&["gaps.mcap"]);

@@ -1,0 +1,166 @@
+//! When a plan begins in a log that may hold it, and what the log has of it.
+
+use super::carried::rest::PLAN_LEAD_S;
+use crate::{
+    series::{Series, SignalError, Track, bridged, moving_s},
+    units::DEGREE_RAD,
+};
+
+/// Plans whose angles differ by less are the same, rad.
+const SAME_RAD: f64 = 1e-3;
+
+/// Rounds that bring a plan onto the clock of another at most, the longest step of one, and one that is none any more, s. A slow plan
+/// creeps from its rest for seconds before it is seen to move.
+const ROUNDS: usize = 40;
+const MOST_AHEAD_S: f64 = 0.5;
+const SETTLED_S: f64 = 1e-5;
+
+/// A plan is broken off within this, s, where another one that is the same before goes on by so much, rad.
+const BROKEN_OFF_S: f64 = 0.5;
+const GOES_ON_RAD: f64 = DEGREE_RAD;
+
+const ROUNDING_S: f64 = 1e-6;
+
+/// When a plan, of which every joint starts at 0, begins in a log of it, s; `None` if the log holds another. `near_s` is known from
+/// the first moving sample; the whole plan tells it better.
+pub(super) fn found_at_s(plan: &Series, log: &Series, near_s: f64) -> Result<Option<f64>, SignalError> {
+    let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
+    let mut starts_s = near_s;
+    let mut planned = cut(log, starts_s, starts_s + end_s)?;
+    for _ in 0..ROUNDS {
+        let ahead_s = ahead_s(&planned, plan);
+        starts_s -= ahead_s;
+        planned = cut(log, starts_s, starts_s + end_s)?;
+        if ahead_s.abs() < SETTLED_S {
+            break;
+        }
+    }
+    let same = planned.tracks.len() == plan.tracks.len() && within(&planned, plan, SAME_RAD);
+    Ok(same.then_some(starts_s))
+}
+
+/// Whether a log holds the plan of another one.
+pub(super) fn is_again(log: &Series, plan: &Series) -> bool {
+    let found = || {
+        let ([from_s, to_s], [near_s, _]) = (moving_s(plan)?, moving_s(log)?);
+        let own = cut(&*bridged(plan).ok()?, from_s - PLAN_LEAD_S, to_s).ok()?;
+        found_at_s(&own, &*bridged(log).ok()?, near_s - PLAN_LEAD_S).ok()?
+    };
+    found().is_some()
+}
+
+/// When a plan ends in the middle of the motion of another one that it begins like, s: the run was broken off. The last
+/// [`BROKEN_OFF_S`] of it may differ.
+pub(super) fn breaks_off_s(plan: &Series, other: &Series) -> Result<Option<f64>, SignalError> {
+    let (Some([_, to_s]), Some([near_s, _])) = (moving_s(plan), moving_s(other)) else { return Ok(None) };
+    let begun = cut(plan, 0.0, (to_s - BROKEN_OFF_S).max(0.0))?;
+    let Some(starts_s) = found_at_s(&begun, other, near_s - PLAN_LEAD_S)? else { return Ok(None) };
+    let goes_on = other.tracks.iter().any(|track| {
+        let [before, after] =
+            [-BROKEN_OFF_S, BROKEN_OFF_S].map(|by_s| track.held_at(starts_s + to_s + by_s).position);
+        (after - before).abs() > GOES_ON_RAD
+    });
+    Ok(goes_on.then_some(to_s))
+}
+
+/// How far a plan is ahead of another of equal samples, s: the shift of least squares, at most [`MOST_AHEAD_S`].
+fn ahead_s(planned: &Series, plan: &Series) -> f64 {
+    let (mut along, mut square) = (0.0, 0.0);
+    for track in &plan.tracks {
+        let Some(other) = planned.track(track.name()) else { continue };
+        let steps = track.t_s().windows(2).zip(track.position().windows(2));
+        for ((t_s, position), other) in steps.zip(other.position()) {
+            let speed = (position[1] - position[0]) / (t_s[1] - t_s[0]);
+            along += speed * (other - position[0]);
+            square += speed * speed;
+        }
+    }
+    if square > 0.0 { (along / square).clamp(-MOST_AHEAD_S, MOST_AHEAD_S) } else { 0.0 }
+}
+
+/// Whether no angle differs by so much.
+pub(super) fn within(series: &Series, plan: &Series, most_rad: f64) -> bool {
+    plan.tracks.iter().all(|plan| {
+        series.track(plan.name()).is_some_and(|track| {
+            let pairs = track.position().iter().zip(plan.position());
+            track.len() == plan.len() && pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < most_rad
+        })
+    })
+}
+
+/// A stretch of a series every [`STEP_S`](crate::fit::STEP_S), its times counted from its start; beyond its ends joints rest.
+pub(super) fn cut(series: &Series, from_s: f64, to_s: f64) -> Result<Series, SignalError> {
+    let t_s = grid(to_s - from_s);
+    let one = |track: &Track| {
+        let states: Vec<_> = t_s.iter().map(|t| track.held_at(t + from_s)).collect();
+        let position = states.iter().map(|state| state.position).collect();
+        let made = Track::of(track.kind(), track.name(), t_s.clone(), position, &[])?;
+        match track.velocity() {
+            Some(_) => made.with_velocity(states.iter().map(|state| state.velocity).collect()),
+            None => Ok(made),
+        }
+    };
+    Ok(Series { tracks: series.tracks.iter().map(one).collect::<Result<_, _>>()? })
+}
+
+/// The same where there are samples: what was not measured stays so. Joints of which nothing is left are left out.
+pub(super) fn cut_measured(series: &Series, from_s: f64, to_s: f64) -> Result<Series, SignalError> {
+    let t_s = grid(to_s - from_s);
+    let one = |track: &Track| {
+        let (mut kept_s, mut position, mut cuts) = (Vec::new(), Vec::new(), Vec::new());
+        for t in &t_s {
+            let Some(state) = track.at(t + from_s) else { continue };
+            if kept_s.last().is_some_and(|last| t - last > 1.5 * crate::fit::STEP_S) {
+                cuts.push(kept_s.len());
+            }
+            kept_s.push(*t);
+            position.push(state.position);
+        }
+        (!kept_s.is_empty()).then(|| Track::of(track.kind(), track.name(), kept_s, position, &cuts))
+    };
+    Ok(Series { tracks: series.tracks.iter().filter_map(one).collect::<Result<_, _>>()? })
+}
+
+/// A duration that is the difference of two instants is off by their rounding, and no step the longer for it.
+pub(super) fn grid(duration_s: f64) -> Vec<f64> {
+    let end_s = duration_s - ROUNDING_S;
+    let mut t_s = vec![0.0];
+    while let Some(last) = t_s.last().filter(|last| **last < end_s) {
+        let next = (last / crate::fit::STEP_S).round() + 1.0;
+        t_s.push(next * crate::fit::STEP_S);
+    }
+    t_s
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plan_recorded_between_the_samples_is_brought_onto_the_clock() {
+        let wave = |shift_s: f64| {
+            let t_s: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.01).collect();
+            let position = t_s.iter().map(|t| 0.3 * (0.4 * (t + shift_s)).sin()).collect();
+            Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] }
+        };
+        for shift_s in [-0.2, -0.004, 0.0, 0.0071, 0.15] {
+            let found = ahead_s(&wave(shift_s), &wave(0.0));
+            assert!((found - shift_s).abs() < 0.01 * shift_s.abs() + 1e-4, "{shift_s} {found}");
+        }
+    }
+
+    #[test]
+    fn a_slow_plan_is_found_however_late_it_is_seen_to_move() {
+        let sigmoid = |shift_s: f64, steps: u32| {
+            let t_s: Vec<f64> = (0..steps).map(|k| f64::from(k) * 0.01).collect();
+            let position = t_s.iter().map(|t| 0.8 * (0.5 + 0.5 * ((t - shift_s) / 12.0).tanh())).collect();
+            Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] }
+        };
+        let plan = sigmoid(30.0, 6000);
+        for off_s in [-4.0, -1.6, -0.7, 0.0, 0.7, 1.6, 4.0] {
+            let log = sigmoid(35.0, 7000);
+            let found = found_at_s(&plan, &log, 5.0 + off_s).unwrap();
+            assert!(found.is_some_and(|at_s| (at_s - 5.0).abs() < 1e-3), "{off_s} s: {found:?}");
+        }
+    }
+}
