@@ -11,7 +11,7 @@ use crate::{
     series::JointKind,
     workflow::{
         plan::MarginEntry,
-        replan::{self, Checks, Finding, JointTrust, Level, Reason, Verdict},
+        replan::{self, Checks, Finding, JointTrust, Level, Reason, TooFast, Verdict},
     },
 };
 
@@ -77,6 +77,7 @@ fn short(level: Level, finding: &Finding) -> String {
             let what = if level == Level::Stop { "oscillating by themselves" } else { "not known well" };
             format!("joints {what} ({})", doubtful.collect::<Vec<_>>().join(", "))
         }
+        Finding::TooFast(of) => format!("the plan of {} is faster than the joint", of.joint),
         Finding::Promise { .. } => "more error came than was promised".to_owned(),
         Finding::Outlook { .. } => "a larger error is expected".to_owned(),
         Finding::Whole { .. } => {
@@ -100,6 +101,7 @@ fn name(finding: &Finding) -> &'static str {
         Finding::Ends { .. } => "Both ends",
         Finding::Rest { .. } => "Rest at end",
         Finding::Limits { .. } => "Limits",
+        Finding::TooFast(_) => "Too fast",
         Finding::Trust { .. } => "Model",
         Finding::Promise { .. } => "Last promise",
         Finding::Outlook { .. } => "Next error",
@@ -139,6 +141,13 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
             });
             limits([*broken, *between], nearest) + &fast + &none
         }
+        Finding::TooFast(TooFast { joint, kind, planned_rad_s, limit_rad_s: [own, most] }) => format!(
+            "The plan of {joint} goes up to {}/s, and the joint was found to make {}/s, {}/s at most: no command mends that, a \
+             slower plan does.",
+            position(*kind, *planned_rad_s),
+            position(*kind, *own),
+            position(*kind, *most)
+        ),
         Finding::Trust { joints } => trust(joints),
         Finding::Promise { log, promised, measured_mean_peak_rad } => format!(
             "{log} promised a mean peak error of {}, in nine runs of ten below {}; {} came{}.",

@@ -114,3 +114,22 @@ fn a_run_in_which_a_valve_was_dead_teaches_nothing() {
     let step = &next["command"].as_array().unwrap()[2];
     assert!(step["peak_correction_rad"].as_f64().unwrap() > 0.001, "{step}");
 }
+
+#[test]
+fn a_plan_that_is_faster_than_its_joint_is_told_with_both_speeds() {
+    let folder = scratch();
+    let folder = folder.path();
+    let said_of = |most_deg_s: f64| {
+        fs::write(folder.join("run.csv"), followed(moves(4.0), 3.0, most_deg_s)).unwrap();
+        let (_, said, _) = said(&run_line(folder, "replan run.csv"));
+        said
+    };
+    let slow = said_of(5.0);
+    let line =
+        slow.lines().find(|line| line.starts_with("CARE  Too fast")).unwrap_or_else(|| panic!("{slow}"));
+    assert!(
+        line.contains("The plan of boom goes up to 9.3") && line.contains("a slower plan does"),
+        "{line}"
+    );
+    assert!(!said_of(30.0).contains("Too fast"));
+}

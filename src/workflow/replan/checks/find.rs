@@ -1,9 +1,9 @@
 //! The checks one by one.
 
 use super::super::{MOVES_RAD, outcome::CAREFUL};
-use super::{Check, Fastest, Finding, JointTrust, Level, Overall, Reason, Replanned};
+use super::{Check, Fastest, Finding, JointTrust, Level, Overall, Reason, Replanned, TooFast};
 use crate::{
-    fit::{Character, LEAST_SKILL, Step},
+    fit::{Character, JointFit, LEAST_SKILL, Step},
     math::range,
     plan::{BETWEEN, Limit, Margin},
     remark::Code,
@@ -42,6 +42,7 @@ pub(super) fn all(replanned: &Replanned) -> impl Iterator<Item = Check> {
     let sent = command.map_or(plan, |command| &command.series);
     let always = [ends(plan, sent), rest(sent, command), limits(replanned, command), trust(replanned)];
     let others = [
+        too_fast(replanned),
         promise(replanned),
         Some(outlook(replanned)),
         whole(replanned),
@@ -132,6 +133,34 @@ fn fastest(command: &Commanded) -> Option<Fastest> {
     let (name, kind) = (joint.name.clone(), joint.kind);
     let speed_rad_s = most(speed.iter().copied());
     Some(Fastest { joint: name, kind, speed_rad_s, ratio: joint.speed_ratio })
+}
+
+/// Speeds of a plan are looked at over so many of its steps: angles may be rounded.
+const OVER_STEPS: usize = 10;
+
+/// Of the joints whose plan is beyond the interval of their own speed limit the one that is so by most.
+fn too_fast(replanned: &Replanned) -> Option<Check> {
+    let of_joint = |fit: &JointFit| {
+        let plan = replanned.plan.track(&fit.name)?;
+        let later = plan.t_s().iter().zip(plan.position()).skip(OVER_STEPS);
+        let speeds =
+            later.zip(plan.t_s().iter().zip(plan.position())).map(|(b, a)| (b.1 - a.1) / (b.0 - a.0));
+        let [least, most] = range(speeds);
+        let sides = [(most, &fit.speed_limit_growing_rad_s), (-least, &fit.speed_limit_shrinking_rad_s)];
+        let beyond = sides.into_iter().filter_map(|(planned_rad_s, limit)| {
+            let limit_rad_s = [limit.value?, limit.interval.filter(|_| limit.identified)?[1]];
+            let (joint, kind) = (fit.name.clone(), fit.kind);
+            (planned_rad_s > limit_rad_s[1]).then_some(TooFast { joint, kind, planned_rad_s, limit_rad_s })
+        });
+        beyond.max_by(|a, b| by_limit(a).total_cmp(&by_limit(b)))
+    };
+    let all = replanned.fit.joints.iter().filter_map(of_joint);
+    let finding = Finding::TooFast(all.max_by(|a, b| by_limit(a).total_cmp(&by_limit(b)))?);
+    Some(Check { level: Level::Caution, finding })
+}
+
+fn by_limit(joint: &TooFast) -> f64 {
+    joint.planned_rad_s / joint.limit_rad_s[0]
 }
 
 fn trust(replanned: &Replanned) -> Check {

@@ -95,6 +95,8 @@ pub enum Finding {
         #[serde(default)]
         fastest: Option<Fastest>,
     },
+    /// A joint whose plan is faster than the joint was found to be.
+    TooFast(TooFast),
     /// How well each joint is predicted.
     Trust {
         /// By joint of the plan.
@@ -143,6 +145,20 @@ pub enum Finding {
         /// Why half of it is wiser; empty if nothing says so.
         reasons: Vec<Reason>,
     },
+}
+
+/// A plan that is faster than its joint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct TooFast {
+    /// The joint.
+    pub joint: String,
+    /// Whether it turns or slides.
+    pub kind: JointKind,
+    /// Largest speed of its plan, rad/s; of one that slides m/s.
+    pub planned_rad_s: f64,
+    /// The joint's own, and the highest that it may be in nineteen of twenty cases, rad/s.
+    pub limit_rad_s: [f64; 2],
 }
 
 /// A joint that is sent faster than its plan.
