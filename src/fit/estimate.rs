@@ -87,18 +87,6 @@ impl Workspace {
         speeds.fold([0.0; 2], |[up, down], speed| [up.max(speed), down.max(-speed)])
     }
 
-    /// Stretches of steps in which the angle of the run simulated last grows by this speed or more, rad/s, or shrinks by a negative one.
-    pub(super) fn faster_than(&self, speed_rad_s: f64) -> Vec<[usize; 2]> {
-        let fast = |two: &[f64]| (two[1] - two[0]) * speed_rad_s >= STEP_S * speed_rad_s * speed_rad_s;
-        let mut from = 0;
-        let steps: Vec<bool> = self.angle_rad.windows(2).map(fast).collect();
-        let stretches = steps.chunk_by(|a, b| a == b).filter_map(|stretch| {
-            from += stretch.len();
-            stretch[0].then_some([from - stretch.len(), from])
-        });
-        stretches.collect()
-    }
-
     /// Predicted angle at a sample of the run simulated last, rad.
     pub(super) fn at(&self, sample: &Sample) -> f64 {
         match self.angle_rad.get(sample.step..sample.step + 2) {

@@ -1,7 +1,7 @@
 //! One joint from its runs to what is known of it.
 
 use super::{
-    Character, Estimated, HeldOut, Oscillation, capped,
+    Character, Estimated, HeldOut, Oscillation,
     censor::{ASKED, seen},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
@@ -123,10 +123,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     );
     let nothing = skill.explains_nothing() || stands(runs);
     let skill = if nothing { skill.without_model(&held_out) } else { skill };
-    let differs = capped::missed(&problem, &found.x, &mut workspace);
-    let missed = |i: usize| discrepancy::LIMIT[i].max(differs.get(i).copied().unwrap_or_default());
-    let limits = [0, 1, 2, 3].map(|i| (reached[i], missed(i)));
-    let joint = report(named, &problem, &found, &knowledge, limits, samples, &skill);
+    let joint = report(named, &problem, &found, &knowledge, reached, samples, &skill);
     let joint = match rival {
         Some(rival) => joint.with_rival(&rival),
         None => joint,
@@ -159,7 +156,7 @@ fn report(
     problem: &Problem,
     found: &Estimate,
     knowledge: &Knowledge,
-    reached_missed: [(f64, f64); 4],
+    reached: [f64; 4],
     samples: usize,
     skill: &Skill,
 ) -> JointFit {
@@ -168,11 +165,10 @@ fn report(
         knowledge.positive(value, &[(i, problem.priors.of(i).deviation)], discrepancy)
     };
     let limit = |i: usize| {
-        let (reached, missed) = reached_missed[i];
-        let bound = Some(reached);
+        let bound = Some(reached[i]);
         if problem.shown.limits[i] {
             let value = problem.priors.of(LIMITS + i).value(found.x[LIMITS + i]);
-            Estimated { lower_bound: bound, ..one(LIMITS + i, value, missed) }
+            Estimated { lower_bound: bound, ..one(LIMITS + i, value, discrepancy::LIMIT[i]) }
         } else {
             Estimated { lower_bound: bound, ..Estimated::default() }
         }

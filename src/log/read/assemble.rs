@@ -113,7 +113,7 @@ pub(super) fn assemble(
     unset::of_sides(sides, &mut remarks);
     repeated::of_sides(sides, plan_is_command, &mut remarks);
     held::of_sides(choice, sides, &mut remarks);
-    held::of_command(command.as_mut(), sides[1].1, &mut remarks);
+    held::of_command(&mut command, sides[1].1, &mut remarks);
     spoilt::of_sides(sides[0].1, sides[1].1, command.as_ref(), &mut remarks);
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;

@@ -30,7 +30,7 @@ pub(super) fn of_sides(choice: &Choice, sides: &mut [(&str, &mut Series); 2], re
 }
 
 /// Reads what was sent as a plan is read, whose values were written again or only where they change.
-pub(super) fn of_command(command: Option<&mut Command>, measured: &Series, remarks: &mut Remarks) {
+pub(super) fn of_command(command: &mut Option<Command>, measured: &Series, remarks: &mut Remarks) {
     let Some(Command { topic, series }) = command else { return };
     repeated::of_command(series, remarks);
     if let Some([_, until_s]) = measured.span_s() {

@@ -96,24 +96,6 @@ fn a_model_is_found_again_from_its_own_noisy_response() {
     }
 }
 
-/// As where another joint draws on the same pump in one of two runs.
-#[test]
-fn a_limit_that_differs_from_run_to_run_has_an_interval_that_holds_both() {
-    let plan = trial(&["J"]);
-    let limits_rad_s = [0.2, 0.35];
-    let run = |limit_rad_s: f64| {
-        let model = Model { speed_limit_rad_s: [Some(limit_rad_s); 2], ..MODEL };
-        measured_of(&model, &plan, 1, |_| false)
-    };
-    let [slow, fast] = limits_rad_s.map(run);
-    let limit =
-        |logs: &[(&Series, &Series)]| fitted(logs).joints[0].speed_limit_growing_rad_s.interval.unwrap();
-    let [low, high] = limit(&[(&plan, &slow), (&plan, &fast)]);
-    assert!(limits_rad_s.iter().all(|limit| (low..=high).contains(limit)), "{low} {high}");
-    let [low, high] = limit(&[(&plan, &fast)]);
-    assert!(high < 1.7 * low, "{low} {high}");
-}
-
 #[test]
 fn edges_that_open_gradually_are_found_where_they_are_and_nowhere_else() {
     let plan = trial(&["J"]);
