@@ -106,10 +106,10 @@ impl Excitation {
     pub fn ramps(&self, kind: JointKind, most_rad_s: f64) -> Vec<Ramp> {
         let by = scale(kind);
         let fastest_rad_s = by * self.ramps.iter().map(|ramp| ramp.speed_rad_s).fold(0.0, f64::max);
-        // Faster than the strokes are: the fastest is that fast, and as much longer.
-        let more = if most_rad_s.is_finite() { (most_rad_s / fastest_rad_s).max(1.0) } else { 1.0 };
         let ramp = |ramp: &Ramp| {
-            let more = if by * ramp.speed_rad_s < fastest_rad_s { 1.0 } else { more };
+            // Where more is allowed than the strokes have: the fastest is that fast, and as much longer.
+            let grows = most_rad_s.is_finite() && by * ramp.speed_rad_s >= fastest_rad_s;
+            let more = if grows { (most_rad_s / fastest_rad_s).max(1.0) } else { 1.0 };
             let farthest_rad = ramp.travel_rad.max(FARTHEST_RAD);
             Ramp {
                 speed_rad_s: (by * more * ramp.speed_rad_s).min(most_rad_s),

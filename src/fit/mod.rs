@@ -72,31 +72,23 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
 }
 
 impl Fit {
-    /// The same, with what its models leave unexplained in these runs, times a factor: strokes faster than a machine leave more
-    /// than a plan does, and a plan elsewhere less than this one.
+    /// The same, with what its models leave unexplained in these runs weighed against what is known: `left` gets what was held out
+    /// of the fit, if anything, and what is found here, mean and 0.9 quantile of peaks, rad.
     #[must_use]
-    pub fn held_against(mut self, logs: &[Observation], factor: f64) -> Self {
+    pub fn held_against(
+        mut self,
+        logs: &[Observation],
+        left: impl Fn(Option<[f64; 2]>, [f64; 2]) -> [f64; 2],
+    ) -> Self {
         let mut workspace = estimate::Workspace::default();
         for joint in &mut self.joints {
             let of_log = |log: &Observation| {
                 Some(runs(log.sent.track(&joint.name)?, log.measured.track(&joint.name)?))
             };
             let runs: Vec<Run> = logs.iter().filter_map(of_log).flatten().collect();
-            let found = skill::unexplained_by(&joint.model, &runs, &mut workspace);
-            let found = found.map(|peaks_rad| peaks_rad.map(|peak_rad| factor * peak_rad));
-            joint.unexplained_peak_rad = found.or(joint.unexplained_peak_rad);
-        }
-        self
-    }
-
-    /// The same, but what is left unexplained is that of another fit of the machine, where its mean is not above that by a factor.
-    #[must_use]
-    pub fn unless_above(mut self, other: &Self, factor: f64) -> Self {
-        for joint in &mut self.joints {
-            let known = other.joint(&joint.name).and_then(|other| other.unexplained_peak_rad);
-            let above =
-                joint.unexplained_peak_rad.zip(known).is_some_and(|(own, known)| own[0] > factor * known[0]);
-            joint.unexplained_peak_rad = if above { joint.unexplained_peak_rad } else { known };
+            let (known, found) =
+                (joint.unexplained_peak_rad, skill::unexplained_by(&joint.model, &runs, &mut workspace));
+            joint.unexplained_peak_rad = found.map(|found| left(known, found)).or(known);
         }
         self
     }

@@ -113,15 +113,16 @@ pub(super) fn assemble(
     unset::of_sides(sides, &mut remarks);
     repeated::of_sides(sides, plan_is_command, &mut remarks);
     held::of_sides(choice, sides, &mut remarks);
-    held::of_command(&mut command, sides[1].1, &mut remarks);
+    if let Some(command) = &mut command {
+        repeated::of_command(&mut command.series, &mut remarks);
+        held::of_command(command, sides[1].1, &mut remarks);
+    }
     spoilt::of_sides(sides[0].1, sides[1].1, command.as_ref(), &mut remarks);
     quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);
     let mut source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
-    if let Some(command) = &command {
-        unlike::of_command(&planned, &command.series, &source.planned_topic, &mut remarks);
-    }
+    unlike::of_command(&planned, command.as_ref(), &source.planned_topic, &mut remarks);
     source.measured_delay_s = Some(delay_s).filter(|delay_s| *delay_s != 0.0);
     let Extracted { attachments, metadata, .. } = assembly.extracted;
     // Where both sides are there, a table that lacks one is no doubt.

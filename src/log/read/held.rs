@@ -1,7 +1,7 @@
 //! Plans that are written only where they change, as historians and subscriptions write them: between two values the
 //! first one holds.
 
-use super::{quality::is_of_gaps, recording::Command, repeated, select_topics::Choice};
+use super::{quality::is_of_gaps, recording::Command, select_topics::Choice};
 use crate::{
     remark::{Code, Remarks},
     series::{Series, Track},
@@ -29,10 +29,8 @@ pub(super) fn of_sides(choice: &Choice, sides: &mut [(&str, &mut Series); 2], re
     }
 }
 
-/// Reads what was sent as a plan is read, whose values were written again or only where they change.
-pub(super) fn of_command(command: &mut Option<Command>, measured: &Series, remarks: &mut Remarks) {
-    let Some(Command { topic, series }) = command else { return };
-    repeated::of_command(series, remarks);
+/// Holds what was sent as a plan is held.
+pub(super) fn of_command(Command { topic, series }: &mut Command, measured: &Series, remarks: &mut Remarks) {
     if let Some([_, until_s]) = measured.span_s() {
         of_side(("command", &[topic]), series, (until_s, false), remarks);
     }

@@ -1,6 +1,6 @@
 //! Finds joints that were recorded in another frame than their plan: sign, zero, unit or name.
 
-use super::quality::looks_like_degrees;
+use super::{quality::looks_like_degrees, recording::Command};
 use crate::{
     remark::{Code, Remarks},
     series::{Series, Track},
@@ -48,9 +48,10 @@ pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remark
 }
 
 /// Remarks joints whose command is farther from their plan than that moves: a correction is not, a signal to a valve may be.
-pub(super) fn of_command(planned: &Series, command: &Series, topic: &str, remarks: &mut Remarks) {
+pub(super) fn of_command(planned: &Series, command: Option<&Command>, topic: &str, remarks: &mut Remarks) {
+    let Some(Command { series: sent, .. }) = command else { return };
     for track in &planned.tracks {
-        let own = command.track(track.name()).filter(|own| own.kind() == track.kind());
+        let own = sent.track(track.name()).filter(|own| own.kind() == track.kind());
         let Some(alike) = own.and_then(|own| Alike::of(&both(track, own))) else { continue };
         let small = SMALL[usize::from(!track.turns())];
         if alike.motion > 0.0 && alike.rms_error > small.max(alike.motion) {

@@ -34,10 +34,13 @@ pub(super) fn machine(
         // What the models leave unexplained elsewhere, as in strokes of an identification run, is not what they leave here.
         let seen: Vec<Observation<'_>> = observed.iter().map(|run| observation(run)).collect();
         let (all, any) = (file.logs.iter().all(own), file.logs.iter().any(own));
-        let held = file.fit.clone().held_against(&seen, if any && !all { SEEN } else { 1.0 });
-        // What was held out of the fit tells more, unless these are other logs of those names.
-        let fit = if all { held.unless_above(&file.fit, OTHER) } else { held };
-        return Ok((fit, file.logs, doubts));
+        let left = |known: Option<[f64; 2]>, found: [f64; 2]| match known {
+            // What was held out of the fit tells more, unless these are other logs of those names.
+            Some(known) if all && found[0] <= OTHER * known[0] => known,
+            _ if any && !all => found.map(|peak_rad| SEEN * peak_rad),
+            _ => found,
+        };
+        return Ok((file.fit.held_against(&seen, left), file.logs, doubts));
     }
     let fitted = fit::of(logs, observed).map_err(fit::FitFailure::from)?;
     Ok((fitted.fit, fitted.runs.into_iter().map(|run| run.log).collect(), fitted.remarks))

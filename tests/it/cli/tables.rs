@@ -229,6 +229,16 @@ fn files_that_tell_the_same_time_twice_are_refused_in_either_order() {
     }
 }
 
+/// Codes of the remarks of a report that has some, and the planned onsets of its starts, s.
+fn told(folder: &Path, log: &str) -> (Vec<String>, Vec<f64>) {
+    let (code, text, error) = said(&hydrotrace(folder, &format!("report {log} --json")));
+    assert_eq!(code, 3, "{log}: {error}");
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let all = |key: &str| report[key].as_array().unwrap().clone();
+    let codes = all("remarks").iter().map(|one| one["code"].as_str().unwrap().to_owned()).collect();
+    (codes, all("transitions").iter().map(|one| one["planned_onset_s"].as_f64().unwrap()).collect())
+}
+
 #[test]
 fn a_clock_that_goes_back_splits_the_run_and_costs_no_row() {
     for back_s in [0.3, 0.7, 5.0] {
@@ -243,17 +253,8 @@ fn a_clock_that_goes_back_splits_the_run_and_costs_no_row() {
         fs::write(folder.path().join("a.csv"), text).unwrap();
         let (code, text, _) = said(&hydrotrace(folder.path(), "import a.csv -o a.mcap"));
         assert!(code == 3 && text.contains("clock-jump x1") && !text.contains("reordered"), "{text}");
-        let report = said(&hydrotrace(folder.path(), "report a.mcap --json")).1;
-        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
-        let codes: Vec<&str> =
-            report["remarks"].as_array().unwrap().iter().map(|r| r["code"].as_str().unwrap()).collect();
-        assert_eq!(codes, ["clock-jump", "clock-jump"], "{back_s}: {report}");
-        let starts: Vec<f64> = report["transitions"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|one| one["planned_onset_s"].as_f64().unwrap())
-            .collect();
+        let (codes, starts) = told(folder.path(), "a.mcap");
+        assert_eq!(codes, ["clock-jump", "clock-jump"], "{back_s}");
         assert_eq!(starts.len(), 2, "{back_s}");
         assert!((starts[1] - starts[0] - 5.0).abs() < 0.03, "{back_s}: {starts:?}");
     }
@@ -282,18 +283,8 @@ fn a_clock_that_goes_back_splits_tables_of_other_forms_too() {
     {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join(name), text).unwrap();
-        let (code, text, error) = said(&hydrotrace(folder.path(), &format!("report {name} --json")));
-        assert_eq!(code, 3, "{name}: {error}");
-        let report: serde_json::Value = serde_json::from_str(&text).unwrap();
-        let codes: Vec<&str> =
-            report["remarks"].as_array().unwrap().iter().map(|r| r["code"].as_str().unwrap()).collect();
-        assert!(codes.iter().all(|code| *code == "clock-jump"), "{name}: {}", report["remarks"]);
-        let starts: Vec<f64> = report["transitions"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|one| one["planned_onset_s"].as_f64().unwrap())
-            .collect();
+        let (codes, starts) = told(folder.path(), name);
+        assert!(codes.iter().all(|code| code == "clock-jump"), "{name}: {codes:?}");
         assert!(starts.len() == 2 && (starts[1] - starts[0] - 10.0).abs() < 0.05, "{name}: {starts:?}");
     }
 }
