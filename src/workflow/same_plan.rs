@@ -15,9 +15,10 @@ const ROUNDS: usize = 40;
 const MOST_AHEAD_S: f64 = 0.5;
 const SETTLED_S: f64 = 1e-5;
 
-/// A plan is broken off within this, s, where another one that is the same before goes on by so much, rad.
-const BROKEN_OFF_S: f64 = 0.5;
-const GOES_ON_RAD: f64 = DEGREE_RAD;
+/// A plan is broken off within this, s, where another one that is the same before goes on by so much, rad: a plan that ends there
+/// has a ramp, and is another one from its begin on.
+const BROKEN_OFF_S: f64 = 0.2;
+const GOES_ON_RAD: f64 = 0.5 * DEGREE_RAD;
 
 const ROUNDING_S: f64 = 1e-6;
 
@@ -49,10 +50,12 @@ pub(super) fn is_again(log: &Series, plan: &Series) -> bool {
     found().is_some()
 }
 
-/// When a plan ends in the middle of the motion of another one that it begins like, s: the run was broken off. The last
-/// [`BROKEN_OFF_S`] of it may differ.
-pub(super) fn breaks_off_s(plan: &Series, other: &Series) -> Result<Option<f64>, SignalError> {
-    let (Some([_, to_s]), Some([near_s, _])) = (moving_s(plan), moving_s(other)) else { return Ok(None) };
+/// How long after its first motion a plan ends in the middle of that of another one that it begins like, s: the run was broken off.
+/// The last [`BROKEN_OFF_S`] of it may differ.
+pub(super) fn breaks_off_after_s(plan: &Series, other: &Series) -> Result<Option<f64>, SignalError> {
+    let (Some([from_s, to_s]), Some([near_s, _])) = (moving_s(plan), moving_s(other)) else {
+        return Ok(None);
+    };
     let begun = cut(plan, 0.0, (to_s - BROKEN_OFF_S).max(0.0))?;
     let Some(starts_s) = found_at_s(&begun, other, near_s - PLAN_LEAD_S)? else { return Ok(None) };
     let goes_on = other.tracks.iter().any(|track| {
@@ -60,7 +63,7 @@ pub(super) fn breaks_off_s(plan: &Series, other: &Series) -> Result<Option<f64>,
             [-BROKEN_OFF_S, BROKEN_OFF_S].map(|by_s| track.held_at(starts_s + to_s + by_s).position);
         (after - before).abs() > GOES_ON_RAD
     });
-    Ok(goes_on.then_some(to_s))
+    Ok(goes_on.then_some(to_s - from_s))
 }
 
 /// How far a plan is ahead of another of equal samples, s: the shift of least squares, at most [`MOST_AHEAD_S`].
@@ -135,6 +138,32 @@ pub(super) fn grid(duration_s: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_plan_that_stops_at_once_in_that_of_another_is_broken_off_and_a_shorter_move_is_none() {
+        // Ramps of 0.4 s to 8 deg/s, from 2 s on.
+        let plan = |cruise_s: f64, cut_s: f64| {
+            let t_s: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.01).collect();
+            let speed =
+                |t_s: f64| (t_s / 0.4).min((cruise_s + 0.8 - t_s) / 0.4).clamp(0.0, 1.0) * 8.0 * DEGREE_RAD;
+            let mut at_rad = 0.0;
+            let position = t_s.iter().map(|t| {
+                at_rad += 0.01 * if *t < cut_s { speed(t - 2.0) } else { 0.0 };
+                at_rad
+            });
+            let position = position.collect();
+            Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] }
+        };
+        let whole = plan(5.0, 20.0);
+        let broken = |short: &Series| {
+            let begun = cut(short, 2.0 - PLAN_LEAD_S, 18.0).unwrap();
+            breaks_off_after_s(&begun, &whole).unwrap()
+        };
+        let after_s = broken(&plan(5.0, 5.0)).unwrap();
+        assert!((after_s - 3.0).abs() < 0.1, "{after_s}");
+        assert_eq!(broken(&plan(2.0, 20.0)), None, "a shorter move with the same ramps");
+        assert_eq!(broken(&whole), None);
+    }
 
     #[test]
     fn a_plan_recorded_between_the_samples_is_brought_onto_the_clock() {

@@ -83,10 +83,10 @@ pub enum ReplanFailure {
     Spoilt { path: PathBuf, why: String },
     /// A plan that ends in the middle of the motion that another log has.
     #[error(
-        "the plan of the last log is that of {log} up to {at_s:.1} s and breaks off there: the run was stopped, and no arm stops at \
-         once; leave the last log out"
+        "the plan of the last log is that of {log} for {after_s:.1} s from its first motion on, and breaks off there: the run was stopped, and no arm stops at \
+         once; leave the last log out, or, if its plan is meant, {log}"
     )]
-    BreaksOff { log: String, at_s: f64 },
+    BreaksOff { log: String, after_s: f64 },
     /// A plan that no joint can follow, whatever is sent.
     #[error(
         "{}: the plan of {joint} steps by {size} at {at_s:.2} s: no joint follows a step, and a correction would only \

@@ -11,7 +11,7 @@ use crate::{
     series::{JointKind, Series, Track, align, bridged, moving_s},
     workflow::{
         carried::{Carried, Promise, rest::PLAN_LEAD_S},
-        same_plan::{breaks_off_s, cut, cut_measured, found_at_s, within},
+        same_plan::{breaks_off_after_s, cut, cut_measured, found_at_s, within},
     },
 };
 
@@ -87,8 +87,8 @@ impl History {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
             let Some(starts_s) = found_at_s(plan, &*bridged(&recording.planned)?, from_s - PLAN_LEAD_S)?
             else {
-                if let Some(at_s) = breaks_off_s(plan, &recording.planned)? {
-                    return Err(ReplanFailure::BreaksOff { log: log.clone(), at_s });
+                if let Some(after_s) = breaks_off_after_s(plan, &recording.planned)? {
+                    return Err(ReplanFailure::BreaksOff { log: log.clone(), after_s });
                 }
                 history.others.extend((!Carried::identifies(recording)).then(|| log.clone()));
                 continue;
