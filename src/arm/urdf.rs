@@ -22,6 +22,8 @@ const LARGEST_TEXT: usize = 4 << 20;
 const DEEPEST: usize = 32;
 /// Joints of one file, fixed ones included.
 const MOST_JOINTS: usize = 4096;
+/// A limit between the two is in degrees, rad: of five to a hundred turns, and beyond are joints without stops.
+const IN_DEGREES_RAD: [f64; 2] = [30.0, 720.0];
 
 impl Chain {
     /// Reads the text of a URDF; `file` stands for it in errors.
@@ -33,7 +35,7 @@ impl Chain {
     ///
     /// [`ArmError`], naming the element: text that is no URDF, links or joints that are missing,
     /// double or in a loop, several possible tools, moving joints beside the path to the tool,
-    /// other kinds of joints, numbers that are not finite, limits upside down.
+    /// other kinds of joints, numbers that are not finite, limits upside down or in degrees.
     pub fn from_urdf(text: &str, file: &str, tool: Option<&str>) -> Result<Self, ArmError> {
         let at = Witness(file);
         let robot = Arc::new(parsed(text, &at)?);
@@ -286,6 +288,16 @@ impl<'a> Tree<'a> {
         if lower_rad.is_nan() || upper_rad.is_nan() || lower_rad >= upper_rad {
             let found = format!("lower {lower_rad} and upper {upper_rad}");
             return Err(self.at.unexpected(format!("{element} <limit>"), found, "lower below upper, rad"));
+        }
+        let [least_rad, most_rad] = IN_DEGREES_RAD;
+        let widest_rad = lower_rad.abs().max(upper_rad.abs());
+        if joint.kind == JointKind::Revolute && widest_rad > least_rad && widest_rad <= most_rad {
+            let found = format!(
+                "lower {lower_rad} and upper {upper_rad}, {:.0} turns",
+                widest_rad / std::f64::consts::TAU
+            );
+            let expected = "radians: degrees times 0.0174533; a joint without stops is of type continuous";
+            return Err(self.at.unexpected(format!("{element} <limit>"), found, expected));
         }
         // The format's default, zero, means that nothing is said.
         let said = |value: f64| if value > 0.0 { value } else { f64::INFINITY };

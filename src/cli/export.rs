@@ -44,7 +44,7 @@ pub(super) struct Args {
     #[arg(short, long, value_name = "FILE", required_if_eq("parquet", "true"))]
     output: Option<PathBuf>,
 
-    /// Angles in degrees; the names of the columns change with the unit
+    /// Angles in degrees, lengths of joints that slide in mm; the names of the columns change with the unit
     #[arg(long)]
     degrees: bool,
 

@@ -199,11 +199,14 @@ impl Knowledge {
         Estimated { identified: found.identified && self.feed_forward(problem, x).identified, ..found }
     }
 
-    /// The position gain.
+    /// The position gain. Smooth runs do not identify it: they show by how much the joint is behind at a speed, and a delay
+    /// of the set values makes a part of that, which they do not tell apart.
     pub(super) fn position_gain(&self, problem: &Problem, x: &[f64]) -> Estimated {
         let part = (POSITION_GAIN, problem.priors.of(POSITION_GAIN).deviation);
         let missed = self.missed(discrepancy::POSITION_GAIN, discrepancy::SMOOTH_POSITION_GAIN);
-        self.unfiltered(problem, x, self.positive(problem.model(x).position_gain_1_s, &[part], missed))
+        let found =
+            self.unfiltered(problem, x, self.positive(problem.model(x).position_gain_1_s, &[part], missed));
+        Estimated { identified: found.identified && self.sharp, ..found }
     }
 
     /// What must be wanted before the joint leaves rest: dead band, hysteresis and stiction, which logs of angles hardly

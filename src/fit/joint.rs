@@ -91,9 +91,10 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     }
     let mut rival = None;
     match SetValues::of(&problem, &found, &mut workspace) {
-        SetValues::Late(late) => {
+        SetValues::Late(late, prompt) => {
             problem.shown.late = true;
             found = late;
+            rival = prompt;
         }
         SetValues::MayBeLate(model) => rival = Some(model),
         SetValues::Prompt => {}

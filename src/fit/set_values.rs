@@ -15,7 +15,7 @@ const AS_GOOD: f64 = 2.0;
 /// Set values that come less late show the valve's lag by another name, s.
 const SHORTEST_S: f64 = 0.06;
 
-/// Below this, s, they may still be prompt: fits to six of three hundred joints whose set values are found 60 to 75 ms.
+/// Below this, s, they may still be prompt: fits to six of three hundred joints whose set values are so find 60 to 75 ms.
 const SURELY_LATE_S: f64 = 0.08;
 
 /// A loop whose gain is larger than this by its lag rings: one that is calm has another structure, for which late set values
@@ -31,8 +31,8 @@ const STARTS: [[f64; 3]; 2] = [[0.1, 0.15, 0.9], [0.15, 0.05, 0.05]];
 
 /// What late set values make of an estimate with prompt ones.
 pub(super) enum SetValues {
-    /// The data show them.
-    Late(Estimate),
+    /// The data show them; with the model of prompt ones where those come so little late that these may hold.
+    Late(Estimate, Option<Model>),
     /// They hardly tell them from prompt ones.
     MayBeLate(Model),
     /// Late ones explain the data worse, or what they explain has another cause.
@@ -63,10 +63,11 @@ impl SetValues {
             model.set_values_late_s() < SHORTEST_S || model.position_gain_1_s * model.lag_s() > RINGS;
         if stands_in || gained < -AS_GOOD {
             Self::Prompt
-        } else if gained < GAIN || model.set_values_late_s() < SURELY_LATE_S {
+        } else if gained < GAIN {
             Self::MayBeLate(model)
         } else {
-            Self::Late(best)
+            let unsure = model.set_values_late_s() < SURELY_LATE_S;
+            Self::Late(best, unsure.then(|| problem.model(&found.x)))
         }
     }
 }

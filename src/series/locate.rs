@@ -15,6 +15,9 @@ pub struct Located {
     pub joints: usize,
     /// Other places that fit as well.
     pub others: usize,
+    /// Length of the motion in the longer series by its own, where it fits clearly better at another than 1, for clocks that run
+    /// apart: `rms_rad` is what is then left; `at_s` is of 1.
+    pub pace: Option<f64>,
 }
 
 /// Step of the first look, s.
@@ -32,6 +35,13 @@ const PLACES: usize = 8;
 /// Places whose differences are within this factor, or within this share of the motion, fit equally well.
 const ALIKE: f64 = 1.5;
 const ALIKE_SHARE: f64 = 0.01;
+/// Clocks that run apart do so by this at most, and show if that halves what is left.
+const MOST_APART: f64 = 0.03;
+const CLEARLY: f64 = 0.5;
+/// Clocks that run apart by less over the motion agree, s.
+const LEAST_APART_S: f64 = 0.01;
+/// Instants at which a pace is judged.
+const PACE_INSTANTS: usize = 400;
 
 /// Looks for `motion` in `within` by its positions, over the joints of both; a metre counts as a radian. Of equally good
 /// places the first. `None` if they share no joint, the motion does not move, less than four fifths
@@ -53,7 +63,7 @@ pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
     let earliest_s = start_s - (1.0 - COVERED) * length_s;
     let latest_s = end_s - COVERED * length_s;
     let first = first_look(&pairs, [from_s, to_s], [earliest_s, latest_s])?;
-    let judge = |at_s: f64| left_rad(&pairs, [from_s, to_s], at_s, INSTANTS);
+    let judge = |at_s: f64| left_rad(&pairs, [from_s, to_s], at_s, 1.0, INSTANTS);
     let mut found: Vec<(f64, f64)> = Vec::new();
     for near_s in first {
         let at_s = least(&judge, near_s - STEP_S, near_s + STEP_S);
@@ -64,8 +74,26 @@ pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
     let best_rad = found.iter().map(|place| place.1).min_by(f64::total_cmp)?;
     found.retain(|place| place.1 <= (ALIKE * best_rad).max(ALIKE_SHARE * spread_rad));
     let (at_s, rms_rad) = found.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let joints = pairs.len();
-    Some(Located { at_s: at_s - from_s, rms_rad, spread_rad, joints, others: found.len() - 1 })
+    let (pace, rms_rad) =
+        paced(&pairs, [from_s, to_s], at_s).map_or((None, rms_rad), |paced| (Some(paced.0), paced.1));
+    let (joints, others) = (pairs.len(), found.len() - 1);
+    Some(Located { at_s: at_s - from_s, rms_rad, spread_rad, joints, others, pace })
+}
+
+/// The pace at which a motion fits clearly better than at 1, and what is then left, rad.
+fn paced(pairs: &[(&Track, &Track)], [from_s, to_s]: [f64; 2], at_s: f64) -> Option<(f64, f64)> {
+    let length_s = to_s - from_s;
+    let left = |pace: f64, at_s: f64| left_rad(pairs, [from_s, to_s], at_s, pace, PACE_INSTANTS);
+    // About the middle, place and pace hardly depend on each other.
+    let place = |pace: f64| {
+        let middle_s = at_s + 0.5 * (1.0 - pace) * length_s;
+        let away_s = (1.0 - pace).abs() * length_s + STEP_S;
+        least(&|at_s| left(pace, at_s), middle_s - away_s, middle_s + away_s)
+    };
+    let best = least(&|pace| left(pace, place(pace)), 1.0 - MOST_APART, 1.0 + MOST_APART);
+    let found_rad = left(best, place(best))?;
+    let shows = (best - 1.0).abs() * length_s > LEAST_APART_S && found_rad < CLEARLY * left(1.0, at_s)?;
+    shows.then_some((best, found_rad))
 }
 
 /// The best places of a coarse grid, at least half a motion apart: when its first sample lies there, s.
@@ -125,16 +153,22 @@ fn first_look(
     (!apart.is_empty()).then_some(apart)
 }
 
-/// Root mean square difference when the first sample of the motion lies at `at_s`, rad; `None` where
+/// Root mean square difference when the first sample of the motion lies at `at_s` and it runs at a pace, rad; `None` where
 /// too few samples overlap.
-fn left_rad(pairs: &[(&Track, &Track)], [from_s, to_s]: [f64; 2], at_s: f64, instants: usize) -> Option<f64> {
+fn left_rad(
+    pairs: &[(&Track, &Track)],
+    [from_s, to_s]: [f64; 2],
+    at_s: f64,
+    pace: f64,
+    instants: usize,
+) -> Option<f64> {
     let (mut sum, mut seen) = (0.0, 0_usize);
     for (motion, within) in pairs {
         let mut cursors = (0, 0);
         for k in 0..instants {
             let t_s = (to_s - from_s) * k as f64 / (instants - 1) as f64;
             let wanted = motion.at_after(&mut cursors.0, from_s + t_s);
-            let there = within.at_after(&mut cursors.1, at_s + t_s);
+            let there = within.at_after(&mut cursors.1, at_s + pace * t_s);
             if let (Some(wanted), Some(there)) = (wanted, there) {
                 sum += (wanted.position - there.position).powi(2);
                 seen += 1;
@@ -218,6 +252,20 @@ mod tests {
     fn of_three_runs_the_first_is_taken_and_the_others_are_counted() {
         let found = locate(&motion(), &within(&[12.0, 30.0, 55.5], 80.0)).unwrap();
         assert!((found.at_s - 7.0).abs() < 1e-3 && found.others == 2, "{found:?}");
+    }
+
+    #[test]
+    fn a_clock_that_runs_apart_is_told_from_one_that_does_not() {
+        for pace in [1.0, 1.02, 0.98] {
+            let mut log = within(&[31.2345], 100.0);
+            for track in &mut log.tracks {
+                let t_s: Vec<f64> = track.t_s().iter().map(|t| 31.2345 + pace * (t - 31.2345)).collect();
+                *track = Track::new(track.name(), t_s, track.position().to_vec(), &[]).unwrap();
+            }
+            let found = locate(&motion(), &log).unwrap();
+            assert!((found.pace.unwrap_or(1.0) - pace).abs() < 1e-3, "{pace}: {found:?}");
+            assert!(found.rms_rad < 0.01 * found.spread_rad, "{pace}: {found:?}");
+        }
     }
 
     #[test]

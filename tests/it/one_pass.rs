@@ -174,6 +174,6 @@ fn a_joint_that_slides_is_a_track_in_metres() {
         let (logs, read, unit) = (vec![path.clone()], ReadOptions::default(), AngleUnit::Degrees);
         let table = export::run(&export::Inputs { logs, read, command: None, unit }).unwrap().table;
         let columns: Vec<&str> = table.column_names().collect();
-        assert!(columns.contains(&"lift_planned_m") && columns.contains(&"turn_planned_deg"), "{columns:?}");
+        assert!(columns.contains(&"lift_planned_mm") && columns.contains(&"turn_planned_deg"), "{columns:?}");
     }
 }

@@ -34,7 +34,7 @@ pub enum ExportError {
 /// Columns: `stamp_ns` (since 1970), `time_s` (since the start of the run), and for each joint
 /// `J_planned_rad`, `J_planned_rad_s` where the plan gives speeds, `J_measured_rad`,
 /// `J_measured_rad_s`, `J_command_rad` and `J_error_rad`, as far as there are such; `deg` if asked
-/// for, `m` in place of `rad` for joints that slide. Plan and
+/// for. For joints that slide `m` stands in place of `rad`, `mm` in place of `deg`. Plan and
 /// measurement stand as they were sampled, each at its own instants, so that
 /// [`read_csv`](super::read_csv) gives the same run back; the error is planned minus measured at
 /// measured instants, the plan interpolated as a report does.
@@ -59,18 +59,17 @@ impl RunTable {
     /// one side if there is no other.
     pub fn new(recording: &Recording, unit: AngleUnit) -> Self {
         let epoch_ns = recording.source.epoch_ns;
-        let (suffix, per_rad) = match unit {
-            AngleUnit::Radians => ("rad", 1.0),
-            AngleUnit::Degrees => ("deg", 1.0 / DEGREE_RAD),
+        let unit_of = |kind| match (kind, unit) {
+            (JointKind::Turns, AngleUnit::Radians) => ("rad", 1.0),
+            (JointKind::Turns, AngleUnit::Degrees) => ("deg", 1.0 / DEGREE_RAD),
+            (JointKind::Slides, AngleUnit::Radians) => ("m", 1.0),
+            (JointKind::Slides, AngleUnit::Degrees) => ("mm", 1000.0),
         };
         let command = recording.command.as_ref().map(|command| &command.series);
         let mut all: Vec<Samples> = Vec::new();
         for joint in joints(recording) {
             let mut add = |kind: JointKind, what: &str, per: &str, t_s: &[f64], values: &[f64]| {
-                let (unit, factor) = match kind {
-                    JointKind::Turns => (suffix, per_rad),
-                    JointKind::Slides => (kind.unit(), 1.0),
-                };
+                let (unit, factor) = unit_of(kind);
                 all.push(Samples {
                     name: format!("{joint}_{what}_{unit}{per}"),
                     stamp_ns: t_s.iter().map(|&t_s| stamp_ns(epoch_ns, t_s)).collect(),

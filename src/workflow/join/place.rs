@@ -61,13 +61,27 @@ impl Plan {
             let (plan, topic, at_s) = (path.to_owned(), topic.to_owned(), found.at_s + self.span_s()[0]);
             return Err(JoinFailure::SentOtherwise { plan, topic, at_s, share: share(&found) });
         }
-        if !is_same(&found) {
-            let message = format!(
-                "what was sent on {topic} is not quite what {} holds: {:.1} % of the motion is left",
+        let doubt = match found.pace {
+            Some(pace) => Some(format!(
+                "what was sent on {topic} lasts {:.2} % {} than in {}: the recorder's clock runs {} than the sender's, or an override \
+                 was set. Where it is the clock, multiply the times of the recording by {:.5} before it is imported: its errors grow \
+                 with what the two are apart",
+                100.0 * (pace - 1.0).abs(),
+                if pace > 1.0 { "longer" } else { "shorter" },
                 path.display(),
-                100.0 * share(&found)
-            );
-            remarks.add(Code::SentOtherwise, 1, message);
+                if pace > 1.0 { "faster" } else { "slower" },
+                1.0 / pace
+            )),
+            None => (!is_same(&found)).then(|| {
+                format!(
+                    "what was sent on {topic} is not quite what {} holds: {:.1} % of the motion is left",
+                    path.display(),
+                    100.0 * share(&found)
+                )
+            }),
+        };
+        if let Some(doubt) = doubt {
+            remarks.add(Code::SentOtherwise, 1, doubt);
         }
         if !commanded && self.command.is_some() {
             let message =
@@ -80,9 +94,9 @@ impl Plan {
     }
 }
 
-/// Whether the sent signal is the planned one.
+/// Whether the sent signal is the planned one, at its own times.
 pub(super) fn is_same(found: &Located) -> bool {
-    share(found) <= SAME
+    share(found) <= SAME && found.pace.is_none()
 }
 
 /// Difference as a share of the motion.

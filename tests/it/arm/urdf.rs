@@ -48,6 +48,11 @@ fn faults_name_element_found_and_expected() {
         ),
         (r#"xyz="0 1 0"/><limit"#, r#"xyz="0 0 0"/><limit"#, r#"<joint "J1"> <axis>: found [0.0, 0.0, 0.0]"#),
         (r#"lower="0.349066""#, r#"lower="9""#, r#"<joint "J1"> <limit>: found lower 9 and upper 1.658063"#),
+        (
+            r#"lower="0.349066""#,
+            r#"lower="-170""#,
+            r#"found lower -170 and upper 1.658063, 27 turns, expected radians: degrees times"#,
+        ),
         (r#"mass value="55.0""#, r#"mass value="-55""#, r#"<link "link1"> <inertial>: found mass -55 kg"#),
         (r#"xyz="1.2 0 0""#, r#"xyz="inf 0 0""#, r#"<joint "J2"> <origin>: found xyz [inf, 0.0, 0.0]"#),
         (r#"xyz="1.2 0 0""#, r#"xyz="1.2 0""#, "cannot be read"),

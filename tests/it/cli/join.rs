@@ -326,3 +326,33 @@ fn a_log_of_the_measurement_alone_asks_for_the_time_and_does_with_it() {
         assert!(expected.0 == found.0 && (expected.1 - found.1).abs() < 0.01, "{expected:?} {found:?}");
     }
 }
+
+#[test]
+fn a_recorder_whose_clock_runs_apart_is_told_by_what_was_sent() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for name in ["whole.mcap", "next.mcap"] {
+        std::fs::copy(RUNS.path().join(name), at.join(name)).unwrap();
+    }
+    done(at, "export whole.mcap --csv --planned /command/joint_states -o whole.csv");
+    let text = std::fs::read_to_string(at.join("whole.csv")).unwrap();
+    for (name, pace, says) in [
+        ("right", 1.0, None),
+        ("fast", 1.005, Some("lasts 0.50 % longer than in next.mcap")),
+        ("slow", 0.98, Some("multiply the times of the recording by 1.0204")),
+    ] {
+        let (head, rows) = text.split_once('\n').unwrap();
+        let paced = |row: &str| {
+            let (t_s, rest) = row.split_once(',').unwrap();
+            format!("{:.6},{rest}\n", pace * t_s.parse::<f64>().unwrap())
+        };
+        let table = head.replace("planned", "command") + "\n" + &rows.lines().map(paced).collect::<String>();
+        std::fs::write(at.join(format!("{name}.csv")), table).unwrap();
+        hydrotrace(at, &format!("import {name}.csv -o {name}.mcap"));
+        let joined = hydrotrace(at, &format!("join {name}.mcap --plan next.mcap -o {name}-run.mcap"));
+        let text = String::from_utf8_lossy(&joined.stdout).into_owned();
+        assert!(text.contains("the command of next.mcap"), "{text}");
+        assert_eq!(joined.status.code(), Some(if says.is_some() { 3 } else { 0 }), "{text}");
+        assert!(says.is_none_or(|says| text.contains(says)), "{text}");
+    }
+}

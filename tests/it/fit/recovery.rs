@@ -31,10 +31,10 @@ fn a_trial_of_each_joint_finds_lag_dead_band_gains_and_speed_limits() {
 }
 
 #[test]
-fn a_smooth_task_shows_no_limit_and_no_lag() {
+fn a_smooth_task_shows_no_limit_no_lag_and_no_position_gain() {
     let (columns, _) = recover(200..202, &task(1));
     for (column, (name, ..)) in columns.iter().zip(QUANTITIES) {
-        if name == "lag" || is_limit(name) {
+        if name == "lag" || name == "position gain" || is_limit(name) {
             assert_eq!(column.errors.len(), 0, "{name}");
         }
     }
