@@ -38,6 +38,8 @@ pub enum Code {
     UnlikePlan,
     /// Joints that follow their plan at another time: clocks differ, or the machine ran at another speed.
     OtherTime,
+    /// Runs to compare whose measurements differ in noise or rate.
+    MeasuredOtherwise,
     /// A machine that stood while its plan went on.
     Stopped,
     /// Header stamps that are zero or stand still, so another clock was used.

@@ -12,6 +12,9 @@ use crate::series::{Pair, local_quadratic};
 /// Of the standard normal distribution, 97.5 %.
 const NORMAL_975: f64 = 1.959_963_984_540_054;
 
+/// A joint that turns three times within this time before a start swings, s.
+const SWINGS_S: f64 = 3.0;
+
 /// The two onsets of a transition.
 pub(super) struct Delay {
     pub(super) method: OnsetMethod,
@@ -126,6 +129,9 @@ pub(super) fn delay(
         return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     };
     let blind_s = blind_s(pair, signals, (planned, planned_s), (motion, onset.at_s));
+    if swings(signals, planned, planned_s) {
+        return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
+    }
     if motion.reversal {
         return reversal(pair, signals, (planned, planned_s), motion, blind_s, rules);
     }
@@ -140,6 +146,16 @@ pub(super) fn delay(
             onset.at_s - planned_s + (onset.interval_s[1] - onset.at_s).max(0.0).hypot(early_s) + blind_s,
         ]),
     }
+}
+
+/// Whether the joint went to and fro while its plan rested before a start, as one that hunts does: which of its motions is
+/// the answer cannot be told.
+fn swings(signals: &Signals, planned: &Motion, planned_s: f64) -> bool {
+    let from_s = planned_s - planned.rest_before_s.min(SWINGS_S);
+    let before = signals.measured.iter().filter(|motion| motion.segment == planned.segment);
+    let before = before.filter(|motion| motion.start_s > from_s && motion.start_s < planned_s);
+    let directions: Vec<i8> = before.map(|motion| motion.direction).collect();
+    directions.windows(2).filter(|two| two[0] != two[1]).count() >= 2
 }
 
 /// A joint that is shaken by the others just before it is asked to move seems to answer early; its

@@ -34,8 +34,8 @@ pub use delay::{measured_starts, measured_stops};
 pub use keyed::{Keyed, Row};
 pub use lane::{Phase, Stretch, lane};
 pub use metric::{
-    Dimension, JOINT, Judged, Limit, Metric, PEAK_ERROR, Read, ReadInterval, TOOL, TRANSITION, Together,
-    limits,
+    Dimension, JOINT, Judged, Limit, Metric, ONSET_DELAY, PEAK_ERROR, Read, ReadInterval, TOOL, TRANSITION,
+    Together, limits,
 };
 pub use outcome::{
     Answer, Concentration, ConcentrationTest, JointReplay, Kind, LagShare, OnsetMethod, PathError, Replay,

@@ -275,7 +275,7 @@ fn of_units(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &
         let cause = if options.planned_in_degrees {
             "--planned-degrees does that to a plan in radians: drop it"
         } else {
-            "measured in degrees? then say --measured-degrees"
+            "measured in degrees? then say --measured-degrees, or put the header right that states another unit"
         };
         let message = format!("{name} spans 57.3 times its plan: {cause}");
         remarks.add(Code::LooksLikeDegrees, 1, message);
@@ -283,7 +283,7 @@ fn of_units(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &
         let cause = if options.measured_in_degrees {
             "--measured-degrees does that to a measurement in radians: drop it"
         } else {
-            "in degrees? then say --planned-degrees"
+            "in degrees? then say --planned-degrees, or put the header right that states another unit"
         };
         let message = format!("the plan of {name} spans 57.3 times the measurement: {cause}");
         remarks.add(Code::LooksLikeDegrees, 1, message);

@@ -7,7 +7,7 @@ use crate::{
         metric::{position, with_unit},
         promise,
     },
-    replay::{Answer, PEAK_ERROR},
+    replay::{Answer, ONSET_DELAY, PEAK_ERROR},
     series::JointKind,
     workflow::compare::{Comparison, Form, GateResult, Scope, Summary, TransitionPair, Verdict},
 };
@@ -21,6 +21,8 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     if lines.is_empty() {
         lines.push("No transition is found in every run: there is none to compare.".to_owned());
     }
+    lines.extend(joints(comparison, &peaks));
+    lines.extend(one_pair(&peaks));
     lines.extend(answers(comparison));
     lines.extend(at_the_tool(comparison).map(|changes| format!("At the tool: {changes}.")));
     lines.extend(whole_run(comparison));
@@ -50,6 +52,50 @@ fn answers(comparison: &Comparison) -> Vec<String> {
     lost.into_iter().chain(gained).collect()
 }
 
+/// Joints whose own interval leaves out zero, where not all do what is said of all.
+fn joints(comparison: &Comparison, peaks: &[&Summary]) -> Option<String> {
+    let said = |summary: &Summary| {
+        let [low, high] = summary.interval_95.filter(|[low, high]| *low > 0.0 || *high < 0.0)?;
+        let Scope::Joint(joint) = &summary.scope else { return None };
+        let (dimension, kind) = (summary.measure.dimension, kind(comparison, &summary.scope));
+        let shown = |value: f64| signed(value, |value| with_unit(dimension, kind, value));
+        let text = format!("{joint} {} ({} to {})", shown(summary.mean_difference?), shown(low), shown(high));
+        Some((if high < 0.0 { Verdict::Smaller } else { Verdict::Larger }, text))
+    };
+    let of = |key: &str| -> Vec<(Verdict, String)> {
+        comparison.summaries.iter().filter(|summary| summary.measure.key == key).filter_map(said).collect()
+    };
+    let (of_peaks, of_delays) = (of(PEAK_ERROR), of(ONSET_DELAY));
+    let alike = |verdict: &Verdict| peaks.iter().all(|peak| peak.verdict == *verdict);
+    let unlike = |found: &[(Verdict, String)]| found.iter().any(|(verdict, _)| !alike(verdict));
+    let differ = if peaks.iter().any(|peak| peak.by_runs.is_some()) {
+        let some = !of_peaks.is_empty() && of_peaks.len() < comparison.joints.len();
+        some || unlike(&of_peaks) || unlike(&of_delays)
+    } else {
+        // Of few starts in a pair of runs the intervals are too easily off zero.
+        !alike(&Verdict::TooFew) && unlike(&of_peaks)
+    };
+    let named = [("peak error ", of_peaks), ("start delay ", of_delays)].map(|(what, found)| {
+        let each: Vec<String> = found.into_iter().map(|(_, text)| text).collect();
+        (!each.is_empty()).then(|| what.to_owned() + &each.join(", "))
+    });
+    let named: Vec<String> = named.into_iter().flatten().collect();
+    (differ && comparison.joints.len() > 1)
+        .then(|| format!("By joint, where the interval leaves out zero: {}.", named.join("; ")))
+}
+
+/// What a test of a run or two a side does not tell.
+fn one_pair(peaks: &[&Summary]) -> Option<String> {
+    let shown = |peak: &&&Summary| {
+        matches!(peak.verdict, Verdict::Smaller | Verdict::Larger) && peak.by_runs.is_none()
+    };
+    peaks.iter().find(shown).map(|_| {
+        "This is of the starts of these runs: what differs from run to run, such as oil and load, is in it. Three runs a side tell \
+         it apart (--more-before, --more-after)."
+            .to_owned()
+    })
+}
+
 fn verdict(peak: &Summary, kind: JointKind) -> String {
     let of = match peak.scope {
         Scope::Turning => " of joints that turn",
@@ -68,11 +114,14 @@ fn verdict(peak: &Summary, kind: JointKind) -> String {
             format!(", 95 % interval {} to {}", signed(low, shown), signed(high, shown))
         }),
     );
+    let over = match peak.by_runs {
+        Some([before, after]) => format!("by {before} runs before and {after} after"),
+        None => format!("in {}", counted(peak.events, "event")),
+    };
     let counts = format!(
-        "p = {}, {} in {}, {} smaller and {} larger",
+        "p = {}, {} {over}, {} smaller and {} larger",
         probability(peak.p_value),
         counted(peak.pairs, "pair"),
-        counted(peak.events, "event"),
         peak.smaller,
         peak.larger
     );
@@ -82,6 +131,11 @@ fn verdict(peak: &Summary, kind: JointKind) -> String {
         Verdict::NotShown if peak.interval_95.is_some_and(|[low, high]| low > 0.0 || high < 0.0) => format!(
             "Whether the {what} changed is open, its interval says so and the test by ranks does not: {numbers}; {counts}."
         ),
+        Verdict::NotShown if peak.by_runs.is_some() => {
+            format!(
+                "No change of the {what} is shown, what differs from run to run could explain it: {numbers}; {counts}."
+            )
+        }
         Verdict::NotShown => {
             format!("No change of the {what} is shown, chance could explain it: {numbers}; {counts}.")
         }
@@ -137,7 +191,12 @@ fn plans(comparison: &Comparison) -> String {
         n => format!("{n} transitions have no counterpart"),
     };
     let which = if comparison.same_plan { "The same plan" } else { "Different plans" };
-    format!("{which} ({long}): {apart}; {left}.")
+    let part = if comparison.same_plan {
+        ""
+    } else {
+        " A change is of plan and machine together: a slower plan has smaller errors by itself."
+    };
+    format!("{which} ({long}): {apart}; {left}.{part}")
 }
 
 /// One for each limit that was set.

@@ -206,16 +206,14 @@ fn unpaired(comparison: &Comparison) -> Option<Section> {
 
 fn how(comparison: &Comparison) -> Vec<Fact> {
     let rules = &comparison.rules;
-    let exact = comparison.summaries.iter().all(|s| s.p_is_exact);
-    let runs = comparison.before.len().min(comparison.after.len());
-    let chance = if runs > 1 {
-        "values are means over the runs of a side, which evens out what differs from run to run; p and interval go by \
-         the spread over transitions, so that more runs give no more events"
-            .to_owned()
+    let exact = comparison.summaries.iter().all(|s| s.p_is_exact || s.by_runs.is_some());
+    let by_runs = comparison.summaries.iter().any(|summary| summary.by_runs.is_some());
+    let chance = if by_runs {
+        "p and interval go by the scatter of the means of the runs of a side, which holds what differs from run to run; the starts \
+         are those of this plan"
     } else {
-        "p and interval go by the spread over the transitions of these runs; what differs from run to run (oil, \
-         load) is evened out by repeats (--more-before, --more-after)"
-            .to_owned()
+        "p and interval go by the spread over the transitions of these runs; what differs from run to run (oil, load) is not in \
+         them: three runs a side tell (--more-before, --more-after)"
     };
     vec![
         fact(
@@ -236,15 +234,27 @@ fn how(comparison: &Comparison) -> Vec<Fact> {
                 rules.same_event_s
             ),
         ),
-        fact("95 %", "Student's t of the mean change, robust to events; three events at least"),
+        fact(
+            "95 %",
+            if by_runs {
+                "Welch's t of the means of the runs; Student's t over events where a run lacks a number"
+            } else {
+                "Student's t of the mean change, robust to events; three events at least"
+            },
+        ),
         fact(
             "p",
-            format!(
-                "Wilcoxon signed-rank, two-sided, {}; a verdict below {}, which takes six events at least; not \
+            if by_runs {
+                "Welch's t-test of the means of the runs, two-sided; not corrected for the number of rows"
+                    .to_owned()
+            } else {
+                format!(
+                    "Wilcoxon signed-rank, two-sided, {}; a verdict below {}, which takes six events at least; not \
                  corrected for the number of rows",
-                if exact { "exact" } else { "exact up to 25 events, normal approximation above" },
-                rules.significance
-            ),
+                    if exact { "exact" } else { "exact up to 25 events, normal approximation above" },
+                    rules.significance
+                )
+            },
         ),
         fact("chance", chance),
     ]

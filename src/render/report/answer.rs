@@ -82,6 +82,10 @@ fn late(report: &Report) -> Option<Fact> {
     Some(fact("why", why::phrase(start)))
 }
 
+/// A start that is later than most by this factor and this time, s, is named.
+const FAR_LATER: f64 = 2.0;
+const SOON_S: f64 = 0.2;
+
 fn starts(replay: &Replay) -> Option<Fact> {
     let delays: Vec<f64> = replay.transitions.iter().filter_map(|t: &Transition| t.onset_delay_s).collect();
     let all = replay.transitions.len();
@@ -94,7 +98,19 @@ fn starts(replay: &Replay) -> Option<Fact> {
         [] => String::new(),
         _ => format!(", half of them more than {} ms late", ms(median(delays.clone()))),
     };
-    Some(fact("starts", format!("{} of {all} timed{late}{never}", delays.len())))
+    let latest = latest(replay, median(delays.clone()));
+    Some(fact("starts", format!("{} of {all} timed{late}{latest}{never}", delays.len())))
+}
+
+/// The latest start, where it is not the one with the largest error and later by far than most.
+fn latest(replay: &Replay, usual_s: f64) -> String {
+    let timed = replay.transitions.iter().filter_map(|t| Some((t.onset_delay_s?, t)));
+    let Some((delay_s, start)) = timed.max_by(|a, b| a.0.total_cmp(&b.0)) else { return String::new() };
+    let worst = replay.worst_first().first().map(|worst| worst.id.clone());
+    if worst.is_some_and(|id| id == start.id) || delay_s < FAR_LATER * usual_s.max(0.0) + SOON_S {
+        return String::new();
+    }
+    format!("; {} at {:.1} s by {} ms", start.joint, start.planned_onset_s, ms(delay_s))
 }
 
 /// Joints of which only one moves, itself or its plan.

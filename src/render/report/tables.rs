@@ -12,7 +12,8 @@ use crate::{
         promise,
         source::{clock, measured, planned},
     },
-    replay::{Answer, JOINT, JointReplay, Profiles, Replay, TRANSITION, Transition, Verdict},
+    replay::{Answer, JOINT, JointReplay, Profiles, Replay, TRANSITION, Transition, Verdict, spectrum},
+    series::Pair,
     workflow::report::{GateResult, Report},
 };
 
@@ -128,7 +129,20 @@ fn findings(report: &Report) -> Vec<String> {
         ));
     }
     lines.extend(replay.joints.iter().filter_map(|joint| stray(replay, joint)));
+    lines.extend(swings(report));
     lines
+}
+
+/// Joints that swing by more than half of what counts as a way.
+fn swings(report: &Report) -> Option<String> {
+    let of = |pair: &Pair| {
+        let least = 0.5 * report.replay.rules.sizes(pair.kind).displacement;
+        let [hz, amplitude] = spectrum(pair)?.swing().filter(|[_, amplitude]| *amplitude > least)?;
+        Some(format!("{} at {hz:.2} Hz by {}", pair.name, position(pair.kind, amplitude)))
+    };
+    let found: Vec<String> = report.pairs.iter().filter_map(of).collect();
+    (!found.is_empty())
+        .then(|| format!("Swings that the plan does not ask for, over the run: {}.", found.join(", ")))
 }
 
 /// A joint that moves without its plan, or rests where it should not or as its plan does; `None` if both move.
@@ -227,12 +241,22 @@ pub(super) fn lag(joint: &JointReplay) -> String {
 
 /// One for each limit that was set.
 pub(crate) fn verdicts(report: &Report) -> Vec<Sentence> {
-    report.gates.iter().map(verdict).collect()
+    let joints = &report.replay.joints;
+    let undated: usize = joints.iter().map(|joint| joint.undated_starts).sum();
+    let starts = joints.iter().map(|joint| joint.starts).sum();
+    report.gates.iter().map(|result| verdict(result, [undated, starts])).collect()
 }
 
-fn verdict(result: &GateResult) -> Sentence {
+fn verdict(result: &GateResult, [undated, starts]: [usize; 2]) -> Sentence {
     let (gate, kind) = (result.gate, result.kind());
-    let allowed = format!("{} allowed", with_unit(gate.dimension, kind, result.limit));
+    // What has no time is not judged.
+    let part = if gate.key == "onset-delay" && undated > 0 {
+        format!("; {undated} of {} have no time and are not judged", counted(starts, "start"))
+    } else {
+        String::new()
+    };
+    let limit = with_unit(gate.dimension, kind, result.limit);
+    let allowed = format!("{limit} allowed{part}");
     let sentence = |found: String| Sentence::Verdict {
         limit: format!("Limit on {}", gate.name),
         kept: result.kept,
@@ -241,5 +265,6 @@ fn verdict(result: &GateResult) -> Sentence {
     let Some(joint) = &result.joint else { return sentence("nothing to judge".to_owned()) };
     let time = result.time_s.map_or(String::new(), |t| format!(" at {t:.2} s"));
     let worst = result.worst.map_or(gate.missing.to_owned(), |w| with_unit(gate.dimension, kind, w));
+    let worst = if worst == limit && !result.kept { format!("a little more than {worst}") } else { worst };
     sentence(format!("{joint}{time} has {worst}"))
 }

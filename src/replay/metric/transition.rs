@@ -11,6 +11,9 @@ use crate::replay::{Answer, Kind, OnsetMethod, Transition};
 /// Key of the metric that transitions are ranked and judged by.
 pub const PEAK_ERROR: &str = "peak_error";
 
+/// Key of the measured minus the planned onset.
+pub const ONSET_DELAY: &str = "onset_delay_s";
+
 type Row = Metric<Transition>;
 
 #[rustfmt::skip]
@@ -37,7 +40,7 @@ pub static TRANSITION: &[Row] = &[
     Row::new("error_area", "", "error area", "Integral of the error magnitude over the window.", Area, Number(|t| Some(t.error_area))),
     Row::new("rms_error", "rms", "rms error", "Root mean square tracking error in the window.", Position, Number(|t| Some(t.rms_error)))
         .compared(Nothing),
-    Row::new("onset_delay_s", "delay", "start delay", "Measured minus planned onset.", Duration, Number(|t| t.onset_delay_s))
+    Row::new(ONSET_DELAY, "delay", "start delay", "Measured minus planned onset.", Duration, Number(|t| t.onset_delay_s))
         .or(|t| t.answer.word())
         .compared(Nothing)
         .limited(Judged::new(

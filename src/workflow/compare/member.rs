@@ -2,7 +2,7 @@
 
 use super::{
     change::{Change, Changes},
-    pair::{Run, Side, TransitionPair, Unpaired},
+    pair::{Paired, Run, Side, TransitionPair, Unpaired},
     pairing::{Match, PairedBy},
     stretch::Extent,
 };
@@ -46,7 +46,7 @@ impl Member<'_> {
         &self,
         of_side: usize,
         joints: &[String],
-        unpaired: &[Unpaired],
+        (unpaired, explained): (&[Unpaired], usize),
         remarks: &mut Remarks,
     ) {
         let name = if of_side > 1 { format!("{} {}", self.side, self.number) } else { self.side.to_string() };
@@ -59,7 +59,7 @@ impl Member<'_> {
         }
         let alone = unpaired.iter().filter(|u| u.side == self.side && u.run == self.number).count();
         let message = format!("{name}: planned starts without a counterpart in every other run; left out");
-        remarks.add(Code::Unmatched, alone as u64, message);
+        remarks.add(Code::Unmatched, alone.saturating_sub(explained) as u64, message);
         if self.side == Side::Before && self.number > 1 && !self.matched.plans.is_some_and(|plans| plans.same)
         {
             let message =
@@ -69,12 +69,40 @@ impl Member<'_> {
     }
 }
 
+/// Tells which run alone lacks starts that all the others have, so that they are compared in none; and of each run how
+/// many of its starts another one lacks.
+pub(super) fn lacking(all: &[Member<'_>], transitions: usize, remarks: &mut Remarks) -> Vec<usize> {
+    let mut explained = vec![0; all.len()];
+    if all.len() < 3 {
+        return explained;
+    }
+    let has = |member: &Member<'_>, i: usize| member.matched.partners.get(i).is_some_and(Option::is_some);
+    for (k, member) in all.iter().enumerate() {
+        let others = |i: usize| all.iter().enumerate().all(|(other, member)| other == k || has(member, i));
+        let alone = (0..transitions).filter(|&i| !has(member, i) && others(i)).count();
+        // What the others hold beyond its end, or before its beginning, was cut from them.
+        let cut = |other: &Member<'_>| other.extent.beyond.len();
+        let of_others = all.iter().enumerate().filter(|(other, _)| *other != k).map(|(_, other)| cut(other));
+        let cut = if cut(member) == 0 { of_others.min().unwrap_or(0) } else { 0 };
+        let lacks = alone + cut;
+        let message = format!(
+            "{} {} lacks starts that every other run has, so that they are compared in none; leave {} out to compare them",
+            member.side, member.number, member.log
+        );
+        remarks.add(Code::Unmatched, lacks as u64, message);
+        for (_, explained) in explained.iter_mut().enumerate().filter(|(other, _)| *other != k) {
+            *explained += lacks;
+        }
+    }
+    explained
+}
+
 /// Transitions of the first run that every run has, and all that are left over.
-pub(super) fn pairs(
+pub(super) fn pairs<'a>(
     first: &Report,
-    all: &[Member<'_>],
+    all: &[Member<'a>],
     joints: &[String],
-) -> (Vec<TransitionPair>, Vec<Unpaired>) {
+) -> (Vec<Paired<'a>>, Vec<Unpaired>) {
     let mut pairs = Vec::new();
     let mut used: Vec<Vec<bool>> =
         all.iter().map(|m| vec![false; m.report.replay.transitions.len()]).collect();
@@ -87,7 +115,7 @@ pub(super) fn pairs(
                 *used = true;
             }
         }
-        let of = |side: Side| -> Vec<(&Transition, PairedBy)> {
+        let of = |side: Side| -> Vec<(&'a Transition, PairedBy)> {
             let members = all.iter().zip(&partners).filter(|(member, _)| member.side == side);
             members.filter_map(|(m, (j, by))| Some((m.report.replay.transitions.get(*j)?, *by))).collect()
         };
@@ -104,7 +132,7 @@ pub(super) fn pairs(
         let by = [PairedBy::Order, PairedBy::Task]
             .into_iter()
             .find(|way| before.iter().chain(&after).any(|(_, by)| by == way));
-        pairs.push(TransitionPair {
+        let pair = TransitionPair {
             joint: transition.joint.clone(),
             joint_kind: transition.joint_kind,
             kind: transition.kind,
@@ -117,7 +145,9 @@ pub(super) fn pairs(
             answer_before: worst(&before),
             answer_after: worst(&after),
             changes: Changes::of(change),
-        });
+        };
+        let runs = [before, after].map(|side| side.into_iter().map(|(transition, _)| transition).collect());
+        pairs.push(Paired { pair, runs });
     }
     let alone = |(member, used): (&Member<'_>, Vec<bool>)| {
         let within = member.report.replay.transitions.iter().zip(used).filter(|(_, used)| !used);

@@ -9,6 +9,7 @@ mod pair;
 mod pairing;
 mod plans;
 mod same;
+mod sensed;
 mod stretch;
 mod summary;
 
@@ -37,9 +38,10 @@ use crate::{
 };
 use document::FORMAT;
 use figures::{figures, tool};
-use member::{Member, pairs};
+use member::{Member, lacking, pairs};
 use pairing::matched;
 use same::is_same;
+use sensed::sensed_alike;
 use stretch::cut_alike;
 use summary::{overall, summaries, worst};
 
@@ -140,7 +142,7 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
             all.push(Member { side, number: k + 1, log, report, extent, matched });
         }
     }
-    let (pairs, unpaired) = pairs(first, &all, &joints);
+    let (paired, unpaired) = pairs(first, &all, &joints);
     let mut remarks = Remarks::default();
     for (a, b) in inputs.before.iter().flat_map(|a| inputs.after.iter().map(move |b| (a, b))) {
         if is_same(a, b) {
@@ -152,11 +154,14 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
             remarks.add(Code::SameRun, 1, message);
         }
     }
-    for member in &all {
+    let explained = lacking(&all, first.replay.transitions.len(), &mut remarks);
+    for (member, explained) in all.iter().zip(explained) {
         let of_side = all.iter().filter(|other| other.side == member.side).count();
-        member.remark(of_side, &joints, &unpaired, &mut remarks);
+        member.remark(of_side, &joints, (&unpaired, explained), &mut remarks);
     }
-    let summaries = summaries(&pairs, &joints, &inputs.rules);
+    sensed_alike(&joints, [&before, &after], &mut remarks);
+    let summaries = summaries(&paired, &joints, &inputs.rules);
+    let pairs: Vec<TransitionPair> = paired.into_iter().map(|paired| paired.pair).collect();
     let whole_run = figures(&before, &after, &joints, &inputs.rules);
     let tool = tool(&before, &after);
     let gates = inputs.gates.judge(&pairs, &summaries, (&whole_run, tool.as_ref()));

@@ -84,6 +84,13 @@ pub struct TransitionPair {
     pub changes: Changes<Metric<Transition>>,
 }
 
+/// A transition before and after, beside what it is in each run.
+pub(super) struct Paired<'a> {
+    pub(super) pair: TransitionPair,
+    /// In the runs before and in those after.
+    pub(super) runs: [Vec<&'a Transition>; 2],
+}
+
 /// A transition that is not found in every run, and is left out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::pair::TransitionPair;
+use super::pair::{Paired, TransitionPair};
 use crate::{
-    math::{half_interval, median, signed_rank},
+    math::{difference, half_interval, median, signed_rank},
     replay::{Keyed, Kind, Metric, Row, Rules, Transition},
     series::JointKind,
 };
@@ -26,7 +26,7 @@ pub enum Scope {
     Joint(String),
 }
 
-/// What the rank test says at [`Rules::significance`].
+/// What the test says at [`Rules::significance`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -64,7 +64,8 @@ pub struct Summary {
     pub mean_difference: Option<f64>,
     /// Median difference.
     pub median_difference: Option<f64>,
-    /// 95 % interval of the mean difference (Student's t, robust to events); needs three events.
+    /// 95 % interval of the mean difference: by runs (Welch's t) or by transitions (Student's t, robust to events; needs
+    /// three events).
     pub interval_95: Option<[f64; 2]>,
     /// Mean difference as a share of the mean before; `None` where that is not positive.
     pub relative_change: Option<f64>,
@@ -72,7 +73,11 @@ pub struct Summary {
     pub smaller: usize,
     /// Pairs with a larger value after.
     pub larger: usize,
-    /// Two-sided p of the Wilcoxon signed-rank test on the mean differences of events.
+    /// Runs before and after, where each side has three at least: interval and p then go by the scatter of the runs' means,
+    /// which holds what differs from run to run. `None`: by the scatter over the transitions of these runs.
+    #[serde(default)]
+    pub by_runs: Option<[usize; 2]>,
+    /// Two-sided p of Welch's test of the runs' means, or of the Wilcoxon signed-rank test on the mean differences of events.
     pub p_value: f64,
     /// Whether p is exact, or from the normal approximation.
     pub p_is_exact: bool,
@@ -88,48 +93,50 @@ impl Summary {
 }
 
 /// Every metric over all transitions, over starts from rest if there are reversals too, and by joint.
-pub(super) fn summaries(pairs: &[TransitionPair], joints: &[String], rules: &Rules) -> Vec<Summary> {
-    let mixed = pairs.iter().any(|p| p.kind == Kind::Start) && pairs.iter().any(|p| p.kind == Kind::Reversal);
+pub(super) fn summaries(paired: &[Paired<'_>], joints: &[String], rules: &Rules) -> Vec<Summary> {
+    let pairs = || paired.iter().map(|paired| &paired.pair);
+    let mixed = pairs().any(|p| p.kind == Kind::Start) && pairs().any(|p| p.kind == Kind::Reversal);
     let both =
-        [JointKind::Turns, JointKind::Slides].iter().all(|kind| pairs.iter().any(|p| p.joint_kind == *kind));
+        [JointKind::Turns, JointKind::Slides].iter().all(|kind| pairs().any(|p| p.joint_kind == *kind));
     let of_kinds = [both.then_some(Scope::Turning), both.then_some(Scope::Sliding)];
     let scopes = [Some(Scope::All), mixed.then_some(Scope::Starts)];
     let scopes = scopes.into_iter().chain(of_kinds).flatten().chain(joints.iter().cloned().map(Scope::Joint));
     let metrics = Metric::<Transition>::rows();
-    let of = |scope: Scope| metrics.iter().map(move |metric| summary(pairs, metric, scope.clone(), rules));
+    let of = |scope: Scope| metrics.iter().map(move |metric| summary(paired, metric, scope.clone(), rules));
     scopes.flat_map(of).collect()
 }
 
 fn summary(
-    pairs: &[TransitionPair],
+    paired: &[Paired<'_>],
     metric: &'static Metric<Transition>,
     scope: Scope,
     rules: &Rules,
 ) -> Summary {
-    let within = |pair: &&TransitionPair| match &scope {
+    let within = |pair: &TransitionPair| match &scope {
         Scope::All => true,
         Scope::Starts => pair.kind == Kind::Start,
         Scope::Turning => pair.joint_kind == JointKind::Turns,
         Scope::Sliding => pair.joint_kind == JointKind::Slides,
         Scope::Joint(joint) => pair.joint == *joint,
     };
-    let change = |pair: &TransitionPair| pair.changes.get(metric.key);
+    let inside: Vec<&Paired<'_>> = paired.iter().filter(|paired| within(&paired.pair)).collect();
     // Positions of joints that turn and of joints that slide have no common mean.
-    let kind = pairs.iter().find(within).map(|pair| pair.joint_kind);
-    let alike = |pair: &&TransitionPair| !metric.dimension.is_of_joint() || Some(pair.joint_kind) == kind;
-    let comparable = pairs.iter().filter(within).all(|pair| alike(&pair));
-    // When, before, after.
-    let mut found: Vec<[f64; 3]> = pairs
-        .iter()
-        .filter(within)
+    let alike = inside.windows(2).all(|two| two[0].pair.joint_kind == two[1].pair.joint_kind);
+    let comparable = alike || !metric.dimension.is_of_joint();
+    // When, before, after; with the values of the runs.
+    let mut found: Vec<([f64; 3], &Paired<'_>)> = inside
+        .into_iter()
         .filter(|_| comparable)
-        .filter_map(|pair| {
+        .filter_map(|paired| {
+            let (pair, change) = (&paired.pair, paired.pair.changes.get(metric.key));
             // Of both runs alike, so that the same events are found whichever comes first.
             let at_s = 0.5 * (pair.planned_onset_before_s + pair.planned_onset_after_s);
-            Some([at_s, change(pair).before?, change(pair).after?])
+            Some(([at_s, change.before?, change.after?], paired))
         })
         .collect();
-    found.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    found.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
+    let runs = [0, 1].map(|side| of_runs(&found, metric, side));
+    let found: Vec<[f64; 3]> = found.into_iter().map(|(values, _)| values).collect();
     let mut events: Vec<Vec<f64>> = Vec::new();
     // One after the other: of a move of many joints the last may begin later than one event lasts.
     let mut last_s = f64::NEG_INFINITY;
@@ -153,8 +160,12 @@ fn summary(
     let middle = (changed * (changed + 1)) as f64 / 4.0;
     // The smallest p that n signs can give is 2 / 2^n.
     let too_few = 0.5_f64.powi(i32::try_from(events.len()).unwrap_or(i32::MAX) - 1) >= rules.significance;
+    let by_runs = difference(&runs[0], &runs[1], (0.0, 0.0, 0.0)).filter(|_| changed > 0);
     let verdict = match (changed, test.p < rules.significance) {
         (0, _) if !events.is_empty() => Verdict::Equal,
+        _ if by_runs.is_some_and(|found| found.p >= rules.significance) => Verdict::NotShown,
+        _ if by_runs.is_some_and(|found| found.value < 0.0) => Verdict::Smaller,
+        _ if by_runs.is_some() => Verdict::Larger,
         _ if too_few => Verdict::TooFew,
         (_, false) => Verdict::NotShown,
         (_, true) if test.rank_sum < middle => Verdict::Smaller,
@@ -169,14 +180,27 @@ fn summary(
         mean_after: of(2),
         mean_difference,
         median_difference: mean_difference.map(|_| median(differences.clone())),
-        interval_95: mean_difference.zip(half).map(|(mean, half)| [mean - half, mean + half]),
+        interval_95: by_runs
+            .map(|found| found.interval)
+            .or(mean_difference.zip(half).map(|(mean, half)| [mean - half, mean + half])),
         relative_change: mean_difference.zip(of(1).filter(|mean| *mean > 0.0)).map(|(d, before)| d / before),
         smaller: differences.iter().filter(|d| **d < 0.0).count(),
         larger: differences.iter().filter(|d| **d > 0.0).count(),
-        p_value: test.p,
-        p_is_exact: test.exact,
+        by_runs: by_runs.map(|_| [runs[0].len(), runs[1].len()]),
+        p_value: by_runs.map_or(test.p, |found| found.p),
+        p_is_exact: by_runs.is_none() && test.exact,
         verdict,
     }
+}
+
+/// The mean of a metric over transitions in each run of a side.
+fn of_runs(found: &[([f64; 3], &Paired<'_>)], metric: &Metric<Transition>, side: usize) -> Vec<f64> {
+    let of = |paired: &Paired<'_>, run: usize| {
+        paired.runs[side].get(run).and_then(|transition| metric.number(transition))
+    };
+    let runs = found.first().map_or(0, |(_, paired)| paired.runs[side].len());
+    let sum = |run: usize| found.iter().filter_map(|(_, paired)| of(paired, run)).sum::<f64>();
+    (0..runs).map(|run| sum(run) / found.len() as f64).collect()
 }
 
 /// Those of a metric over all transitions: one, or one of joints that turn and one of joints that slide.

@@ -96,17 +96,18 @@ fn swapping_before_and_after_negates_every_difference() {
 }
 
 #[test]
-fn a_machine_that_follows_better_is_found_to_in_four_lines() {
+fn a_machine_that_follows_better_is_found_to_in_five_lines() {
     let run = hydrotrace(RUNS.path(), &["compare", "lag.mcap", "band.mcap"]);
     assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
     let text = stdout(&run);
-    let short: Vec<&str> = text.lines().skip_while(|line| *line != "IN SHORT").skip(1).take(4).collect();
+    let short: Vec<&str> = text.lines().skip_while(|line| *line != "IN SHORT").skip(1).take(5).collect();
     assert!(short[0].starts_with("The peak error at transitions became smaller: "), "{text}");
     assert!(short[0].contains("95 % interval") && short[0].contains("p = 0.0"), "{text}");
-    assert!(short[1].starts_with("At the tool: ") && short[1].contains(" mm at worst, "), "{text}");
-    assert!(short[2].starts_with("Whole run, all joints: rms "), "{text}");
+    assert!(short[1].starts_with("This is of the starts of these runs"), "{text}");
+    assert!(short[2].starts_with("At the tool: ") && short[2].contains(" mm at worst, "), "{text}");
+    assert!(short[3].starts_with("Whole run, all joints: rms "), "{text}");
     assert!(
-        short[3].starts_with("The same plan (") && short[3].contains("every transition is paired"),
+        short[4].starts_with("The same plan (") && short[4].contains("every transition is paired"),
         "{text}"
     );
     let document = json(RUNS.path(), &["lag.mcap", "band.mcap"]);

@@ -5,6 +5,7 @@ mod carried;
 mod columns;
 mod commissioning;
 mod compare;
+mod compare_runs;
 mod controllers;
 mod csv;
 mod cut;
