@@ -51,7 +51,7 @@ fn faults_name_element_found_and_expected() {
         (
             r#"lower="0.349066""#,
             r#"lower="-170""#,
-            r#"found lower -170 and upper 1.658063, 27 turns, expected radians: degrees times"#,
+            "found lower -170 and upper 1.658063, 27 turns, expected radians: degrees times",
         ),
         (r#"mass value="55.0""#, r#"mass value="-55""#, r#"<link "link1"> <inertial>: found mass -55 kg"#),
         (r#"xyz="1.2 0 0""#, r#"xyz="inf 0 0""#, r#"<joint "J2"> <origin>: found xyz [inf, 0.0, 0.0]"#),
