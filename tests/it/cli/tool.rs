@@ -33,7 +33,8 @@ fn limits_at_the_tool_are_kept_at_their_value_and_not_below() {
         let (code, text, _) = verb(&format!("report {ARMED} {option} {}", value_mm + 1e-6));
         assert!(code == 0 && text.contains(&format!("Limit on {name} kept: ")), "{code}: {text}");
         let (code, _, error) = verb(&format!("report {ARMED} {option} {}", value_mm - 1e-6));
-        let shown = format!("tool at {:.2} s has {value_mm:.2} mm", found_s(&found, &end, option));
+        let shown =
+            format!("tool at {:.2} s has a little more than {value_mm:.2} mm", found_s(&found, &end, option));
         assert!(code == 4 && error.contains("NOT KEPT") && error.contains(&shown), "{code}: {error}");
         let compare = format!("compare {ARMED} {ARMED} {option}");
         assert!(verb(&format!("{compare} {}", value_mm + 1e-6)).1.contains("after kept: "), "{option}");
