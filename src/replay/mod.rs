@@ -34,8 +34,8 @@ pub use delay::{measured_starts, measured_stops};
 pub use keyed::{Keyed, Row};
 pub use lane::{Phase, Stretch, lane};
 pub use metric::{
-    Dimension, JOINT, Judged, Limit, Metric, ONSET_DELAY, PEAK_ERROR, Read, ReadInterval, TOOL, TRANSITION,
-    Together, limits,
+    Dimension, JOINT, Judged, Limit, Metric, ONSET_DELAY, ONSET_DELAY_LIMIT, PEAK_ERROR, Read, ReadInterval,
+    TOOL, TRANSITION, Together, limits,
 };
 pub use outcome::{
     Answer, Concentration, ConcentrationTest, JointReplay, Kind, LagShare, OnsetMethod, PathError, Replay,
@@ -45,7 +45,7 @@ pub use peak_motion::peak_motion;
 pub use profile::{Profiles, STRETCHES};
 pub use rules::{Rules, Sizes};
 pub use signals::{planned_starts, planned_step, speeds};
-pub use spectrum::{COHERENT, Response, Spectrum, spectrum};
+pub use spectrum::{COHERENT, Response, Spectrum, Swing, spectrum, swings};
 pub use tool::{
     ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst, pose_replay, tool_replay,
 };

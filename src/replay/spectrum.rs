@@ -2,7 +2,11 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::{math::median, series::Pair};
+use super::Rules;
+use crate::{
+    math::median,
+    series::{JointKind, Pair},
+};
 
 /// Windows are the share of the longest stretch that this is one part of, within bounds, s; each begins half a window
 /// after the one before.
@@ -121,6 +125,29 @@ impl Spectrum {
         let of_note = |k: &usize| self.error[*k] > OF_NOTE * self.error.iter().copied().fold(0.0, f64::max);
         found.filter(of_note).map(|k| [self.frequency_hz[k], self.error[k]])
     }
+}
+
+/// A swing of a joint that its plan does not ask for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Swing {
+    /// The joint.
+    pub joint: String,
+    /// Whether it turns or slides.
+    pub kind: JointKind,
+    /// How often, Hz.
+    pub frequency_hz: f64,
+    /// Over the run, in the joint's unit.
+    pub amplitude: f64,
+}
+
+/// Joints that swing by more than half of what counts as a way.
+pub fn swings(pairs: &[Pair], rules: &Rules) -> Vec<Swing> {
+    let of = |pair: &Pair| {
+        let [frequency_hz, amplitude] = spectrum(pair)?.swing()?;
+        let counts = amplitude > 0.5 * rules.sizes(pair.kind).displacement;
+        counts.then(|| Swing { joint: pair.name.clone(), kind: pair.kind, frequency_hz, amplitude })
+    };
+    pairs.iter().filter_map(of).collect()
 }
 
 /// Share of the largest amplitude from which a swing is told.

@@ -22,7 +22,7 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
         lines.push("No transition is found in every run: there is none to compare.".to_owned());
     }
     lines.extend(joints(comparison, &peaks));
-    lines.extend(one_pair(&peaks));
+    lines.extend(of_few_runs(&peaks));
     lines.extend(answers(comparison));
     lines.extend(at_the_tool(comparison).map(|changes| format!("At the tool: {changes}.")));
     lines.extend(whole_run(comparison));
@@ -85,7 +85,7 @@ fn joints(comparison: &Comparison, peaks: &[&Summary]) -> Option<String> {
 }
 
 /// What a test of a run or two a side does not tell.
-fn one_pair(peaks: &[&Summary]) -> Option<String> {
+fn of_few_runs(peaks: &[&Summary]) -> Option<String> {
     let shown = |peak: &&&Summary| {
         matches!(peak.verdict, Verdict::Smaller | Verdict::Larger) && peak.by_runs.is_none()
     };

@@ -206,15 +206,7 @@ fn unpaired(comparison: &Comparison) -> Option<Section> {
 
 fn how(comparison: &Comparison) -> Vec<Fact> {
     let rules = &comparison.rules;
-    let exact = comparison.summaries.iter().all(|s| s.p_is_exact || s.by_runs.is_some());
-    let by_runs = comparison.summaries.iter().any(|summary| summary.by_runs.is_some());
-    let chance = if by_runs {
-        "p and interval go by the scatter of the means of the runs of a side, which holds what differs from run to run; the starts \
-         are those of this plan"
-    } else {
-        "p and interval go by the spread over the transitions of these runs; what differs from run to run (oil, load) is not in \
-         them: three runs a side tell (--more-before, --more-after)"
-    };
+    let [interval, p, chance] = tests(comparison);
     vec![
         fact(
             "pairs",
@@ -234,28 +226,32 @@ fn how(comparison: &Comparison) -> Vec<Fact> {
                 rules.same_event_s
             ),
         ),
-        fact(
-            "95 %",
-            if by_runs {
-                "Welch's t of the means of the runs; Student's t over events where a run lacks a number"
-            } else {
-                "Student's t of the mean change, robust to events; three events at least"
-            },
-        ),
-        fact(
-            "p",
-            if by_runs {
-                "Welch's t-test of the means of the runs, two-sided; not corrected for the number of rows"
-                    .to_owned()
-            } else {
-                format!(
-                    "Wilcoxon signed-rank, two-sided, {}; a verdict below {}, which takes six events at least; not \
-                 corrected for the number of rows",
-                    if exact { "exact" } else { "exact up to 25 events, normal approximation above" },
-                    rules.significance
-                )
-            },
-        ),
+        fact("95 %", interval),
+        fact("p", p),
         fact("chance", chance),
     ]
+}
+
+/// What interval, p and chance are of: runs, where there are enough, or events.
+fn tests(comparison: &Comparison) -> [String; 3] {
+    if comparison.summaries.iter().any(|summary| summary.by_runs.is_some()) {
+        return [
+            "Welch's t of the means of the runs; Student's t over events where a run lacks a number",
+            "Welch's t-test of the means of the runs, two-sided; not corrected for the number of rows",
+            "p and interval go by the scatter of the means of the runs of a side, which holds what differs from run to run; the \
+             starts are those of this plan",
+        ]
+        .map(str::to_owned);
+    }
+    let exact = comparison.summaries.iter().all(|summary| summary.p_is_exact);
+    let p = format!(
+        "Wilcoxon signed-rank, two-sided, {}; a verdict below {}, which takes six events at least; not corrected for the number \
+         of rows",
+        if exact { "exact" } else { "exact up to 25 events, normal approximation above" },
+        comparison.rules.significance
+    );
+    let interval = "Student's t of the mean change, robust to events; three events at least".to_owned();
+    let chance = "p and interval go by the spread over the transitions of these runs; what differs from run to run (oil, load) is \
+                  not in them: three runs a side tell (--more-before, --more-after)";
+    [interval, p, chance.to_owned()]
 }

@@ -22,6 +22,10 @@ use crate::{
     },
 };
 
+/// A start that is later than most by this factor and this time, s, is named.
+const FAR_LATER: f64 = 2.0;
+const SOON_S: f64 = 0.2;
+
 /// What a reader wants to know first; how the numbers are made too, if that is to be explained.
 pub(crate) fn answer(report: &Report, explain: bool) -> Document {
     let replay = &report.replay;
@@ -81,10 +85,6 @@ fn late(report: &Report) -> Option<Fact> {
     let start = why::of(report, &report.replay.worst_first().first()?.id)?;
     Some(fact("why", why::phrase(start)))
 }
-
-/// A start that is later than most by this factor and this time, s, is named.
-const FAR_LATER: f64 = 2.0;
-const SOON_S: f64 = 0.2;
 
 fn starts(replay: &Replay) -> Option<Fact> {
     let delays: Vec<f64> = replay.transitions.iter().filter_map(|t: &Transition| t.onset_delay_s).collect();

@@ -12,8 +12,10 @@ use crate::{
         promise,
         source::{clock, measured, planned},
     },
-    replay::{Answer, JOINT, JointReplay, Profiles, Replay, TRANSITION, Transition, Verdict, spectrum},
-    series::Pair,
+    replay::{
+        Answer, JOINT, JointReplay, ONSET_DELAY_LIMIT, Profiles, Replay, Swing, TRANSITION, Transition,
+        Verdict,
+    },
     workflow::report::{GateResult, Report},
 };
 
@@ -133,14 +135,13 @@ fn findings(report: &Report) -> Vec<String> {
     lines
 }
 
-/// Joints that swing by more than half of what counts as a way.
+/// Joints that swing though their plans do not.
 fn swings(report: &Report) -> Option<String> {
-    let of = |pair: &Pair| {
-        let least = 0.5 * report.replay.rules.sizes(pair.kind).displacement;
-        let [hz, amplitude] = spectrum(pair)?.swing().filter(|[_, amplitude]| *amplitude > least)?;
-        Some(format!("{} at {hz:.2} Hz by {}", pair.name, position(pair.kind, amplitude)))
+    let of = |swing: &Swing| {
+        let by = position(swing.kind, swing.amplitude);
+        format!("{} at {:.2} Hz by {by}", swing.joint, swing.frequency_hz)
     };
-    let found: Vec<String> = report.pairs.iter().filter_map(of).collect();
+    let found: Vec<String> = report.swings().iter().map(of).collect();
     (!found.is_empty())
         .then(|| format!("Swings that the plan does not ask for, over the run: {}.", found.join(", ")))
 }
@@ -250,7 +251,7 @@ pub(crate) fn verdicts(report: &Report) -> Vec<Sentence> {
 fn verdict(result: &GateResult, [undated, starts]: [usize; 2]) -> Sentence {
     let (gate, kind) = (result.gate, result.kind());
     // What has no time is not judged.
-    let part = if gate.key == "onset-delay" && undated > 0 {
+    let part = if gate.key == ONSET_DELAY_LIMIT && undated > 0 {
         format!("; {undated} of {} have no time and are not judged", counted(starts, "start"))
     } else {
         String::new()

@@ -10,7 +10,7 @@ mod transition;
 
 pub use joint::JOINT;
 pub use tool::TOOL;
-pub use transition::{ONSET_DELAY, PEAK_ERROR, TRANSITION};
+pub use transition::{ONSET_DELAY, ONSET_DELAY_LIMIT, PEAK_ERROR, TRANSITION};
 
 use super::{JointReplay, ToolReplay, TrackingError, Transition, WholeRun, keyed::Keyed};
 use crate::series::JointKind;

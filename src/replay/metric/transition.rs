@@ -11,6 +11,9 @@ use crate::replay::{Answer, Kind, OnsetMethod, Transition};
 /// Key of the metric that transitions are ranked and judged by.
 pub const PEAK_ERROR: &str = "peak_error";
 
+/// Key of the limit on start delays: starts without a time are not judged by it.
+pub const ONSET_DELAY_LIMIT: &str = "onset-delay";
+
 /// Key of the measured minus the planned onset.
 pub const ONSET_DELAY: &str = "onset_delay_s";
 
@@ -44,7 +47,7 @@ pub static TRANSITION: &[Row] = &[
         .or(|t| t.answer.word())
         .compared(Nothing)
         .limited(Judged::new(
-            Limit::new("onset-delay", "max-start-delay-ms", None, "start delay", "Largest delay of a start; a start that the machine does not answer exceeds it", Duration)
+            Limit::new(ONSET_DELAY_LIMIT, "max-start-delay-ms", None, "start delay", "Largest delay of a start; a start that the machine does not answer exceeds it", Duration)
                 .or("a start without an answer"),
             |t| matches!(t.answer, Answer::Timed | Answer::Never),
             |t| Some(t.planned_onset_s),

@@ -12,6 +12,7 @@ mod same;
 mod sensed;
 mod stretch;
 mod summary;
+mod tested;
 
 use std::path::PathBuf;
 

@@ -2,9 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::pair::{Paired, TransitionPair};
+use super::{
+    pair::{Paired, TransitionPair},
+    tested::{by_events, by_runs, events},
+};
 use crate::{
-    math::{difference, half_interval, median, signed_rank},
+    math::median,
     replay::{Keyed, Kind, Metric, Row, Rules, Transition},
     series::JointKind,
 };
@@ -137,40 +140,16 @@ fn summary(
     found.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
     let runs = [0, 1].map(|side| of_runs(&found, metric, side));
     let found: Vec<[f64; 3]> = found.into_iter().map(|(values, _)| values).collect();
-    let mut events: Vec<Vec<f64>> = Vec::new();
-    // One after the other: of a move of many joints the last may begin later than one event lasts.
-    let mut last_s = f64::NEG_INFINITY;
-    for [at_s, before, after] in &found {
-        if let Some(event) = events.last_mut().filter(|_| at_s - last_s <= rules.same_event_s) {
-            event.push(after - before);
-        } else {
-            events.push(vec![after - before]);
-        }
-        last_s = *at_s;
-    }
     let mean =
         |values: &[f64]| (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
     let of = |side: usize| mean(&found.iter().map(|values| values[side]).collect::<Vec<_>>());
-    let differences: Vec<f64> = found.iter().map(|[_, before, after]| after - before).collect();
+    let changes: Vec<(f64, f64)> =
+        found.iter().map(|[at_s, before, after]| (*at_s, after - before)).collect();
+    let differences: Vec<f64> = changes.iter().map(|change| change.1).collect();
     let mean_difference = mean(&differences);
-    let half = half_interval(&events);
-    let of_events: Vec<f64> = events.iter().filter_map(|event| mean(event)).collect();
-    let test = signed_rank(&of_events);
-    let changed = test.positive + test.negative;
-    let middle = (changed * (changed + 1)) as f64 / 4.0;
-    // The smallest p that n signs can give is 2 / 2^n.
-    let too_few = 0.5_f64.powi(i32::try_from(events.len()).unwrap_or(i32::MAX) - 1) >= rules.significance;
-    let by_runs = difference(&runs[0], &runs[1], (0.0, 0.0, 0.0)).filter(|_| changed > 0);
-    let verdict = match (changed, test.p < rules.significance) {
-        (0, _) if !events.is_empty() => Verdict::Equal,
-        _ if by_runs.is_some_and(|found| found.p >= rules.significance) => Verdict::NotShown,
-        _ if by_runs.is_some_and(|found| found.value < 0.0) => Verdict::Smaller,
-        _ if by_runs.is_some() => Verdict::Larger,
-        _ if too_few => Verdict::TooFew,
-        (_, false) => Verdict::NotShown,
-        (_, true) if test.rank_sum < middle => Verdict::Smaller,
-        (_, true) => Verdict::Larger,
-    };
+    let events = events(&changes, rules.same_event_s);
+    let tested = by_runs(&runs, rules).filter(|_| differences.iter().any(|d| d.abs() > 0.0));
+    let tested = tested.unwrap_or_else(|| by_events(&events, mean_difference, rules));
     Summary {
         measure: Row(metric),
         scope,
@@ -180,16 +159,14 @@ fn summary(
         mean_after: of(2),
         mean_difference,
         median_difference: mean_difference.map(|_| median(differences.clone())),
-        interval_95: by_runs
-            .map(|found| found.interval)
-            .or(mean_difference.zip(half).map(|(mean, half)| [mean - half, mean + half])),
+        interval_95: tested.interval_95,
         relative_change: mean_difference.zip(of(1).filter(|mean| *mean > 0.0)).map(|(d, before)| d / before),
         smaller: differences.iter().filter(|d| **d < 0.0).count(),
         larger: differences.iter().filter(|d| **d > 0.0).count(),
-        by_runs: by_runs.map(|_| [runs[0].len(), runs[1].len()]),
-        p_value: by_runs.map_or(test.p, |found| found.p),
-        p_is_exact: by_runs.is_none() && test.exact,
-        verdict,
+        by_runs: tested.by_runs,
+        p_value: tested.p_value,
+        p_is_exact: tested.p_is_exact,
+        verdict: tested.verdict,
     }
 }
 

@@ -61,26 +61,7 @@ impl Plan {
             let (plan, topic, at_s) = (path.to_owned(), topic.to_owned(), found.at_s + self.span_s()[0]);
             return Err(JoinFailure::SentOtherwise { plan, topic, at_s, share: share(&found) });
         }
-        let doubt = match found.pace {
-            Some(pace) => Some(format!(
-                "what was sent on {topic} lasts {:.2} % {} than in {}: the recorder's clock runs {} than the sender's, or an override \
-                 was set. Where it is the clock, multiply the times of the recording by {:.5} before it is imported: its errors grow \
-                 with what the two are apart",
-                100.0 * (pace - 1.0).abs(),
-                if pace > 1.0 { "longer" } else { "shorter" },
-                path.display(),
-                if pace > 1.0 { "faster" } else { "slower" },
-                1.0 / pace
-            )),
-            None => (!is_same(&found)).then(|| {
-                format!(
-                    "what was sent on {topic} is not quite what {} holds: {:.1} % of the motion is left",
-                    path.display(),
-                    100.0 * share(&found)
-                )
-            }),
-        };
-        if let Some(doubt) = doubt {
+        if let Some(doubt) = doubt(&found, path, topic) {
             remarks.add(Code::SentOtherwise, 1, doubt);
         }
         if !commanded && self.command.is_some() {
@@ -92,6 +73,26 @@ impl Plan {
         remarks.add(Code::Ambiguous, found.others as u64, message);
         Ok((commanded, found))
     }
+}
+
+/// Why what was sent may not be what the plan's file holds.
+fn doubt(found: &Located, path: &Path, topic: &str) -> Option<String> {
+    let plan = path.display();
+    let Some(pace) = found.pace else {
+        let left = 100.0 * share(found);
+        let doubt = format!(
+            "what was sent on {topic} is not quite what {plan} holds: {left:.1} % of the motion is left"
+        );
+        return (!is_same(found)).then_some(doubt);
+    };
+    let [lasts, runs] = if pace > 1.0 { ["longer", "faster"] } else { ["shorter", "slower"] };
+    Some(format!(
+        "what was sent on {topic} lasts {:.2} % {lasts} than in {plan}: the recorder's clock runs {runs} than the sender's, or an \
+         override was set. Where it is the clock, multiply the times of the recording by {:.5} before it is imported: its errors \
+         grow with what the two are apart",
+        100.0 * (pace - 1.0).abs(),
+        1.0 / pace
+    ))
 }
 
 /// Whether the sent signal is the planned one, at its own times.

@@ -8,7 +8,7 @@ use super::{gates::GateResult, tool::Tool, why::Why};
 use crate::{
     log::{Command, SignalRole, SourceInfo},
     remark::Remarks,
-    replay::{Profiles, Replay},
+    replay::{Profiles, Replay, Swing, swings},
     series::{Broken, Pair, Signal},
     workflow::{
         carried::{Held, Schedule},
@@ -76,6 +76,11 @@ pub struct Report {
 }
 
 impl Report {
+    /// Joints that swing though their plans do not.
+    pub fn swings(&self) -> Vec<Swing> {
+        swings(&self.pairs, &self.replay.rules)
+    }
+
     /// Whether every limit is kept.
     pub fn gates_kept(&self) -> bool {
         self.gates.iter().all(|gate| gate.kept)
