@@ -14,6 +14,8 @@ const NORMAL_975: f64 = 1.959_963_984_540_054;
 
 /// A joint that turns three times within this time before a start swings, s.
 const SWINGS_S: f64 = 3.0;
+/// One that has rested so long has settled, s.
+const SETTLED_S: f64 = 0.25;
 
 /// The two onsets of a transition.
 pub(super) struct Delay {
@@ -129,7 +131,7 @@ pub(super) fn delay(
         return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     };
     let blind_s = blind_s(pair, signals, (planned, planned_s), (motion, onset.at_s));
-    if swings(signals, planned, planned_s) {
+    if swings(signals, (planned, planned_s), motion) {
         return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     }
     if motion.reversal {
@@ -149,8 +151,11 @@ pub(super) fn delay(
 }
 
 /// Whether the joint went to and fro while its plan rested before a start, as one that hunts does: which of its motions is
-/// the answer cannot be told.
-fn swings(signals: &Signals, planned: &Motion, planned_s: f64) -> bool {
+/// the answer cannot be told. A joint that settled from its last motion and rested has an answer.
+fn swings(signals: &Signals, (planned, planned_s): (&Motion, f64), answer: &Motion) -> bool {
+    if !answer.reversal && answer.rest_before_s >= SETTLED_S {
+        return false;
+    }
     let from_s = planned_s - planned.rest_before_s.min(SWINGS_S);
     let before = signals.measured.iter().filter(|motion| motion.segment == planned.segment);
     let before = before.filter(|motion| motion.start_s > from_s && motion.start_s < planned_s);

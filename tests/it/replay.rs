@@ -309,6 +309,27 @@ fn a_joint_that_creeps_into_its_motion_answers_without_an_instant() {
 }
 
 #[test]
+fn a_joint_that_hunts_when_its_plan_starts_answers_without_an_instant_and_one_that_settled_with_one() {
+    let t_s: Vec<f64> = (0..1200).map(|k| 0.01 * f64::from(k)).collect();
+    let found = |until_s: f64, hz: f64| {
+        let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 6.0)).collect();
+        let swing = |t: f64| {
+            if t < until_s { 0.1 * DEGREE_RAD * (std::f64::consts::TAU * hz * t).sin() } else { 0.0 }
+        };
+        let measured = t_s.iter().map(|&t| swing(t) + ramp(t, 6.3)).collect();
+        let found = of(&recorded(t_s.clone(), planned, measured, std::iter::once(0..1200).collect()));
+        (found.transitions[0].answer, found.transitions[0].onset_delay_s)
+    };
+    for hz in [0.8, 1.5, 2.0] {
+        assert_eq!(found(6.2, hz), (Answer::Creeps, None), "{hz}");
+    }
+    // It swung until 5 s, and rested for 1.3 s.
+    let (answer, delay_s) = found(5.0, 1.0);
+    assert_eq!(answer, Answer::Timed);
+    assert!((delay_s.unwrap() - 0.3).abs() < 0.03, "{delay_s:?}");
+}
+
+#[test]
 fn a_drift_of_the_plan_just_before_a_large_move_says_nothing_of_the_joint() {
     // 0.35 degrees one way in half a second, then 12 the other way, which the joint follows.
     let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();

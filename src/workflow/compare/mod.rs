@@ -24,7 +24,8 @@ pub use figures::Figures;
 pub use gates::{Form, Gate, GateResult, Gates};
 pub use pair::{Run, Side, TransitionPair, Unpaired};
 pub use pairing::PairedBy;
-pub use summary::{Scope, Summary, Verdict};
+pub use summary::{Scope, Summary};
+pub use tested::Verdict;
 
 use super::{
     names::told_apart,
@@ -41,7 +42,7 @@ use document::FORMAT;
 use figures::{figures, tool};
 use member::{Member, lacking, pairs};
 use pairing::matched;
-use same::is_same;
+use same::{each_once, is_same};
 use sensed::sensed_alike;
 use stretch::cut_alike;
 use summary::{overall, summaries, worst};
@@ -110,6 +111,12 @@ fn check_kinds(joints: &[String], reports: &[&Report]) -> Result<(), CompareFail
 ///
 /// [`CompareFailure`] if a run cannot be analysed or the runs share no joint.
 pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
+    let mut remarks = Remarks::default();
+    let inputs = &Inputs {
+        before: each_once(Side::Before, &inputs.before, &mut remarks),
+        after: each_once(Side::After, &inputs.after, &mut remarks),
+        ..inputs.clone()
+    };
     let mut before = analysed(inputs, &inputs.before)?;
     let mut after = analysed(inputs, &inputs.after)?;
     let first = before.first().ok_or(CompareFailure::NoRun(Side::Before))?;
@@ -144,7 +151,6 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
         }
     }
     let (paired, unpaired) = pairs(first, &all, &joints);
-    let mut remarks = Remarks::default();
     for (a, b) in inputs.before.iter().flat_map(|a| inputs.after.iter().map(move |b| (a, b))) {
         if is_same(a, b) {
             let message = format!(

@@ -3,10 +3,28 @@
 use std::{
     fs,
     io::{self, BufReader, Read},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
-use crate::input_file;
+use super::Side;
+use crate::{
+    input_file,
+    remark::{Code, Remarks},
+};
+
+/// The runs of a side, each once: one that is counted twice says no more of how runs differ.
+pub(super) fn each_once(side: Side, logs: &[PathBuf], remarks: &mut Remarks) -> Vec<PathBuf> {
+    let mut once: Vec<PathBuf> = Vec::new();
+    for log in logs {
+        if once.iter().any(|other| is_same(other, log)) {
+            let message = format!("{} is given again {side} the change; it counts once", log.display());
+            remarks.add(Code::SameRun, 1, message);
+        } else {
+            once.push(log.clone());
+        }
+    }
+    once
+}
 
 /// Whether two paths lead to one file or bag, or to files of equal content.
 pub(super) fn is_same(a: &Path, b: &Path) -> bool {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     pair::{Paired, TransitionPair},
-    tested::{by_events, by_runs, events},
+    tested::{Verdict, by_events, by_runs, events},
 };
 use crate::{
     math::median,
@@ -27,23 +27,6 @@ pub enum Scope {
     Sliding,
     /// All of one joint.
     Joint(String),
-}
-
-/// What the test says at [`Rules::significance`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// Smaller after.
-    Smaller,
-    /// Larger after.
-    Larger,
-    /// Chance explains the change.
-    NotShown,
-    /// No value changed.
-    Equal,
-    /// Too few events for any outcome to count.
-    TooFew,
 }
 
 /// One metric over paired transitions; differences are after minus before.

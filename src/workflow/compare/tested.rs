@@ -1,10 +1,28 @@
 //! Whether differences are more than chance: by the scatter of runs, or over the transitions of a few.
 
-use super::Verdict;
+use serde::{Deserialize, Serialize};
+
 use crate::{
     math::{difference, half_interval, signed_rank},
     replay::Rules,
 };
+
+/// What the test says at [`Rules::significance`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// Smaller after.
+    Smaller,
+    /// Larger after.
+    Larger,
+    /// Chance explains the change.
+    NotShown,
+    /// No value changed.
+    Equal,
+    /// Too few events for any outcome to count.
+    TooFew,
+}
 
 /// What a test of a mean difference says.
 pub(super) struct Tested {
