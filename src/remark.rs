@@ -38,6 +38,8 @@ pub enum Code {
     UnlikePlan,
     /// Joints that follow their plan at another time: clocks differ, or the machine ran at another speed.
     OtherTime,
+    /// Joints that move before their plan: plan and measurement are swapped, or clocks differ.
+    BeforePlan,
     /// Runs to compare whose measurements differ in noise or rate.
     MeasuredOtherwise,
     /// A machine that stood while its plan went on.

@@ -76,10 +76,16 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let fitted = self.fitted()?;
         let target = Target::new(Form::of(&[(self.json, Form::Json)], self.document()), self.document())?;
-        let again: Vec<&PathBuf> = fitted.again.iter().filter_map(|place| self.logs.get(*place)).collect();
         let next = self.output.as_deref().filter(|_| self.document().is_none());
+        let why_none = fitted.not_again.as_deref();
         let trusted = fitted.fit.joints.iter().any(JointFit::trusted);
-        let next = next.map(|path| next::limits_written(path, &again, trusted).reading(&self.sent.words()));
+        let again: Vec<&PathBuf> = if trusted {
+            fitted.again.iter().filter_map(|place| self.logs.get(*place)).collect()
+        } else {
+            self.logs.last().into_iter().collect()
+        };
+        let next = next
+            .map(|path| next::limits_written(path, &again, why_none, trusted).reading(&self.sent.words()));
         if let Some(file) = &self.html {
             write_file(file, words::page(&fitted, next.as_ref()).as_bytes())?;
         }

@@ -1,6 +1,9 @@
 //! The limits of a report, an option for each row of the tables of metrics that has one.
 
-use clap::{Arg, ArgAction, ArgMatches, Command, error::Error};
+use clap::{
+    Arg, ArgAction, ArgMatches, Command,
+    error::{ContextKind, ContextValue, Error, ErrorKind},
+};
 
 use super::number::{degrees, millimetres, milliseconds};
 use crate::{
@@ -71,6 +74,20 @@ impl clap::FromArgMatches for GateArgs {
         *self = Self::from_arg_matches(matches)?;
         Ok(())
     }
+}
+
+/// Says of a limit that a verb does not know whose it is.
+pub(super) fn placed(mut error: Error) -> Error {
+    let Some(ContextValue::String(arg)) = error.get(ContextKind::InvalidArg) else { return error };
+    if error.kind() == ErrorKind::UnknownArgument
+        && options().any(|(option, ..)| *arg == format!("--{option}"))
+    {
+        let tip = format!("{arg} is a limit of `hydrotrace report`").into();
+        error.remove(ContextKind::SuggestedArg);
+        error.remove(ContextKind::Usage);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
+    }
+    error
 }
 
 #[cfg(test)]

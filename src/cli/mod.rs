@@ -145,7 +145,8 @@ struct Args {
 pub fn main() -> ExitCode {
     let matches = Args::command()
         .color(terminal::early_choice(env::args_os()))
-        .get_matches_from(answer::with_verb(env::args_os().collect()));
+        .try_get_matches_from(answer::with_verb(env::args_os().collect()))
+        .unwrap_or_else(|error| gates::placed(error).exit());
     let args = Args::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let choice = terminal::set_up(args.terminal);
     input_file::remember();

@@ -19,7 +19,9 @@ pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
     if MARKS_OF_WIDE_TEXT.iter().any(|mark| bytes.starts_with(mark)) {
         return true;
     }
-    let bytes = of_lines(bytes.into());
+    // A recording that ends in zeros lost its power.
+    let end = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
+    let bytes = of_lines(bytes[..end].into());
     let text = String::from_utf8_lossy(&bytes);
     if text.trim().is_empty() || text.chars().any(|c| c.is_control() && !c.is_whitespace()) {
         return false;
@@ -88,6 +90,7 @@ mod tests {
         assert!(is("a.json", b"[{\"t\": 0, \"q\": 1},{\"t\": 1") && is("a.json", b"[\n {\n  \"t\": 0,\n"));
         assert!(is("a.txt", b" t | q\n---+---\n 0 | 1\n") && is("a.md", b"# Run\n\n| t | q |\n|--:|--:|\n"));
         assert!(is("run.lvm", b"LabVIEW Measurement\n"));
+        assert!(is("a.csv", b"t,q\n0,1\n\0\0\0") && !is("a.csv", b"t,q\n\00,1\n") && !is("a.csv", b"\0\0"));
         for text in [
             &b"{\n  \"a\": [\n    1,\n    2,\n    3\n  ]\n}\n"[..],
             b"a: 1\nb: 2\nc: 3\nd: 4\n",

@@ -23,8 +23,8 @@ pub enum PlanError {
     },
     /// A key point outside a joint's range: no timing helps.
     #[error(
-        "key point {point} has {joint} at {}, its range is {} to {}; move the key point or widen the range",
-        Degrees(*found_rad), Degrees(*lowest_rad), Degrees(*highest_rad)
+        "key point {point} has {joint} at {}, its range is {} to {}: {:.3e} rad beyond it; move the key point or widen the range",
+        Degrees(*found_rad), Degrees(*lowest_rad), Degrees(*highest_rad), (lowest_rad - found_rad).max(found_rad - highest_rad)
     )]
     PointOutside {
         /// Number of the key point, from 1.

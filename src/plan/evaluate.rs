@@ -6,6 +6,9 @@ use crate::{
     task::{Objective, Objectives},
 };
 
+/// Parts, so many times as many as for power itself, on which its magnitude is integrated.
+const FINELY: usize = 24;
+
 /// A timing with its objectives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timing {
@@ -50,7 +53,7 @@ impl Evaluator {
     /// Objectives of the plan with these times of movement between key points, s, under the setup
     /// that this evaluator was made for; `None` if they make no motion.
     ///
-    /// f2 is exact; f3 is by eight Gauss nodes a piece, to 1e-7. Power is joint speed times torque
+    /// f2 is exact; f3 is by eight Gauss nodes a piece, or a part of it where a joint turns far, to 1e-6. Power is joint speed times torque
     /// (paper, eq. 5). `DIFFERENCE(eq. 4, 5)`: means over time in place of sums over sampling
     /// points, which grow with their number.
     pub fn evaluate(&mut self, setup: &Setup, interval_s: &[f64]) -> Option<Objectives> {
@@ -110,8 +113,10 @@ impl Evaluator {
         self.joint_power_w().collect()
     }
 
-    /// Work that the joints do and take up together in the plan evaluated last, J.
-    pub fn energy_j(&self) -> f64 {
+    /// Work that the joints do and take up together in the plan evaluated last, J; what was evaluated is forgotten but for
+    /// its motion.
+    pub(super) fn energy_j(&mut self, setup: &Setup) -> f64 {
+        self.mesh.integrate_finely(setup, &self.motion, FINELY);
         self.mesh.energy_j
     }
 }

@@ -49,7 +49,7 @@ impl PlanEvaluation {
         // The motion is of the same times, so there is one.
         let objectives = evaluator.evaluate(setup, &own_s).unwrap_or(Objectives::NONE);
         let rms_jerk_rad_s3 = evaluator.rms_jerk_rad_s3().to_vec();
-        let (rms_power_w, energy_j) = (evaluator.rms_power_w(), evaluator.energy_j());
+        let (rms_power_w, energy_j) = (evaluator.rms_power_w(), evaluator.energy_j(setup));
         let margins = setup.margins(motion, &mut evaluator);
         let broken = margins.iter().filter(|margin| margin.broken());
         // A sum of nothing would be minus zero.

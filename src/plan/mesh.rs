@@ -5,7 +5,7 @@ use multiversion::multiversion;
 use super::Setup;
 use crate::{
     arm::{Chain, Cylinder, LANES, Load, Motion as ArmMotion, Workspace, inverse_dynamics},
-    spline::{Gauss, Motion, Quantity, Samples},
+    spline::{Gauss, Motion, Quantity, Samples, Spline},
 };
 
 /// Rows of one joint that come from the mechanics: shares of torque, rod speed and rod force.
@@ -71,14 +71,20 @@ impl Mesh {
         }
     }
 
-    /// Looks at the nodes of eight-point quadrature on every piece.
+    /// Looks at the nodes of eight-point quadrature on every piece, or on parts of it where a joint turns far.
     pub(super) fn integrate(&mut self, setup: &Setup, motion: &Motion) {
+        self.integrate_finely(setup, motion, 1);
+    }
+
+    /// The same on so many times as many parts: the magnitude of power has a kink wherever its sign changes.
+    pub(super) fn integrate_finely(&mut self, setup: &Setup, motion: &Motion, times: usize) {
         self.t_s.clear();
         self.weights_s.clear();
         self.segment.clear();
         for segment in motion.segments() {
             let first = self.t_s.len();
-            segment.spline.quadrature(Gauss::Eight, &mut self.t_s, &mut self.weights_s);
+            let parts = times * parts(&segment.spline);
+            segment.spline.quadrature(Gauss::Eight, parts, &mut self.t_s, &mut self.weights_s);
             for t in &mut self.t_s[first..] {
                 *t += segment.start_s;
             }
@@ -197,6 +203,19 @@ impl Mesh {
             self.shares[(joints * LOADED + 1) * count + i] = speed_m_s / setup.tool_speed_m_s;
         }
     }
+}
+
+/// Weight turns about a joint with its angle: over more of it, rad, eight nodes do not follow the square of its power.
+const PART_RAD: f64 = 1.5;
+/// Parts of a piece at most.
+const MOST_PARTS: usize = 1000;
+
+/// Parts in which a joint turns no farther than [`PART_RAD`] from one point to the next.
+fn parts(spline: &Spline) -> usize {
+    let points = spline.points();
+    let steps = (1..points.len()).flat_map(|k| points.of(k - 1).iter().zip(points.of(k)));
+    let farthest_rad = steps.fold(0.0, |most: f64, (a, b)| most.max((b - a).abs()));
+    (1..MOST_PARTS).find(|parts| farthest_rad <= *parts as f64 * PART_RAD).unwrap_or(MOST_PARTS)
 }
 
 /// What one segment is judged by.

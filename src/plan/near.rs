@@ -1,6 +1,6 @@
 //! The front where someone looks: exact plans of given times, and what a little more time buys.
 
-use super::{Choice, Evaluator, Rule, Setup, Timing, choose, exact};
+use super::{Evaluator, Rule, Setup, Timing, choose, exact};
 use crate::task::{Ceilings, Objective};
 
 /// A little more time, as a share.
@@ -31,17 +31,20 @@ pub fn bought(setup: &Setup, timing: &Timing) -> Vec<(Objective, f64)> {
     others.filter(|k| timing.objectives[*k] > 0.0).filter_map(one).collect()
 }
 
-/// The smoothest plans within round times around one, s, each descended as far as it goes; none for times that no plan
-/// keeps.
-pub fn near(setup: &Setup, front: &[Timing], ceilings: &Ceilings, around_s: f64) -> Vec<(f64, Choice)> {
+/// What is made within the ceilings and round times around one, s; nothing for times that none keeps. `took_s`: its duration.
+pub fn near<P>(
+    ceilings: &Ceilings,
+    around_s: f64,
+    made: impl Fn(&Ceilings) -> Option<P>,
+    took_s: impl Fn(&P) -> f64,
+) -> Vec<(f64, P)> {
     let within = |within_s: f64| {
-        let ceilings = ceilings.with(Objective::Duration, within_s.min(ceilings[Objective::Duration]));
-        Some((within_s, choose(setup, front, &ceilings, (Rule::Best(Objective::RmsJerk), None)).ok()?))
+        let within_s_too = within_s.min(ceilings[Objective::Duration]);
+        Some((within_s, made(&ceilings.with(Objective::Duration, within_s_too))?))
     };
-    let mut plans: Vec<(f64, Choice)> = round_times_s(around_s).into_iter().filter_map(within).collect();
+    let mut plans: Vec<(f64, P)> = round_times_s(around_s).into_iter().filter_map(within).collect();
     // Slower than the task or its ceilings allow, all are one.
-    let took_s = |plan: &(f64, Choice)| plan.1.timing.objectives[Objective::Duration];
-    plans.dedup_by(|later, earlier| took_s(later) < took_s(earlier) * (1.0 + 1e-6));
+    plans.dedup_by(|later, earlier| took_s(&later.1) < took_s(&earlier.1) * (1.0 + 1e-6));
     plans
 }
 
@@ -82,7 +85,12 @@ mod tests {
         let front = crate::plan::search(&setup, &search, |_| ControlFlow::Continue(())).unwrap().front;
         let rest_s = setup.resting_s();
         let scale = |t_s: f64| (t_s * (t_s - rest_s).powi(5)).sqrt();
-        let found = near(&setup, &front, &Ceilings::NONE, 30.0);
+        let near = |ceilings: &Ceilings, around_s: f64| {
+            let smoothest =
+                |held: &Ceilings| choose(&setup, &front, held, (Rule::Best(Objective::RmsJerk), None)).ok();
+            near(ceilings, around_s, smoothest, |plan| plan.timing.objectives[Objective::Duration])
+        };
+        let found = near(&Ceilings::NONE, 30.0);
         assert_eq!(found.len(), 7);
         let all: Vec<f64> = found
             .iter()
@@ -94,7 +102,7 @@ mod tests {
             .collect();
         let (least, most) = all.iter().fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)));
         assert!(most / least < 1.001, "{most} {least}");
-        assert_eq!(near(&setup, &front, &task.ceilings, 500.0).len(), 1, "the task ends at 40 s");
+        assert_eq!(near(&task.ceilings, 500.0).len(), 1, "the task ends at 40 s");
         let (within_s, plan) = &found[3];
         let less = bought(&setup, &plan.timing)[0];
         let due = 1.0 - scale(*within_s) / scale(within_s * (1.0 + MORE));

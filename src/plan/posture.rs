@@ -35,7 +35,8 @@ pub(super) fn key_points(
                     .map_err(|source| PlanError::Unreachable { point: point + 1, source })?
             }
         };
-        for (j, (&found_rad, &[lowest_rad, highest_rad])) in near.iter().zip(range_rad).enumerate() {
+        for (j, (angle_rad, &[lowest_rad, highest_rad])) in near.iter_mut().zip(range_rad).enumerate() {
+            let found_rad = *angle_rad;
             if found_rad < lowest_rad - SLACK_RAD || found_rad > highest_rad + SLACK_RAD {
                 let joint = arm.chain.joints()[j].name.clone();
                 return Err(PlanError::PointOutside {
@@ -46,6 +47,8 @@ pub(super) fn key_points(
                     highest_rad,
                 });
             }
+            // Beyond the end by no more than the slack, no plan keeps the range.
+            *angle_rad = found_rad.max(lowest_rad).min(highest_rad);
         }
         position_rad.extend_from_slice(&near);
     }

@@ -27,17 +27,28 @@ pub(crate) fn plan_written(log: &Path, of_sample_arm: bool) -> Section {
     step(sent, aim, &["join", "RUN.mcap", "--plan", &log, "-o", run])
 }
 
-/// After `fit`; `logs` are the runs of the plan to plan again, and `trusted` says that a command can be made for a joint.
-pub(crate) fn limits_written(limits: &Path, logs: &[&PathBuf], trusted: bool) -> Section {
+/// After `fit`; `trusted` says that a command can be made for a joint. `logs` are the runs of the plan to plan again, or the one
+/// to look at; `why_none` says why there is none.
+pub(crate) fn limits_written(
+    limits: &Path,
+    logs: &[&PathBuf],
+    why_none: Option<&str>,
+    trusted: bool,
+) -> Section {
     let limits = argument(limits);
+    let written = match why_none {
+        Some(why) => written(&limits).with(Sentence::finding(format!("No command is made from {why}."))),
+        None => written(&limits),
+    };
     let logs: Vec<String> = logs.iter().map(argument).collect();
     let logs = if logs.is_empty() { "RUN.mcap".to_owned() } else { logs.join(" ") };
     if !trusted {
         let aim = "No joint is predicted well enough for a command. To see how each followed its plan:";
-        return step(written(&limits), aim, &["report", &logs]);
+        return step(written, aim, &["report", &logs]);
     }
-    let aim = "To plan the next run, with half of the correction at first:";
-    step(written(&limits), aim, &["replan", &logs, "--limits", &limits, "--gain", "0.5", "-o", "next.mcap"])
+    let from = if why_none.is_some() { " from another log" } else { "" };
+    let aim = &format!("To plan the next run{from}, with half of the correction at first:");
+    step(written, aim, &["replan", &logs, "--limits", &limits, "--gain", "0.5", "-o", "next.mcap"])
 }
 
 /// After `replan` of these logs, read by these options; `changing` are its options of what may change.

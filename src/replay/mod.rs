@@ -9,6 +9,7 @@ mod answer;
 mod concentration;
 mod cursor;
 mod delay;
+mod drift;
 mod joint;
 mod keyed;
 mod lag;
@@ -31,6 +32,7 @@ mod transition;
 pub(crate) mod unit;
 
 pub use delay::{measured_starts, measured_stops};
+pub use drift::RestDrift;
 pub use keyed::{Keyed, Row};
 pub use lane::{Phase, Stretch, lane};
 pub use metric::{

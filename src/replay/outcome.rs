@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Rules;
+use super::{RestDrift, Rules};
 use crate::series::{JointKind, Noise};
 
 /// Analysis of one run; error is planned minus measured throughout.
@@ -82,6 +82,8 @@ pub struct JointReplay {
     pub tracking_error: TrackingError,
     /// The same while the plan has been at rest for a while; `None` if it never is.
     pub standstill_error: Option<TrackingError>,
+    /// How fast it moves meanwhile; `None` where no rest is long enough.
+    pub rest_drift: Option<RestDrift>,
     /// This joint's share of the distance to the planned path, ignoring time.
     pub path_error: Option<PathError>,
     /// Time shift at the maximum of the speed correlation, s; positive if the joint is late.

@@ -47,18 +47,25 @@ const fn mirrored<const L: usize>(half: &[(f64, f64)]) -> Rule<L> {
 }
 
 impl Spline {
-    /// Nodes and weights of every piece, ascending in time, appended to the buffers: the
+    /// Nodes and weights of every one of the equal parts of every piece, ascending in time, appended to the buffers: the
     /// integral over time is the sum of values times weights. Nodes and weights in s.
-    pub fn quadrature(&self, gauss: Gauss, nodes_s: &mut Vec<f64>, weights_s: &mut Vec<f64>) {
+    pub fn quadrature(&self, gauss: Gauss, parts: usize, nodes_s: &mut Vec<f64>, weights_s: &mut Vec<f64>) {
         let rule: &[(f64, f64)] = match gauss {
             Gauss::Four => &FOUR,
             Gauss::Eight => &EIGHT,
         };
         for ends in self.knots.breaks().windows(2) {
-            let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
-            for (node, weight) in rule {
-                nodes_s.push(middle + half * node);
-                weights_s.push(half * weight);
+            let end = |part: usize| match part {
+                _ if part == parts => ends[1],
+                _ => ends[0] + (ends[1] - ends[0]) * (part as f64 / parts as f64),
+            };
+            for part in 0..parts {
+                let (from, to) = (end(part), end(part + 1));
+                let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+                for (node, weight) in rule {
+                    nodes_s.push(middle + half * node);
+                    weights_s.push(half * weight);
+                }
             }
         }
     }

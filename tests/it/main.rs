@@ -27,6 +27,7 @@ mod arm;
 mod cli;
 mod delay;
 mod docs;
+mod drift;
 mod fit;
 mod golden;
 mod log_read;

@@ -10,6 +10,7 @@
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of tests are small")]
 #![allow(missing_docs, reason = "a test's name says it")]
 
+mod choice;
 mod compensation;
 mod detection;
 mod fleet;
@@ -22,3 +23,4 @@ mod structures;
 #[allow(dead_code, reason = "shared with the tests that run always")]
 mod support;
 mod whole_loop;
+mod why;

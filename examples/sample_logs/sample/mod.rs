@@ -74,33 +74,44 @@ const PLC_TRACE: Title = (
     "The first 20 s as a PLC writes them, 50 Hz: semicolons, decimal commas, degrees, a row of units, dates without time zone.",
 );
 
-/// Every file of the folder, by name.
-pub(crate) fn files() -> Result<BTreeMap<String, Vec<u8>>, Box<dyn Error>> {
-    let logs = [panel_install()?, still_joint()?, gaps()?, power_loss()?, trajectory_only()?, plc_trace()?];
-    let plant = hydraulic::logs()?;
+/// Small files for a repository: the slowest compression.
+pub(crate) const SMALL: u32 = 19;
+
+/// Every file of the folder, by name; the log that is cut is always [`SMALL`], for its cut lies in compressed data.
+pub(crate) fn files(compression_level: u32) -> Result<BTreeMap<String, Vec<u8>>, Box<dyn Error>> {
+    let size = options(compression_level);
+    let logs = [
+        panel_install(&size)?,
+        still_joint(&size)?,
+        gaps(&size)?,
+        power_loss(&options(SMALL))?,
+        trajectory_only(&size)?,
+        plc_trace()?,
+    ];
+    let plant = hydraulic::logs(&size)?;
     let mut files = BTreeMap::from([("README.md".to_owned(), readme::text(&logs, &plant)?.into_bytes())]);
     files.extend(plant.into_iter().map(|log| (log.name.to_owned(), log.bytes)));
     files.extend(logs.into_iter().map(|log| (log.name.to_owned(), log.bytes)));
     Ok(files)
 }
 
-fn panel_install() -> Result<SampleLog, Box<dyn Error>> {
+fn panel_install(options: &WriteOptions) -> Result<SampleLog, Box<dyn Error>> {
     let run = Run::new(1, IN_ORDER, &[])?;
-    write(PANEL_INSTALL, run, Vec::new(), |log, run| {
+    write(options, PANEL_INSTALL, run, Vec::new(), |log, run| {
         write_plan(log, &run.plans)?;
         write_everything(log, &run.cycles)
     })
 }
 
-fn still_joint() -> Result<SampleLog, Box<dyn Error>> {
+fn still_joint(options: &WriteOptions) -> Result<SampleLog, Box<dyn Error>> {
     let run = Run::new(2, SHUFFLED, &[STILL])?;
     let defects = vec![("still", format!("joint_{}", STILL + 1))];
-    write(STILL_JOINT, run, defects, |log, run| {
+    write(options, STILL_JOINT, run, defects, |log, run| {
         run.cycles.iter().try_for_each(|cycle| write_joints(log, cycle))
     })
 }
 
-fn gaps() -> Result<SampleLog, Box<dyn Error>> {
+fn gaps(options: &WriteOptions) -> Result<SampleLog, Box<dyn Error>> {
     let mut run = Run::new(3, IN_ORDER, &[])?;
     for cycle in &mut run.cycles {
         cycle.keep_measured &= !GAPS_S.iter().any(|&[from_s, to_s]| cycle.t_s > from_s && cycle.t_s < to_s);
@@ -118,7 +129,7 @@ fn gaps() -> Result<SampleLog, Box<dyn Error>> {
         ("not_finite_joint_2", NOT_FINITE.len().to_string()),
         ("repeated_stamps", REPEATED.len().to_string()),
     ];
-    write(GAPS, run, defects, |log, run| {
+    write(options, GAPS, run, defects, |log, run| {
         run.cycles.iter().enumerate().try_for_each(|(k, cycle)| {
             write_joints(log, cycle)?;
             if REPEATED.contains(&k) { write_measured(log, cycle) } else { Ok(()) }
@@ -126,7 +137,7 @@ fn gaps() -> Result<SampleLog, Box<dyn Error>> {
     })
 }
 
-fn power_loss() -> Result<SampleLog, Box<dyn Error>> {
+fn power_loss(options: &WriteOptions) -> Result<SampleLog, Box<dyn Error>> {
     let run = Run::new(4, IN_ORDER, &[])?;
     let measured = |cycles: &[Cycle]| cycles.iter().filter(|cycle| cycle.keep_measured).count();
     let defects = vec![
@@ -134,7 +145,7 @@ fn power_loss() -> Result<SampleLog, Box<dyn Error>> {
         ("measured_before_cut_chunk", measured(&run.cycles[..LAST_CHUNK_FROM]).to_string()),
         ("cut_chunk_from_s", format!("{:.3}", run.cycles[LAST_CHUNK_FROM].t_s)),
     ];
-    let mut log = write(POWER_LOSS, run, defects, |log, run| {
+    let mut log = write(options, POWER_LOSS, run, defects, |log, run| {
         write_plan(log, &run.plans)?;
         write_everything(log, &run.cycles[..LAST_CHUNK_FROM])?;
         log.flush()?;
@@ -147,9 +158,9 @@ fn power_loss() -> Result<SampleLog, Box<dyn Error>> {
     Ok(log)
 }
 
-fn trajectory_only() -> Result<SampleLog, Box<dyn Error>> {
+fn trajectory_only(options: &WriteOptions) -> Result<SampleLog, Box<dyn Error>> {
     let run = Run::new(5, IN_ORDER, &[])?;
-    write(TRAJECTORY_ONLY, run, Vec::new(), |log, run| {
+    write(options, TRAJECTORY_ONLY, run, Vec::new(), |log, run| {
         write_plan(log, &run.plans)?;
         run.cycles.iter().try_for_each(|cycle| write_measured(log, cycle))
     })
@@ -160,6 +171,11 @@ fn plc_trace() -> Result<SampleLog, Box<dyn Error>> {
     let bytes = plc::trace(&run).into_bytes();
     let (name, story) = PLC_TRACE;
     Ok(SampleLog { name, bytes, run, defects: Vec::new(), story })
+}
+
+/// Chunks as large as a run.
+fn options(compression_level: u32) -> WriteOptions {
+    WriteOptions { compression_level, chunk_bytes: 1 << 24, ..WriteOptions::default() }
 }
 
 /// Plan and measurement in every cycle, the controller's state in every fifth.
@@ -175,14 +191,13 @@ fn write_everything(log: &mut LogWriter<Vec<u8>>, cycles: &[Cycle]) -> Result<()
 
 /// Writes a log that begins with its truth.
 fn write(
+    options: &WriteOptions,
     (name, story): Title,
     run: Run,
     defects: Vec<(&'static str, String)>,
     record: impl FnOnce(&mut LogWriter<Vec<u8>>, &Run) -> Result<(), WriteError>,
 ) -> Result<SampleLog, Box<dyn Error>> {
-    // Small files for a repository: the slowest compression, and chunks as large as a run.
-    let options = WriteOptions { compression_level: 19, chunk_bytes: 1 << 24, ..WriteOptions::default() };
-    let mut log = LogWriter::new(Vec::new(), &run.joint_names(), options)?;
+    let mut log = LogWriter::new(Vec::new(), &run.joint_names(), options.clone())?;
     log.metadata("truth", &truth::entries(&run, &defects))?;
     record(&mut log, &run)?;
     Ok(SampleLog { name, bytes: log.finish()?, run, defects, story })

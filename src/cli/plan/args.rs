@@ -43,7 +43,14 @@ pub(in crate::cli) struct Args {
     pub(super) output: Option<PathBuf>,
 
     /// Evaluate one plan instead of searching: arrival times at the key points, s, dwells included
-    #[arg(long, value_name = "S,...", value_delimiter = ',', value_parser = any_seconds, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "S,...",
+        value_delimiter = ',',
+        value_parser = any_seconds,
+        allow_negative_numbers = true,
+        conflicts_with_all = ["shape", "pieces", "choose", "weights", "near", "degrees"]
+    )]
     pub(super) times: Option<Vec<f64>>,
 
     /// One JSON document with the front (schemas/plan.v1.schema.json in the repository)
@@ -157,11 +164,11 @@ pub(super) struct ChoiceArgs {
     pub(super) weights: Option<Weights>,
 
     /// Also the smoothest plans within round times around S, each exact: the front between those of the search
-    #[arg(long, value_name = "S", value_parser = near_s, conflicts_with = "times", allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", value_parser = near_s, allow_negative_numbers = true)]
     pub(super) near: Option<f64>,
 
     /// Also by splines of the other degrees, 5, 6 and 7, searched and chosen alike; names one that is better
-    #[arg(long, conflicts_with = "times")]
+    #[arg(long)]
     pub(super) degrees: bool,
 }
 

@@ -39,6 +39,13 @@ impl Run for Args {
         let target = Target::new(self.form(), self.page())?;
         self.figures.check()?;
         let request = PlanRequest::read(&self.task)?;
+        if self.shape.pieces.is_some() && self.shape.shape == Free::Timing {
+            return Err(CliError::Usage("--pieces are of a free shape: add --shape free".to_owned()));
+        }
+        if self.times.is_none() && request.task.times_s.is_some() && self.seeks() {
+            let text = "the task gives times_s, so that plan is judged and none is sought: leave times_s out of it, or                         --near, --degrees, --choose, --weights and --shape out of the command";
+            return Err(CliError::Usage(text.to_owned()));
+        }
         match self.times.as_ref().or(request.task.times_s.as_ref()) {
             Some(times_s) => self.evaluate(&request, times_s, &target, console),
             None => self.search(&request, &target, console),
@@ -55,6 +62,13 @@ pub(super) struct Found {
 }
 
 impl Args {
+    /// Whether an option says how to seek a plan.
+    fn seeks(&self) -> bool {
+        let choice = &self.choice;
+        let rules = choice.choose.is_some() || choice.weights.is_some();
+        choice.near.is_some() || choice.degrees || rules || self.shape.shape == Free::Free
+    }
+
     fn evaluate(
         &self,
         request: &PlanRequest,
@@ -99,8 +113,14 @@ impl Args {
             Form::Html => {
                 let of_front = Course::of_front(request, &planned)?;
                 let tool = request.setup.arm().chain.tool_name();
-                let courses =
-                    Courses { chosen: &course, of_front: &of_front, tool, ceilings, task: &self.task };
+                let courses = Courses {
+                    chosen: &course,
+                    of_front: &of_front,
+                    tool,
+                    ceilings,
+                    of_sample_arm: request.is_of_sample_arm(),
+                    task: &self.task,
+                };
                 words::page(&document, &options, ceilings, &planned, &courses)
             }
             _ => target
@@ -155,7 +175,8 @@ impl Args {
                 (nearest, broken_lines(&joints, request.task.interval_s[1], nearest))
             }
             PlanFailure::Ceilings { nearest } => {
-                (nearest, ceiling_lines(&request.task.ceilings, &joints, nearest))
+                let longest_s = request.task.interval_s[1];
+                (nearest, ceiling_lines(&request.task.ceilings, &joints, (longest_s, nearest)))
             }
             _ => return Ok(failure.into()),
         };

@@ -67,11 +67,11 @@ pub(super) fn choose(
             let columns: Vec<&str> = best.source.columns().iter().map(|&c| head.names[c].as_str()).collect();
             let why =
                 format!(" that tells the rows apart ({} repeats itself in most)", columns.join(" with "));
-            Err(CsvError::NoTime { why, present: present(&head.names), by_number: look.by_number() })
+            Err(CsvError::NoTime { why, present: present(&head.names), by_number: look.by_number(text) })
         }
         (None, Some(error)) => Err(error),
         (None, None) => {
-            let (why, by_number) = (String::new(), look.by_number());
+            let (why, by_number) = (String::new(), look.by_number(text));
             Err(CsvError::NoTime { why, present: present(&head.names), by_number })
         }
     }
@@ -116,6 +116,8 @@ const LEAST_APART_S: f64 = 0.02;
 const FINEST_OF_THOUSANDTHS: f64 = 0.01;
 /// Fewer rows may rise by chance.
 const LEAST_ROWS: usize = 12;
+/// Rows that tell a time from a joint that rises for a while.
+const MANY_ROWS: usize = 4000;
 
 /// A table in which times are looked for.
 pub(super) struct Look<'a> {
@@ -134,9 +136,10 @@ impl Look<'_> {
         let ns: Vec<i64> = self.ns(&source).flatten().collect();
         let count = |is: fn(&i64, &i64) -> bool| ns.windows(2).filter(|w| is(&w[0], &w[1])).count();
         let (rises, falls) = (count(i64::lt), count(i64::gt));
+        let is_span = source.columns().iter().any(|column| self.is_span(*column));
         Found {
             resolves: !ns.is_empty() && 2 * (rises + falls) + 1 >= ns.len(),
-            steady: ns.len() < LEAST_ROWS || 4 * rises.min(falls) <= rises + falls,
+            steady: ns.len() < LEAST_ROWS && !is_span || 4 * rises.min(falls) <= rises + falls,
             absolute: ns.first().is_some_and(|first| *first >= FIRST_ABSOLUTE_NS),
             source,
             doubt,
@@ -237,7 +240,8 @@ impl Look<'_> {
             "zyklus",
             "laufzeit",
         ];
-        self.labels[column].words.iter().any(|word| SPANS.contains(&word.as_str()))
+        let says = |label: &Label| label.words.iter().any(|word| SPANS.contains(&word.as_str()));
+        self.labels.get(column).is_some_and(says)
     }
 
     /// Whether a time is that of who received or wrote the row, not of who measured.
@@ -299,13 +303,17 @@ impl Look<'_> {
     }
 
     /// The options that name columns of a table without names by their number; none of one with names.
-    fn by_number(&self) -> Vec<String> {
+    fn by_number(&self, text: &[u8]) -> Vec<String> {
         if self.head.named {
             return Vec::new();
         }
         let columns = 0..self.labels.len();
-        // A clock stands in front; joints may rise for a while.
-        let time = columns.clone().take(2).find(|column| self.rising(*column).is_some());
+        let rises = |column: &usize| {
+            let Some(Found { source, .. }) = self.rising(*column) else { return false };
+            let [ns, _] = self.both(text, [&source; 2]);
+            ns.windows(2).take(MANY_ROWS).all(|two| two[0] < two[1])
+        };
+        let time = columns.clone().find(rises);
         let first = time.map_or("--rate HZ".to_owned(), |column| format!("--time '#{}'", column + 1));
         let others = columns.filter(|column| Some(*column) != time).map(|column| column + 1);
         let sides = ["--planned", "--measured"].into_iter().zip(others);

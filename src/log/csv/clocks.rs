@@ -6,7 +6,7 @@ use ::csv::ByteRecord;
 
 use super::{
     CsvOptions, Role, clock,
-    column::{find, pasted},
+    column::{named, pasted},
     dialect::{Dialect, detect},
     head::{Head, read_head},
     label::{Label, label},
@@ -162,13 +162,7 @@ fn groups(head: &Head, dialect: Dialect, options: &CsvOptions) -> Option<(Vec<us
     if !head.named || times.len() < 2 {
         return None;
     }
-    let given = options.columns.values().chain(options.interfaces.values()).flatten();
-    let found = |text: &str| find(text, "", &head.names).ok();
-    let named: BTreeSet<usize> = given
-        .flat_map(|(_, text)| {
-            std::iter::once(text.as_str()).chain(text.split(['+', '-', '*'])).filter_map(found)
-        })
-        .collect();
+    let named = named(options, &head.names);
     let wanted = |column: usize| labels[column].is_joint || named.contains(&column);
     let one_name = times.iter().all(|time| head.names[*time] == head.names[times[0]]);
     let columns = owned(&labels, &times, wanted, one_name)?;

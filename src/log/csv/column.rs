@@ -1,8 +1,8 @@
 //! Columns as a caller names them.
 
-use std::fmt::Write as _;
+use std::{collections::BTreeSet, fmt::Write as _};
 
-use super::CsvError;
+use super::{CsvError, CsvOptions};
 use crate::{suggest::nearest, text::shell_word};
 
 /// The columns of a file, for messages.
@@ -51,6 +51,13 @@ pub(super) fn find(name: &str, option: &str, names: &[String]) -> Result<usize, 
         nearest: nearest(name, names.iter().map(String::as_str)),
         present: present(names),
     })
+}
+
+/// The columns that a caller names, alone or in a sum.
+pub(super) fn named(options: &CsvOptions, names: &[String]) -> BTreeSet<usize> {
+    let given = options.columns.values().chain(options.interfaces.values()).flatten();
+    let parts = given.flat_map(|(_, text)| std::iter::once(text.as_str()).chain(text.split(['+', '-', '*'])));
+    parts.filter_map(|text| find(text, "", names).ok()).collect()
 }
 
 /// A column as a value of an option that [`find`] finds again: by its number where others have the same header.

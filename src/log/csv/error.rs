@@ -51,10 +51,10 @@ pub enum CsvError {
     NoMachine { column: String, value: String, known: String },
     /// No column is a joint's angle.
     #[error(
-        "no column looks like a joint angle; the columns are {present}; name them with \
+        "no column looks like a joint angle{why}; the columns are {present}; name them with \
          --planned JOINT=COLUMN,... and --measured JOINT=COLUMN,..., or in a file with --map"
     )]
-    NoJoints { present: String },
+    NoJoints { why: String, present: String },
     /// All columns of joints are in a unit of another kind.
     #[error(
         "column {column:?} is in {unit}, which is no angle or length; say what one is with \

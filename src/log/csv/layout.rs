@@ -9,7 +9,7 @@ use super::{
     head::Head,
     label::Label,
     pairing::{Draft, Partners, by_last_part, plan_beside_measured, without_shared_words},
-    unit::Unit,
+    unit::{Measure, Unit},
 };
 use crate::{
     remark::{Code, Remarks},
@@ -91,6 +91,11 @@ pub(super) fn lay_out(
         let label = &labels[column];
         let (role, quantity) =
             (label.role.unwrap_or(Role::Measured), label.quantity.unwrap_or(Quantity::Position));
+        // What turns at a speed may move what slides: a spindle.
+        let drives = |other: &Label| other.key == label.key && measures(other, Measure::Length);
+        if measures(label, Measure::AngularSpeed) && labels.iter().any(drives) {
+            continue;
+        }
         let paired = drafts.iter().any(|draft| draft.key == label.key) || partners.has_one(label);
         if options.columns.contains_key(&(role, quantity)) || label.is_weak && !paired {
             continue;
@@ -143,6 +148,10 @@ pub(super) fn lay_out(
         return Err(CsvError::SameColumn { column: head.names[column].clone(), number: column + 1 });
     }
     Ok(Layout { joints: joints.into_iter().map(|(_, name)| name).collect(), uses, interfaces })
+}
+
+fn measures(label: &Label, measure: Measure) -> bool {
+    label.unit.is_some_and(|unit| unit.measure == measure)
 }
 
 /// The unit of a column that would be a joint's, if one knew what one of it is.
@@ -208,7 +217,13 @@ fn joints(
             let odd = labels.iter().zip(&head.names).find_map(|(label, name)| Some((odd(label)?, name)));
             return Err(match odd {
                 Some((unit, name)) => CsvError::OddUnit { column: name.clone(), unit: unit.name },
-                None => CsvError::NoJoints { present: present(&head.names) },
+                None => {
+                    let speed = drafts.iter().find(|draft| draft.quantity == Quantity::Velocity);
+                    let why = speed.map_or_else(String::new, |draft| {
+                        format!(" (column {:?} is a speed)", head.names[draft.column])
+                    });
+                    CsvError::NoJoints { why, present: present(&head.names) }
+                }
             });
         }
         (true, false) => (&measured, "plan", "--planned"),

@@ -213,7 +213,7 @@ mod tests {
     use super::*;
 
     fn of(text: &str, options: &CsvOptions) -> Option<String> {
-        let error = CsvError::NoJoints { present: String::new() };
+        let error = CsvError::NoJoints { why: String::new(), present: String::new() };
         assert!(by_column("a.csv", text.as_bytes(), options, &error, &mut Remarks::default()).is_none());
         let error = CsvError::NoTime { why: String::new(), present: String::new(), by_number: Vec::new() };
         let (text, _) = by_column("a.csv", text.as_bytes(), options, &error, &mut Remarks::default())?;

@@ -12,8 +12,8 @@ const GAINS: [&str; 3] = ["p", "i", "d"];
 const PLACE: [&str; 3] = ["x", "y", "z"];
 const ORIENTATION: [&str; 3] = ["a", "b", "c"];
 
-/// `A`, `B` and `C` beside `X`, `Y` and `Z` are the orientation of a tool, no joints.
-pub(super) fn leave_out_orientation(labels: &mut [Label], remarks: &mut Remarks) {
+/// `A`, `B` and `C` beside `X`, `Y` and `Z` are the orientation of a tool, no joints, unless the caller names them.
+pub(super) fn leave_out_orientation(labels: &mut [Label], named: &BTreeSet<usize>, remarks: &mut Remarks) {
     let is_angle = |at: &usize| {
         let prefix = ORIENTATION.iter().find_map(|letter| labels[*at].key.strip_suffix(letter));
         let Some(prefix) = prefix.filter(|prefix| prefix.is_empty() || prefix.ends_with(['_', '/'])) else {
@@ -31,13 +31,15 @@ pub(super) fn leave_out_orientation(labels: &mut [Label], remarks: &mut Remarks)
     }
     let message = "columns A, B and C beside X, Y and Z are taken as the orientation of a tool and left out; if they are joints, \
                    name them with --planned JOINT=COLUMN,... and --measured JOINT=COLUMN,...";
-    remarks.add(Code::Guessed, angles.len() as u64, message);
+    let left = angles.iter().filter(|at| !named.contains(at)).count();
+    remarks.add(Code::Guessed, left as u64, message);
 }
 
 /// Settles what only all headers together tell: that `q_d_1` is the plan of `q_1`, and that `J1_planned_rad` and
 /// `J1_actual_rad` are of one joint. Names that differ in case alone are of one where no two say the same of it.
 pub(super) fn settle(labels: &mut [Label]) {
     leave_out_gains(labels);
+    states_beside_actions(labels);
     name_by_owners(labels);
     let says = |label: &Label| {
         let quantity = label.quantity.unwrap_or(Quantity::Position);
@@ -64,6 +66,22 @@ pub(super) fn settle(labels: &mut [Label]) {
             }
         } else if one {
             labels[at].key = lower;
+        }
+    }
+}
+
+/// `state[0]` beside `actions[0]` was measured, as data sets of `LeRobot` name it that say no `observation`.
+fn states_beside_actions(labels: &mut [Label]) {
+    let of = |label: &Label, names: &[&str]| match label.words.as_slice() {
+        [name, number] if names.contains(&name.as_str()) => Some(format!("joint_{number}")),
+        _ => None,
+    };
+    let sent: BTreeSet<String> =
+        labels.iter().filter_map(|label| of(label, &["action", "actions"])).collect();
+    for label in labels {
+        if let Some(joint) = of(label, &["state", "states"]).filter(|joint| sent.contains(joint)) {
+            (label.key, label.joint) = (joint.clone(), joint);
+            (label.role, label.is_joint) = (Some(Role::Measured), true);
         }
     }
 }
@@ -117,6 +135,26 @@ mod tests {
         let units = |headers: [&str; 2]| labels(headers).map(|label| label.unit.map(|unit| unit.name));
         assert_eq!(units(["q1_d", "q1_m"]), [None, None]);
         assert_eq!(units(["q1_rad", "q3_m"]), [Some("rad"), Some("m")]);
+    }
+
+    #[test]
+    fn a_state_is_measured_beside_actions_alone() {
+        let (sent, real) = (Some(Role::Command), Some(Role::Measured));
+        let said = |headers: [&str; 2]| labels(headers).map(|label| (label.role, label.key));
+        let both = [(sent, "joint_0".into()), (real, "joint_0".into())];
+        assert_eq!(said(["actions[0]", "state[0]"]), both);
+        assert_eq!(said(["q_set[0]", "state[0]"])[1], (None, "state_0".into()));
+    }
+
+    #[test]
+    fn a_named_orientation_is_not_left_out() {
+        let labels = ["X", "Y", "Z", "A", "B", "C"].map(|axis| label(&format!("{axis}_RIst"), None));
+        let left = |named: &[usize]| {
+            let mut remarks = Remarks::default();
+            leave_out_orientation(&mut labels.clone(), &named.iter().copied().collect(), &mut remarks);
+            remarks.as_slice().iter().map(|remark| remark.count).sum::<u64>()
+        };
+        assert_eq!((left(&[]), left(&[3]), left(&[3, 4, 5])), (3, 2, 0));
     }
 
     #[test]

@@ -119,9 +119,9 @@ const UNITS: [(&[&str], Unit); 39] = [
     (&["rev", "revs", "turn", "turns", "umdr", "umdrehung", "umdrehungen", "tours"], REVOLUTION),
     (&["gon"], unit("gon", Measure::Angle, TAU / 400.0)),
     (&["arcmin"], unit("arcmin", Measure::Angle, DEGREE_RAD / 60.0)),
-    (&["rad/s", "rad_s", "rads", "rad/sec", "rad s^-1"], unit("rad/s", Measure::AngularSpeed, 1.0)),
+    (&["rad/s", "rad_s", "rads", "radps", "rad/sec", "rad s^-1"], unit("rad/s", Measure::AngularSpeed, 1.0)),
     (
-        &["deg/s", "deg_s", "degs", "deg/sec", "dps", "grad/s"],
+        &["deg/s", "deg_s", "degs", "deg/sec", "dps", "degps", "grad/s"],
         unit("deg/s", Measure::AngularSpeed, DEGREE_RAD),
     ),
     (&["mrad/s", "mrad_s"], unit("mrad/s", Measure::AngularSpeed, 1e-3)),
@@ -134,7 +134,7 @@ const UNITS: [(&[&str], Unit); 39] = [
     (&["in", "inch", "inches"], unit("in", Measure::Length, 0.0254)),
     (&["mm/s", "mm_s", "mm/sec"], unit("mm/s", Measure::LinearSpeed, 1e-3)),
     (&["cm/s", "cm_s", "cm/sec"], unit("cm/s", Measure::LinearSpeed, 1e-2)),
-    (&["m/s", "m_s", "m/sec"], unit("m/s", Measure::LinearSpeed, 1.0)),
+    (&["m/s", "m_s", "mps", "m/sec"], unit("m/s", Measure::LinearSpeed, 1.0)),
     (&["s", "秒", "sec", "secs", "seconds", "second"], unit("s", Measure::Time, 1e9)),
     (&["ms", "毫秒", "msec", "msecs", "milliseconds", "millis"], unit("ms", Measure::Time, 1e6)),
     (&["us", "µs", "μs", "usec", "usecs", "microseconds", "micros"], unit("us", Measure::Time, 1e3)),
@@ -225,12 +225,12 @@ pub(super) fn scale_by(factor: f64, name: &str) -> Option<Unit> {
 
 /// The unit that ends a name, as in `q1_deg` or `J1_planned_rad_s`, and the name without it.
 pub(super) fn split_suffix(name: &str) -> Option<(&str, Unit)> {
-    const SUFFIXES: [&str; 51] = [
+    const SUFFIXES: [&str; 56] = [
         "millideg", "centideg", "decideg", "cdeg", "ddeg", "urad", "µrad", "μrad", "um", "µm", "μm",
         "0.1deg", "0.01deg", "0.001deg", "0.1mm", "0.01mm", "rad_s", "deg_s", "mrad_s", "mm_s", "cm_s",
         "m_s", "rad", "deg", "mrad", "mdeg", "mm", "cm", "m", "ms", "us", "ns", "s", "bar", "mbar", "pa",
         "°", "min", "minutes", "h", "hours", "sec", "msec", "usec", "nsec", "nanosec", "gon", "pct",
-        "percent", "counts", "ticks",
+        "percent", "counts", "ticks", "rpm", "dps", "degps", "radps", "mps",
     ];
     let lower = name.to_lowercase();
     let suffix = SUFFIXES.iter().find(|suffix| {
@@ -290,6 +290,9 @@ mod tests {
         assert_eq!(split("stamp_ns"), Some(("stamp", "ns")));
         assert_eq!(split("boom_set_mm"), Some(("boom_set", "mm")));
         assert_eq!(split("boom_measured_m_s"), Some(("boom_measured", "m/s")));
+        assert_eq!(split("setpoint_rpm"), Some(("setpoint", "rpm")));
+        assert_eq!(split("boom_degps"), Some(("boom", "deg/s")));
+        assert_eq!(split("boom_mps"), Some(("boom", "m/s")));
         assert_eq!(split("boom_PV_0.1deg"), Some(("boom_PV", "0.1 deg")));
         assert_eq!(split("boom_set_centideg"), Some(("boom_set", "0.01 deg")));
         assert_eq!(split("boom_set_µrad"), Some(("boom_set", "urad")));

@@ -91,7 +91,8 @@ pub fn read_messages(path: &Path, options: &CsvOptions) -> Result<CsvRun, LogErr
         |source| LogError::Table { path: path.to_owned(), source: Box::new(source), given: Given::default() };
     run(&files.scan()?, &file_name(path), options, false)
         .unwrap_or_else(|| {
-            Err(CsvError::NoJoints { present: "none whose words are those of a joint".to_owned() })
+            let present = "none whose words are those of a joint".to_owned();
+            Err(CsvError::NoJoints { why: String::new(), present })
         })
         .map_err(fault)
 }

@@ -11,7 +11,7 @@ const FROZEN_PLAN_RAD: f64 = 3.0 * DEGREE_RAD;
 const FROZEN_PLAN_M: f64 = 0.02;
 const FROZEN_S: f64 = 0.5;
 
-/// The longest stretch of exactly one measured value while the plan moves: from, to, samples.
+/// The longest stretch of exactly one measured value that lasts while the plan moves on: from, to, samples.
 pub(super) fn frozen(planned: &Track, measured: &Track) -> Option<(f64, f64, u64)> {
     let (t_s, q) = (measured.t_s(), measured.position());
     let mut longest: Option<(usize, usize)> = None;
@@ -23,7 +23,8 @@ pub(super) fn frozen(planned: &Track, measured: &Track) -> Option<(f64, f64, u64
         let first = (start..inside).rev().take_while(same).last().unwrap_or(inside);
         let end = (inside..q.len()).find(|i| !same(i)).unwrap_or(q.len());
         let long = t_s[end - 1] - t_s[first] > FROZEN_S && longest.is_none_or(|(a, b)| end - first > b - a);
-        if long && plan_moves(planned, t_s[first], t_s[end - 1]) {
+        // A plan that leaves its rest within the last moments meets dead time.
+        if long && plan_moves(planned, t_s[first], t_s[end - 1] - FROZEN_S) {
             longest = Some((first, end));
         }
         start = end;
@@ -62,6 +63,18 @@ mod tests {
 
     use super::*;
 
+    #[test]
+    fn a_rest_and_the_dead_time_after_it_are_no_frozen_sensor() {
+        let t_s: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.01).collect();
+        let track = |at: &dyn Fn(f64) -> f64| {
+            Track::new("a", t_s.clone(), t_s.iter().map(|t| at(*t)).collect(), &[]).unwrap()
+        };
+        let moves = |t: f64| 0.5 * (t - 5.0).max(0.0);
+        let stands_for = |s: f64| frozen(&track(&moves), &track(&|t| moves(t - s)));
+        assert_eq!(stands_for(0.4), None);
+        assert!(stands_for(1.0).is_some_and(|(from_s, to_s, _)| from_s < 0.1 && to_s > 5.9));
+    }
+
     proptest! {
         #[test]
         fn the_stretch_that_stands_still_is_the_longest_of_all(
@@ -76,7 +89,9 @@ mod tests {
                 *end += stretch.len();
                 Some((t_s[*end - stretch.len()], t_s[*end - 1], stretch.len() as u64))
             });
-            let long = stretches.filter(|(from_s, to_s, _)| to_s - from_s > FROZEN_S);
+            let moved = |from_s: f64, to_s: f64| t_s.iter().filter(|t| (from_s..to_s).contains(*t)).count() > 1;
+            let long =
+                stretches.filter(|(from_s, to_s, _)| to_s - from_s > FROZEN_S && moved(*from_s, to_s - FROZEN_S));
             // The first of those that are equally long.
             let expected = long.reduce(|a, b| if b.2 > a.2 { b } else { a });
             let plan = t_s.iter().enumerate().map(|(k, _)| if k % 2 == 0 { 0.0 } else { 1.0 }).collect();

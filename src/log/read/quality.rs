@@ -333,8 +333,8 @@ mod tests {
 
     #[test]
     fn a_sensor_that_stands_still_while_the_plan_moves_is_noticed() {
-        let frozen = |t: f64| if (1.0..2.0).contains(&t) { 0.1 } else { 0.1 * t };
-        assert_eq!(codes(track(|t| 0.1 * t), track(frozen)), [Code::FrozenSensor]);
+        let frozen = |t: f64| if (1.0..2.0).contains(&t) { 0.2 } else { 0.2 * t };
+        assert_eq!(codes(track(|t| 0.2 * t), track(frozen)), [Code::FrozenSensor]);
         assert_eq!(codes(track(|_| 0.0), track(|_| 0.0)), []);
     }
 }

@@ -163,10 +163,13 @@ fn namespace(topic: &str) -> impl Iterator<Item = &str> {
 /// Topics of other namespaces that would have served as well.
 fn rivals(all: &[Candidate], chosen: &[Candidate], wanted: &BTreeSet<&String>) -> Vec<String> {
     let same_home = |a: &Candidate, b: &Candidate| namespace(&a.topic).eq(namespace(&b.topic));
+    // Of another controller's joints another one says nothing.
+    let both = |m: &Candidate, c: &Candidate| {
+        c.joints.iter().any(|joint| wanted.contains(joint) && m.joints.contains(joint))
+    };
     let rival = |c: &&Candidate| {
         chosen.iter().all(|m| m.source != c.source)
-            && chosen.iter().any(|m| m.rank == c.rank && !same_home(m, c))
-            && c.joints.iter().any(|joint| wanted.contains(joint))
+            && chosen.iter().any(|m| m.rank == c.rank && !same_home(m, c) && both(m, c))
     };
     all.iter().filter(rival).map(|c| c.topic.clone()).collect()
 }
@@ -231,5 +234,27 @@ fn why(
         (false, _) => format!("{plan}; measurement as given"),
         (true, true) => format!("{plan}; each message holds plan and measurement of the same instant"),
         (true, false) => format!("{plan}; measurement from {}", list(measured)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_topic_is_the_rival_of_one_of_another_home_with_its_joints() {
+        let of = |source: usize, topic: &str, joint: &str| Candidate {
+            source,
+            field: Some(0),
+            rank: 3,
+            joints: vec![joint.to_owned()],
+            messages: 9,
+            topic: topic.to_owned(),
+        };
+        let chosen = [of(0, "/arm/controller_state", "a"), of(1, "/grip/controller_state", "g")];
+        let others = [of(2, "/arm/state", "a"), of(3, "/other/state", "g"), of(4, "/other/of_none", "h")];
+        let joints: Vec<String> = vec!["a".to_owned(), "g".to_owned(), "h".to_owned()];
+        let found = rivals(&[chosen.as_slice(), &others].concat(), &chosen, &joints.iter().collect());
+        assert_eq!(found, ["/other/state"]);
     }
 }

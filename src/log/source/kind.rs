@@ -117,7 +117,7 @@ pub(in crate::log) fn spec_for(
             builder.poses("", ["transform.translation", "transform.rotation"], Role::Either);
         }
         "geometry_msgs/PointStamped" => builder.poses("", ["point", "orientation"], Role::Either),
-        "nav_msgs/Odometry" => {
+        "geometry_msgs/PoseWithCovarianceStamped" | "nav_msgs/Odometry" => {
             builder.poses("", ["pose.pose.position", "pose.pose.orientation"], Role::Either);
         }
         "nav_msgs/Path" => {

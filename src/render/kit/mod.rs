@@ -24,8 +24,8 @@ pub use check::{Check, Mark};
 pub use document::{Block, Document, Fact, Id, Section, Sentence, fact};
 pub use markdown::markdown;
 pub use number::{
-    NONE, counted, deg, mm, ms, optional, percent, probability, share, short, signed, significant, some_of,
-    starts_of,
+    NONE, counted, deg, late, mm, ms, optional, percent, probability, share, short, signed, significant,
+    some_of, starts_of,
 };
 pub use table::{Align, Column, Table};
 pub use terminal::text;

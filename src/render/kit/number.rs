@@ -26,6 +26,12 @@ pub fn ms(s: f64) -> String {
     unsigned_zero(format!("{:.0}", s * 1e3))
 }
 
+/// By how much something is late or early.
+pub fn late(s: f64) -> String {
+    let ms = ms(s);
+    ms.strip_prefix('-').map_or(format!("{ms} ms late"), |early| format!("{early} ms early"))
+}
+
 /// A share as whole percent.
 pub fn share(share: f64) -> String {
     unsigned_zero(format!("{:.0}", 100.0 * share)) + " %"
@@ -115,6 +121,7 @@ mod tests {
     #[test]
     fn no_zero_has_a_sign() {
         assert_eq!([deg(-1e-9), ms(-1e-9), percent(-1e-9), signed(-1e-9, deg)], ["0.000", "0", "0", "0.000"]);
+        assert_eq!([late(-1e-9), late(0.12), late(-0.072)], ["0 ms late", "120 ms late", "72 ms early"]);
         assert_eq!([deg(-0.1), ms(0.012), percent(0.5), signed(0.1, deg)], ["-5.730", "12", "+50", "+5.730"]);
     }
 }

@@ -22,6 +22,8 @@ pub(crate) struct Courses<'a> {
     pub(crate) tool: &'a str,
     /// The task's ceilings.
     pub(crate) ceilings: &'a Ceilings,
+    /// Whether the machines that `simulate` knows by name have its joints.
+    pub(crate) of_sample_arm: bool,
     /// The task's file as the caller named it.
     pub(crate) task: &'a Path,
 }

@@ -32,7 +32,7 @@ pub(crate) fn page(
     document.facts = facts(&planned.joints, algorithm, options, planned);
     let mut plots = Plots::default();
     let mut chapters = vec![
-        Chapter { id: "summary", heading: "In short", body: summary(planned) },
+        Chapter { id: "summary", heading: "In short", body: summary(planned, courses.of_sample_arm) },
         Chapter { id: "front", heading: "The front", body: the_front(plan, planned, courses, &mut plots) },
         Chapter {
             id: "motion",
@@ -96,7 +96,7 @@ fn facts(joints: &[String], algorithm: &str, options: &Options, planned: &Planne
     ]
 }
 
-fn summary(planned: &Planned) -> Markup {
+fn summary(planned: &Planned, of_sample_arm: bool) -> Markup {
     html! {
         div class="cards" {
             (limits(&planned.chosen, &planned.joints))
@@ -105,7 +105,7 @@ fn summary(planned: &Planned) -> Markup {
                 (cost(&format!("{}, {}", objective.letter(), objective.row().best), plan))
             }
         }
-        (next_steps(&next(planned)))
+        (next_steps(&next(planned, of_sample_arm)))
     }
 }
 
@@ -135,16 +135,21 @@ fn cost(label: &str, evaluation: &PlanEvaluation) -> Markup {
     card("", label, &text(*first), &body)
 }
 
-fn next(planned: &Planned) -> Vec<(Sentence, Option<String>)> {
+fn next(planned: &Planned, of_sample_arm: bool) -> Vec<(Sentence, Option<String>)> {
     let doubts = (!planned.remarks.is_empty()).then(|| {
         let doubts = counted(planned.remarks.as_slice().len(), "remark");
         format!("Check the task first: {doubts} below.")
     });
     let longer = (planned.fastest_converged == Some(false))
         .then(|| "Search longer (--evaluations): the fastest plan was still becoming faster.".to_owned());
+    let tried = if of_sample_arm {
+        "Try the chosen plan on a simulated arm: hydrotrace simulate PLAN -o RUN, then hydrotrace report RUN."
+    } else {
+        "Send the chosen plan as a table: hydrotrace export PLAN -o plan.csv."
+    };
     let always = [
         "If another plan of the front suits better: --choose fastest, smoothest, knee, or --weights.",
-        "Try the chosen plan on a simulated arm: hydrotrace simulate PLAN -o RUN, then hydrotrace report RUN.",
+        tried,
     ];
     let steps = doubts.into_iter().chain(longer).chain(always.map(str::to_owned));
     steps.map(|step| (Sentence::Advice(step), None)).collect()

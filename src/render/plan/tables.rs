@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     plan::{BEYOND, HORIZON, Limit, Margin, NoShape, PlanEvaluation, Rule},
-    render::kit::{Document, Id, NONE, Section, Sentence, Table},
+    render::kit::{Document, Id, NONE, Section, Sentence, Table, counted},
     task::{Ceilings, Objective, Weights},
     units::degrees_from_radians,
     workflow::plan::{Options, Planned, Shaped},
@@ -28,10 +28,10 @@ pub(crate) fn document(
 ) -> Document {
     let start = if options.search.seeded { "descents" } else { "random plans" };
     let searched = format!(
-        "{} plans on the Pareto front, from {} evaluations: {algorithm}, started \
+        "{} on the Pareto front, from {} evaluations: {algorithm}, started \
          from {start}, seed {}. Hypervolume {:.4} of the box from the best of each objective to {BEYOND} times the \
          range.",
-        planned.front.len(),
+        counted(planned.front.len(), "plan"),
         planned.evaluations,
         options.search.seed,
         planned.hypervolume,
@@ -69,6 +69,7 @@ pub(crate) fn document(
                 .into_iter()
                 .chain(exchange(planned).map(Sentence::finding))
                 .chain(shape(planned).map(Sentence::finding))
+                .chain(shortest(planned).map(Sentence::finding))
                 .chain([Sentence::advice(another)]),
         ));
     document.sections.extend(near(options.near_s, planned));
@@ -106,6 +107,18 @@ fn kept(evaluation: &PlanEvaluation) -> String {
         0 => "All limits are kept.".to_owned(),
         broken => format!("{broken} of {} limits are broken.", evaluation.margins.len()),
     }
+}
+
+/// Intervals that the task allows no shorter.
+fn shortest(planned: &Planned) -> Option<String> {
+    let Planned { chosen, shortest_s, .. } = planned;
+    let held = chosen.interval_s.iter().filter(|s| **s * TIGHT < *shortest_s).count();
+    (held > 0).then(|| {
+        format!(
+            "{held} of {} intervals have the shortest duration allowed, {shortest_s} s (interval_s): a faster plan needs less.",
+            chosen.interval_s.len()
+        )
+    })
 }
 
 /// What a free shape gained, where one was sought.
@@ -306,13 +319,7 @@ pub(crate) fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEval
         )
     });
     let mut lines: Vec<String> = lines.collect();
-    let longest = nearest.interval_s.iter().filter(|s| **s > longest_s * TIGHT).count();
-    if longest > 0 {
-        let all = nearest.interval_s.len();
-        lines.push(format!(
-            "{longest} of {all} intervals have the longest duration allowed, {longest_s} s (interval_s)"
-        ));
-    }
+    lines.extend(longest(longest_s, nearest));
     if lines.is_empty() {
         lines.push(format!(
             "every limit holds but for rounding; {} is the nearest",
@@ -322,9 +329,23 @@ pub(crate) fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEval
     lines
 }
 
+/// Intervals that the task allows no longer.
+fn longest(longest_s: f64, nearest: &PlanEvaluation) -> Option<String> {
+    let longest = nearest.interval_s.iter().filter(|s| **s > longest_s * TIGHT).count();
+    let all = nearest.interval_s.len();
+    (longest > 0).then(|| {
+        format!("{longest} of {all} intervals have the longest duration allowed, {longest_s} s (interval_s)")
+    })
+}
+
 /// What the nearest plan exceeds its ceilings by, a line each, and what holds it there.
-pub(crate) fn ceiling_lines(ceilings: &Ceilings, joints: &[String], nearest: &PlanEvaluation) -> Vec<String> {
+pub(crate) fn ceiling_lines(
+    ceilings: &Ceilings,
+    joints: &[String],
+    (longest_s, nearest): (f64, &PlanEvaluation),
+) -> Vec<String> {
     let mut lines = over_ceilings(ceilings, nearest);
+    lines.extend(longest(longest_s, nearest));
     let mut tight: Vec<&Margin> = nearest.margins.iter().filter(|margin| margin.share > TIGHT).collect();
     tight.sort_by(|a, b| b.share.total_cmp(&a.share));
     let tight: Vec<String> =

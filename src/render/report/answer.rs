@@ -10,7 +10,8 @@ use crate::{
     math::median,
     render::{
         kit::{
-            Block, Document, Fact, Id, Section, Sentence, argument, command, counted, fact, mm, ms, starts_of,
+            Block, Document, Fact, Id, Section, Sentence, argument, command, counted, fact, late, mm, ms,
+            starts_of,
         },
         metric::position,
     },
@@ -36,9 +37,9 @@ pub(crate) fn answer(report: &Report, explain: bool) -> Document {
     let mut facts = vec![fact("run", run)];
     facts.extend(at_tool(report));
     facts.push(worst(replay));
-    facts.extend(late(report));
+    facts.extend(why(report));
     facts.extend(starts(replay));
-    facts.extend(astray(replay));
+    facts.extend(astray(report));
     facts.extend(whole(replay));
     facts.extend(verdicts(report).iter().map(|verdict| fact("limit", verdict.to_string())));
     facts.extend(doubts(report));
@@ -65,20 +66,19 @@ fn at_tool(report: &Report) -> Option<Fact> {
 fn worst(replay: &Replay) -> Fact {
     let found = replay.worst_first();
     let Some(worst) = found.first() else { return fact("starts", "no planned start from rest") };
-    let late = match worst.onset_delay_s {
-        Some(delay_s) if delay_s >= 0.0 => format!("leaves {} ms late", ms(delay_s)),
-        Some(delay_s) => format!("leaves {} ms early", ms(-delay_s)),
+    let leaves = match worst.onset_delay_s {
+        Some(delay_s) => format!("leaves {}", late(delay_s)),
         None => "has no start that can be timed".to_owned(),
     };
     let off = position(worst.joint_kind, worst.peak_error);
     fact(
         "worst",
-        format!("{} {late} at {:.1} s; its error peaks at {off}", worst.joint, worst.planned_onset_s),
+        format!("{} {leaves} at {:.1} s; its error peaks at {off}", worst.joint, worst.planned_onset_s),
     )
 }
 
 /// What makes the worst start late.
-fn late(report: &Report) -> Option<Fact> {
+fn why(report: &Report) -> Option<Fact> {
     if let Err(reason) = report.why.as_ref()? {
         return Some(fact("why", format!("not told: {reason}")));
     }
@@ -94,12 +94,12 @@ fn starts(replay: &Replay) -> Option<Fact> {
     }
     let never: usize = replay.joints.iter().map(|joint| joint.unanswered_starts).sum();
     let never = if never == 0 { String::new() } else { format!("; {never} never answered") };
-    let late = match delays.as_slice() {
+    let half = match delays.as_slice() {
         [] => String::new(),
-        _ => format!(", half of them more than {} ms late", ms(median(delays.clone()))),
+        _ => format!(", half of them more than {}", late(median(delays.clone()))),
     };
     let latest = latest(replay, median(delays.clone()));
-    Some(fact("starts", format!("{} of {all} timed{late}{latest}{never}", delays.len())))
+    Some(fact("starts", format!("{} of {all} timed{half}{latest}{never}", delays.len())))
 }
 
 /// The latest start, where it is not the one with the largest error and later by far than most.
@@ -114,9 +114,9 @@ fn latest(replay: &Replay, usual_s: f64) -> String {
 }
 
 /// Joints of which only one moves, itself or its plan.
-fn astray(replay: &Replay) -> Option<Fact> {
-    let astray = replay.joints.iter().filter(|joint| joint.plan_moves != joint.moves);
-    let found: Vec<String> = astray.filter_map(|joint| stray(replay, joint)).collect();
+fn astray(report: &Report) -> Option<Fact> {
+    let astray = report.replay.joints.iter().filter(|joint| joint.plan_moves != joint.moves);
+    let found: Vec<String> = astray.filter_map(|joint| stray(report, joint)).collect();
     let more = match found.len() {
         0 | 1 => String::new(),
         all => format!(" And {} more.", counted(all - 1, "such joint")),

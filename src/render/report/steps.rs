@@ -1,7 +1,7 @@
 //! What to do next: a sentence for each step, and the line to type.
 
 use crate::{
-    render::kit::{Sentence, argument, command, counted, ms, reading, starts_of},
+    render::kit::{Sentence, argument, command, counted, late, ms, reading, starts_of},
     series::JointKind,
     workflow::report::{
         Report,
@@ -36,7 +36,7 @@ pub(super) fn replanned(logs: &str) -> String {
 }
 
 fn half_late(delay_s: Option<f64>) -> String {
-    delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {} ms late)", ms(s)))
+    delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {})", late(s)))
 }
 
 /// `limit`: an option that sets one for the kind of the joints.

@@ -16,6 +16,7 @@ use crate::{
         Answer, JOINT, JointReplay, ONSET_DELAY_LIMIT, Profiles, Replay, Swing, TRANSITION, Transition,
         Verdict,
     },
+    series::{JointKind, Pair},
     workflow::report::{GateResult, Report},
 };
 
@@ -33,6 +34,9 @@ pub(crate) fn document(name: &str, report: &Report, most: usize) -> Document {
     document.sections.extend(method(report));
     document
 }
+
+/// A joint at rest is measured within this many standard deviations of its noise.
+const NOISE_SIGMAS: f64 = 10.0;
 
 /// Recorder and header on clocks that have nothing to do with each other (simulated time), s.
 const A_CLOCK_APART_S: f64 = 3600.0;
@@ -130,9 +134,27 @@ fn findings(report: &Report) -> Vec<String> {
             path.samples
         ));
     }
-    lines.extend(replay.joints.iter().filter_map(|joint| stray(replay, joint)));
+    lines.extend(replay.joints.iter().filter_map(|joint| stray(report, joint)));
+    lines.extend(replay.joints.iter().filter_map(|joint| drifts(replay, joint)));
     lines.extend(swings(report));
     lines
+}
+
+/// A joint that moves while its plan rests.
+fn drifts(replay: &Replay, joint: &JointReplay) -> Option<String> {
+    let drift = joint.rest_drift.filter(|drift| drift.counts(replay.rules.sizes(joint.kind)))?;
+    let [low, high] = drift.interval?.map(|speed| per_minute(joint.kind, speed));
+    Some(format!(
+        "{} drifts while its plan rests: {} a minute ({low} to {high}; {:.0} s of rest looked at).",
+        joint.name,
+        per_minute(joint.kind, drift.speed),
+        drift.duration_s
+    ))
+}
+
+/// A slow speed, as what it amounts to.
+fn per_minute(kind: JointKind, speed: f64) -> String {
+    position(kind, 60.0 * speed)
 }
 
 /// Joints that swing though their plans do not.
@@ -146,22 +168,35 @@ fn swings(report: &Report) -> Option<String> {
         .then(|| format!("Swings that the plan does not ask for, over the run: {}.", found.join(", ")))
 }
 
-/// A joint that moves without its plan, or rests where it should not or as its plan does; `None` if both move.
-pub(super) fn stray(replay: &Replay, joint: &JointReplay) -> Option<String> {
+/// A joint that moves without its plan, or does not move or answer as its plan does; `None` if both move.
+pub(super) fn stray(report: &Report, joint: &JointReplay) -> Option<String> {
     let name = &joint.name;
+    let sizes = report.replay.rules.sizes(joint.kind);
+    let travel = |of: fn(&Pair) -> &Vec<f64>| {
+        let [lowest, highest] = range(report.pairs.iter().filter(|p| p.name == *name).flat_map(of).copied());
+        (highest - lowest).max(0.0)
+    };
+    let [planned, measured] = [travel(|pair| &pair.planned), travel(|pair| &pair.measured)];
+    let rests = measured <= sizes.min_travel.max(NOISE_SIGMAS * joint.noise.sigma);
+    let both = || {
+        let [measured, planned] = [measured, planned].map(|travel| position(joint.kind, travel));
+        format!("{name} moves by {measured} in all, its plan by {planned}")
+    };
+    let starts = starts_of(joint.starts, joint.reversals);
     match (joint.plan_moves, joint.moves) {
+        (true, true) => None,
+        (false, true) => Some(format!("{name} moves although its plan rests.")),
         (false, false) if joint.unplanned_starts > 0 => Some(format!(
             "The plan of {name} rests; the joint is shaken by the others: {} of less than {}, unplanned.",
             counted(joint.unplanned_starts, "start"),
-            position(joint.kind, replay.rules.sizes(joint.kind).moves_travel)
+            position(joint.kind, sizes.moves_travel)
         )),
-        (false, false) => Some(format!("{name} does not move, and neither does its plan.")),
-        (true, false) => Some(format!(
-            "{name} does not move although its plan does ({}).",
-            starts_of(joint.starts, joint.reversals)
-        )),
-        (false, true) => Some(format!("{name} moves although its plan rests.")),
-        (true, true) => None,
+        (false, false) if rests => Some(format!("{name} does not move, and neither does its plan.")),
+        (true, false) if rests && joint.starts > 0 => {
+            Some(format!("{name} does not move although its plan does ({starts})."))
+        }
+        _ if joint.starts > 0 => Some(format!("{}: no answer to its plan can be told ({starts}).", both())),
+        _ => Some(format!("{}: no start of either can be told.", both())),
     }
 }
 

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use crate::{
     render::{
         kit::{
-            counted, ms,
+            counted, late,
             page::{
                 Plots, Shows,
                 chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, span, times},
@@ -101,7 +101,7 @@ pub(super) fn tile(transition: &Transition, pair: &Pair, [before_s, after_s]: [f
     };
     let unit = unit(Dimension::Position, pair.kind);
     let series = |name: &str, role, y| Series::of(name, role, 0, y);
-    let late = transition.measured_onset_s.map(|s| s - onset_s).filter(|late_s| *late_s > 0.0);
+    let waits = transition.measured_onset_s.map(|s| s - onset_s).filter(|late_s| *late_s > 0.0);
     Chart {
         title: format!(
             "{} {} {} at {onset_s:.2} s",
@@ -112,9 +112,7 @@ pub(super) fn tile(transition: &Transition, pair: &Pair, [before_s, after_s]: [f
         note: format!(
             "peak {}, {}",
             position(pair.kind, transition.peak_error),
-            transition
-                .onset_delay_s
-                .map_or_else(|| transition.answer.word().to_owned(), |s| format!("{} ms late", ms(s))),
+            transition.onset_delay_s.map_or_else(|| transition.answer.word().to_owned(), late),
         ),
         x_label: "Time from the planned start (s)".into(),
         xs: vec![times(&t_s, &places)],
@@ -136,7 +134,7 @@ pub(super) fn tile(transition: &Transition, pair: &Pair, [before_s, after_s]: [f
                 range: None,
             },
         ],
-        bands: late.map(|late_s| Band { from: 0.0, to: rounded(late_s), late: true }).into_iter().collect(),
+        bands: waits.map(|late_s| Band { from: 0.0, to: rounded(late_s), late: true }).into_iter().collect(),
         group: None,
         height: 150,
         size: Size::Tile,

@@ -36,8 +36,11 @@ const PARTS: [Row; 4] = [
     }),
 ];
 
-/// The parts of one delay in a phrase, those of note first.
+/// The parts of one delay in a phrase, those of note first; one that is negative within its interval is none.
 pub(super) fn phrase(start: &LateStart) -> String {
+    if start.onset_delay_s < -0.0005 {
+        return "the model fitted to this run does not explain why it is early".to_owned();
+    }
     let unexplained_s = start.unexplained.delay_s;
     if unexplained_s.abs() > MOSTLY * start.onset_delay_s.abs() {
         return format!(
@@ -47,12 +50,16 @@ pub(super) fn phrase(start: &LateStart) -> String {
         );
     }
     let names = ["dead band", "lag", "limits", "unexplained"];
-    let mut parts: Vec<(f64, &str)> =
-        PARTS.iter().zip(names).map(|(part, name)| (part.3(start).delay_s, name)).collect();
-    parts.retain(|(delay_s, _)| delay_s.abs() >= 0.0005);
-    parts.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
-    let words: Vec<String> =
-        parts.iter().map(|(delay_s, name)| format!("{} ms {name}", ms(*delay_s))).collect();
+    let mut parts: Vec<(Part, &str)> =
+        PARTS.iter().zip(names).map(|(part, name)| (part.3(start), name)).collect();
+    parts.retain(|(part, _)| part.delay_s.abs() >= 0.0005);
+    parts.sort_by(|a, b| b.0.delay_s.total_cmp(&a.0.delay_s));
+    let word = |(part, name): &(Part, &str)| match part.interval_s {
+        _ if part.delay_s > 0.0 => format!("{} ms {name}", ms(part.delay_s)),
+        Some([_, high_s]) if high_s >= 0.0 => format!("no {name}"),
+        _ => format!("less {} ms {name}", ms(-part.delay_s)),
+    };
+    let words: Vec<String> = parts.iter().map(word).collect();
     words.join(", ")
 }
 
@@ -148,4 +155,37 @@ fn bar(start: &LateStart, longest_s: f64) -> String {
         bar.extend(std::iter::repeat_n(fill, more));
     }
     bar
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_part_of_a_delay_is_said_to_be_negative() {
+        let part = |delay_s: f64, half_s: f64| Part {
+            delay_s,
+            interval_s: Some([delay_s - half_s, delay_s + half_s]),
+        };
+        let none = Part { delay_s: 0.0, interval_s: None };
+        let said = |dead_band: Part, limit: Part| {
+            let (lag, unexplained) = (part(0.147, 0.01), none);
+            let (id, joint) = ("1".to_owned(), "J5".to_owned());
+            let onset_delay_s = lag.delay_s + dead_band.delay_s + limit.delay_s;
+            phrase(&LateStart {
+                id,
+                joint,
+                planned_onset_s: 2.0,
+                onset_delay_s,
+                dead_band,
+                lag,
+                limit,
+                unexplained,
+            })
+        };
+        assert_eq!(said(part(-0.091, 0.25), none), "147 ms lag, no dead band");
+        assert_eq!(said(part(-0.091, 0.05), none), "147 ms lag, less 91 ms dead band");
+        let limit = Part { delay_s: -0.002, ..none };
+        assert_eq!(said(part(0.2, 0.1), limit), "200 ms dead band, 147 ms lag, less 2 ms limits");
+    }
 }

@@ -5,7 +5,7 @@ mod page;
 pub(crate) use page::index;
 
 use super::{
-    kit::{Document, Id, NONE, Section, Sentence, counted, ms, optional},
+    kit::{Document, Id, NONE, Section, Sentence, counted, late, ms, optional},
     metric::position,
 };
 use crate::{
@@ -39,9 +39,8 @@ fn began(run: &Run) -> String {
 /// Where it was off, and how late.
 fn found(run: &Run) -> String {
     let Some(worst) = run.worst() else { return "no joint".to_owned() };
-    let late = run
-        .latest()
-        .and_then(|joint| Some(format!("; {} {} ms late", joint.joint, ms(joint.largest_delay_s?))));
+    let late =
+        run.latest().and_then(|joint| Some(format!("; {} {}", joint.joint, late(joint.largest_delay_s?))));
     let late = late.unwrap_or_default();
     let never = match run.unanswered_starts {
         0 => String::new(),

@@ -6,10 +6,11 @@ use super::{CompareFailure, Inputs, pairing::matched};
 use crate::{
     log::TimeRange,
     replay::{Replay, Transition},
+    series::Pair,
     workflow::report::{self, Report},
 };
 
-/// Ends this close together are one, s.
+/// Rests whose lengths differ by no more are alike, s.
 const ALIKE_S: f64 = 0.5;
 /// So much more rest is kept than the run with the least has, so that no sample decides what is a start, s.
 const MARGIN_S: f64 = 0.05;
@@ -42,7 +43,7 @@ pub(super) fn cut_alike(
     let each = reports.iter_mut().zip(stretches);
     each.map(|(report, stretches_s)| {
         let plan_duration_s = plan_duration_s(&report.replay, joints);
-        let outer = stretches_s.values().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let outer = stretches_s.values().copied().reduce(around);
         let beyond = outer.map_or(Ok(Vec::new()), |outer| cut(report, (outer, stretches_s), inputs))?;
         Ok(Extent { plan_duration_s, stretch_s: outer, beyond })
     })
@@ -127,7 +128,7 @@ fn plans(joints: &[String], reports: &[&Report]) -> Option<Vec<(bool, [f64; 2])>
         offset_s.and_then(|offset_s| Some(plan_s(report, joints)?.map(|at_s| at_s - offset_s)))
     };
     let of_first = reports.iter().zip(&offsets_s).filter_map(on_first);
-    let of_first = of_first.reduce(|all, one| [all[0].min(one[0]), all[1].max(one[1])]);
+    let of_first = of_first.reduce(around);
     let each = reports.iter().zip(&offsets_s).map(|(report, offset_s)| match offset_s {
         Some(offset_s) => Some((true, of_first?.map(|at_s| at_s + offset_s))),
         None => Some((false, plan_s(report, joints)?)),
@@ -143,18 +144,35 @@ fn of_spans(spans: &[Span]) -> Vec<Option<[f64; 2]>> {
         // Of another plan nothing but rests is cut.
         let least = if span.same_plan { least } else { least.map(|s| s.max(0.0)) };
         let margin = |rest_s: f64| if rest_s > 0.0 { MARGIN_S } else { 0.0 };
+        // In motion every run is cut to the same instant.
+        let alike = |rest_s: f64| if rest_s > 0.0 { ALIKE_S } else { MARGIN_S };
         let cut_s =
             [span.plan_s[0] - least[0] - margin(least[0]), span.plan_s[1] + least[1] + margin(least[1])];
-        let more = cut_s[0] - span.joint_s[0] > ALIKE_S || span.joint_s[1] - cut_s[1] > ALIKE_S;
+        let more =
+            cut_s[0] - span.joint_s[0] > alike(least[0]) || span.joint_s[1] - cut_s[1] > alike(least[1]);
         more.then(|| [cut_s[0].max(span.joint_s[0]), cut_s[1].min(span.joint_s[1])])
     };
     spans.iter().map(stretch).collect()
 }
 
-/// From the first planned start to the last planned stop or start of a run, s.
+/// From the end of the first rest of the plan of a run to the begin of its last one, s.
 fn plan_s(report: &Report, joints: &[String]) -> Option<[f64; 2]> {
     let Ends { starts_s: [first_s, last_s], stop_s } = ends(&report.replay, joints)?;
-    Some([first_s, stop_s.map_or(last_s, |stop_s| stop_s.max(last_s))])
+    let own = report.pairs.iter().filter(|pair| joints.contains(&pair.name));
+    let moves_s = own.filter_map(|pair| moves_s(pair, report.replay.rules.sizes(pair.kind).displacement));
+    Some(moves_s.fold([first_s, stop_s.map_or(last_s, |stop_s| stop_s.max(last_s))], around))
+}
+
+/// From the first to the last sample at which a plan is away from where it begins and from where it ends, s.
+fn moves_s(pair: &Pair, least: f64) -> Option<[f64; 2]> {
+    let [first, last] = [pair.planned.first()?, pair.planned.last()?];
+    let from = pair.planned.iter().position(|position| (position - first).abs() > least)?;
+    let to = pair.planned.iter().rposition(|position| (position - last).abs() > least)?;
+    Some([*pair.t_s.get(from)?, *pair.t_s.get(to)?])
+}
+
+fn around(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
 }
 
 /// From when to when a joint of a run is known, s.
@@ -208,6 +226,10 @@ mod tests {
             near(&found[0], [0.0, end_s]);
             assert_eq!(found[1], None);
         }
+        // It began in motion.
+        let found = of_spans(&[whole(), span(true, [-0.3, 17.7], [0.0, 22.7])]);
+        near(&found[0], [2.3, 25.0]);
+        assert_eq!(found[1], None);
         // Another plan, which takes longer: the rests are made equal.
         let found = of_spans(&[whole(), span(false, [2.0, 24.0], [0.0, 40.0])]);
         assert_eq!(found[0], None);

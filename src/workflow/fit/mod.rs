@@ -69,6 +69,8 @@ pub struct Fitted {
     /// Runs of the plan that can be planned again, in their order: that of the last one that holds its task, or else of the
     /// last; none that does not belong to its plan, or whose plan is broken.
     pub again: Vec<usize>,
+    /// The last log, and why its run cannot be planned again, where none can.
+    pub not_again: Option<String>,
     /// Doubts about the data.
     pub remarks: Remarks,
 }
@@ -147,21 +149,26 @@ pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted
     let sound = |one: &Recording| !one.remarks.as_slice().iter().any(|remark| remark.code.spoils_runs());
     let carried: Vec<Carried> = observed.iter().map(|run| Carried::of(run)).collect();
     let rules = Rules::default();
-    let follows =
-        |one: &Recording| one.planned.tracks.iter().all(|track| planned_step(track, &rules).is_none());
-    let again = |k: &usize| {
-        let (carried, one) = (&carried[*k], observed[*k]);
-        !runs[*k].identifies && sound(one) && follows(one) && carried.broken(one).is_none()
+    let steps =
+        |one: &Recording| one.planned.tracks.iter().any(|track| planned_step(track, &rules).is_some());
+    let why_not = |k: usize| match observed[k] {
+        _ if runs[k].identifies => Some("it is an identification run".to_owned()),
+        one if !sound(one) => Some("it does not belong to its plan, as the remarks say".to_owned()),
+        one if steps(one) => Some("its plan steps".to_owned()),
+        one => carried[k].broken(one).map(|broken| format!("its plan {broken}")),
     };
-    let again: Vec<usize> = (0..observed.len()).filter(again).collect();
+    let mut not_again: Vec<Option<String>> = (0..observed.len()).map(why_not).collect();
+    let again: Vec<usize> = (0..observed.len()).filter(|k| not_again[*k].is_none()).collect();
+    let last = logs.last().zip(not_again.pop().flatten()).filter(|_| again.is_empty());
+    let not_again = last.map(|(log, why)| format!("{log}: {why}"));
     let with_task = again.iter().rfind(|k| carried[**k].task().is_some());
     let newest = with_task.or(again.last()).copied();
     let of_plan = |k: &usize| {
-        newest
-            .is_some_and(|newest| *k <= newest && is_again(&observed[*k].planned, &observed[newest].planned))
+        let same = |newest: usize| is_again(&observed[*k].planned, &observed[newest].planned);
+        newest.is_some_and(|newest| *k == newest || *k < newest && same(newest))
     };
     let again: Vec<usize> = again.into_iter().filter(of_plan).collect();
-    Ok(Fitted { fit, held_out, torques, runs, again, remarks })
+    Ok(Fitted { fit, held_out, torques, runs, again, not_again, remarks })
 }
 
 /// Names the command that stands, where that is why nothing can be fitted.

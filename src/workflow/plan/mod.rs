@@ -17,7 +17,7 @@ use crate::{
         near, search,
     },
     remark::{Code, Remarks},
-    task::{Objective, Objectives, Weights},
+    task::{Ceilings, Objective, Objectives, Task, Weights},
 };
 use convergence::Growth;
 pub use convergence::Step;
@@ -68,6 +68,8 @@ pub struct Planned {
     pub bought: Vec<(Objective, f64)>,
     /// The smoothest plans within round times around the one asked for, with these times, s.
     pub near: Vec<(f64, PlanEvaluation)>,
+    /// Shortest interval between key points that the task allows, s.
+    pub shortest_s: f64,
     /// Degree of the task's splines.
     pub degree: u8,
     /// Plans by splines of the other degrees, where they were asked for.
@@ -165,11 +167,14 @@ pub fn run(
     let reference = Reference::of(objectives());
     let hypervolume = reference.measure(objectives());
     let best = ends.iter().map(|&end| evaluation(&found.front[end])).collect::<Result<_, _>>()?;
-    let made = |choice: &Choice| Made::of(setup, task, choice, options.shape);
-    let around = options.near_s.map(|near_s| near(setup, &found.front, &task.ceilings, near_s));
-    let around = around.unwrap_or_default().into_iter();
-    let near = around.map(|(within_s, choice)| Ok((within_s, made(&choice)?.plan)));
-    let near = near.collect::<Result<_, PlanError>>()?;
+    // A free shape may be faster than any plan of the front.
+    let smoothest = |held: &Ceilings| {
+        let task = Task { ceilings: held.clone(), ..task.clone() };
+        let by = (&*found.front, (Rule::Best(Objective::RmsJerk), None));
+        Some(chosen(setup, &task, options.shape, by).ok()?.1.plan)
+    };
+    let took_s = |plan: &PlanEvaluation| plan.objectives[Objective::Duration];
+    let near = options.near_s.map(|near_s| near(&task.ceilings, near_s, smoothest, took_s));
     let Made { plan: chosen, shaped, no_shape } = own;
     remarks.extend(request.doubts(&chosen)?);
     let of_degrees = if options.degrees { degrees(request, options, (&choice, &chosen)) } else { Vec::new() };
@@ -188,7 +193,8 @@ pub fn run(
         hypervolume,
         bought: if shaped.is_none() { bought(setup, &choice.timing) } else { Vec::new() },
         shaped,
-        near,
+        near: near.unwrap_or_default(),
+        shortest_s: task.interval_s[0],
         convergence: growth.steps(reference, found.evaluations, hypervolume),
         choice,
         front: found.front,

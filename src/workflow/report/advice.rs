@@ -122,7 +122,8 @@ pub fn advice(report: &Report) -> Vec<Advice> {
 /// Where the run's error is mostly lag: the joint to begin with and its lag, s.
 fn mostly_lag(report: &Report) -> Option<(String, f64)> {
     report.replay.whole_run.lag_share.filter(|lag| lag.mostly)?;
-    let joints = report.replay.joints.iter().filter_map(|joint| Some((joint, joint.lag_s?)));
+    let joints =
+        report.replay.joints.iter().filter_map(|joint| Some((joint, joint.lag_s.filter(|s| *s > 0.0)?)));
     let own = |joint: &JointReplay| joint.lag_share.is_some_and(|lag| lag.mostly);
     let (joint, lag_s) = joints.max_by(|(a, _), (b, _)| {
         let rms_rad = |joint: &JointReplay| joint.tracking_error.rms;

@@ -16,7 +16,7 @@ fn new_times_jerk_nodes_states_and_extrema_allocate_nothing_once_buffers_have_gr
         for segment in motion.segments() {
             nodes_s.clear();
             weights_s.clear();
-            segment.spline.quadrature(Gauss::Eight, &mut nodes_s, &mut weights_s);
+            segment.spline.quadrature(Gauss::Eight, 1, &mut nodes_s, &mut weights_s);
             segment.spline.sample(&nodes_s, Quantity::Acceleration, &mut samples);
         }
         motion.extrema(0, Quantity::Velocity).peak().value

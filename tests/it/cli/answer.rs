@@ -115,3 +115,70 @@ fn a_joint_that_alone_moves_or_alone_rests_is_named() {
         "{line}"
     );
 }
+
+/// Five moves there and back, 12 deg each; the second signal comes so much later, s.
+fn moves(later_s: f64, until_s: f64, names: [&str; 2]) -> String {
+    let at = |t_s: f64| {
+        let one = |k: u32| {
+            let s = ((t_s - 2.0 - 6.0 * f64::from(k)) / 3.0).clamp(0.0, 1.0);
+            (if k % 2 == 0 { 12.0 } else { -12.0 }) * s * s * s * (10.0 + s * (6.0 * s - 15.0))
+        };
+        (0..5).map(one).sum::<f64>()
+    };
+    let mut table = format!("time_s,{},{},wrist_set_deg,wrist_act_deg\n", names[0], names[1]);
+    for t_s in (0..).map(|k| 0.02 * f64::from(k)).take_while(|t_s| *t_s < until_s) {
+        // Both creep more slowly than a start is.
+        let [set, act] = [0.05, 0.08].map(|speed| speed * t_s.clamp(0.0, 9.0));
+        table += &format!("{t_s:.2},{:.4},{:.4},{set:.4},{act:.4}\n", at(t_s), at(t_s - later_s));
+    }
+    table
+}
+
+#[test]
+fn a_joint_that_creeps_is_not_said_to_rest() {
+    let folder = scratch();
+    std::fs::write(folder.path().join("run.csv"), moves(0.08, 33.0, ["boom_set_deg", "boom_act_deg"]))
+        .unwrap();
+    let said = "wrist moves by 0.720 deg in all, its plan by 0.450 deg: no start of either can be told.";
+    for line in ["run.csv", "report run.csv"] {
+        let text = stdout(&run_line(folder.path(), line));
+        assert!(text.contains(said) && !text.contains("does not move"), "{text}");
+    }
+}
+
+#[test]
+fn a_measurement_that_leads_its_plan_is_doubted_and_no_number_of_it_is_negative() {
+    let folder = scratch();
+    let answered = |file: &str, names| {
+        std::fs::write(folder.path().join(file), moves(0.08, 33.0, names)).unwrap();
+        said(&run_line(folder.path(), file))
+    };
+    let (code, text, _) = answered("run.csv", ["boom_set_deg", "boom_act_deg"]);
+    assert!(code == 0 && text.contains("5 of 5 timed, half of them more than 86 ms late"), "{code} {text}");
+    let (code, text, _) = answered("swapped.csv", ["boom_act_deg", "boom_set_deg"]);
+    assert!(code == 3 && text.contains("half of them more than 35 ms early"), "{code} {text}");
+    let doubt =
+        "before-plan x1: boom moves 80 ms (95 %: 80 to 80) before its plan: are plan and measurement swapped";
+    assert!(text.contains(doubt) && !text.contains("other-time"), "{text}");
+    assert!(text.contains("does not explain why it is early") && !text.contains("more than -"), "{text}");
+}
+
+#[test]
+fn a_log_that_cannot_be_planned_from_is_said_to_be_none_by_fit() {
+    let folder = scratch();
+    std::fs::write(folder.path().join("cut.csv"), moves(0.08, 27.5, ["boom_set_deg", "boom_act_deg"]))
+        .unwrap();
+    let (code, text, error) = said(&run_line(folder.path(), "fit cut.csv -o limits.toml"));
+    assert!(code == 0 || code == 3, "{code} {error}");
+    assert!(
+        text.contains("No command is made from cut.csv: its plan ends at 27.48 s while boom moves"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_limit_is_said_to_be_the_reports() {
+    let (code, _, error) = said(&run_at_root(&["answer", "run.mcap", "--max-rms-deg", "0.5"]));
+    assert!(code == 2 && error.contains("tip: --max-rms-deg is a limit of `hydrotrace report`"), "{error}");
+    assert!(!error.contains("--measured-degrees"), "{error}");
+}

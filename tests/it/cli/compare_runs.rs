@@ -93,3 +93,30 @@ fn runs_that_were_measured_otherwise_and_a_run_that_ends_early_are_told() {
     assert!(found.contains("unmatched x5  after 3 lacks starts that every other run has"), "{found}");
     assert!(!found.contains("before 1: planned starts without a counterpart"), "{found}");
 }
+
+/// What moves from its first sample on has no rest to cut.
+#[test]
+fn plans_that_move_all_the_time_are_compared_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, period_s: f64, until_s: f64, off_deg: f64| {
+        let mut text = "time_s,boom_planned_deg,boom_measured_deg".to_owned();
+        for t_s in (0..).map(|k| 0.02 * f64::from(k)).take_while(|t_s| *t_s < until_s) {
+            let planned = 20.0 * (std::f64::consts::TAU * t_s / period_s).sin();
+            // Farthest off at the end.
+            let off = off_deg * (t_s - until_s + 1.0).max(0.2);
+            write!(text, "\n{t_s:.2},{planned:.5},{:.5}", planned - off).unwrap();
+        }
+        fs::write(folder.path().join(name), text).unwrap();
+    };
+    // After the last reversal the plan moves on for 2 s before, for 0.5 s after.
+    write("before.csv", 8.0, 24.0, 5.0);
+    write("after.csv", 6.0, 17.0, 5.2);
+    let (code, document) = {
+        let run = run_line(folder.path(), "compare before.csv after.csv --max-peak-ratio 1.1 --json");
+        (run.status.code(), serde_json::from_slice::<Value>(&run.stdout).unwrap())
+    };
+    assert!(code != Some(4) && document["gates_kept"] == true, "{code:?} {}", document["gates"]);
+    assert!(document["before"][0]["stretch_s"].is_null(), "{}", document["before"][0]);
+    let peak = &document["whole_run"][0]["peak"]["before"];
+    assert!((peak.as_f64().unwrap().to_degrees() - 4.9).abs() < 0.05, "{peak}");
+}

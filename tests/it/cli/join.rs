@@ -29,7 +29,7 @@ static RUNS: LazyLock<tempfile::TempDir> = LazyLock::new(|| {
     std::fs::copy(sample("tasks/task-1.toml"), at.join("task-1.toml")).unwrap();
     done(at, "plan task-1.toml --times 0,4.49,8.09,12.39,18.79,21.85 -o plan.mcap");
     done(at, "simulate plan.mcap -o run.mcap");
-    done(at, "replan run.mcap --evaluations 2000 -o next.mcap");
+    done(at, "replan run.mcap --evaluations 1000 -o next.mcap");
     done(at, "simulate next.mcap --seed 2 -o whole.mcap");
     folder
 });
@@ -232,7 +232,7 @@ fn the_controller_of_the_first_log_takes_the_trajectory_of_every_later_one() {
     let mut last = "first.mcap".to_owned();
     for round in 1..=3 {
         let (next, after) = (format!("next-{round}.mcap"), format!("after-{round}.mcap"));
-        done(at, &format!("replan {last} -o {next}"));
+        done(at, &format!("replan {last} --evaluations 1000 -o {next}"));
         let topics = survey(&[at.join(&next)], &ReadOptions::default()).unwrap().topics;
         assert!(topics.iter().any(|topic| topic.topic == "/desired/joint_trajectory"), "{round}: {topics:?}");
         let joined = hydrotrace(at, &format!("join first.mcap --plan {next} -o {after}"));

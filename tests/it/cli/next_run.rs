@@ -35,12 +35,11 @@ fn a_machine_that_has_changed_is_learnt_anew() {
     clean(folder, "replan run.mcap --keep-plan -o next.mcap");
     clean(folder, "simulate next.mcap --plant position-only -o run-2.mcap --seed 2");
     clean(folder, "simulate run.mcap --plant position-only -o run-3.mcap --seed 3");
-    let next = json(folder, "replan run.mcap run-2.mcap run-3.mcap");
+    let next = json(folder, "replan run.mcap run-2.mcap run-3.mcap --keep-plan -o next-2.mcap");
     let runs = next["runs"].as_array().unwrap().len();
     assert!(next["remarks"].to_string().contains("machine-changed") && runs == 2, "{}", next["remarks"]);
     // What is promised is of the machine as it is.
     let promised = check(&next, "outlook")["expected"]["mean_peak_rad"].as_f64().unwrap();
-    run_line(folder, "replan run.mcap run-2.mcap run-3.mcap -o next-2.mcap");
     clean(folder, "simulate next-2.mcap --plant position-only -o run-4.mcap --seed 4");
     let came = json(folder, "report run-4.mcap")["promised"]["measured_mean_peak_rad"].as_f64().unwrap();
     assert!((0.5..2.0).contains(&(came / promised)), "{promised} rad promised, {came} rad came");
@@ -53,13 +52,11 @@ fn what_was_sent_to_another_machine_is_not_sent_again_though_no_command_came_twi
     let folder = folder.path();
     clean(folder, "replan run.mcap --keep-plan --gain 0.5 -o next-2.mcap");
     clean(folder, "simulate next-2.mcap -o run-2.mcap --seed 2");
-    clean(folder, "replan run.mcap run-2.mcap --gain 0.5 -o next-3.mcap");
+    clean(folder, "replan run.mcap run-2.mcap --keep-plan --gain 0.5 -o next-3.mcap");
     clean(folder, "simulate next-3.mcap --plant lag-limited -o run-3.mcap --seed 3");
-    let line = "replan run.mcap run-2.mcap run-3.mcap";
-    let next = json(folder, line);
+    let next = json(folder, "replan run.mcap run-2.mcap run-3.mcap --keep-plan -o next-4.mcap");
     assert!(next["remarks"].to_string().contains("moved otherwise in run-3.mcap"), "{}", next["remarks"]);
     assert_eq!(next["runs"].as_array().unwrap().len(), 1, "{}", next["runs"]);
-    run_line(folder, &format!("{line} -o next-4.mcap"));
     clean(folder, "simulate next-4.mcap --plant lag-limited -o run-4.mcap --seed 4");
     let mean = |log: &str| {
         json(folder, &format!("report {log}"))["promised"]["measured_mean_peak_rad"].as_f64().unwrap()
@@ -76,7 +73,7 @@ fn learning_goes_on_after_a_new_timing_that_was_sent_with_a_wide_correction() {
     clean(folder, "simulate run.mcap --plant lag-limited -o slow.mcap --seed 1");
     clean(folder, "replan slow.mcap -o next.mcap --evaluations 4000");
     clean(folder, "simulate next.mcap --plant lag-limited -o slow-2.mcap --seed 2");
-    let next = json(folder, "replan slow.mcap slow-2.mcap");
+    let next = json(folder, "replan slow.mcap slow-2.mcap --evaluations 1000");
     assert_eq!(next["decision"]["what"], "send", "{}", next["decision"]);
     let peak = |key: &str| -> f64 {
         let all = next["command"].as_array().unwrap().iter().map(|joint| joint[key].as_f64().unwrap());
@@ -168,9 +165,11 @@ fn logs_of_one_name_are_told_apart_by_their_folders() {
     clean(folder, "simulate next.mcap -o tue/run.mcap --seed 2");
     clean(folder, "simulate next.mcap --plant lag-limited -o wed/run.mcap --seed 3");
     let both = "mon/run.mcap tue/run.mcap";
-    for (line, keys) in
-        [("replan", ["runs", "fitted_to"]), ("fit", ["runs", "runs"]), ("compare", ["before", "after"])]
-    {
+    for (line, keys) in [
+        ("replan --keep-plan", ["runs", "fitted_to"]),
+        ("fit", ["runs", "runs"]),
+        ("compare", ["before", "after"]),
+    ] {
         let found = json(folder, &format!("{line} {both}"));
         for (key, log) in keys.into_iter().zip(["\"mon/run.mcap\"", "\"tue/run.mcap\""]) {
             assert!(found[key].to_string().contains(log), "{line}: {}", found[key]);

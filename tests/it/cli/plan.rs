@@ -173,6 +173,8 @@ fn bad_usage_is_exit_code_2_and_names_what_is_allowed() {
         (vec![SIMULATION, "--algorithm", "nsga4"], "nsga3"),
         (vec![SIMULATION, "--weights", "1,2"], "3 weights"),
         (vec![SIMULATION, "--evaluations", "500", "--generations", "3"], "cannot be used with"),
+        (vec![SIMULATION, "--times", "0,2,4,6,7,9,10", "--choose", "fastest"], "cannot be used with"),
+        (vec![SIMULATION, "--pieces", "4"], "add --shape free"),
     ] {
         let run = plan(&args, "2");
         assert_eq!(run.status.code(), Some(2), "{args:?}");
@@ -263,4 +265,22 @@ fn the_lines_of_the_page_make_the_plans_that_it_shows() {
         let said = choice["lines"][0].as_str().unwrap();
         assert_eq!(said, format!("time {duration_s:.2} s"));
     }
+}
+
+#[test]
+fn plans_near_a_time_that_only_a_free_shape_keeps_are_listed_and_given_times_are_judged_alone() {
+    let near = |shape: &str| {
+        let line = [SIMULATION, "--evaluations", "1000", "--near", "6.6", "--shape", shape, "--json"];
+        let document = json(&plan(&line, "2"));
+        let entries = document["near"].as_array().unwrap().clone();
+        entries.iter().map(|entry| entry["duration_s"].as_f64().unwrap()).fold(f64::INFINITY, f64::min)
+    };
+    let (timing_s, free_s) = (near("timing"), near("free"));
+    assert!(free_s < timing_s - 0.1, "{free_s} {timing_s}");
+    let folder = tempfile::tempdir().unwrap();
+    let task =
+        edited(folder.path(), SIMULATION, "arm = \"sample\"", &format!("arm = \"sample\"\ntimes_s = [{A}]"));
+    let run = plan(&[task.to_str().unwrap(), "--near", "7"], "1");
+    assert_eq!(run.status.code(), Some(2));
+    assert!(stderr(&run).contains("the task gives times_s"), "{}", stderr(&run));
 }

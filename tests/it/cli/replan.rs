@@ -61,7 +61,7 @@ fn a_plan_at_its_limits_may_be_corrected_and_sent_whatever_its_shape() {
     fs::copy(sample("tasks/task-1.toml"), folder.join("task.toml")).unwrap();
     for shape in ["timing", "free", "free --pieces 20"] {
         let planned = format!(
-            "plan task.toml --choose fastest --evaluations 3000 --shape {shape} -o plan.mcap --force"
+            "plan task.toml --choose fastest --evaluations 1000 --shape {shape} -o plan.mcap --force"
         );
         for line in [planned.as_str(), "simulate plan.mcap -o run.mcap --force"] {
             let run = run_line(folder, line);
@@ -82,9 +82,9 @@ fn a_new_plan_may_have_a_free_shape_and_has_one_where_the_last_one_had() {
     let folder = folder.path();
     fs::copy(sample("tasks/task-1.toml"), folder.join("task.toml")).unwrap();
     for line in [
-        "plan task.toml --choose fastest --evaluations 3000 --shape free -o plan.mcap",
+        "plan task.toml --choose fastest --evaluations 1000 --shape free -o plan.mcap",
         "simulate plan.mcap -o run.mcap",
-        "replan run.mcap --no-precompensation --max-time-growth-percent 5 --evaluations 3000 -o next.mcap",
+        "replan run.mcap --no-precompensation --max-time-growth-percent 5 --evaluations 1000 -o next.mcap",
         "simulate next.mcap -o again.mcap",
         "replan again.mcap --keep-plan --gain 0.5 -o corrected.mcap",
     ] {
@@ -100,8 +100,8 @@ fn a_new_plan_may_have_a_free_shape_and_has_one_where_the_last_one_had() {
         assert_eq!(check(&next, "limits")["broken"], 0, "{line}");
         next["after"]["sum_of_peaks_rad"].as_f64().unwrap()
     };
-    let both = of("replan run.mcap --max-time-growth-percent 5 --evaluations 3000");
-    let times = of("replan run.mcap --max-time-growth-percent 5 --evaluations 3000 --shape timing");
+    let both = of("replan run.mcap --max-time-growth-percent 5 --evaluations 1000");
+    let times = of("replan run.mcap --max-time-growth-percent 5 --evaluations 1000 --shape timing");
     assert!(both <= times, "{both} {times}");
 }
 
@@ -183,7 +183,7 @@ fn a_log_without_a_task_asks_for_a_look_at_the_limits_and_a_promise_is_held_to_w
     assert_eq!(check(&field, "rest")["level"], "good", "{}", check(&field, "rest"));
     clean(folder, "replan run.mcap --keep-plan -o next.mcap");
     clean(folder, "simulate next.mcap -o run-2.mcap --seed 7");
-    let second = json(folder, "replan run.mcap run-2.mcap");
+    let second = json(folder, "replan run.mcap run-2.mcap --evaluations 1000");
     let promise = check(&second, "promise");
     assert_eq!((&promise["level"], &promise["log"]), (&"good".into(), &"run-2.mcap".into()), "{promise}");
     assert!(
@@ -305,7 +305,7 @@ fn after_corrections_that_gained_nothing_the_plan_is_sent_as_it_is() {
     for (path, by) in [("bad-1.csv", 0.03), ("bad-2.csv", 0.031)] {
         table(folder, "run-2.mcap", path, |_, t_s, angle_rad| angle_rad + by * (0.6 * t_s).sin());
     }
-    let line = "replan run.mcap bad-1.csv bad-2.csv run.mcap -o next.mcap";
+    let line = "replan run.mcap bad-1.csv bad-2.csv run.mcap --evaluations 1000 -o next.mcap";
     let next = json(folder, line);
     assert_eq!(next["decision"]["because"]["why"], "failed", "{}", next["decision"]);
     assert_eq!(next["decision"]["because"]["corrections"], 2);

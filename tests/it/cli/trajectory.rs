@@ -95,7 +95,7 @@ fn what_is_to_be_sent_keeps_every_rule_of_the_controller() {
     let folder = folder.path();
     clean(folder, "plan task-1.toml --times 0,7.744,15.307,22.863,30.976,38.72 -o plan.mcap");
     clean(folder, "simulate plan.mcap -o run.mcap --plant backlash");
-    clean(folder, "replan run.mcap -o next.mcap");
+    clean(folder, "replan run.mcap --evaluations 1000 -o next.mcap");
     clean(folder, "replan run.mcap -o kept.mcap --keep-plan");
     for log in ["plan.mcap", "next.mcap", "kept.mcap"] {
         let message = trajectory(&folder.join(log));

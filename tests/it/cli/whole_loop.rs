@@ -112,7 +112,7 @@ fn half_the_gain_does_less_and_no_command_at_all_leaves_the_plan_alone_to_help()
     let whole = peak("replan run.mcap --keep-plan");
     let half = peak("replan run.mcap --keep-plan --gain 0.5");
     assert!(half.0 > 1.5 * whole.0 && half.1 < 0.8 * whole.1, "{half:?} {whole:?}");
-    let plain = json(folder, "replan run.mcap --no-precompensation -o next.mcap");
+    let plain = json(folder, "replan run.mcap --no-precompensation --evaluations 2000 -o next.mcap");
     assert_eq!(plain["command"].as_array().unwrap().len(), 0);
     let sum = |side: &Value| side["sum_of_peaks_rad"].as_f64().unwrap();
     assert!(sum(&plain["after"]) < 0.95 * sum(&plain["before"]["predicted"]), "{plain}");
@@ -139,8 +139,8 @@ fn limits_come_back_from_their_file_and_a_run_of_excite_identifies_the_speeds() 
         }
         assert!(joint["held_out_r2"].as_f64().unwrap() > 0.3 && joint["lag_s"]["interval"].is_array());
     }
-    let fitted = clean(folder, "replan run.mcap -o a.mcap --json");
-    let read = clean(folder, "replan run.mcap -o b.mcap --json --limits limits.toml");
+    let fitted = clean(folder, "replan run.mcap -o a.mcap --evaluations 1000 --json");
+    let read = clean(folder, "replan run.mcap -o b.mcap --evaluations 1000 --json --limits limits.toml");
     assert!(
         fitted == read
             && fs::read(folder.join("a.mcap")).unwrap() == fs::read(folder.join("b.mcap")).unwrap()

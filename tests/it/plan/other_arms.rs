@@ -6,6 +6,7 @@ use hydrotrace::{
     moea::Budget,
     plan::{Limit, PlanEvaluation, Rule},
     remark::Code,
+    spline::Quantity,
     task::Objective,
     units::DEGREE_RAD,
     workflow::plan::{Options, PlanFailure, PlanRequest, Planned, Shaping, TaskFiles, run},
@@ -83,6 +84,65 @@ fn at_a_key_point_at_the_end_of_a_range_the_arm_stops() {
     assert!((5.19..5.6).contains(&duration_s(&found)), "{}", duration_s(&found));
     let wide = planned(arm(""), task(&points, [-20.0, 46.0]), free).unwrap();
     assert!(wide.remarks.as_slice().iter().all(|remark| remark.code != Code::RangeEnd));
+}
+
+/// As a URDF rounds half of a turn, and a task does not.
+#[test]
+fn a_key_point_beyond_the_end_of_a_range_by_rounding_is_at_it() {
+    let points = [[0.0, 0.0], [45.000_03, 20.0], [10.0, -10.0]];
+    let found = planned(arm(""), task(&points, [-20.0, 45.0]), Shaping::Timing).unwrap();
+    assert!(found.remarks.as_slice().iter().any(|remark| remark.code == Code::RangeEnd));
+    assert!(found.chosen.broken().is_empty());
+    let points = [[0.0, 0.0], [45.002, 20.0]];
+    let PlanFailure::Setup { source: error, .. } =
+        planned(arm(""), task(&points, [-20.0, 45.0]), Shaping::Timing).unwrap_err()
+    else {
+        panic!()
+    };
+    let error = error.to_string();
+    assert!(error.contains("45.00 deg: 3.491e-5 rad beyond it"), "{error}");
+}
+
+#[test]
+fn a_free_shape_is_faster_whatever_the_ceiling_on_jerk() {
+    let fastest = planned(arm(""), task(&POINTS, [-90.0, 90.0]), Shaping::Timing).unwrap();
+    let jerk_deg_s3 = fastest.chosen.objectives[Objective::RmsJerk] / DEGREE_RAD;
+    for share in [0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9] {
+        let ceiling = format!("[objectives]\nmax_rms_jerk_deg_s3 = {:.1}\n", share * jerk_deg_s3);
+        let task = task(&POINTS, [-90.0, 90.0]) + &ceiling;
+        let found = planned(arm(""), task, Shaping::Free(None)).unwrap();
+        assert!(found.shaped.is_some(), "{share}: {:?}", found.no_shape);
+    }
+}
+
+/// The weight that a joint carries swings with its angle, and power with it.
+#[test]
+fn power_and_work_of_a_joint_that_turns_far_are_those_of_a_dense_look() {
+    let inertial = r#"<inertial><origin xyz="0.7 0 0"/><mass value="5"/><inertia ixx="0" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>"#;
+    for far_deg in [100.0, 500.0, 4000.0] {
+        let points = [[0.0, 0.0], [0.0, far_deg], [0.0, 0.5 * far_deg]];
+        let files =
+            TaskFiles { task: task(&points, [-9000.0, 9000.0]), urdf: Some(arm(inertial)), hydraulics: None };
+        let setup = PlanRequest::of(Path::new("t.toml"), files).unwrap().setup;
+        let times_s = [0.0, 8.0, 14.0];
+        let (found, motion) =
+            (PlanEvaluation::of(&setup, &times_s).unwrap(), setup.motion(&times_s).unwrap());
+        let count = 100_000_u32;
+        let (mut square, mut work_j) = (0.0, 0.0);
+        for k in 0..count {
+            let at = motion.at(14.0 * (f64::from(k) + 0.5) / f64::from(count));
+            let of = |quantity| at.of(quantity, 1)[0];
+            let weight_n_m = 5.0 * 9.81 * 0.7 * of(Quantity::Position).cos();
+            let torque_n_m = (0.1 + 5.0 * 0.49) * of(Quantity::Acceleration) - weight_n_m;
+            let power_w = torque_n_m * of(Quantity::Velocity);
+            square += power_w * power_w / f64::from(count);
+            work_j += power_w.abs() * 14.0 / f64::from(count);
+        }
+        let off = found.rms_power_w[1] / square.sqrt() - 1.0;
+        assert!(off.abs() < 1e-4, "{far_deg}: {off}");
+        let off = found.energy_j / work_j - 1.0;
+        assert!(off.abs() < 1e-3, "{far_deg}: {off}");
+    }
 }
 
 #[test]

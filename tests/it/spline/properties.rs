@@ -190,7 +190,7 @@ proptest! {
     fn jerk_squared_by_eight_nodes_is_the_exact_integral(case in any_case()) {
         let spline = case.spline();
         let (mut nodes, mut weights, mut samples) = (Vec::new(), Vec::new(), Samples::default());
-        spline.quadrature(Gauss::Eight, &mut nodes, &mut weights);
+        spline.quadrature(Gauss::Eight, 1, &mut nodes, &mut weights);
         spline.sample(&nodes, Quantity::Jerk, &mut samples);
         let mut exact = [0.0; JOINTS];
         spline.add_squared_jerk(&mut exact);

@@ -1,5 +1,6 @@
 //! What many tests share: the built binary, the sample logs, schemas, simulated machines.
 
+pub(crate) mod choice;
 pub(crate) mod compensation;
 pub(crate) mod detection;
 pub(crate) mod fleet;
@@ -7,6 +8,7 @@ pub(crate) mod machine;
 pub(crate) mod recovery;
 #[cfg(feature = "cloud")]
 pub(crate) mod store;
+pub(crate) mod why;
 
 use std::{
     path::{Path, PathBuf},

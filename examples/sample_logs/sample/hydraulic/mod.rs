@@ -82,17 +82,17 @@ pub(super) struct PlantLog {
 }
 
 /// All of them.
-pub(super) fn logs() -> Result<Vec<PlantLog>, Box<dyn Error>> {
+pub(super) fn logs(options: &WriteOptions) -> Result<Vec<PlantLog>, Box<dyn Error>> {
     let first = prepared(TASK_1, 11)?;
     let again = first.clone();
-    let first = task_run(TASK_1_RUN, first, Content::Joints)?;
-    let again = precompensated(again, &first)?;
+    let first = task_run(options, TASK_1_RUN, first, Content::Joints)?;
+    let again = precompensated(options, again, &first)?;
     Ok(vec![
         first,
-        task_run(TASK_2_RUN, prepared(TASK_2, 12)?, Content::Joints)?,
-        identification()?,
+        task_run(options, TASK_2_RUN, prepared(TASK_2, 12)?, Content::Joints)?,
+        identification(options)?,
         again,
-        task_run(PRESSURES_RUN, prepared(SIMULATION, 15)?, Content::Everything)?,
+        task_run(options, PRESSURES_RUN, prepared(SIMULATION, 15)?, Content::Everything)?,
     ])
 }
 
@@ -118,13 +118,18 @@ fn prepared((text, times_s): Task, seed: u64) -> Result<Prepared, Box<dyn Error>
     Ok(prepare(&path, Parameters::preset(PRESET)?, seed)?)
 }
 
-fn task_run(title: Title, prepared: Prepared, content: Content) -> Result<PlantLog, Box<dyn Error>> {
+fn task_run(
+    options: &WriteOptions,
+    title: Title,
+    prepared: Prepared,
+    content: Content,
+) -> Result<PlantLog, Box<dyn Error>> {
     let seed = prepared.inputs.seed;
     let run = prepared.run()?;
-    written(title, seed, run.outputs, &run.carried, content)
+    written(options, title, seed, run.outputs, &run.carried, content)
 }
 
-fn identification() -> Result<PlantLog, Box<dyn Error>> {
+fn identification(options: &WriteOptions) -> Result<PlantLog, Box<dyn Error>> {
     let joints: Vec<JointRoom> = Arm::sample()?
         .chain
         .joints()
@@ -138,11 +143,22 @@ fn identification() -> Result<PlantLog, Box<dyn Error>> {
     let plan = excite(&joints, &Excitation { rest_s: RUN_LEAD_S, ..Excitation::minimal() })?;
     let (plant, command, seed) = (Plant::preset(PRESET)?, plan.clone(), 13);
     let outputs = run(&Inputs { plant, plan, command, payload: Vec::new(), seed })?;
-    written(IDENTIFICATION_RUN, seed, outputs, &Carried::default().with_starts_s(0.0), Content::Joints)
+    written(
+        options,
+        IDENTIFICATION_RUN,
+        seed,
+        outputs,
+        &Carried::default().with_starts_s(0.0),
+        Content::Joints,
+    )
 }
 
 /// The plan of a run again, with the command that a fit to the run makes of it.
-fn precompensated(again: Prepared, before: &PlantLog) -> Result<PlantLog, Box<dyn Error>> {
+fn precompensated(
+    options: &WriteOptions,
+    again: Prepared,
+    before: &PlantLog,
+) -> Result<PlantLog, Box<dyn Error>> {
     let record = &before.outputs.record;
     let track =
         |joint: &JointRecord| Track::new(&joint.name, record.t_s.clone(), joint.measured_rad.clone(), &[]);
@@ -153,11 +169,12 @@ fn precompensated(again: Prepared, before: &PlantLog) -> Result<PlantLog, Box<dy
     let command = learn(&fit, plan, &[trial], Learning::default(), |_| None)?.command(plan, |_| 1.0)?;
     let seed = 14;
     let outputs = run(&Inputs { command, seed, ..again.inputs })?;
-    written(PRECOMPENSATED_RUN, seed, outputs, &again.carried, Content::Joints)
+    written(options, PRECOMPENSATED_RUN, seed, outputs, &again.carried, Content::Joints)
 }
 
-/// Writes a run, small: numbers as `f32`, slowest compression, chunks as large as a run.
+/// Writes a run, small: numbers as `f32`.
 fn written(
+    options: &WriteOptions,
     (name, story): Title,
     seed: u64,
     mut outputs: Outputs,
@@ -178,8 +195,7 @@ fn written(
         columns.into_iter().flatten().for_each(|x| *x = short(*x));
         joint.measured_rad_s.iter_mut().for_each(|x| *x = (*x / SPEED_STEP_RAD_S).round() * SPEED_STEP_RAD_S);
     }
-    let options = WriteOptions { compression_level: 19, chunk_bytes: 1 << 24, ..WriteOptions::default() };
-    let bytes = outputs.log(carried, None, content, options)?;
+    let bytes = outputs.log(carried, None, content, options.clone())?;
     Ok(PlantLog { name, bytes, story, seed, outputs })
 }
 

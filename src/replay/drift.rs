@@ -1,0 +1,75 @@
+//! How fast a joint moves while its plan rests: a load that sinks, a cylinder that leaks, a loop that does not hold.
+
+use serde::{Deserialize, Serialize};
+
+use super::Sizes;
+use crate::{math::half_interval, series::Pair};
+
+/// A rest is looked at in parts of about this length, s; a shorter one than half of it tells nothing.
+const PART_S: f64 = 2.0;
+/// Fewest samples of a part.
+const FEWEST: usize = 8;
+
+/// Mean speed while the plan rests.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct RestDrift {
+    /// Mean over parts of the rests, in the joint's unit a second.
+    pub speed: f64,
+    /// Its 95 % interval, from the spread over parts; needs three of them.
+    pub interval: Option<[f64; 2]>,
+    /// Time at rest that was looked at, s.
+    pub duration_s: f64,
+}
+
+impl RestDrift {
+    /// Whether it is more than scatter and in all moves the joint by more than the band of settling.
+    pub fn counts(&self, sizes: &Sizes) -> bool {
+        let sure = self.interval.is_some_and(|[low, high]| low * high > 0.0);
+        sure && (self.speed * self.duration_s).abs() >= sizes.settle_band
+    }
+}
+
+/// The drift of a joint whose plan rests in some samples; `None` where no rest is long enough.
+pub(super) fn rest_drift(pair: &Pair, rest: &[bool]) -> Option<RestDrift> {
+    let mut parts: Vec<Vec<f64>> = Vec::new();
+    let mut duration_s = 0.0;
+    for segment in &pair.segments {
+        for run in rest[segment.clone()].chunk_by(|a, b| a == b).scan(segment.start, |from, run| {
+            let begins = *from;
+            *from += run.len();
+            Some((run[0], begins..*from))
+        }) {
+            let (true, run) = run else { continue };
+            let lasts_s = pair.t_s[run.end - 1] - pair.t_s[run.start];
+            if lasts_s < 0.5 * PART_S {
+                continue;
+            }
+            let count = (lasts_s / PART_S).round().max(1.0);
+            for k in 0..count as usize {
+                let at = |share: f64| {
+                    let until_s = pair.t_s[run.start] + share * lasts_s;
+                    run.start + pair.t_s[run.clone()].partition_point(|&t| t < until_s)
+                };
+                let part = at(k as f64 / count)..at((k + 1) as f64 / count);
+                if let Some(speed) = slope(&pair.t_s[part.clone()], &pair.measured[part]) {
+                    parts.push(vec![speed]);
+                    duration_s += lasts_s / count;
+                }
+            }
+        }
+    }
+    let speed = parts.iter().flatten().sum::<f64>() / parts.len() as f64;
+    let half = half_interval(&parts);
+    let interval = half.map(|half| [speed - half, speed + half]);
+    (!parts.is_empty()).then_some(RestDrift { speed, interval, duration_s })
+}
+
+/// Of the line nearest to all samples; `None` of few.
+fn slope(t_s: &[f64], position: &[f64]) -> Option<f64> {
+    let n = t_s.len() as f64;
+    let (middle_s, mean) = (t_s.iter().sum::<f64>() / n, position.iter().sum::<f64>() / n);
+    let both = || t_s.iter().zip(position).map(|(t, x)| (t - middle_s, x - mean));
+    let square: f64 = both().map(|(t, _)| t * t).sum();
+    (t_s.len() >= FEWEST && square > 0.0).then(|| both().map(|(t, x)| t * x).sum::<f64>() / square)
+}
