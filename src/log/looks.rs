@@ -90,7 +90,7 @@ mod tests {
         assert!(is("a.json", b"[{\"t\": 0, \"q\": 1},{\"t\": 1") && is("a.json", b"[\n {\n  \"t\": 0,\n"));
         assert!(is("a.txt", b" t | q\n---+---\n 0 | 1\n") && is("a.md", b"# Run\n\n| t | q |\n|--:|--:|\n"));
         assert!(is("run.lvm", b"LabVIEW Measurement\n"));
-        assert!(is("a.csv", b"t,q\n0,1\n\0\0\0") && !is("a.csv", b"t,q\n\00,1\n") && !is("a.csv", b"\0\0"));
+        assert!(is("a.csv", b"t,q\n0,1\n\0\0\0") && !is("a.csv", b"t,q\n\x000,1\n") && !is("a.csv", b"\0\0"));
         for text in [
             &b"{\n  \"a\": [\n    1,\n    2,\n    3\n  ]\n}\n"[..],
             b"a: 1\nb: 2\nc: 3\nd: 4\n",

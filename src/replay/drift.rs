@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::Sizes;
 use crate::{math::half_interval, series::Pair};
 
-/// A rest is looked at in parts of about this length, s; a shorter one than half of it tells nothing.
+/// A rest is looked at in parts of this length, s; one of less than half of it tells nothing.
 const PART_S: f64 = 2.0;
 /// Fewest samples of a part.
 const FEWEST: usize = 8;
@@ -35,27 +35,17 @@ pub(super) fn rest_drift(pair: &Pair, rest: &[bool]) -> Option<RestDrift> {
     let mut parts: Vec<Vec<f64>> = Vec::new();
     let mut duration_s = 0.0;
     for segment in &pair.segments {
-        for run in rest[segment.clone()].chunk_by(|a, b| a == b).scan(segment.start, |from, run| {
-            let begins = *from;
-            *from += run.len();
-            Some((run[0], begins..*from))
-        }) {
-            let (true, run) = run else { continue };
-            let lasts_s = pair.t_s[run.end - 1] - pair.t_s[run.start];
-            if lasts_s < 0.5 * PART_S {
-                continue;
-            }
-            let count = (lasts_s / PART_S).round().max(1.0);
-            for k in 0..count as usize {
-                let at = |share: f64| {
-                    let until_s = pair.t_s[run.start] + share * lasts_s;
-                    run.start + pair.t_s[run.clone()].partition_point(|&t| t < until_s)
-                };
-                let part = at(k as f64 / count)..at((k + 1) as f64 / count);
-                if let Some(speed) = slope(&pair.t_s[part.clone()], &pair.measured[part]) {
-                    parts.push(vec![speed]);
-                    duration_s += lasts_s / count;
-                }
+        let mut from = segment.start;
+        while from < segment.end {
+            let until_s = pair.t_s[from] + PART_S;
+            let own = rest[from..segment.end].iter().zip(&pair.t_s[from..]);
+            let part = from..from + own.take_while(|(rests, t_s)| **rests && **t_s < until_s).count();
+            from = part.end.max(from + 1);
+            let lasts_s = pair.t_s[part.clone()].last().map_or(0.0, |last_s| last_s - pair.t_s[part.start]);
+            let speed = slope(&pair.t_s[part.clone()], &pair.measured[part]);
+            if let Some(speed) = speed.filter(|_| lasts_s >= 0.5 * PART_S) {
+                parts.push(vec![speed]);
+                duration_s += lasts_s;
             }
         }
     }

@@ -215,16 +215,14 @@ fn joints(
     let (all, missing, flag) = match (asked.is_empty(), measured.is_empty()) {
         (true, true) => {
             let odd = labels.iter().zip(&head.names).find_map(|(label, name)| Some((odd(label)?, name)));
-            return Err(match odd {
-                Some((unit, name)) => CsvError::OddUnit { column: name.clone(), unit: unit.name },
-                None => {
-                    let speed = drafts.iter().find(|draft| draft.quantity == Quantity::Velocity);
-                    let why = speed.map_or_else(String::new, |draft| {
-                        format!(" (column {:?} is a speed)", head.names[draft.column])
-                    });
-                    CsvError::NoJoints { why, present: present(&head.names) }
-                }
+            if let Some((unit, name)) = odd {
+                return Err(CsvError::OddUnit { column: name.clone(), unit: unit.name });
+            }
+            let speed = drafts.iter().find(|draft| draft.quantity == Quantity::Velocity);
+            let why = speed.map_or_else(String::new, |draft| {
+                format!(" (column {:?} is a speed)", head.names[draft.column])
             });
+            return Err(CsvError::NoJoints { why, present: present(&head.names) });
         }
         (true, false) => (&measured, "plan", "--planned"),
         (false, true) => (&asked, "measurement", "--measured"),

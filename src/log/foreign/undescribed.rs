@@ -64,8 +64,8 @@ pub(super) fn definition(type_name: &str, message: &[u8]) -> String {
 /// One of the others with the types that it may use.
 fn described(root: &str, text: &str) -> String {
     let used = USED.iter().filter(|(name, _)| *name != root);
-    let used: String = used.map(|(name, text)| format!("===\nMSG: {name}\n{text}")).collect();
-    format!("{text}{used}===\n{}", used_by_states())
+    let used: Vec<String> = used.map(|(name, text)| format!("===\nMSG: {name}\n{text}")).collect();
+    format!("{text}{}===\n{}", used.concat(), used_by_states())
 }
 
 /// The types that the state of a controller uses: headers, speeds and quaternions, too.

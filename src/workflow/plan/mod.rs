@@ -169,7 +169,7 @@ pub fn run(
     let best = ends.iter().map(|&end| evaluation(&found.front[end])).collect::<Result<_, _>>()?;
     // A free shape may be faster than any plan of the front.
     let smoothest = |held: &Ceilings| {
-        let task = Task { ceilings: held.clone(), ..task.clone() };
+        let task = Task { ceilings: *held, ..task.clone() };
         let by = (&*found.front, (Rule::Best(Objective::RmsJerk), None));
         Some(chosen(setup, &task, options.shape, by).ok()?.1.plan)
     };

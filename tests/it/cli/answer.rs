@@ -121,7 +121,7 @@ fn moves(later_s: f64, until_s: f64, names: [&str; 2]) -> String {
     let at = |t_s: f64| {
         let one = |k: u32| {
             let s = ((t_s - 2.0 - 6.0 * f64::from(k)) / 3.0).clamp(0.0, 1.0);
-            (if k % 2 == 0 { 12.0 } else { -12.0 }) * s * s * s * (10.0 + s * (6.0 * s - 15.0))
+            (if k.is_multiple_of(2) { 12.0 } else { -12.0 }) * s * s * s * (10.0 + s * (6.0 * s - 15.0))
         };
         (0..5).map(one).sum::<f64>()
     };
