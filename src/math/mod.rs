@@ -1,6 +1,7 @@
 //! Small numerics with no noun of the domain in them.
 
 mod hermite;
+mod line;
 mod lowpass;
 mod paired;
 mod programme;
@@ -11,6 +12,7 @@ mod trend;
 mod two_samples;
 
 pub use hermite::{State, cubic, linear, quintic};
+pub use line::{Line, line};
 pub use lowpass::lowpass;
 pub use paired::{SignedRank, half_interval, signed_rank};
 pub use programme::{Columns, quadratic_programme};

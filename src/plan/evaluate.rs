@@ -53,8 +53,8 @@ impl Evaluator {
     /// Objectives of the plan with these times of movement between key points, s, under the setup
     /// that this evaluator was made for; `None` if they make no motion.
     ///
-    /// f2 is exact; f3 is by eight Gauss nodes a piece, or a part of it where a joint turns far, to 1e-6. Power is joint speed times torque
-    /// (paper, eq. 5). `DIFFERENCE(eq. 4, 5)`: means over time in place of sums over sampling
+    /// f2 is exact; f3 is by eight Gauss nodes a piece, or a part of it where a joint turns far, to 1e-6. Power is joint
+    /// speed times torque (paper, eq. 5). `DIFFERENCE(eq. 4, 5)`: means over time in place of sums over sampling
     /// points, which grow with their number.
     pub fn evaluate(&mut self, setup: &Setup, interval_s: &[f64]) -> Option<Objectives> {
         let found = self.objectives(setup, interval_s)?;

@@ -39,8 +39,8 @@ pub fn near<P>(
     took_s: impl Fn(&P) -> f64,
 ) -> Vec<(f64, P)> {
     let within = |within_s: f64| {
-        let within_s_too = within_s.min(ceilings[Objective::Duration]);
-        Some((within_s, made(&ceilings.with(Objective::Duration, within_s_too))?))
+        let held = ceilings.with(Objective::Duration, within_s.min(ceilings[Objective::Duration]));
+        Some((within_s, made(&held)?))
     };
     let mut plans: Vec<(f64, P)> = round_times_s(around_s).into_iter().filter_map(within).collect();
     // Slower than the task or its ceilings allow, all are one.

@@ -3,7 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::Sizes;
-use crate::{math::half_interval, series::Pair};
+use crate::{
+    math::{half_interval, line},
+    series::Pair,
+};
 
 /// A rest is looked at in parts of this length, s; one of less than half of it tells nothing.
 const PART_S: f64 = 2.0;
@@ -42,9 +45,8 @@ pub(super) fn rest_drift(pair: &Pair, rest: &[bool]) -> Option<RestDrift> {
             let part = from..from + own.take_while(|(rests, t_s)| **rests && **t_s < until_s).count();
             from = part.end.max(from + 1);
             let lasts_s = pair.t_s[part.clone()].last().map_or(0.0, |last_s| last_s - pair.t_s[part.start]);
-            let speed = slope(&pair.t_s[part.clone()], &pair.measured[part]);
-            if let Some(speed) = speed.filter(|_| lasts_s >= 0.5 * PART_S) {
-                parts.push(vec![speed]);
+            if lasts_s >= 0.5 * PART_S && part.len() >= FEWEST {
+                parts.push(vec![line(&pair.t_s[part.clone()], &pair.measured[part]).slope]);
                 duration_s += lasts_s;
             }
         }
@@ -53,13 +55,4 @@ pub(super) fn rest_drift(pair: &Pair, rest: &[bool]) -> Option<RestDrift> {
     let half = half_interval(&parts);
     let interval = half.map(|half| [speed - half, speed + half]);
     (!parts.is_empty()).then_some(RestDrift { speed, interval, duration_s })
-}
-
-/// Of the line nearest to all samples; `None` of few.
-fn slope(t_s: &[f64], position: &[f64]) -> Option<f64> {
-    let n = t_s.len() as f64;
-    let (middle_s, mean) = (t_s.iter().sum::<f64>() / n, position.iter().sum::<f64>() / n);
-    let both = || t_s.iter().zip(position).map(|(t, x)| (t - middle_s, x - mean));
-    let square: f64 = both().map(|(t, _)| t * t).sum();
-    (t_s.len() >= FEWEST && square > 0.0).then(|| both().map(|(t, x)| t * x).sum::<f64>() / square)
 }

@@ -11,6 +11,7 @@ use std::ops::Range;
 use multiversion::multiversion;
 
 use super::Rules;
+use crate::math::{Line, line};
 
 /// An onset with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,20 +33,15 @@ const SURE: f64 = 5.0;
 
 /// How fast a joint moves at rest, per second; `None` if it stands, as far as the samples tell.
 fn drift(t_s: &[f64], position: &[f64]) -> Option<f64> {
-    let n = t_s.len() as f64;
     if t_s.last()? - t_s.first()? < SHORTEST_REST_S || t_s.len() < 8 {
         return None;
     }
-    let (middle_s, mean) = (t_s.iter().sum::<f64>() / n, position.iter().sum::<f64>() / n);
-    let both = || t_s.iter().zip(position).map(|(t, x)| (t - middle_s, x - mean));
-    let square = both().map(|(t, _)| t * t).sum::<f64>();
-    let slope = both().map(|(t, x)| t * x).sum::<f64>() / square;
-    let left: Vec<f64> = both().map(|(t, x)| x - slope * t).collect();
+    let Line { slope, square, left } = line(t_s, position);
     let squares = left.iter().map(|x| x * x).sum::<f64>();
     let neighbours = left.windows(2).map(|w| w[0] * w[1]).sum::<f64>();
     let correlation = if squares > 0.0 { (neighbours / squares).clamp(0.0, 0.99) } else { 0.0 };
     let redundancy = (1.0 + correlation) / (1.0 - correlation);
-    let error = (redundancy * squares / (n - 2.0) / square).sqrt();
+    let error = (redundancy * squares / (t_s.len() as f64 - 2.0) / square).sqrt();
     (slope.abs() > SURE * error).then_some(slope)
 }
 

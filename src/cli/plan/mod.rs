@@ -43,7 +43,8 @@ impl Run for Args {
             return Err(CliError::Usage("--pieces are of a free shape: add --shape free".to_owned()));
         }
         if self.times.is_none() && request.task.times_s.is_some() && self.seeks() {
-            let text = "the task gives times_s, so that plan is judged and none is sought: leave times_s out of it, or                         --near, --degrees, --choose, --weights and --shape out of the command";
+            let text = "the task gives times_s, so that plan is judged and none is sought: leave times_s out of it, or \
+                        --near, --degrees, --choose, --weights and --shape out of the command";
             return Err(CliError::Usage(text.to_owned()));
         }
         match self.times.as_ref().or(request.task.times_s.as_ref()) {

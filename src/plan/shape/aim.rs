@@ -11,6 +11,9 @@ const SETTLE: f64 = 1e-3;
 /// Room below ceilings for what a plan is slowed down by at last.
 const SLOWED: f64 = 1e-3;
 
+/// Distance from the ceilings of a choice, as a share: a descent ends at one to within rounding, on either side of it.
+const ROUNDED: f64 = 1e-5;
+
 /// What decides the duration of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Pace {
@@ -51,7 +54,8 @@ impl Aim {
             }
             _ => Pace::Sought,
         };
-        let mut ceilings = if pace == Pace::Sought { choice.ceilings } else { Ceilings::NONE };
+        let clear = choice.ceilings.map_plan(|k| choice.ceilings[k] * (1.0 - ROUNDED));
+        let mut ceilings = if pace == Pace::Sought { clear } else { Ceilings::NONE };
         // Of a plan above a ceiling the jerk says nothing: a faster one has more.
         let above = |k: &Objective| chosen[*k] > choice.ceilings[*k] * (1.0 + SLOWED);
         if choice.rule == Rule::Best(Objective::RmsPower) && !Objective::OF_PLAN.iter().any(above) {

@@ -131,7 +131,7 @@ fn sought(
         curve = end.curve;
         let load = load(setup, &frame, &curve)?;
         let again = load > KEPT_SHARE && tried < TRIES;
-        match kept(setup, &frame, &curve, ceilings) {
+        match kept(setup, &frame, &curve) {
             Ok(evaluation) => found = Some(evaluation),
             Err(error) if !again && found.is_none() => return Err(error),
             Err(_) => {}
@@ -201,33 +201,14 @@ fn pulled(frame: &Frame<'_>, point_rad: &mut [f64], margin: &Margin) {
     }
 }
 
-/// By what factor a plan is above a ceiling that falls as time grows, where that is no more than a descent's rounding.
-fn just_above(evaluation: &PlanEvaluation, ceilings: &Ceilings) -> Option<f64> {
-    let falls = Objective::OF_PLAN.iter().filter(|k| **k != Objective::Duration);
-    let most = falls.map(|&k| evaluation.objectives[k] / ceilings[k]).fold(0.0, f64::max);
-    (most > 1.0 && most < ROUNDED).then_some(most)
-}
-
-/// The plan of a curve, slowed down until all limits hold exactly, and ceilings that it is above by rounding.
-fn kept(
-    setup: &Setup,
-    frame: &Frame<'_>,
-    curve: &Curve,
-    ceilings: &Ceilings,
-) -> Result<PlanEvaluation, NoShape> {
+/// The plan of a curve, slowed down until all limits hold exactly.
+fn kept(setup: &Setup, frame: &Frame<'_>, curve: &Curve) -> Result<PlanEvaluation, NoShape> {
     let (mut interval_s, mut point_rad, mut slower) =
         (curve.interval_s.clone(), curve.point_rad.clone(), 1.0);
     for tried in 0..SLOWINGS {
         let (times_s, via) = listed(frame, &interval_s, &point_rad);
         let evaluation = PlanEvaluation::through(setup, &times_s, &via).map_err(|_| NoShape::NoGain)?;
-        let Some(worst) = evaluation.broken().first().map(|margin| **margin) else {
-            let Some(above) = just_above(&evaluation, ceilings) else { return Ok(evaluation) };
-            for s in &mut interval_s {
-                *s *= above * (1.0 + CLEAR);
-            }
-            frame.clamp(&mut interval_s);
-            continue;
-        };
+        let Some(worst) = evaluation.broken().first().map(|margin| **margin) else { return Ok(evaluation) };
         if worst.limit == Limit::Position && worst.share < ROUNDED {
             pulled(frame, &mut point_rad, &worst);
             continue;

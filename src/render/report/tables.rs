@@ -16,8 +16,8 @@ use crate::{
         Answer, JOINT, JointReplay, ONSET_DELAY_LIMIT, Profiles, Replay, Swing, TRANSITION, Transition,
         Verdict,
     },
-    series::{JointKind, Pair},
-    workflow::report::{GateResult, Report},
+    series::JointKind,
+    workflow::report::{GateResult, Report, Travel},
 };
 
 /// Everything a person reads of a report; `most` is how many transitions to list.
@@ -34,9 +34,6 @@ pub(crate) fn document(name: &str, report: &Report, most: usize) -> Document {
     document.sections.extend(method(report));
     document
 }
-
-/// A joint at rest is measured within this many standard deviations of its noise.
-const NOISE_SIGMAS: f64 = 10.0;
 
 /// Recorder and header on clocks that have nothing to do with each other (simulated time), s.
 const A_CLOCK_APART_S: f64 = 3600.0;
@@ -171,13 +168,7 @@ fn swings(report: &Report) -> Option<String> {
 /// A joint that moves without its plan, or does not move or answer as its plan does; `None` if both move.
 pub(super) fn stray(report: &Report, joint: &JointReplay) -> Option<String> {
     let name = &joint.name;
-    let sizes = report.replay.rules.sizes(joint.kind);
-    let travel = |of: fn(&Pair) -> &Vec<f64>| {
-        let [lowest, highest] = range(report.pairs.iter().filter(|p| p.name == *name).flat_map(of).copied());
-        (highest - lowest).max(0.0)
-    };
-    let [planned, measured] = [travel(|pair| &pair.planned), travel(|pair| &pair.measured)];
-    let rests = measured <= sizes.min_travel.max(NOISE_SIGMAS * joint.noise.sigma);
+    let Travel { planned, measured, rests } = report.travel(joint);
     let both = || {
         let [measured, planned] = [measured, planned].map(|travel| position(joint.kind, travel));
         format!("{name} moves by {measured} in all, its plan by {planned}")
@@ -189,7 +180,7 @@ pub(super) fn stray(report: &Report, joint: &JointReplay) -> Option<String> {
         (false, false) if joint.unplanned_starts > 0 => Some(format!(
             "The plan of {name} rests; the joint is shaken by the others: {} of less than {}, unplanned.",
             counted(joint.unplanned_starts, "start"),
-            position(joint.kind, sizes.moves_travel)
+            position(joint.kind, report.replay.rules.sizes(joint.kind).moves_travel)
         )),
         (false, false) if rests => Some(format!("{name} does not move, and neither does its plan.")),
         (true, false) if rests && joint.starts > 0 => {

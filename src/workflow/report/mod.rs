@@ -25,7 +25,7 @@ pub use gates::{GateResult, Gates};
 #[cfg(feature = "parquet")]
 pub(crate) use identity::hash;
 pub use identity::{LogFile, log_files};
-pub use outcome::{Alignment, Report};
+pub use outcome::{Alignment, Report, Travel};
 pub use tool::Tool;
 use why::Ready;
 pub use why::{DelayModel, LateStart, Part, Why};

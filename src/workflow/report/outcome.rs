@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::{gates::GateResult, tool::Tool, why::Why};
 use crate::{
     log::{Command, SignalRole, SourceInfo},
+    math::range,
     remark::Remarks,
-    replay::{Profiles, Replay, Swing, swings},
+    replay::{JointReplay, Profiles, Replay, Swing, swings},
     series::{Broken, Pair, Signal},
     workflow::{
         carried::{Held, Schedule},
@@ -75,10 +76,34 @@ pub struct Report {
     pub front: Option<PlanDocument>,
 }
 
+/// A joint at rest is measured within this many standard deviations of its noise.
+const NOISE_SIGMAS: f64 = 10.0;
+
+/// How far something moves in all.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Travel {
+    /// Of the plan.
+    pub planned: f64,
+    /// Of the joint.
+    pub measured: f64,
+    /// Whether the joint moves by no more than noise does.
+    pub rests: bool,
+}
+
 impl Report {
     /// Joints that swing though their plans do not.
     pub fn swings(&self) -> Vec<Swing> {
         swings(&self.pairs, &self.replay.rules)
+    }
+
+    /// How far a joint and its plan move in all, in its unit.
+    pub fn travel(&self, joint: &JointReplay) -> Travel {
+        let own = || self.pairs.iter().filter(|pair| pair.name == joint.name);
+        let span = |[lowest, highest]: [f64; 2]| (highest - lowest).max(0.0);
+        let planned = span(range(own().flat_map(|pair| pair.planned.iter().copied())));
+        let measured = span(range(own().flat_map(|pair| pair.measured.iter().copied())));
+        let least = self.replay.rules.sizes(joint.kind).min_travel;
+        Travel { planned, measured, rests: measured <= least.max(NOISE_SIGMAS * joint.noise.sigma) }
     }
 
     /// Whether every limit is kept.

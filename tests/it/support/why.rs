@@ -174,8 +174,8 @@ pub(crate) fn parts_are_right(presets: &[&str], tasks: &[usize], known: bool, le
             }
         }
     }
-    let all = [("a fit to the run", of_run), ("a known machine", of_machine)];
-    for (name, tally) in all.into_iter().take(if known { 2 } else { 1 }) {
+    let of_machine = known.then_some(("a known machine", of_machine));
+    for (name, tally) in [("a fit to the run", of_run)].into_iter().chain(of_machine) {
         let shares = tally.shares(name);
         assert!(shares.iter().zip(least).all(|(share, least)| *share >= least), "{name}: {shares:?}");
     }
