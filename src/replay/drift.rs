@@ -26,9 +26,10 @@ pub struct RestDrift {
 }
 
 impl RestDrift {
-    /// Whether it is more than scatter and in all moves the joint by more than the band of settling.
+    /// Whether it is more than scatter and in all moves the joint by more than the band of settling. Joints are many, and tails
+    /// of settling are no scatter: it must be larger than its whole interval is wide.
     pub fn counts(&self, sizes: &Sizes) -> bool {
-        let sure = self.interval.is_some_and(|[low, high]| low * high > 0.0);
+        let sure = self.interval.is_some_and(|[low, high]| self.speed.abs() > high - low);
         sure && (self.speed * self.duration_s).abs() >= sizes.settle_band
     }
 }
