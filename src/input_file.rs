@@ -41,14 +41,39 @@ pub fn forget() {
 ///
 /// # Errors
 ///
-/// As the file system says.
+/// As the file system says; [`io::ErrorKind::InvalidInput`] for the pipe that this program writes to.
 pub fn open(path: &Path) -> io::Result<File> {
     let file = match File::open(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound && path == Path::new("-") => standard_input()?,
         opened => opened?,
     };
-    note(path, &file.metadata()?);
+    let found = file.metadata()?;
+    if is_own_output(path, &found) {
+        // It would wait for ever for what it has not written yet.
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "it is where the output of this command goes",
+        ));
+    }
+    note(path, &found);
     Ok(file)
+}
+
+/// Whether a file is the pipe that standard output goes to.
+#[cfg(unix)]
+fn is_own_output(path: &Path, found: &Metadata) -> bool {
+    use std::os::{fd::AsFd as _, unix::fs::FileTypeExt as _};
+    found.file_type().is_fifo()
+        && io::stdout()
+            .as_fd()
+            .try_clone_to_owned()
+            .and_then(|output| File::from(output).metadata())
+            .is_ok_and(|output| identity(path, &output) == identity(path, found))
+}
+
+#[cfg(not(unix))]
+fn is_own_output(_: &Path, _: &Metadata) -> bool {
+    false
 }
 
 #[cfg(unix)]

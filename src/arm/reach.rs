@@ -53,23 +53,34 @@ impl Chain {
         let near = DVector::from_fn(self.joint_count(), |i, _| {
             near_rad.get(i).copied().filter(|q| q.is_finite()).unwrap_or(0.0)
         });
-        let mut best: Option<DVector<f64>> = None;
         let mut least = (f64::INFINITY, f64::INFINITY);
-        for start in 0..MOST_STARTS {
-            if start >= STARTS && best.is_some() {
-                break;
+        let mut nearest = |directly: bool| {
+            let mut best: Option<DVector<f64>> = None;
+            for start in 0..MOST_STARTS {
+                if start >= STARTS && best.is_some() {
+                    break;
+                }
+                let start = self.start(start, &near);
+                let found = if directly {
+                    self.descend(pose, start, &near, RETURN)
+                } else {
+                    self.there(pose, start, &near)
+                };
+                let left = self.left(pose, &found);
+                let (distance_m, angle_rad) =
+                    (left.fixed_rows::<3>(0).norm(), left.fixed_rows::<3>(3).norm());
+                if distance_m + angle_rad < least.0 + least.1 || least.0.is_infinite() {
+                    least = (distance_m, angle_rad);
+                }
+                let nearer = best.as_ref().is_none_or(|best| (&found - &near).norm() < (best - &near).norm());
+                if left.norm() < REACHED && nearer {
+                    best = Some(found);
+                }
             }
-            let found = self.descend(pose, self.start(start, &near), &near);
-            let left = self.left(pose, &found);
-            let (distance_m, angle_rad) = (left.fixed_rows::<3>(0).norm(), left.fixed_rows::<3>(3).norm());
-            if distance_m + angle_rad < least.0 + least.1 || least.0.is_infinite() {
-                least = (distance_m, angle_rad);
-            }
-            let nearer = best.as_ref().is_none_or(|best| (&found - &near).norm() < (best - &near).norm());
-            if left.norm() < REACHED && nearer {
-                best = Some(found);
-            }
-        }
+            best
+        };
+        // Between the ends of narrow ranges the way back may hold what the pose needs.
+        let best = nearest(true).or_else(|| nearest(false));
         best.map(|found| found.iter().copied().collect())
             .ok_or(ArmError::Unreachable { distance_m: least.0, angle_rad: least.1 })
     }
@@ -143,7 +154,14 @@ impl Chain {
         Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z)
     }
 
-    fn descend(&self, pose: &Pose, start: DVector<f64>, near: &DVector<f64>) -> DVector<f64> {
+    /// A descent to the pose, and from there back to the posture asked for, as far as the tool stays.
+    fn there(&self, pose: &Pose, start: DVector<f64>, near: &DVector<f64>) -> DVector<f64> {
+        let there = self.descend(pose, start, near, 0.0);
+        let back = self.descend(pose, there.clone(), near, RETURN);
+        if self.left(pose, &back).norm() < REACHED { back } else { there }
+    }
+
+    fn descend(&self, pose: &Pose, start: DVector<f64>, near: &DVector<f64>, back: f64) -> DVector<f64> {
         let mut position = start;
         let (mut least, mut progress) = (f64::INFINITY, 0);
         for number in 0..MOST_STEPS {
@@ -156,7 +174,7 @@ impl Chain {
                 break;
             }
             // The last steps only approach the pose, wherever the return to the posture has got to.
-            let share = if number + 8 < MOST_STEPS { RETURN } else { 0.0 };
+            let share = if number + 8 < MOST_STEPS { back } else { 0.0 };
             let back = (near - &position) * share;
             let Some(step) = self.step(&position, &(left * (LONGEST_ERROR / size).min(1.0)), &back) else {
                 break;

@@ -1,9 +1,6 @@
 //! The limits of a report, an option for each row of the tables of metrics that has one.
 
-use clap::{
-    Arg, ArgAction, ArgMatches, Command,
-    error::{ContextKind, ContextValue, Error, ErrorKind},
-};
+use clap::{Arg, ArgAction, ArgMatches, Command, Error};
 
 use super::number::{degrees, millimetres, milliseconds};
 use crate::{
@@ -76,18 +73,9 @@ impl clap::FromArgMatches for GateArgs {
     }
 }
 
-/// Says of a limit that a verb does not know whose it is.
-pub(super) fn placed(mut error: Error) -> Error {
-    let Some(ContextValue::String(arg)) = error.get(ContextKind::InvalidArg) else { return error };
-    if error.kind() == ErrorKind::UnknownArgument
-        && options().any(|(option, ..)| *arg == format!("--{option}"))
-    {
-        let tip = format!("{arg} is a limit of `hydrotrace report`").into();
-        error.remove(ContextKind::SuggestedArg);
-        error.remove(ContextKind::Usage);
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
-    }
-    error
+/// Whether an argument, with its dashes, sets a limit.
+pub(super) fn is_limit(arg: &str) -> bool {
+    options().any(|(option, ..)| arg.strip_prefix("--") == Some(option))
 }
 
 #[cfg(test)]

@@ -22,6 +22,7 @@ mod join;
 mod lines;
 mod man;
 mod number;
+mod placed;
 mod plan;
 mod read;
 mod record;
@@ -146,7 +147,7 @@ pub fn main() -> ExitCode {
     let matches = Args::command()
         .color(terminal::early_choice(env::args_os()))
         .try_get_matches_from(answer::with_verb(env::args_os().collect()))
-        .unwrap_or_else(|error| gates::placed(error).exit());
+        .unwrap_or_else(|error| placed::placed(error, &Args::command()).exit());
     let args = Args::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let choice = terminal::set_up(args.terminal);
     input_file::remember();

@@ -98,7 +98,7 @@ pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
         .collect();
     let beyond = (!beyond.is_empty()).then(|| {
         Sentence::advice(format!(
-            "Limits of the task that they exceed: {}. If the machine must keep them, send no joint faster: \
+            "Limits of the task or of the arm that they exceed: {}. If the machine must keep them, send no joint faster: \
              --max-speed-deg-s.",
             beyond.join(", ")
         ))

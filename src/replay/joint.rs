@@ -1,9 +1,10 @@
 //! One joint: signals, motions, matching of planned with measured starts, and figures.
 
 use super::{
-    Answer, JointReplay, Rules, Stop, Transition,
+    Answer, JointReplay, Kind, Rules, Stop, Transition,
     answer::rise,
     delay::{measured_onset, planned_onset},
+    direction::direction_delay,
     drift::rest_drift,
     lag::{Lag, Speeds, lag},
     lag_share::{Block, blocks, lag_share},
@@ -62,6 +63,8 @@ pub(super) fn joint<'a>(pair: &'a Pair, rules: &Rules) -> Option<Joint<'a>> {
             Transition { index: k + 1, ..found }
         })
         .collect();
+    let from_rest = transitions.iter().filter(|t| t.kind == Kind::Start);
+    let delays = from_rest.filter_map(|t| Some((t.direction, t.onset_delay_s?)));
     let stops = stops(pair, &signals, rules);
     let matched = answers.iter().flatten().count();
     let moves = matched > 0
@@ -82,6 +85,7 @@ pub(super) fn joint<'a>(pair: &'a Pair, rules: &Rules) -> Option<Joint<'a>> {
         tracking_error: tracking,
         standstill_error: tracking_error(standing),
         rest_drift: rest_drift(pair, &rest),
+        direction_delay: direction_delay(delays, signals.sample_interval_s),
         path_error: None,
         lag_s: lag.shift_s,
         lag_correlation: lag.correlation,

@@ -9,6 +9,7 @@ mod answer;
 mod concentration;
 mod cursor;
 mod delay;
+mod direction;
 mod drift;
 mod joint;
 mod keyed;
@@ -32,6 +33,7 @@ mod transition;
 pub(crate) mod unit;
 
 pub use delay::{measured_starts, measured_stops};
+pub use direction::DirectionDelay;
 pub use drift::RestDrift;
 pub use keyed::{Keyed, Row};
 pub use lane::{Phase, Stretch, lane};

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{RestDrift, Rules};
+use super::{DirectionDelay, RestDrift, Rules};
 use crate::series::{JointKind, Noise};
 
 /// Analysis of one run; error is planned minus measured throughout.
@@ -84,6 +84,8 @@ pub struct JointReplay {
     pub standstill_error: Option<TrackingError>,
     /// How fast it moves meanwhile; `None` where no rest is long enough.
     pub rest_drift: Option<RestDrift>,
+    /// Whether it leaves later in one direction; `None` with fewer than three timed starts in either.
+    pub direction_delay: Option<DirectionDelay>,
     /// This joint's share of the distance to the planned path, ignoring time.
     pub path_error: Option<PathError>,
     /// Time shift at the maximum of the speed correlation, s; positive if the joint is late.

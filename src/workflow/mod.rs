@@ -10,6 +10,7 @@ pub mod fleet;
 pub mod import;
 pub mod info;
 pub mod join;
+mod leads;
 mod names;
 pub mod plan;
 pub mod record;

@@ -1,17 +1,66 @@
-//! Leaves out commands that are no positions: of a controller of valves or torques.
+//! Commands that are no positions: signals to valves are kept as such, others left out.
 
 use std::borrow::Cow;
 
 use super::{
     Quantity, Role,
     head::Head,
-    layout::{Layout, Use},
+    label::Label,
+    layout::{Interface, Layout, Use, one_side},
     read::Cells,
+    signals::{Goes, moves_the_speed},
 };
 use crate::remark::{Code, Remarks};
 
 /// A command that reaches so many times as far as the plan of its joint is none of positions.
 const TIMES: f64 = 20.0;
+
+/// The layout with commands as signals to the valves, where those of half of the joints or more move the speed of their
+/// joints, unless `stated`.
+pub(super) fn as_signals(
+    mut layout: Layout,
+    head: &Head,
+    labels: &[Label],
+    cells: &Cells,
+    stated: impl Fn(usize) -> bool,
+    remarks: &mut Remarks,
+) -> Layout {
+    const KEPT_AS: &str = "valve_command";
+    let values = |column: usize| cells.columns.get(&column).map(|column| column.values.as_slice());
+    let position = |one: &&Use, role: Role| one.role == role && one.quantity == Quantity::Position;
+    let of =
+        |joint: usize, role: Role| layout.uses.iter().find(|one| one.joint == joint && position(one, role));
+    let both = |one: &Use| Some((values(one.column)?, values(of(one.joint, Role::Measured)?.column)?));
+    let sent: Vec<&Use> = layout.uses.iter().filter(|one| position(one, Role::Command)).collect();
+    let goes = |one: &&Use| {
+        let (sent, came) = both(one)?;
+        Some((one.column, moves_the_speed(&cells.stamp_ns, sent, came)?))
+    };
+    let found: Vec<(usize, Goes)> = sent.iter().filter_map(goes).collect();
+    let clearest = found.iter().max_by(|a, b| a.1.speed.abs().total_cmp(&b.1.speed.abs()));
+    let is_free =
+        sent.iter().all(|one| !stated(one.column)) && layout.interfaces.iter().all(|one| one.name != KEPT_AS);
+    let Some((column, goes)) = clearest.filter(|_| is_free && 2 * found.len() >= sent.len()) else {
+        return layout;
+    };
+    let message = format!(
+        "columns such as {:?}: the speed of their joints goes with them (correlation {:.2}), and the position does not \
+         ({:.2}); taken as signals to the valves, or as set speeds, and not as what a position is held against; --command \
+         JOINT=COLUMN,... takes them as set positions",
+        head.names[*column], goes.speed, goes.position
+    );
+    remarks.add(Code::Guessed, sent.len() as u64, message);
+    let signals =
+        sent.iter().map(|one| Interface { name: KEPT_AS.to_owned(), column: one.column, joint: one.joint });
+    layout.interfaces.extend(signals.collect::<Vec<_>>());
+    layout.uses.retain(|one| one.role != Role::Command);
+    if layout.uses.iter().all(|one| one.role != Role::Planned) {
+        *remarks = std::mem::take(remarks).without(Code::PlanIsCommand);
+        let names: Vec<&str> = layout.joints.iter().map(String::as_str).collect();
+        remarks.add(Code::OneSide, names.len() as u64, one_side(&names, labels, "plan", "--planned"));
+    }
+    layout
+}
 
 /// The layout without columns of commands that reach much farther than their joint's plan, unless `stated`.
 pub(super) fn left_out<'a>(

@@ -250,17 +250,23 @@ fn joints(
             return Ok(found);
         }
     };
-    let errors = plan_by_error(all.iter().map(|draft| draft.joint.as_str()), labels);
+    let names: Vec<&str> = all.iter().map(|draft| draft.joint.as_str()).collect();
+    let message = one_side(&names, labels, missing, flag);
+    remarks.add(Code::OneSide, all.len() as u64, message);
+    Ok(all.iter().map(pair).collect())
+}
+
+/// What a table without a plan, or without a measurement, of these joints needs.
+pub(super) fn one_side(joints: &[&str], labels: &[Label], missing: &str, flag: &str) -> String {
+    let errors = plan_by_error(joints.iter().copied(), labels);
     let by_error = match errors.filter(|_| missing == "plan") {
         Some(sums) => format!("say {flag} {sums} if the error is plan less measurement, else "),
         None => String::new(),
     };
-    let message = format!(
+    format!(
         "no column looks like a {missing}, and a report needs one: {by_error}name its columns with {flag} \
          {}, or, if it is in a file of its own with the same zero of time, import that too and \
          give both logs: `hydrotrace report THIS.mcap OTHER.mcap`",
-        all.iter().map(|draft| format!("{}=COLUMN", draft.joint)).collect::<Vec<_>>().join(",")
-    );
-    remarks.add(Code::OneSide, all.len() as u64, message);
-    Ok(all.iter().map(pair).collect())
+        joints.iter().map(|joint| format!("{joint}=COLUMN")).collect::<Vec<_>>().join(",")
+    )
 }

@@ -3,7 +3,7 @@
 use super::{
     method::method,
     steps::replanned,
-    tables::{mostly_lag, stray, verdicts},
+    tables::{mostly_lag, shift, stray, verdicts},
     tool, why,
 };
 use crate::{
@@ -135,7 +135,7 @@ fn whole(replay: &Replay) -> Option<Fact> {
         return (!most.is_empty()).then(|| fact("error", format!("{} at most", most.join(" and "))));
     };
     let kind = replay.kind();
-    let lag = if mostly_lag(replay).is_some() { "; mostly lag" } else { "" };
+    let lag = mostly_lag(replay).map_or(String::new(), |_| format!("; mostly {}", shift(replay)));
     Some(fact(
         "error",
         format!(

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::{
     first::{lanes, worst_start},
     steps::steps,
-    tables::{lag_words, mostly_lag, verdicts, worst_sentence},
+    tables::{lag_words, mostly_lag, shift, verdicts, worst_sentence},
     tool_page::tool_card,
     why,
 };
@@ -78,8 +78,9 @@ fn place_of_error(report: &Report) -> Markup {
     } else {
         "No clear difference".to_owned()
     };
+    let mostly = format!("Mostly {}", shift(&report.replay));
     let headline = match c.verdict {
-        _ if mostly_lag(&report.replay).is_some() => "Mostly lag",
+        _ if mostly_lag(&report.replay).is_some() => &mostly,
         Verdict::Transitions => "In the transitions",
         Verdict::Elsewhere => "Outside the transitions",
         Verdict::Undecided => &undecided,

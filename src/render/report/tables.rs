@@ -86,7 +86,7 @@ fn findings(report: &Report) -> Vec<String> {
         None => lines.push("No planned start from rest was found.".to_owned()),
     }
     lines.extend(report.promised.and_then(|held| promise::sentence(&held, replay.common_kind(), "")));
-    lines.extend(mostly_lag(replay).map(|lag| format!("The error is mostly lag: {lag}.")));
+    lines.extend(mostly_lag(replay).map(|lag| format!("The error is mostly {}: {lag}.", shift(replay))));
     if let Some(c) = &replay.whole_run.concentration {
         let place = match (mostly_lag(replay), c.verdict) {
             (Some(_), _) => "Transitions hold it because the joints move there",
@@ -117,7 +117,7 @@ fn findings(report: &Report) -> Vec<String> {
     }
     if mostly_lag(replay).is_none() && replay.whole_run.concentration.is_some() {
         lines.push(match lag_words(replay) {
-            Some(lag) => format!("Share of lag: {lag}."),
+            Some(lag) => format!("Share of {}: {lag}.", shift(replay)),
             None => "Share of lag: cannot be told, because no joint shows a lag.".to_owned(),
         });
     }
@@ -132,9 +132,30 @@ fn findings(report: &Report) -> Vec<String> {
         ));
     }
     lines.extend(replay.joints.iter().filter_map(|joint| stray(report, joint)));
+    lines.extend(replay.joints.iter().filter_map(|joint| one_way(replay, joint)));
     lines.extend(replay.joints.iter().filter_map(|joint| drifts(replay, joint)));
     lines.extend(swings(report));
     lines
+}
+
+/// A joint that leaves standstill later in one direction.
+fn one_way(replay: &Replay, joint: &JointReplay) -> Option<String> {
+    let tested = replay.joints.iter().filter(|joint| joint.direction_delay.is_some()).count();
+    let found = joint.direction_delay.filter(|found| found.counts(tested))?;
+    let [sign, other] = if found.direction > 0 { ["+", "-"] } else { ["-", "+"] };
+    let [later_s, other_s] = found.mean_delay_s;
+    Some(format!(
+        "{} leaves standstill {} ms later in {sign} than in {other} (95 %: {} to {} ms; {} ms on average of {}, {} ms of {}): a \
+         wider dead band, a larger load, or gentler planned starts that way.",
+        joint.name,
+        ms(later_s - other_s),
+        ms(found.interval_s[0]),
+        ms(found.interval_s[1]),
+        ms(later_s),
+        counted(found.starts[0], "start"),
+        ms(other_s),
+        counted(found.starts[1], "start"),
+    ))
 }
 
 /// A joint that moves while its plan rests.
@@ -197,15 +218,28 @@ pub(super) fn mostly_lag(replay: &Replay) -> Option<String> {
     lag_words(replay)
 }
 
+/// The least and the largest lag of joints whose plan moves, s.
+fn lags(replay: &Replay) -> [f64; 2] {
+    range(replay.joints.iter().filter(|joint| joint.plan_moves).filter_map(|joint| joint.lag_s))
+}
+
+/// What the lags are: a lead where every joint moves before its plan.
+pub(super) fn shift(replay: &Replay) -> &'static str {
+    if lags(replay)[1] < 0.0 { "lead" } else { "lag" }
+}
+
 /// How much of the squared error lags at the planned speeds explain; `None` where no joint has one.
 pub(super) fn lag_words(replay: &Replay) -> Option<String> {
     let share = replay.whole_run.lag_share?;
-    let lags = replay.joints.iter().filter(|joint| joint.plan_moves).filter_map(|joint| joint.lag_s);
-    let [least, most] = range(lags);
+    let [mut least, mut most] = lags(replay);
+    if most < 0.0 {
+        (least, most) = (-most, -least);
+    }
     let (least, most) = (ms(least), ms(most));
     let lag = if least == most { format!("{least} ms") } else { format!("{least} to {most} ms, by joint,") };
+    let shift = shift(replay);
     Some(format!(
-        "a lag of {lag} causes {} of the squared error ({}{}; mostly lag from {:.0} % on)",
+        "a {shift} of {lag} causes {} of the squared error ({}{}; mostly {shift} from {:.0} % on)",
         percents(share.share),
         share
             .interval

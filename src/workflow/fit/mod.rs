@@ -18,7 +18,7 @@ use crate::{
     remark::{Code, Remarks},
     replay::{Rules, planned_step},
     series::{Series, Track},
-    workflow::{carried::Carried, names::told_apart, same_plan::is_again},
+    workflow::{carried::Carried, leads::doubt_leads, names::told_apart, same_plan::is_again},
 };
 pub(in crate::workflow) use observe::observation;
 use {
@@ -194,7 +194,9 @@ pub(super) fn doubts(logs: &[String], observed: &[&Recording]) -> Remarks {
     let mut remarks = Remarks::default();
     for (log, observed) in logs.iter().zip(observed) {
         // A machine is fitted to what was sent, whatever was planned.
-        for remark in observed.remarks.clone().without(Code::PlanIsCommand).as_slice() {
+        let mut own = observed.remarks.clone().without(Code::PlanIsCommand);
+        doubt_leads(observed, &mut own);
+        for remark in own.as_slice() {
             let message = &remark.message;
             let message = if logs.len() > 1 { format!("{log}: {message}") } else { message.clone() };
             remarks.add(remark.code, remark.count, message);

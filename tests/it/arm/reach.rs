@@ -63,6 +63,32 @@ fn skew_axes_are_brought_there_too() {
     }
 }
 
+/// Four joints one behind the other in a plane, each with a narrow range.
+fn planar() -> Chain {
+    let mut text = String::from("<robot name='r'><link name='l0'/>");
+    for (k, (from, to)) in [(-0.4, 1.4), (-2.2, -0.3), (-1.9, 0.6), (-1.2, 1.2)].iter().enumerate() {
+        text += &format!(
+            "<link name='l{next}'/><joint name='j{next}' type='revolute'><parent link='l{k}'/><child link='l{next}'/>\
+             <origin xyz='{step} 0 0'/><axis xyz='0 1 0'/><limit lower='{from}' upper='{to}' velocity='1' effort='1'/></joint>",
+            next = k + 1,
+            step = [0.0, 2.4, 1.8, 0.9][k],
+        );
+    }
+    text += "<link name='tool'/><joint name='tip' type='fixed'><origin xyz='0.6 0 0'/><parent link='l4'/><child link='tool'/>\
+             </joint></robot>";
+    Chain::from_urdf(&text, "r.urdf", None).unwrap()
+}
+
+#[test]
+fn no_pose_between_narrow_ranges_is_called_out_of_reach() {
+    let chain = planar();
+    let refused = |seed: &u64| {
+        let pose = chain.tool_pose(&posture(&chain, 2 * seed));
+        chain.reach(&pose, &posture(&chain, 2 * seed + 1)).is_err()
+    };
+    assert_eq!((0..400).filter(refused).count(), 0);
+}
+
 #[test]
 fn no_motion_that_keeps_the_tool_leads_nearer_to_the_posture_asked_for() {
     let chain = sample().chain;

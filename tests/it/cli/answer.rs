@@ -182,3 +182,18 @@ fn a_limit_is_said_to_be_the_reports() {
     assert!(code == 2 && error.contains("tip: --max-rms-deg is a limit of `hydrotrace report`"), "{error}");
     assert!(!error.contains("--measured-degrees"), "{error}");
 }
+
+#[test]
+fn an_option_of_another_verb_is_said_to_be_that_ones() {
+    for (args, verb) in [
+        (["report", "run.csv", "--rate", "50"], "import"),
+        (["import", "run.csv", "--keep-plan", "-q"], "replan"),
+    ] {
+        let (code, _, error) = said(&run_at_root(&args));
+        let tip = format!("tip: {} is an option of `hydrotrace ", args[2]);
+        assert!(
+            code == 2 && error.contains(&tip) && error.contains(&format!("`hydrotrace {verb}`")),
+            "{error}"
+        );
+    }
+}

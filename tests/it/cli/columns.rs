@@ -83,6 +83,27 @@ fn a_plan_may_be_a_sum_and_a_map_keeps_how_a_file_was_read() {
 }
 
 #[test]
+fn a_signal_to_a_valve_that_is_called_a_command_is_no_position() {
+    // What is sent opens the valve about its middle of 7.5, and the joint moves at 4 deg/s for each of it, 0.2 s late.
+    let duty = |t_s: f64| 7.5 + (0.9 * t_s).sin() - 1.4 * (0.31 * t_s).cos() * (0.05 * t_s).sin();
+    let mut text = "Time,Boom Ms,Boom Cmd,Boom Error\n".to_owned();
+    let mut boom_deg = 20.0;
+    for k in 0..1200 {
+        let t_s = f64::from(k) * 0.05;
+        boom_deg += 0.05 * 4.0 * (duty(t_s - 0.2) - 7.5);
+        writeln!(text, "{t_s},{boom_deg},{},{}", duty(t_s), 0.2 * (t_s).sin()).unwrap();
+    }
+    let (code, out, error) = import(&text, &["--degrees"]);
+    assert!(code == 3 && out.contains("valve_command      Boom"), "{out}{error}");
+    assert!(out.contains("taken as signals to the valves") && !out.contains("plan-is-command"), "{out}");
+    assert!(out.contains("say --planned Boom=measured+error"), "{out}");
+    let (code, out, _) = import(&text, &["--degrees", "--planned", "Boom=measured+error"]);
+    assert!(code == 3 && out.contains("valve_command") && !out.contains("one-side"), "{out}");
+    let (code, out, _) = import(&text, &["--degrees", "--command", "Boom=Boom Cmd"]);
+    assert!(code == 3 && out.contains("command position"), "{out}");
+}
+
+#[test]
 fn a_unit_that_is_not_known_is_told_and_a_factor_says_what_it_is() {
     let turns = trace("t_s,boom_set [E],boom_act [E]", 1.0, ",", 1.0 / std::f64::consts::TAU);
     let (code, out, error) = import(&turns, &[]);

@@ -79,4 +79,7 @@ fn an_input_that_ends_at_once_or_never_is_refused_with_what_to_do() {
         assert!(code == 1 && error.contains("empty"), "{line}: {error}");
     }
     assert!(!folder.path().join("b.mcap").exists());
+    // `--json` takes no file: this would read what it writes.
+    let (_, said) = run(folder.path(), "timeout 20 hydrotrace report a.mcap --json /dev/stdout 2>&1 | cat");
+    assert!(said.contains("it is where the output of this command goes"), "{said}");
 }
