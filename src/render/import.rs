@@ -26,8 +26,12 @@ pub(crate) fn document(output: &str, imported: &Imported) -> Document {
     } else {
         format!("{}: {}", time.columns.join(" and "), time.form)
     };
-    let counts =
-        if time.absolute { "" } else { "; no date in the file: second 0 becomes 2025-10-09 08:53:20 UTC" };
+    let counts = if time.absolute {
+        let begins = chrono::DateTime::from_timestamp_nanos(time.first_ns);
+        format!("; begins {} UTC", begins.format("%Y-%m-%d %H:%M:%S"))
+    } else {
+        "; no date in the file: second 0 becomes 2025-10-09 08:53:20 UTC".to_owned()
+    };
     let read_as = vec![
         fact("cells", format!("separated by {}, decimal {}", u.separator, u.decimal)),
         fact("header", format!("{header}{above}")),

@@ -11,6 +11,7 @@ use super::{
     head::Head,
     label::Label,
     number::{nanoseconds, number},
+    order::doubt,
     rows::Rows,
     time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
     unit::{ARCHIVE_DAY, Measure, parse_unit},
@@ -36,7 +37,7 @@ pub(super) fn choose(
     let look = Look { head, labels, dialect, options };
     if let Some(name) = &options.time {
         let column = find(name, "--time", &head.names)?;
-        return Ok(look.column(column)?.tell(head, remarks));
+        return Ok(look.spread(text, look.column(column)?).tell(head, remarks));
     }
     let (mut usable, mut unsteady) = (Vec::new(), Vec::new());
     let mut failure = None;
@@ -47,6 +48,9 @@ pub(super) fn choose(
             Ok(found) => if found.steady { &mut usable } else { &mut unsteady }.push(found),
             Err(error) => failure = failure.or(Some(error).filter(|_| !is_span)),
         }
+    }
+    if usable.is_empty() && failure.is_none() {
+        usable.extend(look.dates());
     }
     if usable.is_empty() && failure.is_none() {
         usable.extend(look.index().or_else(|| look.by_unit()).or_else(|| look.unnamed_stamp()));
@@ -61,7 +65,8 @@ pub(super) fn choose(
     let spans = |found: &Found| found.source.columns().iter().any(|column| look.is_span(*column));
     usable.sort_by_key(|found| (!found.resolves, spans(found), look.is_of_receipt(found), !found.absolute));
     look.remark_other(text, &usable, remarks);
-    match (usable.into_iter().next(), failure) {
+    let best = usable.into_iter().next().map(|best| look.spread(text, best));
+    match (best, failure) {
         (Some(best), _) if best.resolves => Ok(best.tell(head, remarks)),
         (Some(best), _) => {
             let columns: Vec<&str> = best.source.columns().iter().map(|&c| head.names[c].as_str()).collect();
@@ -95,9 +100,9 @@ pub(super) struct Found {
     pub(super) resolves: bool,
     /// Whether it rises from row to row, or falls, more often than what only measures something does.
     pub(super) steady: bool,
-    absolute: bool,
+    pub(super) absolute: bool,
     /// The guesses.
-    doubt: Option<String>,
+    pub(super) doubt: Option<String>,
 }
 
 impl Found {
@@ -124,7 +129,7 @@ pub(super) struct Look<'a> {
     pub(super) head: &'a Head,
     pub(super) labels: &'a [Label],
     pub(super) dialect: Dialect,
-    options: &'a CsvOptions,
+    pub(super) options: &'a CsvOptions,
 }
 
 impl Look<'_> {
@@ -146,16 +151,12 @@ impl Look<'_> {
         }
     }
 
-    fn column(&self, column: usize) -> Result<Found, CsvError> {
+    pub(super) fn column(&self, column: usize) -> Result<Found, CsvError> {
         let comma = self.dialect.decimal_comma;
         let name = || self.head.names[column].clone();
-        let forms = DateForm::fitting(&self.cells(column));
+        let forms = self.forms(column);
         if let Some(form) = forms.first() {
-            let other = forms.get(1).filter(|other| other.name.len() == form.name.len());
-            let doubt =
-                other.map(|other| format!("is read as {}; {} would fit as well", form.name, other.name));
-            let counts = "has whole ms behind the seconds, without zeros before: only so does it rise";
-            let doubt = doubt.or_else(|| form.counts_ms.then(|| counts.to_owned()));
+            let doubt = doubt(&forms);
             return Ok(self.found(TimeSource::Date { column, form: form.clone() }, doubt));
         }
         let given = self.options.time_unit.as_deref().and_then(parse_unit);
@@ -284,7 +285,7 @@ impl Look<'_> {
     }
 
     /// The stamps of two clocks, ns, in the rows that have both; a time of day goes on after midnight.
-    fn both(&self, text: &[u8], sources: [&TimeSource; 2]) -> [Vec<i64>; 2] {
+    pub(super) fn both(&self, text: &[u8], sources: [&TimeSource; 2]) -> [Vec<i64>; 2] {
         let mut stamps = [Vec::new(), Vec::new()];
         let mut rows = Rows::new(text, self.dialect.separator);
         let mut record = ByteRecord::new();
@@ -363,19 +364,5 @@ impl Look<'_> {
         let (Some((_, found)), true) = (all.pop(), all.is_empty()) else { return None };
         let said = "is the only one in a unit of time that rises from row to row; else say --time or --rate";
         Some(Found { doubt: Some(said.to_owned()), ..found })
-    }
-
-    /// A day in one column and a time of day in another are one time.
-    fn join_day_and_time(&self, usable: &mut Vec<Found>) {
-        let of = |part: Part| {
-            usable.iter().find_map(|found| match &found.source {
-                TimeSource::Date { column, form } if form.part() == part => Some((*column, form.clone())),
-                _ => None,
-            })
-        };
-        if let (Some(day), Some(time)) = (of(Part::Day), of(Part::TimeOfDay)) {
-            let joined = self.found(TimeSource::DayAndTime { day, time }, None);
-            usable.insert(0, joined);
-        }
     }
 }

@@ -4,7 +4,11 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::{log::WriteError, suggest::suggestion, text::shell_argument};
+use crate::{
+    log::WriteError,
+    suggest::suggestion,
+    text::{shell_argument, shell_word},
+};
 
 /// Why a CSV file does not become a log. Lines and columns count from 1.
 #[derive(Debug, Error)]
@@ -179,6 +183,10 @@ impl CsvError {
             Self::NoTime { .. } => {
                 (vec!["--rate HZ".to_owned()], "reads it if a row comes HZ times a second")
             }
+            Self::Machines { column, first, .. } => (
+                vec![format!("--only {}", shell_word(&format!("{column}={first}")))],
+                "reads the rows of the first",
+            ),
             _ => (Vec::new(), "takes options for that"),
         }
     }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     AngleUnit, Columns, CsvError, CsvOptions, LengthUnit, Quantity, Role, Separator, Understood,
-    layout::describe,
+    layout::describe, order::order_of,
 };
 use crate::input_file;
 
@@ -131,7 +131,7 @@ impl CsvOptions {
             separator: Some(read.separator.clone()),
             decimal_comma: Some(read.decimal == "comma"),
             only: self.only.clone().map(|(column, value)| [column, value]),
-            time_unit: time.as_ref().and(read.time.form.strip_prefix("counts ").map(str::to_owned)),
+            time_unit: time.as_ref().and(time_unit(&read.time.form)),
             time,
             rate_hz: self.rate_hz,
             angle_unit: self.angle_unit.or(angle),
@@ -147,4 +147,10 @@ impl CsvOptions {
         // A map of texts always has a form in TOML.
         toml::to_string(&file).unwrap_or_default()
     }
+}
+
+/// What `--time-unit` says of a form of times.
+fn time_unit(form: &str) -> Option<String> {
+    let counted = form.strip_prefix("counts ").and_then(|unit| unit.split(',').next());
+    counted.or_else(|| order_of(form)).map(str::to_owned)
 }

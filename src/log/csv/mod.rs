@@ -10,9 +10,11 @@ mod behind;
 mod by_meaning;
 mod clock;
 mod clocks;
+mod coarse;
 mod column;
 mod dataset;
 mod date;
+mod dated;
 mod dialect;
 mod echoed;
 mod efforts;
@@ -29,6 +31,7 @@ mod judged;
 mod keys;
 mod label;
 mod layout;
+mod lenient;
 mod letter;
 mod levels;
 mod long;
@@ -40,6 +43,7 @@ mod number;
 mod objects;
 mod only;
 mod options;
+mod order;
 mod pairing;
 mod printed;
 mod read;
@@ -51,6 +55,7 @@ mod scope;
 mod settle;
 mod si;
 mod signals;
+mod spread;
 mod stamp;
 mod stream;
 mod text;
@@ -132,12 +137,13 @@ pub(in crate::log) fn says_side(part: &str) -> bool {
 /// [`CsvError`]
 pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<CsvRun, CsvError> {
     let text = text::of_bytes(name, bytes)?;
-    let table = objects::as_table(&text)
+    let mut remarks = Remarks::default();
+    let table = objects::as_table(&text, &mut remarks)
         .or_else(|| echoed::as_table(&text))
         .or_else(|| printed::as_table(&text))
         .or_else(|| dataset::as_table(&text));
     let text = table.map_or(text, Cow::Owned);
-    read_table(name, Cow::Borrowed(&text), options, Remarks::default())
+    read_table(name, Cow::Borrowed(&text), options, remarks)
         .or_else(|error| of_other_form(name, &text, options, &error).unwrap_or(Err(error)))
 }
 

@@ -5,10 +5,10 @@ use std::{
     fmt::Write as _,
 };
 
-use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use super::{keys::NAMES, label::label, number::number};
+use super::{keys::NAMES, label::label, lenient::parsed, number::number};
+use crate::remark::{Code, Remarks};
 
 /// Keys of lists of the names of joints.
 const LISTS: [&str; 5] = ["name", "names", "joint_names", "joints", "joint"];
@@ -214,14 +214,23 @@ fn add(row: &mut Cells, cells: &Cells) -> bool {
 }
 
 /// A file of objects, a line each or in one list, as the text of a table; `None` if it is none.
-pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
+pub(super) fn as_table(text: &[u8], remarks: &mut Remarks) -> Option<Vec<u8>> {
     let mut lines = JsonLines::default();
     match text.trim_ascii_start().first()? {
         b'{' => {
-            let all = text.split(|byte| *byte == b'\n').filter(|line| !line.trim_ascii().is_empty());
-            let objects = all.clone().filter(|line| lines.gather(line)).count();
+            let filled = |line: &(usize, &[u8])| !line.1.trim_ascii().is_empty();
+            let all = (1..).zip(text.split(|byte| *byte == b'\n')).filter(filled);
+            let broken: Vec<usize> =
+                all.clone().filter(|(_, line)| !lines.gather(line)).map(|(number, _)| number).collect();
             // A line may be cut; a document over several lines is no table.
-            (2 * objects > all.count()).then(|| lines.table().into_bytes())
+            (2 * broken.len() < all.count()).then(|| {
+                if let Some(first) = broken.first() {
+                    let message =
+                        format!("lines that are no JSON object, the first of them line {first}; left out");
+                    remarks.add(Code::UndecodableMessage, broken.len() as u64, message);
+                }
+                lines.table().into_bytes()
+            })
         }
         b'[' => {
             let objects: Vec<Map<String, Value>> = parsed(text)?;
@@ -258,34 +267,6 @@ fn published(mut object: Map<String, Value>) -> Map<String, Value> {
             object
         }
     }
-}
-
-fn parsed<T: DeserializeOwned>(text: &[u8]) -> Option<T> {
-    serde_json::from_slice(text).or_else(|_| serde_json::from_slice(&without_nan(text))).ok()
-}
-
-/// A text with `null` for the numbers that are none, which Python writes and JSON does not know.
-fn without_nan(text: &[u8]) -> Vec<u8> {
-    const NONE: [&[u8]; 3] = [b"NaN", b"-Infinity", b"Infinity"];
-    let mut kept = Vec::with_capacity(text.len());
-    let (mut quoted, mut at) = (false, 0);
-    while let Some(&byte) = text.get(at) {
-        let word = NONE.into_iter().find(|word| !quoted && text[at..].starts_with(word));
-        if let Some(word) = word {
-            kept.extend_from_slice(b"null");
-            at += word.len();
-            continue;
-        }
-        if byte == b'\\' && quoted {
-            kept.push(byte);
-            at += 1;
-        } else if byte == b'"' {
-            quoted = !quoted;
-        }
-        kept.extend(text.get(at));
-        at += 1;
-    }
-    kept
 }
 
 /// The names of joints that an object lists, for the lists beside them and in objects within.
@@ -382,7 +363,9 @@ mod tests {
 
     #[test]
     fn a_file_of_objects_is_a_table_and_a_document_is_none() {
-        let table = |text: &str| as_table(text.as_bytes()).map(|text| String::from_utf8(text).unwrap());
+        let table = |text: &str| {
+            as_table(text.as_bytes(), &mut Remarks::default()).map(|text| String::from_utf8(text).unwrap())
+        };
         let expected = "\"t\",\"q\"\n\"0\",\"\"\n\"1\",\"2\"\n";
         assert_eq!(table("{\"t\":0}\n{\"t\":1,\"q\":2}\n{\"t\":").as_deref(), Some(expected));
         assert_eq!(table("[{\"t\":0},\n {\"t\":1,\"q\":2}]").as_deref(), Some(expected));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{CsvError, Quantity, Role, unit::Measure, unit::parse_unit};
+use super::{CsvError, Quantity, Role, order::is_order, unit::Measure, unit::parse_unit};
 
 /// Joint to the column that holds it: a header, or `#3` for the third column.
 pub type Columns = Vec<(String, String)>;
@@ -173,11 +173,12 @@ impl CsvOptions {
         }
         if let Some(text) = &self.time_unit
             && parse_unit(text).is_none_or(|unit| unit.measure != Measure::Time)
+            && !is_order(text)
         {
             return Err(bad(
                 "--time-unit",
                 text.clone(),
-                "s, ms, us, ns, min, h, filetime, excel or datenum",
+                "s, ms, us, ns, min, h, filetime, excel or datenum, or dmy or mdy of dates",
             ));
         }
         Ok(())

@@ -3,6 +3,7 @@
 use super::{
     date::{DateForm, Part},
     number::{self, nanoseconds, nanoseconds_after},
+    spread::spread,
     unit::{Measure, Unit},
 };
 use crate::units::{NS_PER_S, whole_ns};
@@ -44,6 +45,12 @@ pub(super) enum TimeSource {
         part: usize,
         unit: Unit,
     },
+    /// Rows with one stamp, spread evenly over the step to the next, ns.
+    Spread {
+        whole: Box<TimeSource>,
+        rows: usize,
+        step_ns: i64,
+    },
 }
 
 impl TimeSource {
@@ -67,6 +74,7 @@ impl TimeSource {
                 seconds.ns(row, cell, decimal_comma)?.checked_add(beyond_ns)
             }
             Self::Date { column, form } => form.ns(cell(*column)),
+            Self::Spread { whole, .. } => whole.ns(row, cell, decimal_comma),
             Self::DayAndTime { day, time } => day.1.ns(cell(day.0))?.checked_add(time.1.ns(cell(time.0))?),
         }
     }
@@ -77,6 +85,7 @@ impl TimeSource {
             Self::Rate { .. } => Vec::new(),
             Self::Number { column, .. } | Self::Date { column, .. } => vec![*column],
             Self::DayAndTime { day, time } => vec![day.0, time.0],
+            Self::Spread { whole, .. } => whole.columns(),
             Self::WithPart { whole, part, .. } => {
                 let mut columns = whole.columns();
                 columns.push(*part);
@@ -97,6 +106,9 @@ impl TimeSource {
             Self::DayAndTime { day, time } => {
                 format!("{} and {}, no zone, taken as UTC", day.1.name, time.1.name)
             }
+            Self::Spread { whole, rows, .. } => {
+                format!("{}, {rows} rows to each, spread evenly", whole.form())
+            }
             Self::WithPart { whole, unit, .. } => format!("{}, and {} beside", whole.form(), unit.name),
         }
     }
@@ -112,6 +124,9 @@ impl TimeSource {
             before_ns = *ns;
             *ns = ns.saturating_add(days_ns);
         }
+        if let Self::Spread { rows, step_ns, .. } = self {
+            spread(stamp_ns, *rows, *step_ns);
+        }
         let absolute = stamp_ns.first().is_some_and(|first| *first >= FIRST_ABSOLUTE_NS);
         self.count_from(absolute, stamp_ns);
         absolute
@@ -121,7 +136,8 @@ impl TimeSource {
 
     /// Whether a time of a day that follows another is on the next day.
     pub(super) fn next_day(&self, before_ns: i64, ns: i64) -> bool {
-        let whole = if let Self::WithPart { whole, .. } = self { whole } else { self };
+        let whole =
+            if let Self::WithPart { whole, .. } | Self::Spread { whole, .. } = self { whole } else { self };
         matches!(whole, Self::Date { form, .. } if form.part() == Part::TimeOfDay)
             && before_ns.saturating_sub(ns) > Self::DAY_NS / 2
     }

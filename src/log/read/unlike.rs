@@ -28,6 +28,9 @@ const MOVES: f64 = 0.3;
 /// Factors of the planned motion between which the unit is the same.
 const SAME_UNIT: [f64; 2] = [0.5, 2.0];
 
+/// An error stands all the time if its root mean square is below so many of its mean: one that grows from nothing has 1.15.
+const STEADY: f64 = 1.1;
+
 /// The plan of another joint is followed if its error is less than this share of its motion, and of the own error.
 const OTHERS: f64 = 0.2;
 
@@ -115,9 +118,10 @@ fn of_joint<'a>(
              another unit, or before a gear?"
         ));
     }
-    // An error that grows with the speed is a lag.
+    // An error that grows with the speed is a lag, and one that grows with the time a drift or a slip.
     let beside = mean_error.abs().min(offset.abs());
-    (beside > FOLLOWS * motion).then(|| {
+    let steady = alike.rms_error < STEADY * mean_error.abs();
+    (steady && beside > FOLLOWS * motion).then(|| {
         format!(
             "{name} was measured {} beside its plan all the time: is the zero another?",
             size(mean_error.abs())

@@ -75,6 +75,7 @@ pub(crate) fn drift_csv(drift: &Drift) -> String {
         "step_low",
         "step_high",
         "step_q_value",
+        "direction",
     ];
     let rows = drift.trends.iter().map(|trend| {
         let step = trend.step.as_ref();
@@ -102,6 +103,7 @@ pub(crate) fn drift_csv(drift: &Drift) -> String {
             optional(step.map(|step| step.interval_95[0])),
             optional(step.map(|step| step.interval_95[1])),
             optional(step.map(|step| step.q_value)),
+            trend.direction.map_or_else(String::new, |direction| direction.to_string()),
         ]
     });
     csv(headings, rows)

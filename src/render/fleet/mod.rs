@@ -53,8 +53,16 @@ pub(crate) fn scanned(scanned: &Scanned) -> Document {
     });
     let lines: Vec<_> = lines.collect();
     if !lines.is_empty() {
-        let shown = format!("{} could not be analysed:", counted(failures.len(), "log"));
+        let first =
+            if failures.len() > MOST_FAILED { format!("; the first {MOST_FAILED}") } else { String::new() };
+        let shown = format!("{} could not be analysed{first}:", counted(failures.len(), "log"));
         section = section.with(Sentence::note(shown)).with(Block::Facts(lines));
+    }
+    if scanned.tables_left > 0 {
+        section = section.with(Sentence::note(format!(
+            "{} (.csv, .jsonl) beside the logs were left out; a pattern names them, such as 'FOLDER/**/*.csv'.",
+            counted(scanned.tables_left, "table")
+        )));
     }
     let into = argument(&scanned.into);
     let next = section

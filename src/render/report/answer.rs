@@ -2,6 +2,7 @@
 
 use super::{
     method::method,
+    resting::at_rest,
     steps::replanned,
     tables::{mostly_lag, shift, stray, verdicts},
     tool, why,
@@ -113,10 +114,13 @@ fn latest(replay: &Replay, usual_s: f64) -> String {
     format!("; {} at {:.1} s by {} ms", start.joint, start.planned_onset_s, ms(delay_s))
 }
 
-/// Joints of which only one moves, itself or its plan.
+/// Joints of which only one moves, itself or its plan, and those that do not rest with it.
 fn astray(report: &Report) -> Option<Fact> {
-    let astray = report.replay.joints.iter().filter(|joint| joint.plan_moves != joint.moves);
-    let found: Vec<String> = astray.filter_map(|joint| stray(report, joint)).collect();
+    let replay = &report.replay;
+    let astray = replay.joints.iter().filter(|joint| joint.plan_moves != joint.moves);
+    let astray = astray.filter_map(|joint| stray(report, joint));
+    let resting = replay.joints.iter().flat_map(|joint| at_rest(replay, joint));
+    let found: Vec<String> = astray.chain(resting).collect();
     let more = match found.len() {
         0 | 1 => String::new(),
         all => format!(" And {} more.", counted(all - 1, "such joint")),

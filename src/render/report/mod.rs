@@ -9,6 +9,7 @@ mod frequency;
 mod joints;
 mod method;
 mod page;
+mod resting;
 mod signals;
 mod steps;
 mod summary;

@@ -1,6 +1,10 @@
 //! The report as headings, sentences and tables, worst first.
 
-use super::{method::method, tool, why};
+use super::{
+    method::method,
+    resting::{at_rest, one_way},
+    tool, why,
+};
 use crate::{
     math::range,
     render::{
@@ -16,7 +20,6 @@ use crate::{
         Answer, JOINT, JointReplay, ONSET_DELAY_LIMIT, Profiles, Replay, Swing, TRANSITION, Transition,
         Verdict,
     },
-    series::JointKind,
     workflow::report::{GateResult, Report, Travel},
 };
 
@@ -133,46 +136,9 @@ fn findings(report: &Report) -> Vec<String> {
     }
     lines.extend(replay.joints.iter().filter_map(|joint| stray(report, joint)));
     lines.extend(replay.joints.iter().filter_map(|joint| one_way(replay, joint)));
-    lines.extend(replay.joints.iter().filter_map(|joint| drifts(replay, joint)));
+    lines.extend(replay.joints.iter().flat_map(|joint| at_rest(replay, joint)));
     lines.extend(swings(report));
     lines
-}
-
-/// A joint that leaves standstill later in one direction.
-fn one_way(replay: &Replay, joint: &JointReplay) -> Option<String> {
-    let tested = replay.joints.iter().filter(|joint| joint.direction_delay.is_some()).count();
-    let found = joint.direction_delay.filter(|found| found.counts(tested))?;
-    let [sign, other] = if found.direction > 0 { ["+", "-"] } else { ["-", "+"] };
-    let [later_s, other_s] = found.mean_delay_s;
-    Some(format!(
-        "{} leaves standstill {} ms later in {sign} than in {other} (95 %: {} to {} ms; {} ms on average of {}, {} ms of {}): a \
-         wider dead band, a larger load, or gentler planned starts that way.",
-        joint.name,
-        ms(later_s - other_s),
-        ms(found.interval_s[0]),
-        ms(found.interval_s[1]),
-        ms(later_s),
-        counted(found.starts[0], "start"),
-        ms(other_s),
-        counted(found.starts[1], "start"),
-    ))
-}
-
-/// A joint that moves while its plan rests.
-fn drifts(replay: &Replay, joint: &JointReplay) -> Option<String> {
-    let drift = joint.rest_drift.filter(|drift| drift.counts(replay.rules.sizes(joint.kind)))?;
-    let [low, high] = drift.interval?.map(|speed| per_minute(joint.kind, speed));
-    Some(format!(
-        "{} drifts while its plan rests: {} a minute ({low} to {high}; {:.0} s of rest looked at).",
-        joint.name,
-        per_minute(joint.kind, drift.speed),
-        drift.duration_s
-    ))
-}
-
-/// A slow speed, as what it amounts to.
-fn per_minute(kind: JointKind, speed: f64) -> String {
-    position(kind, 60.0 * speed)
 }
 
 /// Joints that swing though their plans do not.

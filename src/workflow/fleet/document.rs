@@ -29,6 +29,9 @@ pub struct Scanned {
     pub into: PathBuf,
     /// Logs found.
     pub logs: usize,
+    /// Tables beside them, which were not asked for.
+    #[serde(default)]
+    pub tables_left: usize,
     /// Logs that the dataset held already, as they are.
     pub unchanged: usize,
     /// Logs that were analysed now.
@@ -65,6 +68,7 @@ impl Scanned {
             program: PROGRAM.to_owned(),
             into: into.to_owned(),
             logs,
+            tables_left: 0,
             unchanged: 0,
             analysed: 0,
             replaced: 0,

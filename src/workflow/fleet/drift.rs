@@ -3,7 +3,7 @@
 //! A start is compared with the same start of the same plan only. Runs are what varies on its own, so the test and the
 //! interval are of one level a run: that which is left when each start's own level is taken off. The slope is the median
 //! over the starts of each start's Theil-Sen slope. A start that scatters from run to run, because the joint had not come to
-//! rest before it, say, weighs less.
+//! rest before it, say, weighs less. The starts of each direction are judged by themselves, too.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -15,6 +15,7 @@ use super::{
     history::{By, Event, Filter, History, Scatters, Values},
     joint_trend::{JointTrend, Level, MOST_FALSE},
     map::{Map, maps},
+    one_way::{by_direction, clearest},
     run::{Run, date, days},
     stepped::best_step,
 };
@@ -97,18 +98,26 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
             continue;
         }
         let scatters = (axis.joint.as_str(), scatters.get(metric).unwrap_or(&none));
-        match joint_trend(&history.runs, values, scatters) {
-            None => too_few += usize::from(wanted(&axis.machine)),
-            Some(found) => trends.push(JointTrend {
-                machine: axis.machine.clone(),
-                joint: axis.joint.clone(),
-                metric: *metric,
-                unit: if *metric == By::Peak { axis.unit.clone() } else { "s".to_owned() },
-                ..found
-            }),
+        let named = |found: JointTrend, direction: Option<i8>| JointTrend {
+            machine: axis.machine.clone(),
+            joint: axis.joint.clone(),
+            direction,
+            metric: *metric,
+            unit: if *metric == By::Peak { axis.unit.clone() } else { "s".to_owned() },
+            ..found
+        };
+        let Some(found) = joint_trend(&history.runs, values, scatters) else {
+            too_few += usize::from(wanted(&axis.machine));
+            continue;
+        };
+        trends.push(named(found, None));
+        for (direction, own) in by_direction(&history, axis, values) {
+            let found = joint_trend(&history.runs, &own, scatters);
+            trends.extend(found.map(|found| named(found, Some(direction))));
         }
     }
     judge(&mut trends);
+    let mut trends = clearest(trends);
     trends.retain(|trend| wanted(&trend.machine));
     trends.sort_by(|a, b| {
         let out = |trend: &JointTrend| trend.stands_out.unwrap_or(0.0);
@@ -150,6 +159,7 @@ fn joint_trend(runs: &[Run], values: &Values, scatters: (&str, &Scatters)) -> Op
     Some(JointTrend {
         machine: String::new(),
         joint: String::new(),
+        direction: None,
         metric: By::Peak,
         unit: String::new(),
         slope_per_day: slope,

@@ -73,7 +73,8 @@ fn elsewhere(trends: &[JointTrend], own: &JointTrend) -> Option<(f64, f64)> {
         enough.then(|| mean(&after) - mean(&before))
     };
     let alike = |other: &&JointTrend| {
-        other.machine != own.machine && (other.metric, &other.unit) == (own.metric, &own.unit)
+        let key = |trend: &JointTrend| (trend.metric, trend.direction, trend.unit.clone());
+        other.machine != own.machine && key(other) == key(own)
     };
     // The same joint elsewhere tells more: a cold day makes more of a fast joint.
     let same = |other: &&JointTrend| alike(other) && other.joint == own.joint;
@@ -95,7 +96,7 @@ fn page_beside(log: &str) -> Option<String> {
 
 /// Says by how much each slope differs from what is usual for its metric; gives whether enough joints tell that.
 fn stand_out(trends: &mut [JointTrend]) -> Vec<bool> {
-    let key = |trend: &JointTrend| (trend.metric, trend.unit.clone());
+    let key = |trend: &JointTrend| (trend.metric, trend.direction.is_some(), trend.unit.clone());
     let mut slopes: BTreeMap<_, Vec<f64>> = BTreeMap::new();
     for trend in trends.iter() {
         slopes.entry(key(trend)).or_default().push(trend.slope_per_day);

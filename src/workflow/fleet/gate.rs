@@ -117,6 +117,7 @@ mod tests {
         let trend = |(slope, found): &(f64, bool)| JointTrend {
             machine: "M".into(),
             joint: format!("j{slope}"),
+            direction: None,
             metric: By::Delay,
             unit: "s".into(),
             slope_per_day: *slope,

@@ -72,6 +72,8 @@ pub(super) type Scatters = BTreeMap<(String, Event), f64>;
 pub(super) struct History {
     pub(super) runs: Vec<Run>,
     pub(super) values: BTreeMap<(Axis, By), Values>,
+    /// The direction of each start, 1 or -1.
+    pub(super) directions: BTreeMap<(String, Event), i64>,
     pub(super) remarks: Remarks,
 }
 
@@ -271,6 +273,9 @@ impl History {
                 self.remarks.add(Code::Unmatched, 1, message);
                 continue;
             }
+            if let Some(direction) = row[9].as_whole() {
+                self.directions.insert(key.clone(), direction);
+            }
             let (joint, event) = key;
             let unit = row[3].as_text().unwrap_or("rad").to_owned();
             let axis = Axis { machine: self.runs[run].machine.clone(), joint, unit };
@@ -279,12 +284,8 @@ impl History {
             }
             for (by, value) in [(By::Peak, row[6].as_real()), (By::Delay, row[7].as_real())] {
                 let Some(value) = value else { continue };
-                self.values
-                    .entry((axis.clone(), by))
-                    .or_default()
-                    .entry(event.clone())
-                    .or_default()
-                    .insert(run, value);
+                let of_axis = self.values.entry((axis.clone(), by)).or_default();
+                of_axis.entry(event.clone()).or_default().insert(run, value);
             }
         }
         self.take_unanswered(never);
@@ -375,7 +376,7 @@ const RUN: [&str; 11] = [
     "peak",
     "log_etag",
 ];
-const START: [&str; 9] = [
+const START: [&str; 10] = [
     "run_id",
     "plan_id",
     "joint",
@@ -385,6 +386,7 @@ const START: [&str; 9] = [
     "peak_error",
     "onset_delay_s",
     "answer",
+    "direction",
 ];
 const REMARK: [&str; 2] = ["run_id", "code"];
 const LAG: [&str; 5] = ["run_id", "plan_id", "joint", "unit", "lag_s"];

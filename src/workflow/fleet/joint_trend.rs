@@ -15,6 +15,9 @@ pub struct JointTrend {
     pub machine: String,
     /// The joint.
     pub joint: String,
+    /// The direction, 1 or -1, of the starts that it is of, where those of the other do not change alike; absent of both.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub direction: Option<i8>,
     /// What was measured.
     pub metric: By,
     /// Its unit: "s" of delays and lags, else that of the joint, "rad" or "m".
@@ -53,6 +56,14 @@ pub struct JointTrend {
 }
 
 impl JointTrend {
+    /// The joint, and the direction where it is of one: `boom +`.
+    pub fn axis(&self) -> String {
+        match self.direction {
+            None => self.joint.clone(),
+            Some(direction) => format!("{} {}", self.joint, if direction > 0 { "+" } else { "-" }),
+        }
+    }
+
     /// Growth a day: of a step that from the last run before it to the first run after it, taken as a day at least.
     pub fn growth_per_day(&self) -> f64 {
         let step = self.step.as_ref().filter(|_| self.is_step);

@@ -21,6 +21,7 @@ mod machine;
 mod map;
 mod note;
 mod once;
+mod one_way;
 mod run;
 mod scan;
 mod sources;

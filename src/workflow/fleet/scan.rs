@@ -119,7 +119,8 @@ pub fn scan(
     seen: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
 ) -> Result<Scanned, FleetFailure> {
     let beside = Beside { gates: &Gates::default(), drawn: false, again: &|_| false, analysed: &|_, _| () };
-    scan_these(sources(&inputs.sources)?, inputs, &beside, seen)
+    let (found, tables_left) = sources(&inputs.sources)?;
+    Ok(Scanned { tables_left, ..scan_these(found, inputs, &beside, seen)? })
 }
 
 /// The same of these logs, whatever the sources; `beside` has its part of each.

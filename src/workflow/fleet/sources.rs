@@ -17,7 +17,7 @@ use crate::{
 /// Endings of logs that are looked for in folders; a file that is named counts whatever its ending.
 const ENDINGS: [&str; 6] = [".mcap", ".db3", ".mcap.zst", ".mcap.zstd", ".mcap.gz", ".db3.zstd"];
 /// Endings of tables, which folders hold of anything; a verb, or a pattern with such an ending, asks for them.
-const TABLES: [&str; 2] = [".csv", ".csv.gz"];
+const TABLES: [&str; 4] = [".csv", ".csv.gz", ".jsonl", ".jsonl.gz"];
 /// Endings of lists of logs.
 const LISTS: [&str; 3] = ["txt", "list", "manifest"];
 /// The description that makes a folder a bag.
@@ -57,14 +57,14 @@ impl Source {
 struct Found {
     logs: BTreeMap<PathBuf, Source>,
     tables: bool,
+    /// Tables that were not asked for.
+    left_out: usize,
 }
 
 impl Found {
     fn is_log(&self, name: &str) -> bool {
         let tables = TABLES.iter().filter(|_| self.tables);
-        // Disks of controllers write capitals.
-        let name = name.to_lowercase();
-        ENDINGS.iter().chain(tables).any(|ending| name.ends_with(ending))
+        ENDINGS.iter().chain(tables).any(|ending| ends(name, ending))
     }
 
     /// The logs by path; of links to one log the first, and none beside the log itself.
@@ -82,8 +82,13 @@ impl Found {
     }
 }
 
-/// The logs of all sources, each once, in the order of their paths.
-pub(super) fn sources(texts: &[String]) -> Result<Vec<Source>, FleetFailure> {
+/// Whether a name has an ending; disks of controllers write capitals.
+fn ends(name: &str, ending: &str) -> bool {
+    name.to_lowercase().ends_with(ending)
+}
+
+/// The logs of all sources, each once, in the order of their paths; and how many tables beside them were not asked for.
+pub(super) fn sources(texts: &[String]) -> Result<(Vec<Source>, usize), FleetFailure> {
     let mut found = Found::default();
     for text in texts {
         let before = found.logs.len();
@@ -93,7 +98,12 @@ pub(super) fn sources(texts: &[String]) -> Result<Vec<Source>, FleetFailure> {
         }
     }
     let first = texts.first().cloned().unwrap_or_default();
-    if found.logs.is_empty() { Err(FleetFailure::NoLogs { text: first }) } else { Ok(found.each_once()) }
+    let left_out = found.left_out;
+    if found.logs.is_empty() {
+        Err(FleetFailure::NoLogs { text: first })
+    } else {
+        Ok((found.each_once(), left_out))
+    }
 }
 
 /// The logs that are there now, tables among them; none is no fault.
@@ -197,8 +207,12 @@ fn walk(folder: &Path, wanted: &mut dyn FnMut(&Path) -> bool, found: &mut Found)
             if !entry.file_type().is_ok_and(|kind| kind.is_symlink()) {
                 walk(&path, wanted, found)?;
             }
-        } else if is.is_file() && found.is_log(&name) && wanted(&path) {
-            put(path, &is, &mut found.logs);
+        } else if is.is_file() && wanted(&path) {
+            if found.is_log(&name) {
+                put(path, &is, &mut found.logs);
+            } else {
+                found.left_out += usize::from(TABLES.iter().any(|ending| ends(&name, ending)));
+            }
         }
     }
     Ok(())
@@ -311,7 +325,7 @@ mod tests {
         let names = |texts: &[&str]| -> Vec<String> {
             let texts: Vec<String> =
                 texts.iter().map(|text| at(text).to_string_lossy().into_owned()).collect();
-            let found = sources(&texts).unwrap();
+            let (found, _) = sources(&texts).unwrap();
             found
                 .iter()
                 .map(|s| s.path.strip_prefix(&folder).unwrap().to_string_lossy().into_owned())
@@ -341,7 +355,7 @@ mod tests {
             }
         }
         let texts = [at("logs").to_string_lossy().into_owned()];
-        for found in [sources(&texts).unwrap(), sources_now(&texts).unwrap()] {
+        for found in [sources(&texts).unwrap().0, sources_now(&texts).unwrap()] {
             let names: Vec<_> = found.iter().map(|one| one.path.file_name().unwrap()).collect();
             assert_eq!(names, ["b.mcap", "m.mcap"]);
         }
@@ -353,7 +367,7 @@ mod tests {
         let path = folder.path().join("a.mcap");
         let tag = |text: &str| {
             fs::write(&path, text).unwrap();
-            sources(&[path.to_string_lossy().into_owned()]).unwrap()[0].etag.clone()
+            sources(&[path.to_string_lossy().into_owned()]).unwrap().0[0].etag.clone()
         };
         assert_ne!(tag("one"), tag("three"));
     }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::run::date;
-use crate::math::{step, theil_sen};
+use crate::math::{line, step, theil_sen};
 
 /// A level that changes between two runs and stays.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,7 +25,7 @@ pub struct LevelStep {
     pub p_value: f64,
     /// The same, corrected for the number of machines, joints and metrics (false-discovery rate).
     pub q_value: f64,
-    /// Sum of squares that it leaves, over that which the trend leaves.
+    /// Sum of squares that it leaves, over that which the trend leaves, or a level that begins to change at some run.
     pub left: f64,
 }
 
@@ -37,6 +37,7 @@ pub(super) fn best_step(levels: &[(f64, f64)]) -> Option<LevelStep> {
     let off: Vec<f64> = levels.iter().map(|(at, level)| level - slope * at).collect();
     let middle = off.iter().sum::<f64>() / off.len() as f64;
     let of_trend: f64 = off.iter().map(|off| (off - middle).powi(2)).sum();
+    let of_trend = (1..levels.len() - 1).map(|k| bent(levels, k)).fold(of_trend, f64::min);
     let (before, after) = (levels.get(found.at.checked_sub(1)?)?.0, levels.get(found.at)?.0);
     Some(LevelStep {
         runs_before: found.at,
@@ -49,4 +50,31 @@ pub(super) fn best_step(levels: &[(f64, f64)]) -> Option<LevelStep> {
         q_value: 1.0,
         left: if of_trend > 0.0 { found.squares / of_trend } else { f64::MAX },
     })
+}
+
+/// Sum of squares that a level leaves which changes evenly from one of the runs on.
+fn bent(levels: &[(f64, f64)], run: usize) -> f64 {
+    let from = levels[run].0;
+    let (since, values): (Vec<f64>, Vec<f64>) =
+        levels.iter().map(|(at, level)| ((at - from).max(0.0), *level)).unzip();
+    let slope = line(&since, &values).slope;
+    let [x, y] = [&since, &values].map(|values| values.iter().sum::<f64>() / values.len() as f64);
+    since.iter().zip(&values).map(|(since, value)| (value - y - slope * (since - x)).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_that_begins_to_grow_is_no_step_and_one_that_jumps_is() {
+        let noise = |k: i32| 0.1 * f64::from(k * 7 % 5 - 2);
+        let levels = |value: &dyn Fn(i32) -> f64| {
+            (0..16).map(|k| (f64::from(k), value(k) + noise(k))).collect::<Vec<_>>()
+        };
+        let left = |value: &dyn Fn(i32) -> f64| best_step(&levels(value)).unwrap().left;
+        assert!(left(&|k| f64::from((k - 8).max(0))) > 1.0);
+        assert!(left(&|k| if k < 8 { 0.0 } else { 4.0 }) < 1.0);
+        assert!(left(&|k| if k < 13 { 0.0 } else { 4.0 }) < 1.0);
+    }
 }

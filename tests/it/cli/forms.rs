@@ -257,10 +257,13 @@ fn a_stamp_in_the_first_columns_of_a_table_without_names_is_its_time() {
 }
 
 #[test]
-fn whole_seconds_of_many_rows_each_are_refused_with_the_rate_as_the_way_out() {
+fn whole_seconds_of_many_rows_each_are_spread_and_uneven_ones_refused_with_the_rate_as_the_way_out() {
     let row = |t: f64, p: f64, m: f64| format!("10:59:{:02.0},{p:.4},{m:.4}\n", t.floor());
     let text = format!("time,boom_set_deg,boom_act_deg\n{}", rows(row));
-    let (code, _, error) = report("a.csv", &text);
+    let (code, out, error) = report("a.csv", &text);
+    assert!(code == 3 && out.contains("repeats each stamp in"), "{code} {out}{error}");
+    let uneven = |t: f64, p: f64, m: f64| format!("10:59:{:02.0},{p:.4},{m:.4}\n", (0.2 * t * t).floor());
+    let (code, _, error) = report("a.csv", &format!("time,boom_set_deg,boom_act_deg\n{}", rows(uneven)));
     let says = |part: &str| error.contains(part);
     assert!(code == 1 && says("import a.csv --rate HZ") && says("or --time COLUMN"), "{code} {error}");
 }

@@ -10,6 +10,7 @@ mod controllers;
 mod csv;
 mod cut;
 mod cylinders;
+mod dates;
 mod figures;
 mod fleet;
 mod fleet_dates;

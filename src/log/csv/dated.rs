@@ -1,0 +1,52 @@
+//! Columns of dates.
+
+use super::{
+    clock::{Found, Look},
+    date::{DateForm, Part},
+    order::{ORDERS, doubt},
+    time::TimeSource,
+};
+
+impl Look<'_> {
+    /// The forms in which the cells of a column are written, in the order of day and month that the caller says.
+    pub(super) fn forms(&self, column: usize) -> Vec<DateForm> {
+        let mut forms = DateForm::fitting(&self.cells(column));
+        let said = self.options.time_unit.as_deref();
+        if let Some((_, other)) = ORDERS.iter().find(|(order, _)| said == Some(*order))
+            && forms.iter().any(|form| !form.name.starts_with(other))
+        {
+            forms.retain(|form| !form.name.starts_with(other));
+        }
+        forms
+    }
+
+    /// Columns that are not called a time, and hold nothing but dates or times of day.
+    pub(super) fn dates(&self) -> Vec<Found> {
+        let is = |column: &usize| {
+            let forms = self.forms(*column);
+            !self.labels[*column].is_time && forms.first().is_some_and(|form| form.part() != Part::Elapsed)
+        };
+        let columns = (0..self.labels.len()).filter(is);
+        columns.filter_map(|column| self.column(column).ok()).filter(|found| found.steady).collect()
+    }
+
+    /// A day in one column and a time of day in another are one time. Beside `AM` and `PM` the month comes first.
+    pub(super) fn join_day_and_time(&self, usable: &mut Vec<Found>) {
+        let of = |part: Part| {
+            usable.iter().find_map(|found| match &found.source {
+                TimeSource::Date { column, form } if form.part() == part => Some((*column, form.clone())),
+                _ => None,
+            })
+        };
+        let (Some((day, _)), Some(time)) = (of(Part::Day), of(Part::TimeOfDay)) else { return };
+        let mut forms = self.forms(day);
+        if time.1.name.ends_with("am/pm") {
+            forms.sort_by_key(|form| !form.name.starts_with("mm/dd"));
+        }
+        let doubt = doubt(&forms);
+        if let Some(form) = forms.into_iter().next() {
+            let joined = self.found(TimeSource::DayAndTime { day: (day, form), time }, doubt);
+            usable.insert(0, joined);
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Whether the day or the month comes first in dates.
+
+use super::date::DateForm;
+
+/// Orders of day and month, as `--time-unit` says them, and how dates of the other order are called.
+pub(super) const ORDERS: [(&str, &str); 2] = [("dmy", "mm/dd"), ("mdy", "dd/mm")];
+
+/// Whether a text says the order of day and month.
+pub(super) fn is_order(text: &str) -> bool {
+    ORDERS.iter().any(|(order, _)| *order == text)
+}
+
+/// The order of a form that would be another in the other order, such as "mm/dd/yyyy hh:mm:ss".
+pub(super) fn order_of(form: &str) -> Option<&'static str> {
+    ORDERS
+        .iter()
+        .rev()
+        .zip(&ORDERS)
+        .find(|(_, (_, begins))| form.starts_with(begins))
+        .map(|((order, _), _)| *order)
+}
+
+/// What is doubtful in the first of the forms that fit.
+pub(super) fn doubt(forms: &[DateForm]) -> Option<String> {
+    let [form, rest @ ..] = forms else { return None };
+    if let Some(other) = rest.first().filter(|other| other.name.len() == form.name.len()) {
+        let order =
+            order_of(other.name).map_or(String::new(), |order| format!(": --time-unit {order} says so"));
+        return Some(format!("is read as {}; {} would fit as well{order}", form.name, other.name));
+    }
+    let counts = "has whole ms behind the seconds, without zeros before: only so does it rise";
+    form.counts_ms.then(|| counts.to_owned())
+}

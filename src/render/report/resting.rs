@@ -1,0 +1,76 @@
+//! Joints that behave otherwise than the rest in a way that has a name: later in one direction, off their plan or moving at
+//! rest.
+
+use crate::{
+    render::{
+        kit::{counted, ms},
+        metric::position,
+    },
+    replay::{JointReplay, Replay},
+    series::JointKind,
+};
+
+/// A joint is said to stay off its plan at rest from so many bands of settling on: 0.5 deg, 5 mm.
+const STAYS_OFF: f64 = 5.0;
+
+/// What a joint does while its plan rests that it should not.
+pub(super) fn at_rest(replay: &Replay, joint: &JointReplay) -> Vec<String> {
+    let drift = drifts(replay, joint);
+    let off = if drift.is_none() { stays_off(replay, joint) } else { None };
+    off.into_iter().chain(drift).collect()
+}
+
+/// A joint that stays off its plan while that rests: one that slipped, or does not reach its target.
+fn stays_off(replay: &Replay, joint: &JointReplay) -> Option<String> {
+    let error = joint.standstill_error.as_ref().filter(|_| joint.moves && joint.plan_moves)?;
+    let least = STAYS_OFF * replay.rules.sizes(joint.kind).settle_band;
+    let size = |value: f64| position(joint.kind, value);
+    (error.rms >= least).then(|| {
+        format!(
+            "{} stays off its plan where that rests: by {} (RMS), {} at most at {:.1} s (mean {}; {:.0} s of rest looked at).",
+            joint.name,
+            size(error.rms),
+            size(error.peak),
+            error.peak_time_s,
+            size(error.bias),
+            error.duration_s
+        )
+    })
+}
+
+/// A joint that leaves standstill later in one direction.
+pub(super) fn one_way(replay: &Replay, joint: &JointReplay) -> Option<String> {
+    let tested = replay.joints.iter().filter(|joint| joint.direction_delay.is_some()).count();
+    let found = joint.direction_delay.filter(|found| found.counts(tested))?;
+    let [sign, other] = if found.direction > 0 { ["+", "-"] } else { ["-", "+"] };
+    let [later_s, other_s] = found.mean_delay_s;
+    Some(format!(
+        "{} leaves standstill {} ms later in {sign} than in {other} (95 %: {} to {} ms; {} ms on average of {}, {} ms of {}): a \
+         wider dead band, a larger load, or gentler planned starts that way.",
+        joint.name,
+        ms(later_s - other_s),
+        ms(found.interval_s[0]),
+        ms(found.interval_s[1]),
+        ms(later_s),
+        counted(found.starts[0], "start"),
+        ms(other_s),
+        counted(found.starts[1], "start"),
+    ))
+}
+
+/// A joint that moves while its plan rests.
+fn drifts(replay: &Replay, joint: &JointReplay) -> Option<String> {
+    let drift = joint.rest_drift.filter(|drift| drift.counts(replay.rules.sizes(joint.kind)))?;
+    let [low, high] = drift.interval?.map(|speed| per_minute(joint.kind, speed));
+    Some(format!(
+        "{} drifts while its plan rests: {} a minute ({low} to {high}; {:.0} s of rest looked at).",
+        joint.name,
+        per_minute(joint.kind, drift.speed),
+        drift.duration_s
+    ))
+}
+
+/// A slow speed, as what it amounts to.
+fn per_minute(kind: JointKind, speed: f64) -> String {
+    position(kind, 60.0 * speed)
+}
