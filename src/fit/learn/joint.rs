@@ -188,6 +188,7 @@ impl<'a> Joint<'a> {
         let of_run = |from: usize| self.answers[from].of_run;
         made.step = match step {
             Step::Later { from, gain } => Step::Later { from: of_run(from), gain },
+            Step::Rest { from, share } => Step::Rest { from: of_run(from), share },
             Step::Kept { from } => Step::Kept { from: of_run(from) },
             other => other,
         };
@@ -254,6 +255,17 @@ impl<'a> Joint<'a> {
             Character::Rings if manner.cut_off_hz < FAST_HZ * 0.35 => GAINS[1],
             Character::Rings | Character::Hunts => GAINS[2],
         };
+        if let ([plain, _], 1, false) = (answers.as_slice(), from, manner.character == Character::Hunts)
+            && largest(&sent[0]) <= NONE_RAD
+        {
+            // What no error tells, such as the step over a dead band, is in the rest of a first correction alone.
+            let (whole, _) = first(&fit.model, manner, (planned, fade), plain, fit.held_out_r2, workspace);
+            if let Some(part) = part_of(&sent[1], &whole) {
+                let share = gain * trust * (1.0 - part);
+                let next = sent[1].iter().zip(&whole).map(|(sent, whole)| sent + share * whole);
+                return (Step::Rest { from, share }, next.collect());
+            }
+        }
         let gain = gain * trust * usual;
         let mut next = sent[from].clone();
         for (next, more) in next.iter_mut().zip(manner.learnt(&answers[from].error_rad(planned), gain)) {
@@ -264,6 +276,19 @@ impl<'a> Joint<'a> {
         }
         (Step::Later { from, gain }, next)
     }
+}
+
+/// A correction of which at most this share was sent has a rest to send; below the least, or where the two are less alike than
+/// this correlation, it is another one.
+const PART: [f64; 2] = [0.05, 0.7];
+const PART_ALIKE: f64 = 0.85;
+
+/// The share of a whole correction that was sent, where it was no more than a part of it.
+fn part_of(sent: &[f64], whole: &[f64]) -> Option<f64> {
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (both, own, all) = (product(sent, whole), product(sent, sent), product(whole, whole));
+    let part = both / all;
+    (both > PART_ALIKE * (own * all).sqrt() && (PART[0]..=PART[1]).contains(&part)).then_some(part)
 }
 
 /// Whether a run has little to do with the plan: wrong sign, zero, unit or name, or a joint that is stuck. One that moves,
@@ -338,4 +363,22 @@ fn fade(steps: usize, free: &[Range<usize>]) -> Vec<f64> {
 fn smooth_step(share: f64) -> f64 {
     let x = share.clamp(0.0, 1.0);
     x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_a_correction_is_told_from_the_whole_and_from_another() {
+        let whole: Vec<f64> = (0..200).map(|k| (0.1 * f64::from(k)).sin()).collect();
+        let sent = |by: f64, other: f64| -> Vec<f64> {
+            (0..).zip(&whole).map(|(k, whole)| by * whole + other * (0.37 * f64::from(k)).cos()).collect()
+        };
+        let part = part_of(&sent(0.5, 0.1), &whole).unwrap();
+        assert!((part - 0.5).abs() < 0.03, "{part}");
+        for (by, other) in [(0.95, 0.0), (0.01, 0.0), (0.0, 0.0), (0.5, 1.0), (-0.5, 0.0)] {
+            assert_eq!(part_of(&sent(by, other), &whole), None, "{by} {other}");
+        }
+    }
 }

@@ -88,6 +88,13 @@ pub enum Step {
         /// Share of the error.
         gain: f64,
     },
+    /// The correction of a run (by index), which was a part of the first one, and a share of the whole of that.
+    Rest {
+        /// The run that it goes on from.
+        from: usize,
+        /// Share of the first correction.
+        share: f64,
+    },
     /// The correction of a run (by index) once more: there is nothing more to gain.
     Kept {
         /// The run.

@@ -189,7 +189,9 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
             let sent = share(*gain);
             match (level, reasons.is_empty()) {
                 (Level::Good, true) => {
-                    format!("{sent} of the correction is sent, after corrections that kept their promise.")
+                    format!(
+                        "{sent} of the correction is sent; none before it is known to have broken its promise."
+                    )
                 }
                 (Level::Good, false) => format!("{sent} of the correction is sent: the careful step."),
                 _ => format!(

@@ -8,6 +8,7 @@ use crate::{
     },
     replay::Dimension,
     series::JointKind::{self, Slides, Turns},
+    text::shell_word,
     workflow::replan::{Decision, JointCommand, KeepReason, PastRun, Replanned},
 };
 
@@ -50,7 +51,17 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
     } else {
         format!(" Not for {}: it had more error over the whole run there than before.", other.join(", "))
     };
-    Some(kept + &why + &but + repeats(replanned).unwrap_or_default())
+    let drifts = matches!(because, KeepReason::GainedLittle) && last_rad <= best_rad;
+    let newest = replanned.past.runs.last().filter(|_| drifts && grown(&replanned.past.runs, *best_rad));
+    let then = match newest {
+        Some(run) => format!(
+            " What it had gained is being lost: a correction learnt from this run alone may win it back, `hydrotrace replan {} \
+             -o anew.mcap`.",
+            shell_word(&run.log)
+        ),
+        None => repeats(replanned).unwrap_or_default().to_owned(),
+    };
+    Some(kept + &why + &but + &then)
 }
 
 /// Whether a run had clearly less than what is kept.
@@ -203,6 +214,7 @@ fn row(replanned: &Replanned, joint: &JointCommand, units: Units) -> Vec<String>
         Step::Model => "model".to_owned(),
         Step::First { model_weight } => format!("{:.0} % model, else data", 100.0 * model_weight),
         Step::Later { from, gain } => format!("{} + {:.2} error", run(from), gain),
+        Step::Rest { from, share } => format!("{} + {:.2} of the first", run(from), share),
         Step::Kept { .. } if !joint.applied() => "the plan".to_owned(),
         Step::Kept { from } => format!("{} again", run(from)),
         Step::Astray => "does not follow".to_owned(),

@@ -27,7 +27,7 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
     let verdict = learning::kept(replanned).map(Sentence::Advice);
     let margin = format!(
         "Expected peaks include the error that the model left unexplained after held-out starts, and 2 % of what the command \
-         changes; with two runs or more, what differed from run to run. 90 % of starts stay below the predicted peak times {:.2}, \
+         changes; with two runs or more, what differed from run to run. 90 % of single starts stay below the predicted peak times {:.2}, \
          or above it by no more than nine of ten of those errors.",
         replanned.fit.peak_margin
     );
@@ -82,7 +82,7 @@ fn expected(replanned: &Replanned) -> Table {
     let count = |p: &Predicted| p.transitions.len();
     let mut rows = vec![
         error("mean transition peak", before.measured_mean_peak_rad, |p| p.mean_peak_rad),
-        error("  90 % of starts below", None, |p| p.mean_peak_margin_rad),
+        error("  mean below in 9 of 10 runs", None, |p| p.mean_peak_margin_rad),
         error("worst transition peak", before.measured_worst_peak_rad, |p| p.worst_peak_rad),
         error("sum of peaks", None, |p| p.sum_of_peaks_rad),
         vec![

@@ -83,7 +83,7 @@ impl JointCommand {
         let made = match self.step {
             Step::None | Step::Astray => false,
             Step::Kept { .. } => self.peak_correction_rad > NONE_RAD,
-            Step::Model | Step::First { .. } | Step::Later { .. } => true,
+            Step::Model | Step::First { .. } | Step::Later { .. } | Step::Rest { .. } => true,
         };
         made && self.share > 0.0
     }
