@@ -255,7 +255,7 @@ fn verdict(gate: &GateResult) -> Sentence {
             let trend = format!(
                 "{start}{grows} at {} {} ({sure}, q = {})",
                 worst.machine,
-                worst.joint,
+                worst.axis(),
                 probability(q(worst))
             );
             if gate.broken_by > 1 {

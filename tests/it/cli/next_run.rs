@@ -45,6 +45,32 @@ fn a_machine_that_has_changed_is_learnt_anew() {
     assert!((0.5..2.0).contains(&(came / promised)), "{promised} rad promised, {came} rad came");
 }
 
+/// What was begun with half of a correction ends where the whole would have: the step over a dead band is in no error.
+#[test]
+fn a_careful_first_command_is_followed_by_its_rest() {
+    let folder = with_run();
+    let folder = folder.path();
+    clean(folder, "replan run.mcap --keep-plan --gain 0.5 -o half.mcap");
+    clean(folder, "simulate half.mcap -o run-2.mcap --seed 2");
+    let next = json(folder, "replan run.mcap run-2.mcap --keep-plan -o rest.mcap");
+    let steps = || next["command"].as_array().unwrap().iter().map(|joint| &joint["step"]);
+    let rests = steps().filter(|step| step["by"] == "rest");
+    let shares: Vec<f64> = rests.map(|step| step["share"].as_f64().unwrap()).collect();
+    assert!(2 * shares.len() > steps().count(), "{}", next["command"]);
+    assert!(shares.iter().all(|share| (0.3..0.7).contains(share)), "{shares:?}");
+    clean(folder, "simulate rest.mcap -o run-3.mcap --seed 3");
+    clean(folder, "replan run.mcap --keep-plan -o whole.mcap");
+    clean(folder, "simulate whole.mcap -o direct.mcap --seed 3");
+    let mean = |log: &str| {
+        json(folder, &format!("report {log}"))["promised"]["measured_mean_peak_rad"].as_f64().unwrap()
+    };
+    let [half, rest, whole] = ["run-2.mcap", "run-3.mcap", "direct.mcap"].map(mean);
+    assert!(
+        rest < 1.1 * whole && rest < 0.6 * half,
+        "half {half} rad, its rest {rest} rad, the whole {whole} rad"
+    );
+}
+
 /// With a careful gain no command comes twice, so that none tells by itself that the machine answers otherwise.
 #[test]
 fn what_was_sent_to_another_machine_is_not_sent_again_though_no_command_came_twice() {
