@@ -54,35 +54,40 @@ impl Chain {
             near_rad.get(i).copied().filter(|q| q.is_finite()).unwrap_or(0.0)
         });
         let mut least = (f64::INFINITY, f64::INFINITY);
-        let mut nearest = |directly: bool| {
-            let mut best: Option<DVector<f64>> = None;
-            for start in 0..MOST_STARTS {
-                if start >= STARTS && best.is_some() {
-                    break;
-                }
-                let start = self.start(start, &near);
-                let found = if directly {
-                    self.descend(pose, start, &near, RETURN)
-                } else {
-                    self.there(pose, start, &near)
-                };
-                let left = self.left(pose, &found);
-                let (distance_m, angle_rad) =
-                    (left.fixed_rows::<3>(0).norm(), left.fixed_rows::<3>(3).norm());
-                if distance_m + angle_rad < least.0 + least.1 || least.0.is_infinite() {
-                    least = (distance_m, angle_rad);
-                }
-                let nearer = best.as_ref().is_none_or(|best| (&found - &near).norm() < (best - &near).norm());
-                if left.norm() < REACHED && nearer {
-                    best = Some(found);
-                }
-            }
-            best
-        };
-        // Between the ends of narrow ranges the way back may hold what the pose needs.
-        let best = nearest(true).or_else(|| nearest(false));
+        let best = self
+            .nearest(pose, &near, &mut least, |start| self.descend(pose, start, &near, RETURN))
+            // Between the ends of narrow ranges the way back may hold what the pose needs.
+            .or_else(|| self.nearest(pose, &near, &mut least, |start| self.there(pose, start, &near)));
         best.map(|found| found.iter().copied().collect())
             .ok_or(ArmError::Unreachable { distance_m: least.0, angle_rad: least.1 })
+    }
+
+    /// Of the postures that descents from the starts find at a pose the nearest; in `least` goes what the nearest attempt leaves,
+    /// m and rad.
+    fn nearest(
+        &self,
+        pose: &Pose,
+        near: &DVector<f64>,
+        least: &mut (f64, f64),
+        descent: impl Fn(DVector<f64>) -> DVector<f64>,
+    ) -> Option<DVector<f64>> {
+        let mut best: Option<DVector<f64>> = None;
+        for start in 0..MOST_STARTS {
+            if start >= STARTS && best.is_some() {
+                break;
+            }
+            let found = descent(self.start(start, near));
+            let left = self.left(pose, &found);
+            let (distance_m, angle_rad) = (left.fixed_rows::<3>(0).norm(), left.fixed_rows::<3>(3).norm());
+            if distance_m + angle_rad < least.0 + least.1 || least.0.is_infinite() {
+                *least = (distance_m, angle_rad);
+            }
+            let nearer = best.as_ref().is_none_or(|best| (&found - near).norm() < (best - near).norm());
+            if left.norm() < REACHED && nearer {
+                best = Some(found);
+            }
+        }
+        best
     }
 
     /// Directions in which the joints move the tool, each of length one, and how far a pose is along each, rad: postures

@@ -94,6 +94,9 @@ pub enum SignalRole {
     Effort,
 }
 
+/// Name of what is sent to the valves, among the interfaces of our own logs and of `ros2_control`.
+pub(in crate::log) const VALVE: &str = "valve_command";
+
 impl SignalRole {
     /// The quantity of its values.
     pub const fn quantity(self, kind: JointKind) -> Quantity {
@@ -111,7 +114,7 @@ impl SignalRole {
         let Topics { command, interfaces, measured, .. } = Topics::default();
         let (topic, field) = match self {
             Self::Command => (command, None),
-            Self::Valve => (interfaces, Some("valve_command")),
+            Self::Valve => (interfaces, Some(VALVE)),
             Self::CapPressure => (interfaces, Some("cap_pressure_pa")),
             Self::RodPressure => (interfaces, Some("rod_pressure_pa")),
             Self::SupplyPressure => (interfaces, Some("supply_pressure_pa")),

@@ -27,6 +27,7 @@ mod rules;
 mod signals;
 mod spectrum;
 mod stairs;
+mod told;
 mod tool;
 mod tracking;
 mod transition;

@@ -8,7 +8,7 @@ use crate::{
     workflow::carried::Carried,
 };
 
-/// The same of a recording that is not replayed otherwise; a command that was made ahead of its plan may have joints lead it.
+/// Doubts a recording whose joints lead its plan, unless a command was sent beside it: that may have been made ahead of it.
 pub(super) fn doubt_leads(recording: &Recording, remarks: &mut Remarks) {
     if Carried::of(recording).promise().is_some() || recording.command.is_some() {
         return;

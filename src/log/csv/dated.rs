@@ -3,21 +3,14 @@
 use super::{
     clock::{Found, Look},
     date::{DateForm, Part},
-    order::{ORDERS, doubt},
+    order::{doubt, of_order, order_of},
     time::TimeSource,
 };
 
 impl Look<'_> {
     /// The forms in which the cells of a column are written, in the order of day and month that the caller says.
     pub(super) fn forms(&self, column: usize) -> Vec<DateForm> {
-        let mut forms = DateForm::fitting(&self.cells(column));
-        let said = self.options.time_unit.as_deref();
-        if let Some((_, other)) = ORDERS.iter().find(|(order, _)| said == Some(*order))
-            && forms.iter().any(|form| !form.name.starts_with(other))
-        {
-            forms.retain(|form| !form.name.starts_with(other));
-        }
-        forms
+        of_order(DateForm::fitting(&self.cells(column)), self.options.time_unit.as_deref())
     }
 
     /// Columns that are not called a time, and hold nothing but dates or times of day.
@@ -41,7 +34,7 @@ impl Look<'_> {
         let (Some((day, _)), Some(time)) = (of(Part::Day), of(Part::TimeOfDay)) else { return };
         let mut forms = self.forms(day);
         if time.1.name.ends_with("am/pm") {
-            forms.sort_by_key(|form| !form.name.starts_with("mm/dd"));
+            forms.sort_by_key(|form| order_of(form.name) != Some("mdy"));
         }
         let doubt = doubt(&forms);
         if let Some(form) = forms.into_iter().next() {

@@ -1,7 +1,5 @@
 //! Commands that are no positions: signals to valves are kept as such, others left out.
 
-use std::borrow::Cow;
-
 use super::{
     Quantity, Role,
     head::Head,
@@ -10,7 +8,10 @@ use super::{
     read::Cells,
     signals::{Goes, moves_the_speed},
 };
-use crate::remark::{Code, Remarks};
+use crate::{
+    log::options::VALVE,
+    remark::{Code, Remarks},
+};
 
 /// A command that reaches so many times as far as the plan of its joint is none of positions.
 const TIMES: f64 = 20.0;
@@ -25,7 +26,6 @@ pub(super) fn as_signals(
     stated: impl Fn(usize) -> bool,
     remarks: &mut Remarks,
 ) -> Layout {
-    const KEPT_AS: &str = "valve_command";
     let values = |column: usize| cells.columns.get(&column).map(|column| column.values.as_slice());
     let position = |one: &&Use, role: Role| one.role == role && one.quantity == Quantity::Position;
     let of =
@@ -39,7 +39,7 @@ pub(super) fn as_signals(
     let found: Vec<(usize, Goes)> = sent.iter().filter_map(goes).collect();
     let clearest = found.iter().max_by(|a, b| a.1.speed.abs().total_cmp(&b.1.speed.abs()));
     let is_free =
-        sent.iter().all(|one| !stated(one.column)) && layout.interfaces.iter().all(|one| one.name != KEPT_AS);
+        sent.iter().all(|one| !stated(one.column)) && layout.interfaces.iter().all(|one| one.name != VALVE);
     let Some((column, goes)) = clearest.filter(|_| is_free && 2 * found.len() >= sent.len()) else {
         return layout;
     };
@@ -51,7 +51,7 @@ pub(super) fn as_signals(
     );
     remarks.add(Code::Guessed, sent.len() as u64, message);
     let signals =
-        sent.iter().map(|one| Interface { name: KEPT_AS.to_owned(), column: one.column, joint: one.joint });
+        sent.iter().map(|one| Interface { name: VALVE.to_owned(), column: one.column, joint: one.joint });
     layout.interfaces.extend(signals.collect::<Vec<_>>());
     layout.uses.retain(|one| one.role != Role::Command);
     if layout.uses.iter().all(|one| one.role != Role::Planned) {
@@ -63,13 +63,13 @@ pub(super) fn as_signals(
 }
 
 /// The layout without columns of commands that reach much farther than their joint's plan, unless `stated`.
-pub(super) fn left_out<'a>(
-    layout: &'a Layout,
+pub(super) fn left_out(
+    mut layout: Layout,
     head: &Head,
     cells: &Cells,
     stated: impl Fn(usize) -> bool,
     remarks: &mut Remarks,
-) -> Cow<'a, Layout> {
+) -> Layout {
     let reach = |one: &Use| cells.columns.get(&one.column).map_or(0.0, super::read::Column::reach);
     let of = |role: Role, joint: usize| {
         let is =
@@ -93,9 +93,6 @@ pub(super) fn left_out<'a>(
         );
         remarks.add(Code::Guessed, 1, message);
     }
-    if found.is_empty() {
-        return Cow::Borrowed(layout);
-    }
-    let uses = layout.uses.iter().filter(|one| !found.contains(one)).cloned().collect();
-    Cow::Owned(Layout { uses, ..layout.clone() })
+    layout.uses.retain(|one| !found.contains(one));
+    layout
 }

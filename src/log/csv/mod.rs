@@ -257,11 +257,11 @@ impl Form {
         let given = options.columns.contains_key(&(Role::Command, Quantity::Position));
         let stated = |column: usize| given || labels[column].unit.is_some();
         let layout = efforts::as_signals(layout.clone(), head, labels, &cells, stated, &mut remarks);
-        let layout = efforts::left_out(&layout, head, &cells, stated, &mut remarks);
+        let layout = efforts::left_out(layout, head, &cells, stated, &mut remarks);
         let (units, kinds) = si::to_si(head, labels, &layout, options, &mut cells, &mut remarks)?;
-        let layout_added = (&*layout, self.added());
+        let layout_added = (&layout, self.added());
         let understood = Understood::new(name, *dialect, head, time, layout_added, &cells, &units);
-        Ok((CsvRun::new((layout.into_owned(), kinds), cells, understood, remarks), units))
+        Ok((CsvRun::new((layout, kinds), cells, understood, remarks), units))
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::date::DateForm;
 
-/// Orders of day and month, as `--time-unit` says them, and how dates of the other order are called.
-pub(super) const ORDERS: [(&str, &str); 2] = [("dmy", "mm/dd"), ("mdy", "dd/mm")];
+/// Orders of day and month, as `--time-unit` says them, and how the names of their forms begin.
+const ORDERS: [(&str, &str); 2] = [("dmy", "dd/mm"), ("mdy", "mm/dd")];
 
 /// Whether a text says the order of day and month.
 pub(super) fn is_order(text: &str) -> bool {
@@ -12,12 +12,16 @@ pub(super) fn is_order(text: &str) -> bool {
 
 /// The order of a form that would be another in the other order, such as "mm/dd/yyyy hh:mm:ss".
 pub(super) fn order_of(form: &str) -> Option<&'static str> {
-    ORDERS
-        .iter()
-        .rev()
-        .zip(&ORDERS)
-        .find(|(_, (_, begins))| form.starts_with(begins))
-        .map(|((order, _), _)| *order)
+    ORDERS.iter().find(|(_, begins)| form.starts_with(begins)).map(|(order, _)| *order)
+}
+
+/// Of forms that fit those of the order that is said, where there are any.
+pub(super) fn of_order(mut forms: Vec<DateForm>, said: Option<&str>) -> Vec<DateForm> {
+    let is = |form: &DateForm| said.is_some() && order_of(form.name) == said;
+    if forms.iter().any(is) {
+        forms.retain(is);
+    }
+    forms
 }
 
 /// What is doubtful in the first of the forms that fit.

@@ -77,7 +77,7 @@ pub(in crate::render) fn said(trend: &JointTrend) -> String {
         return format!(
             "{} {}: the {} changes at once, by {}; q = {}.",
             trend.machine,
-            trend.axis(),
+            trend.joint_and_direction(),
             name(trend.metric),
             stepped(trend, step),
             probability(step.q_value),
@@ -89,7 +89,7 @@ pub(in crate::render) fn said(trend: &JointTrend) -> String {
     format!(
         "{} {}: the {} {grows} by {} {unit} a day ({} {unit}, 95 %){since}; q = {}.",
         trend.machine,
-        trend.axis(),
+        trend.joint_and_direction(),
         name(trend.metric),
         shown_change(&trend.unit, trend.slope_per_day.abs()).trim_start_matches('+'),
         interval(&trend.unit, trend.interval_95),
@@ -135,7 +135,7 @@ fn trends<'a>(trends: impl Iterator<Item = &'a JointTrend>) -> Table {
     let rows = trends.map(|trend| {
         vec![
             trend.machine.clone(),
-            trend.axis(),
+            trend.joint_and_direction(),
             name(trend.metric).to_owned(),
             shown_unit(&trend.unit).to_owned(),
             shown_change(&trend.unit, trend.slope_per_day),
@@ -255,7 +255,7 @@ fn verdict(gate: &GateResult) -> Sentence {
             let trend = format!(
                 "{start}{grows} at {} {} ({sure}, q = {})",
                 worst.machine,
-                worst.axis(),
+                worst.joint_and_direction(),
                 probability(q(worst))
             );
             if gate.broken_by > 1 {

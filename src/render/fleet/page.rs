@@ -36,7 +36,7 @@ pub(crate) fn drift_page(drift: &Drift) -> String {
             (card(class, "Verdict", &headline, &html! { p { "of " (counted(drift.trends.len(), "trend")) " that five runs or more tell" } }))
             (fleet(drift.runs, drift.machines))
             @if let Some(first) = found.first() {
-                (card("bad", "Stands out most", &format!("{} {}", first.machine, first.axis()),
+                (card("bad", "Stands out most", &format!("{} {}", first.machine, first.joint_and_direction()),
                     &html! { p { (clean(&answers::said(first))) } }))
             }
         }
@@ -250,7 +250,7 @@ fn chart(trend: &JointTrend) -> Chart {
     );
     let series = |name: &str, role, x, y, names| Series { name: name.to_owned(), role, x, y, names };
     Chart {
-        title: format!("{} {}: {}", trend.machine, trend.axis(), name(trend.metric)),
+        title: format!("{} {}: {}", trend.machine, trend.joint_and_direction(), name(trend.metric)),
         note: format!("{what}, q = {}", probability(answers::q(trend))),
         x_label: "days since the first run".into(),
         x_range: Some([ends[0] - room, ends[1] + room]),

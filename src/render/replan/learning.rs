@@ -27,11 +27,15 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
         }
         None => format!("Keep what was sent in the best run: its mean peak is {best}"),
     };
+    // What is kept comes to more than a run before it had.
+    let is_lost = matches!(because, KeepReason::GainedLittle)
+        && last_rad <= best_rad
+        && grown(&replanned.past.runs, *best_rad);
     let why = match because {
         KeepReason::GainedLittle if last_rad > best_rad => {
             format!(", the last run has {last}, which is no better.")
         }
-        KeepReason::GainedLittle if grown(&replanned.past.runs, *best_rad) => {
+        KeepReason::GainedLittle if is_lost => {
             ", more than the best run before it had: what is sent comes to more now than it did then."
                 .to_owned()
         }
@@ -51,9 +55,7 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
     } else {
         format!(" Not for {}: it had more error over the whole run there than before.", other.join(", "))
     };
-    let drifts = matches!(because, KeepReason::GainedLittle) && last_rad <= best_rad;
-    let newest = replanned.past.runs.last().filter(|_| drifts && grown(&replanned.past.runs, *best_rad));
-    let then = match newest {
+    let then = match replanned.past.runs.last().filter(|_| is_lost) {
         Some(run) => format!(
             " What it had gained is being lost: a correction learnt from this run alone may win it back, `hydrotrace replan {} \
              -o anew.mcap`.",

@@ -10,9 +10,6 @@ use crate::{
     series::JointKind,
 };
 
-/// A joint is said to stay off its plan at rest from so many bands of settling on: 0.5 deg, 5 mm.
-const STAYS_OFF: f64 = 5.0;
-
 /// What a joint does while its plan rests that it should not.
 pub(super) fn at_rest(replay: &Replay, joint: &JointReplay) -> Vec<String> {
     let drift = drifts(replay, joint);
@@ -22,26 +19,22 @@ pub(super) fn at_rest(replay: &Replay, joint: &JointReplay) -> Vec<String> {
 
 /// A joint that stays off its plan while that rests: one that slipped, or does not reach its target.
 fn stays_off(replay: &Replay, joint: &JointReplay) -> Option<String> {
-    let error = joint.standstill_error.as_ref().filter(|_| joint.moves && joint.plan_moves)?;
-    let least = STAYS_OFF * replay.rules.sizes(joint.kind).settle_band;
+    let error = joint.stays_off(replay.rules.sizes(joint.kind))?;
     let size = |value: f64| position(joint.kind, value);
-    (error.rms >= least).then(|| {
-        format!(
-            "{} stays off its plan where that rests: by {} (RMS), {} at most at {:.1} s (mean {}; {:.0} s of rest looked at).",
-            joint.name,
-            size(error.rms),
-            size(error.peak),
-            error.peak_time_s,
-            size(error.bias),
-            error.duration_s
-        )
-    })
+    Some(format!(
+        "{} stays off its plan where that rests: by {} (RMS), {} at most at {:.1} s (mean {}; {:.0} s of rest looked at).",
+        joint.name,
+        size(error.rms),
+        size(error.peak),
+        error.peak_time_s,
+        size(error.bias),
+        error.duration_s
+    ))
 }
 
 /// A joint that leaves standstill later in one direction.
 pub(super) fn one_way(replay: &Replay, joint: &JointReplay) -> Option<String> {
-    let tested = replay.joints.iter().filter(|joint| joint.direction_delay.is_some()).count();
-    let found = joint.direction_delay.filter(|found| found.counts(tested))?;
+    let found = replay.later_one_way(joint)?;
     let [sign, other] = if found.direction > 0 { ["+", "-"] } else { ["-", "+"] };
     let [later_s, other_s] = found.mean_delay_s;
     Some(format!(

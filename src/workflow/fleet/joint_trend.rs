@@ -57,7 +57,7 @@ pub struct JointTrend {
 
 impl JointTrend {
     /// The joint, and the direction where it is of one: `boom +`.
-    pub fn axis(&self) -> String {
+    pub fn joint_and_direction(&self) -> String {
         match self.direction {
             None => self.joint.clone(),
             Some(direction) => format!("{} {}", self.joint, if direction > 0 { "+" } else { "-" }),

@@ -36,8 +36,8 @@ pub(super) fn best_step(levels: &[(f64, f64)]) -> Option<LevelStep> {
     let slope = theil_sen(levels);
     let off: Vec<f64> = levels.iter().map(|(at, level)| level - slope * at).collect();
     let middle = off.iter().sum::<f64>() / off.len() as f64;
-    let of_trend: f64 = off.iter().map(|off| (off - middle).powi(2)).sum();
-    let of_trend = (1..levels.len() - 1).map(|k| bent(levels, k)).fold(of_trend, f64::min);
+    let of_line: f64 = off.iter().map(|off| (off - middle).powi(2)).sum();
+    let of_trend = (1..levels.len() - 1).map(|k| bent(levels, k)).fold(of_line, f64::min);
     let (before, after) = (levels.get(found.at.checked_sub(1)?)?.0, levels.get(found.at)?.0);
     Some(LevelStep {
         runs_before: found.at,

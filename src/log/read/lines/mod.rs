@@ -11,7 +11,7 @@ use super::{
 use crate::log::{
     LogError,
     decode::shape_at,
-    options::{ReadOptions, Selector, SignalRole, WantedSignal},
+    options::{ReadOptions, Selector, SignalRole, VALVE, WantedSignal},
     schema::{Shape, plain_name},
     source::{Form, Table},
     write::Topics,
@@ -108,7 +108,7 @@ pub struct Lines {
 
 /// Interfaces of our own logs and of `ros2_control`.
 const INTERFACES: [(LineRole, &str); 5] = [
-    (LineRole::Valve, "valve_command"),
+    (LineRole::Valve, VALVE),
     (LineRole::CapPressure, "cap_pressure_pa"),
     (LineRole::RodPressure, "rod_pressure_pa"),
     (LineRole::SupplyPressure, "supply_pressure_pa"),
