@@ -4,7 +4,11 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{csv::LengthUnit, range::TimeRange, write::Topics};
+use super::{
+    csv::LengthUnit,
+    range::TimeRange,
+    write::{Topics, VALVE},
+};
 use crate::series::{JointKind, Quantity};
 
 /// Topics, joints, clock and units, where the log alone does not determine them.
@@ -93,9 +97,6 @@ pub enum SignalRole {
     /// Measured torques of joints that turn, forces of joints that slide.
     Effort,
 }
-
-/// Name of what is sent to the valves, among the interfaces of our own logs and of `ros2_control`.
-pub(in crate::log) const VALVE: &str = "valve_command";
 
 impl SignalRole {
     /// The quantity of its values.

@@ -11,6 +11,7 @@ use super::{
         unexplained_rad,
     },
     oscillation::{Character, Oscillation},
+    part::is_part,
     shape::{Wanted, shaped},
     spoilt::{Left, unspoilt},
     stalled::stalled,
@@ -173,7 +174,20 @@ impl<'a> Joint<'a> {
             }
             (Step::Kept { from }, kept)
         } else {
-            let (step, mut wanted_rad) = self.wanted(fit, &manner, &made.rms_error_rad, &fade, settings);
+            let name = self.name;
+            let within = |wanted_rad: &[f64]| {
+                let mut wanted_rad = wanted_rad.to_vec();
+                faded(&mut wanted_rad, &fade);
+                let wanted = Wanted {
+                    correction_rad: &wanted_rad,
+                    cut_off_hz: finished_hz(&manner),
+                    most_rad,
+                    share: settings.share,
+                };
+                shaped(wanted, free, room(name).as_ref()).into_iter().map(|state| state[0]).collect()
+            };
+            let (step, mut wanted_rad) =
+                self.wanted(fit, &manner, &made.rms_error_rad, &fade, &within, settings);
             for held in &made.stalled {
                 wanted_rad[held.steps.clone()].copy_from_slice(&self.sent[held.from][held.steps.clone()]);
             }
@@ -182,7 +196,7 @@ impl<'a> Joint<'a> {
         };
         let cut_off_hz = match step {
             Step::Kept { .. } => KEPT_HZ,
-            _ => FINISHED_HZ.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz),
+            _ => finished_hz(&manner),
         };
         // Runs in which the joint was not measured count, too.
         let of_run = |from: usize| self.answers[from].of_run;
@@ -214,13 +228,14 @@ impl<'a> Joint<'a> {
         Some(compared(&difference_rad) / std::f64::consts::SQRT_2)
     }
 
-    /// The correction before it is made to fit its plan.
+    /// The correction before it is made to fit its plan; `within` gives what is left of one that is.
     fn wanted(
         &mut self,
         fit: &JointFit,
         manner: &Manner,
         rms_rad: &[f64],
         fade: &[f64],
+        within: &dyn Fn(&[f64]) -> Vec<f64>,
         settings: Learning,
     ) -> (Step, Vec<f64>) {
         let (gain, whole) = (settings.gain, self.whole_rad());
@@ -255,14 +270,15 @@ impl<'a> Joint<'a> {
             Character::Rings if manner.cut_off_hz < FAST_HZ * 0.35 => GAINS[1],
             Character::Rings | Character::Hunts => GAINS[2],
         };
-        if let ([plain, _], 1, false) = (answers.as_slice(), from, manner.character == Character::Hunts)
-            && largest(&sent[0]) <= NONE_RAD
+        let is_first = sent[..from].iter().all(|sent| largest(sent) <= NONE_RAD) && from + 1 == answers.len();
+        if let Some(plain) = from.checked_sub(1).filter(|_| is_first && manner.character != Character::Hunts)
         {
-            // What no error tells, such as the step over a dead band, is in the rest of a first correction alone.
+            // What no error tells, such as the step over a dead band, is in the whole of a first correction alone.
+            let plain = &answers[plain];
             let (whole, _) = first(&fit.model, manner, (planned, fade), plain, fit.held_out_r2, workspace);
-            if let Some(part) = part_of(&sent[1], &whole) {
-                let share = gain * trust * (1.0 - part);
-                let next = sent[1].iter().zip(&whole).map(|(sent, whole)| sent + share * whole);
+            if is_part(&sent[from], &within(&whole)) {
+                let share = gain * trust;
+                let next = sent[from].iter().zip(&whole).map(|(sent, whole)| sent + share * (whole - sent));
                 return (Step::Rest { from, share }, next.collect());
             }
         }
@@ -278,17 +294,9 @@ impl<'a> Joint<'a> {
     }
 }
 
-/// A correction of which at most this share was sent has a rest to send; below the least, or where the two are less alike than
-/// this correlation, it is another one.
-const PART: [f64; 2] = [0.05, 0.7];
-const PART_ALIKE: f64 = 0.85;
-
-/// The share of a whole correction that was sent, where it was no more than a part of it.
-fn part_of(sent: &[f64], whole: &[f64]) -> Option<f64> {
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let (both, own, all) = (product(sent, whole), product(sent, sent), product(whole, whole));
-    let part = both / all;
-    (both > PART_ALIKE * (own * all).sqrt() && (PART[0]..=PART[1]).contains(&part)).then_some(part)
+/// Frequency of what is left of a finished correction by half, Hz.
+fn finished_hz(manner: &Manner) -> f64 {
+    FINISHED_HZ.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz)
 }
 
 /// Whether a run has little to do with the plan: wrong sign, zero, unit or name, or a joint that is stuck. One that moves,
@@ -363,22 +371,4 @@ fn fade(steps: usize, free: &[Range<usize>]) -> Vec<f64> {
 fn smooth_step(share: f64) -> f64 {
     let x = share.clamp(0.0, 1.0);
     x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_part_of_a_correction_is_told_from_the_whole_and_from_another() {
-        let whole: Vec<f64> = (0..200).map(|k| (0.1 * f64::from(k)).sin()).collect();
-        let sent = |by: f64, other: f64| -> Vec<f64> {
-            (0..).zip(&whole).map(|(k, whole)| by * whole + other * (0.37 * f64::from(k)).cos()).collect()
-        };
-        let part = part_of(&sent(0.5, 0.1), &whole).unwrap();
-        assert!((part - 0.5).abs() < 0.03, "{part}");
-        for (by, other) in [(0.95, 0.0), (0.01, 0.0), (0.0, 0.0), (0.5, 1.0), (-0.5, 0.0)] {
-            assert_eq!(part_of(&sent(by, other), &whole), None, "{by} {other}");
-        }
-    }
 }

@@ -5,6 +5,7 @@ mod answer;
 mod correct;
 mod joint;
 mod oscillation;
+mod part;
 mod shape;
 mod spoilt;
 mod stalled;
@@ -88,11 +89,11 @@ pub enum Step {
         /// Share of the error.
         gain: f64,
     },
-    /// The correction of a run (by index), which was a part of the first one, and a share of the whole of that.
+    /// The correction of a run (by index), which was a part of the first one, and a share of what is left of that.
     Rest {
         /// The run that it goes on from.
         from: usize,
-        /// Share of the first correction.
+        /// Share of the rest.
         share: f64,
     },
     /// The correction of a run (by index) once more: there is nothing more to gain.

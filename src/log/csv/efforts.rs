@@ -9,7 +9,7 @@ use super::{
     signals::{Goes, moves_the_speed},
 };
 use crate::{
-    log::options::VALVE,
+    log::write::VALVE,
     remark::{Code, Remarks},
 };
 

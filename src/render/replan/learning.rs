@@ -27,10 +27,7 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
         }
         None => format!("Keep what was sent in the best run: its mean peak is {best}"),
     };
-    // What is kept comes to more than a run before it had.
-    let is_lost = matches!(because, KeepReason::GainedLittle)
-        && last_rad <= best_rad
-        && grown(&replanned.past.runs, *best_rad);
+    let is_lost = matches!(because, KeepReason::GainedLittle) && grown(&replanned.past.runs, *last_rad);
     let why = match because {
         KeepReason::GainedLittle if last_rad > best_rad => {
             format!(", the last run has {last}, which is no better.")
@@ -57,7 +54,7 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
     };
     let then = match replanned.past.runs.last().filter(|_| is_lost) {
         Some(run) => format!(
-            " What it had gained is being lost: a correction learnt from this run alone may win it back, `hydrotrace replan {} \
+            " If the machine has drifted since, a correction learnt from the newest run alone may do better, `hydrotrace replan {} \
              -o anew.mcap`.",
             shell_word(&run.log)
         ),
@@ -66,9 +63,9 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
     Some(kept + &why + &but + &then)
 }
 
-/// Whether a run had clearly less than what is kept.
-fn grown(runs: &[PastRun], best_rad: f64) -> bool {
-    runs.iter().filter_map(|run| run.mean_peak_rad).any(|rad| 1.1 * rad < best_rad)
+/// Whether a run had clearly less than that.
+fn grown(runs: &[PastRun], mean_peak_rad: f64) -> bool {
+    runs.iter().filter_map(|run| run.mean_peak_rad).any(|rad| 1.1 * rad < mean_peak_rad)
 }
 
 /// Share of an error from which on its spread from run to run is most of it.
@@ -216,7 +213,7 @@ fn row(replanned: &Replanned, joint: &JointCommand, units: Units) -> Vec<String>
         Step::Model => "model".to_owned(),
         Step::First { model_weight } => format!("{:.0} % model, else data", 100.0 * model_weight),
         Step::Later { from, gain } => format!("{} + {:.2} error", run(from), gain),
-        Step::Rest { from, share } => format!("{} + {:.2} of the first", run(from), share),
+        Step::Rest { from, share } => format!("{} + {:.2} of its rest", run(from), share),
         Step::Kept { .. } if !joint.applied() => "the plan".to_owned(),
         Step::Kept { from } => format!("{} again", run(from)),
         Step::Astray => "does not follow".to_owned(),

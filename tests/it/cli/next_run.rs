@@ -57,7 +57,7 @@ fn a_careful_first_command_is_followed_by_its_rest() {
     let rests = steps().filter(|step| step["by"] == "rest");
     let shares: Vec<f64> = rests.map(|step| step["share"].as_f64().unwrap()).collect();
     assert!(2 * shares.len() > steps().count(), "{}", next["command"]);
-    assert!(shares.iter().all(|share| (0.3..0.7).contains(share)), "{shares:?}");
+    assert!(shares.iter().all(|share| *share > 0.99), "{shares:?}");
     clean(folder, "simulate rest.mcap -o run-3.mcap --seed 3");
     clean(folder, "replan run.mcap --keep-plan -o whole.mcap");
     clean(folder, "simulate whole.mcap -o direct.mcap --seed 3");
@@ -88,7 +88,7 @@ fn what_was_sent_to_another_machine_is_not_sent_again_though_no_command_came_twi
         json(folder, &format!("report {log}"))["promised"]["measured_mean_peak_rad"].as_f64().unwrap()
     };
     let (before, after) = (mean("run-3.mcap"), mean("run-4.mcap"));
-    assert!(after < 0.4 * before, "{before} rad, then {after}");
+    assert!(after < 0.5 * before, "{before} rad, then {after}");
 }
 
 /// A new timing is sent with the correction that it needs; its errors are small then, and bound no later correction.

@@ -11,10 +11,10 @@ use super::{
 use crate::log::{
     LogError,
     decode::shape_at,
-    options::{ReadOptions, Selector, SignalRole, VALVE, WantedSignal},
+    options::{ReadOptions, Selector, SignalRole, WantedSignal},
     schema::{Shape, plain_name},
     source::{Form, Table},
-    write::Topics,
+    write::{Topics, VALVE},
 };
 use described::Described;
 pub(super) use described::Descriptions;
