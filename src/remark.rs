@@ -155,6 +155,7 @@ pub struct Remark {
 
 /// Remarks in the order of their first appearance, equal ones summed.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(from = "Vec<Remark>", into = "Vec<Remark>")]
 pub struct Remarks {
     list: Vec<Remark>,

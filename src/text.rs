@@ -41,9 +41,41 @@ pub(crate) fn shell_word(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }
 
+/// Decimals that a small number has more at most.
+const MORE_DECIMALS: usize = 6;
+
+/// A number with so many decimals, or with two digits where it is so small that these would hide it.
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few decimals")]
+    let least = (1.0 - value.abs().log10().floor()).clamp(0.0, 99.0) as usize;
+    let more = least > decimals && least <= decimals + MORE_DECIMALS;
+    format!("{value:.*}", if more { least } else { decimals })
+}
+
+/// With a capital in front.
+pub(crate) fn capital(name: &str) -> String {
+    let (first, rest) = name.split_at(1);
+    first.to_uppercase() + rest
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_small_number_shows_two_digits_and_rounding_none() {
+        for (value, decimals, text) in [
+            (12.345, 2, "12.35"),
+            (0.123, 2, "0.12"),
+            (0.0123, 2, "0.012"),
+            (-4.56e-5, 4, "-0.000046"),
+            (3e-12, 2, "0.00"),
+            (0.0, 2, "0.00"),
+            (0.43, 0, "0.43"),
+        ] {
+            assert_eq!(fixed(value, decimals), text);
+        }
+    }
 
     #[test]
     fn what_steers_a_terminal_or_turns_text_round_is_replaced_and_other_scripts_stay() {

@@ -98,14 +98,6 @@ impl Chain {
         self.links.iter().zip(before).map(|(link, before)| link.frame > before)
     }
 
-    /// Whether a posture is within all limits, up to `slack_rad`.
-    pub fn allows(&self, position_rad: &[f64], slack_rad: f64) -> bool {
-        position_rad.len() == self.joint_count()
-            && self.joints.iter().zip(position_rad).all(|(joint, &q)| {
-                q >= joint.limit.lower_rad - slack_rad && q <= joint.limit.upper_rad + slack_rad
-            })
-    }
-
     /// What the last joint carries: its own body and a payload, given in the tool's frame.
     pub fn load(&self, payload: Option<&Inertia>) -> Load {
         let own = self.bodies.last().copied().unwrap_or_default();

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, f64::consts::PI};
 
 use serde::Deserialize;
 
-use super::{Actuation, ArmError, Chain, Cylinder, Linkage, error::Witness};
+use super::{ArmError, Chain, Cylinder, Linkage, error::Witness};
 
 /// More than any file of cylinders.
 const LARGEST_TEXT: usize = 1 << 20;
@@ -162,24 +162,6 @@ impl Hydraulics {
     /// Largest flow of the pump, m³/s.
     pub fn pump_flow_m3_s(&self) -> f64 {
         self.pump_flow_m3_s
-    }
-
-    /// What a state of the arm means for its cylinders, by joint, from angles, rad, speeds, rad/s,
-    /// and torques, N m; returns the flow that all take together, m³/s. Allocates nothing.
-    pub fn actuate(
-        &self,
-        position_rad: &[f64],
-        speed_rad_s: &[f64],
-        torque_nm: &[f64],
-        actuation: &mut [Option<Actuation>],
-    ) -> f64 {
-        let mut flow_m3_s = 0.0;
-        let state = position_rad.iter().zip(speed_rad_s).zip(torque_nm);
-        for ((cylinder, ((q, &qd), &tau)), out) in self.cylinders.iter().zip(state).zip(actuation) {
-            *out = cylinder.map(|cylinder| cylinder.actuation(q.sin_cos(), qd, tau));
-            flow_m3_s += out.map_or(0.0, |actuation| actuation.flow_m3_s);
-        }
-        flow_m3_s
     }
 }
 

@@ -31,7 +31,7 @@ pub use hydraulics::{Arm, Hydraulics};
 pub use inertia::Inertia;
 pub use inverse_dynamics::{LANES, Motion, Workspace, inverse_dynamics};
 pub use linkage::Linkage;
-pub use rods::{Rod, Rods, names_a_cylinder, names_a_stroke};
+pub use rods::{Rod, Rods, names_a_cylinder, names_a_slide, names_a_stroke};
 pub use serial::Kinematics;
 pub use shape::{Mesh, Shape, Solid, quaternion_xyzw};
 pub use urdf::{continuous_joints, sliding_joints};

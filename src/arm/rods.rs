@@ -89,6 +89,21 @@ pub fn names_a_cylinder(name: &str) -> bool {
     words(name).split(' ').any(|word| CYLINDER.contains(&word))
 }
 
+/// Words of joints that slide along something, and their axes.
+const SLIDING: [&str; 18] = [
+    "telescope", "telescopic", "teleskop", "tele", "slide", "slider", "sliding", "prismatic", "linear",
+    "carriage", "trolley", "katze", "fahrwerk", "feed", "vorschub", "rail", "gantry", "schlitten",
+];
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Whether a name says that it is that of a joint that slides: `boom_telescope`, `x_axis`.
+pub fn names_a_slide(name: &str) -> bool {
+    let words = words(name);
+    let mut own = words.split(' ').filter(|word| !["joint", "axis"].contains(word));
+    own.clone().any(|word| SLIDING.contains(&word))
+        || own.next().is_some_and(|first| AXES.contains(&first) && own.next().is_none())
+}
+
 /// Whether a name says of a length that it counts from the cylinder that is drawn in.
 pub fn names_a_stroke(name: &str) -> bool {
     words(name).split(' ').any(|word| ["stroke", "extension"].contains(&word))
@@ -151,5 +166,11 @@ mod tests {
             assert_eq!(rods.meant(name), joint, "{name}");
         }
         assert!(names_a_cylinder("BOOM-STROKE") && !names_a_cylinder("boomstroke"));
+        assert!(
+            ["boom_telescope", "TeleskopArm", "x", "joint_y", "Z-axis"]
+                .iter()
+                .all(|name| names_a_slide(name))
+        );
+        assert!(["rx", "x_boom", "lift", "joint_1", ""].iter().all(|name| !names_a_slide(name)));
     }
 }

@@ -7,13 +7,8 @@ use std::{
 
 use clap::CommandFactory as _;
 
-use super::{
-    CliError, Outcome, Run,
-    console::{Console, Target},
-    read::ReadArgs,
-};
+use super::{CliError, Outcome, Run, console::Console, read::ReadArgs};
 use crate::{
-    document::pretty,
     render::report as words,
     workflow::report::{DelayModel, Document, Inputs, run},
 };
@@ -53,13 +48,13 @@ impl Run for Args {
             ..Inputs::default()
         };
         let report = run(&inputs)?;
-        let target = Target::stdout(self.json);
-        let result = if self.json {
-            pretty(&Document::of(&report))
-        } else {
-            target.text(&words::answer(&report, self.explain).reading(&self.read.words()))
-        };
-        console.finish(&target, &result, &report.remarks, &words::verdicts(&report))
+        console.answer(
+            self.json,
+            &Document::of(&report),
+            || words::answer(&report, self.explain).reading(&self.read.words()),
+            &report.remarks,
+            &words::verdicts(&report),
+        )
     }
 }
 
@@ -120,12 +115,8 @@ mod tests {
             assert_eq!(with(line), becomes);
         }
         for line in [
-            "hydrotrace",
-            "hydrotrace --help",
-            "hydrotrace report run.mcap",
-            "hydrotrace reports run.mcap",
-            "hydrotrace help report",
-            "hydrotrace --color never demo",
+            "hydrotrace", "hydrotrace --help", "hydrotrace report run.mcap", "hydrotrace reports run.mcap",
+            "hydrotrace help report", "hydrotrace --color never demo",
         ] {
             assert_eq!(with(line), line);
         }

@@ -2,12 +2,13 @@
 
 use std::{
     fmt::Display,
-    io::{IsTerminal, Write},
+    io::{ErrorKind, IsTerminal, Write},
     path::{Path, PathBuf},
 };
 
 use anstream::ColorChoice;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
 use terminal_size::{Width, terminal_size_of};
 
 use super::{
@@ -16,6 +17,7 @@ use super::{
 };
 use crate::{
     atomic_file::{may_write, write_atomically},
+    document::pretty,
     input_file::will_read,
     remark::Remarks,
     render::kit::{self, Document, Sentence, TerminalStyle},
@@ -35,7 +37,7 @@ impl<'a> Console<'a> {
 
     /// Writes to standard output.
     pub(super) fn print(&mut self, text: &str) -> Result<(), CliError> {
-        self.out.write_all(text.as_bytes()).map_err(CliError::Output)
+        read_or_left(self.out.write_all(text.as_bytes())).map_err(CliError::Output)
     }
 
     /// The same at once, before the verb ends.
@@ -94,6 +96,20 @@ impl<'a> Console<'a> {
         })
     }
 
+    /// The same of a verb whose result is words, or one JSON document.
+    pub(super) fn answer<T: Serialize>(
+        &mut self,
+        json: bool,
+        found: &T,
+        words: impl FnOnce() -> Document,
+        remarks: &Remarks,
+        verdicts: &[Sentence],
+    ) -> Result<Outcome, CliError> {
+        let target = Target::stdout(json);
+        let result = if json { pretty(found) } else { target.text(&words()) };
+        self.finish(&target, &result, remarks, verdicts)
+    }
+
     /// Where a table goes row by row.
     pub(super) fn out(&mut self) -> &mut dyn Write {
         self.out
@@ -101,8 +117,13 @@ impl<'a> Console<'a> {
 
     /// The outcome, if standard output took everything.
     pub(super) fn flushed(&mut self, outcome: Outcome) -> Result<Outcome, CliError> {
-        self.out.flush().map(|()| outcome).map_err(CliError::Output)
+        read_or_left(self.out.flush()).map(|()| outcome).map_err(CliError::Output)
     }
+}
+
+/// A reader that has left makes a result no better: limits are judged, and doubts told, as if it were there.
+fn read_or_left(written: std::io::Result<()>) -> std::io::Result<()> {
+    written.or_else(|error| if error.kind() == ErrorKind::BrokenPipe { Ok(()) } else { Err(error) })
 }
 
 /// Forms of a result.

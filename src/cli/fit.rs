@@ -84,8 +84,10 @@ impl Run for Args {
         } else {
             self.logs.last().into_iter().collect()
         };
-        let next = next
-            .map(|path| next::limits_written(path, &again, why_none, trusted).reading(&self.sent.words()));
+        let next = next.map(|path| {
+            next::limits_written(path, &again, why_none, [trusted, fitted.corrected])
+                .reading(&self.sent.words())
+        });
         if let Some(file) = &self.html {
             write_file(file, words::page(&fitted, next.as_ref()).as_bytes())?;
         }

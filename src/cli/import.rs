@@ -8,10 +8,9 @@ use std::{
 use super::{
     CliError, Outcome, Run,
     columns::ColumnArgs,
-    console::{Console, Target, spare_for_log},
+    console::{Console, spare_for_log},
 };
 use crate::{
-    document::pretty,
     log::CsvError,
     render::import as words,
     workflow::import::{Inputs, run},
@@ -85,13 +84,13 @@ impl Run for Args {
             )));
         }
         let imported = run(&self.request()?)?;
-        let target = Target::stdout(self.json);
-        let result = if self.json {
-            pretty(&imported)
-        } else {
-            target.text(&words::document(&self.output.to_string_lossy(), &imported))
-        };
-        console.finish(&target, &result, &imported.remarks, &[])
+        console.answer(
+            self.json,
+            &imported,
+            || words::document(&self.output.to_string_lossy(), &imported),
+            &imported.remarks,
+            &[],
+        )
     }
 }
 

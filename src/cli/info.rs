@@ -2,13 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::{
-    CliError, Outcome, Run,
-    console::{Console, Target},
-    read::ReadArgs,
-};
+use super::{CliError, Outcome, Run, console::Console, read::ReadArgs};
 use crate::{
-    document::pretty,
     render::info as words,
     workflow::info::{InfoDocument, Inputs, run},
 };
@@ -35,12 +30,12 @@ pub(super) struct Args {
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let survey = run(&Inputs { logs: self.logs.clone(), read: self.read.options(), check: self.check })?;
-        let target = Target::stdout(self.json);
-        let result = if self.json {
-            pretty(&InfoDocument::of(&survey))
-        } else {
-            target.text(&words::document(&survey))
-        };
-        console.finish(&target, &result, &survey.remarks, &[])
+        console.answer(
+            self.json,
+            &InfoDocument::of(&survey),
+            || words::document(&survey),
+            &survey.remarks,
+            &[],
+        )
     }
 }

@@ -4,12 +4,11 @@ use std::{path::PathBuf, slice::from_ref};
 
 use super::{
     CliError, Outcome, Run,
-    console::{Console, Target, spare_for_log},
+    console::{Console, spare_for_log},
     number::seconds,
     read::ReadArgs,
 };
 use crate::{
-    document::pretty,
     render::join as words,
     workflow::join::{Inputs, run},
 };
@@ -64,12 +63,12 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         spare_for_log(Some(&self.output), &[&self.logs, from_ref(&self.plan)].concat())?;
         let joined = run(&self.request())?;
-        let target = Target::stdout(self.json);
-        let result = if self.json {
-            pretty(&joined)
-        } else {
-            target.text(&words::document(&joined, &self.plan, &self.output))
-        };
-        console.finish(&target, &result, &joined.remarks, &[])
+        console.answer(
+            self.json,
+            &joined,
+            || words::document(&joined, &self.plan, &self.output),
+            &joined.remarks,
+            &[],
+        )
     }
 }

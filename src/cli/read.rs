@@ -59,6 +59,10 @@ pub(super) struct ReadArgs {
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     continuous: Vec<String>,
 
+    /// How tables are read (TOML), as `import --save-map` wrote it
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+
     /// Cylinders of the arm (TOML): joints that are logged as lengths of their cylinders become angles
     #[arg(long, value_name = "FILE")]
     hydraulics: Option<PathBuf>,
@@ -105,6 +109,7 @@ impl ReadArgs {
             measured_delay_ns: self.measured_delay_ns.unwrap_or_default(),
             slides: self.slides.iter().cloned().collect(),
             continuous: self.continuous.clone(),
+            map: self.map.clone(),
             cylinders: self.hydraulics.clone().map(|file| Cylinders {
                 file,
                 into: match self.joints_as {
@@ -141,6 +146,7 @@ impl ReadArgs {
         let all = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
         let named = |value: Option<PossibleValue>| value.map(|value| value.get_name().to_owned());
         let end = |end_s: Option<f64>| end_s.filter(|_| ranged).map(|s| s.to_string());
+        let file = |file: Option<&PathBuf>| file.map(|file| file.to_string_lossy().into_owned());
         let topics = self.planned.iter().map(|one| ("--planned", one));
         let topics = topics.chain(self.measured.iter().map(|one| ("--measured", one)));
         let valued = [
@@ -151,7 +157,8 @@ impl ReadArgs {
             ("--measured-delay-ms", self.measured_delay_ns.map(|ns| (ns as f64 / 1e6).to_string())),
             ("--slides", all(&self.slides.iter().map(length).collect::<Vec<_>>())),
             ("--continuous", all(&self.continuous)),
-            ("--hydraulics", self.hydraulics.as_ref().map(|file| file.to_string_lossy().into_owned())),
+            ("--map", file(self.map.as_ref())),
+            ("--hydraulics", file(self.hydraulics.as_ref())),
             ("--as", named(self.joints_as.and_then(|what| what.to_possible_value()))),
         ];
         let flags =
@@ -221,7 +228,7 @@ mod tests {
     }
 
     const EVERY: &str = "--planned /a:b --measured /c --joints x,y --time publish --from 1.5 --to 9 \
-                         --measured-delay-ms=-2 --slides y,z=mm --continuous x --hydraulics h.toml --as cylinders \
+                         --measured-delay-ms=-2 --slides y,z=mm --continuous x --map m.toml --hydraulics h.toml --as cylinders \
                          --planned-degrees --measured-degrees --command /d --valve /e";
 
     /// An option that is added and not typed again would be lost from the next command.

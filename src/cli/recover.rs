@@ -4,10 +4,9 @@ use std::{path::PathBuf, slice::from_ref};
 
 use super::{
     CliError, Outcome, Run,
-    console::{Console, Target, spare_for_log},
+    console::{Console, spare_for_log},
 };
 use crate::{
-    document::pretty,
     render::recover as words,
     workflow::recover::{Inputs, RecoverDocument, run},
 };
@@ -31,12 +30,12 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         spare_for_log(Some(&self.output), from_ref(&self.log))?;
         let recovered = run(&Inputs { log: self.log.clone(), output: self.output.clone() })?;
-        let target = Target::stdout(self.json);
-        let result = if self.json {
-            pretty(&RecoverDocument::of(&recovered))
-        } else {
-            target.text(&words::document(&self.output.to_string_lossy(), &recovered))
-        };
-        console.finish(&target, &result, &recovered.remarks, &[])
+        console.answer(
+            self.json,
+            &RecoverDocument::of(&recovered),
+            || words::document(&self.output.to_string_lossy(), &recovered),
+            &recovered.remarks,
+            &[],
+        )
     }
 }

@@ -264,18 +264,8 @@ mod tests {
     #[test]
     fn the_careful_step_keeps_every_option_but_size_and_files() {
         let line = [
-            "replan",
-            "my run.mcap",
-            "--gain",
-            "1",
-            "-o",
-            "a.mcap",
-            "--html=b.html",
-            "-oother.mcap",
-            "-vv",
-            "--joints=a b",
-            "--keep-plan",
-            "--force",
+            "replan", "my run.mcap", "--gain", "1", "-o", "a.mcap", "--html=b.html", "-oother.mcap", "-vv",
+            "--joints=a b", "--keep-plan", "--force",
         ];
         let kept = again(line.into_iter().map(OsString::from));
         assert_eq!(kept, ["replan", "'my run.mcap'", "'--joints=a b'", "--keep-plan"]);

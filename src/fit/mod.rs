@@ -43,8 +43,8 @@ pub use excite::{Excitation, JointRoom, Ramp, STROKE_POINTS_HZ, excite};
 pub use excited::is_excitation;
 pub use held_out::HeldOut;
 pub use learn::{
-    AFTER_S, Character, JointStep, Learning, Learnt, MORE_ERROR, Oscillation, Room, Stalled, Step, Trial,
-    learn,
+    AFTER_S, Character, JointStep, Learning, Learnt, MORE_ERROR, Oscillation, Room, SHARE, Stalled, Step,
+    Trial, learn,
 };
 pub use model::{Model, STEP_S};
 pub use outcome::{

@@ -152,6 +152,7 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
     let Some(pair) = align(sent, measured) else { return Vec::new() };
     let fits = local_quadratic(&pair.t_s, &pair.measured, &pair.segments, SPEED_WINDOW_S, 5);
     let sigma_rad = noise(&pair.t_s, &pair.measured, &pair.segments).sigma;
+    let rounded = pair.planned_step.filter(|_| sent.velocity().is_none());
     let mut runs = Vec::new();
     for segment in &pair.segments {
         let (from_s, to_s) = (pair.t_s[segment.start], pair.t_s[segment.end - 1]);
@@ -202,7 +203,7 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
                 log: 0,
                 from_s: start_s,
                 asked: asked(&sent),
-                starts: starts(&sent),
+                starts: rounded.map_or_else(|| starts(&sent), |step| starts(&calmed(&sent, step))),
                 sent,
                 start: Start { angle_rad: fit.position, speed_rad_s, integral_rad_s: 0.0 },
                 samples,
@@ -297,8 +298,42 @@ pub(super) fn starts(sent: &[(f64, f64)]) -> Vec<usize> {
     starts
 }
 
+/// Half of the time over which steps of rounded numbers become a speed, s, and of how many steps in it rest is told from motion.
+const CALM_S: f64 = 0.2;
+const CALM_STEPS: f64 = 1.5;
+
+/// What was sent in steps of rounded numbers, each of which would be a start: its mean speed over a time, and rest below what a step
+/// makes of that.
+fn calmed(sent: &[(f64, f64)], step_rad: f64) -> Vec<(f64, f64)> {
+    let (half, least_rad_s) = (steps_in(CALM_S), CALM_STEPS * step_rad / (2.0 * CALM_S));
+    let speed_rad_s = |k: usize| {
+        let (from, to) = (k.saturating_sub(half), (k + half).min(sent.len() - 1));
+        (sent[to].0 - sent[from].0) / ((to - from).max(1) as f64 * STEP_S)
+    };
+    let calm = |speed: f64| if speed.abs() > least_rad_s { speed } else { 0.0 };
+    (0..sent.len()).map(|k| (sent[k].0, calm(speed_rad_s(k)))).collect()
+}
+
 /// Deals the time of a run, in blocks, to [`FOLDS`] parts in turn for each to be predicted from the
 /// others. Longer parts would leave a fit without starts in one direction.
 fn fold(step: usize) -> usize {
     step / steps_in(BLOCK_S).max(1) % FOLDS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plan_in_steps_of_rounded_numbers_starts_once() {
+        // Rest, 1 deg/s for 4 s, rest.
+        for step_rad in [0.1, 0.01, 0.001].map(|deg| deg * DEGREE_RAD) {
+            let along = |k: usize| (k as f64 - 100.0).clamp(0.0, 400.0) * STEP_S * DEGREE_RAD;
+            let at = |k: usize| (along(k) / step_rad).round() * step_rad;
+            let speed = |k: usize| (at(k + 1) - at(k.saturating_sub(1))) / (2.0 * STEP_S);
+            let sent: Vec<(f64, f64)> = (0..700).map(|k| (at(k), speed(k))).collect();
+            let found = starts(&calmed(&sent, step_rad));
+            assert!(found.len() == 1 && found[0].abs_diff(100) < 40, "{step_rad}: {found:?}");
+        }
+    }
 }

@@ -25,6 +25,9 @@ pub enum LogError {
     /// A table that does not say all that is needed.
     #[error("{} {}", path.display(), of_table(path, source, given))]
     Table { path: PathBuf, source: Box<CsvError>, given: Given },
+    /// A file that says how tables are read, and cannot be read.
+    #[error(transparent)]
+    Map(CsvError),
     /// A file of another form that cannot be read.
     #[error("cannot read {}: {reason}", path.display())]
     Form { path: PathBuf, reason: String },

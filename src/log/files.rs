@@ -7,10 +7,12 @@ use std::{
 
 use super::{
     bag,
+    csv::CsvOptions,
     error::LogError,
     file::{Layout, Source, scan},
     input::Input,
     looks::LOOKED_AT,
+    options::ReadOptions,
     remote,
 };
 use crate::remark::{Code, Remarks};
@@ -84,6 +86,24 @@ impl LogFiles {
     ///
     /// As [`LogFiles::open`].
     pub fn of(inputs: Vec<Input>) -> Result<Self, LogError> {
+        Self::opened(inputs, &CsvOptions::default())
+    }
+
+    /// The same, to be read with options: tables by their map.
+    ///
+    /// # Errors
+    ///
+    /// As [`LogFiles::open`]; [`LogError::Map`].
+    pub fn with(
+        inputs: impl IntoIterator<Item = impl Into<Input>>,
+        options: &ReadOptions,
+    ) -> Result<Self, LogError> {
+        let columns = options.columns().map_err(LogError::Map)?;
+        let inputs = inputs.into_iter().map(Into::into).collect();
+        Self::opened(inputs, &columns).map_err(|error| error.given(options))
+    }
+
+    fn opened(inputs: Vec<Input>, columns: &CsvOptions) -> Result<Self, LogError> {
         let (mut remarks, mut doubts) = (Remarks::default(), Remarks::default());
         let (mut files, mut ordered) = (Vec::new(), false);
         for input in inputs {
@@ -97,7 +117,7 @@ impl LogFiles {
             };
             for part in parts {
                 count(|passes| passes.opened += 1);
-                files.push(part.open(&mut doubts)?);
+                files.push(part.open(columns, &mut doubts)?);
             }
         }
         remarks.extend(doubts);

@@ -17,7 +17,16 @@ pub struct Given {
 impl Given {
     pub(super) fn of(options: &ReadOptions) -> Self {
         let ReadOptions {
-            planned, measured, joints, time_base, range, slides, continuous, cylinders, ..
+            planned,
+            measured,
+            joints,
+            time_base,
+            range,
+            slides,
+            continuous,
+            cylinders,
+            map,
+            ..
         } = options;
         let sides = [("--planned", planned), ("--measured", measured)];
         let columns =
@@ -27,6 +36,7 @@ impl Given {
             &slides.iter().map(|(joint, unit)| format!("{joint}={}", unit.name())).collect::<Vec<_>>(),
         );
         let [first, second] = [options.planned_in_degrees, options.measured_in_degrees];
+        let map = map.as_ref().map(|file| format!("--map {}", shell_word(&file.to_string_lossy())));
         let degrees = (first && second).then(|| "--degrees".to_owned());
         let of_log = planned.iter().chain(measured).any(|one| column(one).is_none());
         let more = of_log
@@ -36,7 +46,7 @@ impl Given {
             || cylinders.is_some()
             || options.measured_delay_ns != 0
             || !(joints.is_empty() && continuous.is_empty());
-        Self { words: columns.into_iter().chain([slide, degrees]).flatten().collect(), more }
+        Self { words: columns.into_iter().chain([slide, map, degrees]).flatten().collect(), more }
     }
 
     pub(super) fn words(&self) -> impl Iterator<Item = &String> {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{
+    csv::CsvOptions,
     error::LogError,
     file::{ReadAt, Source},
     foreign,
@@ -45,8 +46,12 @@ impl Input {
         }
     }
 
-    /// Opens it as a log, whatever its form.
-    pub(super) fn open(self, remarks: &mut Remarks) -> Result<(PathBuf, Source), LogError> {
+    /// Opens it as a log, whatever its form; a table by its columns.
+    pub(super) fn open(
+        self,
+        columns: &CsvOptions,
+        remarks: &mut Remarks,
+    ) -> Result<(PathBuf, Source), LogError> {
         let (name, source) = match self {
             Self::Path(path) => {
                 let source = Source::open(&path).map_err(LogError::file("open", &path))?;
@@ -59,7 +64,7 @@ impl Input {
                 (name, source)
             }
         };
-        let source = foreign::log_of(&name, source, remarks)?;
+        let source = foreign::log_of(&name, source, columns, remarks)?;
         Ok((name, source))
     }
 }

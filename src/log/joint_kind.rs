@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::{
-    arm::names_a_cylinder,
+    arm::{names_a_cylinder, names_a_slide},
     remark::{Code, Remarks},
     series::JointKind,
     text::shell_word,
@@ -26,12 +26,13 @@ pub(super) fn sliding(metadata: &BTreeMap<String, BTreeMap<String, String>>) -> 
     joints.filter(|(_, kind)| *kind == SLIDES).map(|(joint, _)| joint.clone()).collect()
 }
 
-/// A remark on joints whose name is a cylinder's and that are taken as angles, for nothing says that they are lengths.
-pub(super) fn doubt_cylinders<'a>(turning: impl Iterator<Item = &'a str>, remarks: &mut Remarks) {
-    let names: BTreeSet<&str> = turning.filter(|name| names_a_cylinder(name)).collect();
+/// A remark on joints whose name is one of a joint that slides and that are taken as angles, for nothing says that they are lengths.
+pub(super) fn doubt_sliding<'a>(turning: impl Iterator<Item = &'a str>, remarks: &mut Remarks) {
+    let names: BTreeSet<&str> =
+        turning.filter(|name| names_a_cylinder(name) || names_a_slide(name)).collect();
     let slides: Vec<_> = names.iter().map(|name| shell_word(name)).collect();
     let message = format!(
-        "joints that nothing says to be lengths although their names are those of cylinders, taken as angles: {}; if they are \
+        "joints that nothing says to be lengths although their names are those of joints that slide, or of cylinders, taken as angles: {}; if they are \
          lengths, say --slides {} (in m; with =mm behind a name in mm)",
         names.iter().copied().collect::<Vec<_>>().join(", "),
         slides.join(",")

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    csv::LengthUnit,
+    csv::{CsvError, CsvOptions, LengthUnit},
     range::TimeRange,
     write::{Topics, VALVE},
 };
@@ -42,6 +42,8 @@ pub struct ReadOptions {
     pub cylinders: Option<Cylinders>,
     /// The stretch of the run to read.
     pub range: TimeRange,
+    /// How tables are read (TOML), as `import --save-map` wrote it.
+    pub map: Option<PathBuf>,
     /// Text of the robot's URDF, in place of what the log holds of it.
     pub description: Option<String>,
 }
@@ -126,6 +128,15 @@ impl SignalRole {
 }
 
 impl ReadOptions {
+    /// How tables are read.
+    ///
+    /// # Errors
+    ///
+    /// [`CsvError::MapFile`].
+    pub(super) fn columns(&self) -> Result<CsvOptions, CsvError> {
+        Ok(self.map.as_deref().map(CsvOptions::from_map).transpose()?.unwrap_or_default())
+    }
+
     /// With signals that are read if they are where our own logs have them; one that the caller named stays.
     #[must_use]
     pub fn wanting(mut self, roles: &[SignalRole]) -> Self {

@@ -6,10 +6,19 @@ pub fn range(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     values.into_iter().fold(none, |[least, most], value| [least.min(value), most.max(value)])
 }
 
+/// Sum of the products of two vectors.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// 0 of no values.
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
 /// Root mean square distance from the mean; 0 for no values.
 pub fn deviation(values: &[f64]) -> f64 {
-    let count = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / count;
+    let (count, mean) = (values.len().max(1) as f64, mean(values));
     (values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / count).sqrt()
 }
 

@@ -9,8 +9,9 @@ use super::{
     Evaluator, Setup, Timing,
     goal::Goal,
     quadratic::{PRICE, Solution, Step},
-    tangent::{Cuts, Point, Slopes, dot},
+    tangent::{Cuts, Point, Slopes},
 };
+use crate::math::dot;
 
 /// First steps from far off, and from a plan that is nearly best.
 pub(super) const FAR_OFF: f64 = 0.4;

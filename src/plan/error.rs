@@ -46,6 +46,9 @@ pub enum PlanError {
     /// A number of times other than that of the key points.
     #[error("{found} times for {expected} key points; give each key point's arrival, dwells counted, from 0")]
     Times { found: usize, expected: usize },
+    /// Times that count from another instant than the departure.
+    #[error("the times begin at {found_s} s; the first is the departure, from which the others count: 0")]
+    Begins { found_s: f64 },
     /// A free point that the motion cannot pass.
     #[error(
         "free point {point}, of {angles} angles for {joints} joints at {t_s} s, is not on the way between two key points"

@@ -15,6 +15,9 @@ use crate::{
 /// Angles as close as this are one, rad.
 const ROUNDED_RAD: f64 = 1e-9;
 
+/// A departure within this is at zero, s.
+const FROM_ZERO_S: f64 = 1e-9;
+
 /// Limits of a joint: the tighter of task and arm, infinite where there are none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct JointLimits {
@@ -200,11 +203,16 @@ impl Setup {
     ///
     /// # Errors
     ///
-    /// [`PlanError::Times`] for another number of times than key points; what the intervals must be
+    /// [`PlanError::Times`] for another number of times than key points, [`PlanError::Begins`] for a departure at another
+    /// time than 0; what the intervals must be
     /// is checked where they become a motion.
     pub fn intervals_s(&self, times_s: &[f64]) -> Result<Vec<f64>, PlanError> {
         if times_s.len() != self.interval_count() + 1 {
             return Err(PlanError::Times { found: times_s.len(), expected: self.interval_count() + 1 });
+        }
+        let begins_s = times_s.first().copied().unwrap_or_default();
+        if begins_s.abs() > FROM_ZERO_S {
+            return Err(PlanError::Begins { found_s: begins_s });
         }
         Ok(times_s
             .windows(2)

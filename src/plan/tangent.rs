@@ -1,6 +1,7 @@
 //! Values and slopes of merit and constraints at a timing.
 
 use super::{Evaluator, Setup, Timing, goal::Goal, quadratic::PRICE};
+use crate::math::dot;
 
 /// Step of the difference quotients, in logarithms.
 const DIFFERENCE: f64 = 1e-6;
@@ -124,8 +125,4 @@ impl Cuts {
             self.jacobian.extend_from_slice(slopes.row(i));
         }
     }
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -12,19 +12,8 @@ macro_rules! presets {
 
 /// Names and texts: by what limits the machine, then by what its structure has that the first three lack.
 const PRESETS: [(&str, &str); 14] = presets![
-    "dead-band-limited",
-    "default",
-    "lag-limited",
-    "backlash",
-    "cascade",
-    "changing",
-    "counterbalance",
-    "flexible-link",
-    "held-set-values",
-    "position-only",
-    "positioning-window",
-    "progressive-edges",
-    "soft",
+    "dead-band-limited", "default", "lag-limited", "backlash", "cascade", "changing", "counterbalance",
+    "flexible-link", "held-set-values", "position-only", "positioning-window", "progressive-edges", "soft",
     "stick-slip",
 ];
 

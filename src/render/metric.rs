@@ -59,6 +59,13 @@ pub(super) fn weighed(rules: &Rules, kinds: impl Iterator<Item = JointKind>) -> 
     mixed.then(|| Sentence::note(format!("To tell the worst, {turns} counts as much as {slides}.")))
 }
 
+/// What a mean over joints of both kinds takes a length for; `None` for joints of one kind.
+pub(super) fn lengths_as_angles(kinds: impl Iterator<Item = JointKind>) -> Option<String> {
+    let seen: Vec<JointKind> = kinds.collect();
+    let mixed = [Turns, Slides].iter().all(|kind| seen.contains(kind));
+    mixed.then(|| format!("{} counts as {}", position(Slides, 0.01), position(Turns, 0.01)))
+}
+
 /// A position, speed or acceleration in degrees or millimetres.
 pub(super) fn on_paper(kind: JointKind, value: f64) -> f64 {
     match kind {

@@ -27,13 +27,13 @@ pub(crate) fn plan_written(log: &Path, of_sample_arm: bool) -> Section {
     step(sent, aim, &["join", "RUN.mcap", "--plan", &log, "-o", run])
 }
 
-/// After `fit`; `trusted` says that a command can be made for a joint. `logs` are the runs of the plan to plan again, or the one
-/// to look at; `why_none` says why there is none.
+/// After `fit`; `trusted` says that a command can be made for a joint, `corrected` that one was sent already. `logs` are the runs of
+/// the plan to plan again, or the one to look at; `why_none` says why there is none.
 pub(crate) fn limits_written(
     limits: &Path,
     logs: &[&PathBuf],
     why_none: Option<&str>,
-    trusted: bool,
+    [trusted, corrected]: [bool; 2],
 ) -> Section {
     let limits = argument(limits);
     let written = match why_none {
@@ -47,8 +47,16 @@ pub(crate) fn limits_written(
         return step(written, aim, &["report", &logs]);
     }
     let from = if why_none.is_some() { " from another log" } else { "" };
+    let again = ["replan", &logs, "--limits", &limits];
+    if corrected {
+        return step(
+            written,
+            "To learn the next run from these:",
+            &[&again[..], &["-o", "next.mcap"]].concat(),
+        );
+    }
     let aim = &format!("To plan the next run{from}, with half of the correction at first:");
-    step(written, aim, &["replan", &logs, "--limits", &limits, "--gain", "0.5", "-o", "next.mcap"])
+    step(written, aim, &[&again[..], &["--gain", "0.5", "-o", "next.mcap"]].concat())
 }
 
 /// After `replan` of these logs, read by these options; `changing` are its options of what may change.

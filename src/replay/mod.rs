@@ -22,6 +22,7 @@ mod onset;
 mod outcome;
 mod path;
 mod peak_motion;
+mod place;
 mod profile;
 mod rules;
 mod signals;
@@ -43,10 +44,11 @@ pub use metric::{
     TOOL, TRANSITION, Together, limits,
 };
 pub use outcome::{
-    Answer, Concentration, ConcentrationTest, JointReplay, Kind, LagShare, OnsetMethod, PathError, Replay,
-    Stop, Thresholds, TrackingError, Transition, Verdict, WholeRun,
+    Answer, JointReplay, Kind, KindRun, LagShare, OnsetMethod, PathError, Replay, Stop, Thresholds,
+    TrackingError, Transition, WholeRun,
 };
 pub use peak_motion::peak_motion;
+pub use place::{Concentration, ConcentrationTest, Verdict};
 pub use profile::{Profiles, STRETCHES};
 pub use rules::{Rules, Sizes};
 pub use signals::{planned_starts, planned_step, speeds};
@@ -55,7 +57,12 @@ pub use tool::{
     ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst, pose_replay, tool_replay,
 };
 
-use crate::{series::Pair, threads};
+use std::collections::BTreeSet;
+
+use crate::{
+    series::{JointKind, Pair},
+    threads,
+};
 use concentration::{JointError, concentration};
 use joint::{Joint, joint};
 use tracking::{samples, tracking_error};
@@ -87,44 +94,37 @@ fn joints<'a>(pairs: &'a [Pair], rules: &Rules) -> Vec<Joint<'a>> {
 /// # Ok::<(), hydrotrace::series::SignalError>(())
 /// ```
 pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
-    let alike = pairs.windows(2).all(|pair| pair[0].kind == pair[1].kind);
+    let kinds: BTreeSet<JointKind> = pairs.iter().map(|pair| pair.kind).collect();
     // Of a long run one joint is at work at a time: each needs a fourth of what all of them hold.
     let long = pairs.iter().any(|pair| pair.t_s.len() > LONG);
     let at_once = if long { 1 } else { pairs.len().max(1) };
-    let (mut joints, path): (Vec<Joint>, _) = threads::both(
+    let (mut joints, paths): (Vec<Joint>, Vec<_>) = threads::both(
         || pairs.chunks(at_once).flat_map(|some| joints(some, rules)).collect(),
-        || if alike { path::path_error(pairs, rules) } else { None },
+        || kinds.iter().map(|kind| path::path_error(&of_kind(pairs, *kind), rules)).collect(),
     );
-    let windows_s: Vec<Vec<[f64; 2]>> =
-        joints.iter().map(|joint| joint.transitions.iter().map(|t| t.window_s).collect()).collect();
-    let errors = joints.iter().zip(&windows_s).filter(|(joint, _)| joint.replay.plan_moves).map(
-        |(joint, windows_s)| JointError { samples: samples(joint.pair), moving: &joint.moving, windows_s },
-    );
-    let concentration = concentration(errors, rules).filter(|_| alike);
-    let tracking_error =
-        tracking_error(joints.iter().flat_map(|joint| samples(joint.pair))).filter(|_| alike);
-    let lagging = alike && joints.iter().any(|joint| joint.replay.lag_s.is_some());
-    let lag_share = lagging.then(|| {
-        let blocks = joints.iter().flat_map(|joint| joint.blocks.iter().copied()).collect();
-        lag_share::lag_share(&lag_share::events(blocks, rules), rules)
-    });
-    let norm = path.map(|(of_joints, norm)| {
-        for (joint, path_error) in joints.iter_mut().zip(of_joints) {
-            joint.replay.path_error = Some(path_error);
-        }
-        norm
-    });
+    let mut of_kinds = Vec::new();
+    for (kind, path) in kinds.iter().zip(paths) {
+        let norm = path.map(|(of_joints, norm)| {
+            let own = joints.iter_mut().filter(|joint| joint.replay.kind == *kind);
+            for (joint, path_error) in own.zip(of_joints) {
+                joint.replay.path_error = Some(path_error);
+            }
+            norm
+        });
+        let own: Vec<&Joint> = joints.iter().filter(|joint| joint.replay.kind == *kind).collect();
+        of_kinds.push(KindRun { kind: *kind, run: together(&own, norm, rules) });
+    }
+    let whole_run = match of_kinds.len() {
+        1 => of_kinds.remove(0).run,
+        _ => WholeRun::default(),
+    };
     let mut found = Replay {
         rules: rules.clone(),
         joints: Vec::with_capacity(joints.len()),
         transitions: Vec::new(),
         stops: Vec::new(),
-        whole_run: WholeRun {
-            tracking_error,
-            path_error: norm,
-            lag_share: lag_share.flatten(),
-            concentration,
-        },
+        whole_run,
+        of_kinds,
     };
     for mut joint in joints {
         found.joints.push(joint.replay);
@@ -132,4 +132,29 @@ pub fn replay(pairs: &[Pair], rules: &Rules) -> Replay {
         found.stops.append(&mut joint.stops);
     }
     found
+}
+
+fn of_kind(pairs: &[Pair], kind: JointKind) -> Vec<&Pair> {
+    pairs.iter().filter(|pair| pair.kind == kind).collect()
+}
+
+/// Joints of one kind together.
+fn together(joints: &[&Joint], path_error: Option<PathError>, rules: &Rules) -> WholeRun {
+    let windows_s: Vec<Vec<[f64; 2]>> =
+        joints.iter().map(|joint| joint.transitions.iter().map(|t| t.window_s).collect()).collect();
+    let errors = joints.iter().zip(&windows_s).filter(|(joint, _)| joint.replay.plan_moves).map(
+        |(joint, windows_s)| JointError { samples: samples(joint.pair), moving: &joint.moving, windows_s },
+    );
+    let concentration = concentration(errors, rules);
+    let lagging = joints.iter().any(|joint| joint.replay.lag_s.is_some());
+    let lag_share = lagging.then(|| {
+        let blocks = joints.iter().flat_map(|joint| joint.blocks.iter().copied()).collect();
+        lag_share::lag_share(&lag_share::events(blocks, rules), rules)
+    });
+    WholeRun {
+        tracking_error: tracking_error(joints.iter().flat_map(|joint| samples(joint.pair))),
+        path_error,
+        lag_share: lag_share.flatten(),
+        concentration,
+    }
 }

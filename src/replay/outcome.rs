@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{DirectionDelay, RestDrift, Rules};
+use super::{Concentration, DirectionDelay, RestDrift, Rules};
 use crate::series::{JointKind, Noise};
 
 /// Analysis of one run; error is planned minus measured throughout.
@@ -20,6 +20,8 @@ pub struct Replay {
     pub stops: Vec<Stop>,
     /// All joints together.
     pub whole_run: WholeRun,
+    /// Of an arm of which some joints turn and some slide, those of each kind together; else empty.
+    pub of_kinds: Vec<KindRun>,
 }
 
 impl Replay {
@@ -31,6 +33,19 @@ impl Replay {
     /// Whether the joints turn or slide: the first one's kind, for figures of all exist only if they are alike.
     pub fn kind(&self) -> JointKind {
         self.joints.first().map_or(JointKind::Turns, |joint| joint.kind)
+    }
+
+    /// The joints together, each kind for itself where they have no unit in common.
+    pub fn together(&self) -> Vec<(JointKind, &WholeRun)> {
+        if self.of_kinds.is_empty() {
+            return vec![(self.kind(), &self.whole_run)];
+        }
+        self.of_kinds.iter().map(|of| (of.kind, &of.run)).collect()
+    }
+
+    /// The joints together that have a unit in common with one of a kind.
+    pub fn together_with(&self, kind: JointKind) -> &WholeRun {
+        self.of_kinds.iter().find(|of| of.kind == kind).map_or(&self.whole_run, |of| &of.run)
     }
 
     /// Peak errors of the transitions, rad; a metre of a joint that slides counts as a radian.
@@ -316,7 +331,7 @@ pub struct Stop {
 }
 
 /// All joints together.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct WholeRun {
     /// Error pooled over joints; `None` without joints, or if some turn and some slide.
@@ -331,54 +346,13 @@ pub struct WholeRun {
     pub concentration: Option<Concentration>,
 }
 
-/// Error inside transition windows against elsewhere, over joints whose plan moves.
+/// All joints of one kind together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct Concentration {
-    /// Root mean square error inside.
-    pub rms_inside: f64,
-    /// Root mean square error elsewhere.
-    pub rms_outside: f64,
-    /// Root mean square error elsewhere while the plan moves.
-    pub rms_outside_moving: Option<f64>,
-    /// Share of joint time inside.
-    pub time_share_inside: f64,
-    /// Share of the squared error inside.
-    pub squared_error_share_inside: f64,
-    /// The test; `None` if one side is empty.
-    pub test: Option<ConcentrationTest>,
-    /// What the test says.
-    pub verdict: Verdict,
-}
-
-/// Mann-Whitney test on root mean square errors of windows and of the stretches between them.
-///
-/// Samples of one window are not independent, so each window and each stretch counts once.
-/// Joints differ in scale, so each value is divided by its joint's root mean square error.
-/// Joints that start together are not independent, so values that begin within
-/// [`Rules::same_event_s`] are averaged into one event.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct ConcentrationTest {
-    /// Events inside.
-    pub inside_count: usize,
-    /// Events elsewhere.
-    pub outside_count: usize,
-    /// Two-sided probability of such a difference by chance (normal approximation).
-    pub p_value: f64,
-    /// Probability that an event inside has the larger error: 0.5 is no difference.
-    pub effect: f64,
-}
-
-/// Where most of the error arises.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// In the transitions.
-    Transitions,
-    /// Elsewhere.
-    Elsewhere,
-    /// Too few events to tell.
-    Undecided,
+pub struct KindRun {
+    /// Whether they turn or slide.
+    pub kind: JointKind,
+    /// They together, in their unit.
+    #[serde(flatten)]
+    pub run: WholeRun,
 }

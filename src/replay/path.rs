@@ -30,7 +30,7 @@ struct Sums {
 /// sought within [`Rules::path_window_s`]; the components of that distance are each joint's.
 /// Taken at the first joint's stamps, thinned to about [`Rules::path_rate_hz`], where every joint has
 /// data; `None` where there is none. O(n window).
-pub(super) fn path_error(pairs: &[Pair], rules: &Rules) -> Option<(Vec<PathError>, PathError)> {
+pub(super) fn path_error(pairs: &[&Pair], rules: &Rules) -> Option<(Vec<PathError>, PathError)> {
     let lead = pairs.first()?;
     let none = || vec![Vec::new(); pairs.len()];
     let mut path = Path { t_s: Vec::new(), planned_rad: none(), measured_rad: none(), connected: Vec::new() };
@@ -196,7 +196,7 @@ mod tests {
     #[test]
     fn being_late_on_the_path_is_no_path_error() {
         let (joints, norm) =
-            path_error(&[pair(500, 0.213, 0.0), pair(500, 0.213, 0.0)], &Rules::default()).unwrap();
+            path_error(&[&pair(500, 0.213, 0.0), &pair(500, 0.213, 0.0)], &Rules::default()).unwrap();
         assert!(norm.timed_rms > 0.05);
         assert!(norm.peak < 1e-12 && joints.iter().all(|j| j.peak < 1e-12), "{norm:?}");
     }
@@ -209,7 +209,7 @@ mod tests {
             pair.measured.fill(off_rad);
             pair
         };
-        let (joints, norm) = path_error(&[pair(500, 0.1, 0.0), still(0.03)], &Rules::default()).unwrap();
+        let (joints, norm) = path_error(&[&pair(500, 0.1, 0.0), &still(0.03)], &Rules::default()).unwrap();
         assert!(joints[0].peak < 1e-12);
         assert!((joints[1].rms - 0.03).abs() < 1e-12 && (norm.rms - 0.03).abs() < 1e-12);
     }
@@ -218,7 +218,7 @@ mod tests {
     fn joints_without_a_common_instant_have_no_path_error() {
         let mut later = pair(10, 0.0, 0.0);
         later.t_s = later.t_s.iter().map(|t| t + 100.0).collect();
-        assert_eq!(path_error(&[pair(10, 0.0, 0.0), later], &Rules::default()), None);
+        assert_eq!(path_error(&[&pair(10, 0.0, 0.0), &later], &Rules::default()), None);
         assert_eq!(path_error(&[], &Rules::default()), None);
     }
 }

@@ -96,8 +96,7 @@ impl Ends {
     /// Speed, acceleration, jerk of one joint at the start.
     pub(super) fn start(&self, joint: usize) -> [f64; 3] {
         [
-            self.start_velocity_rad_s[joint],
-            self.start_acceleration_rad_s2[joint],
+            self.start_velocity_rad_s[joint], self.start_acceleration_rad_s2[joint],
             self.start_jerk_rad_s3[joint],
         ]
     }

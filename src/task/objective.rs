@@ -1,7 +1,10 @@
 //! The objectives of a plan: one table. A row gives an objective its keys in files, its words in texts, plots and
 //! options, and its unit; how it is computed is one arm of [`Evaluator`](crate::plan::Evaluator)'s match.
 
-use crate::units::{degrees_from_radians, radians_from_degrees};
+use crate::{
+    text::fixed,
+    units::{degrees_from_radians, radians_from_degrees},
+};
 
 /// One cost of a plan; less is better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -155,7 +158,7 @@ impl Objective {
 
     /// A value as people read it, without its unit.
     pub fn number(self, value: f64) -> String {
-        format!("{:.*}", self.row().decimals, self.shown(value))
+        fixed(self.shown(value), self.row().decimals)
     }
 
     /// A value as people read it, with its unit.

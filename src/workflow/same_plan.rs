@@ -9,6 +9,9 @@ use crate::{
 /// Plans whose angles differ by less are the same, rad.
 const SAME_RAD: f64 = 1e-3;
 
+/// Rows are stamped so much early or late, s: angles may differ by what the plan moves in it.
+const JITTER_S: f64 = 0.01;
+
 /// Rounds that bring a plan onto the clock of another at most, the longest step of one, and one that is none any more, s. A slow plan
 /// creeps from its rest for seconds before it is seen to move.
 const ROUNDS: usize = 40;
@@ -36,7 +39,7 @@ pub(super) fn found_at_s(plan: &Series, log: &Series, near_s: f64) -> Result<Opt
             break;
         }
     }
-    let same = planned.tracks.len() == plan.tracks.len() && within(&planned, plan, SAME_RAD);
+    let same = planned.tracks.len() == plan.tracks.len() && alike(&planned, plan);
     Ok(same.then_some(starts_s))
 }
 
@@ -79,6 +82,54 @@ fn ahead_s(planned: &Series, plan: &Series) -> f64 {
         }
     }
     if square > 0.0 { (along / square).clamp(-MOST_AHEAD_S, MOST_AHEAD_S) } else { 0.0 }
+}
+
+/// Whether no angle differs by more than stamps do that are a little early or late.
+fn alike(series: &Series, plan: &Series) -> bool {
+    plan.tracks.iter().all(|plan| {
+        let Some(track) = series.track(plan.name()).filter(|track| track.len() == plan.len()) else {
+            return false;
+        };
+        let speed_rad_s = |k: usize| {
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(plan.len() - 1));
+            let over_s = plan.t_s()[after] - plan.t_s()[before];
+            if over_s > 0.0 { (plan.position()[after] - plan.position()[before]).abs() / over_s } else { 0.0 }
+        };
+        let pairs = track.position().iter().zip(plan.position()).enumerate();
+        pairs.into_iter().all(|(k, (a, b))| (a - b).abs() < SAME_RAD + JITTER_S * speed_rad_s(k))
+    })
+}
+
+/// Whether two signals are of the same rows, nearly: a stamp that is late is late for both.
+pub(super) fn of_same_rows(series: &Series, other: &Series) -> bool {
+    let same = |track: &Track| {
+        other.track(track.name()).is_some_and(|other| {
+            let known = |t_s: &&f64| other.t_s().binary_search_by(|own_s| own_s.total_cmp(t_s)).is_ok();
+            track.t_s().iter().filter(known).count() * 10 >= 9 * track.len()
+        })
+    };
+    !series.tracks.is_empty() && series.tracks.iter().all(same)
+}
+
+/// What belongs to the plan of a log, by its rows, brought onto the plan that this is another record of: what it was off by stays
+/// the same.
+pub(super) fn onto(series: &Series, own: &Series, plan: &Series) -> Result<Series, SignalError> {
+    let one = |track: &Track| {
+        let Some((own, plan)) = own.track(track.name()).zip(plan.track(track.name())) else {
+            return Ok(track.clone());
+        };
+        let by = |(t_s, position): (&f64, &f64)| {
+            position + plan.held_at(*t_s).position - own.held_at(*t_s).position
+        };
+        let position = track.t_s().iter().zip(track.position()).map(by).collect();
+        let cuts: Vec<usize> = track.segments().iter().skip(1).map(|segment| segment.start).collect();
+        let made = Track::of(track.kind(), track.name(), track.t_s(), position, &cuts)?;
+        match track.velocity() {
+            Some(speed) => made.with_velocity(speed.to_vec()),
+            None => Ok(made),
+        }
+    };
+    Ok(Series { tracks: series.tracks.iter().map(one).collect::<Result<_, _>>()? })
 }
 
 /// Whether no angle differs by so much.
@@ -191,5 +242,28 @@ mod tests {
             let found = found_at_s(&plan, &log, 5.0 + off_s).unwrap();
             assert!(found.is_some_and(|at_s| (at_s - 5.0).abs() < 1e-3), "{off_s} s: {found:?}");
         }
+    }
+
+    #[test]
+    fn stamps_that_jitter_make_no_other_plan_and_hide_no_error() {
+        // From rest to rest, sampled where the stamps say that it was not.
+        let sigmoid = |stretch: f64, late_s: f64, off: f64| {
+            let t_s: Vec<f64> = (0..3000).map(|k| f64::from(k) * 0.01).collect();
+            let late = |k: usize| late_s * ((k * 7919 % 101) as f64 / 50.0 - 1.0);
+            let at = |(k, t): (usize, &f64)| off + 0.8 * ((t + late(k) - 15.0) / stretch).tanh();
+            let position = t_s.iter().enumerate().map(at).collect();
+            Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] }
+        };
+        let plan = sigmoid(2.0, 0.0, 0.0);
+        let found = |log: &Series| found_at_s(&plan, log, 0.0).unwrap();
+        let jittered = sigmoid(2.0, 0.009, 0.0);
+        assert!(!within(&jittered, &plan, SAME_RAD));
+        assert!(found(&jittered).is_some_and(|at_s| at_s.abs() < 1e-3));
+        assert_eq!(found(&sigmoid(2.05, 0.0, 0.0)), None);
+        assert_eq!(found(&sigmoid(2.0, 0.05, 0.0)), None);
+        let measured = sigmoid(2.0, 0.009, 0.02);
+        assert!(of_same_rows(&measured, &jittered));
+        let moved = onto(&measured, &jittered, &plan).unwrap();
+        assert!(within(&moved, &sigmoid(2.0, 0.0, 0.02), 1e-9));
     }
 }

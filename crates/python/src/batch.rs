@@ -62,7 +62,7 @@ pub(crate) fn rows_of(
         going_on.flat_map(|log| of_log(table, &request, log)).collect::<Vec<_>>()
     })?;
     let added = if table == TableName::Runs { &[][..] } else { &ADDED[..] };
-    Table::of(&[table.columns(), added].concat(), &rows)
+    Table::of(&[&table.columns()[..], added].concat(), &rows)
 }
 
 /// The rows of one log, at least one.

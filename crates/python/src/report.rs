@@ -78,7 +78,7 @@ impl Report {
         let rows = fleet::rows(&log, &found);
         let table = |name: TableName| {
             let own = rows.iter().filter(|(table, _)| *table == name);
-            Table::of(name.columns(), &own.map(|(_, row)| row.clone()).collect::<Vec<_>>())
+            Table::of(&name.columns(), &own.map(|(_, row)| row.clone()).collect::<Vec<_>>())
         };
         Ok(Self {
             transitions: table(TableName::Transitions)?,

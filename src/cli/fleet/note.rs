@@ -2,13 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::{
-    CliError, Outcome, Run,
-    answers::date,
-    console::{Console, Target},
-};
+use super::{CliError, Outcome, Run, answers::date, console::Console};
 use crate::{
-    document::pretty,
     remark::Remarks,
     render::fleet as words,
     workflow::fleet::{Note, Notes, note, notes},
@@ -56,12 +51,12 @@ impl Run for Args {
             made = Some(note(&self.dataset, &one)?);
         }
         let found = Notes::of(&notes(&self.dataset, self.machine.as_deref())?);
-        let target = Target::stdout(self.json);
-        let result = if self.json {
-            pretty(&found)
-        } else {
-            target.text(&words::notes(&found, made.as_ref(), &self.dataset))
-        };
-        console.finish(&target, &result, &Remarks::default(), &[])
+        console.answer(
+            self.json,
+            &found,
+            || words::notes(&found, made.as_ref(), &self.dataset),
+            &Remarks::default(),
+            &[],
+        )
     }
 }

@@ -4,11 +4,10 @@ use std::{num::NonZeroUsize, ops::ControlFlow, path::PathBuf, time::Duration};
 
 use super::{
     CliError, Outcome, Run,
-    console::{Console, Target, progress},
+    console::{Console, progress},
     read::ReadArgs,
 };
 use crate::{
-    document::pretty,
     remark::Remarks,
     render::fleet as words,
     workflow::fleet::{Inputs, MachineFrom, compact, scan},
@@ -95,9 +94,7 @@ impl Run for Args {
         });
         bar.finish_and_clear();
         let done = done?;
-        let target = Target::stdout(self.json);
-        let result = if self.json { pretty(&done) } else { target.text(&words::scanned(&done)) };
-        console.finish(&target, &result, &done.remarks, &[])
+        console.answer(self.json, &done, || words::scanned(&done), &done.remarks, &[])
     }
 }
 
@@ -116,8 +113,6 @@ pub(super) struct CompactArgs {
 impl Run for CompactArgs {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let done = compact(&self.dataset)?;
-        let target = Target::stdout(self.json);
-        let result = if self.json { pretty(&done) } else { target.text(&words::compacted(&done)) };
-        console.finish(&target, &result, &Remarks::default(), &[])
+        console.answer(self.json, &done, || words::compacted(&done), &Remarks::default(), &[])
     }
 }

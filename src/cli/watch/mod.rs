@@ -4,6 +4,7 @@ mod serve;
 
 use std::{
     cell::RefCell,
+    io::ErrorKind,
     sync::atomic::{AtomicBool, Ordering},
     time::Duration,
 };
@@ -120,7 +121,8 @@ impl Run for Args {
         );
         bar.finish_and_clear();
         let watched = watched?;
-        if let Some(error) = failed.into_inner() {
+        // A reader that has left ends the watch; what it saw is judged.
+        if let Some(error) = failed.into_inner().filter(|error| error.kind() != ErrorKind::BrokenPipe) {
             return Err(CliError::Output(error));
         }
         let target = Target::stdout(self.json);

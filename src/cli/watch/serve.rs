@@ -93,17 +93,9 @@ mod tests {
         }
         assert_eq!(page("/pages/M07-run-0a1b2c3d.html").unwrap(), Path::new("pages/M07-run-0a1b2c3d.html"));
         for path in [
-            "",
-            "index.html",
-            "/../index.html",
-            "/pages/../index.html",
-            "/pages/..%2Findex.html",
-            "/pages/.html",
-            "/pages/a.json",
-            "/runs/schema=1/part.parquet",
-            "/pages//etc/passwd.html",
-            "http://elsewhere/",
-            "/pages/.lock",
+            "", "index.html", "/../index.html", "/pages/../index.html", "/pages/..%2Findex.html",
+            "/pages/.html", "/pages/a.json", "/runs/schema=1/part.parquet", "/pages//etc/passwd.html",
+            "http://elsewhere/", "/pages/.lock",
         ] {
             assert_eq!(page(path), None, "{path}");
         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{
     super::{FitError, JointFit, Model, model::STEP_S},
-    JointStep, Learning, Room, Step, Trial,
+    JointStep, Learning, Room, SHARE, Step, Trial,
     answer::Answer,
     correct::{
         Aim, CALM_MODEL_HZ, Manner, NONE_RAD, Workspace, faded, first, inverted, largest, rms,
@@ -37,6 +37,9 @@ const FINISHED_BY_CUT_OFF: f64 = 2.0;
 
 /// The same of a correction that is kept: it was finished when it was sent.
 const KEPT_HZ: f64 = 8.0;
+
+/// A part of another run's correction that differs by more is told, rad.
+const TOLD_RAD: f64 = 0.1 * DEGREE_RAD;
 
 /// Errors are compared below this, Hz.
 const COMPARED_HZ: f64 = 1.5;
@@ -124,9 +127,9 @@ impl<'a> Joint<'a> {
         };
         let unaided_rad = self.sent.iter().zip(&errors).next().map_or(0.0, unaided);
         let sent_rad = self.sent.iter().map(|sent| largest(sent)).fold(0.0, f64::max);
-        let most_rad = settings.most(self.kind).unwrap_or(
-            CAP_RAD.max(CAP_BY_ERROR * largest_rad.max(unaided_rad)).max(sent_rad / settings.share),
-        );
+        let most_rad = settings
+            .most(self.kind)
+            .unwrap_or(CAP_RAD.max(CAP_BY_ERROR * largest_rad.max(unaided_rad)).max(sent_rad / SHARE));
         let rms_error_rad: Vec<f64> = errors.iter().map(|error_rad| compared(error_rad)).collect();
         let nothing = vec![[0.0; 3]; self.planned.len()];
         let mut made = JointStep {
@@ -163,27 +166,25 @@ impl<'a> Joint<'a> {
         let fade = fade(self.planned.len(), free);
         let (step, wanted_rad) = if let Some(from) = kept {
             let (from, _) = unspoilt(from, &self.sent, &self.whole_rad());
-            let mut kept = self.sent[from].clone();
+            let (mut kept, mut but) = (self.sent[from].clone(), None);
             // Also of a command that is kept as a whole, not what left more error than less of it.
             for held in &made.stalled {
                 let (steps, less) = (held.steps.clone(), &self.sent[held.from][held.steps.clone()]);
                 let smaller = largest(less) < largest(&kept[steps.clone()]);
                 if smaller && Left::of(&errors[from][steps.clone()]).rms_rad > held.error_rad {
+                    let apart = less.iter().zip(&kept[steps.clone()]).map(|(a, b)| a - b);
+                    but = but.or((largest(&apart.collect::<Vec<f64>>()) > TOLD_RAD).then_some(held.from));
                     kept[steps].copy_from_slice(less);
                 }
             }
-            (Step::Kept { from }, kept)
+            (Step::Kept { from, but }, kept)
         } else {
             let name = self.name;
             let within = |wanted_rad: &[f64]| {
                 let mut wanted_rad = wanted_rad.to_vec();
                 faded(&mut wanted_rad, &fade);
-                let wanted = Wanted {
-                    correction_rad: &wanted_rad,
-                    cut_off_hz: finished_hz(&manner),
-                    most_rad,
-                    share: settings.share,
-                };
+                let wanted =
+                    Wanted { correction_rad: &wanted_rad, cut_off_hz: finished_hz(&manner), most_rad };
                 shaped(wanted, free, room(name).as_ref()).into_iter().map(|state| state[0]).collect()
             };
             let (step, mut wanted_rad) =
@@ -198,17 +199,23 @@ impl<'a> Joint<'a> {
             Step::Kept { .. } => KEPT_HZ,
             _ => finished_hz(&manner),
         };
+        let mut room = room(self.name);
+        if matches!(step, Step::Kept { .. }) {
+            // What was sent had its share of known limits, and of others nobody knows more than that it was sent: a share of what
+            // is left would clip it a little more each time.
+            room = room.filter(|room| room.share < 1.0).map(|room| Room { share: 1.0, ..room });
+        }
         // Runs in which the joint was not measured count, too.
         let of_run = |from: usize| self.answers[from].of_run;
         made.step = match step {
             Step::Later { from, gain } => Step::Later { from: of_run(from), gain },
             Step::Rest { from, share } => Step::Rest { from: of_run(from), share },
-            Step::Kept { from } => Step::Kept { from: of_run(from) },
+            Step::Kept { from, but } => Step::Kept { from: of_run(from), but: but.map(of_run) },
             other => other,
         };
         made.stalled.iter_mut().for_each(|held| held.from = of_run(held.from));
-        let wanted = Wanted { correction_rad: &wanted_rad, cut_off_hz, most_rad, share: settings.share };
-        made.correction = shaped(wanted, free, room(self.name).as_ref());
+        let wanted = Wanted { correction_rad: &wanted_rad, cut_off_hz, most_rad };
+        made.correction = shaped(wanted, free, room.as_ref());
         made
     }
 
@@ -254,7 +261,8 @@ impl<'a> Joint<'a> {
             let by_model = inverted(&fit.model, manner, (planned, fade), aim, workspace);
             return (Step::Model, scaled(by_model, gain));
         };
-        if answers.len() == 1 && (settings.anew || largest(&sent[0]) <= NONE_RAD) {
+        let plain = sent.iter().all(|sent| largest(sent) <= NONE_RAD);
+        if plain || (answers.len() == 1 && settings.anew) {
             let (wanted, model_weight) =
                 first(&fit.model, manner, (planned, fade), newest, fit.held_out_r2, workspace);
             return (Step::First { model_weight }, scaled(wanted, gain));
@@ -263,7 +271,7 @@ impl<'a> Joint<'a> {
         let (from, trust) = match unspoilt(from, sent, &whole) {
             // One correction may be mended by the next; twice is enough.
             (_, 0 | 1) => (from, trust),
-            (other, _) => return (Step::Kept { from: other }, sent[other].clone()),
+            (other, _) => return (Step::Kept { from: other, but: None }, sent[other].clone()),
         };
         let usual = match manner.character {
             Character::Calm => GAINS[0],

@@ -14,7 +14,7 @@ use std::ops::Range;
 
 pub use answer::AFTER_S;
 pub use oscillation::{Character, Oscillation};
-pub use shape::Room;
+pub use shape::{Room, SHARE};
 pub use spoilt::MORE_ERROR;
 pub use stalled::Stalled;
 
@@ -46,8 +46,6 @@ pub struct Learning {
     pub most_rad: Option<f64>,
     /// The same of a joint that slides, m.
     pub most_m: Option<f64>,
-    /// Share of the room around the plan that is used.
-    pub share: f64,
     /// The run whose correction is to be kept.
     pub keep: Option<usize>,
     /// Whether the only run is the first of a machine that has changed: its correction was made for another one, and the next
@@ -57,7 +55,7 @@ pub struct Learning {
 
 impl Default for Learning {
     fn default() -> Self {
-        Self { gain: 1.0, most_rad: None, most_m: None, share: 0.95, keep: None, anew: false }
+        Self { gain: 1.0, most_rad: None, most_m: None, keep: None, anew: false }
     }
 }
 
@@ -100,6 +98,9 @@ pub enum Step {
     Kept {
         /// The run.
         from: usize,
+        /// The run (by index) whose smaller correction is taken in a motion in which it left less error.
+        #[serde(default)]
+        but: Option<usize>,
     },
     /// None: the joint does not follow its plan; its error is more than half of its motion.
     Astray,
@@ -211,7 +212,7 @@ impl Learning {
 
     fn check(&self) -> Result<(), FitError> {
         let [most_rad, most_m] = [self.most_rad, self.most_m].map(Option::unwrap_or_default);
-        let all = [("gain", self.gain), ("most_rad", most_rad), ("most_m", most_m), ("share", self.share)];
+        let all = [("gain", self.gain), ("most_rad", most_rad), ("most_m", most_m)];
         for (key, found) in all {
             if !(0.0..=1.0).contains(&found) {
                 return Err(FitError::Setting { key, found, least: 0.0, most: 1.0 });

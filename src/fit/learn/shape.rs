@@ -19,6 +19,9 @@ const KNOT_S: f64 = KNOT as f64 * STEP_S;
 /// Degree of the spline; its third derivative is continuous.
 const DEGREE: usize = 5;
 
+/// Share of what known limits leave that is used: a controller's curve goes a little beyond the command's samples.
+pub const SHARE: f64 = 0.95;
+
 /// What a joint may do beside its plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Room {
@@ -30,6 +33,8 @@ pub struct Room {
     pub planned: Vec<[f64; 4]>,
     /// Lowest and highest speed by step, rad/s, as rods, pump and tool have it; empty where they leave any.
     pub speed_rad_s: Vec<[f64; 2]>,
+    /// Share of the room that is used.
+    pub share: f64,
 }
 
 impl Room {
@@ -63,8 +68,6 @@ pub(super) struct Wanted<'a> {
     pub(super) cut_off_hz: f64,
     /// Largest, rad.
     pub(super) most_rad: f64,
-    /// Share of the room that may be used.
-    pub(super) share: f64,
 }
 
 /// The curve next to what is wanted, zero outside of `free` and, with its first four derivatives, at the ends of
@@ -175,7 +178,7 @@ impl Part<'_> {
                         let column = j.checked_sub(back).filter(|column| *column < self.count)?;
                         Some((column, way * weight))
                     });
-                    rows.push((entries.collect(), wanted.share * bound / unit));
+                    rows.push((entries.collect(), room.share * bound / unit));
                 }
             }
         }
@@ -201,7 +204,7 @@ mod tests {
     const N: usize = 1200;
 
     fn wanted(correction_rad: &[f64]) -> Wanted<'_> {
-        Wanted { correction_rad, cut_off_hz: 1.2, most_rad: 0.1, share: 1.0 }
+        Wanted { correction_rad, cut_off_hz: 1.2, most_rad: 0.1 }
     }
 
     #[test]
@@ -227,7 +230,13 @@ mod tests {
     fn a_step_is_softened_until_every_limit_is_kept_and_no_more() {
         let step: Vec<f64> = (0..N).map(|k| if (400..800).contains(&k) { 0.05 } else { 0.0 }).collect();
         let planned = (0..N).map(|k| [0.0, 0.05 * (k as f64 * 0.01).sin(), 0.1, 0.0]).collect();
-        let room = Room { range_rad: [-0.02, 0.03], most: [0.1, 0.2, 0.4], planned, speed_rad_s: Vec::new() };
+        let room = Room {
+            range_rad: [-0.02, 0.03],
+            most: [0.1, 0.2, 0.4],
+            planned,
+            speed_rad_s: Vec::new(),
+            share: 1.0,
+        };
         let curve = shaped(wanted(&step), std::slice::from_ref(&(0..N)), Some(&room));
         let (mut nearest, mut before) = ([0.0_f64; 4], 0.0);
         for (state, planned) in curve.iter().zip(&room.planned) {
@@ -249,7 +258,13 @@ mod tests {
     fn a_plan_at_its_limit_or_beyond_leaves_no_room_but_zero() {
         let step = vec![0.05; N];
         let planned = vec![[0.0, 0.1, 0.2, 0.4]; N];
-        let room = Room { range_rad: [-1.0, 1.0], most: [0.1, 0.1, 0.1], planned, speed_rad_s: Vec::new() };
+        let room = Room {
+            range_rad: [-1.0, 1.0],
+            most: [0.1, 0.1, 0.1],
+            planned,
+            speed_rad_s: Vec::new(),
+            share: 1.0,
+        };
         let curve = shaped(wanted(&step), std::slice::from_ref(&(0..N)), Some(&room));
         assert!(curve.iter().all(|state| state[0].abs() < 1e-6));
         assert!(shaped(wanted(&step), &[0..40, 100..101], None).iter().all(|state| state[0] == 0.0));

@@ -223,23 +223,8 @@ impl Look<'_> {
     /// Whether a column is named as how long something took, which is no instant.
     fn is_span(&self, column: usize) -> bool {
         const SPANS: [&str; 17] = [
-            "exec",
-            "execution",
-            "cycle",
-            "scan",
-            "task",
-            "loop",
-            "jitter",
-            "latency",
-            "period",
-            "interval",
-            "dt",
-            "delta",
-            "age",
-            "processing",
-            "compute",
-            "zyklus",
-            "laufzeit",
+            "exec", "execution", "cycle", "scan", "task", "loop", "jitter", "latency", "period", "interval",
+            "dt", "delta", "age", "processing", "compute", "zyklus", "laufzeit",
         ];
         let says = |label: &Label| label.words.iter().any(|word| SPANS.contains(&word.as_str()));
         self.labels.get(column).is_some_and(says)

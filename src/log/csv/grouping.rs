@@ -225,12 +225,9 @@ mod tests {
     #[test]
     fn decimals_stay() {
         for text in [
-            "t;q [m]\n0;1,380\n1;1,381\n",
-            "t;q [mm]\n0,000;1,380\n0,010;1,381\n",
-            "t,q [deg]\n0,1.380\n1,1.381\n",
-            "t;q [mm]\n0;1.380\n1;1.38\n",
-            "t;q [mm]\n0;12,000\n20;12,003\n",
-            "t;q\n0;it's 1\n1;2\n",
+            "t;q [m]\n0;1,380\n1;1,381\n", "t;q [mm]\n0,000;1,380\n0,010;1,381\n",
+            "t,q [deg]\n0,1.380\n1,1.381\n", "t;q [mm]\n0;1.380\n1;1.38\n",
+            "t;q [mm]\n0;12,000\n20;12,003\n", "t;q\n0;it's 1\n1;2\n",
         ] {
             assert_eq!(of(text), (text.to_owned(), 0));
         }
@@ -241,10 +238,8 @@ mod tests {
         let quoted = |text: &str| has_quoted_commas("a.csv", text.as_bytes(), &CsvOptions::default());
         assert!(quoted("t,a,b\n\"0,0\",\"1,5\",2\n\"0,1\",\"1,6\",2\n"));
         for text in [
-            "t,a,b\n1,\"1,500\",2\n2,\"1,600\",2\n",
-            "t,a,b\n0.5,\"1,5\",2\n1.5,\"1,6\",2\n",
-            "t;a;b\n0,0;1,5;2\n0,1;1,6;2\n",
-            "t,a,b\n0,1,2\n",
+            "t,a,b\n1,\"1,500\",2\n2,\"1,600\",2\n", "t,a,b\n0.5,\"1,5\",2\n1.5,\"1,6\",2\n",
+            "t;a;b\n0,0;1,5;2\n0,1;1,6;2\n", "t,a,b\n0,1,2\n",
         ] {
             assert!(!quoted(text), "{text}");
         }

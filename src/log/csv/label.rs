@@ -49,21 +49,7 @@ const PLACE: [&str; 3] = ["x", "y", "z"];
 const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 
 /// Headers that are a time, whatever their words mean; the second as `LabVIEW` names it.
-const TIMES: [&str; 13] = [
-    "t",
-    "X_Value",
-    "ts",
-    "s",
-    "sec",
-    "secs",
-    "seconds",
-    "ms",
-    "millis",
-    "milliseconds",
-    "micros",
-    "duration",
-    "datenum",
-];
+const TIMES: &str = "t X_Value ts s sec secs seconds ms millis milliseconds micros duration datenum";
 
 /// Reads a header; `below` is the cell of a row of units.
 pub(super) fn label(header: &str, below: Option<&str>) -> Label {
@@ -93,7 +79,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     }
     let mut words = words(name);
     let bare = name.trim_matches(|c: char| !c.is_alphanumeric());
-    let named = TIMES.iter().any(|time| bare.eq_ignore_ascii_case(time));
+    let named = TIMES.split(' ').any(|time| bare.eq_ignore_ascii_case(time));
     if named {
         unit = unit.or_else(|| unit_named(bare));
     }
@@ -145,9 +131,12 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let (of_topic, words) = words.split_at(topic(&words));
     let joint = joint_name(words);
     let owner = if joint == NAMELESS { owner(of_topic) } else { String::new() };
-    // Of a tool, not of a joint; such a position is told like that of a joint that slides.
+    // Of a tool, not of a joint; such a position is told like that of a joint that slides. `Portal X` and `Achse X` are joints.
+    let is_place = |text: &str| PLACE.iter().any(|place| text.eq_ignore_ascii_case(place));
+    let places =
+        words.iter().all(|word| word.meaning != Meaning::Foreign || is_place(word.text)) && role.is_some();
     let place =
-        role.is_some() && measure == Some(Measure::Length) && PLACE.contains(&joint.to_lowercase().as_str());
+        places && (measure == Some(Measure::Length) || !is_place(&joint) && (long || means(Meaning::Joint)));
     // `q_dot_dot` is an acceleration.
     let foreign = (means(Meaning::Foreign) || dots > 1) && !place;
     let is_joint = !timely && fits && !foreign && (strong || role.is_some() || long);
@@ -325,14 +314,8 @@ mod tests {
     #[test]
     fn what_is_no_joint_angle_is_not_taken_for_one() {
         for header in [
-            "actual_current_0",
-            "target_moment_1",
-            "actual_TCP_pose_0",
-            "target_qdd_0",
-            "temperature",
-            "pressure_set [bar]",
-            "J1_error_rad",
-            "counter",
+            "actual_current_0", "target_moment_1", "actual_TCP_pose_0", "target_qdd_0", "temperature",
+            "pressure_set [bar]", "J1_error_rad", "counter",
         ] {
             assert!(!label(header, None).is_joint, "{header}");
         }
@@ -346,7 +329,18 @@ mod tests {
             assert_eq!(said, ("boom", Some(Role::Planned), Some(unit)), "{header}");
             assert!(label.is_joint && label.is_weak, "{header}");
         }
-        assert!(!label("tool x [mm]", None).is_joint);
+        for not in
+            ["tool x [mm]", "TCP X Soll [mm]", "x_soll [mm/s]", "Kraft X Ist", "Beschleunigung X ist [mm/s]"]
+        {
+            assert!(!label(not, None).is_joint, "{not}");
+        }
+        for (header, joint) in [
+            ("Fahrwerk X Soll [mm]", "Fahrwerk_X"),
+            ("Achse X ist", "Achse_X"),
+            ("X-Achse Ist [mm/s]", "X_Achse"),
+        ] {
+            assert_eq!(said(header).2, joint);
+        }
     }
 
     #[test]
@@ -367,15 +361,7 @@ mod tests {
     #[test]
     fn times_are_known_by_name() {
         for header in [
-            "t",
-            "time",
-            "Zeit [ms]",
-            "timestamp",
-            "stamp_ns",
-            "time_s",
-            "Datum",
-            "t[s]",
-            "Time (us)",
+            "t", "time", "Zeit [ms]", "timestamp", "stamp_ns", "time_s", "Datum", "t[s]", "Time (us)",
             "t_set_s",
         ] {
             assert!(label(header, None).is_time, "{header}");

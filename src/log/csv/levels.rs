@@ -157,9 +157,7 @@ mod tests {
     #[test]
     fn other_headers_are_left() {
         for header in [
-            "t,a,b,c,d",
-            "x,x,x,x,x\nt,a,b,c,d",
-            ",boom,boom,boom,boom\n,set,act,set,act",
+            "t,a,b,c,d", "x,x,x,x,x\nt,a,b,c,d", ",boom,boom,boom,boom\n,set,act,set,act",
             ",a,a,b,b\n,set,,set,",
         ] {
             assert_eq!(of(&format!("{header}\n0.5,1,2,3,4\n1.5,1,2,3,4\n")), None, "{header}");

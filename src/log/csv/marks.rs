@@ -233,9 +233,7 @@ mod tests {
             assert_eq!(of(text, &open).as_deref(), Some(plain), "{text}");
         }
         for text in [
-            "t;q\n0,010;1,5\n0,020;1,150\n",
-            "t;q\n0,010;1,5\n0,020;1.5\n",
-            "t,q\n0.010,1.5\n0.020,x\n",
+            "t;q\n0,010;1,5\n0,020;1,150\n", "t;q\n0,010;1,5\n0,020;1.5\n", "t,q\n0.010,1.5\n0.020,x\n",
             "t q\n0.010 1.5\n0.020 100 200\n",
         ] {
             assert_eq!(of(text, &open), None, "{text}");

@@ -19,30 +19,9 @@ use crate::remark::Remarks;
 
 /// Headers of columns that say of which machine a row is.
 const MACHINES: [&str; 24] = [
-    "machine",
-    "machine_id",
-    "machineid",
-    "machine_name",
-    "maschine",
-    "maschine_id",
-    "robot",
-    "robot_id",
-    "robot_name",
-    "vehicle",
-    "vehicle_id",
-    "asset",
-    "asset_id",
-    "device",
-    "device_id",
-    "deviceid",
-    "equipment",
-    "equipment_id",
-    "excavator",
-    "crane",
-    "serial",
-    "serial_number",
-    "serial_no",
-    "hostname",
+    "machine", "machine_id", "machineid", "machine_name", "maschine", "maschine_id", "robot", "robot_id",
+    "robot_name", "vehicle", "vehicle_id", "asset", "asset_id", "device", "device_id", "deviceid",
+    "equipment", "equipment_id", "excavator", "crane", "serial", "serial_number", "serial_no", "hostname",
 ];
 
 /// More of them than these are not listed.

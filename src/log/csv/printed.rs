@@ -68,17 +68,6 @@ mod tests {
     }
 
     #[test]
-    fn tables_of_databases_and_of_markdown_are_rows_of_cells() {
-        for text in [
-            " t  | plan | meas \n----+------+------\n  0 |  1.5 | 2\n  1 |      | 3\n(2 rows)\n\n",
-            "+----+------+------+\n| t  | plan | meas |\n+----+------+------+\n| 0 | 1.5 | 2 |\n| 1 | | 3 |\n+----+------+------+\n2 rows in set\n",
-            "# Run 7\n\nof May\n\n| t | plan | meas |\n|--:|:----:|------|\n| 0 | 1.5 | 2 |\n| 1 | | 3 |\n\nThe end.\n",
-        ] {
-            assert_eq!(of(text).as_deref(), Some("t\tplan\tmeas\n0\t1.5\t2\n1\t\t3\n"), "{text}");
-        }
-    }
-
-    #[test]
     fn other_texts_two_tables_and_rows_of_other_widths_are_left() {
         for text in [
             "t|q\n0|1\n1|2\n",

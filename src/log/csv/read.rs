@@ -28,6 +28,8 @@ pub(super) struct Column {
     pub(super) numbers: u64,
     /// Cells that hold something that is no finite number.
     bad: u64,
+    /// Those of them that say that there was no number.
+    absent: u64,
     /// The first of these and its line.
     example: Option<(String, u64)>,
 }
@@ -234,6 +236,7 @@ impl Column {
             self.numbers += 1;
         } else if !cell.trim_ascii().is_empty() {
             self.bad += 1;
+            self.absent += u64::from(says_absent(cell));
             self.example.get_or_insert_with(|| (clip(&cell_text(cell)), line));
         }
         self.values.push(value.unwrap_or(f64::NAN));
@@ -256,12 +259,12 @@ impl Column {
         let marks = self.example.as_ref().is_some_and(|(text, _)| text.contains(mark));
         // Whole numbers look the same with either mark: a tenth of others says that it is wrong.
         let most = if marks { self.numbers / 10 } else { self.numbers };
-        if self.bad > most {
+        if self.bad - self.absent > most {
             return Err(CsvError::NoNumbers {
                 column: name.to_owned(),
                 numbers: self.numbers,
                 decimal: if dialect.decimal_comma { "comma" } else { "point" },
-                bad: self.bad,
+                bad: self.bad - self.absent,
                 example: such,
                 fix: match (marks, dialect.decimal_comma) {
                     (true, false) => "say --decimal-comma",
@@ -276,6 +279,12 @@ impl Column {
         remarks.add(Code::NotFinite, all, format!("cells of {name:?}, all of them, are empty"));
         Ok(())
     }
+}
+
+/// Whether a cell says that there was no number, as a sensor does that is not up yet.
+fn says_absent(cell: &[u8]) -> bool {
+    const WORDS: [&[u8]; 9] = [b"nan", b"inf", b"-inf", b"na", b"n/a", b"#n/a", b"null", b"none", b"-"];
+    WORDS.iter().any(|word| cell.trim_ascii().eq_ignore_ascii_case(word))
 }
 
 /// Drops rows that no message can be stamped with; how many.

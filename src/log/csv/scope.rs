@@ -169,32 +169,9 @@ mod tests {
     }
 
     #[test]
-    fn signals_with_properties_are_a_table_with_a_clock_each() {
-        let above = "Name;New Project\nFile;a.csv\nStart;133500000000000000;Monday\n\n";
-        let text = format!(
-            "{above}Name;a;Name;b\nPath;boom.set;Path;boom.act\nSampleTime[ms];20;SampleTime[ms];40\n\
-             ScaleFactor;1;ScaleFactor;2\nUnit;deg;Unit;(None)\n\n0;1,5;0;2\n20;2,5;40;3\n40;3,5\nEOF\n"
-        );
-        let table =
-            "Time [ms]\tboom.set [deg]\tTime [ms]\tboom.act\n0\t1,5\t0\t2\n20\t2,5\t40\t3\n40\t3,5\t\t\n";
-        assert_eq!(of(&text), Some((table.to_owned(), 1)));
-        let one = "Name\tboom.set\tboom.act\t\nType\tREAL\tREAL\t\nSampleTime[ms]\t20\t20\t\n0\t1\t2\t\n2\t1\t2\t\n";
-        // Types say nothing of joints, and a path less than the name.
-        let typed = one.replace("REAL\tREAL", "REAL64\tREAL32").replace("Type", "Data-Type");
-        let typed = typed.replace("SampleTime", "SymbolName\tMAIN.a.act1\tMAIN.b.act2\t\nSampleTime");
-        let typed = typed.replace("boom.act", "bit");
-        assert_eq!(of(&typed).unwrap().0.lines().next(), Some("Time\tboom.set\tbit"));
-        assert_eq!(of(one), Some(("Time\tboom.set\tboom.act\n0\t1\t2\n2\t1\t2\n".to_owned(), 0)));
-    }
-
-    #[test]
     fn other_tables_are_left() {
         for text in [
-            "t;q;r\n0;1;2\n",
-            "a;1;b\nt;q;r\n0;1;2\n",
-            "t;q;t;r\nt;q;s;r\n0;1;0;2\n",
-            "Name;a;Name;b\n",
-            "",
+            "t;q;r\n0;1;2\n", "a;1;b\nt;q;r\n0;1;2\n", "t;q;t;r\nt;q;s;r\n0;1;0;2\n", "Name;a;Name;b\n", "",
             "Name;a;Name\n0;1;2\n",
         ] {
             assert_eq!(of(text), None, "{text}");

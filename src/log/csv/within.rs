@@ -75,15 +75,8 @@ mod tests {
         }
         assert_eq!(said("joint_deg_10").0, Some("deg"));
         for header in [
-            "vorn_rad_ist",
-            "rad_1_ist",
-            "arm_m_act",
-            "deg2_act",
-            "a_deg_mm_b",
-            "grader_act",
-            "boom_speed_deg_act",
-            "theta_dot_deg_1",
-            "j1_deg_s2_act",
+            "vorn_rad_ist", "rad_1_ist", "arm_m_act", "deg2_act", "a_deg_mm_b", "grader_act",
+            "boom_speed_deg_act", "theta_dot_deg_1", "j1_deg_s2_act",
         ] {
             assert_eq!(said(header).0, None, "{header}");
         }

@@ -142,7 +142,7 @@ mod tests {
 
     use super::*;
     use crate::log::{
-        decode::{Program, Texts, Want},
+        decode::{Program, Want},
         schema::Definition,
     };
 
@@ -159,7 +159,6 @@ mod tests {
         fn numbers(&mut self, slot: Slot, values: Numbers<'_>) {
             self.0.push((slot, values.to_vec(), String::new()));
         }
-        fn texts(&mut self, _slot: Slot, _values: Texts<'_>) {}
         fn element(&mut self, slot: Slot) {
             if slot == Slot::MAX {
                 self.0.clear();
@@ -167,10 +166,6 @@ mod tests {
                 self.0.push((slot, Vec::new(), String::new()));
             }
         }
-        fn expected_texts(&self, _slot: Slot) -> Option<&[u8]> {
-            None
-        }
-        fn same_texts(&mut self, _slot: Slot) {}
     }
 
     const TEXT: &str = "float64[] skipped\nstring name\nfloat32[] wanted\nstring other\nfloat64 last";

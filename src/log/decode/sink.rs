@@ -5,23 +5,25 @@ use crate::log::schema::Number;
 /// Which wanted field a value belongs to; the asker numbers them.
 pub(in crate::log) type Slot = u8;
 
-/// Receives the wanted fields of one message in the order in which they lie in it.
+/// Receives the wanted fields of one message in the order in which they lie in it; what it has no use for it need not take.
 pub(in crate::log) trait Sink {
     /// A single number.
     fn number(&mut self, slot: Slot, value: f64);
     /// A single text, without its terminator.
-    fn text(&mut self, slot: Slot, text: &[u8]);
+    fn text(&mut self, _slot: Slot, _text: &[u8]) {}
     /// A list of numbers.
-    fn numbers(&mut self, slot: Slot, values: Numbers<'_>);
+    fn numbers(&mut self, _slot: Slot, _values: Numbers<'_>) {}
     /// A list of texts.
-    fn texts(&mut self, slot: Slot, values: Texts<'_>);
+    fn texts(&mut self, _slot: Slot, _values: Texts<'_>) {}
     /// An element of a wanted list of structs starts; its fields follow.
-    fn element(&mut self, slot: Slot);
+    fn element(&mut self, _slot: Slot) {}
     /// The bytes of the list of texts last seen in this slot, if the sink can tell a repetition
     /// from them; it is then told by [`Sink::same_texts`] and the list is not walked.
-    fn expected_texts(&self, slot: Slot) -> Option<&[u8]>;
+    fn expected_texts(&self, _slot: Slot) -> Option<&[u8]> {
+        None
+    }
     /// The list of texts is the one that was expected.
-    fn same_texts(&mut self, slot: Slot);
+    fn same_texts(&mut self, _slot: Slot) {}
 }
 
 /// A list of numbers as it lies in the message.

@@ -136,12 +136,6 @@ impl Sink for Message {
     fn element(&mut self, slot: Slot) {
         self.said.push((slot, Said::Element));
     }
-
-    fn expected_texts(&self, _: Slot) -> Option<&[u8]> {
-        None
-    }
-
-    fn same_texts(&mut self, _: Slot) {}
 }
 
 /// Fields of an object that date it.

@@ -33,19 +33,8 @@ const MOST_TOPICS: usize = 3_000;
 
 /// Packages whose messages hold no joints that are not known already.
 const OTHERS: [&str; 14] = [
-    "sensor_msgs",
-    "geometry_msgs",
-    "nav_msgs",
-    "tf2_msgs",
-    "tf",
-    "visualization_msgs",
-    "diagnostic_msgs",
-    "rosgraph_msgs",
-    "rcl_interfaces",
-    "action_msgs",
-    "foxglove",
-    "foxglove_msgs",
-    "shape_msgs",
+    "sensor_msgs", "geometry_msgs", "nav_msgs", "tf2_msgs", "tf", "visualization_msgs", "diagnostic_msgs",
+    "rosgraph_msgs", "rcl_interfaces", "action_msgs", "foxglove", "foxglove_msgs", "shape_msgs",
     "trajectory_msgs",
 ];
 

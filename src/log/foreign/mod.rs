@@ -31,7 +31,12 @@ const SQLITE: &[u8] = b"SQLite format 3\0";
 const PARQUET: &[u8] = b"PAR1";
 
 /// What is open as a log, whatever its form; what is no form known here is left as it is.
-pub(super) fn log_of(path: &Path, source: Source, remarks: &mut Remarks) -> Result<Source, LogError> {
+pub(super) fn log_of(
+    path: &Path,
+    source: Source,
+    columns: &CsvOptions,
+    remarks: &mut Remarks,
+) -> Result<Source, LogError> {
     let source = packed::unpacked(source).map_err(LogError::file("open", path))?;
     let mut start = Vec::new();
     source.read(LOOKED_AT, &mut start).map_err(LogError::file("read", path))?;
@@ -44,11 +49,11 @@ pub(super) fn log_of(path: &Path, source: Source, remarks: &mut Remarks) -> Resu
                 parquet::table(&source, nested)
                     .map_err(|error| LogError::Form { path: path.to_owned(), reason: error.to_string() })
             },
-            |text| table::log(path, text, remarks),
+            |text| table::log(path, text, columns, remarks),
         ),
         bytes if is_table(&packed::name_within(path), bytes) => {
             let text = source.whole().map_err(LogError::file("read", path))?;
-            table::log(path, &text, remarks)
+            table::log(path, &text, columns, remarks)
         }
         _ => Ok(source),
     }

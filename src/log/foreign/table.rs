@@ -12,12 +12,17 @@ use crate::{
     remark::Remarks,
 };
 
-/// The log that a table becomes if nobody says more about it than the file itself.
-pub(super) fn log(path: &Path, text: &[u8], remarks: &mut Remarks) -> Result<Source, LogError> {
+/// The log that a table becomes by the file itself and what is said of its columns.
+pub(super) fn log(
+    path: &Path,
+    text: &[u8],
+    columns: &CsvOptions,
+    remarks: &mut Remarks,
+) -> Result<Source, LogError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let fault =
         |source| LogError::Table { path: path.to_owned(), source: Box::new(source), given: Given::default() };
-    let run = read_csv_bytes(&name, text, &CsvOptions::default()).map_err(fault)?;
+    let run = read_csv_bytes(&name, text, columns).map_err(fault)?;
     remarks.extend(run.remarks.clone());
     Ok(run.write(Vec::new()).map_err(|error| fault(error.into()))?.into())
 }

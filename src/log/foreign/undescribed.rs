@@ -2,7 +2,7 @@
 //! a message fit.
 
 use crate::log::{
-    decode::{LayoutCache, Numbers, Program, Sink, Slot, Texts},
+    decode::{LayoutCache, Program, Sink, Slot},
     schema::{Definition, plain_name},
     write::ros2msg,
 };
@@ -107,14 +107,6 @@ struct Nothing;
 
 impl Sink for Nothing {
     fn number(&mut self, _: Slot, _: f64) {}
-    fn text(&mut self, _: Slot, _: &[u8]) {}
-    fn numbers(&mut self, _: Slot, _: Numbers<'_>) {}
-    fn texts(&mut self, _: Slot, _: Texts<'_>) {}
-    fn element(&mut self, _: Slot) {}
-    fn expected_texts(&self, _: Slot) -> Option<&[u8]> {
-        None
-    }
-    fn same_texts(&mut self, _: Slot) {}
 }
 
 #[cfg(test)]

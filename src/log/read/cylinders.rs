@@ -15,7 +15,7 @@ use crate::{
     log::{
         csv::LengthUnit,
         error::LogError,
-        joint_kind::{self, doubt_cylinders},
+        joint_kind::{self, doubt_sliding},
         options::ReadOptions,
         source::AXES,
     },
@@ -134,7 +134,7 @@ impl Kinds {
         let Some(Conversion { rods, into, file }) = &self.conversion else {
             let turning =
                 tracks().filter(|track| !self.told && track.turns() && !self.stated.contains(track.name()));
-            doubt_cylinders(turning.map(Track::name), remarks);
+            doubt_sliding(turning.map(Track::name), remarks);
             return Ok(());
         };
         let mut found = tracks().filter_map(|track| Some((track, rods.of(track.name())?))).peekable();

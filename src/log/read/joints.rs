@@ -15,9 +15,9 @@ pub(super) fn add_new(series: &mut Series, tracks: Vec<Track>) {
     }
 }
 
-/// Keeps the joints that the caller named, in the caller's order.
+/// Keeps the joints that the caller named, in the caller's order; a side that is not there has none.
 pub(super) fn keep_joints(series: &mut Series, wanted: &[String]) -> Result<(), LogError> {
-    if wanted.is_empty() {
+    if wanted.is_empty() || series.tracks.is_empty() {
         return Ok(());
     }
     let mut kept = Vec::with_capacity(wanted.len());

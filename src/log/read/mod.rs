@@ -78,7 +78,7 @@ use {
 /// # Ok::<(), hydrotrace::log::LogError>(())
 /// ```
 pub fn read_recording(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, LogError> {
-    let files = LogFiles::open(paths).map_err(|error| error.given(options))?;
+    let files = LogFiles::with(paths.iter().cloned(), options)?;
     files.scan()?.read(options)
 }
 
@@ -97,7 +97,7 @@ pub fn read_plan(paths: &[PathBuf], options: &ReadOptions) -> Result<Recording, 
 ///
 /// [`LogError`] if a file cannot be opened or is no log.
 pub fn survey(paths: &[PathBuf], options: &ReadOptions) -> Result<Survey, LogError> {
-    LogFiles::open(paths).map_err(|error| error.given(options))?.survey(options)
+    LogFiles::with(paths.iter().cloned(), options)?.survey(options)
 }
 
 /// As [`survey`] of one file in memory, for fuzzing.

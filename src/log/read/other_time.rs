@@ -1,7 +1,7 @@
 //! Finds measurements that follow their plan at another time: clocks that differ, or a run at another speed.
 
 use crate::{
-    math::quantile,
+    math::{deviation, quantile},
     series::{Series, Track},
 };
 
@@ -107,8 +107,9 @@ impl<'a> Both<'a> {
         let (t_s, q) = (measured.t_s().get(within.clone())?, measured.position().get(within)?);
         let step = t_s.len().div_ceil(INSTANTS).max(1);
         let came: Vec<[f64; 2]> = t_s.iter().zip(q).step_by(step).map(|(t_s, q)| [*t_s, *q]).collect();
-        let motion = spread(came.iter().map(|[t_s, _]| planned.held_at(*t_s).position));
-        let moved = spread(came.iter().map(|[_, q]| *q));
+        let motion =
+            deviation(&came.iter().map(|[t_s, _]| planned.held_at(*t_s).position).collect::<Vec<f64>>());
+        let moved = deviation(&came.iter().map(|[_, q]| *q).collect::<Vec<f64>>());
         (motion > TELLS && moved > MOVED * motion).then_some(Self { planned, measured, came, motion })
     }
 
@@ -162,13 +163,6 @@ impl Steps {
         let (from, to) = (self.position[before], self.position[(before + 1).min(self.position.len() - 1)]);
         from + (steps - steps.floor()) * (to - from)
     }
-}
-
-/// Root mean square distance from the mean.
-fn spread(values: impl ExactSizeIterator<Item = f64> + Clone) -> f64 {
-    let count = values.len() as f64;
-    let mean = values.clone().sum::<f64>() / count;
-    (values.map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 /// That of the joint in the middle, by the position that the plan of each has at an instant; NaN without a joint.

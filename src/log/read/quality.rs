@@ -290,7 +290,8 @@ fn of_units(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &
     } else if plan_rad.min(angle_rad) > TURN_AND_A_HALF_RAD && !options.continuous.iter().any(|c| c == name) {
         let message = format!(
             "{name} spans {angle_rad:.1} rad in plan and measurement: both in degrees? then say \
-             --planned-degrees --measured-degrees; or, if it has no end stops, --continuous {name}"
+             --planned-degrees --measured-degrees; or, if it slides, --slides {name}=mm (of a table that was imported, import it \
+             so); or, if it has no end stops, --continuous {name}"
         );
         remarks.add(Code::LooksLikeDegrees, 1, message);
     }

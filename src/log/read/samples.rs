@@ -118,6 +118,7 @@ pub(super) fn samples(
     let mut found = Vec::new();
     let mut gap = Gaps::default();
     let (mut spikes, mut lost) = (0, 0);
+    let mut first = None;
     let velocity_field = table.fields[field].velocity.filter(|_| positions);
     for (joint, name) in table.joints.clone().into_iter().enumerate() {
         let mut column =
@@ -133,9 +134,12 @@ pub(super) fn samples(
             // Far from the epoch neighbouring nanoseconds are the same second.
             kept.dedup_by(|later, earlier| axis.t_s[*later] <= axis.t_s[*earlier]);
             if positions {
+                let before = kept.clone();
                 // A zero is a reading that was lost before it is a jump.
                 lost += drop_lost(&mut kept, &axis.t_s, at);
                 spikes += drop_spikes(&mut kept, &axis.t_s, at);
+                let dropped = before.iter().find(|i| kept.binary_search(i).is_err());
+                first = first.or_else(|| dropped.map(|&i| (name.clone(), axis.t_s[i])));
             }
             let (t_s, cuts, jumps) = axis.kept(&kept);
             gap.note(&t_s, &cuts, &jumps);
@@ -146,12 +150,13 @@ pub(super) fn samples(
         found.push(Samples { name, instants, values, velocity });
     }
     gap.remark(topic, remarks);
+    let first = first.map_or(String::new(), |(joint, t_s)| format!(", first of {joint} at {t_s:.2} s"));
     let message =
-        format!("values of {topic} that no joint can have (a jump there and back at once), dropped");
+        format!("values of {topic} that no joint can have (a jump there and back at once){first}; dropped");
     remarks.add(Code::Implausible, spikes, message);
     let message = format!(
         "values of {topic} that are exactly 0 once, between values that agree and are not near it: readings that were \
-         lost; dropped"
+         lost{first}; dropped"
     );
     remarks.add(Code::Implausible, lost, message);
     found

@@ -10,6 +10,7 @@ use super::copy::{Copier, CopyError, copy_files};
 use crate::{
     atomic_file::write_atomically,
     log::{
+        csv::CsvOptions,
         error::LogError,
         file::{Blocks, Loss, MessageRecord, Opcode, records},
         files::ScannedFile,
@@ -45,7 +46,7 @@ pub struct Recovered {
 /// [`LogError`] if `log` is no log at all, or `output` cannot be written.
 pub fn recover(log: &Path, output: &Path) -> Result<Recovered, LogError> {
     let mut doubts = Remarks::default();
-    let (_, source) = Input::Path(log.to_owned()).open(&mut doubts)?;
+    let (_, source) = Input::Path(log.to_owned()).open(&CsvOptions::default(), &mut doubts)?;
     let file = ScannedFile::of(log, &source)?;
     let layout = &file.layout;
     let mut remarks = doubts;

@@ -117,8 +117,6 @@ impl Sink for Plans {
         }
     }
 
-    fn text(&mut self, _slot: Slot, _text: &[u8]) {}
-
     fn numbers(&mut self, slot: Slot, values: Numbers<'_>) {
         let Some(point) = self.current().points.last_mut() else { return };
         match slot {
@@ -155,10 +153,4 @@ impl Sink for Plans {
             _ => {}
         }
     }
-
-    fn expected_texts(&self, _slot: Slot) -> Option<&[u8]> {
-        None
-    }
-
-    fn same_texts(&mut self, _slot: Slot) {}
 }

@@ -1,7 +1,7 @@
 //! Poses of frames: one a message, a path of them, or transforms of many frames.
 
 use super::{Field, Form, Role, Table, slot, table::stamp_ns};
-use crate::log::decode::{Numbers, Sink, Slot, Texts};
+use crate::log::decode::{Sink, Slot};
 
 /// What the components of a pose are called where joints have names: x, y, z in m, then a unit quaternion.
 pub(in crate::log) const AXES: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
@@ -198,10 +198,6 @@ impl Sink for Poses {
         }
     }
 
-    fn numbers(&mut self, _slot: Slot, _values: Numbers<'_>) {}
-
-    fn texts(&mut self, _slot: Slot, _values: Texts<'_>) {}
-
     fn element(&mut self, slot: Slot) {
         if slot == Slot::MAX {
             self.message.clear();
@@ -211,10 +207,4 @@ impl Sink for Poses {
         self.stamp = (0.0, 0.0);
         self.names.iter_mut().for_each(String::clear);
     }
-
-    fn expected_texts(&self, _slot: Slot) -> Option<&[u8]> {
-        None
-    }
-
-    fn same_texts(&mut self, _slot: Slot) {}
 }

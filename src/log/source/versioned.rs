@@ -155,8 +155,6 @@ impl Sink for Versioned {
         }
     }
 
-    fn text(&mut self, _slot: Slot, _text: &[u8]) {}
-
     fn numbers(&mut self, slot: Slot, values: Numbers<'_>) {
         if slot == slot::VALUES {
             self.message.values = values.to_vec();
@@ -174,10 +172,4 @@ impl Sink for Versioned {
             self.message = Message::default();
         }
     }
-
-    fn expected_texts(&self, _slot: Slot) -> Option<&[u8]> {
-        None
-    }
-
-    fn same_texts(&mut self, _slot: Slot) {}
 }

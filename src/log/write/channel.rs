@@ -45,41 +45,37 @@ pub(super) struct MessageType {
     hash: &'static str,
 }
 
-pub(super) const JOINT_STATE: MessageType = MessageType {
-    package: "sensor_msgs",
-    name: "JointState",
-    hash: "RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e",
-};
+const fn message(package: &'static str, name: &'static str, hash: &'static str) -> MessageType {
+    MessageType { package, name, hash }
+}
 
-pub(super) const JOINT_TRAJECTORY: MessageType = MessageType {
-    package: "trajectory_msgs",
-    name: "JointTrajectory",
-    hash: "RIHS01_179b33eba59d676f6d967ac71fe35e7ca2f64b2f3928f4a018cec115e213796e",
-};
-
-pub(super) const CONTROLLER_STATE: MessageType = MessageType {
-    package: "control_msgs",
-    name: "JointTrajectoryControllerState",
-    hash: "RIHS01_51d8dd89cc624cbe9daaeeb4d80d6de9b86168ffdc3be41fefc0953e3c26e480",
-};
-
-pub(super) const DYNAMIC_JOINT_STATE: MessageType = MessageType {
-    package: "control_msgs",
-    name: "DynamicJointState",
-    hash: "RIHS01_18024c98a62697680f581108eeed40b28fb4542fa0ac5a8e36f56c62b6813d26",
-};
-
-pub(super) const TEXT: MessageType = MessageType {
-    package: "std_msgs",
-    name: "String",
-    hash: "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",
-};
-
-pub(super) const TRANSFORMS: MessageType = MessageType {
-    package: "tf2_msgs",
-    name: "TFMessage",
-    hash: "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
-};
+pub(super) const JOINT_STATE: MessageType = message(
+    "sensor_msgs",
+    "JointState",
+    "RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e",
+);
+pub(super) const JOINT_TRAJECTORY: MessageType = message(
+    "trajectory_msgs",
+    "JointTrajectory",
+    "RIHS01_179b33eba59d676f6d967ac71fe35e7ca2f64b2f3928f4a018cec115e213796e",
+);
+pub(super) const CONTROLLER_STATE: MessageType = message(
+    "control_msgs",
+    "JointTrajectoryControllerState",
+    "RIHS01_51d8dd89cc624cbe9daaeeb4d80d6de9b86168ffdc3be41fefc0953e3c26e480",
+);
+pub(super) const DYNAMIC_JOINT_STATE: MessageType = message(
+    "control_msgs",
+    "DynamicJointState",
+    "RIHS01_18024c98a62697680f581108eeed40b28fb4542fa0ac5a8e36f56c62b6813d26",
+);
+pub(super) const TEXT: MessageType =
+    message("std_msgs", "String", "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18");
+pub(super) const TRANSFORMS: MessageType = message(
+    "tf2_msgs",
+    "TFMessage",
+    "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
+);
 
 /// A topic; the log learns of it with its first message.
 #[derive(Debug)]

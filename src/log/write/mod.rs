@@ -345,17 +345,9 @@ impl Channels {
 
     fn all(&self) -> [&Channel; 11] {
         [
-            &self.planned,
-            &self.measured,
-            &self.command,
-            &self.controller_state,
-            &self.trajectory,
-            &self.interfaces,
-            &self.description,
-            &self.planned_description,
-            &self.transforms,
-            &self.fixed_transforms,
-            &self.tracking_error,
+            &self.planned, &self.measured, &self.command, &self.controller_state, &self.trajectory,
+            &self.interfaces, &self.description, &self.planned_description, &self.transforms,
+            &self.fixed_transforms, &self.tracking_error,
         ]
     }
 }

@@ -75,6 +75,12 @@ impl Aim {
         Self { merit, scale: 1.0, ceilings, pace: Pace::Sought, guard: 1.0 }
     }
 
+    /// The least time, whatever the other objectives.
+    pub(super) fn fastest() -> Self {
+        let merit = Merit::alone(Objective::Duration);
+        Self { merit, scale: 1.0, ceilings: Ceilings::NONE, pace: Pace::Fastest, guard: 1.0 }
+    }
+
     /// Of a plan; the less the better.
     pub(super) fn merit(&self, objectives: &Objectives) -> f64 {
         self.scale * self.merit.of(objectives) + SETTLE * objectives[Objective::RmsJerk].ln()

@@ -2,6 +2,7 @@
 //! band, of every joint its own where nothing joins them; the intervals are the border.
 
 use super::row::Row;
+use crate::math::dot;
 
 /// Pivots below this share of their diagonal are raised to it.
 const LEAST_PIVOT: f64 = 1e-14;
@@ -268,10 +269,6 @@ fn first(row: usize, width: usize) -> usize {
 /// A pivot's root, of a diagonal less a sum.
 fn pivot(diagonal: f64, sum: f64) -> f64 {
     (diagonal - sum).max(LEAST_PIVOT * diagonal.abs()).max(f64::MIN_POSITIVE).sqrt()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn banded(a: &mut [f64], width: usize) {

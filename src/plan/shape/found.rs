@@ -95,10 +95,29 @@ pub fn smoother(
     sought(setup, timing, Aim::smoother(ceilings), ceilings, pieces)
 }
 
+/// From the times; where ceilings leave no better plan that way, from the shape that keeps them best.
 fn sought(
     setup: &Setup,
     timing: &Timing,
-    mut aim: Aim,
+    aim: Aim,
+    ceilings: &Ceilings,
+    pieces: Option<usize>,
+) -> Result<Shape, NoShape> {
+    let bound = |k: &Objective| ceilings[*k].is_finite();
+    let from = |first: Option<Aim>| sought_from(setup, timing, (first, aim), ceilings, pieces);
+    let mut found = from(None);
+    for first in [Aim::fastest(), Aim::smoother(ceilings)] {
+        if found == Err(NoShape::NoGain) && Objective::OF_PLAN.iter().any(bound) {
+            found = from(Some(first));
+        }
+    }
+    found
+}
+
+fn sought_from(
+    setup: &Setup,
+    timing: &Timing,
+    (first, mut aim): (Option<Aim>, Aim),
     ceilings: &Ceilings,
     pieces: Option<usize>,
 ) -> Result<Shape, NoShape> {
@@ -118,6 +137,11 @@ fn sought(
     }
     let (mut frame, mut curve) = start(setup, &timing.interval_s, coarse).ok_or(NoShape::NoGain)?;
     let mut steps = 0;
+    if let Some(first) = first {
+        let end = descend(&frame, curve, &first, (STEPS, ENOUGH)).ok_or(NoShape::NoGain)?;
+        steps += end.steps;
+        curve = end.curve;
+    }
     while coarse < pieces {
         let end = descend(&frame, curve, &aim, (STEPS, ENOUGH)).ok_or(NoShape::NoGain)?;
         steps += end.steps;

@@ -4,6 +4,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::{factor::Bordered, row::Row};
+use crate::math::dot;
 
 /// Price of breaking the linearised limits, against weights of the merit that sum to one.
 pub(super) const PRICE: f64 = 20.0;
@@ -206,10 +207,6 @@ impl Programme<'_> {
             .collect();
         State { x, s, z, nu }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// A factored system to which squares of a few dense rows are added (Woodbury).

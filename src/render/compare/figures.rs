@@ -1,8 +1,8 @@
 //! The plots of a comparison one by one.
 
 use super::{
-    kind,
     page::{change_rows, error_charts, pair_charts},
+    together,
 };
 use crate::{
     render::{
@@ -14,7 +14,7 @@ use crate::{
         metric::unit,
     },
     replay::Dimension,
-    workflow::compare::{Comparison, Scope},
+    workflow::compare::Comparison,
 };
 
 /// The plots of a comparison.
@@ -24,16 +24,18 @@ use crate::{
 /// What the drawing library says.
 pub(crate) fn figures(comparison: &Comparison) -> Result<Vec<Figure>, Failure> {
     let mut figures = Vec::new();
-    let changes = change_rows(comparison);
-    if !changes.is_empty() {
-        let unit = unit(Dimension::Position, kind(comparison, &Scope::All));
-        let label = format!("Mean change of the peak error ({unit})");
-        let svg = rows(&changes, &label, 1.0, Paper::FIGURE)?;
-        figures.push(Figure { name: "change-of-peak-error".to_owned(), svg });
+    for (k, all) in together(comparison).enumerate() {
+        let changes = change_rows(comparison, all.kind);
+        if !changes.is_empty() {
+            let label = format!("Mean change of the peak error ({})", unit(Dimension::Position, all.kind));
+            let svg = rows(&changes, &label, 1.0, Paper::FIGURE)?;
+            let name = if k == 0 { "change-of-peak-error" } else { "change-of-peak-error-sliding" };
+            figures.push(Figure { name: name.to_owned(), svg });
+        }
     }
     if !comparison.pairs.is_empty() {
         for (name, chart) in pair_charts(comparison) {
-            figures.push(figure(&format!("pairs-{}", name.replace(' ', "-")), &chart)?);
+            figures.push(figure(&format!("pairs-{}", name.replace(", ", "-").replace(' ', "-")), &chart)?);
         }
     }
     figures.extend(numbered("error", &error_charts(comparison))?);

@@ -14,7 +14,7 @@ use super::{kit::NONE, metric::Units};
 use crate::{
     replay::Dimension,
     series::JointKind,
-    workflow::compare::{Change, Comparison, Scope, Verdict},
+    workflow::compare::{Change, Comparison, Figures, Scope, Verdict},
 };
 
 /// Whether the joints of a scope turn or slide.
@@ -22,6 +22,22 @@ fn kind(comparison: &Comparison, scope: &Scope) -> JointKind {
     let scope = if *scope == Scope::Starts { &Scope::All } else { scope };
     let of = comparison.whole_run.iter().find(|figures| figures.scope == *scope);
     of.map_or(JointKind::Turns, |figures| figures.kind)
+}
+
+/// The figures of all joints together, or of each kind where they have no unit in common.
+fn together(comparison: &Comparison) -> impl Iterator<Item = &Figures> {
+    let of_kinds = [Scope::Turning, Scope::Sliding];
+    let both = comparison.whole_run.iter().any(|figures| of_kinds.contains(&figures.scope));
+    let is = move |scope: &Scope| if both { of_kinds.contains(scope) } else { *scope == Scope::All };
+    comparison.whole_run.iter().filter(move |figures| is(&figures.scope))
+}
+
+fn together_name(scope: &Scope) -> &'static str {
+    match scope {
+        Scope::Turning => "joints that turn",
+        Scope::Sliding => "joints that slide",
+        _ => "all joints",
+    }
 }
 
 fn scope(scope: &Scope) -> String {

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::{kind, scope, short::verdicts, tables::document};
+use super::{kind, scope, short::verdicts, tables::document, together, together_name};
 use crate::{
     render::{
         kit::{
@@ -20,8 +20,9 @@ use crate::{
         metric::{number, on_paper, position, unit},
     },
     replay::{Dimension, Keyed, Metric, PEAK_ERROR, Transition},
-    series::Pair,
-    workflow::compare::{Change, Comparison, Scope, TransitionPair, Verdict},
+    series::{JointKind, Pair},
+    text::capital,
+    workflow::compare::{Change, Comparison, Figures, Scope, TransitionPair, Verdict},
 };
 
 /// Places of a series at most, nearly.
@@ -37,11 +38,7 @@ pub(crate) fn page(comparison: &Comparison, most: usize) -> String {
         Chapter { id: "summary", heading: "In short", body: summary(comparison) },
         Chapter { id: "pairs", heading: "Every transition", body: scatters(comparison, &mut plots) },
         Chapter { id: "joints", heading: "Error over the run", body: runs(comparison, &mut plots) },
-        Chapter {
-            id: "numbers",
-            heading: "Numbers",
-            body: html! { @for section in numbers { (headed(section)) } },
-        },
+        Chapter::new("numbers", "Numbers", html! { @for section in numbers { (headed(section)) } }),
     ];
     chapters.extend(Chapter::of(document.section(Id::REMARKS), "Remarks on the data"));
     chapters.extend(Chapter::of(document.section(Id::METHOD), "Method"));
@@ -55,11 +52,11 @@ fn summary(comparison: &Comparison) -> Markup {
         div class="cards" {
             (change(comparison))
             (verdict(&kept, &lines))
-            (whole_run(comparison))
+            @for all in together(comparison) { (whole_run(all)) }
             (at_the_tool(comparison))
         }
         h3 { "Mean change of the peak error, with its 95 % interval" }
-        (intervals(&change_rows(comparison)))
+        @for all in together(comparison) { (intervals(&change_rows(comparison, all.kind))) }
     }
 }
 
@@ -86,8 +83,7 @@ fn change(comparison: &Comparison) -> Markup {
     card(class, "Peak error at transitions", headline, &body)
 }
 
-fn whole_run(comparison: &Comparison) -> Markup {
-    let Some(all) = comparison.whole_run.first() else { return html! {} };
+fn whole_run(all: &Figures) -> Markup {
     let arrow = |key: &str| match all.changes.get(key) {
         Change { before: Some(before), after: Some(after), .. } => {
             format!("{} -> {}", position(all.kind, before), position(all.kind, after))
@@ -98,7 +94,8 @@ fn whole_run(comparison: &Comparison) -> Markup {
         p { "peak " (arrow("peak")) }
         p { "rms at standstill " (arrow("standstill_rms")) }
     };
-    card("", "Rms error, whole run", &arrow("rms"), &body)
+    let whose = if all.scope == Scope::All { "whole run" } else { together_name(&all.scope) };
+    card("", &format!("Rms error, {whose}"), &arrow("rms"), &body)
 }
 
 fn at_the_tool(comparison: &Comparison) -> Markup {
@@ -116,9 +113,11 @@ fn at_the_tool(comparison: &Comparison) -> Markup {
     card("", "At the tool, at worst", &arrow("worst_m").unwrap_or_default(), &body)
 }
 
-/// Mean changes of the peak error, degrees or millimetres: of all pairs, of starts from rest, of each joint.
-pub(super) fn change_rows(comparison: &Comparison) -> Vec<Row> {
+/// Mean changes of the peak error of joints of a kind, degrees or millimetres: of all pairs, of starts from rest, of each joint.
+pub(super) fn change_rows(comparison: &Comparison, of: JointKind) -> Vec<Row> {
+    let is = |scope: &Scope| kind(comparison, scope) == of;
     let of = comparison.summaries.iter().filter(|summary| summary.measure.key == PEAK_ERROR);
+    let of = of.filter(|summary| is(&summary.scope));
     let rows = of.filter_map(|summary| {
         let mean = summary.mean_difference?;
         let interval = summary.interval_95;
@@ -151,27 +150,35 @@ fn scatters(comparison: &Comparison, plots: &mut Plots) -> Markup {
 }
 
 /// Every pair of transitions, after over before: a chart for each metric that is compared.
-pub(super) fn pair_charts(comparison: &Comparison) -> Vec<(&'static str, Chart)> {
-    let chart = |metric: &'static Metric<Transition>| {
-        let of_all = kind(comparison, &Scope::All);
-        let unit = unit(metric.dimension, of_all);
+pub(super) fn pair_charts(comparison: &Comparison) -> Vec<(String, Chart)> {
+    let kinds: Vec<JointKind> = together(comparison).map(|all| all.kind).collect();
+    let chart = |(metric, of): (&'static Metric<Transition>, JointKind)| {
+        let apart = metric.dimension.is_of_joint() && kinds.len() > 1;
+        let unit = unit(metric.dimension, of);
         let place = |value: f64, pair: &TransitionPair| {
             let of_joint = metric.dimension.is_of_joint();
             rounded(if of_joint { on_paper(pair.joint_kind, value) } else { 1e3 * value })
         };
         let labels = ["before", "after"].map(|side| format!("{} {side} ({unit})", capital(metric.name)));
-        let chart = scatter(comparison, &capital(metric.name), labels, |pair| {
+        let whose = match (apart, of) {
+            (false, _) => "",
+            (true, JointKind::Turns) => ", joints that turn",
+            (true, JointKind::Slides) => ", joints that slide",
+        };
+        let name = format!("{}{whose}", metric.name);
+        let chart = scatter(comparison, &capital(&name), labels, |pair| {
             let change = pair.changes.get(metric.key);
-            Some((place(change.before?, pair), place(change.after?, pair)))
+            let both = change.before.zip(change.after).filter(|_| !apart || pair.joint_kind == of);
+            both.map(|(before, after)| (place(before, pair), place(after, pair)))
         });
-        (metric.name, chart)
+        (name, chart)
     };
-    Metric::<Transition>::rows().into_iter().map(chart).collect()
-}
-
-fn capital(name: &str) -> String {
-    let (first, rest) = name.split_at(1);
-    first.to_uppercase() + rest
+    let kinds_of = |metric: &Metric<Transition>| {
+        let all = if metric.dimension.is_of_joint() { kinds.len() } else { 1 };
+        kinds.iter().copied().take(all)
+    };
+    let rows = Metric::<Transition>::rows().into_iter();
+    rows.flat_map(|metric| kinds_of(metric).map(move |kind| (metric, kind))).map(chart).collect()
 }
 
 fn scatter(

@@ -1,6 +1,6 @@
 //! A comparison in three lines, and its limits in one each.
 
-use super::kind;
+use super::{kind, together, together_name};
 use crate::{
     render::{
         kit::{Sentence, counted, mm, optional, percent, probability, signed},
@@ -9,7 +9,9 @@ use crate::{
     },
     replay::{Answer, ONSET_DELAY, PEAK_ERROR},
     series::JointKind,
-    workflow::compare::{Comparison, Form, GateResult, Scope, Summary, TransitionPair, Verdict},
+    workflow::compare::{
+        Comparison, Figures, Form, GateResult, Run, Scope, Summary, TransitionPair, Verdict,
+    },
 };
 
 /// Verdict, whole run, plans; then joints that call for a word, and limits.
@@ -25,12 +27,11 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     lines.extend(of_few_runs(&peaks));
     lines.extend(answers(comparison));
     lines.extend(at_the_tool(comparison).map(|changes| format!("At the tool: {changes}.")));
-    lines.extend(whole_run(comparison));
+    lines.extend(together(comparison).filter_map(whole_run));
     lines.push(plans(comparison));
     lines.extend(comparison.after.iter().filter_map(|run| {
         let of = if comparison.after.len() > 1 { format!(" of {}", run.log) } else { String::new() };
-        let kind = JointKind::common(comparison.pairs.iter().map(|pair| pair.joint_kind));
-        promise::sentence(run.promised.as_ref()?, kind, &of)
+        promise::sentence(run.promised.as_ref()?, comparison.pairs.iter().map(|pair| pair.joint_kind), &of)
     }));
     lines.into_iter().map(Sentence::Finding).chain(verdicts(comparison)).collect()
 }
@@ -150,8 +151,7 @@ fn verdict(peak: &Summary, kind: JointKind) -> String {
     }
 }
 
-fn whole_run(comparison: &Comparison) -> Option<String> {
-    let all = comparison.whole_run.first()?;
+fn whole_run(all: &Figures) -> Option<String> {
     let shown = ["rms", "peak", "standstill_rms", "path_rms"];
     let figures =
         all.changes.iter().filter(|(metric, _)| shown.contains(&metric.key)).map(|(metric, change)| {
@@ -161,7 +161,8 @@ fn whole_run(comparison: &Comparison) -> Option<String> {
             both.map(|(before, after)| format!("{} {} -> {}{share}", metric.name, show(before), show(after)))
         });
     let figures: Vec<String> = figures.flatten().collect();
-    (!figures.is_empty()).then(|| format!("Whole run, all joints: {}.", figures.join(", ")))
+    (!figures.is_empty())
+        .then(|| format!("Whole run, {}: {}.", together_name(&all.scope), figures.join(", ")))
 }
 
 /// How far the tool was off, before and after.
@@ -176,11 +177,17 @@ pub(crate) fn at_the_tool(comparison: &Comparison) -> Option<String> {
 }
 
 fn plans(comparison: &Comparison) -> String {
-    let duration = |runs: &[crate::workflow::compare::Run]| runs.first().and_then(|run| run.plan_duration_s);
-    let most = comparison.after.iter().map(|run| run.plan_difference).reduce(|a, b| Some(a?.max(b?)));
-    let apart = most.flatten().map_or("they share too little time to compare them".to_owned(), |most| {
-        format!("at equal times they differ by at most {}", position(kind(comparison, &Scope::All), most))
-    });
+    let duration = |runs: &[Run]| runs.first().and_then(|run| run.plan_duration_s);
+    let most = |of: fn(&Run) -> Option<f64>| {
+        comparison.after.iter().map(of).reduce(|a, b| Some(a?.max(b?))).flatten()
+    };
+    let of_both = most(|run| run.plan_difference_m);
+    let kind = if of_both.is_some() { JointKind::Turns } else { kind(comparison, &Scope::All) };
+    let lengths = of_both.map_or(String::new(), |m| format!(" and {}", position(JointKind::Slides, m)));
+    let apart = most(|run| run.plan_difference)
+        .map_or("they share too little time to compare them".to_owned(), |most| {
+            format!("at equal times they differ by at most {}{lengths}", position(kind, most))
+        });
     let long = match (duration(&comparison.before), duration(&comparison.after)) {
         (Some(before), Some(after)) => format!("{before:.2} s before, {after:.2} s after"),
         _ => "duration unknown".to_owned(),

@@ -13,7 +13,8 @@ use crate::{
     workflow::export::{Chart, Charts, Shown, Worst},
 };
 use message_path::{Modifier, message_path};
-use panel::{Drawn, Layout, Node, Panels, Plot, Tab, ThreeD};
+use panel::{Node, Panels};
+use serde_json::Value;
 
 /// Panels beside one another in a tab of many.
 const COLUMNS: usize = 2;
@@ -25,11 +26,11 @@ const COMMAND: &str = "#009e73";
 const JOINTS: [&str; 7] = ["#e69f00", "#56b4e9", "#009e73", "#f0e442", "#648fff", "#d55e00", "#cc79a7"];
 
 /// Charts as a layout for Foxglove and Lichtblick.
-pub(crate) fn foxglove(charts: &Charts) -> Layout {
+pub(crate) fn foxglove(charts: &Charts) -> Value {
     let mut panels = Panels::default();
     let mut left = Vec::new();
     if !charts.descriptions.is_empty() {
-        left.push((3.0, panels.add("3D", "arm", ThreeD::of(&charts.descriptions))));
+        left.push((3.0, panels.add("3D", "arm", panel::arm(&charts.descriptions))));
     }
     let whole = |shown: Shown| charts.charts.iter().filter(move |chart| chart.shown == shown);
     for (number, chart) in whole(Shown::Error).enumerate() {
@@ -51,12 +52,12 @@ pub(crate) fn foxglove(charts: &Charts) -> Layout {
         let nodes =
             plots.enumerate().map(|(number, plot)| panels.add("Plot", &format!("{id}{}", number + 1), plot));
         if let Some(layout) = panel::grid(&nodes.collect::<Vec<_>>(), COLUMNS) {
-            tabs.push(Tab { title: title.to_owned(), layout });
+            tabs.push((title, layout));
         }
     }
-    let right = panels.tabs("signals", tabs);
+    let right = panels.tabs("signals", &tabs);
     let nodes = [panel::column(left), right].into_iter().flatten().map(|node| (1.0, node)).collect();
-    panels.finish(panel::row(nodes))
+    panels.finish(panel::row(nodes).as_ref())
 }
 
 /// What was written, and how it is opened.
@@ -83,32 +84,20 @@ fn worst(charts: &Charts, panels: &mut Panels) -> Option<Node> {
 }
 
 /// A chart as a plot; `None` if none of its lines has a path.
-fn plot(charts: &Charts, chart: &Chart, near: Option<&Worst>) -> Option<Plot> {
+fn plot(charts: &Charts, chart: &Chart, near: Option<&Worst>) -> Option<Value> {
     let (unit, modifier) = unit(chart.shown, chart.kind);
-    let paths: Vec<Drawn> = chart
-        .lines
-        .iter()
-        .enumerate()
-        .filter_map(|(number, line)| {
-            let topic = charts.topics.get(line.topic)?;
-            Some(Drawn {
-                value: message_path(&topic.topic, &line.path, modifier)?,
-                enabled: true,
-                timestamp_method: if charts.by_header && topic.stamped {
-                    "headerStamp"
-                } else {
-                    "receiveTime"
-                },
-                label: clean(&label(chart, line)),
-                color: color(line.role, number),
-            })
-        })
-        .collect();
+    let drawn = |(number, line): (usize, &Line)| {
+        let topic = charts.topics.get(line.topic)?;
+        let by = if charts.by_header && topic.stamped { "headerStamp" } else { "receiveTime" };
+        let path = message_path(&topic.topic, &line.path, modifier)?;
+        Some(panel::drawn(&path, by, &clean(&label(chart, line)), color(line.role, number)))
+    };
+    let paths: Vec<Value> = chart.lines.iter().enumerate().filter_map(drawn).collect();
     let title = match near {
         Some(worst) => format!("Worst start: {}, {:.1} s", worst.joint, worst.at_s),
         None => chart.joint.clone().unwrap_or_else(|| title(chart.shown).to_owned()),
     };
-    (!paths.is_empty()).then(|| Plot::new(clean(&title), unit, paths, near.map(|worst| worst.window_s)))
+    (!paths.is_empty()).then(|| panel::plot(&clean(&title), unit, &paths, near.map(|worst| worst.window_s)))
 }
 
 fn title(shown: Shown) -> &'static str {

@@ -3,31 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-
-/// A layout as Foxglove and Lichtblick import it.
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub(crate) struct Layout {
-    config_by_id: BTreeMap<String, Panel>,
-    global_variables: BTreeMap<String, String>,
-    user_nodes: BTreeMap<String, String>,
-    playback_config: Playback,
-    #[serde(rename = "layout", skip_serializing_if = "Option::is_none")]
-    root: Option<Node>,
-}
-
-#[derive(Debug, Serialize)]
-struct Playback {
-    speed: u8,
-}
-
-#[derive(Debug, Serialize)]
-#[serde(untagged)]
-pub(super) enum Panel {
-    Plot(Plot),
-    Tabs(Tabs),
-    ThreeD(ThreeD),
-}
+use serde_json::{Value, json};
 
 /// A panel by its id, or two parts of the window.
 #[derive(Debug, Clone, Serialize)]
@@ -43,174 +19,82 @@ pub(super) enum Node {
     },
 }
 
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-#[expect(clippy::struct_excessive_bools, reason = "as Foxglove has it")]
-pub(super) struct Plot {
-    #[serde(rename = "foxglovePanelTitle")]
-    title: String,
-    paths: Vec<Drawn>,
-    x_axis_val: &'static str,
-    y_axis_label: &'static str,
-    is_synced: bool,
-    show_legend: bool,
-    legend_display: &'static str,
-    show_plot_values_in_legend: bool,
-    show_x_axis_labels: bool,
-    show_y_axis_labels: bool,
-    sidebar_dimension: u16,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    min_x_value: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    max_x_value: Option<f64>,
+/// A plot of lines in a unit. With a window its time is its own, else it moves with that of the others.
+pub(super) fn plot(title: &str, unit: &str, paths: &[Value], window_s: Option<[f64; 2]>) -> Value {
+    let mut plot = json!({
+        "foxglovePanelTitle": title,
+        "paths": paths,
+        "xAxisVal": "timestamp",
+        "yAxisLabel": unit,
+        "isSynced": window_s.is_none(),
+        "showLegend": true,
+        "legendDisplay": "floating",
+        "showPlotValuesInLegend": false,
+        "showXAxisLabels": true,
+        "showYAxisLabels": true,
+        "sidebarDimension": 240,
+    });
+    if let Some([from_s, to_s]) = window_s {
+        plot["minXValue"] = json!(from_s);
+        plot["maxXValue"] = json!(to_s);
+    }
+    plot
 }
 
-/// A line of a plot.
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct Drawn {
-    pub(super) value: String,
-    pub(super) enabled: bool,
-    pub(super) timestamp_method: &'static str,
-    pub(super) label: String,
-    pub(super) color: &'static str,
+/// A line of a plot, at stamps of a kind.
+pub(super) fn drawn(value: &str, by: &str, label: &str, color: &str) -> Value {
+    json!({ "value": value, "enabled": true, "timestampMethod": by, "label": label, "color": color })
 }
 
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct Tabs {
-    active_tab_idx: usize,
-    tabs: Vec<Tab>,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct Tab {
-    pub(super) title: String,
-    pub(super) layout: Node,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct ThreeD {
-    #[serde(rename = "foxglovePanelTitle")]
-    title: &'static str,
-    layers: BTreeMap<String, Layer>,
-}
-
-/// The grid, or a robot.
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-struct Layer {
-    #[serde(rename = "layerId")]
-    kind: &'static str,
-    instance_id: String,
-    label: String,
-    visible: bool,
-    frame_locked: bool,
-    order: usize,
-    #[serde(flatten)]
-    robot: Option<Robot>,
-}
-
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-struct Robot {
-    source_type: &'static str,
-    topic: String,
-    frame_prefix: &'static str,
-    display_mode: &'static str,
-}
-
-impl Plot {
-    /// With a window its time is its own, else it moves with that of the others.
-    pub(super) fn new(
-        title: String,
-        unit: &'static str,
-        paths: Vec<Drawn>,
-        window_s: Option<[f64; 2]>,
-    ) -> Self {
-        Self {
-            title,
-            paths,
-            x_axis_val: "timestamp",
-            y_axis_label: unit,
-            is_synced: window_s.is_none(),
-            show_legend: true,
-            legend_display: "floating",
-            show_plot_values_in_legend: false,
-            show_x_axis_labels: true,
-            show_y_axis_labels: true,
-            sidebar_dimension: 240,
-            min_x_value: window_s.map(|[from_s, _]| from_s),
-            max_x_value: window_s.map(|[_, to_s]| to_s),
+/// The robots of some topics on a grid.
+pub(super) fn arm(descriptions: &[String]) -> Value {
+    let layer = |kind: &str, id: &str, label: &str, order: usize| {
+        json!({
+            "layerId": kind, "instanceId": id, "label": label, "visible": true, "frameLocked": true, "order": order,
+        })
+    };
+    let mut layers = json!({ "grid": layer("foxglove.Grid", "grid", "Grid", 1) });
+    for (number, topic) in descriptions.iter().enumerate() {
+        let id = format!("robot{}", number + 1);
+        let mut robot = layer("foxglove.Urdf", &id, topic, number + 2);
+        for (key, value) in
+            [("sourceType", "topic"), ("topic", topic), ("framePrefix", ""), ("displayMode", "auto")]
+        {
+            robot[key] = json!(value);
         }
+        layers[id] = robot;
     }
-}
-
-impl ThreeD {
-    /// The robots of some topics on a grid.
-    pub(super) fn of(descriptions: &[String]) -> Self {
-        let layer = |kind, id: String, label: String, order, robot| {
-            let layer = Layer {
-                kind,
-                instance_id: id.clone(),
-                label,
-                visible: true,
-                frame_locked: true,
-                order,
-                robot,
-            };
-            (id, layer)
-        };
-        let grid = layer("foxglove.Grid", "grid".to_owned(), "Grid".to_owned(), 1, None);
-        let robots = descriptions.iter().enumerate().map(|(number, topic)| {
-            let robot =
-                Robot { source_type: "topic", topic: topic.clone(), frame_prefix: "", display_mode: "auto" };
-            layer("foxglove.Urdf", format!("robot{}", number + 1), topic.clone(), number + 2, Some(robot))
-        });
-        Self { title: "Arm", layers: std::iter::once(grid).chain(robots).collect() }
-    }
-}
-
-impl From<Plot> for Panel {
-    fn from(plot: Plot) -> Self {
-        Self::Plot(plot)
-    }
-}
-
-impl From<ThreeD> for Panel {
-    fn from(panel: ThreeD) -> Self {
-        Self::ThreeD(panel)
-    }
+    json!({ "foxglovePanelTitle": "Arm", "layers": layers })
 }
 
 /// Panels by id.
 #[derive(Debug, Default)]
-pub(super) struct Panels(BTreeMap<String, Panel>);
+pub(super) struct Panels(BTreeMap<String, Value>);
 
 impl Panels {
     /// Adds one; ids are distinct.
-    pub(super) fn add(&mut self, kind: &str, id: &str, panel: impl Into<Panel>) -> Node {
+    pub(super) fn add(&mut self, kind: &str, id: &str, panel: Value) -> Node {
         let id = format!("{kind}!{id}");
-        self.0.insert(id.clone(), panel.into());
+        self.0.insert(id.clone(), panel);
         Node::Panel(id)
     }
 
-    /// Adds tabs, if there are any.
-    pub(super) fn tabs(&mut self, id: &str, tabs: Vec<Tab>) -> Option<Node> {
-        (!tabs.is_empty()).then(|| {
-            let panel = Panel::Tabs(Tabs { active_tab_idx: 0, tabs });
-            self.add("Tab", id, panel)
-        })
+    /// Adds tabs, each a title and what it shows, if there are any.
+    pub(super) fn tabs(&mut self, id: &str, tabs: &[(&str, Node)]) -> Option<Node> {
+        let tabs: Vec<Value> =
+            tabs.iter().map(|(title, layout)| json!({ "title": title, "layout": layout })).collect();
+        (!tabs.is_empty()).then(|| self.add("Tab", id, json!({ "activeTabIdx": 0, "tabs": tabs })))
     }
 
-    pub(super) fn finish(self, root: Option<Node>) -> Layout {
-        Layout {
-            config_by_id: self.0,
-            global_variables: BTreeMap::new(),
-            user_nodes: BTreeMap::new(),
-            playback_config: Playback { speed: 1 },
-            root,
+    /// A layout as Foxglove and Lichtblick import it.
+    pub(super) fn finish(self, root: Option<&Node>) -> Value {
+        let mut layout = json!({
+            "configById": self.0, "globalVariables": {}, "userNodes": {}, "playbackConfig": { "speed": 1 },
+        });
+        if let Some(root) = root {
+            layout["layout"] = json!(root);
         }
+        layout
     }
 }
 

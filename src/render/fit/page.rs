@@ -42,11 +42,7 @@ pub(crate) fn page(fitted: &Fitted, next: Option<&Section>) -> String {
     let mut chapters = vec![
         Chapter { id: "summary", heading: "Is the model good enough?", body: summary(fitted, next) },
         Chapter { id: "joints", heading: "Measured beside predicted", body: drawn(fitted, &mut plots) },
-        Chapter {
-            id: Id::OTHER.0,
-            heading: "The machine",
-            body: html! { @for section in numbers { (headed(section)) } },
-        },
+        Chapter::new(Id::OTHER.0, "The machine", html! { @for section in numbers { (headed(section)) } }),
     ];
     chapters.extend(Chapter::of(document.section(Id::REMARKS), "Remarks on the data"));
     kit::page::page("fit", &document, &chapters, &plots)

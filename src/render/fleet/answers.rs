@@ -75,10 +75,11 @@ pub(super) fn stepped(trend: &JointTrend, step: &LevelStep) -> String {
 pub(in crate::render) fn said(trend: &JointTrend) -> String {
     if let Some(step) = step_of(trend) {
         return format!(
-            "{} {}: the {} changes at once, by {}; q = {}.",
+            "{} {}: the {} changes at once{}, by {}; q = {}.",
             trend.machine,
             trend.joint_and_direction(),
             name(trend.metric),
+            if step.is_sure() { "" } else { ", or within days" },
             stepped(trend, step),
             probability(step.q_value),
         );
@@ -86,6 +87,7 @@ pub(in crate::render) fn said(trend: &JointTrend) -> String {
     let grows = if trend.slope_per_day > 0.0 { "grows" } else { "falls" };
     let unit = shown_unit(&trend.unit);
     let since = trend.since.as_deref().map_or(String::new(), |since| format!(", since {}", day(since)));
+    let since = if trend.changes_throughout() { ", over all runs".to_owned() } else { since };
     format!(
         "{} {}: the {} {grows} by {} {unit} a day ({} {unit}, 95 %){since}; q = {}.",
         trend.machine,

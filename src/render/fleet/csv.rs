@@ -17,18 +17,8 @@ fn key(by: crate::workflow::fleet::By) -> String {
 /// The joints of a fleet.
 pub(crate) fn worst_csv(worst: &Worst) -> String {
     let headings = [
-        "machine",
-        "joint",
-        "metric",
-        "unit",
-        "median",
-        "p95",
-        "largest",
-        "above_fleet",
-        "starts",
-        "runs",
-        "at",
-        "log",
+        "machine", "joint", "metric", "unit", "median", "p95", "largest", "above_fleet", "starts", "runs",
+        "at", "log",
     ];
     let rows = worst.joints.iter().map(|joint| {
         vec![
@@ -52,30 +42,9 @@ pub(crate) fn worst_csv(worst: &Worst) -> String {
 /// The trends of a fleet.
 pub(crate) fn drift_csv(drift: &Drift) -> String {
     let headings = [
-        "machine",
-        "joint",
-        "metric",
-        "unit",
-        "slope_per_day",
-        "slope_low",
-        "slope_high",
-        "p_value",
-        "q_value",
-        "found",
-        "stands_out",
-        "since",
-        "level",
-        "starts",
-        "runs",
-        "days",
-        "is_step",
-        "step_after",
-        "step_by",
-        "step_change",
-        "step_low",
-        "step_high",
-        "step_q_value",
-        "direction",
+        "machine", "joint", "metric", "unit", "slope_per_day", "slope_low", "slope_high", "p_value",
+        "q_value", "found", "stands_out", "since", "level", "starts", "runs", "days", "is_step",
+        "step_after", "step_by", "step_change", "step_low", "step_high", "step_q_value", "direction",
     ];
     let rows = drift.trends.iter().map(|trend| {
         let step = trend.step.as_ref();
@@ -112,22 +81,8 @@ pub(crate) fn drift_csv(drift: &Drift) -> String {
 /// What a change did.
 pub(crate) fn effect_csv(effect: &Effect) -> String {
     let headings = [
-        "machine",
-        "at",
-        "joint",
-        "metric",
-        "unit",
-        "before",
-        "change",
-        "change_low",
-        "change_high",
-        "usual_change",
-        "rank",
-        "machines",
-        "p_value",
-        "q_value",
-        "found",
-        "starts",
+        "machine", "at", "joint", "metric", "unit", "before", "change", "change_low", "change_high",
+        "usual_change", "rank", "machines", "p_value", "q_value", "found", "starts",
     ];
     let rows = effect.effects.iter().map(|one| {
         vec![

@@ -255,15 +255,14 @@ fn chart(trend: &JointTrend) -> Chart {
         x_label: "days since the first run".into(),
         x_range: Some([ends[0] - room, ends[1] + room]),
         xs: vec![xs, at],
-        panels: vec![Panel {
-            label: format!("{} {}", name(trend.metric), shown_unit(unit)),
-            series: vec![
+        panels: vec![Panel::of(
+            format!("{} {}", name(trend.metric), shown_unit(unit)),
+            1.0,
+            vec![
                 series(guide, Role::Guide, 1, line, Vec::new()),
                 series("run", Role::Point, 0, y, names.collect()),
             ],
-            share: 1.0,
-            range: None,
-        }],
+        )],
         height: 190,
         size: Size::Half,
         ..Chart::default()

@@ -70,9 +70,10 @@ fn projection(front: &PlanDocument, across: Objective, up: Objective) -> Chart {
         x_label: across.row().axis.into(),
         xs,
         x_range: Some([low - room, high + 2.0 * room]),
-        panels: vec![Panel {
-            label: up.row().axis.to_owned(),
-            series: vec![
+        panels: vec![Panel::of(
+            up.row().axis.to_owned(),
+            1.0,
+            vec![
                 series("plan", Role::Point, 0, of(&mut all(), up), Vec::new()),
                 series(
                     "best and chosen",
@@ -82,9 +83,7 @@ fn projection(front: &PlanDocument, across: Objective, up: Objective) -> Chart {
                     named.iter().map(|(name, _)| name.clone()).collect(),
                 ),
             ],
-            share: 1.0,
-            range: None,
-        }],
+        )],
         height: 300,
         size: Size::Half,
         ..Chart::default()
@@ -97,18 +96,17 @@ fn convergence(front: &PlanDocument) -> Chart {
         title: "How the front grew".to_owned(),
         x_label: "Evaluations".into(),
         xs: vec![steps.iter().map(|step| step.evaluations as f64).collect()],
-        panels: vec![Panel {
-            label: "Hypervolume".to_owned(),
-            series: vec![Series {
+        panels: vec![Panel::of(
+            "Hypervolume".to_owned(),
+            1.0,
+            vec![Series {
                 name: "share of the final front's box".to_owned(),
                 role: Role::Measured,
                 x: 0,
                 y: steps.iter().map(|step| (step.hypervolume * 1e5).round() / 1e5).collect(),
                 names: Vec::new(),
             }],
-            share: 1.0,
-            range: None,
-        }],
+        )],
         height: 300,
         size: Size::Half,
         ..Chart::default()

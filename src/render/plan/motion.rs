@@ -57,7 +57,7 @@ fn panel(label: &str, (name, role): (&str, Role), values_rad: &[f64], limits_rad
     let limits = limits_rad.map(degrees_from_radians);
     let guide = |limit: f64| Series::of("limit", Role::Guide, 2, vec![hundredths(limit); 2]);
     series.extend(limits.into_iter().filter(near).map(guide));
-    Panel { label: label.to_owned(), series, share: 0.5, range: None }
+    Panel::of(label.to_owned(), 0.5, series)
 }
 
 /// How much of its limits a joint uses, those that are used most.

@@ -34,11 +34,11 @@ pub(crate) fn page(
     let mut chapters = vec![
         Chapter { id: "summary", heading: "In short", body: summary(planned, courses.of_sample_arm) },
         Chapter { id: "front", heading: "The front", body: the_front(plan, planned, courses, &mut plots) },
-        Chapter {
-            id: "motion",
-            heading: "The motion that is shown",
-            body: motion(&planned.joints, courses.chosen, courses.tool, &mut plots),
-        },
+        Chapter::new(
+            "motion",
+            "The motion that is shown",
+            motion(&planned.joints, courses.chosen, courses.tool, &mut plots),
+        ),
         numbers(&document),
     ];
     chapters.extend(Chapter::of(document.section(Id::REMARKS), "Remarks on the data"));
@@ -57,11 +57,11 @@ pub(crate) fn judged_page(
     document.facts = vec![fact("joints", joints.join(", "))];
     let mut plots = Plots::default();
     let chapters = [
-        Chapter {
-            id: "summary",
-            heading: "In short",
-            body: html! { div class="cards" { (limits(evaluation, joints)) (cost("The plan", evaluation)) } },
-        },
+        Chapter::new(
+            "summary",
+            "In short",
+            html! { div class="cards" { (limits(evaluation, joints)) (cost("The plan", evaluation)) } },
+        ),
         Chapter { id: "motion", heading: "The motion", body: motion(joints, course, tool, &mut plots) },
         numbers(&document),
     ];

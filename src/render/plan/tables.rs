@@ -250,14 +250,7 @@ fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
         ]
     });
     let numbers = [
-        "RMS jerk deg/s3",
-        "RMS power W",
-        "range",
-        "speed",
-        "acceleration",
-        "jerk",
-        "torque",
-        "rod speed",
+        "RMS jerk deg/s3", "RMS power W", "range", "speed", "acceleration", "jerk", "torque", "rod speed",
         "rod force",
     ];
     let all = format!("All together: {}, {}.", together(Limit::PumpFlow), together(Limit::ToolSpeed));

@@ -11,7 +11,7 @@ use crate::{
     series::JointKind,
     workflow::{
         plan::MarginEntry,
-        replan::{self, Checks, Finding, JointTrust, Level, Reason, TooFast, Verdict},
+        replan::{self, Checks, Finding, JointTrust, Level, Outside, Reason, TooFast, Verdict},
     },
 };
 
@@ -127,7 +127,7 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
                 acceleration_rad_s2.map_or(String::new(), |a| format!(", acceleration {}/s2", shown(a)));
             format!("{start}: speed {}/s{acceleration}.", shown(*speed_rad_s))
         }
-        Finding::Limits { broken, between, nearest, unlimited, fastest } => {
+        Finding::Limits { broken, between, nearest, unlimited, fastest, sharpest, outside } => {
             let none: Vec<&str> = unlimited.iter().map(|limit| limit.name()).collect();
             let none =
                 if none.is_empty() { String::new() } else { format!(" No limit: {}.", none.join(", ")) };
@@ -139,7 +139,19 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
                     fast.ratio
                 )
             });
-            limits([*broken, *between], nearest) + &fast + &none
+            let sharp = sharpest.as_ref().map_or(String::new(), |sharp| {
+                format!(" {} is accelerated up to {:.1} times as much as its plan.", sharp.joint, sharp.ratio)
+            });
+            let beyond = |of: &Outside| {
+                let [reaches, by] = [of.reaches_rad, of.beyond_rad].map(|rad| position(of.kind, rad));
+                format!("{} to {reaches} ({by} beyond)", of.joint)
+            };
+            let beyond: Vec<String> = outside.iter().map(beyond).collect();
+            let beyond = match beyond.join(", ") {
+                none if none.is_empty() => none,
+                all => format!(" Sent beyond the range of their plan, keep that free: {all}."),
+            };
+            limits([*broken, *between], nearest) + &fast + &sharp + &beyond + &none
         }
         Finding::TooFast(TooFast { joint, kind, planned_rad_s, limit_rad_s: [own, most] }) => format!(
             "The plan of {joint} goes up to {}/s, and the joint was found to make {}/s, {}/s at most: no command mends that, a \

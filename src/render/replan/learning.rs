@@ -9,7 +9,7 @@ use crate::{
     replay::Dimension,
     series::JointKind::{self, Slides, Turns},
     text::shell_word,
-    workflow::replan::{Decision, JointCommand, KeepReason, PastRun, Replanned},
+    workflow::replan::{Checks, Decision, Finding, JointCommand, KeepReason, PastRun, Replanned},
 };
 
 /// Less of what comes after a plan hides an overshoot, s.
@@ -45,7 +45,7 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
         }
     };
     let joints = replanned.command.iter().flat_map(|command| &command.joints);
-    let other = joints.filter(|joint| matches!(joint.step, Step::Kept { from } if from != *run));
+    let other = joints.filter(|joint| matches!(joint.step, Step::Kept { from, .. } if from != *run));
     let other: Vec<&str> = other.map(|joint| joint.name.as_str()).collect();
     let but = if other.is_empty() {
         String::new()
@@ -165,7 +165,7 @@ pub(super) fn command(replanned: &Replanned) -> Option<Section> {
              of the command over those of the plan.",
         ))
         .with_all(
-            [Turns, Slides].into_iter().filter_map(|kind| cut_off(&command.joints, kind)).map(Sentence::Advice),
+            [Turns, Slides].into_iter().filter_map(|kind| cut_off(replanned, &command.joints, kind)).map(Sentence::Advice),
         )
         .with_all(stamped(replanned, &command.joints).map(|text| Sentence::note(text.to_owned())))
         .with_all(ends_early(replanned).map(Sentence::note))
@@ -215,7 +215,8 @@ fn row(replanned: &Replanned, joint: &JointCommand, units: Units) -> Vec<String>
         Step::Later { from, gain } => format!("{} + {:.2} error", run(from), gain),
         Step::Rest { from, share } => format!("{} + {:.2} of its rest", run(from), share),
         Step::Kept { .. } if !joint.applied() => "the plan".to_owned(),
-        Step::Kept { from } => format!("{} again", run(from)),
+        Step::Kept { from, but: None } => format!("{} again", run(from)),
+        Step::Kept { from, but: Some(less) } => format!("{} again, {} in part", run(from), run(less)),
         Step::Astray => "does not follow".to_owned(),
         Step::None => "not corrected".to_owned(),
     };
@@ -233,12 +234,17 @@ fn row(replanned: &Replanned, joint: &JointCommand, units: Units) -> Vec<String>
     ]
 }
 
-/// Which corrections of joints of a kind would have been larger.
-fn cut_off(joints: &[JointCommand], kind: JointKind) -> Option<String> {
-    let all: Vec<&JointCommand> = joints
-        .iter()
-        .filter(|joint| joint.kind == kind && joint.peak_correction_rad > 0.98 * joint.most_correction_rad)
-        .collect();
+/// Which corrections of joints of a kind would have been larger, but of those that more does not help.
+fn cut_off(replanned: &Replanned, joints: &[JointCommand], kind: JointKind) -> Option<String> {
+    let is_slow = |joint: &JointCommand| {
+        let checks = Checks::of(replanned).list;
+        checks.iter().any(|check| matches!(&check.finding, Finding::TooFast(of) if of.joint == joint.name))
+    };
+    let cut = |joint: &&JointCommand| {
+        let full = joint.peak_correction_rad > 0.98 * joint.most_correction_rad;
+        joint.kind == kind && full && joint.stalled_rad <= 0.0 && !is_slow(joint)
+    };
+    let all: Vec<&JointCommand> = joints.iter().filter(cut).collect();
     let most = all.iter().map(|joint| joint.peak_correction_rad).reduce(f64::max)?;
     let names: Vec<&str> = all.iter().map(|joint| joint.name.as_str()).collect();
     Some(format!(

@@ -5,10 +5,10 @@ use crate::{
     log::Topics,
     render::{
         kit::{Block, Document, Fact, Id, NONE, Section, Sentence, Table, fact, optional, some_of},
-        metric::{number, position, unit},
+        metric::{lengths_as_angles, number, position, unit},
     },
     replay::Dimension,
-    series::JointKind::{self, Slides, Turns},
+    series::{JointKind, Track},
     task::Objective,
     units::degrees_from_radians,
     workflow::replan::{Checks, Commanded, HeldTo, Origin, Predicted, Replanned},
@@ -55,14 +55,9 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
 
 /// What a mean is over joints of both kinds.
 fn mixed(replanned: &Replanned) -> Option<Sentence> {
-    let has = |kind: JointKind| replanned.plan.tracks.iter().any(|track| track.kind() == kind);
-    (has(Turns) && has(Slides)).then(|| {
-        Sentence::note(format!(
-            "Some joints turn and some slide: here {} counts as {}, as much as a radian as a metre.",
-            position(Slides, 0.01),
-            position(Turns, 0.01)
-        ))
-    })
+    let counts = lengths_as_angles(replanned.plan.tracks.iter().map(Track::kind))?;
+    let note = format!("Some joints turn and some slide: here {counts}, as much as a radian as a metre.");
+    Some(Sentence::note(note))
 }
 
 fn percent(now: f64, then: f64) -> String {
@@ -138,7 +133,7 @@ pub(super) fn levers(replanned: &Replanned) -> Vec<Fact> {
             let own = joints.iter().filter(|joint| joint.kind == kind).map(|joint| joint.peak_correction_rad);
             own.reduce(f64::max).map(|most| position(kind, most))
         };
-        let most: Vec<String> = [Turns, Slides].into_iter().filter_map(most).collect();
+        let most: Vec<String> = [JointKind::Turns, JointKind::Slides].into_iter().filter_map(most).collect();
         format!(
             "corrected on {}, by {} at most",
             some_of(applied.count(), joints.len(), "joint"),

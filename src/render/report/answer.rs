@@ -4,7 +4,8 @@ use super::{
     method::method,
     resting::at_rest,
     steps::replanned,
-    tables::{mostly_lag, shift, stray, verdicts},
+    tables::{stray, verdicts},
+    together::Together,
     tool, why,
 };
 use crate::{
@@ -17,7 +18,6 @@ use crate::{
         metric::position,
     },
     replay::{Replay, Transition},
-    series::JointKind,
     workflow::report::{
         Report,
         advice::{Advice, advice},
@@ -129,25 +129,18 @@ fn astray(report: &Report) -> Option<Fact> {
 }
 
 fn whole(replay: &Replay) -> Option<Fact> {
-    let Some(error) = replay.whole_run.tracking_error else {
-        // Joints that turn and joints that slide have no error in common.
-        let most = [JointKind::Turns, JointKind::Slides].map(|kind| {
-            let of = replay.joints.iter().filter(|joint| joint.kind == kind);
-            of.map(|joint| joint.tracking_error.peak).reduce(f64::max).map(|peak| position(kind, peak))
-        });
-        let most: Vec<String> = most.into_iter().flatten().collect();
-        return (!most.is_empty()).then(|| fact("error", format!("{} at most", most.join(" and "))));
+    let of = |all: &Together| {
+        let error = all.run.tracking_error?;
+        let lag = all.mostly_lag().map_or(String::new(), |_| format!("; mostly {}", all.shift()));
+        let name = if all.name().is_empty() { String::new() } else { format!(" of {}", all.name()) };
+        Some(format!(
+            "{} RMS{name} over the run, {} at most{lag}",
+            position(all.kind, error.rms),
+            position(all.kind, error.peak)
+        ))
     };
-    let kind = replay.kind();
-    let lag = mostly_lag(replay).map_or(String::new(), |_| format!("; mostly {}", shift(replay)));
-    Some(fact(
-        "error",
-        format!(
-            "{} RMS over the run, {} at most{lag}",
-            position(kind, error.rms),
-            position(kind, error.peak)
-        ),
-    ))
+    let found: Vec<String> = Together::all(replay).iter().filter_map(of).collect();
+    (!found.is_empty()).then(|| fact("error", found.join("; ")))
 }
 
 /// How many doubts about the data there are, and the first.

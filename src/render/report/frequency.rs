@@ -72,7 +72,7 @@ fn peak(pair: &Pair, found: &Spectrum) -> String {
 }
 
 fn panel(label: String, series: Vec<Series>) -> Panel {
-    Panel { label, series, share: 1.0, range: None }
+    Panel::of(label, 1.0, series)
 }
 
 fn titled(title: String, x_label: String, xs: Vec<Vec<f64>>, panels: Vec<Panel>) -> Chart {

@@ -76,21 +76,15 @@ fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Trans
         xs: vec![times(&pair.t_s, &places)],
         x_range: None,
         panels: vec![
-            Panel {
-                label: format!("Position ({unit})"),
-                series: vec![
+            Panel::of(
+                format!("Position ({unit})"),
+                0.6,
+                vec![
                     series("planned", Role::Planned, shown(&pair.planned)),
                     series("measured", Role::Measured, shown(&pair.measured)),
                 ],
-                share: 0.6,
-                range: None,
-            },
-            Panel {
-                label: format!("Error ({unit})"),
-                series: vec![series("error", Role::Error, shown(&error))],
-                share: 0.4,
-                range: None,
-            },
+            ),
+            Panel::of(format!("Error ({unit})"), 0.4, vec![series("error", Role::Error, shown(&error))]),
         ],
         bands: transitions.iter().flat_map(|transition| bands(transition)).collect(),
         group: Some("run"),

@@ -17,6 +17,7 @@ mod tables;
 #[cfg(test)]
 mod tests;
 mod tiles;
+mod together;
 mod tool;
 mod tool_page;
 mod why;

@@ -5,9 +5,10 @@ use maud::{Markup, html};
 use super::{
     frequency::frequency,
     joints::{joints, lags},
-    summary::{concentration_bars, summary},
+    summary::{concentration_bars, summary, titled},
     tables::document,
     tiles::transitions,
+    together::Together,
     tool,
     tool_page::tool_chapter,
     why,
@@ -56,11 +57,7 @@ pub(crate) fn page(name: &str, report: &Report, fit: Option<&Fit>, most: usize, 
     }
     // One plan is no choice.
     if let Some(found) = report.front.as_ref().filter(|found| found.front.len() > 1) {
-        chapters.push(Chapter {
-            id: "front",
-            heading: "Plans to choose from",
-            body: front(found, &mut plots),
-        });
+        chapters.push(Chapter::new("front", "Plans to choose from", front(found, &mut plots)));
     }
     chapters.extend(Chapter::of(document.section(Id::REMARKS), "Remarks on the data"));
     chapters.extend(Chapter::of(document.section(Id::METHOD), "Source, method, thresholds"));
@@ -70,9 +67,11 @@ pub(crate) fn page(name: &str, report: &Report, fit: Option<&Fit>, most: usize, 
 fn numbers(document: &Document, report: &Report) -> Markup {
     html! {
         (blocks(document.blocks(Id::SUMMARY)))
-        @if report.replay.whole_run.concentration.is_some() {
-            h3 { "Rms error inside and outside the transitions" }
-            (concentration_bars(report))
+        @for all in Together::all(&report.replay) {
+            @if all.run.concentration.is_some() {
+                h3 { (titled("Rms error inside and outside the transitions", &all)) }
+                (concentration_bars(&all))
+            }
         }
         @if let Some(section) = document.section(Id::JOINTS) { (headed(section)) }
         @if let Some(section) = document.section(Id::TRANSITIONS) {

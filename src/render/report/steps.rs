@@ -11,7 +11,8 @@ use crate::{
 
 /// The steps, the most urgent first; lines name the log as the caller did and read it with the same options.
 pub(super) fn steps(report: &Report, read: &[String]) -> Vec<(Sentence, Option<String>)> {
-    let limit = match report.replay.kind() {
+    let worst = report.replay.worst_first().first().map_or(report.replay.kind(), |worst| worst.joint_kind);
+    let limit = match worst {
         JointKind::Turns => ["--max-transition-peak-deg", "0.5"],
         JointKind::Slides => ["--max-transition-peak-mm", "5"],
     };

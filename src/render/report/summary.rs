@@ -5,7 +5,8 @@ use maud::{Markup, html};
 use super::{
     first::{lanes, worst_start},
     steps::steps,
-    tables::{lag_words, mostly_lag, shift, verdicts, worst_sentence},
+    tables::{verdicts, worst_sentence},
+    together::Together,
     tool_page::tool_card,
     why,
 };
@@ -34,8 +35,8 @@ pub(super) fn summary(report: &Report, read: &[String], plots: &mut Plots) -> Ma
             (verdict(&kept, &lines))
             (tool_card(&report.tool))
             (worst(report))
-            (place_of_error(report))
-            (whole_run(report))
+            @for all in Together::all(&report.replay) { (place_of_error(&all)) }
+            @for all in Together::all(&report.replay) { (whole_run(report, &all)) }
         }
         (lanes(report))
         div class="side" {
@@ -66,27 +67,27 @@ fn worst(report: &Report) -> Markup {
 /// Events that the test needs to tell, nearly.
 const NEEDED: usize = 6;
 
-fn place_of_error(report: &Report) -> Markup {
-    let Some(c) = &report.replay.whole_run.concentration else {
-        let body = html! { p { "No plan moves, or some joints turn and some slide." } };
-        return card("", "Where the error arises", "Cannot be told", &body);
+fn place_of_error(all: &Together) -> Markup {
+    let name = titled("Where the error arises", all);
+    let Some(c) = &all.run.concentration else {
+        return card("", &name, "Cannot be told", &html! { p { "No plan moves." } });
     };
-    let lag = lag_words(&report.replay);
+    let lag = all.lag_words();
     let events = c.test.map_or(0, |test| test.inside_count);
     let undecided = if events < NEEDED {
         format!("Not enough starts to tell ({events}; {NEEDED} are needed)")
     } else {
         "No clear difference".to_owned()
     };
-    let mostly = format!("Mostly {}", shift(&report.replay));
+    let mostly = format!("Mostly {}", all.shift());
     let headline = match c.verdict {
-        _ if mostly_lag(&report.replay).is_some() => &mostly,
+        _ if all.mostly_lag().is_some() => &mostly,
         Verdict::Transitions => "In the transitions",
         Verdict::Elsewhere => "Outside the transitions",
         Verdict::Undecided => &undecided,
     };
     let body = html! {
-        (concentration_bars(report))
+        (concentration_bars(all))
         @if let Some(lag) = lag { p { (lag) } }
         p {
             (format!(
@@ -97,13 +98,12 @@ fn place_of_error(report: &Report) -> Markup {
             ))
         }
     };
-    card("", "Where the error arises", headline, &body)
+    card("", &name, headline, &body)
 }
 
 /// Root mean square errors inside and outside.
-pub(super) fn concentration_bars(report: &Report) -> Markup {
-    let Some(c) = &report.replay.whole_run.concentration else { return html! {} };
-    let kind = report.replay.kind();
+pub(super) fn concentration_bars(all: &Together) -> Markup {
+    let (Some(c), kind) = (&all.run.concentration, all.kind) else { return html! {} };
     let row = |name: &str, error: f64, strong| Row {
         name: name.to_owned(),
         value: on_paper(kind, error),
@@ -116,9 +116,13 @@ pub(super) fn concentration_bars(report: &Report) -> Markup {
     bars(&rows)
 }
 
-fn whole_run(report: &Report) -> Markup {
-    let whole = &report.replay.whole_run;
-    let kind = report.replay.kind();
+/// A heading, with the joints that are meant.
+pub(super) fn titled(heading: &str, all: &Together) -> String {
+    if all.name().is_empty() { heading.to_owned() } else { format!("{heading}, {}", all.name()) }
+}
+
+fn whole_run(report: &Report, all: &Together) -> Markup {
+    let (whole, kind) = (all.run, all.kind);
     let headline =
         whole.tracking_error.map_or("-".to_owned(), |error| format!("{} rms", position(kind, error.rms)));
     let body = html! {
@@ -132,5 +136,9 @@ fn whole_run(report: &Report) -> Markup {
             p { a href="#remarks" { (counted(report.remarks.as_slice().len(), "remark") + " on the data") } }
         }
     };
-    card("", "Whole run, all joints", &headline, &body)
+    let name = match all.name() {
+        "" => "Whole run, all joints".to_owned(),
+        _ => titled("Whole run", all),
+    };
+    card("", &name, &headline, &body)
 }

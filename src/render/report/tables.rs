@@ -3,22 +3,19 @@
 use super::{
     method::method,
     resting::{at_rest, one_way},
+    together::Together,
     tool, why,
 };
 use crate::{
-    math::range,
+    remark::Code,
     render::{
-        kit::{
-            Column, Document, Fact, Id, Section, Sentence, counted, fact, ms, probability, share as percents,
-            spark, starts_of,
-        },
+        kit::{Column, Document, Fact, Id, Section, Sentence, counted, fact, ms, spark, starts_of},
         metric::{Units, position, weighed, with_unit},
         promise,
         source::{clock, measured, planned},
     },
     replay::{
         Answer, JOINT, JointReplay, ONSET_DELAY_LIMIT, Profiles, Replay, Swing, TRANSITION, Transition,
-        Verdict,
     },
     workflow::report::{GateResult, Report, Travel},
 };
@@ -79,7 +76,6 @@ fn in_short(report: &Report) -> Vec<Sentence> {
 
 fn findings(report: &Report) -> Vec<String> {
     let replay = &report.replay;
-    let of_all = replay.kind();
     let mut lines = Vec::new();
     match replay.worst_first().first() {
         Some(worst) => lines.push(format!("Worst {}: {}", worst.kind.name(), worst_sentence(worst))),
@@ -88,52 +84,12 @@ fn findings(report: &Report) -> Vec<String> {
         }
         None => lines.push("No planned start from rest was found.".to_owned()),
     }
-    lines.extend(report.promised.and_then(|held| promise::sentence(&held, replay.common_kind(), "")));
-    lines.extend(mostly_lag(replay).map(|lag| format!("The error is mostly {}: {lag}.", shift(replay))));
-    if let Some(c) = &replay.whole_run.concentration {
-        let place = match (mostly_lag(replay), c.verdict) {
-            (Some(_), _) => "Transitions hold it because the joints move there",
-            (None, Verdict::Transitions) => "Most of the error arises in the transitions",
-            (None, Verdict::Elsewhere) => "Most of the error arises outside the transitions",
-            (None, Verdict::Undecided) => {
-                "Whether most of the error arises in the transitions cannot be told"
-            }
-        };
-        let test = c.test.map_or("too few stretches to test".to_owned(), |t| {
-            format!(
-                "p = {}, {} transition events against {} other stretches",
-                probability(t.p_value),
-                t.inside_count,
-                t.outside_count
-            )
-        });
-        let moving = c
-            .rms_outside_moving
-            .map_or("at rest".to_owned(), |rms| format!("{} while the plan moves", position(of_all, rms)));
-        lines.push(format!(
-            "{place}: rms {} inside, {} elsewhere ({moving}); {:.0} % of the squared error in {:.0} % of the time ({test}).",
-            position(of_all, c.rms_inside),
-            position(of_all, c.rms_outside),
-            100.0 * c.squared_error_share_inside,
-            100.0 * c.time_share_inside,
-        ));
-    }
-    if mostly_lag(replay).is_none() && replay.whole_run.concentration.is_some() {
-        lines.push(match lag_words(replay) {
-            Some(lag) => format!("Share of {}: {lag}.", shift(replay)),
-            None => "Share of lag: cannot be told, because no joint shows a lag.".to_owned(),
-        });
-    }
-    if let Some(path) = &replay.whole_run.path_error {
-        lines.push(format!(
-            "Distance to the planned path, whatever the time, as the norm over all joints: rms {}, peak {}; rms {} with \
-             time ({} instants).",
-            position(of_all, path.rms),
-            position(of_all, path.peak),
-            position(of_all, path.timed_rms),
-            path.samples
-        ));
-    }
+    lines.extend(
+        report
+            .promised
+            .and_then(|held| promise::sentence(&held, replay.joints.iter().map(|joint| joint.kind), "")),
+    );
+    lines.extend(Together::all(replay).iter().flat_map(Together::findings));
     lines.extend(replay.joints.iter().filter_map(|joint| stray(report, joint)));
     lines.extend(replay.joints.iter().filter_map(|joint| one_way(replay, joint)));
     lines.extend(replay.joints.iter().flat_map(|joint| at_rest(replay, joint)));
@@ -176,43 +132,6 @@ pub(super) fn stray(report: &Report, joint: &JointReplay) -> Option<String> {
         _ if joint.starts > 0 => Some(format!("{}: no answer to its plan can be told ({starts}).", both())),
         _ => Some(format!("{}: no start of either can be told.", both())),
     }
-}
-
-/// What the lag explains of a run whose error is mostly that.
-pub(super) fn mostly_lag(replay: &Replay) -> Option<String> {
-    replay.whole_run.lag_share.filter(|lag| lag.mostly)?;
-    lag_words(replay)
-}
-
-/// The least and the largest lag of joints whose plan moves, s.
-fn lags(replay: &Replay) -> [f64; 2] {
-    range(replay.joints.iter().filter(|joint| joint.plan_moves).filter_map(|joint| joint.lag_s))
-}
-
-/// What the lags are: a lead where every joint moves before its plan.
-pub(super) fn shift(replay: &Replay) -> &'static str {
-    if lags(replay)[1] < 0.0 { "lead" } else { "lag" }
-}
-
-/// How much of the squared error lags at the planned speeds explain; `None` where no joint has one.
-pub(super) fn lag_words(replay: &Replay) -> Option<String> {
-    let share = replay.whole_run.lag_share?;
-    let [mut least, mut most] = lags(replay);
-    if most < 0.0 {
-        (least, most) = (-most, -least);
-    }
-    let (least, most) = (ms(least), ms(most));
-    let lag = if least == most { format!("{least} ms") } else { format!("{least} to {most} ms, by joint,") };
-    let shift = shift(replay);
-    Some(format!(
-        "a {shift} of {lag} causes {} of the squared error ({}{}; mostly {shift} from {:.0} % on)",
-        percents(share.share),
-        share
-            .interval
-            .map_or(String::new(), |[a, b]| { format!("95 % interval {:.0}..{}, ", 100.0 * a, percents(b)) }),
-        counted(share.events, "event"),
-        100.0 * replay.rules.mostly_lag_share,
-    ))
 }
 
 pub(super) fn worst_sentence(worst: &Transition) -> String {
@@ -271,10 +190,12 @@ pub(crate) fn verdicts(report: &Report) -> Vec<Sentence> {
     let joints = &report.replay.joints;
     let undated: usize = joints.iter().map(|joint| joint.undated_starts).sum();
     let starts = joints.iter().map(|joint| joint.starts).sum();
-    report.gates.iter().map(|result| verdict(result, [undated, starts])).collect()
+    let unseen = report.remarks.as_slice().iter().any(|remark| remark.code == Code::UnpairedJoint);
+    report.gates.iter().map(|result| verdict(result, [undated, starts], unseen)).collect()
 }
 
-fn verdict(result: &GateResult, [undated, starts]: [usize; 2]) -> Sentence {
+/// `unseen`: whether joints were left out because plan or measurement of them is missing.
+fn verdict(result: &GateResult, [undated, starts]: [usize; 2], unseen: bool) -> Sentence {
     let (gate, kind) = (result.gate, result.kind());
     // What has no time is not judged.
     let part = if gate.key == ONSET_DELAY_LIMIT && undated > 0 {
@@ -282,6 +203,7 @@ fn verdict(result: &GateResult, [undated, starts]: [usize; 2]) -> Sentence {
     } else {
         String::new()
     };
+    let part = if unseen { part + "; joints that were left out are not judged" } else { part };
     let limit = with_unit(gate.dimension, kind, result.limit);
     let allowed = format!("{limit} allowed{part}");
     let sentence = |found: String| Sentence::Verdict {

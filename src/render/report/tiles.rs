@@ -15,7 +15,7 @@ use crate::{
         metric::{number, on_paper, position, unit},
     },
     replay::{Dimension, Transition},
-    series::Pair,
+    series::{JointKind, Pair},
     workflow::report::Report,
 };
 
@@ -37,8 +37,9 @@ pub(super) fn transitions(report: &Report, plots: &mut Plots) -> Markup {
     html! {
         p class="hint" {
             "Every planned start, from the instant of the plan, worst first. Above: planned and measured position from there, \
-             upwards in the direction of motion; below: how far the joint is behind, on one scale for all. Shaded until \
-             the joint leaves rest. A click shows it in the whole run."
+             upwards in the direction of motion; below: how far the joint is behind, on one scale for all"
+            @if report.replay.of_kinds.len() > 1 { " of a unit" }
+            ". Shaded until the joint leaves rest. A click shows it in the whole run."
             @if left > 0 { " " (counted(left, "smaller one")) " not drawn." }
         }
         div class="tiles" {
@@ -61,15 +62,20 @@ pub(super) fn tiles(report: &Report) -> Vec<(&Transition, Chart)> {
             Some((transition, tile(transition, pair, [BEFORE_S, AFTER_S])))
         })
         .collect();
-    let errors = tiles.iter().filter_map(|(_, chart)| chart.panels.last());
-    let values = errors.flat_map(|panel| panel.series.iter().flat_map(|series| &series.y)).copied();
-    let [low, high] = span(values.chain([0.0]));
-    let room = 0.06 * (high - low);
+    let scale = |kind: JointKind| {
+        let own = tiles.iter().filter(|(transition, _)| transition.joint_kind == kind);
+        let errors = own.filter_map(|(_, chart)| chart.panels.last());
+        let values = errors.flat_map(|panel| panel.series.iter().flat_map(|series| &series.y)).copied();
+        let [low, high] = span(values.chain([0.0]));
+        let room = 0.06 * (high - low);
+        [rounded(low - room), rounded(high + room)]
+    };
+    let [turning, sliding] = [JointKind::Turns, JointKind::Slides].map(scale);
     let to_s = tiles.iter().map(|(_, chart)| chart.span()[1]).fold(0.0, f64::max);
-    for (_, chart) in &mut tiles {
+    for (transition, chart) in &mut tiles {
         chart.x_range = Some([-BEFORE_S, to_s.max(BEFORE_S)]);
         if let Some(panel) = chart.panels.last_mut() {
-            panel.range = Some([rounded(low - room), rounded(high + room)]);
+            panel.range = Some(if transition.joint_kind == JointKind::Turns { turning } else { sliding });
         }
     }
     tiles
@@ -118,21 +124,19 @@ pub(super) fn tile(transition: &Transition, pair: &Pair, [before_s, after_s]: [f
         xs: vec![times(&t_s, &places)],
         x_range: None,
         panels: vec![
-            Panel {
-                label: format!("Position ({unit})"),
-                series: vec![
+            Panel::of(
+                format!("Position ({unit})"),
+                0.5,
+                vec![
                     series("planned", Role::Planned, shown(&planned, base, sign)),
                     series("measured", Role::Measured, shown(&measured, base, sign)),
                 ],
-                share: 0.5,
-                range: None,
-            },
-            Panel {
-                label: format!("Behind ({unit})"),
-                series: vec![series("behind", Role::Error, shown(&behind, 0.0, 1.0))],
-                share: 0.5,
-                range: None,
-            },
+            ),
+            Panel::of(
+                format!("Behind ({unit})"),
+                0.5,
+                vec![series("behind", Role::Error, shown(&behind, 0.0, 1.0))],
+            ),
         ],
         bands: waits.map(|late_s| Band { from: 0.0, to: rounded(late_s), late: true }).into_iter().collect(),
         group: None,

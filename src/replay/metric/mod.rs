@@ -244,32 +244,18 @@ impl Keyed for Limit {
     }
 }
 
-impl Keyed for Metric<Transition> {
-    fn key(&self) -> &'static str {
-        self.key
-    }
+macro_rules! keyed {
+    ($($of:ty: $table:ident),*) => {
+        $(impl Keyed for Metric<$of> {
+            fn key(&self) -> &'static str {
+                self.key
+            }
 
-    fn rows() -> Vec<&'static Self> {
-        TRANSITION.iter().filter(|metric| metric.compared).collect()
-    }
+            fn rows() -> Vec<&'static Self> {
+                $table.iter().filter(|metric| metric.compared).collect()
+            }
+        })*
+    };
 }
 
-impl Keyed for Metric<JointReplay> {
-    fn key(&self) -> &'static str {
-        self.key
-    }
-
-    fn rows() -> Vec<&'static Self> {
-        JOINT.iter().filter(|metric| metric.compared).collect()
-    }
-}
-
-impl Keyed for Metric<ToolReplay> {
-    fn key(&self) -> &'static str {
-        self.key
-    }
-
-    fn rows() -> Vec<&'static Self> {
-        TOOL.iter().filter(|metric| metric.compared).collect()
-    }
-}
+keyed!(Transition: TRANSITION, JointReplay: JOINT, ToolReplay: TOOL);

@@ -14,6 +14,7 @@ pub use outcome::{ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, Tool
 use super::{PathError, Rules, path::path_error};
 use crate::{
     arm::Kinematics,
+    math::mean,
     series::{JointKind, Pair, PosePair},
     threads::numbered,
 };
@@ -107,10 +108,6 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
     (squares / count.max(1) as f64).sqrt()
 }
 
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
-}
-
 /// Distance to the planned path, whatever the time: that of three joints which slide along the axes.
 fn off_path(path: &ToolPath, rules: &Rules) -> Option<PathError> {
     let t_s: Arc<[f64]> = path.t_s.as_slice().into();
@@ -127,7 +124,7 @@ fn off_path(path: &ToolPath, rules: &Rules) -> Option<PathError> {
         matched: path.t_s.len(),
         unmatched: 0,
     });
-    Some(path_error(&pairs, rules)?.1)
+    Some(path_error(&pairs.each_ref(), rules)?.1)
 }
 
 fn split(path: &ToolPath) -> Option<ToolSplit> {

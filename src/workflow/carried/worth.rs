@@ -45,11 +45,7 @@ fn is_page(path: &Path) -> bool {
 /// Whether no topic is of a run or a command.
 fn only_planned(topics: &BTreeSet<String>, ours: &Topics) -> bool {
     let planned = [
-        &ours.planned,
-        &ours.trajectory,
-        &ours.description,
-        &ours.planned_description,
-        &ours.transforms,
+        &ours.planned, &ours.trajectory, &ours.description, &ours.planned_description, &ours.transforms,
         &ours.fixed_transforms,
     ];
     !topics.is_empty() && topics.iter().all(|topic| planned.contains(&topic))

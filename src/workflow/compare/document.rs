@@ -52,7 +52,6 @@ pub struct Comparison {
     /// Thresholds and windows used.
     pub rules: Rules,
     /// Doubts about the data or the pairing; any makes the exit code 3.
-    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
     /// The aligned samples of the first run of each side, for plots; not written.
     #[serde(skip)]
@@ -75,8 +74,7 @@ mod tests {
     #[test]
     fn the_committed_schema_is_that_of_the_comparison() {
         crate::schema::is_committed::<Comparison>(
-            "compare.v2.schema.json",
-            "hydrotrace comparison, version 2",
+            "compare.v2.schema.json", "hydrotrace comparison, version 2",
         );
     }
 
@@ -86,14 +84,8 @@ mod tests {
             vec![std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name)]
         };
         let gates = [
-            "peak-reduction",
-            "p",
-            "transition-growth",
-            "transition-growth-sliding",
-            "rms-ratio",
-            "peak-ratio",
-            "tool-error",
-            "end-error",
+            "peak-reduction", "p", "transition-growth", "transition-growth-sliding", "rms-ratio",
+            "peak-ratio", "tool-error", "end-error",
         ];
         let inputs = Inputs {
             before: logs("panel-install.mcap"),

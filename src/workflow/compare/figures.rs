@@ -124,7 +124,9 @@ fn together(metric: &Metric<JointReplay>, report: &Report, joints: &[JointReplay
         Together::Nothing => None,
         Together::Rms(of) => pooled(joints.iter().filter_map(of)),
         Together::Whole(of) => {
-            (joints.len() == report.replay.joints.len()).then(|| of(&report.replay.whole_run))?
+            let kind = joints.first()?.kind;
+            let all = report.replay.joints.iter().filter(|joint| joint.kind == kind).count();
+            (joints.len() == all).then(|| of(report.replay.together_with(kind)))?
         }
         Together::Most => values.into_iter().reduce(f64::max),
         Together::Mean => (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64),

@@ -28,6 +28,7 @@ impl Member<'_> {
     pub(super) fn run(&self, joints: &[String]) -> Run {
         let replay = &self.report.replay;
         let plans = self.matched.plans;
+        let [turning, sliding] = plans.map_or([None; 2], |plans| plans.most);
         Run {
             log: self.log.clone(),
             source: self.report.source.clone(),
@@ -35,7 +36,8 @@ impl Member<'_> {
             plan_duration_s: self.extent.plan_duration_s,
             stretch_s: self.extent.stretch_s,
             offset_s: self.matched.offset_s,
-            plan_difference: plans.map(|plans| plans.most_rad),
+            plan_difference: turning.or(sliding),
+            plan_difference_m: sliding.filter(|_| turning.is_some()),
             same_plan: plans.is_some_and(|plans| plans.same),
             promised: self.report.promised,
         }

@@ -46,8 +46,11 @@ pub struct Run {
     /// What is added to a time of the first run before to get the same moment of the plan here, s.
     pub offset_s: f64,
     /// Largest difference of any joint's plan from that of the first run before, at equal times, in the joint's unit;
-    /// `None` if they share too little time.
+    /// `None` if they share too little time. Of an arm with both kinds that of joints that turn.
     pub plan_difference: Option<f64>,
+    /// The same of joints that slide, m, of an arm with both kinds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plan_difference_m: Option<f64>,
     /// Whether it is the same plan.
     pub same_plan: bool,
     /// What its command promised, beside what came; null without a promise in the log.

@@ -1,6 +1,9 @@
 //! Whether two runs were asked to do the same.
 
-use crate::{series::Pair, units::DEGREE_RAD};
+use crate::{
+    series::{JointKind, Pair},
+    units::DEGREE_RAD,
+};
 
 /// Plans further apart than this at equal times are different ones, rad.
 const SAME_RAD: f64 = 0.05 * DEGREE_RAD;
@@ -16,8 +19,8 @@ const LEAST_OVERLAP: f64 = 0.5;
 pub(super) struct PlanDifference {
     /// What is added to times of the first run to get those of the second, s.
     pub(super) offset_s: f64,
-    /// Largest difference of any joint, rad.
-    pub(super) most_rad: f64,
+    /// Largest difference of joints that turn, rad, and of joints that slide, m; `None` without any.
+    pub(super) most: [Option<f64>; 2],
     /// Whether they are the same plan.
     pub(super) same: bool,
 }
@@ -41,17 +44,19 @@ pub(super) fn plan_difference(pairs: &[(&Pair, &Pair)], offset_s: f64) -> Option
         }
         offset_s += shift_s;
     }
-    let (mut most_rad, mut same, mut enough) = (0.0_f64, true, !pairs.is_empty());
+    let (mut most, mut same, mut enough) = ([None; 2], true, !pairs.is_empty());
     for (a, b) in pairs {
-        let mut count = 0_usize;
+        let of_kind = &mut most[usize::from(a.kind == JointKind::Slides)];
+        let (mut own, mut count) = (of_kind.unwrap_or(0.0_f64), 0_usize);
         for at in instants(a, b, offset_s) {
             count += 1;
-            most_rad = most_rad.max(at.difference_rad.abs());
+            own = own.max(at.difference_rad.abs());
             same &= at.difference_rad.abs() <= SAME_RAD + SAME_S * at.speed_rad_s.abs();
         }
+        *of_kind = Some(own);
         enough &= count as f64 >= LEAST_OVERLAP * a.t_s.len().min(b.t_s.len()) as f64;
     }
-    enough.then_some(PlanDifference { offset_s, most_rad, same })
+    enough.then_some(PlanDifference { offset_s, most, same })
 }
 
 /// Two plans at one instant.
@@ -115,14 +120,14 @@ mod tests {
         let (a, b) = (plan(0.0, 0.5), plan(0.734, 0.5));
         let found = plan_difference(&[(&a, &b)], 0.66).unwrap();
         assert!((found.offset_s - 0.734).abs() < 1e-4 && found.same, "{found:?}");
-        assert!(found.most_rad < 1e-3, "{found:?}");
+        assert!(found.most[0].unwrap() < 1e-3, "{found:?}");
     }
 
     #[test]
     fn a_plan_that_goes_further_is_another_one() {
         let (a, b) = (plan(0.0, 0.5), plan(0.0, 0.505));
         let found = plan_difference(&[(&a, &b)], 0.0).unwrap();
-        assert!(!found.same && (found.most_rad - 0.005).abs() < 5e-4, "{found:?}");
+        assert!(!found.same && (found.most[0].unwrap() - 0.005).abs() < 5e-4, "{found:?}");
         assert_eq!(plan_difference(&[(&a, &b)], 6.0), None);
         assert_eq!(plan_difference(&[], 0.0), None);
     }

@@ -122,7 +122,7 @@ pub fn charts(inputs: &Inputs, programs: &[For]) -> Result<Charts, ChartsFailure
         cylinders: None,
         ..inputs.read.clone()
     };
-    let lines = LogFiles::open(&inputs.logs).map_err(|error| error.given(&read))?.lines(&read);
+    let lines = LogFiles::with(inputs.logs.iter().cloned(), &read)?.lines(&read);
     let mut lines = lines.map_err(|error| only_by_words(inputs).unwrap_or(error.into()))?;
     let mut remarks = Remarks::default();
     let recording =

@@ -69,6 +69,8 @@ pub struct Fitted {
     /// Runs of the plan that can be planned again, in their order: that of the last one that holds its task, or else of the
     /// last; none that does not belong to its plan, or whose plan is broken.
     pub again: Vec<usize>,
+    /// Whether something else than the plan was sent in one of them: learning has begun.
+    pub corrected: bool,
     /// The last log, and why its run cannot be planned again, where none can.
     pub not_again: Option<String>,
     /// Doubts about the data.
@@ -168,7 +170,21 @@ pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted
         newest.is_some_and(|newest| *k == newest || *k < newest && same(newest))
     };
     let again: Vec<usize> = again.into_iter().filter(of_plan).collect();
-    Ok(Fitted { fit, held_out, torques, runs, again, not_again, remarks })
+    let corrected = again.iter().any(|k| is_corrected(observed[*k]));
+    Ok(Fitted { fit, held_out, torques, runs, again, corrected, not_again, remarks })
+}
+
+/// A command is another than its plan if it leaves it by more, rad.
+const CORRECTED_RAD: f64 = 1e-3;
+
+fn is_corrected(run: &Recording) -> bool {
+    let leaves = |track: &Track| {
+        run.planned.track(track.name()).is_some_and(|planned| {
+            let mut sent = track.t_s().iter().zip(track.position());
+            sent.any(|(t_s, sent)| (sent - planned.held_at(*t_s).position).abs() > CORRECTED_RAD)
+        })
+    };
+    run.command.as_ref().is_some_and(|command| command.series.tracks.iter().any(leaves))
 }
 
 /// Names the command that stands, where that is why nothing can be fitted.

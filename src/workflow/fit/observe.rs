@@ -38,7 +38,7 @@ const SIGNALS: [SignalRole; 5] = [
 pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, ObserveFailure> {
     let path = inputs.first().map(|input| input.name().to_owned()).unwrap_or_default();
     let read = read.clone().wanting(&SIGNALS);
-    let recording = LogFiles::of(inputs).and_then(|files| files.scan()?.read(&read));
+    let recording = LogFiles::with(inputs, &read).and_then(|files| files.scan()?.read(&read));
     recording.map_err(|source| ObserveFailure { path, source })
 }
 

@@ -50,7 +50,7 @@ pub(super) fn gather(
     for name in Name::ALL {
         let path = part.path(name);
         if root.join(&path).exists() {
-            let rows = read_table(&root.join(&path), name.columns())?.rows;
+            let rows = read_table(&root.join(&path), &name.columns())?.rows;
             into.entry(name).or_default().extend(rows.into_iter().filter(stays));
             found.push(path);
         }
@@ -68,7 +68,7 @@ pub(super) fn files(place: Place, gathered: Gathered) -> Result<Vec<(String, Vec
             continue;
         }
         sort(name, &mut rows);
-        let table = Table { columns: name.columns().to_vec(), rows };
+        let table = Table { columns: name.columns(), rows };
         files.push((part.path(name), table.encode(name.text())?));
     }
     Ok(files)

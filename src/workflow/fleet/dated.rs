@@ -26,13 +26,17 @@ pub(in crate::workflow) fn began_ns(uri: &str, stamped_ns: Option<i64>) -> Optio
 /// Stamps and name of a run that say dates so far apart are not of one clock, days.
 const OTHER_DATE_DAYS: f64 = 180.0;
 
-/// Whether the name of a log, or of its folder, says a date far from that of its stamps, microseconds since 1970: folders
-/// farther up may be of a delivery, or a number.
-pub(super) fn is_named_otherwise(uri: &str, started_us: i64) -> bool {
+/// When a run began by the name of its log, or of its folder, where that says a date far from that of its stamps; microseconds
+/// since 1970. Folders farther up may be of a delivery, or a number. The time of day is that of the stamps where the name says
+/// none.
+pub(super) fn named_otherwise(uri: &str, started_us: i64) -> Option<i64> {
+    const DAY_US: i64 = 86_400_000_000;
     let mut names = uri.trim_end_matches('/').rsplit('/').take(2);
-    let named = names.find_map(date_in).map(|date| date.and_utc().timestamp_micros());
-    let apart_s = named.map(|named_us| named_us.abs_diff(started_us) as f64 / 1e6);
-    apart_s.is_some_and(|apart_s| apart_s > OTHER_DATE_DAYS * SECONDS_PER_DAY)
+    let named_us = names.find_map(date_in)?.and_utc().timestamp_micros();
+    let apart_s = named_us.abs_diff(started_us) as f64 / 1e6;
+    let of_day = named_us.rem_euclid(DAY_US) == 0;
+    let us = if of_day { named_us + started_us.rem_euclid(DAY_US) } else { named_us };
+    (apart_s > OTHER_DATE_DAYS * SECONDS_PER_DAY).then_some(us)
 }
 
 /// The doubt about a run without one.
@@ -109,13 +113,15 @@ mod tests {
 
     #[test]
     fn a_clock_that_is_a_year_off_is_told_by_the_name() {
-        let day_us = 1_772_352_000_000_000; // 2026-03-01
-        for (uri, off) in [
-            ("/logs/M1/2025-03-01/run.csv", true),
-            ("/logs/M1/run_2026-02-27.csv", false),
-            ("/logs/delivery_2024-01-05/M1/run.csv", false),
+        let day_us = 1_772_323_200_000_000; // 2026-03-01
+        let hour_us = 3_600_000_000;
+        for (uri, named_us) in [
+            ("/logs/M1/2025-03-01/run.csv", Some(day_us - 365 * 24 * hour_us + 9 * hour_us)),
+            ("/logs/M1/2025-03-01_0700.csv", Some(day_us - 365 * 24 * hour_us + 7 * hour_us)),
+            ("/logs/M1/run_2026-02-27.csv", None),
+            ("/logs/delivery_2024-01-05/M1/run.csv", None),
         ] {
-            assert_eq!(is_named_otherwise(uri, day_us), off, "{uri}");
+            assert_eq!(named_otherwise(uri, day_us + 9 * hour_us), named_us, "{uri}");
         }
     }
 
@@ -138,16 +144,8 @@ mod tests {
             assert_eq!(at, found, "{uri}");
         }
         for uri in [
-            "run.csv",
-            "2026-13-06.csv",
-            "2026-0306.csv",
-            "120260306.csv",
-            "202603061.csv",
-            "06-03-2026.csv",
-            "1.2.3.4.csv",
-            "106.03.2026.csv",
-            "1234-05-06",
-            "",
+            "run.csv", "2026-13-06.csv", "2026-0306.csv", "120260306.csv", "202603061.csv", "06-03-2026.csv",
+            "1.2.3.4.csv", "106.03.2026.csv", "1234-05-06", "",
         ] {
             assert_eq!(began_ns(uri, None), None, "{uri}");
         }

@@ -18,7 +18,7 @@ use crate::{
 const FORMAT: &str = "hydrotrace.fleet-scan.v1";
 
 /// What a scan found and wrote.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Scanned {
     /// Always "hydrotrace.fleet-scan.v1".
@@ -47,7 +47,6 @@ pub struct Scanned {
     /// Logs that could not be analysed, in the order of their paths.
     pub failures: Vec<Failure>,
     /// Doubts about the logs as a whole; those about single logs are in the table of remarks.
-    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
 }
 
@@ -68,15 +67,7 @@ impl Scanned {
             program: PROGRAM.to_owned(),
             into: into.to_owned(),
             logs,
-            tables_left: 0,
-            unchanged: 0,
-            analysed: 0,
-            replaced: 0,
-            machines: Vec::new(),
-            joints: 0,
-            transitions: 0,
-            failures: Vec::new(),
-            remarks: Remarks::default(),
+            ..Self::default()
         }
     }
 

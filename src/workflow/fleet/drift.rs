@@ -13,7 +13,7 @@ use super::{
     failure::FleetFailure,
     found::judge,
     history::{By, Event, Filter, History, Scatters, Values},
-    joint_trend::{JointTrend, Level, MOST_FALSE},
+    joint_trend::{FEWEST_RUNS, JointTrend, Level, MOST_FALSE},
     map::{Map, maps},
     one_way::{by_direction, clearest},
     run::{Run, date, days},
@@ -27,8 +27,6 @@ use crate::{
 
 /// What the format is called.
 const FORMAT: &str = "hydrotrace.fleet-drift.v1";
-/// Runs of one plan, at least: fewer cannot prove a trend.
-pub(super) const FEWEST_RUNS: usize = 5;
 
 /// The trends of all joints of a fleet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,7 +49,6 @@ pub struct Drift {
     /// Machines, joints and metrics with too few runs of one plan to tell a trend.
     pub too_few: usize,
     /// Doubts about the data.
-    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
 }
 
@@ -157,25 +154,18 @@ fn joint_trend(runs: &[Run], values: &Values, scatters: (&str, &Scatters)) -> Op
     };
     let early = rows.iter().flat_map(|row| points(row).into_iter().take(3)).map(|(_, value)| value);
     Some(JointTrend {
-        machine: String::new(),
-        joint: String::new(),
-        direction: None,
-        metric: By::Peak,
-        unit: String::new(),
         slope_per_day: slope,
         interval_95: [low.min(slope), high.max(slope)],
         p_value: found.p,
         q_value: 1.0,
-        found: false,
-        is_step: false,
         step: best_step(&levels),
-        stands_out: None,
         since: begins(&levels).and_then(date),
         starts: rows.len(),
         runs: levels.len(),
         days: levels.last()?.0 - levels.first()?.0,
         level: median(early.collect()),
         levels: levels.iter().map(level).collect(),
+        ..JointTrend::default()
     })
 }
 

@@ -53,7 +53,6 @@ pub struct Effect {
     /// Joints and metrics with fewer than three runs of one plan before or after.
     pub too_few: usize,
     /// Doubts about the data.
-    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
 }
 

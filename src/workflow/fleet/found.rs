@@ -3,8 +3,8 @@
 
 use std::{collections::BTreeMap, path::Path};
 
-use super::joint_trend::{JointTrend, MOST_FALSE};
-use crate::math::{SIGMA_PER_MAD, false_discovery, mad, median};
+use super::joint_trend::{FEWEST_RUNS, JointTrend, MOST_FALSE};
+use crate::math::{SIGMA_PER_MAD, false_discovery, mad, mean, median, theil_sen};
 
 /// Robust standard deviations of the fleet's changes that a change must stand out by to be found: less than that many
 /// healthy joints change by, in a season or with other work.
@@ -16,6 +16,8 @@ const FEWEST_OF_STEPS: usize = 4;
 const SIGMAS_OF_95: f64 = 1.96;
 /// Runs before a step, and after it, that tell how others changed then, at least.
 const FEWEST_OF_A_SIDE: usize = 3;
+/// Days that are this share of others are nearly the same ones.
+const MOST_OF_IT: f64 = 0.9;
 /// A step, or what a trend makes from the first run to the last, that is a smaller share of the level is of no concern.
 const RELEVANT: f64 = 0.02;
 
@@ -85,29 +87,94 @@ fn elsewhere(trends: &[JointTrend], own: &JointTrend) -> Option<(f64, f64)> {
     Some((median(changes.clone()), SIGMA_PER_MAD * mad(&changes)))
 }
 
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
 fn page_beside(log: &str) -> Option<String> {
     let page = Path::new(log).with_extension("html").canonicalize().ok()?;
     page.is_file().then(|| page.to_str().map(str::to_owned))?
 }
 
-/// Says by how much each slope differs from what is usual for its metric; gives whether enough joints tell that.
+/// Says by how much each slope differs from what is usual for its metric over its days; gives whether enough joints tell that.
 fn stand_out(trends: &mut [JointTrend]) -> Vec<bool> {
-    let key = |trend: &JointTrend| (trend.metric, trend.direction.is_some(), trend.unit.clone());
-    let mut slopes: BTreeMap<_, Vec<f64>> = BTreeMap::new();
-    for trend in trends.iter() {
-        slopes.entry(key(trend)).or_default().push(trend.slope_per_day);
-    }
-    let usual = |own: Vec<f64>| (own.len() >= FEWEST_JOINTS, SIGMA_PER_MAD * mad(&own), median(own));
-    let usual: BTreeMap<_, (bool, f64, f64)> =
-        slopes.into_iter().map(|(key, own)| (key, usual(own))).collect();
-    let judge = |trend: &mut JointTrend| {
-        let (tells, spread, middle) = usual.get(&key(trend)).copied().unwrap_or_default();
-        trend.stands_out = (spread > 0.0).then(|| (trend.slope_per_day - middle).abs() / spread);
-        tells
+    let mut known: BTreeMap<_, (bool, f64, f64)> = BTreeMap::new();
+    let mut usual = |own: &JointTrend| {
+        let span = span_days(own).map(f64::to_bits);
+        let key = (own.metric, own.direction.is_some(), own.unit.clone(), span);
+        *known.entry(key).or_insert_with(|| {
+            let alike = |other: &&JointTrend| {
+                let key = |trend: &JointTrend| (trend.metric, trend.direction.is_some(), trend.unit.clone());
+                key(other) == key(own)
+            };
+            let slopes: Vec<f64> =
+                trends.iter().filter(alike).filter_map(|other| slope_over(other, span_days(own))).collect();
+            (slopes.len() >= FEWEST_JOINTS, SIGMA_PER_MAD * mad(&slopes), median(slopes))
+        })
     };
-    trends.iter_mut().map(judge).collect()
+    let found: Vec<(bool, f64, f64)> = trends.iter().map(&mut usual).collect();
+    for (trend, (_, spread, middle)) in trends.iter_mut().zip(&found) {
+        trend.stands_out = (*spread > 0.0).then(|| (trend.slope_per_day - middle).abs() / spread);
+    }
+    found.into_iter().map(|(tells, ..)| tells).collect()
+}
+
+/// The first and the last day of a trend.
+fn span_days(trend: &JointTrend) -> [f64; 2] {
+    let ends = trend.levels.first().zip(trend.levels.last());
+    ends.map_or([0.0; 2], |(first, last)| [first.at_days, last.at_days])
+}
+
+/// The slope of a trend over some days: its own where they are most of its days, else that of its levels in them; `None` of too
+/// few. What a fleet has in common, such as the weather, makes more of a slope the shorter it is.
+fn slope_over(trend: &JointTrend, [from, to]: [f64; 2]) -> Option<f64> {
+    let inside: Vec<(f64, f64)> = (trend.levels.iter())
+        .filter(|level| (from..=to).contains(&level.at_days))
+        .map(|level| (level.at_days, level.value))
+        .collect();
+    if trend.levels.is_empty() || inside.len() as f64 >= MOST_OF_IT * trend.levels.len() as f64 {
+        return Some(trend.slope_per_day).filter(|_| trend.days >= MOST_OF_IT * (to - from));
+    }
+    (inside.len() >= FEWEST_RUNS).then(|| theil_sen(&inside))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::joint_trend::Level, *};
+
+    #[test]
+    fn what_a_fleet_has_in_common_for_some_days_is_no_trend_of_a_machine_that_was_there_for_these_alone() {
+        // All machines rise for ten days and fall for ten; one was there for the first ten.
+        let trend = |machine: usize, days: u32| {
+            let noise = |day: u32| 0.1 * f64::from((day * 7 + machine as u32 * 3) % 5);
+            let at = |day: u32| f64::from(day.min(20 - day)) + noise(day);
+            let levels: Vec<Level> = (0..days)
+                .map(|day| Level {
+                    at_days: f64::from(day),
+                    value: 10.0 + at(day),
+                    log: String::new(),
+                    page: None,
+                })
+                .collect();
+            let points: Vec<(f64, f64)> = levels.iter().map(|level| (level.at_days, level.value)).collect();
+            JointTrend {
+                machine: machine.to_string(),
+                joint: "boom".into(),
+                slope_per_day: theil_sen(&points),
+                p_value: if days < 20 { 1e-9 } else { 0.5 },
+                days: f64::from(days),
+                level: 10.0,
+                levels,
+                ..JointTrend::default()
+            }
+        };
+        let mut trends: Vec<JointTrend> =
+            (0..12).map(|machine| trend(machine, if machine < 1 { 10 } else { 20 })).collect();
+        judge(&mut trends);
+        assert!(!trends[0].found, "{:?}", trends[0].stands_out);
+        // Of one that alone rises it is one.
+        let mut trends: Vec<JointTrend> = (0..12).map(|machine| trend(machine, 20)).collect();
+        trends[0] = trend(0, 10);
+        for level in trends.iter_mut().skip(1).flat_map(|trend| &mut trend.levels) {
+            level.value = 10.0 + 0.1 * (level.at_days % 3.0);
+        }
+        judge(&mut trends);
+        assert!(trends[0].found, "{:?}", trends[0].stands_out);
+    }
 }

@@ -42,7 +42,6 @@ pub struct Gated {
     #[serde(default)]
     pub too_few: usize,
     /// Doubts about the data.
-    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
 }
 

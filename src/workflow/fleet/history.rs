@@ -8,7 +8,7 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::{
-    dated::is_named_otherwise,
+    dated::named_otherwise,
     failure::FleetFailure,
     once::{Logged, is_gone, one_a_run},
     run::{Run, date, days},
@@ -28,11 +28,12 @@ use crate::{
 };
 
 /// A metric that machines are judged by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum By {
     /// Largest tracking error after a start, in the joint's unit.
+    #[default]
     Peak,
     /// Dead time of a start, s.
     Delay,
@@ -220,18 +221,24 @@ impl History {
         self.runs.retain(Run::is_dated);
     }
 
-    /// Says which dates cannot be right.
+    /// Takes the dates of names where those of the stamps cannot be right, and says so.
     fn doubt_dates(&mut self) {
-        let off = |run: &&Run| run.is_dated() && is_named_otherwise(&run.log, run.started_us);
-        if let Some(first) = self.runs.iter().find(off) {
-            let (log, at) = (first.log.rsplit('/').next(), date(days(first)).unwrap_or_default());
-            let message = format!(
-                "runs whose stamps say another half of a year than their names, as {} ({at}): was the clock set?",
-                log.unwrap_or_default()
-            );
-            let count = self.runs.iter().filter(off).count() as u64;
-            self.remarks.add(Code::UnusableStamp, count, message);
+        let (mut count, mut message) = (0, String::new());
+        for run in self.runs.iter_mut().filter(|run| run.is_dated()) {
+            let Some(named_us) = named_otherwise(&run.log, run.started_us) else { continue };
+            if count == 0 {
+                let (log, at) = (run.log.rsplit('/').next(), date(days(run)).unwrap_or_default());
+                message = format!(
+                    "runs whose stamps say another half of a year than their names, as {} ({at}): was the clock set? The dates of \
+                     the names are taken",
+                    log.unwrap_or_default()
+                );
+            }
+            run.started_us = named_us;
+            count += 1;
         }
+        self.remarks.add(Code::UnusableStamp, count, message);
+        self.runs.sort_by_key(|run| run.started_us);
     }
 
     fn check(&self, machine: &str) -> Result<(), FleetFailure> {
@@ -364,29 +371,12 @@ fn check_joint(joint: &str, present: BTreeSet<&str>) -> Result<(), FleetFailure>
 }
 
 const RUN: [&str; 11] = [
-    "run_id",
-    "machine",
-    "started_at",
-    "log_uri",
-    "log_sha256",
-    "error",
-    "duration_s",
-    "plan_is_command",
-    "rms",
-    "peak",
-    "log_etag",
+    "run_id", "machine", "started_at", "log_uri", "log_sha256", "error", "duration_s", "plan_is_command",
+    "rms", "peak", "log_etag",
 ];
 const START: [&str; 10] = [
-    "run_id",
-    "plan_id",
-    "joint",
-    "unit",
-    "event_index",
-    "planned_onset_s",
-    "peak_error",
-    "onset_delay_s",
-    "answer",
-    "direction",
+    "run_id", "plan_id", "joint", "unit", "event_index", "planned_onset_s", "peak_error", "onset_delay_s",
+    "answer", "direction",
 ];
 const REMARK: [&str; 2] = ["run_id", "code"];
 const LAG: [&str; 5] = ["run_id", "plan_id", "joint", "unit", "lag_s"];

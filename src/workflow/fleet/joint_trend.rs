@@ -2,13 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{history::By, stepped::LevelStep};
+use super::{history::By, run::date, stepped::LevelStep};
+
+/// Runs of one plan, at least: fewer cannot prove a trend.
+pub(super) const FEWEST_RUNS: usize = 5;
 
 /// False discoveries among what is found, at most.
 pub(super) const MOST_FALSE: f64 = 0.05;
 
 /// The trend of one metric of one joint.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct JointTrend {
     /// The machine.
@@ -62,6 +65,12 @@ impl JointTrend {
             None => self.joint.clone(),
             Some(direction) => format!("{} {}", self.joint, if direction > 0 { "+" } else { "-" }),
         }
+    }
+
+    /// Whether the level changes from the first run on, as far as its runs tell.
+    pub fn changes_throughout(&self) -> bool {
+        let first = self.levels.first().and_then(|level| date(level.at_days));
+        !self.is_step && first.is_some() && self.since == first
     }
 
     /// Growth a day: of a step that from the last run before it to the first run after it, taken as a day at least.

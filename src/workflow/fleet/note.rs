@@ -79,7 +79,7 @@ pub fn note(root: &Path, note: &Note) -> Result<Intervention, FleetFailure> {
     let at = note.at_us.to_string();
     let hash = hash([note.machine.as_str(), &at, note.joint.as_deref().unwrap_or_default(), &note.what]);
     let part = Part { place: place_of(Some(note.at_us), &note.machine), hash };
-    let table = Table { columns: Name::Interventions.columns().to_vec(), rows: vec![row] };
+    let table = Table { columns: Name::Interventions.columns(), rows: vec![row] };
     let file = (part.path(Name::Interventions), table.encode(Name::Interventions.text())?);
     Store::open(root)?.change(&[file], &[])?;
     Ok(note.into())
@@ -94,7 +94,7 @@ pub fn notes(root: &Path, machine: Option<&str>) -> Result<Vec<Note>, FleetFailu
     let mut found = Vec::new();
     for part in parts(root, Name::Interventions)? {
         let path = root.join(part.path(Name::Interventions));
-        for row in read_table(&path, Name::Interventions.columns())?.rows {
+        for row in read_table(&path, &Name::Interventions.columns())?.rows {
             let text = |k: usize| row.get(k).and_then(Cell::as_text).map(str::to_owned);
             let at_us = row.get(1).and_then(Cell::as_whole);
             if let (Some(machine), Some(at_us), Some(what)) = (text(0), at_us, text(3)) {

@@ -24,6 +24,19 @@ pub(super) fn by_direction(history: &History, axis: &Axis, values: &Values) -> V
     if both.iter().any(|(_, own)| own.is_empty()) { Vec::new() } else { both.into() }
 }
 
+/// A change with its interval: by a step, or a day.
+fn change(trend: &JointTrend, is_step: bool) -> Option<(f64, [f64; 2])> {
+    if is_step {
+        return trend.step.as_ref().map(|step| (step.change, step.interval_95));
+    }
+    Some((trend.slope_per_day, trend.interval_95))
+}
+
+/// Whether another change is less than half as large, and surely less.
+fn changes_alone((own, [low, high]): (f64, [f64; 2]), (other, of_other): (f64, [f64; 2])) -> bool {
+    other.abs() < OTHER * own.abs() && if own > 0.0 { of_other[1] < low } else { of_other[0] > high }
+}
+
 /// Keeps one trend a joint and metric: that of one direction where it is found and the other changes by less, else that of all
 /// starts.
 pub(super) fn clearest(trends: Vec<JointTrend>) -> Vec<JointTrend> {
@@ -32,16 +45,33 @@ pub(super) fn clearest(trends: Vec<JointTrend>) -> Vec<JointTrend> {
         groups.entry((trend.machine.clone(), trend.joint.clone(), trend.metric)).or_default().push(trend);
     }
     let one = |mut group: Vec<JointTrend>| {
-        let growth = |direction: Option<i8>| {
-            group.iter().find(|trend| trend.direction == direction).map(JointTrend::growth_per_day)
-        };
+        let of = |direction: i8| group.iter().find(|trend| trend.direction == Some(direction));
         let alone = |trend: &JointTrend| {
-            let other = trend.direction.and_then(|direction| growth(Some(-direction)));
-            trend.found && other.is_some_and(|other| other.abs() < OTHER * trend.growth_per_day().abs())
+            let other = trend.direction.and_then(|direction| change(of(-direction)?, trend.is_step));
+            let own = change(trend, trend.is_step);
+            trend.found && own.zip(other).is_some_and(|(own, other)| changes_alone(own, other))
         };
         let told =
             group.iter().position(alone).or_else(|| group.iter().position(|trend| trend.direction.is_none()));
         told.map(|at| group.swap_remove(at))
     };
     groups.into_values().filter_map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_of_both_directions_is_of_none() {
+        let by = |change: f64| (change, [change - 4.0, change + 4.0]);
+        assert!(!changes_alone(by(43.0), by(39.0)) && !changes_alone(by(43.0), by(25.0)));
+        assert!(
+            changes_alone(by(43.0), by(3.0))
+                && changes_alone(by(-43.0), by(-3.0))
+                && changes_alone(by(43.0), by(-3.0))
+        );
+        // The other one may have changed by as much.
+        assert!(!changes_alone((10.0, [2.0, 18.0]), (4.0, [-8.0, 16.0])));
+    }
 }

@@ -29,6 +29,16 @@ pub struct LevelStep {
     pub left: f64,
 }
 
+/// A step that leaves more than this share of what a level that begins to change leaves may be one as well.
+const SURELY: f64 = 0.8;
+
+impl LevelStep {
+    /// Whether it is surely no change over some days.
+    pub fn is_sure(&self) -> bool {
+        self.left < SURELY
+    }
+}
+
 /// The step that explains the levels of the runs best, beside their trend.
 pub(super) fn best_step(levels: &[(f64, f64)]) -> Option<LevelStep> {
     let values: Vec<f64> = levels.iter().map(|(_, level)| *level).collect();

@@ -42,16 +42,23 @@ impl Name {
     }
 
     /// Its columns; every row has a cell for each.
-    pub fn columns(self) -> &'static [Column] {
+    pub fn columns(self) -> Vec<Column> {
         match self {
-            Self::Interventions => INTERVENTIONS,
-            Self::Joints => JOINTS,
-            Self::Limits => LIMITS,
-            Self::Remarks => REMARKS,
-            Self::Runs => RUNS,
-            Self::Transitions => TRANSITIONS,
+            Self::Interventions => INTERVENTIONS.to_vec(),
+            Self::Joints => JOINTS.iter().map(|(column, _)| *column).collect(),
+            Self::Limits => LIMITS.to_vec(),
+            Self::Remarks => REMARKS.to_vec(),
+            Self::Runs => RUNS.to_vec(),
+            Self::Transitions => TRANSITIONS.iter().map(|(column, _)| *column).collect(),
         }
     }
+}
+
+/// A column, and what it says of something in a log.
+type Told<T> = (Column, for<'a> fn(&(&'a Log, &'a Findings, &'a T)) -> Cell);
+
+fn row<T>(table: &[Told<T>], log: &Log, found: &Findings, of: &T) -> Vec<Cell> {
+    table.iter().map(|(_, told)| told(&(log, found, of))).collect()
 }
 
 const RUNS: &[Column] = &[
@@ -88,61 +95,67 @@ const RUNS: &[Column] = &[
     Column::whole("tries"),
 ];
 
-const JOINTS: &[Column] = &[
-    Column::text("run_id"),
-    Column::text("machine"),
-    Column::text("plan_id"),
-    Column::text("joint"),
-    Column::text("unit"),
-    Column::flag("moves"),
-    Column::real("rms"),
-    Column::real("mean_abs"),
-    Column::real("p95"),
-    Column::real("peak"),
-    Column::real("peak_time_s"),
-    Column::real("bias"),
-    Column::real("standstill_rms"),
-    Column::real("lag_s"),
-    Column::real("lag_low_s"),
-    Column::real("lag_high_s"),
-    Column::real("lag_correlation"),
-    Column::real("lag_share"),
-    Column::real("noise"),
-    Column::real("sample_interval_s"),
-    Column::whole("starts"),
-    Column::whole("reversals"),
-    Column::whole("stops"),
-    Column::whole("unanswered"),
-    Column::whole("undated"),
-    Column::whole("unplanned"),
+const JOINTS: &[Told<JointReplay>] = &[
+    (Column::text("run_id"), |(_, found, _)| Cell::from(found.run_id.as_str())),
+    (Column::text("machine"), |(log, _, _)| Cell::from(log.machine.as_deref())),
+    (Column::text("plan_id"), |(_, found, _)| Cell::from(found.plan_id.as_deref())),
+    (Column::text("joint"), |(_, _, joint)| Cell::from(joint.name.as_str())),
+    (Column::text("unit"), |(_, _, joint)| Cell::from(joint.kind.unit())),
+    (Column::flag("moves"), |(_, _, joint)| Cell::from(joint.moves)),
+    (Column::real("rms"), |(_, _, joint)| Cell::from(joint.tracking_error.rms)),
+    (Column::real("mean_abs"), |(_, _, joint)| Cell::from(joint.tracking_error.mean_abs)),
+    (Column::real("p95"), |(_, _, joint)| Cell::from(joint.tracking_error.p95)),
+    (Column::real("peak"), |(_, _, joint)| Cell::from(joint.tracking_error.peak)),
+    (Column::real("peak_time_s"), |(_, _, joint)| Cell::from(joint.tracking_error.peak_time_s)),
+    (Column::real("bias"), |(_, _, joint)| Cell::from(joint.tracking_error.bias)),
+    (Column::real("standstill_rms"), |(_, _, joint)| {
+        Cell::from(joint.standstill_error.map(|error| error.rms))
+    }),
+    (Column::real("lag_s"), |(_, _, joint)| Cell::from(joint.lag_s)),
+    (Column::real("lag_low_s"), |(_, _, joint)| Cell::from(joint.lag_interval_s.map(|i| i[0]))),
+    (Column::real("lag_high_s"), |(_, _, joint)| Cell::from(joint.lag_interval_s.map(|i| i[1]))),
+    (Column::real("lag_correlation"), |(_, _, joint)| Cell::from(joint.lag_correlation)),
+    (Column::real("lag_share"), |(_, _, joint)| Cell::from(joint.lag_share.map(|lag| lag.share))),
+    (Column::real("noise"), |(_, _, joint)| Cell::from(joint.noise.sigma)),
+    (Column::real("sample_interval_s"), |(_, _, joint)| Cell::from(joint.sample_interval_s)),
+    (Column::whole("starts"), |(_, _, joint)| Cell::from(joint.starts)),
+    (Column::whole("reversals"), |(_, _, joint)| Cell::from(joint.reversals)),
+    (Column::whole("stops"), |(_, _, joint)| Cell::from(joint.stops)),
+    (Column::whole("unanswered"), |(_, _, joint)| Cell::from(joint.unanswered_starts)),
+    (Column::whole("undated"), |(_, _, joint)| Cell::from(joint.undated_starts)),
+    (Column::whole("unplanned"), |(_, _, joint)| Cell::from(joint.unplanned_starts)),
 ];
 
-const TRANSITIONS: &[Column] = &[
-    Column::text("run_id"),
-    Column::text("machine"),
-    Column::text("plan_id"),
-    Column::text("joint"),
-    Column::text("unit"),
-    Column::whole("event_index"),
-    Column::text("event_id"),
-    Column::text("kind"),
-    Column::whole("direction"),
-    Column::text("answer"),
-    Column::real("planned_onset_s"),
-    Column::real("measured_onset_s"),
-    Column::real("onset_delay_s"),
-    Column::real("onset_delay_low_s"),
-    Column::real("onset_delay_high_s"),
-    Column::real("peak_error"),
-    Column::real("peak_error_signed"),
-    Column::real("time_to_peak_s"),
-    Column::real("error_area"),
-    Column::real("rms_error"),
-    Column::real("overshoot"),
-    Column::real("settling_time_s"),
-    Column::real("breakaway_error"),
-    Column::whole("samples"),
-    Column::real("time_resolution_s"),
+const TRANSITIONS: &[Told<Transition>] = &[
+    (Column::text("run_id"), |(_, found, _)| Cell::from(found.run_id.as_str())),
+    (Column::text("machine"), |(log, _, _)| Cell::from(log.machine.as_deref())),
+    (Column::text("plan_id"), |(_, found, _)| Cell::from(found.plan_id.as_deref())),
+    (Column::text("joint"), |(_, _, start)| Cell::from(start.joint.as_str())),
+    (Column::text("unit"), |(_, _, start)| Cell::from(start.joint_kind.unit())),
+    (Column::whole("event_index"), |(_, _, start)| Cell::from(start.index)),
+    (Column::text("event_id"), |(_, _, start)| Cell::from(start.id.as_str())),
+    (Column::text("kind"), |(_, _, start)| Cell::from(start.kind.name())),
+    (Column::whole("direction"), |(_, _, start)| Cell::Whole(i64::from(start.direction))),
+    (Column::text("answer"), |(_, _, start)| Cell::from(start.answer.name())),
+    (Column::real("planned_onset_s"), |(_, _, start)| Cell::from(start.planned_onset_s)),
+    (Column::real("measured_onset_s"), |(_, _, start)| Cell::from(start.measured_onset_s)),
+    (Column::real("onset_delay_s"), |(_, _, start)| Cell::from(start.onset_delay_s)),
+    (Column::real("onset_delay_low_s"), |(_, _, start)| {
+        Cell::from(start.onset_delay_interval_s.map(|i| i[0]))
+    }),
+    (Column::real("onset_delay_high_s"), |(_, _, start)| {
+        Cell::from(start.onset_delay_interval_s.map(|i| i[1]))
+    }),
+    (Column::real("peak_error"), |(_, _, start)| Cell::from(start.peak_error)),
+    (Column::real("peak_error_signed"), |(_, _, start)| Cell::from(start.peak_error_signed)),
+    (Column::real("time_to_peak_s"), |(_, _, start)| Cell::from(start.time_to_peak_s)),
+    (Column::real("error_area"), |(_, _, start)| Cell::from(start.error_area)),
+    (Column::real("rms_error"), |(_, _, start)| Cell::from(start.rms_error)),
+    (Column::real("overshoot"), |(_, _, start)| Cell::from(start.overshoot)),
+    (Column::real("settling_time_s"), |(_, _, start)| Cell::from(start.settling_time_s)),
+    (Column::real("breakaway_error"), |(_, _, start)| Cell::from(start.breakaway_error)),
+    (Column::whole("samples"), |(_, _, start)| Cell::from(start.samples)),
+    (Column::real("time_resolution_s"), |(_, _, start)| Cell::from(start.time_resolution_s)),
 ];
 
 /// Numbers of a joint as a fit finds them; `value` is in the unit of the quantity's name.
@@ -193,10 +206,6 @@ pub struct Log {
 /// Rows of one log by table.
 pub type Rows = Vec<(Name, Vec<Cell>)>;
 
-fn pair(interval: Option<[f64; 2]>) -> [Cell; 2] {
-    [Cell::from(interval.map(|i| i[0])), Cell::from(interval.map(|i| i[1]))]
-}
-
 fn micros(ns: i64) -> Cell {
     Cell::Whole(ns.div_euclid(1000))
 }
@@ -245,9 +254,9 @@ pub fn analysed(log: &Log, found: &Findings) -> Rows {
         Cell::from(log.tries),
     ];
     let mut rows = vec![(Name::Runs, run)];
-    rows.extend(report.joints.iter().map(|joint| (Name::Joints, joint_row(log, found, joint))));
+    rows.extend(report.joints.iter().map(|joint| (Name::Joints, row(JOINTS, log, found, joint))));
     rows.extend(
-        report.transitions.iter().map(|start| (Name::Transitions, transition_row(log, found, start))),
+        report.transitions.iter().map(|start| (Name::Transitions, row(TRANSITIONS, log, found, start))),
     );
     let doubt = |remark: &Remark| (Name::Remarks, remark_row(log, &found.run_id, remark));
     rows.extend(report.remarks.iter().map(doubt));
@@ -294,74 +303,10 @@ pub fn failed(log: &Log, error: &str, may_pass: bool) -> Rows {
     vec![(Name::Runs, row)]
 }
 
-fn joint_row(log: &Log, found: &Findings, joint: &JointReplay) -> Vec<Cell> {
-    let error = &joint.tracking_error;
-    let [lag_low, lag_high] = pair(joint.lag_interval_s);
-    vec![
-        Cell::from(found.run_id.as_str()),
-        Cell::from(log.machine.as_deref()),
-        Cell::from(found.plan_id.as_deref()),
-        Cell::from(joint.name.as_str()),
-        Cell::from(joint.kind.unit()),
-        Cell::from(joint.moves),
-        Cell::from(error.rms),
-        Cell::from(error.mean_abs),
-        Cell::from(error.p95),
-        Cell::from(error.peak),
-        Cell::from(error.peak_time_s),
-        Cell::from(error.bias),
-        Cell::from(joint.standstill_error.map(|error| error.rms)),
-        Cell::from(joint.lag_s),
-        lag_low,
-        lag_high,
-        Cell::from(joint.lag_correlation),
-        Cell::from(joint.lag_share.map(|lag| lag.share)),
-        Cell::from(joint.noise.sigma),
-        Cell::from(joint.sample_interval_s),
-        Cell::from(joint.starts),
-        Cell::from(joint.reversals),
-        Cell::from(joint.stops),
-        Cell::from(joint.unanswered_starts),
-        Cell::from(joint.undated_starts),
-        Cell::from(joint.unplanned_starts),
-    ]
-}
-
-fn transition_row(log: &Log, found: &Findings, start: &Transition) -> Vec<Cell> {
-    let [delay_low, delay_high] = pair(start.onset_delay_interval_s);
-    vec![
-        Cell::from(found.run_id.as_str()),
-        Cell::from(log.machine.as_deref()),
-        Cell::from(found.plan_id.as_deref()),
-        Cell::from(start.joint.as_str()),
-        Cell::from(start.joint_kind.unit()),
-        Cell::from(start.index),
-        Cell::from(start.id.as_str()),
-        Cell::from(start.kind.name()),
-        Cell::Whole(i64::from(start.direction)),
-        Cell::from(start.answer.name()),
-        Cell::from(start.planned_onset_s),
-        Cell::from(start.measured_onset_s),
-        Cell::from(start.onset_delay_s),
-        delay_low,
-        delay_high,
-        Cell::from(start.peak_error),
-        Cell::from(start.peak_error_signed),
-        Cell::from(start.time_to_peak_s),
-        Cell::from(start.error_area),
-        Cell::from(start.rms_error),
-        Cell::from(start.overshoot),
-        Cell::from(start.settling_time_s),
-        Cell::from(start.breakaway_error),
-        Cell::from(start.samples),
-        Cell::from(start.time_resolution_s),
-    ]
-}
-
 /// The column of a table by its name; columns are asked for by names of this file.
 pub(super) fn column(table: Name, name: &str) -> Column {
-    let found = table.columns().iter().find(|column| column.name == name);
-    found.copied().unwrap_or(table.columns()[0])
+    let columns = table.columns();
+    *columns.iter().find(|column| column.name == name).unwrap_or(&columns[0])
 }
 
 #[cfg(test)]

@@ -40,7 +40,6 @@ pub struct Worst {
     /// How the machines did over the days.
     pub map: Option<Map>,
     /// Doubts about the data.
-    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
 }
 

@@ -15,7 +15,6 @@ pub struct Imported {
     /// Its form, clock and columns.
     pub understood: Understood,
     /// Doubts about the data.
-    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
 }
 

@@ -29,7 +29,7 @@ pub struct Inputs {
 /// [`LogError`] if a file cannot be opened or is no log; that no report can be made of it is
 /// part of the result.
 pub fn run(inputs: &Inputs) -> Result<Survey, LogError> {
-    let files = LogFiles::open(&inputs.logs).map_err(|error| error.given(&inputs.read))?;
+    let files = LogFiles::with(inputs.logs.iter().cloned(), &inputs.read)?;
     // What a reader of options asks for is found by reading.
     let by_index = !inputs.check && inputs.read == ReadOptions::default() && files.bytes() > READ_WHOLE;
     match by_index.then(|| files.survey_by_index()).flatten() {

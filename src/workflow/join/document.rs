@@ -40,7 +40,6 @@ pub struct Joined {
     /// Names of the files that came with the plan.
     pub files: Vec<String>,
     /// Doubts about the data.
-    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
     /// Where the plan was found; not written.
     #[serde(skip)]

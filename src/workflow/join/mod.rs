@@ -124,7 +124,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         return Err(JoinFailure::Cylinders);
     }
     let plan = read_plan(&inputs.plan)?;
-    let files = LogFiles::open(&inputs.logs).map_err(|error| error.given(&inputs.read))?;
+    let files = LogFiles::with(inputs.logs.iter().cloned(), &inputs.read)?;
     let log = files.scan()?;
     // The measurement is enough if the caller says when the plan began.
     let sides = if inputs.at_s.is_some() { Sides::MeasurementAtLeast } else { Sides::Both };

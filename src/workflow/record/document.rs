@@ -29,7 +29,6 @@ pub struct Recorded {
     /// Columns in use: number from 1, header, what it became, joint, unit.
     pub columns: Vec<String>,
     /// Doubts about the data.
-    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
 }
 

@@ -17,7 +17,8 @@ pub struct Senders {
     /// Whether it sent more than once: some programs open a port for each packet.
     lasts: bool,
     ports: BTreeSet<u16>,
-    others: BTreeSet<SocketAddr>,
+    /// The one that was listened to when another was refused first, and that one.
+    both: Option<[SocketAddr; 2]>,
     refused: u64,
     /// Where another one went on after the first was silent.
     followed: u64,
@@ -30,9 +31,7 @@ impl Senders {
         let may_follow = from.ip() == now.ip() && (!self.lasts || at_s - self.heard_s > SILENCE_S);
         if from != now && !may_follow {
             self.refused += 1;
-            if self.others.len() < MOST_PORTS {
-                self.others.insert(from);
-            }
+            self.both.get_or_insert([now, from]);
             return false;
         }
         self.followed += u64::from(from != now && self.lasts);
@@ -48,7 +47,7 @@ impl Senders {
     /// What was refused.
     pub fn remarks(&self) -> Remarks {
         let mut remarks = Remarks::default();
-        if let (Some(first), Some(other)) = (self.first, self.others.first()) {
+        if let Some([first, other]) = self.both {
             let message = format!(
                 "packets of another sender than {first}, such as {other}, left out; let each send to a recorder and a port \
                  of its own, or one send all columns"

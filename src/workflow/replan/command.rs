@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::ReplanFailure;
 use crate::{
-    fit::{Fit, JointFit, Learning, Learnt, Oscillation, Room, STEP_S, Step, Trial, learn, predict},
+    fit::{Fit, JointFit, Learning, Learnt, Oscillation, Room, SHARE, STEP_S, Step, Trial, learn, predict},
     math::{State, lowpass, range},
     plan::{BETWEEN, Interpolation, Limit, Margin, POINTS_HZ, Setup, SpeedRoom},
     series::{JointKind, Series, Track, align},
@@ -160,11 +160,11 @@ pub(super) fn commanded(
                 let bound = |joint: &&JointFit| !joint.model_holds || joint.reaches_limits(speeds_rad_s);
                 fit.joint(name).filter(bound)?;
                 let (range_rad, most) = (near(&planned, runs, name), [f64::INFINITY; 3]);
-                return Some(Room { range_rad, most, planned, speed_rad_s: Vec::new() });
+                return Some(Room { range_rad, most, planned, speed_rad_s: Vec::new(), share: 1.0 });
             };
             let (range_rad, most) = setup.and_then(|s| s.joint_limits(own))?;
             let speed_rad_s = narrowed.get(own).cloned().unwrap_or_default();
-            Some(Room { range_rad, most, planned, speed_rad_s })
+            Some(Room { range_rad, most, planned, speed_rad_s, share: SHARE })
         };
         learn(fit, plan, runs, settings, room)
     };

@@ -102,8 +102,7 @@ mod tests {
     #[test]
     fn the_committed_schema_is_that_of_the_next_plan() {
         crate::schema::is_committed::<ReplanDocument>(
-            "replan.v3.schema.json",
-            "hydrotrace replan, version 3",
+            "replan.v3.schema.json", "hydrotrace replan, version 3",
         );
     }
 

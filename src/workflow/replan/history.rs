@@ -11,7 +11,7 @@ use crate::{
     series::{JointKind, Series, Track, align, bridged, moving_s},
     workflow::{
         carried::{Carried, Promise, rest::PLAN_LEAD_S},
-        same_plan::{breaks_off_after_s, cut, cut_measured, found_at_s, within},
+        same_plan::{breaks_off_after_s, cut, cut_measured, found_at_s, of_same_rows, onto, within},
     },
 };
 
@@ -99,10 +99,18 @@ impl History {
             after_s = f64::min(after_s, rests_s.min(seen_s)).max(0.0);
             let ended_s = end_s + rests_s;
             let sent = recording.command.as_ref().map_or(&recording.planned, |command| &command.series);
-            let (sent, measured) = (
+            let [of_sent, of_measured] =
+                [sent, &recording.measured].map(|series| of_same_rows(series, &recording.planned));
+            let (mut sent, mut measured) = (
                 cut(&*bridged(sent)?, starts_s, starts_s + end_s)?,
                 cut_measured(&recording.measured, starts_s, starts_s + ended_s)?,
             );
+            let own = cut(&*bridged(&recording.planned)?, starts_s, starts_s + end_s)?;
+            if !within(&own, plan, NONE_RAD) {
+                // Its stamps jitter: what its rows say of their own plan holds.
+                let moved = |of_rows, series| if of_rows { onto(&series, &own, plan) } else { Ok(series) };
+                (sent, measured) = (moved(of_sent, sent)?, moved(of_measured, measured)?);
+            }
             let pairs: Vec<_> = (recording.measured.tracks.iter())
                 .filter_map(|track| align(recording.planned.track(track.name())?, track))
                 .collect();

@@ -26,7 +26,9 @@ mod warp;
 
 use std::ops::ControlFlow;
 
-pub use checks::{Check, Checks, Fastest, Finding, JointTrust, Level, Reason, TooFast, Verdict};
+pub use checks::{
+    Check, Checks, Fastest, Finding, JointTrust, Level, Outside, Reason, Sharpest, TooFast, Verdict,
+};
 pub use command::{Commanded, JointCommand};
 pub use course::{Drawn, JointCourse, courses};
 pub use decision::{Decision, KeepReason, Overall};

@@ -92,14 +92,14 @@ pub fn advice(report: &Report) -> Vec<Advice> {
         advice.push(Advice::RecordStarts);
         return advice;
     };
-    let verdict = replay.whole_run.concentration.as_ref().map(|c| c.verdict);
+    let verdict = replay.together_with(worst.joint_kind).concentration.as_ref().map(|c| c.verdict);
     let sound = report.remarks.as_slice().iter().all(|remark| !remark.code.spoils_runs());
     let of_tool =
         |joint: &JointReplay| joint.kind == JointKind::Slides && OF_TOOL.contains(&joint.name.as_str());
     let tells = |joint: &JointReplay| !of_tool(joint) && joint.sample_interval_s <= SPARSEST_S;
     let could = sound && replay.joints.iter().any(tells);
     let fits = could && report.broken.is_none();
-    if let Some((joint, lag_s)) = mostly_lag(report) {
+    if let Some((joint, lag_s)) = mostly_lag(report, worst.joint_kind) {
         advice.push(Advice::ShiftCommand { joint, lag_s, fits });
     } else if verdict == Some(Verdict::Elsewhere) {
         advice.extend(outside(report));
@@ -119,11 +119,11 @@ pub fn advice(report: &Report) -> Vec<Advice> {
     advice
 }
 
-/// Where the run's error is mostly lag: the joint to begin with and its lag, s.
-fn mostly_lag(report: &Report) -> Option<(String, f64)> {
-    report.replay.whole_run.lag_share.filter(|lag| lag.mostly)?;
-    let joints =
-        report.replay.joints.iter().filter_map(|joint| Some((joint, joint.lag_s.filter(|s| *s > 0.0)?)));
+/// Where the error of joints of a kind is mostly lag: the joint to begin with and its lag, s.
+fn mostly_lag(report: &Report, kind: JointKind) -> Option<(String, f64)> {
+    report.replay.together_with(kind).lag_share.filter(|lag| lag.mostly)?;
+    let joints = report.replay.joints.iter().filter(|joint| joint.kind == kind);
+    let joints = joints.filter_map(|joint| Some((joint, joint.lag_s.filter(|s| *s > 0.0)?)));
     let own = |joint: &JointReplay| joint.lag_share.is_some_and(|lag| lag.mostly);
     let (joint, lag_s) = joints.max_by(|(a, _), (b, _)| {
         let rms_rad = |joint: &JointReplay| joint.tracking_error.rms;

@@ -7,7 +7,7 @@ use crate::{
     document::PROGRAM,
     log::SourceInfo,
     remark::Remark,
-    replay::{JointReplay, Rules, Stop, ToolReplay, Transition, WholeRun},
+    replay::{JointReplay, KindRun, Rules, Stop, ToolReplay, Transition, WholeRun},
     workflow::carried::Held,
 };
 
@@ -43,6 +43,9 @@ pub struct Document {
     pub stops: Vec<Stop>,
     /// All joints together, in their unit.
     pub whole_run: WholeRun,
+    /// Of an arm of which some joints turn and some slide, those of each kind together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub of_kinds: Vec<KindRun>,
     /// The tool against its plan; null where the log holds no arm, or the tool cannot be placed.
     #[serde(default)]
     pub tool: Option<ToolReplay>,
@@ -83,6 +86,7 @@ impl Document {
             transitions: report.replay.transitions.clone(),
             stops: report.replay.stops.clone(),
             whole_run: report.replay.whole_run.clone(),
+            of_kinds: report.replay.of_kinds.clone(),
             tool: report.tool.found().cloned(),
             no_tool: report.tool.why_not(),
             why: report.why.as_ref().and_then(|why| why.as_ref().ok()).cloned(),

@@ -65,7 +65,7 @@ pub(in crate::workflow) fn reported(
         let names: Vec<PathBuf> = logs.iter().map(|log| log.name().to_owned()).collect();
         let files = input_files(&logs);
         let read = inputs.read_options()?;
-        let files_of_run = LogFiles::of(logs).map_err(|error| error.given(&read))?;
+        let files_of_run = LogFiles::with(logs, &read)?;
         let recording = files_of_run.scan()?.read(&read)?;
         let found = report(recording, &Inputs { logs: names, ..inputs.clone() })?;
         let findings = Findings::of(&found, files);

@@ -76,10 +76,7 @@ mod tests {
         let absolute = other.join("c.dae");
         assert_eq!(places.find(&format!("file://{}", absolute.display())), Some(absolute));
         for none in [
-            "package://other/d.txt",
-            "package://other",
-            "package://robot/none.stl",
-            "../meshes",
+            "package://other/d.txt", "package://other", "package://robot/none.stl", "../meshes",
             "https://a/b.stl",
         ] {
             assert_eq!(places.find(none), None, "{none}");

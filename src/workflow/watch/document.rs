@@ -20,7 +20,7 @@ use crate::{
 pub(super) const FORMAT: &str = "hydrotrace.watch.v1";
 
 /// A log that was reported: one line of JSON, and the same in a file beside its page.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Run {
     /// Always "hydrotrace.watch.v1".
@@ -62,7 +62,7 @@ pub struct Run {
 }
 
 /// Whether a run is good enough.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -73,6 +73,7 @@ pub enum Verdict {
     /// No limit is set.
     NoLimits,
     /// There is no report.
+    #[default]
     Failed,
 }
 
@@ -103,19 +104,9 @@ impl Run {
             log: log.uri.clone(),
             log_etag: log.etag.clone(),
             request_id: request_id.to_owned(),
-            page: None,
             machine: log.machine.clone(),
-            started_at: None,
-            duration_s: None,
-            plan_id: None,
-            verdict: Verdict::Failed,
-            gates: Vec::new(),
-            worst_joint: None,
-            largest_delay_s: None,
-            unanswered_starts: 0,
-            joints: Vec::new(),
-            remarks: 0,
             error: Some(error.to_owned()),
+            ..Self::default()
         }
     }
 

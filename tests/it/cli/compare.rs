@@ -232,14 +232,8 @@ fn exit_code_4_says_which_limit_and_what_was_found() {
         assert_eq!(text.lines().count(), 1);
     }
     let kept = [
-        "--min-peak-reduction-percent",
-        "20",
-        "--max-p",
-        "0.05",
-        "--max-rms-ratio",
-        "0.8",
-        "--max-peak-ratio",
-        "0.8",
+        "--min-peak-reduction-percent", "20", "--max-p", "0.05", "--max-rms-ratio", "0.8",
+        "--max-peak-ratio", "0.8",
     ];
     assert_eq!(judged(better, &kept), (0, String::new()));
     assert_eq!(judged(better, &["--min-peak-reduction-percent", "99"]).0, 4);

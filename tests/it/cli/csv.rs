@@ -87,11 +87,7 @@ fn the_error_of_an_export_is_the_one_that_is_reported() {
     assert_eq!(
         names.iter().collect::<Vec<_>>(),
         [
-            "stamp_ns",
-            "time_s",
-            "joint_3_planned_rad",
-            "joint_3_planned_rad_s",
-            "joint_3_measured_rad",
+            "stamp_ns", "time_s", "joint_3_planned_rad", "joint_3_planned_rad_s", "joint_3_measured_rad",
             "joint_3_error_rad"
         ]
     );

@@ -280,13 +280,9 @@ fn a_unit_or_a_role_may_stand_within_a_name() {
     };
     let (degrees, radians) = (angles(1.0), angles(1.0_f64.to_radians()));
     for head in [
-        "j1_deg_target,j1_deg_actual",
-        "target_angle_deg_1,angle_deg_1",
-        "boom_deg_soll,boom_deg_ist",
-        "target_angle_degrees_1,angle_degrees_1",
-        "target_angle_deg,current_angle_deg",
-        "target_deg_j1,current_deg_j1",
-        "A1_RSol [deg],A1_RIst [deg]",
+        "j1_deg_target,j1_deg_actual", "target_angle_deg_1,angle_deg_1", "boom_deg_soll,boom_deg_ist",
+        "target_angle_degrees_1,angle_degrees_1", "target_angle_deg,current_angle_deg",
+        "target_deg_j1,current_deg_j1", "A1_RSol [deg],A1_RIst [deg]",
     ] {
         assert_peak("deg.csv", &table(&format!("time_s,{head}"), degrees), &[]);
     }

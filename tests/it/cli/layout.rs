@@ -174,15 +174,8 @@ fn a_layout_has_the_arm_the_error_and_the_worst_start_where_the_log_does_and_the
     let found = panels(&layout(folder.path(), "full.mcap"));
     let ids: Vec<&str> = found.iter().map(|(id, _)| id.as_str()).collect();
     let expected = [
-        "3D!arm",
-        "Plot!effort1",
-        "Plot!error1",
-        "Plot!position1",
-        "Plot!position2",
-        "Plot!speed1",
-        "Plot!speed2",
-        "Plot!worst",
-        "Tab!signals",
+        "3D!arm", "Plot!effort1", "Plot!error1", "Plot!position1", "Plot!position2", "Plot!speed1",
+        "Plot!speed2", "Plot!worst", "Tab!signals",
     ];
     assert_eq!(ids, expected);
     let panel = |id: &str| &found.iter().find(|(known, _)| known == id).unwrap().1;

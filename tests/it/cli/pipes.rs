@@ -83,3 +83,38 @@ fn an_input_that_ends_at_once_or_never_is_refused_with_what_to_do() {
     let (_, said) = run(folder.path(), "timeout 20 hydrotrace report a.mcap --json /dev/stdout 2>&1 | cat");
     assert!(said.contains("it is where the output of this command goes"), "{said}");
 }
+
+#[test]
+fn a_reader_that_leaves_makes_a_broken_limit_no_kept_one() {
+    let folder = folder();
+    let code = |line: &str| {
+        run(folder.path(), &format!("(hydrotrace {line}; echo $? > code) | true"));
+        fs::read_to_string(folder.path().join("code")).unwrap().trim().to_owned()
+    };
+    for form in ["", "--html", "--json", "--csv"] {
+        assert_eq!(code(&format!("report a.csv {form} --max-peak-deg 0.001")), "4", "{form}");
+        assert_eq!(code(&format!("report a.csv {form} --max-peak-deg 90")), "0", "{form}");
+    }
+    assert_eq!(code("compare a.csv a.csv --html --min-peak-reduction-percent 80"), "4");
+    assert_eq!(code("watch 'a.cs*' --into pages --once --settle 0 --max-peak-deg 0.001"), "4");
+}
+
+#[test]
+fn a_sensor_that_is_not_up_yet_stops_no_recording_and_no_report() {
+    let folder = folder();
+    let text = fs::read_to_string(folder.path().join("a.csv")).unwrap();
+    for (word, rows) in [("nan", 10), ("NaN", 10), ("null", 10), ("N/A", 10), ("nan", 150)] {
+        let late = |(k, line): (usize, &str)| match line.rsplit_once(',') {
+            Some((others, _)) if (1..=rows).contains(&k) => format!("{others},{word}\n"),
+            _ => format!("{line}\n"),
+        };
+        let late: String = text.lines().enumerate().map(late).collect();
+        fs::write(folder.path().join("late.csv"), &late).unwrap();
+        let (code, said) = run(folder.path(), "hydrotrace record -o late.mcap --force < late.csv");
+        assert!(code == 0 || code == 3, "{word} {rows}: {said}");
+        for log in ["late.csv", "late.mcap"] {
+            let (code, said) = run(folder.path(), &format!("hydrotrace report {log}"));
+            assert!(code == 3 || log == "late.mcap" && code == 0, "{word} {rows}: {said}");
+        }
+    }
+}

@@ -90,3 +90,77 @@ fn an_identification_run_of_a_joint_that_slides_tells_its_speed() {
     let (code, _, error) = said(&run_line(folder, "replan id.csv -o next.mcap"));
     assert!(code == 1 && error.contains("is an identification run"), "{error}");
 }
+
+/// Of a boom that turns and a telescope that slides, whose names say it in German.
+#[test]
+fn an_arm_of_both_kinds_is_told_by_kind_and_no_length_is_an_angle() {
+    let folder = scratch();
+    let folder = folder.path();
+    let boom = followed(moves(9.0), 0.6, 60.0);
+    let both = |tele: &dyn Fn(f64) -> f64| -> String {
+        let header =
+            "t_s,boom_planned_deg,boom_measured_deg,Fahrwerk X Soll [mm],Fahrwerk X Ist [mm]\n".to_owned();
+        let row = |row: &str| {
+            let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+            format!("{row},{},{}\n", tele(cells[1]), tele(cells[2]))
+        };
+        header + &boom.lines().skip(1).map(row).collect::<String>()
+    };
+    fs::write(folder.join("a.csv"), both(&|deg| 10.0 * deg)).unwrap();
+    fs::write(folder.join("b.csv"), both(&|deg| 12.0 * deg)).unwrap();
+    let (_, text, _) = said(&run_line(folder, "report a.csv"));
+    for sentence in ["Joints that turn: ", "Joints that slide: "] {
+        for what in [" inside, ", "distance to the planned path"] {
+            let found = text.lines().any(|line| line.starts_with(sentence) && line.contains(what));
+            assert!(found, "{sentence}{what}: {text}");
+        }
+    }
+    let document = json(folder, "report a.csv");
+    let kinds: Vec<&str> =
+        document["of_kinds"].as_array().unwrap().iter().map(|of| of["kind"].as_str().unwrap()).collect();
+    assert_eq!(kinds, ["turns", "slides"]);
+    let rms = |k: usize| document["of_kinds"][k]["tracking_error"]["rms"].as_f64().unwrap();
+    let deg = rms(0).to_degrees();
+    assert!(
+        (rms(1) - 0.01 * deg).abs() < 1e-4 && document["whole_run"]["tracking_error"].is_null(),
+        "{document}"
+    );
+    // A longer way is longer in mm, and as far in deg.
+    let (_, text, _) = said(&run_line(folder, "compare a.csv b.csv"));
+    let plans = text.lines().find(|line| line.contains("at equal times they differ by at most")).unwrap();
+    assert!(plans.contains("at most 0.00") && plans.contains(" deg and 100.00 mm"), "{plans}");
+    let (_, page, _) = said(&run_line(folder, "compare a.csv b.csv --html"));
+    assert!(
+        page.contains("Peak error, joints that slide") && page.contains("Rms error, joints that turn"),
+        "page"
+    );
+    // Two runs of the plan without a correction are as one: the next is a first one.
+    fs::copy(folder.join("a.csv"), folder.join("c.csv")).unwrap();
+    let made = json(folder, "replan a.csv c.csv --keep-plan");
+    let steps = made["command"].as_array().unwrap().iter().map(|joint| joint["step"]["by"].as_str().unwrap());
+    assert_eq!(steps.collect::<Vec<_>>(), ["first"; 2], "{}", made["command"]);
+    clean(folder, "replan a.csv -o next.mcap");
+    let exported = clean(folder, "export next.mcap --csv --joints boom");
+    assert!(exported.starts_with("stamp_ns,time_s,boom_planned_rad"), "{exported}");
+}
+
+#[test]
+fn columns_of_a_map_are_those_of_every_verb() {
+    let folder = scratch();
+    let folder = folder.path();
+    let table =
+        followed(moves(9.0), 0.6, 60.0).replace("boom_planned_deg", "A").replace("boom_measured_deg", "B");
+    fs::write(folder.join("run.csv"), table).unwrap();
+    assert_eq!(said(&run_line(folder, "report run.csv")).0, 1);
+    clean(
+        folder,
+        "import run.csv -o run.mcap --degrees --planned boom=A --measured boom=B --save-map map.toml",
+    );
+    for verb in ["report run.csv --map map.toml", "info run.csv --map map.toml", "fit run.csv --map map.toml"]
+    {
+        let (code, text, error) = said(&run_line(folder, verb));
+        assert!(code != 1 && text.contains("boom"), "{verb}: {error}");
+    }
+    let (code, _, error) = said(&run_line(folder, "report run.csv --map none.toml"));
+    assert!(code == 1 && error.contains("none.toml"), "{error}");
+}

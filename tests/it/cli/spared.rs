@@ -116,15 +116,8 @@ fn recordings_and_commands_are_replaced_only_by_force() {
     }
     fs::write(path.join("other.parquet"), other).unwrap();
     for output in [
-        "recorded.mcap",
-        "next.mcap",
-        "old.db3",
-        "trace.csv",
-        "metadata.yaml",
-        "other.urdf",
-        "site.html",
-        "plain.html",
-        "other.parquet",
+        "recorded.mcap", "next.mcap", "old.db3", "trace.csv", "metadata.yaml", "other.urdf", "site.html",
+        "plain.html", "other.parquet",
     ] {
         let before = fs::read(path.join(output)).unwrap();
         let (code, text, error) = said(&run_line(path, &format!("report run.mcap --json -o {output}")));

@@ -98,9 +98,7 @@ fn of_a_joint_that_stands_no_number_is_told() {
         let joint = fit.joint("boom").unwrap();
         assert!(!joint.model_holds && !joint.trusted(), "{joint:?}");
         let numbers = [
-            joint.dead_band_rad_s,
-            joint.position_gain_1_s,
-            joint.feed_forward,
+            joint.dead_band_rad_s, joint.position_gain_1_s, joint.feed_forward,
             joint.speed_limit_growing_rad_s,
         ];
         assert!(numbers.iter().all(|number| !number.identified), "{joint:?}");

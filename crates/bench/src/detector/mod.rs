@@ -134,20 +134,8 @@ impl Detector {
             ]
         });
         let numbers = [
-            "noise deg",
-            "LSB deg",
-            "Hz",
-            "runs",
-            "starts",
-            "precision",
-            "recall",
-            "sharp ms",
-            "smooth ms",
-            "delay sharp ms",
-            "delay smooth ms",
-            "coverage",
-            "stop P",
-            "stop R",
+            "noise deg", "LSB deg", "Hz", "runs", "starts", "precision", "recall", "sharp ms", "smooth ms",
+            "delay sharp ms", "delay smooth ms", "coverage", "stop P", "stop R",
         ];
         let found = format!(
             "Starts found on synthetic joints with known motions, seed {}. Errors of the onset and of the delay: \

@@ -56,13 +56,8 @@ fn truncate(record: &mut Record, count: usize) {
     }
     for joint in &mut record.joints {
         for column in [
-            &mut joint.measured_rad,
-            &mut joint.measured_rad_s,
-            &mut joint.true_rad,
-            &mut joint.true_rad_s,
-            &mut joint.cap_pressure_pa,
-            &mut joint.rod_pressure_pa,
-            &mut joint.valve_command,
+            &mut joint.measured_rad, &mut joint.measured_rad_s, &mut joint.true_rad, &mut joint.true_rad_s,
+            &mut joint.cap_pressure_pa, &mut joint.rod_pressure_pa, &mut joint.valve_command,
             &mut joint.spool,
         ] {
             column.truncate(count);

@@ -208,7 +208,7 @@ fn note(next: &Replanned) -> String {
             Step::First { model_weight } => format!("first {model_weight:.2}"),
             Step::Later { from, gain } => format!("later {from} {gain:.2}"),
             Step::Rest { from, share } => format!("rest {from} {share:.2}"),
-            Step::Kept { from } => format!("kept {from}"),
+            Step::Kept { from, .. } => format!("kept {from}"),
             Step::Astray => "astray".to_owned(),
             Step::None => "none".to_owned(),
         };

@@ -88,12 +88,7 @@ pub const FORM: Form = Form {
     reference: (
         &["task"],
         &[
-            "variables",
-            "reference plans",
-            "its HV",
-            "fastest s",
-            "smoothest deg/s3",
-            "least power W",
+            "variables", "reference plans", "its HV", "fastest s", "smoothest deg/s3", "least power W",
             "feasible at first",
         ],
         reference_row,

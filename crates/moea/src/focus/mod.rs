@@ -208,13 +208,9 @@ mod tests {
         let (mut chosen, mut ranking) = (Vec::new(), Ranking::default());
         let mut rng = Random::new(1, Stream::Survival);
         let n = population.len();
-        Niching::filled_by_crowding(&directions, 3).unwrap().select(
-            population,
-            n,
-            &mut rng,
-            &mut chosen,
-            &mut ranking,
-        );
+        Niching::filled_by_crowding(&directions, 3)
+            .unwrap()
+            .select(population, n, &mut rng, &mut chosen, &mut ranking);
         let mut kept = Population::with_capacity(0, 3, n);
         for &i in &chosen {
             kept.push_from(population, i);

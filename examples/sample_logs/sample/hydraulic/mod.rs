@@ -186,11 +186,8 @@ fn written(
     outputs.record.supply_pa.iter_mut().for_each(|x| *x = short(*x));
     for joint in &mut outputs.record.joints {
         let columns = [
-            &mut joint.measured_rad,
-            &mut joint.cap_pressure_pa,
-            &mut joint.rod_pressure_pa,
-            &mut joint.valve_command,
-            &mut joint.spool,
+            &mut joint.measured_rad, &mut joint.cap_pressure_pa, &mut joint.rod_pressure_pa,
+            &mut joint.valve_command, &mut joint.spool,
         ];
         columns.into_iter().flatten().for_each(|x| *x = short(*x));
         joint.measured_rad_s.iter_mut().for_each(|x| *x = (*x / SPEED_STEP_RAD_S).round() * SPEED_STEP_RAD_S);

@@ -53,6 +53,13 @@ pub(in crate::render) struct Panel {
     pub(in crate::render) range: Option<[f64; 2]>,
 }
 
+impl Panel {
+    /// Whose range is that of the values.
+    pub(in crate::render) fn of(label: impl Into<String>, share: f64, series: Vec<Series>) -> Self {
+        Self { label: label.into(), series, share, range: None }
+    }
+}
+
 /// Values over one of the chart's horizontal coordinates; not-a-number lifts the pen.
 #[derive(Debug, Clone, Serialize)]
 pub(in crate::render) struct Series {

@@ -30,6 +30,10 @@ pub(in crate::render) struct Chapter {
 }
 
 impl Chapter {
+    pub(in crate::render) fn new(id: &'static str, heading: &'static str, body: Markup) -> Self {
+        Self { id, heading, body }
+    }
+
     /// A section of the document under a heading of the page; `None` where the document has none.
     pub(in crate::render) fn of(section: Option<&Section>, heading: &'static str) -> Option<Self> {
         section.map(|section| Self { id: section.id.0, heading, body: blocks(&section.blocks) })

@@ -1,7 +1,9 @@
 //! The checks one by one.
 
 use super::super::{MOVES_RAD, outcome::CAREFUL};
-use super::{Check, Fastest, Finding, JointTrust, Level, Overall, Reason, Replanned, TooFast};
+use super::{
+    Check, Fastest, Finding, JointTrust, Level, Outside, Overall, Reason, Replanned, Sharpest, TooFast,
+};
 use crate::{
     fit::{Character, JointFit, LEAST_SKILL, Step},
     math::range,
@@ -119,8 +121,41 @@ fn limits(replanned: &Replanned, command: Option<&Commanded>) -> Check {
     let names = replanned.request.as_ref().map_or_else(Vec::new, |request| request.setup.joint_names());
     let level = if broken > 0 { Level::Stop } else { caution(between > 0 || all.is_empty()) };
     let nearest = MarginEntry::all(&kinds, &names);
-    let fastest = command.filter(|_| all.is_empty()).and_then(fastest);
-    Check { level, finding: Finding::Limits { broken, between, nearest, unlimited, fastest } }
+    let unknown = command.filter(|_| all.is_empty());
+    let (fastest, sharpest) = (unknown.and_then(fastest), unknown.and_then(sharpest));
+    let outside = unknown.map_or_else(Vec::new, |command| outside(replanned, command));
+    let finding = Finding::Limits { broken, between, nearest, unlimited, fastest, sharpest, outside };
+    Check { level, finding }
+}
+
+/// A joint that is accelerated more than its plan by this factor is told where limits are unknown.
+const SHARPER: f64 = 2.0;
+
+fn sharpest(command: &Commanded) -> Option<Sharpest> {
+    let joints = command.joints.iter().filter(|joint| joint.acceleration_ratio >= SHARPER);
+    let joint = joints.max_by(|a, b| a.acceleration_ratio.total_cmp(&b.acceleration_ratio))?;
+    Some(Sharpest { joint: joint.name.clone(), ratio: joint.acceleration_ratio })
+}
+
+/// Beyond the range of a plan by less than this share of it is told nowhere.
+const OUTSIDE: f64 = 0.01;
+
+fn outside(replanned: &Replanned, command: &Commanded) -> Vec<Outside> {
+    let of = |joint: &JointCommand| {
+        let planned = replanned.plan.track(&joint.name)?;
+        let [low, high] = range(planned.position().iter().copied());
+        let [least, most] = joint.range_rad;
+        let (below, above) = (low - least, most - high);
+        let (reaches_rad, beyond_rad) = if below > above { (least, below) } else { (most, above) };
+        let (name, kind) = (joint.name.clone(), joint.kind);
+        (beyond_rad > OUTSIDE * (high - low)).then_some(Outside {
+            joint: name,
+            kind,
+            reaches_rad,
+            beyond_rad,
+        })
+    };
+    command.joints.iter().filter_map(of).collect()
 }
 
 /// A joint that is sent faster than its plan by this factor is told where limits are unknown.

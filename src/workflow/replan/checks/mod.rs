@@ -94,6 +94,12 @@ pub enum Finding {
         /// Without a task: the joint that is sent faster than its plan by most, if it is by half or more.
         #[serde(default)]
         fastest: Option<Fastest>,
+        /// Without a task: the joint that is accelerated more than its plan by most, if it is to twice as much or more.
+        #[serde(default)]
+        sharpest: Option<Sharpest>,
+        /// Without a task: the joints that are sent beyond the range of their plan.
+        #[serde(default)]
+        outside: Vec<Outside>,
     },
     /// A joint whose plan is faster than the joint was found to be.
     TooFast(TooFast),
@@ -173,6 +179,30 @@ pub struct Fastest {
     pub speed_rad_s: f64,
     /// The same by that of its plan.
     pub ratio: f64,
+}
+
+/// A joint that is accelerated more than its plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Sharpest {
+    /// The joint.
+    pub joint: String,
+    /// Its largest acceleration by that of its plan.
+    pub ratio: f64,
+}
+
+/// A joint that is sent beyond the range of its plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Outside {
+    /// The joint.
+    pub joint: String,
+    /// Whether it turns or slides.
+    pub kind: JointKind,
+    /// How far it is sent, rad; of one that slides m.
+    pub reaches_rad: f64,
+    /// By how much that is beyond its plan, rad or m.
+    pub beyond_rad: f64,
 }
 
 /// How well one joint is predicted.

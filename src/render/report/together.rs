@@ -1,0 +1,137 @@
+//! All joints together, or those of each kind where an arm has both: where the error arises, and what of it is lag.
+
+use crate::{
+    math::range,
+    render::{
+        kit::{counted, ms, probability, share as percents},
+        metric::position,
+    },
+    replay::{JointReplay, Replay, Verdict, WholeRun},
+    series::JointKind,
+    text::capital,
+};
+
+/// Joints that have a unit in common.
+pub(super) struct Together<'a> {
+    replay: &'a Replay,
+    pub(super) kind: JointKind,
+    pub(super) run: &'a WholeRun,
+}
+
+impl<'a> Together<'a> {
+    /// One, or one a kind.
+    pub(super) fn all(replay: &'a Replay) -> Vec<Self> {
+        replay.together().into_iter().map(|(kind, run)| Self { replay, kind, run }).collect()
+    }
+
+    /// What they are called beside others; nothing where they are all.
+    pub(super) fn name(&self) -> &'static str {
+        match (self.replay.of_kinds.is_empty(), self.kind) {
+            (true, _) => "",
+            (false, JointKind::Turns) => "joints that turn",
+            (false, JointKind::Slides) => "joints that slide",
+        }
+    }
+
+    fn joints(&self) -> impl Iterator<Item = &'a JointReplay> {
+        let kind = self.kind;
+        let alone = self.replay.of_kinds.is_empty();
+        self.replay.joints.iter().filter(move |joint| alone || joint.kind == kind)
+    }
+
+    /// What a lag explains of a run whose error is mostly that.
+    pub(super) fn mostly_lag(&self) -> Option<String> {
+        self.run.lag_share.filter(|lag| lag.mostly)?;
+        self.lag_words()
+    }
+
+    /// The least and the largest lag of joints whose plan moves, s.
+    fn lags(&self) -> [f64; 2] {
+        range(self.joints().filter(|joint| joint.plan_moves).filter_map(|joint| joint.lag_s))
+    }
+
+    /// What the lags are: a lead where every joint moves before its plan.
+    pub(super) fn shift(&self) -> &'static str {
+        if self.lags()[1] < 0.0 { "lead" } else { "lag" }
+    }
+
+    /// How much of the squared error lags at the planned speeds explain; `None` where no joint has one.
+    pub(super) fn lag_words(&self) -> Option<String> {
+        let share = self.run.lag_share?;
+        let [mut least, mut most] = self.lags();
+        if most < 0.0 {
+            (least, most) = (-most, -least);
+        }
+        let (least, most) = (ms(least), ms(most));
+        let lag =
+            if least == most { format!("{least} ms") } else { format!("{least} to {most} ms, by joint,") };
+        let shift = self.shift();
+        Some(format!(
+            "a {shift} of {lag} causes {} of the squared error ({}{}; mostly {shift} from {:.0} % on)",
+            percents(share.share),
+            share.interval.map_or(String::new(), |[a, b]| {
+                format!("95 % interval {:.0}..{}, ", 100.0 * a, percents(b))
+            }),
+            counted(share.events, "event"),
+            100.0 * self.replay.rules.mostly_lag_share,
+        ))
+    }
+
+    /// Where the error arises, what a lag explains of it, and how far from the planned path they are.
+    pub(super) fn findings(&self) -> Vec<String> {
+        let (kind, mostly) = (self.kind, self.mostly_lag());
+        let mut lines = Vec::new();
+        lines.extend(mostly.as_ref().map(|lag| format!("The error is mostly {}: {lag}.", self.shift())));
+        if let Some(c) = &self.run.concentration {
+            let place = match (&mostly, c.verdict) {
+                (Some(_), _) => "Transitions hold it because the joints move there",
+                (None, Verdict::Transitions) => "Most of the error arises in the transitions",
+                (None, Verdict::Elsewhere) => "Most of the error arises outside the transitions",
+                (None, Verdict::Undecided) => {
+                    "Whether most of the error arises in the transitions cannot be told"
+                }
+            };
+            let test = c.test.map_or("too few stretches to test".to_owned(), |t| {
+                format!(
+                    "p = {}, {} transition events against {} other stretches",
+                    probability(t.p_value),
+                    t.inside_count,
+                    t.outside_count
+                )
+            });
+            let moving = c
+                .rms_outside_moving
+                .map_or("at rest".to_owned(), |rms| format!("{} while the plan moves", position(kind, rms)));
+            lines.push(format!(
+                "{place}: rms {} inside, {} elsewhere ({moving}); {:.0} % of the squared error in {:.0} % of the time ({test}).",
+                position(kind, c.rms_inside),
+                position(kind, c.rms_outside),
+                100.0 * c.squared_error_share_inside,
+                100.0 * c.time_share_inside,
+            ));
+            if mostly.is_none() {
+                lines.push(match self.lag_words() {
+                    Some(lag) => format!("Share of {}: {lag}.", self.shift()),
+                    None => "Share of lag: cannot be told, because no joint shows a lag.".to_owned(),
+                });
+            }
+        }
+        if let Some(path) = &self.run.path_error {
+            lines.push(format!(
+                "Distance to the planned path, whatever the time, as the norm over all joints: rms {}, peak {}; rms {} with \
+                 time ({} instants).",
+                position(kind, path.rms),
+                position(kind, path.peak),
+                position(kind, path.timed_rms),
+                path.samples
+            ));
+        }
+        match self.name() {
+            "" => lines,
+            name => lines
+                .iter()
+                .map(|line| format!("{}: {}{}", capital(name), line[..1].to_lowercase(), &line[1..]))
+                .collect(),
+        }
+    }
+}
