@@ -27,7 +27,7 @@ pub enum LogError {
     Table { path: PathBuf, source: Box<CsvError>, given: Given },
     /// A file that says how tables are read, and cannot be read.
     #[error(transparent)]
-    Map(CsvError),
+    Map(Box<CsvError>),
     /// A file of another form that cannot be read.
     #[error("cannot read {}: {reason}", path.display())]
     Form { path: PathBuf, reason: String },

@@ -98,7 +98,7 @@ impl LogFiles {
         inputs: impl IntoIterator<Item = impl Into<Input>>,
         options: &ReadOptions,
     ) -> Result<Self, LogError> {
-        let columns = options.columns().map_err(LogError::Map)?;
+        let columns = options.columns().map_err(|error| LogError::Map(Box::new(error)))?;
         let inputs = inputs.into_iter().map(Into::into).collect();
         Self::opened(inputs, &columns).map_err(|error| error.given(options))
     }

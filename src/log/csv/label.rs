@@ -131,12 +131,9 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let (of_topic, words) = words.split_at(topic(&words));
     let joint = joint_name(words);
     let owner = if joint == NAMELESS { owner(of_topic) } else { String::new() };
-    // Of a tool, not of a joint; such a position is told like that of a joint that slides. `Portal X` and `Achse X` are joints.
-    let is_place = |text: &str| PLACE.iter().any(|place| text.eq_ignore_ascii_case(place));
-    let places =
-        words.iter().all(|word| word.meaning != Meaning::Foreign || is_place(word.text)) && role.is_some();
-    let place =
-        places && (measure == Some(Measure::Length) || !is_place(&joint) && (long || means(Meaning::Joint)));
+    let place = role.is_some()
+        && names_place(words)
+        && (measure == Some(Measure::Length) || !is_place(&joint) && (long || means(Meaning::Joint)));
     // `q_dot_dot` is an acceleration.
     let foreign = (means(Meaning::Foreign) || dots > 1) && !place;
     let is_joint = !timely && fits && !foreign && (strong || role.is_some() || long);
@@ -167,6 +164,16 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         owner,
         lettered,
     }
+}
+
+fn is_place(text: &str) -> bool {
+    PLACE.iter().any(|place| text.eq_ignore_ascii_case(place))
+}
+
+/// Whether letters of space are all that is foreign to a joint. Alone they are of a tool, whose position is told like that of a joint
+/// that slides; `Portal X` and `Achse X` are joints.
+fn names_place(words: &[Word<'_>]) -> bool {
+    words.iter().all(|word| word.meaning != Meaning::Foreign || is_place(word.text))
 }
 
 /// `current_position` is measured now, and so is a current in degrees: it is no electric one.

@@ -30,7 +30,7 @@ pub(super) fn recording(
     };
     let degrees = options.planned_in_degrees && options.measured_in_degrees;
     let read = CsvOptions { angle_unit: degrees.then_some(AngleUnit::Degrees), ..CsvOptions::default() };
-    let read = read.or(options.columns().map_err(LogError::Map)?);
+    let read = read.or(options.columns().map_err(|error| LogError::Map(Box::new(error)))?);
     let run = |lone| flat::run(log, &file_name(first.path), &read, lone);
     let options = ReadOptions {
         description: options.description.clone().or(description),

@@ -142,16 +142,7 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
             let sharp = sharpest.as_ref().map_or(String::new(), |sharp| {
                 format!(" {} is accelerated up to {:.1} times as much as its plan.", sharp.joint, sharp.ratio)
             });
-            let beyond = |of: &Outside| {
-                let [reaches, by] = [of.reaches_rad, of.beyond_rad].map(|rad| position(of.kind, rad));
-                format!("{} to {reaches} ({by} beyond)", of.joint)
-            };
-            let beyond: Vec<String> = outside.iter().map(beyond).collect();
-            let beyond = match beyond.join(", ") {
-                none if none.is_empty() => none,
-                all => format!(" Sent beyond the range of their plan, keep that free: {all}."),
-            };
-            limits([*broken, *between], nearest) + &fast + &sharp + &beyond + &none
+            limits([*broken, *between], nearest) + &fast + &sharp + &beyond(outside) + &none
         }
         Finding::TooFast(TooFast { joint, kind, planned_rad_s, limit_rad_s: [own, most] }) => format!(
             "The plan of {joint} goes up to {}/s, and the joint was found to make {}/s, {}/s at most: no command mends that, a \
@@ -212,6 +203,18 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
                 ),
             }
         }
+    }
+}
+
+/// Which joints are sent beyond the range of their plan.
+fn beyond(outside: &[Outside]) -> String {
+    let one = |of: &Outside| {
+        let [reaches, by] = [of.reaches_rad, of.beyond_rad].map(|rad| position(of.kind, rad));
+        format!("{} to {reaches} ({by} beyond)", of.joint)
+    };
+    match outside.iter().map(one).collect::<Vec<_>>().join(", ") {
+        none if none.is_empty() => none,
+        all => format!(" Sent beyond the range of their plan, keep that free: {all}."),
     }
 }
 

@@ -141,8 +141,8 @@ mod tests {
     #[test]
     fn what_a_fleet_has_in_common_for_some_days_is_no_trend_of_a_machine_that_was_there_for_these_alone() {
         // All machines rise for ten days and fall for ten; one was there for the first ten.
-        let trend = |machine: usize, days: u32| {
-            let noise = |day: u32| 0.1 * f64::from((day * 7 + machine as u32 * 3) % 5);
+        let trend = |machine: u32, days: u32| {
+            let noise = |day: u32| 0.1 * f64::from((day * 7 + machine * 3) % 5);
             let at = |day: u32| f64::from(day.min(20 - day)) + noise(day);
             let levels: Vec<Level> = (0..days)
                 .map(|day| Level {
