@@ -52,12 +52,6 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     format!("{value:.*}", if more { least } else { decimals })
 }
 
-/// With a capital in front.
-pub(crate) fn capital(name: &str) -> String {
-    let (first, rest) = name.split_at(1);
-    first.to_uppercase() + rest
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

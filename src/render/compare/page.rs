@@ -6,7 +6,7 @@ use super::{kind, scope, short::verdicts, tables::document, together, together_n
 use crate::{
     render::{
         kit::{
-            self, Id, Sentence, clean, mm,
+            self, Id, Sentence, capital, clean, mm,
             page::{
                 Chapter, Plots, card,
                 chart::{Chart, Panel, Role, Series, Size, at, rounded, span, times},
@@ -21,7 +21,6 @@ use crate::{
     },
     replay::{Dimension, Keyed, Metric, PEAK_ERROR, Transition},
     series::{JointKind, Pair},
-    text::capital,
     workflow::compare::{Change, Comparison, Figures, Scope, TransitionPair, Verdict},
 };
 

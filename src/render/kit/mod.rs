@@ -23,6 +23,7 @@ mod terminal_style;
 pub use check::{Check, Mark};
 pub use document::{Block, Document, Fact, Id, Section, Sentence, fact};
 pub use markdown::markdown;
+pub(in crate::render) use number::capital;
 pub use number::{
     NONE, counted, deg, late, mm, ms, optional, percent, probability, share, short, signed, significant,
     some_of, starts_of,

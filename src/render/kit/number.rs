@@ -107,6 +107,12 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// With a capital in front.
+pub(in crate::render) fn capital(name: &str) -> String {
+    let (first, rest) = name.split_at(1);
+    first.to_uppercase() + rest
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

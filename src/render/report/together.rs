@@ -3,12 +3,11 @@
 use crate::{
     math::range,
     render::{
-        kit::{counted, ms, probability, share as percents},
+        kit::{capital, counted, ms, probability, share as percents},
         metric::position,
     },
     replay::{JointReplay, Replay, Verdict, WholeRun},
     series::JointKind,
-    text::capital,
 };
 
 /// Joints that have a unit in common.
