@@ -53,17 +53,18 @@ pub(super) fn position(kind: JointKind, value: f64) -> String {
 
 /// How joints that turn and joints that slide are told apart from worse ones, where there are both.
 pub(super) fn weighed(rules: &Rules, kinds: impl Iterator<Item = JointKind>) -> Option<Sentence> {
-    let seen: Vec<JointKind> = kinds.collect();
     let [turns, slides] = [Turns, Slides].map(|kind| position(kind, rules.sizes(kind).settle_band));
-    let mixed = [Turns, Slides].iter().all(|kind| seen.contains(kind));
-    mixed.then(|| Sentence::note(format!("To tell the worst, {turns} counts as much as {slides}.")))
+    has_both(kinds).then(|| Sentence::note(format!("To tell the worst, {turns} counts as much as {slides}.")))
+}
+
+fn has_both(kinds: impl Iterator<Item = JointKind>) -> bool {
+    let seen: Vec<JointKind> = kinds.collect();
+    [Turns, Slides].iter().all(|kind| seen.contains(kind))
 }
 
 /// What a mean over joints of both kinds takes a length for; `None` for joints of one kind.
 pub(super) fn lengths_as_angles(kinds: impl Iterator<Item = JointKind>) -> Option<String> {
-    let seen: Vec<JointKind> = kinds.collect();
-    let mixed = [Turns, Slides].iter().all(|kind| seen.contains(kind));
-    mixed.then(|| format!("{} counts as {}", position(Slides, 0.01), position(Turns, 0.01)))
+    has_both(kinds).then(|| format!("{} counts as {}", position(Slides, 0.01), position(Turns, 0.01)))
 }
 
 /// A position, speed or acceleration in degrees or millimetres.

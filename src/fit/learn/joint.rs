@@ -195,16 +195,10 @@ impl<'a> Joint<'a> {
             faded(&mut wanted_rad, &fade);
             (step, wanted_rad)
         };
-        let cut_off_hz = match step {
-            Step::Kept { .. } => KEPT_HZ,
-            _ => finished_hz(&manner),
+        let (cut_off_hz, room) = match step {
+            Step::Kept { .. } => (KEPT_HZ, room(self.name).and_then(Room::of_sent)),
+            _ => (finished_hz(&manner), room(self.name)),
         };
-        let mut room = room(self.name);
-        if matches!(step, Step::Kept { .. }) {
-            // What was sent had its share of known limits, and of others nobody knows more than that it was sent: a share of what
-            // is left would clip it a little more each time.
-            room = room.filter(|room| room.share < 1.0).map(|room| Room { share: 1.0, ..room });
-        }
         // Runs in which the joint was not measured count, too.
         let of_run = |from: usize| self.answers[from].of_run;
         made.step = match step {

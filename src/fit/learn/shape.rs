@@ -33,11 +33,17 @@ pub struct Room {
     pub planned: Vec<[f64; 4]>,
     /// Lowest and highest speed by step, rad/s, as rods, pump and tool have it; empty where they leave any.
     pub speed_rad_s: Vec<[f64; 2]>,
-    /// Share of the room that is used.
+    /// Share of the room that is used: [`SHARE`] of known limits, all of a guess.
     pub share: f64,
 }
 
 impl Room {
+    /// For what was sent already: it had its share of known limits, of which another would clip it a little more each time, and of
+    /// others nobody knows more than that it was sent.
+    pub(super) fn of_sent(self) -> Option<Self> {
+        (self.share < 1.0).then_some(Self { share: 1.0, ..self })
+    }
+
     /// Least and largest correction of a derivative over some samples, zero included.
     fn bounds(&self, derivative: usize, samples: Range<usize>) -> [f64; 2] {
         let [low, high] = match derivative {
