@@ -117,8 +117,7 @@ pub(super) fn samples(
 ) -> Vec<Samples> {
     let mut found = Vec::new();
     let mut gap = Gaps::default();
-    let (mut spikes, mut lost) = (0, 0);
-    let mut first = None;
+    let (mut spikes, mut lost) = (Dropped::default(), Dropped::default());
     let velocity_field = table.fields[field].velocity.filter(|_| positions);
     for (joint, name) in table.joints.clone().into_iter().enumerate() {
         let mut column =
@@ -134,12 +133,9 @@ pub(super) fn samples(
             // Far from the epoch neighbouring nanoseconds are the same second.
             kept.dedup_by(|later, earlier| axis.t_s[*later] <= axis.t_s[*earlier]);
             if positions {
-                let before = kept.clone();
                 // A zero is a reading that was lost before it is a jump.
-                lost += drop_lost(&mut kept, &axis.t_s, at);
-                spikes += drop_spikes(&mut kept, &axis.t_s, at);
-                let dropped = before.iter().find(|i| kept.binary_search(i).is_err());
-                first = first.or_else(|| dropped.map(|&i| (name.clone(), axis.t_s[i])));
+                lost.note((&name, &axis.t_s), &mut kept, |kept| drop_lost(kept, &axis.t_s, at));
+                spikes.note((&name, &axis.t_s), &mut kept, |kept| drop_spikes(kept, &axis.t_s, at));
             }
             let (t_s, cuts, jumps) = axis.kept(&kept);
             gap.note(&t_s, &cuts, &jumps);
@@ -150,16 +146,35 @@ pub(super) fn samples(
         found.push(Samples { name, instants, values, velocity });
     }
     gap.remark(topic, remarks);
-    let first = first.map_or(String::new(), |(joint, t_s)| format!(", first of {joint} at {t_s:.2} s"));
+    let Dropped { count, first } = spikes;
     let message =
         format!("values of {topic} that no joint can have (a jump there and back at once){first}; dropped");
-    remarks.add(Code::Implausible, spikes, message);
+    remarks.add(Code::Implausible, count, message);
+    let Dropped { count, first } = lost;
     let message = format!(
         "values of {topic} that are exactly 0 once, between values that agree and are not near it: readings that were \
          lost{first}; dropped"
     );
-    remarks.add(Code::Implausible, lost, message);
+    remarks.add(Code::Implausible, count, message);
     found
+}
+
+/// How many values were dropped, and in words which was the first.
+#[derive(Default)]
+struct Dropped {
+    count: u64,
+    first: String,
+}
+
+impl Dropped {
+    fn note(&mut self, at: (&str, &[f64]), kept: &mut Vec<usize>, drop: impl Fn(&mut Vec<usize>) -> u64) {
+        let (before, (joint, t_s)) = (kept.clone(), at);
+        self.count += drop(kept);
+        let first = before.iter().find(|i| kept.binary_search(i).is_err());
+        if let Some(&i) = first.filter(|_| self.first.is_empty()) {
+            self.first = format!(", first of {joint} at {:.2} s", t_s[i]);
+        }
+    }
 }
 
 /// Faster than any joint, rad/s or m/s (deg/s where the log is in degrees).
