@@ -6,11 +6,16 @@ use crate::{
     units::DEGREE_RAD,
 };
 
-/// Plans whose angles differ by less are the same, rad.
-const SAME_RAD: f64 = 1e-3;
+/// Plans whose angles differ by less are the same, rad, and a correction below this is none.
+pub(super) const SAME_RAD: f64 = 1e-3;
 
-/// Rows are stamped so much early or late, s: angles may differ by what the plan moves in it.
-const JITTER_S: f64 = 0.01;
+/// The stamps of two records are so much apart, s, of either 10 ms early or late: angles may differ by what the plan moves in it.
+const JITTER_S: f64 = 0.02;
+
+/// By how much two records of one plan may differ where it has a speed, rad/s; rad.
+pub(super) fn may_differ_rad(speed_rad_s: f64) -> f64 {
+    SAME_RAD + JITTER_S * speed_rad_s.abs()
+}
 
 /// Rounds that bring a plan onto the clock of another at most, the longest step of one, and one that is none any more, s. A slow plan
 /// creeps from its rest for seconds before it is seen to move.
@@ -90,13 +95,13 @@ fn alike(series: &Series, plan: &Series) -> bool {
         let Some(track) = series.track(plan.name()).filter(|track| track.len() == plan.len()) else {
             return false;
         };
+        let q_rad = plan.position();
         let speed_rad_s = |k: usize| {
-            let (before, after) = (k.saturating_sub(1), (k + 1).min(plan.len() - 1));
-            let over_s = plan.t_s()[after] - plan.t_s()[before];
-            if over_s > 0.0 { (plan.position()[after] - plan.position()[before]).abs() / over_s } else { 0.0 }
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(q_rad.len() - 1));
+            (q_rad[after] - q_rad[before]) / ((after - before).max(1) as f64 * crate::fit::STEP_S)
         };
-        let pairs = track.position().iter().zip(plan.position()).enumerate();
-        pairs.into_iter().all(|(k, (a, b))| (a - b).abs() < SAME_RAD + JITTER_S * speed_rad_s(k))
+        let mut pairs = track.position().iter().zip(q_rad).enumerate();
+        pairs.all(|(k, (a, b))| (a - b).abs() < may_differ_rad(speed_rad_s(k)))
     })
 }
 
@@ -259,6 +264,8 @@ mod tests {
         let jittered = sigmoid(2.0, 0.009, 0.0);
         assert!(!within(&jittered, &plan, SAME_RAD));
         assert!(found(&jittered).is_some_and(|at_s| at_s.abs() < 1e-3));
+        let otherwise = sigmoid(2.0, -0.009, 0.0);
+        assert!(found_at_s(&jittered, &otherwise, 0.0).unwrap().is_some(), "both jitter");
         assert_eq!(found(&sigmoid(2.05, 0.0, 0.0)), None);
         assert_eq!(found(&sigmoid(2.0, 0.05, 0.0)), None);
         let measured = sigmoid(2.0, 0.009, 0.02);

@@ -2,13 +2,9 @@
 
 use crate::{
     series::{JointKind, Pair},
-    units::DEGREE_RAD,
+    workflow::same_plan::may_differ_rad,
 };
 
-/// Plans further apart than this at equal times are different ones, rad.
-const SAME_RAD: f64 = 0.05 * DEGREE_RAD;
-/// Stamps of equal plans may be this far apart, s.
-const SAME_S: f64 = 0.005;
 /// A clock is set right by the plans' shape at most by this, s.
 const MOST_SHIFT_S: f64 = 0.2;
 /// Two plans that share less of the shorter one's time are not compared.
@@ -51,7 +47,7 @@ pub(super) fn plan_difference(pairs: &[(&Pair, &Pair)], offset_s: f64) -> Option
         for at in instants(a, b, offset_s) {
             count += 1;
             own = own.max(at.difference_rad.abs());
-            same &= at.difference_rad.abs() <= SAME_RAD + SAME_S * at.speed_rad_s.abs();
+            same &= at.difference_rad.abs() <= may_differ_rad(at.speed_rad_s);
         }
         *of_kind = Some(own);
         enough &= count as f64 >= LEAST_OVERLAP * a.t_s.len().min(b.t_s.len()) as f64;

@@ -18,7 +18,12 @@ use crate::{
     remark::{Code, Remarks},
     replay::{Rules, planned_step},
     series::{Series, Track},
-    workflow::{carried::Carried, leads::doubt_leads, names::told_apart, same_plan::is_again},
+    workflow::{
+        carried::Carried,
+        leads::doubt_leads,
+        names::told_apart,
+        same_plan::{SAME_RAD, is_again},
+    },
 };
 pub(in crate::workflow) use observe::observation;
 use {
@@ -174,17 +179,14 @@ pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted
     Ok(Fitted { fit, held_out, torques, runs, again, corrected, not_again, remarks })
 }
 
-/// A command is another than its plan if it leaves it by more, rad.
-const CORRECTED_RAD: f64 = 1e-3;
-
+/// Whether something else than the plan was sent.
 fn is_corrected(run: &Recording) -> bool {
     let leaves = |track: &Track| {
-        run.planned.track(track.name()).is_some_and(|planned| {
-            let mut sent = track.t_s().iter().zip(track.position());
-            sent.any(|(t_s, sent)| (sent - planned.held_at(*t_s).position).abs() > CORRECTED_RAD)
-        })
+        let off = |planned: &Track, (t_s, sent): (&f64, &f64)| (sent - planned.held_at(*t_s).position).abs();
+        let mut sent = track.t_s().iter().zip(track.position());
+        run.planned.track(track.name()).is_some_and(|plan| sent.any(|sent| off(plan, sent) > SAME_RAD))
     };
-    run.command.as_ref().is_some_and(|command| command.series.tracks.iter().any(leaves))
+    run.command.iter().flat_map(|command| &command.series.tracks).any(leaves)
 }
 
 /// Names the command that stands, where that is why nothing can be fitted.

@@ -11,12 +11,11 @@ use crate::{
     series::{JointKind, Series, Track, align, bridged, moving_s},
     workflow::{
         carried::{Carried, Promise, rest::PLAN_LEAD_S},
-        same_plan::{breaks_off_after_s, cut, cut_measured, found_at_s, of_same_rows, onto, within},
+        same_plan::{
+            SAME_RAD, breaks_off_after_s, cut, cut_measured, found_at_s, of_same_rows, onto, within,
+        },
     },
 };
-
-/// A correction below this is none, rad.
-pub(super) const NONE_RAD: f64 = 1e-3;
 
 /// Commands that differ by less than this share of their corrections are the same.
 const SAME: f64 = 0.05;
@@ -106,7 +105,7 @@ impl History {
                 cut_measured(&recording.measured, starts_s, starts_s + ended_s)?,
             );
             let own = cut(&*bridged(&recording.planned)?, starts_s, starts_s + end_s)?;
-            if !within(&own, plan, NONE_RAD) {
+            if !within(&own, plan, SAME_RAD) {
                 // Its stamps jitter: what its rows say of their own plan holds.
                 let moved = |of_rows, series| if of_rows { onto(&series, &own, plan) } else { Ok(series) };
                 (sent, measured) = (moved(of_sent, sent)?, moved(of_measured, measured)?);
@@ -119,7 +118,7 @@ impl History {
             let sum: f64 = found.peaks_rad().sum();
             history.runs.push(PastRun {
                 log: log.clone(),
-                corrected: !within(&sent, plan, NONE_RAD),
+                corrected: !within(&sent, plan, SAME_RAD),
                 mean_peak_rad: (count > 0.0).then(|| sum / count),
                 rms_error_rad: 0.0,
                 p95_error_rad: 0.0,
@@ -184,7 +183,7 @@ impl History {
     /// Whether the same was sent in two runs, but for a share of what they corrected.
     pub(super) fn same(&self, one: usize, other: usize) -> bool {
         let corrected = |k: usize| self.corrections_rad.get(k).copied().unwrap_or(0.0);
-        let most_rad = NONE_RAD.max(SAME * corrected(one).min(corrected(other)));
+        let most_rad = SAME_RAD.max(SAME * corrected(one).min(corrected(other)));
         self.differ_by(one, other, most_rad)
     }
 }
@@ -211,7 +210,7 @@ fn rests_s(planned: &Series, plan: &Series, ended_s: f64) -> f64 {
             let end = track.position().last().copied().unwrap_or_default();
             let own = planned.track(track.name());
             let at = own.and_then(|own| own.at(ended_s + after_s));
-            at.is_some_and(|state| (state.position - end).abs() < NONE_RAD)
+            at.is_some_and(|state| (state.position - end).abs() < SAME_RAD)
         })
     };
     let steps = (0_u32..).map(|k| STEP_S * f64::from(k));
