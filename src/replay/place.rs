@@ -1,5 +1,7 @@
 //! Where most of the error arises: in the transitions, or elsewhere.
 
+#[cfg(doc)]
+use super::Rules;
 use serde::{Deserialize, Serialize};
 
 /// Error inside transition windows against elsewhere, over joints whose plan moves.
@@ -27,7 +29,7 @@ pub struct Concentration {
 /// Samples of one window are not independent, so each window and each stretch counts once.
 /// Joints differ in scale, so each value is divided by its joint's root mean square error.
 /// Joints that start together are not independent, so values that begin within
-/// [`Rules::same_event_s`](super::Rules::same_event_s) are averaged into one event.
+/// [`Rules::same_event_s`] are averaged into one event.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ConcentrationTest {

@@ -12,6 +12,9 @@ pub(super) const SAME_RAD: f64 = 1e-3;
 /// The stamps of two records are so much apart, s, of either 10 ms early or late: angles may differ by what the plan moves in it.
 const JITTER_S: f64 = 0.02;
 
+/// Steps on either side over which jitter makes little of a speed.
+const CALM: usize = 10;
+
 /// By how much two records of one plan may differ where it has a speed, rad/s; rad.
 pub(super) fn may_differ_rad(speed_rad_s: f64) -> f64 {
     SAME_RAD + JITTER_S * speed_rad_s.abs()
@@ -97,7 +100,7 @@ fn alike(series: &Series, plan: &Series) -> bool {
         };
         let q_rad = plan.position();
         let speed_rad_s = |k: usize| {
-            let (before, after) = (k.saturating_sub(1), (k + 1).min(q_rad.len() - 1));
+            let (before, after) = (k.saturating_sub(CALM), (k + CALM).min(q_rad.len() - 1));
             (q_rad[after] - q_rad[before]) / ((after - before).max(1) as f64 * crate::fit::STEP_S)
         };
         let mut pairs = track.position().iter().zip(q_rad).enumerate();
