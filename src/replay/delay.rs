@@ -17,6 +17,9 @@ const SWINGS_S: f64 = 3.0;
 /// One that has rested so long has settled, s.
 const SETTLED_S: f64 = 0.25;
 
+/// A joint that was shaken slows down to this share of its speed before it leaves.
+const SHAKEN: f64 = 0.5;
+
 /// The two onsets of a transition.
 pub(super) struct Delay {
     pub(super) method: OnsetMethod,
@@ -183,6 +186,16 @@ fn unshaken(
     let level_rad_s = signals.thresholds.measured_start;
     let crossing =
         (asked..motion.samples.end).find(|&i| along(motion, signals.measured_rad_s[i]) > level_rad_s)?;
+    // What was shaken comes to rest before it leaves, or nearly; what leads its plan goes on.
+    let mut fastest = 0.0_f64;
+    let slows = |i: usize| {
+        let speed = along(motion, signals.measured_rad_s[i]);
+        fastest = fastest.max(speed);
+        speed < SHAKEN * fastest && fastest - speed > 2.0 * signals.deviation_rad_s[i]
+    };
+    if !(from..crossing).any(slows) {
+        return None;
+    }
     let crossing_s = pair.t_s[crossing];
     let window_s = reach_s(pair, signals, motion, (crossing, crossing_s), rules);
     let search = Search {

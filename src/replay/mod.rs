@@ -6,6 +6,7 @@
 //! tool. It knows angles over time and nothing of files, controllers or pressure.
 
 mod answer;
+mod at_rest;
 mod concentration;
 mod cursor;
 mod delay;

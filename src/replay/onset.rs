@@ -10,8 +10,7 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::Rules;
-use crate::math::{Line, line};
+use super::{Rules, at_rest::AtRest};
 
 /// An onset with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,23 +26,14 @@ const MOST_POINTS: usize = 200;
 /// The rest is looked at from so long before the crossing until so long before its smoothing, s.
 const REST_FROM_S: f64 = 3.0;
 const REST_UNTIL_S: f64 = 0.4;
-/// A rest that is shorter, s, or a drift that is less than so many of its standard errors is none.
-const SHORTEST_REST_S: f64 = 0.4;
-const SURE: f64 = 5.0;
-
-/// How fast a joint moves at rest, per second; `None` if it stands, as far as the samples tell.
-fn drift(t_s: &[f64], position: &[f64]) -> Option<f64> {
-    if t_s.last()? - t_s.first()? < SHORTEST_REST_S || t_s.len() < 8 {
-        return None;
-    }
-    let Line { slope, square, left } = line(t_s, position);
-    let squares = left.iter().map(|x| x * x).sum::<f64>();
-    let neighbours = left.windows(2).map(|w| w[0] * w[1]).sum::<f64>();
-    let correlation = if squares > 0.0 { (neighbours / squares).clamp(0.0, 0.99) } else { 0.0 };
-    let redundancy = (1.0 + correlation) / (1.0 - correlation);
-    let error = (redundancy * squares / (t_s.len() as f64 - 2.0) / square).sqrt();
-    (slope.abs() > SURE * error).then_some(slope)
-}
+/// A speed at rest below this share of the threshold of an onset moves none.
+const NEGLIGIBLE: f64 = 0.05;
+/// A likely departure beyond this share of what is looked at before the crossing asks for more of it, s at most; it is likely
+/// up to so much of minus the logarithm of its likelihood more than the likeliest.
+const NEAR_EDGE: f64 = 0.6;
+const LIKELY: f64 = 2.0;
+const LONGEST_BEFORE_S: f64 = 4.0;
+const ROUNDS: usize = 4;
 
 /// How a joint leaves rest, as travel over time since the departure.
 #[derive(Clone, Copy)]
@@ -52,11 +42,27 @@ pub(super) enum Rise {
     Ramp(f64),
     /// A power of time: constant acceleration, constant jerk, constant snap.
     Power(i32),
+    /// A jump of speed, of which half is left after 0.4 times this, s: what breaks away or answers a step slows down at once.
+    Slows(f64),
+    /// A jump of speed that grows to twice it within half of the inverse of this, 1/s: what takes up play meets a plan under way.
+    Gains(f64),
 }
 
-/// From a breakaway with a jump of speed to the gentle start of a spline at rest.
-pub(super) const RISES: [Rise; 6] =
-    [Rise::Ramp(0.03), Rise::Ramp(0.08), Rise::Ramp(0.16), Rise::Power(2), Rise::Power(3), Rise::Power(4)];
+/// From a breakaway with a jump of speed to the gentle start of a spline at rest; the first [`SMOOTH`] are those of plans.
+pub(super) const RISES: [Rise; 11] = [
+    Rise::Ramp(0.03),
+    Rise::Ramp(0.08),
+    Rise::Ramp(0.16),
+    Rise::Power(2),
+    Rise::Power(3),
+    Rise::Power(4),
+    Rise::Power(5),
+    Rise::Slows(0.1),
+    Rise::Slows(0.4),
+    Rise::Slows(2.0),
+    Rise::Gains(3.0),
+];
+pub(super) const SMOOTH: usize = 6;
 
 impl Rise {
     pub(super) fn travel(self, since_s: f64) -> f64 {
@@ -67,6 +73,8 @@ impl Rise {
             Rise::Power(3) => since_s * (since_s * since_s),
             Rise::Power(4) => (since_s * since_s) * (since_s * since_s),
             Rise::Power(power) => since_s.powi(power),
+            Rise::Slows(time_s) => since_s * time_s / (since_s + time_s),
+            Rise::Gains(per_s) => since_s + per_s * (since_s * since_s),
         }
     }
 
@@ -75,6 +83,8 @@ impl Rise {
         let unit = speed_rad_s / scale;
         match self {
             Rise::Ramp(ramp_s) => (unit <= 1.0).then_some(unit * ramp_s),
+            Rise::Slows(_) => (unit <= 1.0).then_some(0.0),
+            Rise::Gains(per_s) => Some((0.5 * (unit - 1.0) / per_s).max(0.0)),
             Rise::Power(power) => Some((unit / f64::from(power)).powf(1.0 / f64::from(power - 1))),
         }
     }
@@ -96,8 +106,29 @@ pub(super) struct Search {
 /// When the speed of a motion first passed [`Search::stop_speed`]. `None` with fewer than
 /// six samples to fit.
 pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &Rules) -> Option<Onset> {
+    let most_s = rules.onset_rest_share * search.rest_s;
+    let mut before_s = most_s.min(rules.onset_before_s);
+    let (mut found, mut departs_s) = within(t_s, position_rad, search, before_s, rules)?;
+    // A departure near the edge of what is looked at may lie before it.
+    for _ in 0..ROUNDS {
+        if -departs_s < NEAR_EDGE * before_s || before_s >= most_s.min(LONGEST_BEFORE_S) {
+            break;
+        }
+        before_s = (2.0 * before_s).min(most_s).min(LONGEST_BEFORE_S);
+        (found, departs_s) = within(t_s, position_rad, search, before_s, rules)?;
+    }
+    Some(found)
+}
+
+/// The same, looked for from so long before the crossing on, and when the earliest likely motion departs by that, s.
+fn within(
+    t_s: &[f64],
+    position_rad: &[f64],
+    search: &Search,
+    before_s: f64,
+    rules: &Rules,
+) -> Option<(Onset, f64)> {
     let Search { segment, crossing_s, window_s, .. } = search;
-    let before_s = (rules.onset_rest_share * search.rest_s).min(rules.onset_before_s);
     let times = &t_s[segment.clone()];
     let first = times.partition_point(|&t| t < crossing_s - before_s);
     let end = times.partition_point(|&t| t <= crossing_s + window_s + rules.onset_after_s);
@@ -115,21 +146,20 @@ pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &
     if !x.iter().map(|x| x * x).sum::<f64>().is_finite() {
         return None;
     }
-    // A joint that sinks at rest moves before it leaves: what its rise adds to that passes the threshold.
+    // A joint that sinks at rest, or comes to rest, moves before it leaves: what its rise adds to that passes the threshold.
     let at = |before_s: f64| times.partition_point(|&t| t < crossing_s - before_s);
     let (from, until) =
         (at(REST_FROM_S.min(rules.onset_rest_share * search.rest_s)), at(window_s + REST_UNTIL_S));
     let rest = times.get(from..until).zip(position_rad.get(segment.start + from..segment.start + until));
-    let sinks = rest.and_then(|(t_s, position)| drift(t_s, position)).unwrap_or(0.0);
-    let sinks = f64::from(search.direction) * sinks;
-    let x = if sinks.abs() <= 0.0 {
-        x
-    } else {
-        let x: Vec<f64> = x.iter().zip(&t).map(|(x, t)| x - sinks * t).collect();
-        let mean = mean_of(&x);
-        x.iter().map(|x| x - mean).collect()
-    };
-    let stop_speed = search.stop_speed - sinks;
+    let at_rest = rest.map_or(AtRest::Stands, |(t_s, position)| {
+        let t: Vec<f64> = t_s.iter().map(|t_s| t_s - crossing_s).collect();
+        let position: Vec<f64> = position.iter().map(|x| f64::from(search.direction) * x).collect();
+        AtRest::of(&t, &position, NEGLIGIBLE * search.stop_speed)
+    });
+    let x: Vec<f64> = x.iter().zip(&t).map(|(x, t)| x - at_rest.position(*t)).collect();
+    let mean = mean_of(&x);
+    let x: Vec<f64> = x.iter().map(|x| x - mean).collect();
+    let stop_speed = search.stop_speed - at_rest.speed(0.0);
 
     // The crossing of a smoothed speed may lie closer to the segment's start than the rest does.
     let before_s = before_s.min(crossing_s - times[first]);
@@ -151,10 +181,10 @@ pub(super) fn onset(t_s: &[f64], position_rad: &[f64], search: &Search, rules: &
     let [low_s, at_s, high_s] = quantiles(likely.collect(), [0.025, 0.5, 0.975])?;
     // Departures are tried at steps; the shapes between the ones tried are not.
     let step_s = rules.onset_step_s;
-    Some(Onset {
-        at_s: crossing_s + at_s,
-        interval_s: [crossing_s + low_s - step_s, crossing_s + high_s + step_s],
-    })
+    let interval_s = [crossing_s + low_s - step_s, crossing_s + high_s + step_s];
+    let likely = all.iter().filter(|fit| 0.5 * (fit.squares - best.squares) < LIKELY * variance);
+    let departs_s = likely.map(|fit| fit.t0).fold(best.t0, f64::min);
+    Some((Onset { at_s: crossing_s + at_s, interval_s }, departs_s))
 }
 
 /// Quantiles of instants, each with minus the logarithm of its likelihood; `None` if there are none.

@@ -182,6 +182,9 @@ pub struct TrackingError {
     pub peak: f64,
     /// When that was, s.
     pub peak_time_s: f64,
+    /// When it first reached half of that, s; zero in documents of older versions.
+    #[serde(default)]
+    pub half_peak_time_s: f64,
     /// 95 % of the time the magnitude is below this.
     pub p95: f64,
     /// Mean with its sign.

@@ -29,7 +29,8 @@ struct Sums {
 /// For every measured joint vector the nearest point on the planned polyline in joint space is
 /// sought within [`Rules::path_window_s`]; the components of that distance are each joint's.
 /// Taken at the first joint's stamps, thinned to about [`Rules::path_rate_hz`], where every joint has
-/// data; `None` where there is none. O(n window).
+/// data, and not where what is followed lies before or after what the log has of the plan; `None` where there is none.
+/// O(n window).
 pub(super) fn path_error(pairs: &[&Pair], rules: &Rules) -> Option<(Vec<PathError>, PathError)> {
     let lead = pairs.first()?;
     let none = || vec![Vec::new(); pairs.len()];
@@ -41,7 +42,8 @@ pub(super) fn path_error(pairs: &[&Pair], rules: &Rules) -> Option<(Vec<PathErro
     let step_s = 0.75 / rules.path_rate_hz;
     let mut cursors = vec![Cursor::default(); pairs.len()];
     let (mut last_s, mut last_places) = (f64::NEG_INFINITY, Vec::new());
-    let (mut n, mut begins_s) = (0_usize, f64::INFINITY);
+    // Of all instants, and of those that are judged.
+    let (mut all, mut n, mut begins_s) = (0_usize, 0_usize, f64::INFINITY);
     // The instants within the window of the one that is judged.
     let (mut first, mut judged, mut end) = (0, 0, 0);
     for t_s in lead.t_s.iter().copied().chain([f64::INFINITY]) {
@@ -55,7 +57,7 @@ pub(super) fn path_error(pairs: &[&Pair], rules: &Rules) -> Option<(Vec<PathErro
                 continue;
             };
             let places: Vec<usize> = cursors.iter().map(|c| c.segment).collect();
-            (last_s, n, begins_s) = (t_s, n + 1, begins_s.min(t_s));
+            (last_s, all, begins_s) = (t_s, all + 1, begins_s.min(t_s));
             path.t_s.push(t_s);
             path.connected.push(places == last_places);
             last_places = places;
@@ -71,7 +73,12 @@ pub(super) fn path_error(pairs: &[&Pair], rules: &Rules) -> Option<(Vec<PathErro
             while end < path.t_s.len() && path.t_s[end] - path.t_s[judged] <= window_s {
                 end += 1;
             }
-            sums.add(&path, judged, nearest(&path, judged, first, end));
+            let place = nearest(&path, judged, first, end);
+            let beyond = path.may_lie_beyond(judged, place, |j| rules.sizes(pairs[j].kind).start_speed);
+            if !beyond {
+                sums.add(&path, judged, place);
+                n += 1;
+            }
             judged += 1;
         }
         if first >= FORGOTTEN {
@@ -79,7 +86,7 @@ pub(super) fn path_error(pairs: &[&Pair], rules: &Rules) -> Option<(Vec<PathErro
             (first, judged, end) = (0, judged - first, end - first);
         }
     }
-    let sample_interval_s = if n > 1 { (last_s - begins_s) / (n - 1) as f64 } else { 0.0 };
+    let sample_interval_s = if all > 1 { (last_s - begins_s) / (all - 1) as f64 } else { 0.0 };
     let of = |((square, timed), peak): ((&f64, &f64), &f64)| PathError {
         rms: (square / n as f64).sqrt(),
         peak: *peak,
@@ -117,6 +124,23 @@ impl Path {
         self.planned_rad.iter_mut().chain(&mut self.measured_rad).for_each(|joint| {
             joint.drain(..instants);
         });
+    }
+
+    /// Whether the nearest point of the plan is an end of a stretch at which the plan moves, so that what the joints follow lies
+    /// before the stretch, or after it, and is not known.
+    fn may_lie_beyond(&self, i: usize, (at, share): (usize, f64), starts: impl Fn(usize) -> f64) -> bool {
+        let (at, share) = if share >= 1.0 { (at + 1, 0.0) } else { (at, share) };
+        let moves = |from: usize| {
+            let time_s = self.t_s[from + 1] - self.t_s[from];
+            let fast = |(j, planned): (usize, &Vec<f64>)| {
+                (planned[from + 1] - planned[from]).abs() > starts(j) * time_s
+            };
+            self.planned_rad.iter().enumerate().any(fast)
+        };
+        let goes_on = |to: usize| self.connected.get(to).is_some_and(|connected| *connected);
+        let before = i > at && !self.connected[at] && goes_on(at + 1) && moves(at);
+        let after = i < at && self.connected[at] && !goes_on(at + 1) && moves(at - 1);
+        share <= 0.0 && (before || after)
     }
 
     fn offset(&self, i: usize, j: usize, at: usize, share: f64) -> f64 {

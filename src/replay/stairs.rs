@@ -4,7 +4,7 @@
 use super::{
     Rules,
     motion::Motion,
-    onset::{Onset, RISES, Rise, quantiles},
+    onset::{Onset, RISES, Rise, SMOOTH, quantiles},
 };
 use crate::series::Pair;
 
@@ -32,7 +32,7 @@ pub(super) fn onset(
     let steps = (rest_s / rules.onset_step_s).clamp(0.0, 2000.0).floor();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped above")]
     let departures = (0..=steps as usize).map(|k| first_s - k as f64 * rules.onset_step_s);
-    let each = departures.flat_map(|t0_s| RISES.map(|rise| (t0_s, rise)));
+    let each = departures.flat_map(|t0_s| RISES[..SMOOTH].iter().map(move |rise| (t0_s, *rise)));
     let likely = each.filter_map(|(t0_s, rise)| fit(&middles, (t0_s, rise), step, stop_speed));
     let [low_s, at_s, high_s] = quantiles(likely.collect(), [0.025, 0.5, 0.975])?;
     Some(Onset { at_s, interval_s: [low_s - rules.onset_step_s, high_s + rules.onset_step_s] })

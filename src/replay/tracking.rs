@@ -45,11 +45,13 @@ pub(super) fn tracking_error(samples: impl Iterator<Item = Sample> + Clone) -> O
             (peak, peak_time_s) = (s.error_rad.abs(), s.t_s);
         }
     }
+    let half = samples.clone().find(|s| s.error_rad.abs() >= 0.5 * peak);
     (count > 0).then(|| TrackingError {
         rms: (square / time).sqrt(),
         mean_abs: magnitude / time,
         peak,
         peak_time_s,
+        half_peak_time_s: half.map_or(peak_time_s, |s| s.t_s),
         p95: weighted_quantile(samples.step_by(count / ENOUGH + 1), 0.95),
         bias: sum / time,
         samples: count,

@@ -16,7 +16,7 @@ pub static TOOL: &[Row] = &[
     Row::new("worst_m", "worst", "worst error of the tool", "Largest distance between the planned and the measured tool.", Distance, Number(|t| Some(t.worst.deviation.error_m)))
         .compared(Nothing)
         .limited(Judged::new(
-            Limit::new("tool-error", "max-tool-error-mm", None, "error of the tool", "Largest distance of the tool from its plan; needs the arm (URDF in the log, or --urdf)", Distance),
+            Limit::new("tool-error", "max-tool-error-mm", None, "error of the tool", "Largest distance of the tool from its plan; needs the arm (a URDF in the log, or given)", Distance),
             |_| true,
             |t| Some(t.worst.time_s),
         )),

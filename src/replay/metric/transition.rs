@@ -56,7 +56,7 @@ pub static TRANSITION: &[Row] = &[
         Interval(["onset_delay_low_s", "onset_delay_high_s"], |t| t.onset_delay_interval_s)),
     Row::new("breakaway_error", "at onset", "error at the onset", "Tracking error when the joint starts, along the motion.", Position, Number(|t| t.breakaway_error)),
     Row::new("jump", "", "jump of speed", "Largest excess of measured over planned speed soon after the onset.", Speed, Number(|t| t.jump)),
-    Row::new("overshoot", "overshoot", "overshoot", "Largest error of the opposite sign after the peak.", Position, Number(|t| Some(t.overshoot))),
+    Row::new("overshoot", "overshoot", "overshoot", "Largest error of the opposite sign after the peak.", Position, Number(|t| (t.answer != Answer::Never).then_some(t.overshoot))),
     Row::new("settling_time_s", "settling", "settling time", "Time from the planned onset until the error stays in the settling band.", Duration, Number(|t| t.settling_time_s)),
     Row::new("window_s", "", "window", "From the planned onset to the next one, the end of the segment or the longest window.", Instant,
         Interval(["window_start_s", "window_end_s"], |t| Some(t.window_s))),

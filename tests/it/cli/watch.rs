@@ -73,7 +73,7 @@ fn reports_do_not_lie_among_the_logs_and_a_line_names_the_joint_of_each_number()
     assert!(code == 1 && error.contains("a folder of its own"), "{error}");
     assert!(!folder.path().join("logs/index.html").exists());
     let (_, out, _) = said(&run_line(folder.path(), ONCE));
-    assert!(out.contains("J1 0.920 deg off; J5 2798 ms late"), "{out}");
+    assert!(out.contains("J1 0.920 deg off; J5 2805 ms late"), "{out}");
 }
 
 #[test]

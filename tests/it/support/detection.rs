@@ -136,9 +136,9 @@ pub(crate) const BARS: [Bar; 3] = [
         noise_deg: 0.010,
         precision: 0.88,
         recall: 0.82,
-        far_recall: 0.95,
+        far_recall: 0.945,
         median_s: 0.035,
-        spread_s: 0.033,
+        spread_s: 0.035,
     },
     Bar {
         noise_deg: 0.020,
