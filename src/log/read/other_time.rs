@@ -88,6 +88,13 @@ pub(super) fn message(planned: &Series, measured: &Series) -> Option<String> {
     })
 }
 
+/// By how much all joints together seem to be late, s; zero of none.
+pub(super) fn late_s(planned: &Series, measured: &Series) -> f64 {
+    let both = |track| Both::of(track, measured.track(Track::name(track))?);
+    let joints: Vec<Both> = planned.tracks.iter().filter_map(both).collect();
+    if joints.is_empty() { 0.0 } else { shift_s(&joints) }
+}
+
 /// A joint's plan, and some of its measurement.
 struct Both<'a> {
     planned: &'a Track,

@@ -1,5 +1,6 @@
 //! Finds a machine that was stopped while its plan went on.
 
+use super::other_time::late_s as late_s_of;
 use crate::{
     math::quantile,
     series::{JointKind, Series, Track},
@@ -33,6 +34,7 @@ pub(super) struct Stop {
 /// Whiles in which all joints stand, or from then on, though the plan goes on, of one joint at least, for longer and
 /// farther than machines lag.
 pub(super) fn stops(planned: &Series, measured: &Series) -> Vec<Stop> {
+    let mut late_s = None;
     let both = |track| Some((track, measured.track(Track::name(track))?));
     let joints: Vec<(&Track, &Track)> = planned.tracks.iter().filter_map(both).collect();
     let ends = |(_, came): &(&Track, &Track)| Some([*came.t_s().first()?, *came.t_s().last()?]);
@@ -64,7 +66,8 @@ pub(super) fn stops(planned: &Series, measured: &Series) -> Vec<Stop> {
              stop, fault, hold)",
             names.join(", ")
         );
-        found.push(Stop { message, in_time: followed(&joints, [first_s, from_s]) });
+        let late_s = *late_s.get_or_insert_with(|| late_s_of(planned, measured));
+        found.push(Stop { message, in_time: followed(&joints, [first_s, from_s], late_s) });
     }
     found
 }
@@ -128,9 +131,16 @@ fn standing(joints: &[(&Track, &Track)], [first_s, last_s]: [f64; 2]) -> Vec<[f6
     found
 }
 
-/// Whether the joints that moved in a span of time lay near their plan, that in the middle, by the planned motion.
-fn followed(joints: &[(&Track, &Track)], [from_s, to_s]: [f64; 2]) -> bool {
+/// Whether the joints that moved in a span of time lay near their plan, that in the middle, by the planned motion; not those of a
+/// machine that is late throughout, by so much, s, which lie nearer to a plan that is.
+fn followed(joints: &[(&Track, &Track)], span_s: [f64; 2], late_s: f64) -> bool {
     const NEAR: f64 = 0.8;
+    let in_time = apart(joints, span_s, 0.0);
+    in_time < NEAR && (late_s <= LAGS_S || in_time <= apart(joints, span_s, late_s))
+}
+
+/// Distance of joints that moved in a span of time from their plan of so much before, that in the middle, by the planned motion.
+fn apart(joints: &[(&Track, &Track)], [from_s, to_s]: [f64; 2], late_s: f64) -> f64 {
     let mut apart = Vec::new();
     for (plan, came) in joints {
         if travel(came, [from_s, to_s]) < least(came.kind(), MOVES) {
@@ -138,13 +148,14 @@ fn followed(joints: &[(&Track, &Track)], [from_s, to_s]: [f64; 2]) -> bool {
         }
         let within = |t_s: &f64| (from_s..=to_s).contains(t_s);
         let pairs = came.t_s().iter().zip(came.position()).filter(|(t_s, _)| within(t_s));
-        let wanted: Vec<(f64, f64)> = pairs.map(|(t_s, q)| (plan.held_at(*t_s).position, *q)).collect();
+        let wanted: Vec<(f64, f64)> =
+            pairs.map(|(t_s, q)| (plan.held_at(*t_s - late_s).position, *q)).collect();
         let mean = wanted.iter().map(|(plan, _)| plan).sum::<f64>() / wanted.len() as f64;
         let motion = wanted.iter().map(|(plan, _)| (plan - mean).powi(2)).sum::<f64>();
         let error = wanted.iter().map(|(plan, came)| (plan - came).powi(2)).sum::<f64>();
         apart.push((error / motion).sqrt());
     }
-    quantile(apart, 0.5) < NEAR
+    quantile(apart, 0.5)
 }
 
 /// Between lowest and highest position in a span of time.

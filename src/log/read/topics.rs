@@ -16,6 +16,7 @@ use crate::{
         source::{Form, Table},
     },
     suggest::nearest,
+    text::shell_word,
     units::NS_PER_S,
 };
 
@@ -149,8 +150,18 @@ pub(super) fn missing(
                 format!("`{}`", table.import_line(&extracted.path, Some(flag), &Given::default()))
             };
             let lines = tables.iter().map(line).collect::<Vec<_>>().join(" or ");
-            let fix =
-                format!("{lines}, whichever of the tables has them, and give its log with the other table");
+            let both = match tables.as_slice() {
+                [one, other] if missing == "planned" => format!(
+                    "; or, if all of one of them is the plan, `hydrotrace join {} --plan {} --at 0 -o run.mcap`, or the other way \
+                     round",
+                    shell_word(one.file),
+                    shell_word(other.file)
+                ),
+                _ => String::new(),
+            };
+            let fix = format!(
+                "{lines}, whichever of the tables has them, and give its log with the other table{both}"
+            );
             (tables.iter().map(Imported::columns).collect::<Vec<_>>().join("; "), fix)
         }
         None => (present(extracted), format!("{flag} TOPIC[:FIELD]")),

@@ -51,7 +51,11 @@ pub(crate) fn page(fitted: &Fitted, next: Option<&Section>) -> String {
 fn summary(fitted: &Fitted, next: Option<&Section>) -> Markup {
     let joints = &fitted.fit.joints;
     let good = joints.iter().filter(|joint| joint.trusted()).count();
+    let doubtful = joints.iter().filter(|joint| joint.trusted() && !joint.model_holds).count();
     let (class, headline) = match (good, joints.len()) {
+        (good, all) if good == all && doubtful > 0 => {
+            ("care", format!("For every joint, {doubtful} of {all} with care"))
+        }
         (good, all) if good == all => ("good", "For every joint".to_owned()),
         (0, _) => ("bad", "For no joint".to_owned()),
         (good, all) => ("care", format!("For {good} of {all} joints")),

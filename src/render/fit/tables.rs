@@ -133,10 +133,16 @@ fn table(fit: &Fit, columns: &[Shown], skill: bool) -> Table {
 fn trust(fitted: &Fitted) -> Vec<Sentence> {
     let fit = &fitted.fit;
     let good = fit.joints.iter().filter(|joint| joint.trusted()).count();
+    let doubtful = fit.joints.iter().filter(|joint| joint.trusted() && !joint.model_holds).count();
     let mut lines = vec![format!(
-        "Commands can be made of the model alone for {}: a held-out R2 of {LEAST_SKILL} is enough. In 90 % of {} held-out starts the measured peak \
+        "Commands can be made of the model alone for {}{}: a held-out R2 of {LEAST_SKILL} is enough. In 90 % of {} held-out starts the measured peak \
          stays below {:.2} times the predicted one.",
         some_of(good, fit.joints.len(), "joint"),
+        if doubtful == 0 {
+            String::new()
+        } else {
+            format!(", with care of {doubtful} whose model does not hold")
+        },
         fit.margin_starts,
         fit.peak_margin
     )];

@@ -3,7 +3,7 @@
 use super::{
     method::method,
     resting::at_rest,
-    steps::replanned,
+    steps::{LEARNT, replanned},
     tables::{stray, verdicts},
     together::Together,
     tool, why,
@@ -174,10 +174,9 @@ fn next(report: &Report) -> (String, String) {
         Some(Advice::EaseStarts { fits: true, .. } | Advice::ShiftCommand { fits: true, .. })
             if report.holds_task =>
         {
-            (
-                "To make a command that compensates what this run shows, at half strength first:".to_owned(),
-                replanned(&joined),
-            )
+            let learns = report.promised.is_some();
+            let made = "To make a command that compensates what this run shows, at half strength first";
+            (format!("{}:", if learns { LEARNT } else { made }), replanned(&joined, learns))
         }
         Some(Advice::EaseStarts { fits: true, .. } | Advice::ShiftCommand { fits: true, .. }) => (
             "To learn lag, dead band and limits of the machine from it:".to_owned(),

@@ -17,31 +17,39 @@ pub(super) fn steps(report: &Report, read: &[String]) -> Vec<(Sentence, Option<S
         JointKind::Slides => ["--max-transition-peak-mm", "5"],
     };
     let logs = report.paths.iter().map(argument).collect::<Vec<_>>().join(" ");
-    let line = |step: &Advice| Some(reading(&line(step, &logs, limit)?, read));
-    advice(report).iter().map(|step| (Sentence::Advice(words(step, limit[0])), line(step))).collect()
+    let learns = report.promised.is_some();
+    let line = |step: &Advice| Some(reading(&line(step, &logs, limit, learns)?, read));
+    advice(report).iter().map(|step| (Sentence::Advice(words(step, limit[0], learns)), line(step))).collect()
 }
 
 /// What to type for a step, if that does it.
-fn line(step: &Advice, logs: &str, limit: [&str; 2]) -> Option<String> {
+fn line(step: &Advice, logs: &str, limit: [&str; 2], learns: bool) -> Option<String> {
     Some(match step {
-        Advice::ShiftCommand { fits: true, .. } | Advice::EaseStarts { fits: true, .. } => replanned(logs),
+        Advice::ShiftCommand { fits: true, .. } | Advice::EaseStarts { fits: true, .. } => {
+            replanned(logs, learns)
+        }
         Advice::SetLimits => command(&["report", logs, limit[0], limit[1]]),
         Advice::Compare => command(&["compare", logs, "NEXT_RUN"]),
         _ => return None,
     })
 }
 
-/// What makes a command that compensates what these logs show.
-pub(super) fn replanned(logs: &str) -> String {
-    command(&["replan", logs, "--keep-plan", "--gain", "0.5", "-o", "next.mcap"])
+/// What makes a command that compensates what these logs show; `learns` says that one was sent already.
+pub(super) fn replanned(logs: &str, learns: bool) -> String {
+    let careful: &[&str] = if learns { &[] } else { &["--gain", "0.5"] };
+    command(&[&["replan", logs, "--keep-plan"], careful, &["-o", "next.mcap"]].concat())
 }
+
+/// What that does where a command was sent already.
+pub(super) const LEARNT: &str =
+    "The next command is learnt from this run; put the logs of the runs before it first";
 
 fn half_late(delay_s: Option<f64>) -> String {
     delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {})", late(s)))
 }
 
-/// `limit`: an option that sets one for the kind of the joints.
-fn words(step: &Advice, limit: &str) -> String {
+/// `limit`: an option that sets one for the kind of the joints; `learns`: a command was sent already.
+fn words(step: &Advice, limit: &str, learns: bool) -> String {
     match step {
         Advice::ClearDoubts(kinds) => format!(
             "Clear the doubts about the data first: {} below.",
@@ -60,6 +68,9 @@ fn words(step: &Advice, limit: &str) -> String {
         ),
         Advice::EaseStarts { joint, delay_s, fits: false, .. } => {
             format!("Work on starts from rest, {joint} first{}.", half_late(*delay_s))
+        }
+        Advice::EaseStarts { joint, delay_s, .. } if learns => {
+            format!("Work on starts from rest, {joint} first{}. {LEARNT}:", half_late(*delay_s))
         }
         Advice::EaseStarts { joint, delay_s, gentler, .. } => format!(
             "Work on starts from rest, {joint} first{}. A command that compensates dead band and lag, at half strength first, {}:",

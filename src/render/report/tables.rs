@@ -2,7 +2,7 @@
 
 use super::{
     method::method,
-    resting::{at_rest, one_way},
+    resting::{at_rest, one_way, unanswered},
     together::Together,
     tool, why,
 };
@@ -84,6 +84,7 @@ fn findings(report: &Report) -> Vec<String> {
         }
         None => lines.push("No planned start from rest was found.".to_owned()),
     }
+    lines.extend(replay.joints.iter().filter_map(|joint| unanswered(replay, joint)));
     lines.extend(
         report
             .promised
@@ -119,7 +120,12 @@ pub(super) fn stray(report: &Report, joint: &JointReplay) -> Option<String> {
     let starts = starts_of(joint.starts, joint.reversals);
     match (joint.plan_moves, joint.moves) {
         (true, true) => None,
-        (false, true) => Some(format!("{name} moves although its plan rests.")),
+        (false, true) => Some(format!(
+            "{name} moves although its plan rests: it is {} off at most, at {:.1} s, and half of that first at {:.1} s.",
+            position(joint.kind, joint.tracking_error.peak),
+            joint.tracking_error.peak_time_s,
+            joint.tracking_error.half_peak_time_s
+        )),
         (false, false) if joint.unplanned_starts > 0 => Some(format!(
             "The plan of {name} rests; the joint is shaken by the others: {} of less than {}, unplanned.",
             counted(joint.unplanned_starts, "start"),
@@ -134,10 +140,18 @@ pub(super) fn stray(report: &Report, joint: &JointReplay) -> Option<String> {
     }
 }
 
+/// The interval of a delay that it hardly tells.
+fn wide(start: &Transition) -> String {
+    const WIDE: (f64, f64) = (0.1, 0.5);
+    let interval = start.onset_delay_interval_s.zip(start.onset_delay_s);
+    let told = interval.filter(|([low, high], delay)| high - low > WIDE.0 + WIDE.1 * delay.abs());
+    told.map_or(String::new(), |([low, high], _)| format!(" (95 %: {} to {})", ms(low), ms(high)))
+}
+
 pub(super) fn worst_sentence(worst: &Transition) -> String {
     let lateness = match worst.onset_delay_s {
-        Some(delay_s) if delay_s >= 0.0 => format!("leaves {} ms after its plan", ms(delay_s)),
-        Some(delay_s) => format!("leaves {} ms before its plan", ms(-delay_s)),
+        Some(delay_s) if delay_s >= 0.0 => format!("leaves {} ms after its plan{}", ms(delay_s), wide(worst)),
+        Some(delay_s) => format!("leaves {} ms before its plan{}", ms(-delay_s), wide(worst)),
         None => match worst.answer {
             Answer::Creeps => "creeps or already moves when its plan starts".to_owned(),
             Answer::Unclear => "has a planned motion too small to tell when it starts".to_owned(),

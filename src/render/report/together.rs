@@ -66,7 +66,7 @@ impl<'a> Together<'a> {
             if least == most { format!("{least} ms") } else { format!("{least} to {most} ms, by joint,") };
         let shift = self.shift();
         Some(format!(
-            "a {shift} of {lag} causes {} of the squared error ({}{}; mostly {shift} from {:.0} % on)",
+            "a {shift} of {lag} causes {} of the squared error ({}{}; an error is called mostly {shift} from {:.0} % on)",
             percents(share.share),
             share.interval.map_or(String::new(), |[a, b]| {
                 format!("95 % interval {:.0}..{}, ", 100.0 * a, percents(b))
@@ -83,10 +83,10 @@ impl<'a> Together<'a> {
         lines.extend(mostly.as_ref().map(|lag| format!("The error is mostly {}: {lag}.", self.shift())));
         if let Some(c) = &self.run.concentration {
             let place = match (&mostly, c.verdict) {
-                (Some(_), _) => "Transitions hold it because the joints move there",
+                (Some(_), Verdict::Transitions) => "Transitions hold it because the joints move there",
                 (None, Verdict::Transitions) => "Most of the error arises in the transitions",
-                (None, Verdict::Elsewhere) => "Most of the error arises outside the transitions",
-                (None, Verdict::Undecided) => {
+                (_, Verdict::Elsewhere) => "Most of the error arises outside the transitions",
+                (_, Verdict::Undecided) => {
                     "Whether most of the error arises in the transitions cannot be told"
                 }
             };
@@ -101,8 +101,10 @@ impl<'a> Together<'a> {
             let moving = c
                 .rms_outside_moving
                 .map_or("at rest".to_owned(), |rms| format!("{} while the plan moves", position(kind, rms)));
+            let some = self.joints().any(|joint| !joint.plan_moves && joint.moves);
+            let of = if some { ", of joints that are to move" } else { "" };
             lines.push(format!(
-                "{place}: rms {} inside, {} elsewhere ({moving}); {:.0} % of the squared error in {:.0} % of the time ({test}).",
+                "{place}{of}: rms {} inside, {} elsewhere ({moving}); {:.0} % of the squared error in {:.0} % of the time ({test}).",
                 position(kind, c.rms_inside),
                 position(kind, c.rms_outside),
                 100.0 * c.squared_error_share_inside,
@@ -111,7 +113,10 @@ impl<'a> Together<'a> {
             if mostly.is_none() {
                 lines.push(match self.lag_words() {
                     Some(lag) => format!("Share of {}: {lag}.", self.shift()),
-                    None => "Share of lag: cannot be told, because no joint shows a lag.".to_owned(),
+                    None => format!(
+                        "Share of lag: cannot be told, because no joint shows a lag of {:.0} ms or less.",
+                        1e3 * self.replay.rules.lag_max_s
+                    ),
                 });
             }
         }

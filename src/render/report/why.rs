@@ -55,12 +55,35 @@ pub(super) fn phrase(start: &LateStart) -> String {
     parts.retain(|(part, _)| part.delay_s.abs() >= 0.0005);
     parts.sort_by(|a, b| b.0.delay_s.total_cmp(&a.0.delay_s));
     let word = |(part, name): &(Part, &str)| match part.interval_s {
+        Some([low_s, high_s]) if is_unsure(part) => {
+            format!("{} ms {name} (95 %: {} to {})", ms(part.delay_s), ms(low_s), ms(high_s))
+        }
         _ if part.delay_s > 0.0 => format!("{} ms {name}", ms(part.delay_s)),
         Some([_, high_s]) if high_s >= 0.0 => format!("no {name}"),
         _ => format!("less {} ms {name}", ms(-part.delay_s)),
     };
+    let unsure: Vec<&(Part, &str)> = parts.iter().filter(|(part, _)| is_unsure(part)).collect();
+    if let [first, rest @ ..] = unsure.as_slice()
+        && !rest.is_empty()
+    {
+        let sum_s: f64 = unsure.iter().map(|(part, _)| part.delay_s).sum();
+        let names: Vec<&str> = rest.iter().map(|(_, name)| *name).collect();
+        let together = format!(
+            "{} ms {} and {}, which this run does not tell apart",
+            ms(sum_s),
+            first.1,
+            names.join(" and ")
+        );
+        let sure = parts.iter().filter(|(part, _)| !is_unsure(part)).map(word);
+        return std::iter::once(together).chain(sure).collect::<Vec<_>>().join("; ");
+    }
     let words: Vec<String> = parts.iter().map(word).collect();
     words.join(", ")
+}
+
+/// Whether a part may be none at all.
+fn is_unsure(part: &Part) -> bool {
+    part.delay_s > 0.0 && part.interval_s.is_some_and(|[low_s, _]| low_s <= 0.0)
 }
 
 /// What explains a start, if something does.
