@@ -10,7 +10,7 @@ use crate::{
     replay::{Answer, ONSET_DELAY, PEAK_ERROR},
     series::JointKind,
     workflow::compare::{
-        Comparison, Figures, Form, GateResult, Run, Scope, Summary, TransitionPair, Verdict,
+        Change, Comparison, Figures, Form, GateResult, Run, Scope, Summary, TransitionPair, Verdict,
     },
 };
 
@@ -28,6 +28,7 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     lines.extend(answers(comparison));
     lines.extend(at_the_tool(comparison).map(|changes| format!("At the tool: {changes}.")));
     lines.extend(together(comparison).filter_map(whole_run));
+    lines.extend(against(comparison));
     lines.push(plans(comparison));
     lines.extend(comparison.after.iter().filter_map(|run| {
         let of = if comparison.after.len() > 1 { format!(" of {}", run.log) } else { String::new() };
@@ -165,6 +166,19 @@ fn whole_run(all: &Figures) -> Option<String> {
         .then(|| format!("Whole run, {}: {}.", together_name(&all.scope), figures.join(", ")))
 }
 
+/// Joints that a mean over all of them hides.
+fn against(comparison: &Comparison) -> Option<String> {
+    let one = |(own, change): &(&Figures, Change)| {
+        let [before, after] =
+            [change.before, change.after].map(|value| optional(value, |v| position(own.kind, v)));
+        let share = change.ratio.map_or(String::new(), |ratio| format!(" ({} %)", percent(ratio - 1.0)));
+        format!("{} {before} -> {after}{share}", own.joint.as_deref().unwrap_or_default())
+    };
+    let found: Vec<String> = comparison.against().iter().map(one).collect();
+    (!found.is_empty())
+        .then(|| format!("Worse while others became better, by rms error: {}.", found.join(", ")))
+}
+
 /// How far the tool was off, before and after.
 pub(crate) fn at_the_tool(comparison: &Comparison) -> Option<String> {
     let tool = comparison.tool.as_ref()?;
@@ -198,12 +212,30 @@ fn plans(comparison: &Comparison) -> String {
         n => format!("{n} transitions have no counterpart"),
     };
     let which = if comparison.same_plan { "The same plan" } else { "Different plans" };
+    // Runs of one side of which some have another plan than the first run before.
+    let mixed = [&comparison.before, &comparison.after].map(|runs| {
+        let others = runs.iter().filter(|run| !run.same_plan).collect::<Vec<&Run>>();
+        if others.len() < runs.len() { others } else { Vec::new() }
+    });
+    let mixed: Vec<String> = mixed
+        .into_iter()
+        .flatten()
+        .map(|run| match run.plan_duration_s {
+            Some(long_s) => format!("{} ({long_s:.2} s)", run.log),
+            None => run.log.clone(),
+        })
+        .collect();
+    let mixed = if mixed.is_empty() {
+        String::new()
+    } else {
+        format!(" Another plan than the other runs of their side have {}: means mix both.", mixed.join(", "))
+    };
     let part = if comparison.same_plan {
         ""
     } else {
         " A change is of plan and machine together: a slower plan has smaller errors by itself."
     };
-    format!("{which} ({long}): {apart}; {left}.{part}")
+    format!("{which} ({long}): {apart}; {left}.{part}{mixed}")
 }
 
 /// One for each limit that was set.

@@ -94,7 +94,10 @@ fn pairs(comparison: &Comparison, most: usize) -> Option<Section> {
     });
     let table = Table::of(columns, rows.collect::<Vec<_>>());
     let more = (worst.len() > most).then(|| {
-        Sentence::note(format!("and {} more that did no worse (--all lists them)", worst.len() - most))
+        Sentence::note(format!(
+            "and {} more whose peak grew by less, or fell (--all lists them)",
+            worst.len() - most
+        ))
     });
     let mixed = weighed(&comparison.rules, worst.iter().map(|pair| pair.joint_kind));
     (!worst.is_empty()).then(|| {

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Changes, Figures, GateResult, Run, Summary, TransitionPair, Unpaired, Verdict, summary::overall,
+    Change, Changes, Figures, GateResult, Run, Summary, TransitionPair, Unpaired, Verdict, figures::against,
+    summary::overall,
 };
 use crate::{
     remark::Remarks,
@@ -63,6 +64,11 @@ impl Comparison {
     /// joints that slide.
     pub fn overall(&self, key: &str) -> Vec<&Summary> {
         overall(&self.summaries, key)
+    }
+
+    /// Joints whose error over the run grew while that of others fell, the largest growth first.
+    pub fn against(&self) -> Vec<(&Figures, Change)> {
+        against(&self.whole_run)
     }
 }
 

@@ -12,6 +12,11 @@ use crate::{
     workflow::report::Report,
 };
 
+/// A joint whose error grew by this factor, and by this share of the largest of its kind before, while that of another fell by that
+/// factor, goes against the mean.
+const GREW: (f64, f64) = (1.25, 0.1);
+const FELL: f64 = 0.9;
+
 /// Whole-run figures of one joint, or of several together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -86,6 +91,25 @@ pub(super) fn figures(before: &[Report], after: &[Report], joints: &[String], ru
     let both = kinds.iter().any(|kind| *kind != first);
     let of_kinds = [JointKind::Turns, JointKind::Slides].into_iter().filter(|_| both).map(Some);
     std::iter::once(None).chain(of_kinds).map(of_kind).chain(each).collect()
+}
+
+/// Joints whose error grew while that of others fell, the largest growth first, with their error over the run: a mean hides them.
+pub(super) fn against(whole_run: &[Figures]) -> Vec<(&Figures, Change)> {
+    let rms = |figures: &Figures| figures.changes.get("rms");
+    let single = || whole_run.iter().filter(|figures| figures.joint.is_some());
+    if !single().any(|other| rms(other).ratio.is_some_and(|ratio| ratio < FELL)) {
+        return Vec::new();
+    }
+    let grew = |own: &Figures, change: &Change| {
+        let alike = single().filter(|other| other.kind == own.kind).filter_map(|other| rms(other).before);
+        let most = alike.fold(0.0, f64::max);
+        change.ratio.is_some_and(|ratio| ratio > GREW.0)
+            && change.difference.is_some_and(|difference| difference > GREW.1 * most)
+    };
+    let mut found: Vec<(&Figures, Change)> =
+        single().map(|own| (own, rms(own))).filter(|(own, change)| grew(own, change)).collect();
+    found.sort_by(|(_, a), (_, b)| b.difference.unwrap_or(0.0).total_cmp(&a.difference.unwrap_or(0.0)));
+    found
 }
 
 /// The figures at the tool, where every run has the same one.

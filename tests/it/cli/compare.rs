@@ -252,3 +252,34 @@ fn json_is_as_the_schema_says_and_equal_calls_give_equal_bytes() {
         assert_eq!(document, json(folder, args));
     }
 }
+
+#[test]
+fn a_joint_that_a_mean_hides_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |boom_late_s: f64, stick_late_s: f64| {
+        let header = "t_s,boom_set_deg,boom_act_deg,stick_set_deg,stick_act_deg\n".to_owned();
+        (0..600).fold(header, |text, k| {
+            let t_s = f64::from(k) * 0.02;
+            let at = |late_s: f64| {
+                10.0 - 10.0 * ((t_s - late_s - 2.0).clamp(0.0, 4.0) / 4.0 * std::f64::consts::PI).cos()
+            };
+            let (plan, boom, stick) = (at(0.0), at(boom_late_s), at(stick_late_s));
+            text + &format!("{t_s:.2},{plan:.4},{boom:.4},{plan:.4},{stick:.4}\n")
+        })
+    };
+    let at = folder.path();
+    for (file, boom_late_s, stick_late_s) in [
+        ("before.csv", 0.4, 0.1),
+        ("after.csv", 0.1, 0.2),
+        ("better.csv", 0.1, 0.05),
+        ("worse.csv", 0.5, 0.2),
+    ] {
+        std::fs::write(at.join(file), run(boom_late_s, stick_late_s)).unwrap();
+    }
+    let said = |after: &str| stdout(&hydrotrace(at, &["compare", "before.csv", after]));
+    let line = said("after.csv");
+    assert!(line.contains("Worse while others became better, by rms error: stick 0."), "{line}");
+    for after in ["better.csv", "worse.csv"] {
+        assert!(!said(after).contains("Worse while others"), "{after}");
+    }
+}
