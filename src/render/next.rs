@@ -12,6 +12,12 @@ fn step(section: Section, aim: &str, words: &[&str]) -> Section {
     section.with(Sentence::advice(aim)).with(Block::Command(command(words)))
 }
 
+/// After a plan that breaks limits was written all the same.
+pub(crate) fn broken_written(log: &Path) -> Section {
+    written(&argument(log))
+        .with(Sentence::finding("It breaks limits, as told above: to look at, not to send."))
+}
+
 /// After `plan`; `of_sample_arm`: whether the machines that `simulate` knows by name have its joints.
 pub(crate) fn plan_written(log: &Path, of_sample_arm: bool) -> Section {
     // The run has another name than the plan.

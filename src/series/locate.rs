@@ -20,6 +20,13 @@ pub struct Located {
     pub pace: Option<f64>,
 }
 
+impl Located {
+    /// Whether the two run apart by as much as is looked for, or more.
+    pub fn is_apart_by_most(&self) -> bool {
+        self.pace.is_some_and(|pace| (pace - 1.0).abs() > 0.99 * MOST_APART)
+    }
+}
+
 /// Step of the first look, s.
 const STEP_S: f64 = 0.1;
 /// Share of the motion that must lie within the longer series.

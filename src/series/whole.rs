@@ -21,6 +21,21 @@ const BRIDGED_S: f64 = 0.3;
 /// A joint that is so far away after a hole has moved within it, rad or m.
 const MOVED: f64 = 1e-3;
 
+/// A plan that goes on at this speed, rad/s, and m/s of joints that slide, over two stretches of so long, s, and then stands for longer
+/// is halted; one whose speed falls before to this share comes to rest.
+const HALT_SPEED: [f64; 2] = [5.0 * DEGREE_RAD, 0.03];
+const HALT_S: f64 = 0.1;
+const STANDS_S: f64 = 0.3;
+const GOES_ON: f64 = 0.75;
+/// A motion starts gently whose first stretch has less than this share of the speed of its second.
+const GENTLY: f64 = 0.5;
+/// Steps of a rounded position by which a stretch may seem too long.
+const ROUNDED: f64 = 3.0;
+/// Positions that differ by less are the same, rad or m.
+const STILL: f64 = 1e-7;
+/// Samples farther apart do not show how a plan stops, s.
+const SPARSE_S: f64 = 0.025;
+
 /// Where the motion of a joint is broken off.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Broken {
@@ -35,6 +50,17 @@ pub enum Broken {
         /// Its speed there, rad/s or m/s.
         speed: f64,
         /// The first or last instant, s.
+        at_s: f64,
+    },
+    /// It stops at once, though it starts gently: the set values were held, as by an emergency stop.
+    Halted {
+        /// The joint.
+        joint: String,
+        /// Whether it turns or slides.
+        kind: JointKind,
+        /// Its speed before, rad/s or m/s.
+        speed: f64,
+        /// When it stops, s.
         at_s: f64,
     },
     /// It is missing while the joint moves.
@@ -55,7 +81,65 @@ impl Broken {
     pub fn of(series: &Series) -> Option<Self> {
         let bridged = bridged(series).ok()?;
         let span_s = moving_s(&bridged)?;
-        Self::cut(&bridged, span_s).or_else(|| Self::hole(&bridged, span_s))
+        Self::cut(&bridged, span_s)
+            .or_else(|| Self::hole(&bridged, span_s))
+            .or_else(|| Self::halt(&bridged, span_s))
+    }
+
+    /// The instant between these, s, at which all joints that move stop at once and stand, though the motion began gently. Motions that
+    /// all end so are how the plan is.
+    pub(crate) fn halt(series: &Series, span_s: [f64; 2]) -> Option<Self> {
+        let all = series.tracks.iter().flat_map(|track| Self::halts(series, track, span_s));
+        let mut all: Vec<(f64, Self)> = all.collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (first_s, _) = all.first()?;
+        let one = all.iter().all(|(at_s, _)| at_s - first_s < STANDS_S);
+        all.into_iter().next().filter(|_| one).map(|(_, found)| found)
+    }
+
+    /// When a joint stops so, s.
+    fn halts(series: &Series, track: &Track, [from_s, to_s]: [f64; 2]) -> Vec<(f64, Self)> {
+        let mean = |track: &Track, [from_s, to_s]: [f64; 2]| {
+            (track.held_at(to_s).position - track.held_at(from_s).position) / (to_s - from_s)
+        };
+        let least = HALT_SPEED[usize::from(track.kind() == JointKind::Slides)];
+        let (t_s, position) = (track.t_s(), track.position());
+        let moved = |k: usize| (position[k] - position[k - 1]).abs();
+        let (first, last) = (t_s.partition_point(|t| *t < from_s), t_s.partition_point(|t| *t <= to_s));
+        let steps = || (first.max(1)..last).map(moved).filter(|moved| *moved > STILL);
+        let off = ROUNDED * steps().fold(f64::INFINITY, f64::min) / HALT_S;
+        let stands = |t_s: f64| {
+            let still = |other: &Track| {
+                let least = HALT_SPEED[usize::from(other.kind() == JointKind::Slides)];
+                mean(other, [t_s, t_s + STANDS_S]).abs() < 0.02 * least
+            };
+            series.tracks.iter().all(still)
+        };
+        let (mut begins_s, mut rested_s, mut found) = (None, f64::NEG_INFINITY, Vec::new());
+        for k in first.max(1)..last.min(t_s.len().saturating_sub(1)) {
+            if moved(k) <= STILL {
+                continue;
+            }
+            if t_s[k] - rested_s > STANDS_S {
+                begins_s = Some(t_s[k - 1]);
+            }
+            rested_s = t_s[k];
+            let Some(begins_s) = begins_s.filter(|begins_s| t_s[k] > begins_s + 3.0 * HALT_S) else {
+                continue;
+            };
+            if moved(k + 1) > STILL || t_s[k] - t_s[k - 1] > SPARSE_S {
+                continue;
+            }
+            let before = mean(track, [t_s[k] - HALT_S, t_s[k]]);
+            let earlier = mean(track, [t_s[k] - 2.0 * HALT_S, t_s[k] - HALT_S]);
+            let goes_on = before.abs() - off > least.max(GOES_ON * earlier.abs()) && before * earlier > 0.0;
+            let [begun, goes] = [0.0, HALT_S].map(|s| mean(track, [begins_s + s, begins_s + s + HALT_S]));
+            if goes_on && begun.abs() < GENTLY * goes.abs() && stands(t_s[k]) {
+                let (joint, kind) = (track.name().to_owned(), track.kind());
+                found.push((t_s[k], Self::Halted { joint, kind, speed: before, at_s: t_s[k] }));
+            }
+        }
+        found
     }
 
     /// The first joint that begins or ends in motion, of a motion between these instants, s.
@@ -105,6 +189,10 @@ impl fmt::Display for Broken {
             Self::Cut { joint, kind, begins, speed, at_s } => {
                 let (does, speed) = (if *begins { "begins" } else { "ends" }, kind.says(*speed));
                 write!(f, "{does} at {at_s:.2} s while {joint} moves at {speed} per second")
+            }
+            Self::Halted { joint, kind, speed, at_s } => {
+                let speed = kind.says(*speed);
+                write!(f, "stops at once at {at_s:.2} s while {joint} moves at {speed} per second")
             }
             Self::Hole { joint, kind, moved, hole_s: [from_s, to_s] } => {
                 let moved = kind.says(*moved);
@@ -229,5 +317,65 @@ mod tests {
         assert!(matches!(of(90..200), Some(Broken::Cut { begins: true, .. })));
         assert!(matches!(of(0..110), Some(Broken::Cut { begins: false, .. })));
         assert_eq!(of(0..40), None, "it never moves");
+    }
+
+    #[test]
+    fn a_plan_that_is_held_in_motion_is_halted_and_straight_lines_are_not() {
+        let of = |gentle: bool, stopped_s: f64, resumes_s: f64, step: f64| {
+            let t_s: Vec<f64> = (0..1200).map(|k| f64::from(k) * 0.01).collect();
+            let position = t_s.iter().map(|t| {
+                let t = if *t < stopped_s { *t } else { stopped_s.max(t - (resumes_s - stopped_s)) };
+                let x = ((t - 1.0) / 4.0).clamp(0.0, 1.0);
+                let at = if gentle { x * x * x * (10.0 - 15.0 * x + 6.0 * x * x) } else { x };
+                if step > 0.0 { (at / step).round() * step } else { at }
+            });
+            let position: Vec<f64> = position.collect();
+            Broken::of(&Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] })
+        };
+        for resumes_s in [7.0, 99.0] {
+            let found = of(true, 3.0, resumes_s, 0.0);
+            assert!(
+                matches!(found, Some(Broken::Halted { at_s, .. }) if (at_s - 3.0).abs() < 0.02),
+                "{resumes_s} {found:?}"
+            );
+        }
+        for step in [0.0, 1e-4, 1.745e-3] {
+            assert_eq!(of(true, 20.0, 20.0, step), None, "{step}");
+            assert_eq!(of(false, 20.0, 20.0, step), None, "{step}");
+        }
+    }
+
+    #[test]
+    fn short_ramps_of_rounded_plans_and_joints_that_take_over_are_no_halt() {
+        // Gently to a speed, deg/s, and back to rest within a time, s; the second joint starts there, or crawls on.
+        let of = |speed: f64, down_s: f64, step_deg: f64, rate_hz: f64, other: &dyn Fn(f64) -> f64| {
+            let t_s: Vec<f64> = (0..).map(|k| f64::from(k) / rate_hz).take_while(|t| *t < 14.0).collect();
+            let at = |t: f64| {
+                let ramp =
+                    |s: f64, long_s: f64| 0.5 * s.clamp(0.0, long_s).powi(2) / long_s + (s - long_s).max(0.0);
+                speed * (ramp(t - 1.013, 0.4) - ramp(t - 5.0, down_s))
+            };
+            let rounded = |deg: f64| if step_deg > 0.0 { (deg / step_deg).round() * step_deg } else { deg };
+            let track = |name: &str, course: &dyn Fn(f64) -> f64| {
+                let q = t_s.iter().map(|t| rounded(course(*t)) * DEGREE_RAD).collect();
+                Track::new(name, t_s.clone(), q, &[]).unwrap()
+            };
+            Broken::of(&Series { tracks: vec![track("A", &at), track("B", other)] })
+        };
+        let rests = |_: f64| 0.0;
+        for speed in [6.0, 12.0, 25.0] {
+            for down_s in [0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.3] {
+                for step_deg in [0.0, 0.01, 0.1, 0.2] {
+                    for rate_hz in [50.0, 100.0] {
+                        let found = of(speed, down_s, step_deg, rate_hz, &rests);
+                        assert_eq!(found, None, "{speed} {down_s} {step_deg} {rate_hz}");
+                    }
+                }
+            }
+        }
+        let halted = |other: &dyn Fn(f64) -> f64| of(12.0, 1e-3, 0.0, 100.0, other).is_some();
+        assert!(halted(&rests) && of(25.0, 1e-3, 0.1, 100.0, &rests).is_some());
+        assert!(!halted(&|t| 3.0 * (t - 5.0).max(0.0)), "another one takes over");
+        assert!(!halted(&|t| 0.9 * t), "another one crawls on");
     }
 }

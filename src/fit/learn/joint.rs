@@ -59,6 +59,9 @@ const FAST_HZ: f64 = 1.5;
 /// corrected. Smaller errors than that of the lesser cap are.
 const FOLLOWS: f64 = 0.5;
 
+/// Corrections that differ by less than this share are the same.
+const AGAIN: f64 = 0.05;
+
 /// Errors that differ from run to run by this share of them tell nothing of what a correction gained.
 const DIFFERS: f64 = 0.3;
 
@@ -272,9 +275,15 @@ impl<'a> Joint<'a> {
             Character::Rings if manner.cut_off_hz < FAST_HZ * 0.35 => GAINS[1],
             Character::Rings | Character::Hunts => GAINS[2],
         };
-        let is_first = sent[..from].iter().all(|sent| largest(sent) <= NONE_RAD) && from + 1 == answers.len();
-        if let Some(plain) = from.checked_sub(1).filter(|_| is_first && manner.character != Character::Hunts)
-        {
+        // However often it was sent.
+        let none = |k: &usize| largest(&sent[*k]) <= NONE_RAD;
+        let again = |k: usize| {
+            let apart = sent[k].iter().zip(&sent[from]).map(|(a, b)| a - b);
+            largest(&apart.collect::<Vec<f64>>()) < AGAIN * largest(&sent[from])
+        };
+        let is_first = (0..answers.len()).all(|k| none(&k) || again(k));
+        let plain = (0..from).rev().find(none);
+        if let Some(plain) = plain.filter(|_| is_first && manner.character != Character::Hunts) {
             // What no error tells, such as the step over a dead band, is in the whole of a first correction alone.
             let plain = &answers[plain];
             let (whole, _) = first(&fit.model, manner, (planned, fade), plain, fit.held_out_r2, workspace);

@@ -129,8 +129,11 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
         }
         Finding::Limits { broken, between, nearest, unlimited, fastest, sharpest, outside } => {
             let none: Vec<&str> = unlimited.iter().map(|limit| limit.name()).collect();
-            let none =
-                if none.is_empty() { String::new() } else { format!(" No limit: {}.", none.join(", ")) };
+            let none = match (none.is_empty(), nearest.is_empty()) {
+                (true, _) => String::new(),
+                (false, true) => format!(" Not checked: {}.", none.join(", ")),
+                (false, false) => format!(" No limit is known of: {}.", none.join(", ")),
+            };
             let fast = fastest.as_ref().map_or(String::new(), |fast| {
                 format!(
                     " {} is sent up to {}/s, {:.1} times as fast as its plan.",
@@ -170,7 +173,8 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
             shown(expected.mean_peak_margin_rad)
         ),
         Finding::Whole { overall } => format!(
-            "Error with rests and stops: rms {}, p95 {} in the last run; {} and {} with the plan as it is{}.",
+            "Error with rests and stops, rms over all joints and p95 of the worst joint: {} and {} in the last run; {} and {} with the \
+             plan as it is{}.",
             shown(overall.rms_rad),
             shown(overall.p95_rad),
             shown(overall.plain_rms_rad),
@@ -233,19 +237,26 @@ fn limits([broken, between]: [usize; 2], nearest: &[MarginEntry]) -> String {
             .to_owned();
     };
     let joint = worst.joint.as_ref().map_or(String::new(), |name| format!("{name} "));
+    // A position counts from the middle of its range.
+    let (by, [value, allowed]) = match worst.limit {
+        Limit::Position => ("of the way from the middle of its range", [worst.value, worst.allowed]),
+        _ => ("used", [worst.value, worst.allowed].map(f64::abs)),
+    };
+    let [value, allowed] = [value, allowed].map(|value| plan::shown(worst.limit, value));
     let worst = format!(
-        "{joint}{}: {} used, {} of {} at {:.1} s",
+        "{joint}{}: {} {by}, {value} of {allowed} at {:.1} s",
         worst.limit.name(),
         share(worst.share),
-        plan::shown(worst.limit, worst.value.abs()),
-        plan::shown(worst.limit, worst.allowed.abs()),
         worst.t_s
     );
     let mut kinds: Vec<Limit> = nearest.iter().map(|margin| margin.limit).collect();
     kinds.sort_unstable();
     let kinds: Vec<&str> = kinds.into_iter().map(Limit::name).collect();
     match (broken, between) {
-        (0, 0) => format!("All kept ({}). The nearest is {worst}.", kinds.join(", ")),
+        (0, 0) => {
+            let within = if nearest[0].share > 1.0 { ", within 0.2 %" } else { "" };
+            format!("All kept{within} ({}). The nearest is {worst}.", kinds.join(", "))
+        }
         (0, between) => format!(
             "The plan lies at its limits, and between two points a controller's curve goes beyond {} by less than 1 %. The worst is \
              {worst}.",

@@ -3,12 +3,11 @@
 use crate::{
     fit::{AFTER_S, Step},
     render::{
-        kit::{Column, Id, NONE, Section, Sentence, Table, counted, optional},
+        kit::{Column, Id, NONE, Section, Sentence, Table, argument, counted, optional},
         metric::{Units, number, position, unit},
     },
     replay::Dimension,
     series::JointKind::{self, Slides, Turns},
-    text::shell_word,
     workflow::replan::{Checks, Decision, Finding, JointCommand, KeepReason, PastRun, Replanned},
 };
 
@@ -56,7 +55,7 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
         Some(run) => format!(
             " If the machine has drifted since, a correction learnt from the newest run alone may do better, `hydrotrace replan {} \
              -o anew.mcap`.",
-            shell_word(&run.log)
+            argument(&run.path)
         ),
         None => repeats(replanned).unwrap_or_default().to_owned(),
     };

@@ -108,6 +108,9 @@ fn expected(replanned: &Replanned) -> Table {
 pub(super) fn levers(replanned: &Replanned) -> Vec<Fact> {
     let plan = match (&replanned.search, replanned.retimed, &replanned.evaluation) {
         (None, ..) => "unchanged".to_owned(),
+        (Some(search), false, _) if search.front.is_empty() => {
+            "unchanged: no timing was found within the allowed time, jerk and power".to_owned()
+        }
         (Some(search), false, _) => format!(
             "unchanged: none of {} timings within the allowed time, jerk and power has a smaller expected error",
             search.front.len()

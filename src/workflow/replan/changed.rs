@@ -165,6 +165,20 @@ impl History {
             self.peak_rad(*k)
                 .is_some_and(|before_rad| exceeds(before_rad, now_rad) || exceeds(now_rad, before_rad))
         };
+        // What is kept and comes to more each time drifts, whatever a bound that grew with it says.
+        let kept: Vec<(usize, f64)> =
+            runs.iter().filter(|k| same(k)).filter_map(|k| Some((*k, self.peak_rad(*k)?))).collect();
+        let least = (0..kept.len()).min_by(|a, b| kept[*a].1.total_cmp(&kept[*b].1));
+        let since = least.map_or(&[][..], |least| &kept[least..]);
+        if let [(before, least_rad), .., (_, last_rad)] = since {
+            let grew = |rad: f64| rad > CHANGED_TWICE * least_rad && rad - least_rad > 0.5 * CHANGED_RAD;
+            let rises = since.windows(2).all(|two| two[0].1 <= two[1].1)
+                && now_rad > (1.0 + AGAIN) * last_rad
+                && !exceeds(now_rad, *last_rad);
+            if grew(now_rad) && grew(*last_rad) && rises {
+                return Some(Sign::Drift(*before));
+            }
+        }
         if let Some(before) = runs.iter().rev().copied().find(|k| differs(k) && same(k)) {
             // Of what came between the two nobody knows.
             let from = runs.iter().copied().find(|k| *k > before).unwrap_or(run);
@@ -333,6 +347,15 @@ mod tests {
             (others.len(), history.drifts, history.anew(), history.trust(), history.decision())
         };
         assert_eq!(kept(0.012, 0.015), (4, true, false, 1.0, Decision::Send));
+        let rises = |newest: f64| {
+            let mut history = history(&[0.04, 0.01, 0.014, newest]);
+            history.series = [1.0, 1.2, 1.2, 1.2].iter().map(|by| (sent(*by), sent(0.0))).collect();
+            history.places = (0..4).collect();
+            let (others, _) = history.without_another_machine(&mut |_| None);
+            (others.len(), history.drifts)
+        };
+        assert_eq!(rises(0.021), (3, true), "to twice as much, run by run");
+        assert_eq!(rises(0.0141), (2, false), "at once");
         let (first, drifts, _, _, decision) = kept(0.02, 0.015);
         assert!(first == 0 && !drifts && matches!(decision, Decision::Keep { run: 4, .. }), "{decision:?}");
     }

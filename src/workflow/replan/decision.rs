@@ -119,30 +119,50 @@ impl History {
         Some((best, self.runs[best].mean_peak_rad?))
     }
 
-    /// Corrections that were not worth it.
-    fn failures(&self, peaks_rad: &[(usize, f64)]) -> usize {
-        let failed = |k: &usize| {
-            let (run, peak_rad) = peaks_rad[*k];
-            let worth = best(&peaks_rad[..*k]).is_none_or(|best| peak_rad < WORTH * best.1);
-            self.runs[run].corrected && !worth
-        };
-        (0..peaks_rad.len()).filter(failed).count()
+    /// Each thing that was sent once, in the order in which that was first done, with the newest run of it: sent again it is no
+    /// other correction.
+    fn commands(&self) -> Vec<(usize, f64)> {
+        let mut commands: Vec<(usize, f64)> = Vec::new();
+        for (k, peak_rad) in self.peaks_rad() {
+            match commands.iter_mut().find(|(other, _)| self.same(*other, k)) {
+                Some(command) => *command = (k, peak_rad),
+                None => commands.push((k, peak_rad)),
+            }
+        }
+        commands
     }
 
-    /// Whether the last correction was worth it; of a plan that was sent as it is again, whether those before it were.
+    /// Corrections that were not worth it.
+    fn failures(&self, commands: &[(usize, f64)]) -> usize {
+        let failed = |k: &usize| {
+            let (run, peak_rad) = commands[*k];
+            let worth = best(&commands[..*k]).is_none_or(|best| peak_rad < WORTH * best.1);
+            self.runs[run].corrected && !worth
+        };
+        (0..commands.len()).filter(failed).count()
+    }
+
+    /// Whether the last correction was worth it, whatever was sent again since; of a plan that was sent as it is again, whether the
+    /// corrections before it were.
     pub(super) fn decision(&self) -> Decision {
-        let peaks = self.peaks_rad();
-        let Some(((last, last_rad), before)) = peaks.split_last() else { return Decision::Send };
-        let Some(best_before) = best(before).filter(|_| before.len() > 1) else { return Decision::Send };
-        let because = if self.runs[*last].corrected {
-            (*last_rad >= WORTH * best_before.1).then_some(KeepReason::GainedLittle)
+        let Some((last, last_rad)) = self.peaks_rad().pop() else { return Decision::Send };
+        let commands = self.commands();
+        let because = if self.runs[last].corrected {
+            let newest = commands.split_last().filter(|(_, before)| before.len() > 1);
+            let gained = newest.and_then(|((_, rad), before)| Some(*rad < WORTH * best(before)?.1));
+            (gained == Some(false)).then_some(KeepReason::GainedLittle)
         } else {
-            let corrections = self.failures(before);
+            let corrections = self.failures(&commands);
             (corrections >= FAILURES).then_some(KeepReason::Failed { corrections })
         };
         let Some(because) = because else { return Decision::Send };
-        let (run, best_rad) = self.best().unwrap_or((*last, *last_rad));
-        Decision::Keep { run, because, best_rad, last_rad: *last_rad }
+        // What is told is of the correction that was judged.
+        let last_rad = match (because, commands.last()) {
+            (KeepReason::GainedLittle, Some((_, rad))) => *rad,
+            _ => last_rad,
+        };
+        let (run, best_rad) = self.best().unwrap_or((last, last_rad));
+        Decision::Keep { run, because, best_rad, last_rad }
     }
 
     /// What to keep in place of a correction whose mean peak is expected to be clearly above that of the best run.
@@ -166,6 +186,7 @@ fn best(peaks: &[(usize, f64)]) -> Option<(usize, f64)> {
 #[cfg(test)]
 mod tests {
     use super::{super::history::tests::history, *};
+    use crate::series::{Series, Track};
 
     #[test]
     fn learning_goes_on_while_a_run_gains_a_tenth_and_then_the_best_is_kept() {
@@ -205,6 +226,26 @@ mod tests {
 
     fn kept(run: usize, because: KeepReason, best_rad: f64, last_rad: f64) -> Decision {
         Decision::Keep { run, because, best_rad, last_rad }
+    }
+
+    #[test]
+    fn what_is_sent_again_is_no_other_correction() {
+        let sent = |by: f64| {
+            let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
+            let q = t_s.iter().map(|t| by * t).collect();
+            Series { tracks: vec![Track::new("J", t_s, q, &[]).unwrap()] }
+        };
+        let of = |by: &[f64], peaks: &[f64]| {
+            let mut history = history(peaks);
+            history.series = by.iter().map(|by| (sent(1.0 + by), sent(0.0))).collect();
+            history.corrections_rad = by.to_vec();
+            history.runs.iter_mut().zip(by).for_each(|(run, by)| run.corrected = *by > 0.0);
+            history.decision()
+        };
+        assert_eq!(of(&[0.0, 0.1, 0.1], &[1.0, 0.5, 0.52]), Decision::Send, "half of a correction, twice");
+        assert_eq!(of(&[0.0, 0.1, 0.2, 0.1], &[1.0, 0.5, 0.1, 0.5]), Decision::Send, "an older one again");
+        let kept = kept(3, KeepReason::GainedLittle, 0.1, 0.1);
+        assert_eq!(of(&[0.0, 0.1, 0.2, 0.25], &[1.0, 0.5, 0.1, 0.1]), kept);
     }
 
     #[test]

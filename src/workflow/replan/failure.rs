@@ -132,6 +132,10 @@ impl std::fmt::Display for Said<'_> {
                  begins and ends at rest",
                 if *begins { "starts" } else { "stops" }
             ),
+            Broken::Halted { .. } => write!(
+                f,
+                "the run was stopped there, and no arm stops at once; leave the log out, and give one of a whole run"
+            ),
             Broken::Hole { .. } => write!(
                 f,
                 "a command would jump there; give a log without such a hole, or with --from and --to a part of this one"

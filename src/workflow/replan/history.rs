@@ -1,5 +1,7 @@
 //! The runs of the plan that were made so far: what was sent, what came, and whether it is worth going on.
 
+use std::path::PathBuf;
+
 use serde::{Deserialize, Serialize};
 
 use super::ReplanFailure;
@@ -23,6 +25,9 @@ const SAME: f64 = 0.05;
 /// A machine that changed so often changes from run to run.
 const OFTEN: usize = 2;
 
+/// Runs after a change from which on it is known how the machine is now.
+const KNOWN_AFTER: usize = 2;
+
 /// Share of the usual gain that is left however much a command broke its promise.
 const LEAST_TRUST: f64 = 0.5;
 
@@ -32,6 +37,9 @@ const LEAST_TRUST: f64 = 0.5;
 pub struct PastRun {
     /// Its log.
     pub log: String,
+    /// That as it was given; not written.
+    #[serde(skip)]
+    pub path: PathBuf,
     /// Whether something else than the plan was sent.
     pub corrected: bool,
     /// Mean peak error of its starts and reversals, rad; null without any.
@@ -118,6 +126,7 @@ impl History {
             let sum: f64 = found.peaks_rad().sum();
             history.runs.push(PastRun {
                 log: log.clone(),
+                path: PathBuf::new(),
                 corrected: !within(&sent, plan, SAME_RAD),
                 mean_peak_rad: (count > 0.0).then(|| sum / count),
                 rms_error_rad: 0.0,
@@ -161,6 +170,10 @@ impl History {
     /// what nine runs of ten stay below.
     pub(super) fn unsteady_rad(&self) -> [f64; 2] {
         let again = self.changes >= OFTEN;
+        // What was made and measured since it changed once tells what to expect.
+        if !again && self.runs.len() > KNOWN_AFTER {
+            return [0.0; 2];
+        }
         [if again { 0.5 * self.unsteady_rad } else { 0.0 }, self.unsteady_rad]
     }
 
@@ -238,6 +251,7 @@ pub(super) mod tests {
     pub(in crate::workflow::replan) fn history(peaks: &[f64]) -> History {
         let run = |(k, peak): (usize, &f64)| PastRun {
             log: format!("run-{k}"),
+            path: PathBuf::new(),
             corrected: k > 0,
             mean_peak_rad: Some(*peak),
             rms_error_rad: 0.5 * peak,

@@ -91,8 +91,9 @@ impl Last {
             None => carried.starts_s().map(|s| s - near_s),
         };
         if exact.is_none() {
-            let broken =
-                Broken::cut(planned, [from_s, to_s]).or_else(|| Broken::hole(planned, [from_s, to_s]));
+            let span_s = [from_s, to_s];
+            let broken = Broken::cut(planned, span_s).or_else(|| Broken::hole(planned, span_s));
+            let broken = broken.or_else(|| Broken::halt(planned, span_s));
             whole(path, "plan", broken)?;
         }
         if let Some(command) = &recording.command {

@@ -7,13 +7,13 @@ mod command;
 mod command_laws;
 mod correctable;
 mod course;
-mod dead;
 mod decision;
 mod document;
 mod failure;
 mod history;
 mod inputs;
 mod last;
+mod left_out;
 mod limits;
 mod machine;
 mod outcome;
@@ -56,9 +56,9 @@ use crate::{
 };
 use command::{Subject, commanded};
 use correctable::correctable;
-use dead::without_dead;
 use history::History;
 use last::Last;
+use left_out::without_useless;
 use machine::machine;
 use samples::sampled;
 use warp::Warp;
@@ -83,7 +83,7 @@ pub fn run(
 ) -> Result<Replanned, ReplanFailure> {
     inputs.check()?;
     let observed = fit::observed(&inputs.logs, &inputs.read).map_err(fit::FitFailure::from)?;
-    let (inputs, observed, doubts) = without_dead(inputs, observed);
+    let (inputs, observed, doubts) = without_useless(inputs, observed);
     let (inputs, observed) = (&inputs, &observed[..]);
     let path = inputs.logs.last().ok_or(ReplanFailure::NoLog)?;
     for (path, recording) in inputs.logs.iter().zip(observed) {
@@ -172,6 +172,9 @@ pub fn run(
         }
     }
     let decision = maker.decision;
+    for (run, place) in history.runs.iter_mut().zip(&history.places) {
+        run.path.clone_from(&inputs.logs[*place]);
+    }
     if chosen.new.is_none() && chosen.astray() {
         return Err(ReplanFailure::Astray { path: path.clone() });
     }

@@ -101,6 +101,9 @@ const REPEATED: f64 = 0.85;
 /// Peak error that a change of what is sent brings by the largest change, in the mean, and what nine of ten stay below.
 const OF_CHANGE: [f64; 2] = [0.02, 0.03];
 
+/// The same where runs tell the spread: the second half of a first correction changes as much as the first.
+const OF_CHANGE_AGAIN: [f64; 2] = [0.02, 0.06];
+
 /// The same with the responses behind it, from what was sent and what came in a run of this plan, if one is known: the model then
 /// tells only what changes.
 ///
@@ -117,7 +120,11 @@ pub fn promised(
 ) -> Result<(Predicted, Vec<Response>), FitError> {
     let left = |name: &str| {
         let before = run.and_then(|(before, _)| before.track(name)).zip(sent.track(name));
-        Left::of(fit, name, before.map(|(before, sent)| changed_rad(before, sent)), spread_rad(name))
+        let changed = before.zip(plan.track(name)).map(|((before, sent), plan)| {
+            let (changed_rad, corrected_rad) = (changed_rad(before, sent), changed_rad(plan, sent));
+            if changed_rad < SAME_RAD.max(SAME * corrected_rad) { 0.0 } else { changed_rad }
+        });
+        Left::of(fit, name, changed, spread_rad(name))
     };
     let (mut pairs, mut responses) = (Vec::new(), Vec::new());
     for track in &plan.tracks {
@@ -135,8 +142,10 @@ pub fn promised(
     Ok((summary(&left, fit.peak_margin, &pairs, rules), responses))
 }
 
-/// Commands that differ by less are the same, rad: a command that is kept is fitted to its plan anew.
+/// Commands that differ by less are the same, rad, or by this share of what they correct: a command that is kept is fitted to its plan
+/// anew.
 const SAME_RAD: f64 = 2e-4;
+const SAME: f64 = 0.05;
 
 fn changed_rad(before: &Track, sent: &Track) -> f64 {
     let apart = |(t_s, position): (&f64, &f64)| (before.held_at(*t_s).position - position).abs();
@@ -166,9 +175,13 @@ impl Left {
         let joint = fit.joint(name);
         let [mean_rad, most_rad] = joint.and_then(|joint| joint.unexplained_peak_rad).unwrap_or([0.0; 2]);
         // A joint that is sent what it was sent before is expected to do what it did.
-        let again = changed_rad.is_some_and(|changed_rad| changed_rad < SAME_RAD);
+        let again = changed_rad.is_some_and(|changed_rad| changed_rad <= 0.0);
         let [mean_rad, most_rad] = match (spread_rad, changed_rad) {
-            (Some(spread_rad), _) => PEAKS_OF_SPREAD.map(|peaks| peaks * spread_rad),
+            (Some(spread_rad), changed_rad) => {
+                let [mean, most] = OF_CHANGE_AGAIN.map(|share| share * changed_rad.unwrap_or(0.0));
+                let [of_mean, of_most] = PEAKS_OF_SPREAD.map(|peaks| peaks * spread_rad);
+                [of_mean.hypot(mean), of_most.hypot(most)]
+            }
             (None, None) => [mean_rad, most_rad],
             (None, Some(changed_rad)) => {
                 let [mean, most] = OF_CHANGE.map(|share| share * changed_rad);

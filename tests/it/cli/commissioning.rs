@@ -113,6 +113,38 @@ fn a_run_in_which_a_valve_was_dead_teaches_nothing() {
     assert_eq!(next["runs"].as_array().unwrap().len(), 2, "{}", next["runs"]);
     let step = &next["command"].as_array().unwrap()[2];
     assert!(step["peak_correction_rad"].as_f64().unwrap() > 0.001, "{step}");
+    // The newest one teaches as little, and no command is kept for what came of it.
+    let next = json(folder, "replan run-0.mcap run-2.mcap dead.csv --keep-plan");
+    assert!(next["remarks"].to_string().contains("dead.csv: J3 hardly moves in it"), "{}", next["remarks"]);
+    assert_eq!(next["runs"].as_array().unwrap().len(), 2, "{}", next["runs"]);
+}
+
+#[test]
+fn a_run_whose_set_values_were_held_is_no_plan_to_send_and_one_given_twice_counts_once() {
+    let folder = scratch();
+    let folder = folder.path();
+    // Held at 15 s, in the second move, for so long.
+    let write = |file: &str, held_s: f64| {
+        let plan: Vec<(f64, f64)> = moves(4.0).collect();
+        let at = |t_s: f64| plan[((100.0 * t_s).round() as usize).min(plan.len() - 1)].1;
+        let course = plan.iter().map(|(t_s, _)| (*t_s, at(t_s.min(15.0_f64.max(t_s - held_s)))));
+        fs::write(folder.join(file), followed(course, 4.0, 99.0)).unwrap();
+    };
+    for (file, held_s) in [("run.csv", 0.0), ("stop.csv", 99.0), ("pause.csv", 3.0)] {
+        write(file, held_s);
+    }
+    for stopped in ["stop.csv", "pause.csv"] {
+        let (code, _, error) = said(&run_line(folder, &format!("replan {stopped} --keep-plan -o next.mcap")));
+        assert!(code == 1 && error.contains("stops at once at 15.0"), "{stopped} {code} {error}");
+        assert!(!folder.join("next.mcap").exists());
+        let next = json(folder, &format!("replan {stopped} run.csv --keep-plan"));
+        let said = next["remarks"].to_string();
+        assert!(said.contains(&format!("{stopped}: its plan stops at once at 15.0")), "{said}");
+        assert_eq!(next["runs"].as_array().unwrap().len(), 1, "{}", next["runs"]);
+    }
+    let next = json(folder, "replan run.csv run.csv --keep-plan");
+    assert!(next["remarks"].to_string().contains("the same recording as run.csv"), "{}", next["remarks"]);
+    assert_eq!(next["runs"].as_array().unwrap().len(), 1, "{}", next["runs"]);
 }
 
 #[test]

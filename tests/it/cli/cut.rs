@@ -64,7 +64,7 @@ fn a_run_that_was_broken_off_is_none_of_its_plan_whatever_stands() {
     };
     table("plan-too.csv", &["_planned_", "_command_", "_measured_"]);
     table("sent.csv", &["_command_", "_measured_"]);
-    for (log, told) in [("plan-too.csv", "breaks off there"), ("sent.csv", "the machine was stopped")] {
+    for (log, told) in [("plan-too.csv", "stops at once"), ("sent.csv", "the machine was stopped")] {
         let line = format!("replan task-1-run.mcap {log} -o next.mcap");
         let (code, out, error) = said(&run_line(folder, &line));
         assert!(code == 1 && error.contains(told), "{log}: {code} {out} {error}");

@@ -58,6 +58,12 @@ fn a_careful_first_command_is_followed_by_its_rest() {
     let shares: Vec<f64> = rests.map(|step| step["share"].as_f64().unwrap()).collect();
     assert!(2 * shares.len() > steps().count(), "{}", next["command"]);
     assert!(shares.iter().all(|share| *share > 0.99), "{shares:?}");
+    // Sent twice, to see how runs differ, it is no correction that gained nothing.
+    clean(folder, "simulate half.mcap -o again.mcap --seed 12");
+    let next = json(folder, "replan run.mcap run-2.mcap again.mcap --keep-plan");
+    assert_eq!(next["decision"]["what"], "send", "{}", next["decision"]);
+    let rests = next["command"].as_array().unwrap().iter().filter(|joint| joint["step"]["by"] == "rest");
+    assert!(2 * rests.count() > shares.len(), "{}", next["command"]);
     clean(folder, "simulate rest.mcap -o run-3.mcap --seed 3");
     clean(folder, "replan run.mcap --keep-plan -o whole.mcap");
     clean(folder, "simulate whole.mcap -o direct.mcap --seed 3");

@@ -302,10 +302,13 @@ fn after_corrections_that_gained_nothing_the_plan_is_sent_as_it_is() {
     let folder = folder.path();
     clean(folder, "replan run.mcap --keep-plan -o sent.mcap");
     clean(folder, "simulate sent.mcap -o run-2.mcap");
-    for (path, by) in [("bad-1.csv", 0.03), ("bad-2.csv", 0.031)] {
-        table(folder, "run-2.mcap", path, |_, t_s, angle_rad| angle_rad + by * (0.6 * t_s).sin());
+    clean(folder, "replan run.mcap --keep-plan --gain 0.6 -o less.mcap");
+    clean(folder, "simulate less.mcap -o run-3.mcap");
+    for (run, path, by) in [("run-2.mcap", "bad-1.csv", 0.03), ("run-3.mcap", "bad-2.csv", 0.031)] {
+        table(folder, run, path, |_, t_s, angle_rad| angle_rad + by * (0.6 * t_s).sin());
     }
-    let line = "replan run.mcap bad-1.csv bad-2.csv run.mcap --evaluations 1000 -o next.mcap";
+    clean(folder, "simulate run.mcap -o again.mcap --seed 9");
+    let line = "replan run.mcap bad-1.csv bad-2.csv again.mcap --evaluations 1000 -o next.mcap";
     let next = json(folder, line);
     assert_eq!(next["decision"]["because"]["why"], "failed", "{}", next["decision"]);
     assert_eq!(next["decision"]["because"]["corrections"], 2);

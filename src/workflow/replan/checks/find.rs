@@ -256,8 +256,14 @@ fn returns(replanned: &Replanned) -> bool {
     matches!(replanned.past.decision, Decision::Keep { run, .. } if run + 1 < replanned.past.runs.len())
 }
 
+/// Whether the machine changed since the last command was made, as far as its runs tell, or changes again and again.
 fn changed(replanned: &Replanned) -> bool {
-    replanned.remarks.as_slice().iter().any(|remark| remark.code == Code::MachineChanged)
+    let said = replanned.remarks.as_slice().iter().filter(|remark| remark.code == Code::MachineChanged);
+    match said.count() {
+        0 => false,
+        1 => replanned.past.runs.len() < 2,
+        _ => true,
+    }
 }
 
 fn outlook(replanned: &Replanned) -> Check {

@@ -1,0 +1,108 @@
+//! Runs from which nothing is learnt: given twice, broken off, or with a joint that stood though it answers in others, as of a
+//! valve without current, which says nothing of its machine.
+
+use std::collections::BTreeMap;
+
+use super::Inputs;
+use crate::{
+    log::Recording,
+    math::deviation,
+    remark::{Code, Remarks},
+    series::{Broken, align},
+    units::DEGREE_RAD,
+    workflow::{carried::Carried, names::told_apart},
+};
+
+/// A joint that moves by a smaller share of its plan stands, one that moves by more than the other answers.
+const STANDS: f64 = 0.03;
+const ANSWERS: f64 = 0.5;
+/// Plans whose motions differ by less, as a share, may be one.
+const ALIKE: f64 = 0.05;
+/// Plans that move less are not judged, rad: root mean square about the mean.
+const LEAST_RAD: f64 = 0.5 * DEGREE_RAD;
+
+/// Why runs are left out, by their places.
+type LeftOut = BTreeMap<usize, (Code, String)>;
+
+/// Without the runs from which nothing is learnt, and what is said of them. One run is left.
+pub(super) fn without_useless(
+    inputs: &Inputs,
+    observed: Vec<Recording>,
+) -> (Inputs, Vec<Recording>, Remarks) {
+    let names = told_apart(&inputs.logs);
+    let mut left = stopped(&observed);
+    twice(&observed, &names, &mut left);
+    let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
+    let dead = dead(&stay.iter().map(|k| &observed[*k]).collect::<Vec<_>>());
+    left.extend(dead.into_iter().map(|(place, why)| (stay[place], why)));
+    let mut doubts = Remarks::default();
+    for (place, (code, why)) in &left {
+        doubts.add(*code, 1, format!("{}: {why}; nothing is learnt from this run", names[*place]));
+    }
+    let stays = |k: &usize| !left.contains_key(k);
+    let logs = inputs.logs.iter().enumerate().filter(|(k, _)| stays(k)).map(|(_, path)| path.clone());
+    let inputs = Inputs { logs: logs.collect(), ..inputs.clone() };
+    let observed = observed.into_iter().enumerate().filter(|(k, _)| stays(k)).map(|(_, run)| run);
+    (inputs, observed.collect(), doubts)
+}
+
+/// Runs that were given before, and are not left out there.
+fn twice(observed: &[Recording], names: &[String], left: &mut LeftOut) {
+    let same = |a: &Recording, b: &Recording| a.measured == b.measured && a.planned == b.planned;
+    for k in 0..observed.len() {
+        let stays = |before: &usize| !left.contains_key(before);
+        if let Some(before) = (0..k).filter(stays).find(|before| same(&observed[k], &observed[*before])) {
+            let why = format!("it is the same recording as {}, which is given before", names[before]);
+            left.entry(k).or_insert((Code::SameRun, why));
+        }
+    }
+}
+
+/// Runs but the newest that were stopped in motion.
+fn stopped(observed: &[Recording]) -> LeftOut {
+    let of = |(k, run): (usize, &Recording)| {
+        let broken = Carried::of(run).broken(run).filter(|broken| matches!(broken, Broken::Halted { .. }))?;
+        Some((k, (Code::Stopped, format!("its plan {broken}: it was stopped"))))
+    };
+    let others = observed.split_last().map_or(&[][..], |(_, others)| others);
+    others.iter().enumerate().filter_map(of).collect()
+}
+
+/// Runs in which a joint stood that answers in another one, and, of those before the newest, in the newest.
+fn dead(observed: &[&Recording]) -> LeftOut {
+    let mut found = LeftOut::new();
+    let Some(newest) = observed.last() else { return found };
+    for track in &newest.planned.tracks {
+        let shares: Vec<Option<f64>> = observed.iter().map(|run| share(run, newest, track.name())).collect();
+        let answers = |share: &Option<f64>| share.is_some_and(|share| share > ANSWERS);
+        let stands = |share: &Option<f64>| share.is_some_and(|share| share < STANDS);
+        let (last, answering) = (shares.last(), shares.iter().filter(|share| answers(share)).count());
+        let why = || {
+            let why = format!("{} hardly moves in it although it does in other runs", track.name());
+            (Code::FrozenSensor, why)
+        };
+        if last.is_some_and(stands) && answering > 0 {
+            found.entry(observed.len() - 1).or_insert_with(why);
+        }
+        if last.is_some_and(answers) && answering > 1 {
+            for k in (0..shares.len()).filter(|k| stands(&shares[*k])) {
+                found.entry(k).or_insert_with(why);
+            }
+        }
+    }
+    found
+}
+
+/// How far a joint moves by how far its plan does, in a run of the same plan as another one's.
+fn share(run: &Recording, newest: &Recording, joint: &str) -> Option<f64> {
+    let [asked_rad, moved_rad] = motions_rad(run, joint)?;
+    let [newest_rad, _] = motions_rad(newest, joint)?;
+    let same = (asked_rad - newest_rad).abs() < ALIKE * newest_rad;
+    (same && asked_rad > LEAST_RAD).then_some(moved_rad / asked_rad)
+}
+
+/// How far the plan of a joint moves and how far the joint, rad.
+fn motions_rad(run: &Recording, joint: &str) -> Option<[f64; 2]> {
+    let pair = align(run.planned.track(joint)?, run.measured.track(joint)?)?;
+    Some([&pair.planned, &pair.measured].map(|angles| deviation(angles)))
+}
