@@ -4,6 +4,7 @@ use std::{collections::BTreeSet, fs::File, path::Path};
 
 use super::{
     channel::Definitions,
+    csv::MAP_BEGINS,
     file::{Source, Span, scan},
     looks::{LOOKED_AT, is_table},
 };
@@ -26,6 +27,8 @@ pub enum Contents {
     Table(String),
     /// A page for browsers, and its first bytes.
     Page(String),
+    /// Settings or a document, by its name, that this program did not write: a task, an arm.
+    Settings,
     /// Anything else.
     Other,
 }
@@ -44,8 +47,14 @@ const PARQUET: &[u8] = b"PAR1";
 const FOOTER: u64 = 1 << 16;
 /// What the end of a Parquet table holds that this program wrote.
 const OWN_PARQUET: &[u8] = concat!("hydrotrace ", env!("CARGO_PKG_VERSION_MAJOR"), ".").as_bytes();
-/// What documents and figures begin with that this program wrote.
-const OWN_TEXTS: [&str; 2] = ["{\n  \"format\": \"hydrotrace.", "<svg"];
+/// What documents, figures, layouts and settings begin with that this program wrote.
+const OWN_TEXTS: [&str; 6] = [
+    "{\n  \"format\": \"hydrotrace.", "<svg", "{\n  \"configById\": {", LIMITS_BEGIN, MAP_BEGINS,
+    "separator = \"",
+];
+/// The first line of limits.
+const LIMITS_BEGIN: &str = "# What a machine does with what it is sent, as `hydrotrace fit` found it";
+const SETTINGS: [&str; 4] = ["toml", "json", "yaml", "yml"];
 
 /// What a file holds. Its name is not remembered as that of an input. A pipe, which is there once, is not looked into.
 ///
@@ -86,15 +95,23 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
         let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         return Ok(Contents::Table(String::from_utf8_lossy(line).into_owned()));
     }
-    Ok(Contents::Other)
+    let settings = SETTINGS.iter().any(|one| is_named(path, one)) && !bytes.is_empty();
+    Ok(if settings && !is_own(&start) { Contents::Settings } else { Contents::Other })
 }
 
 /// Whether a file holds words or a document, which tables of cells are not told from by their separators alone: Markdown that
 /// does not begin with a printed table, and what this program writes.
 fn is_text(path: &Path, start: &str) -> bool {
-    let named = |one: &str| path.extension().is_some_and(|end| end.eq_ignore_ascii_case(one));
-    let words = (named("md") || named("markdown")) && !start.trim_start().starts_with('|');
-    words || OWN_TEXTS.iter().any(|text| start.starts_with(text))
+    let words = ["md", "markdown"].iter().any(|one| is_named(path, one));
+    words && !start.trim_start().starts_with('|') || is_own(start)
+}
+
+fn is_own(start: &str) -> bool {
+    OWN_TEXTS.iter().any(|text| start.starts_with(text))
+}
+
+fn is_named(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case(ending))
 }
 
 /// Whether a text begins with a tag, in letters of any case, behind a mark of its encoding and comments.

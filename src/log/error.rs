@@ -140,7 +140,7 @@ pub enum LogError {
     #[error("the {clock} time of topic {topic:?} is zero or stands still; {}", other_clock(clock))]
     NoClock { clock: &'static str, topic: String },
     /// A log that is to get a plan has one.
-    #[error("{} has a plan in {topic} already: `hydrotrace report` it as it is, or give the log as the recorder left it", path.display())]
+    #[error("{} has a plan in {topic} already: `hydrotrace report` it as it is; or, if what it calls the plan is what was sent, import the recorder's table with `--command JOINT=COLUMN,...` in place of `--planned`, and join that", path.display())]
     Planned { path: PathBuf, topic: String },
     /// A log in an object store.
     #[error(transparent)]

@@ -128,13 +128,14 @@ impl SignalRole {
 }
 
 impl ReadOptions {
-    /// How tables are read.
+    /// How tables are read; where the plan alone is wanted, what says neither side is the plan.
     ///
     /// # Errors
     ///
     /// [`CsvError::MapFile`].
     pub(super) fn columns(&self) -> Result<CsvOptions, CsvError> {
-        Ok(self.map.as_deref().map(CsvOptions::from_map).transpose()?.unwrap_or_default())
+        let of_map = self.map.as_deref().map(CsvOptions::from_map).transpose()?.unwrap_or_default();
+        Ok(CsvOptions { as_plan: self.sides == Sides::Plan, ..of_map })
     }
 
     /// With signals that are read if they are where our own logs have them; one that the caller named stays.

@@ -158,9 +158,16 @@ pub enum CsvError {
     },
     /// Most rows have no time.
     #[error(
-        "{stamped} rows have a time between 1970 and 2038 in column {column:?}, {bad} have none{example}; {fix}"
+        "{stamped} rows have a time between 1970 and 2038 in column {column:?}, {bad} have {have}{example}; {fix}"
     )]
-    NoStamps { column: String, stamped: u64, bad: u64, example: String, fix: &'static str },
+    NoStamps {
+        column: String,
+        stamped: u64,
+        bad: u64,
+        have: &'static str,
+        example: String,
+        fix: &'static str,
+    },
     /// A value of an option.
     #[error("{option} {found}: {expected} is expected")]
     Option { option: &'static str, found: String, expected: &'static str },

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use crate::arm::names_a_slide;
+
 use super::{
     Quantity, Role,
     letter::{Lettered, lettered},
@@ -127,9 +129,10 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         timely && matches!(measure, None | Some(Measure::Time)) && (named || !means(Meaning::Foreign));
     let long = matches!(measure, Some(Measure::Length | Measure::LinearSpeed));
     let fits = long || matches!(measure, None | Some(Measure::Angle | Measure::AngularSpeed));
-    let strong = quantity.is_some() && !long || means(Meaning::Joint);
     let (of_topic, words) = words.split_at(topic(&words));
     let joint = joint_name(words);
+    let slides = long && !is_place(&joint) && names_a_slide(&joint);
+    let strong = quantity.is_some() && !long || means(Meaning::Joint) || slides;
     let owner = if joint == NAMELESS { owner(of_topic) } else { String::new() };
     let place = role.is_some()
         && names_place(words)

@@ -103,6 +103,9 @@ pub(super) fn lay_out(
         let (key, joint) = (label.key.clone(), label.joint.clone());
         drafts.push(Draft { column, role, quantity, key, joint, stated: label.role.is_some() });
     }
+    if options.as_plan && drafts.iter().all(|draft| !draft.stated) {
+        drafts.iter_mut().for_each(|draft| draft.role = Role::Planned);
+    }
     plan_beside_measured(head, &mut drafts, remarks);
     drop_repeats(head, &mut drafts, remarks)?;
     without_shared_words(&mut drafts);

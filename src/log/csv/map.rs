@@ -10,6 +10,10 @@ use super::{
 };
 use crate::input_file;
 
+/// The first line of a map.
+pub(in crate::log) const MAP_BEGINS: &str =
+    "# How a table is read, as `hydrotrace import --save-map` found it.\n";
+
 /// The document of a map file.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -85,6 +89,7 @@ impl CsvOptions {
             rate_hz: file.rate_hz,
             angle_unit: file.angle_unit,
             slides: file.slides,
+            as_plan: false,
             columns: columns.map(|(role, quantity, map)| ((role, quantity), list(map))).collect(),
             interfaces: file.interface.into_iter().map(|(name, map)| (name, list(map))).collect(),
         })
@@ -145,7 +150,7 @@ impl CsvOptions {
             interface: interface.collect(),
         };
         // A map of texts always has a form in TOML.
-        toml::to_string(&file).unwrap_or_default()
+        MAP_BEGINS.to_owned() + &toml::to_string(&file).unwrap_or_default()
     }
 }
 

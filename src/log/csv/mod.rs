@@ -69,6 +69,7 @@ mod word;
 pub use again::{is_aside, is_header, other_header};
 pub(in crate::log) use echoed::begins as begins_with_message;
 pub use error::CsvError;
+pub(in crate::log) use map::MAP_BEGINS;
 pub use objects::JsonLines;
 pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
 pub(in crate::log) use printed::is_rule;
@@ -225,10 +226,23 @@ impl Form {
             names.map(|(column, name)| label::label(name, below(column))).collect();
         settle::settle(&mut labels);
         settle::leave_out_orientation(&mut labels, &column::named(options, &head.names), remarks);
-        let mut options = options.clone();
+        let by_name = !options.as_plan && pairing::names_a_plan(name);
+        let mut options = CsvOptions { as_plan: options.as_plan || by_name, ..options.clone() };
         let derived = expression::derive(&mut head, &mut labels, &mut options)?;
         let time = clock::choose(text, &head, &labels, dialect, &options, remarks)?;
         let layout = layout::lay_out(&head, &labels, &time.columns(), &options, remarks)?;
+        let silent = |one: &&layout::Use| one.role == Role::Planned && labels[one.column].role.is_none();
+        if let Some(one) = layout.uses.iter().find(silent).filter(|_| by_name && options.columns.is_empty()) {
+            let message = format!(
+                "columns such as {:?}, taken as the plan because the file is called so; else say --measured JOINT=COLUMN,...",
+                head.names[one.column]
+            );
+            remarks.add(
+                crate::remark::Code::Guessed,
+                layout.uses.iter().filter(silent).count() as u64,
+                message,
+            );
+        }
         Ok(Self { dialect, head, labels, derived, time, layout, options })
     }
 

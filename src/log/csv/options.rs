@@ -31,6 +31,8 @@ pub struct CsvOptions {
     pub slides: BTreeMap<String, LengthUnit>,
     /// Columns given for a role and quantity; these are then not looked for.
     pub columns: BTreeMap<(Role, Quantity), Columns>,
+    /// Whether columns that say neither plan nor measurement are the plan, where no column says either.
+    pub as_plan: bool,
     /// Other quantities by joint, kept as interfaces of `control_msgs/DynamicJointState`.
     pub interfaces: BTreeMap<String, Columns>,
 }
@@ -153,6 +155,7 @@ impl CsvOptions {
         self.time_unit = self.time_unit.or(other.time_unit);
         self.rate_hz = self.rate_hz.or(other.rate_hz);
         self.angle_unit = self.angle_unit.or(other.angle_unit);
+        self.as_plan |= other.as_plan;
         for (joint, unit) in other.slides {
             self.slides.entry(joint).or_insert(unit);
         }

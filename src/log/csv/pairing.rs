@@ -47,6 +47,22 @@ fn are_two_sides(a: &Label, b: &Label) -> bool {
     a.role.is_some() && b.role.is_some() && a.role != b.role
 }
 
+/// Words by which the name of a file says that a plan is in it, and that something else is.
+const PLANS: [&str; 7] = ["plan", "planned", "soll", "sollwerte", "setpoint", "setpoints", "desired"];
+const OTHERS: [&str; 30] = [
+    "ist", "istwerte", "actual", "measured", "measurement", "measurements", "meas", "messung", "messungen",
+    "messwerte", "gemessen", "run", "log", "trace", "rec", "record", "recorded", "recording", "execution",
+    "executed", "response", "state", "states", "test", "sim", "simulated", "result", "results", "feedback",
+    "joined",
+];
+
+/// Whether a file is called a plan.
+pub(super) fn names_a_plan(name: &str) -> bool {
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_lowercase();
+    let says = |list: &[&str]| stem.split(|c: char| !c.is_alphabetic()).any(|word| list.contains(&word));
+    says(&PLANS) && !says(&OTHERS)
+}
+
 /// A column that says neither plan nor measurement, beside a measured one of the same joint, is the plan where nothing
 /// else is: `Boom.Position` beside `Boom.ActualPosition`.
 pub(super) fn plan_beside_measured(head: &Head, drafts: &mut [Draft], remarks: &mut Remarks) {

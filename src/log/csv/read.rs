@@ -148,7 +148,11 @@ fn judge_stamps(
             (false, _) => "say --time COLUMN, --time-unit UNIT or --rate HZ",
         };
         let (column, bad) = (column.to_owned(), unstamped + outside);
-        return Err(CsvError::NoStamps { column, stamped, bad, example: such, fix });
+        let have = match outside > unstamped {
+            true => "one outside of that, as before a clock is set",
+            false => "none",
+        };
+        return Err(CsvError::NoStamps { column, stamped, bad, have, example: such, fix });
     }
     remarks.add(Code::UnusableStamp, unstamped, format!("rows without a time in {column:?}{such}; left out"));
     let message = format!("rows whose time in {column:?} lies outside 1970 to 2038; left out");

@@ -74,6 +74,14 @@ pub enum JoinFailure {
         plan.display(), 100.0 * share
     )]
     SentOtherwise { plan: PathBuf, topic: String, at_s: f64, share: f64 },
+    /// Clocks too far apart.
+    #[error(
+        "what was sent on {topic} lasts {} than in {} by 3 % or more: no clocks are so far apart; was the plan run at another speed \
+         (override), or are the times of the recording in another unit?",
+        if *longer { "longer" } else { "shorter" },
+        plan.display()
+    )]
+    OtherPace { plan: PathBuf, topic: String, longer: bool },
     /// Lengths and angles under one name.
     #[error(
         "a log is joined as it was recorded, in lengths of cylinders, and the plan beside it would be in angles: leave out \

@@ -61,6 +61,10 @@ impl Plan {
             let (plan, topic, at_s) = (path.to_owned(), topic.to_owned(), found.at_s + self.span_s()[0]);
             return Err(JoinFailure::SentOtherwise { plan, topic, at_s, share: share(&found) });
         }
+        if found.is_apart_by_most() {
+            let longer = found.pace.is_some_and(|pace| pace > 1.0);
+            return Err(JoinFailure::OtherPace { plan: path.to_owned(), topic: topic.to_owned(), longer });
+        }
         if let Some(doubt) = doubt(&found, path, topic) {
             remarks.add(Code::SentOtherwise, 1, doubt);
         }

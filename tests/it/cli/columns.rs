@@ -144,3 +144,42 @@ fn a_table_is_reported_as_it_is() {
         "{code} {error}"
     );
 }
+
+/// Rows at 50 Hz of a time, an angle in degrees and a length in mm that are late by a time, s.
+fn late(header: &str, late_s: f64) -> String {
+    (0..600).fold(format!("{header}\n"), |mut text, k| {
+        let t_s = f64::from(k) * 0.02;
+        let moved = 1.0 - ((t_s - late_s - 2.0).clamp(0.0, 4.0) / 4.0 * std::f64::consts::PI).cos();
+        let _ = writeln!(text, "{t_s:.2},{:.4},{:.4}", 10.0 * moved, 200.0 * moved);
+        text
+    })
+}
+
+#[test]
+fn a_table_that_says_neither_side_is_the_plan_where_a_plan_is_asked_for_or_it_is_called_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let (bare, measured) = ("t_s,boom_deg,teleskop_mm", "t_s,boom_ist_deg,teleskop_ist_mm");
+    for (file, header, late_s) in
+        [("plan.csv", bare, 0.0), ("a.csv", bare, 0.0), ("run.csv", bare, 0.2), ("ist.csv", measured, 0.2)]
+    {
+        fs::write(at.join(file), late(header, late_s)).unwrap();
+    }
+    let (code, text, error) =
+        said(&hydrotrace(at, &["join", "run.csv", "--plan", "a.csv", "--at", "0", "-o", "j.mcap"]));
+    assert!(code == 0 && text.contains("plan  11.98 s of 2 joints"), "{text}{error}");
+    let worst = |args: &[&str]| {
+        let (code, text, error) = said(&hydrotrace(at, args));
+        let line = text.lines().find(|line| line.starts_with("Worst start")).map(str::to_owned);
+        (code, line.unwrap_or_else(|| panic!("{args:?} {text}{error}")), text)
+    };
+    let (code, joined, _) = worst(&["report", "j.mcap"]);
+    assert!(code == 0 && joined.contains(" at 2.0") && joined.contains(" ms after its plan"), "{joined}");
+    for measured in ["run.csv", "ist.csv"] {
+        let (code, line, text) = worst(&["report", measured, "plan.csv"]);
+        assert!(code == 3 && text.contains("taken as the plan because the file is called so"), "{text}");
+        assert_eq!(line, joined);
+    }
+    let (code, _, error) = said(&hydrotrace(at, &["report", "run.csv", "a.csv"]));
+    assert!(code == 1 && error.contains("found no planned joint angles"), "{error}");
+}
