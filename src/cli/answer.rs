@@ -87,9 +87,9 @@ fn is_option(arg: &OsStr) -> bool {
     arg.as_encoded_bytes().starts_with(b"-") && arg != "-" && arg != "--"
 }
 
-/// Whether it is there, or is written as files are.
+/// Whether it is there, is standard input, or is written as files are.
 fn is_file(arg: &OsStr) -> bool {
-    Path::new(arg).exists() || arg.as_encoded_bytes().iter().any(|byte| b"./\\".contains(byte))
+    arg == "-" || Path::new(arg).exists() || arg.as_encoded_bytes().iter().any(|byte| b"./\\".contains(byte))
 }
 
 #[cfg(test)]

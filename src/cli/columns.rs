@@ -102,6 +102,7 @@ impl ColumnArgs {
             slides: self.slides.iter().cloned().collect(),
             columns: columns.map(|(role, quantity, columns)| ((role, quantity), columns.clone())).collect(),
             interfaces: self.interface.iter().cloned().collect(),
+            ..CsvOptions::default()
         };
         Ok(own.or(read_map))
     }

@@ -139,21 +139,27 @@ pub(super) enum Form {
 /// Endings of files that are no text, and that no verb writes.
 const OTHER_FORMS: [&str; 10] = ["pdf", "xlsx", "xls", "docx", "doc", "odt", "ods", "pptx", "png", "jpg"];
 
+/// Endings that say what a file is.
+const ENDINGS: [&str; 14] = [
+    "bag", "csv", "db3", "htm", "html", "json", "mcap", "md", "parquet", "toml", "tsv", "txt", "yaml", "yml",
+];
+
 impl Form {
-    fn ending(self) -> Option<&'static str> {
+    /// What it is called, and the endings of its files.
+    const fn named(self) -> (&'static str, &'static [&'static str]) {
         match self {
-            Self::Text => None,
-            Self::Markdown => Some("md"),
-            Self::Json => Some("json"),
-            Self::Csv => Some("csv"),
-            Self::Html => Some("html"),
+            Self::Text => ("text", &["txt"]),
+            Self::Markdown => ("Markdown", &["md"]),
+            Self::Json => ("JSON", &["json"]),
+            Self::Csv => ("CSV", &["csv"]),
+            Self::Html => ("a page", &["html", "htm"]),
         }
     }
 
     /// Of the forms that a verb has: the one asked for, else that of the file's ending, else text.
     pub(super) fn of(forms: &[(bool, Self)], file: Option<&Path>) -> Self {
         let asked = forms.iter().find(|(asked, _)| *asked);
-        let by_file = || forms.iter().find(|(_, form)| form.ending().is_some_and(|with| ends(file, with)));
+        let by_file = || forms.iter().find(|(_, form)| form.named().1.iter().any(|with| ends(file, with)));
         asked.or_else(by_file).map_or(Self::Text, |(_, form)| *form)
     }
 }
@@ -174,6 +180,11 @@ impl<'a> Target<'a> {
             return Err(CliError::Usage(format!(
                 "no .{ending} is written; a page for a browser ends in .html, and prints as PDF"
             )));
+        }
+        // An option that says the form outdoes an ending.
+        if form == Form::Text {
+            let (what, own) = form.named();
+            named_as(file, what, own)?;
         }
         if form == Form::Html && file.is_none() && std::io::stdout().is_terminal() {
             let why = "a page is for a browser, not for a terminal; give --output FILE or redirect it";
@@ -261,13 +272,31 @@ pub(super) fn spare_for_file(output: Option<&Path>, inputs: &[PathBuf]) -> Resul
 
 /// The same of a log, whose name is not to say that it is something else.
 pub(super) fn spare_for_log(output: Option<&Path>, inputs: &[PathBuf]) -> Result<(), CliError> {
-    const OTHERS: [&str; 12] =
-        ["bag", "csv", "db3", "htm", "html", "json", "md", "parquet", "toml", "tsv", "txt", "yaml"];
     spare_for_file(output, inputs)?;
-    if let Some(path) = output.filter(|_| OTHERS.iter().any(|ending| ends(output, ending))) {
-        let (path, named) = (path.display(), path.with_extension("mcap"));
-        let named = named.display();
-        return Err(CliError::Usage(format!("what is written to {path} is an MCAP log; name it {named}")));
+    named_as(output, "an MCAP log", &["mcap"])
+}
+
+/// The same of a page beside an output.
+pub(super) fn spare_for_page(
+    page: Option<&Path>,
+    output: Option<&Path>,
+    inputs: &[PathBuf],
+) -> Result<(), CliError> {
+    spare_for_file(page, inputs)?;
+    if page.is_some() && page == output {
+        let why = "--output and --html name the same file; give each its own";
+        return Err(CliError::Usage(why.to_owned()));
     }
-    Ok(())
+    let (what, own) = Form::Html.named();
+    named_as(page, what, own)
+}
+
+/// Refuses a file whose ending says that it is something else than what is written to it.
+pub(super) fn named_as(file: Option<&Path>, what: &str, own: &[&str]) -> Result<(), CliError> {
+    let is = |ending: &&str| ends(file, ending);
+    let other = ENDINGS.iter().find(|ending| is(ending) && !own.contains(ending));
+    let Some(path) = file.filter(|_| other.is_some()) else { return Ok(()) };
+    let named = path.with_extension(own.first().copied().unwrap_or_default());
+    let (path, named) = (path.display(), named.display());
+    Err(CliError::Usage(format!("what is written to {path} is {what}; name it {named}")))
 }

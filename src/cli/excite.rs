@@ -49,7 +49,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "DEG/S", value_parser = speed_deg_s, allow_negative_numbers = true)]
     max_speed_deg_s: Option<f64>,
 
-    /// The same of a joint that slides
+    /// The same of a joint that slides, 600 if not given
     #[arg(long, value_name = "MM/S", value_parser = speed_mm_s, allow_negative_numbers = true)]
     max_speed_mm_s: Option<f64>,
 }
@@ -97,6 +97,9 @@ fn room(text: &str) -> Result<JointRoom, String> {
         JointKind::Slides => 1e-3 * value,
     };
     match positions[..] {
+        [home, low, high] if low <= high && !(low..=high).contains(&home) => Err(format!(
+            "of {text:?} the first position, {home}, where the joint is, lies outside {low} to {high}"
+        )),
         [home, low, high] if !name.is_empty() && low <= home && home <= high && (high - low).is_finite() => {
             let [home_rad, low_rad, high_rad] = [home, low, high].map(si);
             let (name, range_rad) = (name.to_owned(), [low_rad, high_rad]);

@@ -106,7 +106,7 @@ impl Run for Args {
         }
         let exported = run(&inputs)?;
         let table = &exported.table;
-        let target = Target::new(Form::Csv, file)?;
+        let target = if parquet { Target { form: Form::Csv, file } } else { Target::new(Form::Csv, file)? };
         let said = if let Some(path) = target.file {
             write_atomically::<_, ExportError>(path, |file| {
                 if parquet { table.write_parquet(file) } else { table.write_csv(file) }

@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::{
     CliError, Outcome, Run,
-    console::{Console, Form, Target, ends, spare_for_file, write_file},
+    console::{Console, Form, Target, ends, named_as, spare_for_file, spare_for_page, write_file},
     read::SentArgs,
 };
 use crate::{
-    atomic_file::may_write,
     fit::JointFit,
     render::{fit as words, next},
     workflow::fit::{FitDocument, Fitted, Inputs, LimitsFile, run},
@@ -54,13 +53,8 @@ impl Args {
     /// Fits the runs and writes the limits.
     pub(super) fn fitted(&self) -> Result<Fitted, CliError> {
         spare_for_file(self.output.as_deref(), &self.logs)?;
-        spare_for_file(self.html.as_deref(), &self.logs)?;
-        if self.html.is_some() && self.html == self.output {
-            return Err(CliError::Usage(
-                "--output and --html name the same file; give each its own".to_owned(),
-            ));
-        }
-        self.html.as_deref().map_or(Ok(()), may_write)?;
+        named_as(self.output.as_deref(), "limits in TOML", &["toml", "json", "txt"])?;
+        spare_for_page(self.html.as_deref(), self.output.as_deref(), &self.logs)?;
         let fitted = run(&Inputs { logs: self.logs.clone(), read: self.sent.options() })?;
         if let Some(path) = self.output.as_deref().filter(|_| self.document().is_none()) {
             let limits = LimitsFile::of(&fitted).toml();

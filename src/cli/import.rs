@@ -8,7 +8,7 @@ use std::{
 use super::{
     CliError, Outcome, Run,
     columns::ColumnArgs,
-    console::{Console, spare_for_log},
+    console::{Console, spare_for_file, spare_for_log},
 };
 use crate::{
     log::CsvError,
@@ -83,6 +83,7 @@ impl Run for Args {
                 "--output and --save-map both name {name}; give each its own"
             )));
         }
+        spare_for_file(self.save_map.as_deref(), from_ref(&self.file))?;
         let imported = run(&self.request()?)?;
         console.answer(
             self.json,

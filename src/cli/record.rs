@@ -56,7 +56,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "part_minutes")]
     part_mb: Option<u32>,
 
-    /// Begin a new file after so many minutes
+    /// Begin a new file after so many whole minutes
     #[arg(long, value_name = "MINUTES", value_parser = clap::value_parser!(u32).range(1..))]
     part_minutes: Option<u32>,
 

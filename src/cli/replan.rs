@@ -4,13 +4,12 @@ use std::{collections::BTreeMap, ffi::OsString, ops::ControlFlow, path::PathBuf}
 
 use super::{
     CliError, Outcome, Run,
-    console::{Console, Target, progress, spare_for_file, spare_for_log, write_file},
+    console::{Console, Target, progress, spare_for_log, spare_for_page, write_file},
     number::{correction_mm, degrees, growth_percent, share},
     plan::Free,
     read::SentArgs,
 };
 use crate::{
-    atomic_file::may_write,
     fit::Learning,
     render::{kit, next, replan as words},
     workflow::replan::{Checks, Commanded, Inputs, ReplanDocument, Replanned, Verdict, run},
@@ -163,13 +162,7 @@ impl Args {
         let request = self.request();
         let read: Vec<PathBuf> = self.logs.iter().chain(&self.limits).chain(&self.task).cloned().collect();
         spare_for_log(self.output.as_deref(), &read)?;
-        spare_for_file(self.html.as_deref(), &read)?;
-        if self.html.is_some() && self.html == self.output {
-            return Err(CliError::Usage(
-                "--output and --html name the same file; give each its own".to_owned(),
-            ));
-        }
-        self.html.as_deref().map_or(Ok(()), may_write)?;
+        spare_for_page(self.html.as_deref(), self.output.as_deref(), &read)?;
         let bar = progress(Some(request.evaluations), "{bar:30} {pos} evaluations");
         let replanned = run(&request, |evaluations| {
             bar.set_position(evaluations);

@@ -76,7 +76,7 @@ pub(crate) fn document(story: &Story<'_>) -> Document {
             ),
         ),
         (
-            "replan run-1.mcap --limits limits.toml -o next.mcap".to_owned(),
+            "replan run-1.mcap --limits limits.toml -o next.mcap --force".to_owned(),
             format!(
                 "plan {}, command corrected by {} deg at most; peak error of {} deg expected",
                 if replanned.retimed { "re-timed" } else { "kept" },

@@ -65,7 +65,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "N")]
     workers: Option<NonZeroUsize>,
 
-    /// Fit each run too, for the table of limits; it takes ten times as long
+    /// Fit each run too, for the table of limits; it takes about a second a minute recorded, forty times as long
     #[arg(long)]
     fit: bool,
 

@@ -92,7 +92,7 @@ impl Args {
             }
             _ => {
                 let judged = judged_document(title, &joints, &evaluation, &above);
-                target.text(&self.noted(request, judged).remarked(&remarks))
+                target.text(&self.noted(request, judged, !evaluation.broken().is_empty()).remarked(&remarks))
             }
         };
         self.figures.write(console, target, || motion_figures(&joints, &course))?;
@@ -124,8 +124,11 @@ impl Args {
                 };
                 words::page(&document, &options, ceilings, &planned, &courses)
             }
-            _ => target
-                .text(&self.noted(request, words::document(title, algorithm, &options, ceilings, &planned))),
+            _ => target.text(&self.noted(
+                request,
+                words::document(title, algorithm, &options, ceilings, &planned),
+                false,
+            )),
         };
         self.figures.write(console, target, || words::figures(&document, &course))?;
         console.finish(target, &result, &planned.remarks, &[])
@@ -156,8 +159,9 @@ impl Args {
     }
 
     /// The document, with where the log is if there is one.
-    fn noted(&self, request: &PlanRequest, document: Document) -> Document {
+    fn noted(&self, request: &PlanRequest, document: Document, breaks: bool) -> Document {
         match self.log() {
+            Some(log) if breaks => document.with_above_remarks(next::broken_written(log)),
             Some(log) => document.with_above_remarks(next::plan_written(log, request.is_of_sample_arm())),
             None => document,
         }

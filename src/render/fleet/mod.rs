@@ -32,7 +32,7 @@ const MOST_FAILED: usize = 10;
 
 /// What a scan did.
 pub(crate) fn scanned(scanned: &Scanned) -> Document {
-    let Scanned { logs, unchanged, analysed, replaced, joints, transitions, failures, .. } = scanned;
+    let Scanned { logs, unchanged, analysed, replaced, transitions, failures, .. } = scanned;
     let again = if *replaced > 0 { format!(", {replaced} of them again") } else { String::new() };
     let found =
         format!("{}: {analysed} analysed now{again}, {unchanged} known already.", counted(*logs, "log"));
@@ -41,9 +41,9 @@ pub(crate) fn scanned(scanned: &Scanned) -> Document {
         let written = format!(
             "Written to {}: {} of {}, {}.",
             scanned.into.display(),
-            counted(*transitions, "start"),
-            counted(*joints, "joint"),
-            counted(scanned.machines.len(), "machine")
+            counted(analysed - failures.len(), "run"),
+            counted(scanned.machines.len(), "machine"),
+            counted(*transitions, "start")
         );
         section = section.with(Sentence::finding(written));
     }

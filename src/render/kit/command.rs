@@ -1,6 +1,14 @@
 //! Commands that a reader can paste into a shell.
 
-pub(crate) use crate::text::{shell_argument as argument, shell_word as word};
+use std::path::Path;
+
+use crate::text::shell_argument;
+pub(crate) use crate::text::shell_word as word;
+
+/// A path as an argument; what came from standard input has no name to give again.
+pub(crate) fn argument(path: impl AsRef<Path>) -> String {
+    if path.as_ref() == Path::new("-") { "RUN.mcap".to_owned() } else { shell_argument(path) }
+}
 
 /// `hydrotrace` with these words; each is an option or from [`argument`].
 pub(crate) fn command(words: &[&str]) -> String {

@@ -30,6 +30,7 @@ pub fn worth(path: &Path) -> Option<String> {
         Contents::Table(_) => Some("a table that this program did not write".to_owned()),
         Contents::Page(head) if head.contains(OWN_PAGE) => None,
         Contents::Page(_) => Some("a page that this program did not write".to_owned()),
+        Contents::Settings => Some("a file that this program did not write".to_owned()),
         Contents::Other if is_page(path) => Some("no page that this program wrote".to_owned()),
         Contents::Other => None,
     }

@@ -52,7 +52,7 @@ pub struct Inputs {
     pub machine: MachineFrom,
     /// Logs that are analysed at once; 0 stands for one a core, and for four a core where logs lie in stores.
     pub workers: usize,
-    /// Whether each run is fitted too, for the table of limits; it takes ten times as long.
+    /// Whether each run is fitted too, for the table of limits; it takes some forty times as long.
     pub fit: bool,
     /// What to read, where a log alone does not tell.
     pub read: ReadOptions,

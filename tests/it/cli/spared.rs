@@ -79,7 +79,7 @@ fn no_file_that_was_read_is_written_over_whatever_its_name() {
             assert_eq!(text, "", "{line} -o {output}{force}");
             // Of a log the name alone may be enough to refuse it, before anything is read.
             let why = match code {
-                2 => "is an MCAP log",
+                2 => "what is written to",
                 _ if force.is_empty() && error.contains("--force") => "give the output another name",
                 _ => "is an input of this command",
             };
@@ -168,7 +168,7 @@ fn what_is_replaced_keeps_its_mode_and_its_name_may_be_as_long_as_names_are() {
     let path = folder.path();
     let name = format!("{}.json", "n".repeat(250));
     for mode in [0o600, 0o640, 0o755] {
-        fs::write(path.join(&name), "{}").unwrap();
+        fs::write(path.join(&name), "{\n  \"format\": \"hydrotrace.report.v2\"\n}").unwrap();
         fs::set_permissions(path.join(&name), fs::Permissions::from_mode(mode)).unwrap();
         let inode = path.join(&name).metadata().unwrap().ino();
         let (code, _, error) = said(&run_line(path, &format!("report run.mcap -o {name}")));

@@ -170,7 +170,7 @@ fn what_cannot_be_done_says_why_and_writes_nothing() {
         ("replan run.mcap -o x.mcap --gain 2", 2, "from 0 to 1"),
         ("replan run.mcap -o run.mcap", 1, "is an input"),
         ("replan plan.mcap -o x.mcap", 1, "no measured"),
-        ("fit run.mcap --command /nowhere -o x.mcap", 1, "/nowhere"),
+        ("fit run.mcap --command /nowhere -o x.toml", 1, "/nowhere"),
         ("fit run.mcap -o run.mcap", 1, "is an input"),
         ("fit run.mcap --html run.mcap", 1, "is an input"),
         ("excite -o x.mcap --joint a=1:2", 2, "NAME=HOME:LOW:HIGH"),
