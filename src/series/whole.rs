@@ -28,7 +28,7 @@ const HALT_S: f64 = 0.1;
 const STANDS_S: f64 = 0.3;
 const GOES_ON: f64 = 0.75;
 /// A motion starts gently whose first stretch has less than this share of the speed of its second.
-const GENTLY: f64 = 0.5;
+const GENTLY: f64 = 0.65;
 /// Steps of a rounded position by which a stretch may seem too long.
 const ROUNDED: f64 = 3.0;
 /// Positions that differ by less are the same, rad or m.
