@@ -148,7 +148,6 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     // A quaternion has no unit.
     let turns = unit.is_none() && QUATERNION.contains(&key.as_str());
     let unit = if turns { Some(UNITLESS) } else { unit };
-    let strong = strong && !turns;
     let stated = stated.or(unit);
     let unknown = if unit.is_none() { unknown_unit(header) } else { None };
     let words = words.iter().map(|word| word.text.to_lowercase()).collect();
@@ -163,7 +162,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         joint,
         is_time,
         is_joint,
-        is_weak: !strong,
+        is_weak: !strong || turns,
         owner,
         lettered,
     }

@@ -104,7 +104,9 @@ pub(super) fn lay_out(
         drafts.push(Draft { column, role, quantity, key, joint, stated: label.role.is_some() });
     }
     if options.as_plan && drafts.iter().all(|draft| !draft.stated) {
-        drafts.iter_mut().for_each(|draft| draft.role = Role::Planned);
+        for draft in &mut drafts {
+            draft.role = Role::Planned;
+        }
     }
     plan_beside_measured(head, &mut drafts, remarks);
     drop_repeats(head, &mut drafts, remarks)?;

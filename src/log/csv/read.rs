@@ -148,10 +148,7 @@ fn judge_stamps(
             (false, _) => "say --time COLUMN, --time-unit UNIT or --rate HZ",
         };
         let (column, bad) = (column.to_owned(), unstamped + outside);
-        let have = match outside > unstamped {
-            true => "one outside of that, as before a clock is set",
-            false => "none",
-        };
+        let have = if outside > unstamped { "one outside of that, as before a clock is set" } else { "none" };
         return Err(CsvError::NoStamps { column, stamped, bad, have, example: such, fix });
     }
     remarks.add(Code::UnusableStamp, unstamped, format!("rows without a time in {column:?}{such}; left out"));

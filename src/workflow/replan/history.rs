@@ -81,7 +81,7 @@ pub(super) struct History {
 impl History {
     /// Of the logs whose plan is `plan`, which lasts to `end_s`, in their order.
     pub(super) fn of(
-        names: &[String],
+        (names, paths): (&[String], &[PathBuf]),
         recordings: &[Recording],
         plan: &Series,
         rules: &Rules,
@@ -126,7 +126,7 @@ impl History {
             let sum: f64 = found.peaks_rad().sum();
             history.runs.push(PastRun {
                 log: log.clone(),
-                path: PathBuf::new(),
+                path: paths[place].clone(),
                 corrected: !within(&sent, plan, SAME_RAD),
                 mean_peak_rad: (count > 0.0).then(|| sum / count),
                 rms_error_rad: 0.0,

@@ -96,7 +96,7 @@ pub fn run(
     correctable(path, newest, &inputs.rules)?;
     let last = Last::of(path, newest, inputs)?;
     let names = told_apart(&inputs.logs);
-    let mut history = History::of(&names, observed, &last.plan, &inputs.rules)?;
+    let mut history = History::of((&names, &inputs.logs), observed, &last.plan, &inputs.rules)?;
     let chosen = |places: &mut dyn Iterator<Item = usize>| -> (Vec<String>, Vec<&Recording>) {
         places.map(|k| (names[k].clone(), &observed[k])).unzip()
     };
@@ -172,9 +172,6 @@ pub fn run(
         }
     }
     let decision = maker.decision;
-    for (run, place) in history.runs.iter_mut().zip(&history.places) {
-        run.path.clone_from(&inputs.logs[*place]);
-    }
     if chosen.new.is_none() && chosen.astray() {
         return Err(ReplanFailure::Astray { path: path.clone() });
     }
