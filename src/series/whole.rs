@@ -375,7 +375,7 @@ mod tests {
         }
         let halted = |other: &dyn Fn(f64) -> f64| of(12.0, 1e-3, 0.0, 100.0, other).is_some();
         assert!(halted(&rests) && of(25.0, 1e-3, 0.1, 100.0, &rests).is_some());
-        assert!(!halted(&|t| 3.0 * (t - 5.0).max(0.0)), "another one takes over");
+        assert!(!halted(&|t| 3.0 * (t - 5.0).clamp(0.0, 4.0)), "another one takes over");
         assert!(!halted(&|t| 0.9 * t), "another one crawls on");
     }
 }
