@@ -23,7 +23,12 @@ const MOVED: f64 = 1e-3;
 
 /// A plan that goes on at this speed, rad/s, and m/s of joints that slide, over two stretches of so long, s, and then stands for longer
 /// is halted; one whose speed falls before to this share comes to rest.
-const HALT_SPEED: [f64; 2] = [5.0 * DEGREE_RAD, 0.03];
+const fn halt_speed(kind: JointKind) -> f64 {
+    match kind {
+        JointKind::Turns => 5.0 * DEGREE_RAD,
+        JointKind::Slides => 0.03,
+    }
+}
 const HALT_S: f64 = 0.1;
 const STANDS_S: f64 = 0.3;
 const GOES_ON: f64 = 0.75;
@@ -102,17 +107,15 @@ impl Broken {
         let mean = |track: &Track, [from_s, to_s]: [f64; 2]| {
             (track.held_at(to_s).position - track.held_at(from_s).position) / (to_s - from_s)
         };
-        let least = HALT_SPEED[usize::from(track.kind() == JointKind::Slides)];
+        let least = halt_speed(track.kind());
         let (t_s, position) = (track.t_s(), track.position());
         let moved = |k: usize| (position[k] - position[k - 1]).abs();
         let (first, last) = (t_s.partition_point(|t| *t < from_s), t_s.partition_point(|t| *t <= to_s));
         let steps = || (first.max(1)..last).map(moved).filter(|moved| *moved > STILL);
         let off = ROUNDED * steps().fold(f64::INFINITY, f64::min) / HALT_S;
         let stands = |t_s: f64| {
-            let still = |other: &Track| {
-                let least = HALT_SPEED[usize::from(other.kind() == JointKind::Slides)];
-                mean(other, [t_s, t_s + STANDS_S]).abs() < 0.02 * least
-            };
+            let still =
+                |other: &Track| mean(other, [t_s, t_s + STANDS_S]).abs() < 0.02 * halt_speed(other.kind());
             series.tracks.iter().all(still)
         };
         let (mut begins_s, mut rested_s, mut found) = (None, f64::NEG_INFINITY, Vec::new());

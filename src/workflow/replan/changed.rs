@@ -298,18 +298,16 @@ fn missed_rad(fit: &JointFit, (sent, measured): &(Series, Series)) -> Option<f64
 #[cfg(test)]
 mod tests {
     use super::{
-        super::{decision::Decision, history::tests::history},
+        super::{
+            decision::Decision,
+            history::tests::{history, sent},
+        },
         *,
     };
     use crate::workflow::carried::Promise;
 
     #[test]
     fn a_machine_that_answers_the_same_otherwise_is_another_from_then_on() {
-        let sent = |by: f64| {
-            let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
-            let q = t_s.iter().map(|t| by * t).collect();
-            Series { tracks: vec![Track::new("J", t_s, q, &[]).unwrap()] }
-        };
         let of = |sent_by: &[f64], peaks: &[f64]| {
             let mut history = history(peaks);
             history.series = sent_by.iter().map(|by| (sent(*by), sent(0.0))).collect();

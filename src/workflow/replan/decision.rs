@@ -185,8 +185,10 @@ fn best(peaks: &[(usize, f64)]) -> Option<(usize, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::history::tests::history, *};
-    use crate::series::{Series, Track};
+    use super::{
+        super::history::tests::{history, sent},
+        *,
+    };
 
     #[test]
     fn learning_goes_on_while_a_run_gains_a_tenth_and_then_the_best_is_kept() {
@@ -230,11 +232,6 @@ mod tests {
 
     #[test]
     fn what_is_sent_again_is_no_other_correction() {
-        let sent = |by: f64| {
-            let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
-            let q = t_s.iter().map(|t| by * t).collect();
-            Series { tracks: vec![Track::new("J", t_s, q, &[]).unwrap()] }
-        };
         let of = |by: &[f64], peaks: &[f64]| {
             let mut history = history(peaks);
             history.series = by.iter().map(|by| (sent(1.0 + by), sent(0.0))).collect();

@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// Commands that differ by less than this share of their corrections are the same.
-const SAME: f64 = 0.05;
+pub(super) const SAME: f64 = 0.05;
 
 /// A machine that changed so often changes from run to run.
 const OFTEN: usize = 2;
@@ -247,6 +247,13 @@ fn errors_rad(measured: &Series, plan: &Series) -> [f64; 2] {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+
+    /// A joint that goes on at a speed for a second.
+    pub(in crate::workflow::replan) fn sent(by: f64) -> Series {
+        let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
+        let q = t_s.iter().map(|t| by * t).collect();
+        Series { tracks: vec![Track::new("J", t_s, q, &[]).unwrap()] }
+    }
 
     pub(in crate::workflow::replan) fn history(peaks: &[f64]) -> History {
         let run = |(k, peak): (usize, &f64)| PastRun {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::warp::unexplained;
+use super::{history::SAME, warp::unexplained};
 use crate::{
     fit::{Fit, FitError, predict},
     replay::{Kind, Rules, replay},
@@ -142,10 +142,9 @@ pub fn promised(
     Ok((summary(&left, fit.peak_margin, &pairs, rules), responses))
 }
 
-/// Commands that differ by less are the same, rad, or by this share of what they correct: a command that is kept is fitted to its plan
+/// Commands that differ by less are the same, rad, or by [`SAME`] of what they correct: a command that is kept is fitted to its plan
 /// anew.
 const SAME_RAD: f64 = 2e-4;
-const SAME: f64 = 0.05;
 
 fn changed_rad(before: &Track, sent: &Track) -> f64 {
     let apart = |(t_s, position): (&f64, &f64)| (before.held_at(*t_s).position - position).abs();
