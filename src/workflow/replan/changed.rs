@@ -297,12 +297,9 @@ fn missed_rad(fit: &JointFit, (sent, measured): &(Series, Series)) -> Option<f64
 
 #[cfg(test)]
 mod tests {
-    use super::{
-        super::{
-            decision::Decision,
-            history::tests::{history, sent},
-        },
-        *,
+    use super::super::{
+        decision::Decision,
+        history::tests::{history, sent},
     };
     use crate::workflow::carried::Promise;
 
