@@ -6,7 +6,8 @@
 //!
 //! Dead times read off its samples, from the first planned one above rest to the first measured
 //! one 0.03 deg above rest, are 0.10 to 0.16 s on joints 1 to 4 and 6. At 0.05 deg/s, where
-//! hydrotrace dates both, the first joints leave up to 30 ms earlier.
+//! hydrotrace dates both, the first joints leave up to 30 ms earlier. The fifth sticks, and jumps
+//! between 28.69 and 28.71 s, 0.22 to 0.24 s after its plan.
 
 use serde_json::Value;
 
@@ -46,7 +47,8 @@ fn the_real_log_reports_what_other_tools_found() {
         let first = report["transitions"].as_array().unwrap().iter().find(|t| &t["joint"] == name).unwrap();
         let delay_s = number(&first["onset_delay_s"]);
         let most_s = number(&first["onset_delay_interval_s"][1]);
-        assert!((0.06..0.21).contains(&delay_s) && most_s > 0.10, "{name} answers after {delay_s} s");
+        let expected_s = if index == 4 { 0.21..0.25 } else { 0.06..0.21 };
+        assert!(expected_s.contains(&delay_s) && most_s > 0.10, "{name} answers after {delay_s} s");
         let onsets: Vec<f64> = report["transitions"]
             .as_array()
             .unwrap()
